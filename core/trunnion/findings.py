@@ -1,0 +1,108 @@
+"""What a person should know (`Finding`) and what stops the work (`TrunnionError` and its tree).
+
+    TrunnionError            one clear line; the command line exits with 2
+    ├── BadInput             a file or value that can't be used
+    ├── BadCall              the program was called in a way it doesn't understand
+    ├── OutOfMemory          the work would need more memory than allowed; the remedy is in the line
+    └── Refused              a release or a step that the program won't do, and why
+    Cancelled                not an error: a person asked to stop; the session stays as it was
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+from dataclasses import dataclass
+from enum import StrEnum
+
+
+class TrunnionError(Exception):
+    """Something that stops the work, in one line that says what, where and what to do."""
+
+
+class BadInput(TrunnionError):
+    """A file or a value that can't be used."""
+
+
+class BadCall(TrunnionError):
+    """A call that the program doesn't understand."""
+
+
+class OutOfMemory(TrunnionError):
+    """The work would need more memory than allowed."""
+
+
+class Refused(TrunnionError):
+    """Something the program won't do, such as releasing a program that failed its proof."""
+
+
+class Cancelled(Exception):
+    """A person asked to stop."""
+
+
+class Severity(StrEnum):
+    """How much a finding matters: `error` makes the exit code 1, `remark` lets a program be released with remarks."""
+
+    INFO = "info"
+    REMARK = "remark"
+    WARNING = "warning"
+    ERROR = "error"
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Finding:
+    """One thing a person should know.
+
+    `code` is stable and dotted (`panel.leaning-wall`), `where` names faces, features, operations or blocks in words
+    that the window and the report can show (`face 12`, `pocket-03`, `block 118`), `remedy` says what to do.
+    """
+
+    severity: Severity
+    code: str
+    text: str
+    where: tuple[str, ...] = ()
+    remedy: str = ""
+
+    def as_dict(self) -> dict[str, object]:
+        """Return the finding as the JSON that other programs rely on."""
+        return {"severity": self.severity.value, "code": self.code, "text": self.text, "where": list(self.where), "remedy": self.remedy}
+
+    def __str__(self) -> str:
+        where = f" ({', '.join(self.where)})" if self.where else ""
+        remedy = f": {self.remedy}" if self.remedy else ""
+        return f"{self.severity.value} {self.code}: {self.text}{where}{remedy}"
+
+
+def info(code: str, text: str, *where: str, remedy: str = "") -> Finding:
+    """Return a finding that only informs."""
+    return Finding(severity=Severity.INFO, code=code, text=text, where=where, remedy=remedy)
+
+
+def remark(code: str, text: str, *where: str, remedy: str = "") -> Finding:
+    """Return a finding about time, surface quality or a chosen omission; a program with it may be released."""
+    return Finding(severity=Severity.REMARK, code=code, text=text, where=where, remedy=remedy)
+
+
+def warning(code: str, text: str, *where: str, remedy: str = "") -> Finding:
+    """Return a finding that a person should look at before cutting."""
+    return Finding(severity=Severity.WARNING, code=code, text=text, where=where, remedy=remedy)
+
+
+def error(code: str, text: str, *where: str, remedy: str = "") -> Finding:
+    """Return a finding that keeps a program from being released."""
+    return Finding(severity=Severity.ERROR, code=code, text=text, where=where, remedy=remedy)
+
+
+def has_errors(findings: Iterable[Finding]) -> bool:
+    """Say whether any finding is an error."""
+    return any(f.severity is Severity.ERROR for f in findings)
+
+
+def face_tags(faces: Iterable[int], most: int = 8) -> tuple[str, ...]:
+    """Return the words that name faces in a finding, cut off with a count when there are many.
+
+    >>> face_tags([3, 1])
+    ('face 1', 'face 3')
+    """
+    ordered = sorted(set(faces))
+    words = tuple(f"face {n}" for n in ordered[:most])
+    return words if len(ordered) <= most else (*words, f"and {len(ordered) - most} more faces")

@@ -1,0 +1,84 @@
+"""Machining features: what a recogniser found, by face tag only, never by copied geometry."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping
+from dataclasses import dataclass, field
+from typing import Any
+
+from trunnion.findings import Finding
+from trunnion.geometry.frame import WORLD, Frame
+
+Size = float | int | bool | str | tuple[float, ...]
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class FaceRole:
+    """One face of a feature: its 1-based tag and the role it plays (words: `docs/words.md`)."""
+
+    role: str
+    face: int
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Feature:
+    """One machining feature.
+
+    `sizes` are mm and degrees in the recognition's frame; `attributes` carry `nested_in`, `in`, `through`, `direction`, ...
+    `by_hand` is set when a person made or changed it: a re-run keeps it.
+    """
+
+    id: str
+    kind: str
+    faces: tuple[FaceRole, ...]
+    sizes: Mapping[str, Size] = field(default_factory=dict)
+    attributes: Mapping[str, Size] = field(default_factory=dict)
+    by_hand: bool = False
+
+    def with_role(self, *roles: str) -> tuple[int, ...]:
+        """Return the tags of the faces that play one of the roles, in order."""
+        return tuple(f.face for f in self.faces if f.role in roles)
+
+    @property
+    def tags(self) -> tuple[int, ...]:
+        """The tags of all faces, in order."""
+        return tuple(f.face for f in self.faces)
+
+    def as_dict(self) -> dict[str, Any]:
+        """Return the feature as the JSON that other programs rely on."""
+        sizes = {k: list(v) if isinstance(v, tuple) else v for k, v in self.sizes.items()}
+        extra = {k: list(v) if isinstance(v, tuple) else v for k, v in self.attributes.items()}
+        return {"id": self.id, "kind": self.kind, "faces": [{"role": f.role, "face": f.face} for f in self.faces], "sizes": sizes, **extra}
+
+
+@dataclass(frozen=True, kw_only=True)
+class Recognition:
+    """What a family found on a part: the frame it chose, features, and the faces that nothing explains (tags)."""
+
+    family: str
+    frame: Frame = WORLD
+    features: tuple[Feature, ...] = ()
+    unexplained: tuple[int, ...] = ()
+    unexplained_share: float = 0.0
+    findings: tuple[Finding, ...] = ()
+
+    def of_kind(self, *kinds: str) -> tuple[Feature, ...]:
+        """Return the features of some kinds, in order."""
+        return tuple(f for f in self.features if f.kind in kinds)
+
+    def __iter__(self) -> Iterator[Feature]:
+        return iter(self.features)
+
+    def feature(self, id: str) -> Feature:
+        """Return the feature with an id; raise `KeyError` when there is none."""
+        for f in self.features:
+            if f.id == id:
+                return f
+        raise KeyError(id)
+
+    def counts(self) -> dict[str, int]:
+        """Return the number of features of each kind, in order of appearance."""
+        found: dict[str, int] = {}
+        for f in self.features:
+            found[f.kind] = found.get(f.kind, 0) + 1
+        return found

@@ -1,0 +1,72 @@
+"""Materials and machines as the shop's catalogues give them."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Material:
+    """A work material with its starting values; every number's source stands in the catalogue.
+
+    `speed_rough`, `speed_finish` vc m/min; `feeds` rows (diameter, fz smallest, fz largest) mm; `force` k_c1.1 N/mm2 with exponent `force_exponent`;
+    `depth_factor` ap over D and `width_factor` ae over D for roughing; `density` kg/dm3.
+    """
+
+    name: str
+    title: str
+    iso_group: str
+    density: float
+    speed_rough: float
+    speed_finish: float
+    feeds: tuple[tuple[float, float, float], ...]
+    feed_share: float
+    force: float
+    force_exponent: float
+    depth_factor: float
+    width_factor: float
+    source: str
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Axis:
+    """One machine axis: limits and speeds in mm, mm/min, mm/s2 (degrees for rotary ones)."""
+
+    name: str
+    kind: str
+    low: float
+    high: float
+    rapid: float
+    acceleration: float
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Machine:
+    """A machine: axes, spindle with its power curve (rows: 1/min, kW), largest feed mm/min, tool-change height and seconds."""
+
+    name: str
+    title: str
+    axes: tuple[Axis, ...]
+    spindle_low: float
+    spindle_high: float
+    power: tuple[tuple[float, float], ...]
+    feed_max: float
+    tool_change_s: float
+    tool_places: int
+
+    def power_at(self, spindle: float) -> float:
+        """Return the power in kW at a spindle speed, straight between the rows of the curve."""
+        rows = self.power
+        if spindle <= rows[0][0]:
+            return rows[0][1] * spindle / rows[0][0]
+        for (n0, p0), (n1, p1) in zip(rows, rows[1:], strict=False):
+            if spindle <= n1:
+                return p0 + (p1 - p0) * (spindle - n0) / (n1 - n0)
+        return rows[-1][1]
+
+    def axis(self, name: str) -> Axis:
+        """Return the axis with a name; raise `KeyError` when there is none."""
+        for a in self.axes:
+            if a.name == name:
+                return a
+        raise KeyError(name)

@@ -1,0 +1,68 @@
+"""Operations: what is cut, by which strategy, with which tool and cutting data, and the rule behind each choice."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+
+from trunnion.findings import Finding
+from trunnion.model.tool import Tool
+from trunnion.model.toolpath import EMPTY, Toolpath
+from trunnion.settings import Value
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class CuttingData:
+    """Speeds, feeds and engagement of an operation, and what the spindle has to give for them.
+
+    `speed` vc m/min, `spindle` 1/min, `feed_per_tooth` mm, `feed` and `plunge_feed` mm/min, `depth` ap and `width` ae mm,
+    `power` and `power_limit` kW, `torque` Nm, `removal_rate` cm3/min; `rules` say where each number comes from.
+    """
+
+    speed: float
+    spindle: float
+    feed_per_tooth: float
+    feed: float
+    plunge_feed: float
+    depth: float
+    width: float
+    removal_rate: float
+    power: float
+    power_limit: float
+    torque: float
+    rules: tuple[str, ...] = ()
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Operation:
+    """One operation of a setup.
+
+    `strategy` is a registered name; `feature` the id of the feature it machines; `faces` the tags it finishes (empty for roughing);
+    `choices` the values of the strategy's settings by full key; `rules` why this operation, tool and order; `after` the ids of operations
+    that must come before it; `by_hand` marks a person's change; `suppressed` keeps it in the tree without cutting.
+    """
+
+    id: str
+    kind: str
+    strategy: str
+    feature: str
+    setup: str
+    tool: Tool
+    data: CuttingData
+    faces: tuple[int, ...] = ()
+    choices: Mapping[str, Value] = field(default_factory=dict)
+    rules: tuple[str, ...] = ()
+    after: tuple[str, ...] = ()
+    by_hand: bool = False
+    suppressed: bool = False
+    group: str = ""
+
+
+@dataclass(frozen=True, slots=True, eq=False, kw_only=True)
+class OperationPath:
+    """The toolpath of one operation, the areas it leaves (in words) and the digest of what it was made from."""
+
+    operation: str
+    path: Toolpath = EMPTY
+    findings: tuple[Finding, ...] = ()
+    key: str = ""

@@ -1,0 +1,34 @@
+"""A program of motions: what a post writes and what a reader gives back from text. The proof reads nothing else."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+from trunnion.model.setup import Setup
+from trunnion.model.tool import Tool
+from trunnion.model.toolpath import Toolpath
+
+
+@dataclass(frozen=True, slots=True, eq=False, kw_only=True)
+class ProgramSection:
+    """The motions of one operation with one tool. `spindle` 1/min; `block_lines` the text line of each block when read back, else empty."""
+
+    operation: str
+    tool: Tool
+    spindle: float
+    path: Toolpath
+    coolant: str = "flood"
+    block_lines: tuple[int, ...] = ()
+
+
+@dataclass(frozen=True, slots=True, eq=False, kw_only=True)
+class Program:
+    """The sections of one setup, in order."""
+
+    name: str
+    setup: Setup
+    sections: tuple[ProgramSection, ...]
+
+    def n_blocks(self) -> int:
+        """Return the number of motion blocks."""
+        return sum(len(s.path) for s in self.sections)

@@ -1,0 +1,22 @@
+"""A setup: how the part lies on the machine, and where its program's zero is."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+from trunnion.geometry.frame import Frame
+
+
+@dataclass(frozen=True, slots=True, eq=False, kw_only=True)
+class Setup:
+    """One clamping.
+
+    `frame` is the work offset's frame in the part's coordinates (z towards the spindle): toolpath positions are in it.
+    `clearance` is the height in that frame above everything; `machine` a catalogue name; `work_offset` a word (`G54`).
+    """
+
+    name: str
+    frame: Frame
+    work_offset: str
+    clearance: float
+    machine: str

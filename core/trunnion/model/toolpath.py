@@ -1,0 +1,109 @@
+"""Toolpaths as arrays, never objects a block. Everybody reads this one vocabulary of motion: posts, proof, playback, listing."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from enum import IntEnum
+
+import numpy as np
+
+from trunnion.geometry.arrays import Floats, Ints, floats, ints
+
+
+class Motion(IntEnum):
+    """How a block moves from the end of the block before it."""
+
+    RAPID = 0
+    LINE = 1
+    ARC_CW = 2
+    """Clockwise seen along -z of the setup frame (G2 in G17); a helix when z changes along it."""
+    ARC_CCW = 3
+
+
+class Mark(IntEnum):
+    """What a block is for."""
+
+    CUT = 0
+    ENTRY = 1
+    """Ramp, helix or plunge into material."""
+    LEAD = 2
+    """Tangential lead-in or lead-out."""
+    LINK = 3
+    """Feed move between passes that stays down."""
+    RETRACT = 4
+    """Moves away from and towards the work, above it."""
+
+
+@dataclass(frozen=True, slots=True, eq=False, kw_only=True)
+class Toolpath:
+    """The motions of one operation, in the setup frame.
+
+    position (n, 3) mm: the tip at the end of each block; block 0 is a rapid, its start is wherever the tool was.
+    axis (n, 3) unit: the tool axis, from tip to spindle. motion (n,), mark (n,): `Motion`, `Mark`.
+    centre (n, 3): centre of an arc at the height of its start, NaN otherwise. An arc turns less than a full turn unless it ends in xy where it starts: then one full turn.
+    feed (n,) mm/min, 0 for rapids.
+    """
+
+    position: Floats
+    axis: Floats
+    motion: Ints
+    centre: Floats
+    feed: Floats
+    mark: Ints
+
+    def __post_init__(self) -> None:
+        n = len(np.asarray(self.motion))
+        object.__setattr__(self, "position", floats(self.position, (n, 3), "toolpath position"))
+        object.__setattr__(self, "axis", floats(self.axis, (n, 3), "toolpath axis"))
+        object.__setattr__(self, "motion", ints(self.motion, (n,), "toolpath motion"))
+        object.__setattr__(self, "centre", floats(self.centre, (n, 3), "toolpath centre", may_be_nan=True))
+        object.__setattr__(self, "feed", floats(self.feed, (n,), "toolpath feed"))
+        object.__setattr__(self, "mark", ints(self.mark, (n,), "toolpath mark"))
+        if n and self.motion[0] != Motion.RAPID:
+            raise ValueError("toolpath: its first block must be a rapid")
+        arcs = self.motion >= Motion.ARC_CW
+        if not np.isfinite(self.centre[arcs]).all():
+            raise ValueError("toolpath: every arc needs a centre")
+        if (self.feed[self.motion != Motion.RAPID] <= 0.0).any():
+            raise ValueError("toolpath: every feed move needs a feed above zero")
+
+    def __len__(self) -> int:
+        return len(self.motion)
+
+    def starts(self) -> Floats:
+        """Return where each block starts (n, 3); the first block starts where it ends."""
+        return np.vstack([self.position[:1], self.position[:-1]]) if len(self) else self.position
+
+    def sweeps(self) -> Floats:
+        """Return the signed angle in radians that each arc turns (n,), anticlockwise positive, 0 for lines and rapids."""
+        start, out = self.starts(), np.zeros(len(self))
+        rows = np.flatnonzero(self.motion >= Motion.ARC_CW)
+        if len(rows):
+            a = start[rows, :2] - self.centre[rows, :2]
+            b = self.position[rows, :2] - self.centre[rows, :2]
+            turn = np.arctan2(a[:, 0] * b[:, 1] - a[:, 1] * b[:, 0], (a * b).sum(axis=1))
+            sign = np.where(self.motion[rows] == Motion.ARC_CCW, 1.0, -1.0)
+            turn = sign * np.mod(sign * turn, 2 * np.pi)
+            closed = np.linalg.norm(a - b, axis=1) < 1e-9
+            out[rows] = np.where(closed, sign * 2 * np.pi, turn)
+        return out
+
+    def lengths(self) -> Floats:
+        """Return the length of each block (n,) in mm; the first block, whose start is unknown, counts 0."""
+        start, sweep = self.starts(), self.sweeps()
+        run = np.linalg.norm(self.position - start, axis=1)
+        arcs = self.motion >= Motion.ARC_CW
+        radius = np.linalg.norm(start[arcs, :2] - self.centre[arcs, :2], axis=1)
+        run[arcs] = np.hypot(radius * np.abs(sweep[arcs]), self.position[arcs, 2] - start[arcs, 2])
+        return run
+
+    @staticmethod
+    def join(paths: list[Toolpath]) -> Toolpath:
+        """Return the paths one after the other."""
+        if not paths:
+            return EMPTY
+        return Toolpath(**{n: np.concatenate([getattr(p, n) for p in paths]) for n in ("position", "axis", "motion", "centre", "feed", "mark")})
+
+
+EMPTY = Toolpath(position=np.zeros((0, 3)), axis=np.zeros((0, 3)), motion=np.zeros(0, int), centre=np.zeros((0, 3)), feed=np.zeros(0), mark=np.zeros(0, int))
+"""No motion at all."""

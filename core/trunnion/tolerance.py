@@ -1,0 +1,41 @@
+"""The one place for tolerances, named by what they mean. Lengths in mm, angles in radians unless the name says otherwise."""
+
+from __future__ import annotations
+
+import math
+
+COINCIDENT = 1e-6
+"""Two points closer than this are one point: ten times the modelling tolerance of the CAD kernel, far below a machine's resolution."""
+
+SEW = 1e-2
+"""Widest gap that is closed between trimmed surfaces that arrive unsewn; more is an open part."""
+
+SLIVER = 2e-3
+"""A face or loop narrower than this can't be told from the modeller's noise and is joined to its neighbour."""
+
+PLANE_REGION = 1e-3
+"""Chord error at which arcs are opened into chords while a plane region's topology is found; the exact arcs are put back after."""
+
+AREA = 1e-4
+"""mm2: a plane piece smaller than this is noise of the topology step."""
+
+CHORD = 5e-3
+"""Chord error of meshes that are only looked at."""
+
+GOUGE = 0.02
+"""Default limit of the verdict: how deep anything may enter the finished part."""
+
+CONTACT_BOUND = 2e-3
+"""How far the contact engine's figure may be from the truth with a fixed tool axis."""
+
+RAPID_DEPTH = 0.01
+"""A rapid is in stock when it is deeper than this in it: below, it slides on a surface that was just cut."""
+
+ANGLE = math.radians(0.05)
+"""Two directions closer than this are parallel: CAD files carry directions to about 1e-7, exports through other systems to 1e-4."""
+
+TANGENT = math.radians(0.5)
+"""A dihedral angle closer than this to flat is smooth: rolling-ball fillets are approximated by their modellers."""
+
+PARAMETRIC = 1e-9
+"""Two numbers that were computed the same way and differ by less are equal."""

@@ -1,0 +1,32 @@
+"""Numbers and units: what stands at the edges of the program (mm, degrees) and inside it (mm, radians)."""
+
+from __future__ import annotations
+
+import math
+
+MM_PER_INCH = 25.4
+SECONDS_PER_MINUTE = 60.0
+WATTS_PER_KILOWATT = 1000.0
+MM_PER_METRE = 1000.0
+
+
+def radians(degrees: float) -> float:
+    """Return an angle in radians from one in degrees."""
+    return math.radians(degrees)
+
+
+def degrees(radians: float) -> float:
+    """Return an angle in degrees from one in radians."""
+    return math.degrees(radians)
+
+
+def trimmed(value: float, decimals: int) -> str:
+    """Return a number without trailing zeros and without a negative zero.
+
+    >>> trimmed(12.5000, 4), trimmed(-0.00001, 3), trimmed(40, 3)
+    ('12.5', '0', '40')
+    """
+    text = f"{value:.{decimals}f}"
+    if "." in text:
+        text = text.rstrip("0").rstrip(".")
+    return "0" if text in ("-0", "") else text
