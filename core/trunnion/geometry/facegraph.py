@@ -115,7 +115,8 @@ class FaceGraph:
 
     def in_frame(self, frame: Frame) -> FaceGraph:
         """Return the same graph with every point and direction in a frame (boxes are those of the samples and edge points)."""
-        moved = {n: frame.to_local(getattr(self, n)) for n in ("centre", "axis_point", "sample_point", "start", "middle", "end", "curve_centre")}
+        moved = {n: frame.to_local(getattr(self, n)) for n in ("centre", "axis_point", "sample_point", "start", "middle", "end",
+        "curve_centre")}
         turned = {n: frame.local_direction(getattr(self, n)) for n in ("normal", "axis", "sample_normal", "curve_axis")}
         low, high = np.full((len(self), 3), np.inf), np.full((len(self), 3), -np.inf)
         points = [moved["sample_point"], *(moved[n] for n in ("start", "middle", "end") for _ in (0, 1))]
@@ -144,7 +145,7 @@ class FaceGraph:
 
 def _plain(value: object) -> object:
     if isinstance(value, np.ndarray):
-        return np.where(np.isfinite(value), value.astype(object), None).tolist() if value.dtype.kind == "f" else value.tolist()
+        return [_plain(row) for row in value] if value.ndim > 1 else [None if v != v else v for v in value.tolist()]
     return list(value) if isinstance(value, tuple) else value
 
 

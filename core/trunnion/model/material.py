@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import itertools
 from dataclasses import dataclass
 
 
@@ -9,7 +10,8 @@ from dataclasses import dataclass
 class Material:
     """A work material with its starting values; every number's source stands in the catalogue.
 
-    `speed_rough`, `speed_finish` vc m/min; `feeds` rows (diameter, fz smallest, fz largest) mm; `force` k_c1.1 N/mm2 with exponent `force_exponent`;
+    `speed_rough`, `speed_finish` vc m/min; `feeds` rows (diameter, fz smallest, fz largest) mm; `force` k_c1.1 N/mm2 with exponent
+    `force_exponent`;
     `depth_factor` ap over D and `width_factor` ae over D for roughing; `density` kg/dm3.
     """
 
@@ -59,7 +61,7 @@ class Machine:
         rows = self.power
         if spindle <= rows[0][0]:
             return rows[0][1] * spindle / rows[0][0]
-        for (n0, p0), (n1, p1) in zip(rows, rows[1:], strict=False):
+        for (n0, p0), (n1, p1) in itertools.pairwise(rows):
             if spindle <= n1:
                 return p0 + (p1 - p0) * (spindle - n0) / (n1 - n0)
         return rows[-1][1]

@@ -40,7 +40,8 @@ class Toolpath:
 
     position (n, 3) mm: the tip at the end of each block; block 0 is a rapid, its start is wherever the tool was.
     axis (n, 3) unit: the tool axis, from tip to spindle. motion (n,), mark (n,): `Motion`, `Mark`.
-    centre (n, 3): centre of an arc at the height of its start, NaN otherwise. An arc turns less than a full turn unless it ends in xy where it starts: then one full turn.
+    centre (n, 3): centre of an arc at the height of its start, NaN otherwise. An arc turns less than a full turn unless it ends in xy
+    where it starts: then one full turn.
     feed (n,) mm/min, 0 for rapids.
     """
 
@@ -102,8 +103,10 @@ class Toolpath:
         """Return the paths one after the other."""
         if not paths:
             return EMPTY
-        return Toolpath(**{n: np.concatenate([getattr(p, n) for p in paths]) for n in ("position", "axis", "motion", "centre", "feed", "mark")})
+        return Toolpath(**{n: np.concatenate([getattr(p, n) for p in paths])
+                           for n in ("position", "axis", "motion", "centre", "feed", "mark")})
 
 
-EMPTY = Toolpath(position=np.zeros((0, 3)), axis=np.zeros((0, 3)), motion=np.zeros(0, int), centre=np.zeros((0, 3)), feed=np.zeros(0), mark=np.zeros(0, int))
+EMPTY = Toolpath(position=np.zeros((0, 3)), axis=np.zeros((0, 3)), motion=np.zeros(0, int), centre=np.zeros((0, 3)), feed=np.zeros(0),
+mark=np.zeros(0, int))
 """No motion at all."""

@@ -37,7 +37,8 @@ class FaceProof:
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class OperationProof:
-    """What was measured on one operation: deepest gouge, collisions (shank, holder), rapids in stock, time at the machine, removed volume (mm3)."""
+    """What was measured on one operation: deepest gouge, collisions (shank, holder), rapids in stock, time at the machine, removed volume
+    (mm3)."""
 
     operation: str
     setup: str
@@ -52,21 +53,22 @@ class OperationProof:
 
 @dataclass(frozen=True, slots=True, eq=False, kw_only=True)
 class Deviation:
-    """Samples of the finished part for maps: face (s,) tags, point (s, 3) part coordinates, deviation (s,) mm, + is material left, - is gouge."""
+    """Samples of the finished part for maps: face (s,) tags, point (s, 3) part coordinates, deviation (s,) mm, + is material left, - is
+    gouge."""
 
     face: Ints
     point: Floats
     deviation: Floats
 
-    @staticmethod
-    def none() -> Deviation:
-        """Return a deviation without samples."""
-        return Deviation(face=np.zeros(0, int), point=np.zeros((0, 3)), deviation=np.zeros(0))
+
+NO_DEVIATION = Deviation(face=np.zeros(0, int), point=np.zeros((0, 3)), deviation=np.zeros(0))
+"""A deviation without samples."""
 
 
 @dataclass(frozen=True, slots=True, eq=False, kw_only=True)
 class Verdict:
-    """The proof of a whole plan. `coverage` finished area over area to be machined; `reachable` the same over what any catalogue cutter reaches."""
+    """The proof of a whole plan. `coverage` finished area over area to be machined; `reachable` the same over what any catalogue cutter
+    reaches."""
 
     outcome: Outcome
     coverage: float
@@ -78,7 +80,7 @@ class Verdict:
     operations: tuple[OperationProof, ...] = ()
     faces: tuple[FaceProof, ...] = ()
     findings: tuple[Finding, ...] = ()
-    deviation: Deviation = Deviation.none()
+    deviation: Deviation = NO_DEVIATION
     accepted_by: str = ""
 
     @property
