@@ -60,7 +60,7 @@ class Frame:
 
     def as_dict(self) -> dict[str, list[float]]:
         """Return the frame as the JSON that other programs rely on."""
-        return {"origin": [float(v) + 0.0 for v in self.origin], "x": [float(v) + 0.0 for v in self.x], "z": [float(v) + 0.0 for v in self.z]}
+        return {name: [float(v) + 0.0 for v in getattr(self, name)] for name in ("origin", "x", "z")}
 
 
 WORLD = Frame(np.zeros(3), np.array([1.0, 0.0, 0.0]), np.array([0.0, 0.0, 1.0]))

@@ -1,0 +1,35 @@
+"""`trunnion blank`: the blank that the part is cut from."""
+
+from __future__ import annotations
+
+import argparse
+from typing import Any
+
+from trunnion.cli.common import exit_code, open_session, part_command, show_findings, show_json
+
+
+def add(commands: Any) -> None:
+    """Add the command to the command line."""
+    made = part_command(commands, "blank", "the blank that the part is cut from")
+    made.add_argument("--step", metavar="FILE", help="write the blank as STEP as well")
+    made.set_defaults(run=run)
+
+
+def run(chosen: argparse.Namespace) -> int:
+    """Print the blank's size, volume and mass."""
+    _, session = open_session(chosen, "blank")
+    blank = session.blank
+    assert blank is not None
+    if chosen.step:
+        from trunnion.part.build import box_blank
+        from trunnion.part.write import write_step
+        write_step(box_blank(blank.frame, blank.low, blank.high), chosen.step)
+    if chosen.json:
+        show_json({"kind": blank.kind, "material": blank.material, "frame": blank.frame.as_dict(), "min": list(map(float, blank.low)),
+                   "max": list(map(float, blank.high)), "volume": blank.volume, "mass_kg": blank.mass,
+                   "findings": [f.as_dict() for f in session.findings()]})
+    else:
+        a, b, c = blank.size
+        print(f"{blank.kind} {a:.3f} x {b:.3f} x {c:.3f} mm of {blank.material}, {blank.volume / 1e3:.1f} cm3, {blank.mass:.2f} kg")
+    show_findings(chosen, session.findings())
+    return exit_code(session.findings())

@@ -1,0 +1,96 @@
+"""What the commands share: their options, opening a part, showing progress, and turning findings into an exit code."""
+
+from __future__ import annotations
+
+import argparse
+import json
+import sys
+from collections.abc import Iterable, Sequence
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+from trunnion.findings import BadCall, Finding, has_errors
+from trunnion.progress import Progress
+
+if TYPE_CHECKING:
+    from trunnion.model.session import Session
+    from trunnion.pipeline import Engine
+
+
+def part_command(commands: Any, name: str, help: str, description: str = "") -> argparse.ArgumentParser:
+    """Return the parser of a command that works on one part or project, with the options all of them have."""
+    made: argparse.ArgumentParser = commands.add_parser(name, help=help, description=description or help)
+    made.add_argument("part", metavar="PART", help="part file (.step, .stp, .stpz, .igs, .iges) or project (.trunnion)")
+    add_options(made)
+    return made
+
+
+def add_options(made: argparse.ArgumentParser) -> None:
+    """Add the options that every command has."""
+    made.add_argument("--set", action="append", default=[], metavar="KEY=VALUE", dest="words",
+                      help="change a setting (`trunnion settings` lists them); may be repeated")
+    made.add_argument("--solid", type=int, default=None, metavar="N", help="which solid of a file with several (1-based)")
+    made.add_argument("--user-folder", type=Path, default=None, metavar="DIR", help="a shop's own tools, materials, machines and plans")
+    made.add_argument("--json", action="store_true", help="print the result as JSON")
+    made.add_argument("--quiet", action="store_true", help="print results only, no progress and no findings")
+
+
+def words_of(chosen: argparse.Namespace) -> dict[str, str]:
+    """Return the settings given with `--set` by key."""
+    pairs = {}
+    for word in chosen.words:
+        key, equals, value = word.partition("=")
+        if not equals or not key.strip():
+            raise BadCall(f"--set wants KEY=VALUE, not {word}")
+        pairs[key.strip()] = value.strip()
+    return pairs
+
+
+def progress_of(chosen: argparse.Namespace) -> Progress:
+    """Return progress that shows itself on a terminal's standard error, one line rewritten, and nothing elsewhere."""
+    if chosen.quiet or not sys.stderr.isatty():
+        return Progress()
+
+    def show(fraction: float, text: str) -> None:
+        end = "\n" if fraction >= 1.0 else ""
+        print(f"\r\x1b[K{fraction:4.0%} {text}", end=end, file=sys.stderr, flush=True)
+
+    return Progress(show)
+
+
+def open_session(chosen: argparse.Namespace, until: str | None) -> tuple[Engine, Session]:
+    """Return the engine and the session of the part, with every step up to `until` done."""
+    from trunnion.pipeline import Engine
+    engine = Engine(chosen.user_folder)
+    progress = progress_of(chosen)
+    session = engine.open(chosen.part, solid=chosen.solid, progress=progress.part(0.0, 0.1))
+    session = engine.with_choices(session, words_of(chosen))
+    if until is not None:
+        session = engine.run(session, until, progress.part(0.1, 1.0))
+    return engine, session
+
+
+def show_json(data: Any) -> None:
+    """Print data as JSON on standard output."""
+    print(json.dumps(data, indent=1, ensure_ascii=False))
+
+
+def show_findings(chosen: argparse.Namespace, findings: Iterable[Finding]) -> None:
+    """Print findings on standard error, one a line, unless asked to be quiet or to print JSON."""
+    if chosen.quiet or chosen.json:
+        return
+    for finding in findings:
+        print(str(finding), file=sys.stderr)
+
+
+def table(rows: Sequence[tuple[str, ...]], right: tuple[int, ...] = ()) -> str:
+    """Return rows (the first one is the head) as aligned text; the columns in `right` are set flush right."""
+    widths = [max(len(row[n]) for row in rows) for n in range(len(rows[0]))]
+    lines = ["  ".join(c.rjust(w) if n in right else c.ljust(w) for n, (c, w) in enumerate(zip(row, widths, strict=True))).rstrip()
+             for row in rows]
+    return "\n".join(lines)
+
+
+def exit_code(findings: Iterable[Finding]) -> int:
+    """Return 1 when any finding is an error, 0 otherwise."""
+    return 1 if has_errors(findings) else 0

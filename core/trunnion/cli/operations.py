@@ -1,0 +1,28 @@
+"""How the commands show operations: as a table and as JSON."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+from dataclasses import asdict
+from typing import Any
+
+from trunnion.cli.common import table
+from trunnion.model.operation import Operation
+
+
+def operation_dict(operation: Operation) -> dict[str, Any]:
+    """Return an operation as JSON data."""
+    return {"id": operation.id, "kind": operation.kind, "strategy": operation.strategy, "feature": operation.feature,
+            "setup": operation.setup, "tool": operation.tool.number, "faces": list(operation.faces), "data": asdict(operation.data),
+            "choices": dict(operation.choices), "rules": list(operation.rules), "after": list(operation.after),
+            "by_hand": operation.by_hand, "suppressed": operation.suppressed}
+
+
+def operation_table(operations: Iterable[Operation]) -> str:
+    """Return operations as aligned text."""
+    rows = [("operation", "kind", "feature", "tool", "n 1/min", "vf mm/min", "ap mm", "ae mm", "kW")]
+    for o in operations:
+        d = o.data
+        rows.append((o.id, o.kind, o.feature, f"T{o.tool.number} {o.tool.name}", f"{d.spindle:.0f}", f"{d.feed:.0f}", f"{d.depth:.2f}",
+                     f"{d.width:.2f}", f"{d.power:.2f}"))
+    return table(rows, right=(4, 5, 6, 7, 8))

@@ -1,0 +1,51 @@
+"""How the commands show a verdict: as text, as the JSON other programs rely on, and as an exit code."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from typing import Any
+
+from trunnion.findings import has_errors
+from trunnion.model.session import Session
+
+
+def proof_dict(session: Session, files: tuple[str, ...], seconds: Mapping[str, float]) -> dict[str, Any]:
+    """Return the verdict as JSON data; every figure is the proof's own."""
+    verdict, process, blank = session.verdict, session.process, session.blank
+    assert verdict is not None and process is not None and blank is not None
+    proofs = {p.operation: p for p in verdict.operations}
+    box = {"min": [float(v) for v in blank.low], "max": [float(v) for v in blank.high], "frame": blank.frame.as_dict()}
+    operations = []
+    for o in process.operations:
+        p = proofs.get(o.id)
+        operations.append({"id": o.id, "kind": o.kind, "feature": o.feature, "tool": o.tool.number, "setup": o.setup,
+                           "verdict": str(p.outcome) if p else "not cut", "gouge_mm": p.gouge if p else 0.0,
+                           "time_s": p.time_s if p else 0.0, "removed_mm3": p.removed if p else 0.0,
+                           "air_share": p.air_share if p else 0.0})
+    return {"verdict": str(verdict.outcome), "coverage": verdict.coverage, "reachable": verdict.reachable, "gouge_mm": verdict.gouge,
+            "collisions": verdict.collisions, "rapids_in_stock": verdict.rapids_in_stock, "machining_time_s": verdict.machining_time_s,
+            "seconds": dict(seconds),
+            "setups": [{"name": s.name, "nc": next((f for f in files if f".{s.name}." in f), ""), "frame": s.frame.as_dict(),
+                        "work_offset": s.work_offset, "blank": box} for s in process.setups],
+            "operations": operations, "files": list(files), "findings": [f.as_dict() for f in session.findings()]}
+
+
+def proof_text(session: Session) -> str:
+    """Return the verdict in a few lines."""
+    v = session.verdict
+    assert v is not None
+    minutes, seconds = divmod(round(v.machining_time_s), 60)
+    return "\n".join([
+        f"verdict            {v.outcome}",
+        f"coverage           {100 * v.coverage:.2f} % ({100 * v.reachable:.2f} % of what can be reached)",
+        f"greatest gouge     {v.gouge:.4f} mm",
+        f"collisions         {v.collisions}",
+        f"rapids in stock    {v.rapids_in_stock}",
+        f"time at the machine {minutes} min {seconds:02d} s in {len(v.operations)} operations",
+    ])
+
+
+def verdict_code(session: Session) -> int:
+    """Return 0 when the program may be released and nothing is an error, 1 otherwise."""
+    released = session.verdict is not None and session.verdict.releases
+    return 0 if released and not has_errors(session.findings()) else 1

@@ -1,0 +1,35 @@
+"""NC text from outside, such as a program edited by hand at the machine, proven against the part."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import replace
+from pathlib import Path
+
+from trunnion.findings import BadCall, BadInput
+from trunnion.model.session import PostedFile, Session, StepRecord
+from trunnion.pipeline.engine import Engine
+from trunnion.pipeline.proving import prove_programs, read_back
+from trunnion.post.settings import PostSettings
+from trunnion.progress import Progress
+from trunnion.settings import checked, choose
+
+
+def verify_texts(engine: Engine, session: Session, files: Sequence[Path], progress: Progress) -> Session:
+    """Return the session with the verdict on the texts of the files, one for each setup in order."""
+    if session.process is None:
+        raise BadCall("no operations yet: generate the route first")
+    if len(files) > len(session.process.setups):
+        raise BadCall(f"{len(files)} programs given, but the part has {len(session.process.setups)} setups")
+    dialect = checked(choose(PostSettings, session.choices)).dialect
+    posted = []
+    for file, setup in zip(files, session.process.setups, strict=False):
+        try:
+            text = file.read_text(encoding="utf-8")
+        except (OSError, UnicodeDecodeError) as reason:
+            raise BadInput(f"{file}: can't be read as text: {reason}") from None
+        posted.append(PostedFile(suffix=file.name, dialect=dialect, setup=setup.name, text=text))
+    programs = read_back(session, tuple(posted))
+    verdict = prove_programs(session, engine.bench, programs, progress)
+    record = StepRecord(key="texts from outside", seconds=0.0, findings=verdict.findings)
+    return replace(session, verdict=verdict, posted=tuple(posted), records={**session.records, "verify": record})

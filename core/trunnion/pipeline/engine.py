@@ -1,0 +1,144 @@
+"""The engine: owns the CAD part and the shop, runs what is stale, opens, saves and writes sessions."""
+
+from __future__ import annotations
+
+import time
+from collections.abc import Mapping
+from dataclasses import replace
+from pathlib import Path
+
+from trunnion.findings import BadCall, BadInput, has_errors
+from trunnion.geometry.mesh import Mesh
+from trunnion.model.session import Session, StepRecord
+from trunnion.pipeline.bench import Bench
+from trunnion.pipeline.steps import STEP_TABLE, STEPS, Step, step_named
+from trunnion.progress import QUIET, Progress
+from trunnion.settings import Value, declared
+from trunnion.shop import load_shop
+
+PROJECT_SUFFIX = ".trunnion"
+
+
+class Engine:
+    """The one door to the core. Sessions go in and come out; only the part and the catalogues stay here.
+
+    `user_folder` is a folder of a shop's own tools, materials, machines and plans; the default is the user's data folder.
+    """
+
+    def __init__(self, user_folder: Path | None = None) -> None:
+        self._shop = load_shop(user_folder)
+        self._bench: Bench | None = None
+        self._file: tuple[bytes, str] = (b"", "")
+
+    def open(self, path: str | Path, *, solid: int | None = None, progress: Progress = QUIET) -> Session:
+        """Return a new session of a part file (STEP, IGES, gzipped STEP) or the saved session of a project file."""
+        path = Path(path)
+        if path.suffix.lower() == PROJECT_SUFFIX:
+            return self._open_project(path, progress)
+        from trunnion.part.read import read_part
+        part = read_part(path, solid=solid, progress=progress)
+        self._bench = Bench(part, self._shop)
+        self._file = (path.read_bytes(), path.suffix)
+        return Session(part=self._bench.facts)
+
+    def _open_project(self, path: Path, progress: Progress) -> Session:
+        from trunnion.store.project import load_project
+        session, data, suffix = load_project(path)
+        self._take(session, data, suffix, progress)
+        return session
+
+    def _take(self, session: Session, data: bytes, suffix: str, progress: Progress) -> None:
+        from trunnion.part.read import read_part_bytes
+        if session.part is None:
+            raise BadInput("the project holds no part: open the part file instead")
+        part = read_part_bytes(data, session.part.name, suffix, solid=session.part.solid, progress=progress)
+        if part.digest != session.part.digest:
+            raise BadInput(f"{session.part.name}: the part kept with the project is not the one its plan was made for; open the part anew")
+        self._bench = Bench(part, self._shop)
+        self._file = (data, suffix)
+
+    def keep(self) -> tuple[bytes, str]:
+        """Return the bytes and the suffix of the part file as it was read, so that another engine can take over with `attach`."""
+        return self._file
+
+    def attach(self, session: Session, data: bytes = b"", suffix: str = "", progress: Progress = QUIET) -> None:
+        """Take over a session after a restart: from the part file's bytes when given, else from where the part was read."""
+        if session.part is None:
+            return
+        if not data:
+            path = Path(session.part.path)
+            if not path.is_file():
+                raise BadInput(f"{path}: the part file is gone; open it again from where it is now")
+            data, suffix = path.read_bytes(), path.suffix
+        self._take(session, data, suffix, progress)
+
+    @property
+    def bench(self) -> Bench:
+        """The part and the shop; raises `BadCall` while no part is open."""
+        if self._bench is None:
+            raise BadCall("no part is open: open a STEP or IGES file first")
+        return self._bench
+
+    def mesh(self, session: Session) -> Mesh:
+        """Return the triangles of the part, with the tag of each one's face."""
+        return self.bench.part.mesh()
+
+    def settings(self) -> dict[str, tuple[type, ...]]:
+        """Return the groups of settings that each step declares."""
+        return {step.name: step.settings() for step in STEP_TABLE}
+
+    def with_choices(self, session: Session, words: Mapping[str, Value]) -> Session:
+        """Return the session with settings chosen by full key (`plane.rough.stepover`); raise `BadInput` for a wrong key or value."""
+        known = {d.key: d for groups in self.settings().values() for group in groups for d in declared(group)}
+        chosen: dict[str, Value] = {}
+        for key, value in words.items():
+            if key not in known:
+                near = [k for k in known if k.rsplit(".", 1)[-1] == key.rsplit(".", 1)[-1]]
+                advice = f"did you mean {' or '.join(near)}?" if near else "`trunnion settings` lists them"
+                raise BadInput(f"unknown setting {key}; {advice}")
+            chosen[key] = known[key].parse(value)
+        return replace(session, choices={**session.choices, **chosen})
+
+    def states(self, session: Session) -> dict[str, str]:
+        """Return for each step whether it is `empty`, `stale`, `done`, or done with a `problem`."""
+        return {step.name: self._state(session, step) for step in STEP_TABLE}
+
+    def _state(self, session: Session, step: Step) -> str:
+        record = session.records.get(step.name)
+        if record is None or not step.done(session):
+            return "empty"
+        if self._bench is None or record.key != step.key(session, self.bench):
+            return "stale"
+        return "problem" if has_errors(record.findings) else "done"
+
+    def run(self, session: Session, until: str = STEPS[-1], progress: Progress = QUIET) -> Session:
+        """Return the session with every stale step up to `until` computed again; the one given stays as it was."""
+        last = STEPS.index(step_named(until).name)
+        for n, step in enumerate(STEP_TABLE[: last + 1]):
+            if self._state(session, step) in ("done", "problem"):
+                continue
+            share = progress.part(n / (last + 1), (n + 1) / (last + 1))
+            share.at(0.0, step.title)
+            session = self._run_one(session, step, share)
+        progress.at(1.0, "done")
+        return session
+
+    def _run_one(self, session: Session, step: Step, progress: Progress) -> Session:
+        began = time.perf_counter()
+        key = step.key(session, self.bench)
+        result = step.work(session, self.bench, progress)
+        record = StepRecord(key=key, seconds=time.perf_counter() - began, findings=result.findings)
+        kept = {name: session.records[name] for name in STEPS if name in session.records}
+        return replace(result.session, records={name: record if name == step.name else kept[name]
+                                                for name in STEPS if name == step.name or name in kept})
+
+    def save(self, session: Session, path: str | Path) -> None:
+        """Write the project file, whole or not at all."""
+        from trunnion.store.project import save_project
+        data, suffix = self._file
+        save_project(session, Path(path), data, suffix)
+
+    def write(self, session: Session, folder: str | Path, *, name: str = "", date: str = "", progress: Progress = QUIET) -> tuple[str, ...]:
+        """Write everything of a proven session into a folder (NC, CL, XML, tool list, report, project); return the file names."""
+        from trunnion.pipeline.writing import write_all
+        return write_all(self, session, Path(folder), name=name, date=date, progress=progress)

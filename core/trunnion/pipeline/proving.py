@@ -1,0 +1,76 @@
+"""From toolpaths to a verdict: the programs are posted, read back, and what was read is proven, not what was planned."""
+
+from __future__ import annotations
+
+from trunnion import registry
+from trunnion.findings import BadCall
+from trunnion.model.program import Program, ProgramSection
+from trunnion.model.session import PostedFile, Session
+from trunnion.model.setup import Setup
+from trunnion.model.verdict import Verdict
+from trunnion.pipeline.bench import Bench
+from trunnion.post.header import Header
+from trunnion.post.readers import read_program
+from trunnion.post.settings import PostSettings
+from trunnion.progress import Progress
+from trunnion.settings import checked, choose
+from trunnion.verify import prove
+from trunnion.verify.settings import ProofSettings
+
+
+def program_of(session: Session, setup: Setup) -> Program:
+    """Return the motions of one setup: a section for each operation that has a toolpath, in the order they are cut."""
+    if session.process is None or session.part is None:
+        raise BadCall("no operations yet: generate the route first")
+    sections = []
+    for operation in session.process.of_setup(setup.name):
+        made = session.path_of(operation.id)
+        if made is not None and len(made.path):
+            sections.append(ProgramSection(operation=operation.id, tool=operation.tool, spindle=operation.data.spindle, path=made.path))
+    return Program(name=f"{session.part.name}.{setup.name}", setup=setup, sections=tuple(sections))
+
+
+def programs_of(session: Session) -> tuple[Program, ...]:
+    """Return the programs of all setups that cut anything."""
+    return tuple(p for p in (program_of(session, s) for s in session.setups) if p.sections)
+
+
+def post_texts(session: Session, header: Header) -> tuple[PostedFile, ...]:
+    """Return the texts of every program: one for each setup in the control's dialect, and the CL of all setups."""
+    chosen = checked(choose(PostSettings, session.choices))
+    dialect, cl = registry.get("dialects", chosen.dialect)(), registry.get("dialects", "apt")()
+    programs = programs_of(session)
+    posted = [PostedFile(suffix=f"{p.setup.name}.{dialect.suffix}", dialect=dialect.name, setup=p.setup.name,
+                         text=dialect.write((p,), header, chosen)) for p in programs]
+    if programs:
+        posted.append(PostedFile(suffix=cl.suffix, dialect=cl.name, setup="", text=cl.write(programs, header, chosen)))
+    return tuple(posted)
+
+
+def read_back(session: Session, posted: tuple[PostedFile, ...]) -> tuple[Program, ...]:
+    """Return the motions that the posted texts of the control's dialect say, setup by setup."""
+    if session.process is None:
+        raise BadCall("no operations yet: generate the route first")
+    tools = session.process.tools()
+    return tuple(read_program(f.dialect, f.text, tools, session.process.setup(f.setup)) for f in posted if f.setup)
+
+
+def prove_session(session: Session, bench: Bench, progress: Progress) -> tuple[Verdict, tuple[PostedFile, ...]]:
+    """Return the verdict on the posted text of a session, and that text."""
+    if session.process is None or session.blank is None or session.part is None:
+        raise BadCall("no toolpaths yet: generate them first")
+    progress.at(0.0, "posting")
+    posted = post_texts(session, Header.of(session))
+    progress.at(0.05, "reading the text back")
+    programs = read_back(session, posted)
+    return prove_programs(session, bench, programs, progress.part(0.1, 1.0)), posted
+
+
+def prove_programs(session: Session, bench: Bench, programs: tuple[Program, ...], progress: Progress) -> Verdict:
+    """Return the verdict on programs, wherever their motions come from."""
+    if session.process is None or session.blank is None:
+        raise BadCall("no blank or operations: nothing to prove against")
+    machine = bench.shop.machines[session.process.setups[0].machine]
+    planned = {tag for operation in session.process.operations if not operation.suppressed for tag in operation.faces}
+    return prove(programs, bench.part, session.blank, bench.shop.tools, machine, checked(choose(ProofSettings, session.choices)),
+                 progress, planned_faces=sorted(planned))

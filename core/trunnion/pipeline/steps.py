@@ -1,0 +1,201 @@
+"""The steps of the work, what each one reads, and the plain function behind it.
+
+A step's key is the digest of what it is given: the settings it declares, the results it reads and a version that its author
+raises when the answer changes. A step whose key differs from its record is stale; nothing keeps a list of setting names.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass, replace
+from typing import Any
+
+from trunnion import registry
+from trunnion.findings import BadCall, BadInput, Finding
+from trunnion.model.feature import Recognition
+from trunnion.model.session import Session
+from trunnion.pipeline.bench import Bench
+from trunnion.pipeline.making import make_paths, strategy_settings
+from trunnion.pipeline.proving import prove_session
+from trunnion.plan.blank import BlankSettings, make_blank
+from trunnion.plan.cutting import CuttingSettings, balance
+from trunnion.plan.route import RouteSettings, make_route
+from trunnion.plan.setups import SetupSettings, make_setups
+from trunnion.plan.size import size_table
+from trunnion.post.settings import PostSettings
+from trunnion.progress import Progress
+from trunnion.settings import checked, choose, digest, setting, settings
+from trunnion.verify.settings import ProofSettings
+
+AUTOMATIC = "auto"
+
+
+@settings("recognize")
+class RecognizeSettings:
+    """Which family of parts the recogniser looks for."""
+
+    family: str = setting(AUTOMATIC, label="Family", help="Family of parts, or auto: the one that suits the part best.",
+                          choices=(AUTOMATIC, *registry.names("families")))
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Result:
+    """What a step gives: the changed session and the findings that live and go stale with the step."""
+
+    session: Session
+    findings: tuple[Finding, ...] = ()
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Step:
+    """One step: its name, title, the settings it declares, the digest of what it reads, the work, and whether its result is there."""
+
+    name: str
+    title: str
+    settings: Callable[[], tuple[type, ...]]
+    reads: Callable[[Session, Bench], tuple[Any, ...]]
+    work: Callable[[Session, Bench, Progress], Result]
+    done: Callable[[Session], bool]
+    version: int = 1
+
+    def key(self, session: Session, bench: Bench) -> str:
+        """Return the digest of everything the step would be given now."""
+        chosen = tuple(checked(choose(group, session.choices)) for group in self.settings())
+        return digest(self.name, self.version, chosen, self.reads(session, bench))
+
+
+def family_of(session: Session, bench: Bench) -> Any:
+    """Return the family of recognisers that the session asks for, or the one that suits the part best."""
+    wanted = checked(choose(RecognizeSettings, session.choices)).family
+    if wanted != AUTOMATIC:
+        return registry.get("families", wanted)()
+    graph = bench.part.graph()
+    rated = [(make().suits(graph), name) for name in registry.names("families") for make in (registry.get("families", name),)]
+    _, best = max(rated, key=lambda pair: (pair[0], pair[1]))
+    return registry.get("families", best)()
+
+
+def _family_settings() -> tuple[type, ...]:
+    return (RecognizeSettings, *(registry.get("families", name).settings for name in registry.names("families")))
+
+
+def _recognize(session: Session, bench: Bench, progress: Progress) -> Result:
+    family = family_of(session, bench)
+    chosen = checked(choose(family.settings, session.choices))
+    found: Recognition = family.recognize(bench.part.graph(), bench.part, chosen, progress)
+    kept = keep_hand_work(session.recognition, found)
+    return Result(session=replace(session, recognition=kept), findings=kept.findings)
+
+
+def keep_hand_work(before: Recognition | None, found: Recognition) -> Recognition:
+    """Return what was found with the features a person made or changed before in place of those that claim most of their faces."""
+    if before is None:
+        return found
+    by_hand = [f for f in before.features if f.by_hand]
+    taken = [set(f.tags) for f in by_hand]
+    rest = [f for f in found.features if not any(2 * len(tags & set(f.tags)) > len(f.tags) for tags in taken)]
+    names = {f.id for f in by_hand}
+    explained = {tag for tags in taken for tag in tags}
+    return replace(found, features=(*(f for f in rest if f.id not in names), *by_hand),
+                   unexplained=tuple(tag for tag in found.unexplained if tag not in explained))
+
+
+def _recognition(session: Session) -> Recognition:
+    if session.recognition is None:
+        raise BadCall("no features yet: recognize first")
+    return session.recognition
+
+
+def _size(session: Session, bench: Bench, progress: Progress) -> Result:
+    progress.at(0.0, "measuring")
+    return Result(session=replace(session, sizes=size_table(_recognition(session), bench.part.graph())))
+
+
+def _blank(session: Session, bench: Bench, progress: Progress) -> Result:
+    progress.at(0.0, "blank")
+    chosen = checked(choose(BlankSettings, session.choices))
+    if chosen.material not in bench.shop.materials:
+        raise BadInput(f"there is no material {chosen.material} in the catalogue; known: {', '.join(sorted(bench.shop.materials))}")
+    frame = _recognition(session).frame
+    low, high = bench.box(frame)
+    return Result(session=replace(session, blank=make_blank(frame, low, high, bench.shop.materials[chosen.material], chosen)))
+
+
+def _route(session: Session, bench: Bench, progress: Progress) -> Result:
+    recognition = _recognition(session)
+    if session.blank is None:
+        raise BadCall("no blank yet: create the blank first")
+    setup = checked(choose(SetupSettings, session.choices))
+    if setup.machine not in bench.shop.machines:
+        raise BadInput(f"there is no machine {setup.machine} in the catalogue; known: {', '.join(sorted(bench.shop.machines))}")
+    setups = make_setups(recognition, session.blank, bench.shop.machines[setup.machine], setup)
+    chosen = checked(choose(RouteSettings, session.choices))
+    process = make_route(recognition, session.sizes, session.blank, setups, bench.shop, bench.part, chosen, progress)
+    before = {o.id: o for o in session.process.operations if o.by_hand} if session.process else {}
+    if before:
+        process = replace(process, operations=tuple(before.get(o.id, o) for o in process.operations))
+    return Result(session=replace(session, setups=setups, process=process), findings=process.findings)
+
+
+def _optimize(session: Session, bench: Bench, progress: Progress) -> Result:
+    progress.at(0.0, "speeds and feeds")
+    if session.process is None:
+        raise BadCall("no operations yet: generate the route first")
+    routed = session.process
+    balanced = balance(routed, bench.shop, checked(choose(CuttingSettings, session.choices)))
+    by_hand = {o.id: o for o in routed.operations if o.by_hand}
+    kept = replace(balanced, operations=tuple(by_hand.get(o.id, o) for o in balanced.operations))
+    news = tuple(f for f in balanced.findings if f not in routed.findings)
+    return Result(session=replace(session, process=kept), findings=news)
+
+
+def _toolpath(session: Session, bench: Bench, progress: Progress) -> Result:
+    paths = make_paths(session, bench, progress)
+    return Result(session=replace(session, paths=paths), findings=tuple(f for p in paths for f in p.findings))
+
+
+def _verify(session: Session, bench: Bench, progress: Progress) -> Result:
+    verdict, posted = prove_session(session, bench, progress)
+    return Result(session=replace(session, verdict=verdict, posted=posted), findings=verdict.findings)
+
+
+def _record_key(session: Session, step: str) -> str:
+    record = session.records.get(step)
+    return record.key if record else ""
+
+
+def _operations_without_data(session: Session) -> tuple[Any, ...]:
+    if session.process is None:
+        return ()
+    return tuple((o.id, o.strategy, o.feature, o.tool, dict(o.choices), o.by_hand, o.suppressed) for o in session.process.operations)
+
+
+STEP_TABLE: tuple[Step, ...] = (
+    Step(name="recognize", title="Recognize", settings=_family_settings, work=_recognize,
+         reads=lambda s, b: (b.part.digest, b.part.solid), done=lambda s: s.recognition is not None),
+    Step(name="size", title="Size analysis", settings=lambda: (), work=_size,
+         reads=lambda s, b: (s.recognition,), done=lambda s: "size" in s.records),
+    Step(name="blank", title="Blank", settings=lambda: (BlankSettings,), work=_blank,
+         reads=lambda s, b: (b.part.digest, s.recognition.frame if s.recognition else None, b.shop.digest),
+         done=lambda s: s.blank is not None),
+    Step(name="route", title="Process route", settings=lambda: (SetupSettings, RouteSettings), work=_route,
+         reads=lambda s, b: (b.part.digest, s.recognition, s.blank, b.shop.digest), done=lambda s: s.process is not None),
+    Step(name="optimize", title="Optimize", settings=lambda: (CuttingSettings,), work=_optimize,
+         reads=lambda s, b: (_record_key(s, "route"), _operations_without_data(s), b.shop.digest), done=lambda s: s.process is not None),
+    Step(name="toolpath", title="Toolpaths", settings=strategy_settings, work=_toolpath,
+         reads=lambda s, b: (b.part.digest, s.recognition, s.blank, s.setups, s.process), done=lambda s: "toolpath" in s.records),
+    Step(name="verify", title="Verify and post", settings=lambda: (PostSettings, ProofSettings), work=_verify,
+         reads=lambda s, b: (b.part.digest, s.blank, s.setups, s.process, tuple(p.key for p in s.paths)),
+         done=lambda s: s.verdict is not None),
+)
+
+STEPS: tuple[str, ...] = tuple(step.name for step in STEP_TABLE)
+"""The names of the steps in the order of the work."""
+
+
+def step_named(name: str) -> Step:
+    """Return a step by its name; raise `BadCall` with the known names."""
+    for step in STEP_TABLE:
+        if step.name == name:
+            return step
+    raise BadCall(f"there is no step {name}; known: {', '.join(STEPS)}")
