@@ -1,0 +1,54 @@
+# Everything a person needs: `make demo` programs a real part, `make test` proves the program itself.
+PYTHON ?= python3
+BIN := .venv/bin
+OUT ?= out/demo
+export QT_QPA_PLATFORM ?= offscreen
+export PYTHONHASHSEED ?= 0
+
+.PHONY: setup demo test test-long bench screenshots run check lint docs clean
+
+# The environment is made anew when the lock or the project file changes.
+.venv/made: requirements.lock pyproject.toml
+	sh installer/debian.sh
+	$(PYTHON) -m venv .venv
+	$(BIN)/python -m pip install -q --disable-pip-version-check -r requirements.lock
+	$(BIN)/python -m pip install -q --disable-pip-version-check --no-deps -e .
+	touch .venv/made
+
+setup: .venv/made
+
+demo: setup
+	$(BIN)/trunnion program $$($(BIN)/python -m trunnion_resources B1) -o $(OUT) --name B1
+	@echo "Open $(OUT)/B1.report.html"
+
+lint: setup
+	$(BIN)/ruff check core gui resources tests
+	$(BIN)/mypy core/trunnion gui/trunnion_gui
+	$(BIN)/lint-imports
+
+test: setup lint
+	sh installer/rs274.sh
+	$(BIN)/python -m pytest -q -m "not long and not display" -n 2 --dist loadfile
+
+test-long: setup
+	sh installer/debian.sh --display
+	sh installer/rs274.sh
+	$(BIN)/python -m pytest -q -m "long"
+	QT_QPA_PLATFORM=xcb xvfb-run -a -s "-screen 0 1600x1000x24" $(BIN)/python -m pytest -q tests/gui -m "not long"
+
+check: test
+
+bench: setup
+	$(BIN)/python tests/bench/run.py --output bench.json
+
+screenshots: setup
+	$(BIN)/python -m trunnion_gui.shots docs/pictures
+
+run: setup
+	env -u QT_QPA_PLATFORM $(BIN)/trunnion-gui
+
+docs: setup
+	$(BIN)/trunnion settings --markdown > docs/settings-table.md
+
+clean:
+	rm -rf out build dist .mypy_cache .ruff_cache .hypothesis bench.json

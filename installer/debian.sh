@@ -1,0 +1,27 @@
+#!/bin/sh
+# Installs the Debian packages that Trunnion needs where it may (as root, or by sudo without a password), and says which are
+# missing where it may not. With --display also what a second run of the window's tests on a virtual screen needs.
+set -u
+
+needed="python3-venv libegl1 libgl1 libfontconfig1 libfreetype6 libdbus-1-3 libglib2.0-0 libxkbcommon0 libx11-6 libgomp1 fonts-dejavu-core"
+display="xvfb xauth libxcb-cursor0 libxcb-icccm4 libxcb-image0 libxcb-keysyms1 libxcb-render-util0 libxcb-shape0 libxcb-xkb1 libxkbcommon-x11-0"
+[ "${1:-}" = "--display" ] && needed="$needed $display"
+
+command -v dpkg-query >/dev/null 2>&1 || { echo "This is not Debian: make sure you have the equivalents of: $needed"; exit 0; }
+
+missing=""
+for package in $needed; do
+    [ "$package" = python3-venv ] && python3 -c "import ensurepip" 2>/dev/null && continue
+    dpkg-query -W -f='${Status}' "$package" 2>/dev/null | grep -q "ok installed" || missing="$missing $package"
+done
+[ -z "$missing" ] && exit 0
+
+if [ "$(id -u)" = 0 ]; then as=""
+elif command -v sudo >/dev/null 2>&1 && sudo -n true 2>/dev/null; then as="sudo"
+else
+    echo "These Debian packages are missing and can't be installed without root:$missing"
+    echo "Ask an administrator for: apt-get install --no-install-recommends$missing"
+    exit 0
+fi
+echo "Installing Debian packages:$missing"
+$as apt-get update -qq && DEBIAN_FRONTEND=noninteractive $as apt-get install -y -qq --no-install-recommends $missing >/dev/null
