@@ -1,0 +1,68 @@
+"""The shop: every catalogue, the program's own with the user's folder over it."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+from pathlib import Path
+from typing import TypeVar
+
+from trunnion.findings import BadInput
+from trunnion.model.material import Machine, Material
+from trunnion.model.tool import Tool
+from trunnion.shop.cutters import Cutter, load_cutters, load_holders
+from trunnion.shop.machines import load_machines
+from trunnion.shop.materials import load_materials
+from trunnion.shop.plans import TypicalPlan, load_plans
+
+T = TypeVar("T")
+
+
+@dataclass(frozen=True, kw_only=True)
+class Shop:
+    """Cutters, materials, machines and typical plans that a plan may choose from."""
+
+    cutters: tuple[Cutter, ...]
+    materials: Mapping[str, Material]
+    machines: Mapping[str, Machine]
+    plans: Mapping[str, TypicalPlan]
+
+    @property
+    def tools(self) -> tuple[Tool, ...]:
+        """All cutters, sorted by diameter, corner radius and reach; their numbers are 0."""
+        return tuple(c.tool for c in self.cutters)
+
+    def tools_for(self, iso_group: str, use: str) -> tuple[Tool, ...]:
+        """Return the cutters made for a group of materials and a use (`face`, `rough`, `finish`)."""
+        return tuple(c.tool for c in self.cutters if iso_group in c.suits and use in c.use)
+
+    def material(self, name: str) -> Material:
+        """Return a material; raise `BadInput` with the known names."""
+        return _named(self.materials, name, "material")
+
+    def machine(self, name: str) -> Machine:
+        """Return a machine; raise `BadInput` with the known names."""
+        return _named(self.machines, name, "machine")
+
+    def plan_for(self, family: str) -> TypicalPlan:
+        """Return the typical plan of a family, the first by name; raise `BadInput` when there is none."""
+        for _, plan in sorted(self.plans.items()):
+            if plan.family == family:
+                return plan
+        raise BadInput(f"there is no typical plan for the family {family}; add one to the plans folder")
+
+
+def load_shop(user_folder: Path | None = None) -> Shop:
+    """Return the catalogues, checked; raise `BadInput` with file, entry and field of the first fault.
+
+    `user_folder` has the shape of the program's own (`tools`, `holders`, `materials`, `machines`, `plans`, each with TOML files) and adds
+    entries or replaces those of the same name. What is missing there is not asked for.
+    """
+    return Shop(cutters=load_cutters(load_holders(user_folder), user_folder), materials=load_materials(user_folder),
+                machines=load_machines(user_folder), plans=load_plans(user_folder))
+
+
+def _named(things: Mapping[str, T], name: str, kind: str) -> T:
+    if name not in things:
+        raise BadInput(f"unknown {kind} {name}; known: {', '.join(sorted(things))}")
+    return things[name]

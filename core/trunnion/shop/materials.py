@@ -1,0 +1,57 @@
+"""Work materials of the catalogue: every number stands with its source."""
+
+from __future__ import annotations
+
+from itertools import pairwise
+from pathlib import Path
+
+from trunnion.model.material import Material
+from trunnion.shop.cutters import ISO_GROUPS
+from trunnion.shop.reading import Entry, by_name, entries
+
+_DENSEST = 25.0
+_FASTEST = 5000.0
+_LARGEST_FEED = 10.0
+_STRONGEST = 10000.0
+
+
+def load_materials(user_folder: Path | None) -> dict[str, Material]:
+    """Return the materials by name; a user's replaces the program's of the same name as a whole."""
+    return {name: _material(entry) for name, entry in by_name(entries("materials", user_folder)).items()}
+
+
+def _material(entry: Entry) -> Material:
+    sources: dict[str, str] = {}
+
+    def sourced(name: str) -> Entry:
+        table = entry.table(name)
+        sources[name.replace("_", " ")] = table.text("source")
+        return table
+
+    def value(name: str, low: float, high: float) -> float:
+        table = sourced(name)
+        number = table.number("value", low, high)
+        table.done()
+        return number
+
+    title, group = entry.text("title"), entry.text("iso_group")
+    if group not in ISO_GROUPS:
+        raise entry.wrong(f"iso_group must be one of {', '.join(ISO_GROUPS)}; got {group!r}")
+    feeds = sourced("feeds")
+    rows = tuple((d, low, high) for d, low, high in feeds.rows("rows", 3, 0.0, _STRONGEST))
+    in_order = all(a[0] < b[0] for a, b in pairwise(rows))
+    if not in_order or not all(0.0 < low <= high <= _LARGEST_FEED for _, low, high in rows):
+        raise feeds.wrong("rows must be (diameter, smallest fz, largest fz) with growing diameters")
+    share = feeds.number("share", 0.0, 1.0)
+    feeds.done()
+    force = sourced("force")
+    strength, exponent = force.number("value", 1.0, _STRONGEST), force.number("exponent", 0.0, 1.0)
+    force.done()
+    material = Material(
+        name=entry.name, title=title, iso_group=group, density=value("density", 0.1, _DENSEST),
+        speed_rough=value("speed_rough", 1.0, _FASTEST), speed_finish=value("speed_finish", 1.0, _FASTEST),
+        feeds=rows, feed_share=share, force=strength, force_exponent=exponent,
+        depth_factor=value("depth_factor", 0.01, 5.0), width_factor=value("width_factor", 0.01, 1.0),
+        source="; ".join(f"{name}: {words}" for name, words in sources.items()))
+    entry.done()
+    return material

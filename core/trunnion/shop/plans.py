@@ -1,0 +1,68 @@
+"""Typical plans: the order of work for a family of parts, as data that a shop changes."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from pathlib import Path
+
+from trunnion.shop.reading import Entry, by_name, entries
+
+CUTTER_RULES = ("face", "rough", "rest", "top", "floor", "wall", "corner", "profile_rough", "profile_finish")
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Stage:
+    """One stage of a typical plan: an operation of `kind` by `strategy` for every feature of the kinds in `on` (`blank`: once a setup).
+
+    `cutter` names the rule that chooses the tool, `finish` says whether it cuts to size (else it leaves the route's allowances); `after`
+    names earlier stages that must be done on the same feature and its neighbours; `rule` says why, in words.
+    """
+
+    name: str
+    kind: str
+    strategy: str
+    on: tuple[str, ...]
+    cutter: str
+    finish: bool
+    after: tuple[str, ...]
+    rule: str
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class TypicalPlan:
+    """The stages of a family's work in order."""
+
+    name: str
+    title: str
+    family: str
+    stages: tuple[Stage, ...]
+
+
+def load_plans(user_folder: Path | None) -> dict[str, TypicalPlan]:
+    """Return the typical plans by name; a user's replaces the program's of the same name as a whole."""
+    return {name: _plan(entry) for name, entry in by_name(entries("plans", user_folder)).items()}
+
+
+def _plan(entry: Entry) -> TypicalPlan:
+    title, family = entry.text("title"), entry.text("family")
+    stages: list[Stage] = []
+    for table in entry.tables("stage"):
+        stage = _stage(table)
+        unknown = [name for name in stage.after if name not in {s.name for s in stages}]
+        if unknown:
+            raise table.wrong(f"after names {unknown[0]!r}, which is no earlier stage")
+        if stage.name in {s.name for s in stages}:
+            raise table.wrong(f"the stage {stage.name!r} is given twice")
+        stages.append(stage)
+    entry.done()
+    return TypicalPlan(name=entry.name, title=title, family=family, stages=tuple(stages))
+
+
+def _stage(entry: Entry) -> Stage:
+    cutter = entry.text("cutter")
+    if cutter not in CUTTER_RULES:
+        raise entry.wrong(f"cutter must be one of {', '.join(CUTTER_RULES)}; got {cutter!r}")
+    stage = Stage(name=entry.text("name"), kind=entry.text("kind"), strategy=entry.text("strategy"), on=entry.texts("on"), cutter=cutter,
+                  finish=entry.flag("finish"), after=entry.texts("after", ()), rule=entry.text("rule"))
+    entry.done()
+    return stage

@@ -1,0 +1,156 @@
+"""Catalogue files: TOML read strictly, with one clear line for what is wrong: file, entry, field."""
+
+from __future__ import annotations
+
+import math
+import tomllib
+from collections.abc import Iterable, Iterator
+from dataclasses import dataclass, field
+from importlib.resources import files
+from importlib.resources.abc import Traversable
+from pathlib import Path
+from typing import Any
+
+from trunnion.findings import BadInput
+
+SUFFIX = ".toml"
+
+
+@dataclass(slots=True, kw_only=True)
+class Entry:
+    """One table of a catalogue file. Fields are asked for by name and checked; `done` refuses those that nobody asked for."""
+
+    file: str
+    name: str
+    fields: dict[str, Any]
+    _asked: set[str] = field(default_factory=set)
+
+    def wrong(self, what: str) -> BadInput:
+        """Return the error that names the file and this entry."""
+        return BadInput(f"{self.file}: {self.name}: {what}")
+
+    def has(self, name: str) -> bool:
+        """Say whether a field is given."""
+        return name in self.fields
+
+    def text(self, name: str, default: str | None = None) -> str:
+        """Return a text that is not empty."""
+        value = self._get(name, default)
+        if not isinstance(value, str) or (not value and default is None):
+            raise self.wrong(f"{name} must be a text; got {value!r}")
+        return value
+
+    def flag(self, name: str, default: bool | None = None) -> bool:
+        """Return true or false."""
+        value = self._get(name, default)
+        if not isinstance(value, bool):
+            raise self.wrong(f"{name} must be true or false; got {value!r}")
+        return value
+
+    def number(self, name: str, low: float, high: float, default: float | None = None) -> float:
+        """Return a number within bounds."""
+        return self._number(name, self._get(name, default), low, high)
+
+    def count(self, name: str, low: int, high: int) -> int:
+        """Return a whole number within bounds."""
+        value = self._get(name, None)
+        if isinstance(value, bool) or not isinstance(value, int) or not low <= value <= high:
+            raise self.wrong(f"{name} must be a whole number from {low} to {high}; got {value!r}")
+        return value
+
+    def texts(self, name: str, default: tuple[str, ...] | None = None, known: tuple[str, ...] = ()) -> tuple[str, ...]:
+        """Return a list of texts, each one of `known` when that is given."""
+        value = self._get(name, default)
+        if not isinstance(value, (list, tuple)) or not all(isinstance(v, str) for v in value):
+            raise self.wrong(f"{name} must be a list of texts; got {value!r}")
+        strange = [v for v in value if known and v not in known]
+        if strange:
+            raise self.wrong(f"{name} knows {', '.join(known)}; got {strange[0]!r}")
+        return tuple(value)
+
+    def numbers(self, name: str, low: float, high: float) -> tuple[float, ...]:
+        """Return a list of numbers within bounds, at least one."""
+        value = self._get(name, None)
+        if not isinstance(value, list) or not value:
+            raise self.wrong(f"{name} must be a list of numbers; got {value!r}")
+        return tuple(self._number(name, v, low, high) for v in value)
+
+    def rows(self, name: str, width: int, low: float, high: float) -> tuple[tuple[float, ...], ...]:
+        """Return rows of `width` numbers within bounds, at least one row."""
+        value = self._get(name, None)
+        if not isinstance(value, list) or not value or not all(isinstance(row, list) and len(row) == width for row in value):
+            raise self.wrong(f"{name} must be rows of {width} numbers; got {value!r}")
+        return tuple(tuple(self._number(name, v, low, high) for v in row) for row in value)
+
+    def table(self, name: str) -> Entry:
+        """Return a table inside this entry."""
+        value = self._get(name, None)
+        if not isinstance(value, dict):
+            raise self.wrong(f"{name} must be a table; got {value!r}")
+        return Entry(file=self.file, name=f"{self.name}: {name}", fields=value)
+
+    def tables(self, name: str) -> tuple[Entry, ...]:
+        """Return the tables of a list inside this entry, at least one."""
+        value = self._get(name, None)
+        if not isinstance(value, list) or not value or not all(isinstance(v, dict) for v in value):
+            raise self.wrong(f"{name} must be a list of tables; got {value!r}")
+        return tuple(Entry(file=self.file, name=f"{self.name}: {name} {n}", fields=v) for n, v in enumerate(value, 1))
+
+    def done(self) -> None:
+        """Raise `BadInput` when a field is given that nobody asked for: mostly a misspelt one."""
+        strange = sorted(set(self.fields) - self._asked)
+        if strange:
+            raise self.wrong(f"{strange[0]} is not a field here; known: {', '.join(sorted(self._asked))}")
+
+    def _get(self, name: str, default: Any) -> Any:
+        self._asked.add(name)
+        if name not in self.fields:
+            if default is None:
+                raise self.wrong(f"{name} is missing")
+            return default
+        return self.fields[name]
+
+    def _number(self, name: str, value: Any, low: float, high: float) -> float:
+        if isinstance(value, bool) or not isinstance(value, (int, float)) or not math.isfinite(value) or not low <= value <= high:
+            raise self.wrong(f"{name} must be a number from {low:g} to {high:g}; got {value!r}")
+        return float(value)
+
+
+def folders(kind: str, user_folder: Path | None) -> tuple[Traversable, ...]:
+    """Return where a kind of catalogue (`tools`, `materials`, ...) lies: the program's own folder, then the user's when there is one."""
+    own: tuple[Traversable, ...] = (files("trunnion_resources").joinpath(kind),)
+    return own if user_folder is None else (*own, user_folder / kind)
+
+
+def entries(kind: str, user_folder: Path | None) -> Iterator[tuple[int, Entry]]:
+    """Yield the top tables of every file of a kind in the order of file names, with 0 for the program's folder and 1 for the user's."""
+    for layer, folder in enumerate(folders(kind, user_folder)):
+        if folder.is_dir():
+            for path in sorted((p for p in folder.iterdir() if p.name.endswith(SUFFIX)), key=lambda p: p.name):
+                label = f"{kind}/{path.name}" if layer == 0 else str(path)
+                for name, table in _parsed(path, label).items():
+                    if not isinstance(table, dict):
+                        raise BadInput(f"{label}: {name} must be a table, written as [{name}]")
+                    yield layer, Entry(file=label, name=name, fields=table)
+
+
+def by_name(found: Iterable[tuple[int, Entry]]) -> dict[str, Entry]:
+    """Return entries by name, the user's over the program's; raise `BadInput` when one folder gives a name twice."""
+    chosen: dict[str, tuple[int, Entry]] = {}
+    for layer, entry in found:
+        earlier = chosen.get(entry.name)
+        if earlier is not None and earlier[0] == layer:
+            raise entry.wrong(f"the name is given before in {earlier[1].file}")
+        chosen[entry.name] = (layer, entry)
+    return {name: entry for name, (_, entry) in chosen.items()}
+
+
+def _parsed(path: Traversable, label: str) -> dict[str, Any]:
+    try:
+        return tomllib.loads(path.read_bytes().decode("utf-8-sig"))
+    except UnicodeDecodeError:
+        raise BadInput(f"{label}: not a text in UTF-8") from None
+    except tomllib.TOMLDecodeError as reason:
+        raise BadInput(f"{label}: {reason}") from None
+    except OSError as reason:
+        raise BadInput(f"{label}: {reason.strerror}") from None
