@@ -1,0 +1,44 @@
+"""The report a person reads: verdict, figures, operations, tools, findings, with pictures, in one HTML file."""
+
+from __future__ import annotations
+
+import base64
+from collections.abc import Sequence
+from pathlib import Path
+
+from trunnion.model.session import Session
+from trunnion.report.pictures import Picture
+from trunnion.units import SECONDS_PER_MINUTE
+from trunnion_resources import folder as resource_folder
+
+
+def report_html(session: Session, name: str, pictures: Sequence[Picture], folder: Path, date: str = "") -> str:
+    """Return the report of a session; the pictures are read from the folder and stand inside the text."""
+    from jinja2 import Environment, StrictUndefined
+    template = (resource_folder("report") / "report.html").read_text(encoding="utf-8")
+    page = Environment(autoescape=True, undefined=StrictUndefined, trim_blocks=True, lstrip_blocks=True).from_string(template)
+    shown = [(p.caption, base64.b64encode((folder / p.file).read_bytes()).decode("ascii")) for p in pictures]
+    proofs = {p.operation: p for p in session.verdict.operations} if session.verdict else {}
+    return page.render(name=name, date=date, session=session, pictures=shown, proofs=proofs, duration=duration, share=share,
+                       left_faces=left_faces(session), seconds=[(step, r.seconds) for step, r in session.records.items()])
+
+
+def duration(seconds: float) -> str:
+    """Return a time in words: `1 h 02 min 05 s`."""
+    minutes, rest = divmod(round(seconds), int(SECONDS_PER_MINUTE))
+    hours, minutes = divmod(minutes, int(SECONDS_PER_MINUTE))
+    return f"{hours} h {minutes:02d} min {rest:02d} s" if hours else f"{minutes} min {rest:02d} s"
+
+
+def share(value: float) -> str:
+    """Return a share as per cent with two decimals, never rounded up to a goal it does not reach."""
+    return f"{int(value * 10_000) / 100:.2f} %"
+
+
+def left_faces(session: Session) -> list[tuple[int, float, float, bool, bool]]:
+    """Return the faces that are not finished whole: (tag, unfinished mm2, most material left mm, planned, reachable), most first."""
+    if session.verdict is None:
+        return []
+    rows = [(f.face, f.area - f.finished, f.left_max, f.planned, f.reachable) for f in session.verdict.faces
+            if not f.blank_surface and f.area - f.finished > 0.0]
+    return sorted(rows, key=lambda r: (-r[1], r[0]))

@@ -1,0 +1,182 @@
+"""Pictures of a session without a window: features by colour, toolpaths by motion, deviation of the finished part.
+
+pyvista is imported late: a report is written once, and a command that writes none should not pay for it.
+"""
+
+from __future__ import annotations
+
+import os
+import sys
+from collections.abc import Iterable, Mapping
+from dataclasses import dataclass
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from trunnion.geometry.arrays import Floats
+from trunnion.geometry.mesh import Mesh
+from trunnion.model.session import Session
+from trunnion.model.setup import Setup
+from trunnion.model.toolpath import Mark, Motion, Toolpath
+from trunnion.report.palette import Palette
+
+if TYPE_CHECKING:
+    from pyvista import Plotter
+
+SIZE = (1600, 1000)
+ARC_STEP = np.radians(6.0)
+"""Angle of one chord when an arc is drawn."""
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Picture:
+    """A written picture: file name and the words under it."""
+
+    file: str
+    caption: str
+
+
+def write_pictures(session: Session, mesh: Mesh, folder: Path, name: str, palette: Palette) -> tuple[Picture, ...]:
+    """Write the pictures of a session as PNG files `NAME.*.png` into a folder and return them in the order of the work."""
+    made = []
+    if session.recognition is not None:
+        _features(session, mesh, palette).screenshot(str(folder / f"{name}.features.png"))
+        made.append(Picture(file=f"{name}.features.png", caption="Features by kind"))
+    if any(len(p.path) for p in session.paths):
+        _toolpaths(session, mesh, palette).screenshot(str(folder / f"{name}.toolpaths.png"))
+        made.append(Picture(file=f"{name}.toolpaths.png", caption="Toolpaths by kind of motion"))
+    if session.verdict is not None and len(session.verdict.deviation.face):
+        _deviation(session, mesh, palette).screenshot(str(folder / f"{name}.deviation.png"))
+        made.append(Picture(file=f"{name}.deviation.png", caption="Deviation of the finished part, mm: + is material left, - is gouge"))
+    return tuple(made)
+
+
+def chords(path: Toolpath) -> tuple[Floats, Floats]:
+    """Return a toolpath as points (n, 3) with arcs opened into chords, and for each point the row of its block (n,)."""
+    starts, sweeps = path.starts(), path.sweeps()
+    points: list[Floats] = [path.position[:1]]
+    rows: list[Floats] = [np.zeros(1, dtype=np.float64)]
+    straight_from = 1
+    for row in np.flatnonzero(path.motion >= Motion.ARC_CW):
+        points.append(path.position[straight_from:row])
+        rows.append(np.arange(straight_from, row, dtype=np.float64))
+        steps = max(int(np.ceil(abs(sweeps[row]) / ARC_STEP)), 1)
+        share = np.arange(1, steps + 1) / steps
+        radius = starts[row, :2] - path.centre[row, :2]
+        cos, sin = np.cos(share * sweeps[row]), np.sin(share * sweeps[row])
+        around = np.stack([cos * radius[0] - sin * radius[1], sin * radius[0] + cos * radius[1]], axis=1) + path.centre[row, :2]
+        height = starts[row, 2] + share * (path.position[row, 2] - starts[row, 2])
+        points.append(np.column_stack([around, height]))
+        rows.append(np.full(steps, float(row)))
+        straight_from = int(row) + 1
+    points.append(path.position[straight_from:])
+    rows.append(np.arange(straight_from, len(path), dtype=np.float64))
+    return np.vstack(points), np.concatenate(rows)
+
+
+def motion_class(path: Toolpath) -> tuple[str, ...]:
+    """Return for each block the palette's word of its colour: rapid, entry, lead, link, retract or cut."""
+    words = {Mark.CUT: "cut", Mark.ENTRY: "entry", Mark.LEAD: "lead", Mark.LINK: "link", Mark.RETRACT: "retract"}
+    return tuple("rapid" if m == Motion.RAPID else words[Mark(k)] for m, k in zip(path.motion, path.mark, strict=True))
+
+
+def _plotter() -> Plotter:
+    if sys.platform.startswith("linux"):
+        os.environ.setdefault("VTK_DEFAULT_OPENGL_WINDOW", "vtkEGLRenderWindow")
+    import pyvista
+    made = pyvista.Plotter(off_screen=True, window_size=list(SIZE))
+    made.set_background("white")
+    made.render_window.SetMultiSamples(0)
+    made.enable_anti_aliasing("fxaa")
+    return made
+
+
+def _surface(mesh: Mesh) -> Any:
+    import pyvista
+    cells = np.column_stack([np.full(len(mesh.triangles), 3), mesh.triangles]).ravel()
+    return pyvista.PolyData(np.asarray(mesh.points), cells)
+
+
+def _look(plotter: Plotter, session: Session) -> Plotter:
+    frame = session.recognition.frame if session.recognition else None
+    if frame is None:
+        plotter.view_isometric()
+        return plotter
+    towards = frame.world_direction(np.array([0.35, -0.75, 1.0]))
+    plotter.view_vector(tuple(towards), viewup=tuple(frame.y))
+    plotter.camera.zoom(1.25)
+    return plotter
+
+
+def _colours(mesh: Mesh, by_face: Mapping[int, tuple[int, int, int]], rest: tuple[int, int, int]) -> Any:
+    table = np.tile(np.array(rest, dtype=np.uint8), (int(mesh.face.max()) + 1, 1))
+    for face, colour in by_face.items():
+        table[face] = colour
+    return table[mesh.face]
+
+
+def _features(session: Session, mesh: Mesh, palette: Palette) -> Plotter:
+    plotter, surface = _plotter(), _surface(mesh)
+    recognition = session.recognition
+    assert recognition is not None
+    by_face = {tag: palette.kind(f.kind) for f in reversed(recognition.features) for tag in f.tags}
+    surface.cell_data["colour"] = _colours(mesh, by_face, palette.kind("unexplained"))
+    plotter.add_mesh(surface, scalars="colour", rgb=True, ambient=0.25, diffuse=0.8)
+    _outline(plotter, surface)
+    counts = recognition.counts()
+    legend = [(f" {kind.replace('_', ' ')} {n}", tuple(c / 255 for c in palette.kind(kind))) for kind, n in counts.items()]
+    plotter.add_legend(legend, bcolor=None, face="rectangle", size=(0.16, 0.035 * len(legend)), loc="upper left")  # type: ignore[arg-type]
+    return _look(plotter, session)
+
+
+def _outline(plotter: Plotter, surface: Any) -> None:
+    edges = surface.clean().extract_feature_edges(feature_angle=25, boundary_edges=False, non_manifold_edges=False, manifold_edges=False)
+    if edges.n_cells:
+        plotter.add_mesh(edges, color=(60, 66, 74), line_width=1.2)
+
+
+def _toolpaths(session: Session, mesh: Mesh, palette: Palette) -> Plotter:
+    plotter, surface = _plotter(), _surface(mesh)
+    plotter.add_mesh(surface, color=palette.motion("part"), ambient=0.3)
+    setups = {s.name: s for s in session.setups}
+    operations = {o.id: o for o in session.process.operations} if session.process else {}
+    gathered: dict[str, list[Floats]] = {}
+    for made in session.paths:
+        if len(made.path) and made.operation in operations:
+            _gather(gathered, made.path, setups[operations[made.operation].setup])
+    for word, pieces in gathered.items():
+        plotter.add_mesh(_segments(pieces), color=palette.motion(word), line_width=1.0, lighting=False)
+    legend = [(f" {word}", tuple(c / 255 for c in palette.motion(word))) for word in gathered]
+    plotter.add_legend(legend, bcolor=None, face="rectangle", size=(0.12, 0.035 * len(legend)), loc="upper left")  # type: ignore[arg-type]
+    return _look(plotter, session)
+
+
+def _gather(gathered: dict[str, list[Floats]], path: Toolpath, setup: Setup) -> None:
+    points, rows = chords(path)
+    words = np.array(motion_class(path))[rows.astype(int)]
+    world = setup.frame.to_world(points)
+    for word in dict.fromkeys(words.tolist()):
+        ends = np.flatnonzero(words[1:] == word) + 1
+        gathered.setdefault(word, []).append(np.stack([world[ends - 1], world[ends]], axis=1))
+
+
+def _segments(pieces: Iterable[Floats]) -> Any:
+    import pyvista
+    ends = np.concatenate(list(pieces))
+    lines = np.column_stack([np.full(len(ends), 2), np.arange(2 * len(ends)).reshape(-1, 2)]).ravel()
+    return pyvista.PolyData(ends.reshape(-1, 3), lines=lines)
+
+
+def _deviation(session: Session, mesh: Mesh, palette: Palette) -> Plotter:
+    plotter, surface = _plotter(), _surface(mesh)
+    assert session.verdict is not None
+    shown = session.verdict.deviation
+    plotter.add_mesh(surface, color=palette.motion("part"), ambient=0.3)
+    import pyvista
+    cloud = pyvista.PolyData(np.asarray(shown.point))
+    cloud["deviation mm"] = np.asarray(shown.deviation)
+    limit = palette.deviation_limit
+    plotter.add_mesh(cloud, scalars="deviation mm", cmap=palette.deviation_map, clim=(-limit, limit), point_size=4.0, lighting=False,
+                     scalar_bar_args={"vertical": True, "position_x": 0.03, "position_y": 0.3, "height": 0.5, "color": "black"})
+    return _look(plotter, session)
