@@ -18,16 +18,16 @@ NOWHERE = (math.nan,) * 3
 
 
 def tool(**changes: object) -> Tool:
-    given = dict(number=1, name="D10 R2", form="bull", diameter=10.0, corner_radius=2.0, flute_length=20.0, neck_diameter=9.6, neck_length=40.0,
-                 shank_diameter=10.0, stickout=50.0, gauge_length=130.0, teeth=3, centre_cutting=True, helix_angle=40.0,
+    given = dict(number=1, name="D10 R2", form="bull", diameter=10.0, corner_radius=2.0, flute_length=20.0, neck_diameter=9.6,
+                 neck_length=40.0, shank_diameter=10.0, stickout=50.0, gauge_length=130.0, teeth=3, centre_cutting=True, helix_angle=40.0,
                  holder=Holder(name="ER32", rows=((0.0, 20.0, 30.0, 25.0),)))
     return Tool(**{**given, **changes})  # type: ignore[arg-type]
 
 
 def quarter_circle() -> Toolpath:
     return Toolpath(position=[(10.0, 0.0, 5.0), (10.0, 0.0, 0.0), (0.0, 10.0, -2.0)], axis=[UP] * 3,
-                    motion=[Motion.RAPID, Motion.LINE, Motion.ARC_CCW], centre=[NOWHERE, NOWHERE, (0.0, 0.0, 0.0)], feed=[0.0, 100.0, 100.0],
-                    mark=[Mark.RETRACT, Mark.ENTRY, Mark.CUT])
+                    motion=[Motion.RAPID, Motion.LINE, Motion.ARC_CCW], centre=[NOWHERE, NOWHERE, (0.0, 0.0, 0.0)],
+                    feed=[0.0, 100.0, 100.0], mark=[Mark.RETRACT, Mark.ENTRY, Mark.CUT])
 
 
 def test_a_frame_maps_points_there_and_back() -> None:
