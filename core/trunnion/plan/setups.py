@@ -1,0 +1,61 @@
+"""Setups: from which side the part is machined, and where the program's zero lies."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from trunnion.geometry.arrays import Floats
+from trunnion.geometry.frame import Frame
+from trunnion.model.blank import Blank
+from trunnion.model.feature import Feature, Recognition
+from trunnion.model.material import Machine
+from trunnion.model.setup import Setup
+from trunnion.settings import setting, settings
+
+ORIGINS = ("corner top", "centre top", "corner bottom", "centre bottom")
+
+
+@settings("setup")
+class SetupSettings:
+    """Where the work offset lies, how high the tool travels, and on which machine."""
+
+    origin: str = setting("corner top", choices=ORIGINS, label="Origin",
+                          help="Place of the program's zero on the blank, seen from the spindle; corner: smallest x and y.")
+    clearance: float = setting(20.0, unit="mm", low=1.0, high=500.0, label="Clearance",
+                               help="Height above the blank at which the tool travels between operations.")
+    machine: str = setting("Mill 1200", label="Machine", help="Name of a machine of the catalogue.")
+    work_offset: int = setting(54, unit="", low=54, high=59, label="Work offset",
+                               help="G code of the first setup's work offset; the next takes the next.")
+
+
+def make_setups(recognition: Recognition, blank: Blank, machine: Machine, settings: SetupSettings) -> tuple[Setup, ...]:
+    """Return one setup from above, and a second from below when a feature is reached only from there.
+
+    The second one is the first turned about its x axis. Frames are the work offsets' (`Setup.frame`).
+    """
+    frames = [blank.frame]
+    if any(from_below(f) for f in recognition):
+        frames.append(Frame(blank.frame.origin, blank.frame.x, -blank.frame.z))
+    return tuple(_setup(n, frame, blank, machine, settings) for n, frame in enumerate(frames))
+
+
+def from_below(feature: Feature) -> bool:
+    """Say whether a feature is reached along the recognition frame's +z, from under the part."""
+    direction = feature.attributes.get("direction")
+    return isinstance(direction, tuple) and len(direction) == 3 and direction[2] < 0.0
+
+
+def box_in(frame: Frame, blank: Blank) -> tuple[Floats, Floats]:
+    """Return the lowest and highest corner (3,) of the blank in a frame whose axes are parallel to the blank's."""
+    corners = frame.to_local(blank.frame.to_world(np.stack([blank.low, blank.high])))
+    return corners.min(axis=0), corners.max(axis=0)
+
+
+def _setup(n: int, frame: Frame, blank: Blank, machine: Machine, settings: SetupSettings) -> Setup:
+    low, high = box_in(frame, blank)
+    place, height = settings.origin.split()
+    origin = low if place == "corner" else 0.5 * (low + high)
+    z = high[2] if height == "top" else low[2]
+    offset = frame.moved(np.array([origin[0], origin[1], z]))
+    return Setup(name=f"S{n + 1}", frame=offset, work_offset=f"G{min(settings.work_offset + n, 59)}",
+                 clearance=float(high[2] - z + settings.clearance), machine=machine.name)
