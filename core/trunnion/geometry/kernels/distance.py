@@ -1,0 +1,77 @@
+"""How far many points are from many lines and arcs, and how often loops of them go round the points."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from trunnion.geometry.arrays import Floats, Ints
+
+BATCH = 1 << 18
+
+
+def nearest_segment(points: Floats, start: Floats, end: Floats, centre: Floats, radius: Floats, sweep: Floats) -> tuple[Floats, Ints]:
+    """Return the distance (k,) from each point (k, 2) to the nearest segment, and its row (k,).
+
+    Segments are given as rows of `Segments`: `start`, `end`, `centre` (m, 2), `radius`, `sweep` (m,).
+    """
+    best = np.empty(len(points))
+    row = np.empty(len(points), dtype=np.int64)
+    step = max(1, BATCH // max(1, len(start)))
+    for first in range(0, len(points), step):
+        block = slice(first, first + step)
+        away = _distances(points[block], start, end, centre, radius, sweep)
+        row[block] = np.argmin(away, axis=1)
+        best[block] = np.take_along_axis(away, row[block][:, None], axis=1)[:, 0]
+    return best, row
+
+
+def _distances(points: Floats, start: Floats, end: Floats, centre: Floats, radius: Floats, sweep: Floats) -> Floats:
+    away = np.empty((len(points), len(start)))
+    lines, arcs = np.flatnonzero(sweep == 0.0), np.flatnonzero(sweep != 0.0)
+    px, py = points[:, :1], points[:, 1:]
+    if len(lines):
+        ax, ay = start[lines].T
+        dx, dy = (end[lines] - start[lines]).T
+        square = dx * dx + dy * dy
+        share = ((px - ax) * dx + (py - ay) * dy) / np.where(square > 0.0, square, 1.0)
+        share = np.clip(share, 0.0, 1.0)
+        away[:, lines] = np.hypot(px - ax - share * dx, py - ay - share * dy)
+    if len(arcs):
+        cx, cy = centre[arcs].T
+        turned = np.sign(sweep[arcs])
+        (ax, ay), (bx, by) = (start[arcs] - centre[arcs]).T, (end[arcs] - centre[arcs]).T
+        qx, qy = px - cx, py - cy
+        after_start = turned * (ax * qy - ay * qx) >= 0.0
+        before_end = turned * (qx * by - qy * bx) >= 0.0
+        wide = np.abs(sweep[arcs]) > np.pi
+        beside = np.where(wide, after_start | before_end, after_start & before_end)
+        to_end = np.minimum(np.hypot(qx - ax, qy - ay), np.hypot(qx - bx, qy - by))
+        away[:, arcs] = np.where(beside, np.abs(np.hypot(qx, qy) - radius[arcs]), to_end)
+    return away
+
+
+def winding_numbers(points: Floats, start: Floats, end: Floats, centre: Floats, radius: Floats, sweep: Floats) -> Ints:
+    """Return how often the loops made of all the segments go round each point (k,), anticlockwise counted positive.
+
+    The loops of chords are counted by the crossings of a ray along x; an arc adds the cap between its chord and itself.
+    """
+    total = np.zeros(len(points), dtype=np.int64)
+    step = max(1, BATCH // max(1, len(start)))
+    (ax, ay), (bx, by) = start.T, end.T
+    arcs = np.flatnonzero(sweep != 0.0)
+    for first in range(0, len(points), step):
+        block = slice(first, first + step)
+        px, py = points[block, :1], points[block, 1:]
+        side = (bx - ax) * (py - ay) - (px - ax) * (by - ay)
+        up = (ay <= py) & (by > py) & (side > 0.0)
+        down = (ay > py) & (by <= py) & (side < 0.0)
+        count = up.sum(axis=1) - down.sum(axis=1)
+        if len(arcs):
+            inside = np.hypot(px - centre[arcs, 0], py - centre[arcs, 1]) < radius[arcs]
+            # A point on the chord's line belongs to the side that the crossings above gave it to.
+            level = side[:, arcs] == 0.0
+            left = (side[:, arcs] > 0.0) | (level & ((by < ay) | ((by == ay) & (bx > ax)))[arcs])
+            count += (inside & (sweep[arcs] > 0.0) & ~left).sum(axis=1)
+            count -= (inside & (sweep[arcs] < 0.0) & left).sum(axis=1)
+        total[block] = count
+    return total
