@@ -1,0 +1,421 @@
+"""From lines and arcs to chords and back: how shapely's answers about plane areas become exact again.
+
+Shapely finds topology on chords. Every chord remembers the carrier it came from, a line or a circle. In shapely's answer each
+edge is such a chord or a part of one; runs of edges on one carrier become one line or arc again, old vertices keep their
+coordinates, and new ones are the exact meeting points of their two carriers.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+import shapely
+
+from trunnion import tolerance
+from trunnion.geometry.arrays import Bools, Floats, Ints
+from trunnion.geometry.curve import FULL, Curve, Segments, chord_counts
+
+LINE = -1
+"""The row that a straight carrier has in place of a circle's."""
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Chords:
+    """Segments opened into chords that remember where they came from.
+
+    `points` (p, 2): the chord points of all segments one after another; segment i has the points first[i] to first[i + 1],
+    both of its ends among them. `source`: the segments, their ends pulled together; `carrier` (m,): equal for
+    segments on the same line or circle.
+    """
+
+    points: Floats
+    first: Ints
+    source: Segments
+    carrier: Ints
+
+
+def chorded(source: Segments, chord: float = tolerance.PLANE_REGION) -> Chords:
+    """Return segments opened into chords so that places where they lie on each other get the same chords."""
+    start, end = _pulled_together(source.start, source.end)
+    centre, radius, carrier = _shared_carriers(start, end, source)
+    joined = Segments(start, end, centre, radius, source.sweep, source.length)
+    inner_row, inner_key, inner_point = _inner_points(joined, chord)
+    touch_row, touch_key, touch_point = _touching_ends(joined)
+    m = len(source)
+    row = np.concatenate([np.arange(m), np.arange(m), inner_row, touch_row])
+    key = np.concatenate([np.zeros(m), np.ones(m), inner_key, touch_key])
+    point = np.concatenate([start, end, inner_point, touch_point])
+    order = np.lexsort([key, row])
+    row, point = row[order], point[order]
+    new = np.ones(len(row), dtype=bool)
+    new[1:] = (row[1:] != row[:-1]) | (np.abs(point[1:] - point[:-1]).max(axis=1) > 0.0)
+    row, point = row[new], point[new]
+    first = np.searchsorted(row, np.arange(m + 1))
+    return Chords(point, first, joined, carrier)
+
+
+def _pulled_together(start: Floats, end: Floats) -> tuple[Floats, Floats]:
+    """Give ends that are one point within the coincidence tolerance the same coordinates."""
+    points = np.concatenate([start, end])
+    order = np.lexsort([points[:, 1], points[:, 0]])
+    ranked = points[order]
+    answer = ranked.copy()
+    x, y = ranked[:, 0], ranked[:, 1]
+    close = 2.0 * tolerance.COINCIDENT
+    reach = np.searchsorted(x, x + close, side="right")
+    owner = np.arange(len(points))
+    for i in np.flatnonzero(reach > np.arange(len(points)) + 1):
+        if owner[i] != i:
+            continue
+        near = np.arange(i + 1, reach[i])
+        near = near[(np.abs(y[near] - y[i]) <= close) & (owner[near] == near)]
+        owner[near] = i
+    answer = ranked[owner]
+    back = np.empty_like(answer)
+    back[order] = answer
+    return back[: len(start)], back[len(start):]
+
+
+def _shared_carriers(start: Floats, end: Floats, s: Segments) -> tuple[Floats, Floats, Ints]:
+    """Give arcs on the same circle within the coincidence tolerance the same centre and radius, and number the carriers."""
+    centre, radius = s.centre.copy(), s.radius.copy()
+    carrier = np.arange(len(s))
+    close = 2.0 * tolerance.COINCIDENT
+    arcs = np.flatnonzero(s.sweep != 0.0)
+    if len(arcs):
+        same = (np.abs(radius[arcs][:, None] - radius[arcs]) <= close) & (
+            np.abs(centre[arcs][:, None] - centre[arcs]).max(axis=2) <= close)
+        first = arcs[np.argmax(same, axis=1)]
+        carrier[arcs] = first
+        centre[arcs], radius[arcs] = centre[first], radius[first]
+    lines = np.flatnonzero(s.sweep == 0.0)
+    if len(lines):
+        along = end[lines] - start[lines]
+        size = np.hypot(along[:, 0], along[:, 1])
+        along = along / np.where(size > 0.0, size, 1.0)[:, None]
+        off = [np.abs(along[None, :, 0] * (p[lines][:, None, 1] - start[lines][None, :, 1])
+                      - along[None, :, 1] * (p[lines][:, None, 0] - start[lines][None, :, 0])) for p in (start, end)]
+        same = (off[0] <= close) & (off[1] <= close) & (size > 0.0)[None, :]
+        same &= same.T
+        np.fill_diagonal(same, True)
+        carrier[lines] = lines[np.argmax(same, axis=1)]
+    return centre, radius, carrier
+
+
+def _inner_points(s: Segments, chord: float) -> tuple[Ints, Floats, Floats]:
+    """Return the chord points inside arcs at angles that depend on the circle alone, as rows, keys in 0..1 and points."""
+    arcs = np.flatnonzero(s.sweep != 0.0)
+    if len(arcs) == 0:
+        return np.empty(0, dtype=np.int64), np.empty(0), np.empty((0, 2))
+    radius, sweep = s.radius[arcs], s.sweep[arcs]
+    around = Segments(s.start[arcs], s.end[arcs], s.centre[arcs], radius, np.full(len(arcs), FULL), radius)
+    parts = np.maximum(8, chord_counts(around, chord))
+    step = FULL / parts
+    ray = s.start[arcs] - s.centre[arcs]
+    begin = np.arctan2(ray[:, 1], ray[:, 0])
+    low, high = np.minimum(begin, begin + sweep), np.maximum(begin, begin + sweep)
+    # A grid point closer to an end than a hundredth of a step gives way to it.
+    first = np.ceil(low / step + 0.01).astype(np.int64)
+    last = np.floor(high / step - 0.01).astype(np.int64)
+    count = np.maximum(0, last - first + 1)
+    row = np.repeat(np.arange(len(arcs)), count)
+    number = first[row] + np.arange(len(row)) - np.repeat(np.cumsum(count) - count, count)
+    angle = (number % parts[row]) * step[row]
+    point = s.centre[arcs][row] + radius[row, None] * np.stack([np.cos(angle), np.sin(angle)], axis=1)
+    key = (number * step[row] - begin[row]) / sweep[row]
+    return arcs[row], key, point
+
+
+def _touching_ends(s: Segments) -> tuple[Ints, Floats, Floats]:
+    """Return the ends of other segments that lie inside a segment, as rows, keys in 0..1 and points."""
+    points = np.unique(np.concatenate([s.start, s.end]), axis=0)
+    close = 2.0 * tolerance.COINCIDENT
+    rows, keys, found = [], [], []
+    lines, arcs = np.flatnonzero(s.sweep == 0.0), np.flatnonzero(s.sweep != 0.0)
+    if len(lines):
+        along = s.end[lines] - s.start[lines]
+        size = np.hypot(along[:, 0], along[:, 1])
+        to = points[None, :, :] - s.start[lines][:, None, :]
+        inside = (to[..., 0] * along[:, :1] + to[..., 1] * along[:, 1:]) / np.where(size > 0.0, size, 1.0)[:, None]
+        off = np.abs(to[..., 1] * along[:, :1] - to[..., 0] * along[:, 1:]) / np.where(size > 0.0, size, 1.0)[:, None]
+        i, k = np.nonzero((off <= close) & (inside > close) & (inside < size[:, None] - close))
+        rows.append(lines[i]), keys.append(inside[i, k] / size[i]), found.append(points[k])
+    if len(arcs):
+        to = points[None, :, :] - s.centre[arcs][:, None, :]
+        off = np.abs(np.hypot(to[..., 0], to[..., 1]) - s.radius[arcs][:, None])
+        i, k = np.nonzero(off <= close)
+        ray = s.start[arcs[i]] - s.centre[arcs[i]]
+        q = to[i, k]
+        turned = np.sign(s.sweep[arcs[i]])
+        angle = turned * np.arctan2(ray[:, 0] * q[:, 1] - ray[:, 1] * q[:, 0], (ray * q).sum(axis=1)) % FULL
+        sweep = np.abs(s.sweep[arcs[i]])
+        gap = close / s.radius[arcs[i]]
+        keep = (angle > gap) & (angle < sweep - gap)
+        rows.append(arcs[i[keep]]), keys.append(angle[keep] / sweep[keep]), found.append(points[k[keep]])
+    if not rows:
+        return np.empty(0, dtype=np.int64), np.empty(0), np.empty((0, 2))
+    return np.concatenate(rows), np.concatenate(keys), np.concatenate(found)
+
+
+def restored(geometry: shapely.Geometry, chords: Chords) -> list[tuple[Curve, list[Curve]]]:
+    """Return the polygons of a shapely answer as exact outer curves (anticlockwise), each with its holes (clockwise).
+
+    Pieces and holes that are too small or too narrow to be more than noise are left out.
+    """
+    polygons = [p for p in shapely.get_parts(geometry) if p.geom_type == "Polygon"]
+    if not polygons:
+        return []
+    rings, owner = shapely.get_rings(polygons, return_index=True)
+    coords, ring = shapely.get_coordinates(rings, return_index=True)
+    edges = _Edges(coords, ring, chords)
+    answer: list[tuple[Curve, list[Curve]]] = []
+    previous = -1
+    outer_kept = False
+    for n, piece in enumerate(owner):
+        curve = edges.curve(n)
+        is_outer, previous = piece != previous, piece
+        if is_outer:
+            outer_kept = curve is not None
+            if curve is not None:
+                answer.append((curve if curve.area > 0.0 else curve.reversed(), []))
+        elif curve is not None and outer_kept:
+            answer[-1][1].append(curve if curve.area < 0.0 else curve.reversed())
+    return answer
+
+
+class _Edges:
+    """The edges of rings, matched to the carriers they lie on."""
+
+    def __init__(self, coords: Floats, ring: Ints, chords: Chords) -> None:
+        self.chords = chords
+        self.coords = coords
+        bounds = np.flatnonzero(np.diff(ring)) + 1
+        self.begin = np.concatenate([[0], bounds])
+        self.stop = np.concatenate([bounds, [len(coords)]])
+        table, place = np.unique(chords.points[:, 0] + 1j * chords.points[:, 1], return_inverse=True)
+        z = coords[:, 0] + 1j * coords[:, 1]
+        at = np.minimum(np.searchsorted(table, z), len(table) - 1)
+        self.is_old: Bools = table[at] == z
+        rows = np.repeat(np.arange(len(chords.source)), np.diff(chords.first))
+        is_chord = np.ones(len(rows), dtype=bool)
+        is_chord[chords.first[1:] - 1] = False
+        head = np.flatnonzero(is_chord)
+        self.row = np.full(len(coords), -1)
+        is_edge = np.ones(len(coords), dtype=bool)
+        is_edge[self.stop - 1] = False
+        edge = np.flatnonzero(is_edge)
+        known = np.minimum(place[head], place[head + 1]) * len(table) + np.maximum(place[head], place[head + 1])
+        order = np.argsort(known, kind="stable")
+        known = known[order]
+        asked = np.minimum(at[edge], at[edge + 1]) * len(table) + np.maximum(at[edge], at[edge + 1])
+        slot = np.minimum(np.searchsorted(known, asked), len(known) - 1)
+        hit = (known[slot] == asked) & self.is_old[edge] & self.is_old[edge + 1]
+        chord = np.full(len(edge), -1)
+        chord[hit] = head[order[slot[hit]]]
+        if not hit.all():
+            lost = edge[~hit]
+            chord[~hit] = head[_nearest_chord(coords[lost], coords[lost + 1], chords.points[head], chords.points[head + 1])]
+        along = coords[edge + 1] - coords[edge]
+        source = chords.points[chord + 1] - chords.points[chord]
+        sign = np.where((along * source).sum(axis=1) >= 0.0, 1, -1)
+        self.row[edge] = rows[chord]
+        sweep = chords.source.sweep[rows[chord]]
+        # Which way round the circle an edge goes; for lines which way along the carrier does not matter.
+        self.turn = np.zeros(len(coords), dtype=np.int64)
+        self.turn[edge] = np.sign(sweep).astype(np.int64) * sign
+        self.carrier = np.where(self.row >= 0, chords.carrier[self.row], -1)
+
+    def curve(self, n: int) -> Curve | None:
+        """Return ring n as an exact curve, or None when it is too small or too narrow."""
+        begin, stop = int(self.begin[n]), int(self.stop[n])
+        points = self.coords[begin:stop]
+        area, around = _ring_size(points)
+        if area < tolerance.AREA or 2.0 * area < tolerance.SLIVER * around:
+            return None
+        carrier, turned = self.carrier[begin:stop - 1], self.turn[begin:stop - 1]
+        change = np.flatnonzero((carrier != np.roll(carrier, 1)) | (turned != np.roll(turned, 1)))
+        if len(change) == 0:
+            return _round(self.chords.source, int(self.row[begin]), int(turned[0]), points[0])
+        runs = [_Run(int(self.row[begin + k]), int(turned[k]), points[k], bool(self.is_old[begin + k])) for k in change]
+        return _closed_curve(self.chords, runs)
+
+
+def _nearest_chord(start: Floats, end: Floats, a: Floats, b: Floats) -> Ints:
+    """Return the chord (row of a, b) on which each edge (start, end) lies."""
+    middle = 0.5 * (start + end)
+    best = np.empty(len(middle), dtype=np.int64)
+    d = b - a
+    square = np.maximum((d * d).sum(axis=1), np.finfo(float).tiny)
+    unit_d = d / np.sqrt(square)[:, None]
+    for k, m in enumerate(middle):
+        to = m - a
+        share = np.clip((to * d).sum(axis=1) / square, 0.0, 1.0)
+        away = np.hypot(*(to - share[:, None] * d).T)
+        near = np.flatnonzero(away <= away.min() + tolerance.COINCIDENT)
+        edge = end[k] - start[k]
+        best[k] = near[np.argmax(np.abs(unit_d[near] @ edge))]
+    return best
+
+
+def _ring_size(points: Floats) -> tuple[float, float]:
+    p = points - points[0]
+    area = 0.5 * abs(float(np.sum(p[:-1, 0] * p[1:, 1] - p[1:, 0] * p[:-1, 1])))
+    return area, float(np.hypot(*(p[1:] - p[:-1]).T).sum())
+
+
+@dataclass(slots=True)
+class _Run:
+    """Edges on one carrier: the source row, the way round (0 for a line), the point where it starts, and whether that is an old one."""
+
+    row: int
+    turned: int
+    start: Floats
+    is_exact: bool
+
+
+def _round(source: Segments, row: int, turned: int, at: Floats) -> Curve:
+    centre = source.centre[row]
+    ray = at - centre
+    ray = ray * (source.radius[row] / math.hypot(ray[0], ray[1]))
+    return Curve(np.stack([centre + ray, centre - ray]), np.full(2, float(turned)), True)
+
+
+def _closed_curve(chords: Chords, runs: list[_Run]) -> Curve | None:
+    """Return the exact curve of runs round a ring, or None when nothing is left of it."""
+    source = chords.source
+    runs = _without_specks(chords, runs)
+    if not runs:
+        return None
+    if len(runs) == 1:
+        return _round(source, runs[0].row, runs[0].turned, runs[0].start) if runs[0].turned else None
+    for n, run in enumerate(runs):
+        if not run.is_exact:
+            run.start = meeting(source, runs[n - 1].row, run.row, run.start)
+    points, bulges = [], []
+    for run, after in zip(runs, [*runs[1:], runs[0]], strict=True):
+        new_points, new_bulges = _arc_or_line(source, run, after.start)
+        points += new_points
+        bulges += new_bulges
+    if len(points) < 2 or (len(points) == 2 and not any(bulges)):
+        return None
+    return Curve(np.array(points), np.array(bulges), True)
+
+
+def _without_specks(chords: Chords, runs: list[_Run]) -> list[_Run]:
+    """Drop runs shorter than two points can be apart, and join what then lies on one carrier."""
+    carrier = chords.carrier
+    kept: list[_Run] = []
+    for n, run in enumerate(runs):
+        after = runs[(n + 1) % len(runs)]
+        if np.abs(after.start - run.start).max() <= 2.0 * tolerance.COINCIDENT and not _goes_round(chords.source, run, after):
+            after.is_exact = after.is_exact and run.is_exact and not after.start is run.start
+            continue
+        kept.append(run)
+    joined: list[_Run] = []
+    for run in kept:
+        if joined and carrier[joined[-1].row] == carrier[run.row] and joined[-1].turned == run.turned:
+            continue
+        joined.append(run)
+    while len(joined) > 1 and carrier[joined[0].row] == carrier[joined[-1].row] and joined[0].turned == joined[-1].turned:
+        joined.pop(0)
+    return joined
+
+
+def _goes_round(source: Segments, run: _Run, after: _Run) -> bool:
+    """Say whether a run whose ends meet is nearly a full circle rather than a speck."""
+    return bool(run.turned) and _sweep(source, run, after.start) * run.turned > math.pi
+
+
+def _sweep(source: Segments, run: _Run, end: Floats) -> float:
+    a, b = run.start - source.centre[run.row], end - source.centre[run.row]
+    angle = run.turned * math.atan2(a[0] * b[1] - a[1] * b[0], a[0] * b[0] + a[1] * b[1])
+    return run.turned * (angle % FULL)
+
+
+def _arc_or_line(source: Segments, run: _Run, end: Floats) -> tuple[list[Floats], list[float]]:
+    if not run.turned:
+        return [run.start], [0.0]
+    sweep = _sweep(source, run, end)
+    if abs(sweep) <= 1.5 * math.pi:
+        return [run.start], [math.tan(0.25 * sweep)]
+    # A bulge says little about a nearly full circle, so that is given in two arcs.
+    ray = run.start - source.centre[run.row]
+    c, s = math.cos(0.5 * sweep), math.sin(0.5 * sweep)
+    half = source.centre[run.row] + np.array([c * ray[0] - s * ray[1], s * ray[0] + c * ray[1]])
+    return [run.start, half], [math.tan(0.125 * sweep)] * 2
+
+
+def meeting(source: Segments, a: int, b: int, near: Floats) -> Floats:
+    """Return the point where the carriers of two segments meet, the one nearest to a point.
+
+    Carriers that only nearly touch meet where they are closest; parallel lines meet at the given point's foot on the first.
+    """
+    if source.sweep[a] == 0.0 and source.sweep[b] == 0.0:
+        return _line_line(source, a, b, near)
+    if source.sweep[a] == 0.0:
+        return _line_circle(source.start[a], source.end[a], source.centre[b], float(source.radius[b]), near)
+    if source.sweep[b] == 0.0:
+        return _line_circle(source.start[b], source.end[b], source.centre[a], float(source.radius[a]), near)
+    return _circle_circle(source.centre[a], float(source.radius[a]), source.centre[b], float(source.radius[b]), near)
+
+
+def _line_line(source: Segments, a: int, b: int, near: Floats) -> Floats:
+    d, e = source.end[a] - source.start[a], source.end[b] - source.start[b]
+    d, e = d / math.hypot(*d), e / math.hypot(*e)
+    across = d[0] * e[1] - d[1] * e[0]
+    if abs(across) <= tolerance.COINCIDENT:
+        return source.start[a] + ((near - source.start[a]) @ d) * d
+    to = source.start[b] - source.start[a]
+    return source.start[a] + ((to[0] * e[1] - to[1] * e[0]) / across) * d
+
+
+def _line_circle(start: Floats, end: Floats, centre: Floats, radius: float, near: Floats) -> Floats:
+    d = end - start
+    d = d / math.hypot(*d)
+    foot = start + ((centre - start) @ d) * d
+    off = math.hypot(*(foot - centre))
+    if off >= radius:
+        return foot if off <= 0.0 else 0.5 * (foot + centre + (foot - centre) * (radius / off))
+    half = math.sqrt((radius - off) * (radius + off))
+    return foot + math.copysign(half, float((near - foot) @ d)) * d
+
+
+def _circle_circle(a: Floats, ra: float, b: Floats, rb: float, near: Floats) -> Floats:
+    d = b - a
+    apart = math.hypot(*d)
+    if apart <= tolerance.COINCIDENT:
+        ray = near - a
+        return a + ray * (ra / math.hypot(*ray))
+    d = d / apart
+    along = 0.5 * (apart + (ra - rb) * (ra + rb) / apart)
+    square = (ra - along) * (ra + along)
+    if square <= 0.0:
+        return a + math.copysign(ra, along) * d
+    across = np.array([-d[1], d[0]])
+    return a + along * d + math.copysign(math.sqrt(square), float((near - a) @ across)) * across
+
+
+def polygons_of(chords: Chords, loops: Sequence[Sequence[range]]) -> shapely.Geometry:
+    """Return the shapely area of pieces given as rows of the chords' segments: for each piece its outer loop, then its holes."""
+    polygons = []
+    for piece in loops:
+        rings = [np.concatenate([chords.points[chords.first[i]: chords.first[i + 1] - 1] for i in loop]) for loop in piece]
+        rings = [ring for ring in rings if len(ring) >= 3]
+        if rings:
+            polygons.append(shapely.Polygon(rings[0], rings[1:]))
+    area = shapely.MultiPolygon(polygons)
+    return area if area.is_valid else shapely.make_valid(area)
+
+
+def joined_runs(chords: Chords) -> Curve | None:
+    """Return one closed loop of segments with specks dropped and neighbours on one carrier joined; None when nothing is left."""
+    source = chords.source
+    turned = np.sign(source.sweep).astype(np.int64)
+    rows = np.arange(len(source))
+    change = np.flatnonzero((chords.carrier != np.roll(chords.carrier, 1)) | (turned != np.roll(turned, 1)))
+    if len(change) == 0:
+        return _round(source, 0, int(turned[0]), source.start[0]) if turned[0] else None
+    return _closed_curve(chords, [_Run(int(rows[k]), int(turned[k]), source.start[k], True) for k in change])
