@@ -16,10 +16,10 @@ import shapely
 
 from trunnion import tolerance
 from trunnion.geometry.arrays import Bools, Floats, Ints
-from trunnion.geometry.curve import FULL, Curve, Segments, chord_counts
+from trunnion.geometry.curve import FULL, Curve, Segments, chord_counts, segment_boxes
 
-LINE = -1
-"""The row that a straight carrier has in place of a circle's."""
+CLOSE = 2.0 * tolerance.COINCIDENT
+"""Two ends of segments that are this close are one point."""
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -64,14 +64,13 @@ def _pulled_together(start: Floats, end: Floats) -> tuple[Floats, Floats]:
     ranked = points[order]
     answer = ranked.copy()
     x, y = ranked[:, 0], ranked[:, 1]
-    close = 2.0 * tolerance.COINCIDENT
-    reach = np.searchsorted(x, x + close, side="right")
+    reach = np.searchsorted(x, x + CLOSE, side="right")
     owner = np.arange(len(points))
     for i in np.flatnonzero(reach > np.arange(len(points)) + 1):
         if owner[i] != i:
             continue
         near = np.arange(i + 1, reach[i])
-        near = near[(np.abs(y[near] - y[i]) <= close) & (owner[near] == near)]
+        near = near[(np.abs(y[near] - y[i]) <= CLOSE) & (owner[near] == near)]
         owner[near] = i
     answer = ranked[owner]
     back = np.empty_like(answer)
@@ -83,11 +82,10 @@ def _shared_carriers(start: Floats, end: Floats, s: Segments) -> tuple[Floats, F
     """Give arcs on the same circle within the coincidence tolerance the same centre and radius, and number the carriers."""
     centre, radius = s.centre.copy(), s.radius.copy()
     carrier = np.arange(len(s))
-    close = 2.0 * tolerance.COINCIDENT
     arcs = np.flatnonzero(s.sweep != 0.0)
     if len(arcs):
-        same = (np.abs(radius[arcs][:, None] - radius[arcs]) <= close) & (
-            np.abs(centre[arcs][:, None] - centre[arcs]).max(axis=2) <= close)
+        same = (np.abs(radius[arcs][:, None] - radius[arcs]) <= CLOSE) & (
+            np.abs(centre[arcs][:, None] - centre[arcs]).max(axis=2) <= CLOSE)
         first = arcs[np.argmax(same, axis=1)]
         carrier[arcs] = first
         centre[arcs], radius[arcs] = centre[first], radius[first]
@@ -98,7 +96,7 @@ def _shared_carriers(start: Floats, end: Floats, s: Segments) -> tuple[Floats, F
         along = along / np.where(size > 0.0, size, 1.0)[:, None]
         off = [np.abs(along[None, :, 0] * (p[lines][:, None, 1] - start[lines][None, :, 1])
                       - along[None, :, 1] * (p[lines][:, None, 0] - start[lines][None, :, 0])) for p in (start, end)]
-        same = (off[0] <= close) & (off[1] <= close) & (size > 0.0)[None, :]
+        same = (off[0] <= CLOSE) & (off[1] <= CLOSE) & (size > 0.0)[None, :]
         same &= same.T
         np.fill_diagonal(same, True)
         carrier[lines] = lines[np.argmax(same, axis=1)]
@@ -132,7 +130,6 @@ def _inner_points(s: Segments, chord: float) -> tuple[Ints, Floats, Floats]:
 def _touching_ends(s: Segments) -> tuple[Ints, Floats, Floats]:
     """Return the ends of other segments that lie inside a segment, as rows, keys in 0..1 and points."""
     points = np.unique(np.concatenate([s.start, s.end]), axis=0)
-    close = 2.0 * tolerance.COINCIDENT
     rows, keys, found = [], [], []
     lines, arcs = np.flatnonzero(s.sweep == 0.0), np.flatnonzero(s.sweep != 0.0)
     if len(lines):
@@ -141,18 +138,18 @@ def _touching_ends(s: Segments) -> tuple[Ints, Floats, Floats]:
         to = points[None, :, :] - s.start[lines][:, None, :]
         inside = (to[..., 0] * along[:, :1] + to[..., 1] * along[:, 1:]) / np.where(size > 0.0, size, 1.0)[:, None]
         off = np.abs(to[..., 1] * along[:, :1] - to[..., 0] * along[:, 1:]) / np.where(size > 0.0, size, 1.0)[:, None]
-        i, k = np.nonzero((off <= close) & (inside > close) & (inside < size[:, None] - close))
+        i, k = np.nonzero((off <= CLOSE) & (inside > CLOSE) & (inside < size[:, None] - CLOSE))
         rows.append(lines[i]), keys.append(inside[i, k] / size[i]), found.append(points[k])
     if len(arcs):
         to = points[None, :, :] - s.centre[arcs][:, None, :]
         off = np.abs(np.hypot(to[..., 0], to[..., 1]) - s.radius[arcs][:, None])
-        i, k = np.nonzero(off <= close)
+        i, k = np.nonzero(off <= CLOSE)
         ray = s.start[arcs[i]] - s.centre[arcs[i]]
         q = to[i, k]
         turned = np.sign(s.sweep[arcs[i]])
         angle = turned * np.arctan2(ray[:, 0] * q[:, 1] - ray[:, 1] * q[:, 0], (ray * q).sum(axis=1)) % FULL
         sweep = np.abs(s.sweep[arcs[i]])
-        gap = close / s.radius[arcs[i]]
+        gap = CLOSE / s.radius[arcs[i]]
         keep = (angle > gap) & (angle < sweep - gap)
         rows.append(arcs[i[keep]]), keys.append(angle[keep] / sweep[keep]), found.append(points[k[keep]])
     if not rows:
@@ -310,7 +307,7 @@ def _without_specks(chords: Chords, runs: list[_Run]) -> list[_Run]:
     kept: list[_Run] = []
     for n, run in enumerate(runs):
         after = runs[(n + 1) % len(runs)]
-        if np.abs(after.start - run.start).max() <= 2.0 * tolerance.COINCIDENT and not _goes_round(chords.source, run, after):
+        if np.abs(after.start - run.start).max() <= CLOSE and not _goes_round(chords.source, run, after):
             after.is_exact = after.is_exact and run.is_exact and not after.start is run.start
             continue
         kept.append(run)
@@ -419,3 +416,80 @@ def joined_runs(chords: Chords) -> Curve | None:
     if len(change) == 0:
         return _round(source, 0, int(turned[0]), source.start[0]) if turned[0] else None
     return _closed_curve(chords, [_Run(int(rows[k]), int(turned[k]), source.start[k], True) for k in change])
+
+
+def crossings(s: Segments) -> tuple[Ints, Floats]:
+    """Return where segments meet each other, as rows (k,) and arc lengths on them (k,); every meeting is given for both."""
+    low, high = segment_boxes(s)
+    grown = CLOSE
+    meet = ((low[:, None, :] <= high[None, :, :] + grown) & (low[None, :, :] <= high[:, None, :] + grown)).all(axis=2)
+    i, j = np.nonzero(np.triu(meet, 1))
+    rows: list[Ints] = []
+    places: list[Floats] = []
+    line = s.sweep == 0.0
+    for kind, solve in ((line[i] & line[j], _lines_meet), (line[i] & ~line[j], _line_meets_circle),
+                        (~line[i] & line[j], _circle_meets_line), (~line[i] & ~line[j], _circles_meet)):
+        a, b = i[kind], j[kind]
+        for point in solve(s, a, b):
+            on_a, on_b = place_on(s, a, point), place_on(s, b, point)
+            real = ~np.isnan(on_a) & ~np.isnan(on_b)
+            rows += [a[real], b[real]]
+            places += [on_a[real], on_b[real]]
+    # Ends that lie on another segment cut it too, which also covers segments lying on each other.
+    row, key, _ = _touching_ends(s)
+    return np.concatenate([*rows, row]), np.concatenate([*places, key * s.length[row]])
+
+
+def place_on(s: Segments, rows: Ints, points: Floats) -> Floats:
+    """Return the arc lengths (k,) of points (k, 2) that lie on segments `rows`; NaN where a point is beyond the ends."""
+    place = np.full(len(rows), np.nan)
+    line = s.sweep[rows] == 0.0
+    a = rows[line]
+    along = (s.end[a] - s.start[a]) / np.maximum(s.length[a], np.finfo(float).tiny)[:, None]
+    place[line] = ((points[line] - s.start[a]) * along).sum(axis=1)
+    a = rows[~line]
+    if len(a):
+        ray, q = s.start[a] - s.centre[a], points[~line] - s.centre[a]
+        angle = np.sign(s.sweep[a]) * np.arctan2(ray[:, 0] * q[:, 1] - ray[:, 1] * q[:, 0], (ray * q).sum(axis=1)) % FULL
+        # Just before the start counts as the start.
+        angle = np.where(angle > FULL - CLOSE / s.radius[a], 0.0, angle)
+        place[~line] = angle * s.radius[a]
+    length = s.length[rows]
+    with np.errstate(invalid="ignore"):
+        place[(place < -CLOSE) | (place > length + CLOSE)] = np.nan
+    return np.clip(place, 0.0, length)
+
+
+def _lines_meet(s: Segments, a: Ints, b: Ints) -> list[Floats]:
+    d, e = s.end[a] - s.start[a], s.end[b] - s.start[b]
+    across = d[:, 0] * e[:, 1] - d[:, 1] * e[:, 0]
+    to = s.start[b] - s.start[a]
+    ok = np.abs(across) > tolerance.COINCIDENT * s.length[a] * s.length[b]
+    share = np.divide(to[:, 0] * e[:, 1] - to[:, 1] * e[:, 0], across, out=np.full(len(a), np.nan), where=ok)
+    return [s.start[a] + share[:, None] * d]
+
+
+def _line_meets_circle(s: Segments, a: Ints, b: Ints) -> list[Floats]:
+    d = (s.end[a] - s.start[a]) / np.maximum(s.length[a], np.finfo(float).tiny)[:, None]
+    foot = s.start[a] + ((s.centre[b] - s.start[a]) * d).sum(axis=1)[:, None] * d
+    off = np.hypot(*(foot - s.centre[b]).T)
+    square = (s.radius[b] - off) * (s.radius[b] + off)
+    half = np.sqrt(np.where(off <= s.radius[b] + CLOSE, np.maximum(square, 0.0), np.nan))[:, None]
+    return [foot + half * d, foot - half * d]
+
+
+def _circle_meets_line(s: Segments, a: Ints, b: Ints) -> list[Floats]:
+    return _line_meets_circle(s, b, a)
+
+
+def _circles_meet(s: Segments, a: Ints, b: Ints) -> list[Floats]:
+    d = s.centre[b] - s.centre[a]
+    apart = np.hypot(d[:, 0], d[:, 1])
+    ra, rb = s.radius[a], s.radius[b]
+    ok = (apart > CLOSE) & (apart <= ra + rb + CLOSE) & (apart >= np.abs(ra - rb) - CLOSE)
+    d = np.divide(d, apart[:, None], out=np.full_like(d, np.nan), where=ok[:, None])
+    along = 0.5 * (apart + np.divide((ra - rb) * (ra + rb), apart, out=np.zeros_like(apart), where=ok))
+    half = np.sqrt(np.maximum((ra - along) * (ra + along), 0.0))[:, None]
+    middle = s.centre[a] + np.clip(along, -ra, ra)[:, None] * d
+    across = np.stack([-d[:, 1], d[:, 0]], axis=1)
+    return [middle + half * across, middle - half * across]

@@ -1,0 +1,131 @@
+"""Parallels of curves and regions: lines stay lines, arcs stay arcs about the same centre, convex corners get round joins.
+
+Every segment moves to its side and neighbours are connected: by an arc about a convex corner, by a bridge over a concave one.
+The boundary of the answer is a part of these raw curves. They cut the plane into faces, each wholly nearer to the source than
+the distance or wholly farther, so one exact distance a face decides (`offset_region`); an open curve is cut at the crossings
+themselves (`parallel_curves`).
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+import shapely
+
+from trunnion import tolerance
+from trunnion.geometry import fit
+from trunnion.geometry.arrays import Bools, Floats, Ints
+from trunnion.geometry.curve import Curve, Segments, distance_to, join_segments
+from trunnion.geometry.region import EMPTY_REGION, Region, restored_region
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class RawCurve:
+    """The parallels of a curve's segments and what connects them, in order; a bridge (`is_bridge`) is never part of an answer."""
+
+    segments: Segments
+    is_bridge: Bools
+
+
+def offset_region(region: Region, distance: float) -> Region:
+    """Return a region grown (positive) or shrunk (negative) by a distance in mm; pieces narrower than a sliver are dropped."""
+    if not region or abs(distance) <= tolerance.PARAMETRIC:
+        return region
+    low, high = region.box()
+    if distance < 0.0 and 2.0 * -distance >= (high - low).min():
+        return EMPTY_REGION
+    chords = fit.chorded(join_segments(raw_parallel(c, -distance).segments for c in region.curves()))
+    count = np.diff(chords.first)
+    owner = np.repeat(np.arange(len(count)), count)
+    real = count[owner] > 1
+    lines = shapely.linestrings(chords.points[real], indices=np.unique(owner[real], return_inverse=True)[1])
+    faces = shapely.get_parts(shapely.polygonize([shapely.node(shapely.multilinestrings(lines))]))
+    if len(faces) == 0:
+        return EMPTY_REGION
+    inside = shapely.get_coordinates(shapely.point_on_surface(faces))
+    kept = faces[region.signed_distance(inside) > -distance]
+    return restored_region(shapely.union_all(kept), chords)
+
+
+def raw_parallel(curve: Curve, distance: float) -> RawCurve:
+    """Return the parallels to the left of a curve by a distance, uncut, with round joins at convex corners and bridges elsewhere."""
+    s = curve.segments()
+    rows = np.flatnonzero(s.length > tolerance.COINCIDENT)
+    s = s[rows]
+    begin, finish = _end_tangents(s)
+    left = np.stack([-begin[:, 1], begin[:, 0]], axis=1), np.stack([-finish[:, 1], finish[:, 0]], axis=1)
+    start, end = s.start + distance * left[0], s.end + distance * left[1]
+    # An anticlockwise arc has its centre on the left: its parallel there is smaller, and gone beyond the centre.
+    radius = s.radius - np.sign(s.sweep) * distance
+    is_arc = s.sweep != 0.0
+    gone = is_arc & (radius <= tolerance.COINCIDENT)
+    length = np.where(is_arc, np.where(gone, 0.0, radius) * np.abs(s.sweep), s.length)
+    main = Segments(start, end, np.where(gone[:, None], np.nan, s.centre), np.where(gone, np.nan, radius),
+                    np.where(gone, 0.0, s.sweep), np.where(gone, np.hypot(*(end - start).T), length))
+    m = len(s)
+    after = np.roll(np.arange(m), -1) if curve.closed else np.arange(1, m)
+    before = np.arange(len(after))
+    u, v = finish[before], begin[after]
+    bend = np.arctan2(u[:, 0] * v[:, 1] - u[:, 1] * v[:, 0], (u * v).sum(axis=1))
+    apart = np.abs(end[before] - start[after]).max(axis=1) > tolerance.PARAMETRIC
+    convex = bend * distance < 0.0
+    size = abs(distance)
+    corner = s.end[before]
+    joins = Segments(end[before], start[after], np.where(convex[:, None], corner, np.nan), np.where(convex, size, np.nan),
+                     np.where(convex, bend, 0.0), np.where(convex, size * np.abs(bend), np.hypot(*(end[before] - start[after]).T)))
+    order = np.argsort(np.concatenate([2 * np.arange(m), 2 * before[apart] + 1]), kind="stable")
+    both = Segments(*(np.concatenate([getattr(main, n), getattr(joins, n)[apart]])[order] for n in Segments.__slots__))
+    return RawCurve(both, np.concatenate([gone, ~convex[apart]])[order])
+
+
+def _end_tangents(s: Segments) -> tuple[Floats, Floats]:
+    rows = np.arange(len(s))
+    return s.directions(rows, np.zeros(len(s))), s.directions(rows, s.length)
+
+
+def parallel_curves(curve: Curve, distance: float) -> list[Curve]:
+    """Return the trimmed parallels of a curve to its left (negative: right), in the order of the curve."""
+    if abs(distance) <= tolerance.PARAMETRIC:
+        return [curve]
+    raw = raw_parallel(curve, distance)
+    s = raw.segments[np.flatnonzero(~raw.is_bridge)]
+    rows, low, high = cut_at_crossings(s)
+    middle = s.at(rows, 0.5 * (low + high))
+    near = distance_to(curve.segments(), middle) < abs(distance) - fit.CLOSE
+    rows, low, high = rows[~near], low[~near], high[~near]
+    return _strung(s, rows, low, high)
+
+
+def cut_at_crossings(s: Segments) -> tuple[Ints, Floats, Floats]:
+    """Return the pieces of segments between their crossings: rows (k,) and arc lengths from and to (k,) in order."""
+    row, place = fit.crossings(s)
+    m = len(s)
+    row = np.concatenate([np.arange(m), np.arange(m), row])
+    place = np.concatenate([np.zeros(m), s.length, place])
+    order = np.lexsort([place, row])
+    row, place = row[order], place[order]
+    real = (row[1:] == row[:-1]) & (place[1:] - place[:-1] > fit.CLOSE)
+    return row[:-1][real], place[:-1][real], place[1:][real]
+
+
+def _strung(s: Segments, rows: Ints, low: Floats, high: Floats) -> list[Curve]:
+    """Put pieces end to end; a closed row of pieces gives a closed curve."""
+    if len(rows) == 0:
+        return []
+    start, end = s.at(rows, low), s.at(rows, high)
+    sweep = np.divide(high - low, s.length[rows], out=np.ones(len(rows)), where=s.length[rows] > 0.0) * s.sweep[rows]
+    bulge = np.tan(0.25 * sweep)
+    breaks = np.flatnonzero(np.abs(end[:-1] - start[1:]).max(axis=1) > 4.0 * fit.CLOSE) + 1
+    runs = np.split(np.arange(len(rows)), breaks)
+    closes = np.abs(end[-1] - start[0]).max() <= 4.0 * fit.CLOSE
+    if closes and len(runs) > 1:
+        runs = [np.concatenate([runs[-1], runs[0]]), *runs[1:-1]]
+    curves = []
+    for run in runs:
+        points, bulges = np.concatenate([start[run], end[run[-1:]]]), np.append(bulge[run], 0.0)
+        if closes and len(runs) == 1 and len(run) > 1:
+            curves.append(Curve(points[:-1], bulges[:-1], True))
+        else:
+            curves.append(Curve(points, bulges, False))
+    return curves
