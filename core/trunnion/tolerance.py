@@ -39,3 +39,21 @@ TANGENT = math.radians(0.5)
 
 PARAMETRIC = 1e-9
 """Two numbers that were computed the same way and differ by less are equal."""
+
+ARC_RADIUS = 1.27e-3
+"""Largest difference of an arc's radius at its two ends that a control takes: LinuxCNC's CENTER_ARC_RADIUS_TOLERANCE_MM."""
+
+WRITTEN = 5e-4
+"""What rounding to the decimals of a program, in mm or inch, may move a point by."""
+
+SHORT_MOVE = 1e-4
+"""A move shorter than this is dropped: posts write four decimals, so it would be a block that goes nowhere."""
+
+SHORT_ARC = 5e-3
+"""An arc shorter than this goes out as a line: it leaves the arc by less than 1 um, and its rounded ends would no longer fit its radius."""
+
+ON_REGION = 1e-3
+"""A cutter location this far outside its region is still on its rim: offsets agree to 1 um."""
+
+BESIDE_PLANE = 0.02
+"""How far above or below a horizontal face a section is taken to see what stands on it: clear of the face, below the smallest blend."""

@@ -1,0 +1,34 @@
+"""What a dialect is. A user's own package adds one by an entry point `trunnion.dialects`."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from typing import Protocol
+
+from trunnion.model.program import Program
+from trunnion.model.setup import Setup
+from trunnion.model.tool import Tool
+from trunnion.post.header import Header
+from trunnion.post.settings import PostSettings
+
+
+class Dialect(Protocol):
+    """Writes programs as text and reads text back. Same programs, header and settings: same bytes.
+
+    `suffix` is the file name's end; the first `STAMP_LINES` lines of every text are its stamp.
+    """
+
+    name: str
+    suffix: str
+
+    def write(self, programs: Sequence[Program], header: Header, settings: PostSettings) -> str:
+        """Return the text; raise `Refused` for what the control can't do."""
+        ...
+
+    def stamp(self, program: str, header: Header) -> tuple[str, ...]:
+        """Return the stamp's lines as this dialect writes them."""
+        ...
+
+    def read(self, text: str, tools: Sequence[Tool], setups: Sequence[Setup]) -> tuple[Program, ...]:
+        """Return the programs that a text says; raise `BadInput` with the line of anything that isn't understood."""
+        ...

@@ -1,0 +1,114 @@
+"""What stands at the top of every program: what it is for, and whether it may run.
+
+The first lines are the stamp: always the same number, so that a text keeps its line numbers when it is stamped anew after its proof.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from typing import Any
+
+from trunnion.findings import BadCall, Severity
+from trunnion.model.program import Program
+from trunnion.model.session import Session
+from trunnion.model.tool import Tool
+from trunnion.model.verdict import Verdict
+from trunnion.settings import digest
+from trunnion.units import MM_PER_INCH, trimmed
+
+REJECTED = "REJECTED"
+STAMP_LINES = 5
+_MOST_REASONS = 6
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Header:
+    """What a program says of itself.
+
+    `name` is the NAME of its files, `part_digest` of the part's file, `plan_digest` of the process tree and its toolpaths; `date` is given
+    by the caller, never the clock's. Without a `verdict` the text is stamped as rejected: nothing has proven it.
+    """
+
+    name: str
+    part: str
+    part_digest: str
+    plan_digest: str
+    material: str = ""
+    date: str = ""
+    verdict: Verdict | None = None
+
+    @classmethod
+    def of(cls, session: Session, *, name: str = "", date: str = "") -> Header:
+        """Return the header of a session's texts before their proof; raise `BadCall` while there is no plan."""
+        if session.part is None or session.process is None:
+            raise BadCall("no operations yet: generate the route first")
+        return cls(name=name or session.part.name, part=session.part.name, part_digest=session.part.digest,
+                   plan_digest=plan_digest(session), material=session.process.material, date=date)
+
+    @property
+    def rejected(self) -> bool:
+        """Whether the text must be stamped as rejected: unproven, failed, or proven with an error."""
+        return self.verdict is None or not self.verdict.releases or any(f.severity is Severity.ERROR for f in self.verdict.findings)
+
+    def reasons(self) -> tuple[str, ...]:
+        """Return why the program is rejected, or the remarks it is released with, the most important first."""
+        if self.verdict is None:
+            return ("not proven",)
+        v = self.verdict
+        measured = [(v.gouge > 0.0, f"gouge {trimmed(v.gouge, 4)} mm"), (v.collisions > 0, f"{v.collisions} collisions"),
+                    (v.rapids_in_stock > 0, f"{v.rapids_in_stock} rapids in stock")]
+        figures = tuple(text for holds, text in measured if holds) if self.rejected else ()
+        heavy = (Severity.ERROR, Severity.WARNING) if self.rejected else (Severity.WARNING, Severity.REMARK)
+        found = tuple(f"{f.text} {' '.join(f.where[:2])}".strip() for s in heavy for f in v.findings if f.severity is s)
+        reasons = figures + found or ((f"coverage {100 * v.coverage:.2f} %",) if self.rejected else ())
+        more = len(reasons) - _MOST_REASONS
+        return reasons if more <= 0 else (*reasons[:_MOST_REASONS], f"and {more} more")
+
+    def stamp(self, program: str) -> tuple[str, ...]:
+        """Return the first lines of a text in words: name, whether it may run, verdict, reasons, date. Always `STAMP_LINES` of them."""
+        v = self.verdict
+        verdict = "NONE" if v is None else f"{v.outcome.value.upper()}, coverage {100 * v.coverage:.2f} %, gouge {trimmed(v.gouge, 4)} mm"
+        if v is not None and v.accepted_by:
+            verdict += f", shortfall accepted by {v.accepted_by}"
+        may = f"{REJECTED}: DO NOT RUN" if self.rejected else "RELEASED"
+        why = ("REASON: " if self.rejected else "REMARKS: ") + ("; ".join(self.reasons()) or "none")
+        return (f"TRUNNION PROGRAM {program}", may, f"VERDICT: {verdict}", why, f"DATE: {self.date or 'not given'}")
+
+    def about(self, programs: Sequence[Program], units: str) -> tuple[str, ...]:
+        """Return the lines below the stamp in words: part, plan, setups, units and the tools in use."""
+        lines = [f"PART {self.part} SHA256 {self.part_digest}", f"PLAN {self.plan_digest}"]
+        if self.material:
+            lines.append(f"MATERIAL {self.material}")
+        lines += [f"SETUP {p.setup.name} {p.setup.work_offset} MACHINE {p.setup.machine} CLEARANCE {_length(p.setup.clearance, units)}"
+                  for p in programs]
+        lines += [f"FRAME {p.setup.name} {_frame(p, units)}" for p in programs]
+        lines.append(f"UNITS {units.upper()}")
+        return (*lines, *(_tool(t, units) for t in tools_of(programs)))
+
+
+def plan_digest(session: Session) -> str:
+    """Return the digest of a session's process tree and toolpaths."""
+    return digest(session.process, tuple((p.operation, p.key) for p in session.paths))
+
+
+def tools_of(programs: Sequence[Program]) -> tuple[Tool, ...]:
+    """Return the tools of some programs, each once, by number."""
+    return tuple(sorted({s.tool.number: s.tool for p in programs for s in p.sections}.values(), key=lambda t: t.number))
+
+
+def _length(value: float, units: str) -> str:
+    return trimmed(value / MM_PER_INCH, 5) if units == "inch" else trimmed(value, 4)
+
+
+def _frame(program: Program, units: str) -> str:
+    frame = program.setup.frame
+    numbers: list[tuple[str, list[Any]]] = [("ORIGIN", [_length(v, units) for v in frame.origin]), ("X", [trimmed(v, 6) for v in frame.x]),
+                                            ("Z", [trimmed(v, 6) for v in frame.z])]
+    return " ".join(f"{word} {' '.join(values)}" for word, values in numbers)
+
+
+def _tool(tool: Tool, units: str) -> str:
+    sizes = " ".join(f"{word}{_length(value, units)}" for word, value in (("D", tool.diameter), ("R", tool.corner_radius),
+                                                                        ("LENGTH ", tool.gauge_length), ("STICKOUT ", tool.stickout)))
+    return f"TOOL {tool.number} {tool.name} {sizes} HOLDER {tool.holder.name}"

@@ -1,0 +1,338 @@
+"""Reads LinuxCNC text, ours or edited by hand, into motions. What it doesn't understand it refuses with the line; nothing is skipped.
+
+The order of work inside a line is LinuxCNC's own: feed, spindle speed, tool, spindle and coolant, units and offsets, motion, end.
+"""
+
+from __future__ import annotations
+
+import math
+import re
+from collections.abc import Sequence
+
+from trunnion import tolerance
+from trunnion.findings import BadInput
+from trunnion.model.program import Program
+from trunnion.model.setup import Setup
+from trunnion.model.tool import Tool
+from trunnion.model.toolpath import Motion
+from trunnion.post.readers.blocks import Block, split_line
+from trunnion.post.readers.sections import NOWHERE, Point, Sections, by_number
+from trunnion.units import MM_PER_INCH
+
+_OPERATION = re.compile(r"OPERATION\s+(\S+)$", re.IGNORECASE)
+_MOTIONS = {"G0": Motion.RAPID, "G1": Motion.LINE, "G2": Motion.ARC_CW, "G3": Motion.ARC_CCW}
+_OFFSETS = ("G54", "G55", "G56", "G57", "G58", "G59", "G59.1", "G59.2", "G59.3")
+_GROUPS = (("G0", "G1", "G2", "G3", "G80"), ("G20", "G21"), _OFFSETS, ("G43", "G49"), ("G61", "G61.1", "G64"),
+           ("M3", "M5"), ("M7", "M9"), ("M8", "M9"), ("M0", "M1", "M2", "M30"))
+_WITHOUT_MOTION = frozenset(("G17", "G40", "G61", "G61.1", "G90", "G91.1", "G94", "G97", "M0", "M1"))
+_KNOWN = _WITHOUT_MOTION | frozenset((*_MOTIONS, *_OFFSETS, "G4", "G20", "G21", "G43", "G49", "G53", "G64", "G80", "M2", "M3", "M5", "M6",
+                                      "M7", "M8", "M9", "M30"))
+_REFUSED = {
+    "G18": "arcs in the plane ZX are not understood; use G17", "G19": "arcs in the plane YZ are not understood; use G17",
+    "G41": "cutter compensation changes the path at the machine; write the tool centre's path under G40",
+    "G42": "cutter compensation changes the path at the machine; write the tool centre's path under G40",
+    "G90.1": "absolute arc centres are not understood; use G91.1 and centres from the arc's start",
+    "G91": "incremental moves are not understood; use G90", "G93": "inverse-time feeds are not understood; use G94",
+    "G95": "feeds a turn are not understood; use G94", "M4": "M4 turns the cutter backwards; use M3",
+    "G28": "the place of G28 is not known here; use G53 G0 Z0", "G30": "the place of G30 is not known here; use G53 G0 Z0",
+    "G92": "G92 moves the program's zero; use the setup's work offset", "G10": "G10 changes offsets; set them at the machine",
+}
+_CYCLES = frozenset(("G73", "G74", "G76", "G81", "G82", "G83", "G84", "G85", "G86", "G87", "G88", "G89", "G98", "G99"))
+_PLAIN_LETTERS = frozenset("NFSTXYZIJRHPQ")
+
+
+def read_linuxcnc(text: str, tools: Sequence[Tool], setup: Setup) -> Program:
+    """Return the motions of one setup's text, with the line of each block; raise `BadInput` naming the line of what isn't understood.
+
+    `tools` are found by their T number; operations by our comments, else they are called `line N`.
+    """
+    control = _Control(by_number(tools), setup)
+    for number, line in enumerate(text.split("\n"), 1):
+        if line.strip() == "%":
+            control.percent(number)
+            continue
+        block, comments = split_line(number, line)
+        for comment in comments:
+            if found := _OPERATION.match(comment):
+                control.sections.operation(found.group(1))
+        if block is not None:
+            control.run(block)
+    if not control.ended:
+        raise BadInput("the program has no end (M30 or M2): is the text complete?")
+    return Program(name=setup.name, setup=setup, sections=control.sections.finished())
+
+
+class _Control:
+    """The modal state of the control while a text runs. Lengths are mm in the setup frame."""
+
+    def __init__(self, tools: dict[int, Tool], setup: Setup) -> None:
+        self.tools, self.setup = tools, setup
+        self.sections = Sections(setup.clearance)
+        self.over: tuple[float, float] | None = None
+        self.unit, self.offset, self.last_n = 1.0, "", -1.0
+        self.motion: Motion | None = None
+        self.tool: Tool | None = None
+        self.next_tool: Tool | None = None
+        self.length_on = self.turning = self.ended = self.units_said = self.begun = False
+        self.feed = self.spindle = 0.0
+        self.coolant = "off"
+
+    def percent(self, line: int) -> None:
+        """Take a line of %: the first opens the text, the next ends it."""
+        if self.begun and not self.ended:
+            raise BadInput(f"line {line}: a % in the middle of the program ends it there; remove it")
+        self.begun = True
+
+    def run(self, block: Block) -> None:
+        """Do what one line says, in LinuxCNC's order."""
+        words, codes = block.words, block.codes
+        self.begun = True
+        self.check(block)
+        if len(codes) > (1 if codes and codes[0] in _MOTIONS else 0):
+            self.modes(block)
+        elif "F" in words or "S" in words or "T" in words:
+            self.speeds(block)
+        if codes and codes[0] in _MOTIONS and len(codes) == 1:
+            self.motion = _MOTIONS[codes[0]]
+        if "X" in words or "Y" in words or "Z" in words or "I" in words or "J" in words or "R" in words:
+            self.move(block)
+        if "M30" in codes or "M2" in codes:
+            self.ended = True
+
+    def check(self, block: Block) -> None:
+        """Refuse what can't be understood or stands in a wrong place."""
+        line, words, codes = block.line, block.words, block.codes
+        if self.ended:
+            raise BadInput(f"line {line}: stands after the end of the program; remove it or the M30 before it")
+        n = words.get("N")
+        if n is not None:
+            if n <= self.last_n:
+                raise BadInput(f"line {line}: N{n:g} comes after N{self.last_n:g}: lines are out of order; put them back or renumber them")
+            self.last_n = n
+        for letter in words:
+            if letter not in _PLAIN_LETTERS:
+                raise BadInput(f"line {line}: the word {letter} is not understood by a three-axis program; remove it")
+        for code in codes:
+            if code not in _KNOWN:
+                raise BadInput(f"line {line}: {_why_not(code)}")
+        if len(codes) > 1:
+            _one_of_a_group(line, codes)
+        _letters_belong(block)
+
+    def speeds(self, block: Block) -> None:
+        """Take over F, S and T."""
+        line, words = block.line, block.words
+        if "F" in words:
+            if words["F"] <= 0.0:
+                raise BadInput(f"line {line}: the feed F must be above zero")
+            self.feed = words["F"] * self.unit
+        if "S" in words:
+            if words["S"] < 0.0:
+                raise BadInput(f"line {line}: the spindle speed S must not be negative")
+            self.spindle = words["S"]
+        if "T" in words:
+            tool = self.tools.get(int(words["T"]))
+            if tool is None or words["T"] != int(words["T"]):
+                known = ", ".join(str(t) for t in sorted(self.tools))
+                raise BadInput(f"line {line}: T{words['T']:g} is not in the tool list; it has {known}")
+            self.next_tool = tool
+
+    def modes(self, block: Block) -> None:
+        """Do what the G and M codes of a line say, all but motion and end."""
+        line, words, codes = block.line, block.words, block.codes
+        if "G20" in codes or "G21" in codes:
+            unit = MM_PER_INCH if "G20" in codes else 1.0
+            if self.feed and unit != self.unit:
+                raise BadInput(f"line {line}: the units change in the middle of the program; keep one")
+            if "F" in words:
+                raise BadInput(f"line {line}: F and a change of units in one line: the feed's unit is not clear; write two lines")
+            self.unit, self.units_said = unit, True
+        self.speeds(block)
+        if "M6" in codes:
+            self.change_tool(line)
+        self.spindle_and_coolant(line, codes)
+        for code in codes:
+            if code in _OFFSETS:
+                self.work_offset(line, code)
+        if "G43" in codes:
+            self.length(line, words.get("H"))
+        if "G49" in codes:
+            self.length_on = False
+        if "G64" in codes:
+            self.path_tolerance(line, words.get("P"))
+        if "G80" in codes:
+            self.motion = None
+        for code in codes:
+            if code in _MOTIONS:
+                self.motion = _MOTIONS[code]
+
+    def change_tool(self, line: int) -> None:
+        if self.next_tool is None:
+            raise BadInput(f"line {line}: M6 without a T word before it; say which tool")
+        self.sections.change_tool()
+        self.tool, self.length_on, self.turning, self.over = self.next_tool, False, False, None
+
+    def spindle_and_coolant(self, line: int, codes: list[str]) -> None:
+        if "M3" in codes:
+            if self.spindle <= 0.0:
+                raise BadInput(f"line {line}: M3 without a spindle speed; give S")
+            self.turning = True
+        if "M5" in codes:
+            self.turning = False
+        for code, coolant in (("M7", "mist"), ("M8", "flood"), ("M9", "off")):
+            if code in codes:
+                self.coolant = coolant
+
+    def work_offset(self, line: int, code: str) -> None:
+        if code != self.setup.work_offset:
+            raise BadInput(f"line {line}: {code} is not the work offset of setup {self.setup.name}, {self.setup.work_offset}; use that")
+        self.offset = code
+
+    def length(self, line: int, number: float | None) -> None:
+        if self.tool is None:
+            raise BadInput(f"line {line}: G43 before a tool is in the spindle; put T and M6 first")
+        if number is not None and number != self.tool.number:
+            raise BadInput(f"line {line}: H{number:g} is the length of another tool than T{self.tool.number} in the spindle; "
+                           f"use H{self.tool.number}")
+        self.length_on = True
+
+    def path_tolerance(self, line: int, limit: float | None) -> None:
+        if limit is None:
+            raise BadInput(f"line {line}: G64 without P rounds corners off without a limit; give P")
+        if not 0.0 <= limit * self.unit <= tolerance.GOUGE:
+            raise BadInput(f"line {line}: G64 P{limit:g} rounds corners off by more than {tolerance.GOUGE:g} mm; give a smaller P")
+
+    def move(self, block: Block) -> None:
+        """Move as the words and the modal motion say."""
+        line = block.line
+        if "G53" in block.codes:
+            self.machine_move(block)
+            return
+        motion = self.motion
+        if motion is None:
+            raise BadInput(f"line {line}: a position without G0, G1, G2 or G3")
+        tool = self.ready(line)
+        point = self.target(block, motion, tool)
+        if point is None:
+            return
+        if motion == Motion.RAPID:
+            self.sections.rapid(line, point, tool)
+            return
+        if not self.turning:
+            raise BadInput(f"line {line}: a feed move while the spindle stands; give S and M3 first")
+        if self.feed <= 0.0:
+            raise BadInput(f"line {line}: a feed move without a feed; give F")
+        centre = NOWHERE if motion == Motion.LINE else self.centre(block, motion, point)
+        self.sections.feed(line, motion, point, centre, self.feed, tool, (self.spindle, self.coolant))
+
+    def ready(self, line: int) -> Tool:
+        """Return the tool when the control knows all it needs for a move in the work offset."""
+        if self.tool is None:
+            raise BadInput(f"line {line}: a move before a tool is in the spindle; put T and M6 first")
+        if not self.units_said:
+            raise BadInput(f"line {line}: a move before its unit is said; put G21 or G20 first")
+        if not self.offset:
+            raise BadInput(f"line {line}: a move before its work offset is said; put {self.setup.work_offset} first")
+        return self.tool
+
+    def target(self, block: Block, motion: Motion, tool: Tool) -> Point | None:
+        """Return the end of a move; None for a rapid in XY while the tool is still above everything at an unknown height."""
+        words, unit = block.words, self.unit
+        if motion < Motion.ARC_CW and ("I" in words or "J" in words or "R" in words):
+            raise BadInput(f"line {block.line}: I, J or R without an arc; put G2 or G3 first")
+        at = self.sections.at
+        if at is None:
+            return self.first_target(block, motion, tool)
+        if not self.length_on:
+            raise BadInput(f"line {block.line}: a move without the tool's length; put G43 H{tool.number} first")
+        x, y, z = words.get("X"), words.get("Y"), words.get("Z")
+        return (at[0] if x is None else x * unit, at[1] if y is None else y * unit, at[2] if z is None else z * unit)
+
+    def first_target(self, block: Block, motion: Motion, tool: Tool) -> Point | None:
+        words, unit, line = block.words, self.unit, block.line
+        if motion != Motion.RAPID:
+            raise BadInput(f"line {line}: a feed move before it is known where the tool is; begin with a rapid to X, Y and Z")
+        x, y = words.get("X"), words.get("Y")
+        if x is not None and y is not None:
+            self.over = (x * unit, y * unit)
+        elif x is not None or y is not None or self.over is None:
+            raise BadInput(f"line {line}: it is not known where the tool is; begin with a rapid to X, Y and Z")
+        if "Z" not in words:
+            return None
+        if not self.length_on:
+            raise BadInput(f"line {line}: a move in Z without the tool's length; put G43 H{tool.number} first")
+        return (*self.over, words["Z"] * unit)
+
+    def machine_move(self, block: Block) -> None:
+        """Do G53: only a rapid straight up to the top of the machine, Z0."""
+        words, line = block.words, block.line
+        if self.motion != Motion.RAPID or words.get("Z") != 0.0 or "X" in words or "Y" in words:
+            raise BadInput(f"line {line}: of G53 only G53 G0 Z0, straight up to the top of the machine, is understood")
+        if self.tool is not None:
+            self.sections.lift(line, self.tool)
+        self.over = None
+
+    def centre(self, block: Block, motion: Motion, end: Point) -> Point:
+        """Return the centre of an arc at the height of its start, checked as LinuxCNC does."""
+        words, line, start = block.words, block.line, self.sections.at
+        assert start is not None
+        if "R" in words:
+            if "I" in words or "J" in words:
+                raise BadInput(f"line {line}: an arc with R and with I or J; keep one of them")
+            return centre_by_radius(line, motion, start, end, words["R"] * self.unit)
+        if "I" not in words and "J" not in words:
+            raise BadInput(f"line {line}: an arc without I, J or R")
+        if words.get("P", 1.0) != 1.0:
+            raise BadInput(f"line {line}: an arc of several turns (P) is not understood; write each turn")
+        x, y = start[0] + words.get("I", 0.0) * self.unit, start[1] + words.get("J", 0.0) * self.unit
+        first, last = math.dist((x, y), start[:2]), math.dist((x, y), end[:2])
+        if first == 0.0:
+            raise BadInput(f"line {line}: an arc without a radius; check I and J")
+        if abs(first - last) > tolerance.ARC_RADIUS:
+            raise BadInput(f"line {line}: the arc starts at radius {first:.4f} and ends at {last:.4f} mm; check its end or its centre")
+        return (x, y, start[2])
+
+
+def centre_by_radius(line: int, motion: Motion, start: Point, end: Point, radius: float) -> Point:
+    """Return the centre of an arc given by its radius; negative for the longer way round. Lengths in mm."""
+    dx, dy = end[0] - start[0], end[1] - start[1]
+    chord = math.hypot(dx, dy)
+    if chord == 0.0:
+        raise BadInput(f"line {line}: an arc with R must end elsewhere than it starts; use I and J for a full circle")
+    if chord / 2 - abs(radius) > tolerance.ARC_RADIUS:
+        raise BadInput(f"line {line}: the radius R{radius:g} is too small to reach the arc's end, {chord:.4f} mm away")
+    height = math.sqrt(max(radius**2 - chord**2 / 4, 0.0))
+    left = (motion == Motion.ARC_CCW) == (radius > 0.0)
+    side = height / chord if left else -height / chord
+    return (start[0] + dx / 2 - dy * side, start[1] + dy / 2 + dx * side, start[2])
+
+
+def _why_not(code: str) -> str:
+    if code in _REFUSED:
+        return f"{code}: {_REFUSED[code]}"
+    if code in _CYCLES:
+        return f"{code}: canned cycles are not understood; write the moves out"
+    return f"{code} is not understood; remove it or write what it does in known words"
+
+
+def _one_of_a_group(line: int, codes: list[str]) -> None:
+    for group in _GROUPS:
+        found = [c for c in codes if c in group]
+        if len(found) > 1:
+            raise BadInput(f"line {line}: {' and '.join(found)} can't stand in one line; keep one")
+
+
+def _letters_belong(block: Block) -> None:
+    """Refuse letters whose code is missing: H without G43, P and Q without what takes them."""
+    words, codes = block.words, block.codes
+    takes_p = "G64" in codes or "G4" in codes or "I" in words or "J" in words
+    if "P" in words and not takes_p:
+        raise BadInput(f"line {block.line}: P without G4, G64 or an arc; remove it")
+    if "Q" in words and "G64" not in codes:
+        raise BadInput(f"line {block.line}: Q without G64; remove it")
+    if "H" in words and "G43" not in codes:
+        raise BadInput(f"line {block.line}: H without G43; write G43 H{words['H']:g}")
+    if "G4" in codes and any(letter in words for letter in "XYZIJR"):
+        raise BadInput(f"line {block.line}: a dwell G4 and a move in one line; write two lines")
+    if "G53" in codes and not any(letter in words for letter in "XYZ"):
+        raise BadInput(f"line {block.line}: G53 without a move")

@@ -1,0 +1,19 @@
+"""What a shop may choose about the text of its programs."""
+
+from __future__ import annotations
+
+from trunnion import registry, tolerance
+from trunnion.settings import setting, settings
+
+
+@settings("post")
+class PostSettings:
+    """The control and the form of its text."""
+
+    dialect: str = setting("linuxcnc", label="Control", help="The dialect that programs are written in.",
+                           choices=registry.names("dialects"))
+    units: str = setting("mm", label="Units", help="The unit of lengths and feeds in the text.", choices=("mm", "inch"))
+    decimals: int = setting(4, low=3, high=6, label="Decimals", help="Decimals of a length in mm; a text in inches has one more.")
+    path_tolerance: float = setting(0.005, unit="mm", low=0.001, high=tolerance.GOUGE, label="Path tolerance",
+                                    help="How far the control may round corners off to keep its speed.")
+    number_step: int = setting(10, low=1, high=100, label="Line number step", help="From one N word to the next.")

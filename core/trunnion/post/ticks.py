@@ -1,0 +1,121 @@
+"""Positions as whole numbers of the last written decimal: what is equal in the text is equal here."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from trunnion import tolerance
+from trunnion.findings import Refused
+from trunnion.geometry.arrays import Floats, Ints
+from trunnion.model.toolpath import Motion, Toolpath
+from trunnion.post.settings import PostSettings
+from trunnion.units import MM_PER_INCH
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Scale:
+    """How lengths in mm become written numbers: `unit` mm of one written unit, `decimals` of a length, `feed_decimals` of a feed."""
+
+    unit: float
+    decimals: int
+    feed_decimals: int
+
+    @classmethod
+    def of(cls, settings: PostSettings, extra_inch: int, feed_decimals: int) -> Scale:
+        """Return the scale that the settings ask for."""
+        inch = settings.units == "inch"
+        extra = extra_inch if inch else 0
+        return cls(unit=MM_PER_INCH if inch else 1.0, decimals=settings.decimals + extra, feed_decimals=feed_decimals + extra)
+
+    def ticks(self, lengths: Floats) -> Ints:
+        """Return lengths in mm as whole numbers of the last decimal."""
+        return np.rint(np.asarray(lengths) * (10.0**self.decimals / self.unit)).astype(np.int64)
+
+    def text(self, ticks: int) -> str:
+        """Return the number that some ticks stand for, without trailing zeros.
+
+        >>> Scale(unit=1.0, decimals=4, feed_decimals=1).text(-125000)
+        '-12.5'
+        """
+        whole, rest = divmod(abs(ticks), 10**self.decimals)
+        sign = "-" if ticks < 0 else ""
+        return f"{sign}{whole}.{rest:0{self.decimals}d}".rstrip("0") if rest else f"{sign}{whole}"
+
+    def feed(self, feed: float) -> str:
+        """Return a feed in mm/min as it is written; never zero."""
+        least = 10.0**-self.feed_decimals
+        text = f"{max(feed / self.unit, least):.{self.feed_decimals}f}"
+        return text.rstrip("0").rstrip(".") if "." in text else text
+
+
+@dataclass(frozen=True, slots=True, eq=False, kw_only=True)
+class WrittenPath:
+    """A toolpath in ticks, row by row, without the blocks that rounding makes vanish.
+
+    point (m, 3), centre (m, 3) and motion (m,) of the rows kept; feed (m,) mm/min; `row` (m,) their rows in the toolpath. A full turn ends
+    exactly where it starts; an arc so short that rounding would turn it round is a line.
+    """
+
+    point: Ints
+    centre: Ints
+    motion: Ints
+    feed: Floats
+    row: Ints
+
+
+def written(path: Toolpath, scale: Scale, operation: str) -> WrittenPath:
+    """Return a path as it will be written; raise `Refused` for a tilted axis or an arc that no control takes."""
+    _refuse_tilted(path, operation)
+    point, motion = scale.ticks(path.position), np.array(path.motion)
+    arcs = np.flatnonzero(motion >= Motion.ARC_CW)
+    centre = np.zeros_like(point)
+    centre[arcs] = scale.ticks(path.centre[arcs])
+    _refuse_bad_arcs(path, arcs, operation)
+    full = arcs[np.abs(path.sweeps()[arcs]) >= 2 * np.pi]
+    for row in full:
+        point[row, :2] = point[row - 1, :2]
+    motion[_turned_round(path, point, centre, arcs)] = Motion.LINE
+    nearly = _nearly_full(path, point, centre, motion)
+    for row in nearly:
+        point[row, :2] = point[row - 1, :2]
+    kept = np.ones(len(motion), dtype=bool)
+    if len(motion):
+        kept[1:] = (motion[1:] >= Motion.ARC_CW) | (point[1:] != point[:-1]).any(axis=1)
+    row = np.flatnonzero(kept)
+    return WrittenPath(point=point[row], centre=centre[row], motion=motion[row], feed=path.feed[row], row=row)
+
+
+def _refuse_tilted(path: Toolpath, operation: str) -> None:
+    tilted = np.flatnonzero(path.axis[:, 2] < np.cos(tolerance.ANGLE))
+    if len(tilted):
+        raise Refused(f"operation {operation}, block {tilted[0] + 1}: a tilted tool axis; this dialect has three axes")
+
+
+def _refuse_bad_arcs(path: Toolpath, arcs: Ints, operation: str) -> None:
+    start, end, centre = path.starts()[arcs, :2], path.position[arcs, :2], path.centre[arcs, :2]
+    apart = np.abs(np.linalg.norm(start - centre, axis=1) - np.linalg.norm(end - centre, axis=1))
+    bad = np.flatnonzero(apart > tolerance.ARC_RADIUS)
+    if len(bad):
+        raise Refused(f"operation {operation}, block {arcs[bad[0]] + 1}: the arc's ends lie at radii {apart[bad[0]]:.4f} mm apart")
+
+
+def _written_sweeps(point: Ints, centre: Ints, motion: Ints, arcs: Ints) -> Floats:
+    """Return the turn (k,) in radians, 0 to a full turn, that the written numbers say."""
+    a, b = (point[arcs - 1, :2] - centre[arcs, :2]).astype(float), (point[arcs, :2] - centre[arcs, :2]).astype(float)
+    turn = np.arctan2(a[:, 0] * b[:, 1] - a[:, 1] * b[:, 0], (a * b).sum(axis=1))
+    turn = np.mod(np.where(motion[arcs] == Motion.ARC_CCW, turn, -turn), 2 * np.pi)
+    same = (point[arcs - 1, :2] == point[arcs, :2]).all(axis=1)
+    return np.where(same, 2 * np.pi, turn)
+
+
+def _turned_round(path: Toolpath, point: Ints, centre: Ints, arcs: Ints) -> Ints:
+    said = _written_sweeps(point, centre, path.motion, arcs)
+    return arcs[said - np.abs(path.sweeps()[arcs]) > np.pi]
+
+
+def _nearly_full(path: Toolpath, point: Ints, centre: Ints, motion: Ints) -> Ints:
+    arcs = np.flatnonzero(motion >= Motion.ARC_CW)
+    said = _written_sweeps(point, centre, motion, arcs)
+    return arcs[np.abs(path.sweeps()[arcs]) - said > np.pi]

@@ -1,0 +1,65 @@
+"""Words and formats of a dialect as data: read from the resources, checked once, never repaired by guess."""
+
+from __future__ import annotations
+
+import tomllib
+import unicodedata
+from dataclasses import fields
+from functools import cache
+from importlib.resources import files
+from typing import Any, TypeVar, get_args, get_origin, get_type_hints
+
+from trunnion.findings import BadInput
+
+T = TypeVar("T")
+
+
+@cache
+def dialect_words(cls: type[T], name: str) -> T:
+    """Return the words of a dialect as the dataclass that lists them; raise `BadInput` for a missing, unknown or wrong one."""
+    source = files("trunnion_resources") / "dialects" / f"{name}.toml"
+    try:
+        table = tomllib.loads(source.read_text(encoding="utf-8"))
+    except (OSError, tomllib.TOMLDecodeError) as reason:
+        raise BadInput(f"dialect {name}: its words can't be read: {reason}") from None
+    return checked_words(cls, name, table)
+
+
+def checked_words(cls: type[T], name: str, table: dict[str, Any]) -> T:
+    """Return a table of words as a dataclass whose fields are texts, whole numbers, tuples of texts and mappings of texts."""
+    hints = get_type_hints(cls)
+    wanted = [f.name for f in fields(cls)]  # type: ignore[arg-type]
+    for key in table:
+        if key not in wanted:
+            raise BadInput(f"dialect {name}: unknown word {key}; known: {', '.join(wanted)}")
+    values = {}
+    for key in wanted:
+        if key not in table:
+            raise BadInput(f"dialect {name}: the word {key} is missing")
+        values[key] = _checked(hints[key], table[key], f"dialect {name}: {key}")
+    return cls(**values)
+
+
+def _checked(kind: Any, value: Any, what: str) -> Any:
+    shape = get_origin(kind) or kind
+    if shape is tuple and isinstance(value, list) and value and all(isinstance(v, str) for v in value):
+        fixed = [k for k in get_args(kind) if k is not Ellipsis]
+        if Ellipsis in get_args(kind) or len(fixed) == len(value):
+            return tuple(value)
+    is_table = shape is dict and isinstance(value, dict) and value and all(isinstance(v, str) for v in value.values())
+    if is_table or (shape in (str, int) and type(value) is shape and value != ""):
+        return value
+    words = {str: "a text", int: "a whole number", tuple: "a list of texts", dict: "a table of texts"}[shape]
+    raise BadInput(f"{what} must be {words}; got {value!r}")
+
+
+def plain(text: str, longest: int) -> str:
+    """Return a text that any control takes as a comment: ASCII, one line, without brackets, at most `longest` characters.
+
+    >>> plain("Träger (links)", 40)
+    'Trager [links]'
+    """
+    ascii_text = unicodedata.normalize("NFKD", text).encode("ascii", "ignore").decode()
+    swapped = ascii_text.translate(str.maketrans("()", "[]", ";%$"))
+    line = " ".join("".join(c if c.isprintable() else " " for c in swapped).split())
+    return line if len(line) <= longest else line[: longest - 4].rstrip() + " ..."
