@@ -9,6 +9,7 @@ from __future__ import annotations
 import math
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass, field, replace
+from itertools import pairwise
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -354,7 +355,7 @@ def joined(curves: Sequence[Curve]) -> Curve:
     """
     if not curves:
         raise ValueError("joined: there is no curve to join")
-    for n, (a, b) in enumerate(zip(curves[:-1], curves[1:], strict=True)):
+    for n, (a, b) in enumerate(pairwise(curves)):
         if a.closed or b.closed or np.hypot(*(a.end - b.start)) > tolerance.COINCIDENT:
             raise ValueError(f"joined: the end of curve {n + 1} does not meet the start of the next one")
     if len(curves) == 1 and curves[0].closed:

@@ -16,10 +16,10 @@ import shapely
 
 from trunnion import tolerance
 from trunnion.geometry.arrays import Bools, Floats, Ints
-from trunnion.geometry.curve import FULL, Curve, Segments, chord_counts, segment_boxes
+from trunnion.geometry.curve import FULL, Curve, Segments, chord_counts, segment_boxes, turn
 
-CLOSE = 2.0 * tolerance.COINCIDENT
-"""Two ends of segments that are this close are one point."""
+CLOSE = tolerance.COINCIDENT
+"""Two ends of segments that are this close in x and in y are one point."""
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -28,20 +28,23 @@ class Chords:
 
     `points` (p, 2): the chord points of all segments one after another; segment i has the points first[i] to first[i + 1],
     both of its ends among them. `source`: the segments, their ends pulled together; `carrier` (m,): equal for
-    segments on the same line or circle.
+    segments on the same line or circle; `is_bridge` (m,): segments that only close gaps and are no part of an answer.
     """
 
     points: Floats
     first: Ints
     source: Segments
     carrier: Ints
+    is_bridge: Bools
 
 
-def chorded(source: Segments, chord: float = tolerance.PLANE_REGION) -> Chords:
+def chorded(source: Segments, is_bridge: Bools | None = None, chord: float = tolerance.PLANE_REGION) -> Chords:
     """Return segments opened into chords so that places where they lie on each other get the same chords."""
     start, end = _pulled_together(source.start, source.end)
     centre, radius, carrier = _shared_carriers(start, end, source)
     joined = Segments(start, end, centre, radius, source.sweep, source.length)
+    bridges = np.zeros(len(source), dtype=bool) if is_bridge is None else is_bridge
+    carrier = np.where(bridges, len(source) + np.arange(len(source)), carrier)
     inner_row, inner_key, inner_point = _inner_points(joined, chord)
     touch_row, touch_key, touch_point = _touching_ends(joined)
     m = len(source)
@@ -54,7 +57,7 @@ def chorded(source: Segments, chord: float = tolerance.PLANE_REGION) -> Chords:
     new[1:] = (row[1:] != row[:-1]) | (np.abs(point[1:] - point[:-1]).max(axis=1) > 0.0)
     row, point = row[new], point[new]
     first = np.searchsorted(row, np.arange(m + 1))
-    return Chords(point, first, joined, carrier)
+    return Chords(point, first, joined, carrier, bridges)
 
 
 def _pulled_together(start: Floats, end: Floats) -> tuple[Floats, Floats]:
@@ -139,7 +142,9 @@ def _touching_ends(s: Segments) -> tuple[Ints, Floats, Floats]:
         inside = (to[..., 0] * along[:, :1] + to[..., 1] * along[:, 1:]) / np.where(size > 0.0, size, 1.0)[:, None]
         off = np.abs(to[..., 1] * along[:, :1] - to[..., 0] * along[:, 1:]) / np.where(size > 0.0, size, 1.0)[:, None]
         i, k = np.nonzero((off <= CLOSE) & (inside > CLOSE) & (inside < size[:, None] - CLOSE))
-        rows.append(lines[i]), keys.append(inside[i, k] / size[i]), found.append(points[k])
+        rows.append(lines[i])
+        keys.append(inside[i, k] / size[i])
+        found.append(points[k])
     if len(arcs):
         to = points[None, :, :] - s.centre[arcs][:, None, :]
         off = np.abs(np.hypot(to[..., 0], to[..., 1]) - s.radius[arcs][:, None])
@@ -151,7 +156,9 @@ def _touching_ends(s: Segments) -> tuple[Ints, Floats, Floats]:
         sweep = np.abs(s.sweep[arcs[i]])
         gap = CLOSE / s.radius[arcs[i]]
         keep = (angle > gap) & (angle < sweep - gap)
-        rows.append(arcs[i[keep]]), keys.append(angle[keep] / sweep[keep]), found.append(points[k[keep]])
+        rows.append(arcs[i[keep]])
+        keys.append(angle[keep] / sweep[keep])
+        found.append(points[k[keep]])
     if not rows:
         return np.empty(0, dtype=np.int64), np.empty(0), np.empty((0, 2))
     return np.concatenate(rows), np.concatenate(keys), np.concatenate(found)
@@ -284,65 +291,91 @@ def _closed_curve(chords: Chords, runs: list[_Run]) -> Curve | None:
     """Return the exact curve of runs round a ring, or None when nothing is left of it."""
     source = chords.source
     runs = _without_specks(chords, runs)
-    if not runs:
+    starts = [run.start for run in runs]
+    while len(runs) > 1:
+        starts = [run.start if run.is_exact else meeting(source, before.row, run.row, run.start)
+                  for before, run in zip([runs[-1], *runs[:-1]], runs, strict=True)]
+        turned_back = _turned_back(source, runs, starts)
+        if turned_back < 0:
+            break
+        runs[(turned_back + 1) % len(runs)].is_exact = False
+        del runs[turned_back]
+        runs = _joined(chords, runs)
+    if len(runs) == 0 or (len(runs) == 1 and not runs[0].turned):
         return None
     if len(runs) == 1:
-        return _round(source, runs[0].row, runs[0].turned, runs[0].start) if runs[0].turned else None
-    for n, run in enumerate(runs):
-        if not run.is_exact:
-            run.start = meeting(source, runs[n - 1].row, run.row, run.start)
+        return _round(source, runs[0].row, runs[0].turned, runs[0].start)
     points, bulges = [], []
-    for run, after in zip(runs, [*runs[1:], runs[0]], strict=True):
-        new_points, new_bulges = _arc_or_line(source, run, after.start)
+    for run, start, end in zip(runs, starts, [*starts[1:], starts[0]], strict=True):
+        new_points, new_bulges = _arc_or_line(source, run, start, end)
         points += new_points
         bulges += new_bulges
-    if len(points) < 2 or (len(points) == 2 and not any(bulges)):
+    if len(points) == 2 and not any(bulges):
         return None
     return Curve(np.array(points), np.array(bulges), True)
 
 
 def _without_specks(chords: Chords, runs: list[_Run]) -> list[_Run]:
-    """Drop runs shorter than two points can be apart, and join what then lies on one carrier."""
-    carrier = chords.carrier
+    """Drop bridges and runs shorter than two points can be apart, and join what then lies on one carrier."""
     kept: list[_Run] = []
     for n, run in enumerate(runs):
         after = runs[(n + 1) % len(runs)]
-        if np.abs(after.start - run.start).max() <= CLOSE and not _goes_round(chords.source, run, after):
-            after.is_exact = after.is_exact and run.is_exact and not after.start is run.start
-            continue
-        kept.append(run)
+        is_speck = np.abs(after.start - run.start).max() <= CLOSE and not _goes_round(chords.source, run, after)
+        if is_speck or chords.is_bridge[run.row]:
+            after.is_exact = False
+        else:
+            kept.append(run)
+    return _joined(chords, kept)
+
+
+def _joined(chords: Chords, runs: list[_Run]) -> list[_Run]:
+    """Join neighbours on one carrier."""
+    carrier = chords.carrier
     joined: list[_Run] = []
-    for run in kept:
-        if joined and carrier[joined[-1].row] == carrier[run.row] and joined[-1].turned == run.turned:
-            continue
-        joined.append(run)
+    for run in runs:
+        if not joined or carrier[joined[-1].row] != carrier[run.row] or joined[-1].turned != run.turned:
+            joined.append(run)
     while len(joined) > 1 and carrier[joined[0].row] == carrier[joined[-1].row] and joined[0].turned == joined[-1].turned:
         joined.pop(0)
     return joined
 
 
+def _turned_back(source: Segments, runs: list[_Run], starts: list[Floats]) -> int:
+    """Return the first run that its exact ends turn round, so that it was only an error of the chords, or -1."""
+    for n, run in enumerate(runs):
+        after = (n + 1) % len(runs)
+        if run.is_exact and runs[after].is_exact:
+            continue
+        if run.turned:
+            wide = abs(_sweep(source, run, starts[n], starts[after]))
+            if wide > math.pi and wide > abs(_sweep(source, run, run.start, runs[after].start)) + math.pi:
+                return n
+        elif (starts[after] - starts[n]) @ (runs[after].start - run.start) <= 0.0:
+            return n
+    return -1
+
+
 def _goes_round(source: Segments, run: _Run, after: _Run) -> bool:
     """Say whether a run whose ends meet is nearly a full circle rather than a speck."""
-    return bool(run.turned) and _sweep(source, run, after.start) * run.turned > math.pi
+    return bool(run.turned) and abs(_sweep(source, run, run.start, after.start)) > math.pi
 
 
-def _sweep(source: Segments, run: _Run, end: Floats) -> float:
-    a, b = run.start - source.centre[run.row], end - source.centre[run.row]
+def _sweep(source: Segments, run: _Run, start: Floats, end: Floats) -> float:
+    """Return the signed angle in radians that an arc's run goes round from start to end."""
+    a, b = start - source.centre[run.row], end - source.centre[run.row]
     angle = run.turned * math.atan2(a[0] * b[1] - a[1] * b[0], a[0] * b[0] + a[1] * b[1])
     return run.turned * (angle % FULL)
 
 
-def _arc_or_line(source: Segments, run: _Run, end: Floats) -> tuple[list[Floats], list[float]]:
+def _arc_or_line(source: Segments, run: _Run, start: Floats, end: Floats) -> tuple[list[Floats], list[float]]:
     if not run.turned:
-        return [run.start], [0.0]
-    sweep = _sweep(source, run, end)
+        return [start], [0.0]
+    sweep = _sweep(source, run, start, end)
     if abs(sweep) <= 1.5 * math.pi:
-        return [run.start], [math.tan(0.25 * sweep)]
+        return [start], [math.tan(0.25 * sweep)]
     # A bulge says little about a nearly full circle, so that is given in two arcs.
-    ray = run.start - source.centre[run.row]
-    c, s = math.cos(0.5 * sweep), math.sin(0.5 * sweep)
-    half = source.centre[run.row] + np.array([c * ray[0] - s * ray[1], s * ray[0] + c * ray[1]])
-    return [run.start, half], [math.tan(0.125 * sweep)] * 2
+    half = source.centre[run.row] + turn(start - source.centre[run.row], 0.5 * sweep)
+    return [start, half], [math.tan(0.125 * sweep)] * 2
 
 
 def meeting(source: Segments, a: int, b: int, near: Floats) -> Floats:

@@ -35,12 +35,14 @@ def offset_region(region: Region, distance: float) -> Region:
     low, high = region.box()
     if distance < 0.0 and 2.0 * -distance >= (high - low).min():
         return EMPTY_REGION
-    chords = fit.chorded(join_segments(raw_parallel(c, -distance).segments for c in region.curves()))
+    raws = [raw_parallel(c, -distance) for c in region.curves()]
+    chords = fit.chorded(join_segments(r.segments for r in raws), np.concatenate([r.is_bridge for r in raws]))
     count = np.diff(chords.first)
     owner = np.repeat(np.arange(len(count)), count)
     real = count[owner] > 1
-    lines = shapely.linestrings(chords.points[real], indices=np.unique(owner[real], return_inverse=True)[1])
-    faces = shapely.get_parts(shapely.polygonize([shapely.node(shapely.multilinestrings(lines))]))
+    _, line = np.unique(owner[real], return_inverse=True)
+    lines: list[shapely.LineString] = list(shapely.linestrings(chords.points[real], indices=line))
+    faces = shapely.get_parts(shapely.polygonize([shapely.node(shapely.MultiLineString(lines))]))
     if len(faces) == 0:
         return EMPTY_REGION
     inside = shapely.get_coordinates(shapely.point_on_surface(faces))

@@ -57,7 +57,7 @@ class Region:
 
         Raises `ValueError` when a curve is open.
         """
-        return _nested([c for c in curves])
+        return _nested(list(curves))
 
     @staticmethod
     def rectangle(x0: float, y0: float, x1: float, y1: float) -> Region:
