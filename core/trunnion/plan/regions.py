@@ -1,0 +1,263 @@
+"""Machining regions: what a feature takes out of the part at each height, from the part's sections in a setup's frame.
+
+A section's complement inside the blank falls into pieces; the piece over a pocket's floor is its removal region. Between two breaks (the
+top, island tops, floors) the walls are vertical, so one section speaks for the whole band. Above the lowest rim the piece would run over
+the ribs into the neighbours; there the region stays the one below the rim: the guide profile closed over the rib.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+from dataclasses import dataclass
+from itertools import pairwise
+from typing import Protocol
+
+import numpy as np
+
+from trunnion import tolerance
+from trunnion.findings import Refused
+from trunnion.geometry.arrays import Bools, Floats
+from trunnion.geometry.curve import Curve, joined
+from trunnion.geometry.facegraph import FaceGraph
+from trunnion.geometry.frame import Frame
+from trunnion.geometry.region import EMPTY_REGION, Piece, Region, union_all
+from trunnion.model.blank import Blank
+from trunnion.model.feature import Feature, Recognition
+from trunnion.model.setup import Setup
+from trunnion.plan.setups import box_in
+
+AROUND = 150.0
+"""mm: how far free space is looked at around the blank; more than two diameters of the largest cutter."""
+
+
+class Sections(Protocol):
+    """What planning asks of a part."""
+
+    def section(self, frame: Frame, z: float) -> Region:
+        """Return the material cut by a plane z of a frame."""
+
+    def face_outline(self, frame: Frame, tag: int) -> Region:
+        """Return the plan projection of a horizontal face."""
+
+    def graph(self) -> FaceGraph:
+        """Return the face graph in the part's coordinates."""
+
+
+@dataclass(frozen=True, slots=True, eq=False, kw_only=True)
+class Band:
+    """A band of height of a pocket with the plan area that it removes there, and the area a cutter's envelope may use."""
+
+    top: float
+    bottom: float
+    wanted: Region
+    boundary: Region
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Space:
+    """A part in its blank as a setup sees it; every height and region is in the setup's frame."""
+
+    part: Sections
+    recognition: Recognition
+    setup: Setup
+    blank_low: Floats
+    blank_high: Floats
+    bottom: float
+    top: float
+
+    @staticmethod
+    def of(part: Sections, recognition: Recognition, blank: Blank, setup: Setup) -> Space:
+        """Return the part's space in a setup."""
+        low, high = box_in(setup.frame, blank)
+        graph = part.graph()
+        points = np.vstack([graph.start, graph.middle, graph.end, graph.sample_point])
+        z = setup.frame.to_local(points)[:, 2]
+        return Space(part, recognition, setup, low, high, float(z.min()), float(z.max()))
+
+    def height(self, z: float) -> float:
+        """Return the setup's height of a height in the recognition's frame."""
+        return float(self.setup.frame.to_local(self.recognition.frame.to_world(np.array([0.0, 0.0, z])))[2])
+
+    def centre(self, tag: int) -> Floats:
+        """Return a point (3,) inside a face."""
+        return self.setup.frame.to_local(self.part.graph().centre[tag - 1])
+
+    def section(self, z: float) -> Region:
+        """Return the part's material at a height."""
+        return self.part.section(self.setup.frame, z)
+
+    def blank_area(self) -> Region:
+        """Return the blank seen from above."""
+        return Region.rectangle(*self.blank_low[:2], *self.blank_high[:2])
+
+    def around(self) -> Region:
+        """Return the blank's area and plenty around it."""
+        return Region.rectangle(*(self.blank_low[:2] - AROUND), *(self.blank_high[:2] + AROUND))
+
+    def free(self, z: float) -> Region:
+        """Return where there is no material of the part at a height, in the blank and around it."""
+        return self.around().minus(self.section(z))
+
+    def silhouette(self) -> Region:
+        """Return the part's outline seen from above, its openings filled."""
+        beside = tolerance.BESIDE_PLANE
+        heights = (self.bottom + beside, 0.5 * (self.bottom + self.top), self.top - beside)
+        return union_all([self.section(z).holes_filled() for z in heights]).holes_filled()
+
+    def top_of(self, feature: Feature) -> float:
+        """Return where a feature begins: the part's top, or the floor that it is sunk into."""
+        parent = parent_of(feature, self.recognition)
+        if parent is not None and parent.kind != "rib" and "top_z" in feature.sizes:
+            return self.height(number(feature, "top_z"))
+        return self.top
+
+    def floors_of(self, feature: Feature) -> dict[int, float]:
+        """Return the heights of a feature's floors by face tag, from the highest down."""
+        found = {tag: float(self.centre(tag)[2]) for tag in feature.with_role("floor")}
+        return dict(sorted(found.items(), key=lambda item: (-item[1], item[0])))
+
+    def islands_of(self, feature: Feature) -> tuple[Feature, ...]:
+        """Return the islands that stand in a pocket."""
+        return tuple(f for f in self.recognition.of_kind("island") if parent_of(f, self.recognition) is feature)
+
+    def island_top(self, island: Feature) -> float:
+        """Return the height of an island's top."""
+        tops = island.with_role("top")
+        return float(self.centre(tops[0])[2]) if tops else self.height(number(island, "top_z"))
+
+    def bands_of(self, feature: Feature) -> tuple[Band, ...]:
+        """Return the bands of a pocket from the top down; raise `Refused` when no free space is found over a floor."""
+        floors, islands = self.floors_of(feature), self.islands_of(feature)
+        points = {z: self.centre(tag)[:2] for tag, z in floors.items()}
+        if not floors:
+            points = {self.bottom: self._middle_of(feature)}
+        top, lowest = self.top_of(feature), min(points)
+        rim = self.height(number(feature, "lowest_rim_z")) if "lowest_rim_z" in feature.sizes else top
+        tops = {self.island_top(i): i for i in islands}
+        breaks = _distinct([top, *points, *(z for z in tops if lowest < z < top)])
+        fillet = floor_fillet(feature)
+        bands = []
+        for high, low in pairwise(breaks):
+            z = _section_height(high, low, min(rim, top), fillet if low in points else 0.0)
+            under = [points[f] for f in points if f <= low + tolerance.SEW]
+            sunken = [self.centre(tag)[:2] for height, island in tops.items() if height <= low + tolerance.SEW
+                      for tag in island.with_role("top")]
+            bands.append(self._band(feature, high, low, z, under, sunken))
+        return tuple(bands)
+
+    def _band(self, feature: Feature, high: float, low: float, z: float, points: list[Floats], sunken: list[Floats]) -> Band:
+        material = self.section(z)
+        if feature.kind == "open_pocket":
+            wanted = holding(self.silhouette().minus(material), points)
+            boundary = holding(self.around().minus(material).intersect(wanted.offset(AROUND)), points) if wanted else EMPTY_REGION
+        else:
+            wanted = boundary = holding(self.around().minus(material), points)
+        if not wanted:
+            raise Refused(f"{feature.id}: the part leaves no free space over its floor at z {z:.3f} of {self.setup.name}; "
+                          "correct the feature or machine it by hand")
+        wanted, boundary = filled_over(wanted, sunken), filled_over(boundary, sunken)
+        return Band(top=high, bottom=low, wanted=wanted, boundary=boundary)
+
+    def _middle_of(self, feature: Feature) -> Floats:
+        centre = feature.attributes.get("centre", feature.sizes.get("centre"))
+        if not isinstance(centre, tuple) or len(centre) < 2:
+            raise Refused(f"{feature.id}: nothing says where it is, it has neither a floor nor a centre; machine it by hand")
+        point = np.array([centre[0], centre[1], centre[2] if len(centre) > 2 else 0.0])
+        return self.setup.frame.to_local(self.recognition.frame.to_world(point))[:2]
+
+
+def number(feature: Feature, name: str, default: float = 0.0) -> float:
+    """Return a size of a feature as a number, the smallest when it has several."""
+    value = feature.sizes.get(name, default)
+    if isinstance(value, tuple):
+        return float(min(value, default=default))
+    return default if isinstance(value, str) else float(value)
+
+
+def floor_fillet(feature: Feature) -> float:
+    """Return the radius between a feature's floor and walls, 0 when it is sharp."""
+    return number(feature, "floor_fillet")
+
+
+def parent_of(feature: Feature, recognition: Recognition) -> Feature | None:
+    """Return the feature that a feature stands in or is sunk into, or None."""
+    for name in ("in", "nested_in"):
+        value = feature.sizes.get(name, feature.attributes.get(name))
+        for other in recognition:
+            if isinstance(value, str) and other.id == value:
+                return other
+    return None
+
+
+def holding(region: Region, points: Iterable[Floats]) -> Region:
+    """Return the pieces of a region that hold one of the points (2,)."""
+    where = np.array(list(points))
+    if not region or not len(where):
+        return EMPTY_REGION
+    return Region(tuple(p for p in region.pieces if Region((p,)).contains(where).any()))
+
+
+def touching(region: Region, other: Region) -> Region:
+    """Return the pieces of a region that share area with another region."""
+    return Region(tuple(piece.pieces[0] for piece in region.split() if piece.intersect(other).area > tolerance.AREA))
+
+
+def filled_over(region: Region, points: Iterable[Floats]) -> Region:
+    """Return a region without the holes that have one of the points (2,) in them."""
+    where = np.array(list(points))
+    if not len(where):
+        return region
+    return Region(tuple(Piece(p.outer, tuple(h for h in p.holes if not Region((Piece(h.reversed()),)).contains(where).any()))
+                        for p in region.pieces))
+
+
+def runs(curve: Curve, keep: Bools) -> list[Curve]:
+    """Return the runs of successive segments of a closed curve that are kept (n,) as open curves; the curve itself when all are."""
+    wanted = np.asarray(keep, dtype=bool)
+    if wanted.all():
+        return [curve]
+    if not wanted.any():
+        return []
+    n = curve.n_segments
+    first = next(i for i in range(n) if wanted[i] and not wanted[i - 1])
+    found: list[list[Curve]] = []
+    for k in range(n):
+        i = (first + k) % n
+        if wanted[i]:
+            one = Curve(np.stack([curve.points[i], curve.points[(i + 1) % n]]), np.array([curve.bulges[i], 0.0]), False)
+            if k and wanted[i - 1]:
+                found[-1].append(one)
+            else:
+                found.append([one])
+    return [joined(group) for group in found]
+
+
+def on_rim(curve: Curve, region: Region) -> Bools:
+    """Say of each segment of a curve (n,) whether its middle lies on the boundary of a region."""
+    segments = curve.segments()
+    middles = segments.at(np.arange(len(segments)), 0.5 * segments.length)
+    return np.abs(region.signed_distance(middles)) < tolerance.SEW
+
+
+def same_curve(a: Curve, b: Curve) -> bool:
+    """Say whether two closed curves run along each other."""
+    alike = abs(a.length - b.length) < tolerance.SEW and abs(a.area - b.area) < tolerance.SEW * max(a.length, 1.0)
+    return alike and bool((a.distance(b.points) < tolerance.SEW).all())
+
+
+def _distinct(heights: Iterable[float]) -> list[float]:
+    """Return heights from the highest down, those closer than a sewing gap once."""
+    kept: list[float] = []
+    for z in sorted(heights, reverse=True):
+        if not kept or kept[-1] - z > tolerance.SEW:
+            kept.append(z)
+    return kept
+
+
+def _section_height(high: float, low: float, rim: float, fillet: float) -> float:
+    """Return the height of the section that speaks for a band: over the fillet at its foot and below the lowest rim."""
+    ceiling = min(high, rim)
+    if ceiling - low <= tolerance.BESIDE_PLANE:
+        return rim - tolerance.BESIDE_PLANE
+    foot = low + fillet
+    return 0.5 * (foot + ceiling) if ceiling - foot > tolerance.BESIDE_PLANE else ceiling - 0.5 * tolerance.BESIDE_PLANE
