@@ -1,0 +1,76 @@
+"""Files written whole or not at all: a kill, a full disk or a pulled plug leaves the last good file where it was."""
+
+from __future__ import annotations
+
+import contextlib
+import os
+import re
+from collections.abc import Callable
+from pathlib import Path
+from typing import BinaryIO
+
+from trunnion.findings import BadInput
+
+_UNFINISHED = ".saving"
+
+
+def write_bytes(path: str | Path, data: bytes) -> None:
+    """Write a file whole or not at all; raise `BadInput` when the folder can't be written to."""
+    write_with(path, lambda file: file.write(data))
+
+
+def write_text(path: str | Path, text: str) -> None:
+    """Write a text in UTF-8 with the line ends it has, whole or not at all."""
+    write_bytes(path, text.encode("utf-8"))
+
+
+def write_with(path: str | Path, fill: Callable[[BinaryIO], object]) -> None:
+    """Write a file by a function that fills it: beside it first, synced, then renamed over it, then the folder synced."""
+    target = Path(os.path.realpath(path))
+    beside = target.with_name(f".{target.name}.{os.getpid()}{_UNFINISHED}")
+    try:
+        _remove_unfinished(target)
+        with open(beside, "xb") as file:
+            fill(file)
+            file.flush()
+            os.fsync(file.fileno())
+        os.replace(beside, target)
+        _sync_folder(target.parent)
+    except OSError as reason:
+        _forget(beside)
+        raise BadInput(f"{path}: can't be written: {reason.strerror or reason}; the file there is as it was") from None
+    except BaseException:
+        _forget(beside)
+        raise
+
+
+def _forget(path: Path) -> None:
+    with contextlib.suppress(OSError):
+        path.unlink()
+
+
+def _remove_unfinished(target: Path) -> None:
+    """Remove what writers left that no longer run."""
+    mine = re.compile(re.escape(f".{target.name}.") + r"([0-9]+)" + re.escape(_UNFINISHED))
+    for left in target.parent.iterdir():
+        found = mine.fullmatch(left.name)
+        if found and (int(found.group(1)) == os.getpid() or not _runs(int(found.group(1)))):
+            _forget(left)
+
+
+def _runs(process: int) -> bool:
+    try:
+        os.kill(process, 0)
+    except ProcessLookupError:
+        return False
+    except (PermissionError, OverflowError):
+        return True
+    return True
+
+
+def _sync_folder(folder: Path) -> None:
+    handle = os.open(folder, os.O_RDONLY)
+    try:
+        os.fsync(handle)
+    finally:
+        os.close(handle)
