@@ -212,7 +212,8 @@ class _Edges:
         is_edge[self.stop - 1] = False
         edge = np.flatnonzero(is_edge)
         known = np.minimum(place[head], place[head + 1]) * len(table) + np.maximum(place[head], place[head + 1])
-        order = np.argsort(known, kind="stable")
+        # A bridge that lies on a real chord must not hide it.
+        order = np.lexsort([chords.is_bridge[rows[head]], known])
         known = known[order]
         asked = np.minimum(at[edge], at[edge + 1]) * len(table) + np.maximum(at[edge], at[edge + 1])
         slot = np.minimum(np.searchsorted(known, asked), len(known) - 1)
@@ -221,7 +222,8 @@ class _Edges:
         chord[hit] = head[order[slot[hit]]]
         if not hit.all():
             lost = edge[~hit]
-            chord[~hit] = head[_nearest_chord(coords[lost], coords[lost + 1], chords.points[head], chords.points[head + 1])]
+            real = head[np.argsort(chords.is_bridge[rows[head]], kind="stable")]
+            chord[~hit] = real[_nearest_chord(coords[lost], coords[lost + 1], chords.points[real], chords.points[real + 1])]
         along = coords[edge + 1] - coords[edge]
         source = chords.points[chord + 1] - chords.points[chord]
         sign = np.where((along * source).sum(axis=1) >= 0.0, 1, -1)
@@ -260,7 +262,8 @@ def _nearest_chord(start: Floats, end: Floats, a: Floats, b: Floats) -> Ints:
         away = np.hypot(*(to - share[:, None] * d).T)
         near = np.flatnonzero(away <= away.min() + tolerance.COINCIDENT)
         edge = end[k] - start[k]
-        best[k] = near[np.argmax(np.abs(unit_d[near] @ edge))]
+        along = np.abs(unit_d[near] @ edge) / max(math.hypot(*edge), np.finfo(float).tiny)
+        best[k] = near[np.argmax(along >= along.max() - tolerance.COINCIDENT)]
     return best
 
 

@@ -69,7 +69,7 @@ def raw_parallel(curve: Curve, distance: float) -> RawCurve:
     after = np.roll(np.arange(m), -1) if curve.closed else np.arange(1, m)
     before = np.arange(len(after))
     u, v = finish[before], begin[after]
-    bend = np.arctan2(u[:, 0] * v[:, 1] - u[:, 1] * v[:, 0], (u * v).sum(axis=1))
+    bend = _bends(s, before, after, u, v)
     apart = np.abs(end[before] - start[after]).max(axis=1) > tolerance.PARAMETRIC
     convex = bend * distance < 0.0
     size = abs(distance)
@@ -79,6 +79,16 @@ def raw_parallel(curve: Curve, distance: float) -> RawCurve:
     order = np.argsort(np.concatenate([2 * np.arange(m), 2 * before[apart] + 1]), kind="stable")
     both = Segments(*(np.concatenate([getattr(main, n), getattr(joins, n)[apart]])[order] for n in Segments.__slots__))
     return RawCurve(both, np.concatenate([gone, ~convex[apart]])[order])
+
+
+def _bends(s: Segments, before: Ints, after: Ints, u: Floats, v: Floats) -> Floats:
+    """Return the signed turns (k,) from the directions `u` at the ends of segments `before` to `v` at the starts of `after`."""
+    bend = np.arctan2(u[:, 0] * v[:, 1] - u[:, 1] * v[:, 0], (u * v).sum(axis=1))
+    # At a cusp the directions alone can't tell a left turn from a right one; the curvatures can.
+    curvature = np.sign(s.sweep) / np.where(s.sweep != 0.0, s.radius, np.inf)
+    side = -(curvature[before] + curvature[after])
+    cusp = (np.abs(bend) > np.pi - tolerance.ANGLE) & (side != 0.0)
+    return np.where(cusp, np.copysign(np.abs(bend), side), bend)
 
 
 def _end_tangents(s: Segments) -> tuple[Floats, Floats]:
