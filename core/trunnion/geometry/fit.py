@@ -169,7 +169,7 @@ def restored(geometry: shapely.Geometry, chords: Chords) -> list[tuple[Curve, li
 
     Pieces and holes that are too small or too narrow to be more than noise are left out.
     """
-    polygons = [p for p in shapely.get_parts(geometry) if p.geom_type == "Polygon"]
+    polygons = [p for p in shapely.get_parts(geometry) if p.geom_type == "Polygon" and not p.is_empty]
     if not polygons:
         return []
     rings, owner = shapely.get_rings(polygons, return_index=True)
