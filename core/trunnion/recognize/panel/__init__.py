@@ -1,0 +1,84 @@
+"""Aircraft integral panels: recognition by slicing, confirmed by the face graph (Yu et al., slicing recognition of generalized pockets)."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from trunnion.findings import BadInput
+from trunnion.geometry.facegraph import FaceGraph
+from trunnion.geometry.frame import Frame
+from trunnion.model.feature import Feature, Recognition
+from trunnion.progress import QUIET, Progress
+from trunnion.recognize.contract import Slicer
+from trunnion.recognize.panel.classes import STEEP_CLASSES, FaceClass, classify
+from trunnion.recognize.panel.features import Numbers, make_datum, make_features, make_profile
+from trunnion.recognize.panel.frame import box, choose_frame, flipped
+from trunnion.recognize.panel.rest import rest_findings
+from trunnion.recognize.panel.rules import Shown, pockets_of
+from trunnion.recognize.panel.settings import PanelSettings
+from trunnion.recognize.panel.slices import cut, heights
+from trunnion.recognize.panel.view import View
+from trunnion.settings import choose
+
+
+class PanelFamily:
+    """Plates with pockets, ribs and islands, milled from one side or two."""
+
+    name = "panel"
+    settings = PanelSettings
+
+    def suits(self, graph: FaceGraph) -> float:
+        """Return the share of the part's area that lies level or upright in the frame that a panel would have."""
+        try:
+            frame = choose_frame(graph)
+        except BadInput:
+            return 0.0
+        kinds = classify(graph.in_frame(frame), choose(PanelSettings, {})).kind
+        fits = [k in (FaceClass.UP, FaceClass.DOWN, *STEEP_CLASSES) for k in kinds]
+        return float(graph.area[np.array(fits)].sum() / graph.area.sum())
+
+    def recognize(self, graph: FaceGraph, slicer: Slicer, settings: PanelSettings, progress: Progress = QUIET) -> Recognition:
+        """Return the features of a panel. Raises `BadInput` when the part has no plane face, `Cancelled` when asked to stop."""
+        progress.at(0.0, "choosing the frame")
+        frame = choose_frame(graph)
+        above, below = _views(graph, frame, slicer, settings, progress.part(0.1, 0.7))
+        shown = []
+        for view, share in ((above, 0.7), (below, 0.8)):
+            progress.at(share, "growing pockets")
+            shown.append(pockets_of(view))
+        features: list[Feature] = []
+        findings: list[Finding] = []
+        numbers = Numbers()
+        for view, seen in zip((above, below), shown, strict=True):
+            progress.at(0.9, "naming features")
+            made = make_features(view, seen, above.graph, numbers)
+            features.extend(made.features)
+            findings.extend(made.findings)
+        features.extend(_surroundings(above, shown, features))
+        explained = {tag - 1 for f in features for tag in f.tags}
+        left = tuple(r for r, k in enumerate(above.classes.kind) if r not in explained and k is not FaceClass.ABSENT)
+        findings.extend(rest_findings(above.graph, above.classes, left))
+        return Recognition(family=self.name, frame=frame, features=tuple(features), unexplained=tuple(r + 1 for r in left),
+                           unexplained_share=float(graph.area[list(left)].sum() / graph.area.sum()), findings=tuple(findings))
+
+
+def _views(graph: FaceGraph, frame: Frame, slicer: Slicer, settings: PanelSettings, progress: Progress) -> tuple[View, View]:
+    """Return the part as seen from above and from below, cut once for both."""
+    local = graph.in_frame(frame)
+    low, high = box(local)
+    width, height = float(high[1]), float(high[2])
+    classes = classify(local, settings)
+    slices = cut(slicer, frame, heights(local, classes, float(low[2]), height, settings.slicing_depth), progress)
+    turned = graph.in_frame(flipped(frame, width, height))
+    return (View(graph=local, classes=classes, slices=slices, height=height, settings=settings, below=False),
+            View(graph=turned, classes=classify(turned, settings), slices=slices.flipped(width, height), height=height,
+                 settings=settings, below=True))
+
+
+def _surroundings(above: View, shown: list[Shown], features: list[Feature]) -> list[Feature]:
+    """Return the outer profile and the datum faces: what no other feature holds."""
+    taken = {tag - 1 for f in features for tag in f.tags}
+    profile = make_profile(above, taken, "profile-01")
+    top, bottom = ([f for f in seen.tops.highest if f not in taken] for seen in shown)
+    datum = make_datum(top, bottom, above.height, "datum-01")
+    return [f for f in (profile, datum) if f is not None]

@@ -1,0 +1,57 @@
+"""Blends: floor fillets and corner fillets, found first, passed over by the rules and put back with their roles (rule 6)."""
+
+from __future__ import annotations
+
+from trunnion.geometry.facegraph import CONVEX, SMOOTH, FaceGraph
+from trunnion.recognize.grow import bend_radius, grown
+from trunnion.recognize.panel.classes import FaceClass, FaceClasses
+from trunnion.tolerance import SLIVER
+
+SAME_RADIUS = 0.999
+"""A neighbour is the wider one when its radius is larger by more than a thousandth: two halves of one arc don't blend each other."""
+
+
+def floor_fillets(graph: FaceGraph, classes: FaceClasses) -> frozenset[int]:
+    """Return the rows of the blends between floors and walls: smooth to a floor, rising from it, and the patches between them."""
+    seeds = [r for r in classes.rows(FaceClass.BLEND) if any(rises_from(graph, e, r) and _floor_side(graph, classes, e, r)
+                                                            for e in graph.edges_of[r])]
+    found = set(seeds)
+    return frozenset(grown(graph, seeds, lambda edge, _, to: bool(
+        graph.convexity[edge] == SMOOTH and classes.kind[to] is FaceClass.BLEND
+        and (to in found or _patch(graph, classes, to)))))
+
+
+def rises_from(graph: FaceGraph, edge: int, face: int) -> bool:
+    """Say whether a face goes up from one of its edges."""
+    highest = max(graph.start[edge][2], graph.middle[edge][2], graph.end[edge][2])
+    return bool(graph.box_high[face][2] > highest + SLIVER)
+
+
+def is_corner(graph: FaceGraph, classes: FaceClasses, face: int) -> bool:
+    """Say whether a steep face is a blend of two walls: curved, smooth to steep faces at two sides, each of a wider bend."""
+    if not classes.steep[face] or graph.surface[face] == "plane":
+        return False
+    beside = {graph.across(e, face) for e in graph.edges_of[face] if graph.convexity[e] == SMOOTH} - {face}
+    walls = [n for n in beside if classes.steep[n] and not _stacked(graph, face, n)]
+    if len(walls) < 2:
+        return False
+    own = bend_radius(graph, face)
+    return all(graph.surface[n] == "plane" or own < SAME_RADIUS * bend_radius(graph, n) for n in walls)
+
+
+def _floor_side(graph: FaceGraph, classes: FaceClasses, edge: int, face: int) -> bool:
+    other = graph.across(edge, face)
+    if graph.convexity[edge] != SMOOTH:
+        return False
+    return classes.kind[other] is FaceClass.UP or (classes.kind[other] is FaceClass.CROSS and graph.surface[other] != "plane")
+
+
+def _patch(graph: FaceGraph, classes: FaceClasses, face: int) -> bool:
+    """Say whether a blend touches no floor and no top of its own: the ball in a corner between two fillets."""
+    return not any(classes.kind[graph.across(e, face)] in (FaceClass.UP, FaceClass.DOWN) for e in graph.edges_of[face]
+                   if graph.convexity[e] != CONVEX)
+
+
+def _stacked(graph: FaceGraph, face: int, other: int) -> bool:
+    """Say whether two faces only meet above each other (the same wall, split at a height)."""
+    return bool(graph.box_low[other][2] >= graph.box_high[face][2] - SLIVER or graph.box_high[other][2] <= graph.box_low[face][2] + SLIVER)

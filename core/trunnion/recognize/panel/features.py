@@ -1,0 +1,151 @@
+"""Features with names, roles and sizes, numbered by where they lie: from the front row to the back one, in a row along x."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterable, Sequence
+from dataclasses import dataclass
+from typing import TypeVar
+
+from trunnion.findings import Finding, face_tags, warning
+from trunnion.geometry.facegraph import CONVEX, FaceGraph
+from trunnion.model.feature import FaceRole, Feature, Size
+from trunnion.recognize.panel.classes import FaceClass
+from trunnion.recognize.panel.confirm import Confirmed, confirm, refusal
+from trunnion.recognize.panel.rules import Island, Pocket, Shown
+from trunnion.recognize.panel.sizes import corner_radius, island_sizes, pocket_sizes, rib_sizes, tidy
+from trunnion.recognize.panel.view import View
+
+T = TypeVar("T")
+ROW = 0.01
+"""mm: centres whose y differs by less lie in one row."""
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Made:
+    """The features of one side and what is to be said about them."""
+
+    features: tuple[Feature, ...]
+    findings: tuple[Finding, ...]
+
+
+class Numbers:
+    """Hands out ids, counting by kind."""
+
+    def __init__(self) -> None:
+        self._used: dict[str, int] = {}
+
+    def next(self, kind: str) -> str:
+        """Return the next id of a kind."""
+        self._used[kind] = self._used.get(kind, 0) + 1
+        return f"{kind}-{self._used[kind]:02d}"
+
+
+def in_rows(things: Iterable[T], centre: Callable[[T], tuple[float, float]]) -> list[T]:
+    """Return things sorted by rows of y, then x; a row holds what differs in y by rounding only."""
+    ordered = sorted(things, key=lambda t: centre(t)[1])
+    rows: list[list[T]] = []
+    for thing in ordered:
+        if rows and centre(thing)[1] - centre(rows[-1][-1])[1] < ROW:
+            rows[-1].append(thing)
+        else:
+            rows.append([thing])
+    return [t for row in rows for t in sorted(row, key=lambda t: centre(t)[0])]
+
+
+def make_features(view: View, shown: Shown, main: FaceGraph, numbers: Numbers) -> Made:
+    """Return pockets, islands and ribs of one side; `main` is the graph in the recognition's frame."""
+    def middle(faces: Sequence[int]) -> tuple[float, float]:
+        low, high = main.box_low[list(faces)].min(axis=0), main.box_high[list(faces)].max(axis=0)
+        return float(0.5 * (low[0] + high[0])), float(0.5 * (low[1] + high[1]))
+
+    checked = in_rows([confirm(view, p) for p in shown.pockets], lambda c: middle(c.pocket.floors or c.pocket.sides))
+    named = [(numbers.next("open_pocket" if c.open else "pocket"), c) for c in checked]
+    ids = {floor: id for id, c in named for floor in c.pocket.floors}
+    features: list[Feature] = []
+    findings: list[Finding] = []
+    for id, c in named:
+        feature, found = _pocket(view, id, c, shown.ribs, ids, middle)
+        features.append(feature)
+        findings.extend(found)
+    islands = [(i, id) for id, c in named for i in c.pocket.islands]
+    for island, inside in in_rows(islands, lambda pair: middle(pair[0].faces)):
+        features.append(_island(view, numbers.next("island"), island, inside))
+    pockets = [c.pocket for _, c in named]
+    for top in in_rows(shown.ribs, lambda r: middle((r,))):
+        features.append(_rib(view, numbers.next("rib"), top, pockets))
+    return Made(features=tuple(features), findings=tuple(findings))
+
+
+def make_profile(view: View, taken: set[int], id: str) -> Feature | None:
+    """Return the outer profile: concave arcs are walls, convex roundings corners; None when no vertical face lies on the outline."""
+    faces = [f for f in view.profile if f not in taken]
+    if not faces:
+        return None
+    round_ = [f for f in faces if f in view.corners and view.graph.bend[f] > 0]
+    roles = tuple(FaceRole(role="corner" if f in round_ else "wall", face=f + 1) for f in faces)
+    sizes: dict[str, Size] = {"height": tidy(view.height)}
+    radius = corner_radius(view, round_) if round_ else None
+    if radius is not None:
+        sizes["corner_radius"] = radius
+    return Feature(id=id, kind="profile", faces=roles, sizes=sizes)
+
+
+def make_datum(top: Sequence[int], bottom: Sequence[int], height: float, id: str) -> Feature | None:
+    """Return the datum feature of the flat top and bottom faces (rows) that belong to nothing else."""
+    roles = (*(FaceRole(role="top", face=f + 1) for f in top), *(FaceRole(role="bottom", face=f + 1) for f in bottom))
+    return Feature(id=id, kind="datum", faces=roles, sizes={"top_z": tidy(height), "bottom_z": 0.0}) if roles else None
+
+
+def _pocket(view: View, id: str, confirmed: Confirmed, ribs: Sequence[int], ids: dict[int, str],
+            middle: Callable[[Sequence[int]], tuple[float, float]]) -> tuple[Feature, tuple[Finding, ...]]:
+    pocket, kind = confirmed.pocket, "open_pocket" if confirmed.open else "pocket"
+    sizes = pocket_sizes(view, pocket, ribs)
+    x, y = middle(pocket.floors or pocket.sides)
+    attributes: dict[str, Size] = {"centre": (tidy(x), tidy(y), float(sizes["floor_z"])), "identification": kind}  # type: ignore[arg-type]
+    if not pocket.floors:
+        attributes["through"] = True
+    if pocket.parent is not None and pocket.parent in ids:
+        attributes["nested_in"] = ids[pocket.parent]
+    if view.below:
+        attributes["direction"] = (0.0, 0.0, -1.0)
+    findings = list(confirmed.findings)
+    reason = refusal(view, confirmed)
+    if reason is not None:
+        code, why, remedy, rows = reason
+        attributes["refused"] = why
+        findings.append(warning(code, f"{id} is not planned: {why}", id, *face_tags(r + 1 for r in rows), remedy=remedy))
+    roles = (*_roles("floor", pocket.floors), *((_side_role(view, w), w) for w in pocket.walls), *_roles("corner", pocket.corners),
+             *_roles("floor_fillet", pocket.fillets))
+    return Feature(id=id, kind=kind, faces=_faces(roles), sizes=sizes, attributes=attributes), tuple(findings)
+
+
+def _island(view: View, id: str, island: Island, inside: str) -> Feature:
+    roles = (*_roles("top", island.tops), *((_side_role(view, w), w) for w in island.walls), *_roles("corner", island.corners),
+             *_roles("floor_fillet", island.fillets))
+    attributes: dict[str, Size] = {"in": inside}
+    if view.below:
+        attributes["direction"] = (0.0, 0.0, -1.0)
+    return Feature(id=id, kind="island", faces=_faces(roles), sizes=island_sizes(view, island), attributes=attributes)
+
+
+def _rib(view: View, id: str, top: int, pockets: Sequence[Pocket]) -> Feature:
+    beside = {view.graph.across(e, top) for e in view.graph.edges_of[top] if view.graph.convexity[e] == CONVEX}
+    floors = [f for p in pockets if beside.intersection(p.sides) for f in p.floors]
+    attributes: dict[str, Size] = {"direction": (0.0, 0.0, -1.0)} if view.below else {}
+    return Feature(id=id, kind="rib", faces=(FaceRole(role="top", face=top + 1),), sizes=rib_sizes(view, top, floors),
+                   attributes=attributes)
+
+
+def _side_role(view: View, face: int) -> str:
+    kind = view.classes.kind[face]
+    if kind is FaceClass.VERTICAL:
+        return "wall"
+    return "outer_convergence" if view.classes.lean[face] > 0.0 else "inner_convergence"
+
+
+def _roles(role: str, rows: Iterable[int]) -> tuple[tuple[str, int], ...]:
+    return tuple((role, r) for r in rows)
+
+
+def _faces(roles: Iterable[tuple[str, int]]) -> tuple[FaceRole, ...]:
+    return tuple(FaceRole(role=role, face=row + 1) for role, row in roles)

@@ -1,0 +1,77 @@
+"""What stands around a floor: the walls of one of its loops, with the blends at their feet passed over (rule 6)."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+from trunnion.geometry.facegraph import CONCAVE, CONVEX, SMOOTH
+from trunnion.recognize.grow import grown, same_surface
+from trunnion.recognize.panel.classes import FaceClass
+from trunnion.recognize.panel.view import View
+from trunnion.tolerance import ANGLE, SLIVER
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Ring:
+    """The surroundings of one loop of a floor, as face rows.
+
+    `walls` and `corners` stand on the floor, `fillets` lie at their feet, `drops` are the faces that go down from it over a convex
+    edge, `slopes` rise too flat for a wall. `sharp`: some wall meets the floor without a blend.
+    """
+
+    walls: tuple[int, ...]
+    corners: tuple[int, ...]
+    fillets: tuple[int, ...]
+    drops: tuple[int, ...]
+    slopes: tuple[int, ...]
+    sharp: bool
+
+    @property
+    def sides(self) -> tuple[int, ...]:
+        """Walls and corners."""
+        return self.walls + self.corners
+
+    @property
+    def stands(self) -> bool:
+        """Whether anything rises from the loop."""
+        return bool(self.walls or self.corners or self.fillets or self.slopes)
+
+
+def ring(view: View, floor: int, edges: tuple[int, ...]) -> Ring:
+    """Return what stands around the edges of one loop of a floor."""
+    graph, steep = view.graph, view.classes.steep
+    blends, sides, drops, slopes, sharp = [], [], [], [], False
+    for edge in edges:
+        other = graph.across(edge, floor)
+        if other in view.fillets and graph.convexity[edge] != CONVEX:
+            blends.append(other)
+        elif graph.convexity[edge] == CONCAVE and steep[other]:
+            sides.append(other)
+            sharp = True
+        elif graph.convexity[edge] == CONVEX:
+            drops.append(other)
+        elif graph.convexity[edge] == CONCAVE:
+            slopes.append(other)
+    fillets = grown(graph, blends, lambda edge, _, to: bool(
+        to in view.fillets and graph.convexity[edge] == SMOOTH and not _has_floor(view, to)))
+    for blend in fillets:
+        for edge in graph.edges_of[blend]:
+            other = graph.across(edge, blend)
+            if steep[other] and graph.convexity[edge] != CONVEX:
+                sides.append(other)
+    sides = list(dict.fromkeys(sides))
+    whole = grown(graph, sides, lambda edge, face, to: bool(steep[to] and _continues_up(view, edge, face, to)))
+    return Ring(walls=tuple(r for r in whole if r not in view.corners), corners=tuple(r for r in whole if r in view.corners),
+                fillets=fillets, drops=tuple(dict.fromkeys(drops)), slopes=tuple(dict.fromkeys(slopes)), sharp=sharp)
+
+
+def _has_floor(view: View, blend: int) -> bool:
+    return any(view.classes.kind[view.graph.across(e, blend)] is FaceClass.UP and view.graph.convexity[e] == SMOOTH
+               for e in view.graph.edges_of[blend])
+
+
+def _continues_up(view: View, edge: int, face: int, other: int) -> bool:
+    """Say whether another face carries a wall on, on the same surface, above the wall's top."""
+    graph = view.graph
+    at_top = min(graph.start[edge][2], graph.end[edge][2]) > graph.box_high[face][2] - SLIVER
+    return bool(graph.convexity[edge] == SMOOTH and at_top and same_surface(graph, face, other, SLIVER, ANGLE))
