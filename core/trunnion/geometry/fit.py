@@ -40,45 +40,50 @@ class Chords:
 
 def chorded(source: Segments, is_bridge: Bools | None = None, chord: float = tolerance.PLANE_REGION) -> Chords:
     """Return segments opened into chords so that places where they lie on each other get the same chords."""
-    start, end = _pulled_together(source.start, source.end)
+    m = len(source)
+    ends = pulled_together(np.concatenate([source.start, source.end]))
+    start, end = ends[:m], ends[m:]
     centre, radius, carrier = _shared_carriers(start, end, source)
     joined = Segments(start, end, centre, radius, source.sweep, source.length)
-    bridges = np.zeros(len(source), dtype=bool) if is_bridge is None else is_bridge
-    carrier = np.where(bridges, len(source) + np.arange(len(source)), carrier)
+    bridges = np.zeros(m, dtype=bool) if is_bridge is None else is_bridge
+    carrier = np.where(bridges, m + np.arange(m), carrier)
     inner_row, inner_key, inner_point = _inner_points(joined, chord)
-    touch_row, touch_key, touch_point = _touching_ends(joined)
-    m = len(source)
-    row = np.concatenate([np.arange(m), np.arange(m), inner_row, touch_row])
-    key = np.concatenate([np.zeros(m), np.ones(m), inner_key, touch_key])
-    point = np.concatenate([start, end, inner_point, touch_point])
+    meet_row, meet_key, meet_point = crossings(joined)
+    row = np.concatenate([np.arange(m), np.arange(m), inner_row, meet_row])
+    key = np.concatenate([np.zeros(m), np.ones(m), inner_key, meet_key])
+    exact = pulled_together(np.concatenate([ends, meet_point]))
+    point = np.concatenate([exact[:2 * m], inner_point, exact[2 * m:]])
     order = np.lexsort([key, row])
-    row, point = row[order], point[order]
-    new = np.ones(len(row), dtype=bool)
-    new[1:] = (row[1:] != row[:-1]) | (np.abs(point[1:] - point[:-1]).max(axis=1) > 0.0)
-    row, point = row[new], point[new]
+    row, point, is_inner = row[order], point[order], (order >= 2 * m) & (order < 2 * m + len(inner_row))
+    # A chord point on a circle gives way to a vertex, and of equal vertices one is enough.
+    close = (row[1:] == row[:-1]) & (np.abs(point[1:] - point[:-1]).max(axis=1) <= CLOSE)
+    same = close & (point[1:] == point[:-1]).all(axis=1)
+    keep = np.ones(len(row), dtype=bool)
+    keep[1:] &= ~(same | (close & is_inner[1:]))
+    keep[:-1] &= ~(close & is_inner[:-1])
+    row, point = row[keep], point[keep]
     first = np.searchsorted(row, np.arange(m + 1))
     return Chords(point, first, joined, carrier, bridges)
 
 
-def _pulled_together(start: Floats, end: Floats) -> tuple[Floats, Floats]:
-    """Give ends that are one point within the coincidence tolerance the same coordinates."""
-    points = np.concatenate([start, end])
+def pulled_together(points: Floats) -> Floats:
+    """Return points (n, 2) in which those that are one point within the coincidence tolerance have the coordinates of the first."""
     order = np.lexsort([points[:, 1], points[:, 0]])
-    ranked = points[order]
-    answer = ranked.copy()
-    x, y = ranked[:, 0], ranked[:, 1]
-    reach = np.searchsorted(x, x + CLOSE, side="right")
+    x, y = points[order, 0], points[order, 1]
+    low, high = np.searchsorted(x, x - CLOSE), np.searchsorted(x, x + CLOSE, side="right")
     owner = np.arange(len(points))
-    for i in np.flatnonzero(reach > np.arange(len(points)) + 1):
-        if owner[i] != i:
+    crowded = np.flatnonzero(high - low > 1)
+    taken = np.zeros(len(points), dtype=bool)
+    for i in crowded[np.argsort(order[crowded], kind="stable")]:
+        if taken[i]:
             continue
-        near = np.arange(i + 1, reach[i])
-        near = near[(np.abs(y[near] - y[i]) <= CLOSE) & (owner[near] == near)]
+        near = np.arange(low[i], high[i])
+        near = near[(np.abs(y[near] - y[i]) <= CLOSE) & ~taken[near]]
         owner[near] = i
-    answer = ranked[owner]
-    back = np.empty_like(answer)
-    back[order] = answer
-    return back[: len(start)], back[len(start):]
+        taken[near] = True
+    answer = np.empty_like(points)
+    answer[order] = points[order[owner]]
+    return answer
 
 
 def _shared_carriers(start: Floats, end: Floats, s: Segments) -> tuple[Floats, Floats, Ints]:
@@ -440,7 +445,7 @@ def polygons_of(chords: Chords, loops: Sequence[Sequence[range]]) -> shapely.Geo
         if rings:
             polygons.append(shapely.Polygon(rings[0], rings[1:]))
     area = shapely.MultiPolygon(polygons)
-    return area if area.is_valid else shapely.make_valid(area)
+    return area if area.is_valid else shapely.make_valid(area, method="structure", keep_collapsed=False)
 
 
 def joined_runs(chords: Chords) -> Curve | None:
@@ -454,30 +459,36 @@ def joined_runs(chords: Chords) -> Curve | None:
     return _closed_curve(chords, [_Run(int(rows[k]), int(turned[k]), source.start[k], True) for k in change])
 
 
-def crossings(s: Segments) -> tuple[Ints, Floats]:
-    """Return where segments meet each other, as rows (k,) and arc lengths on them (k,); every meeting is given for both."""
+def crossings(s: Segments) -> tuple[Ints, Floats, Floats]:
+    """Return where segments meet each other: rows (k,), shares of their length from 0 to 1 (k,) and points (k, 2).
+
+    Every meeting is given for both, with the same point. The ends of one that lie on the other are among them.
+    """
     low, high = segment_boxes(s)
-    grown = CLOSE
-    meet = ((low[:, None, :] <= high[None, :, :] + grown) & (low[None, :, :] <= high[:, None, :] + grown)).all(axis=2)
-    i, j = np.nonzero(np.triu(meet, 1))
-    rows: list[Ints] = []
-    places: list[Floats] = []
+    i, j = _meeting_boxes(low - CLOSE, high)
     line = s.sweep == 0.0
+    rows, keys, points = [], [], []
     for kind, solve in ((line[i] & line[j], _lines_meet), (line[i] & ~line[j], _line_meets_circle),
                         (~line[i] & line[j], _circle_meets_line), (~line[i] & ~line[j], _circles_meet)):
         a, b = i[kind], j[kind]
-        for point in solve(s, a, b):
+        for point in solve(s, a, b) if len(a) else ():
             on_a, on_b = place_on(s, a, point), place_on(s, b, point)
             real = ~np.isnan(on_a) & ~np.isnan(on_b)
             rows += [a[real], b[real]]
-            places += [on_a[real], on_b[real]]
-    # Ends that lie on another segment cut it too, which also covers segments lying on each other.
-    row, key, _ = _touching_ends(s)
-    return np.concatenate([*rows, row]), np.concatenate([*places, key * s.length[row]])
+            keys += [on_a[real], on_b[real]]
+            points += [point[real], point[real]]
+    row, key, point = _touching_ends(s)
+    return np.concatenate([*rows, row]), np.concatenate([*keys, key]), np.concatenate([*points, point])
+
+
+def _meeting_boxes(low: Floats, high: Floats) -> tuple[Ints, Ints]:
+    meet = (low[:, None, 0] <= high[None, :, 0]) & (low[None, :, 0] <= high[:, None, 0])
+    meet &= (low[:, None, 1] <= high[None, :, 1]) & (low[None, :, 1] <= high[:, None, 1])
+    return np.nonzero(np.triu(meet, 1))
 
 
 def place_on(s: Segments, rows: Ints, points: Floats) -> Floats:
-    """Return the arc lengths (k,) of points (k, 2) that lie on segments `rows`; NaN where a point is beyond the ends."""
+    """Return the shares (k,) of the length at which points (k, 2) lie inside segments `rows`; NaN at the ends and beyond."""
     place = np.full(len(rows), np.nan)
     line = s.sweep[rows] == 0.0
     a = rows[line]
@@ -487,13 +498,11 @@ def place_on(s: Segments, rows: Ints, points: Floats) -> Floats:
     if len(a):
         ray, q = s.start[a] - s.centre[a], points[~line] - s.centre[a]
         angle = np.sign(s.sweep[a]) * np.arctan2(ray[:, 0] * q[:, 1] - ray[:, 1] * q[:, 0], (ray * q).sum(axis=1)) % FULL
-        # Just before the start counts as the start.
-        angle = np.where(angle > FULL - CLOSE / s.radius[a], 0.0, angle)
         place[~line] = angle * s.radius[a]
     length = s.length[rows]
     with np.errstate(invalid="ignore"):
-        place[(place < -CLOSE) | (place > length + CLOSE)] = np.nan
-    return np.clip(place, 0.0, length)
+        place[(place <= CLOSE) | (place >= length - CLOSE)] = np.nan
+        return place / length
 
 
 def _lines_meet(s: Segments, a: Ints, b: Ints) -> list[Floats]:

@@ -111,10 +111,10 @@ def parallel_curves(curve: Curve, distance: float) -> list[Curve]:
 
 def cut_at_crossings(s: Segments) -> tuple[Ints, Floats, Floats]:
     """Return the pieces of segments between their crossings: rows (k,) and arc lengths from and to (k,) in order."""
-    row, place = fit.crossings(s)
+    row, share, _ = fit.crossings(s)
     m = len(s)
     row = np.concatenate([np.arange(m), np.arange(m), row])
-    place = np.concatenate([np.zeros(m), s.length, place])
+    place = np.concatenate([np.zeros(m), s.length, share * s.length[row[2 * m:]]])
     order = np.lexsort([place, row])
     row, place = row[order], place[order]
     real = (row[1:] == row[:-1]) & (place[1:] - place[:-1] > fit.CLOSE)
