@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterator
 from dataclasses import dataclass
 
 import numpy as np
@@ -63,6 +64,10 @@ class WrittenPath:
     motion: Ints
     feed: Floats
     row: Ints
+
+    def blocks(self) -> Iterator[tuple[list[int], list[int], int, float]]:
+        """Yield end point, centre, motion and feed of each row."""
+        return zip(self.point.tolist(), self.centre.tolist(), self.motion.tolist(), self.feed.tolist(), strict=True)
 
 
 def written(path: Toolpath, scale: Scale, operation: str) -> WrittenPath:

@@ -4,12 +4,14 @@ from __future__ import annotations
 
 import tomllib
 import unicodedata
+from collections.abc import Container
 from dataclasses import fields
 from functools import cache
 from importlib.resources import files
 from typing import Any, TypeVar, get_args, get_origin, get_type_hints
 
-from trunnion.findings import BadInput
+from trunnion.findings import BadInput, Refused
+from trunnion.model.program import ProgramSection
 
 T = TypeVar("T")
 
@@ -63,3 +65,14 @@ def plain(text: str, longest: int) -> str:
     swapped = ascii_text.translate(str.maketrans("()", "[]", ";%$"))
     line = " ".join("".join(c if c.isprintable() else " " for c in swapped).split())
     return line if len(line) <= longest else line[: longest - 4].rstrip() + " ..."
+
+
+def refuse_unwritable(section: ProgramSection, title: str, coolant: Container[str]) -> None:
+    """Raise `Refused` for an operation that can't be written: an id that no comment holds, an unknown coolant, no motion."""
+    id = section.operation
+    if not id or id != plain(id, len(id)) or " " in id:
+        raise Refused(f"operation {id}: its id can't stand in a comment; use letters, digits, points and dashes")
+    if section.coolant not in coolant:
+        raise Refused(f"operation {id}: {title} has no coolant {section.coolant}")
+    if not len(section.path):
+        raise Refused(f"operation {id} has no motion: nothing to write")

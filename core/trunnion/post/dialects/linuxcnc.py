@@ -13,7 +13,7 @@ from trunnion.model.toolpath import Motion
 from trunnion.post.header import Header
 from trunnion.post.settings import PostSettings
 from trunnion.post.ticks import Scale, written
-from trunnion.post.words import dialect_words, plain
+from trunnion.post.words import dialect_words, plain, refuse_unwritable
 from trunnion.units import trimmed
 
 
@@ -81,7 +81,7 @@ class _Writer:
         self.number = 0
         self.tool: int | None = None
         self.at: tuple[int, int, int] | None = None
-        self.motion, self.feed = -1, ""
+        self.motion, self.feed, self.coolant = -1, "", "off"
 
     def lines(self, header: Header) -> Iterator[str]:
         words, setup = self.words, self.program.setup
@@ -104,28 +104,26 @@ class _Writer:
     def section(self, section: ProgramSection) -> Iterator[str]:
         """Yield one operation: its comment, the state it needs in full (so that a run may start here), its motions."""
         words, tool = self.words, section.tool
-        if section.operation != plain(section.operation, words.line_length) or " " in section.operation:
-            raise Refused(f"operation {section.operation}: its id can't stand in a comment; use letters, digits, points and dashes")
-        if section.coolant not in words.coolant:
-            raise Refused(f"operation {section.operation}: {words.title} has no coolant {section.coolant}")
-        if not len(section.path):
-            raise Refused(f"operation {section.operation} has no motion: nothing to write")
+        refuse_unwritable(section, words.title, words.coolant)
         yield _comment(words, f"OPERATION {section.operation}")
         changes = tool.number != self.tool
         yield _comment(words, f"RESTART POINT N{self.number + self.settings.number_step} TOOL {tool.number} {tool.name}")
         if changes:
             yield from (self.numbered(line.format(tool=tool.number)) for line in words.tool_change)
-            self.tool, self.at = tool.number, None
+            self.tool, self.at, self.coolant = tool.number, None, "off"
         yield self.numbered(f"{words.restart} {self.program.setup.work_offset}")
         yield self.numbered(words.spindle.format(spindle=trimmed(section.spindle, 0)))
+        if self.coolant not in ("off", section.coolant):
+            yield self.numbered(words.coolant["off"])
         yield self.numbered(words.coolant[section.coolant])
+        self.coolant = section.coolant
         yield from self.approach(section, changes)
 
     def approach(self, section: ProgramSection, changes: bool) -> Iterator[str]:
         """Yield the first rapid (after a tool change XY on top, then down with the tool's length) and the blocks after it."""
-        path = written(section.path, self.scale, section.operation)
-        points, rapid = path.point.tolist(), self.words.motions[Motion.RAPID]
-        x, y, z = (self.scale.text(v) for v in points[0])
+        blocks = written(section.path, self.scale, section.operation).blocks()
+        first, rapid = next(blocks)[0], self.words.motions[Motion.RAPID]
+        x, y, z = (self.scale.text(v) for v in first)
         length = self.words.tool_length.format(tool=section.tool.number)
         if changes:
             yield self.numbered(f"{rapid} X{x} Y{y}")
@@ -133,10 +131,8 @@ class _Writer:
         else:
             yield self.numbered(length)
             yield self.numbered(f"{rapid} X{x} Y{y} Z{z}")
-        self.at, self.motion, self.feed = tuple(points[0]), Motion.RAPID, ""
-        for point, centre, motion, feed in zip(points[1:], path.centre[1:].tolist(), path.motion[1:].tolist(), path.feed[1:].tolist(),
-                                               strict=True):
-            yield self.block(point, centre, motion, feed)
+        self.at, self.motion, self.feed = (first[0], first[1], first[2]), Motion.RAPID, ""
+        yield from (self.block(*block) for block in blocks)
 
     def block(self, point: list[int], centre: list[int], motion: int, feed: float) -> str:
         """Return the line of one block: only words that change, but both ends of an arc's plane."""

@@ -1,0 +1,110 @@
+"""APT cutter location text with the words of ISO 4343, all setups in one; positions in each setup's frame."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass
+
+import numpy as np
+
+from trunnion.findings import BadCall
+from trunnion.model.program import Program, ProgramSection
+from trunnion.model.setup import Setup
+from trunnion.model.tool import Tool
+from trunnion.model.toolpath import Motion
+from trunnion.post.header import Header
+from trunnion.post.settings import PostSettings
+from trunnion.post.ticks import Scale, written
+from trunnion.post.words import dialect_words, plain, refuse_unwritable
+from trunnion.units import trimmed
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class AptWords:
+    """The words of `dialects/apt.toml`."""
+
+    title: str
+    suffix: str
+    line_length: int
+    feed_decimals: int
+    extra_decimals_inch: int
+    end: tuple[str, ...]
+    units: dict[str, str]
+    feed: dict[str, str]
+    coolant: dict[str, str]
+
+
+class AptDialect:
+    """Writes all setups as one CL text and reads it back."""
+
+    name = "apt"
+
+    def __init__(self) -> None:
+        self.words = dialect_words(AptWords, self.name)
+        self.suffix = self.words.suffix
+
+    def write(self, programs: Sequence[Program], header: Header, settings: PostSettings) -> str:
+        """Return the text of all setups' programs."""
+        if not programs:
+            raise BadCall("no program to write")
+        lines = (*self.stamp(header.name, header), *_lines(self.words, programs, header, settings))
+        return "\n".join(lines) + "\n"
+
+    def stamp(self, program: str, header: Header) -> tuple[str, ...]:
+        """Return the stamp's lines: PARTNO with the name, the others printed."""
+        first, *others = header.stamp(program)
+        return (f"PARTNO/{plain(first, self.words.line_length)}", *(_print(self.words, line) for line in others))
+
+    def read(self, text: str, tools: Sequence[Tool], setups: Sequence[Setup]) -> tuple[Program, ...]:
+        """Return the programs of the setups that the text names."""
+        from trunnion.post.readers.apt import read_apt
+        return read_apt(text, tools, setups)
+
+
+def _print(words: AptWords, text: str) -> str:
+    return f"PPRINT/{plain(text, words.line_length)}"
+
+
+def _lines(words: AptWords, programs: Sequence[Program], header: Header, settings: PostSettings) -> Iterator[str]:
+    yield from (_print(words, line) for line in header.about(programs, settings.units))
+    yield words.units[settings.units]
+    yield "MULTAX/OFF"
+    scale = Scale.of(settings, words.extra_decimals_inch, words.feed_decimals)
+    for program in programs:
+        yield _print(words, f"SETUP {program.setup.name} WORK OFFSET {program.setup.work_offset}")
+        tool = None
+        for section in program.sections:
+            yield from _section(words, section, scale, section.tool.number != tool, words.feed[settings.units])
+            tool = section.tool.number
+    yield from words.end
+
+
+def _section(words: AptWords, section: ProgramSection, scale: Scale, changes: bool, feed_words: str) -> Iterator[str]:
+    """Yield one operation: its name, the tool when it changes, spindle, coolant, motions."""
+    tool = section.tool
+    refuse_unwritable(section, words.title, words.coolant)
+    yield _print(words, f"OPERATION {section.operation}")
+    if changes:
+        sizes = scale.ticks(np.array([tool.diameter, tool.corner_radius, tool.gauge_length]))
+        diameter, radius, length = (scale.text(v) for v in sizes.tolist())
+        yield f"LOADTL/{tool.number},LENGTH,{length}"
+        yield f"CUTTER/{diameter},{radius}"
+    yield f"SPINDL/RPM,{trimmed(section.spindle, 0)},CLW"
+    yield words.coolant[section.coolant]
+    yield from _motions(section, scale, feed_words)
+
+
+def _motions(section: ProgramSection, scale: Scale, feed_words: str) -> Iterator[str]:
+    text, said, start = scale.text, "", [0, 0, 0]
+    for point, centre, motion, feed in written(section.path, scale, section.operation).blocks():
+        if motion == Motion.RAPID:
+            yield "RAPID"
+        elif (now := scale.feed(feed)) != said:
+            said = now
+            yield feed_words.format(feed=said)
+        if motion >= Motion.ARC_CW:
+            radius = int(round(((start[0] - centre[0]) ** 2 + (start[1] - centre[1]) ** 2) ** 0.5))
+            sense = 1 if motion == Motion.ARC_CCW else -1
+            yield f"CIRCLE/{text(centre[0])},{text(centre[1])},{text(start[2])},0,0,{sense},{text(radius)}"
+        yield f"GOTO/{text(point[0])},{text(point[1])},{text(point[2])}"
+        start = point

@@ -1,0 +1,245 @@
+"""Reads APT CL text into motions: ours, or edited by hand with the same words. Anything else is refused with its line."""
+
+from __future__ import annotations
+
+import math
+import re
+from collections.abc import Iterator, Sequence
+
+from trunnion import tolerance
+from trunnion.findings import BadInput
+from trunnion.model.program import Program
+from trunnion.model.setup import Setup
+from trunnion.model.tool import Tool
+from trunnion.model.toolpath import Motion
+from trunnion.post.readers.sections import NOWHERE, Sections, by_number
+from trunnion.units import MM_PER_INCH
+
+_TEXT_WORDS = ("PARTNO", "PPRINT", "REMARK")
+_SETUP = re.compile(r"SETUP\s+(\S+)\s+WORK OFFSET\s+(\S+)$", re.IGNORECASE)
+_OPERATION = re.compile(r"OPERATION\s+(\S+)$", re.IGNORECASE)
+_FULL_AXIS = (0.0, 0.0, 1.0)
+
+
+def read_apt(text: str, tools: Sequence[Tool], setups: Sequence[Setup]) -> tuple[Program, ...]:
+    """Return the program of each setup that a CL text names; raise `BadInput` naming the line of what isn't understood.
+
+    A text that names no setup belongs to the only one given.
+    """
+    reader = _Reader(by_number(tools), setups)
+    for line, word, arguments in _statements(text):
+        reader.run(line, word, arguments)
+    return reader.finished()
+
+
+def _statements(text: str) -> Iterator[tuple[int, str, str]]:
+    """Yield the line, major word and rest of each statement, lines that end in $ joined, comments ($$) left out."""
+    joined, first = "", 0
+    for line, raw in enumerate(text.split("\n"), 1):
+        part = raw.strip()
+        is_text = not joined and part.upper().startswith(_TEXT_WORDS)
+        if not is_text:
+            part = part.split("$$", 1)[0].rstrip()
+        first = first if joined else line
+        if part.endswith("$") and not is_text:
+            joined += part[:-1]
+            continue
+        statement, joined = joined + part, ""
+        if statement:
+            yield first, *_parted(statement, is_text)
+    if joined:
+        raise BadInput(f"line {first}: the statement goes on after the last line: is the text complete?")
+
+
+def _parted(statement: str, is_text: bool) -> tuple[str, str]:
+    if is_text:
+        word = next(w for w in _TEXT_WORDS if statement.upper().startswith(w))
+        return word, statement[len(word):].removeprefix("/").strip()
+    word, _, rest = statement.upper().partition("/")
+    return word.strip(), "".join(rest.split())
+
+
+class _Reader:
+    """The modal state of a CL text while it is read; lengths in mm."""
+
+    def __init__(self, tools: dict[int, Tool], setups: Sequence[Setup]) -> None:
+        self.tools, self.setups = tools, {s.name: s for s in setups}
+        self.programs: list[Program] = []
+        self.setup: Setup | None = setups[0] if len(setups) == 1 else None
+        self.sections = Sections(self.setup.clearance if self.setup else 0.0)
+        self.named = self.rapid = self.ended = False
+        self.tool: Tool | None = None
+        self.unit, self.feed, self.spindle, self.coolant = 0.0, 0.0, 0.0, "off"
+        self.circle: list[float] | None = None
+        self.words = {"PARTNO": self.text, "PPRINT": self.text, "REMARK": self.text, "UNITS": self.units, "MULTAX": self.multax,
+                      "LOADTL": self.load, "CUTTER": self.cutter, "SPINDL": self.spindl, "COOLNT": self.coolnt, "RAPID": self.go_rapid,
+                      "FEDRAT": self.fedrat, "GOTO": self.goto, "CIRCLE": self.arc, "END": self.pause, "FINI": self.fini}
+
+    def run(self, line: int, word: str, rest: str) -> None:
+        """Do one statement."""
+        if self.ended:
+            raise BadInput(f"line {line}: {word} stands after FINI; remove it")
+        if word not in self.words:
+            raise BadInput(f"line {line}: {word} is not understood; known are {', '.join(self.words)}")
+        if self.circle is not None and word != "GOTO":
+            raise BadInput(f"line {line}: after CIRCLE comes the GOTO that ends the arc, not {word}")
+        self.words[word](line, rest)
+
+    def finished(self) -> tuple[Program, ...]:
+        """Return the programs; raise `BadInput` when the text has no end."""
+        if not self.ended:
+            raise BadInput("the text has no FINI: is it complete?")
+        self.close()
+        return tuple(self.programs)
+
+    def close(self) -> None:
+        if self.setup is not None:
+            self.programs.append(Program(name=self.setup.name, setup=self.setup, sections=self.sections.finished()))
+
+    def text(self, line: int, rest: str) -> None:
+        if found := _SETUP.match(rest):
+            self.next_setup(line, found.group(1), found.group(2))
+        elif found := _OPERATION.match(rest):
+            self.sections.operation(found.group(1))
+
+    def next_setup(self, line: int, name: str, offset: str) -> None:
+        if name not in self.setups:
+            raise BadInput(f"line {line}: setup {name} is not in the plan; it has {', '.join(self.setups)}")
+        if self.setups[name].work_offset != offset.upper():
+            raise BadInput(f"line {line}: {offset} is not the work offset of setup {name}, {self.setups[name].work_offset}")
+        if self.named:
+            self.close()
+        if any(p.setup.name == name for p in self.programs):
+            raise BadInput(f"line {line}: setup {name} comes twice; put its operations together")
+        self.setup, self.named, self.tool = self.setups[name], True, None
+        self.sections = Sections(self.setup.clearance)
+
+    def units(self, line: int, rest: str) -> None:
+        if rest not in ("MM", "INCHES"):
+            raise BadInput(f"line {line}: UNITS/{rest} is not understood; use MM or INCHES")
+        unit = MM_PER_INCH if rest == "INCHES" else 1.0
+        if self.unit not in (0.0, unit):
+            raise BadInput(f"line {line}: the units change in the middle of the text; keep one")
+        self.unit = unit
+
+    def multax(self, line: int, rest: str) -> None:
+        if rest != "OFF":
+            raise BadInput(f"line {line}: MULTAX/{rest or 'ON'}: tilted axes are not understood; use MULTAX/OFF")
+
+    def load(self, line: int, rest: str) -> None:
+        number, *more = rest.split(",")
+        tool = self.tools.get(int(number)) if number.isdecimal() else None
+        if tool is None:
+            raise BadInput(f"line {line}: tool {number} is not in the tool list; it has {', '.join(str(n) for n in sorted(self.tools))}")
+        if more and (len(more) != 2 or more[0] != "LENGTH"):
+            raise BadInput(f"line {line}: LOADTL/{rest} is not understood; write LOADTL/number,LENGTH,length")
+        if more and not self.same(line, more[1], tool.gauge_length):
+            raise BadInput(f"line {line}: length {more[1]} is not that of tool {number}, {tool.gauge_length:g} mm")
+        self.sections.change_tool()
+        self.tool, self.spindle = tool, 0.0
+
+    def cutter(self, line: int, rest: str) -> None:
+        sizes = rest.split(",")
+        tool = self.tool
+        if tool is None:
+            raise BadInput(f"line {line}: CUTTER before LOADTL; load the tool first")
+        if len(sizes) != 2 or not self.same(line, sizes[0], tool.diameter) or not self.same(line, sizes[1], tool.corner_radius):
+            raise BadInput(f"line {line}: CUTTER/{rest} is not tool {tool.number}, CUTTER/{tool.diameter:g},{tool.corner_radius:g} in mm")
+
+    def same(self, line: int, word: str, length: float) -> bool:
+        return abs(self.numbers(line, word, 1)[0] * self.scale(line) - length) <= tolerance.WRITTEN
+
+    def spindl(self, line: int, rest: str) -> None:
+        words = [w for w in rest.split(",") if w not in ("RPM", "CLW")]
+        if rest == "OFF":
+            self.spindle = 0.0
+            return
+        if len(words) != 1:
+            raise BadInput(f"line {line}: SPINDL/{rest} is not understood; write SPINDL/RPM,speed,CLW or SPINDL/OFF")
+        self.spindle = self.numbers(line, words[0], 1)[0]
+
+    def coolnt(self, line: int, rest: str) -> None:
+        if rest not in ("FLOOD", "MIST", "OFF", "ON"):
+            raise BadInput(f"line {line}: COOLNT/{rest} is not understood; use FLOOD, MIST or OFF")
+        self.coolant = "flood" if rest == "ON" else rest.lower()
+
+    def go_rapid(self, line: int, rest: str) -> None:
+        if rest:
+            raise BadInput(f"line {line}: RAPID takes nothing after it")
+        self.rapid = True
+
+    def fedrat(self, line: int, rest: str) -> None:
+        words = [w for w in rest.split(",") if w not in ("MMPM", "IPM")]
+        said = "MMPM" if self.scale(line) == 1.0 else "IPM"
+        if len(words) != 1 or any(w in ("MMPM", "IPM") and w != said for w in rest.split(",")):
+            raise BadInput(f"line {line}: FEDRAT/{rest} is not understood; write FEDRAT/feed,{said}")
+        feed = self.numbers(line, words[0], 1)[0]
+        if feed <= 0.0:
+            raise BadInput(f"line {line}: the feed must be above zero")
+        self.feed, self.rapid = feed * self.unit, False
+
+    def goto(self, line: int, rest: str) -> None:
+        x, y, z, *axis = self.numbers(line, rest, 3, 6)
+        tool, scale = self.tool, self.scale(line)
+        if axis and math.dist(axis, _FULL_AXIS) > tolerance.ANGLE:
+            raise BadInput(f"line {line}: a tilted tool axis is not understood")
+        if self.setup is None:
+            raise BadInput(f"line {line}: a move before its setup; put PPRINT/SETUP name WORK OFFSET word first")
+        if tool is None:
+            raise BadInput(f"line {line}: a move before a tool is loaded; put LOADTL first")
+        point = (x * scale, y * scale, z * scale)
+        if self.rapid and self.circle is None:
+            self.sections.rapid(line, point, tool)
+            self.rapid = False
+            return
+        self.rapid = False
+        if self.spindle <= 0.0:
+            raise BadInput(f"line {line}: a feed move while the spindle stands; put SPINDL first")
+        if self.feed <= 0.0:
+            raise BadInput(f"line {line}: a feed move without a feed; put FEDRAT first")
+        motion, centre = self.motion(line, point)
+        self.sections.feed(line, motion, point, centre, self.feed, tool, (self.spindle, self.coolant))
+
+    def motion(self, line: int, end: tuple[float, float, float]) -> tuple[Motion, tuple[float, float, float]]:
+        """Return how the move goes, and the centre of the arc when a CIRCLE came before it."""
+        start = self.sections.at
+        if self.circle is None or start is None:
+            self.circle = None
+            return Motion.LINE, NOWHERE
+        (x, y, z, _, _, sense, radius), self.circle = self.circle, None
+        first, last = math.dist((x, y), start[:2]), math.dist((x, y), end[:2])
+        if max(abs(first - radius), abs(last - radius)) > tolerance.ARC_RADIUS or abs(z - start[2]) > tolerance.WRITTEN:
+            raise BadInput(f"line {line}: the arc of radius {radius:.4f} starts at radius {first:.4f} and ends at {last:.4f} mm; "
+                           "check CIRCLE")
+        return (Motion.ARC_CCW if sense > 0.0 else Motion.ARC_CW), (x, y, start[2])
+
+    def arc(self, line: int, rest: str) -> None:
+        numbers, scale = self.numbers(line, rest, 7), self.scale(line)
+        if self.rapid:
+            raise BadInput(f"line {line}: RAPID before an arc; put FEDRAT instead")
+        if numbers[3:6] not in ([0.0, 0.0, 1.0], [0.0, 0.0, -1.0]):
+            raise BadInput(f"line {line}: an arc about another axis than Z is not understood")
+        self.circle = [v * scale for v in numbers[:3]] + numbers[3:6] + [numbers[6] * scale]
+
+    def pause(self, line: int, rest: str) -> None:
+        if rest:
+            raise BadInput(f"line {line}: END takes nothing after it")
+
+    def fini(self, line: int, rest: str) -> None:
+        self.pause(line, rest)
+        self.ended = True
+
+    def scale(self, line: int) -> float:
+        if self.unit == 0.0:
+            raise BadInput(f"line {line}: a length before its unit is said; put UNITS/MM or UNITS/INCHES first")
+        return self.unit
+
+    def numbers(self, line: int, rest: str, *counts: int) -> list[float]:
+        """Return the numbers after a word; raise `BadInput` unless they are of an allowed count and finite."""
+        try:
+            values = [float(w) for w in rest.split(",")]
+        except ValueError:
+            raise BadInput(f"line {line}: {rest} is not a list of numbers") from None
+        if len(values) not in counts or not all(math.isfinite(v) for v in values):
+            raise BadInput(f"line {line}: {rest} must be {' or '.join(str(c) for c in counts)} numbers")
+        return values
