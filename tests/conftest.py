@@ -15,3 +15,10 @@ PARTS: Path | None = _beside if _beside.is_dir() else None
 needs_parts = pytest.mark.skipif(PARTS is None, reason="the folder ../shared/parts with known truths is not beside the project")
 
 os.environ.setdefault("QT_QPA_PLATFORM", "offscreen")
+
+
+@pytest.fixture(scope="session")
+def sample_part(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """A small panel as STEP: a block with a pocket."""
+    from samples import block_with_pocket
+    return Path(block_with_pocket())

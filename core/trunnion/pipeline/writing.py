@@ -1,0 +1,58 @@
+"""What a session leaves in a folder: programs, tool list, XML, report with pictures, project. Each file whole or not at all."""
+
+from __future__ import annotations
+
+import json
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+from trunnion.findings import BadCall, BadInput
+from trunnion.model.session import Session
+from trunnion.post.release import release
+from trunnion.progress import Progress
+from trunnion.store.atomic import write_text
+from trunnion.store.programs import write_programs as write_texts
+
+if TYPE_CHECKING:
+    from trunnion.pipeline.engine import Engine
+
+
+def write_programs(session: Session, folder: Path, *, name: str = "", date: str = "", progress: Progress) -> tuple[str, ...]:
+    """Write the programs of a proven session as their verdict allows and return the file names."""
+    progress.at(0.0, "writing programs")
+    return write_texts(folder, name_of(session, name), release(session, name=name, date=date))
+
+
+def write_all(engine: Engine, session: Session, folder: Path, *, name: str, date: str, progress: Progress) -> tuple[str, ...]:
+    """Write everything of a proven session and return the file names."""
+    from trunnion.report.html import report_html
+    from trunnion.report.palette import load_palette
+    from trunnion.report.pictures import write_pictures
+    from trunnion.store.features import write_features
+    from trunnion.store.process import write_process
+    if session.process is None:
+        raise BadCall("nothing is programmed yet: run the whole line first")
+    stem = name_of(session, name)
+    files = list(write_programs(session, folder, name=stem, date=date, progress=progress.part(0.0, 0.1)))
+    progress.at(0.1, "writing XML and tool list")
+    tools = [t.as_dict() for t in session.process.tools()]
+    write_text(folder / f"{stem}.tools.json", json.dumps(tools, indent=1, ensure_ascii=False) + "\n")
+    write_features(session, folder / f"{stem}.features.xml")
+    write_process(session, folder / f"{stem}.process.xml")
+    progress.at(0.3, "drawing pictures")
+    pictures = write_pictures(session, engine.mesh(session), folder, stem, load_palette())
+    write_text(folder / f"{stem}.report.html", report_html(session, stem, pictures, folder, date))
+    progress.at(0.8, "saving the project")
+    engine.save(session, folder / f"{stem}.trunnion")
+    progress.at(1.0, "written")
+    return (*files, f"{stem}.tools.json", f"{stem}.features.xml", f"{stem}.process.xml", *(p.file for p in pictures), f"{stem}.report.html",
+            f"{stem}.trunnion")
+
+
+def name_of(session: Session, name: str) -> str:
+    """Return the NAME of a session's files: what was asked for, else the part's; raise `BadInput` when it can't be a file name."""
+    wanted = name or (session.part.name if session.part else "")
+    if not wanted or wanted in (".", "..") or any(c in wanted for c in "/\\\0\n"):
+        raise BadInput(f"{wanted!r} can't be the name of files: choose one without slashes")
+    return wanted
+

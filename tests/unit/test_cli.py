@@ -1,0 +1,72 @@
+"""The command line as a person meets it: quick help, one clear line for bad input, exit codes."""
+
+from __future__ import annotations
+
+import json
+import subprocess
+import sys
+from pathlib import Path
+
+import pytest
+from trunnion.cli.main import BAD, COMMANDS, main
+
+HEAVY = ("OCP", "cadquery", "vtkmodules", "pyvista", "PySide6", "numba", "shapely")
+
+
+def test_help_loads_nothing_heavy() -> None:
+    code = ("import sys\nfrom trunnion.cli.main import main\n"
+            "try:\n    main(['--help'])\nexcept SystemExit:\n    pass\n"
+            f"print('HEAVY', [m for m in {HEAVY!r} if m in sys.modules])")
+    said = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True).stdout
+    assert said.splitlines()[-1] == "HEAVY []"
+    assert all(command in said for command in COMMANDS)
+
+
+@pytest.mark.parametrize("arguments", [["frobnicate"], ["program", "x.step"], ["info"], ["recognize", "--colour"]])
+def test_a_call_it_does_not_understand_is_one_line_and_exit_2(arguments: list[str], capsys: pytest.CaptureFixture[str]) -> None:
+    with pytest.raises(SystemExit) as left:
+        main(arguments)
+    said = capsys.readouterr()
+    assert left.value.code == BAD
+    assert said.out == "" and len(said.err.strip().splitlines()) == 1
+
+
+def test_a_missing_file_is_one_line_and_exit_2(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    assert main(["info", str(tmp_path / "none.step")]) == BAD
+    said = capsys.readouterr()
+    assert said.out == "" and "none.step" in said.err and len(said.err.strip().splitlines()) == 1
+
+
+def test_a_setting_without_a_value_is_refused(capsys: pytest.CaptureFixture[str], sample_part: Path) -> None:
+    assert main(["recognize", str(sample_part), "--set", "plane.rough.stepover"]) == BAD
+    assert "--set wants KEY=VALUE" in capsys.readouterr().err
+
+
+def test_an_unknown_setting_is_refused_with_what_may_be_meant(capsys: pytest.CaptureFixture[str], sample_part: Path) -> None:
+    assert main(["recognize", str(sample_part), "--set", "plane.ruff.stepover=0.4"]) == BAD
+    assert "plane.rough.stepover" in capsys.readouterr().err
+
+
+def test_a_value_out_of_range_is_refused_in_words(capsys: pytest.CaptureFixture[str], sample_part: Path) -> None:
+    assert main(["recognize", str(sample_part), "--set", "plane.rough.stepover=7"]) == BAD
+    assert "must be" in capsys.readouterr().err
+
+
+def test_features_come_as_json_with_the_documented_keys(capsys: pytest.CaptureFixture[str], sample_part: Path) -> None:
+    main(["recognize", str(sample_part), "--json"])
+    said = json.loads(capsys.readouterr().out)
+    assert {"part", "digest", "family", "frame", "features", "unexplained", "findings"} <= said.keys()
+    assert {"id", "kind", "faces", "sizes"} <= said["features"][0].keys()
+
+
+def test_sizes_blank_route_and_optimize_each_print_json(capsys: pytest.CaptureFixture[str], sample_part: Path) -> None:
+    for command, key in (("size", "sizes"), ("blank", "volume"), ("route", "operations"), ("optimize", "operations")):
+        main([command, str(sample_part), "--json"])
+        assert key in json.loads(capsys.readouterr().out), command
+
+
+def test_every_setting_is_listed_with_its_range(capsys: pytest.CaptureFixture[str]) -> None:
+    assert main(["settings", "--json"]) == 0
+    listed = {entry["key"]: entry for entry in json.loads(capsys.readouterr().out)}
+    assert {"recognize.family", "plane.rough.stepover", "blank.top"} <= listed.keys()
+    assert listed["blank.top"]["unit"] == "mm"
