@@ -62,9 +62,13 @@ def from_xml(element: etree._Element, hint: Any, members: Members) -> Any:
         raise BadInput(f"line {element.sourceline}: <{element.tag}> can't be read: {reason}") from None
 
 
-@cache
-def hints_of(cls: type) -> dict[str, Any]:
+def hints_of(cls: Any) -> dict[str, Any]:
     """Return the type hints of a dataclass's fields, resolved."""
+    return _hints(cls)
+
+
+@cache
+def _hints(cls: Any) -> dict[str, Any]:
     hints = get_type_hints(cls)
     return {f.name: hints[f.name] for f in dataclasses.fields(cls)}
 

@@ -1,0 +1,94 @@
+"""The features XML: tags, roles and sizes, and each pocket in the panel paper's words; no geometry is copied.
+
+The generalised pocket of "Slicing Recognition of Aircraft Integral Panel Generalized Pocket" (2.2): centre, top, bottom, guide profile
+(each guide line by the part face it lies on), islands, auxiliary features, identification.
+"""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import Any
+
+from lxml import etree
+
+from trunnion.findings import BadCall, BadInput
+from trunnion.model.feature import FaceRole, Feature, Recognition
+from trunnion.model.session import PartInfo, Session
+from trunnion.store import xml
+from trunnion.store.atomic import write_bytes
+from trunnion.store.pieces import add, add_findings, add_frame, add_values, findings_of, frame_of, made, text_of, values_of
+
+FORMAT = 1
+_POCKETS = {"pocket": "pocket", "open_pocket": "open pocket"}
+_GUIDES = ("wall", "inner_convergence", "outer_convergence", "corner")
+
+
+def write_features(session: Session, path: str | Path) -> None:
+    """Write the features of a session as XML that fits the schema; raise `BadCall` while nothing is recognised."""
+    if session.part is None or session.recognition is None:
+        raise BadCall("no features yet: recognise first")
+    write_bytes(path, features_xml(session.recognition, session.part))
+
+
+def features_xml(recognition: Recognition, part: PartInfo) -> bytes:
+    """Return the XML of what was recognised on a part."""
+    root = etree.Element("features", version=str(FORMAT), family=recognition.family)
+    add(root, "part", name=part.name, digest=part.digest, unit=part.unit, faces=str(part.n_faces), solid=str(part.solid))
+    add_frame(root, recognition.frame)
+    for feature in recognition.features:
+        _add_feature(root, feature, recognition)
+    unexplained = add(root, "unexplained", area_share=text_of(float(recognition.unexplained_share)))
+    for tag in recognition.unexplained:
+        add(unexplained, "face", tag=str(tag))
+    add_findings(root, recognition.findings)
+    return xml.written(xml.validated(root, "features", "features"))
+
+
+def read_features(path: str | Path) -> Recognition:
+    """Return what a features XML says was recognised; raise `BadInput` with the line of what is wrong."""
+    path = Path(path)
+    try:
+        data = path.read_bytes()
+    except OSError as reason:
+        raise BadInput(f"{path}: can't be read: {reason.strerror or reason}") from None
+    root = xml.versioned(xml.parse(data, str(path)), "features", FORMAT, str(path))
+    try:
+        return Recognition(family=root.get("family"), frame=frame_of(root), features=tuple(_feature(e) for e in root.findall("feature")),
+                           unexplained=tuple(int(e.get("tag")) for e in root.findall("unexplained/face")),
+                           unexplained_share=float(root.find("unexplained").get("area-share")), findings=tuple(findings_of(root)))
+    except ValueError as reason:
+        raise BadInput(f"{path}: can't be used: {reason}") from None
+
+
+def _add_feature(root: Any, feature: Feature, recognition: Recognition) -> None:
+    element = add(root, "feature", id=feature.id, kind=feature.kind, by_hand=text_of(feature.by_hand))
+    for face in feature.faces:
+        add(element, "face", tag=str(face.face), role=face.role)
+    add_values(element, "size", "name", feature.sizes)
+    add_values(element, "attribute", "name", feature.attributes)
+    if feature.kind in _POCKETS:
+        _add_pocket(element, feature, recognition)
+
+
+def _add_pocket(element: Any, feature: Feature, recognition: Recognition) -> None:
+    """Add the paper's model of a pocket, made from what the feature already says."""
+    pocket = add(element, "generalized-pocket", identification=str(feature.attributes.get("identification", _POCKETS[feature.kind])),
+                 through=text_of(bool(feature.attributes.get("through", not feature.with_role("floor")))))
+    centre = feature.attributes.get("centre")
+    if isinstance(centre, (tuple, list)) and len(centre) in (2, 3):
+        add(pocket, "centre", **{axis: text_of(float(v)) for axis, v in zip("xyz", centre, strict=False)})
+    for tag, size in (("top", "top_z"), ("bottom", "floor_z")):
+        if isinstance(z := feature.sizes.get(size), (int, float)):
+            add(pocket, tag, z=text_of(float(z)))
+    guide = add(pocket, "guide-profile")
+    for face in feature.faces:
+        if face.role in _GUIDES:
+            add(guide, "guide-line", face=str(face.face), role=face.role)
+    for other in recognition.features:
+        if feature.id in (other.attributes.get("in"), other.attributes.get("nested_in")):
+            add(pocket, "island" if other.kind == "island" else "auxiliary", feature=other.id, kind=other.kind)
+
+
+def _feature(element: Any) -> Feature:
+    faces = tuple(FaceRole(role=f.get("role"), face=int(f.get("tag"))) for f in element.findall("face"))
+    return made(Feature, element, faces=faces, sizes=values_of(element, "size", "name"), attributes=values_of(element, "attribute", "name"))

@@ -1,0 +1,110 @@
+"""Pieces that the features and the process-tree XML share: scalars as attributes, frames, findings, typed values."""
+
+from __future__ import annotations
+
+import dataclasses
+import re
+from collections.abc import Iterable, Iterator, Mapping
+from typing import Any, TypeVar
+
+import numpy as np
+from lxml import etree
+
+from trunnion.findings import Finding, Severity
+from trunnion.geometry.frame import Frame
+from trunnion.store.mapping import hints_of
+
+T = TypeVar("T")
+_NOT_IN_XML = re.compile("[^\t\n\r\x20-\ud7ff\ue000-\ufffd\U00010000-\U0010ffff]")
+_SCALARS = (bool, int, float, str)
+_TYPES = {bool: "truth", int: "integer", float: "number", str: "text", tuple: "list"}
+
+
+def text_of(value: Any) -> str:
+    """Return a scalar as XML text; floats so that they come back to the last digit."""
+    if isinstance(value, bool):
+        return "true" if value else "false"
+    if isinstance(value, float):
+        return repr(float(value)).replace("inf", "INF").replace("nan", "NaN")
+    return str(value)
+
+
+def value_of(text: str, kind: type) -> Any:
+    """Return the scalar of a type that an XML text says."""
+    return text.strip() in ("true", "1") if kind is bool else kind(text)
+
+
+def attributes(data: Any) -> dict[str, str]:
+    """Return the scalar fields of a dataclass as XML attributes."""
+    hints = hints_of(type(data))
+    return {name.replace("_", "-"): xml_text(text_of(hint(getattr(data, name)))) for name, hint in hints.items() if hint in _SCALARS}
+
+
+def made(cls: type[T], element: Any, **others: Any) -> T:
+    """Return a dataclass from the attributes of an element (absent: the default) and the fields that are not scalars."""
+    hints = hints_of(cls)
+    names = [f.name for f in dataclasses.fields(cls) if f.name not in others and hints[f.name] in _SCALARS]  # type: ignore[arg-type]
+    values = {n: value_of(element.get(n.replace("_", "-")), hints[n]) for n in names if element.get(n.replace("_", "-")) is not None}
+    return cls(**values, **others)
+
+
+def add(parent: Any, tag: str, text: str = "", /, **words: str) -> Any:
+    """Add a child with attributes (`_` becomes `-`) and a text; return it."""
+    child = etree.SubElement(parent, tag, {name.replace("_", "-"): xml_text(word) for name, word in words.items()})
+    if text:
+        child.text = xml_text(text)
+    return child
+
+
+def xml_text(text: str) -> str:
+    """Return a text with the replacement character where XML can't hold one, such as a byte of a file name that is no UTF-8."""
+    return _NOT_IN_XML.sub("\ufffd", text)
+
+
+def add_frame(parent: Any, frame: Frame) -> None:
+    """Add a frame as three points or directions."""
+    element = add(parent, "frame")
+    for name, vector in (("origin", frame.origin), ("x", frame.x), ("z", frame.z)):
+        add(element, name, x=text_of(float(vector[0])), y=text_of(float(vector[1])), z=text_of(float(vector[2])))
+
+
+def frame_of(parent: Any) -> Frame:
+    """Return the frame that stands in an element."""
+    origin, x, z = (np.array([float(parent.find(f"frame/{name}").get(axis)) for axis in "xyz"]) for name in ("origin", "x", "z"))
+    return Frame(origin, x, z)
+
+
+def add_findings(parent: Any, findings: Iterable[Finding]) -> None:
+    """Add findings."""
+    for finding in findings:
+        element = add(parent, "finding", severity=finding.severity.value, code=finding.code)
+        add(element, "text", finding.text)
+        for where in finding.where:
+            add(element, "where", where)
+        if finding.remedy:
+            add(element, "remedy", finding.remedy)
+
+
+def findings_of(parent: Any) -> Iterator[Finding]:
+    """Yield the findings that stand in an element."""
+    for element in parent.findall("finding"):
+        yield Finding(severity=Severity(element.get("severity")), code=element.get("code"), text=element.findtext("text") or "",
+                      where=tuple(w.text or "" for w in element.findall("where")), remedy=element.findtext("remedy") or "")
+
+
+def add_values(parent: Any, tag: str, key: str, values: Mapping[str, Any]) -> None:
+    """Add a mapping, an element a value: `<size name="depth" type="number">20.0</size>`."""
+    for name, value in values.items():
+        plain = value.item() if isinstance(value, np.generic) else tuple(value) if isinstance(value, list) else value
+        text = " ".join(text_of(float(v)) for v in plain) if isinstance(plain, tuple) else text_of(plain)
+        add(parent, tag, text, **{key: name, "type": _TYPES[type(plain)]})
+
+
+def values_of(parent: Any, tag: str, key: str) -> dict[str, Any]:
+    """Return the mapping that elements of a tag hold."""
+    kinds = {name: kind for kind, name in _TYPES.items()}
+    found: dict[str, Any] = {}
+    for element in parent.findall(tag):
+        kind, text = kinds[element.get("type")], element.text or ""
+        found[element.get(key)] = tuple(float(v) for v in text.split()) if kind is tuple else value_of(text, kind)
+    return found

@@ -1,0 +1,106 @@
+"""The process-tree XML: setups, tools and operations in the order they are cut, each choice with its rule; read back as it was."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import Any
+
+from lxml import etree
+
+from trunnion.findings import BadCall, BadInput
+from trunnion.model.operation import CuttingData, Operation
+from trunnion.model.process import ProcessTree
+from trunnion.model.session import PartInfo, Session
+from trunnion.model.setup import Setup
+from trunnion.model.tool import Holder, Tool
+from trunnion.store import xml
+from trunnion.store.atomic import write_bytes
+from trunnion.store.pieces import add, add_findings, add_frame, add_values, attributes, findings_of, frame_of, made, text_of, values_of
+
+FORMAT = 1
+
+
+def write_process(session: Session, path: str | Path) -> None:
+    """Write the process tree of a session as XML that fits the schema; raise `BadCall` while there is none."""
+    if session.part is None or session.process is None:
+        raise BadCall("no operations yet: generate the route first")
+    write_bytes(path, process_xml(session.process, session.part))
+
+
+def process_xml(process: ProcessTree, part: PartInfo) -> bytes:
+    """Return the XML of a process tree made for a part."""
+    root = etree.Element("process-tree", version=str(FORMAT), plan=process.plan, material=process.material)
+    add(root, "part", name=part.name, digest=part.digest)
+    for setup in process.setups:
+        element = etree.SubElement(root, "setup", attributes(setup))
+        add_frame(element, setup.frame)
+    for tool in _tools(process).values():
+        _add_tool(root, tool)
+    for operation in process.operations:
+        _add_operation(root, operation)
+    add_findings(root, process.findings)
+    return xml.written(xml.validated(root, "process", "process tree"))
+
+
+def read_process(path: str | Path) -> ProcessTree:
+    """Return the process tree of an XML; raise `BadInput` with the line of what is wrong."""
+    path = Path(path)
+    try:
+        data = path.read_bytes()
+    except OSError as reason:
+        raise BadInput(f"{path}: can't be read: {reason.strerror or reason}") from None
+    root = xml.versioned(xml.parse(data, str(path)), "process", FORMAT, str(path))
+    try:
+        tools = {int(e.get("number")): _tool(e) for e in root.findall("tool")}
+        return ProcessTree(plan=root.get("plan"), material=root.get("material"), findings=tuple(findings_of(root)),
+                           setups=tuple(made(Setup, e, frame=frame_of(e)) for e in root.findall("setup")),
+                           operations=tuple(_operation(e, tools) for e in root.findall("operation")))
+    except ValueError as reason:
+        raise BadInput(f"{path}: can't be used: {reason}") from None
+
+
+def _tools(process: ProcessTree) -> dict[int, Tool]:
+    found: dict[int, Tool] = {}
+    for operation in process.operations:
+        tool = operation.tool
+        if found.setdefault(tool.number, tool) != tool:
+            raise BadInput(f"operation {operation.id}: two tools have the number {tool.number}: {found[tool.number].name} and {tool.name}")
+    return dict(sorted(found.items()))
+
+
+def _add_tool(root: Any, tool: Tool) -> None:
+    element = etree.SubElement(root, "tool", attributes(tool))
+    holder = add(element, "holder", name=tool.holder.name)
+    for z0, r0, z1, r1 in tool.holder.rows:
+        add(holder, "cone", z0=text_of(float(z0)), r0=text_of(float(r0)), z1=text_of(float(z1)), r1=text_of(float(r1)))
+
+
+def _tool(element: Any) -> Tool:
+    holder = element.find("holder")
+    rows = tuple((float(c.get("z0")), float(c.get("r0")), float(c.get("z1")), float(c.get("r1"))) for c in holder.findall("cone"))
+    return made(Tool, element, holder=Holder(name=holder.get("name"), rows=rows))
+
+
+def _add_operation(root: Any, operation: Operation) -> None:
+    element = etree.SubElement(root, "operation", {**attributes(operation), "tool": str(operation.tool.number)})
+    cutting = etree.SubElement(element, "cutting", attributes(operation.data))
+    for rule in operation.data.rules:
+        add(cutting, "rule", rule)
+    for tag in operation.faces:
+        add(element, "face", tag=str(tag))
+    for before in operation.after:
+        add(element, "after", operation=before)
+    add_values(element, "choice", "key", operation.choices)
+    for rule in operation.rules:
+        add(element, "rule", rule)
+
+
+def _operation(element: Any, tools: dict[int, Tool]) -> Operation:
+    cutting = element.find("cutting")
+    return made(Operation, element, tool=tools[int(element.get("tool"))], data=made(CuttingData, cutting, rules=_rules(cutting)),
+                faces=tuple(int(f.get("tag")) for f in element.findall("face")), rules=_rules(element),
+                after=tuple(a.get("operation") for a in element.findall("after")), choices=values_of(element, "choice", "key"))
+
+
+def _rules(element: Any) -> tuple[str, ...]:
+    return tuple(r.text or "" for r in element.findall("rule"))
