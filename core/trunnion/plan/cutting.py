@@ -39,7 +39,7 @@ class CuttingSettings:
                                 help="Highest feed, when lower than the machine's.")
     power_share: float = setting(0.8, unit="of the spindle's", low=0.05, high=1.0, label="Power",
                                  help="Share of the spindle's power at its speed that cutting may take.")
-    thinning_limit: float = setting(2.0, unit="times", low=1.0, high=10.0, label="Chip thinning",
+    thinning_limit: float = setting(1.5, unit="times", low=1.0, high=10.0, label="Chip thinning",
                                     help="How far the feed may be raised for a small width of cut.")
     plunge_share: float = setting(0.4, unit="of the feed", low=0.02, high=1.0, label="Plunge feed",
                                   help="Feed downwards over the feed across.")

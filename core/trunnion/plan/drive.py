@@ -123,7 +123,8 @@ OF_POCKETS = ("rough", "corner", "corner_finish", "floor", "wall")
 """Kinds of operation that a pocket's drive serves."""
 
 
-def drive_of(operation: Operation, process: ProcessTree, recognition: Recognition, part: Sections, blank: Blank, setup: Setup) -> PlaneDrive:
+def drive_of(operation: Operation, process: ProcessTree, recognition: Recognition, part: Sections, blank: Blank,
+             setup: Setup) -> PlaneDrive:
     """Return the drive geometry of an operation in the setup frame, from tags and sections alone.
 
     Raises `Refused` when the part's sections do not bear the feature out.

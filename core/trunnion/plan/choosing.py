@@ -1,0 +1,120 @@
+"""Which cutter for what: the candidates that fit a task, and a small set of cutters that serves many tasks."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Mapping, Sequence
+from dataclasses import dataclass
+
+from trunnion import tolerance
+from trunnion.geometry.region import Region
+from trunnion.model.tool import Tool
+from trunnion.units import trimmed
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Task:
+    """What a cutter is wanted for.
+
+    `depth`: how far below the highest surroundings its tip goes; `room`: the plane area its envelope must keep in; `wanted`: what it
+    should cover there (the room itself when empty). `corner_radius`: largest corner radius that leaves no material at the foot;
+    `exact`: the corner radius has to be that one. `radius`: largest radius of the cutter (0: no bound). `missable`: share of the wanted
+    area that may be left to smaller cutters. `spare`: how many of its radii must fit from rim to middle where the room is widest, so
+    that it can enter and turn. `near`: how much smaller than the largest candidate a cutter may be, as a share of its
+    diameter, to be chosen because it serves other tasks too.
+    """
+
+    depth: float
+    room: Region
+    wanted: Region
+    corner_radius: float
+    exact: bool = False
+    radius: float = 0.0
+    missable: float = 0.0
+    spare: float = 1.0
+    near: float = 0.5
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Candidates:
+    """The cutters that fit a task, largest first, or in words why none does."""
+
+    tools: tuple[Tool, ...]
+    reason: str = ""
+    remedy: str = ""
+
+
+def candidates(task: Task, tools: Sequence[Tool], clearance: float) -> Candidates:
+    """Return the cutters that fit a task; each test that leaves none says what would be needed."""
+    if not tools:
+        return Candidates(tools=(), reason="the catalogue has no cutter for this material", remedy="add cutters to the tools folder")
+    small = [t for t in tools if not task.radius or t.radius <= task.radius + tolerance.COINCIDENT]
+    if not small:
+        smallest = min(t.diameter for t in tools)
+        return Candidates(tools=(), remedy="add a smaller cutter to the tools folder, or machine the feature by other means",
+                          reason=f"no tool is small enough: at most D {trimmed(2 * task.radius, 3)} fits, "
+                                 f"the smallest is D {trimmed(smallest, 3)}")
+    foot = [t for t in small if t.corner_radius <= task.corner_radius + tolerance.COINCIDENT]
+    if task.exact:
+        foot = [t for t in foot if abs(t.corner_radius - task.corner_radius) <= tolerance.COINCIDENT]
+    if not foot:
+        return Candidates(tools=(), remedy="add a cutter with this corner radius to the tools folder",
+                          reason=f"no cutter up to D {trimmed(2 * max(t.radius for t in small), 3)} has a corner radius "
+                                 f"{'of' if task.exact else 'up to'} {trimmed(task.corner_radius, 3)} mm")
+    deep = [t for t in foot if depth_reached(t) >= task.depth + clearance]
+    if not deep:
+        return Candidates(tools=(), remedy="add a longer cutter to the tools folder, or allow a larger one by a larger corner radius",
+                          reason=f"no tool reaches {trimmed(task.depth, 2)} mm deep with {trimmed(clearance, 2)} mm clearance; "
+                                 f"the longest that fits reaches {trimmed(max(depth_reached(t) for t in foot), 2)} mm")
+    fitting = fitting_diameters(task, {t.diameter for t in deep})
+    inside = [t for t in deep if t.diameter in fitting]
+    if not inside:
+        return Candidates(tools=(), remedy="add a smaller cutter to the tools folder, or machine the feature by other means",
+                          reason=f"no tool is small enough: the smallest that reaches is D {trimmed(min(t.diameter for t in deep), 3)}")
+    largest = max(t.diameter for t in inside)
+    near = [t for t in inside if t.diameter >= task.near * largest]
+    return Candidates(tools=tuple(sorted(near, key=lambda t: (-t.diameter, depth_reached(t), -t.corner_radius, t.name))))
+
+
+def depth_reached(tool: Tool) -> float:
+    """Return how deep a cutter goes before its shank, thick as itself, or its holder comes to the rim."""
+    return min(tool.neck_length, tool.stickout)
+
+
+def fitting_diameters(task: Task, diameters: Iterable[float]) -> set[float]:
+    """Return the diameters whose disc covers what is wanted without leaving the room, but for the share that may be missed."""
+    wanted = task.wanted or task.room
+    total = wanted.area
+    largest_first = sorted(diameters, reverse=True)
+    for n, diameter in enumerate(largest_first):
+        if task.spare > 1.0 and not task.room.offset(-task.spare * diameter / 2):
+            continue
+        covered = task.room.opened(diameter / 2)
+        left = wanted.minus(covered).area if covered else total
+        if left <= task.missable * total + tolerance.AREA * max(total, 1.0):
+            return set(largest_first[n:])
+    return set()
+
+
+def covered_by_few(fits: Mapping[str, Sequence[Tool]], kept: Sequence[Tool] = ()) -> dict[str, Tool]:
+    """Return a cutter for every task, few cutters in all: first those that are in use anyhow, then always the one that serves most tasks.
+
+    Among cutters that serve equally many the larger, then the shorter, then the one with the larger corner radius is taken.
+    """
+    chosen: dict[str, Tool] = {}
+    for task, tools in fits.items():
+        own = [t for t in tools if any(t.name == k.name for k in kept)]
+        if own:
+            chosen[task] = own[0]
+    left = {task: tools for task, tools in fits.items() if task not in chosen and tools}
+    while left:
+        served: dict[str, int] = {}
+        named: dict[str, Tool] = {}
+        for tools in left.values():
+            for tool in tools:
+                served[tool.name] = served.get(tool.name, 0) + 1
+                named[tool.name] = tool
+        best = min(named.values(), key=lambda t: (-served[t.name], -t.diameter, depth_reached(t), -t.corner_radius, t.name))
+        for task in [task for task, tools in left.items() if any(t.name == best.name for t in tools)]:
+            chosen[task] = best
+            del left[task]
+    return chosen

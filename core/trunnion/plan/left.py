@@ -1,0 +1,128 @@
+"""What the route leaves and why: features that no operation is planned for, and blanks that no machine takes."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Mapping, Sequence
+
+from trunnion import tolerance
+from trunnion.findings import Finding, error, face_tags, warning
+from trunnion.model.blank import Blank
+from trunnion.model.feature import Feature, Recognition
+from trunnion.model.operation import Operation
+from trunnion.model.setup import Setup
+from trunnion.plan.choosing import Candidates
+from trunnion.plan.regions import Sections, parent_of
+from trunnion.plan.setups import box_in
+from trunnion.plan.wishes import Wish
+from trunnion.shop import Shop, Stage
+from trunnion.units import trimmed
+
+POCKETS = ("pocket", "open_pocket")
+ALLOWED_LEAN = math.degrees(tolerance.ANGLE)
+
+
+def plannable(recognition: Recognition, stages: Sequence[Stage]) -> tuple[list[Feature], dict[str, str]]:
+    """Return the features that stages may plan, and for each other one (datum faces apart) why it is left."""
+    known = {kind for stage in stages for kind in stage.on}
+    planned, refusals = [], {}
+    for feature in recognition:
+        if feature.kind == "datum":
+            continue
+        reason = _refusal(feature, known)
+        if reason:
+            refusals[feature.id] = reason
+        else:
+            planned.append(feature)
+    lost = [f for f in planned if (p := parent_of(f, recognition)) is not None and p.id in refusals]
+    refusals |= {f.id: f"stands in {parent.id}, which is not planned" for f in lost if (parent := parent_of(f, recognition))}
+    return [f for f in planned if f.id not in refusals], refusals
+
+
+def _refusal(feature: Feature, known: set[str]) -> str:
+    refused = feature.attributes.get("refused", feature.sizes.get("refused"))
+    if refused:
+        return f"was refused: {refused}" if isinstance(refused, str) else "was refused"
+    if feature.kind not in known:
+        return f"is a {feature.kind.replace('_', ' ')}, which the typical plan has no operation for"
+    if feature.kind in POCKETS and (feature.sizes.get("curved_floor") or "floor_z_max" in feature.sizes):
+        return "has a curved floor, which a plane operation would gouge or leave"
+    leans = feature.sizes.get("leans", ())
+    steepest = max((abs(v) for v in leans), default=0.0) if isinstance(leans, tuple) else 0.0
+    if steepest > ALLOWED_LEAN:
+        return f"has walls that lean by {trimmed(steepest, 2)} degrees, which a vertical cutter would gouge or leave"
+    return ""
+
+
+def without_lonely_ribs(planned: list[Feature], refusals: dict[str, str], recognition: Recognition,
+                         beside: Mapping[str, frozenset[str]]) -> tuple[list[Feature], dict[str, str]]:
+    """Return the same without ribs beside a space that is not planned: their cutter would run in solid material."""
+    kinds = {f.id: f.kind for f in recognition}
+    for feature in planned:
+        left = sorted(i for i in beside.get(feature.id, ()) if i in refusals and kinds[i] in POCKETS)
+        if feature.kind == "rib" and left:
+            refusals = {**refusals, feature.id: f"stands beside {left[0]}, which is not planned"}
+    return [f for f in planned if f.id not in refusals], refusals
+
+
+def not_planned(refusals: Mapping[str, str], recognition: Recognition) -> list[Finding]:
+    """Return one finding for each reason, naming features and faces."""
+    reasons: dict[str, list[Feature]] = {}
+    for id, reason in refusals.items():
+        reasons.setdefault(reason, []).append(recognition.feature(id))
+    found = []
+    for reason, features in reasons.items():
+        names = ", ".join(f.id for f in features)
+        faces = face_tags(t for f in features for t in f.tags)
+        found.append(warning("route.not-planned", f"{names} {reason}", *(f.id for f in features), *faces,
+                             remedy="machine by hand or by another operation; the proof counts what is left"))
+    return found
+
+
+def beside(recognition: Recognition, part: Sections) -> dict[str, frozenset[str]]:
+    """Return for each feature those whose faces share an edge with its own, and those it stands in or holds."""
+    graph = part.graph()
+    owners: dict[int, set[str]] = {}
+    for feature in recognition:
+        for tag in feature.tags:
+            owners.setdefault(tag, set()).add(feature.id)
+    found: dict[str, set[str]] = {f.id: set() for f in recognition if f.kind != "datum"}
+    pairs = [(a, b) for r, s in graph.edge_face for a in owners.get(int(r) + 1, ()) for b in owners.get(int(s) + 1, ())]
+    pairs += [(f.id, p.id) for f in recognition if (p := parent_of(f, recognition)) is not None]
+    for a, b in pairs:
+        if a != b and a in found and b in found:
+            found[a].add(b)
+            found[b].add(a)
+    return {id: frozenset(near) for id, near in found.items()}
+
+
+def no_cutter(wish: Wish, found: Candidates) -> Finding:
+    """Return the error that no cutter of the catalogue fits an operation."""
+    return error("route.no-cutter", f"{wish.feature}: {found.reason} ({wish.stage.name})", wish.feature, *face_tags(wish.faces),
+                 remedy=found.remedy)
+
+
+def too_large(blank: Blank, setups: Sequence[Setup], shop: Shop) -> list[Finding]:
+    """Return an error for each setup whose machine has less travel than the blank needs."""
+    found = []
+    for setup in setups:
+        machine = shop.machine(setup.machine)
+        low, high = box_in(setup.frame, blank)
+        need = dict(zip("XYZ", (high[0] - low[0], high[1] - low[1], setup.clearance - low[2]), strict=True))
+        short = [f"{name} needs {trimmed(float(span), 1)} of {trimmed(axis.high - axis.low, 1)} mm"
+                 for name, span in need.items() if span > (axis := machine.axis(name)).high - axis.low]
+        if short:
+            found.append(error("route.travel", f"the blank exceeds the machine's travel ({machine.name}): {', '.join(short)}", setup.name,
+                               remedy="choose a larger machine"))
+    return found
+
+
+def too_many_tools(operations: Sequence[Operation], setups: Sequence[Setup], shop: Shop) -> list[Finding]:
+    """Return a warning for each machine whose magazine does not take the tools of the plan."""
+    count, found = len({o.tool.name for o in operations}), []
+    for setup in setups:
+        machine = shop.machine(setup.machine)
+        if count > machine.tool_places:
+            found.append(warning("route.tool-places", f"{count} tools are planned, {machine.name} has {machine.tool_places} places",
+                                 setup.name, remedy="load tools by hand or choose another machine"))
+    return found

@@ -1,0 +1,166 @@
+"""The route: from features to operations with cutters, data and an order, by a typical plan; every choice with its rule in words."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterable, Sequence
+from dataclasses import replace
+
+from trunnion import tolerance
+from trunnion.model.blank import Blank
+from trunnion.model.feature import Feature, Recognition
+from trunnion.model.operation import Operation
+from trunnion.model.process import ProcessTree
+from trunnion.model.session import SizeEntry
+from trunnion.model.setup import Setup
+from trunnion.model.tool import Tool
+from trunnion.plan.choosing import candidates, covered_by_few, depth_reached
+from trunnion.plan.cutting import CuttingSettings, cutting_data, roughing_depth, roughing_width
+from trunnion.plan.drive import FLOOR_ALLOWANCE, WALL_ALLOWANCE
+from trunnion.plan.left import beside, no_cutter, not_planned, plannable, too_large, too_many_tools, without_lonely_ribs
+from trunnion.plan.order import Job, ordered
+from trunnion.plan.regions import Sections, Space, parent_of
+from trunnion.plan.setups import from_below
+from trunnion.plan.wishes import DEPENDENT, WISHES, Draft, RouteSettings, Wish, catalogue, with_falling_sizes
+from trunnion.progress import Progress
+from trunnion.settings import Value, choose
+from trunnion.shop import Shop, Stage
+from trunnion.units import trimmed
+
+__all__ = ["RouteSettings", "make_route"]
+
+FACE_WIDTH, FLOOR_WIDTH, WALL_STEP = 0.7, 0.6, 1.5
+"""Width of a face mill's path over its diameter, of a floor's over the cutter's flat, and axial step of a wall over the diameter."""
+
+
+def make_route(recognition: Recognition, sizes: tuple[SizeEntry, ...], blank: Blank, setups: Sequence[Setup], shop: Shop, part: Sections,
+               settings: RouteSettings, progress: Progress) -> ProcessTree:
+    """Return the process: operations in cutting order with tools numbered in the order of use, and findings on what is not planned.
+
+    Features that the typical plan does not know, or whose walls a vertical cutter would gouge or leave, become findings
+    (`route.not-planned`); their material stays and the proof counts it. A cutter that does not exist is an error (`route.no-cutter`), so
+    is a blank that the machine can't take (`route.travel`; nothing is planned then).
+    """
+    plan, material = shop.plan_for(recognition.family), shop.material(blank.material)
+    findings = too_large(blank, setups, shop)
+    if findings:
+        return ProcessTree(plan=plan.name, material=material.name, setups=tuple(setups), findings=tuple(findings))
+    near = beside(recognition, part)
+    planned, refusals = without_lonely_ribs(*plannable(recognition, plan.stages), recognition, near)
+    findings = not_planned(refusals, recognition)
+    operations: list[Operation] = []
+    for n, setup in enumerate(setups):
+        draft = Draft(space=Space.of(part, recognition, blank, setup), recognition=recognition, material=material,
+                      machine=shop.machine(setup.machine), settings=settings, shop=shop, beside=near)
+        mine = [f for f in planned if from_below(f) == (n > 0)]
+        share = progress.part(n / len(setups), (n + 1) / len(setups))
+        operations += _sequenced(draft, _with_cutters(draft, mine, plan.stages, share), plan.stages)
+        findings += draft.findings
+    operations = _numbered(operations)
+    findings += too_many_tools(operations, setups, shop)
+    return ProcessTree(plan=plan.name, material=material.name, setups=tuple(setups), operations=tuple(operations), findings=tuple(findings))
+
+
+def _with_cutters(draft: Draft, features: Sequence[Feature], stages: Sequence[Stage], progress: Progress) -> list[Wish]:
+    """Return the wishes that have a cutter, chosen so that few cutters serve all; those that depend on another's cutter come last."""
+    wishes: list[Wish] = []
+    rounds = [[s for s in stages if s.cutter not in DEPENDENT], *([s] for s in stages if s.cutter in DEPENDENT)]
+    for done, together in enumerate(rounds):
+        fits: dict[str, Sequence[Tool]] = {}
+        fresh = [wish for stage in together for wish in WISHES[stage.cutter](draft, stage, features)]
+        for n, wish in enumerate(fresh):
+            progress.at((done + n / len(fresh)) / len(rounds), f"cutter for {wish.id}")
+            found = candidates(wish.task, catalogue(draft, wish.stage), draft.settings.reach_clearance)
+            if found.tools:
+                fits[wish.id] = found.tools
+            else:
+                draft.findings.append(no_cutter(wish, found))
+        draft.tools |= covered_by_few(fits, list(draft.tools.values()))
+        wishes += [w for w in fresh if w.id in draft.tools]
+    return with_falling_sizes(draft, wishes)
+
+
+def _sequenced(draft: Draft, wishes: Sequence[Wish], stages: Sequence[Stage]) -> list[Operation]:
+    rank = {stage.name: n for n, stage in enumerate(stages)}
+    after = {w.id: _before(draft, w, wishes) for w in wishes}
+    jobs = [Job(id=w.id, tool=draft.tools[w.id].name, stage=rank[w.stage.name], place=w.place, after=after[w.id]) for w in wishes]
+    by_id = {w.id: w for w in wishes}
+    return [_operation(draft, by_id[id], after[id]) for id in ordered(jobs)]
+
+
+def _before(draft: Draft, wish: Wish, wishes: Sequence[Wish]) -> frozenset[str]:
+    """Return the ids that come before a wish: earlier stages on and beside its feature, larger cutters, the pocket it is sunk in."""
+    near = draft.beside.get(wish.feature, frozenset()) | {wish.feature}
+    found: set[str] = set()
+    for other in wishes:
+        everywhere = {"blank", "profile"} & {*other.stage.on, *wish.stage.on}
+        if other.stage.name in wish.stage.after and (everywhere or other.feature in near):
+            found.add(other.id)
+        if other.stage.name == wish.stage.name and _is_parent(draft, other.feature, wish.feature):
+            found.add(other.id)
+    steps = [w.id for w in wishes if w.feature == wish.feature and w.stage.name == wish.stage.name]
+    return frozenset(found | set(steps[:steps.index(wish.id)]))
+
+
+def _is_parent(draft: Draft, parent: str, child: str) -> bool:
+    feature = next((f for f in draft.recognition if f.id == child), None)
+    found = parent_of(feature, draft.recognition) if feature else None
+    return found is not None and found.id == parent
+
+
+def _operation(draft: Draft, wish: Wish, after: frozenset[str]) -> Operation:
+    tool, stage, chosen, cutting = draft.tools[wish.id], wish.stage, draft.settings, choose(CuttingSettings, {})
+    depth, width = _engagement(draft, wish, tool, cutting)
+    leaves: dict[str, Value] = {} if stage.finish else {WALL_ALLOWANCE: chosen.wall_allowance, FLOOR_ALLOWANCE: chosen.floor_allowance}
+    return Operation(
+        id=wish.id, kind=stage.kind, strategy=stage.strategy, feature=wish.feature, setup=draft.space.setup.name, tool=tool,
+        group=stage.name, data=cutting_data(tool, draft.material, draft.machine, stage.kind, cutting, depth, width),
+        faces=wish.faces if stage.finish else (), choices=leaves, rules=(stage.rule, *_tool_rules(wish, tool, chosen)), after=tuple(sorted(after)))
+
+
+def _engagement(draft: Draft, wish: Wish, tool: Tool, cutting: CuttingSettings) -> tuple[float, float]:
+    """Return depth ap and width ae: roughing by material, even layers; finishing takes the allowance in steps that the flutes bear."""
+    rough_depth = _even(wish.height, roughing_depth(tool, draft.material, cutting))
+    rough_width = roughing_width(tool, draft.material, cutting)
+    kind, allowance = wish.stage.kind, draft.settings.wall_allowance
+    if kind == "face":
+        return _even(wish.height, min(tool.flute_length / 2, rough_depth)), min(FACE_WIDTH * tool.diameter, wish.width)
+    if kind == "floor":
+        return max(draft.settings.floor_allowance, tolerance.SEW), FLOOR_WIDTH * (tool.diameter - 2 * tool.corner_radius)
+    if kind in ("wall", "corner_finish", "profile_finish"):
+        return _even(wish.height, min(tool.flute_length, WALL_STEP * tool.diameter)), max(allowance, tolerance.SEW)
+    if kind in ("rib_top", "island_top"):
+        return rough_depth, min(rough_width, wish.width + 2 * allowance)
+    if kind == "profile_rough":
+        return rough_depth, min(rough_width, max(wish.width - allowance, tolerance.SEW))
+    return rough_depth, rough_width
+
+
+def _even(height: float, most: float) -> float:
+    """Return the depth of equal layers of at most `most`.
+
+    >>> _even(36.0, 15.0)
+    12.0
+    """
+    return height / max(math.ceil(height / most - tolerance.COINCIDENT), 1)
+
+
+def _tool_rules(wish: Wish, tool: Tool, chosen: RouteSettings) -> tuple[str, ...]:
+    task = wish.task
+    said = [f"{tool.name}: reaches {trimmed(depth_reached(tool), 2)} mm, {trimmed(task.depth, 2)} mm and "
+            f"{trimmed(chosen.reach_clearance, 2)} mm clearance are needed."]
+    if task.radius:
+        said.append(f"Its radius {trimmed(tool.radius, 2)} mm is at most {trimmed(task.radius, 2)} mm, "
+                    f"{trimmed(100 * chosen.corner_share, 0)} % of the corner's.")
+    exact = "is that of the floor fillet." if task.exact else f"is at most that of the floor fillet, {trimmed(task.corner_radius, 2)} mm."
+    said.append(f"Its corner radius {trimmed(tool.corner_radius, 2)} mm {exact}")
+    if not wish.stage.finish:
+        said.append(f"It leaves {trimmed(chosen.wall_allowance, 2)} mm on walls and {trimmed(chosen.floor_allowance, 2)} mm on floors.")
+    said.append("Among the cutters that fit it is the one that serves most operations.")
+    return tuple(said)
+
+
+def _numbered(operations: Iterable[Operation]) -> list[Operation]:
+    """Return the operations with tools numbered from 1 in the order of use."""
+    numbers: dict[str, int] = {}
+    return [replace(o, tool=replace(o.tool, number=numbers.setdefault(o.tool.name, len(numbers) + 1))) for o in operations]

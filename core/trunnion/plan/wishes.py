@@ -1,0 +1,300 @@
+"""What is wanted of each stage of a typical plan: for every feature the task that a cutter must fit, by the rule that the stage names."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass, field, replace
+
+import numpy as np
+
+from trunnion import tolerance
+from trunnion.findings import Finding, Refused, face_tags, warning
+from trunnion.geometry.region import EMPTY_REGION, Region
+from trunnion.model.feature import Feature, Recognition
+from trunnion.model.material import Machine, Material
+from trunnion.model.tool import Tool
+from trunnion.plan.choosing import Task, candidates, depth_reached
+from trunnion.plan.regions import Band, Space, floor_fillet, number, parent_of
+from trunnion.settings import setting, settings
+from trunnion.shop import Shop, Stage
+from trunnion.units import trimmed
+
+SPARE = 3.0
+"""Radii of a roughing cutter that should fit from the rim to the middle of a pocket where it is widest: room for a helix and a turn."""
+
+NEAR_ROUGH, NEAR_WALL, NEAR_FLOOR = 0.75, 0.6, 0.5
+"""How much smaller than the largest that fits a cutter may be, over its diameter, when it serves other operations too."""
+
+SHARP = 0.02
+"""Share of a pocket that corners sharper than the one its cutter is chosen for may keep: no cutter gets into them, the proof counts it."""
+
+DEPENDENT = ("rest", "corner")
+"""Rules for cutters that depend on the cutter of another stage."""
+
+
+@settings("route")
+class RouteSettings:
+    """What a shop may choose when operations and cutters are planned."""
+
+    wall_allowance: float = setting(0.5, unit="mm", low=0.0, high=20.0, label="Wall allowance", help="What roughing leaves on walls.")
+    floor_allowance: float = setting(0.3, unit="mm", low=0.0, high=20.0, label="Floor allowance", help="What roughing leaves on floors.")
+    reach_clearance: float = setting(1.0, unit="mm", low=0.0, high=100.0, label="Reach clearance",
+                                     help="Least height of the shank over the surroundings when the tip is deepest.")
+    corner_share: float = setting(0.9, unit="of the corner's radius", low=0.1, high=1.0, label="Cutter in corners",
+                                  help="Largest radius of a finishing cutter over the radius of the corner it goes through.")
+    missable: float = setting(0.12, unit="of the area", low=0.0, high=0.9, label="Left to rest roughing",
+                              help="Share of a pocket's area that the roughing cutter may leave to smaller ones.")
+    falling: float = setting(2.5, unit="times", low=1.1, high=20.0, label="Falling sizes",
+                             help="Largest diameter over the next smaller one in corners.")
+    slender: float = setting(6.0, unit="diameters", low=1.0, high=20.0, label="Slender walls",
+                             help="Stickout over diameter from which walls get a larger cutter and only the corners the slender one.")
+    largest: float = setting(25.0, unit="mm", low=1.0, high=200.0, label="Largest roughing cutter",
+                             help="Largest diameter of an end mill for roughing.")
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Wish:
+    """An operation that is wanted: its id, stage, feature and task; the cutter comes later. `height` is what it goes down in all."""
+
+    id: str
+    stage: Stage
+    feature: str
+    place: tuple[float, float]
+    task: Task
+    faces: tuple[int, ...]
+    height: float
+    width: float
+
+
+@dataclass(slots=True)
+class Draft:
+    """What is known while one setup is planned."""
+
+    space: Space
+    recognition: Recognition
+    material: Material
+    machine: Machine
+    settings: RouteSettings
+    shop: Shop
+    beside: Mapping[str, frozenset[str]]
+    bands: dict[str, tuple[Band, ...]] = field(default_factory=dict)
+    findings: list[Finding] = field(default_factory=list)
+    tools: dict[str, Tool] = field(default_factory=dict)
+
+
+def catalogue(draft: Draft, stage: Stage) -> tuple[Tool, ...]:
+    """Return the cutters that a stage may choose from."""
+    use = "face" if stage.cutter == "face" else "finish" if stage.finish else "rough"
+    tools = draft.shop.tools_for(draft.material.iso_group, use)
+    return tools if stage.cutter == "face" else tuple(t for t in tools if t.diameter <= draft.settings.largest)
+
+
+def _wishes_face(draft: Draft, stage: Stage, features: Sequence[Feature]) -> list[Wish]:
+    space = draft.space
+    height = float(space.blank_high[2]) - space.top
+    if height <= tolerance.SEW:
+        return []
+    tops = tuple(tag for f in draft.recognition for tag in f.with_role("top", "bottom")
+                 if abs(space.centre(tag)[2] - space.top) < tolerance.SEW)
+    middle = 0.5 * (space.blank_low + space.blank_high)
+    task = Task(depth=0.0, room=space.around(), wanted=space.blank_area(), corner_radius=0.0, near=1.0)
+    return [Wish(id=f"face-{space.setup.name}", stage=stage, feature="blank", place=(float(middle[0]), float(middle[1])), task=task,
+                 faces=tops, height=height, width=float(np.min(space.blank_high[:2] - space.blank_low[:2])))]
+
+
+def _pocket_wishes(draft: Draft, stage: Stage, features: Sequence[Feature],
+                   make: Callable[[Feature, tuple[Band, ...]], Wish | None]) -> list[Wish]:
+    """Return the wishes for the pockets of a stage; a pocket without free space over its floor is told of once and left out."""
+    found = []
+    for feature in features:
+        if feature.kind not in stage.on:
+            continue
+        if feature.id not in draft.bands:
+            try:
+                draft.bands[feature.id] = draft.space.bands_of(feature)
+            except Refused as reason:
+                draft.bands[feature.id] = ()
+                draft.findings.append(warning("route.not-planned", str(reason), feature.id, *face_tags(feature.tags)))
+        if draft.bands[feature.id]:
+            wish = make(feature, draft.bands[feature.id])
+            if wish is not None:
+                found.append(wish)
+    return found
+
+
+def _wishes_rough(draft: Draft, stage: Stage, features: Sequence[Feature]) -> list[Wish]:
+    def make(feature: Feature, bands: tuple[Band, ...]) -> Wish:
+        is_open = feature.kind == "open_pocket"
+        task = Task(depth=_depth(draft, bands), room=bands[-1].boundary, wanted=bands[-1].wanted, corner_radius=floor_fillet(feature),
+                    missable=draft.settings.missable, spare=1.0 if is_open else SPARE, near=NEAR_ROUGH)
+        if not is_open and not any(bands[-1].boundary.offset(-SPARE * t.radius) for t in catalogue(draft, stage)):
+            task = replace(task, spare=1.0)
+        return _wish(stage, feature, bands, task, ())
+
+    return _pocket_wishes(draft, stage, features, make)
+
+
+def _wishes_rest(draft: Draft, stage: Stage, features: Sequence[Feature]) -> list[Wish]:
+    def make(feature: Feature, bands: tuple[Band, ...]) -> Wish | None:
+        before = draft.tools.get(f"rough-{feature.id}")
+        corner = number(feature, "corner_radius")
+        if before is None or not 0.0 < corner < before.radius:
+            return None
+        return _wish(stage, feature, bands, replace(_wall_task(draft, feature, bands), exact=False), ())
+
+    return _pocket_wishes(draft, stage, features, make)
+
+
+def _wishes_floor(draft: Draft, stage: Stage, features: Sequence[Feature]) -> list[Wish]:
+    def make(feature: Feature, bands: tuple[Band, ...]) -> Wish | None:
+        if not feature.with_role("floor"):
+            return None
+        task = Task(depth=_depth(draft, bands), room=bands[-1].boundary, wanted=bands[-1].wanted, corner_radius=floor_fillet(feature),
+                    missable=draft.settings.missable, near=NEAR_FLOOR)
+        return _wish(stage, feature, bands, task, feature.with_role("floor"))
+
+    return _pocket_wishes(draft, stage, features, make)
+
+
+def _wishes_wall(draft: Draft, stage: Stage, features: Sequence[Feature]) -> list[Wish]:
+    def make(feature: Feature, bands: tuple[Band, ...]) -> Wish:
+        islands = [tag for island in draft.space.islands_of(feature) for tag in island.with_role("wall", "corner", "floor_fillet")]
+        faces = (*feature.with_role("wall", "corner", "floor_fillet"), *islands)
+        task = _with_known_fillet(draft, stage, feature, _wall_task(draft, feature, bands))
+        fine = candidates(task, catalogue(draft, stage), draft.settings.reach_clearance).tools
+        if fine and all(t.stickout / t.diameter > draft.settings.slender for t in fine):
+            stiff = replace(task, radius=0.0, missable=draft.settings.missable)
+            larger = candidates(stiff, catalogue(draft, stage), draft.settings.reach_clearance).tools
+            if any(t.stickout / t.diameter <= draft.settings.slender for t in larger):
+                task = stiff
+        return _wish(stage, feature, bands, task, faces)
+
+    return _pocket_wishes(draft, stage, features, make)
+
+
+def _wishes_corner(draft: Draft, stage: Stage, features: Sequence[Feature]) -> list[Wish]:
+    def make(feature: Feature, bands: tuple[Band, ...]) -> Wish | None:
+        wall, corner = draft.tools.get(f"wall-{feature.id}"), number(feature, "corner_radius")
+        if wall is None or corner <= 0.0 or wall.radius <= corner * draft.settings.corner_share + tolerance.COINCIDENT:
+            return None
+        task = _with_known_fillet(draft, stage, feature, _wall_task(draft, feature, bands))
+        return _wish(stage, feature, bands, task, feature.with_role("corner"))
+
+    return _pocket_wishes(draft, stage, features, make)
+
+
+def _wishes_top(draft: Draft, stage: Stage, features: Sequence[Feature]) -> list[Wish]:
+    found = []
+    for feature in features:
+        tops = feature.with_role("top")
+        if feature.kind not in stage.on or not tops:
+            continue
+        z = float(draft.space.centre(tops[0])[2])
+        if draft.space.top - z <= tolerance.SEW:
+            continue
+        try:
+            room, wanted = _top_room(draft, feature, z, tops)
+        except Refused as reason:
+            draft.findings.append(warning("route.not-planned", str(reason), feature.id, *face_tags(tops)))
+            continue
+        place = draft.space.centre(tops[0])
+        task = Task(depth=draft.space.top - z, room=room, wanted=wanted, corner_radius=0.0, near=NEAR_FLOOR)
+        found.append(Wish(id=f"{stage.kind}-{feature.id}", stage=stage, feature=feature.id, place=(float(place[0]), float(place[1])),
+                          task=task, faces=tops, height=draft.space.top - z, width=number(feature, "thickness", math.inf)))
+    return found
+
+
+def _top_room(draft: Draft, feature: Feature, z: float, tops: Sequence[int]) -> tuple[Region, Region]:
+    """Return where a cutter may be at a top's height, and the top itself."""
+    space, wanted = draft.space, EMPTY_REGION
+    for tag in tops:
+        wanted = wanted.union(space.part.face_outline(space.setup.frame, tag))
+    if feature.kind != "island":
+        return space.free(z + tolerance.BESIDE_PLANE), wanted
+    pocket = parent_of(feature, draft.recognition)
+    if pocket is None or not draft.bands.get(pocket.id):
+        raise Refused(f"{feature.id} stands in a pocket that is not planned; machine its top by hand")
+    return next(b.boundary for b in draft.bands[pocket.id] if b.bottom <= z + tolerance.SEW), wanted
+
+
+def _wishes_profile(draft: Draft, stage: Stage, features: Sequence[Feature]) -> list[Wish]:
+    found = []
+    space = draft.space
+    for feature in features:
+        if feature.kind in stage.on:
+            outline = space.silhouette()
+            wanted = space.blank_area().minus(outline)
+            if not wanted:
+                continue
+            task = Task(depth=space.top - space.bottom, room=space.around().minus(outline), wanted=wanted, corner_radius=0.0,
+                        near=NEAR_ROUGH)
+            low, high = outline.box()
+            side = float(np.max([low - space.blank_low[:2], space.blank_high[:2] - high]))
+            found.append(Wish(id=f"{stage.kind}-{feature.id}", stage=stage, feature=feature.id, task=task, width=side,
+                              place=(float(space.blank_low[0]), float(space.blank_low[1])), faces=feature.with_role("wall", "corner"),
+                              height=space.top - space.bottom))
+    return found
+
+
+WISHES: Mapping[str, Callable[[Draft, Stage, Sequence[Feature]], list[Wish]]] = {
+    "face": _wishes_face, "rough": _wishes_rough, "rest": _wishes_rest, "top": _wishes_top, "floor": _wishes_floor, "wall": _wishes_wall,
+    "corner": _wishes_corner, "profile_rough": _wishes_profile, "profile_finish": _wishes_profile}
+"""The rule behind each word that a typical plan gives for its cutter (`shop.plans.CUTTER_RULES`)."""
+
+
+def _wish(stage: Stage, feature: Feature, bands: tuple[Band, ...], task: Task, faces: tuple[int, ...]) -> Wish:
+    low, high = bands[-1].wanted.box()
+    middle = 0.5 * (low + high)
+    return Wish(id=f"{stage.kind}-{feature.id}", stage=stage, feature=feature.id, place=(float(middle[0]), float(middle[1])), task=task,
+                faces=faces, height=bands[0].top - bands[-1].bottom, width=float(np.min(high - low)))
+
+
+def _depth(draft: Draft, bands: tuple[Band, ...]) -> float:
+    """Return how deep below the part's top a pocket's lowest floor lies: the walls around may stand as high as that."""
+    return draft.space.top - bands[-1].bottom
+
+
+def _wall_task(draft: Draft, feature: Feature, bands: tuple[Band, ...]) -> Task:
+    return Task(depth=_depth(draft, bands), room=bands[-1].boundary, wanted=bands[-1].wanted,
+                corner_radius=floor_fillet(feature), exact=True, radius=number(feature, "corner_radius") * draft.settings.corner_share,
+                missable=SHARP, near=NEAR_WALL)
+
+
+def _with_known_fillet(draft: Draft, stage: Stage, feature: Feature, task: Task) -> Task:
+    """Return a wall's task with the fillet that cutters have: when none has it exactly, the next smaller, and a finding."""
+    radii = {t.corner_radius for t in catalogue(draft, stage) if not task.radius or t.radius <= task.radius + tolerance.COINCIDENT}
+    if not radii or any(abs(r - task.corner_radius) <= tolerance.COINCIDENT for r in radii):
+        return task
+    next_smaller = max((r for r in radii if r < task.corner_radius), default=0.0)
+    draft.findings.append(warning(
+        "route.fillet", f"{feature.id}: no cutter has a corner radius of {trimmed(task.corner_radius, 3)} mm; its floor fillet is stepped with "
+                        f"{trimmed(next_smaller, 3)} mm", feature.id, *face_tags(feature.with_role("floor_fillet")),
+        remedy="add a cutter with the fillet's radius to the tools folder"))
+    return replace(task, corner_radius=next_smaller)
+
+
+def with_falling_sizes(draft: Draft, wishes: Sequence[Wish]) -> list[Wish]:
+    """Return the wishes with cutters put in where a corner's cutter is much smaller than the one that was there before."""
+    out: list[Wish] = []
+    for wish in wishes:
+        if wish.stage.cutter in ("rest", "corner"):
+            before = draft.tools.get(f"{'rough' if wish.stage.cutter == 'rest' else 'wall'}-{wish.feature}")
+            n = 1
+            while before is not None and before.diameter > draft.settings.falling * draft.tools[wish.id].diameter:
+                step = _between(draft, wish, before)
+                if step is None:
+                    break
+                more = replace(wish, id=f"{wish.id}-{n}")
+                draft.tools[more.id] = before = step
+                out.append(more)
+                n += 1
+        out.append(wish)
+    return out
+
+
+def _between(draft: Draft, wish: Wish, before: Tool) -> Tool | None:
+    goal = draft.tools[wish.id]
+    fits = [t for t in catalogue(draft, wish.stage) if goal.diameter < t.diameter <= before.diameter / draft.settings.falling ** 0.5
+            and t.corner_radius <= goal.corner_radius and depth_reached(t) >= wish.task.depth + draft.settings.reach_clearance]
+    return max(fits, key=lambda t: (t.diameter, -depth_reached(t), t.corner_radius, t.name), default=None)
