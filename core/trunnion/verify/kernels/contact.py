@@ -1,0 +1,618 @@
+"""Compiled loops of the contact engine: how deep a swept cutter enters trimmed faces, and how far a point is from it.
+
+The tool axis is +z. A face is a bundle of *strips*: a profile (w, z) carried along a guide in plan, a line or an arc about a vertical
+axis. A body of revolution that moves along a line or an arc at one height is deepest, at each height of the profile, where the plan
+distance between path and guide is smallest; that distance is exact, so only the profile's parameter is searched. The search is a
+branch and bound that ends within a stated bound:
+
+* the depth inside a convex body of revolution is a concave function of (rho, height) and never grows with rho, so tangents at both
+  ends of a straight piece bound it from above;
+* the plan distance as a function of w has slope at most one, and where it bends upwards its second derivative is at most one over
+  the distance; with these the distance is never below the chord between two evaluations by more than a known sag;
+* an arc profile leaves its chord by its sagitta.
+
+All kernels that call each other live in this one module: a cached caller does not notice a change in another file.
+"""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+from numba import njit
+
+from trunnion.part.surfaces import (
+    BX0,
+    BX1,
+    BY0,
+    BY1,
+    BZ0,
+    BZ1,
+    DX,
+    DY,
+    FIXED,
+    GUIDE,
+    H_COS,
+    L_COS,
+    L_KIND,
+    L_SIGN,
+    L_SIN,
+    LA,
+    LB,
+    LC,
+    M_COS,
+    M_SIN,
+    OX,
+    OY,
+    PROFILE,
+    PW0,
+    PW1,
+    PZ0,
+    PZ1,
+    R_COS,
+    R_KIND,
+    R_SIGN,
+    R_SIN,
+    RA,
+    RB,
+    RC,
+    U0,
+    U1,
+)
+
+# Columns of a move: its plan curve first (shared with guides), then heights.
+KIND, X0, Y0, X1, Y1, CX, CY, RADIUS, MX, MY, COS_HALF = range(11)
+"""Plan curve: kind (0 line, 1 arc), ends, centre, radius, direction of an arc's middle, cosine of half its sweep."""
+START_ANGLE, SWEEP, Z_START, Z_END = range(11, 15)
+MOVE_COLUMNS = 15
+
+# Columns of a piece of the tool.
+FORM, R_LOW, R_HIGH, Z_LOW, Z_HIGH, CAP_LOW, CAP_HIGH = range(7)
+"""Form 0: the fluted cutter, R_LOW its radius, R_HIGH its corner radius; form 1: a truncated cone."""
+
+_TINY = 1e-12
+
+
+@njit(cache=True, nogil=True, inline="always")
+def _point_point(ax, ay, bx, by):
+    return math.sqrt((ax - bx) * (ax - bx) + (ay - by) * (ay - by))
+
+
+@njit(cache=True, nogil=True)
+def _point_segment(qx, qy, c):
+    dx, dy = c[X1] - c[X0], c[Y1] - c[Y0]
+    square = dx * dx + dy * dy
+    t = 0.0
+    if square > 0.0:
+        t = ((qx - c[X0]) * dx + (qy - c[Y0]) * dy) / square
+        t = min(max(t, 0.0), 1.0)
+    return _point_point(qx, qy, c[X0] + t * dx, c[Y0] + t * dy)
+
+
+@njit(cache=True, nogil=True, inline="always")
+def _on_arc(vx, vy, length, c):
+    return vx * c[MX] + vy * c[MY] >= length * c[COS_HALF] - _TINY
+
+
+@njit(cache=True, nogil=True)
+def _point_arc(qx, qy, c):
+    vx, vy = qx - c[CX], qy - c[CY]
+    length = math.sqrt(vx * vx + vy * vy)
+    if length < _TINY:
+        return c[RADIUS]
+    if _on_arc(vx, vy, length, c):
+        return abs(length - c[RADIUS])
+    return min(_point_point(qx, qy, c[X0], c[Y0]), _point_point(qx, qy, c[X1], c[Y1]))
+
+
+@njit(cache=True, nogil=True)
+def point_distance(qx, qy, c):
+    """Return the plan distance of a point to a curve."""
+    if c[KIND] == 0.0:
+        return _point_segment(qx, qy, c)
+    return _point_arc(qx, qy, c)
+
+
+@njit(cache=True, nogil=True)
+def _segments(a, b):
+    ax, ay = a[X1] - a[X0], a[Y1] - a[Y0]
+    bx, by = b[X1] - b[X0], b[Y1] - b[Y0]
+    ex, ey = b[X0] - a[X0], b[Y0] - a[Y0]
+    cross = ax * by - ay * bx
+    if cross != 0.0:
+        s = (ex * by - ey * bx) / cross
+        t = (ex * ay - ey * ax) / cross
+        if 0.0 <= s <= 1.0 and 0.0 <= t <= 1.0:
+            return 0.0
+    return min(min(_point_segment(a[X0], a[Y0], b), _point_segment(a[X1], a[Y1], b)),
+               min(_point_segment(b[X0], b[Y0], a), _point_segment(b[X1], b[Y1], a)))
+
+
+@njit(cache=True, nogil=True)
+def _segment_arc(a, b):
+    dx, dy = a[X1] - a[X0], a[Y1] - a[Y0]
+    square = dx * dx + dy * dy
+    best = min(min(_point_arc(a[X0], a[Y0], b), _point_arc(a[X1], a[Y1], b)),
+               min(_point_segment(b[X0], b[Y0], a), _point_segment(b[X1], b[Y1], a)))
+    if square == 0.0:
+        return best
+    t = ((b[CX] - a[X0]) * dx + (b[CY] - a[Y0]) * dy) / square
+    fx, fy = a[X0] + t * dx, a[Y0] + t * dy
+    if 0.0 <= t <= 1.0:
+        best = min(best, _point_arc(fx, fy, b))
+    gap = b[RADIUS] * b[RADIUS] - (fx - b[CX]) * (fx - b[CX]) - (fy - b[CY]) * (fy - b[CY])
+    if gap >= 0.0:
+        half = math.sqrt(gap / square)
+        for sign in (-1.0, 1.0):
+            k = t + sign * half
+            if 0.0 <= k <= 1.0:
+                best = min(best, _point_arc(a[X0] + k * dx, a[Y0] + k * dy, b))
+    return best
+
+
+@njit(cache=True, nogil=True)
+def _arcs(a, b):
+    best = min(min(_point_arc(a[X0], a[Y0], b), _point_arc(a[X1], a[Y1], b)),
+               min(_point_arc(b[X0], b[Y0], a), _point_arc(b[X1], b[Y1], a)))
+    vx, vy = b[CX] - a[CX], b[CY] - a[CY]
+    length = math.sqrt(vx * vx + vy * vy)
+    if length < _TINY:
+        return best
+    vx, vy = vx / length, vy / length
+    for sign in (-1.0, 1.0):
+        if _on_arc(sign * vx, sign * vy, 1.0, a):
+            best = min(best, _point_arc(a[CX] + sign * a[RADIUS] * vx, a[CY] + sign * a[RADIUS] * vy, b))
+    along = (length * length + a[RADIUS] * a[RADIUS] - b[RADIUS] * b[RADIUS]) / (2.0 * length)
+    square = a[RADIUS] * a[RADIUS] - along * along
+    if square >= 0.0:
+        across = math.sqrt(square)
+        for sign in (-1.0, 1.0):
+            qx, qy = along * vx - sign * across * vy, along * vy + sign * across * vx
+            if _on_arc(qx, qy, a[RADIUS], a):
+                best = min(best, _point_arc(a[CX] + qx, a[CY] + qy, b))
+    return best
+
+
+@njit(cache=True, nogil=True)
+def curve_distance(a, b):
+    """Return the smallest plan distance between two curves, each a line or an arc; 0 when they meet."""
+    if a[KIND] == 0.0:
+        if b[KIND] == 0.0:
+            return _segments(a, b)
+        return _segment_arc(a, b)
+    if b[KIND] == 0.0:
+        return _segment_arc(b, a)
+    return _arcs(a, b)
+
+
+@njit(cache=True, nogil=True)
+def depth_in_piece(piece, rho, h, rise):
+    """Return how deep a point at distance rho from the axis and height h above the tip is in a piece swept up by `rise`, and the slopes.
+
+    Positive inside. Slopes (by rho, by h) are a supergradient: the depth is concave. Negative rho is taken as zero.
+    """
+    if piece[FORM] == 0.0:
+        corner = piece[R_HIGH]
+        qx, qy = max(rho, 0.0) - (piece[R_LOW] - corner), corner - h
+        if qx > 0.0 and qy > 0.0:
+            q = math.sqrt(qx * qx + qy * qy)
+            return corner - q, (-qx / q if rho > 0.0 else 0.0), qy / q
+        if qx > qy:
+            return corner - qx, (-1.0 if rho > 0.0 else 0.0), 0.0
+        return corner - qy, 0.0, 1.0
+    r0, r1, z0, z1 = piece[R_LOW], piece[R_HIGH], piece[Z_LOW], piece[Z_HIGH]
+    slope = (r1 - r0) / (z1 - z0)
+    cosine = 1.0 / math.sqrt(1.0 + slope * slope)
+    out = -1.0 if rho > 0.0 else 0.0
+    rho = max(rho, 0.0)
+    base = h - z0 if slope >= 0.0 else h - z0 - rise
+    depth, by_rho, by_h = (r0 + slope * base - rho) * cosine, out * cosine, slope * cosine
+    widest = max(r0, r1) - rho
+    if widest < depth:
+        depth, by_rho, by_h = widest, out, 0.0
+    if piece[CAP_LOW] != 0.0 and h - z0 < depth:
+        depth, by_rho, by_h = h - z0, 0.0, 1.0
+    if piece[CAP_HIGH] != 0.0 and z1 + rise - h < depth:
+        depth, by_rho, by_h = z1 + rise - h, 0.0, -1.0
+    return depth, by_rho, by_h
+
+
+@njit(cache=True, nogil=True, inline="always")
+def _profile_w(s, u):
+    if s[PROFILE] == 0.0:
+        return s[PW0] + (s[PW1] - s[PW0]) * ((u - s[U0]) / (s[U1] - s[U0]) if s[U1] > s[U0] else 0.0)
+    return s[PW0] + s[PW1] * math.cos(u)
+
+
+@njit(cache=True, nogil=True, inline="always")
+def _profile_z(s, u):
+    if s[PROFILE] == 0.0:
+        return s[PZ0] + (s[PZ1] - s[PZ0]) * ((u - s[U0]) / (s[U1] - s[U0]) if s[U1] > s[U0] else 0.0)
+    return s[PZ0] + s[PW1] * math.sin(u)
+
+
+@njit(cache=True, nogil=True)
+def _profile_u(s, z):
+    """Return the parameter at which a profile that is monotone in z passes a height inside its range."""
+    if s[PROFILE] == 0.0:
+        return s[U0] + (s[U1] - s[U0]) * (z - s[PZ0]) / (s[PZ1] - s[PZ0])
+    middle = 0.5 * (s[U0] + s[U1])
+    u = math.asin(min(max((z - s[PZ0]) / s[PW1], -1.0), 1.0))
+    if math.cos(middle) < 0.0:
+        u = math.pi - u
+    u += 2.0 * math.pi * math.floor((middle - u) / (2.0 * math.pi) + 0.5)
+    return min(max(u, s[U0]), s[U1])
+
+
+@njit(cache=True, nogil=True)
+def _end(kind, a, b, c, sign, u, u0):
+    if kind == 0.0:
+        return a + b * (u - u0)
+    return a + sign * math.sqrt(max(b * b - (u - c) * (u - c), 0.0))
+
+
+@njit(cache=True, nogil=True)
+def _guide(s, w, u0, u1, out):
+    """Fill `out` with the guide at offset w, as wide as it is anywhere between two profile parameters (its ends are monotone)."""
+    out[KIND] = s[GUIDE]
+    if s[FIXED] != 0.0:
+        low, high = s[LA], s[RA]
+    else:
+        low = min(_end(s[L_KIND], s[LA], s[LB], s[LC], s[L_SIGN], u0, s[U0]), _end(s[L_KIND], s[LA], s[LB], s[LC], s[L_SIGN], u1, s[U0]))
+        high = max(_end(s[R_KIND], s[RA], s[RB], s[RC], s[R_SIGN], u0, s[U0]), _end(s[R_KIND], s[RA], s[RB], s[RC], s[R_SIGN], u1, s[U0]))
+        high = max(high, low)
+    if s[GUIDE] == 0.0:
+        px, py = s[OX] - w * s[DY], s[OY] + w * s[DX]
+        out[X0], out[Y0] = px + low * s[DX], py + low * s[DY]
+        out[X1], out[Y1] = px + high * s[DX], py + high * s[DY]
+        return
+    out[CX], out[CY], out[RADIUS] = s[OX], s[OY], abs(w)
+    if s[FIXED] != 0.0:
+        out[X0], out[Y0] = s[OX] + w * s[L_COS], s[OY] + w * s[L_SIN]
+        out[X1], out[Y1] = s[OX] + w * s[R_COS], s[OY] + w * s[R_SIN]
+        out[MX], out[MY], out[COS_HALF] = s[M_COS], s[M_SIN], s[H_COS]
+    else:
+        middle, half = 0.5 * (low + high), min(0.5 * (high - low), math.pi)
+        out[X0], out[Y0] = s[OX] + w * math.cos(low), s[OY] + w * math.sin(low)
+        out[X1], out[Y1] = s[OX] + w * math.cos(high), s[OY] + w * math.sin(high)
+        out[MX], out[MY], out[COS_HALF] = math.cos(middle), math.sin(middle), math.cos(half)
+
+
+@njit(cache=True, nogil=True)
+def _depth_at(s, u, path, z_low, rise, piece, guide):
+    _guide(s, _profile_w(s, u), u, u, guide)
+    depth, _r, _h = depth_in_piece(piece, curve_distance(path, guide), _profile_z(s, u) - z_low, rise)
+    return depth
+
+
+@njit(cache=True, nogil=True)
+def strip_depth(s, path, z_low, rise, piece, enough, bound, guide, stack):
+    """Return the deepest that one piece enters one strip while its tip runs along a plan path between z_low and z_low + rise.
+
+    The move is level or vertical, so that the lowest height counts everywhere. Returns a depth that is attained and at most `bound` below
+    the deepest, or anything at most `enough` when the deepest is not above `enough`; and the profile parameter where.
+    """
+    z_from, z_to = z_low + piece[Z_LOW], z_low + rise + piece[Z_HIGH]
+    if s[BZ1] < z_from or s[BZ0] > z_to:
+        return -np.inf, s[U0]
+    low, high = s[U0], s[U1]
+    if s[BZ1] > s[BZ0]:
+        rising = _profile_z(s, high) > _profile_z(s, low)
+        if s[BZ0] < z_from:
+            cut = _profile_u(s, z_from)
+            low, high = (cut, high) if rising else (low, cut)
+        if s[BZ1] > z_to:
+            cut = _profile_u(s, z_to)
+            low, high = (low, cut) if rising else (cut, high)
+    best, where = -np.inf, low
+    r_path = path[RADIUS] if path[KIND] != 0.0 else np.inf
+    stack[0, 0], stack[0, 1] = low, high
+    top = 1
+    while top > 0:
+        top -= 1
+        u0, u1 = stack[top, 0], stack[top, 1]
+        w0, w1, z0, z1 = _profile_w(s, u0), _profile_w(s, u1), _profile_z(s, u0), _profile_z(s, u1)
+        _guide(s, w0, u0, u1, guide)
+        rho0 = curve_distance(path, guide)
+        rho1, sag = rho0, 0.0
+        span = abs(w1 - w0)
+        if span > 0.0:
+            _guide(s, w1, u0, u1, guide)
+            rho1 = curve_distance(path, guide)
+            step = rho1 - rho0
+            sag = max(span * span - step * step, 0.0) / (2.0 * span)
+            nearest = 0.5 * (rho0 + rho1 - span)
+            if nearest > 0.0:
+                sag = min(sag, 0.125 * span * span / min(nearest, r_path))
+        arch = s[PW1] * (1.0 - math.cos(0.5 * (u1 - u0))) if s[PROFILE] != 0.0 else 0.0
+        d0, r0, h0 = depth_in_piece(piece, rho0 - sag, z0 - z_low, rise)
+        d1, r1, h1 = depth_in_piece(piece, rho1 - sag, z1 - z_low, rise)
+        m0 = r0 * (rho1 - rho0) + h0 * (z1 - z0)
+        m1 = r1 * (rho1 - rho0) + h1 * (z1 - z0)
+        share, most = 0.5, d0
+        if m0 <= 0.0:
+            share = 0.0
+        elif m1 >= 0.0:
+            share, most = 1.0, d1
+        else:
+            share = min(max((d1 - d0 - m1) / (m0 - m1), 0.0), 1.0)
+            most = d0 + m0 * share
+        most += arch
+        if most <= max(enough, best + bound):
+            continue
+        at = u0 + share * (u1 - u0)
+        depth = _depth_at(s, at, path, z_low, rise, piece, guide)
+        if depth > best:
+            best, where = depth, at
+        if most <= max(enough, best + bound) or u1 - u0 < 1e-9 or top + 2 > len(stack):
+            continue
+        split = at if 0.1 <= share <= 0.9 else 0.5 * (u0 + u1)
+        stack[top, 0], stack[top, 1] = u0, split
+        stack[top + 1, 0], stack[top + 1, 1] = split, u1
+        top += 2
+    return best, where
+
+
+@njit(cache=True, nogil=True)
+def part_of_move(move, t0, t1, out):
+    """Fill `out` with the plan curve of a move between two shares of it, and return its lowest and highest z."""
+    za = move[Z_START] + t0 * (move[Z_END] - move[Z_START])
+    zb = move[Z_START] + t1 * (move[Z_END] - move[Z_START])
+    out[KIND] = move[KIND]
+    if move[KIND] == 0.0 or t0 == t1:
+        out[KIND] = 0.0
+        if move[KIND] == 0.0:
+            dx, dy = move[X1] - move[X0], move[Y1] - move[Y0]
+            out[X0], out[Y0] = move[X0] + t0 * dx, move[Y0] + t0 * dy
+            out[X1], out[Y1] = move[X0] + t1 * dx, move[Y0] + t1 * dy
+        else:
+            angle = move[START_ANGLE] + t0 * move[SWEEP]
+            out[X0] = move[CX] + move[RADIUS] * math.cos(angle)
+            out[Y0] = move[CY] + move[RADIUS] * math.sin(angle)
+            out[X1], out[Y1] = out[X0], out[Y0]
+        return min(za, zb), max(za, zb)
+    a, b = move[START_ANGLE] + t0 * move[SWEEP], move[START_ANGLE] + t1 * move[SWEEP]
+    m, half = 0.5 * (a + b), 0.5 * abs(b - a)
+    out[CX], out[CY], out[RADIUS] = move[CX], move[CY], move[RADIUS]
+    out[X0], out[Y0] = move[CX] + move[RADIUS] * math.cos(a), move[CY] + move[RADIUS] * math.sin(a)
+    out[X1], out[Y1] = move[CX] + move[RADIUS] * math.cos(b), move[CY] + move[RADIUS] * math.sin(b)
+    out[MX], out[MY], out[COS_HALF] = math.cos(m), math.sin(m), math.cos(min(half, math.pi))
+    return min(za, zb), max(za, zb)
+
+
+@njit(cache=True, nogil=True, inline="always")
+def _is_sloped(move):
+    level = move[Z_START] == move[Z_END]
+    upright = move[KIND] == 0.0 and move[X0] == move[X1] and move[Y0] == move[Y1]
+    return not (level or upright)
+
+
+@njit(cache=True, nogil=True)
+def move_depth(s, move, piece, enough, bound, path, guide, stack, spans):
+    """Return the deepest that one piece enters one strip along a whole move, as `strip_depth`; ramps and helices are halved until flat."""
+    if not _is_sloped(move):
+        return strip_depth(s, move, min(move[Z_START], move[Z_END]), abs(move[Z_END] - move[Z_START]), piece, enough, bound, guide, stack)
+    best, where = -np.inf, s[U0]
+    spans[0, 0], spans[0, 1] = 0.0, 1.0
+    top = 1
+    while top > 0:
+        top -= 1
+        t0, t1 = spans[top, 0], spans[top, 1]
+        z_low, z_high = part_of_move(move, t0, t1, path)
+        most, u = strip_depth(s, path, z_low, z_high - z_low, piece, max(enough, best), bound, guide, stack)
+        if most <= max(enough, best):
+            continue
+        if z_high - z_low <= bound or top + 2 > len(spans):
+            best, where = most, u
+            continue
+        middle = 0.5 * (t0 + t1)
+        z, _z = part_of_move(move, middle, middle, path)
+        depth, u = strip_depth(s, path, z, 0.0, piece, best, bound, guide, stack)
+        if depth > best:
+            best, where = depth, u
+        if most <= best + bound:
+            continue
+        spans[top, 0], spans[top, 1] = t0, middle
+        spans[top + 1, 0], spans[top + 1, 1] = middle, t1
+        top += 2
+    return best, where
+
+
+@njit(cache=True, nogil=True)
+def move_box(move):
+    """Return the plan box of a move (x low, y low, x high, y high)."""
+    x0, y0 = min(move[X0], move[X1]), min(move[Y0], move[Y1])
+    x1, y1 = max(move[X0], move[X1]), max(move[Y0], move[Y1])
+    if move[KIND] != 0.0:
+        for k in range(4):
+            qx, qy = (1.0, 0.0, -1.0, 0.0)[k], (0.0, 1.0, 0.0, -1.0)[k]
+            if _on_arc(qx, qy, 1.0, move):
+                px, py = move[CX] + move[RADIUS] * qx, move[CY] + move[RADIUS] * qy
+                x0, y0, x1, y1 = min(x0, px), min(y0, py), max(x1, px), max(y1, py)
+    return x0, y0, x1, y1
+
+
+@njit(cache=True, nogil=True)
+def _piece_radius(piece):
+    return piece[R_LOW] if piece[FORM] == 0.0 else max(piece[R_LOW], piece[R_HIGH])
+
+
+@njit(cache=True, nogil=True)
+def _inside(x, y, outline):
+    """Say whether a point is inside closed chords (k, 4) by the parity of crossings to its right."""
+    odd = False
+    for k in range(len(outline)):
+        xa, ya, xb, yb = outline[k, 0], outline[k, 1], outline[k, 2], outline[k, 3]
+        if (ya > y) != (yb > y) and x < xa + (y - ya) * (xb - xa) / (yb - ya):
+            odd = not odd
+    return odd
+
+
+@njit(cache=True, nogil=True)
+def _region_depth(piece, z, z_low, rise):
+    h = z - z_low
+    if h < piece[Z_LOW] or h > piece[Z_HIGH] + rise:
+        return -np.inf
+    depth, _r, _h = depth_in_piece(piece, 0.0, h, rise)
+    return depth
+
+
+@njit(cache=True, nogil=True)
+def contact_loop(first, last, moves, tool, pieces, piece_start, strips, strip_face, cell_start, cell_strip, grid, shape,
+                 region_z, region_face, region_box, region_start, chords, enough, bound, stop_at,
+                 depth, which, where, face_depth, face_move):
+    """Measure moves `first` to `last` against every strip and every level region near them.
+
+    moves (n, 15), tool (n,) rows of piece_start; pieces (k, 7), the first piece of a tool is its cutter. grid (3,) is x, y of the strips'
+    grid and its pitch, shape (2,) its cells, cell_start and cell_strip its lists. region_* and chords (c, 4) are level faces.
+    Fills depth (n, 2) for the cutter and for what is above it, which (n, 2) strip rows or -1 - region, where (n, 2) profile parameters,
+    face_depth (f, 2) and face_move (f, 2). Returns the row after the last one done; stops early at a depth above `stop_at`.
+    """
+    guide, path = np.zeros(MOVE_COLUMNS), np.zeros(MOVE_COLUMNS)
+    stack, spans = np.zeros((96, 2)), np.zeros((96, 2))
+    seen = np.full(len(strips), -1)
+    for n in range(first, last):
+        move = moves[n]
+        z_low, rise = min(move[Z_START], move[Z_END]), abs(move[Z_END] - move[Z_START])
+        p0, p1 = piece_start[tool[n]], piece_start[tool[n] + 1]
+        widest = 0.0
+        for p in range(p0, p1):
+            widest = max(widest, _piece_radius(pieces[p]))
+        x0, y0, x1, y1 = move_box(move)
+        i0, i1 = int(math.floor((x0 - widest - grid[0]) / grid[2])), int(math.floor((x1 + widest - grid[0]) / grid[2]))
+        j0, j1 = int(math.floor((y0 - widest - grid[1]) / grid[2])), int(math.floor((y1 + widest - grid[1]) / grid[2]))
+        for j in range(max(j0, 0), min(j1, shape[1] - 1) + 1):
+            for i in range(max(i0, 0), min(i1, shape[0] - 1) + 1):
+                cell = j * shape[0] + i
+                for c in range(cell_start[cell], cell_start[cell + 1]):
+                    k = cell_strip[c]
+                    if seen[k] == n:
+                        continue
+                    seen[k] = n
+                    s = strips[k]
+                    if s[BZ1] - z_low <= enough:
+                        continue
+                    gx, gy = max(max(s[BX0] - x1, x0 - s[BX1]), 0.0), max(max(s[BY0] - y1, y0 - s[BY1]), 0.0)
+                    gap = math.sqrt(gx * gx + gy * gy)
+                    for p in range(p0, p1):
+                        piece = pieces[p]
+                        if s[BZ1] < z_low + piece[Z_LOW] or gap >= _piece_radius(piece) - enough:
+                            continue
+                        d, u = move_depth(s, move, piece, enough, bound, path, guide, stack, spans)
+                        if d > enough:
+                            kind = 0 if p == p0 else 1
+                            if d > depth[n, kind]:
+                                depth[n, kind], which[n, kind], where[n, kind] = d, k, u
+                            if d > face_depth[strip_face[k], kind]:
+                                face_depth[strip_face[k], kind], face_move[strip_face[k], kind] = d, n
+        for r in range(len(region_z)):
+            if region_z[r] - z_low <= enough:
+                continue
+            # The boundary is measured by strips; a move that never meets it is inside or outside as a whole.
+            if move[X0] < region_box[r, 0] or move[X0] > region_box[r, 2] or move[Y0] < region_box[r, 1] or move[Y0] > region_box[r, 3]:
+                continue
+            if not _inside(move[X0], move[Y0], chords[region_start[r]:region_start[r + 1]]):
+                continue
+            for p in range(p0, p1):
+                d = _region_depth(pieces[p], region_z[r], z_low, rise)
+                if d > enough:
+                    kind = 0 if p == p0 else 1
+                    if d > depth[n, kind]:
+                        depth[n, kind], which[n, kind], where[n, kind] = d, -2 - r, 0.0
+                    if d > face_depth[region_face[r], kind]:
+                        face_depth[region_face[r], kind], face_move[region_face[r], kind] = d, n
+        if depth[n, 0] > stop_at or depth[n, 1] > stop_at:
+            return n + 1
+    return last
+
+
+@njit(cache=True, nogil=True)
+def signed_distance(radius, corner, rho, h):
+    """Return the signed distance of a point to a cutter that is endless upwards; negative inside."""
+    qx, qy = rho - (radius - corner), corner - h
+    out = math.sqrt(max(qx, 0.0) * max(qx, 0.0) + max(qy, 0.0) * max(qy, 0.0))
+    return out + min(max(qx, qy), 0.0) - corner
+
+
+@njit(cache=True, nogil=True)
+def left_by_move(x, y, z, move, radius, corner, flute, best, bound, path, spans):
+    """Return the smaller of `best` and the signed distance of a point to the fluted cutter along a move (ramps within `bound`)."""
+    if not _is_sloped(move):
+        low, high = min(move[Z_START], move[Z_END]), max(move[Z_START], move[Z_END])
+        reach = max(low - z, z - high - flute)
+        if reach >= best:
+            return best
+        return min(best, max(signed_distance(radius, corner, point_distance(x, y, move), z - low), reach))
+    spans[0, 0], spans[0, 1] = 0.0, 1.0
+    top = 1
+    while top > 0:
+        top -= 1
+        t0, t1 = spans[top, 0], spans[top, 1]
+        low, high = part_of_move(move, t0, t1, path)
+        least = max(signed_distance(radius, corner, point_distance(x, y, path), z - low), z - high - flute)
+        if least >= best - bound:
+            continue
+        if high - low <= bound or top + 2 > len(spans):
+            best = least
+            continue
+        middle = 0.5 * (t0 + t1)
+        tip, _z = part_of_move(move, middle, middle, path)
+        best = min(best, max(signed_distance(radius, corner, point_distance(x, y, path), z - tip), z - tip - flute))
+        spans[top, 0], spans[top, 1] = t0, middle
+        spans[top + 1, 0], spans[top + 1, 1] = middle, t1
+        top += 2
+    return best
+
+
+@njit(cache=True, nogil=True)
+def fill_cells(boxes, grid, shape, counts, start, rows):
+    """Count (rows empty) or list the boxes (n, 4) that touch each cell of a grid; `counts` (cells,) is filled either way."""
+    counts[:] = 0
+    listing = len(rows) > 0
+    for n in range(len(boxes)):
+        i0 = max(int(math.floor((boxes[n, 0] - grid[0]) / grid[2])), 0)
+        j0 = max(int(math.floor((boxes[n, 1] - grid[1]) / grid[2])), 0)
+        i1 = min(int(math.floor((boxes[n, 2] - grid[0]) / grid[2])), shape[0] - 1)
+        j1 = min(int(math.floor((boxes[n, 3] - grid[1]) / grid[2])), shape[1] - 1)
+        for j in range(j0, j1 + 1):
+            for i in range(i0, i1 + 1):
+                cell = j * shape[0] + i
+                if listing:
+                    rows[start[cell] + counts[cell]] = n
+                counts[cell] += 1
+
+
+@njit(cache=True, nogil=True)
+def move_boxes(moves, margin):
+    """Return the plan box of every move (n, 4), wider by a margin (n,) on every side."""
+    out = np.empty((len(moves), 4))
+    for n in range(len(moves)):
+        x0, y0, x1, y1 = move_box(moves[n])
+        out[n, 0], out[n, 1], out[n, 2], out[n, 3] = x0 - margin[n], y0 - margin[n], x1 + margin[n], y1 + margin[n]
+    return out
+
+
+@njit(cache=True, nogil=True)
+def left_loop(first, last, points, order, moves, cutter, low, cell_start, cell_move, grid, shape, bound, left, nearest):
+    """Lower `left` (s,) to the smallest signed distance of each point to the fluted cutter of the moves listed in its cell.
+
+    order (s,) says in which order points are visited. cutter (n, 3) is radius, corner radius and flute length of each move, low (n,) its
+    lowest tip, by which the lists of a cell are sorted: what comes later is higher and can't be nearer. nearest (s,) gets the move.
+    """
+    path, spans = np.zeros(MOVE_COLUMNS), np.zeros((96, 2))
+    for k in range(first, last):
+        n = order[k]
+        x, y, z = points[n, 0], points[n, 1], points[n, 2]
+        i, j = int(math.floor((x - grid[0]) / grid[2])), int(math.floor((y - grid[1]) / grid[2]))
+        if i < 0 or j < 0 or i >= shape[0] or j >= shape[1]:
+            continue
+        cell = j * shape[0] + i
+        best, by = left[n], -1
+        for c in range(cell_start[cell], cell_start[cell + 1]):
+            m = cell_move[c]
+            if low[m] - z >= best:
+                break
+            d = left_by_move(x, y, z, moves[m], cutter[m, 0], cutter[m, 1], cutter[m, 2], best, bound, path, spans)
+            if d < best:
+                best, by = d, m
+        left[n], nearest[n] = best, by

@@ -1,0 +1,126 @@
+"""The blocks of a setup's program as plan curves with heights, the one form that every engine of the proof reads."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+
+from trunnion.findings import BadInput
+from trunnion.geometry.arrays import Floats, Ints
+from trunnion.model.program import ProgramSection
+from trunnion.model.tool import Tool
+from trunnion.model.toolpath import Motion
+from trunnion.verify.cutter import PIECE_COLUMNS, pieces_of, widest
+from trunnion.verify.kernels.contact import (
+    COS_HALF,
+    CX,
+    CY,
+    KIND,
+    MOVE_COLUMNS,
+    MX,
+    MY,
+    RADIUS,
+    START_ANGLE,
+    SWEEP,
+    X0,
+    X1,
+    Y0,
+    Y1,
+    Z_END,
+    Z_START,
+)
+
+AXIS_LEAN = 1e-9
+"""A tool axis this close to +z (its sine) stands on it: it comes from a fixed axis written with twelve digits."""
+
+
+@dataclass(frozen=True, slots=True, eq=False, kw_only=True)
+class Moves:
+    """The moves of one setup, n in order.
+
+    row (n, 15) as the contact kernel reads them; section (n,), block (n,) where each comes from; rapid (n,); feed (n,) mm/min; length (n,)
+    mm. tools: the tools in use, tool (n,) their rows; pieces (k, 7) of all tools, piece_start (t + 1,).
+    """
+
+    row: Floats
+    section: Ints
+    block: Ints
+    rapid: np.ndarray
+    feed: Floats
+    length: Floats
+    tools: tuple[Tool, ...]
+    tool: Ints
+    pieces: Floats
+    piece_start: Ints
+
+    def __len__(self) -> int:
+        return len(self.row)
+
+    @property
+    def cutters(self) -> Floats:
+        """Radius, corner radius and flute length of the cutter of each move (n, 3)."""
+        table = np.array([[t.radius, t.corner_radius, t.flute_length] for t in self.tools]).reshape(-1, 3)
+        return table[self.tool]
+
+    @property
+    def reach(self) -> Floats:
+        """The largest radius of the whole tool of each move (n,)."""
+        each = np.array([widest(self.pieces[a:b]) for a, b in zip(self.piece_start[:-1], self.piece_start[1:], strict=True)])
+        return each[self.tool]
+
+
+def moves_of(sections: Sequence[ProgramSection]) -> Moves:
+    """Return the moves of a setup's sections in order.
+
+    A section's first block starts where it ends: the tool comes from its change. Raises `BadInput` for a turning tool axis.
+    """
+    rows, sections_of, blocks, rapid, feeds, lengths, tool_row = [], [], [], [], [], [], []
+    tools: dict[Tool, int] = {}
+    for index, section in enumerate(sections):
+        path = section.path
+        n = len(path)
+        if n and np.abs(path.axis[:, :2]).max() > AXIS_LEAN:
+            raise BadInput(f"operation {section.operation} turns the tool axis; this proof reads a fixed axis only: split the setup")
+        start, sweep = path.starts(), path.sweeps()
+        rows.append(_rows(start, path.position, path.centre, sweep, path.motion))
+        sections_of.append(np.full(n, index))
+        blocks.append(np.arange(n))
+        rapid.append(path.motion == Motion.RAPID)
+        feeds.append(path.feed)
+        lengths.append(path.lengths())
+        tool_row.append(np.full(n, tools.setdefault(section.tool, len(tools))))
+    pieces = [pieces_of(t) for t in tools]
+    return Moves(row=np.vstack([np.zeros((0, MOVE_COLUMNS)), *rows]), section=_ints(sections_of), block=_ints(blocks),
+                 rapid=np.concatenate([np.zeros(0, bool), *rapid]), feed=np.concatenate([np.zeros(0), *feeds]),
+                 length=np.concatenate([np.zeros(0), *lengths]), tools=tuple(tools), tool=_ints(tool_row),
+                 pieces=np.vstack([np.zeros((0, PIECE_COLUMNS)), *pieces]), piece_start=np.cumsum([0, *(len(p) for p in pieces)]))
+
+
+def pose_rows(tips: Floats) -> Floats:
+    """Return moves (n, 15) that stand still at tips (n, 3)."""
+    tips = np.asarray(tips, dtype=np.float64).reshape(-1, 3)
+    return _rows(tips, tips, np.full_like(tips, np.nan), np.zeros(len(tips)), np.zeros(len(tips), int))
+
+
+def _ints(parts: list[Ints]) -> Ints:
+    return np.concatenate([np.zeros(0, int), *parts]).astype(np.int64)
+
+
+def _rows(start: Floats, end: Floats, centre: Floats, sweep: Floats, motion: Ints) -> Floats:
+    row = np.zeros((len(end), MOVE_COLUMNS))
+    row[:, [X0, Y0, Z_START]], row[:, [X1, Y1, Z_END]] = start, end
+    arc = motion >= Motion.ARC_CW
+    if arc.any():
+        c = centre[arc, :2]
+        away, back = start[arc, :2] - c, end[arc, :2] - c
+        # Posted ends are rounded: the mean of both radii halves what an end may lie off the arc.
+        radius = 0.5 * (np.hypot(away[:, 0], away[:, 1]) + np.hypot(back[:, 0], back[:, 1]))
+        angle, turn = np.arctan2(away[:, 1], away[:, 0]), sweep[arc]
+        middle, half = angle + 0.5 * turn, np.minimum(0.5 * np.abs(turn), np.pi)
+        row[arc, KIND] = 1.0
+        row[np.ix_(arc, [CX, CY])] = c
+        row[arc, RADIUS], row[arc, MX], row[arc, MY], row[arc, COS_HALF] = radius, np.cos(middle), np.sin(middle), np.cos(half)
+        row[arc, START_ANGLE], row[arc, SWEEP] = angle, turn
+    return row
