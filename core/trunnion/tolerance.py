@@ -22,6 +22,15 @@ AREA = 1e-4
 CHORD = 5e-3
 """Chord error of meshes that are only looked at."""
 
+MESH_ANGLE = 0.3
+"""Turn from chord to chord (radians) of meshes that are only looked at; finer ones cost seconds (measured) and show nothing more."""
+
+FITTED = 1e-4
+"""How far an arc may be from the curve, or a plain surface from the free-form one, that it stands for."""
+
+SECTION_STEP = 1e-5
+"""A section plane that touches a vertex or holds a face is moved up by this: far below any tolerance of a part, ten times COINCIDENT."""
+
 GOUGE = 0.02
 """Default limit of the verdict: how deep anything may enter the finished part."""
 

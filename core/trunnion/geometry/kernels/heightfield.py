@@ -1,0 +1,109 @@
+"""Height fields for planning: lowered under a cutter's moves, asked for the greatest height under a straight move.
+
+A field is (nx, ny) heights of square cells of side `cell`; cell (i, j) spans x from `x0 + i cell` and y from `y0 + j cell`. Both kernels
+err on the side of material: a cell goes down only as far as the cutter covers all of it, and counts as touched when any of it may be.
+"""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+from numba import njit
+
+from trunnion.geometry.arrays import Floats
+
+HALF_DIAGONAL = math.sqrt(0.5)
+
+
+@njit(cache=True)
+def lower(heights: Floats, x0: float, y0: float, cell: float, starts: Floats, ends: Floats, radius: float, corner: float) -> None:
+    """Lower a field in place under straight moves of the tip from `starts` to `ends` (n, 3) of a flat or bull cutter."""
+    nx, ny = heights.shape
+    slack = cell * HALF_DIAGONAL
+    reach = radius - slack
+    if reach <= 0.0:
+        return
+    for n in range(len(starts)):
+        ax, ay, bx, by = starts[n, 0], starts[n, 1], ends[n, 0], ends[n, 1]
+        z = max(starts[n, 2], ends[n, 2])
+        dx, dy = bx - ax, by - ay
+        square = dx * dx + dy * dy
+        i0 = max(int(math.floor((min(ax, bx) - reach - x0) / cell - 0.5)), 0)
+        i1 = min(int(math.ceil((max(ax, bx) + reach - x0) / cell - 0.5)) + 1, nx)
+        j0 = max(int(math.floor((min(ay, by) - reach - y0) / cell - 0.5)), 0)
+        j1 = min(int(math.ceil((max(ay, by) + reach - y0) / cell - 0.5)) + 1, ny)
+        for i in range(i0, i1):
+            px = x0 + (i + 0.5) * cell - ax
+            for j in range(j0, j1):
+                if heights[i, j] <= z:
+                    continue
+                py = y0 + (j + 0.5) * cell - ay
+                t = 0.0
+                if square > 0.0:
+                    t = min(max((px * dx + py * dy) / square, 0.0), 1.0)
+                far = math.hypot(px - t * dx, py - t * dy) + slack
+                if far > radius:
+                    continue
+                inner = far - (radius - corner)
+                lift = z
+                if inner > 0.0:
+                    lift = z + corner - math.sqrt(max(corner * corner - inner * inner, 0.0))
+                if lift < heights[i, j]:
+                    heights[i, j] = lift
+
+
+@njit(cache=True)
+def highest(heights: Floats, x0: float, y0: float, cell: float, start: Floats, end: Floats, radius: float) -> float:
+    """Return the greatest height of the cells that a disc may touch on its straight way from `start` to `end` (2,), or -inf."""
+    nx, ny = heights.shape
+    reach = radius + cell * HALF_DIAGONAL
+    ax, ay, bx, by = start[0], start[1], end[0], end[1]
+    dx, dy = bx - ax, by - ay
+    square = dx * dx + dy * dy
+    i0 = max(int(math.floor((min(ax, bx) - reach - x0) / cell - 0.5)), 0)
+    i1 = min(int(math.ceil((max(ax, bx) + reach - x0) / cell - 0.5)) + 1, nx)
+    j0 = max(int(math.floor((min(ay, by) - reach - y0) / cell - 0.5)), 0)
+    j1 = min(int(math.ceil((max(ay, by) + reach - y0) / cell - 0.5)) + 1, ny)
+    top = -np.inf
+    for i in range(i0, i1):
+        px = x0 + (i + 0.5) * cell - ax
+        for j in range(j0, j1):
+            if heights[i, j] <= top:
+                continue
+            py = y0 + (j + 0.5) * cell - ay
+            t = 0.0
+            if square > 0.0:
+                t = min(max((px * dx + py * dy) / square, 0.0), 1.0)
+            if math.hypot(px - t * dx, py - t * dy) < reach:
+                top = heights[i, j]
+    return top
+
+
+def lower_reference(heights: Floats, x0: float, y0: float, cell: float, starts: Floats, ends: Floats, radius: float,
+                    corner: float) -> None:
+    """The plain form of `lower`."""
+    centres = _centres(heights, x0, y0, cell)
+    for a, b in zip(starts, ends, strict=True):
+        far = _distance(centres, a[:2], b[:2]) + cell * HALF_DIAGONAL
+        inner = np.maximum(far - (radius - corner), 0.0)
+        lift = max(a[2], b[2]) + corner - np.sqrt(np.maximum(corner**2 - inner**2, 0.0))
+        heights[...] = np.where(far <= radius, np.minimum(heights, lift), heights)
+
+
+def highest_reference(heights: Floats, x0: float, y0: float, cell: float, start: Floats, end: Floats, radius: float) -> float:
+    """The plain form of `highest`."""
+    touched = _distance(_centres(heights, x0, y0, cell), start, end) < radius + cell * HALF_DIAGONAL
+    return float(heights[touched].max(initial=-np.inf))
+
+
+def _centres(heights: Floats, x0: float, y0: float, cell: float) -> Floats:
+    i, j = np.meshgrid(np.arange(heights.shape[0]), np.arange(heights.shape[1]), indexing="ij")
+    return np.stack([x0 + (i + 0.5) * cell, y0 + (j + 0.5) * cell], axis=-1)
+
+
+def _distance(points: Floats, start: Floats, end: Floats) -> Floats:
+    way = end - start
+    square = float(way @ way)
+    t = np.clip(((points - start) @ way) / square, 0.0, 1.0) if square > 0.0 else np.zeros(points.shape[:-1])
+    return np.linalg.norm(points - start - t[..., None] * way, axis=-1)

@@ -1,0 +1,161 @@
+"""Cuts what larger cutters left in the corners of a pocket: only the corner, entered and left tangentially on the cut wall."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterator
+from dataclasses import dataclass
+
+from trunnion import tolerance
+from trunnion.findings import Finding, error, info
+from trunnion.geometry.curve import Curve
+from trunnion.geometry.region import Region
+from trunnion.model.operation import CuttingData
+from trunnion.model.setup import Setup
+from trunnion.model.tool import Tool
+from trunnion.plan.drive import DriveLevel, PlaneDrive, foot_clearance
+from trunnion.progress import Progress
+from trunnion.settings import setting, settings
+from trunnion.toolpath.builder import PathBuilder
+from trunnion.toolpath.contour import Approach, cut_open, cut_parts
+from trunnion.toolpath.contract import Planned, strategy
+from trunnion.toolpath.levels import fillet_steps, steps_down
+from trunnion.toolpath.order import nearest_first
+from trunnion.toolpath.reach import Room, parts_where
+from trunnion.toolpath.rings import depth_first, ring_tree, safe_step
+from trunnion.toolpath.stock import PlanningStock
+
+SMALLEST_REST = 0.02
+"""mm2: a rest smaller than this can't be told from two offsets that differ in their last digits."""
+
+SMALLEST_LEFTOVER = 0.05
+"""mm2: less that is left needs no word."""
+
+OVERRUN = 1.0
+"""mm that the whole cutter runs past a rest along the wall."""
+
+TOUCH = 0.02
+"""mm: a pass that would enter a rest by less is not made."""
+
+
+@settings("plane.corner")
+class CornerSettings:
+    """How corners are cleared and finished. Width and depth of cut come with the cutting data, allowances with the drive."""
+
+    lead_radius: float = setting(2.0, unit="mm", low=0.2, high=100.0, label="Lead radius",
+                                 help="Radius of the tangential arcs onto the wall and off it; smaller where there is no room.")
+    scallop: float = setting(0.01, unit="mm", low=0.001, high=1.0, label="Scallop",
+                             help="Height of the cusps on a fillet that is larger than the cutter's corner.")
+    ramp_angle: float = setting(2.0, unit="deg", low=0.5, high=30.0, label="Entry angle", help="Slope of a ramp where no lead fits.")
+    safety: float = setting(2.0, unit="mm", low=0.2, high=50.0, label="Safety distance",
+                            help="Where a rapid ends above what may still be there.")
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class _Height:
+    """One height that the corners of a band are cut at, and what the axis keeps from the walls there."""
+
+    z: float
+    distance: float
+
+
+@strategy(settings=CornerSettings)
+def corner(drive: PlaneDrive, tool: Tool, data: CuttingData, stock: PlanningStock, setup: Setup, settings: CornerSettings,
+           progress: Progress) -> Planned:
+    """Return the motions that clear what a cutter of `drive.earlier_radius` left in the corners, and what this one leaves."""
+    builder = PathBuilder(tool, data, stock, setup, settings.safety)
+    approach = Approach(radius=settings.lead_radius, overlap=0.0, ramp=math.radians(settings.ramp_angle))
+    step = safe_step(tool, data.width)
+    findings: list[Finding] = []
+    above = drive.top
+    for n, level in enumerate(drive.levels):
+        progress.at(n / len(drive.levels), f"{drive.feature}: corners down to {level.bottom:.3f}")
+        heights = _heights(drive, n, above, tool, data, settings.scallop)
+        above = heights[-1].z if heights else above
+        rests = _rests(drive, level).split()
+        rooms: dict[float, tuple[Room, tuple[Curve, ...]]] = {}
+        for rest in nearest_first(rests, lambda: builder.here, lambda r, p: abs(float(r.signed_distance(p)[0]))):
+            clip, touched = rest.offset(tool.radius + OVERRUN), rest.offset(tool.radius - TOUCH)
+            for height in heights:
+                progress.check()
+                if height.distance not in rooms:
+                    rooms[height.distance] = _passes(level, height.distance, step, _reaching(rests, tool))
+                room, rims = rooms[height.distance]
+                for part in _beside(rims, clip, touched):
+                    if part.closed:
+                        cut_parts(builder, [part], height.z, room, approach)
+                    else:
+                        cut_open(builder, part, height.z, room, approach, past=False)
+        findings += _left(drive, level, tool, rests)
+    return Planned(path=builder.finished(), findings=tuple(findings))
+
+
+def _rests(drive: PlaneDrive, level: DriveLevel) -> Region:
+    """Return what the earlier cutter left of a band's wanted area, the allowance on the walls taken off."""
+    wanted = level.wanted.offset(-drive.wall_allowance) if drive.wall_allowance > 0.0 else level.wanted
+    if drive.earlier_radius <= 0.0:
+        return wanted
+    cut = level.boundary.offset(-drive.earlier_radius - drive.earlier_allowance)
+    slack = max(drive.earlier_allowance - drive.wall_allowance, 0.0) + tolerance.SEW
+    rest = wanted.minus(cut.offset(drive.earlier_radius + slack)) if cut else wanted
+    return Region(tuple(p for p in rest.pieces if p.area > SMALLEST_REST))
+
+
+def _heights(drive: PlaneDrive, row: int, above: float, tool: Tool, data: CuttingData, scallop: float) -> list[_Height]:
+    level = drive.levels[row]
+    is_face = row + 1 == len(drive.levels) or level.wanted.area - drive.levels[row + 1].wanted.area > SMALLEST_LEFTOVER
+    bottom = level.bottom + (drive.floor_allowance if is_face else 0.0)
+    if above - bottom < tolerance.SEW:
+        return []
+    on_floor = any(abs(f.z - level.bottom) < tolerance.SEW and f.fillet > 0.0 for f in drive.floors)
+    finishes = drive.wall_allowance == 0.0 and drive.floor_allowance == 0.0
+    foot = fillet_steps(drive.fillet, tool.corner_radius, scallop) if on_floor and finishes else (0.0,)
+    straight = steps_down(above, bottom + foot[0], min(data.depth, tool.flute_length)) if above - bottom > foot[0] + tolerance.SEW else ()
+    heights = [*straight, *(bottom + t for t in foot[1 if straight else 0 :])]
+    radius = tool.radius + drive.wall_allowance
+    return [_Height(z, radius + _foot(drive, tool, z)) for z in heights]
+
+
+def _foot(drive: PlaneDrive, tool: Tool, z: float) -> float:
+    above = [z - f.z for f in drive.floors if z >= f.z - tolerance.SEW and f.fillet > 0.0]
+    return max((foot_clearance(drive.fillet, tool.corner_radius, t) for t in above), default=0.0)
+
+
+def _reaching(rests: tuple[Region, ...], tool: Tool) -> Region:
+    return Region(tuple(p for r in rests for p in r.offset(tool.radius).pieces))
+
+
+def _passes(level: DriveLevel, distance: float, step: float, near: Region) -> tuple[Room, tuple[Curve, ...]]:
+    """Return the room and the rims of its rings that come near a rest, the innermost first."""
+    room = Room.of(level.boundary, distance)
+    if not room.region:
+        return room, ()
+    return room, tuple(c for ring in depth_first(ring_tree(room.region, step, near)) for c in ring.curves())
+
+
+def _beside(rims: tuple[Curve, ...], clip: Region, touched: Region) -> Iterator[Curve]:
+    """Yield the parts of the passes beside one rest that cut into it."""
+    low, high = clip.box()
+    for rim in rims:
+        first, last = rim.box()
+        if (first > high).any() or (last < low).any():
+            continue
+        for part in parts_where(rim, clip.signed_distance):
+            if parts_where(part, touched.signed_distance):
+                yield part
+
+
+def _left(drive: PlaneDrive, level: DriveLevel, tool: Tool, rests: tuple[Region, ...]) -> list[Finding]:
+    if not rests:
+        return []
+    distance = tool.radius + drive.wall_allowance
+    room = Room.of(level.boundary, distance)
+    rest = Region(tuple(p for r in rests for p in r.pieces))
+    if not room.region:
+        return [error("corner.too-wide", f"{tool.name} does not fit into {drive.feature} below {level.top:.2f}: {rest.area:.1f} mm2 stay",
+                      drive.feature, remedy="choose a smaller cutter")]
+    left = rest.minus(room.region.offset(tool.radius + tolerance.SEW)).area
+    if left < SMALLEST_LEFTOVER:
+        return []
+    return [info("corner.left", f"{left:.1f} mm2 in corners of {drive.feature} between {level.bottom:.2f} and {level.top:.2f} stay: they "
+                 f"are sharper than {tool.name}", drive.feature, remedy="choose a smaller cutter for the corners")]

@@ -1,0 +1,88 @@
+"""Faces the blank's top: straight rows over its length in layers, starting, turning and ending outside the material."""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+
+from trunnion import tolerance
+from trunnion.findings import error
+from trunnion.geometry.arrays import Floats
+from trunnion.model.operation import CuttingData
+from trunnion.model.setup import Setup
+from trunnion.model.tool import Tool
+from trunnion.model.toolpath import Mark
+from trunnion.plan.drive import PlaneDrive
+from trunnion.progress import Progress
+from trunnion.settings import setting, settings
+from trunnion.toolpath.builder import PathBuilder
+from trunnion.toolpath.contract import Planned, strategy
+from trunnion.toolpath.levels import steps_down
+from trunnion.toolpath.link import travel
+from trunnion.toolpath.rings import SAFE_SHARE
+from trunnion.toolpath.stock import PlanningStock
+
+
+@settings("plane.face")
+class FaceSettings:
+    """How a top is faced. Width and depth of cut come with the cutting data."""
+
+    pattern: str = setting("zigzag", label="Pattern", help="Rows to and fro, or all rows in the climbing direction.",
+                           choices=("zigzag", "climb"))
+    run_out: float = setting(3.0, unit="mm", low=0.5, high=100.0, label="Run-out", help="How far the whole cutter leaves the blank.")
+    overlap: float = setting(0.5, unit="mm", low=0.0, high=50.0, label="Overlap", help="How far the last row reaches past the edge.")
+    safety: float = setting(2.0, unit="mm", low=0.2, high=50.0, label="Safety distance",
+                            help="Where a rapid ends above what may still be there.")
+
+
+@strategy(settings=FaceSettings)
+def face(drive: PlaneDrive, tool: Tool, data: CuttingData, stock: PlanningStock, setup: Setup, settings: FaceSettings,
+         progress: Progress) -> Planned:
+    """Return the motions that take the blank's top down to the drive's bottom."""
+    builder = PathBuilder(tool, data, stock, setup, settings.safety)
+    area = drive.levels[0].wanted if drive.levels else None
+    if not area:
+        return Planned(findings=(error("face.nothing", f"{drive.feature} has no top to face", drive.feature, remedy="suppress it"),))
+    (x0, y0), (x1, y1) = area.box()
+    # Rows run along the longer side; `turned` says that this is y.
+    turned = y1 - y0 > x1 - x0
+    along, across = ((y0, y1), (x0, x1)) if turned else ((x0, x1), (y0, y1))
+    rows = _rows(across, tool, data.width, settings.overlap)
+    out = tool.radius + settings.run_out
+    heights = steps_down(max(drive.top, drive.stock_top), drive.bottom, data.depth)
+    for z in heights:
+        progress.at((drive.top - z) / max(drive.top - drive.bottom, tolerance.SEW), f"{drive.feature}: layer at {z:.3f}")
+        _cut_rows(builder, rows, (along[0] - out, along[1] + out), z, turned, settings.pattern == "zigzag")
+    return Planned(path=builder.finished())
+
+
+def _rows(across: tuple[float, float], tool: Tool, width: float, overlap: float) -> Floats:
+    """Return where the middles of the rows are: each takes one width, the first and last cover the edges with their flat end."""
+    flat = tool.radius - tool.corner_radius
+    size = across[1] - across[0]
+    if size + 2.0 * overlap <= 2.0 * SAFE_SHARE * flat:
+        return np.array([0.5 * (across[0] + across[1])])
+    step = min(width, 2.0 * SAFE_SHARE * flat)
+    count = max(1, math.ceil((size + overlap) / step - tolerance.COINCIDENT))
+    middles: Floats = across[0] - flat + (size + overlap) / count * np.arange(1.0, count + 1.0)
+    return middles
+
+
+def _cut_rows(builder: PathBuilder, rows: Floats, along: tuple[float, float], z: float, turned: bool, zigzag: bool) -> None:
+    def place(u: float, v: float) -> tuple[float, float, float]:
+        return (v, u, z) if turned else (u, v, z)
+
+    # Climbing with the uncut material on the right: the first row goes towards -x (towards +y when turned, where right is +x).
+    forward = turned
+    for n, v in enumerate(rows):
+        begin, end = along if forward else along[::-1]
+        if n == 0 or not zigzag:
+            travel(builder, place(begin, v)[:2], z)
+        builder.line(place(end, v), builder.data.feed)
+        if zigzag and n + 1 < len(rows):
+            # Half a turn outside, anticlockwise where the next row lies on the left of the direction.
+            left = (rows[n + 1] > v) == (forward != turned)
+            middle = place(end, 0.5 * (v + rows[n + 1]))
+            builder.arc(place(end, rows[n + 1]), middle[:2], math.pi if left else -math.pi, builder.data.feed, Mark.LINK)
+            forward = not forward

@@ -1,0 +1,99 @@
+"""Roughs a pocket by layers: contour-parallel passes from the inside out, entered by helix, ramp or from outside."""
+
+from __future__ import annotations
+
+import math
+
+from trunnion import tolerance
+from trunnion.findings import Finding, error, face_tags, info
+from trunnion.geometry.region import Region
+from trunnion.model.operation import CuttingData
+from trunnion.model.setup import Setup
+from trunnion.model.tool import Tool
+from trunnion.plan.drive import DriveLevel, PlaneDrive, foot_clearance
+from trunnion.progress import Progress
+from trunnion.settings import setting, settings
+from trunnion.toolpath.builder import PathBuilder
+from trunnion.toolpath.clear import Layer, Manner, clear
+from trunnion.toolpath.contract import Planned, strategy
+from trunnion.toolpath.levels import layers
+from trunnion.toolpath.passes import Passes, passes_over
+from trunnion.toolpath.rings import safe_step
+from trunnion.toolpath.stock import PlanningStock
+
+SMALLEST_LEFTOVER = 1.0
+"""mm2: less that is left needs no word."""
+
+
+@settings("plane.rough")
+class RoughSettings:
+    """How a pocket is roughed. Width and depth of cut come with the cutting data, allowances with the drive."""
+
+    ramp_angle: float = setting(3.0, unit="deg", low=0.5, high=30.0, label="Entry angle",
+                                help="Slope of the helix or ramp into full material.")
+    slot_feed: float = setting(0.6, unit="of feed", low=0.1, high=1.0, label="Feed in full width",
+                               help="Share of the feed while the whole cutter's width is in material.")
+    safety: float = setting(2.0, unit="mm", low=0.2, high=50.0, label="Safety distance",
+                            help="Where a rapid ends above what may still be there.")
+
+
+@strategy(settings=RoughSettings)
+def rough(drive: PlaneDrive, tool: Tool, data: CuttingData, stock: PlanningStock, setup: Setup, settings: RoughSettings,
+          progress: Progress) -> Planned:
+    """Return the motions that clear every band of the drive layer by layer down to the floors' allowance, and what the cutter leaves."""
+    builder = PathBuilder(tool, data, stock, setup, settings.safety)
+    manner = Manner(step=safe_step(tool, data.width), ramp=math.radians(settings.ramp_angle), slot=settings.slot_feed)
+    findings: list[Finding] = []
+    above, first = max(drive.top, drive.stock_top), True
+    for n, level in enumerate(drive.levels):
+        heights = layers(above, level.bottom, data.depth, _horizontals(drive, n), drive.floor_allowance)
+        made: dict[float, Passes] = {}
+        for z in heights:
+            progress.at((drive.top - z) / max(drive.top - drive.bottom, tolerance.SEW), f"{drive.feature}: layer at {z:.3f}")
+            distance = tool.radius + drive.wall_allowance + _foot(drive, tool, z)
+            if distance not in made:
+                made[distance] = passes_over(level.wanted, level.boundary, tool, distance, manner.step)
+            passes = made[distance]
+            if passes.rings and not _is_clear(builder, level.wanted, z):
+                known = None if first or passes.clip is not None else above
+                clear(builder, Layer(z=z, rings=passes.rings, room=passes.room, clip=passes.clip, top=known), manner, progress)
+            above, first = z, False
+        findings += _left(drive, level, tool, made)
+    return Planned(path=builder.finished(), findings=tuple(findings))
+
+
+def _horizontals(drive: PlaneDrive, row: int) -> list[float]:
+    """Return the heights of horizontal faces that the layers of a band end on: floors, and tops of what stands in the next band."""
+    level = drive.levels[row]
+    found = [f.z for f in drive.floors]
+    if row + 1 == len(drive.levels) or level.wanted.area - drive.levels[row + 1].wanted.area > SMALLEST_LEFTOVER:
+        found.append(level.bottom)
+    return found
+
+
+def _foot(drive: PlaneDrive, tool: Tool, z: float) -> float:
+    above = [z - f.z for f in drive.floors if z >= f.z - tolerance.SEW]
+    return max((foot_clearance(drive.fillet, tool.corner_radius, t) for t in above), default=0.0)
+
+
+def _is_clear(builder: PathBuilder, wanted: Region, z: float) -> bool:
+    """Say whether the stock has nothing left above `z` over an area, its rim not looked at."""
+    stock = builder.stock()
+    inner = wanted.offset(-3.0 * stock.cell)
+    return bool(inner) and not len(stock.places_above(z + tolerance.COINCIDENT, inner))
+
+
+def _left(drive: PlaneDrive, level: DriveLevel, tool: Tool, made: dict[float, Passes]) -> list[Finding]:
+    if not made:
+        return []
+    distance = max(made)
+    room = made[distance].room
+    if not room.region:
+        return [error("rough.too-wide", f"{tool.name} does not fit between the walls of {drive.feature} below {level.top:.2f}: "
+                      f"{level.wanted.area:.0f} mm2 stay", drive.feature, *face_tags(drive.faces), remedy="choose a smaller cutter")]
+    left = level.wanted.minus(room.region.offset(distance + tolerance.SEW))
+    area = left.area
+    if area < SMALLEST_LEFTOVER:
+        return []
+    return [info("rough.left", f"{area:.0f} mm2 of {drive.feature} between {level.bottom:.2f} and {level.top:.2f} stay in corners that "
+                 f"{tool.name} can't reach", drive.feature, remedy="clear them by a smaller cutter afterwards")]

@@ -1,0 +1,100 @@
+"""Finishes walls: climbing passes along the guide lines in axial steps, then down the fillet to the floor's height."""
+
+from __future__ import annotations
+
+import math
+
+from trunnion import tolerance
+from trunnion.findings import Finding, error, face_tags, info
+from trunnion.geometry.region import Region
+from trunnion.model.operation import CuttingData
+from trunnion.model.setup import Setup
+from trunnion.model.tool import Tool
+from trunnion.plan.drive import PlaneDrive, WallGuide, foot_clearance
+from trunnion.progress import Progress
+from trunnion.settings import setting, settings
+from trunnion.toolpath.builder import PathBuilder
+from trunnion.toolpath.contour import Approach, contour_parts, cut_parts, length_out_of_reach
+from trunnion.toolpath.contract import Planned, strategy
+from trunnion.toolpath.levels import fillet_steps, steps_down
+from trunnion.toolpath.reach import Room, level_at
+from trunnion.toolpath.stock import PlanningStock
+
+SMALLEST_LEFTOVER = 1.0
+"""mm2: less that is left needs no word."""
+
+MOST_FILLET_STEPS = 40
+"""More passes than this on one fillet mean that the cutter is the wrong one."""
+
+
+@settings("plane.wall")
+class WallSettings:
+    """How walls are finished. The axial step comes with the cutting data."""
+
+    lead_radius: float = setting(4.0, unit="mm", low=0.2, high=100.0, label="Lead radius",
+                                 help="Radius of the tangential arcs onto the wall and off it; smaller where there is no room.")
+    overlap: float = setting(2.0, unit="mm", low=0.0, high=50.0, label="Overlap", help="How far a closed pass runs on past its start.")
+    spring: bool = setting(False, label="Spring pass", help="Go along each wall a second time without moving in.")
+    scallop: float = setting(0.01, unit="mm", low=0.001, high=1.0, label="Scallop",
+                             help="Height of the cusps on a fillet that is larger than the cutter's corner.")
+    ramp_angle: float = setting(2.0, unit="deg", low=0.5, high=30.0, label="Entry angle", help="Slope of a ramp where no lead fits.")
+    safety: float = setting(2.0, unit="mm", low=0.2, high=50.0, label="Safety distance",
+                            help="Where a rapid ends above what may still be there.")
+
+
+@strategy(settings=WallSettings)
+def wall(drive: PlaneDrive, tool: Tool, data: CuttingData, stock: PlanningStock, setup: Setup, settings: WallSettings,
+         progress: Progress) -> Planned:
+    """Return the motions that finish every wall of the drive, and the lengths of wall that the cutter can't reach."""
+    builder = PathBuilder(tool, data, stock, setup, settings.safety)
+    approach = Approach(radius=settings.lead_radius, overlap=settings.overlap, ramp=math.radians(settings.ramp_angle),
+                        rounds=2 if settings.spring else 1)
+    findings: list[Finding] = []
+    rooms: dict[tuple[int, float], Room] = {}
+    for n, guide in enumerate(drive.walls):
+        found = False
+        for z, extra in _heights(guide, tool, min(data.depth, tool.flute_length), settings.scallop):
+            progress.at(n / len(drive.walls), f"{drive.feature}: wall at {z:.3f}")
+            boundary = level_at(drive, z).boundary
+            distance = tool.radius + drive.wall_allowance + extra
+            room = _room(rooms, boundary, distance)
+            parts = contour_parts(room, guide.curve, distance)
+            cut_parts(builder, parts, z, room, approach)
+            found = found or bool(parts)
+        findings += _left(drive, guide, tool, found, rooms)
+    if not drive.walls:
+        findings.append(error("wall.none", f"{drive.feature} has no wall to finish", drive.feature, remedy="suppress the operation"))
+    return Planned(path=builder.finished(), findings=tuple(findings))
+
+
+def _heights(guide: WallGuide, tool: Tool, step: float, scallop: float) -> list[tuple[float, float]]:
+    """Return (height, what is kept more than the radius from the wall) of all passes, downwards."""
+    foot = fillet_steps(guide.fillet, tool.corner_radius, scallop)
+    straight = steps_down(guide.top, guide.bottom + foot[0], step) if guide.top - guide.bottom > foot[0] + tolerance.SEW else ()
+    heights = [*straight, *(guide.bottom + t for t in foot[1 if straight else 0 :])]
+    return [(z, foot_clearance(guide.fillet, tool.corner_radius, z - guide.bottom)) for z in heights]
+
+
+def _room(rooms: dict[tuple[int, float], Room], boundary: Region, distance: float) -> Room:
+    key = (id(boundary), distance)
+    if key not in rooms:
+        rooms[key] = Room.of(boundary, distance)
+    return rooms[key]
+
+
+def _left(drive: PlaneDrive, guide: WallGuide, tool: Tool, found: bool, rooms: dict[tuple[int, float], Room]) -> list[Finding]:
+    height = guide.top - guide.bottom
+    if not found:
+        return [error("wall.too-narrow", f"{tool.name} can't come to a wall of {drive.feature}: {guide.curve.length * height:.0f} mm2 stay",
+                      drive.feature, *face_tags(guide.faces), remedy="choose a smaller cutter")]
+    steps = len(fillet_steps(guide.fillet, tool.corner_radius, tolerance.GOUGE))
+    findings = []
+    if steps > MOST_FILLET_STEPS:
+        findings.append(info("wall.fillet-cutter", f"the fillet of {guide.fillet:g} mm takes {steps} passes with {tool.name}",
+                             drive.feature, *face_tags(guide.faces), remedy="choose a cutter whose corner radius is the fillet's"))
+    distance = tool.radius + drive.wall_allowance
+    missed = length_out_of_reach(_room(rooms, level_at(drive, guide.bottom).boundary, distance), guide.curve, distance)
+    if missed * height > SMALLEST_LEFTOVER:
+        findings.append(info("wall.left", f"{missed * height:.0f} mm2 of wall stay in corners that {tool.name} can't reach", drive.feature,
+                             *face_tags(guide.faces), remedy="finish them with the corners, by a smaller cutter"))
+    return findings

@@ -1,0 +1,62 @@
+"""Contour-parallel passes: nested offsets of the room of the axis, as a tree from the rim inwards.
+
+No post stays between or inside the passes as long as the step is at most the radius of the cutter's flat end: a place between two
+neighbouring offsets is nearer than one step to the outer one, and the innermost offset is nowhere deeper than one step.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import dataclass
+
+from trunnion.geometry.arrays import Floats
+from trunnion.geometry.curve import Curve
+from trunnion.geometry.region import Region
+from trunnion.model.tool import Tool
+from trunnion.toolpath.reach import points_along
+
+SAFE_SHARE = 0.95
+"""Of the flat end's radius: the widest step; the rest is for the machine."""
+
+CLIP_SPACING = 2.0
+"""mm between the places of a clip's rim that decide whether a ring can touch it."""
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Ring:
+    """One piece of an offset of the room: its rim is a pass, `inner` are the pieces one step further inside."""
+
+    region: Region
+    inner: tuple[Ring, ...]
+
+    def curves(self) -> tuple[Curve, ...]:
+        """Return the loops of the rim, the room on the left of each."""
+        return self.region.curves()
+
+
+def safe_step(tool: Tool, width: float) -> float:
+    """Return the step between passes in mm that leaves nothing between them: `width` unless the cutter's flat end is too small."""
+    flat = tool.radius - tool.corner_radius
+    return min(width, SAFE_SHARE * max(flat, 0.5 * tool.radius))
+
+
+def ring_tree(room: Region, step: float, clip: Region | None = None) -> tuple[Ring, ...]:
+    """Return the rings of a room, a step apart; with a clip, only those that can touch it."""
+    points = None if clip is None else [points_along(c, CLIP_SPACING)[1] for c in clip.curves()]
+    return tuple(_ring(piece, step, points) for piece in room.split() if _touches(piece, points))
+
+
+def depth_first(rings: tuple[Ring, ...]) -> Iterator[Ring]:
+    """Yield all rings of a tree, inner ones before the ring around them."""
+    for ring in rings:
+        yield from depth_first(ring.inner)
+        yield ring
+
+
+def _ring(piece: Region, step: float, points: list[Floats] | None) -> Ring:
+    inside = piece.offset(-step).split()
+    return Ring(piece, tuple(_ring(p, step, points) for p in inside if _touches(p, points)))
+
+
+def _touches(piece: Region, points: list[Floats] | None) -> bool:
+    return points is None or any(bool(piece.contains(p).any()) for p in points)
