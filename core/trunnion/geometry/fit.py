@@ -484,7 +484,8 @@ def crossings(s: Segments) -> tuple[Ints, Floats, Floats]:
 def _meeting_boxes(low: Floats, high: Floats) -> tuple[Ints, Ints]:
     meet = (low[:, None, 0] <= high[None, :, 0]) & (low[None, :, 0] <= high[:, None, 0])
     meet &= (low[:, None, 1] <= high[None, :, 1]) & (low[None, :, 1] <= high[:, None, 1])
-    return np.nonzero(np.triu(meet, 1))
+    i, j = np.nonzero(np.triu(meet, 1))
+    return i, j
 
 
 def place_on(s: Segments, rows: Ints, points: Floats) -> Floats:

@@ -12,12 +12,16 @@ from dataclasses import dataclass
 
 import numpy as np
 import shapely
+from numpy.typing import NDArray
 
 from trunnion import tolerance
 from trunnion.geometry import fit
 from trunnion.geometry.arrays import Bools, Floats, Ints
 from trunnion.geometry.curve import Curve, Segments, distance_to, join_segments
 from trunnion.geometry.region import EMPTY_REGION, Region, restored_region
+
+MEETS = 4.0 * fit.CLOSE
+"""Pieces of a parallel that were cut at one crossing meet within this: each may have moved by the tolerance on two sides."""
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -41,13 +45,24 @@ def offset_region(region: Region, distance: float) -> Region:
     owner = np.repeat(np.arange(len(count)), count)
     real = count[owner] > 1
     _, line = np.unique(owner[real], return_inverse=True)
-    lines: list[shapely.LineString] = list(shapely.linestrings(chords.points[real], indices=line))
+    lines = np.asarray(shapely.linestrings(chords.points[real], indices=line)).tolist()
     faces = shapely.get_parts(shapely.polygonize([shapely.node(shapely.MultiLineString(lines))]))
     if len(faces) == 0:
         return EMPTY_REGION
-    inside = shapely.get_coordinates(shapely.point_on_surface(faces))
-    kept = faces[region.signed_distance(inside) > -distance]
+    kept = faces[_margin(region, distance, faces) > 0.0]
     return restored_region(shapely.union_all(kept), chords)
+
+
+def _margin(region: Region, distance: float, faces: NDArray[np.object_]) -> Floats:
+    """Return how much deeper than asked a point inside each face lies, the most telling of several points where one says little."""
+    margin = region.signed_distance(shapely.get_coordinates(shapely.point_on_surface(faces))) + distance
+    # A point may lie on the ridge of the distances, such as the middle of a groove, where a whole face seems to be an edge.
+    for n in np.flatnonzero((np.abs(margin) < tolerance.SLIVER) & (shapely.area(faces) > tolerance.AREA)):
+        triangles = shapely.get_parts(shapely.constrained_delaunay_triangles(faces[n]))
+        probes = shapely.get_coordinates(shapely.centroid(triangles))
+        found = region.signed_distance(probes) + distance
+        margin[n] = found[np.argmax(np.abs(found))]
+    return margin
 
 
 def raw_parallel(curve: Curve, distance: float) -> RawCurve:
@@ -101,12 +116,16 @@ def parallel_curves(curve: Curve, distance: float) -> list[Curve]:
     if abs(distance) <= tolerance.PARAMETRIC:
         return [curve]
     raw = raw_parallel(curve, distance)
-    s = raw.segments[np.flatnonzero(~raw.is_bridge)]
-    rows, low, high = cut_at_crossings(s)
-    middle = s.at(rows, 0.5 * (low + high))
-    near = distance_to(curve.segments(), middle) < abs(distance) - fit.CLOSE
-    rows, low, high = rows[~near], low[~near], high[~near]
-    return _strung(s, rows, low, high)
+    real = raw.segments[np.flatnonzero(~raw.is_bridge)]
+    # What lies round the end of an open curve is nearer to it than the distance and cuts too.
+    ends = () if curve.closed else (curve.start, curve.end)
+    caps = [Curve.circle(end, abs(distance)).segments() for end in ends]
+    rows, low, high = cut_at_crossings(join_segments([real, *caps]))
+    own = rows < len(real)
+    rows, low, high = rows[own], low[own], high[own]
+    middle = real.at(rows, 0.5 * (low + high))
+    kept = distance_to(curve.segments(), middle) >= abs(distance) - fit.CLOSE
+    return _strung(real, rows[kept], low[kept], high[kept])
 
 
 def cut_at_crossings(s: Segments) -> tuple[Ints, Floats, Floats]:
@@ -122,22 +141,38 @@ def cut_at_crossings(s: Segments) -> tuple[Ints, Floats, Floats]:
 
 
 def _strung(s: Segments, rows: Ints, low: Floats, high: Floats) -> list[Curve]:
-    """Put pieces end to end; a closed row of pieces gives a closed curve."""
+    """Put pieces end to end; a row of pieces that comes back to its start gives a closed curve."""
     if len(rows) == 0:
         return []
     start, end = s.at(rows, low), s.at(rows, high)
-    sweep = np.divide(high - low, s.length[rows], out=np.ones(len(rows)), where=s.length[rows] > 0.0) * s.sweep[rows]
-    bulge = np.tan(0.25 * sweep)
-    breaks = np.flatnonzero(np.abs(end[:-1] - start[1:]).max(axis=1) > 4.0 * fit.CLOSE) + 1
-    runs = np.split(np.arange(len(rows)), breaks)
-    closes = np.abs(end[-1] - start[0]).max() <= 4.0 * fit.CLOSE
-    if closes and len(runs) > 1:
-        runs = [np.concatenate([runs[-1], runs[0]]), *runs[1:-1]]
+    bulge = np.tan(0.25 * np.divide(high - low, s.length[rows]) * s.sweep[rows])
+    breaks = np.flatnonzero(np.abs(end[:-1] - start[1:]).max(axis=1) > MEETS) + 1
     curves = []
-    for run in runs:
-        points, bulges = np.concatenate([start[run], end[run[-1:]]]), np.append(bulge[run], 0.0)
-        if closes and len(runs) == 1 and len(run) > 1:
+    for chain in _chains(np.split(np.arange(len(rows)), breaks), start, end):
+        points, bulges = np.concatenate([start[chain], end[chain[-1:]]]), np.append(bulge[chain], 0.0)
+        if np.abs(points[-1] - points[0]).max() <= MEETS and (len(chain) > 2 or (len(chain) == 2 and bulges.any())):
             curves.append(Curve(points[:-1], bulges[:-1], True))
         else:
             curves.append(Curve(points, bulges, False))
     return curves
+
+
+def _chains(runs: list[Ints], start: Floats, end: Floats) -> list[Ints]:
+    """Join runs of pieces where one ends and another one starts; a run that closes on itself stays as it is."""
+    first, last = start[[run[0] for run in runs]], end[[run[-1] for run in runs]]
+    meets = np.abs(last[:, None, :] - first[None, :, :]).max(axis=2) <= MEETS
+    closes = meets.diagonal().copy()
+    meets[closes, :], meets[:, closes] = False, False
+    after = np.where(meets.any(axis=1), np.argmax(meets, axis=1), -1)
+    heads = [n for n in range(len(runs)) if n not in set(after.tolist())]
+    chains: list[Ints] = []
+    used: set[int] = set()
+    for head in [*heads, *range(len(runs))]:
+        chain = []
+        while head >= 0 and head not in used:
+            used.add(head)
+            chain.append(runs[head])
+            head = int(after[head])
+        if chain:
+            chains.append(np.concatenate(chain))
+    return sorted(chains, key=lambda chain: int(chain.min()))
