@@ -1,0 +1,117 @@
+"""The process that reads a part file: a damaged file may crash, bloat or hang the CAD kernel, and then only this process ends.
+
+Started afresh (never forked) as `python -m trunnion.part.child FOLDER`. The folder holds the request and the file's bytes; the answer
+is written there.
+"""
+
+from __future__ import annotations
+
+import json
+import os
+import subprocess
+import sys
+import tempfile
+import time
+from dataclasses import asdict, dataclass
+from pathlib import Path
+
+from trunnion.findings import BadInput, OutOfMemory, TrunnionError
+from trunnion.part.limits import ReadLimits
+from trunnion.progress import Progress
+
+_LOOK = 0.02
+_CHECK = 0.2
+_REFUSED, _NO_MEMORY = 3, 4
+_MEGA = 1 << 20
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Request:
+    """What the reading process is told: the file's name and path, digest, kind ("step" or "iges"), the faces its text lists."""
+
+    file: str
+    path: str
+    name: str
+    digest: str
+    kind: str
+    listed: int
+    solid: int | None
+    size: int
+
+
+def run(request: Request, data: bytes, limits: ReadLimits, progress: Progress) -> bytes:
+    """Return the bytes of the part (`Part.to_bytes`) that a fresh process read from a file's bytes, within limits."""
+    with tempfile.TemporaryDirectory(prefix="trunnion-read-") as folder:
+        place = Path(folder)
+        (place / "part").write_bytes(data)
+        (place / "request.json").write_text(json.dumps({"request": asdict(request), "memory": limits.memory}), encoding="utf-8")
+        with (place / "words").open("wb") as words:
+            # -P: nothing is imported from the folder that the program happens to be started in.
+            child = subprocess.Popen([sys.executable, "-P", "-m", "trunnion.part.child", folder], stdin=subprocess.DEVNULL,
+                                     stdout=words, stderr=words, env=os.environ | {"PYTHONIOENCODING": "utf-8"})
+            try:
+                _wait(child, request, limits, progress)
+            finally:
+                child.kill()
+                child.wait()
+        return _answer(child.returncode, place, request, limits)
+
+
+def _wait(child: subprocess.Popen[bytes], request: Request, limits: ReadLimits, progress: Progress) -> None:
+    import OCP  # noqa: F401  the library is wanted for the answer; loading it now costs no time, the other process is at work
+    start = looked = time.monotonic()
+    while child.poll() is None:
+        now = time.monotonic()
+        if now - start > limits.seconds:
+            raise BadInput(f"{request.file}: reading took longer than {limits.seconds:g} s and was stopped; export the part again")
+        if now - looked > _CHECK:
+            progress.at(min(0.9, (now - start) / limits.seconds), "reading")
+            looked = now
+        time.sleep(_LOOK)
+
+
+def _answer(code: int, place: Path, request: Request, limits: ReadLimits) -> bytes:
+    refusal = place / "refused"
+    if code == 0 and (place / "answer").is_file():
+        return (place / "answer").read_bytes()
+    if code == _REFUSED and refusal.is_file():
+        raise BadInput(refusal.read_text(encoding="utf-8"))
+    last = (place / "words").read_bytes()[-4096:]
+    if code == _NO_MEMORY or b"bad_alloc" in last or b"MemoryError" in last:
+        raise OutOfMemory(f"{request.file}: reading it needs more than {limits.memory} MB of memory; split the part or raise the limit")
+    raise BadInput(f"{request.file}: the CAD kernel failed on this file (exit code {code}); export the part again, if possible as STEP AP214")
+
+
+def main(folder: str) -> int:
+    """Read the part that a folder's request names and write the answer there; return the exit code."""
+    place = Path(folder)
+    told = json.loads((place / "request.json").read_text(encoding="utf-8"))
+    limit_memory(told["memory"])
+    try:
+        from trunnion.part.transfer import read_file
+        part = read_file(place / "part", Request(**told["request"]))
+        (place / "answer").write_bytes(part.to_bytes())
+    except TrunnionError as reason:
+        (place / "refused").write_text(str(reason), encoding="utf-8")
+        return _REFUSED
+    except MemoryError:
+        return _NO_MEMORY
+    return 0
+
+
+def limit_memory(megabytes: int) -> None:
+    """Keep this process's address space below a limit, where the system can."""
+    try:
+        import resource
+    except ImportError:
+        return
+    most = megabytes * _MEGA
+    hard = resource.getrlimit(resource.RLIMIT_AS)[1]
+    resource.setrlimit(resource.RLIMIT_AS, (most if hard == resource.RLIM_INFINITY else min(most, hard), hard))
+
+
+if __name__ == "__main__":
+    # The kernel's destructors are not waited for: they cost time and may crash on damaged shapes after the answer is written.
+    code = main(sys.argv[1])
+    sys.stdout.flush()
+    os._exit(code)

@@ -1,0 +1,59 @@
+"""Area, volume, box and open edges of shapes."""
+
+from __future__ import annotations
+
+import numpy as np
+from OCP.Bnd import Bnd_Box
+from OCP.BRep import BRep_Tool
+from OCP.BRepBndLib import BRepBndLib
+from OCP.BRepGProp import BRepGProp
+from OCP.GProp import GProp_GProps
+from OCP.TopAbs import TopAbs_EDGE, TopAbs_FACE
+from OCP.TopExp import TopExp
+from OCP.TopoDS import TopoDS
+from OCP.TopTools import TopTools_IndexedDataMapOfShapeListOfShape
+
+from trunnion.findings import BadInput
+from trunnion.geometry.arrays import Floats
+from trunnion.part.identity import Shape
+
+_ACCURACY = 1e-6
+"""Relative accuracy asked of the kernel's integrals; without it areas of trimmed free-form faces are off by 1.6e-4 (measured)."""
+
+
+def volume_of(shape: Shape) -> float:
+    """Return the volume enclosed by a shape's faces, mm3; negative when they point inward."""
+    found = GProp_GProps()
+    BRepGProp.VolumeProperties_s(shape, found, _ACCURACY)
+    return float(found.Mass())
+
+
+def area_of(shape: Shape) -> float:
+    """Return the area of a shape's faces, mm2."""
+    found = GProp_GProps()
+    BRepGProp.SurfaceProperties_s(shape, found, _ACCURACY)
+    return float(found.Mass())
+
+
+def box_of(shape: Shape) -> tuple[Floats, Floats]:
+    """Return the lowest and the highest corner (3,) of the box around a shape, mm; raise `BadInput` when it has no extent."""
+    box = Bnd_Box()
+    BRepBndLib.AddOptimal_s(shape, box, False, False)
+    if box.IsVoid():
+        raise BadInput("a shape without extent has no box")
+    box.SetGap(0.0)
+    corners = np.array(box.Get())
+    return corners[:3], corners[3:]
+
+
+def open_edges(shape: Shape) -> int:
+    """Return how many edges of a shape have a face on one side only; seams and degenerate edges are closed."""
+    owners = TopTools_IndexedDataMapOfShapeListOfShape()
+    TopExp.MapShapesAndAncestors_s(shape, TopAbs_EDGE, TopAbs_FACE, owners)
+    count = 0
+    for n in range(1, owners.Extent() + 1):
+        edge = TopoDS.Edge_s(owners.FindKey(n))
+        if owners.FindFromIndex(n).Extent() == 1 and not BRep_Tool.Degenerated_s(edge):
+            face = TopoDS.Face_s(owners.FindFromIndex(n).First())
+            count += not BRep_Tool.IsClosed_s(edge, face)
+    return count

@@ -1,0 +1,197 @@
+"""The part: a CAD shape with numbered faces, and what the rest of the program may ask of it."""
+
+from __future__ import annotations
+
+import io
+import json
+from collections.abc import Mapping
+from dataclasses import asdict, dataclass, field, replace
+from typing import Any
+
+
+from trunnion import tolerance
+from trunnion.findings import BadInput, Finding, Severity
+from trunnion.geometry.arrays import Floats, floats
+from trunnion.geometry.facegraph import FaceGraph
+from trunnion.geometry.frame import Frame
+from trunnion.geometry.mesh import Mesh
+from trunnion.geometry.region import Region
+from trunnion.part.identity import Shape, faces_of
+
+_MAGIC = b"trunnion part 1\n"
+
+
+@dataclass(frozen=True, slots=True, eq=False, kw_only=True)
+class PartFacts:
+    """What is known of a part beside its shape.
+
+    `unit` is the file's own ("mm", "inch", ...), lengths here are mm; `tags` (k,) the tag of every face of the chosen solid in the
+    order of the solid's own faces; `names` and `colours` (red, green, blue from 0 to 1) by face tag where the file gives them.
+    """
+
+    path: str
+    name: str
+    digest: str
+    unit: str
+    n_faces: int
+    n_solids: int
+    solid: int
+    is_closed: bool
+    area: float
+    volume: float
+    low: Floats
+    high: Floats
+    tags: tuple[int, ...]
+    names: Mapping[int, str] = field(default_factory=dict)
+    colours: Mapping[int, tuple[float, float, float]] = field(default_factory=dict)
+    findings: tuple[Finding, ...] = ()
+
+    def __post_init__(self) -> None:
+        object.__setattr__(self, "low", floats(self.low, (3,), "part box"))
+        object.__setattr__(self, "high", floats(self.high, (3,), "part box"))
+
+    def to_json(self) -> str:
+        """Return the facts as JSON text."""
+        plain = asdict(self) | {"low": self.low.tolist(), "high": self.high.tolist(), "findings": [f.as_dict() for f in self.findings]}
+        return json.dumps(plain)
+
+    @staticmethod
+    def from_json(text: str) -> PartFacts:
+        """Return the facts that `to_json` wrote."""
+        data = json.loads(text)
+        data["findings"] = tuple(Finding(**f | {"severity": Severity(f["severity"]), "where": tuple(f["where"])}) for f in data["findings"])
+        data["names"] = {int(k): v for k, v in data["names"].items()}
+        data["colours"] = {int(k): tuple(v) for k, v in data["colours"].items()}
+        data["tags"] = tuple(data["tags"])
+        return PartFacts(**data)
+
+
+class Part:
+    """One chosen solid of a part file, in mm, with the face tags of the file as read.
+
+    `shape` is the solid that is programmed (healed or sewn where that was needed), `as_read` everything the file holds. What is
+    computed from them is kept: ask as often as you like.
+    """
+
+    def __init__(self, facts: PartFacts, shape: Shape, as_read: Shape) -> None:
+        self.facts = facts
+        self.shape = shape
+        self.as_read = as_read
+        own = faces_of(shape)
+        if len(own) != len(facts.tags):
+            raise BadInput(f"{facts.name}: the part's {len(own)} faces don't fit its {len(facts.tags)} face tags; read the part anew")
+        self._faces = dict(zip(facts.tags, own, strict=True))
+        self._graph: FaceGraph | None = None
+        self._meshes: dict[tuple[float, float], Mesh] = {}
+        self._sections: dict[tuple[bytes, float], Region] = {}
+        self._slicer: Any = None
+
+    path = property(lambda self: self.facts.path, doc="Where the part was read from.")
+    name = property(lambda self: self.facts.name, doc="The file's name without its suffix.")
+    digest = property(lambda self: self.facts.digest, doc="SHA-256 of the file's bytes.")
+    unit = property(lambda self: self.facts.unit, doc="The file's own unit; everything here is in mm.")
+    n_faces = property(lambda self: self.facts.n_faces, doc="How many faces the file holds.")
+    n_solids = property(lambda self: self.facts.n_solids, doc="How many solids the file holds.")
+    solid = property(lambda self: self.facts.solid, doc="Which of them this is, from 1.")
+    is_closed = property(lambda self: self.facts.is_closed, doc="Whether the faces enclose material without a gap.")
+    area = property(lambda self: self.facts.area, doc="Area of the solid's faces in mm2.")
+    volume = property(lambda self: self.facts.volume, doc="Volume in mm3.")
+    low = property(lambda self: self.facts.low, doc="Lowest corner (3,) of the box around the solid, mm.")
+    high = property(lambda self: self.facts.high, doc="Highest corner (3,) of the box around the solid, mm.")
+    names = property(lambda self: self.facts.names, doc="Names of faces by tag, where the file gives them.")
+    colours = property(lambda self: self.facts.colours, doc="Colours of faces by tag, where the file gives them.")
+    findings = property(lambda self: self.facts.findings, doc="What a person should know about the file.")
+
+    @property
+    def tags(self) -> tuple[int, ...]:
+        """The tags of the chosen solid's faces, ascending."""
+        return tuple(sorted(self._faces))
+
+    def face_shape(self, tag: int) -> Shape | None:
+        """Return the face of a tag as it lies in the solid (its normal points outward), or None when it is not of this solid."""
+        return self._faces.get(tag)
+
+    def graph(self) -> FaceGraph:
+        """Return the attributed face graph; row = tag - 1, faces of other solids have area 0, no samples and no edges."""
+        if self._graph is None:
+            from trunnion.part.graph import face_graph
+            self._graph = face_graph(self.shape, self._faces, self.n_faces)
+        return self._graph
+
+    def mesh(self, chord: float = tolerance.CHORD, angle: float = tolerance.MESH_ANGLE) -> Mesh:
+        """Return triangles of the solid within a chord error (mm) and an angle between neighbouring chords (radians)."""
+        if (chord, angle) not in self._meshes:
+            from trunnion.part.tessellate import tessellated
+            self._meshes[chord, angle] = tessellated(self.shape, self._faces, chord, angle)
+        return self._meshes[chord, angle]
+
+    def section(self, frame: Frame, z: float) -> Region:
+        """Return the material cut by the plane at height `z` of a frame, in the frame's x and y.
+
+        Lines and arcs are exact, other curves are followed by arcs within `tolerance.FITTED`. A plane that touches vertices or holds
+        faces is moved up by `tolerance.SECTION_STEP` until it doesn't.
+        """
+        key = (b"".join(a.tobytes() for a in (frame.origin, frame.x, frame.z)), float(z))
+        if key not in self._sections:
+            if self._slicer is None:
+                from trunnion.part.section import SolidSlicer
+                self._slicer = SolidSlicer(self.shape, list(self._faces.values()))
+            self._sections[key] = self._slicer.section(frame, float(z))
+        return self._sections[key]
+
+    def face_outline(self, frame: Frame, tag: int) -> Region:
+        """Return the plan projection, in the frame's x and y, of a plane face that is level or nearly so; raise `BadInput` otherwise."""
+        from trunnion.part.outline import outline
+        face = self.face_shape(tag)
+        if face is None:
+            raise BadInput(f"face {tag} is not a face of the chosen solid of {self.name}")
+        return outline(face, frame, f"face {tag} of {self.name}")
+
+    def with_path(self, path: str) -> Part:
+        """Return the same part as read from another place."""
+        return Part(replace(self.facts, path=path), self.shape, self.as_read)
+
+    def to_bytes(self) -> bytes:
+        """Return the part as bytes for another process; what was computed from it stays behind."""
+        facts = self.facts.to_json().encode()
+        return b"".join([_MAGIC, len(facts).to_bytes(8, "little"), facts, shape_bytes(self.shape, self.as_read)])
+
+    @staticmethod
+    def from_bytes(data: bytes) -> Part:
+        """Return the part that `to_bytes` wrote; raise `BadInput` when it is not one."""
+        if not data.startswith(_MAGIC):
+            raise BadInput("these bytes don't hold a part: read the part file again")
+        at = len(_MAGIC) + 8
+        end = at + int.from_bytes(data[len(_MAGIC):at], "little")
+        shape, as_read = shapes_from(data[end:])
+        return Part(PartFacts.from_json(data[at:end].decode()), shape, as_read)
+
+
+def shape_bytes(shape: Shape, as_read: Shape) -> bytes:
+    """Return the chosen solid and everything read as one block of bytes; what they share is written once."""
+    from OCP.BinTools import BinTools, BinTools_FormatVersion
+    from OCP.BRep import BRep_Builder
+    from OCP.TopoDS import TopoDS_Compound
+    both, builder = TopoDS_Compound(), BRep_Builder()
+    builder.MakeCompound(both)
+    builder.Add(both, shape)
+    builder.Add(both, as_read)
+    stream = io.BytesIO()
+    BinTools.Write_s(both, stream, False, False, BinTools_FormatVersion.BinTools_FormatVersion_CURRENT)
+    return stream.getvalue()
+
+
+def shapes_from(data: bytes) -> tuple[Shape, Shape]:
+    """Return the chosen solid and everything read from what `shape_bytes` wrote."""
+    from OCP.BinTools import BinTools
+    from OCP.TopoDS import TopoDS_Compound, TopoDS_Iterator
+    both = TopoDS_Compound()
+    BinTools.Read_s(both, io.BytesIO(data))
+    if both.IsNull():
+        raise BadInput("these bytes don't hold a shape: read the part file again")
+    inside = TopoDS_Iterator(both)
+    shape = inside.Value()
+    inside.Next()
+    return shape, inside.Value()
+
+
