@@ -134,3 +134,23 @@ def session() -> Session:
     choices = {"blank.side": 5, "route.plan": "panel-aluminium", "verify.limit": 0.02, "blank.box": True}
     return Session(part=part_info(), choices=choices, recognition=recognition(), sizes=sizes, blank=blank, setups=(S1, S2),
                    process=process_tree(), paths=paths, posted=posted, verdict=verdict(), records=records)
+
+
+def program_from(listing: str) -> Program:
+    """Return the program that a neutral listing with marks says: how goldens write their input."""
+    setups, marks = {"S1": S1, "S2": S2}, {m.name.lower(): int(m) for m in Mark}
+    motions = {"rapid": RAPID, "line": LINE, "arc-cw": CW, "arc-ccw": CCW}
+    first, *lines = [line.split() for line in listing.splitlines() if line and not line.startswith("#")]
+    heads, blocks = [], []
+    for words in lines:
+        if words[0] == "operation":
+            heads.append(words)
+            blocks.append([])
+        else:
+            numbers = [float(w) for w in words if w[-1].isdigit()]
+            blocks[-1].append((motions[words[0]], *numbers, marks[words[-1]]))
+    sections = []
+    for (_, id, _, tool, _, spindle, _, coolant), rows in zip(heads, blocks, strict=True):
+        path = replace(path_of(*(row[:-1] for row in rows)), mark=np.array([row[-1] for row in rows]))
+        sections.append(section(id, {1: FLAT_16, 7: BULL_10}[int(tool)], path, float(spindle), coolant))
+    return Program(name=f"B1.{first[1]}", setup=setups[first[1]], sections=tuple(sections))

@@ -72,7 +72,7 @@ class Header:
         if v is not None and v.accepted_by:
             verdict += f", shortfall accepted by {v.accepted_by}"
         may = f"{REJECTED}: DO NOT RUN" if self.rejected else "RELEASED"
-        why = ("REASON: " if self.rejected else "REMARKS: ") + ("; ".join(self.reasons()) or "none")
+        why = ("REASON: " if self.rejected else "REMARKS: ") + (", ".join(self.reasons()) or "none")
         return (f"TRUNNION PROGRAM {program}", may, f"VERDICT: {verdict}", why, f"DATE: {self.date or 'not given'}")
 
     def about(self, programs: Sequence[Program], units: str) -> tuple[str, ...]:

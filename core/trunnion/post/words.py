@@ -62,7 +62,7 @@ def plain(text: str, longest: int) -> str:
     'Trager [links]'
     """
     ascii_text = unicodedata.normalize("NFKD", text).encode("ascii", "ignore").decode()
-    swapped = ascii_text.translate(str.maketrans("()", "[]", ";%$"))
+    swapped = ascii_text.translate(str.maketrans("()", "[]", ";$"))
     line = " ".join("".join(c if c.isprintable() else " " for c in swapped).split())
     return line if len(line) <= longest else line[: longest - 4].rstrip() + " ..."
 

@@ -71,7 +71,7 @@ def _why(packed: str) -> str:
         if sign in packed:
             return why
     rest = _WORD.sub(" ", packed).split()
-    return f"{rest[0]} is not understood; a word is a letter and a number"
+    return f"{rest[0] if rest[0].isprintable() else repr(rest[0])} is not understood; a word is a letter and a number"
 
 
 def _without_end_comment(text: str) -> tuple[str, tuple[str, ...]]:

@@ -33,9 +33,9 @@ _REFUSED = {
     "G42": "cutter compensation changes the path at the machine; write the tool centre's path under G40",
     "G90.1": "absolute arc centres are not understood; use G91.1 and centres from the arc's start",
     "G91": "incremental moves are not understood; use G90", "G93": "inverse-time feeds are not understood; use G94",
-    "G95": "feeds a turn are not understood; use G94", "M4": "M4 turns the cutter backwards; use M3",
+    "G95": "feeds a turn are not understood; use G94", "M4": "it turns the cutter backwards; use M3",
     "G28": "the place of G28 is not known here; use G53 G0 Z0", "G30": "the place of G30 is not known here; use G53 G0 Z0",
-    "G92": "G92 moves the program's zero; use the setup's work offset", "G10": "G10 changes offsets; set them at the machine",
+    "G92": "it moves the program's zero; use the setup's work offset", "G10": "it changes offsets; set them at the machine",
 }
 _CYCLES = frozenset(("G73", "G74", "G76", "G81", "G82", "G83", "G84", "G85", "G86", "G87", "G88", "G89", "G98", "G99"))
 _PLAIN_LETTERS = frozenset("NFSTXYZIJRHPQ")
@@ -109,12 +109,12 @@ class _Control:
             if n <= self.last_n:
                 raise BadInput(f"line {line}: N{n:g} comes after N{self.last_n:g}: lines are out of order; put them back or renumber them")
             self.last_n = n
-        for letter in words:
-            if letter not in _PLAIN_LETTERS:
-                raise BadInput(f"line {line}: the word {letter} is not understood by a three-axis program; remove it")
         for code in codes:
             if code not in _KNOWN:
                 raise BadInput(f"line {line}: {_why_not(code)}")
+        for letter in words:
+            if letter not in _PLAIN_LETTERS:
+                raise BadInput(f"line {line}: the word {letter} is not understood by a three-axis program; remove it")
         if len(codes) > 1:
             _one_of_a_group(line, codes)
         _letters_belong(block)

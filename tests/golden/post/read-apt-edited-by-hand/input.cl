@@ -1,0 +1,26 @@
+partno test piece
+$$ from another system
+UNITS / MM
+multax/off
+pprint/setup S1 work offset G54
+PPRINT/OPERATION rough
+LOADTL / 1
+CUTTER/16, $
+  0
+SPINDL/ 9000, CLW
+COOLNT/ON
+RAPID
+GOTO/0, 0, 50
+RAPID
+GOTO/0,0,2.5,0,0,1
+FEDRAT/300
+GOTO/0,0,-1 $$ plunge
+CIRCLE/10,0,-1,0,0,-1,10
+GOTO/10,10,-1
+RAPID
+GOTO/10,10,50
+PPRINT/SETUP S2 WORK OFFSET G55
+LOADTL/7,LENGTH,120.25
+RAPID
+GOTO/0,0,30
+FINI

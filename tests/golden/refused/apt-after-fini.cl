@@ -1,0 +1,8 @@
+$$ line 8: RAPID stands after FINI; remove it
+UNITS/MM
+LOADTL/1
+SPINDL/RPM,9000,CLW
+RAPID
+GOTO/0,0,50
+FINI
+RAPID

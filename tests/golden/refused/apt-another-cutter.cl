@@ -1,0 +1,5 @@
+$$ line 4: CUTTER/12,0 is not tool 1, CUTTER/16,0 in mm
+UNITS/MM
+LOADTL/1
+CUTTER/12,0
+FINI

@@ -1,0 +1,10 @@
+$$ line 9: the arc of radius 6.0000 starts at radius 5.0000 and ends at 5.0000 mm; check CIRCLE
+UNITS/MM
+LOADTL/1
+SPINDL/RPM,9000,CLW
+RAPID
+GOTO/0,0,50
+FEDRAT/100,MMPM
+CIRCLE/5,0,50,0,0,1,6
+GOTO/10,0,50
+FINI

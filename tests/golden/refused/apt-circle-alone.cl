@@ -1,0 +1,9 @@
+$$ line 8: after CIRCLE comes the GOTO that ends the arc, not RAPID
+UNITS/MM
+LOADTL/1
+SPINDL/RPM,9000,CLW
+RAPID
+GOTO/0,0,50
+CIRCLE/5,0,50,0,0,1,5
+RAPID
+FINI

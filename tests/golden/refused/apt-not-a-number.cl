@@ -1,0 +1,9 @@
+$$ line 8: 0,0,ABC is not a list of numbers
+UNITS/MM
+LOADTL/1
+SPINDL/RPM,9000,CLW
+RAPID
+GOTO/0,0,50
+RAPID
+GOTO/0,0,abc
+FINI

@@ -1,0 +1,7 @@
+; line 6: an arc of several turns (P) is not understood; write each turn
+G21 G90 G17 G40 G94 G54
+T1 M6
+S9000 M3
+G0 G43 H1 X0 Y0 Z50
+G2 X0 Y0 I5 P2 F100
+M30

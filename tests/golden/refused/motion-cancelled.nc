@@ -1,0 +1,8 @@
+; line 7: a position without G0, G1, G2 or G3
+G21 G90 G17 G40 G94 G54
+T1 M6
+S9000 M3
+G0 G43 H1 X0 Y0 Z50
+G80
+X5
+M30

@@ -1,0 +1,7 @@
+; line 6: a feed move without a feed; give F
+G21 G90 G17 G40 G94 G54
+T1 M6
+S9000 M3
+G0 G43 H1 X0 Y0 Z50
+G1 X5
+M30

@@ -1,0 +1,8 @@
+; line 7: a feed move while the spindle stands; give S and M3 first
+G21 G90 G17 G40 G94 G54
+T1 M6
+S9000 M3
+G0 G43 H1 X0 Y0 Z50
+M5
+G1 X5 F100
+M30
