@@ -88,7 +88,8 @@ class FlatPart:
             radius=np.full(n, np.nan), minor=np.full(n, np.nan), bend=np.zeros(n), box_low=centre, box_high=centre,
             sample_face=np.zeros(2), sample_point=box, sample_normal=np.tile([0.0, 0.0, 1.0], (2, 1)), edge_face=np.array(pairs),
             convexity=-np.ones(m), dihedral=np.ones(m), length=np.ones(m), edge_loop=np.zeros((m, 2)), curve=("line",) * m, start=edge,
-            middle=edge, end=edge, curve_centre=np.full((m, 3), np.nan), curve_axis=np.full((m, 3), np.nan), curve_radius=np.full(m, np.nan))
+            middle=edge, end=edge, curve_centre=np.full((m, 3), np.nan), curve_axis=np.full((m, 3), np.nan),
+            curve_radius=np.full(m, np.nan))
 
 
 def _seen(region: Region, frame: Frame) -> Region:
@@ -152,11 +153,11 @@ def blank_of(part: FlatPart) -> Blank:
                  material="EN AW-7075", density=2.81)
 
 
-def operation(kind: str, feature: str, tool: Tool, setup: str = "S1", choices: Mapping[str, Value] | None = None, id: str = "") -> Operation:
+def operation(kind: str, feature: str, tool: Tool, choices: Mapping[str, Value] | None = None) -> Operation:
     """Return an operation for tests of its drive."""
     data = CuttingData(speed=100, spindle=1000, feed_per_tooth=0.1, feed=300, plunge_feed=100, depth=1, width=1, removal_rate=1,
                        power=1, power_limit=10, torque=1)
-    return Operation(id=id or f"{kind}-{feature}", kind=kind, strategy="plane.rough", feature=feature, setup=setup, tool=tool,
+    return Operation(id=f"{kind}-{feature}", kind=kind, strategy="plane.rough", feature=feature, setup="S1", tool=tool,
                      data=data, choices=choices or {})
 
 

@@ -136,6 +136,8 @@ class Space:
         tops = {self.island_top(i): i for i in islands}
         breaks = _distinct([top, *points, *(z for z in tops if lowest < z < top)])
         fillet = floor_fillet(feature)
+        if len(breaks) < 2:
+            raise Refused(f"{feature.id}: its floor lies at the part's top in {self.setup.name}; correct the feature")
         bands = []
         for high, low in pairwise(breaks):
             z = _section_height(high, low, min(rim, top), fillet if low in points else 0.0)
@@ -155,8 +157,14 @@ class Space:
         if not wanted:
             raise Refused(f"{feature.id}: the part leaves no free space over its floor at z {z:.3f} of {self.setup.name}; "
                           "correct the feature or machine it by hand")
+        if feature.kind != "open_pocket" and self._reaches_outside(wanted):
+            raise Refused(f"{feature.id}: the part does not close it at z {z:.3f} of {self.setup.name}; make it an open pocket")
         wanted, boundary = filled_over(wanted, sunken), filled_over(boundary, sunken)
         return Band(top=high, bottom=low, wanted=wanted, boundary=boundary)
+
+    def _reaches_outside(self, region: Region) -> bool:
+        low, high = region.box()
+        return bool((low < self.blank_low[:2] - tolerance.SEW).any() or (high > self.blank_high[:2] + tolerance.SEW).any())
 
     def _middle_of(self, feature: Feature) -> Floats:
         centre = feature.attributes.get("centre", feature.sizes.get("centre"))

@@ -73,7 +73,7 @@ def _with_cutters(draft: Draft, features: Sequence[Feature], stages: Sequence[St
             found = candidates(wish.task, catalogue(draft, wish.stage), draft.settings.reach_clearance)
             if found.tools:
                 fits[wish.id] = found.tools
-            else:
+            elif wish.stage.cutter != "rest":
                 draft.findings.append(no_cutter(wish, found))
         draft.tools |= covered_by_few(fits, list(draft.tools.values()))
         wishes += [w for w in fresh if w.id in draft.tools]
@@ -112,10 +112,12 @@ def _operation(draft: Draft, wish: Wish, after: frozenset[str]) -> Operation:
     tool, stage, chosen, cutting = draft.tools[wish.id], wish.stage, draft.settings, choose(CuttingSettings, {})
     depth, width = _engagement(draft, wish, tool, cutting)
     leaves: dict[str, Value] = {} if stage.finish else {WALL_ALLOWANCE: chosen.wall_allowance, FLOOR_ALLOWANCE: chosen.floor_allowance}
+    data = cutting_data(tool, draft.material, draft.machine, stage.kind, cutting, depth, width)
+    rules = (stage.rule, *_tool_rules(wish, tool, chosen))
     return Operation(
         id=wish.id, kind=stage.kind, strategy=stage.strategy, feature=wish.feature, setup=draft.space.setup.name, tool=tool,
-        group=stage.name, data=cutting_data(tool, draft.material, draft.machine, stage.kind, cutting, depth, width),
-        faces=wish.faces if stage.finish else (), choices=leaves, rules=(stage.rule, *_tool_rules(wish, tool, chosen)), after=tuple(sorted(after)))
+        group=stage.name, data=data,
+        faces=wish.faces if stage.finish else (), choices=leaves, rules=rules, after=tuple(sorted(after)))
 
 
 def _engagement(draft: Draft, wish: Wish, tool: Tool, cutting: CuttingSettings) -> tuple[float, float]:

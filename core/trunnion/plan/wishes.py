@@ -268,8 +268,9 @@ def _with_known_fillet(draft: Draft, stage: Stage, feature: Feature, task: Task)
         return task
     next_smaller = max((r for r in radii if r < task.corner_radius), default=0.0)
     draft.findings.append(warning(
-        "route.fillet", f"{feature.id}: no cutter has a corner radius of {trimmed(task.corner_radius, 3)} mm; its floor fillet is stepped with "
-                        f"{trimmed(next_smaller, 3)} mm", feature.id, *face_tags(feature.with_role("floor_fillet")),
+        "route.fillet", f"{feature.id}: no cutter has a corner radius of {trimmed(task.corner_radius, 3)} mm; "
+                        f"its floor fillet is stepped with {trimmed(next_smaller, 3)} mm", feature.id,
+        *face_tags(feature.with_role("floor_fillet")),
         remedy="add a cutter with the fillet's radius to the tools folder"))
     return replace(task, corner_radius=next_smaller)
 

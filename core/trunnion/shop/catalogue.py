@@ -4,12 +4,14 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass
+from functools import cached_property
 from pathlib import Path
 from typing import TypeVar
 
 from trunnion.findings import BadInput
 from trunnion.model.material import Machine, Material
 from trunnion.model.tool import Tool
+from trunnion.settings import digest
 from trunnion.shop.cutters import Cutter, load_cutters, load_holders
 from trunnion.shop.machines import load_machines
 from trunnion.shop.materials import load_materials
@@ -31,6 +33,11 @@ class Shop:
     def tools(self) -> tuple[Tool, ...]:
         """All cutters, sorted by diameter, corner radius and reach; their numbers are 0."""
         return tuple(c.tool for c in self.cutters)
+
+    @cached_property
+    def digest(self) -> str:
+        """A short stable digest of everything in the catalogues: what was planned with another one is stale."""
+        return digest(self.cutters, self.materials, self.machines, self.plans)
 
     def tools_for(self, iso_group: str, use: str) -> tuple[Tool, ...]:
         """Return the cutters made for a group of materials and a use (`face`, `rough`, `finish`)."""

@@ -1,0 +1,103 @@
+"""Cutting data: worked-out numbers, and the bounds of machine and cutter."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import replace
+
+import pytest
+from pytest import approx
+
+from flat_parts import operation
+from trunnion.geometry.frame import WORLD
+from trunnion.model.process import ProcessTree
+from trunnion.model.setup import Setup
+from trunnion.plan.cutting import CuttingSettings, balance, chip_thinning, cutting_data, cutting_power, slenderness, table_feed
+from trunnion.settings import choose
+from trunnion.shop import load_shop
+
+SHOP = load_shop()
+ALUMINIUM, MACHINE, DEFAULT = SHOP.material("EN AW-7075"), SHOP.machine("Mill 1200"), choose(CuttingSettings, {})
+
+
+def tool(name: str):
+    return next(t for t in SHOP.tools if t.name == name)
+
+
+def test_chips_thin_out_below_half_the_diameter_only():
+    assert chip_thinning(10.0, 5.0) == 1.0
+    assert chip_thinning(10.0, 8.0) == 1.0
+    assert chip_thinning(10.0, 1.0) == approx(10.0 / (2 * 3.0))
+
+
+def test_the_feed_per_tooth_lies_on_the_materials_table():
+    # Three quarters of the way from 0.08 to 0.13 at D 12.
+    assert table_feed(ALUMINIUM, 12.0) == approx(0.1175)
+    assert table_feed(ALUMINIUM, 14.0) == approx((0.1175 + 0.135) / 2)
+    assert table_feed(ALUMINIUM, 4.0) == approx(0.06 * 4 / 5)
+    assert table_feed(ALUMINIUM, 25.0) == approx(0.1525)
+
+
+def test_the_spindle_follows_from_speed_and_diameter():
+    data = cutting_data(tool("AL3-regular D20 R3"), ALUMINIUM, MACHINE, "rough", DEFAULT, 12.0, 10.0)
+    assert data.spindle == approx(700_000 / (math.pi * 20))
+    assert data.feed == approx(data.spindle * 3 * 0.1525)
+
+
+def test_a_small_cutter_is_bound_by_the_spindle_and_says_so():
+    data = cutting_data(tool("AL3-stub D4 R0"), ALUMINIUM, MACHINE, "rough", DEFAULT, 1.0, 2.0)
+    assert data.spindle == 24000
+    assert data.speed == approx(24 * math.pi * 4)
+    assert any("the spindle's limit" in rule for rule in data.rules)
+
+
+def test_power_by_kienzle_at_half_the_width():
+    # ae = D / 2: the arc is 90 degrees, the mean chip 0.1 * 2 * 0.5 / (pi / 2).
+    chip = 0.1 / (math.pi / 2)
+    assert cutting_power(ALUMINIUM, 20.0, 0.1, 5.0, 10.0, 3000.0) == approx(5 * 10 * 3000 * 700 * chip**-0.25 / 60e6)
+
+
+def test_the_spindles_power_slows_the_feed():
+    weak = replace(MACHINE, power=((50.0, 0.1), (24000.0, 4.0)))
+    data = cutting_data(tool("AL3-regular D20 R3"), ALUMINIUM, weak, "rough", DEFAULT, 20.0, 20.0)
+    assert data.power == approx(data.power_limit, rel=1e-6)
+    assert any("the spindle gives" in rule for rule in data.rules)
+
+
+def test_the_machines_feed_is_never_passed():
+    slow = replace(MACHINE, feed_max=500.0)
+    assert cutting_data(tool("AL3-regular D20 R3"), ALUMINIUM, slow, "wall", DEFAULT, 5.0, 0.5).feed == 500.0
+
+
+def test_a_long_cutter_loses_feed():
+    short, long = tool("HM4-stub D10 R0"), tool("HM4-long D10 R0")
+    assert slenderness(short, DEFAULT) == 1.0
+    assert slenderness(long, DEFAULT) == approx(1.0 - 0.5 * (6.0 - 4.0) / 6.0)
+
+
+def test_torque_and_power_belong_together():
+    data = cutting_data(tool("AL3-regular D20 R3"), ALUMINIUM, MACHINE, "rough", DEFAULT, 12.0, 5.0)
+    assert data.torque * data.spindle * 2 * math.pi / 60 == approx(data.power * 1000)
+
+
+def process(kind: str, by_hand: bool = False) -> ProcessTree:
+    one = replace(operation(kind, "pocket-01", tool("AL3-regular D20 R3")), by_hand=by_hand)
+    setup = Setup(name="S1", frame=WORLD, work_offset="G54", clearance=20.0, machine="Mill 1200")
+    return ProcessTree(plan="", material="EN AW-7075", setups=(setup,), operations=(one,))
+
+
+def test_balance_computes_every_operation_again():
+    data = balance(process("wall"), SHOP, DEFAULT).operations[0].data
+    assert data.spindle == approx(900_000 / (math.pi * 20))
+
+
+def test_balance_leaves_what_a_person_set():
+    assert balance(process("wall", by_hand=True), SHOP, DEFAULT).operations[0].data.spindle == 1000
+
+
+@pytest.mark.parametrize("material", sorted(SHOP.materials))
+def test_data_of_every_material_keep_the_machines_limits(material):
+    group = SHOP.material(material)
+    for cutter in SHOP.tools_for(group.iso_group, "rough"):
+        data = cutting_data(cutter, group, MACHINE, "rough", DEFAULT, cutter.diameter, cutter.diameter / 4)
+        assert 0 < data.feed <= MACHINE.feed_max and data.power <= data.power_limit * 1.000001 and data.spindle <= 24000

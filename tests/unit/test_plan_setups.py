@@ -1,0 +1,55 @@
+"""Blank and setups."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import numpy as np
+from pytest import approx
+
+from flat_parts import blank_of, panel
+from trunnion.geometry.frame import WORLD, Frame
+from trunnion.model.feature import Feature
+from trunnion.plan.blank import BlankSettings, make_blank
+from trunnion.plan.setups import SetupSettings, box_in, make_setups
+from trunnion.settings import choose
+from trunnion.shop import load_shop
+
+SHOP = load_shop()
+MACHINE = SHOP.machine("Mill 1200")
+BELOW = Feature(id="pocket-09", kind="pocket", faces=(), attributes={"direction": (0.0, 0.0, -1.0)})
+
+
+def test_the_blank_is_larger_than_the_part_by_its_allowances():
+    blank = make_blank(WORLD, np.zeros(3), np.array([100.0, 50.0, 20.0]), SHOP.material("C45"), choose(BlankSettings, {"blank.top": 3}))
+    assert blank.low.tolist() == [-5, -5, 0] and blank.high.tolist() == [105, 55, 23]
+    assert blank.mass == approx(110 * 60 * 23 * 7.85e-6)
+
+
+def test_zero_lies_on_the_blanks_top_corner_and_the_clearance_above_it():
+    part, recognition = panel()
+    (setup,) = make_setups(recognition, blank_of(part), MACHINE, choose(SetupSettings, {}))
+    assert setup.frame.origin == approx([-5, -5, 32])
+    assert setup.clearance == 20.0 and setup.work_offset == "G54"
+
+
+def test_zero_may_lie_in_the_middle_of_the_bottom():
+    part, recognition = panel()
+    (setup,) = make_setups(recognition, blank_of(part), MACHINE, choose(SetupSettings, {"origin": "centre bottom"}))
+    assert setup.frame.origin == approx([100, 50, 0])
+    assert setup.clearance == 52.0
+
+
+def test_a_feature_reached_from_below_gets_a_setup_turned_about_x():
+    part, recognition = panel()
+    recognition = replace(recognition, features=(*recognition.features, BELOW))
+    _, below = make_setups(recognition, blank_of(part), MACHINE, choose(SetupSettings, {}))
+    assert below.frame.z.tolist() == [0, 0, -1] and below.work_offset == "G55"
+    low, high = box_in(below.frame, blank_of(part))
+    assert low == approx([0, 0, -32]) and high == approx([210, 110, 0])
+
+
+def test_a_turned_part_has_its_blank_in_its_own_frame():
+    frame = Frame(np.array([10.0, 0.0, 0.0]), np.array([0.0, 1.0, 0.0]), np.array([1.0, 0.0, 0.0]))
+    blank = make_blank(frame, np.zeros(3), np.array([100.0, 50.0, 20.0]), SHOP.material("C45"), choose(BlankSettings, {}))
+    assert box_in(frame, blank)[1] == approx([105, 55, 22])
