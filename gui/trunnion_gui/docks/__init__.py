@@ -1,0 +1,1 @@
+"""Views of the session around the picture; docks do not import each other."""

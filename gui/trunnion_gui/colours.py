@@ -1,0 +1,87 @@
+"""Colours of the window: the same data for table, legend, viewport and report (`resources/palette`)."""
+
+from __future__ import annotations
+
+import json
+import tomllib
+from dataclasses import dataclass
+from functools import cache
+from importlib.resources import files
+
+Rgb = tuple[int, int, int]
+MOTIONS = ("cut", "entry", "lead", "link", "retract", "rapid")
+"""Kinds of motion, in the order of the legend."""
+
+
+@dataclass(frozen=True, slots=True)
+class Theme:
+    """The window's colours as `#rrggbb`: one accent, the rest calm."""
+
+    name: str
+    window: str
+    panel: str
+    raised: str
+    line: str
+    text: str
+    muted: str
+    accent: str
+    accent_text: str
+    accent_soft: str
+    good: str
+    warning: str
+    bad: str
+    view_top: str
+    view_bottom: str
+    part: str
+    edge: str
+    selection: str
+
+
+@cache
+def _themes() -> dict[str, dict[str, str]]:
+    return json.loads((files("trunnion_resources") / "palette" / "themes.json").read_text("utf-8"))
+
+
+@cache
+def _palette() -> dict[str, dict[str, str]]:
+    return tomllib.loads((files("trunnion_resources") / "palette" / "palette.toml").read_text("utf-8"))
+
+
+@cache
+def theme(name: str) -> Theme:
+    """Return the theme `light` or `dark`."""
+    return Theme(name=name, **_themes()[name])
+
+
+def kinds() -> dict[str, str]:
+    """Return the colour of every kind of feature."""
+    return _palette()["kinds"]
+
+
+def motions() -> dict[str, str]:
+    """Return the colour of every kind of motion."""
+    return {name: colour for name, colour in _palette()["motions"].items() if name in MOTIONS}
+
+
+def kind_colour(kind: str) -> str:
+    """Return the colour of a kind; kinds without one of their own share that of `other`."""
+    known = kinds()
+    return known.get(kind, known["other"])
+
+
+def rgb(colour: str) -> Rgb:
+    """Return red, green and blue (0 to 255).
+
+    >>> rgb("#4477aa")
+    (68, 119, 170)
+    """
+    return int(colour[1:3], 16), int(colour[3:5], 16), int(colour[5:7], 16)
+
+
+def mixed(colour: str, other: str, share: float) -> str:
+    """Return a colour with a share of another one.
+
+    >>> mixed("#000000", "#ffffff", 0.5)
+    '#808080'
+    """
+    return "#" + "".join(f"{round(a + (b - a) * share):02x}" for a, b in zip(rgb(colour), rgb(other)))

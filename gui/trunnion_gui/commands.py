@@ -1,0 +1,210 @@
+"""Edits of a session and their history. No Qt: an edit is a plain function, undo keeps the earlier session."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass, replace
+
+from trunnion.findings import Refused
+from trunnion.model.feature import Recognition
+from trunnion.model.operation import Operation
+from trunnion.model.process import ProcessTree
+from trunnion.model.session import Session
+from trunnion.settings import Value
+
+Edit = Callable[[Session], Session]
+
+
+@dataclass(frozen=True, slots=True)
+class Entry:
+    """One state in the history: what led to it, the session, and the gesture that may still go on."""
+
+    label: str
+    session: Session
+    gesture: str = ""
+
+
+class History:
+    """The sessions a person can go back and forth between.
+
+    Edits of one gesture (one drag, one visit to a field) are one entry; merging is by the gesture's name, never by the clock.
+    """
+
+    def __init__(self, session: Session, label: str = "") -> None:
+        self._entries = [Entry(label, session)]
+        self._at = 0
+        self._saved: Session | None = session
+
+    @property
+    def session(self) -> Session:
+        """The session as it is now."""
+        return self._entries[self._at].session
+
+    @property
+    def undo_label(self) -> str:
+        """What `undo` would take back, or empty."""
+        return self._entries[self._at].label if self._at else ""
+
+    @property
+    def redo_label(self) -> str:
+        """What `redo` would bring back, or empty."""
+        return self._entries[self._at + 1].label if self._at + 1 < len(self._entries) else ""
+
+    @property
+    def is_dirty(self) -> bool:
+        """Whether the session differs from the one last saved."""
+        return self.session is not self._saved
+
+    def push(self, label: str, session: Session, gesture: str = "") -> None:
+        """Add a state; what could be redone is forgotten. An edit that changed nothing adds nothing."""
+        if session is self.session:
+            return
+        goes_on = gesture and gesture == self._entries[self._at].gesture and self._at == len(self._entries) - 1
+        del self._entries[self._at + (0 if goes_on else 1):]
+        self._entries.append(Entry(label, session, gesture))
+        self._at = len(self._entries) - 1
+
+    def undo(self) -> Session:
+        """Go one state back and return the session there (the same one when there is nothing to undo)."""
+        self._at = max(self._at - 1, 0)
+        return self.session
+
+    def redo(self) -> Session:
+        """Go one state forward and return the session there (the same one when there is nothing to redo)."""
+        self._at = min(self._at + 1, len(self._entries) - 1)
+        return self.session
+
+    def mark_saved(self, session: Session) -> None:
+        """Remember which session is in the file."""
+        self._saved = session
+
+
+def with_choice(key: str, value: Value) -> Edit:
+    """Return the edit that chooses a setting by its full key; what depends on it goes stale by its digest."""
+
+    def edit(session: Session) -> Session:
+        if session.choices.get(key) == value:
+            return session
+        return replace(session, choices={**session.choices, key: value})
+
+    return edit
+
+
+def without_choices(*keys: str) -> Edit:
+    """Return the edit that takes settings back to their defaults."""
+
+    def edit(session: Session) -> Session:
+        if not any(k in session.choices for k in keys):
+            return session
+        return replace(session, choices={k: v for k, v in session.choices.items() if k not in keys})
+
+    return edit
+
+
+def without_feature(id: str) -> Edit:
+    """Return the edit that deletes a feature; faces that no other feature has become unexplained."""
+
+    def edit(session: Session) -> Session:
+        found = _recognition(session)
+        gone = found.feature(id)
+        kept = tuple(f for f in found.features if f.id != id)
+        explained = {tag for f in kept for tag in f.tags}
+        loose = {tag for tag in gone.tags if tag not in explained} | set(found.unexplained)
+        return replace(session, recognition=replace(found, features=kept, unexplained=tuple(sorted(loose))))
+
+    return edit
+
+
+def with_kind(id: str, kind: str) -> Edit:
+    """Return the edit that changes the kind of a feature, marked as a person's."""
+
+    def edit(session: Session) -> Session:
+        found = _recognition(session)
+        if found.feature(id).kind == kind:
+            return session
+        changed = tuple(replace(f, kind=kind, by_hand=True) if f.id == id else f for f in found.features)
+        return replace(session, recognition=replace(found, features=changed))
+
+    return edit
+
+
+def without_operation(id: str) -> Edit:
+    """Return the edit that deletes an operation; what had to come after it need not any more."""
+
+    def edit(session: Session) -> Session:
+        tree = _process(session)
+        tree.operation(id)
+        kept = tuple(replace(o, after=tuple(a for a in o.after if a != id)) if id in o.after else o for o in tree.operations if o.id != id)
+        return replace(session, process=replace(tree, operations=kept))
+
+    return edit
+
+
+def with_suppressed(id: str, suppressed: bool) -> Edit:
+    """Return the edit that keeps an operation in the tree without cutting, or takes it up again."""
+    return _with_operation(id, lambda o: replace(o, suppressed=suppressed, by_hand=True))
+
+
+def with_operation_choice(id: str, key: str, value: Value) -> Edit:
+    """Return the edit that chooses a strategy's setting for one operation only."""
+    return _with_operation(id, lambda o: replace(o, choices={**o.choices, key: value}, by_hand=True))
+
+
+def with_operation_before(id: str, before: str | None) -> Edit:
+    """Return the edit that moves an operation in front of another one of its setup, or to the setup's end.
+
+    Raises `Refused` when the operation would come before one that it needs, or after one that needs it.
+    """
+
+    def edit(session: Session) -> Session:
+        tree = _process(session)
+        moved = replace(tree.operation(id), by_hand=True)
+        if before == id:
+            return session
+        if before is not None and tree.operation(before).setup != moved.setup:
+            raise Refused(f"{id} is cut in setup {moved.setup} and can't be moved to {tree.operation(before).setup}")
+        rest = [o for o in tree.operations if o.id != id]
+        place = _place(rest, moved, before)
+        ordered = (*rest[:place], moved, *rest[place:])
+        _check_order(ordered)
+        if [o.id for o in ordered] == [o.id for o in tree.operations]:
+            return session
+        return replace(session, process=replace(tree, operations=ordered))
+
+    return edit
+
+
+def _place(rest: list[Operation], moved: Operation, before: str | None) -> int:
+    if before is not None:
+        return next(n for n, o in enumerate(rest) if o.id == before)
+    return max((n + 1 for n, o in enumerate(rest) if o.setup == moved.setup), default=len(rest))
+
+
+def _check_order(operations: tuple[Operation, ...]) -> None:
+    row = {o.id: n for n, o in enumerate(operations)}
+    for o in operations:
+        for first in o.after:
+            if row.get(first, -1) > row[o.id]:
+                raise Refused(f"{o.id} must come after {first}: move {first} first, or delete one of them")
+
+
+def _with_operation(id: str, change: Callable[[Operation], Operation]) -> Edit:
+    def edit(session: Session) -> Session:
+        tree = _process(session)
+        before = tree.operation(id)
+        after = change(before)
+        return session if after == before else replace(session, process=tree.with_operation(after))
+
+    return edit
+
+
+def _recognition(session: Session) -> Recognition:
+    if session.recognition is None:
+        raise Refused("there are no features yet: recognize the part first")
+    return session.recognition
+
+
+def _process(session: Session) -> ProcessTree:
+    if session.process is None:
+        raise Refused("there is no process tree yet: generate the route first")
+    return session.process

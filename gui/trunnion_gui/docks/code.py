@@ -1,0 +1,89 @@
+"""The written programs, one a setup and dialect, with their words in colour."""
+
+from __future__ import annotations
+
+import re
+
+from PySide6.QtGui import QColor, QShowEvent, QSyntaxHighlighter, QTextCharFormat
+from PySide6.QtWidgets import QComboBox, QHBoxLayout, QLabel, QPlainTextEdit, QVBoxLayout, QWidget
+
+from trunnion.model.session import PostedFile
+from trunnion_gui.colours import Theme, motions
+from trunnion_gui.document import Document
+from trunnion_gui.i18n import tr
+
+
+class _Words(QSyntaxHighlighter):
+    """Comments muted, motion words in the colour of their motion, tool and spindle words in the accent."""
+
+    def __init__(self, editor: QPlainTextEdit, theme: Theme) -> None:
+        super().__init__(editor.document())
+        self._rules = ((re.compile(r"\bG0?0\b|\bRAPID\b"), motions()["rapid"]),
+                       (re.compile(r"\bG0?[123]\b|\bGOTO\b|\bCIRCLE\b"), motions()["cut"]),
+                       (re.compile(r"\b[TMS]\d+(\.\d+)?\b|\b[A-Z]{4,}/"), theme.accent), (re.compile(r"\bN\d+\b"), theme.muted),
+                       (re.compile(r"\([^)]*\)|;.*$|^\$\$.*$"), theme.muted))
+
+    def highlightBlock(self, text: str) -> None:
+        for pattern, colour in self._rules:
+            look = QTextCharFormat()
+            look.setForeground(QColor(colour))
+            for match in pattern.finditer(text):
+                self.setFormat(match.start(), match.end() - match.start(), look)
+
+
+class CodeDock(QWidget):
+    """The text of the chosen program; filled when it is looked at."""
+
+    def __init__(self, document: Document) -> None:
+        super().__init__()
+        self._document = document
+        self._shown: tuple[PostedFile, ...] = ()
+        self._words: _Words | None = None
+        self.choice = QComboBox()
+        self.lines = QLabel()
+        self.lines.setObjectName("muted")
+        self.text = QPlainTextEdit()
+        self.text.setObjectName("code")
+        self.text.setReadOnly(True)
+        self.text.setLineWrapMode(QPlainTextEdit.LineWrapMode.NoWrap)
+        self.text.setPlaceholderText(tr("The program appears here when it has been generated and verified."))
+        top = QHBoxLayout()
+        top.setContentsMargins(10, 6, 10, 0)
+        top.addWidget(self.choice)
+        top.addWidget(self.lines)
+        top.addStretch(1)
+        column = QVBoxLayout(self)
+        column.setContentsMargins(0, 0, 0, 0)
+        column.setSpacing(2)
+        column.addLayout(top)
+        column.addWidget(self.text)
+        self.choice.currentIndexChanged.connect(self._read)
+        document.changed.connect(self.refresh)
+
+    def use_theme(self, theme: Theme) -> None:
+        """Draw in the colours of a theme."""
+        self._words = _Words(self.text, theme)
+
+    def refresh(self) -> None:
+        """Show the programs of the shown session, if anybody looks."""
+        posted = self._document.shown.posted
+        if not self.isVisible() or posted is self._shown:
+            return
+        self._shown = posted
+        self.choice.blockSignals(True)
+        self.choice.clear()
+        for file in posted:
+            self.choice.addItem(f"{file.suffix}  {file.dialect}")
+        self.choice.blockSignals(False)
+        self.choice.setVisible(bool(posted))
+        self._read()
+
+    def showEvent(self, event: QShowEvent) -> None:
+        super().showEvent(event)
+        self.refresh()
+
+    def _read(self) -> None:
+        row = self.choice.currentIndex()
+        text = self._shown[row].text if 0 <= row < len(self._shown) else ""
+        self.text.setPlainText(text)
+        self.lines.setText(tr("{n} lines").format(n=f"{text.count(chr(10)):,}".replace(",", " ")) if text else "")

@@ -1,0 +1,68 @@
+"""What a person should know: findings of the steps, and what happened to the program itself. A click goes to what a line names."""
+
+from __future__ import annotations
+
+from PySide6.QtCore import Signal
+from PySide6.QtWidgets import QTableWidget, QVBoxLayout, QWidget
+
+from trunnion.findings import Finding, Severity
+from trunnion_gui import icons
+from trunnion_gui.colours import Theme
+from trunnion_gui.document import Document
+from trunnion_gui.i18n import tr
+from trunnion_gui.widgets import table as tables
+
+_ORDER = (Severity.ERROR, Severity.WARNING, Severity.REMARK, Severity.INFO)
+_MOST_NOTICES = 20
+
+
+class MessagesDock(QWidget):
+    """Findings, the gravest first."""
+
+    counted = Signal(int)
+
+    def __init__(self, document: Document) -> None:
+        super().__init__()
+        self._document = document
+        self._theme: Theme | None = None
+        self._notices: list[Finding] = []
+        self.findings: tuple[Finding, ...] = ()
+        self.table: QTableWidget = tables.table(["", tr("Message"), tr("Where"), tr("What to do"), tr("Code")], stretched=1)
+        column = QVBoxLayout(self)
+        column.setContentsMargins(0, 0, 0, 0)
+        column.addWidget(self.table)
+        self.table.cellClicked.connect(lambda row, _: document.select_where(self.findings[row].where))
+        document.changed.connect(self.refresh)
+        document.noticed.connect(self._note)
+        document.opened.connect(lambda _: self._notices.clear())
+
+    def use_theme(self, theme: Theme) -> None:
+        """Draw in the colours of a theme."""
+        self._theme = theme
+        self.findings = ()
+        self.refresh()
+
+    def refresh(self) -> None:
+        """Show the findings of the shown session."""
+        session = self._document.shown
+        verdict = session.verdict.findings if session.verdict else ()
+        paths = tuple(f for p in session.paths for f in p.findings)
+        own = dict.fromkeys(session.findings() + paths + verdict)
+        listed = tuple(self._notices) + tuple(sorted(own, key=lambda f: _ORDER.index(f.severity)))
+        if listed == self.findings:
+            return
+        self.findings = listed
+        tables.fill(self.table, [("", f.text, ", ".join(f.where), f.remedy, f.code) for f in listed])
+        for row, finding in enumerate(listed):
+            self.table.item(row, 0).setIcon(icons.icon(finding.severity.value, self._colour(finding.severity)))
+            self.table.item(row, 0).setToolTip(tr(finding.severity.value))
+        self.counted.emit(len(listed))
+
+    def _note(self, finding: Finding) -> None:
+        self._notices = [finding, *self._notices][:_MOST_NOTICES]
+        self.refresh()
+
+    def _colour(self, severity: Severity) -> str:
+        if self._theme is None:
+            return ""
+        return {Severity.ERROR: self._theme.bad, Severity.WARNING: self._theme.warning}.get(severity, self._theme.muted)

@@ -1,0 +1,151 @@
+"""The process tree: setups and their operations, reordered by drag, suppressed and deleted by menu."""
+
+from __future__ import annotations
+
+from PySide6.QtCore import QPoint, Qt, Signal
+from PySide6.QtGui import QColor, QDropEvent
+from PySide6.QtWidgets import QAbstractItemView, QMenu, QTreeWidget, QTreeWidgetItem, QVBoxLayout, QWidget
+
+from trunnion.model.operation import Operation
+from trunnion.model.session import Session
+from trunnion.model.verdict import Outcome
+from trunnion_gui import commands, icons
+from trunnion_gui.colours import Theme
+from trunnion_gui.document import Document, Selection
+from trunnion_gui.i18n import tr
+from trunnion_gui.widgets.table import RIGHT, tree
+from trunnion_gui.words import amount, kind_words, sentence
+
+_ID = Qt.ItemDataRole.UserRole
+
+
+class _Tree(QTreeWidget):
+    """A tree that tells of a drop instead of moving rows by itself: the session is what moves."""
+
+    dropped = Signal(str, object)
+    """The id of the dragged operation, and the id it was dropped in front of (None: at the end)."""
+
+    def dropEvent(self, event: QDropEvent) -> None:
+        dragged = self.currentItem()
+        if dragged is not None:
+            self.dropped.emit(dragged.data(0, _ID), self._target(event.position().toPoint()))
+        event.setDropAction(Qt.DropAction.IgnoreAction)
+        event.accept()
+
+    def _target(self, at: QPoint) -> str | None:
+        item = self.itemAt(at)
+        if item is None:
+            return None
+        below = at.y() > self.visualItemRect(item).center().y()
+        after = self.itemBelow(item) if below else item
+        return after.data(0, _ID) if after is not None and after.parent() is not None else None
+
+
+class ProcessDock(QWidget):
+    """Operations in the order they are cut."""
+
+    def __init__(self, document: Document) -> None:
+        super().__init__()
+        self._document = document
+        self._theme: Theme | None = None
+        self._shown: tuple = ()
+        self._items: dict[str, QTreeWidgetItem] = {}
+        self.tree = tree([tr("Operation"), tr("Feature"), tr("Tool"), "⌀ mm"], kind=_Tree)
+        self.tree.setDragDropMode(QAbstractItemView.DragDropMode.InternalMove)
+        column = QVBoxLayout(self)
+        column.setContentsMargins(0, 0, 0, 0)
+        column.addWidget(self.tree)
+        self.tree.itemSelectionChanged.connect(self._choose)
+        self.tree.customContextMenuRequested.connect(self._offer)
+        self.tree.dropped.connect(self.move)
+        document.changed.connect(self.refresh)
+        document.selected.connect(self._follow)
+
+    def use_theme(self, theme: Theme) -> None:
+        """Draw in the colours of a theme."""
+        self._theme = theme
+        self._shown = ()
+        self.refresh()
+
+    def refresh(self) -> None:
+        """Show the process of the shown session."""
+        session = self._document.shown
+        if (session.process, session.verdict) == self._shown:
+            return
+        self._shown = (session.process, session.verdict)
+        self.tree.blockSignals(True)
+        self.tree.clear()
+        self._items = {}
+        for setup in session.process.setups if session.process else ():
+            top = QTreeWidgetItem([f"{setup.name}  {setup.work_offset}", setup.machine, "", ""])
+            top.setIcon(0, icons.icon("setup"))
+            top.setFlags(top.flags() & ~(Qt.ItemFlag.ItemIsSelectable | Qt.ItemFlag.ItemIsDragEnabled))
+            self.tree.addTopLevelItem(top)
+            for o in session.process.operations if session.process else ():
+                if o.setup == setup.name:
+                    self._add(top, o, session)
+            top.setExpanded(True)
+        self.tree.blockSignals(False)
+        self._follow(self._document.selection)
+
+    def item(self, id: str) -> QTreeWidgetItem:
+        """Return the row of an operation."""
+        return self._items[id]
+
+    def move(self, id: str, before: str | None) -> None:
+        """Move an operation in front of another one."""
+        self._document.edit(tr("Move {id}").format(id=id), commands.with_operation_before(id, before))
+
+    def menu(self, operation: Operation) -> QMenu:
+        """Return what may be done with an operation."""
+        menu, id, edit = QMenu(self), operation.id, self._document.edit
+        words = tr("Cut {id} again") if operation.suppressed else tr("Suppress {id}")
+        menu.addAction(icons.icon("resume" if operation.suppressed else "suppress"), words.format(id=id),
+                       lambda: edit(words.format(id=id), commands.with_suppressed(id, not operation.suppressed)))
+        menu.addAction(icons.icon("delete"), tr("Delete {id}").format(id=id),
+                       lambda: edit(tr("Delete {id}").format(id=id), commands.without_operation(id)))
+        return menu
+
+    def _add(self, top: QTreeWidgetItem, o: Operation, session: Session) -> None:
+        item = QTreeWidgetItem([f"{o.id}  {sentence(tr(kind_words(o.kind)))}", o.feature, f"T{o.tool.number}", amount(o.tool.diameter, 2)])
+        item.setData(0, _ID, o.id)
+        item.setTextAlignment(3, RIGHT)
+        item.setToolTip(0, "<br>".join(o.rules))
+        item.setToolTip(2, o.tool.description or o.tool.name)
+        item.setIcon(0, self._icon(o, session))
+        if o.suppressed and self._theme is not None:
+            for column in range(4):
+                item.setForeground(column, QColor(self._theme.muted))
+        top.addChild(item)
+        self._items[o.id] = item
+
+    def _icon(self, o: Operation, session: Session):
+        if o.suppressed:
+            return icons.icon("suppress")
+        proof = next((p for p in session.verdict.operations if p.operation == o.id), None) if session.verdict else None
+        if proof is None or self._theme is None:
+            return icons.icon("by_hand" if o.by_hand else "empty")
+        colours = {Outcome.PASSED: self._theme.good, Outcome.REMARKS: self._theme.warning, Outcome.FAILED: self._theme.bad}
+        return icons.icon("problem" if proof.outcome is Outcome.FAILED else "done", colours[proof.outcome])
+
+    def _choose(self) -> None:
+        chosen = self.tree.selectedItems()
+        if chosen and chosen[0].data(0, _ID):
+            self._document.select_operation(chosen[0].data(0, _ID))
+
+    def _follow(self, selection: Selection) -> None:
+        self.tree.blockSignals(True)
+        item = self._items.get(selection.id) if selection.kind == "operation" else None
+        if item is None:
+            self.tree.clearSelection()
+        else:
+            self.tree.setCurrentItem(item)
+            self.tree.scrollToItem(item)
+        self.tree.blockSignals(False)
+
+    def _offer(self, at: QPoint) -> None:
+        item = self.tree.itemAt(at)
+        operation = self._document.operation(item.data(0, _ID) or "") if item is not None else None
+        if operation is not None:
+            self.menu(operation).popup(self.tree.viewport().mapToGlobal(at))
+

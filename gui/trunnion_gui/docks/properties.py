@@ -1,0 +1,124 @@
+"""What is selected, in numbers; an operation's own settings can be changed here."""
+
+from __future__ import annotations
+
+from PySide6.QtWidgets import QLabel, QScrollArea, QTableWidget, QVBoxLayout, QWidget
+
+from trunnion.model.feature import Feature
+from trunnion.model.operation import Operation
+from trunnion_gui import commands
+from trunnion_gui.document import Document
+from trunnion_gui.form import Form
+from trunnion_gui.i18n import tr
+from trunnion_gui.widgets import table as tables
+from trunnion_gui.words import amount, duration, kind_words, sentence, size_unit
+
+Rows = list[tuple[str, str]]
+
+
+class PropertiesDock(QScrollArea):
+    """Properties of the selected feature or operation."""
+
+    def __init__(self, document: Document) -> None:
+        super().__init__()
+        self._document = document
+        self._operation = ""
+        self.form: Form | None = None
+        self.setWidgetResizable(True)
+        self.setFrameShape(QScrollArea.Shape.NoFrame)
+        inside = QWidget()
+        self._column = QVBoxLayout(inside)
+        self._column.setContentsMargins(12, 8, 12, 8)
+        self.title = QLabel()
+        self.title.setObjectName("title")
+        self.subtitle = QLabel()
+        self.subtitle.setObjectName("muted")
+        self.subtitle.setWordWrap(True)
+        self.table: QTableWidget = tables.table(["", ""])
+        self.table.horizontalHeader().hide()
+        self.rules = QLabel()
+        self.rules.setObjectName("muted")
+        self.rules.setWordWrap(True)
+        self._forms = QVBoxLayout()
+        for widget in (self.title, self.subtitle, self.table, self.rules):
+            self._column.addWidget(widget)
+        self._column.addLayout(self._forms)
+        self._column.addStretch(1)
+        self.setWidget(inside)
+        document.selected.connect(lambda _: self.refresh())
+        document.changed.connect(self.refresh)
+        self.refresh()
+
+    def refresh(self) -> None:
+        """Show the properties of the selection."""
+        chosen, document = self._document.selection, self._document
+        feature, operation = document.feature(chosen.id), document.operation(chosen.id)
+        if chosen.kind == "feature" and feature:
+            self._show(feature.id, sentence(tr(kind_words(feature.kind))), feature_rows(feature))
+        elif chosen.kind == "operation" and operation:
+            self._show(operation.id, f"{sentence(tr(kind_words(operation.kind)))} · {operation.feature}", self._operation_rows(operation))
+        elif chosen.kind == "faces":
+            self._show(chosen.id, tr("no feature has this face") if len(chosen.faces) == 1 else "", [])
+        else:
+            self._show("", tr("Click a feature or an operation, in the picture or in a table."), [])
+        rules = (*operation.rules, *operation.data.rules) if chosen.kind == "operation" and operation else ()
+        self.rules.setText(tr("Why: {reasons}").format(reasons="; ".join(rules)))
+        self.rules.setVisible(bool(rules))
+        self._show_form(operation if chosen.kind == "operation" else None)
+
+    def _show(self, title: str, subtitle: str, rows: Rows) -> None:
+        self.title.setText(title)
+        self.title.setVisible(bool(title))
+        self.subtitle.setText(subtitle)
+        self.table.setVisible(bool(rows))
+        tables.fill(self.table, rows, right=(1,))
+        self.table.setFixedHeight(26 * len(rows) + 4)
+
+    def _operation_rows(self, o: Operation) -> Rows:
+        data, verdict = o.data, self._document.shown.verdict
+        proof = next((p for p in verdict.operations if p.operation == o.id), None) if verdict else None
+        rows = [(tr("Tool"), f"T{o.tool.number} {o.tool.name}"), (tr("Diameter"), f"{amount(o.tool.diameter)} mm"),
+                (tr("Corner radius"), f"{amount(o.tool.corner_radius)} mm"), (tr("Stickout"), f"{amount(o.tool.stickout)} mm"),
+                (tr("Holder"), o.tool.holder.name), (tr("Cutting speed"), f"{amount(data.speed, 0)} m/min"),
+                (tr("Spindle speed"), f"{amount(data.spindle, 0)} 1/min"), (tr("Feed"), f"{amount(data.feed, 0)} mm/min"),
+                (tr("Feed per tooth"), f"{amount(data.feed_per_tooth)} mm"), (tr("Depth of cut"), f"{amount(data.depth)} mm"),
+                (tr("Width of cut"), f"{amount(data.width)} mm"),
+                (tr("Power"), f"{amount(data.power, 1)} / {amount(data.power_limit, 1)} kW"),
+                (tr("Torque"), f"{amount(data.torque, 1)} Nm")]
+        if proof is not None:
+            rows += [(tr("Verdict"), tr(proof.outcome.value)), (tr("Time"), duration(proof.time_s)),
+                     (tr("Deepest gouge"), f"{amount(proof.gouge)} mm")]
+        return rows
+
+    def _show_form(self, operation: Operation | None) -> None:
+        strategy = operation.strategy if operation else ""
+        if self.form is None or self.form.property("strategy") != strategy or operation is None or operation.id != self._operation:
+            self._make_form(operation)
+        if self.form is not None and operation is not None:
+            self.form.fill({**self._document.session.choices, **operation.choices})
+
+    def _make_form(self, operation: Operation | None) -> None:
+        if self.form is not None:
+            self._forms.removeWidget(self.form)
+            self.form.deleteLater()
+            self.form = None
+        self._operation = operation.id if operation else ""
+        group = next((g for g in self._document.groups.get("toolpath", ()) if operation and g.name == operation.strategy), None)
+        if operation is None or group is None:
+            return
+        self.form = Form(group.settings)
+        self.form.setProperty("strategy", operation.strategy)
+        labels, id = {s.key: s.label for s in group.settings}, operation.id
+        self.form.changed.connect(lambda key, value, gesture: self._document.edit(
+            f"{id}: {tr(labels[key])} {value}", commands.with_operation_choice(id, key, value), gesture))
+        self._forms.addWidget(self.form)
+
+
+def feature_rows(feature: Feature) -> Rows:
+    """Return a feature's sizes, attributes and faces by role as words."""
+    rows = [(sentence(tr(kind_words(name))), f"{amount(value)} {size_unit(name, value)}".strip()) for name, value in feature.sizes.items()]
+    rows += [(sentence(tr(kind_words(name))), amount(value)) for name, value in feature.attributes.items()]
+    for role in dict.fromkeys(f.role for f in feature.faces):
+        tags = feature.with_role(role)
+        rows.append((sentence(tr(kind_words(role))), ", ".join(map(str, tags)) if len(tags) <= 5 else f"{len(tags)} {tr('faces')}"))
+    return rows

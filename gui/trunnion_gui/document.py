@@ -1,0 +1,363 @@
+"""What the window is about: the session with its history, what is selected, and the job that runs. Views read it and repaint.
+
+A slot builds an edit and hands it over (`edit`), or asks for a job (`open`, `run`, `save`, `write`); the worker computes and the
+signals tell. While a run goes on, `shown` holds what is done so far; `session` stays as it was until the run ends, so that a
+cancelled or crashed job leaves nothing behind.
+"""
+
+from __future__ import annotations
+
+import time
+from collections.abc import Mapping
+from dataclasses import dataclass, replace
+from pathlib import Path
+from typing import Any
+
+from PySide6.QtCore import QObject, Signal
+
+from trunnion.findings import Finding, Severity, TrunnionError
+from trunnion.geometry.mesh import Mesh
+from trunnion.model.feature import Feature
+from trunnion.model.operation import Operation
+from trunnion.model.session import Session
+from trunnion.settings import Value
+from trunnion_gui import commands
+from trunnion_gui.commands import Edit, History
+from trunnion_gui.i18n import tr
+from trunnion_gui.worker import ENGINE, Group, Opened, Reply, State, Worker
+
+
+@dataclass(frozen=True, slots=True)
+class Selection:
+    """What is selected: `kind` is feature, operation, faces, or empty; `id` the feature's or operation's; `faces` their tags."""
+
+    kind: str = ""
+    id: str = ""
+    faces: tuple[int, ...] = ()
+
+
+@dataclass(frozen=True, slots=True)
+class Job:
+    """A piece of work that runs: its request number, verb, label and when it started."""
+
+    number: int
+    verb: str
+    label: str
+    started: float
+    path: str = ""
+
+
+NOTHING = Selection()
+PROJECT = ".trunnion"
+
+
+class Document(QObject):
+    """The open part's session and everything that happens to it."""
+
+    changed = Signal()
+    """The shown session is another one, or its states are."""
+    mesh_changed = Signal()
+    selected = Signal(object)
+    job_changed = Signal()
+    progressed = Signal(float, str)
+    noticed = Signal(object)
+    """A `Finding` about the program itself: a failure, a crash, a refusal."""
+    opened = Signal(str)
+    saved = Signal(str)
+    written = Signal(object)
+    """The folder and the names of the files written there."""
+
+    def __init__(self, factory: str = ENGINE, parent: QObject | None = None) -> None:
+        super().__init__(parent)
+        self.history = History(Session())
+        self.shown = self.history.session
+        self.states: dict[str, str] = {}
+        self.groups: Mapping[str, tuple[Group, ...]] = {}
+        self.mesh: Mesh | None = None
+        self.path = ""
+        self.project = ""
+        self.selection = NOTHING
+        self.job: Job | None = None
+        self.running_step = ""
+        self._quiet: dict[int, str] = {}
+        self._then = ""
+        self._kept = (b"", "")
+        self.worker = Worker(factory, self)
+        self.worker.replied.connect(self._receive)
+        self.worker.restarted.connect(self._attach)
+        self._ask_quietly("settings")
+
+    @property
+    def session(self) -> Session:
+        """The session as the history has it."""
+        return self.history.session
+
+    @property
+    def is_busy(self) -> bool:
+        """Whether a job runs."""
+        return self.job is not None
+
+    @property
+    def has_part(self) -> bool:
+        """Whether a part is open."""
+        return self.session.part is not None
+
+    # jobs
+
+    def open(self, path: str | Path, solid: int | None = None) -> None:
+        """Open a part or a project file."""
+        if self._is_free():
+            name = Path(path).name
+            self._start("open", tr("opening {name}").format(name=name), str(path), solid, path=str(path))
+
+    def run(self, last: str, label: str) -> None:
+        """Compute what is stale up to and including a step. Asked while a file is being opened, it runs right after."""
+        if self.job is not None and self.job.verb == "open":
+            self._then = last
+            return
+        if self._is_free() and self._needs_part():
+            self._start("run", label, self.session, last)
+
+    def program(self) -> None:
+        """Do the whole line."""
+        self.run("verify", tr("Program"))
+
+    def save(self, path: str | Path) -> None:
+        """Write the project file."""
+        if self._is_free() and self._needs_part():
+            self._start("save", tr("saving {name}").format(name=Path(path).name), self.session, str(path), path=str(path))
+
+    def autosave(self, path: str | Path) -> None:
+        """Write the session beside, without telling anybody; done only while nothing runs."""
+        if not self.is_busy and self.has_part:
+            self._ask_quietly("save", self.session, str(path))
+
+    def write(self, folder: str | Path) -> None:
+        """Write programs, tool list, XML and report into a folder."""
+        if self._is_free() and self._needs_part():
+            self._start("write", tr("writing files"), self.session, str(folder), path=str(folder))
+
+    def cancel(self) -> None:
+        """Ask the running job to stop."""
+        if self.job is not None:
+            self._then = ""
+            self.worker.cancel(self.job.number)
+            self.progressed.emit(-1.0, tr("cancelling"))
+
+    # edits
+
+    def edit(self, label: str, edit: Edit, gesture: str = "") -> None:
+        """Do an undoable edit; a refusal, or a job that runs, is told in a message."""
+        if self.is_busy:
+            self.notice(tr("{label}: not while {job} runs").format(label=label, job=self.job.label if self.job else ""),
+                        tr("cancel the running job, or wait until it is done"), severity=Severity.WARNING)
+            self.changed.emit()
+            return
+        try:
+            session = edit(self.session)
+        except TrunnionError as reason:
+            self.notice(str(reason), severity=Severity.WARNING)
+            return
+        if session is not self.session:
+            self.history.push(label, session, gesture)
+            self._show(session)
+            self._ask_states()
+
+    def choose(self, key: str, label: str, value: Value, gesture: str = "") -> None:
+        """Choose a setting by its full key."""
+        self.edit(label, commands.with_choice(key, value), gesture)
+
+    def undo(self) -> None:
+        """Take the last edit or run back."""
+        if self._is_free():
+            self._show(self.history.undo())
+            self._ask_states()
+
+    def redo(self) -> None:
+        """Bring back what was undone."""
+        if self._is_free():
+            self._show(self.history.redo())
+            self._ask_states()
+
+    # selection
+
+    def select(self, selection: Selection) -> None:
+        """Make something the selection of every view."""
+        if selection != self.selection:
+            self.selection = selection
+            self.selected.emit(selection)
+
+    def select_feature(self, id: str) -> None:
+        """Select a feature with its faces."""
+        found = self.feature(id)
+        self.select(Selection("feature", id, found.tags) if found else NOTHING)
+
+    def select_operation(self, id: str) -> None:
+        """Select an operation with the faces of its feature."""
+        found = self.operation(id)
+        feature = self.feature(found.feature) if found else None
+        faces = found.faces or (feature.tags if feature else ()) if found else ()
+        self.select(Selection("operation", id, faces) if found else NOTHING)
+
+    def select_face(self, tag: int) -> None:
+        """Select the feature a face belongs to, the smallest when there are several; the face itself when there is none."""
+        owners = [f for f in (self.shown.recognition or ()) if tag in f.tags]
+        if owners:
+            self.select_feature(min(owners, key=lambda f: len(f.tags)).id)
+        else:
+            self.select(Selection("faces", f"face {tag}", (tag,)) if tag else NOTHING)
+
+    def select_where(self, words: tuple[str, ...]) -> None:
+        """Select what the words of a finding name."""
+        for word in words:
+            if self.feature(word):
+                self.select_feature(word)
+                return
+            if self.operation(word):
+                self.select_operation(word)
+                return
+        tags = tuple(int(w[5:]) for w in words if w.startswith("face ") and w[5:].isdigit())
+        if tags:
+            self.select(Selection("faces", ", ".join(f"face {t}" for t in tags), tags))
+
+    def feature(self, id: str) -> Feature | None:
+        """Return the shown feature with an id, if there is one."""
+        return next((f for f in (self.shown.recognition or ()) if f.id == id), None)
+
+    def operation(self, id: str) -> Operation | None:
+        """Return the shown operation with an id, if there is one."""
+        process = self.shown.process
+        return next((o for o in (process.operations if process else ()) if o.id == id), None)
+
+    def notice(self, text: str, remedy: str = "", severity: Severity = Severity.ERROR) -> None:
+        """Tell the person something about the program itself."""
+        self.noticed.emit(Finding(severity=severity, code="window", text=text, remedy=remedy))
+
+    def close(self) -> None:
+        """End the worker."""
+        self.worker.stop()
+
+    # inside
+
+    def _is_free(self) -> bool:
+        if self.job is not None:
+            self.notice(tr("{job} still runs").format(job=self.job.label), tr("cancel it first, or wait until it is done"),
+                        severity=Severity.WARNING)
+        return self.job is None
+
+    def _needs_part(self) -> bool:
+        if not self.has_part:
+            self.notice(tr("There is no part yet"), tr("open a STEP or IGES file first (Ctrl+O), or drop one on the window"),
+                        severity=Severity.WARNING)
+        return self.has_part
+
+    def _start(self, verb: str, label: str, *arguments: Any, path: str = "") -> None:
+        self.job = Job(self.worker.ask(verb, *arguments), verb, label, time.monotonic(), path)
+        self.job_changed.emit()
+        self.progressed.emit(0.0, label)
+
+    def _ask_quietly(self, verb: str, *arguments: Any) -> None:
+        self._quiet[self.worker.ask(verb, *arguments)] = verb
+
+    def _ask_states(self) -> None:
+        for number in [n for n, verb in self._quiet.items() if verb == "states"]:
+            self.worker.forget(number)
+            del self._quiet[number]
+        if self.has_part:
+            self._ask_quietly("states", self.session)
+
+    def _attach(self) -> None:
+        if self.has_part:
+            self._ask_quietly("attach", self.session, *self._kept)
+        if not self.groups:
+            self._ask_quietly("settings")
+
+    def _show(self, session: Session, states: dict[str, str] | None = None) -> None:
+        self.shown = session
+        if states is not None:
+            self.states = states
+        self._keep_selection()
+        self.changed.emit()
+
+    def _keep_selection(self) -> None:
+        """Drop a selection whose feature or operation is gone, follow one whose faces changed."""
+        chosen = self.selection
+        if chosen.kind == "feature":
+            found = self.feature(chosen.id)
+            self.select(replace(chosen, faces=found.tags) if found else NOTHING)
+        elif chosen.kind == "operation" and self.operation(chosen.id) is None:
+            self.select(NOTHING)
+
+    def _receive(self, reply: Reply) -> None:
+        if reply.number in self._quiet:
+            if reply.is_last:
+                self._receive_quiet(self._quiet.pop(reply.number), reply)
+        elif self.job is not None and reply.number == self.job.number:
+            self._receive_job(self.job, reply)
+        elif reply.kind == "crashed":
+            self.notice(reply.text, severity=Severity.WARNING)
+
+    def _receive_quiet(self, verb: str, reply: Reply) -> None:
+        if reply.kind in ("failed", "crashed"):
+            self.notice(reply.text)
+        elif reply.kind == "done" and verb == "settings":
+            self.groups = reply.value
+            self.changed.emit()
+        elif reply.kind == "done" and verb == "states" and not self.is_busy:
+            self.states = reply.value.steps
+            self.changed.emit()
+
+    def _receive_job(self, job: Job, reply: Reply) -> None:
+        if reply.kind == "progress":
+            self.progressed.emit(reply.fraction, reply.text)
+        elif reply.kind == "stage":
+            self._receive_stage(*reply.value)
+        else:
+            self.job, self.running_step = None, ""
+            self._finish(job, reply)
+            self.job_changed.emit()
+            then, self._then = self._then, ""
+            if then and job.verb == "open" and reply.kind == "done":
+                self.run(then, tr("Program"))
+
+    def _receive_stage(self, step: str, state: State | None) -> None:
+        if state is None:
+            self.running_step = step
+            self.changed.emit()
+        else:
+            self._show(state.session, state.steps)
+
+    def _finish(self, job: Job, reply: Reply) -> None:
+        if reply.kind != "done":
+            self._show(self.session)
+            self._ask_states()
+            if reply.kind == "failed":
+                self.notice(reply.text)
+            elif reply.kind == "crashed":
+                self.notice(tr("{job} was lost: {reason}").format(job=job.label, reason=reply.text),
+                            tr("your session is unchanged; try again, or save and report the part"))
+            return
+        if job.verb == "open":
+            self._install(job.path, reply.value)
+        elif job.verb == "run":
+            self.history.push(job.label, reply.value.session)
+            self._show(reply.value.session, reply.value.steps)
+        elif job.verb == "save":
+            self.project = job.path
+            self.history.mark_saved(self.session)
+            self.saved.emit(job.path)
+            self.changed.emit()
+        elif job.verb == "write":
+            self.written.emit((job.path, reply.value))
+
+    def _install(self, path: str, opened: Opened) -> None:
+        self.path = path
+        self.project = path if path.endswith(PROJECT) else ""
+        self.history = History(opened.state.session)
+        self.mesh, self._kept = opened.mesh, opened.kept
+        self.selection = NOTHING
+        self.shown, self.states = opened.state.session, opened.state.steps
+        self.mesh_changed.emit()
+        self.selected.emit(NOTHING)
+        self.changed.emit()
+        self.opened.emit(path)

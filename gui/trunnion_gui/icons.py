@@ -1,0 +1,44 @@
+"""Icons by the window's own names (`resources/icons`), in the colours of the theme."""
+
+from __future__ import annotations
+
+import json
+from functools import cache
+from importlib.resources import files
+
+from PySide6.QtGui import QIcon, QPixmap
+
+from trunnion_gui.colours import Theme, theme
+
+_theme = theme("light")
+
+
+@cache
+def names() -> dict[str, str]:
+    """Return the icon font's name of every icon."""
+    return json.loads((files("trunnion_resources") / "icons" / "icons.json").read_text("utf-8"))
+
+
+def use_theme(chosen: Theme) -> None:
+    """Draw icons asked for from now on in the colours of a theme."""
+    global _theme
+    _theme = chosen
+
+
+def icon(name: str, colour: str = "") -> QIcon:
+    """Return an icon; raises `KeyError` for a name that resources do not have."""
+    import qtawesome
+
+    return qtawesome.icon(names()[name], color=colour or _theme.text, color_disabled=_theme.line)
+
+
+def pixmap(name: str, size: int, colour: str = "") -> QPixmap:
+    """Return an icon as a picture."""
+    return icon(name, colour).pixmap(size, size)
+
+
+def window_icon() -> QIcon:
+    """Return the program's own sign."""
+    picture = QPixmap()
+    picture.loadFromData((files("trunnion_resources") / "icons" / "trunnion.svg").read_bytes(), "SVG")
+    return QIcon(picture)

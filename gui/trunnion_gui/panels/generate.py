@@ -1,0 +1,79 @@
+"""Panel 6: toolpaths, the proof, and the files."""
+
+from __future__ import annotations
+
+from PySide6.QtCore import Qt, Signal
+from PySide6.QtWidgets import QCheckBox, QGridLayout, QHBoxLayout, QLabel, QWidget
+
+from trunnion.model.verdict import Outcome
+from trunnion_gui.colours import motions
+from trunnion_gui.i18n import tr
+from trunnion_gui.widgets.panel import Panel, rule, swatch
+from trunnion_gui.words import amount, duration, share
+
+VERDICTS = {Outcome.PASSED: "good", Outcome.REMARKS: "warning", Outcome.FAILED: "bad"}
+
+
+class GeneratePanel(Panel):
+    """Generate, verify, write; and which motions the picture shows."""
+
+    folds_settings = True
+    motions_changed = Signal(object)
+    """Which kinds of motion are to be seen."""
+
+    def build(self) -> None:
+        self.content.addLayout(self._settings)
+        self.content.addWidget(self.buttons("step.generate", "step.verify", primary="step.generate"))
+        self.verdict = QLabel()
+        self.content.addWidget(self.verdict)
+        self._numbers = QGridLayout()
+        self._numbers.setHorizontalSpacing(10)
+        self._numbers.setVerticalSpacing(2)
+        self._numbers.setColumnStretch(0, 1)
+        self.content.addLayout(self._numbers)
+        self.content.addWidget(rule())
+        self.content.addWidget(self._motions())
+        self.content.addWidget(self.button("file.write"))
+
+    def fill(self) -> None:
+        verdict = self.document.shown.verdict
+        while self._numbers.count():
+            self._numbers.takeAt(0).widget().deleteLater()
+        self.verdict.setVisible(verdict is not None)
+        if verdict is None:
+            return
+        self.verdict.setText(tr("Verdict: {outcome}").format(outcome=tr(verdict.outcome.value)))
+        self.verdict.setProperty("verdict", VERDICTS[verdict.outcome])
+        self.verdict.style().unpolish(self.verdict)
+        self.verdict.style().polish(self.verdict)
+        for n, (words, value) in enumerate((
+                (tr("Coverage"), share(verdict.coverage)), (tr("Coverage of what cutters reach"), share(verdict.reachable)),
+                (tr("Deepest gouge"), f"{amount(verdict.gouge)} mm"), (tr("Collisions"), str(verdict.collisions)),
+                (tr("Rapids in stock"), str(verdict.rapids_in_stock)), (tr("Machining time"), duration(verdict.machining_time_s)))):
+            label, number = QLabel(words), QLabel(value)
+            label.setObjectName("muted")
+            self._numbers.addWidget(label, n, 0)
+            self._numbers.addWidget(number, n, 1, Qt.AlignmentFlag.AlignRight)
+
+    def shown_motions(self) -> tuple[str, ...]:
+        """Return the kinds of motion that are ticked."""
+        return tuple(name for name, box in self._boxes.items() if box.isChecked())
+
+    def _motions(self) -> QWidget:
+        block = QWidget()
+        grid = QGridLayout(block)
+        grid.setContentsMargins(0, 2, 0, 2)
+        grid.setVerticalSpacing(4)
+        self._boxes: dict[str, QCheckBox] = {}
+        for n, (name, colour) in enumerate(motions().items()):
+            box = QCheckBox(tr(name))
+            box.setChecked(True)
+            box.toggled.connect(lambda _: self.motions_changed.emit(self.shown_motions()))
+            self._boxes[name] = box
+            cell = QWidget()
+            row = QHBoxLayout(cell)
+            row.setContentsMargins(0, 0, 0, 0)
+            row.addWidget(swatch(colour))
+            row.addWidget(box, 1)
+            grid.addWidget(cell, n // 3, n % 3)
+        return block

@@ -1,0 +1,51 @@
+"""Things on their way between two processes: large arrays travel in one block of shared memory, the rest in the pipe."""
+
+from __future__ import annotations
+
+import pickle
+from dataclasses import dataclass
+from multiprocessing.shared_memory import SharedMemory
+from typing import Any
+
+SMALL = 1 << 18
+"""Bytes of arrays below which a block of shared memory costs more than it saves."""
+
+
+@dataclass(frozen=True, slots=True)
+class Parcel:
+    """A pickled thing; its arrays of `sizes` bytes lie one after the other in the shared block, if it has one."""
+
+    data: bytes
+    block: str = ""
+    sizes: tuple[int, ...] = ()
+
+
+def packed(thing: Any) -> Parcel:
+    """Return a thing ready to be sent. Who receives it must call `unpacked` once: that frees the block."""
+    buffers: list[pickle.PickleBuffer] = []
+    data = pickle.dumps(thing, protocol=5, buffer_callback=buffers.append)
+    views = [b.raw() for b in buffers]
+    sizes = tuple(v.nbytes for v in views)
+    if sum(sizes) < SMALL:
+        return Parcel(pickle.dumps(thing, protocol=5))
+    memory = SharedMemory(create=True, size=sum(sizes))
+    at = 0
+    for view in views:
+        memory.buf[at:at + view.nbytes] = view
+        at += view.nbytes
+    memory.close()
+    return Parcel(data, memory.name, sizes)
+
+
+def unpacked(parcel: Parcel) -> Any:
+    """Return the thing of a parcel and free its block; arrays come back read-only."""
+    if not parcel.block:
+        return pickle.loads(parcel.data)
+    memory = SharedMemory(name=parcel.block)
+    buffers, at = [], 0
+    for size in parcel.sizes:
+        buffers.append(bytes(memory.buf[at:at + size]))
+        at += size
+    memory.close()
+    memory.unlink()
+    return pickle.loads(parcel.data, buffers=buffers)

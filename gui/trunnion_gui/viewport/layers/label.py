@@ -1,0 +1,20 @@
+"""One size, written where it is."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+
+from trunnion_gui.colours import Theme
+
+
+def draw_label(view: Any, text: str, at: tuple[float, ...], theme: Theme) -> None:
+    """Write a text at a point of the part, or nothing when the text is empty."""
+    view.remove_actor("size", render=False)
+    view.remove_actor("size-labels", render=False)
+    if text:
+        view.add_point_labels(np.array([at], dtype=float), [text], name="size", font_size=15, text_color=theme.text,
+                              shape_color=theme.panel, shape_opacity=0.92, point_color=theme.selection, point_size=11,
+                              always_visible=True, pickable=False,
+                              reset_camera=False, shape="rounded_rect", margin=5)

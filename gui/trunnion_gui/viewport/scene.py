@@ -1,0 +1,251 @@
+"""The picture in the middle: arrays in, actors inside. Says which face was clicked; knows nothing of documents."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Mapping, Sequence
+from typing import Any
+
+import numpy as np
+from PySide6.QtCore import QEvent, QObject, QPointF, Qt, Signal
+from PySide6.QtGui import QMouseEvent
+from PySide6.QtWidgets import QVBoxLayout, QWidget
+
+from trunnion.geometry.frame import WORLD, Frame
+from trunnion.geometry.mesh import Mesh
+from trunnion.model.blank import Blank
+from trunnion.model.setup import Setup
+from trunnion.model.toolpath import Toolpath
+from trunnion_gui.colours import MOTIONS, Theme, mixed, rgb
+from trunnion_gui.viewport.layers.blank import draw_blank
+from trunnion_gui.viewport.layers.label import draw_label
+from trunnion_gui.viewport.layers.part import PartLayer
+from trunnion_gui.viewport.layers.paths import draw_paths
+from trunnion_gui.viewport.layers.setups import draw_setups
+from trunnion_gui.viewport.pick import FacePicker
+from trunnion_gui.viewport.view import make_view
+
+VIEWS: dict[str, tuple[tuple[float, float, float], tuple[float, float, float]]] = {
+    "isometric": ((-0.55, -0.75, 0.75), (0.0, 0.0, 1.0)),
+    "top": ((0.0, 0.0, 1.0), (0.0, 1.0, 0.0)),
+    "bottom": ((0.0, 0.0, -1.0), (0.0, 1.0, 0.0)),
+    "front": ((0.0, -1.0, 0.0), (0.0, 0.0, 1.0)),
+    "back": ((0.0, 1.0, 0.0), (0.0, 0.0, 1.0)),
+    "left": ((-1.0, 0.0, 0.0), (0.0, 0.0, 1.0)),
+    "right": ((1.0, 0.0, 0.0), (0.0, 0.0, 1.0)),
+}
+"""Where the eye stands and what is up, in the frame of the recognition."""
+
+_CLICK = 4
+"""A press and a release this many pixels apart are a click; further apart they turn the part."""
+_FADED = 0.8
+"""How far the kinds' colours fade towards the part's own while toolpaths are to be seen on it."""
+
+
+class Scene(QWidget):
+    """The viewport with its layers."""
+
+    clicked = Signal(int)
+    """The tag of the face that was clicked, 0 beside the part."""
+    hovered = Signal(int)
+
+    def __init__(self, theme: Theme, parent: QWidget | None = None) -> None:
+        super().__init__(parent)
+        self.setMinimumSize(240, 200)
+        self.view: Any = make_view(self)
+        column = QVBoxLayout(self)
+        column.setContentsMargins(0, 0, 0, 0)
+        column.addWidget(self.view)
+        self._theme = theme
+        self._part: PartLayer | None = None
+        self._mesh: Mesh | None = None
+        self._picker: FacePicker | None = None
+        self._frame = WORLD
+        self._colours: Mapping[int, str] = {}
+        self._chosen: tuple[int, ...] = ()
+        self._is_filled = True
+        self._hover: tuple[int, ...] = ()
+        self._is_faded = False
+        self._is_isolated = False
+        self._pressed: QPointF | None = None
+        self._section: float | None = None
+        self.view.enable_parallel_projection()
+        self.use_theme(theme)
+        self.view.installEventFilter(self)
+
+    def use_theme(self, theme: Theme) -> None:
+        """Draw in the colours of a theme."""
+        self._theme = theme
+        self.view.add_axes(line_width=2, color=theme.text)
+        self.view.set_background(theme.view_bottom, top=theme.view_top)
+        if self._mesh is not None:
+            self.show_mesh(self._mesh, keep_camera=True)
+
+    def show_mesh(self, mesh: Mesh | None, keep_camera: bool = False) -> None:
+        """Show a part, or nothing."""
+        self._mesh = mesh
+        for name in ("part", "edges", "chosen", "hover"):
+            self.view.remove_actor(name, render=False)
+        self._part = self._picker = None
+        if mesh is not None and len(mesh.triangles):
+            self._part = PartLayer(self.view, mesh, self._theme)
+            self._picker = FacePicker(self._part.actor, mesh.face)
+            if not keep_camera:
+                self._frame = WORLD
+                self.look("isometric")
+        self._repaint()
+
+    def show_kinds(self, colours: Mapping[int, str], *, faded: bool = False) -> None:
+        """Colour faces by tag (`#rrggbb`); the others have the part's own colour. Faded while toolpaths lie on them."""
+        self._colours, self._is_faded = colours, faded
+        self._repaint()
+
+    def choose(self, faces: tuple[int, ...], *, filled: bool = True) -> None:
+        """Mark faces as the selection: filled, or only by their border where toolpaths are to be seen on them."""
+        self._chosen, self._is_filled = faces, filled
+        if self._part is not None:
+            self._part.outline("chosen", faces, self._theme.edge if filled else self._theme.selection, 2.5 if filled else 4.0)
+        self._repaint()
+
+    def isolate(self, on: bool) -> None:
+        """Let everything but the selection fade into the background, or not."""
+        self._is_isolated = on
+        self._repaint()
+
+    def show_blank(self, blank: Blank | None) -> None:
+        """Show the blank, or none."""
+        draw_blank(self.view, blank, self._theme)
+        self.view.render()
+
+    def show_setups(self, setups: Sequence[Setup]) -> None:
+        """Show the zero of every setup."""
+        length = float(np.ptp(self._mesh.points, axis=0).max()) * 0.07 if self._mesh is not None else 1.0
+        draw_setups(self.view, setups, length)
+        self.view.render()
+
+    def show_paths(self, paths: Iterable[tuple[Toolpath, Frame]], motions: Iterable[str] = MOTIONS) -> None:
+        """Show toolpaths with the frames of their setups."""
+        draw_paths(self.view, paths, motions)
+        self.view.render()
+
+    def show_label(self, text: str, at: tuple[float, ...] = ()) -> None:
+        """Write a size at a point of the part."""
+        draw_label(self.view, text if len(at) == 3 else "", at, self._theme)
+        self.view.render()
+
+    def use_frame(self, frame: Frame) -> None:
+        """Let the standard views follow a frame."""
+        self._frame = frame
+
+    def look(self, name: str) -> None:
+        """Take a standard view and fit."""
+        eye, up = (self._frame.world_direction(np.array(v)) for v in VIEWS[name])
+        self.view.view_vector(tuple(eye), viewup=tuple(up))
+        self.fit()
+
+    def fit(self) -> None:
+        """Fit everything into the picture."""
+        self.view.reset_camera(bounds=self._bounds())
+        self.view.camera.zoom(1.15)
+        self.view.render()
+
+    def section(self, share: float | None) -> None:
+        """Cut the part open across the frame's z at a share of its height; None shows it whole."""
+        self._section = share
+        self._apply_section()
+        self.view.render()
+
+    def face_at(self, at: QPointF) -> int:
+        """Return the tag of the face at a point of the view widget, 0 beside the part."""
+        if self._picker is None:
+            return 0
+        ratio = self.view.devicePixelRatioF()
+        return self._picker.at(at.x() * ratio, (self.view.height() - at.y() - 1) * ratio, self.view.renderer)
+
+    def where(self, point: Sequence[float]) -> QPointF:
+        """Return where a point of the part (x, y, z) is on the view widget."""
+        renderer, ratio = self.view.renderer, self.view.devicePixelRatioF()
+        renderer.SetWorldPoint(*point, 1.0)
+        renderer.WorldToDisplay()
+        x, y, _ = renderer.GetDisplayPoint()
+        return QPointF(x / ratio, self.view.height() - 1 - y / ratio)
+
+    def smooth(self) -> None:
+        """Draw with smoothed edges from now on: for pictures to keep, slow without a graphics card."""
+        self.view.enable_anti_aliasing("ssaa")
+
+    def save_picture(self, path: str) -> bool:
+        """Write what the viewport shows as PNG."""
+        return self.view.grab().save(path)
+
+    def end(self) -> None:
+        """Let VTK go before Qt does."""
+        self.view.removeEventFilter(self)
+        self.view.close()
+
+    def eventFilter(self, watched: QObject, event: QEvent) -> bool:
+        if isinstance(event, QMouseEvent):
+            kind = event.type()
+            if kind == QEvent.Type.MouseButtonPress and event.button() == Qt.MouseButton.LeftButton:
+                self._pressed = event.position()
+            elif kind == QEvent.Type.MouseButtonRelease and self._pressed is not None:
+                moved = event.position() - self._pressed
+                self._pressed = None
+                if event.button() == Qt.MouseButton.LeftButton and abs(moved.x()) + abs(moved.y()) <= _CLICK:
+                    self.clicked.emit(self.face_at(event.position()))
+            elif kind == QEvent.Type.MouseMove and event.buttons() == Qt.MouseButton.NoButton:
+                self.hovered.emit(self.face_at(event.position()))
+        return False
+
+    def hover(self, faces: tuple[int, ...]) -> None:
+        """Outline faces lightly, or none."""
+        if faces != self._hover and self._part is not None:
+            self._hover = faces
+            self._part.outline("hover", faces, self._theme.edge, 2.0)
+            self.view.render()
+
+    def _repaint(self) -> None:
+        if self._part is not None and self._mesh is not None:
+            self._part.paint(self._palette(int(self._mesh.face.max())))
+        self._apply_section()
+        self.view.render()
+
+    def _palette(self, n_faces: int) -> np.ndarray:
+        theme = self._theme
+        colours = np.tile(np.array(rgb(theme.part), np.uint8), (n_faces + 1, 1))
+        for tag, colour in self._colours.items():
+            if tag <= n_faces:
+                colours[tag] = rgb(mixed(colour, theme.part, _FADED) if self._is_faded else colour)
+        if self._is_isolated and self._chosen:
+            others = np.setdiff1d(np.arange(n_faces + 1), self._chosen)
+            colours[others] = rgb(mixed(theme.part, theme.view_bottom, 0.7))
+        for tag in self._chosen:
+            if tag <= n_faces:
+                own = "#{:02x}{:02x}{:02x}".format(*colours[tag])
+                colours[tag] = rgb(mixed(own, theme.selection, 0.85 if self._is_filled else 0.0))
+        return colours
+
+    def _bounds(self) -> tuple[float, ...] | None:
+        if self._mesh is None:
+            return None
+        low, high = self._mesh.box()
+        return tuple(float(v) for pair in zip(low, high) for v in pair)
+
+    def _apply_section(self) -> None:
+        for name in ("part", "edges", "chosen"):
+            actor = self.view.actors.get(name)
+            if actor is None:
+                continue
+            actor.mapper.RemoveAllClippingPlanes()
+            if self._section is not None and self._mesh is not None:
+                actor.mapper.AddClippingPlane(self._plane(self._section))
+
+    def _plane(self, share: float) -> Any:
+        from vtkmodules.vtkCommonDataModel import vtkPlane
+
+        assert self._mesh is not None
+        heights = self._frame.to_local(self._mesh.points)[:, 2]
+        height = heights.min() + share * np.ptp(heights)
+        plane = vtkPlane()
+        plane.SetOrigin(*self._frame.to_world(np.array([0.0, 0.0, height])))
+        plane.SetNormal(*-np.asarray(self._frame.z))
+        return plane

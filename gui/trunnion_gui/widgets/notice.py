@@ -1,0 +1,67 @@
+"""A message above the picture that says what happened and what to do. Never modal."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+
+from PySide6.QtWidgets import QFrame, QHBoxLayout, QLabel, QPushButton, QToolButton, QVBoxLayout
+
+from trunnion.findings import Finding, Severity
+from trunnion_gui import icons
+from trunnion_gui.i18n import tr
+
+_SIDES = {Severity.ERROR: "error", Severity.WARNING: "warning"}
+
+
+class Notice(QFrame):
+    """One message at a time, with at most two things to do about it."""
+
+    def __init__(self) -> None:
+        super().__init__()
+        self.setObjectName("notice")
+        self._text, self._remedy = QLabel(), QLabel()
+        self._text.setWordWrap(True)
+        self._text.setStyleSheet("font-weight: 600")
+        self._remedy.setWordWrap(True)
+        self._remedy.setObjectName("muted")
+        words = QVBoxLayout()
+        words.setSpacing(2)
+        words.addWidget(self._text)
+        words.addWidget(self._remedy)
+        self._answers = QHBoxLayout()
+        self.close_button = QToolButton()
+        self.close_button.setToolTip(tr("Close this message"))
+        self.close_button.clicked.connect(self.hide)
+        row = QHBoxLayout(self)
+        row.setContentsMargins(14, 9, 8, 9)
+        row.addLayout(words, 1)
+        row.addLayout(self._answers)
+        row.addWidget(self.close_button)
+        self.hide()
+
+    @property
+    def text(self) -> str:
+        """What the message says."""
+        return self._text.text()
+
+    def tell(self, finding: Finding, answers: dict[str, Callable[[], None]] | None = None) -> None:
+        """Show a finding with buttons for what can be done."""
+        self.setProperty("severity", _SIDES.get(finding.severity, "info"))
+        self.style().unpolish(self)
+        self.style().polish(self)
+        self.close_button.setIcon(icons.icon("close"))
+        self._text.setText(_sentence(finding.text))
+        self._remedy.setText(_sentence(finding.remedy))
+        self._remedy.setVisible(bool(finding.remedy))
+        while self._answers.count():
+            self._answers.takeAt(0).widget().deleteLater()
+        for words, answer in (answers or {}).items():
+            button = QPushButton(words)
+            button.clicked.connect(self.hide)
+            button.clicked.connect(lambda _=False, act=answer: act())
+            self._answers.addWidget(button)
+        self.show()
+
+
+def _sentence(words: str) -> str:
+    return words[:1].upper() + words[1:]

@@ -1,0 +1,456 @@
+"""The one main window: six panels left, the picture in the middle, features and process right, messages and programs below."""
+
+from __future__ import annotations
+
+import contextlib
+from collections.abc import Callable
+from functools import partial
+from importlib.resources import as_file
+from pathlib import Path
+
+from PySide6.QtCore import QSize, Qt, QTimer
+from PySide6.QtGui import QCloseEvent, QDragEnterEvent, QDropEvent
+from PySide6.QtWidgets import (
+    QDockWidget,
+    QFileDialog,
+    QMainWindow,
+    QMenu,
+    QMessageBox,
+    QScrollArea,
+    QSizePolicy,
+    QTabWidget,
+    QToolBar,
+    QToolButton,
+    QVBoxLayout,
+    QWidget,
+)
+
+import trunnion_resources
+from trunnion import __version__
+from trunnion.findings import Finding, Severity
+from trunnion_gui import colours, commands, i18n, icons, remembered, theme
+from trunnion_gui.actions import Command, Registry
+from trunnion_gui.centre import Centre
+from trunnion_gui.docks.code import CodeDock
+from trunnion_gui.docks.features import FeatureDock
+from trunnion_gui.docks.listing import ListingDock
+from trunnion_gui.docks.messages import MessagesDock
+from trunnion_gui.docks.process import ProcessDock
+from trunnion_gui.docks.properties import PropertiesDock
+from trunnion_gui.document import PROJECT, Document
+from trunnion_gui.finder import Finder
+from trunnion_gui.i18n import tr
+from trunnion_gui.panels.blank import BlankPanel
+from trunnion_gui.panels.generate import GeneratePanel
+from trunnion_gui.panels.optimize import OptimizePanel
+from trunnion_gui.panels.recognize import RecognizePanel
+from trunnion_gui.panels.route import RoutePanel
+from trunnion_gui.panels.size import SizePanel
+from trunnion_gui.status import Status
+from trunnion_gui.steps import STAGES
+from trunnion_gui.widgets.panel import Panel
+from trunnion_gui.worker import ENGINE
+
+PANELS: dict[str, type[Panel]] = {"recognize": RecognizePanel, "size": SizePanel, "blank": BlankPanel, "route": RoutePanel,
+                                  "optimize": OptimizePanel, "generate": GeneratePanel}
+PART_FILES = "STEP, IGES, Trunnion (*.step *.stp *.stpz *.igs *.iges *.trunnion)"
+_AUTOSAVE_MS = 20_000
+_LEFT_WIDTH = 344
+_RIGHT_WIDTH = 350
+_LEFT = Qt.DockWidgetArea.LeftDockWidgetArea
+_RIGHT = Qt.DockWidgetArea.RightDockWidgetArea
+_BELOW = Qt.DockWidgetArea.BottomDockWidgetArea
+_MENUS = ("File", "Edit", "Steps", "View", "Help")
+_MENU_OF = {"file": "File", "edit": "Edit", "run": "Steps", "step": "Steps", "job": "Steps", "view": "View", "help": "Help"}
+"""The menu of a command, by the first word of its id."""
+_TOOLBAR = ("file.open", "file.save", "", "edit.undo", "edit.redo", "", "run.program", "", "view.isometric", "view.top", "view.front",
+            "view.right", "view.fit", "", "view.colours", "view.blank", "view.paths", "view.section", "view.isolate", ">", "view.find",
+            "view.theme")
+
+
+class Window(QMainWindow):
+    """Arranges, connects, and asks for files; what it shows is the document's."""
+
+    def __init__(self, factory: str = ENGINE) -> None:
+        super().__init__()
+        self.confirms_closing = True
+        self.setWindowTitle("Trunnion")
+        self.setWindowIcon(icons.window_icon())
+        self.setAcceptDrops(True)
+        self.resize(1440, 900)
+        self.theme = colours.theme(remembered.theme_name())
+        theme.apply(self.theme)
+        self.document = Document(factory, self)
+        self.registry = Registry(self)
+        self._add_commands()
+        self.centre = Centre(self.document, self.registry, self.theme)
+        self.setCentralWidget(self.centre)
+        self.panels = {s.name: PANELS[s.name](s, n, self.document, self.registry) for n, s in enumerate(STAGES, 1)}
+        self._make_docks()
+        self._make_menus()
+        self._make_toolbar()
+        self.status = Status(self.document, self.registry)
+        self.setStatusBar(self.status)
+        self.finder = Finder(self.registry, self)
+        self._connect()
+        self._use_theme(self.theme)
+        self._arrangement = self.saveState()
+        self._restore()
+        self._autosave = QTimer(self)
+        self._autosave.setSingleShot(True)
+        self._autosave.setInterval(_AUTOSAVE_MS)
+        self._autosave.timeout.connect(lambda: self.document.autosave(remembered.autosave_file()))
+        self._offer_recovery()
+        self._refresh()
+
+    # what a person is asked; tests replace these
+
+    def ask_open_path(self) -> str:
+        """Ask which file to open; empty when nothing was chosen."""
+        return QFileDialog.getOpenFileName(self, tr("Open a part or a project"), "", PART_FILES)[0]
+
+    def ask_save_path(self) -> str:
+        """Ask where to save the project."""
+        part = self.document.session.part
+        proposed = str(Path(self.document.path).with_suffix(PROJECT)) if part else ""
+        return QFileDialog.getSaveFileName(self, tr("Save the project"), proposed, f"Trunnion (*{PROJECT})")[0]
+
+    def ask_folder(self) -> str:
+        """Ask which folder the programs are written to."""
+        return QFileDialog.getExistingDirectory(self, tr("Write programs into"))
+
+    def ask_picture_path(self) -> str:
+        """Ask where to keep a picture."""
+        return QFileDialog.getSaveFileName(self, tr("Save the picture"), "", "PNG (*.png)")[0]
+
+    # what the commands do
+
+    def open(self) -> None:
+        """Choose a file and open it."""
+        path = self.ask_open_path()
+        if path:
+            self.document.open(path)
+
+    def open_sample(self) -> None:
+        """Open the part that comes with the program."""
+        self._sample = contextlib.ExitStack()
+        self.document.open(self._sample.enter_context(as_file(trunnion_resources.sample("B1"))))
+
+    def save(self) -> None:
+        """Save the project where it was saved before; ask otherwise."""
+        if self.document.project:
+            self.document.save(self.document.project)
+        else:
+            self.save_as()
+
+    def save_as(self) -> None:
+        """Ask where to save the project."""
+        path = self.ask_save_path()
+        if path:
+            self.document.save(path if path.endswith(PROJECT) else path + PROJECT)
+
+    def write(self) -> None:
+        """Ask for a folder and write everything there."""
+        folder = self.ask_folder()
+        if folder:
+            self.document.write(folder)
+
+    def keep_picture(self) -> None:
+        """Ask for a file and write what the viewport shows."""
+        path = self.ask_picture_path()
+        if path:
+            self.centre.scene.save_picture(path)
+
+    def program(self) -> None:
+        """Do the whole line; without a part, choose one first."""
+        if not self.document.has_part and not self.document.is_busy:
+            self.open()
+            if not self.document.is_busy:
+                return
+        self.document.program()
+
+    def delete_selected(self) -> None:
+        """Delete the selected feature or operation."""
+        chosen = self.document.selection
+        edit = commands.without_feature if chosen.kind == "feature" else commands.without_operation
+        if chosen.kind in ("feature", "operation"):
+            self.document.edit(tr("Delete {id}").format(id=chosen.id), edit(chosen.id))
+
+    def suppress_selected(self) -> None:
+        """Suppress the selected operation, or take it up again."""
+        operation = self.document.operation(self.document.selection.id)
+        if operation is not None:
+            words = tr("Cut {id} again") if operation.suppressed else tr("Suppress {id}")
+            self.document.edit(words.format(id=operation.id), commands.with_suppressed(operation.id, not operation.suppressed))
+
+    def change_theme(self) -> None:
+        """Change between light and dark."""
+        name = "dark" if self.theme.name == "light" else "light"
+        remembered.remember("theme", name)
+        self._use_theme(colours.theme(name))
+
+    def change_language(self) -> None:
+        """Take the next language; it is spoken from the next start on."""
+        known = i18n.languages()
+        following = known[(known.index(remembered.language()) + 1) % len(known)]
+        remembered.remember("language", following)
+        self.document.notice(tr("The window speaks {language} from the next start on").format(language=following), severity=Severity.INFO)
+
+    def forget_arrangement(self) -> None:
+        """Put docks back where they were at first."""
+        self.restoreState(self._arrangement)
+
+    def about(self) -> None:
+        """Say what this is."""
+        self.document.notice(f"Trunnion {__version__}", tr("From the CAD model of an aerospace part to a proven NC program. Apache-2.0."),
+                             severity=Severity.INFO)
+
+    # Qt's events
+
+    def dragEnterEvent(self, event: QDragEnterEvent) -> None:
+        if event.mimeData().hasUrls():
+            event.acceptProposedAction()
+
+    def dropEvent(self, event: QDropEvent) -> None:
+        paths = [u.toLocalFile() for u in event.mimeData().urls() if u.isLocalFile()]
+        if paths:
+            event.acceptProposedAction()
+            self.document.open(paths[0])
+
+    def closeEvent(self, event: QCloseEvent) -> None:
+        if self.confirms_closing and self.document.has_part and self.document.history.is_dirty and not self._may_close():
+            event.ignore()
+            return
+        remembered.remember("geometry", self.saveGeometry())
+        remembered.remember("state", self.saveState())
+        self._autosave.stop()
+        self.document.close()
+        remembered.autosave_file().unlink(missing_ok=True)
+        self.centre.scene.end()
+        super().closeEvent(event)
+
+    def _may_close(self) -> bool:
+        answer = QMessageBox.question(self, tr("Close Trunnion"), tr("There are changes that were not saved. Close without saving?"),
+                                      QMessageBox.StandardButton.Discard | QMessageBox.StandardButton.Cancel)
+        return answer == QMessageBox.StandardButton.Discard
+
+    # building
+
+    def _add_commands(self) -> None:
+        document, add = self.document, self.registry.add
+
+        def has_part() -> bool:
+            return document.has_part and not document.is_busy
+
+        def is_free() -> bool:
+            return not document.is_busy
+
+        def has_program() -> bool:
+            return has_part() and bool(document.session.posted)
+
+        def has_chosen(*kinds: str) -> bool:
+            return is_free() and document.selection.kind in kinds
+
+        def command(id: str, text: str, run: Callable[[], object], icon: str = "", keys: str = "", help: str = "",
+                    enabled: Callable[[], bool] | None = None) -> None:
+            add(Command(id=id, text=text, run=run, icon=icon, keys=keys, help=help, enabled=enabled, menu=_MENU_OF[id.split(".")[0]]))
+
+        command("file.open", "Open…", self.open, "open", "Ctrl+O", "Open a STEP or IGES part, or a project", is_free)
+        command("file.sample", "Open the sample part", self.open_sample, "sample", "", "An aircraft panel to try things with", is_free)
+        command("file.save", "Save", self.save, "save", "Ctrl+S", "Save the project", has_part)
+        command("file.save_as", "Save as…", self.save_as, "save_as", "Ctrl+Shift+S", "", has_part)
+        command("file.write", "Write programs…", self.write, "write", "Ctrl+E", "Write NC, CL, tool list, XML and report into a folder",
+                has_program)
+        command("file.picture", "Save a picture…", self.keep_picture, "picture", "", "Write what the viewport shows as PNG", None)
+        command("file.quit", "Quit", self.close, "quit", "Ctrl+Q", "", None)
+        command("edit.undo", "Undo", document.undo, "undo", "Ctrl+Z", "", lambda: is_free() and bool(document.history.undo_label))
+        command("edit.redo", "Redo", document.redo, "redo", "Ctrl+Shift+Z", "", lambda: is_free() and bool(document.history.redo_label))
+        command("edit.delete", "Delete what is selected", self.delete_selected, "delete", "Del", "",
+                partial(has_chosen, "feature", "operation"))
+        command("edit.suppress", "Suppress or cut again", self.suppress_selected, "suppress", "Ctrl+D",
+                "Keep the selected operation in the tree without cutting it", partial(has_chosen, "operation"))
+        command("edit.none", "Select nothing", lambda: document.select_face(0), "", "Escape", "", None)
+        command("run.program", "Program", self.program, "program", "F5", "The whole line: features, route, toolpaths, proof", is_free)
+        for id, text, last, icon, keys in (
+                ("step.recognize", "Recognize", "recognize", "recognize", "F6"), ("step.size", "Analyse", "size", "size", "F7"),
+                ("step.blank", "Create blank", "blank", "blank", "F8"), ("step.route", "Generate route", "route", "route", "F9"),
+                ("step.optimize", "Optimise", "optimize", "optimize", "F10"), ("step.generate", "Generate", "toolpath", "generate", "F11"),
+                ("step.verify", "Verify", "verify", "verify", "F12")):
+            command(id, text, partial(document.run, last, tr(text)), icon, keys, f"{text}: what is stale up to here", has_part)
+        command("job.cancel", "Cancel the running job", document.cancel, "cancel", "Ctrl+.", "", lambda: document.is_busy)
+        for view in ("isometric", "top", "bottom", "front", "back", "left", "right"):
+            number = ("isometric", "top", "bottom", "front", "back", "left", "right").index(view)
+            command(f"view.{view}", f"View: {view}", partial(self._look, view), view, f"Ctrl+{number}", "", None)
+        command("view.fit", "Fit", self._fit, "fit", "F", "Fit the part into the picture", None)
+        for name, text, keys, on in (("colours", "Show all features", "C", True), ("blank", "Show the blank", "B", True),
+                                     ("paths", "Show toolpaths", "T", True), ("isolate", "Fade all but the selection", "I", False)):
+            add(Command(id=f"view.{name}", text=text, run=partial(self._show_layer, name), icon=name, keys=keys, checkable=True, checked=on,
+                        menu="View"))
+        add(Command(id="view.section", text="Section", run=self._section, icon="section", keys="X", checkable=True, menu="View",
+                    help="Cut the part open across its height"))
+        command("view.find", "Find a command…", self._find, "search", "Ctrl+Shift+P", "", None)
+        command("view.theme", "Light or dark", self.change_theme, "theme", "Ctrl+Shift+L", "", None)
+        command("view.arrangement", "Put docks back", self.forget_arrangement, "reset", "", "", None)
+        command("view.language", "Next language", self.change_language, "language", "", "", None)
+        command("help.about", "About Trunnion", self.about, "help", "", "", None)
+
+    def _look(self, view: str) -> None:
+        self.centre.scene.look(view)
+
+    def _fit(self) -> None:
+        self.centre.scene.fit()
+
+    def _show_layer(self, name: str, on: bool) -> None:
+        self.centre.show_layer(name, on)
+
+    def _section(self, on: bool) -> None:
+        self.centre.show_section(on)
+
+    def _find(self) -> None:
+        self.finder.open()
+
+    def _make_docks(self) -> None:
+        for corner, side in ((Qt.Corner.BottomLeftCorner, _LEFT), (Qt.Corner.BottomRightCorner, _RIGHT)):
+            self.setCorner(corner, side)
+        self.setTabPosition(Qt.DockWidgetArea.AllDockWidgetAreas, QTabWidget.TabPosition.North)
+        self.features, self.process = FeatureDock(self.document), ProcessDock(self.document)
+        self.properties, self.messages = PropertiesDock(self.document), MessagesDock(self.document)
+        self.code, self.listing = CodeDock(self.document), ListingDock(self.document)
+        steps = self._dock("steps", tr("Steps"), self._steps(), _LEFT)
+        features = self._dock("features", tr("Features"), self.features, _RIGHT)
+        process = self._dock("process", tr("Process tree"), self.process, _RIGHT)
+        properties = self._dock("properties", tr("Properties"), self.properties, _RIGHT)
+        self.messages_dock = self._dock("messages", tr("Messages"), self.messages, _BELOW)
+        code = self._dock("code", tr("G-code"), self.code, _BELOW)
+        listing = self._dock("listing", tr("Listing"), self.listing, _BELOW)
+        self.tabifyDockWidget(features, process)
+        self.tabifyDockWidget(self.messages_dock, code)
+        self.tabifyDockWidget(code, listing)
+        for dock in (features, process, self.messages_dock, code, listing):
+            dock.setTitleBarWidget(QWidget())  # the tab is title enough, and can be dragged
+        features.raise_()
+        self.messages_dock.raise_()
+        self.resizeDocks([steps, features], [_LEFT_WIDTH, _RIGHT_WIDTH], Qt.Orientation.Horizontal)
+        self.resizeDocks([features, properties], [420, 300], Qt.Orientation.Vertical)
+        self.resizeDocks([self.messages_dock], [170], Qt.Orientation.Vertical)
+
+    def _dock(self, name: str, title: str, widget: QWidget, area: Qt.DockWidgetArea) -> QDockWidget:
+        dock = QDockWidget(title, self)
+        dock.setObjectName(name)
+        dock.setWidget(widget)
+        self.addDockWidget(area, dock)
+        return dock
+
+    def _steps(self) -> QScrollArea:
+        inside = QWidget()
+        inside.setObjectName("steps")
+        column = QVBoxLayout(inside)
+        column.setContentsMargins(8, 2, 6, 8)
+        column.setSpacing(7)
+        for panel in self.panels.values():
+            column.addWidget(panel)
+        column.addStretch(1)
+        scroll = QScrollArea()
+        scroll.setObjectName("stepsArea")
+        scroll.setWidgetResizable(True)
+        scroll.setFrameShape(QScrollArea.Shape.NoFrame)
+        scroll.setHorizontalScrollBarPolicy(Qt.ScrollBarPolicy.ScrollBarAlwaysOff)
+        scroll.setMinimumWidth(_LEFT_WIDTH)
+        scroll.setWidget(inside)
+        return scroll
+
+    def _make_menus(self) -> None:
+        menus = {name: self.menuBar().addMenu(tr(name)) for name in _MENUS}
+        for command in self.registry.commands():
+            menus[command.menu].addAction(self.registry.action(command.id))
+            if command.id == "file.sample":
+                self._recent_menu: QMenu = menus["File"].addMenu(tr("Open recent"))
+        self._recent_menu.aboutToShow.connect(self._list_recent)
+
+    def _list_recent(self) -> None:
+        self._recent_menu.clear()
+        for path in remembered.recent():
+            entry = self._recent_menu.addAction(Path(path).name)
+            entry.setToolTip(path)
+            entry.triggered.connect(lambda _=False, chosen=path: self.document.open(chosen))
+
+    def _make_toolbar(self) -> None:
+        bar = QToolBar(tr("Tools"))
+        bar.setObjectName("tools")
+        bar.setMovable(False)
+        bar.setIconSize(QSize(19, 19))
+        for id in _TOOLBAR:
+            if id == "":
+                bar.addSeparator()
+            elif id == ">":
+                gap = QWidget()
+                gap.setSizePolicy(QSizePolicy.Policy.Expanding, QSizePolicy.Policy.Preferred)
+                bar.addWidget(gap)
+            else:
+                bar.addAction(self.registry.action(id))
+        button = bar.widgetForAction(self.registry.action("run.program"))
+        assert isinstance(button, QToolButton)
+        button.setObjectName("program")
+        button.setToolButtonStyle(Qt.ToolButtonStyle.ToolButtonTextBesideIcon)
+        self.addToolBar(bar)
+        self.toolbar = bar
+
+    def _connect(self) -> None:
+        document = self.document
+        document.changed.connect(self._refresh)
+        document.job_changed.connect(self._refresh)
+        document.selected.connect(lambda _: self.registry.refresh())
+        document.noticed.connect(self._tell)
+        document.opened.connect(self._opened)
+        document.saved.connect(remembered.add_recent)
+        self.messages.counted.connect(lambda n: self.messages_dock.setWindowTitle(f"{tr('Messages')} {n}" if n else tr("Messages")))
+        size, generate = self.panels["size"], self.panels["generate"]
+        assert isinstance(size, SizePanel)
+        assert isinstance(generate, GeneratePanel)
+        size.pointed.connect(self.centre.show_size)
+        generate.motions_changed.connect(self.centre.show_motions)
+
+    def _use_theme(self, chosen: colours.Theme) -> None:
+        self.theme = chosen
+        theme.apply(chosen)
+        self.registry.redraw()
+        # The main button is drawn on the accent colour, in both themes.
+        self.registry.action("run.program").setIcon(icons.icon("program", chosen.accent_text))
+        for part in (self.centre, self.process, self.messages, self.code, *self.panels.values()):
+            part.use_theme(chosen)
+
+    def _restore(self) -> None:
+        geometry, state = remembered.arrangement("geometry"), remembered.arrangement("state")
+        if geometry is not None:
+            self.restoreGeometry(geometry)
+        if state is not None:
+            self.restoreState(state)
+
+    # following the document
+
+    def _refresh(self) -> None:
+        self.registry.refresh()
+        history, part = self.document.history, self.document.shown.part
+        undo, redo = self.registry.action("edit.undo"), self.registry.action("edit.redo")
+        undo.setText(f"{tr('Undo')}: {history.undo_label}" if history.undo_label else tr("Undo"))
+        redo.setText(f"{tr('Redo')}: {history.redo_label}" if history.redo_label else tr("Redo"))
+        star = "*" if part is not None and history.is_dirty else ""
+        self.setWindowTitle(f"{part.name}{star} – Trunnion" if part is not None else "Trunnion")
+        if history.is_dirty and self.document.has_part and not self.document.is_busy:
+            self._autosave.start()
+
+    def _tell(self, finding: Finding) -> None:
+        self.centre.notice.tell(finding)
+
+    def _opened(self, path: str) -> None:
+        remembered.add_recent(path)
+        self.centre.welcome.show_recent(remembered.recent())
+        self.centre.notice.hide()
+
+    def _offer_recovery(self) -> None:
+        self.centre.welcome.show_recent(remembered.recent())
+        left = remembered.left_behind()
+        if left is not None:
+            finding = Finding(severity=Severity.INFO, code="window", text=tr("The last session ended without being saved"),
+                              remedy=tr("take it up where it ended, or throw it away"))
+            self.centre.notice.tell(finding, {tr("Recover"): partial(self.document.open, str(left)), tr("Discard"): left.unlink})

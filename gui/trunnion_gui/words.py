@@ -1,0 +1,75 @@
+"""How numbers, kinds and times read in the window."""
+
+from __future__ import annotations
+
+from trunnion.model.feature import Size
+from trunnion.units import trimmed
+
+_ANGLES = ("lean", "angle", "taper")
+_PLAIN = ("count", "n_", "centre_count")
+
+
+def kind_words(kind: str) -> str:
+    """Return a kind as a person reads it.
+
+    >>> kind_words("open_pocket")
+    'open pocket'
+    """
+    return kind.replace("_", " ").replace(".", " ")
+
+
+def sentence(words: str) -> str:
+    """Return words with a capital first letter."""
+    return words[:1].upper() + words[1:]
+
+
+def counted(number: int, kind: str) -> str:
+    """Return a number of things in words.
+
+    >>> counted(13, "pocket"), counted(1, "open_pocket")
+    ('13 pockets', '1 open pocket')
+    """
+    words = kind_words(kind)
+    return f"{number} {words}" if number == 1 else f"{number} {words}s"
+
+
+def duration(seconds: float) -> str:
+    """Return a time as short as it can be read.
+
+    >>> duration(0.034), duration(12.3), duration(754), duration(8040)
+    ('0.03 s', '12.3 s', '12 min 34 s', '2 h 14 min')
+    """
+    if seconds < 1:
+        return f"{seconds:.2f} s"
+    if seconds < 60:
+        return f"{seconds:.1f} s"
+    if seconds < 3600:
+        return f"{int(seconds) // 60} min {int(seconds) % 60} s"
+    return f"{int(seconds) // 3600} h {int(seconds) % 3600 // 60} min"
+
+
+def amount(value: Size, decimals: int = 3) -> str:
+    """Return a size without its unit."""
+    if isinstance(value, bool):
+        return "yes" if value else "no"
+    if isinstance(value, tuple):
+        return ", ".join(amount(v, decimals) for v in value)
+    return trimmed(float(value), decimals) if isinstance(value, (int, float)) else str(value)
+
+
+def size_unit(name: str, value: Size) -> str:
+    """Return the unit of a feature's size by its name."""
+    if isinstance(value, (bool, str)) or name.startswith(_PLAIN) or name.endswith("count"):
+        return ""
+    return "°" if any(word in name for word in _ANGLES) else "mm"
+
+
+def share(value: float) -> str:
+    """Return a share in per cent, never rounded up to a hundred.
+
+    >>> share(0.9964), share(1.0), share(0.99999)
+    ('99.6 %', '100 %', '99.9 %')
+    """
+    if value >= 1.0:
+        return "100 %"
+    return f"{int(value * 1000) / 10:.1f} %"

@@ -1,0 +1,65 @@
+"""What the tests of the window share: the fake engine's home, a window over it, and waiting for jobs."""
+
+from __future__ import annotations
+
+import os
+import sys
+from pathlib import Path
+
+import pytest
+
+sys.path.insert(0, str(Path(__file__).parent))
+os.environ.setdefault("QT_QPA_PLATFORM", "offscreen")
+
+
+@pytest.fixture(autouse=True)
+def settings_of_their_own(tmp_path, monkeypatch):
+    """Keep a test's remembered settings, recent files and autosaves away from the person's own."""
+    monkeypatch.setenv("TRUNNION_SETTINGS", str(tmp_path / "settings"))
+
+
+@pytest.fixture
+def make_window(qtbot):
+    """Return a function that opens a window over an engine and closes it after the test."""
+    from trunnion_gui.window import Window
+
+    made = []
+
+    def make(factory="fake_engine:FakeEngine", wait=True):
+        window = Window(factory)
+        window.confirms_closing = False
+        window.resize(1440, 900)
+        qtbot.addWidget(window)
+        made.append(window)
+        window.show()
+        if wait:
+            qtbot.waitUntil(lambda: bool(window.document.groups), timeout=20000)
+        return window
+
+    yield make
+    for window in made:
+        window.close()
+
+
+@pytest.fixture
+def window(make_window):
+    """A window over the fake engine."""
+    return make_window()
+
+
+@pytest.fixture
+def idle(qtbot):
+    """Return a function that waits until a window's job is done."""
+
+    def wait(window, timeout=30000):
+        qtbot.waitUntil(lambda: not window.document.is_busy and not window.document._quiet, timeout=timeout)
+
+    return wait
+
+
+@pytest.fixture
+def part_file(tmp_path):
+    """A file that the fake engine takes for a part."""
+    path = tmp_path / "tray.step"
+    path.write_text("a made-up part")
+    return path

@@ -1,0 +1,180 @@
+"""The picture: is the pocket's colour where the pocket is, and do clicks pick both ways."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+from fake_engine import FLOOR, HEIGHT, LENGTH, WIDTH, box_mesh, zigzag
+from PySide6.QtCore import QPoint, Qt
+from PySide6.QtTest import QTest
+
+from trunnion.geometry.frame import WORLD
+from trunnion.model.toolpath import Motion
+from trunnion_gui.colours import MOTIONS, kind_colour, motions, rgb
+from trunnion_gui.viewport.layers.part import border_edges
+from trunnion_gui.viewport.layers.paths import opened_arcs
+
+LEFT = Qt.MouseButton.LeftButton
+IN_POCKET = {"pocket-01": (60.0, 70.0, FLOOR), "pocket-02": (175.0, 37.0, FLOOR), "pocket-03": (175.0, 103.0, FLOOR)}
+ON_RIB = (115.0, 70.0, HEIGHT)
+
+
+@pytest.fixture
+def recognized(window, part_file, idle, qtbot):
+    """A window that shows the made-up part's features from the top."""
+    window.document.open(part_file)
+    idle(window)
+    window.document.run("recognize", "Recognize")
+    idle(window)
+    window.registry.run("view.top")
+    qtbot.wait(20)
+    return window
+
+
+def pixel(window, point) -> np.ndarray:
+    """Return the colour (3,) 0 to 255 that the viewport shows at a point of the part."""
+    view = window.centre.scene.view
+    image = view.grab().toImage()
+    at = window.centre.scene.where(point).toPoint()
+    colour = image.pixelColor(at)
+    return np.array([colour.red(), colour.green(), colour.blue()], dtype=float)
+
+
+def hue(colour) -> np.ndarray:
+    """Return a colour's direction away from grey, which light and shade leave alone."""
+    away = np.asarray(colour, dtype=float) - np.mean(colour)
+    return away / np.linalg.norm(away)
+
+
+@pytest.mark.parametrize("id", IN_POCKET)
+def test_a_pocket_has_the_pockets_colour(recognized, id):
+    assert hue(pixel(recognized, IN_POCKET[id])) @ hue(rgb(kind_colour("pocket"))) > 0.97
+
+
+def test_a_rib_has_the_ribs_colour(recognized):
+    assert hue(pixel(recognized, ON_RIB)) @ hue(rgb(kind_colour("rib"))) > 0.97
+
+
+def test_without_colours_everything_looks_like_metal(recognized):
+    recognized.registry.run("view.colours")
+    assert np.ptp(pixel(recognized, IN_POCKET["pocket-01"])) < 20
+
+
+def test_a_click_on_the_part_selects_the_row(recognized):
+    view, scene = recognized.centre.scene.view, recognized.centre.scene
+    QTest.mouseClick(view, LEFT, pos=scene.where(IN_POCKET["pocket-02"]).toPoint())
+    assert recognized.document.selection.id == "pocket-02"
+    assert recognized.features.tree.currentItem().text(0) == "pocket-02"
+
+
+def test_a_click_on_the_row_highlights_the_faces(recognized, qtbot):
+    before = pixel(recognized, IN_POCKET["pocket-03"])
+    tree = recognized.features.tree
+    QTest.mouseClick(tree.viewport(), LEFT, pos=tree.visualItemRect(recognized.features.item("pocket-03")).center())
+    qtbot.wait(20)
+    after = pixel(recognized, IN_POCKET["pocket-03"])
+    assert hue(after) @ hue(rgb(recognized.theme.selection)) > 0.9 > hue(before) @ hue(rgb(recognized.theme.selection))
+
+
+def test_a_click_beside_the_part_selects_nothing(recognized):
+    recognized.document.select_feature("pocket-01")
+    QTest.mouseClick(recognized.centre.scene.view, LEFT, pos=QPoint(recognized.centre.scene.view.width() - 4, 4))
+    assert recognized.document.selection.kind == ""
+
+
+def test_a_drag_turns_the_part_and_selects_nothing(recognized):
+    view = recognized.centre.scene.view
+    before = view.camera.position
+    start = recognized.centre.scene.where(IN_POCKET["pocket-01"]).toPoint()
+    QTest.mousePress(view, LEFT, pos=start)
+    QTest.mouseMove(view, start + QPoint(60, 40))
+    QTest.mouseRelease(view, LEFT, pos=start + QPoint(60, 40))
+    assert recognized.document.selection.kind == ""
+    assert view.camera.position != before
+
+
+@pytest.mark.parametrize(("view", "axis"), [("top", 2), ("front", 1), ("right", 0)])
+def test_a_standard_view_looks_along_its_axis(recognized, view, axis):
+    recognized.registry.run(f"view.{view}")
+    away = np.subtract(recognized.centre.scene.view.camera.position, recognized.centre.scene.view.camera.focal_point)
+    assert np.argmax(np.abs(away)) == axis
+    assert np.sort(np.abs(away))[1] < 1e-6 * np.abs(away).max()
+
+
+def test_the_legend_names_the_kinds_with_their_counts(recognized):
+    rows = [(words, count) for _, words, count in recognized.centre.legend.rows]
+    assert rows == [("Pocket", "3"), ("Rib", "2"), ("Datum", "1"), ("Profile", "1")]
+
+
+def test_the_table_and_the_legend_have_the_same_colours(recognized):
+    top = recognized.features.tree.topLevelItem(0)
+    image = top.icon(0).pixmap(24, 24).toImage()
+    assert image.pixelColor(12, 12).name() == kind_colour("pocket") == recognized.centre.legend.rows[0][0]
+
+
+def test_the_blank_stands_around_the_part(recognized, idle):
+    recognized.document.run("blank", "Create blank")
+    idle(recognized)
+    low, high = (np.array(recognized.centre.scene.view.actors["blank"].bounds)[k::2] for k in (0, 1))
+    assert low == pytest.approx([-5, -5, 0]) and high == pytest.approx([LENGTH + 5, WIDTH + 5, HEIGHT + 2])
+
+
+def test_cutting_moves_are_drawn_in_their_colour(recognized, idle, qtbot):
+    recognized.document.run("toolpath", "Generate")
+    idle(recognized)
+    recognized.document.select_operation("op-02")
+    qtbot.wait(20)
+    picture = recognized.centre.scene.view.grab().toImage().convertToFormat(recognized.grab().toImage().format())
+    wanted = np.array(rgb(motions()["cut"]))
+    seen = [np.array(picture.pixelColor(x, y).toTuple()[:3]) for x in range(0, picture.width(), 2) for y in range(0, picture.height(), 2)]
+    assert sum(np.abs(c - wanted).max() < 12 for c in seen) > 20
+
+
+def test_only_the_ticked_motions_are_shown(recognized, idle):
+    recognized.document.run("toolpath", "Generate")
+    idle(recognized)
+    assert "rapids" in recognized.centre.scene.view.actors
+    recognized.centre.show_motions(("cut",))
+    assert "rapids" not in recognized.centre.scene.view.actors
+
+
+def test_a_section_opens_the_part(recognized):
+    recognized.registry.run("view.section")
+    assert recognized.centre.scene.view.actors["part"].mapper.GetClippingPlanes().GetNumberOfItems() == 1
+    recognized.registry.run("view.section")
+    assert recognized.centre.scene.view.actors["part"].mapper.GetClippingPlanes() is None
+
+
+def test_a_size_is_written_where_it_is(recognized, idle, qtbot):
+    recognized.document.run("size", "Analyse")
+    idle(recognized)
+    recognized.panels["size"].fold(False)
+    table = recognized.panels["size"].table
+    QTest.mouseClick(table.viewport(), LEFT, pos=table.visualItemRect(table.item(1, 0)).center())
+    assert recognized.document.selection.faces == recognized.document.feature("pocket-02").with_role("floor")
+    assert any(name.startswith("size") for name in recognized.centre.scene.view.actors)
+
+
+def test_opened_arcs_end_where_the_blocks_end():
+    path = zigzag((0.0, 0.0, 100.0, 60.0), -20.0, 8.0)
+    points, kinds = opened_arcs(path)
+    assert len(points) == len(kinds) + 1
+    assert points[-1] == pytest.approx(path.position[-1])
+    turn = np.flatnonzero(path.motion == Motion.ARC_CCW)[0]
+    radius = np.linalg.norm(path.position[turn, :2] - path.centre[turn, :2])
+    helix = points[1:][kinds == MOTIONS.index("entry")]
+    assert np.linalg.norm(helix[:, :2] - path.centre[turn, :2], axis=1) == pytest.approx(radius)
+
+
+def test_borders_of_faces_are_the_edges_of_one_triangle():
+    mesh, _ = box_mesh()
+    ends, owners = border_edges(mesh)
+    assert len(ends) == 4 * mesh.face.max()  # every face of the made-up part is a rectangle of two triangles
+    assert sorted(set(owners)) == sorted(set(mesh.face))
+
+
+def test_standard_views_follow_the_frame_of_the_recognition(recognized):
+    recognized.centre.scene.use_frame(WORLD.__class__(np.zeros(3), np.array([0.0, 1.0, 0.0]), np.array([1.0, 0.0, 0.0])))
+    recognized.registry.run("view.top")
+    away = np.subtract(recognized.centre.scene.view.camera.position, recognized.centre.scene.view.camera.focal_point)
+    assert np.argmax(away) == 0

@@ -1,0 +1,266 @@
+"""The window with real clicks, over the fake engine."""
+
+from __future__ import annotations
+
+import sys
+from pathlib import Path
+
+import pytest
+from PySide6.QtCore import QMimeData, QObject, QPoint, QPointF, Qt, QUrl
+from PySide6.QtGui import QDropEvent
+from PySide6.QtTest import QTest
+from PySide6.QtWidgets import QPushButton, QToolButton
+
+from trunnion_gui import icons, remembered
+from trunnion_gui.finder import score
+from trunnion_gui.steps import STAGES, STEPS, joined_state
+
+LEFT = Qt.MouseButton.LeftButton
+
+
+def tool_button(window, command: str) -> QToolButton:
+    """Return the toolbar's button of a command."""
+    return window.toolbar.widgetForAction(window.registry.action(command))
+
+
+def panel_button(window, panel: str, command: str) -> QPushButton:
+    """Return a panel's button of a command."""
+    return next(b for b in window.panels[panel].findChildren(QPushButton) if b.property("command") == command)
+
+
+@pytest.fixture
+def opened(window, part_file, idle):
+    """A window with the made-up part open."""
+    window.document.open(part_file)
+    idle(window)
+    return window
+
+
+@pytest.fixture
+def programmed(opened, idle):
+    """A window with the made-up part programmed."""
+    opened.document.program()
+    idle(opened)
+    return opened
+
+
+def test_a_part_is_programmed_in_three_interactions(window, part_file, idle, monkeypatch):
+    monkeypatch.setattr(window, "ask_open_path", lambda: str(part_file))  # choosing the file: one interaction
+    QTest.mouseClick(tool_button(window, "file.open"), LEFT)
+    idle(window)
+    QTest.mouseClick(tool_button(window, "run.program"), LEFT)
+    idle(window)
+    assert "verdict: passed" in window.status.verdict.text()
+    assert "coverage 99.6 %" in window.status.verdict.text()
+
+
+def test_program_without_a_part_asks_for_one_and_goes_on(window, part_file, idle, monkeypatch, qtbot):
+    monkeypatch.setattr(window, "ask_open_path", lambda: str(part_file))
+    QTest.mouseClick(tool_button(window, "run.program"), LEFT)
+    qtbot.waitUntil(lambda: window.document.session.verdict is not None, timeout=20000)
+
+
+def test_every_panel_runs_its_step(opened, idle):
+    for panel, command in (("recognize", "step.recognize"), ("size", "step.size"), ("blank", "step.blank"), ("route", "step.route"),
+                           ("optimize", "step.optimize"), ("generate", "step.verify")):
+        opened.panels[panel].fold(False)
+        QTest.mouseClick(panel_button(opened, panel, command), LEFT)
+        idle(opened)
+        assert opened.panels[panel].state == "done"
+
+
+def test_a_setting_makes_its_step_and_all_after_it_stale(programmed, idle):
+    field = programmed.panels["blank"].forms[0].field("fake.blank.side")
+    field.setValue(8.0)
+    idle(programmed)
+    assert programmed.document.session.choices["fake.blank.side"] == 8.0
+    assert [programmed.panels[n].state for n in ("recognize", "size", "blank", "route")] == ["done", "done", "stale", "stale"]
+
+
+def test_undo_takes_a_setting_back_and_redo_brings_it_again(opened, idle):
+    field = opened.panels["blank"].forms[0].field("fake.blank.side")
+    field.setValue(8.0)
+    idle(opened)
+    QTest.mouseClick(tool_button(opened, "edit.undo"), LEFT)
+    assert field.value() == 5.0
+    QTest.mouseClick(tool_button(opened, "edit.redo"), LEFT)
+    assert field.value() == 8.0
+
+
+def test_a_deleted_feature_comes_back_with_undo(programmed, idle):
+    programmed.document.select_feature("rib-01")
+    programmed.registry.run("edit.delete")
+    idle(programmed)
+    assert programmed.document.feature("rib-01") is None
+    programmed.registry.run("edit.undo")
+    assert programmed.document.feature("rib-01") is not None
+
+
+def test_the_feature_menu_changes_a_kind(programmed, idle):
+    feature = programmed.document.feature("rib-01")
+    change = programmed.features.menu(feature).actions()[0].menu()
+    next(a for a in change.actions() if a.text() == "Island").trigger()
+    idle(programmed)
+    assert programmed.document.feature("rib-01").kind == "island"
+    assert programmed.panels["size"].state == "stale"
+
+
+def test_an_operation_dropped_on_another_is_cut_before_it(programmed, idle):
+    programmed.process.tree.dropped.emit("op-06", "op-04")
+    idle(programmed)
+    order = [o.id for o in programmed.document.session.process.operations]
+    assert order.index("op-06") < order.index("op-04")
+
+
+def test_a_wrong_order_is_refused_in_a_message(programmed, idle):
+    before = programmed.document.session
+    programmed.process.tree.dropped.emit("op-03", "op-02")
+    assert programmed.document.session is before
+    assert "op-03 must come after op-02" in programmed.centre.notice.text.replace("Op-", "op-")
+
+
+def test_an_operations_own_setting_is_an_edit_by_hand(programmed, idle):
+    programmed.document.select_operation("op-02")
+    programmed.properties.form.field("fake.rough.stepover").setValue(0.25)
+    idle(programmed)
+    operation = programmed.document.operation("op-02")
+    assert (operation.choices["fake.rough.stepover"], operation.by_hand) == (0.25, True)
+
+
+def test_a_click_on_a_finding_selects_what_it_names(programmed):
+    table = programmed.messages.table
+    row = next(r for r in range(table.rowCount()) if "leans" in table.item(r, 1).text())
+    QTest.mouseClick(table.viewport(), LEFT, pos=table.visualItemRect(table.item(row, 1)).center())
+    assert programmed.document.selection.id == "pocket-01"
+
+
+def test_a_bad_file_is_told_with_what_to_do(window, tmp_path, idle):
+    path = tmp_path / "notes.txt"
+    path.write_text("nothing")
+    window.document.open(path)
+    idle(window)
+    assert window.centre.notice.isVisible()
+    assert "export the part as STEP" in window.centre.notice.text
+
+
+def test_a_dropped_file_is_opened(window, part_file, idle):
+    data = QMimeData()
+    data.setUrls([QUrl.fromLocalFile(str(part_file))])
+    window.dropEvent(QDropEvent(QPointF(10, 10), Qt.DropAction.CopyAction, data, LEFT, Qt.KeyboardModifier.NoModifier))
+    idle(window)
+    assert window.document.session.part.name == "tray"
+
+
+def test_a_saved_project_opens_again_and_is_recent(programmed, tmp_path, idle, monkeypatch):
+    path = tmp_path / "tray.trunnion"
+    monkeypatch.setattr(programmed, "ask_save_path", lambda: str(path))
+    programmed.registry.run("file.save")
+    idle(programmed)
+    assert not programmed.document.history.is_dirty
+    programmed.document.open(path)
+    idle(programmed)
+    assert programmed.document.session.verdict is not None
+    assert remembered.recent()[0] == str(path)
+
+
+def test_programs_are_written_into_a_folder(programmed, tmp_path, idle, monkeypatch):
+    monkeypatch.setattr(programmed, "ask_folder", lambda: str(tmp_path / "out"))
+    programmed.registry.run("file.write")
+    idle(programmed)
+    assert [p.name for p in (tmp_path / "out").iterdir()] == ["tray.S1.nc"]
+
+
+def test_the_palette_runs_what_was_typed(opened, qtbot, idle):
+    QTest.keyClick(opened, Qt.Key.Key_P, Qt.KeyboardModifier.ControlModifier | Qt.KeyboardModifier.ShiftModifier)
+    assert opened.finder.isVisible()
+    QTest.keyClicks(opened.finder.line, "recog")
+    QTest.keyClick(opened.finder.line, Qt.Key.Key_Return)
+    idle(opened)
+    assert opened.document.session.recognition is not None
+    assert not opened.finder.isVisible()
+
+
+def test_what_starts_a_word_is_found_before_scattered_letters():
+    assert score("prog", "Program") > score("prog", "Put rows of gears") > 0
+    assert score("zz", "Program") == 0
+
+
+def test_every_command_has_an_icon_or_words_and_its_own_keys(window):
+    keys = [c.keys for c in window.registry.commands() if c.keys]
+    assert len(keys) == len(set(keys))
+    assert all(c.icon in icons.names() for c in window.registry.commands() if c.icon)
+
+
+def test_every_icon_is_in_the_icon_font(window):
+    for name in icons.names():
+        assert not icons.pixmap(name, 16).isNull(), name
+
+
+def test_every_command_stands_in_a_menu(window):
+    listed = {a.objectName() for menu in window.menuBar().actions() for a in menu.menu().actions()}
+    assert {c.id for c in window.registry.commands()} <= listed
+
+
+def test_light_and_dark_change_and_are_remembered(window):
+    window.registry.run("view.theme")
+    assert (window.theme.name, remembered.theme_name()) == ("dark", "dark")
+    window.registry.run("view.theme")
+    assert window.theme.name == "light"
+
+
+def test_a_session_left_behind_is_offered(make_window, tmp_path):
+    left = remembered.autosave_file().with_name("autosave-999999999.trunnion")
+    left.write_bytes(b"")
+    window = make_window()
+    assert window.centre.notice.isVisible()
+    assert "without being saved" in window.centre.notice.text
+
+
+def test_the_listing_shows_the_selected_operations_motions(programmed):
+    programmed.listing.parentWidget().raise_()
+    programmed.document.select_operation("op-02")
+    programmed.listing.refresh()
+    assert programmed.listing.toPlainText().startswith("setup S1")
+
+
+def test_the_program_text_is_shown(programmed, qtbot):
+    programmed.code.parentWidget().raise_()
+    qtbot.waitUntil(lambda: "G0 X10." in programmed.code.text.toPlainText())
+
+
+def test_a_state_of_two_steps_is_the_one_that_asks_for_attention():
+    assert joined_state({"toolpath": "done", "verify": "stale"}, ("toolpath", "verify")) == "stale"
+    assert joined_state({"toolpath": "done", "verify": "empty"}, ("toolpath", "verify")) == "stale"
+    assert joined_state({"toolpath": "done", "verify": "done"}, ("toolpath", "verify")) == "done"
+
+
+def test_the_panels_stand_for_the_pipelines_steps():
+    from trunnion.pipeline import STEPS as pipeline_steps
+
+    assert pipeline_steps == STEPS
+    assert tuple(s for stage in STAGES for s in stage.steps) == STEPS
+
+
+def test_calls_that_return_nothing_keep_the_count_of_none():
+    thing = QObject()
+    before = sys.getrefcount(None)
+    for n in range(500):
+        thing.setObjectName(str(n))
+    assert sys.getrefcount(None) > before - 100
+
+
+def test_the_frame_of_the_window_does_not_import_cad():
+    import subprocess
+
+    code = ("import os, sys; os.environ['QT_QPA_PLATFORM'] = 'offscreen'; import trunnion_gui.window; "
+            "bad = {'OCP', 'cadquery', 'numba', 'trunnion.pipeline'} & set(sys.modules); sys.exit(' '.join(bad))")
+    done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, cwd=Path(__file__).parent)
+    assert done.returncode == 0, done.stderr
+
+
+def test_a_header_opens_and_folds_its_panel(window):
+    panel = window.panels["blank"]
+    QTest.mouseClick(panel.header, LEFT, pos=QPoint(40, 12))
+    assert panel.body.isVisible()
+    QTest.mouseClick(panel.header, LEFT, pos=QPoint(40, 12))
+    assert not panel.body.isVisible()

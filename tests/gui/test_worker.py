@@ -1,0 +1,134 @@
+"""The worker process: progress, cancel, crash, and what becomes of the session."""
+
+from __future__ import annotations
+
+import time
+
+import numpy as np
+import pytest
+
+from trunnion_gui.parcel import packed, unpacked
+
+
+def opened(make_window, factory, part_file, idle):
+    window = make_window(f"fake_engine:{factory}")
+    window.document.open(part_file)
+    idle(window)
+    return window
+
+
+def test_a_cancelled_job_leaves_the_session_as_it_was(make_window, part_file, idle, qtbot):
+    window = opened(make_window, "SlowEngine", part_file, idle)
+    before = window.document.session
+    window.document.program()
+    qtbot.waitUntil(lambda: window.status.bar.value() > 5, timeout=10000)
+    began = time.monotonic()
+    window.registry.run("job.cancel")
+    qtbot.waitUntil(lambda: not window.document.is_busy, timeout=5000)
+    assert time.monotonic() - began < 1.5
+    assert window.document.session is window.document.shown is before
+
+
+def test_what_is_done_so_far_is_shown_while_the_rest_runs(make_window, part_file, idle, qtbot):
+    window = opened(make_window, "SlowEngine", part_file, idle)
+    window.document.program()
+    qtbot.waitUntil(lambda: window.document.shown.recognition is not None, timeout=10000)
+    assert window.document.is_busy
+    assert window.document.session.recognition is None
+    assert window.panels["recognize"].state == "done"
+    qtbot.waitUntil(lambda: window.panels["size"].state == "running", timeout=5000)
+    window.registry.run("job.cancel")
+    qtbot.waitUntil(lambda: window.document.shown.recognition is None, timeout=5000)
+
+
+def test_a_job_that_does_not_listen_is_ended_with_its_process(make_window, part_file, idle, qtbot):
+    window = opened(make_window, "DeafEngine", part_file, idle)
+    before, pid = window.document.session, window.document.worker.pid
+    window.document.program()
+    qtbot.waitUntil(lambda: window.document.running_step == "toolpath", timeout=10000)
+    window.registry.run("job.cancel")
+    qtbot.waitUntil(lambda: not window.document.is_busy, timeout=8000)
+    assert window.document.worker.pid != pid
+    assert window.document.session is before
+    window.document.run("route", "Generate route")
+    idle(window)
+    assert window.document.session.process is not None
+
+
+def test_a_crash_costs_the_job_and_not_the_session(make_window, part_file, idle, qtbot):
+    window = opened(make_window, "CrashingEngine", part_file, idle)
+    window.document.run("route", "Generate route")
+    idle(window)
+    before, pid = window.document.session, window.document.worker.pid
+    window.document.program()
+    qtbot.waitUntil(lambda: not window.document.is_busy, timeout=10000)
+    idle(window)
+    assert window.isVisible()
+    assert window.document.session is before
+    assert "was lost" in window.centre.notice.text
+    assert window.document.worker.is_alive and window.document.worker.pid != pid
+    window.document.run("optimize", "Optimise")
+    idle(window)
+    assert window.document.states["optimize"] == "done"
+
+
+def test_a_killed_worker_starts_again_and_has_the_part(make_window, part_file, idle, qtbot):
+    window = opened(make_window, "FakeEngine", part_file, idle)
+    pid = window.document.worker.pid
+    window.document.worker._process.kill()
+    qtbot.waitUntil(lambda: window.document.worker.pid not in (0, pid), timeout=10000)
+    idle(window)
+    window.document.program()
+    idle(window)
+    assert window.document.session.verdict is not None
+
+
+def test_a_fault_of_the_program_is_one_line_and_the_session_stays(make_window, part_file, idle):
+    window = opened(make_window, "FaultyEngine", part_file, idle)
+    before = window.document.session
+    window.document.program()
+    idle(window)
+    assert "ZeroDivisionError" in window.centre.notice.text
+    assert "your session is unchanged" in window.centre.notice.text
+    assert window.document.session is before
+
+
+def test_an_edit_while_a_job_runs_is_refused_in_words(make_window, part_file, idle, qtbot):
+    window = opened(make_window, "SlowEngine", part_file, idle)
+    window.document.program()
+    window.panels["blank"].forms[0].field("fake.blank.side").setValue(9.0)
+    assert "not while Program runs" in window.centre.notice.text
+    assert window.panels["blank"].forms[0].field("fake.blank.side").value() == 5.0
+    window.registry.run("job.cancel")
+    qtbot.waitUntil(lambda: not window.document.is_busy, timeout=5000)
+
+
+def test_the_window_never_waits_for_the_worker(make_window, part_file, idle, qtbot):
+    window = opened(make_window, "SlowEngine", part_file, idle)
+    from PySide6.QtCore import QTimer
+
+    gaps, last = [], [time.monotonic()]
+
+    def tick():
+        gaps.append(time.monotonic() - last[0])
+        last[0] = time.monotonic()
+
+    timer = QTimer()
+    timer.timeout.connect(tick)
+    timer.start(10)
+    window.document.run("blank", "Create blank")
+    qtbot.wait(1500)
+    window.registry.run("job.cancel")
+    qtbot.waitUntil(lambda: not window.document.is_busy, timeout=5000)
+    assert sorted(gaps)[-3] < 0.35  # drawing a frame without a graphics card, on a machine that others use too
+
+
+@pytest.mark.parametrize("rows", [10, 200_000])
+def test_arrays_arrive_as_they_were_sent(rows):
+    array = np.arange(rows * 3, dtype=np.float64).reshape(rows, 3)
+    array.setflags(write=False)
+    parcel = packed({"points": array, "name": "tray"})
+    back = unpacked(parcel)
+    assert bool(parcel.block) == (rows > 1000)
+    assert back["name"] == "tray"
+    assert np.array_equal(back["points"], array) and not back["points"].flags.writeable
