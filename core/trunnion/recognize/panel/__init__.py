@@ -4,17 +4,18 @@ from __future__ import annotations
 
 import numpy as np
 
-from trunnion.findings import BadInput
+from trunnion.findings import BadInput, Finding
 from trunnion.geometry.facegraph import FaceGraph
 from trunnion.geometry.frame import Frame
 from trunnion.model.feature import Feature, Recognition
 from trunnion.progress import QUIET, Progress
 from trunnion.recognize.contract import Slicer
+from trunnion.recognize.extent import box
 from trunnion.recognize.panel.classes import STEEP_CLASSES, FaceClass, classify
 from trunnion.recognize.panel.features import Numbers, make_datum, make_features, make_profile
-from trunnion.recognize.panel.frame import box, choose_frame, flipped
+from trunnion.recognize.panel.frame import choose_frame, flipped
 from trunnion.recognize.panel.rest import rest_findings
-from trunnion.recognize.panel.rules import Shown, pockets_of
+from trunnion.recognize.panel.rules import Shown, pockets_of, without
 from trunnion.recognize.panel.settings import PanelSettings
 from trunnion.recognize.panel.slices import cut, heights
 from trunnion.recognize.panel.view import View
@@ -51,13 +52,15 @@ class PanelFamily:
         numbers = Numbers()
         for view, seen in zip((above, below), shown, strict=True):
             progress.at(0.9, "naming features")
-            made = make_features(view, seen, above.graph, numbers)
+            done = {tag - 1 for f in features for tag in f.with_role("wall", "corner")}
+            made = make_features(view, without(seen, done), above.graph, numbers)
             features.extend(made.features)
             findings.extend(made.findings)
         features.extend(_surroundings(above, shown, features))
         explained = {tag - 1 for f in features for tag in f.tags}
         left = tuple(r for r, k in enumerate(above.classes.kind) if r not in explained and k is not FaceClass.ABSENT)
-        findings.extend(rest_findings(above.graph, above.classes, left))
+        findings.extend(above.slices.findings)
+        findings.extend(rest_findings(above.graph, above.classes, left, {f for seen in shown for f in seen.tops.undercut}))
         return Recognition(family=self.name, frame=frame, features=tuple(features), unexplained=tuple(r + 1 for r in left),
                            unexplained_share=float(graph.area[list(left)].sum() / graph.area.sum()), findings=tuple(findings))
 

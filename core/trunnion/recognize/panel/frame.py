@@ -1,11 +1,13 @@
 """The frame of a panel: where a programmer would put it, whatever position and unit the file came in.
 
-z is the normal with the largest floor area that looks that way (floors lie at the foot of walls, so the flat back doesn't count),
+z is the normal with the largest floor area seen from outside (floors lie at the foot of walls, so the flat back doesn't count),
 x the longer side of the smallest rectangle around the outline, the origin the lowest corner of the box. Everything is decided by
 lengths and areas of the part itself, so that the frame moves with the part.
 """
 
 from __future__ import annotations
+
+from collections.abc import Callable
 
 import numpy as np
 
@@ -13,13 +15,15 @@ from trunnion.findings import BadInput
 from trunnion.geometry.arrays import Floats
 from trunnion.geometry.facegraph import CONCAVE, SMOOTH, FaceGraph
 from trunnion.geometry.frame import Frame
+from trunnion.recognize.extent import box, outline_points
+from trunnion.recognize.grow import samples
 from trunnion.tolerance import ANGLE, COINCIDENT, SLIVER
-
-ARC_PIECES = 16
-"""Chords an arc is opened into while the smallest rectangle is looked for; the box itself is exact on arcs."""
 
 DECIMALS = 9
 """A frame keeps its numbers to a millionth of a micrometre, so that a part that lies straight has a straight frame."""
+
+BACK = 0.1
+"""A face looks back at a direction when the cosine between its normal and the direction is below minus this."""
 
 BALANCE = 1e-4
 """Moments of the part that differ by less than this share of their largest value are equal: the part is symmetric that way."""
@@ -31,36 +35,10 @@ def choose_frame(graph: FaceGraph) -> Frame:
     flat = Frame(np.zeros(3), _any_across(graph, z), z)
     local = graph.in_frame(flat)
     angle = _smallest_rectangle(outline_points(local))
-    x = flat.world_direction(_long_axis(local, angle))
+    x = flat.world_direction(_long_axis(local, angle, flat.world_direction))
     turned = Frame(np.zeros(3), x, z)
     low, _ = box(graph.in_frame(turned))
     return Frame(turned.to_world(low).round(DECIMALS) + 0.0, turned.x.round(DECIMALS) + 0.0, turned.z.round(DECIMALS) + 0.0)
-
-
-def box(graph: FaceGraph) -> tuple[Floats, Floats]:
-    """Return the lowest and highest corner (3,) of the faces of a graph along its own axes, exact on lines and arcs."""
-    present = graph.area > 0.0
-    low, high = graph.box_low[present].min(axis=0), graph.box_high[present].max(axis=0)
-    arcs = np.isfinite(graph.curve_radius)
-    for e in np.flatnonzero(arcs).tolist():
-        for axis in range(3):
-            along = np.eye(3)[axis] - graph.curve_axis[e][axis] * graph.curve_axis[e]
-            length = np.linalg.norm(along)
-            if length < ANGLE:
-                continue
-            for sign in (-1.0, 1.0):
-                tip = graph.curve_centre[e] + sign * graph.curve_radius[e] * along / length
-                if _on_arc(graph, e, tip):
-                    low[axis], high[axis] = min(low[axis], tip[axis]), max(high[axis], tip[axis])
-    return low, high
-
-
-def outline_points(graph: FaceGraph) -> Floats:
-    """Return points (k, 2) whose convex hull is that of the part seen along z: ends of edges, points of arcs, samples."""
-    near = [graph.start, graph.end, graph.middle, graph.sample_point]
-    for e in np.flatnonzero(np.isfinite(graph.curve_radius)):
-        near.append(_arc_points(graph, int(e), ARC_PIECES))
-    return np.concatenate(near)[:, :2]
 
 
 def flipped(frame: Frame, width: float, height: float) -> Frame:
@@ -68,45 +46,62 @@ def flipped(frame: Frame, width: float, height: float) -> Frame:
     return Frame(frame.to_world(np.array([0.0, width, height])), frame.x, -frame.z)
 
 
-def floor_like(graph: FaceGraph, face: int) -> bool:
-    """Say whether a plane face lies at the foot of something: a concave edge, or a hollow blend that rises from it."""
-    return any(
-        graph.convexity[e] == CONCAVE
-        or (graph.convexity[e] == SMOOTH and graph.surface[other] != "plane" and _rises(graph, e, face, other))
-        for e in graph.edges_of[face] for other in (graph.across(e, face),)
-    )
+def foot_share(graph: FaceGraph, face: int) -> float:
+    """Return the share of a plane face's border that lies at the foot of something: concave edges, hollow blends that rise from it."""
+    edges = graph.edges_of[face]
+    foot = [e for e in edges if graph.convexity[e] == CONCAVE
+            or (graph.convexity[e] == SMOOTH and graph.surface[graph.across(e, face)] != "plane" and _rises(graph, e, face))]
+    whole = float(graph.length[list(edges)].sum())
+    return float(graph.length[foot].sum()) / whole if whole > 0.0 else 0.0
 
 
-def _rises(graph: FaceGraph, edge: int, face: int, other: int) -> bool:
-    up = graph.normal[face]
-    return bool((graph.centre[other] - graph.middle[edge]) @ up > SLIVER)
+def _rises(graph: FaceGraph, edge: int, face: int) -> bool:
+    return bool((graph.centre[graph.across(edge, face)] - graph.middle[edge]) @ graph.normal[face] > SLIVER)
 
 
 def _height_axis(graph: FaceGraph) -> Floats:
+    """Return the direction that floors look to: the plane family with the largest floors times plan, then the sense with more floor.
+
+    The plan keeps the sides of a boss on a thin plate, which stand on a floor as well, from being taken for floors. A part that looks
+    the same from either side keeps the sense of its file.
+    """
     planes = [r for r, s in enumerate(graph.surface) if s == "plane" and graph.area[r] > 0.0]
     if not planes:
         raise BadInput("the part has no plane face, so it isn't a panel: choose another family")
-    ways: list[tuple[Floats, float, float]] = []
+    families: list[list[int]] = []
     for r in planes:
-        floor = graph.area[r] if floor_like(graph, r) else 0.0
-        for i, (way, floors, total) in enumerate(ways):
-            if way @ graph.normal[r] > np.cos(ANGLE):
-                ways[i] = (way, floors + floor, total + graph.area[r])
-                break
+        near = next((f for f in families if graph.normal[f[0]] @ graph.normal[r] > np.cos(ANGLE)), None)
+        if near is None:
+            families.append([r])
         else:
-            ways.append((graph.normal[r], floor, graph.area[r]))
-    both = [(floors + _opposite(ways, way), floors, total, way) for way, floors, total in ways]
-    best = max(b[0] for b in both)
-    if best > 0.0:
-        family = [b for b in both if b[0] > best * (1.0 - BALANCE)]
-        most = max(b[1] for b in family)
-        return next(b[3] for b in family if b[1] > most * (1.0 - BALANCE))
-    widest = max(b[2] for b in both)
-    return next(b[3] for b in both if b[2] > widest * (1.0 - BALANCE))
+            near.append(r)
+    ways = [graph.normal[f[0]] for f in families]
+    seen = [_seen_area(graph, f) for f in families]
+    shares = [np.array([foot_share(graph, r) for r in f]) for f in families]
+    floors = [float(a @ share) for a, share in zip(seen, shares, strict=True)]
+    opposite = [[k for k, other in enumerate(ways) if other @ way < -np.cos(ANGLE)] for way in ways]
+    floor = [f + sum(floors[k] for k in back) for f, back in zip(floors, opposite, strict=True)]
+    plan = [float(a.sum()) + sum(float(seen[k].sum()) for k in back) for a, back in zip(seen, opposite, strict=True)]
+    both = [f * p for f, p in zip(floor, plan, strict=True)]
+    left = list(range(len(ways)))
+    for scores in (both, plan, floors):
+        most = max(scores[k] for k in left)
+        left = [k for k in left if scores[k] >= most * (1.0 - BALANCE)]
+    return max((ways[k] for k in left), key=lambda way: tuple(way[::-1].round(DECIMALS)))
 
 
-def _opposite(ways: list[tuple[Floats, float, float]], way: Floats) -> float:
-    return sum(floors for other, floors, _ in ways if other @ way < -np.cos(ANGLE))
+def _seen_area(graph: FaceGraph, faces: list[int]) -> Floats:
+    """Return the area of each of some parallel faces that is seen from outside: nothing that looks back stands before it."""
+    way = graph.normal[faces[0]]
+    local = graph.in_frame(Frame(np.zeros(3), _any_across(graph, way), way))
+    back = np.flatnonzero((local.normal[:, 2] < -BACK) & (graph.area > 0.0))
+    seen = []
+    for r in faces:
+        points = np.vstack([local.centre[r], samples(local, r)[0]])[:, None, :]
+        over = ((points[..., :2] > local.box_low[back, :2]) & (points[..., :2] < local.box_high[back, :2])).all(axis=2)
+        hidden = (over & (local.box_low[back, 2] > points[..., 2] + SLIVER)).any(axis=1)
+        seen.append(float(graph.area[r] * (1.0 - hidden.mean())))
+    return np.array(seen)
 
 
 def _any_across(graph: FaceGraph, z: Floats) -> Floats:
@@ -153,11 +148,11 @@ def _rectangle_area(hull: Floats, angle: float) -> float:
     return float((u.max() - u.min()) * (v.max() - v.min()))
 
 
-def _long_axis(graph: FaceGraph, angle: float) -> Floats:
+def _long_axis(graph: FaceGraph, angle: float, world: Callable[[Floats], Floats]) -> Floats:
     """Return the direction (3,) of x: along the longer side, away from the end where the part has more edges.
 
-    Of a square all four directions are tried. A part that is symmetric that way looks the same from either end: the first edge that
-    is off its middle decides.
+    Of a square all four directions are tried. A part that looks the same from either end keeps the sense of its file (`world` turns
+    a direction into the file's).
     """
     points = outline_points(graph)
     ways = [np.array([np.cos(angle + q * np.pi / 2), np.sin(angle + q * np.pi / 2), 0.0]) for q in range(4)]
@@ -167,7 +162,7 @@ def _long_axis(graph: FaceGraph, angle: float) -> Floats:
         for across in (False, True):
             scores = [measure(graph, points, np.array([-w[1], w[0], 0.0]) if across else w) for w in long]
             long = [w for w, s in zip(long, scores, strict=True) if s <= min(scores) + BALANCE]
-    return min(long, key=lambda w: float(next((d for d in (graph.middle - graph.middle.mean(axis=0)) @ w if abs(d) > SLIVER), 0.0)))
+    return max(long, key=lambda w: tuple(world(w).round(DECIMALS)))
 
 
 def _along(graph: FaceGraph, points: Floats, way: Floats) -> Floats:
@@ -182,31 +177,3 @@ def _balance(graph: FaceGraph, points: Floats, way: Floats) -> float:
 
 def _skewness(graph: FaceGraph, points: Floats, way: Floats) -> float:
     return float(graph.length @ _along(graph, points, way) ** 3 / graph.length.sum())
-
-
-def _arc_points(graph: FaceGraph, edge: int, pieces: int) -> Floats:
-    """Return points (pieces + 1, 3) along a circular edge, its ends with them."""
-    centre, axis = graph.curve_centre[edge], graph.curve_axis[edge]
-    u = graph.start[edge] - centre
-    sweep = _sweep(graph, edge)
-    t = np.linspace(0.0, sweep, pieces + 1)[:, None]
-    return centre + np.cos(t) * u + np.sin(t) * np.cross(axis, u)
-
-
-def _sweep(graph: FaceGraph, edge: int) -> float:
-    """Return the turn (radians, signed about `curve_axis`) from an arc's start to its end over its middle."""
-    to_end, to_middle = _angle(graph, edge, graph.end[edge]), _angle(graph, edge, graph.middle[edge])
-    if np.linalg.norm(graph.end[edge] - graph.start[edge]) < COINCIDENT:
-        return 2.0 * np.pi
-    return to_end if to_middle <= to_end else to_end - 2.0 * np.pi
-
-
-def _angle(graph: FaceGraph, edge: int, point: Floats) -> float:
-    centre, axis = graph.curve_centre[edge], graph.curve_axis[edge]
-    u, p = graph.start[edge] - centre, point - centre
-    return float(np.arctan2(axis @ np.cross(u, p), u @ p) % (2.0 * np.pi))
-
-
-def _on_arc(graph: FaceGraph, edge: int, point: Floats) -> bool:
-    sweep, there = _sweep(graph, edge), _angle(graph, edge, point)
-    return there <= sweep if sweep > 0.0 else there >= sweep + 2.0 * np.pi

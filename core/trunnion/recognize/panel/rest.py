@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Collection, Sequence
 
 import numpy as np
 
@@ -17,15 +17,16 @@ WORDS = {
     "panel.leaning-wall": ("leaning faces outside of pockets are not handled yet", "machine them with another strategy"),
     "panel.underside": ("faces that look down are not reached from above", "add a setup for the other side"),
     "panel.lower-top": ("tops below the part's top that are too wide for a rib are not handled yet", "face them by hand-made operations"),
+    "panel.undercut": ("recesses under material are not handled yet", "cut them with a T-slot cutter, or from another side"),
     "panel.unexplained": ("no feature explains these faces", "look at the part there and name the feature by hand"),
 }
 
 
-def rest_findings(graph: FaceGraph, classes: FaceClasses, rows: Sequence[int]) -> tuple[Finding, ...]:
-    """Return one finding for each sort of unexplained face, with the share of the part's area."""
+def rest_findings(graph: FaceGraph, classes: FaceClasses, rows: Sequence[int], undercut: Collection[int]) -> tuple[Finding, ...]:
+    """Return one finding for each sort of unexplained face, with the share of the area; `undercut` rows have material over them."""
     sorts: dict[str, list[int]] = {}
     for row in rows:
-        sorts.setdefault(_sort(graph, classes, row), []).append(row)
+        sorts.setdefault("panel.undercut" if row in undercut else _sort(graph, classes, row), []).append(row)
     total = float(graph.area.sum())
     return tuple(warning(code, f"{WORDS[code][0]}: {len(found)} {'face' if len(found) == 1 else 'faces'}, "
                                f"{float(graph.area[found].sum()) / total:.1%} of the area",

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 from trunnion.geometry.facegraph import CONVEX
 from trunnion.recognize.grow import grown, loops, same_surface
@@ -11,6 +11,9 @@ from trunnion.recognize.panel.rings import Ring, ring
 from trunnion.recognize.panel.tops import Tops, mean_width, sort_tops
 from trunnion.recognize.panel.view import View
 from trunnion.tolerance import ANGLE, SLIVER
+
+HEIGHT_DECIMALS = 3
+"""Floors whose heights agree to a micrometre are equally high, whatever way the part lies."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -86,7 +89,7 @@ def pockets_of(view: View) -> Shown:
                 continue
             inner = ring(view, floor, edges)
             if not outer[floor].stands and inner.stands:
-                outer[floor] = inner
+                outer[floor] = replace(inner, drops=(*outer[floor].drops, *inner.drops))
             elif inner.stands:
                 islands[floor].append(island_on(view, floor, inner))
             else:
@@ -106,6 +109,11 @@ def pockets_of(view: View) -> Shown:
     narrow = tuple(t for t in tops.standing if t not in standing and mean_width(view, t) <= view.settings.rib_width)
     openings = [o for face in (*tops.highest, *tops.standing, *tops.ribs, *floors) for o in openings_in(view, face, set(owners))]
     return Shown(pockets=(*found, *openings), tops=tops, ribs=tops.ribs + narrow)
+
+
+def without(shown: Shown, done: set[int]) -> Shown:
+    """Return what a side shows without the openings whose walls another side has already (they go through)."""
+    return replace(shown, pockets=tuple(p for p in shown.pockets if p.floors or not done.issuperset(p.sides)))
 
 
 def openings_in(view: View, face: int, known: set[int]) -> list[Pocket]:
@@ -178,4 +186,4 @@ def _groups(group: dict[int, int], view: View) -> list[tuple[int, ...]]:
     members: dict[int, list[int]] = {}
     for face in group:
         members.setdefault(_root(group, face), []).append(face)
-    return [tuple(sorted(m, key=lambda f: (-view.z(f), f))) for m in members.values()]
+    return [tuple(sorted(m, key=lambda f: (-round(view.z(f), HEIGHT_DECIMALS), f))) for m in members.values()]

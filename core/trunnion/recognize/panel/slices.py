@@ -16,6 +16,7 @@ import shapely
 from shapely.geometry import Polygon
 from shapely.geometry.base import BaseGeometry
 
+from trunnion.findings import BadInput, Finding, warning
 from trunnion.geometry.arrays import Floats
 from trunnion.geometry.curve import Curve
 from trunnion.geometry.facegraph import FaceGraph
@@ -57,23 +58,19 @@ class Slice:
 
 @dataclass(frozen=True, eq=False, kw_only=True)
 class Slices:
-    """The slices of a part from the lowest to the highest, and its `outline` (seen from above, openings filled)."""
+    """The slices of a part from the lowest to the highest, and its `outline` (seen from above, openings filled).
+
+    A plane that the part can't be cut by is left out, with a finding.
+    """
 
     layers: tuple[Slice, ...]
     outline: BaseGeometry
+    findings: tuple[Finding, ...] = ()
 
     @cached_property
     def rim(self) -> BaseGeometry:
         """The border of the outline."""
         return self.outline.boundary
-
-    def above(self, z: float) -> Slice | None:
-        """Return the slice just above a height, None above the part."""
-        return next((layer for layer in self.layers if layer.z > z + SLIVER and layer.top > z + SLIVER), None)
-
-    def below(self, z: float) -> Slice | None:
-        """Return the slice just below a height, None below the part."""
-        return next((layer for layer in reversed(self.layers) if layer.z < z - SLIVER), None)
 
     def flipped(self, width: float, height: float) -> Slices:
         """Return the same slices as they are seen in the frame that looks from below (`frame.flipped`)."""
@@ -104,13 +101,20 @@ def heights(graph: FaceGraph, classes: FaceClasses, low: float, high: float, dep
 
 def cut(slicer: Slicer, frame: Frame, levels: tuple[float, ...], progress: Progress) -> Slices:
     """Return the slices in the middle between each two levels."""
-    cuts = []
+    cuts: list[tuple[float, float, float, BaseGeometry]] = []
+    findings: list[Finding] = []
     for bottom, top in progress.over(list(itertools.pairwise(levels)), "slicing"):
         z = 0.5 * (bottom + top)
-        cuts.append((z, bottom, top, plan(slicer.section(frame, z))))
+        try:
+            cuts.append((z, bottom, top, plan(slicer.section(frame, z))))
+        except BadInput as reason:
+            findings.append(warning("panel.no-slice", f"the part can't be cut at height {z:.3f} mm: {reason}",
+                                    remedy="the graph decides alone between the faces there; heal the part"))
+    if not cuts:
+        raise BadInput(f"the part can't be cut by a plane: {findings[0].text}" if findings else "the part has no height in its frame")
     outline = _filled(shapely.union_all([c[3] for c in cuts]).buffer(SLIVER, join_style="mitre").buffer(-SLIVER, join_style="mitre"))
-    return Slices(layers=tuple(Slice(z=z, bottom=b, top=t, material=m, spaces=tuple(_spaces(m, outline))) for z, b, t, m in cuts),
-                  outline=outline)
+    layers = tuple(Slice(z=z, bottom=b, top=t, material=m, spaces=tuple(_spaces(m, outline))) for z, b, t, m in cuts)
+    return Slices(layers=layers, outline=outline, findings=tuple(findings))
 
 
 def plan(region: Region) -> BaseGeometry:
