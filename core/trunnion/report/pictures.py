@@ -19,7 +19,7 @@ from trunnion.geometry.mesh import Mesh
 from trunnion.model.session import Session
 from trunnion.model.setup import Setup
 from trunnion.model.toolpath import Mark, Motion, Toolpath
-from trunnion.report.palette import Palette
+from trunnion.report.palette import Colour, Palette
 
 if TYPE_CHECKING:
     from pyvista import Plotter
@@ -88,7 +88,7 @@ def _plotter() -> Plotter:
     made = pyvista.Plotter(off_screen=True, window_size=list(SIZE))
     made.set_background("white")
     made.render_window.SetMultiSamples(0)
-    made.enable_anti_aliasing("fxaa")
+    made.enable_anti_aliasing("ssaa")
     return made
 
 
@@ -103,13 +103,22 @@ def _look(plotter: Plotter, session: Session) -> Plotter:
     if frame is None:
         plotter.view_isometric()
         return plotter
-    towards = frame.world_direction(np.array([0.35, -0.75, 1.0]))
-    plotter.view_vector(tuple(towards), viewup=tuple(frame.y))
-    plotter.camera.zoom(1.25)
+    towards = frame.world_direction(np.array([-0.35, -0.8, 1.1]))
+    plotter.view_vector(tuple(towards), viewup=tuple(frame.z))
+    plotter.camera.zoom(1.2)
     return plotter
 
 
-def _colours(mesh: Mesh, by_face: Mapping[int, tuple[int, int, int]], rest: tuple[int, int, int]) -> Any:
+def _legend(plotter: Plotter, entries: Mapping[str, Colour]) -> None:
+    left, top, line = 30, SIZE[1] - 60, 34
+    for n, (word, colour) in enumerate(entries.items()):
+        # VTK's built-in font has no filled square: two letters on a ground of their own colour make one.
+        key = plotter.add_text("MM", position=(left, top - n * line), font_size=9, color=colour)
+        key.prop.background_color, key.prop.background_opacity = colour, 1.0
+        plotter.add_text(word, position=(left + 50, top - n * line - 4), font_size=12, color="black")
+
+
+def _colours(mesh: Mesh, by_face: Mapping[int, Colour], rest: Colour) -> Any:
     table = np.tile(np.array(rest, dtype=np.uint8), (int(mesh.face.max()) + 1, 1))
     for face, colour in by_face.items():
         table[face] = colour
@@ -125,13 +134,12 @@ def _features(session: Session, mesh: Mesh, palette: Palette) -> Plotter:
     plotter.add_mesh(surface, scalars="colour", rgb=True, ambient=0.25, diffuse=0.8)
     _outline(plotter, surface)
     counts = recognition.counts()
-    legend = [(f" {kind.replace('_', ' ')} {n}", tuple(c / 255 for c in palette.kind(kind))) for kind, n in counts.items()]
-    plotter.add_legend(legend, bcolor=None, face="rectangle", size=(0.16, 0.035 * len(legend)), loc="upper left")  # type: ignore[arg-type]
+    _legend(plotter, {f"{kind.replace('_', ' ')} {n}": palette.kind(kind) for kind, n in counts.items()})
     return _look(plotter, session)
 
 
 def _outline(plotter: Plotter, surface: Any) -> None:
-    edges = surface.clean().extract_feature_edges(feature_angle=25, boundary_edges=False, non_manifold_edges=False, manifold_edges=False)
+    edges = surface.clean().extract_feature_edges(feature_angle=25, boundary_edges=False, non_manifold_edges=False)
     if edges.n_cells:
         plotter.add_mesh(edges, color=(60, 66, 74), line_width=1.2)
 
@@ -147,8 +155,7 @@ def _toolpaths(session: Session, mesh: Mesh, palette: Palette) -> Plotter:
             _gather(gathered, made.path, setups[operations[made.operation].setup])
     for word, pieces in gathered.items():
         plotter.add_mesh(_segments(pieces), color=palette.motion(word), line_width=1.0, lighting=False)
-    legend = [(f" {word}", tuple(c / 255 for c in palette.motion(word))) for word in gathered]
-    plotter.add_legend(legend, bcolor=None, face="rectangle", size=(0.12, 0.035 * len(legend)), loc="upper left")  # type: ignore[arg-type]
+    _legend(plotter, {word: palette.motion(word) for word in gathered})
     return _look(plotter, session)
 
 
