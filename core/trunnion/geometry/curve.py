@@ -106,6 +106,7 @@ class Curve:
     bulges: Floats
     closed: bool = False
     _segments: list[Segments] = field(init=False, repr=False, default_factory=list)
+    _area: list[float] = field(init=False, repr=False, default_factory=list)
 
     def __post_init__(self) -> None:
         points = floats(self.points, (None, 2), "curve points")
@@ -169,7 +170,12 @@ class Curve:
         """The enclosed area in mm2, positive anticlockwise; raises `ValueError` for an open curve."""
         if not self.closed:
             raise ValueError("area: the curve is open")
-        # Measured from the first point, so that a small curve far from the origin loses no digits.
+        if not self._area:
+            self._area.append(self._measured_area())
+        return self._area[0]
+
+    def _measured_area(self) -> float:
+        # From the first point, so that a small curve far from the origin loses no digits.
         s = self.segments()
         a, b = s.start - self.points[0], s.end - self.points[0]
         straight = 0.5 * float(np.sum(a[:, 0] * b[:, 1] - a[:, 1] * b[:, 0]))

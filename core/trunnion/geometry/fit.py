@@ -43,12 +43,13 @@ def chorded(source: Segments, is_bridge: Bools | None = None, chord: float = tol
     m = len(source)
     ends = pulled_together(np.concatenate([source.start, source.end]))
     start, end = ends[:m], ends[m:]
-    centre, radius, carrier = _shared_carriers(start, end, source)
+    pairs = _meeting_boxes(source)
+    centre, radius, carrier = _shared_carriers(start, end, source, pairs)
     joined = Segments(start, end, centre, radius, source.sweep, source.length)
     bridges = np.zeros(m, dtype=bool) if is_bridge is None else is_bridge
     carrier = np.where(bridges, m + np.arange(m), carrier)
     inner_row, inner_key, inner_point = _inner_points(joined, chord)
-    meet_row, meet_key, meet_point = crossings(joined)
+    meet_row, meet_key, meet_point = crossings(joined, pairs)
     row = np.concatenate([np.arange(m), np.arange(m), inner_row, meet_row])
     key = np.concatenate([np.zeros(m), np.ones(m), inner_key, meet_key])
     exact = pulled_together(np.concatenate([ends, meet_point]))
@@ -68,46 +69,50 @@ def chorded(source: Segments, is_bridge: Bools | None = None, chord: float = tol
 
 def pulled_together(points: Floats) -> Floats:
     """Return points (n, 2) in which those that are one point within the coincidence tolerance have the coordinates of the first."""
-    order = np.lexsort([points[:, 1], points[:, 0]])
-    x, y = points[order, 0], points[order, 1]
-    low, high = np.searchsorted(x, x - CLOSE), np.searchsorted(x, x + CLOSE, side="right")
-    owner = np.arange(len(points))
-    crowded = np.flatnonzero(high - low > 1)
-    taken = np.zeros(len(points), dtype=bool)
-    for i in crowded[np.argsort(order[crowded], kind="stable")]:
-        if taken[i]:
-            continue
-        near = np.arange(low[i], high[i])
-        near = near[(np.abs(y[near] - y[i]) <= CLOSE) & ~taken[near]]
-        owner[near] = i
-        taken[near] = True
-    answer = np.empty_like(points)
-    answer[order] = points[order[owner]]
-    return answer
+    _, first, back = np.unique(points[:, 0] + 1j * points[:, 1], return_index=True, return_inverse=True)
+    apart = points[first]
+    free = _crowded(apart)
+    free = free[np.argsort(first[free])]
+    owner = np.arange(len(apart))
+    while len(free) > 1:
+        near = np.abs(apart[free] - apart[free[0]]).max(axis=1) <= CLOSE
+        owner[free[near]] = free[0]
+        free = free[~near]
+    return apart[owner[back]]
 
 
-def _shared_carriers(start: Floats, end: Floats, s: Segments) -> tuple[Floats, Floats, Ints]:
-    """Give arcs on the same circle within the coincidence tolerance the same centre and radius, and number the carriers."""
+def _crowded(points: Floats) -> Ints:
+    """Return the rows of points that may have another one within the coincidence tolerance: they share a cell of one of four grids."""
+    cell = (points - points.min(axis=0)) / (4.0 * CLOSE)
+    crowded = np.zeros(len(points), dtype=bool)
+    for shift in ((0.0, 0.0), (0.5, 0.0), (0.0, 0.5), (0.5, 0.5)):
+        x, y = np.floor(cell + shift).astype(np.int64).T
+        # Two cells may share a number; that only costs a look.
+        number = x * 1000003 + y
+        order = np.argsort(number)
+        same = np.flatnonzero(number[order[1:]] == number[order[:-1]])
+        crowded[order[same]] = crowded[order[same + 1]] = True
+    return np.flatnonzero(crowded)
+
+
+def _shared_carriers(start: Floats, end: Floats, s: Segments, pairs: tuple[Ints, Ints]) -> tuple[Floats, Floats, Ints]:
+    """Number the carriers, and give arcs that lie on the same circle within the coincidence tolerance its centre and radius."""
     centre, radius = s.centre.copy(), s.radius.copy()
     carrier = np.arange(len(s))
-    arcs = np.flatnonzero(s.sweep != 0.0)
-    if len(arcs):
-        same = (np.abs(radius[arcs][:, None] - radius[arcs]) <= CLOSE) & (
-            np.abs(centre[arcs][:, None] - centre[arcs]).max(axis=2) <= CLOSE)
-        first = arcs[np.argmax(same, axis=1)]
-        carrier[arcs] = first
-        centre[arcs], radius[arcs] = centre[first], radius[first]
-    lines = np.flatnonzero(s.sweep == 0.0)
-    if len(lines):
-        along = end[lines] - start[lines]
-        size = np.hypot(along[:, 0], along[:, 1])
-        along = along / np.where(size > 0.0, size, 1.0)[:, None]
-        off = [np.abs(along[None, :, 0] * (p[lines][:, None, 1] - start[lines][None, :, 1])
-                      - along[None, :, 1] * (p[lines][:, None, 0] - start[lines][None, :, 0])) for p in (start, end)]
-        same = (off[0] <= CLOSE) & (off[1] <= CLOSE) & (size > 0.0)[None, :]
-        same &= same.T
-        np.fill_diagonal(same, True)
-        carrier[lines] = lines[np.argmax(same, axis=1)]
+    i, j = pairs
+    with np.errstate(invalid="ignore"):
+        arcs = (np.abs(radius[i] - radius[j]) <= CLOSE) & (np.abs(centre[i] - centre[j]).max(axis=1) <= CLOSE)
+    line = s.sweep == 0.0
+    along = end - start
+    size = np.hypot(along[:, 0], along[:, 1])
+    same = line[i] & line[j] & (size[i] > 0.0) & (size[j] > 0.0)
+    for one, other in ((i, j), (j, i)):
+        for point in (start, end):
+            to = point[other] - start[one]
+            same &= np.abs(along[one, 0] * to[:, 1] - along[one, 1] * to[:, 0]) <= CLOSE * size[one]
+    for k in np.flatnonzero(arcs | same):
+        carrier[j[k]] = carrier[i[k]]
+        centre[j[k]], radius[j[k]] = centre[i[k]], radius[i[k]]
     return centre, radius, carrier
 
 
@@ -133,40 +138,6 @@ def _inner_points(s: Segments, chord: float) -> tuple[Ints, Floats, Floats]:
     point = s.centre[arcs][row] + radius[row, None] * np.stack([np.cos(angle), np.sin(angle)], axis=1)
     key = (number * step[row] - begin[row]) / sweep[row]
     return arcs[row], key, point
-
-
-def _touching_ends(s: Segments) -> tuple[Ints, Floats, Floats]:
-    """Return the ends of other segments that lie inside a segment, as rows, keys in 0..1 and points."""
-    points = np.unique(np.concatenate([s.start, s.end]), axis=0)
-    rows, keys, found = [], [], []
-    lines, arcs = np.flatnonzero(s.sweep == 0.0), np.flatnonzero(s.sweep != 0.0)
-    if len(lines):
-        along = s.end[lines] - s.start[lines]
-        size = np.hypot(along[:, 0], along[:, 1])
-        to = points[None, :, :] - s.start[lines][:, None, :]
-        inside = (to[..., 0] * along[:, :1] + to[..., 1] * along[:, 1:]) / np.where(size > 0.0, size, 1.0)[:, None]
-        off = np.abs(to[..., 1] * along[:, :1] - to[..., 0] * along[:, 1:]) / np.where(size > 0.0, size, 1.0)[:, None]
-        i, k = np.nonzero((off <= CLOSE) & (inside > CLOSE) & (inside < size[:, None] - CLOSE))
-        rows.append(lines[i])
-        keys.append(inside[i, k] / size[i])
-        found.append(points[k])
-    if len(arcs):
-        to = points[None, :, :] - s.centre[arcs][:, None, :]
-        off = np.abs(np.hypot(to[..., 0], to[..., 1]) - s.radius[arcs][:, None])
-        i, k = np.nonzero(off <= CLOSE)
-        ray = s.start[arcs[i]] - s.centre[arcs[i]]
-        q = to[i, k]
-        turned = np.sign(s.sweep[arcs[i]])
-        angle = turned * np.arctan2(ray[:, 0] * q[:, 1] - ray[:, 1] * q[:, 0], (ray * q).sum(axis=1)) % FULL
-        sweep = np.abs(s.sweep[arcs[i]])
-        gap = CLOSE / s.radius[arcs[i]]
-        keep = (angle > gap) & (angle < sweep - gap)
-        rows.append(arcs[i[keep]])
-        keys.append(angle[keep] / sweep[keep])
-        found.append(points[k[keep]])
-    if not rows:
-        return np.empty(0, dtype=np.int64), np.empty(0), np.empty((0, 2))
-    return np.concatenate(rows), np.concatenate(keys), np.concatenate(found)
 
 
 def restored(geometry: shapely.Geometry, chords: Chords) -> list[tuple[Curve, list[Curve]]]:
@@ -247,11 +218,17 @@ class _Edges:
         if area < tolerance.AREA or 2.0 * area < tolerance.SLIVER * around:
             return None
         carrier, turned = self.carrier[begin:stop - 1], self.turn[begin:stop - 1]
-        change = np.flatnonzero((carrier != np.roll(carrier, 1)) | (turned != np.roll(turned, 1)))
+        change = _changes(carrier, turned)
         if len(change) == 0:
             return _round(self.chords.source, int(self.row[begin]), int(turned[0]), points[0])
         runs = [_Run(int(self.row[begin + k]), int(turned[k]), points[k], bool(self.is_old[begin + k])) for k in change]
         return _closed_curve(self.chords, runs)
+
+
+def _changes(carrier: Ints, turned: Ints) -> Ints:
+    """Return the places in a ring where another carrier, or the same one in the other direction, begins."""
+    before_carrier, before_turned = np.concatenate([carrier[-1:], carrier[:-1]]), np.concatenate([turned[-1:], turned[:-1]])
+    return np.flatnonzero((carrier != before_carrier) | (turned != before_turned))
 
 
 def _nearest_chord(start: Floats, end: Floats, a: Floats, b: Floats) -> Ints:
@@ -328,7 +305,7 @@ def _without_specks(chords: Chords, runs: list[_Run]) -> list[_Run]:
     kept: list[_Run] = []
     for n, run in enumerate(runs):
         after = runs[(n + 1) % len(runs)]
-        is_speck = np.abs(after.start - run.start).max() <= CLOSE and not _goes_round(chords.source, run, after)
+        is_speck = math.dist(after.start, run.start) <= CLOSE and not _goes_round(chords.source, run, after)
         if is_speck or chords.is_bridge[run.row]:
             after.is_exact = False
         else:
@@ -453,19 +430,19 @@ def joined_runs(chords: Chords) -> Curve | None:
     source = chords.source
     turned = np.sign(source.sweep).astype(np.int64)
     rows = np.arange(len(source))
-    change = np.flatnonzero((chords.carrier != np.roll(chords.carrier, 1)) | (turned != np.roll(turned, 1)))
+    change = _changes(chords.carrier, turned)
     if len(change) == 0:
         return _round(source, 0, int(turned[0]), source.start[0]) if turned[0] else None
     return _closed_curve(chords, [_Run(int(rows[k]), int(turned[k]), source.start[k], True) for k in change])
 
 
-def crossings(s: Segments) -> tuple[Ints, Floats, Floats]:
+def crossings(s: Segments, pairs: tuple[Ints, Ints] | None = None) -> tuple[Ints, Floats, Floats]:
     """Return where segments meet each other: rows (k,), shares of their length from 0 to 1 (k,) and points (k, 2).
 
-    Every meeting is given for both, with the same point. The ends of one that lie on the other are among them.
+    Every meeting is given for both, with the same point. The ends of one that lie inside the other are among them. `pairs` are
+    the pairs of segments that can meet, when they are known.
     """
-    low, high = segment_boxes(s)
-    i, j = _meeting_boxes(low - CLOSE, high)
+    i, j = _meeting_boxes(s) if pairs is None else pairs
     line = s.sweep == 0.0
     rows, keys, points = [], [], []
     for kind, solve in ((line[i] & line[j], _lines_meet), (line[i] & ~line[j], _line_meets_circle),
@@ -477,15 +454,33 @@ def crossings(s: Segments) -> tuple[Ints, Floats, Floats]:
             rows += [a[real], b[real]]
             keys += [on_a[real], on_b[real]]
             points += [point[real], point[real]]
-    row, key, point = _touching_ends(s)
-    return np.concatenate([*rows, row]), np.concatenate([*keys, key]), np.concatenate([*points, point])
+    # Ends that lie on another segment cut it too, which also covers segments that lie on each other.
+    row, point = np.concatenate([i, i, j, j]), np.concatenate([s.start[j], s.end[j], s.start[i], s.end[i]])
+    touches = _off_carrier(s, row, point) <= CLOSE
+    row, point = row[touches], point[touches]
+    key = place_on(s, row, point)
+    inside = ~np.isnan(key)
+    return np.concatenate([*rows, row[inside]]), np.concatenate([*keys, key[inside]]), np.concatenate([*points, point[inside]])
 
 
-def _meeting_boxes(low: Floats, high: Floats) -> tuple[Ints, Ints]:
+def _meeting_boxes(s: Segments) -> tuple[Ints, Ints]:
+    """Return the pairs of segments, the smaller row first, whose boxes come within the coincidence tolerance."""
+    low, high = segment_boxes(s)
+    low = low - 2.0 * CLOSE
     meet = (low[:, None, 0] <= high[None, :, 0]) & (low[None, :, 0] <= high[:, None, 0])
     meet &= (low[:, None, 1] <= high[None, :, 1]) & (low[None, :, 1] <= high[:, None, 1])
     i, j = np.nonzero(np.triu(meet, 1))
     return i, j
+
+
+def _off_carrier(s: Segments, rows: Ints, points: Floats) -> Floats:
+    """Return how far points (k, 2) are from the line or circle on which the segments `rows` lie."""
+    along = s.end[rows] - s.start[rows]
+    size = np.hypot(along[:, 0], along[:, 1])
+    to = points - s.start[rows]
+    off = np.abs(along[:, 0] * to[:, 1] - along[:, 1] * to[:, 0]) / np.where(size > 0.0, size, 1.0)
+    ray = points - s.centre[rows]
+    return np.where(s.sweep[rows] == 0.0, off, np.abs(np.hypot(ray[:, 0], ray[:, 1]) - s.radius[rows]))
 
 
 def place_on(s: Segments, rows: Ints, points: Floats) -> Floats:

@@ -39,8 +39,8 @@ def offset_region(region: Region, distance: float) -> Region:
     low, high = region.box()
     if distance < 0.0 and 2.0 * -distance >= (high - low).min():
         return EMPTY_REGION
-    raws = [raw_parallel(c, -distance) for c in region.curves()]
-    chords = fit.chorded(join_segments(r.segments for r in raws), np.concatenate([r.is_bridge for r in raws]))
+    raw = raw_parallel(region.segments(), region.loops(), -distance)
+    chords = fit.chorded(raw.segments, raw.is_bridge)
     count = np.diff(chords.first)
     owner = np.repeat(np.arange(len(count)), count)
     real = count[owner] > 1
@@ -65,35 +65,50 @@ def _margin(region: Region, distance: float, faces: NDArray[np.object_]) -> Floa
     return margin
 
 
-def raw_parallel(curve: Curve, distance: float) -> RawCurve:
-    """Return the parallels to the left of a curve by a distance, uncut, with round joins at convex corners and bridges elsewhere."""
-    s = curve.segments()
+def raw_parallel(s: Segments, loop: Ints, distance: float, closed: bool = True) -> RawCurve:
+    """Return the parallels to the left of curves by a distance, uncut, with round joins at convex corners and bridges elsewhere.
+
+    `s` (m,) are the segments of curves, one curve after another, and `loop` (m,) says of each which curve it belongs to.
+    """
     rows = np.flatnonzero(s.length > tolerance.COINCIDENT)
-    s = s[rows]
+    s, loop = s[rows], loop[rows]
     begin, finish = _end_tangents(s)
-    left = np.stack([-begin[:, 1], begin[:, 0]], axis=1), np.stack([-finish[:, 1], finish[:, 0]], axis=1)
-    start, end = s.start + distance * left[0], s.end + distance * left[1]
+    start = s.start + distance * np.stack([-begin[:, 1], begin[:, 0]], axis=1)
+    end = s.end + distance * np.stack([-finish[:, 1], finish[:, 0]], axis=1)
     # An anticlockwise arc has its centre on the left: its parallel there is smaller, and gone beyond the centre.
     radius = s.radius - np.sign(s.sweep) * distance
     is_arc = s.sweep != 0.0
     gone = is_arc & (radius <= tolerance.COINCIDENT)
-    length = np.where(is_arc, np.where(gone, 0.0, radius) * np.abs(s.sweep), s.length)
-    main = Segments(start, end, np.where(gone[:, None], np.nan, s.centre), np.where(gone, np.nan, radius),
-                    np.where(gone, 0.0, s.sweep), np.where(gone, np.hypot(*(end - start).T), length))
-    m = len(s)
-    after = np.roll(np.arange(m), -1) if curve.closed else np.arange(1, m)
-    before = np.arange(len(after))
-    u, v = finish[before], begin[after]
-    bend = _bends(s, before, after, u, v)
-    apart = np.abs(end[before] - start[after]).max(axis=1) > tolerance.PARAMETRIC
+    stays_arc = is_arc & ~gone
+    main = Segments(start, end, np.where(stays_arc[:, None], s.centre, np.nan), np.where(stays_arc, radius, np.nan),
+                    np.where(stays_arc, s.sweep, 0.0), np.where(stays_arc, radius * np.abs(s.sweep), _apart(start, end)))
+    before, after = _neighbours(loop, closed)
+    bend = _bends(s, before, after, finish[before], begin[after])
     convex = bend * distance < 0.0
     size = abs(distance)
-    corner = s.end[before]
-    joins = Segments(end[before], start[after], np.where(convex[:, None], corner, np.nan), np.where(convex, size, np.nan),
-                     np.where(convex, bend, 0.0), np.where(convex, size * np.abs(bend), np.hypot(*(end[before] - start[after]).T)))
-    order = np.argsort(np.concatenate([2 * np.arange(m), 2 * before[apart] + 1]), kind="stable")
-    both = Segments(*(np.concatenate([getattr(main, n), getattr(joins, n)[apart]])[order] for n in Segments.__slots__))
-    return RawCurve(both, np.concatenate([gone, ~convex[apart]])[order])
+    joins = Segments(end[before], start[after], np.where(convex[:, None], s.end[before], np.nan), np.where(convex, size, np.nan),
+                     np.where(convex, bend, 0.0), np.where(convex, size * np.abs(bend), _apart(end[before], start[after])))
+    open_joint = np.abs(end[before] - start[after]).max(axis=1) > tolerance.PARAMETRIC
+    order = np.argsort(np.concatenate([2 * np.arange(len(s)), 2 * before[open_joint] + 1]))
+    return RawCurve(join_segments([main, joins[np.flatnonzero(open_joint)]])[order],
+                    np.concatenate([gone, ~convex[open_joint]])[order])
+
+
+def _apart(a: Floats, b: Floats) -> Floats:
+    d = b - a
+    return np.hypot(d[:, 0], d[:, 1])
+
+
+def _neighbours(loop: Ints, closed: bool) -> tuple[Ints, Ints]:
+    """Return the rows of segments that have a next one, and the rows of those next ones."""
+    m = len(loop)
+    last = np.flatnonzero(np.append(loop[1:] != loop[:-1], True))
+    if not closed:
+        before = np.setdiff1d(np.arange(m), last)
+        return before, before + 1
+    after = np.arange(1, m + 1)
+    after[last] = np.concatenate([[0], last[:-1] + 1])
+    return np.arange(m), after
 
 
 def _bends(s: Segments, before: Ints, after: Ints, u: Floats, v: Floats) -> Floats:
@@ -115,7 +130,7 @@ def parallel_curves(curve: Curve, distance: float) -> list[Curve]:
     """Return the trimmed parallels of a curve to its left (negative: right), in the order of the curve."""
     if abs(distance) <= tolerance.PARAMETRIC:
         return [curve]
-    raw = raw_parallel(curve, distance)
+    raw = raw_parallel(curve.segments(), np.zeros(curve.n_segments, dtype=np.int64), distance, curve.closed)
     real = raw.segments[np.flatnonzero(~raw.is_bridge)]
     # What lies round the end of an open curve is nearer to it than the distance and cuts too.
     ends = () if curve.closed else (curve.start, curve.end)

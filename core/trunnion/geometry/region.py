@@ -11,7 +11,7 @@ from numpy.typing import ArrayLike
 
 from trunnion import tolerance
 from trunnion.geometry import fit
-from trunnion.geometry.arrays import Bools, Floats
+from trunnion.geometry.arrays import Bools, Floats, Ints
 from trunnion.geometry.curve import Curve, Segments, distance_to, join_segments, winding
 
 
@@ -93,6 +93,11 @@ class Region:
         if not self._segments:
             self._segments.append(join_segments(c.segments() for c in self.curves()))
         return self._segments[0]
+
+    def loops(self) -> Ints:
+        """Return of every segment (m,) which of the curves it belongs to, from 0."""
+        curves = self.curves()
+        return np.repeat(np.arange(len(curves)), [c.n_segments for c in curves])
 
     def contains(self, points: ArrayLike, margin: float = 0.0) -> Bools:
         """Say of each point (k, 2) whether it is inside by at least `margin` mm (negative: at most so far outside)."""
