@@ -32,6 +32,9 @@ __all__ = ["RouteSettings", "make_route"]
 FACE_WIDTH, FLOOR_WIDTH, WALL_STEP = 0.7, 0.6, 1.5
 """Width of a face mill's path over its diameter, of a floor's over the cutter's flat, and axial step of a wall over the diameter."""
 
+FLOOR_DISTANCE = 0.1
+"""mm that a floor's cutter keeps from what roughing left on the walls."""
+
 
 def make_route(recognition: Recognition, sizes: tuple[SizeEntry, ...], blank: Blank, setups: Sequence[Setup], shop: Shop, part: Sections,
                settings: RouteSettings, progress: Progress) -> ProcessTree:
@@ -52,13 +55,21 @@ def make_route(recognition: Recognition, sizes: tuple[SizeEntry, ...], blank: Bl
     for n, setup in enumerate(setups):
         draft = Draft(space=Space.of(part, recognition, blank, setup), recognition=recognition, material=material,
                       machine=shop.machine(setup.machine), settings=settings, shop=shop, beside=near)
-        mine = [f for f in planned if from_below(f) == (n > 0)]
+        mine = [f for f in planned if _from_below(f, recognition, part) == (n > 0)]
         share = progress.part(n / len(setups), (n + 1) / len(setups))
         operations += _sequenced(draft, _with_cutters(draft, mine, plan.stages, share), plan.stages)
         findings += draft.findings
     operations = _numbered(operations)
     findings += too_many_tools(operations, setups, shop)
     return ProcessTree(plan=plan.name, material=material.name, setups=tuple(setups), operations=tuple(operations), findings=tuple(findings))
+
+
+def _from_below(feature: Feature, recognition: Recognition, part: Sections) -> bool:
+    """Say whether a feature is reached from under the part: as it says itself, else as its floor or top looks."""
+    tags = feature.with_role("floor", "top")
+    if "direction" in feature.attributes or not tags:
+        return from_below(feature)
+    return bool(recognition.frame.local_direction(part.graph().normal[tags[0] - 1])[2] < 0.0)
 
 
 def _with_cutters(draft: Draft, features: Sequence[Feature], stages: Sequence[Stage], progress: Progress) -> list[Wish]:
@@ -111,13 +122,15 @@ def _is_parent(draft: Draft, parent: str, child: str) -> bool:
 def _operation(draft: Draft, wish: Wish, after: frozenset[str]) -> Operation:
     tool, stage, chosen, cutting = draft.tools[wish.id], wish.stage, draft.settings, choose(CuttingSettings, {})
     depth, width = _engagement(draft, wish, tool, cutting)
-    leaves: dict[str, Value] = {} if stage.finish else {WALL_ALLOWANCE: chosen.wall_allowance, FLOOR_ALLOWANCE: chosen.floor_allowance}
+    choices: dict[str, Value] = {} if stage.finish else {WALL_ALLOWANCE: chosen.wall_allowance, FLOOR_ALLOWANCE: chosen.floor_allowance}
+    if stage.kind == "floor":
+        choices["plane.floor.wall_distance"] = chosen.wall_allowance + FLOOR_DISTANCE
     data = cutting_data(tool, draft.material, draft.machine, stage.kind, cutting, depth, width)
     rules = (stage.rule, *_tool_rules(wish, tool, chosen))
     return Operation(
         id=wish.id, kind=stage.kind, strategy=stage.strategy, feature=wish.feature, setup=draft.space.setup.name, tool=tool,
         group=stage.name, data=data,
-        faces=wish.faces if stage.finish else (), choices=leaves, rules=rules, after=tuple(sorted(after)))
+        faces=wish.faces if stage.finish else (), choices=choices, rules=rules, after=tuple(sorted(after)))
 
 
 def _engagement(draft: Draft, wish: Wish, tool: Tool, cutting: CuttingSettings) -> tuple[float, float]:
