@@ -21,11 +21,14 @@ from trunnion.toolpath.entry import deepest_place, helix, helix_radius, ramp_alo
 from trunnion.toolpath.lead import enter, fitting_lead, leave
 from trunnion.toolpath.link import is_free, step_aside, top_under, travel
 from trunnion.toolpath.order import nearest_first
-from trunnion.toolpath.reach import Room, parts_where
+from trunnion.toolpath.reach import Room, parts_near
 from trunnion.toolpath.rings import Ring
 
 RUN_OUTS = (0.5, 1.0, 2.0, 3.0, 4.0)
 """Of the radius: how far before an open pass a place that is certainly free is looked for."""
+
+RUN_OUT_WAYS = ((-1.0, 0.0), (-0.7, 0.7), (-0.7, -0.7), (0.0, 1.0), (0.0, -1.0), (0.7, 0.7), (0.7, -0.7))
+"""Where it is looked for: along the pass's direction and to its left; straight before the start is best."""
 
 NEXT_PASS = 2.5
 """Of the step: a place no farther away is on the neighbouring pass and may be fed to straight."""
@@ -73,7 +76,7 @@ def _cut_ring(builder: PathBuilder, layer: Layer, ring: Ring, manner: Manner, pr
     feed = builder.data.feed * (1.0 if ring.inner else manner.slot)
     passes: list[Curve] = []
     for curve in ring.curves():
-        passes += [curve] if layer.clip is None else parts_where(curve, layer.wants)
+        passes += [curve] if layer.clip is None else parts_near(curve, layer.clip, layer.wants)
     for curve in nearest_first(passes, lambda: builder.here, _curve_away):
         progress.check()
         if curve.closed:
@@ -151,13 +154,14 @@ def _come_to(builder: PathBuilder, layer: Layer, piece: Curve, manner: Manner) -
     if is_free(builder, start, layer.z):
         travel(builder, start, layer.z)
         return
-    for share in RUN_OUTS:
-        before = start - share * builder.tool.radius * tangent
-        if layer.room.holds_line(before, start) and is_free(builder, before, layer.z):
-            travel(builder, before, layer.z)
-            builder.line((*start, layer.z), builder.data.feed, Mark.LINK)
-            return
     left = np.array([-tangent[1], tangent[0]])
+    for share in RUN_OUTS:
+        for along, aside in RUN_OUT_WAYS:
+            before = start + share * builder.tool.radius * (along * tangent + aside * left)
+            if is_free(builder, before, layer.z) and layer.room.holds_line(before, start):
+                travel(builder, before, layer.z)
+                builder.line((*start, layer.z), builder.data.feed, Mark.LINK)
+                return
     radius = helix_radius(builder, builder.tool.radius)
     centre = start + radius * left
     if radius > 0.0 and float(layer.room.depth(centre)[0]) >= radius - tolerance.ON_REGION:

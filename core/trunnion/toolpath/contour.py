@@ -36,8 +36,19 @@ def contour_parts(room: Room, guide: Curve, distance: float) -> list[Curve]:
     """Return the parts of the room's rim that lie `distance` from a guide line, the room on their left."""
     found: list[Curve] = []
     for rim in room.region.curves():
-        found += parts_where(rim, lambda p: distance + tolerance.ON_REGION - guide.distance(p))
+        found += parts_where(rim, lambda p: np.minimum(distance + tolerance.ON_REGION - guide.distance(p), _beside(guide, p, distance)))
     return found
+
+
+def _beside(guide: Curve, points: Floats, distance: float) -> Floats:
+    """Return how far points (k, 2) are from the half discs past a guide line's open ends (negative inside): there a pass goes straight on
+    instead of round the end."""
+    if guide.closed:
+        return np.full(len(points), np.inf)
+    (first, heading), (last, leaving) = guide.at(0.0), guide.at(guide.length)
+    beyond = [np.where(np.linalg.norm(points - end, axis=1) <= distance + tolerance.SEW, (points - end) @ way, -np.inf)
+              for end, way in ((first, -heading), (last, leaving))]
+    return tolerance.ON_REGION - np.maximum(*beyond)
 
 
 def length_out_of_reach(room: Room, guide: Curve, distance: float) -> float:

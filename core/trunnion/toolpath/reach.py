@@ -11,12 +11,15 @@ from numpy.typing import ArrayLike
 from trunnion import tolerance
 from trunnion.findings import Refused
 from trunnion.geometry.arrays import Floats
-from trunnion.geometry.curve import Curve
+from trunnion.geometry.curve import Curve, segment_boxes
 from trunnion.geometry.region import Region
 from trunnion.plan.drive import DriveLevel, PlaneDrive
 
 SPACING = 0.5
 """mm between the places of a curve that are looked at; the ends of its parts are then found to `END`."""
+
+CLIP_SPACING = 1.0
+"""mm between the places that are looked at where a part's ends need not be exact: a clip is wider than what is wanted."""
 
 END = 1e-4
 """mm: how exactly the end of a part of a curve is found."""
@@ -107,6 +110,15 @@ def parts_where(curve: Curve, keep: Callable[[Floats], Floats], spacing: float =
     else:
         marks = ([0.0] if inside[0] else []) + marks + ([total] if inside[-1] else [])
     return [curve.split(a, b) for a, b in zip(marks[::2], marks[1::2], strict=True) if b - a > SHORTEST]
+
+
+def parts_near(curve: Curve, clip: Region, keep: Callable[[Floats], Floats]) -> list[Curve]:
+    """Return the parts of a curve where `keep` is at least 0, which it nowhere is outside the box of a clip."""
+    low, high = clip.box()
+    first, last = segment_boxes(curve.segments())
+    if ((first > high) | (last < low)).any(axis=1).all():
+        return []
+    return parts_where(curve, keep, CLIP_SPACING)
 
 
 def _points_at(curve: Curve, lengths: Floats) -> Floats:

@@ -1,0 +1,88 @@
+"""The planning stock errs on the side of material, and its compiled loops do what their plain forms do."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+from milling import SETUP, box_blank, cutting, mill
+
+from trunnion.findings import OutOfMemory
+from trunnion.geometry.frame import Frame
+from trunnion.geometry.kernels import heightfield
+from trunnion.geometry.region import Region
+from trunnion.model.setup import Setup
+from trunnion.toolpath.builder import PathBuilder
+from trunnion.toolpath.stock import PlanningStock
+
+BLANK = box_blank((0, 0, -20), (60, 40, 2))
+
+
+def test_an_uncut_blank_is_as_high_as_its_top() -> None:
+    stock = PlanningStock.of(BLANK, SETUP)
+    assert stock.height((10, 10), (50, 30), 5.0) == 2.0
+
+
+def test_there_is_nothing_outside_the_blank() -> None:
+    assert PlanningStock.of(BLANK, SETUP).height((-20, 10), (-20, 30), 5.0) == -np.inf
+
+
+def test_a_blank_turned_over_is_measured_in_the_setup() -> None:
+    under = Setup(name="S2", frame=Frame(np.zeros(3), np.array([1.0, 0, 0]), np.array([0, 0, -1.0])), work_offset="G55", clearance=60.0,
+                  machine="Mill")
+    assert PlanningStock.of(BLANK, under).heights.max() == 20.0
+
+
+def test_a_blank_too_large_to_plan_over_is_refused_with_a_remedy() -> None:
+    with pytest.raises(OutOfMemory, match="split the part"):
+        PlanningStock.of(box_blank((0, 0, 0), (20000, 20000, 10)), SETUP)
+
+
+def test_a_slot_lowers_only_what_the_cutter_covers_wholly() -> None:
+    stock = PlanningStock.of(BLANK, SETUP)
+    builder = PathBuilder(mill(10), cutting(4, 4), stock, SETUP, 2.0)
+    builder.rapid((-10, 20, 50))
+    builder.line((-10, 20, -3), 500.0)
+    builder.line((70, 20, -3), 500.0)
+    after = stock.after(builder.finished(), mill(10))
+    assert after.height((30, 20), (30, 20), 4.0) == -3.0
+    assert after.height((30, 20), (30, 20), 5.0) == 2.0
+    assert stock.height((30, 20), (30, 20), 4.0) == 2.0
+
+
+def test_rapids_remove_nothing() -> None:
+    stock = PlanningStock.of(BLANK, SETUP)
+    builder = PathBuilder(mill(10), cutting(4, 4), stock, SETUP, 2.0)
+    builder.rapid((30, 20, 50))
+    builder.rapid((30, 20, -5))
+    assert stock.after(builder.finished(), mill(10)).digest() == stock.digest()
+
+
+def test_places_that_are_higher_are_found_in_an_area_only() -> None:
+    stock = PlanningStock.of(BLANK, SETUP)
+    assert len(stock.places_above(1.0, Region.rectangle(10, 10, 12, 12))) == 16
+    assert len(stock.places_above(2.0, Region.rectangle(10, 10, 12, 12))) == 0
+    assert len(stock.places_above(1.0, Region.rectangle(100, 10, 120, 12))) == 0
+
+
+@pytest.mark.parametrize("corner", [0.0, 2.0, 6.0])
+def test_the_compiled_field_is_lowered_as_its_plain_form(corner: float) -> None:
+    random = np.random.default_rng(7)
+    starts = random.uniform((-5, -5, -9), (45, 35, 0), (20, 3))
+    ends = np.where(random.random((20, 1)) < 0.3, starts, random.uniform((-5, -5, -9), (45, 35, 0), (20, 3)))
+    fast, plain = np.zeros((80, 60)), np.zeros((80, 60))
+    heightfield.lower(fast, 0.0, 0.0, 0.5, starts, ends, 6.0, corner)
+    heightfield.lower_reference(plain, 0.0, 0.0, 0.5, starts, ends, 6.0, corner)
+    assert np.abs(fast - plain).max() < 1e-9
+
+
+def test_the_compiled_greatest_height_is_that_of_its_plain_form() -> None:
+    random = np.random.default_rng(8)
+    heights = random.random((50, 40))
+    for a, b, radius in zip(random.uniform(-5, 30, (50, 2)), random.uniform(-5, 30, (50, 2)), random.uniform(0.1, 8, 50), strict=True):
+        assert heightfield.highest(heights, 0.0, 0.0, 0.5, a, b, radius) == heightfield.highest_reference(heights, 0.0, 0.0, 0.5, a, b, radius)
+
+
+def test_a_cutter_smaller_than_a_cell_removes_nothing_for_certain() -> None:
+    heights = np.zeros((10, 10))
+    heightfield.lower(heights, 0.0, 0.0, 1.0, np.array([[5.0, 5.0, -1.0]]), np.array([[6.0, 5.0, -1.0]]), 0.4, 0.0)
+    assert not heights.any()
