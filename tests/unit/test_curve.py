@@ -9,6 +9,8 @@ import pytest
 from pytest import approx
 
 from trunnion.geometry.curve import Curve, joined
+from trunnion.geometry.kernels import distance as plain
+from trunnion.geometry.kernels import distance_compiled as compiled
 
 HALF = math.tan(math.pi / 4.0)
 QUARTER = math.tan(math.pi / 8.0)
@@ -168,3 +170,26 @@ def test_a_circle_without_radius_and_a_flat_rectangle_are_refused():
         Curve.circle((0.0, 0.0), 0.0)
     with pytest.raises(ValueError, match="second corner"):
         Curve.rectangle(0.0, 0.0, 5.0, 0.0)
+
+
+@pytest.mark.parametrize("seed", [1, 2, 3])
+def test_compiled_loops_give_what_the_plain_ones_give(seed):
+    numbers = np.random.default_rng(seed)
+    curve = Curve(numbers.integers(-9, 9, (40, 2)).astype(float), numbers.choice([0.0, 0.0, 0.4, -0.7, 1.0, -2.0], 40), True)
+    s = curve.segments()
+    rows = (s.start, s.end, s.centre, s.radius, s.sweep)
+    points = np.concatenate([numbers.uniform(-12.0, 12.0, (500, 2)), numbers.integers(-9, 9, (500, 2)).astype(float), s.start])
+    away, nearest = plain.nearest_segment(points, *rows)
+    compiled_away, compiled_nearest = compiled.nearest_segment(points, *rows)
+    assert compiled_away == approx(away, abs=1e-12)
+    same = compiled_nearest == nearest
+    assert same[:500].all()
+    assert (plain.winding_numbers(points, *rows) == compiled.winding_numbers(points, *rows)).all()
+    assert compiled.nearest_segment.py_func(points[:20], *rows)[0] == approx(away[:20], abs=1e-12)
+
+
+def test_many_points_at_once_are_as_far_away_as_each_alone(monkeypatch):
+    points = np.random.default_rng(4).uniform(-10.0, 30.0, (50, 2))
+    alone = slot().distance(points)
+    monkeypatch.setattr("trunnion.geometry.curve.COMPILED_FROM", 1)
+    assert slot().distance(points) == approx(alone, abs=1e-12)

@@ -10,15 +10,19 @@ import math
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass, field, replace
 from itertools import pairwise
+from types import ModuleType
 
 import numpy as np
 from numpy.typing import ArrayLike
 
 from trunnion import tolerance
 from trunnion.geometry.arrays import Floats, Ints, floats
-from trunnion.geometry.kernels.distance import nearest_segment
+from trunnion.geometry.kernels import distance as distance_kernels
 
 FULL = 2.0 * math.pi
+
+COMPILED_FROM = 1 << 21
+"""Points times segments above which compiled loops pay: the plain ones take about 0.2 s then, as long as loading the compiler."""
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -280,7 +284,7 @@ class Curve:
         """Return the arc length of the place on the curve that is nearest to a point (2,)."""
         p = np.asarray(point, dtype=np.float64)
         seg = self.segments()
-        row = int(nearest_segment(p[None, :], seg.start, seg.end, seg.centre, seg.radius, seg.sweep)[1][0])
+        row = int(distance_kernels.nearest_segment(p[None, :], *_rows(seg))[1][0])
         before = float(seg.length[:row].sum())
         start, sweep, length = seg.start[row], float(seg.sweep[row]), float(seg.length[row])
         if sweep == 0.0:
@@ -344,14 +348,25 @@ def segment_boxes(segments: Segments) -> tuple[Floats, Floats]:
 
 def distance_to(segments: Segments, points: Floats) -> Floats:
     """Return the exact distances (k,) of points (k, 2) from the nearest line or arc."""
-    return nearest_segment(points, segments.start, segments.end, segments.centre, segments.radius, segments.sweep)[0]
+    return _loops(segments, points).nearest_segment(points, *_rows(segments))[0]
 
 
 def winding(segments: Segments, points: Floats) -> Ints:
     """Return how often closed loops, given by all their segments, go round points (k, 2), anticlockwise counted positive."""
-    from trunnion.geometry.kernels.distance import winding_numbers
+    return _loops(segments, points).winding_numbers(points, *_rows(segments))
 
-    return winding_numbers(points, segments.start, segments.end, segments.centre, segments.radius, segments.sweep)
+
+def _loops(segments: Segments, points: Floats) -> ModuleType:
+    """Return the compiled loops where they save more than loading them costs, else the plain ones."""
+    if len(segments) * len(points) < COMPILED_FROM:
+        return distance_kernels
+    from trunnion.geometry.kernels import distance_compiled
+
+    return distance_compiled
+
+
+def _rows(s: Segments) -> tuple[Floats, Floats, Floats, Floats, Floats]:
+    return s.start, s.end, s.centre, s.radius, s.sweep
 
 
 def joined(curves: Sequence[Curve]) -> Curve:

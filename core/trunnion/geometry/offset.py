@@ -45,8 +45,8 @@ def offset_region(region: Region, distance: float) -> Region:
     owner = np.repeat(np.arange(len(count)), count)
     real = count[owner] > 1
     _, line = np.unique(owner[real], return_inverse=True)
-    lines = np.asarray(shapely.linestrings(chords.points[real], indices=line)).tolist()
-    faces = shapely.get_parts(shapely.polygonize([shapely.node(shapely.MultiLineString(lines))]))
+    lines = np.asarray(shapely.linestrings(chords.points[real], indices=line))
+    faces = shapely.get_parts(shapely.polygonize(np.asarray([shapely.node(shapely.multilinestrings(lines))])))
     if len(faces) == 0:
         return EMPTY_REGION
     kept = faces[_margin(region, distance, faces) > 0.0]
@@ -75,6 +75,9 @@ def raw_parallel(s: Segments, loop: Ints, distance: float, closed: bool = True) 
     begin, finish = _end_tangents(s)
     start = s.start + distance * np.stack([-begin[:, 1], begin[:, 0]], axis=1)
     end = s.end + distance * np.stack([-finish[:, 1], finish[:, 0]], axis=1)
+    before, after = _neighbours(loop, closed)
+    open_joint = np.abs(end[before] - start[after]).max(axis=1) > tolerance.PARAMETRIC
+    start[after[~open_joint]] = end[before[~open_joint]]
     # An anticlockwise arc has its centre on the left: its parallel there is smaller, and gone beyond the centre.
     radius = s.radius - np.sign(s.sweep) * distance
     is_arc = s.sweep != 0.0
@@ -82,13 +85,11 @@ def raw_parallel(s: Segments, loop: Ints, distance: float, closed: bool = True) 
     stays_arc = is_arc & ~gone
     main = Segments(start, end, np.where(stays_arc[:, None], s.centre, np.nan), np.where(stays_arc, radius, np.nan),
                     np.where(stays_arc, s.sweep, 0.0), np.where(stays_arc, radius * np.abs(s.sweep), _apart(start, end)))
-    before, after = _neighbours(loop, closed)
     bend = _bends(s, before, after, finish[before], begin[after])
     convex = bend * distance < 0.0
     size = abs(distance)
     joins = Segments(end[before], start[after], np.where(convex[:, None], s.end[before], np.nan), np.where(convex, size, np.nan),
                      np.where(convex, bend, 0.0), np.where(convex, size * np.abs(bend), _apart(end[before], start[after])))
-    open_joint = np.abs(end[before] - start[after]).max(axis=1) > tolerance.PARAMETRIC
     order = np.argsort(np.concatenate([2 * np.arange(len(s)), 2 * before[open_joint] + 1]))
     return RawCurve(join_segments([main, joins[np.flatnonzero(open_joint)]])[order],
                     np.concatenate([gone, ~convex[open_joint]])[order])

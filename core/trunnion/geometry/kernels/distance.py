@@ -7,6 +7,7 @@ import numpy as np
 from trunnion.geometry.arrays import Floats, Ints
 
 BATCH = 1 << 18
+"""Points times segments that are looked at together, so that the tables between stay in the processor's cache."""
 
 
 def nearest_segment(points: Floats, start: Floats, end: Floats, centre: Floats, radius: Floats, sweep: Floats) -> tuple[Floats, Ints]:

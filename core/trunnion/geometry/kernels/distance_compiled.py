@@ -1,0 +1,67 @@
+"""The loops of `kernels.distance` compiled, for many points at once; same names, arguments and answers."""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+from numba import njit
+
+from trunnion.geometry.arrays import Floats, Ints
+
+
+@njit(cache=True, nogil=True)
+def nearest_segment(points: Floats, start: Floats, end: Floats, centre: Floats, radius: Floats, sweep: Floats) -> tuple[Floats, Ints]:
+    """Return the distance (k,) from each point (k, 2) to the nearest segment, and its row (k,)."""
+    best = np.empty(len(points))
+    row = np.empty(len(points), dtype=np.int64)
+    for k in range(len(points)):
+        px, py = points[k]
+        least, nearest = math.inf, 0
+        for i in range(len(start)):
+            if sweep[i] == 0.0:
+                dx, dy = end[i, 0] - start[i, 0], end[i, 1] - start[i, 1]
+                square = dx * dx + dy * dy
+                share = ((px - start[i, 0]) * dx + (py - start[i, 1]) * dy) / (square if square > 0.0 else 1.0)
+                share = min(max(share, 0.0), 1.0)
+                away = math.hypot(px - start[i, 0] - share * dx, py - start[i, 1] - share * dy)
+            else:
+                qx, qy = px - centre[i, 0], py - centre[i, 1]
+                ax, ay = start[i, 0] - centre[i, 0], start[i, 1] - centre[i, 1]
+                bx, by = end[i, 0] - centre[i, 0], end[i, 1] - centre[i, 1]
+                turned = 1.0 if sweep[i] > 0.0 else -1.0
+                after_start = turned * (ax * qy - ay * qx) >= 0.0
+                before_end = turned * (qx * by - qy * bx) >= 0.0
+                beside = after_start or before_end if abs(sweep[i]) > math.pi else after_start and before_end
+                if beside:
+                    away = abs(math.hypot(qx, qy) - radius[i])
+                else:
+                    away = min(math.hypot(qx - ax, qy - ay), math.hypot(qx - bx, qy - by))
+            if away < least:
+                least, nearest = away, i
+        best[k], row[k] = least, nearest
+    return best, row
+
+
+@njit(cache=True, nogil=True)
+def winding_numbers(points: Floats, start: Floats, end: Floats, centre: Floats, radius: Floats, sweep: Floats) -> Ints:
+    """Return how often the loops made of all the segments go round each point (k,), anticlockwise counted positive."""
+    total = np.zeros(len(points), dtype=np.int64)
+    for k in range(len(points)):
+        px, py = points[k]
+        count = 0
+        for i in range(len(start)):
+            ax, ay, bx, by = start[i, 0], start[i, 1], end[i, 0], end[i, 1]
+            side = (bx - ax) * (py - ay) - (px - ax) * (by - ay)
+            if ay <= py < by and side > 0.0:
+                count += 1
+            elif by <= py < ay and side < 0.0:
+                count -= 1
+            if sweep[i] != 0.0 and math.hypot(px - centre[i, 0], py - centre[i, 1]) < radius[i]:
+                left = side > 0.0 or (side == 0.0 and (by < ay or (by == ay and bx > ax)))
+                if sweep[i] > 0.0 and not left:
+                    count += 1
+                elif sweep[i] < 0.0 and left:
+                    count -= 1
+        total[k] = count
+    return total
