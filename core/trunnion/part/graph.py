@@ -9,15 +9,14 @@ from typing import Any
 
 import numpy as np
 from OCP.BRep import BRep_Tool
-from OCP.BRepAdaptor import BRepAdaptor_Curve, BRepAdaptor_Curve2d, BRepAdaptor_Surface
+from OCP.BRepAdaptor import BRepAdaptor_Curve, BRepAdaptor_Curve2d
 from OCP.BRepGProp import BRepGProp
 from OCP.BRepTools import BRepTools
-from OCP.BRepTopAdaptor import BRepTopAdaptor_FClass2d
 from OCP.GCPnts import GCPnts_AbscissaPoint
 from OCP.GeomAbs import GeomAbs_Plane
 from OCP.gp import gp_Pnt, gp_Pnt2d, gp_Vec, gp_Vec2d
 from OCP.GProp import GProp_GProps
-from OCP.TopAbs import TopAbs_EDGE, TopAbs_IN, TopAbs_REVERSED, TopAbs_WIRE
+from OCP.TopAbs import TopAbs_EDGE, TopAbs_REVERSED, TopAbs_WIRE
 from OCP.TopExp import TopExp, TopExp_Explorer
 from OCP.TopoDS import TopoDS
 from OCP.TopTools import TopTools_IndexedMapOfShape
@@ -26,6 +25,7 @@ from trunnion import tolerance
 from trunnion.geometry.arrays import Floats
 from trunnion.geometry.facegraph import CONCAVE, CONVEX, SMOOTH, FaceGraph
 from trunnion.part.canonical import PLAIN, EdgeCurve, Surface, recognised, recognised_curve
+from trunnion.part.faces import FaceView
 from trunnion.part.identity import Shape
 from trunnion.part.measure import ACCURACY, box_of
 
@@ -42,51 +42,6 @@ class Coedge:
     edge: int
     way: float
     loop: int
-
-
-@dataclass(slots=True, eq=False)
-class FaceView:
-    """A trimmed face with what is asked of it again and again."""
-
-    face: Shape
-    row: int
-    adaptor: Any = field(init=False)
-    side: float = field(init=False)
-    inside: Any = field(init=False)
-
-    def __post_init__(self) -> None:
-        self.adaptor = BRepAdaptor_Surface(self.face)
-        self.side = -1.0 if self.face.Orientation() == TopAbs_REVERSED else 1.0
-        self.inside = BRepTopAdaptor_FClass2d(self.face, tolerance.COINCIDENT)
-
-    def bounds(self) -> tuple[float, float, float, float]:
-        """Return the least and greatest u and v of the trimmed area."""
-        a = self.adaptor
-        return a.FirstUParameter(), a.LastUParameter(), a.FirstVParameter(), a.LastVParameter()
-
-    def holds(self, u: float, v: float) -> bool:
-        """Say whether (u, v) lies inside the trimmed area."""
-        return bool(self.inside.Perform(gp_Pnt2d(u, v)) == TopAbs_IN)
-
-    def at(self, u: float, v: float) -> tuple[Floats, Floats]:
-        """Return the point and the outward unit normal at (u, v); beside a pole, where the surface has none, the normal next to it."""
-        point, du, dv = gp_Pnt(), gp_Vec(), gp_Vec()
-        self.adaptor.D1(u, v, point, du, dv)
-        normal = du.Crossed(dv)
-        size = normal.Magnitude()
-        if size <= tolerance.PARAMETRIC * max(du.Magnitude(), dv.Magnitude(), tolerance.COINCIDENT):
-            u0, u1, v0, v1 = self.bounds()
-            beside = u + tolerance.ANGLE * (0.5 * (u0 + u1) - u), v + tolerance.ANGLE * (0.5 * (v0 + v1) - v)
-            self.adaptor.D1(*beside, gp_Pnt(), du, dv)
-            normal = du.Crossed(dv)
-            size = normal.Magnitude() or 1.0
-        return np.array(point.Coord()), np.array(normal.Coord()) * (self.side / size)
-
-    def grid(self, steps: int) -> list[tuple[float, float]]:
-        """Return (u, v) at the middles of steps x steps cells of the bounds."""
-        u0, u1, v0, v1 = self.bounds()
-        share = (np.arange(steps) + 0.5) / steps
-        return [(float(u), float(v)) for u in u0 + share * (u1 - u0) for v in v0 + share * (v1 - v0)]
 
 
 @dataclass(slots=True, eq=False)

@@ -8,7 +8,6 @@ from collections.abc import Mapping
 from dataclasses import asdict, dataclass, field, replace
 from typing import Any
 
-
 from trunnion import tolerance
 from trunnion.findings import BadInput, Finding, Severity
 from trunnion.geometry.arrays import Floats, floats

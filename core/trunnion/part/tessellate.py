@@ -3,15 +3,16 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
+from typing import Any
 
 import numpy as np
 from OCP.BRep import BRep_Tool
 from OCP.BRepMesh import BRepMesh_IncrementalMesh
 from OCP.BRepTools import BRepTools
-from OCP.TopAbs import TopAbs_REVERSED
 from OCP.TopLoc import TopLoc_Location
 
 from trunnion.geometry.mesh import Mesh
+from trunnion.part.faces import FaceView
 from trunnion.part.identity import Shape
 
 
@@ -37,14 +38,22 @@ def tessellated(shape: Shape, faces: Mapping[int, Shape], chord: float, angle: f
 def _face_triangles(face: Shape) -> tuple[np.ndarray, np.ndarray]:
     place = TopLoc_Location()
     found = BRep_Tool.Triangulation_s(face, place)
-    if found is None:
+    if found is None or not found.NbTriangles():
         return np.empty((0, 3)), np.empty((0, 3), dtype=np.int64)
     points = np.array([found.Node(n).Coord() for n in range(1, found.NbNodes() + 1)])
     rows = np.array([found.Triangle(n).Get() for n in range(1, found.NbTriangles() + 1)], dtype=np.int64) - 1
-    move = place.Transformation()
     if not place.IsIdentity():
+        move = place.Transformation()
         turn = np.array([[move.Value(r, c) for c in range(1, 5)] for r in range(1, 4)])
         points = points @ turn[:, :3].T + turn[:, 3]
-    if (face.Orientation() == TopAbs_REVERSED) != move.IsNegative():
-        rows = rows[:, ::-1]
-    return points, rows
+    return points, rows if _looks_out(face, found, points, rows) else rows[:, ::-1]
+
+
+def _looks_out(face: Shape, found: Any, points: np.ndarray, rows: np.ndarray) -> bool:
+    """Say whether triangles run anticlockwise seen from outside: on surfaces of revolution the mesher's order doesn't tell (measured)."""
+    corners = points[rows]
+    across = np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0])
+    largest = int(np.argmax((across * across).sum(axis=1)))
+    place = np.mean([found.UVNode(int(n) + 1).Coord() for n in rows[largest]], axis=0)
+    normal = FaceView(face, 0).at(float(place[0]), float(place[1]))[1]
+    return float(across[largest] @ normal) > 0.0
