@@ -21,7 +21,7 @@ class Command:
 
     id: str
     text: str
-    run: Callable[..., None]
+    run: Callable[..., object]
     menu: str = ""
     icon: str = ""
     keys: str = ""
@@ -53,7 +53,7 @@ class Registry(QObject):
             action.setShortcut(QKeySequence(command.keys))
         keys = f" ({QKeySequence(command.keys).toString(QKeySequence.SequenceFormat.NativeText)})" if command.keys else ""
         action.setToolTip(f"{tr(command.help or command.text)}{keys}")
-        action.triggered.connect(command.run if command.checkable else lambda _=False: command.run())
+        action.triggered.connect(lambda on=False: command.run(on) if command.checkable else command.run())
         parent.addAction(action)
         self._commands[command.id], self._actions[command.id] = command, action
         self._draw(command.id)

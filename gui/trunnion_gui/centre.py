@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
+
 from PySide6.QtCore import Qt
 from PySide6.QtGui import QResizeEvent
 from PySide6.QtWidgets import QHBoxLayout, QLabel, QSlider, QVBoxLayout, QWidget
@@ -92,7 +94,7 @@ class Centre(QWidget):
         super().resizeEvent(event)
         self._place()
 
-    def _once(self, name: str, inputs: tuple, draw) -> None:
+    def _once(self, name: str, inputs: tuple, draw: Callable[[], None]) -> None:
         """Draw a layer only when what it is drawn from is another thing than last time."""
         before = self._drawn.get(name)
         if isinstance(before, tuple) and len(before) == len(inputs) and all(a is b or _equal(a, b) for a, b in zip(before, inputs)):
@@ -176,6 +178,7 @@ class Centre(QWidget):
 
 
 def _equal(a: object, b: object) -> bool:
-    """Compare words and switches by value; everything else by identity, which is how the session's parts change."""
-    return isinstance(a, (str, bool, tuple)) and isinstance(b, type(a)) and all(isinstance(x, str) for x in a) and a == b \
-        if isinstance(a, tuple) else isinstance(a, (str, bool)) and a == b
+    """Compare words, tuples of words and switches by value; everything else by identity, which is how the session's parts change."""
+    if isinstance(a, tuple):
+        return isinstance(b, tuple) and all(isinstance(x, str) for x in a + b) and a == b
+    return isinstance(a, (str, bool)) and a == b

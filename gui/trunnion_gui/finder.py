@@ -51,9 +51,8 @@ class Finder(QFrame):
 
     def open(self) -> None:
         """Show the palette in the upper middle of the window."""
-        parent = self.parentWidget()
         self.setFixedSize(_WIDTH, 48 + _ROWS * 30)
-        self.move((parent.width() - _WIDTH) // 2, 84)
+        self.move((self.window().width() - _WIDTH) // 2, 84)
         self.line.clear()
         self._filter("")
         self.show()

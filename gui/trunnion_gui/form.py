@@ -2,9 +2,10 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 
-from PySide6.QtCore import QEvent, QObject, Qt, Signal
+from PySide6.QtCore import QEvent, QObject, QPoint, Qt, Signal
+from PySide6.QtGui import QWheelEvent
 from PySide6.QtWidgets import QCheckBox, QComboBox, QDoubleSpinBox, QGridLayout, QLabel, QLineEdit, QMenu, QSpinBox, QWidget
 
 from trunnion.settings import Declared, Value
@@ -21,21 +22,21 @@ class Number(QDoubleSpinBox):
     def textFromValue(self, value: float) -> str:
         return trimmed(value, self.decimals())
 
-    def wheelEvent(self, event) -> None:
+    def wheelEvent(self, event: QWheelEvent) -> None:
         super().wheelEvent(event) if self.hasFocus() else event.ignore()
 
 
 class Count(QSpinBox):
     """A whole number; the wheel turns it only while it has the focus."""
 
-    def wheelEvent(self, event) -> None:
+    def wheelEvent(self, event: QWheelEvent) -> None:
         super().wheelEvent(event) if self.hasFocus() else event.ignore()
 
 
 class Choice(QComboBox):
     """One of several words; the wheel never turns it."""
 
-    def wheelEvent(self, event) -> None:
+    def wheelEvent(self, event: QWheelEvent) -> None:
         event.ignore()
 
 
@@ -109,7 +110,7 @@ class Form(QWidget):
         if not self._is_filling:
             self.changed.emit(key, read(self._fields[key]), f"{key} {id(self)} {self._visit}")
 
-    def _offer_default(self, setting: Declared, at) -> None:
+    def _offer_default(self, setting: Declared, at: QPoint) -> None:
         menu = QMenu(self)
         menu.addAction(tr("Back to the default ({value})").format(value=setting.default), lambda: self.reset.emit(setting.key))
         menu.popup(at)
@@ -163,7 +164,7 @@ def show(field: QWidget, value: Value) -> None:
         field.setText(str(value))
 
 
-def on_change(field: QWidget, slot) -> None:
+def on_change(field: QWidget, slot: Callable[[], None]) -> None:
     """Call a slot when a person has changed a field (not at every key while he types)."""
     if isinstance(field, QCheckBox):
         field.toggled.connect(lambda _: slot())

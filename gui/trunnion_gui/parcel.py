@@ -29,10 +29,11 @@ def packed(thing: Any) -> Parcel:
     if sum(sizes) < SMALL:
         return Parcel(pickle.dumps(thing, protocol=5))
     memory = SharedMemory(create=True, size=sum(sizes))
-    at = 0
+    room, at = memoryview(memory.buf or b""), 0
     for view in views:
-        memory.buf[at:at + view.nbytes] = view
+        room[at:at + view.nbytes] = view
         at += view.nbytes
+    room.release()
     memory.close()
     return Parcel(data, memory.name, sizes)
 
@@ -42,10 +43,11 @@ def unpacked(parcel: Parcel) -> Any:
     if not parcel.block:
         return pickle.loads(parcel.data)
     memory = SharedMemory(name=parcel.block)
-    buffers, at = [], 0
+    room, buffers, at = memoryview(memory.buf or b""), [], 0
     for size in parcel.sizes:
-        buffers.append(bytes(memory.buf[at:at + size]))
+        buffers.append(bytes(room[at:at + size]))
         at += size
+    room.release()
     memory.close()
     memory.unlink()
     return pickle.loads(parcel.data, buffers=buffers)

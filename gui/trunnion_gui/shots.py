@@ -6,6 +6,10 @@ import os
 import time
 from collections.abc import Callable
 from pathlib import Path
+from typing import TYPE_CHECKING
+
+if TYPE_CHECKING:
+    from PySide6.QtCore import QCoreApplication
 
 
 def shoot(part: str | Path, picture: str | Path, *, prepare: Callable[..., None] | None = None, size: tuple[int, int] = (1600, 1000),
@@ -25,7 +29,7 @@ def shoot(part: str | Path, picture: str | Path, *, prepare: Callable[..., None]
     window = Window(factory or ENGINE)
     window.confirms_closing = False
     try:
-        window._use_theme(colours.theme(theme))
+        window.use_theme(colours.theme(theme))
         window.resize(*size)
         window.centre.scene.smooth()
         window.show()
@@ -43,7 +47,7 @@ def shoot(part: str | Path, picture: str | Path, *, prepare: Callable[..., None]
         window.close()
 
 
-def _wait(app, is_done: Callable[[], bool], timeout_s: float) -> None:
+def _wait(app: QCoreApplication, is_done: Callable[[], bool], timeout_s: float) -> None:
     end = time.monotonic() + timeout_s
     while not is_done():
         if time.monotonic() > end:

@@ -93,7 +93,7 @@ class Window(QMainWindow):
         self.setStatusBar(self.status)
         self.finder = Finder(self.registry, self)
         self._connect()
-        self._use_theme(self.theme)
+        self.use_theme(self.theme)
         self._arrangement = self.saveState()
         self._restore()
         self._autosave = QTimer(self)
@@ -187,7 +187,7 @@ class Window(QMainWindow):
         """Change between light and dark."""
         name = "dark" if self.theme.name == "light" else "light"
         remembered.remember("theme", name)
-        self._use_theme(colours.theme(name))
+        self.use_theme(colours.theme(name))
 
     def change_language(self) -> None:
         """Take the next language; it is spoken from the next start on."""
@@ -410,14 +410,18 @@ class Window(QMainWindow):
         size.pointed.connect(self.centre.show_size)
         generate.motions_changed.connect(self.centre.show_motions)
 
-    def _use_theme(self, chosen: colours.Theme) -> None:
+    def use_theme(self, chosen: colours.Theme) -> None:
+        """Give everything the look of a theme."""
         self.theme = chosen
         theme.apply(chosen)
         self.registry.redraw()
         # The main button is drawn on the accent colour, in both themes.
         self.registry.action("run.program").setIcon(icons.icon("program", chosen.accent_text))
-        for part in (self.centre, self.process, self.messages, self.code, *self.panels.values()):
-            part.use_theme(chosen)
+        self.centre.use_theme(chosen)
+        for dock in (self.process, self.messages, self.code):
+            dock.use_theme(chosen)
+        for panel in self.panels.values():
+            panel.use_theme(chosen)
 
     def _restore(self) -> None:
         geometry, state = remembered.arrangement("geometry"), remembered.arrangement("state")

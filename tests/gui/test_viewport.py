@@ -142,7 +142,7 @@ def test_a_section_opens_the_part(recognized):
     recognized.registry.run("view.section")
     assert recognized.centre.scene.view.actors["part"].mapper.GetClippingPlanes().GetNumberOfItems() == 1
     recognized.registry.run("view.section")
-    assert recognized.centre.scene.view.actors["part"].mapper.GetClippingPlanes() is None
+    assert recognized.centre.scene.view.actors["part"].mapper.GetClippingPlanes().GetNumberOfItems() == 0
 
 
 def test_a_size_is_written_where_it_is(recognized, idle, qtbot):

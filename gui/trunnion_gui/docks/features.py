@@ -39,8 +39,8 @@ class FeatureDock(QWidget):
         found = self._document.shown.recognition
         if found is self._shown:
             return
-        folded = {self.tree.topLevelItem(n).data(0, _ID) for n in range(self.tree.topLevelItemCount())
-                  if not self.tree.topLevelItem(n).isExpanded()}
+        tops = (self.tree.topLevelItem(n) for n in range(self.tree.topLevelItemCount()))
+        folded = {top.data(0, _ID) for top in tops if top is not None and not top.isExpanded()}
         self._shown = found
         self.tree.blockSignals(True)
         self.tree.clear()

@@ -27,7 +27,7 @@ class MessagesDock(QWidget):
         self._theme: Theme | None = None
         self._notices: list[Finding] = []
         self.findings: tuple[Finding, ...] = ()
-        self.table: QTableWidget = tables.table(["", tr("Message"), tr("Where"), tr("What to do"), tr("Code")], stretched=1)
+        self.table: QTableWidget = tables.table(["", tr("Message"), tr("Where"), tr("What to do"), tr("Code")], stretched=(1, 3))
         column = QVBoxLayout(self)
         column.setContentsMargins(0, 0, 0, 0)
         column.addWidget(self.table)
@@ -52,10 +52,8 @@ class MessagesDock(QWidget):
         if listed == self.findings:
             return
         self.findings = listed
-        tables.fill(self.table, [("", f.text, ", ".join(f.where), f.remedy, f.code) for f in listed])
-        for row, finding in enumerate(listed):
-            self.table.item(row, 0).setIcon(icons.icon(finding.severity.value, self._colour(finding.severity)))
-            self.table.item(row, 0).setToolTip(tr(finding.severity.value))
+        tables.fill(self.table, [("", f.text, ", ".join(f.where), f.remedy, f.code) for f in listed],
+                    icons=[icons.icon(f.severity.value, self._colour(f.severity)) for f in listed])
         self.counted.emit(len(listed))
 
     def _note(self, finding: Finding) -> None:

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from PySide6.QtCore import QPoint, Qt, Signal
-from PySide6.QtGui import QColor, QDropEvent
+from PySide6.QtGui import QColor, QDropEvent, QIcon
 from PySide6.QtWidgets import QAbstractItemView, QMenu, QTreeWidget, QTreeWidgetItem, QVBoxLayout, QWidget
 
 from trunnion.model.operation import Operation
@@ -57,7 +57,7 @@ class ProcessDock(QWidget):
         column.addWidget(self.tree)
         self.tree.itemSelectionChanged.connect(self._choose)
         self.tree.customContextMenuRequested.connect(self._offer)
-        self.tree.dropped.connect(self.move)
+        self.tree.dropped.connect(self.reorder)
         document.changed.connect(self.refresh)
         document.selected.connect(self._follow)
 
@@ -92,7 +92,7 @@ class ProcessDock(QWidget):
         """Return the row of an operation."""
         return self._items[id]
 
-    def move(self, id: str, before: str | None) -> None:
+    def reorder(self, id: str, before: str | None) -> None:
         """Move an operation in front of another one."""
         self._document.edit(tr("Move {id}").format(id=id), commands.with_operation_before(id, before))
 
@@ -119,7 +119,7 @@ class ProcessDock(QWidget):
         top.addChild(item)
         self._items[o.id] = item
 
-    def _icon(self, o: Operation, session: Session):
+    def _icon(self, o: Operation, session: Session) -> QIcon:
         if o.suppressed:
             return icons.icon("suppress")
         proof = next((p for p in session.verdict.operations if p.operation == o.id), None) if session.verdict else None

@@ -8,6 +8,7 @@ from PySide6.QtWidgets import QCheckBox, QGridLayout, QHBoxLayout, QLabel, QWidg
 from trunnion.model.verdict import Outcome
 from trunnion_gui.colours import motions
 from trunnion_gui.i18n import tr
+from trunnion_gui.widgets.layout import empty
 from trunnion_gui.widgets.panel import Panel, rule, swatch
 from trunnion_gui.words import amount, duration, share
 
@@ -37,8 +38,7 @@ class GeneratePanel(Panel):
 
     def fill(self) -> None:
         verdict = self.document.shown.verdict
-        while self._numbers.count():
-            self._numbers.takeAt(0).widget().deleteLater()
+        empty(self._numbers)
         self.verdict.setVisible(verdict is not None)
         if verdict is None:
             return

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from trunnion.model.operation import Operation
 from trunnion_gui.i18n import tr
 from trunnion_gui.widgets import table as tables
 from trunnion_gui.widgets.panel import Panel
@@ -18,9 +19,10 @@ class OptimizePanel(Panel):
     def build(self) -> None:
         super().build()
         self.table = tables.table([tr("Op"), "n 1/min", "vf mm/min", tr("Power")])
-        self.table.cellClicked.connect(lambda row, _: self.document.select_operation(self.table.item(row, 0).text()))
+        self.table.cellClicked.connect(lambda row, _: self.document.select_operation(self._cut[row].id))
         self.content.addWidget(self.table)
         self._shown: object = None
+        self._cut: list[Operation] = []
 
     def fill(self) -> None:
         process = self.document.shown.process
@@ -31,7 +33,7 @@ class OptimizePanel(Panel):
         if process is None:
             self.result.setText("")
             return
-        cut = [o for o in process.operations if not o.suppressed]
+        self._cut = cut = [o for o in process.operations if not o.suppressed]
         rows = [(o.id, amount(o.data.spindle, 0), amount(o.data.feed, 0), share(o.data.power / o.data.power_limit)) for o in cut]
         tables.fill(self.table, rows, right=(1, 2, 3))
         tables.fit_height(self.table, _MOST_ROWS)

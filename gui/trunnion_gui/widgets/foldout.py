@@ -43,6 +43,7 @@ class Foldout(QFrame):
         self.setObjectName("group" if is_group else "foldout")
         self._theme: Theme | None = None
         self.state = ""
+        self.is_folded = not is_open
         self.header = _Header()
         self._arrow, self._state, self._words, self._time = QLabel(), QLabel(), QLabel(), QLabel()
         self.title = QLabel(title)
@@ -57,7 +58,6 @@ class Foldout(QFrame):
         column.addWidget(self.header)
         column.addWidget(self.body)
         self.header.clicked.connect(lambda: self.fold(not self.is_folded))
-        self.is_folded = not is_open
         self.body.setVisible(is_open)
 
     def fold(self, folded: bool) -> None:

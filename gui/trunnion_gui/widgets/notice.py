@@ -9,6 +9,7 @@ from PySide6.QtWidgets import QFrame, QHBoxLayout, QLabel, QPushButton, QToolBut
 from trunnion.findings import Finding, Severity
 from trunnion_gui import icons
 from trunnion_gui.i18n import tr
+from trunnion_gui.widgets.layout import empty
 
 _SIDES = {Severity.ERROR: "error", Severity.WARNING: "warning"}
 
@@ -53,8 +54,7 @@ class Notice(QFrame):
         self._text.setText(_sentence(finding.text))
         self._remedy.setText(_sentence(finding.remedy))
         self._remedy.setVisible(bool(finding.remedy))
-        while self._answers.count():
-            self._answers.takeAt(0).widget().deleteLater()
+        empty(self._answers)
         for words, answer in (answers or {}).items():
             button = QPushButton(words)
             button.clicked.connect(self.hide)

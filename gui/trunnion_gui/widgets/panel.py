@@ -92,6 +92,7 @@ class Panel(Foldout):
             form.fill(document.session.choices)
         self._stress(state)
         self.fill()
+        self.result.setVisible(bool(self.result.text()))
 
     def _stress(self, state: str) -> None:
         """Give the main button the accent while its step is the next one to do."""

@@ -28,8 +28,8 @@ def tree(headers: Sequence[str], stretched: int = 0, kind: type[Tree] = QTreeWid
     return made
 
 
-def table(headers: Sequence[str], stretched: int = 0) -> QTableWidget:
-    """Return an empty table with its columns."""
+def table(headers: Sequence[str], stretched: Sequence[int] = (0,)) -> QTableWidget:
+    """Return an empty table with its columns; some of them share the room that is left."""
     made = QTableWidget(0, len(headers))
     made.setHorizontalHeaderLabels(list(headers))
     made.verticalHeader().hide()
@@ -44,23 +44,27 @@ def table(headers: Sequence[str], stretched: int = 0) -> QTableWidget:
     header.setHighlightSections(False)
     header.setDefaultAlignment(Qt.AlignmentFlag.AlignLeft | Qt.AlignmentFlag.AlignVCenter)
     for column in range(len(headers)):
-        mode = QHeaderView.ResizeMode.Stretch if column == stretched else QHeaderView.ResizeMode.ResizeToContents
+        mode = QHeaderView.ResizeMode.Stretch if column in stretched else QHeaderView.ResizeMode.ResizeToContents
         header.setSectionResizeMode(column, mode)
     return made
 
 
-def fill(made: QTableWidget, rows: Iterable[Sequence[str]], right: Sequence[int] = ()) -> None:
-    """Put rows of words into a table; the columns in `right` are right-aligned."""
+def fill(made: QTableWidget, rows: Iterable[Sequence[str]], right: Sequence[int] = (), icons: Sequence[QIcon] = ()) -> None:
+    """Put rows of words into a table; the columns in `right` are right-aligned, the first column has the icons."""
     listed = list(rows)
     made.setRowCount(len(listed))
     for column in right:
-        made.horizontalHeaderItem(column).setTextAlignment(RIGHT)
+        header = made.horizontalHeaderItem(column)
+        if header is not None:
+            header.setTextAlignment(RIGHT)
     for r, row in enumerate(listed):
         for c, words in enumerate(row):
             item = QTableWidgetItem(words)
             item.setToolTip(words)
             if c in right:
                 item.setTextAlignment(RIGHT)
+            if c == 0 and r < len(icons):
+                item.setIcon(icons[r])
             made.setItem(r, c, item)
 
 

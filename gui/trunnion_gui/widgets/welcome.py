@@ -11,6 +11,7 @@ from PySide6.QtWidgets import QFrame, QHBoxLayout, QLabel, QPushButton, QVBoxLay
 from trunnion_gui.actions import Registry
 from trunnion_gui.document import Document
 from trunnion_gui.i18n import tr
+from trunnion_gui.widgets.layout import empty
 from trunnion_gui.widgets.panel import rule
 
 _WIDTH = 430
@@ -46,8 +47,7 @@ class Welcome(QFrame):
 
     def show_recent(self, paths: Sequence[str]) -> None:
         """List the files opened last."""
-        while self._recent.count():
-            self._recent.takeAt(0).widget().deleteLater()
+        empty(self._recent)
         if paths:
             self._recent.addWidget(rule())
         for path in paths[:4]:
