@@ -58,7 +58,7 @@ def from_xml(element: etree._Element, hint: Any, members: Members) -> Any:
     """Return the value that an element says; raise `BadInput` with its line when it doesn't fit the type."""
     try:
         return _read(element, hint, members)
-    except (ValueError, TypeError, KeyError) as reason:
+    except (ValueError, KeyError) as reason:
         raise BadInput(f"line {element.sourceline}: <{element.tag}> can't be read: {reason}") from None
 
 
@@ -258,14 +258,14 @@ def _read_mapping(element: etree._Element, hint: Any, members: Members) -> dict[
         key = child.get("key")
         if key is None or key in found:
             raise BadInput(f"line {child.sourceline}: an item without a key, or with one that stands twice")
-        found[key] = _read(child, hint, members)
+        found[key] = from_xml(child, hint, members)
     return found
 
 
 def _read_tuple(element: etree._Element, args: tuple[Any, ...], members: Members) -> tuple[Any, ...]:
     if Ellipsis in args:
-        return tuple(_read(child, args[0], members) for child in element)
-    return tuple(_read(child, own, members) for child, own in zip(element, args, strict=True))
+        return tuple(from_xml(child, args[0], members) for child in element)
+    return tuple(from_xml(child, own, members) for child, own in zip(element, args, strict=True))
 
 
 def _read_data(element: etree._Element, cls: type, members: Members) -> Any:
@@ -275,7 +275,7 @@ def _read_data(element: etree._Element, cls: type, members: Members) -> Any:
         name = str(child.tag).replace("-", "_")
         if name not in hints or name in values:
             raise BadInput(f"line {child.sourceline}: <{child.tag}> is not known in <{element.tag}>, or stands twice")
-        values[name] = _read(child, hints[name], members)
+        values[name] = from_xml(child, hints[name], members)
     try:
         made = cls(**values)
     except (ValueError, TypeError) as reason:
