@@ -184,7 +184,8 @@ def test_compiled_loops_give_what_the_plain_ones_give(seed):
     assert compiled_away == approx(away, abs=1e-12)
     same = compiled_nearest == nearest
     assert same[:500].all()
-    assert (plain.winding_numbers(points, *rows) == compiled.winding_numbers(points, *rows)).all()
+    off = points[away > 1e-9]
+    assert (plain.winding_numbers(off, *rows) == compiled.winding_numbers(off, *rows)).all()
     assert compiled.nearest_segment.py_func(points[:20], *rows)[0] == approx(away[:20], abs=1e-12)
 
 

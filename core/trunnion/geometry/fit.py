@@ -1,14 +1,12 @@
-"""From lines and arcs to chords and back: how shapely's answers about plane areas become exact again.
+"""From chords back to lines and arcs: how shapely's answers about plane areas become exact again.
 
-Shapely finds topology on chords. Every chord remembers the carrier it came from, a line or a circle. In shapely's answer each
-edge is such a chord or a part of one; runs of edges on one carrier become one line or arc again, old vertices keep their
-coordinates, and new ones are the exact meeting points of their two carriers.
+In shapely's answer each edge is a chord that was put in, or a part of one, and so has a carrier. Runs of edges on one carrier
+become one line or arc again; old vertices keep their coordinates, and new ones are the exact meeting points of their carriers.
 """
 
 from __future__ import annotations
 
 import math
-from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -16,128 +14,9 @@ import shapely
 
 from trunnion import tolerance
 from trunnion.geometry.arrays import Bools, Floats, Ints
-from trunnion.geometry.curve import FULL, Curve, Segments, chord_counts, segment_boxes, turn
-
-CLOSE = tolerance.COINCIDENT
-"""Two ends of segments that are this close in x and in y are one point."""
-
-
-@dataclass(frozen=True, slots=True, eq=False)
-class Chords:
-    """Segments opened into chords that remember where they came from.
-
-    `points` (p, 2): the chord points of all segments one after another; segment i has the points first[i] to first[i + 1],
-    both of its ends among them. `source`: the segments, their ends pulled together; `carrier` (m,): equal for
-    segments on the same line or circle; `is_bridge` (m,): segments that only close gaps and are no part of an answer.
-    """
-
-    points: Floats
-    first: Ints
-    source: Segments
-    carrier: Ints
-    is_bridge: Bools
-
-
-def chorded(source: Segments, is_bridge: Bools | None = None, chord: float = tolerance.PLANE_REGION) -> Chords:
-    """Return segments opened into chords so that places where they lie on each other get the same chords."""
-    m = len(source)
-    ends = pulled_together(np.concatenate([source.start, source.end]))
-    start, end = ends[:m], ends[m:]
-    pairs = _meeting_boxes(source)
-    centre, radius, carrier = _shared_carriers(start, end, source, pairs)
-    joined = Segments(start, end, centre, radius, source.sweep, source.length)
-    bridges = np.zeros(m, dtype=bool) if is_bridge is None else is_bridge
-    carrier = np.where(bridges, m + np.arange(m), carrier)
-    inner_row, inner_key, inner_point = _inner_points(joined, chord)
-    meet_row, meet_key, meet_point = crossings(joined, pairs)
-    row = np.concatenate([np.arange(m), np.arange(m), inner_row, meet_row])
-    key = np.concatenate([np.zeros(m), np.ones(m), inner_key, meet_key])
-    exact = pulled_together(np.concatenate([ends, meet_point]))
-    point = np.concatenate([exact[:2 * m], inner_point, exact[2 * m:]])
-    order = np.lexsort([key, row])
-    row, point, is_inner = row[order], point[order], (order >= 2 * m) & (order < 2 * m + len(inner_row))
-    # A chord point on a circle gives way to a vertex, and of equal vertices one is enough.
-    close = (row[1:] == row[:-1]) & (np.abs(point[1:] - point[:-1]).max(axis=1) <= CLOSE)
-    same = close & (point[1:] == point[:-1]).all(axis=1)
-    keep = np.ones(len(row), dtype=bool)
-    keep[1:] &= ~(same | (close & is_inner[1:]))
-    keep[:-1] &= ~(close & is_inner[:-1])
-    row, point = row[keep], point[keep]
-    first = np.searchsorted(row, np.arange(m + 1))
-    return Chords(point, first, joined, carrier, bridges)
-
-
-def pulled_together(points: Floats) -> Floats:
-    """Return points (n, 2) in which those that are one point within the coincidence tolerance have the coordinates of the first."""
-    _, first, back = np.unique(points[:, 0] + 1j * points[:, 1], return_index=True, return_inverse=True)
-    apart = points[first]
-    free = _crowded(apart)
-    free = free[np.argsort(first[free])]
-    owner = np.arange(len(apart))
-    while len(free) > 1:
-        near = np.abs(apart[free] - apart[free[0]]).max(axis=1) <= CLOSE
-        owner[free[near]] = free[0]
-        free = free[~near]
-    return apart[owner[back]]
-
-
-def _crowded(points: Floats) -> Ints:
-    """Return the rows of points that may have another one within the coincidence tolerance: they share a cell of one of four grids."""
-    cell = (points - points.min(axis=0)) / (4.0 * CLOSE)
-    crowded = np.zeros(len(points), dtype=bool)
-    for shift in ((0.0, 0.0), (0.5, 0.0), (0.0, 0.5), (0.5, 0.5)):
-        x, y = np.floor(cell + shift).astype(np.int64).T
-        # Two cells may share a number; that only costs a look.
-        number = x * 1000003 + y
-        order = np.argsort(number)
-        same = np.flatnonzero(number[order[1:]] == number[order[:-1]])
-        crowded[order[same]] = crowded[order[same + 1]] = True
-    return np.flatnonzero(crowded)
-
-
-def _shared_carriers(start: Floats, end: Floats, s: Segments, pairs: tuple[Ints, Ints]) -> tuple[Floats, Floats, Ints]:
-    """Number the carriers, and give arcs that lie on the same circle within the coincidence tolerance its centre and radius."""
-    centre, radius = s.centre.copy(), s.radius.copy()
-    carrier = np.arange(len(s))
-    i, j = pairs
-    with np.errstate(invalid="ignore"):
-        arcs = (np.abs(radius[i] - radius[j]) <= CLOSE) & (np.abs(centre[i] - centre[j]).max(axis=1) <= CLOSE)
-    line = s.sweep == 0.0
-    along = end - start
-    size = np.hypot(along[:, 0], along[:, 1])
-    same = line[i] & line[j] & (size[i] > 0.0) & (size[j] > 0.0)
-    for one, other in ((i, j), (j, i)):
-        for point in (start, end):
-            to = point[other] - start[one]
-            same &= np.abs(along[one, 0] * to[:, 1] - along[one, 1] * to[:, 0]) <= CLOSE * size[one]
-    for k in np.flatnonzero(arcs | same):
-        carrier[j[k]] = carrier[i[k]]
-        centre[j[k]], radius[j[k]] = centre[i[k]], radius[i[k]]
-    return centre, radius, carrier
-
-
-def _inner_points(s: Segments, chord: float) -> tuple[Ints, Floats, Floats]:
-    """Return the chord points inside arcs at angles that depend on the circle alone, as rows, keys in 0..1 and points."""
-    arcs = np.flatnonzero(s.sweep != 0.0)
-    if len(arcs) == 0:
-        return np.empty(0, dtype=np.int64), np.empty(0), np.empty((0, 2))
-    radius, sweep = s.radius[arcs], s.sweep[arcs]
-    around = Segments(s.start[arcs], s.end[arcs], s.centre[arcs], radius, np.full(len(arcs), FULL), radius)
-    parts = np.maximum(8, chord_counts(around, chord))
-    step = FULL / parts
-    ray = s.start[arcs] - s.centre[arcs]
-    begin = np.arctan2(ray[:, 1], ray[:, 0])
-    low, high = np.minimum(begin, begin + sweep), np.maximum(begin, begin + sweep)
-    # A grid point closer to an end than a hundredth of a step gives way to it.
-    first = np.ceil(low / step + 0.01).astype(np.int64)
-    last = np.floor(high / step - 0.01).astype(np.int64)
-    count = np.maximum(0, last - first + 1)
-    row = np.repeat(np.arange(len(arcs)), count)
-    number = first[row] + np.arange(len(row)) - np.repeat(np.cumsum(count) - count, count)
-    angle = (number % parts[row]) * step[row]
-    point = s.centre[arcs][row] + radius[row, None] * np.stack([np.cos(angle), np.sin(angle)], axis=1)
-    key = (number * step[row] - begin[row]) / sweep[row]
-    return arcs[row], key, point
+from trunnion.geometry.chords import Chords
+from trunnion.geometry.curve import FULL, Curve, Segments, turn
+from trunnion.geometry.meeting import CLOSE, meeting
 
 
 def restored(geometry: shapely.Geometry, chords: Chords) -> list[tuple[Curve, list[Curve]]]:
@@ -164,6 +43,17 @@ def restored(geometry: shapely.Geometry, chords: Chords) -> list[tuple[Curve, li
         elif curve is not None and outer_kept:
             answer[-1][1].append(curve if curve.area < 0.0 else curve.reversed())
     return answer
+
+
+def joined_runs(chords: Chords) -> Curve | None:
+    """Return one closed loop of segments with specks dropped and neighbours on one carrier joined; None when nothing is left."""
+    source = chords.source
+    turned = np.sign(source.sweep).astype(np.int64)
+    rows = np.arange(len(source))
+    change = _changes(chords.carrier, turned)
+    if len(change) == 0:
+        return _round(source, 0, int(turned[0]), source.start[0]) if turned[0] else None
+    return _closed_curve(chords, [_Run(int(rows[k]), int(turned[k]), source.start[k], True) for k in change])
 
 
 class _Edges:
@@ -361,176 +251,3 @@ def _arc_or_line(source: Segments, run: _Run, start: Floats, end: Floats) -> tup
     # A bulge says little about a nearly full circle, so that is given in two arcs.
     half = source.centre[run.row] + turn(start - source.centre[run.row], 0.5 * sweep)
     return [start, half], [math.tan(0.125 * sweep)] * 2
-
-
-def meeting(source: Segments, a: int, b: int, near: Floats) -> Floats:
-    """Return the point where the carriers of two segments meet, the one nearest to a point.
-
-    Carriers that only nearly touch meet where they are closest; parallel lines meet at the given point's foot on the first.
-    """
-    if source.sweep[a] == 0.0 and source.sweep[b] == 0.0:
-        return _line_line(source, a, b, near)
-    if source.sweep[a] == 0.0:
-        return _line_circle(source.start[a], source.end[a], source.centre[b], float(source.radius[b]), near)
-    if source.sweep[b] == 0.0:
-        return _line_circle(source.start[b], source.end[b], source.centre[a], float(source.radius[a]), near)
-    return _circle_circle(source.centre[a], float(source.radius[a]), source.centre[b], float(source.radius[b]), near)
-
-
-def _line_line(source: Segments, a: int, b: int, near: Floats) -> Floats:
-    d, e = source.end[a] - source.start[a], source.end[b] - source.start[b]
-    d, e = d / math.hypot(*d), e / math.hypot(*e)
-    across = d[0] * e[1] - d[1] * e[0]
-    if abs(across) <= tolerance.COINCIDENT:
-        return source.start[a] + ((near - source.start[a]) @ d) * d
-    to = source.start[b] - source.start[a]
-    return source.start[a] + ((to[0] * e[1] - to[1] * e[0]) / across) * d
-
-
-def _line_circle(start: Floats, end: Floats, centre: Floats, radius: float, near: Floats) -> Floats:
-    d = end - start
-    d = d / math.hypot(*d)
-    foot = start + ((centre - start) @ d) * d
-    off = math.hypot(*(foot - centre))
-    if off >= radius:
-        return foot if off <= 0.0 else 0.5 * (foot + centre + (foot - centre) * (radius / off))
-    half = math.sqrt((radius - off) * (radius + off))
-    return foot + math.copysign(half, float((near - foot) @ d)) * d
-
-
-def _circle_circle(a: Floats, ra: float, b: Floats, rb: float, near: Floats) -> Floats:
-    d = b - a
-    apart = math.hypot(*d)
-    if apart <= tolerance.COINCIDENT:
-        ray = near - a
-        return a + ray * (ra / math.hypot(*ray))
-    d = d / apart
-    along = 0.5 * (apart + (ra - rb) * (ra + rb) / apart)
-    square = (ra - along) * (ra + along)
-    if square <= 0.0:
-        return a + math.copysign(ra, along) * d
-    across = np.array([-d[1], d[0]])
-    return a + along * d + math.copysign(math.sqrt(square), float((near - a) @ across)) * across
-
-
-def polygons_of(chords: Chords, loops: Sequence[Sequence[range]]) -> shapely.Geometry:
-    """Return the shapely area of pieces given as rows of the chords' segments: for each piece its outer loop, then its holes."""
-    polygons = []
-    for piece in loops:
-        rings = [np.concatenate([chords.points[chords.first[i]: chords.first[i + 1] - 1] for i in loop]) for loop in piece]
-        rings = [ring for ring in rings if len(ring) >= 3]
-        if rings:
-            polygons.append(shapely.Polygon(rings[0], rings[1:]))
-    area = shapely.MultiPolygon(polygons)
-    return area if area.is_valid else shapely.make_valid(area, method="structure", keep_collapsed=False)
-
-
-def joined_runs(chords: Chords) -> Curve | None:
-    """Return one closed loop of segments with specks dropped and neighbours on one carrier joined; None when nothing is left."""
-    source = chords.source
-    turned = np.sign(source.sweep).astype(np.int64)
-    rows = np.arange(len(source))
-    change = _changes(chords.carrier, turned)
-    if len(change) == 0:
-        return _round(source, 0, int(turned[0]), source.start[0]) if turned[0] else None
-    return _closed_curve(chords, [_Run(int(rows[k]), int(turned[k]), source.start[k], True) for k in change])
-
-
-def crossings(s: Segments, pairs: tuple[Ints, Ints] | None = None) -> tuple[Ints, Floats, Floats]:
-    """Return where segments meet each other: rows (k,), shares of their length from 0 to 1 (k,) and points (k, 2).
-
-    Every meeting is given for both, with the same point. The ends of one that lie inside the other are among them. `pairs` are
-    the pairs of segments that can meet, when they are known.
-    """
-    i, j = _meeting_boxes(s) if pairs is None else pairs
-    line = s.sweep == 0.0
-    rows, keys, points = [], [], []
-    for kind, solve in ((line[i] & line[j], _lines_meet), (line[i] & ~line[j], _line_meets_circle),
-                        (~line[i] & line[j], _circle_meets_line), (~line[i] & ~line[j], _circles_meet)):
-        a, b = i[kind], j[kind]
-        for point in solve(s, a, b) if len(a) else ():
-            on_a, on_b = place_on(s, a, point), place_on(s, b, point)
-            real = ~np.isnan(on_a) & ~np.isnan(on_b)
-            rows += [a[real], b[real]]
-            keys += [on_a[real], on_b[real]]
-            points += [point[real], point[real]]
-    # Ends that lie on another segment cut it too, which also covers segments that lie on each other.
-    row, point = np.concatenate([i, i, j, j]), np.concatenate([s.start[j], s.end[j], s.start[i], s.end[i]])
-    touches = _off_carrier(s, row, point) <= CLOSE
-    row, point = row[touches], point[touches]
-    key = place_on(s, row, point)
-    inside = ~np.isnan(key)
-    return np.concatenate([*rows, row[inside]]), np.concatenate([*keys, key[inside]]), np.concatenate([*points, point[inside]])
-
-
-def _meeting_boxes(s: Segments) -> tuple[Ints, Ints]:
-    """Return the pairs of segments, the smaller row first, whose boxes come within the coincidence tolerance."""
-    low, high = segment_boxes(s)
-    low = low - 2.0 * CLOSE
-    meet = (low[:, None, 0] <= high[None, :, 0]) & (low[None, :, 0] <= high[:, None, 0])
-    meet &= (low[:, None, 1] <= high[None, :, 1]) & (low[None, :, 1] <= high[:, None, 1])
-    i, j = np.nonzero(np.triu(meet, 1))
-    return i, j
-
-
-def _off_carrier(s: Segments, rows: Ints, points: Floats) -> Floats:
-    """Return how far points (k, 2) are from the line or circle on which the segments `rows` lie."""
-    along = s.end[rows] - s.start[rows]
-    size = np.hypot(along[:, 0], along[:, 1])
-    to = points - s.start[rows]
-    off = np.abs(along[:, 0] * to[:, 1] - along[:, 1] * to[:, 0]) / np.where(size > 0.0, size, 1.0)
-    ray = points - s.centre[rows]
-    return np.where(s.sweep[rows] == 0.0, off, np.abs(np.hypot(ray[:, 0], ray[:, 1]) - s.radius[rows]))
-
-
-def place_on(s: Segments, rows: Ints, points: Floats) -> Floats:
-    """Return the shares (k,) of the length at which points (k, 2) lie inside segments `rows`; NaN at the ends and beyond."""
-    place = np.full(len(rows), np.nan)
-    line = s.sweep[rows] == 0.0
-    a = rows[line]
-    along = (s.end[a] - s.start[a]) / np.maximum(s.length[a], np.finfo(float).tiny)[:, None]
-    place[line] = ((points[line] - s.start[a]) * along).sum(axis=1)
-    a = rows[~line]
-    if len(a):
-        ray, q = s.start[a] - s.centre[a], points[~line] - s.centre[a]
-        angle = np.sign(s.sweep[a]) * np.arctan2(ray[:, 0] * q[:, 1] - ray[:, 1] * q[:, 0], (ray * q).sum(axis=1)) % FULL
-        place[~line] = angle * s.radius[a]
-    length = s.length[rows]
-    with np.errstate(invalid="ignore"):
-        place[(place <= CLOSE) | (place >= length - CLOSE)] = np.nan
-        return place / length
-
-
-def _lines_meet(s: Segments, a: Ints, b: Ints) -> list[Floats]:
-    d, e = s.end[a] - s.start[a], s.end[b] - s.start[b]
-    across = d[:, 0] * e[:, 1] - d[:, 1] * e[:, 0]
-    to = s.start[b] - s.start[a]
-    ok = np.abs(across) > tolerance.COINCIDENT * s.length[a] * s.length[b]
-    share = np.divide(to[:, 0] * e[:, 1] - to[:, 1] * e[:, 0], across, out=np.full(len(a), np.nan), where=ok)
-    return [s.start[a] + share[:, None] * d]
-
-
-def _line_meets_circle(s: Segments, a: Ints, b: Ints) -> list[Floats]:
-    d = (s.end[a] - s.start[a]) / np.maximum(s.length[a], np.finfo(float).tiny)[:, None]
-    foot = s.start[a] + ((s.centre[b] - s.start[a]) * d).sum(axis=1)[:, None] * d
-    off = np.hypot(*(foot - s.centre[b]).T)
-    square = (s.radius[b] - off) * (s.radius[b] + off)
-    half = np.sqrt(np.where(off <= s.radius[b] + CLOSE, np.maximum(square, 0.0), np.nan))[:, None]
-    return [foot + half * d, foot - half * d]
-
-
-def _circle_meets_line(s: Segments, a: Ints, b: Ints) -> list[Floats]:
-    return _line_meets_circle(s, b, a)
-
-
-def _circles_meet(s: Segments, a: Ints, b: Ints) -> list[Floats]:
-    d = s.centre[b] - s.centre[a]
-    apart = np.hypot(d[:, 0], d[:, 1])
-    ra, rb = s.radius[a], s.radius[b]
-    ok = (apart > CLOSE) & (apart <= ra + rb + CLOSE) & (apart >= np.abs(ra - rb) - CLOSE)
-    d = np.divide(d, apart[:, None], out=np.full_like(d, np.nan), where=ok[:, None])
-    along = 0.5 * (apart + np.divide((ra - rb) * (ra + rb), apart, out=np.zeros_like(apart), where=ok))
-    half = np.sqrt(np.maximum((ra - along) * (ra + along), 0.0))[:, None]
-    middle = s.centre[a] + np.clip(along, -ra, ra)[:, None] * d
-    across = np.stack([-d[:, 1], d[:, 0]], axis=1)
-    return [middle + half * across, middle - half * across]

@@ -15,12 +15,13 @@ import shapely
 from numpy.typing import NDArray
 
 from trunnion import tolerance
-from trunnion.geometry import fit
 from trunnion.geometry.arrays import Bools, Floats, Ints
+from trunnion.geometry.chords import chorded
 from trunnion.geometry.curve import Curve, Segments, distance_to, join_segments
+from trunnion.geometry.meeting import CLOSE, crossings
 from trunnion.geometry.region import EMPTY_REGION, Region, restored_region
 
-MEETS = 4.0 * fit.CLOSE
+MEETS = 4.0 * CLOSE
 """Pieces of a parallel that were cut at one crossing meet within this: each may have moved by the tolerance on two sides."""
 
 
@@ -40,7 +41,7 @@ def offset_region(region: Region, distance: float) -> Region:
     if distance < 0.0 and 2.0 * -distance >= (high - low).min():
         return EMPTY_REGION
     raw = raw_parallel(region.segments(), region.loops(), -distance)
-    chords = fit.chorded(raw.segments, raw.is_bridge)
+    chords = chorded(raw.segments, raw.is_bridge)
     count = np.diff(chords.first)
     owner = np.repeat(np.arange(len(count)), count)
     real = count[owner] > 1
@@ -140,19 +141,19 @@ def parallel_curves(curve: Curve, distance: float) -> list[Curve]:
     own = rows < len(real)
     rows, low, high = rows[own], low[own], high[own]
     middle = real.at(rows, 0.5 * (low + high))
-    kept = distance_to(curve.segments(), middle) >= abs(distance) - fit.CLOSE
+    kept = distance_to(curve.segments(), middle) >= abs(distance) - CLOSE
     return _strung(real, rows[kept], low[kept], high[kept])
 
 
 def cut_at_crossings(s: Segments) -> tuple[Ints, Floats, Floats]:
     """Return the pieces of segments between their crossings: rows (k,) and arc lengths from and to (k,) in order."""
-    row, share, _ = fit.crossings(s)
+    row, share, _ = crossings(s)
     m = len(s)
     row = np.concatenate([np.arange(m), np.arange(m), row])
     place = np.concatenate([np.zeros(m), s.length, share * s.length[row[2 * m:]]])
     order = np.lexsort([place, row])
     row, place = row[order], place[order]
-    real = (row[1:] == row[:-1]) & (place[1:] - place[:-1] > fit.CLOSE)
+    real = (row[1:] == row[:-1]) & (place[1:] - place[:-1] > CLOSE)
     return row[:-1][real], place[:-1][real], place[1:][real]
 
 

