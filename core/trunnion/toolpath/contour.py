@@ -48,7 +48,8 @@ def _beside(guide: Curve, points: Floats, distance: float) -> Floats:
     (first, heading), (last, leaving) = guide.at(0.0), guide.at(guide.length)
     beyond = [np.where(np.linalg.norm(points - end, axis=1) <= distance + tolerance.SEW, (points - end) @ way, -np.inf)
               for end, way in ((first, -heading), (last, leaving))]
-    return tolerance.ON_REGION - np.maximum(*beyond)
+    # Ends a little before the half discs, so that the last direction is the wall's and not that of the arc round its end.
+    return -tolerance.ON_REGION - np.maximum(*beyond)
 
 
 def length_out_of_reach(room: Room, guide: Curve, distance: float) -> float:
