@@ -18,6 +18,7 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass
+from itertools import pairwise
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -152,7 +153,7 @@ def circle_edges(sc: float, uc: float, radius: float, start: float, end: float) 
     quarter = math.pi / 2
     cuts = [low, *(k * quarter for k in range(math.ceil(low / quarter), math.floor(high / quarter) + 1)), high]
     edges = []
-    for a, b in zip(cuts[:-1], cuts[1:], strict=True):
+    for a, b in pairwise(cuts):
         if b - a > tolerance.PARAMETRIC:
             sign = 1.0 if math.cos(0.5 * (a + b)) > 0 else -1.0
             edges.append(Edge(sc + radius * math.cos(a), uc + radius * math.sin(a), sc + radius * math.cos(b), uc + radius * math.sin(b),
@@ -168,7 +169,7 @@ def strips_of(guide: Guide, profile: Profile, edges: list[Edge], side: float) ->
     ends = [u for e in steep for u in (e.u0, e.u1)]
     levels = _distinct(ends + profile.levels(min(ends), max(ends)))
     rows = []
-    for u0, u1 in zip(levels[:-1], levels[1:], strict=True):
+    for u0, u1 in pairwise(levels):
         near = 2 * tolerance.COINCIDENT
         across = [e for e in steep if min(e.u0, e.u1) <= u0 + near and max(e.u0, e.u1) >= u1 - near]
         if len(across) % 2:
@@ -288,8 +289,9 @@ def _box(guide: Guide, w: tuple[float, float], z: tuple[float, float], low: floa
 def _face(tag: int, shape: Any, frame: Frame) -> Face:
     from OCP.BRepAdaptor import BRepAdaptor_Surface
     from OCP.GeomAbs import GeomAbs_SurfaceType as Kind
+    from OCP.TopoDS import TopoDS
 
-    face = shape.Oriented(_forward())
+    face = TopoDS.Face_s(shape.Oriented(_forward()))
     sign = 1.0 if shape.Orientation() == _forward() else -1.0
     surface = BRepAdaptor_Surface(face)
     kind = surface.GetType()
@@ -447,7 +449,7 @@ def _triangles(tag: int, shape: Any, frame: Frame) -> Face:
     from OCP.TopoDS import TopoDS
 
     copy = TopoDS.Face_s(BRepBuilderAPI_Copy(shape).Shape())
-    BRepMesh_IncrementalMesh(copy, tolerance.CONTACT_BOUND, False, 0.2)
+    BRepMesh_IncrementalMesh(copy, tolerance.CHORD, False, tolerance.MESH_ANGLE)
     place = TopLoc_Location()
     mesh = BRep_Tool.Triangulation_s(copy, place)
     move = place.Transformation()
@@ -458,7 +460,7 @@ def _triangles(tag: int, shape: Any, frame: Frame) -> Face:
     parts = [triangle_face(tag, c) for c in corners]
     empty = np.zeros((0, STRIP_COLUMNS))
     return Face(tag, np.vstack([empty, *(p.strips for p in parts)]), np.vstack([empty, *(p.level for p in parts)]),
-                np.zeros((0, 4)), bound=tolerance.CONTACT_BOUND)
+                np.zeros((0, 4)), bound=tolerance.CHORD)
 
 
 def triangle_face(tag: int, corners: Floats) -> Face:
@@ -476,6 +478,7 @@ def triangle_face(tag: int, corners: Floats) -> Face:
     up, across = np.cross(normal, along), np.array([-along[1], along[0], 0.0])
     local = ring - corners[0]
     dw = float(up @ across)
+    side = math.copysign(1.0, (normal @ across) * up[2] - normal[2] * dw)
     strips = strips_of(Guide(0, corners[0, 0], corners[0, 1], along[0], along[1]), Profile(0.0, corners[0, 2], dw, up[2]),
-                       line_edges(np.column_stack([local @ along, local @ up])), math.copysign(1.0, (normal @ across) * up[2] - normal[2] * dw))
+                       line_edges(np.column_stack([local @ along, local @ up])), side)
     return Face(tag, empty if strips is None else strips, empty, np.zeros((0, 4)))

@@ -85,7 +85,7 @@ class PartContact:
     def clear(self, rows: Floats, pieces: Floats, allowed: float) -> Bools:
         """Say for each move or pose (n, 15) of one tool whether none of its pieces enters the part deeper than allowed."""
         depth = self._measure(rows, np.zeros(len(rows), np.int64), pieces, np.array([0, len(pieces)]), QUIET)[0]
-        return (depth <= allowed).all(axis=1)
+        return (depth[:, 0] <= allowed) & (depth[:, 1] <= allowed)
 
     def _measure(self, rows: Floats, tool: Ints, pieces: Floats, piece_start: Ints,
                  progress: Progress) -> tuple[Floats, Ints, Floats, Floats, Ints]:

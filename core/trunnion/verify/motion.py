@@ -8,7 +8,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from trunnion.findings import BadInput
-from trunnion.geometry.arrays import Floats, Ints
+from trunnion.geometry.arrays import Bools, Floats, Ints
 from trunnion.model.program import ProgramSection
 from trunnion.model.tool import Tool
 from trunnion.model.toolpath import Motion
@@ -47,7 +47,7 @@ class Moves:
     row: Floats
     section: Ints
     block: Ints
-    rapid: np.ndarray
+    rapid: Bools
     feed: Floats
     length: Floats
     tools: tuple[Tool, ...]
@@ -120,7 +120,7 @@ def _rows(start: Floats, end: Floats, centre: Floats, sweep: Floats, motion: Int
         angle, turn = np.arctan2(away[:, 1], away[:, 0]), sweep[arc]
         middle, half = angle + 0.5 * turn, np.minimum(0.5 * np.abs(turn), np.pi)
         row[arc, KIND] = 1.0
-        row[np.ix_(arc, [CX, CY])] = c
+        row[arc, CX], row[arc, CY] = c[:, 0], c[:, 1]
         row[arc, RADIUS], row[arc, MX], row[arc, MY], row[arc, COS_HALF] = radius, np.cos(middle), np.sin(middle), np.cos(half)
         row[arc, START_ANGLE], row[arc, SWEEP] = angle, turn
     return row

@@ -21,6 +21,7 @@ import math
 import numpy as np
 from numba import njit
 
+from trunnion.geometry.arrays import Bools, Floats, Ints
 from trunnion.part.surfaces import (
     BX0,
     BX1,
@@ -74,12 +75,12 @@ _TINY = 1e-12
 
 
 @njit(cache=True, nogil=True, inline="always")
-def _point_point(ax, ay, bx, by):
+def _point_point(ax: float, ay: float, bx: float, by: float) -> float:
     return math.sqrt((ax - bx) * (ax - bx) + (ay - by) * (ay - by))
 
 
 @njit(cache=True, nogil=True)
-def _point_segment(qx, qy, c):
+def _point_segment(qx: float, qy: float, c: Floats) -> float:
     dx, dy = c[X1] - c[X0], c[Y1] - c[Y0]
     square = dx * dx + dy * dy
     t = 0.0
@@ -90,12 +91,12 @@ def _point_segment(qx, qy, c):
 
 
 @njit(cache=True, nogil=True, inline="always")
-def _on_arc(vx, vy, length, c):
+def _on_arc(vx: float, vy: float, length: float, c: Floats) -> bool:
     return vx * c[MX] + vy * c[MY] >= length * c[COS_HALF] - _TINY
 
 
 @njit(cache=True, nogil=True)
-def _point_arc(qx, qy, c):
+def _point_arc(qx: float, qy: float, c: Floats) -> float:
     vx, vy = qx - c[CX], qy - c[CY]
     length = math.sqrt(vx * vx + vy * vy)
     if length < _TINY:
@@ -106,7 +107,7 @@ def _point_arc(qx, qy, c):
 
 
 @njit(cache=True, nogil=True)
-def point_distance(qx, qy, c):
+def point_distance(qx: float, qy: float, c: Floats) -> float:
     """Return the plan distance of a point to a curve."""
     if c[KIND] == 0.0:
         return _point_segment(qx, qy, c)
@@ -114,7 +115,7 @@ def point_distance(qx, qy, c):
 
 
 @njit(cache=True, nogil=True)
-def _segments(a, b):
+def _segments(a: Floats, b: Floats) -> float:
     ax, ay = a[X1] - a[X0], a[Y1] - a[Y0]
     bx, by = b[X1] - b[X0], b[Y1] - b[Y0]
     ex, ey = b[X0] - a[X0], b[Y0] - a[Y0]
@@ -129,7 +130,7 @@ def _segments(a, b):
 
 
 @njit(cache=True, nogil=True)
-def _segment_arc(a, b):
+def _segment_arc(a: Floats, b: Floats) -> float:
     dx, dy = a[X1] - a[X0], a[Y1] - a[Y0]
     square = dx * dx + dy * dy
     best = min(min(_point_arc(a[X0], a[Y0], b), _point_arc(a[X1], a[Y1], b)),
@@ -151,7 +152,7 @@ def _segment_arc(a, b):
 
 
 @njit(cache=True, nogil=True)
-def _arcs(a, b):
+def _arcs(a: Floats, b: Floats) -> float:
     best = min(min(_point_arc(a[X0], a[Y0], b), _point_arc(a[X1], a[Y1], b)),
                min(_point_arc(b[X0], b[Y0], a), _point_arc(b[X1], b[Y1], a)))
     vx, vy = b[CX] - a[CX], b[CY] - a[CY]
@@ -174,7 +175,7 @@ def _arcs(a, b):
 
 
 @njit(cache=True, nogil=True)
-def curve_distance(a, b):
+def curve_distance(a: Floats, b: Floats) -> float:
     """Return the smallest plan distance between two curves, each a line or an arc; 0 when they meet."""
     if a[KIND] == 0.0:
         if b[KIND] == 0.0:
@@ -186,7 +187,7 @@ def curve_distance(a, b):
 
 
 @njit(cache=True, nogil=True)
-def depth_in_piece(piece, rho, h, rise):
+def depth_in_piece(piece: Floats, rho: float, h: float, rise: float) -> tuple[float, float, float]:
     """Return how deep a point at distance rho from the axis and height h above the tip is in a piece swept up by `rise`, and the slopes.
 
     Positive inside. Slopes (by rho, by h) are a supergradient: the depth is concave. Negative rho is taken as zero.
@@ -218,21 +219,21 @@ def depth_in_piece(piece, rho, h, rise):
 
 
 @njit(cache=True, nogil=True, inline="always")
-def _profile_w(s, u):
+def _profile_w(s: Floats, u: float) -> float:
     if s[PROFILE] == 0.0:
         return s[PW0] + (s[PW1] - s[PW0]) * ((u - s[U0]) / (s[U1] - s[U0]) if s[U1] > s[U0] else 0.0)
     return s[PW0] + s[PW1] * math.cos(u)
 
 
 @njit(cache=True, nogil=True, inline="always")
-def _profile_z(s, u):
+def _profile_z(s: Floats, u: float) -> float:
     if s[PROFILE] == 0.0:
         return s[PZ0] + (s[PZ1] - s[PZ0]) * ((u - s[U0]) / (s[U1] - s[U0]) if s[U1] > s[U0] else 0.0)
     return s[PZ0] + s[PW1] * math.sin(u)
 
 
 @njit(cache=True, nogil=True)
-def _profile_u(s, z):
+def _profile_u(s: Floats, z: float) -> float:
     """Return the parameter at which a profile that is monotone in z passes a height inside its range."""
     if s[PROFILE] == 0.0:
         return s[U0] + (s[U1] - s[U0]) * (z - s[PZ0]) / (s[PZ1] - s[PZ0])
@@ -245,14 +246,14 @@ def _profile_u(s, z):
 
 
 @njit(cache=True, nogil=True)
-def _end(kind, a, b, c, sign, u, u0):
+def _end(kind: float, a: float, b: float, c: float, sign: float, u: float, u0: float) -> float:
     if kind == 0.0:
         return a + b * (u - u0)
     return a + sign * math.sqrt(max(b * b - (u - c) * (u - c), 0.0))
 
 
 @njit(cache=True, nogil=True)
-def _guide(s, w, u0, u1, out):
+def _guide(s: Floats, w: float, u0: float, u1: float, out: Floats) -> None:
     """Fill `out` with the guide at offset w, as wide as it is anywhere between two profile parameters (its ends are monotone)."""
     out[KIND] = s[GUIDE]
     if s[FIXED] != 0.0:
@@ -279,14 +280,15 @@ def _guide(s, w, u0, u1, out):
 
 
 @njit(cache=True, nogil=True)
-def _depth_at(s, u, path, z_low, rise, piece, guide):
+def _depth_at(s: Floats, u: float, path: Floats, z_low: float, rise: float, piece: Floats, guide: Floats) -> float:
     _guide(s, _profile_w(s, u), u, u, guide)
     depth, _r, _h = depth_in_piece(piece, curve_distance(path, guide), _profile_z(s, u) - z_low, rise)
     return depth
 
 
 @njit(cache=True, nogil=True)
-def strip_depth(s, path, z_low, rise, piece, enough, bound, guide, stack):
+def strip_depth(s: Floats, path: Floats, z_low: float, rise: float, piece: Floats, enough: float, bound: float, guide: Floats,
+                stack: Floats) -> tuple[float, float]:
     """Return the deepest that one piece enters one strip while its tip runs along a plan path between z_low and z_low + rise.
 
     The move is level or vertical, so that the lowest height counts everywhere. Returns a depth that is attained and at most `bound` below
@@ -354,7 +356,7 @@ def strip_depth(s, path, z_low, rise, piece, enough, bound, guide, stack):
 
 
 @njit(cache=True, nogil=True)
-def part_of_move(move, t0, t1, out):
+def part_of_move(move: Floats, t0: float, t1: float, out: Floats) -> tuple[float, float]:
     """Fill `out` with the plan curve of a move between two shares of it, and return its lowest and highest z."""
     za = move[Z_START] + t0 * (move[Z_END] - move[Z_START])
     zb = move[Z_START] + t1 * (move[Z_END] - move[Z_START])
@@ -381,14 +383,15 @@ def part_of_move(move, t0, t1, out):
 
 
 @njit(cache=True, nogil=True, inline="always")
-def _is_sloped(move):
+def _is_sloped(move: Floats) -> bool:
     level = move[Z_START] == move[Z_END]
     upright = move[KIND] == 0.0 and move[X0] == move[X1] and move[Y0] == move[Y1]
     return not (level or upright)
 
 
 @njit(cache=True, nogil=True)
-def move_depth(s, move, piece, enough, bound, path, guide, stack, spans):
+def move_depth(s: Floats, move: Floats, piece: Floats, enough: float, bound: float, path: Floats, guide: Floats, stack: Floats,
+               spans: Floats) -> tuple[float, float]:
     """Return the deepest that one piece enters one strip along a whole move, as `strip_depth`; ramps and helices are halved until flat."""
     if not _is_sloped(move):
         return strip_depth(s, move, min(move[Z_START], move[Z_END]), abs(move[Z_END] - move[Z_START]), piece, enough, bound, guide, stack)
@@ -419,7 +422,7 @@ def move_depth(s, move, piece, enough, bound, path, guide, stack, spans):
 
 
 @njit(cache=True, nogil=True)
-def move_box(move):
+def move_box(move: Floats) -> tuple[float, float, float, float]:
     """Return the plan box of a move (x low, y low, x high, y high)."""
     x0, y0 = min(move[X0], move[X1]), min(move[Y0], move[Y1])
     x1, y1 = max(move[X0], move[X1]), max(move[Y0], move[Y1])
@@ -433,12 +436,12 @@ def move_box(move):
 
 
 @njit(cache=True, nogil=True)
-def _piece_radius(piece):
+def _piece_radius(piece: Floats) -> float:
     return piece[R_LOW] if piece[FORM] == 0.0 else max(piece[R_LOW], piece[R_HIGH])
 
 
 @njit(cache=True, nogil=True)
-def _inside(x, y, outline):
+def _inside(x: float, y: float, outline: Floats) -> bool:
     """Say whether a point is inside closed chords (k, 4) by the parity of crossings to its right."""
     odd = False
     for k in range(len(outline)):
@@ -449,7 +452,7 @@ def _inside(x, y, outline):
 
 
 @njit(cache=True, nogil=True)
-def _region_depth(piece, z, z_low, rise):
+def _region_depth(piece: Floats, z: float, z_low: float, rise: float) -> float:
     h = z - z_low
     if h < piece[Z_LOW] or h > piece[Z_HIGH] + rise:
         return -np.inf
@@ -458,9 +461,10 @@ def _region_depth(piece, z, z_low, rise):
 
 
 @njit(cache=True, nogil=True)
-def contact_loop(first, last, moves, tool, pieces, piece_start, strips, strip_face, cell_start, cell_strip, grid, shape,
-                 region_z, region_face, region_box, region_start, chords, enough, bound, stop_at,
-                 depth, which, where, face_depth, face_move):
+def contact_loop(first: int, last: int, moves: Floats, tool: Ints, pieces: Floats, piece_start: Ints, strips: Floats, strip_face: Ints,
+                 cell_start: Ints, cell_strip: Ints, grid: Floats, shape: Ints, region_z: Floats, region_face: Ints, region_box: Floats,
+                 region_start: Ints, chords: Floats, enough: float, bound: float, stop_at: float, depth: Floats, which: Ints,
+                 where: Floats, face_depth: Floats, face_move: Ints) -> int:
     """Measure moves `first` to `last` against every strip and every level region near them.
 
     moves (n, 15), tool (n,) rows of piece_start; pieces (k, 7), the first piece of a tool is its cutter. grid (3,) is x, y of the strips'
@@ -527,7 +531,7 @@ def contact_loop(first, last, moves, tool, pieces, piece_start, strips, strip_fa
 
 
 @njit(cache=True, nogil=True)
-def signed_distance(radius, corner, rho, h):
+def signed_distance(radius: float, corner: float, rho: float, h: float) -> float:
     """Return the signed distance of a point to a cutter that is endless upwards; negative inside."""
     qx, qy = rho - (radius - corner), corner - h
     out = math.sqrt(max(qx, 0.0) * max(qx, 0.0) + max(qy, 0.0) * max(qy, 0.0))
@@ -535,7 +539,8 @@ def signed_distance(radius, corner, rho, h):
 
 
 @njit(cache=True, nogil=True)
-def left_by_move(x, y, z, move, radius, corner, flute, best, bound, path, spans):
+def left_by_move(x: float, y: float, z: float, move: Floats, radius: float, corner: float, flute: float, best: float, bound: float,
+                 path: Floats, spans: Floats) -> float:
     """Return the smaller of `best` and the signed distance of a point to the fluted cutter along a move (ramps within `bound`)."""
     if not _is_sloped(move):
         low, high = min(move[Z_START], move[Z_END]), max(move[Z_START], move[Z_END])
@@ -565,7 +570,7 @@ def left_by_move(x, y, z, move, radius, corner, flute, best, bound, path, spans)
 
 
 @njit(cache=True, nogil=True)
-def fill_cells(boxes, grid, shape, counts, start, rows):
+def fill_cells(boxes: Floats, grid: Floats, shape: Ints, counts: Ints, start: Ints, rows: Ints) -> None:
     """Count (rows empty) or list the boxes (n, 4) that touch each cell of a grid; `counts` (cells,) is filled either way."""
     counts[:] = 0
     listing = len(rows) > 0
@@ -583,7 +588,7 @@ def fill_cells(boxes, grid, shape, counts, start, rows):
 
 
 @njit(cache=True, nogil=True)
-def move_boxes(moves, margin):
+def move_boxes(moves: Floats, margin: Floats) -> Floats:
     """Return the plan box of every move (n, 4), wider by a margin (n,) on every side."""
     out = np.empty((len(moves), 4))
     for n in range(len(moves)):
@@ -593,7 +598,8 @@ def move_boxes(moves, margin):
 
 
 @njit(cache=True, nogil=True)
-def left_loop(first, last, points, order, moves, cutter, low, cell_start, cell_move, grid, shape, bound, left, nearest):
+def left_loop(first: int, last: int, points: Floats, order: Ints, moves: Floats, cutter: Floats, low: Floats, cell_start: Ints,
+              cell_move: Ints, grid: Floats, shape: Ints, bound: float, left: Floats, nearest: Ints) -> None:
     """Lower `left` (s,) to the smallest signed distance of each point to the fluted cutter of the moves listed in its cell.
 
     order (s,) says in which order points are visited. cutter (n, 3) is radius, corner radius and flute length of each move, low (n,) its
@@ -616,3 +622,24 @@ def left_loop(first, last, points, order, moves, cutter, low, cell_start, cell_m
             if d < best:
                 best, by = d, m
         left[n], nearest[n] = best, by
+
+
+@njit(cache=True, nogil=True)
+def is_cut(points: Floats, before: int, moves: Floats, cutter: Floats, low: Floats, cell_start: Ints, cell_move: Ints, grid: Floats,
+           shape: Ints, bound: float, out: Bools) -> None:
+    """Say for each point (s, 3) whether one of the moves listed in its cell with a row below `before` has removed all above it."""
+    path, spans = np.zeros(MOVE_COLUMNS), np.zeros((96, 2))
+    for n in range(len(points)):
+        x, y, z = points[n, 0], points[n, 1], points[n, 2]
+        out[n] = False
+        i, j = int(math.floor((x - grid[0]) / grid[2])), int(math.floor((y - grid[1]) / grid[2]))
+        if i < 0 or j < 0 or i >= shape[0] or j >= shape[1]:
+            continue
+        cell = j * shape[0] + i
+        for c in range(cell_start[cell], cell_start[cell + 1]):
+            m = cell_move[c]
+            if low[m] > z:
+                break
+            if m < before and left_by_move(x, y, z, moves[m], cutter[m, 0], cutter[m, 1], np.inf, 1.0, bound, path, spans) <= bound:
+                out[n] = True
+                break

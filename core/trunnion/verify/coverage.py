@@ -1,0 +1,165 @@
+"""Which of the part's area is finished: samples on the exact trimmed faces, each with the material that the program leaves on it.
+
+A sample stands for an area. Material left is the smallest signed distance from the sample to the fluted cutter over every feed move; a
+sample is finished when that is within tolerance and allowance. A face that lies in the blank's own surface has nothing to be finished.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+
+from trunnion import tolerance
+from trunnion.geometry.arrays import Bools, Floats, Ints
+from trunnion.model.tool import Tool
+from trunnion.part.surfaces import DX, DY, GUIDE, L_KIND, PROFILE, PW0, PW1, PZ0, PZ1, R_KIND, SIDE, U0, U1, Surfaces
+from trunnion.progress import QUIET, Progress
+from trunnion.verify.contact import PartContact, guide_points
+from trunnion.verify.cutter import pieces_of
+from trunnion.verify.motion import pose_rows
+
+POSES = 4096
+"""Poses tried between two looks at cancel."""
+
+
+@dataclass(frozen=True, slots=True, eq=False, kw_only=True)
+class Samples:
+    """Samples of trimmed faces: face (s,) rows, point and outward normal (s, 3) in the frame of the surfaces, area (s,) mm2."""
+
+    face: Ints
+    point: Floats
+    normal: Floats
+    area: Floats
+
+    def __len__(self) -> int:
+        return len(self.face)
+
+
+def samples_of(surfaces: Surfaces, spacing: float) -> Samples:
+    """Return samples about `spacing` mm apart on every face, the same ones each time; no face is without one."""
+    parts = [_strip_samples(strip, spacing) for strip in np.vstack([surfaces.strip, surfaces.level])]
+    face = np.repeat(np.concatenate([surfaces.strip_face, surfaces.level_face]), [len(p) for p in parts])
+    rows = np.vstack([np.zeros((0, 7)), *parts])
+    return Samples(face=face.astype(np.int64), point=rows[:, :3], normal=rows[:, 3:6], area=rows[:, 6])
+
+
+def _strip_samples(strip: Floats, spacing: float) -> Floats:
+    """Return points, normals and areas (k, 7) of one strip: rows across the profile, each as long as the trim is there."""
+    u0, u1 = strip[U0], strip[U1]
+    straight = strip[PROFILE] == 0.0
+    length = np.hypot(strip[PW1] - strip[PW0], strip[PZ1] - strip[PZ0]) if straight else strip[PW1] * (u1 - u0)
+    if u1 - u0 <= 0.0 or length < tolerance.PARAMETRIC:
+        return np.zeros((0, 7))
+    rows = max(1, int(np.ceil(length / spacing)))
+    found = []
+    for u in u0 + (np.arange(rows) + 0.5) / rows * (u1 - u0):
+        ends = guide_ends(strip, u)
+        if straight:
+            share = (u - u0) / (u1 - u0)
+            w, t = strip[PW0] + share * (strip[PW1] - strip[PW0]), np.array([strip[PW1] - strip[PW0], strip[PZ1] - strip[PZ0]]) / length
+        else:
+            w, t = strip[PW0] + strip[PW1] * np.cos(u), np.array([-np.sin(u), np.cos(u)])
+        run = (ends[1] - ends[0]) * (abs(w) if strip[GUIDE] else 1.0)
+        if run <= tolerance.PARAMETRIC:
+            continue
+        count = max(1, int(np.ceil(run / spacing)))
+        shares = (np.arange(count) + 0.5) / count
+        points = guide_points(strip, u, shares)
+        across = _across(strip, ends[0] + shares * (ends[1] - ends[0]))
+        normal = strip[SIDE] * np.column_stack([t[1] * across, np.full(count, -t[0])])
+        found.append(np.column_stack([points, normal, np.full(count, run / count * length / rows)]))
+    return np.vstack([np.zeros((0, 7)), *found])
+
+
+def guide_ends(strip: Floats, u: float) -> tuple[float, float]:
+    """Return where a strip's trim begins and ends along its guide at one profile parameter."""
+    ends = []
+    for column in (L_KIND, R_KIND):
+        kind, a, b, c, sign = strip[column:column + 5]
+        ends.append(float(a + b * (u - strip[U0]) if kind == 0.0 else a + sign * np.sqrt(max(b * b - (u - c) ** 2, 0.0))))
+    return ends[0], ends[1]
+
+
+def _across(strip: Floats, s: Floats) -> Floats:
+    """Return the plan direction (k, 2) in which w grows."""
+    if strip[GUIDE]:
+        return np.column_stack([np.cos(s), np.sin(s)])
+    return np.tile([-strip[DY], strip[DX]], (len(s), 1))
+
+
+def on_blank(samples: Samples, low: Floats, high: Floats, n_faces: int) -> Bools:
+    """Say for each face row whether all its samples lie in one of the blank's sides, given by corners in the samples' frame."""
+    out = np.zeros(n_faces, bool)
+    if not len(samples):
+        return out
+    near = np.abs(np.hstack([samples.point - low, samples.point - high])) < tolerance.SLIVER
+    misses = np.zeros((n_faces, 6))
+    np.add.at(misses, samples.face, ~near)
+    out[np.unique(samples.face)] = True
+    return out & (misses == 0).any(axis=1)
+
+
+def depth_in_blank(points: Floats, low: Floats, high: Floats) -> Floats:
+    """Return how far points (s, 3) are below the blank's surface (s,), 0 outside: the most material that can be left on them."""
+    return np.clip(np.minimum(points - low, high - points).min(axis=1), 0.0, None)
+
+
+class Reach:
+    """Finds collision-free upright poses of catalogue cutters that touch a point of the part from above."""
+
+    def __init__(self, contact: PartContact, tools: Sequence[Tool], allowed: float) -> None:
+        self._contact, self._allowed = contact, allowed
+        # Slender cutters reach what any reach; the order is only for speed.
+        self._tools = sorted(tools, key=lambda t: (t.radius, -t.reach, t.number))
+
+    def reached(self, samples: Samples, rows: Ints, progress: Progress = QUIET) -> Bools:
+        """Say for each of the samples' rows whether some cutter reaches it."""
+        found = np.zeros(len(rows), bool)
+        for k, tool in enumerate(self._tools):
+            pieces = pieces_of(tool)
+            for shape in range(_n_poses(tool)):
+                open_rows = np.flatnonzero(~found)
+                for first in range(0, len(open_rows), POSES):
+                    progress.at(k / len(self._tools), "Looking for cutters that reach what is left")
+                    some = open_rows[first:first + POSES]
+                    tips, possible = _pose(tool, samples.point[rows[some]], samples.normal[rows[some]], shape)
+                    if possible.any():
+                        clear = self._contact.clear(pose_rows(tips[possible]), pieces, self._allowed)
+                        found[some[possible]] |= clear
+            if found.all():
+                break
+        return found
+
+
+_AROUND = 8
+
+
+def _n_poses(tool: Tool) -> int:
+    return 3 + 2 * _AROUND
+
+
+def _pose(tool: Tool, point: Floats, normal: Floats, shape: int) -> tuple[Floats, Bools]:
+    """Return tips (k, 3) at which a cutter touches points from above, and which make sense.
+
+    Shape 0 touches along the normal with the corner (or the flank, where the face is upright), 1 and 2 with the flank higher up, the others
+    stand on a level face with the point anywhere under the cutter's flat end.
+    """
+    level = normal[:, 2] > np.cos(tolerance.ANGLE)
+    plan = np.hypot(normal[:, 0], normal[:, 1])
+    out = np.divide(normal[:, :2], plan[:, None], out=np.zeros_like(normal[:, :2]), where=plan[:, None] > 0.0)
+    inner, corner = tool.radius - tool.corner_radius, tool.corner_radius
+    if shape < 3:
+        tips = point + corner * normal
+        tips[:, :2] += np.where(level[:, None], 0.0, inner * out)
+        tips[:, 2] -= corner
+        upright = np.abs(normal[:, 2]) < np.sin(tolerance.ANGLE)
+        tips[:, 2] -= shape * 0.5 * (tool.flute_length - corner) * upright
+        usable = (normal[:, 2] > -np.sin(tolerance.ANGLE)) & (upright if shape else True)
+        return tips, usable & np.ones(len(point), bool)
+    ring, k = divmod(shape - 3, _AROUND)
+    angle, share = 2 * np.pi * k / _AROUND, (1.0, 0.5)[ring]
+    tips = point.copy()
+    tips[:, :2] += share * inner * np.array([np.cos(angle), np.sin(angle)])
+    return tips, level if inner > 0.0 else np.zeros(len(point), bool)

@@ -1,0 +1,22 @@
+"""What a shop may choose about the proof."""
+
+from __future__ import annotations
+
+from trunnion import tolerance
+from trunnion.settings import setting, settings
+
+
+@settings("verify")
+class ProofSettings:
+    """Limits of the verdict and fineness of what is looked at."""
+
+    tolerance: float = setting(tolerance.GOUGE, unit="mm", low=0.001, high=1.0, label="Tolerance",
+                               help="How deep anything may enter the finished part, and how much may be left on a finished face.")
+    allowance: float = setting(0.0, unit="mm", low=0.0, high=10.0, label="Allowance",
+                               help="Material left on purpose; a face is finished within tolerance and allowance.")
+    coverage: float = setting(0.99, unit="of the reachable area", low=0.0, high=1.0, label="Coverage",
+                              help="Share of the reachable area that must be finished.")
+    cell: float = setting(0.5, unit="mm", low=0.05, high=10.0, label="Stock cell",
+                          help="Distance of the columns that the stock is made of. Halving it takes four times the memory.")
+    spacing: float = setting(2.0, unit="mm", low=0.2, high=20.0, label="Sample spacing",
+                             help="Distance of the samples that measure which area is finished.")
