@@ -12,7 +12,7 @@ from trunnion.progress import QUIET, Progress
 from trunnion.recognize.contract import Slicer
 from trunnion.recognize.extent import box
 from trunnion.recognize.panel.classes import STEEP_CLASSES, FaceClass, classify
-from trunnion.recognize.panel.features import Numbers, make_datum, make_features, make_profile
+from trunnion.recognize.panel.features import Made, Numbers, make_datum, make_features, make_profile
 from trunnion.recognize.panel.frame import choose_frame, flipped
 from trunnion.recognize.panel.rest import rest_findings
 from trunnion.recognize.panel.rules import Shown, pockets_of, without
@@ -56,7 +56,9 @@ class PanelFamily:
             made = make_features(view, without(seen, done), above.graph, numbers)
             features.extend(made.features)
             findings.extend(made.findings)
-        features.extend(_surroundings(above, shown, features))
+        around = _surroundings(above, shown, features)
+        features.extend(around.features)
+        findings.extend(around.findings)
         explained = {tag - 1 for f in features for tag in f.tags}
         left = tuple(r for r, k in enumerate(above.classes.kind) if r not in explained and k is not FaceClass.ABSENT)
         findings.extend(above.slices.findings)
@@ -78,10 +80,10 @@ def _views(graph: FaceGraph, frame: Frame, slicer: Slicer, settings: PanelSettin
                  settings=settings, below=True))
 
 
-def _surroundings(above: View, shown: list[Shown], features: list[Feature]) -> list[Feature]:
+def _surroundings(above: View, shown: list[Shown], features: list[Feature]) -> Made:
     """Return the outer profile and the datum faces: what no other feature holds."""
     taken = {tag - 1 for f in features for tag in f.tags}
     profile = make_profile(above, taken, "profile-01")
     top, bottom = ([f for f in seen.tops.highest if f not in taken] for seen in shown)
     datum = make_datum(top, bottom, above.height, "datum-01")
-    return [f for f in (profile, datum) if f is not None]
+    return Made(features=profile.features if datum is None else (*profile.features, datum), findings=profile.findings)

@@ -37,7 +37,8 @@ BLEND_TURN = radians(45.0)
 class FaceClasses:
     """The class of every face row, with the range of alpha (n,) in radians and the mean lean (n,) in degrees.
 
-    A positive lean leans away from the space (open angle), a negative one over it (closed angle).
+    A positive lean leans away from the space (open angle), a negative one over it (closed angle). `steep` (n,): within beta of the
+    vertical; `rising` (n,): also slopes that are steeper than half a right angle, which may bound a pocket like a wall does.
     """
 
     kind: tuple[FaceClass, ...]
@@ -45,6 +46,7 @@ class FaceClasses:
     alpha_high: Floats
     lean: Floats
     steep: Bools
+    rising: Bools
 
     def rows(self, *kinds: FaceClass) -> tuple[int, ...]:
         """Return the rows of the faces of some classes, in order."""
@@ -67,7 +69,9 @@ def classify(graph: FaceGraph, settings: PanelSettings) -> FaceClasses:
     mean = np.where(bare, own, total / np.maximum(count, 1.0))
     kinds = tuple(FaceClass.ABSENT if graph.area[r] == 0.0 else _kind(low[r], high[r], settings) for r in range(n))
     lean = np.array([degrees(np.pi / 2 - m) for m in mean])
-    return FaceClasses(kind=kinds, alpha_low=low, alpha_high=high, lean=lean, steep=np.array([k in STEEP_CLASSES for k in kinds]))
+    steep = np.array([k in STEEP_CLASSES for k in kinds])
+    slope = np.array([k is FaceClass.CROSS for k in kinds]) & (low >= np.pi / 4)
+    return FaceClasses(kind=kinds, alpha_low=low, alpha_high=high, lean=lean, steep=steep, rising=steep | slope)
 
 
 def _kind(low: float, high: float, settings: PanelSettings) -> FaceClass:

@@ -9,6 +9,7 @@ from typing import TypeVar
 from trunnion.findings import Finding, face_tags, warning
 from trunnion.geometry.facegraph import CONVEX, FaceGraph
 from trunnion.model.feature import FaceRole, Feature, Size
+from trunnion.recognize.panel.blends import is_rounding
 from trunnion.recognize.panel.classes import FaceClass
 from trunnion.recognize.panel.confirm import Confirmed, confirm, refusal
 from trunnion.recognize.panel.rules import Island, Pocket, Shown
@@ -16,6 +17,7 @@ from trunnion.recognize.panel.sizes import corner_radius, island_sizes, pocket_s
 from trunnion.recognize.panel.view import View
 
 T = TypeVar("T")
+LEANING_REMEDY = "machine it with a strategy for leaning walls, or make the walls vertical"
 ROW = 0.01
 """mm: centres whose y differs by less lie in one row."""
 
@@ -76,18 +78,26 @@ def make_features(view: View, shown: Shown, main: FaceGraph, numbers: Numbers) -
     return Made(features=tuple(features), findings=tuple(findings))
 
 
-def make_profile(view: View, taken: set[int], id: str) -> Feature | None:
-    """Return the outer profile: concave arcs are walls, convex roundings corners; None when no vertical face lies on the outline."""
+def make_profile(view: View, taken: set[int], id: str) -> Made:
+    """Return the outer profile, if any vertical face lies on the outline: concave arcs are walls, convex roundings corners.
+
+    It is refused when the outline goes on over a leaning face, which the cut along the vertical ones would run into.
+    """
     faces = [f for f in view.profile if f not in taken]
     if not faces:
-        return None
-    round_ = [f for f in faces if f in view.corners and view.graph.bend[f] > 0]
+        return Made(features=(), findings=())
+    round_ = [f for f in faces if is_rounding(view.graph, view.classes, f)]
     roles = tuple(FaceRole(role="corner" if f in round_ else "wall", face=f + 1) for f in faces)
     sizes: dict[str, Size] = {"height": tidy(view.height)}
     radius = corner_radius(view, round_) if round_ else None
     if radius is not None:
         sizes["corner_radius"] = radius
-    return Feature(id=id, kind="profile", faces=roles, sizes=sizes)
+    leaning = sorted({n for f in faces for n in view.graph.neighbours(f) if view.classes.steep[n] and n not in taken} - set(view.profile))
+    if not leaning:
+        return Made(features=(Feature(id=id, kind="profile", faces=roles, sizes=sizes),), findings=())
+    why = "a wall of the outline leans"
+    return Made(features=(Feature(id=id, kind="profile", faces=roles, sizes=sizes, attributes={"refused": why}),), findings=(
+        warning("panel.leaning-wall", f"{id} is not planned: {why}", id, *face_tags(f + 1 for f in leaning), remedy=LEANING_REMEDY),))
 
 
 def make_datum(top: Sequence[int], bottom: Sequence[int], height: float, id: str) -> Feature | None:

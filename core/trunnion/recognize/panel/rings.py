@@ -39,13 +39,13 @@ class Ring:
 
 def ring(view: View, floor: int, edges: tuple[int, ...]) -> Ring:
     """Return what stands around the edges of one loop of a floor."""
-    graph, steep = view.graph, view.classes.steep
+    graph, rising = view.graph, view.classes.rising
     blends, sides, drops, slopes, sharp = [], [], [], [], False
     for edge in edges:
         other = graph.across(edge, floor)
         if other in view.fillets and graph.convexity[edge] != CONVEX:
             blends.append(other)
-        elif graph.convexity[edge] == CONCAVE and steep[other]:
+        elif graph.convexity[edge] == CONCAVE and rising[other]:
             sides.append(other)
             sharp = True
         elif graph.convexity[edge] == CONVEX:
@@ -57,10 +57,10 @@ def ring(view: View, floor: int, edges: tuple[int, ...]) -> Ring:
     for blend in fillets:
         for edge in graph.edges_of[blend]:
             other = graph.across(edge, blend)
-            if steep[other] and graph.convexity[edge] != CONVEX:
+            if rising[other] and graph.convexity[edge] != CONVEX:
                 sides.append(other)
     sides = list(dict.fromkeys(sides))
-    whole = grown(graph, sides, lambda edge, face, to: bool(steep[to] and _continues_up(view, edge, face, to)))
+    whole = grown(graph, sides, lambda edge, face, to: bool(rising[to] and _continues_up(view, edge, face, to)))
     return Ring(walls=tuple(r for r in whole if r not in view.corners), corners=tuple(r for r in whole if r in view.corners),
                 fillets=fillets, drops=tuple(dict.fromkeys(drops)), slopes=tuple(dict.fromkeys(slopes)), sharp=sharp)
 

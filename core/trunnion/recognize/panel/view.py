@@ -51,7 +51,7 @@ class View:
     @cached_property
     def corners(self) -> frozenset[int]:
         """The rows of the blends between two steep faces."""
-        return frozenset(int(r) for r in np.flatnonzero(self.classes.steep) if is_corner(self.graph, self.classes, int(r)))
+        return frozenset(int(r) for r in np.flatnonzero(self.classes.rising) if is_corner(self.graph, self.classes, int(r)))
 
     def z(self, face: int) -> float:
         """Return the height of a horizontal face, of others that of their lowest point."""
