@@ -226,5 +226,21 @@ def test_five_lines_out_of_order_are_refused():
         read_linuxcnc("\n".join(moved), TOOLS, S1)
 
 
+def test_a_text_made_for_another_tool_of_the_number_is_refused():
+    other = replace(FLAT_16, diameter=15.0)
+    with pytest.raises(BadInput, match="line 12: the text was made for another tool 1 than the tool list has; post the program anew"):
+        read_linuxcnc(text_of(program_1()), (other, BULL_10), S1)
+
+
+def test_an_operation_that_goes_up_before_its_tool_comes_keeps_its_name():
+    again = read("G1 Z-5 F100\n(OPERATION next)\nG53 G0 Z0\nT7 M6\nS9000 M3\nG0 G43 H7 X1 Y1 Z50\nG1 Z-1")
+    assert [(s.operation, s.tool.number) for s in again.sections] == [("line 4", 1), ("next", 1), ("next", 7)]
+
+
+def test_a_spindle_that_stands_is_not_written():
+    with pytest.raises(Refused, match="operation a: a spindle speed of 0 turns nothing"):
+        text_of(Program(name="B1.S1", setup=S1, sections=(section("a", FLAT_16, programs.WALL, 0.0),)))
+
+
 def test_motions_are_the_ones_the_words_name():
     assert LinuxCncDialect().words.motions[Motion.ARC_CCW] == "G3"

@@ -34,7 +34,7 @@ def interpreter() -> str | None:
 
 
 RS274 = interpreter()
-pytestmark = pytest.mark.skipif(RS274 is None, reason="LinuxCNC's rs274 is not here: run installer/rs274.sh or set TRUNNION_RS274 to its path")
+pytestmark = pytest.mark.skipif(RS274 is None, reason="LinuxCNC's rs274 is not here: run installer/rs274.sh or set TRUNNION_RS274")
 
 
 def run(text: str, folder: Path) -> list[tuple[str, str, list[float]]]:

@@ -26,7 +26,7 @@ _MOST_REASONS = 6
 class Header:
     """What a program says of itself.
 
-    `name` is the NAME of its files, `part_digest` of the part's file, `plan_digest` of the process tree and its toolpaths; `date` is given
+    `name` is the NAME of its files, `part_digest` of the part's file, `plan_digest` of blank, process tree and toolpaths; `date` is given
     by the caller, never the clock's. Without a `verdict` the text is stamped as rejected: nothing has proven it.
     """
 
@@ -84,12 +84,12 @@ class Header:
                   for p in programs]
         lines += [f"FRAME {p.setup.name} {_frame(p, units)}" for p in programs]
         lines.append(f"UNITS {units.upper()}")
-        return (*lines, *(_tool(t, units) for t in tools_of(programs)))
+        return (*lines, *(tool_line(t, units) for t in tools_of(programs)))
 
 
 def plan_digest(session: Session) -> str:
-    """Return the digest of a session's process tree and toolpaths."""
-    return digest(session.process, tuple((p.operation, p.key) for p in session.paths))
+    """Return the digest of a session's blank, process tree and toolpaths."""
+    return digest(session.blank, session.process, tuple((p.operation, p.key) for p in session.paths))
 
 
 def tools_of(programs: Sequence[Program]) -> tuple[Tool, ...]:
@@ -108,7 +108,8 @@ def _frame(program: Program, units: str) -> str:
     return " ".join(f"{word} {' '.join(values)}" for word, values in numbers)
 
 
-def _tool(tool: Tool, units: str) -> str:
+def tool_line(tool: Tool, units: str) -> str:
+    """Return the line of the header that describes a tool; a reader compares it with the tool list."""
     sizes = " ".join(f"{word}{_length(value, units)}" for word, value in (("D", tool.diameter), ("R", tool.corner_radius),
                                                                         ("LENGTH ", tool.gauge_length), ("STICKOUT ", tool.stickout)))
     return f"TOOL {tool.number} {tool.name} {sizes} HOLDER {tool.holder.name}"

@@ -68,11 +68,13 @@ def plain(text: str, longest: int) -> str:
 
 
 def refuse_unwritable(section: ProgramSection, title: str, coolant: Container[str]) -> None:
-    """Raise `Refused` for an operation that can't be written: an id that no comment holds, an unknown coolant, no motion."""
+    """Raise `Refused` for an operation that can't be written: an id that no comment holds, coolant or speed, no motion."""
     id = section.operation
     if not id or id != plain(id, len(id)) or " " in id:
         raise Refused(f"operation {id}: its id can't stand in a comment; use letters, digits, points and dashes")
     if section.coolant not in coolant:
         raise Refused(f"operation {id}: {title} has no coolant {section.coolant}")
+    if round(section.spindle) < 1:
+        raise Refused(f"operation {id}: a spindle speed of {section.spindle:g} turns nothing")
     if not len(section.path):
         raise Refused(f"operation {id} has no motion: nothing to write")

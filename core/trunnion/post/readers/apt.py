@@ -12,7 +12,8 @@ from trunnion.model.program import Program
 from trunnion.model.setup import Setup
 from trunnion.model.tool import Tool
 from trunnion.model.toolpath import Motion
-from trunnion.post.readers.sections import NOWHERE, Sections, by_number
+from trunnion.post.readers.sections import NOWHERE, Sections
+from trunnion.post.readers.tools import by_number, check_tool
 from trunnion.units import MM_PER_INCH
 
 _TEXT_WORDS = ("PARTNO", "PPRINT", "REMARK")
@@ -101,6 +102,8 @@ class _Reader:
             self.next_setup(line, found.group(1), found.group(2))
         elif found := _OPERATION.match(rest):
             self.sections.operation(found.group(1))
+        else:
+            check_tool(line, rest, self.tools)
 
     def next_setup(self, line: int, name: str, offset: str) -> None:
         if name not in self.setups:

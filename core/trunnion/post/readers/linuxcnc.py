@@ -16,7 +16,8 @@ from trunnion.model.setup import Setup
 from trunnion.model.tool import Tool
 from trunnion.model.toolpath import Motion
 from trunnion.post.readers.blocks import Block, split_line
-from trunnion.post.readers.sections import NOWHERE, Point, Sections, by_number
+from trunnion.post.readers.sections import NOWHERE, Point, Sections
+from trunnion.post.readers.tools import by_number, check_tool
 from trunnion.units import MM_PER_INCH
 
 _OPERATION = re.compile(r"OPERATION\s+(\S+)$", re.IGNORECASE)
@@ -55,6 +56,8 @@ def read_linuxcnc(text: str, tools: Sequence[Tool], setup: Setup) -> Program:
         for comment in comments:
             if found := _OPERATION.match(comment):
                 control.sections.operation(found.group(1))
+            elif comment.startswith("TOOL "):
+                check_tool(number, comment, control.tools)
         if block is not None:
             control.run(block)
     if not control.ended:

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Sequence
 from dataclasses import dataclass, field
 
 import numpy as np
@@ -66,8 +65,9 @@ class Sections:
     def change_tool(self) -> None:
         """End the section: the tool that follows comes from an unknown place above everything."""
         if self._open is not None:
+            began_with_it = self._open.cutting is not None
             self._close()
-            self._operation = ""
+            self._operation = "" if began_with_it else self._operation
         self.at = None
 
     def lift(self, line: int, tool: Tool) -> None:
@@ -128,12 +128,3 @@ class Sections:
         if self._open is not None:
             self._done.append(self._open.closed())
             self._open = None
-
-
-def by_number(tools: Sequence[Tool]) -> dict[int, Tool]:
-    """Return tools by their number; raise `BadInput` when two have the same."""
-    found: dict[int, Tool] = {}
-    for tool in tools:
-        if found.setdefault(tool.number, tool) != tool:
-            raise BadInput(f"two tools have the number {tool.number}: {found[tool.number].name} and {tool.name}")
-    return found

@@ -1,0 +1,32 @@
+"""The tool list that a text is read with, and whether it is the one that the text was made for."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Mapping, Sequence
+
+from trunnion.findings import BadInput
+from trunnion.model.tool import Tool
+from trunnion.post.header import tool_line
+from trunnion.post.words import plain
+
+_TOOL = re.compile(r"TOOL (\d+) .* HOLDER ")
+
+
+def by_number(tools: Sequence[Tool]) -> dict[int, Tool]:
+    """Return tools by their number; raise `BadInput` when two have the same."""
+    found: dict[int, Tool] = {}
+    for tool in tools:
+        if found.setdefault(tool.number, tool) != tool:
+            raise BadInput(f"two tools have the number {tool.number}: {found[tool.number].name} and {tool.name}")
+    return found
+
+
+def check_tool(line: int, comment: str, tools: Mapping[int, Tool]) -> None:
+    """Raise `BadInput` when a comment is our header's line of a tool and the tool list has another tool of that number."""
+    found = _TOOL.match(comment)
+    if found is None:
+        return
+    tool = tools.get(int(found.group(1)))
+    if tool is None or comment not in [plain(tool_line(tool, units), len(comment)) for units in ("mm", "inch")]:
+        raise BadInput(f"line {line}: the text was made for another tool {found.group(1)} than the tool list has; post the program anew")
