@@ -6,6 +6,7 @@ what stays, and which rapids went through material.
 
 from __future__ import annotations
 
+import itertools
 import math
 from dataclasses import dataclass, field
 
@@ -116,7 +117,7 @@ class Milled:
         c, s = np.cos(share * sweep), np.sin(share * sweep)
         places = np.stack([centre[0] + c * ray[0] - s * ray[1], centre[1] + s * ray[0] + c * ray[1],
                            start[2] + share * (end[2] - start[2])], axis=1)
-        return list(zip(places[:-1], places[1:], strict=True))
+        return list(itertools.pairwise(places))
 
     def _sweep(self, a: np.ndarray, b: np.ndarray, tool: Tool, rapid: int | None) -> None:
         radius, corner = tool.radius, tool.corner_radius

@@ -7,8 +7,8 @@ from functools import cache
 
 import numpy as np
 import pytest
-from milling import SETUP, Milled, box_blank, closed_pocket, cutting, mill, rounded
 
+from milling import SETUP, Milled, box_blank, closed_pocket, cutting, mill, rounded
 from trunnion.geometry.region import Region
 from trunnion.model.tool import Tool
 from trunnion.model.toolpath import Mark, Motion, Toolpath

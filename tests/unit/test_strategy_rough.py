@@ -4,8 +4,8 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
-from milling import SETUP, Milled, box_blank, closed_pocket, cutting, mill, rounded
 
+from milling import SETUP, Milled, box_blank, closed_pocket, cutting, mill, rounded
 from trunnion.findings import Cancelled
 from trunnion.geometry.region import Region
 from trunnion.model.toolpath import Mark, Motion, Toolpath

@@ -6,8 +6,8 @@ import math
 
 import numpy as np
 import pytest
-from milling import SETUP, box_blank, cutting, mill
 
+from milling import SETUP, box_blank, cutting, mill
 from trunnion.geometry.curve import Curve
 from trunnion.model.toolpath import Mark, Motion
 from trunnion.toolpath.builder import PathBuilder

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import itertools
 import math
 
 import pytest
@@ -39,7 +40,7 @@ def test_cusps_on_a_fillet_stay_below_the_scallop(corner: float) -> None:
     gap, scallop = 3.0 - corner, 0.01
     steps = fillet_steps(3.0, corner, scallop)
     angles = [math.asin(min(1.0, (gap - t) / gap)) for t in steps]
-    for a, b in zip(angles[:-1], angles[1:], strict=True):
+    for a, b in itertools.pairwise(angles):
         half = 0.5 * (b - a)
         cusp = 3.0 - gap * math.cos(half) - math.sqrt(corner**2 - (gap * math.sin(half)) ** 2)
         assert cusp <= scallop + 1e-9

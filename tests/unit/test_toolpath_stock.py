@@ -4,8 +4,8 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
-from milling import SETUP, box_blank, cutting, mill
 
+from milling import SETUP, box_blank, cutting, mill
 from trunnion.findings import OutOfMemory
 from trunnion.geometry.frame import Frame
 from trunnion.geometry.kernels import heightfield
@@ -79,7 +79,8 @@ def test_the_compiled_greatest_height_is_that_of_its_plain_form() -> None:
     random = np.random.default_rng(8)
     heights = random.random((50, 40))
     for a, b, radius in zip(random.uniform(-5, 30, (50, 2)), random.uniform(-5, 30, (50, 2)), random.uniform(0.1, 8, 50), strict=True):
-        assert heightfield.highest(heights, 0.0, 0.0, 0.5, a, b, radius) == heightfield.highest_reference(heights, 0.0, 0.0, 0.5, a, b, radius)
+        asked = (heights, 0.0, 0.0, 0.5, a, b, radius)
+        assert heightfield.highest(*asked) == heightfield.highest_reference(*asked)
 
 
 def test_a_cutter_smaller_than_a_cell_removes_nothing_for_certain() -> None:

@@ -5,16 +5,17 @@ from __future__ import annotations
 import math
 
 import pytest
-from milling import SETUP, box_blank, cutting, mill
 
+from milling import SETUP, box_blank, cutting, mill
 from trunnion.model.material import Axis, Machine
 from trunnion.model.toolpath import EMPTY
 from trunnion.toolpath.builder import PathBuilder
 from trunnion.toolpath.stock import PlanningStock
 from trunnion.toolpath.time import block_times, machining_time
 
-MACHINE = Machine(name="M", title="M", axes=tuple(Axis(name=n, kind="linear", low=0, high=1000, rapid=30000, acceleration=1000) for n in "XYZ"),
-                  spindle_low=0, spindle_high=20000, power=((100, 10),), feed_max=10000, tool_change_s=5, tool_places=10)
+AXES = tuple(Axis(name=n, kind="linear", low=0, high=1000, rapid=30000, acceleration=1000) for n in "XYZ")
+MACHINE = Machine(name="M", title="M", axes=AXES, spindle_low=0, spindle_high=20000, power=((100, 10),), feed_max=10000, tool_change_s=5,
+                  tool_places=10)
 
 
 @pytest.fixture
