@@ -149,6 +149,23 @@ def test_an_offset_of_nothing_is_the_region_itself():
     assert region.offset(0.0) is region
 
 
+def test_many_small_steps_inward_come_to_the_same_as_one():
+    region = pocket()
+    for _ in range(12):
+        region = region.offset(-0.75)
+    once = pocket().offset(-9.0)
+    assert region.area == approx(once.area, abs=1e-6)
+    assert radii(region) == approx(radii(once), abs=1e-9)
+
+
+def test_walls_that_are_tangent_only_to_a_thousandth_are_followed():
+    points = rounded(0.0, 0.0, 100.0, 60.0, 8.0).points + np.random.default_rng(1).uniform(-1e-3, 1e-3, (8, 2))
+    rough = Region.of([Curve(points, np.array([0.0, QUARTER] * 4), True)])
+    for distance in (-12.0, -8.0, -3.0, 3.0):
+        s = rough.offset(distance).segments()
+        assert np.abs(-rough.signed_distance(s.at(np.arange(len(s)), 0.5 * s.length)) - distance).max() < 2e-6
+
+
 def test_a_straight_parallel_lies_to_the_left():
     (beside,) = Curve.polyline([[0.0, 0.0], [10.0, 0.0]]).parallel(2.0)
     assert beside.points == approx(np.array([[0.0, 2.0], [10.0, 2.0]]))

@@ -3,6 +3,9 @@
 from __future__ import annotations
 
 import math
+import pickle
+import subprocess
+import sys
 
 import numpy as np
 import pytest
@@ -180,3 +183,22 @@ def test_gaps_below_a_point_between_ends_do_no_harm():
     points = np.array([[0.0, 0.0], [20.0, 1e-7], [20.0 + 1e-7, 10.0], [-1e-7, 10.0 - 1e-7]])
     almost = Region.of([Curve.polygon(points)])
     assert almost.intersect(Region.rectangle(0.0, 0.0, 20.0, 10.0)).area == approx(200.0, abs=1e-4)
+
+
+def test_a_hole_that_touches_the_wall_stays_a_hole_in_later_operations():
+    plate = Region.rectangle(0.0, 0.0, 40.0, 40.0).minus(Region.circle((5.0, 20.0), 5.0))
+    assert plate.area == approx(1600.0 - 25.0 * math.pi, abs=1e-6)
+    left, right = plate.intersect(Region.rectangle(0.0, 0.0, 20.0, 40.0)), plate.minus(Region.rectangle(0.0, 0.0, 20.0, 40.0))
+    assert left.area + right.area == approx(plate.area, abs=1e-6)
+
+
+def test_a_region_survives_the_way_to_another_process():
+    again = pickle.loads(pickle.dumps(ring()))
+    assert again.area == ring().area
+    assert (again.segments().start == ring().segments().start).all()
+
+
+def test_plane_geometry_does_without_the_compiler_until_it_pays():
+    code = ("import sys; from trunnion.geometry.region import Region; Region.circle((0, 0), 5).offset(-1).contains([[0, 0]]); "
+            "sys.exit(any(m in sys.modules for m in ('numba', 'scipy')))")
+    assert subprocess.run([sys.executable, "-c", code], check=False).returncode == 0
