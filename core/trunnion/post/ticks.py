@@ -55,15 +55,14 @@ class Scale:
 class WrittenPath:
     """A toolpath in ticks, row by row, without the blocks that rounding makes vanish.
 
-    point (m, 3), centre (m, 3) and motion (m,) of the rows kept; feed (m,) mm/min; `row` (m,) their rows in the toolpath. A full turn ends
-    exactly where it starts; an arc so short that rounding would turn it round is a line.
+    point (m, 3), centre (m, 3) and motion (m,) of the blocks kept; feed (m,) mm/min. A full turn ends exactly where it starts; an arc so
+    short that rounding would turn it round is a line.
     """
 
     point: Ints
     centre: Ints
     motion: Ints
     feed: Floats
-    row: Ints
 
     def blocks(self) -> Iterator[tuple[list[int], list[int], int, float]]:
         """Yield end point, centre, motion and feed of each row."""
@@ -88,8 +87,7 @@ def written(path: Toolpath, scale: Scale, operation: str) -> WrittenPath:
     kept = np.ones(len(motion), dtype=bool)
     if len(motion):
         kept[1:] = (motion[1:] >= Motion.ARC_CW) | (point[1:] != point[:-1]).any(axis=1)
-    row = np.flatnonzero(kept)
-    return WrittenPath(point=point[row], centre=centre[row], motion=motion[row], feed=path.feed[row], row=row)
+    return WrittenPath(point=point[kept], centre=centre[kept], motion=motion[kept], feed=path.feed[kept])
 
 
 def _refuse_tilted(path: Toolpath, operation: str) -> None:

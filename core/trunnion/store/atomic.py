@@ -5,6 +5,7 @@ from __future__ import annotations
 import contextlib
 import os
 import re
+import threading
 from collections.abc import Callable
 from pathlib import Path
 from typing import BinaryIO
@@ -12,6 +13,8 @@ from typing import BinaryIO
 from trunnion.findings import BadInput
 
 _UNFINISHED = ".saving"
+_ONE_AT_A_TIME = threading.Lock()
+"""Two threads of one process would share the name of the unfinished file."""
 
 
 def write_bytes(path: str | Path, data: bytes) -> None:
@@ -26,7 +29,11 @@ def write_text(path: str | Path, text: str) -> None:
 
 def write_with(path: str | Path, fill: Callable[[BinaryIO], object]) -> None:
     """Write a file by a function that fills it: beside it first, synced, then renamed over it, then the folder synced."""
-    target = Path(os.path.realpath(path))
+    with _ONE_AT_A_TIME:
+        _write(Path(os.path.realpath(path)), fill)
+
+
+def _write(target: Path, fill: Callable[[BinaryIO], object]) -> None:
     beside = target.with_name(f".{target.name}.{os.getpid()}{_UNFINISHED}")
     try:
         _remove_unfinished(target)
@@ -38,7 +45,7 @@ def write_with(path: str | Path, fill: Callable[[BinaryIO], object]) -> None:
         _sync_folder(target.parent)
     except OSError as reason:
         _forget(beside)
-        raise BadInput(f"{path}: can't be written: {reason.strerror or reason}; the file there is as it was") from None
+        raise BadInput(f"{target}: can't be written: {reason.strerror or reason}; the file there is as it was") from None
     except BaseException:
         _forget(beside)
         raise

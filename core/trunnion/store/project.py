@@ -5,6 +5,7 @@ Same session, same bytes. A file from elsewhere is not trusted: limits on size a
 
 from __future__ import annotations
 
+import contextlib
 import hashlib
 import io
 import re
@@ -36,7 +37,8 @@ def save_project(session: Session, path: str | Path, part_bytes: bytes, part_suf
     """Write a session with its part file's bytes, whole or not at all; the autosave beside it is then older and goes."""
     data = project_bytes(session, part_bytes, part_suffix)
     write_bytes(path, data)
-    autosave_path(path).unlink(missing_ok=True)
+    with contextlib.suppress(OSError):
+        autosave_path(path).unlink()
 
 
 def autosave(session: Session, path: str | Path, part_bytes: bytes, part_suffix: str) -> Path:
