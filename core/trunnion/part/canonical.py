@@ -8,6 +8,7 @@ fitting samples within `tolerance.FITTED`: planes by their points, surfaces of r
 from __future__ import annotations
 
 import math
+from collections.abc import Callable
 from dataclasses import dataclass
 from typing import Any
 
@@ -49,8 +50,8 @@ class Surface:
 PLAIN = Surface(kind="plane", axis_point=NOWHERE, axis=NOWHERE)
 
 
-def recognised(adaptor: Any, points: Floats, normals: Floats) -> Surface:
-    """Return the plain surface under a face's adaptor; `points`, `normals` (k, 3) are samples of it for what has to be fitted."""
+def recognised(adaptor: Any, samples: Callable[[], tuple[Floats, Floats]]) -> Surface:
+    """Return the plain surface under a face's adaptor; `samples` gives points and normals (k, 3) of it for what has to be fitted."""
     kind = adaptor.GetType()
     if kind == GeomAbs_Plane:
         return PLAIN
@@ -68,9 +69,9 @@ def recognised(adaptor: Any, points: Floats, normals: Floats) -> Surface:
     if kind == GeomAbs_SurfaceOfRevolution:
         found = adaptor.AxeOfRevolution()
         point, axis = _xyz(found.Location()), _xyz(found.Direction())
-        return _of_meridian(points, point, axis) or Surface(kind="revolution", axis_point=point, axis=axis)
+        return _of_meridian(samples()[0], point, axis) or Surface(kind="revolution", axis_point=point, axis=axis)
     fallback = Surface(kind="extrusion" if kind == GeomAbs_SurfaceOfExtrusion else "spline", axis_point=NOWHERE, axis=NOWHERE)
-    return fitted_surface(points, normals) or fallback
+    return fitted_surface(*samples()) or fallback
 
 
 def fitted_surface(points: Floats, normals: Floats) -> Surface | None:

@@ -8,6 +8,7 @@ from typing import Any
 import numpy as np
 from OCP.BRepAdaptor import BRepAdaptor_Surface
 from OCP.BRepTopAdaptor import BRepTopAdaptor_FClass2d
+from OCP.GeomAbs import GeomAbs_Plane
 from OCP.gp import gp_Pnt, gp_Pnt2d, gp_Vec
 from OCP.TopAbs import TopAbs_IN, TopAbs_REVERSED
 
@@ -25,11 +26,14 @@ class FaceView:
     adaptor: Any = field(init=False)
     side: float = field(init=False)
     inside: Any = field(init=False)
+    plane_normal: Floats | None = field(init=False)
 
     def __post_init__(self) -> None:
         self.adaptor = BRepAdaptor_Surface(self.face)
         self.side = -1.0 if self.face.Orientation() == TopAbs_REVERSED else 1.0
         self.inside = BRepTopAdaptor_FClass2d(self.face, tolerance.COINCIDENT)
+        is_plane = self.adaptor.GetType() == GeomAbs_Plane
+        self.plane_normal = self.at(self.adaptor.FirstUParameter(), self.adaptor.FirstVParameter())[1] if is_plane else None
 
     def bounds(self) -> tuple[float, float, float, float]:
         """Return the least and greatest u and v of the trimmed area."""
@@ -53,6 +57,13 @@ class FaceView:
             normal = du.Crossed(dv)
             size = normal.Magnitude() or 1.0
         return np.array(point.Coord()), np.array(normal.Coord()) * (self.side / size)
+
+    def evaluated(self, places: list[tuple[float, float]]) -> tuple[Floats, Floats]:
+        """Return points and outward unit normals (k, 3) at places (u, v)."""
+        if self.plane_normal is not None:
+            return np.array([self.adaptor.Value(u, v).Coord() for u, v in places]), np.tile(self.plane_normal, (len(places), 1))
+        both = [self.at(u, v) for u, v in places]
+        return np.array([p for p, _ in both]), np.array([n for _, n in both])
 
     def grid(self, steps: int) -> list[tuple[float, float]]:
         """Return (u, v) at the middles of steps x steps cells of the bounds."""

@@ -25,12 +25,13 @@ from trunnion import tolerance
 from trunnion.geometry.arrays import Floats
 from trunnion.geometry.facegraph import CONCAVE, CONVEX, SMOOTH, FaceGraph
 from trunnion.part.canonical import PLAIN, EdgeCurve, Surface, recognised, recognised_curve
+from trunnion.part.extent import edge_extremes, face_box
 from trunnion.part.faces import FaceView
 from trunnion.part.identity import Shape
-from trunnion.part.measure import ACCURACY, box_of
+from trunnion.part.measure import ACCURACY
 
-_GRIDS = (5, 13, 31)
-_MIN_SAMPLES = 9
+_GRIDS, _PLANE_GRIDS = (5, 13, 31), (4, 13, 31)
+_MIN_SAMPLES, _MIN_PLANE_SAMPLES = 9, 4
 _ALONG_EDGE = 7
 _DOMINATES = 2.0
 
@@ -46,12 +47,13 @@ class Coedge:
 
 @dataclass(slots=True, eq=False)
 class EdgeView:
-    """An edge with its curve and who uses it. `points` (7, 3) run along it."""
+    """An edge with its curve and who uses it. `points` (7, 3) run along it, `extremes` (k, 3) include its farthest along x, y, z."""
 
     edge: Shape
     adaptor: Any = field(init=False)
     middle: float = field(init=False)
     points: Floats = field(init=False)
+    extremes: Floats = field(init=False)
     users: list[tuple[FaceView, float, int]] = field(init=False, default_factory=list)
 
     def __post_init__(self) -> None:
@@ -59,6 +61,7 @@ class EdgeView:
         first, last = self.adaptor.FirstParameter(), self.adaptor.LastParameter()
         self.middle = 0.5 * (first + last)
         self.points = np.array([self.adaptor.Value(t).Coord() for t in np.linspace(first, last, _ALONG_EDGE)])
+        self.extremes = edge_extremes(self.adaptor, self.points)
 
 
 def face_graph(shape: Shape, faces: Mapping[int, Shape], n_faces: int) -> FaceGraph:
@@ -94,19 +97,19 @@ def _points(rows: Any) -> Floats:
 
 # Edges
 
-def _edges(shape: Shape, views: Mapping[int, FaceView]) -> tuple[list[EdgeView], dict[int, list[Floats]]]:
-    """Return the edges with their users (a seam has its face twice), and by face row the points of its edges."""
+def _edges(shape: Shape, views: Mapping[int, FaceView]) -> tuple[list[EdgeView], dict[int, list[EdgeView]]]:
+    """Return the edges with their users (a seam has its face twice), and by face row the edges around it."""
     index = TopTools_IndexedMapOfShape()
     TopExp.MapShapes_s(shape, TopAbs_EDGE, index)
     edges = {n: EdgeView(edge) for n in range(1, index.Extent() + 1)
              if not BRep_Tool.Degenerated_s(edge := TopoDS.Edge_s(index.FindKey(n)))}
-    rims: dict[int, list[Floats]] = {}
+    rims: dict[int, list[EdgeView]] = {}
     for view in views.values():
         rim = rims.setdefault(view.row, [])
         for coedge in coedges(view.face, index):
             if coedge.edge in edges:
                 edges[coedge.edge].users.append((view, coedge.way, coedge.loop))
-                rim.append(edges[coedge.edge].points)
+                rim.append(edges[coedge.edge])
     return list(edges.values()), rims
 
 
@@ -172,10 +175,8 @@ def _tangent(edge: EdgeView) -> Floats:
 
 
 def _normal_beside(edge: EdgeView, view: FaceView) -> Floats:
-    if view.adaptor.GetType() == GeomAbs_Plane:
-        normal = view.adaptor.Plane().Axis().Direction()
-        flipped = 1.0 if view.adaptor.Plane().Direct() else -1.0
-        return np.array([normal.X(), normal.Y(), normal.Z()]) * (view.side * flipped)
+    if view.plane_normal is not None:
+        return view.plane_normal
     place = BRepAdaptor_Curve2d(edge.edge, view.face).Value(edge.middle)
     return view.at(place.X(), place.Y())[1]
 
@@ -208,13 +209,11 @@ _ABSENT = FaceRow(surface=replace(PLAIN, kind="other"), area=0.0, centre=_ORIGIN
                   points=np.empty((0, 3)), normals=np.empty((0, 3)))
 
 
-def _face_row(view: FaceView, rim: list[Floats]) -> FaceRow:
+def _face_row(view: FaceView, rim: list[EdgeView]) -> FaceRow:
     points, normals = _samples(view)
-    grid = [view.at(u, v) for u, v in view.grid(_GRIDS[0])]
-    surface = recognised(view.adaptor, np.array([p for p, _ in grid]), np.array([n for _, n in grid]))
-    boundary = np.concatenate(rim) if rim else np.empty((0, 3))
-    best = _deepest(points, boundary)
-    low, high = _box(view, surface, boundary)
+    surface = recognised(view.adaptor, lambda: view.evaluated(view.grid(_GRIDS[0])))
+    best = _deepest(points, np.concatenate([e.points for e in rim]) if rim else np.empty((0, 3)))
+    low, high = face_box(view, surface, np.concatenate([e.extremes for e in rim]) if rim else np.empty((0, 3)))
     surface = _beside(surface, points[best])
     return FaceRow(surface=surface, area=_area(view), centre=points[best], normal=normals[best],
                    bend=_bend(surface, points, normals, best), low=low, high=high, points=points, normals=normals)
@@ -223,8 +222,9 @@ def _face_row(view: FaceView, rim: list[Floats]) -> FaceRow:
 def _samples(view: FaceView) -> tuple[Floats, Floats]:
     """Return points spread over the trimmed area and their outward normals; at least one even on the thinnest face."""
     most: list[tuple[float, float]] = []
-    wanted = 4 if view.adaptor.GetType() == GeomAbs_Plane else _MIN_SAMPLES
-    for steps in _GRIDS:
+    is_plane = view.adaptor.GetType() == GeomAbs_Plane
+    wanted = _MIN_PLANE_SAMPLES if is_plane else _MIN_SAMPLES
+    for steps in _PLANE_GRIDS if is_plane else _GRIDS:
         found = [uv for uv in view.grid(steps) if view.holds(*uv)]
         most = found if len(found) > len(most) else most
         if len(most) >= wanted:
@@ -236,8 +236,7 @@ def _samples(view: FaceView) -> tuple[Floats, Floats]:
     if not most:
         u0, u1, v0, v1 = view.bounds()
         most = [(0.5 * (u0 + u1), 0.5 * (v0 + v1))]
-    both = [view.at(u, v) for u, v in most]
-    return np.array([p for p, _ in both]), np.array([n for _, n in both])
+    return view.evaluated(most)
 
 
 def _beside_rim(view: FaceView, wanted: int) -> list[tuple[float, float]]:
@@ -277,11 +276,6 @@ def _area(view: FaceView) -> float:
     else:
         BRepGProp.SurfaceProperties_s(view.face, found, ACCURACY)
     return abs(float(found.Mass()))
-
-
-def _box(view: FaceView, surface: Surface, boundary: Floats) -> tuple[Floats, Floats]:
-    """Return the box of a face. Planes, cylinders and cones have their extremes on the boundary, so its straight edges tell it."""
-    return box_of(view.face)
 
 
 def _beside(surface: Surface, near: Floats) -> Surface:

@@ -1,11 +1,8 @@
-"""Area, volume, box and open edges of shapes."""
+"""Area, volume and open edges of shapes."""
 
 from __future__ import annotations
 
-import numpy as np
-from OCP.Bnd import Bnd_Box
 from OCP.BRep import BRep_Tool
-from OCP.BRepBndLib import BRepBndLib
 from OCP.BRepGProp import BRepGProp
 from OCP.GProp import GProp_GProps
 from OCP.TopAbs import TopAbs_EDGE, TopAbs_FACE
@@ -13,8 +10,6 @@ from OCP.TopExp import TopExp
 from OCP.TopoDS import TopoDS
 from OCP.TopTools import TopTools_IndexedDataMapOfShapeListOfShape
 
-from trunnion.findings import BadInput
-from trunnion.geometry.arrays import Floats
 from trunnion.part.identity import Shape
 
 ACCURACY = 1e-6
@@ -33,17 +28,6 @@ def area_of(shape: Shape) -> float:
     found = GProp_GProps()
     BRepGProp.SurfaceProperties_s(shape, found, ACCURACY)
     return float(found.Mass())
-
-
-def box_of(shape: Shape) -> tuple[Floats, Floats]:
-    """Return the lowest and the highest corner (3,) of the box around a shape, mm; raise `BadInput` when it has no extent."""
-    box = Bnd_Box()
-    BRepBndLib.AddOptimal_s(shape, box, False, False)
-    if box.IsVoid():
-        raise BadInput("a shape without extent has no box")
-    box.SetGap(0.0)
-    corners = np.array(box.Get())
-    return corners[:3], corners[3:]
 
 
 def open_edges(shape: Shape) -> int:

@@ -8,9 +8,11 @@ from collections.abc import Mapping
 from dataclasses import asdict, dataclass, field, replace
 from typing import Any
 
+import numpy as np
+
 from trunnion import tolerance
 from trunnion.findings import BadInput, Finding, Severity
-from trunnion.geometry.arrays import Floats, floats
+from trunnion.geometry.arrays import Floats
 from trunnion.geometry.facegraph import FaceGraph
 from trunnion.geometry.frame import Frame
 from trunnion.geometry.mesh import Mesh
@@ -38,20 +40,14 @@ class PartFacts:
     is_closed: bool
     area: float
     volume: float
-    low: Floats
-    high: Floats
     tags: tuple[int, ...]
     names: Mapping[int, str] = field(default_factory=dict)
     colours: Mapping[int, tuple[float, float, float]] = field(default_factory=dict)
     findings: tuple[Finding, ...] = ()
 
-    def __post_init__(self) -> None:
-        object.__setattr__(self, "low", floats(self.low, (3,), "part box"))
-        object.__setattr__(self, "high", floats(self.high, (3,), "part box"))
-
     def to_json(self) -> str:
         """Return the facts as JSON text."""
-        plain = asdict(self) | {"low": self.low.tolist(), "high": self.high.tolist(), "findings": [f.as_dict() for f in self.findings]}
+        plain = asdict(self) | {"findings": [f.as_dict() for f in self.findings]}
         return json.dumps(plain)
 
     @staticmethod
@@ -95,8 +91,6 @@ class Part:
     is_closed = property(lambda self: self.facts.is_closed, doc="Whether the faces enclose material without a gap.")
     area = property(lambda self: self.facts.area, doc="Area of the solid's faces in mm2.")
     volume = property(lambda self: self.facts.volume, doc="Volume in mm3.")
-    low = property(lambda self: self.facts.low, doc="Lowest corner (3,) of the box around the solid, mm.")
-    high = property(lambda self: self.facts.high, doc="Highest corner (3,) of the box around the solid, mm.")
     names = property(lambda self: self.facts.names, doc="Names of faces by tag, where the file gives them.")
     colours = property(lambda self: self.facts.colours, doc="Colours of faces by tag, where the file gives them.")
     findings = property(lambda self: self.facts.findings, doc="What a person should know about the file.")
@@ -105,6 +99,16 @@ class Part:
     def tags(self) -> tuple[int, ...]:
         """The tags of the chosen solid's faces, ascending."""
         return tuple(sorted(self._faces))
+
+    @property
+    def low(self) -> Floats:
+        """Lowest corner (3,) of the box around the solid, mm."""
+        return self.graph().box_low[np.asarray(self.tags) - 1].min(axis=0)
+
+    @property
+    def high(self) -> Floats:
+        """Highest corner (3,) of the box around the solid, mm."""
+        return self.graph().box_high[np.asarray(self.tags) - 1].max(axis=0)
 
     def face_shape(self, tag: int) -> Shape | None:
         """Return the face of a tag as it lies in the solid (its normal points outward), or None when it is not of this solid."""

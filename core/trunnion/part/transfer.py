@@ -18,7 +18,6 @@ from trunnion.findings import BadInput, Finding, error, face_tags, warning
 from trunnion.part.child import Request
 from trunnion.part.heal import Body, bodies_of
 from trunnion.part.identity import Shape, face_index, faces_of
-from trunnion.part.measure import box_of
 from trunnion.part.part import Part, PartFacts
 from trunnion.part.quiet import hush
 
@@ -132,9 +131,8 @@ def _part(read: Read, request: Request) -> Part:
     if not body.is_closed:
         notes.append(error("part.open", f"the part is not closed: {body.open_edges} edges have a face on one side only, so there is no "
                            "telling where material is", request.file, remedy="close the gaps in the CAD system and export the solid again"))
-    low, high = box_of(body.shape)
     facts = PartFacts(path=request.path, name=request.name, digest=request.digest, unit=read.unit, n_faces=len(tagged),
-                      n_solids=len(bodies), solid=chosen, is_closed=body.is_closed, area=body.area, volume=body.volume, low=low, high=high,
+                      n_solids=len(bodies), solid=chosen, is_closed=body.is_closed, area=body.area, volume=body.volume,
                       tags=body.tags, names=read.names, colours=read.colours, findings=tuple(notes))
     return Part(facts, body.shape, read.shape)
 
