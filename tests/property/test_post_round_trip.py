@@ -8,7 +8,8 @@ import numpy as np
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from programs import BULL_10, CCW, CW, FLAT_16, LINE, RAPID, S1, S2, path_of, section
+from programs import BULL_10, CCW, CW, FLAT_16, LINE, RAPID, S1, S2, path_of, program_1, section
+from trunnion.findings import BadInput
 from trunnion.model.program import Program
 from trunnion.post.dialects.apt import AptDialect
 from trunnion.post.dialects.linuxcnc import LinuxCncDialect
@@ -112,3 +113,20 @@ def test_what_was_read_is_written_with_the_same_words(parts):
     text = dialect.write([program_of(parts)], HEADER, PostSettings())
     (again,) = dialect.read(text, (FLAT_16, BULL_10), [S1])
     assert dialect.write([again], HEADER, PostSettings()) == text
+
+
+spoils = st.lists(st.tuples(st.floats(0, 1, exclude_max=True), st.sampled_from(list("GMXYZIJRFSTHPN0123456789.-+ ()/,;%$#[]\n\x00éKE"))),
+                  min_size=1, max_size=6)
+
+
+@settings(deadline=None, max_examples=150)
+@given(st.sampled_from([LinuxCncDialect, AptDialect]), spoils)
+def test_a_spoiled_text_is_read_or_refused_in_one_line(kind, places):
+    dialect = kind()
+    text = list(dialect.write([program_1()], HEADER, PostSettings()))
+    for share, letter in places:
+        text[int(share * len(text))] = letter
+    try:
+        dialect.read("".join(text), (FLAT_16, BULL_10), [S1])
+    except BadInput as refused:
+        assert "\n" not in str(refused)
