@@ -101,11 +101,11 @@ def _sequenced(draft: Draft, wishes: Sequence[Wish], stages: Sequence[Stage]) ->
 
 def _before(draft: Draft, wish: Wish, wishes: Sequence[Wish]) -> frozenset[str]:
     """Return the ids that come before a wish: earlier stages on and beside its feature, larger cutters, the pocket it is sunk in."""
-    near = draft.beside.get(wish.feature, frozenset()) | {wish.feature}
+    kinds = {f.id: f.kind for f in draft.recognition}
+    near = {i for i in draft.beside.get(wish.feature, ()) if kinds[i] != kinds[wish.feature]} | {wish.feature, "blank"}
     found: set[str] = set()
     for other in wishes:
-        everywhere = {"blank", "profile"} & {*other.stage.on, *wish.stage.on}
-        if other.stage.name in wish.stage.after and (everywhere or other.feature in near):
+        if other.stage.name in wish.stage.after_all or (other.stage.name in wish.stage.after and other.feature in near):
             found.add(other.id)
         if other.stage.name == wish.stage.name and _is_parent(draft, other.feature, wish.feature):
             found.add(other.id)

@@ -20,7 +20,7 @@ from trunnion.settings import setting, settings
 from trunnion.shop import Shop, Stage
 from trunnion.units import trimmed
 
-SPARE = 3.0
+SPARE = 2.0
 """Radii of a roughing cutter that should fit from the rim to the middle of a pocket where it is widest: room for a helix and a turn."""
 
 NEAR_ROUGH, NEAR_WALL, NEAR_FLOOR = 0.75, 0.6, 0.5
@@ -49,8 +49,8 @@ class RouteSettings:
                              help="Largest diameter over the next smaller one in corners.")
     slender: float = setting(6.0, unit="diameters", low=1.0, high=20.0, label="Slender walls",
                              help="Stickout over diameter from which walls get a larger cutter and only the corners the slender one.")
-    largest: float = setting(25.0, unit="mm", low=1.0, high=200.0, label="Largest roughing cutter",
-                             help="Largest diameter of an end mill for roughing.")
+    largest: float = setting(20.0, unit="mm", low=1.0, high=200.0, label="Largest end mill",
+                             help="Larger ones are not chosen: what they leave in corners has to be cut once more.")
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -213,9 +213,10 @@ def _top_room(draft: Draft, feature: Feature, z: float, tops: Sequence[int]) -> 
     if feature.kind != "island":
         return space.free(z + tolerance.BESIDE_PLANE), wanted
     pocket = parent_of(feature, draft.recognition)
-    if pocket is None or not draft.bands.get(pocket.id):
+    over = [b for b in draft.bands.get(pocket.id, ()) if b.bottom <= z + tolerance.SEW] if pocket else []
+    if not over:
         raise Refused(f"{feature.id} stands in a pocket that is not planned; machine its top by hand")
-    return next(b.boundary for b in draft.bands[pocket.id] if b.bottom <= z + tolerance.SEW), wanted
+    return over[0].boundary, wanted
 
 
 def _wishes_profile(draft: Draft, stage: Stage, features: Sequence[Feature]) -> list[Wish]:

@@ -15,7 +15,8 @@ class Stage:
     """One stage of a typical plan: an operation of `kind` by `strategy` for every feature of the kinds in `on` (`blank`: once a setup).
 
     `cutter` names the rule that chooses the tool, `finish` says whether it cuts to size (else it leaves the route's allowances); `after`
-    names earlier stages that must be done on the same feature and its neighbours; `rule` says why, in words.
+    names earlier stages that must be done on the same feature and on those of another kind beside it, `after_all` those that must be done
+    on every feature; `rule` says why, in words.
     """
 
     name: str
@@ -25,6 +26,7 @@ class Stage:
     cutter: str
     finish: bool
     after: tuple[str, ...]
+    after_all: tuple[str, ...]
     rule: str
 
 
@@ -48,7 +50,7 @@ def _plan(entry: Entry) -> TypicalPlan:
     stages: list[Stage] = []
     for table in entry.tables("stage"):
         stage = _stage(table)
-        unknown = [name for name in stage.after if name not in {s.name for s in stages}]
+        unknown = [name for name in (*stage.after, *stage.after_all) if name not in {s.name for s in stages}]
         if unknown:
             raise table.wrong(f"after names {unknown[0]!r}, which is no earlier stage")
         if stage.name in {s.name for s in stages}:
@@ -63,6 +65,7 @@ def _stage(entry: Entry) -> Stage:
     if cutter not in CUTTER_RULES:
         raise entry.wrong(f"cutter must be one of {', '.join(CUTTER_RULES)}; got {cutter!r}")
     stage = Stage(name=entry.text("name"), kind=entry.text("kind"), strategy=entry.text("strategy"), on=entry.texts("on"), cutter=cutter,
-                  finish=entry.flag("finish"), after=entry.texts("after", ()), rule=entry.text("rule"))
+                  finish=entry.flag("finish"), after=entry.texts("after", ()), after_all=entry.texts("after_all", ()),
+                  rule=entry.text("rule"))
     entry.done()
     return stage
