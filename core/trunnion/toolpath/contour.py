@@ -17,6 +17,9 @@ from trunnion.toolpath.link import step_aside, top_under
 from trunnion.toolpath.order import nearest_first
 from trunnion.toolpath.reach import Room, parts_where, points_along
 
+SKIN = 0.6
+"""mm of material that a cutter may plunge into beside a contour: what roughing leaves on a floor."""
+
 PAST = (1.2, 0.6, 0.3)
 """Of the cutter's radius: how far past its end an open wall is followed, as far as there is room."""
 
@@ -77,9 +80,11 @@ def cut_open(builder: PathBuilder, part: Curve, z: float, room: Room, approach: 
     feed = builder.data.feed
     (first, heading), (last, leaving) = part.at(0.0), part.at(part.length)
     begin, end = (_past(builder, first, -heading, room), _past(builder, last, leaving, room)) if past else (first, last)
-    lead = fitting_lead(begin, heading, approach.radius, room, leaves=False)
+    lead, free = fitting_lead(begin, heading, approach.radius, room, leaves=False), False
     if lead is not None:
-        enter(builder, from_free(builder, lead, heading, z, room)[0], begin, z, feed)
+        lead, free = from_free(builder, lead, heading, z, room)
+    if lead is not None and (free or top_under(builder, lead.before) - z < SKIN):
+        enter(builder, lead, begin, z, feed)
     else:
         ramp_along(builder, part, max(top_under(builder, p) for p in part.points), z, approach.ramp)
     builder.line((*first, z), feed)

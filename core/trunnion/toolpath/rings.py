@@ -1,11 +1,13 @@
 """Contour-parallel passes: nested offsets of the room of the axis, as a tree from the rim inwards.
 
 No post stays between or inside the passes as long as the step is at most the radius of the cutter's flat end: a place between two
-neighbouring offsets is nearer than one step to the outer one, and the innermost offset is nowhere deeper than one step.
+neighbouring offsets is nearer than one step to the outer one, and the innermost offset is nowhere deeper than one step. With a rounded
+end a longer step leaves ridges as high as the end has risen there.
 """
 
 from __future__ import annotations
 
+import math
 from collections.abc import Iterator
 from dataclasses import dataclass
 
@@ -34,10 +36,11 @@ class Ring:
         return self.region.curves()
 
 
-def safe_step(tool: Tool, width: float) -> float:
-    """Return the step between passes in mm that leaves nothing between them: `width` unless the cutter's flat end is too small."""
-    flat = tool.radius - tool.corner_radius
-    return min(width, SAFE_SHARE * max(flat, 0.5 * tool.radius))
+def safe_step(tool: Tool, width: float, ridge: float = 0.0) -> float:
+    """Return the step between passes in mm that leaves nothing higher than `ridge` mm between them: `width` when the cutter allows it."""
+    corner = tool.corner_radius
+    at_ridge = math.sqrt(corner**2 - max(corner - ridge, 0.0) ** 2)
+    return min(width, SAFE_SHARE * max(tool.radius - corner + at_ridge, 0.5 * tool.radius))
 
 
 def ring_tree(room: Region, step: float, clip: Region | None = None) -> tuple[Ring, ...]:

@@ -24,6 +24,9 @@ from trunnion.toolpath.stock import PlanningStock
 SMALLEST_LEFTOVER = 1.0
 """mm2: less that is left needs no word."""
 
+RIDGE = 0.3
+"""mm: highest ridge between passes of a cutter with a rounded end; the next layer or the floor's finish takes it away."""
+
 
 @settings("plane.rough")
 class RoughSettings:
@@ -42,7 +45,7 @@ def rough(drive: PlaneDrive, tool: Tool, data: CuttingData, stock: PlanningStock
           progress: Progress) -> Planned:
     """Return the motions that clear every band of the drive layer by layer down to the floors' allowance, and what the cutter leaves."""
     builder = PathBuilder(tool, data, stock, setup, settings.safety)
-    manner = Manner(step=safe_step(tool, data.width), ramp=math.radians(settings.ramp_angle), slot=settings.slot_feed)
+    manner = Manner(step=safe_step(tool, data.width, RIDGE), ramp=math.radians(settings.ramp_angle), slot=settings.slot_feed)
     findings: list[Finding] = []
     above, first = max(drive.top, drive.stock_top), True
     for n, level in enumerate(drive.levels):
