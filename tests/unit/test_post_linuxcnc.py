@@ -149,6 +149,10 @@ def test_hand_edited_text_may_be_lower_case_spaced_and_commented():
     assert blocks(again)[1:] == ["line    x 10.5000 y 0.0000 z 50.0000 feed 200.0", "line    x 10.5000 y 5.0000 z -1.0000 feed 200.0"]
 
 
+def test_line_ends_of_another_system_are_read():
+    assert blocks(read_linuxcnc(text_of(program_1()).replace("\n", "\r\n"), TOOLS, S1)) == blocks(program_1())
+
+
 def test_an_arc_by_radius_has_the_centre_of_the_shorter_way():
     again = read("G1 X0 Y0 F100\nG2 X10 Y10 R10")
     assert blocks(again)[2] == "arc-cw  x 10.0000 y 10.0000 z 50.0000 centre x 10.0000 y 0.0000 feed 100.0"

@@ -9,7 +9,7 @@ from trunnion.findings import BadInput
 
 _WORD = re.compile(r"([A-Z])([-+]?(?:[0-9]+\.?[0-9]*|\.[0-9]+))")
 _COMMENT = re.compile(r"\(([^()]*)\)")
-_SPACE = str.maketrans("", "", " \t")
+_SPACE = str.maketrans("", "", " \t\r")
 _REFUSED = {
     "#": "parameters (#) are not understood; write the numbers themselves",
     "[": "expressions are not understood; write the numbers themselves",
