@@ -2,11 +2,31 @@
 
 from __future__ import annotations
 
+import math
+
 import numpy as np
 
-from trunnion.model.program import ProgramSection
+from trunnion.geometry.frame import WORLD
+from trunnion.model.blank import Blank
+from trunnion.model.material import Axis, Machine
+from trunnion.model.program import Program, ProgramSection
+from trunnion.model.setup import Setup
 from trunnion.model.tool import Holder, Tool
 from trunnion.model.toolpath import Motion, Toolpath
+from trunnion.part.surfaces import (
+    STRIP_COLUMNS,
+    Face,
+    Guide,
+    Profile,
+    circle_edges,
+    level_face,
+    line_edges,
+    strips_of,
+    surfaces_from,
+)
+from trunnion.progress import QUIET
+from trunnion.verify.settings import ProofSettings
+from trunnion.verify.verdict import prove_surfaces
 
 HOLDER = Holder(name="test holder", rows=((0.0, 12.0, 10.0, 20.0), (10.0, 20.0, 40.0, 20.0)))
 
@@ -43,3 +63,113 @@ def program_section(tool, stops, operation="op", rapid_to=0):
     path = Toolpath(position=points, axis=[[0.0, 0.0, 1.0]] * n, motion=motion, centre=centres,
                     feed=[0.0 if m == Motion.RAPID else 1000.0 for m in motion], mark=[0] * n)
     return ProgramSection(operation=operation, tool=tool, spindle=10000.0, path=path)
+
+
+# A block 60 x 36 x 18 with its zero in the middle of the bottom; a rounded pocket 36 x 20 about (5, 0), floor at 8, corners R4, fillet R2.
+BLOCK_LOW, BLOCK_HIGH = (-30.0, -18.0, 0.0), (30.0, 18.0, 18.0)
+POCKET_LOW, POCKET_HIGH, FLOOR, TOP, CORNER, FILLET = (-13.0, -10.0), (23.0, 10.0), 8.0, 18.0, 4.0, 2.0
+TAGS = {"top": 1, "floor": 2, "bottom": 3, "outside": 4, "wall": 8, "corner": 12, "fillet": 16, "corner fillet": 20}
+"""The first tag of each kind of face; four of a kind follow each other: right, upper, left, lower."""
+
+
+def rounded(low, high, radius):
+    """Return the edges in plan of a rectangle with rounded corners."""
+    edges = []
+    for _, start, end, centre, angle in sides(low, high, radius):
+        edges += line_edges(np.array([start, end]))
+        if radius:
+            edges += circle_edges(*centre, radius, angle, angle + math.pi / 2)
+    return edges
+
+
+def sides(low, high, radius):
+    """Yield each side of a rounded rectangle anticlockwise: guide with w inwards, start, end, then the centre and angle of its corner."""
+    (x0, y0), (x1, y1), r = low[:2], high[:2], radius
+    for k, (start, end, centre) in enumerate((
+            ((x1, y0 + r), (x1, y1 - r), (x1 - r, y1 - r)), ((x1 - r, y1), (x0 + r, y1), (x0 + r, y1 - r)),
+            ((x0, y1 - r), (x0, y0 + r), (x0 + r, y0 + r)), ((x0 + r, y0), (x1 - r, y0), (x1 - r, y0 + r)))):
+        dx, dy = np.sign(end[0] - start[0]), np.sign(end[1] - start[1])
+        yield Guide(0, *start, dx, dy), start, end, centre, k * math.pi / 2
+
+
+def block_with_pocket():
+    """Return the faces of the block."""
+    faces = [level_face(TAGS["top"], TOP, rounded(BLOCK_LOW, BLOCK_HIGH, 0.0) + rounded(POCKET_LOW, POCKET_HIGH, CORNER)),
+             level_face(TAGS["floor"], FLOOR, rounded(np.add(POCKET_LOW, FILLET), np.subtract(POCKET_HIGH, FILLET), CORNER - FILLET)),
+             level_face(TAGS["bottom"], 0.0, rounded(BLOCK_LOW, BLOCK_HIGH, 0.0), -1.0)]
+    for k, (guide, start, end, *_) in enumerate(sides(BLOCK_LOW, BLOCK_HIGH, 0.0)):
+        faces.append(_swept(TAGS["outside"] + k, guide, Profile(0.0, 0.0, 0.0, 1.0), 0.0, TOP, 0.0, math.dist(start, end), -1.0))
+    for k, (guide, start, end, centre, angle) in enumerate(sides(POCKET_LOW, POCKET_HIGH, CORNER)):
+        length, about, quarter = math.dist(start, end), Guide(1, *centre), angle + math.pi / 2
+        faces.append(_swept(TAGS["wall"] + k, guide, Profile(0.0, 0.0, 0.0, 1.0), FLOOR + FILLET, TOP, 0.0, length, 1.0))
+        faces.append(_swept(TAGS["corner"] + k, about, Profile(CORNER, 0.0, 0.0, 1.0), FLOOR + FILLET, TOP, angle, quarter, -1.0))
+        faces.append(_swept(TAGS["fillet"] + k, guide, Profile(FILLET, FLOOR + FILLET, radius=FILLET), math.pi, 1.5 * math.pi, 0.0, length,
+                            -1.0))
+        faces.append(_swept(TAGS["corner fillet"] + k, about, Profile(CORNER - FILLET, FLOOR + FILLET, radius=FILLET), 1.5 * math.pi,
+                            2 * math.pi, angle, quarter, -1.0))
+    return surfaces_from(faces)
+
+
+def _swept(tag, guide, profile, u0, u1, s0, s1, side):
+    edges = line_edges(np.array([[s0, u0], [s1, u0], [s1, u1], [s0, u1], [s0, u0]]))
+    return Face(tag, strips_of(guide, profile, edges, side), np.zeros((0, STRIP_COLUMNS)), np.zeros((0, 4)))
+
+
+BLANK = Blank(frame=WORLD, low=BLOCK_LOW, high=(30.0, 18.0, 20.0), material="test", density=2.8)
+SETUP = Setup(name="S1", frame=WORLD, work_offset="G54", clearance=30.0, machine="test mill")
+MACHINE = Machine(name="test mill", title="test mill", axes=tuple(Axis(name=n, kind="linear", low=0.0, high=600.0, rapid=20000.0,
+                  acceleration=3000.0) for n in "XYZ"), spindle_low=100.0, spindle_high=20000.0, power=((100.0, 1.0), (20000.0, 20.0)),
+                  feed_max=10000.0, tool_change_s=5.0, tool_places=20)
+FACING, POCKETING = flat(16.0)(number=1), bull(6.0, 2.0)(flute=8.0, number=2)
+
+
+def facing(z=TOP):
+    """Return the stops of rows that face the block's top."""
+    stops = [(-45.0, -18.0, 30.0), (-45.0, -18.0, z)]
+    for k, y in enumerate(np.linspace(-18.0, 18.0, 4)):
+        left, right = (-45.0, y, z), (45.0, y, z)
+        stops += [left, right] if k % 2 == 0 else [right, left]
+    return [*stops, (*stops[-1][:2], 30.0)]
+
+
+def ring(off, z, tool_radius=3.0):
+    """Return the stops of one ring around the pocket, its cutter `off` mm clear of the walls, as points and (point, arc centre)."""
+    d = tool_radius + off
+    radius = max(CORNER - d, 0.0)
+    stops = []
+    for _, start, end, centre, _ in sides(np.add(POCKET_LOW, d), np.subtract(POCKET_HIGH, d), radius):
+        if not stops:
+            stops.append((*start, z))
+        stops.append((*end, z))
+        if radius:
+            turn = (end[0] - centre[0], end[1] - centre[1])
+            stops.append(((centre[0] - turn[1], centre[1] + turn[0], z), centre))
+    return stops
+
+
+def pocketing(skip_walls=False, approach=20.5):
+    """Return the stops that clear the pocket by rings from the middle out, level by level; walls, fillets and floor are finished by it."""
+    offs = [6.0, 4.5, 3.0, 1.5] if skip_walls else [6.0, 4.5, 3.0, 1.5, 0.0]
+    stops = [(-4.0, 0.0, 30.0), (-4.0, 0.0, approach)]
+    for z in (16.0, 14.0, 12.0, 10.0, FLOOR):
+        stops += [(-4.0, 0.0, z), (14.0, 0.0, z)]
+        for off in offs:
+            stops += ring(off, z)
+        stops.append((-4.0, 0.0, z))
+    return [*stops, (-4.0, 0.0, 30.0)]
+
+
+def proof(*sections, blank=BLANK, tools=(POCKETING,), progress=QUIET, **choices):
+    """Return the verdict on sections that cut the block."""
+    program = Program(name="test", setup=SETUP, sections=sections)
+    chosen = ProofSettings(**{"cell": 0.5, "spacing": 1.0, **choices})
+    return prove_surfaces((program,), (block_with_pocket(),), blank, tools, MACHINE, chosen, progress, planned_faces=range(1, 24))
+
+
+def clean_plan(pocket=None, tool=POCKETING, extra=()):
+    """Return the sections of the clean plan; `extra` are feed stops added at the end of the pocket's, from above and up again."""
+    face = program_section(FACING, facing(), operation="face", rapid_to=1)
+    stops = pocketing() if pocket is None else pocket
+    if extra:
+        stops = [*stops, (*extra[0][:2], 30.0), *extra, (*extra[-1][:2], 30.0)]
+    return face, program_section(tool, stops, operation="pocket", rapid_to=1)
