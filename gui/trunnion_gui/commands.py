@@ -74,8 +74,8 @@ class History:
         self._at = min(self._at + 1, len(self._entries) - 1)
         return self.session
 
-    def mark_saved(self, session: Session) -> None:
-        """Remember which session is in the file."""
+    def mark_saved(self, session: Session | None) -> None:
+        """Remember which session is in the file; None when there is no file."""
         self._saved = session
 
 

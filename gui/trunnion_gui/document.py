@@ -24,6 +24,7 @@ from trunnion.settings import Value
 from trunnion_gui import commands
 from trunnion_gui.commands import Edit, History
 from trunnion_gui.i18n import tr
+from trunnion_gui.steps import until
 from trunnion_gui.worker import ENGINE, Group, Opened, Reply, State, Worker
 
 
@@ -45,6 +46,7 @@ class Job:
     label: str
     started: float
     path: str = ""
+    is_recovery: bool = False
 
 
 NOTHING = Selection()
@@ -81,6 +83,7 @@ class Document(QObject):
         self.running_step = ""
         self._quiet: dict[int, str] = {}
         self._then = ""
+        self._settled: dict[str, str] = {}
         self._kept = (b"", "")
         self.worker = Worker(factory, self)
         self.worker.replied.connect(self._receive)
@@ -104,19 +107,23 @@ class Document(QObject):
 
     # jobs
 
-    def open(self, path: str | Path, solid: int | None = None) -> None:
-        """Open a part or a project file."""
+    def open(self, path: str | Path, solid: int | None = None, *, is_recovery: bool = False) -> None:
+        """Open a part or a project file; what is recovered from an autosave still has to be saved."""
         if self._is_free():
-            name = Path(path).name
-            self._start("open", tr("opening {name}").format(name=name), str(path), solid, path=str(path))
+            label = tr("opening {name}").format(name=Path(path).name)
+            self._start("open", label, str(path), solid, path=str(path), is_recovery=is_recovery)
 
     def run(self, last: str, label: str) -> None:
         """Compute what is stale up to and including a step. Asked while a file is being opened, it runs right after."""
         if self.job is not None and self.job.verb == "open":
             self._then = last
             return
-        if self._is_free() and self._needs_part():
-            self._start("run", label, self.session, last)
+        if not (self._is_free() and self._needs_part()):
+            return
+        if self._is_done(last):
+            self.notice(tr("{job}: everything is up to date").format(job=label), severity=Severity.INFO)
+            return
+        self._start("run", label, self.session, last)
 
     def program(self) -> None:
         """Do the whole line."""
@@ -251,8 +258,13 @@ class Document(QObject):
                         severity=Severity.WARNING)
         return self.has_part
 
-    def _start(self, verb: str, label: str, *arguments: Any, path: str = "") -> None:
-        self.job = Job(self.worker.ask(verb, *arguments), verb, label, time.monotonic(), path)
+    def _is_done(self, last: str) -> bool:
+        """Whether nothing is stale up to a step; while the states of a fresh edit are still asked for, nobody knows."""
+        return "states" not in self._quiet.values() and all(self.states.get(s) in ("done", "problem") for s in until(last))
+
+    def _start(self, verb: str, label: str, *arguments: Any, path: str = "", is_recovery: bool = False) -> None:
+        self._settled = self.states
+        self.job = Job(self.worker.ask(verb, *arguments), verb, label, time.monotonic(), path, is_recovery)
         self.job_changed.emit()
         self.progressed.emit(0.0, label)
 
@@ -329,8 +341,7 @@ class Document(QObject):
 
     def _finish(self, job: Job, reply: Reply) -> None:
         if reply.kind != "done":
-            self._show(self.session)
-            self._ask_states()
+            self._show(self.session, self._settled)
             if reply.kind == "failed":
                 self.notice(reply.text)
             elif reply.kind == "crashed":
@@ -338,7 +349,7 @@ class Document(QObject):
                             tr("your session is unchanged; try again, or save and report the part"))
             return
         if job.verb == "open":
-            self._install(job.path, reply.value)
+            self._install(job, reply.value)
         elif job.verb == "run":
             self.history.push(job.label, reply.value.session)
             self._show(reply.value.session, reply.value.steps)
@@ -350,14 +361,17 @@ class Document(QObject):
         elif job.verb == "write":
             self.written.emit((job.path, reply.value))
 
-    def _install(self, path: str, opened: Opened) -> None:
-        self.path = path
-        self.project = path if path.endswith(PROJECT) else ""
+    def _install(self, job: Job, opened: Opened) -> None:
+        part = opened.state.session.part
+        self.path = part.path if job.is_recovery and part is not None else job.path
+        self.project = job.path if job.path.endswith(PROJECT) and not job.is_recovery else ""
         self.history = History(opened.state.session)
+        if job.is_recovery:
+            self.history.mark_saved(None)
         self.mesh, self._kept = opened.mesh, opened.kept
         self.selection = NOTHING
         self.shown, self.states = opened.state.session, opened.state.steps
         self.mesh_changed.emit()
         self.selected.emit(NOTHING)
         self.changed.emit()
-        self.opened.emit(path)
+        self.opened.emit(self.path)

@@ -128,7 +128,7 @@ def make_field(setting: Declared) -> QWidget:
     if setting.choices:
         choice = Choice()
         for word in setting.choices:
-            choice.addItem(tr(str(word)), word)
+            choice.addItem(tr(word) if word else tr("automatic"), word)
         choice.setFixedWidth(_FIELD_WIDTH)
         return choice
     if setting.kind in (int, float):

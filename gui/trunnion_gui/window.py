@@ -457,4 +457,15 @@ class Window(QMainWindow):
         if left is not None:
             finding = Finding(severity=Severity.INFO, code="window", text=tr("The last session ended without being saved"),
                               remedy=tr("take it up where it ended, or throw it away"))
-            self.centre.notice.tell(finding, {tr("Recover"): partial(self.document.open, str(left)), tr("Discard"): left.unlink})
+            self.centre.notice.tell(finding, {tr("Recover"): partial(self._recover, left), tr("Discard"): left.unlink})
+
+    def _recover(self, left: Path) -> None:
+        """Take up a session that was left behind; its file goes once the session is kept in one of our own."""
+
+        def keep() -> None:
+            if self.document.has_part:
+                self.document.opened.disconnect(keep)
+                left.replace(remembered.autosave_file())
+
+        self.document.opened.connect(keep)
+        self.document.open(left, is_recovery=True)

@@ -17,7 +17,7 @@ import signal
 import threading
 import time
 from collections.abc import Callable
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from multiprocessing.connection import Connection
 from typing import Any
 
@@ -129,9 +129,23 @@ def _write(engine: Any, progress: Progress, _tell: Tell, session: Session, folde
 
 
 def _settings(engine: Any, _progress: Progress, _tell: Tell) -> dict[str, tuple[Group, ...]]:
-    return {step: tuple(Group(c.GROUP, _title(c), declared(c)) for c in classes) for step, classes in engine.settings().items()}
+    return {step: tuple(Group(c.GROUP, _title(c), tuple(_offered(d) for d in declared(c))) for c in classes)
+            for step, classes in engine.settings().items()}
 
 
+def _offered(setting: Declared) -> Declared:
+    """Return a setting with the catalogue's names as its choices where it names a material or a machine."""
+    catalogue = _CATALOGUES.get(setting.key)
+    if catalogue is None or setting.choices:
+        return setting
+    from trunnion.shop import load_shop
+
+    names = dict.fromkeys((str(setting.default), *sorted(getattr(load_shop(), catalogue))))
+    return replace(setting, choices=tuple(names))
+
+
+_CATALOGUES = {"blank.material": "materials", "setup.machine": "machines"}
+"""Settings that name a thing of a catalogue: the form offers what there is."""
 VERBS: dict[str, Callable[..., Any]] = {
     "open": _open, "run": _run, "states": _states, "attach": _attach, "save": _save, "write": _write, "settings": _settings}
 

@@ -216,6 +216,36 @@ def test_a_session_left_behind_is_offered(make_window, tmp_path):
     assert "without being saved" in window.centre.notice.text
 
 
+def test_a_recovered_session_still_has_to_be_saved(make_window, programmed, idle):
+    left = remembered.autosave_file().with_name("autosave-999999999.trunnion")
+    programmed.document.autosave(left)
+    idle(programmed)
+    window = make_window()
+    QTest.mouseClick(next(b for b in window.centre.notice.findChildren(QPushButton) if b.text() == "Recover"), LEFT)
+    idle(window)
+    assert window.document.session.verdict is not None
+    assert window.document.history.is_dirty and window.document.project == ""
+    assert not left.exists()
+
+
+def test_what_is_up_to_date_is_not_computed_again(programmed, idle):
+    before = programmed.document.session
+    programmed.document.program()
+    assert not programmed.document.is_busy and programmed.document.session is before
+    assert "up to date" in programmed.centre.notice.text
+
+
+def test_a_row_dragged_onto_another_moves_in_front_of_it(programmed, idle):
+    tree, target = programmed.process.tree, programmed.process.item("op-04")
+    programmed.process.tree.parentWidget().parentWidget().raise_()
+    tree.setCurrentItem(programmed.process.item("op-06"))
+    at = tree.visualItemRect(target).topLeft() + QPoint(4, 2)
+    tree.dropEvent(QDropEvent(QPointF(at), Qt.DropAction.MoveAction, QMimeData(), LEFT, Qt.KeyboardModifier.NoModifier))
+    idle(programmed)
+    order = [o.id for o in programmed.document.session.process.operations]
+    assert order.index("op-06") == order.index("op-04") - 1
+
+
 def test_the_listing_shows_the_selected_operations_motions(programmed):
     programmed.listing.parentWidget().raise_()
     programmed.document.select_operation("op-02")

@@ -35,6 +35,8 @@ VIEWS: dict[str, tuple[tuple[float, float, float], tuple[float, float, float]]] 
 }
 """Where the eye stands and what is up, in the frame of the recognition."""
 
+_ROOM = 1.12
+"""How much more than the part a fitted picture shows."""
 _CLICK = 4
 """A press and a release this many pixels apart are a click; further apart they turn the part."""
 _FADED = 0.8
@@ -144,8 +146,10 @@ class Scene(QWidget):
 
     def fit(self) -> None:
         """Fit everything into the picture."""
-        self.view.reset_camera(bounds=self._bounds())
-        self.view.camera.zoom(1.15)
+        bounds = self._bounds()
+        self.view.reset_camera(bounds=bounds)
+        if bounds is not None:
+            self.view.camera.parallel_scale = self._tight_scale(bounds)
         self.view.render()
 
     def section(self, share: float | None) -> None:
@@ -223,6 +227,18 @@ class Scene(QWidget):
                 own = "#{:02x}{:02x}{:02x}".format(*colours[tag])
                 colours[tag] = rgb(mixed(own, theme.selection, 0.85 if self._is_filled else 0.0))
         return colours
+
+    def _tight_scale(self, bounds: tuple[float, ...]) -> float:
+        """Return half the height of the picture in mm that shows a box with a little room around it."""
+        camera = self.view.camera
+        forward = np.subtract(camera.focal_point, camera.position)
+        forward = forward / np.linalg.norm(forward)
+        right = np.cross(forward, camera.up)
+        right = right / np.linalg.norm(right)
+        corners = np.array([[bounds[i], bounds[2 + j], bounds[4 + k]] for i in (0, 1) for j in (0, 1) for k in (0, 1)])
+        away = corners - camera.focal_point
+        wide, high = np.abs(away @ right).max(), np.abs(away @ np.cross(right, forward)).max()
+        return float(max(high, wide * self.view.height() / max(self.view.width(), 1)) * _ROOM)
 
     def _bounds(self) -> tuple[float, ...] | None:
         if self._mesh is None:

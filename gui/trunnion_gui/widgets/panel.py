@@ -17,8 +17,8 @@ from trunnion_gui.widgets.foldout import Foldout
 from trunnion_gui.words import duration
 from trunnion_gui.worker import Group
 
-_FEW = 1
-"""So many groups of settings are shown open; more are folded."""
+_FEW = 4
+"""The first group of a step is shown open when it has at most so many settings; everything else is folded."""
 
 
 class Panel(Foldout):
@@ -116,10 +116,9 @@ class Panel(Foldout):
     def _make_forms(self) -> None:
         self._settings_shown = self.document.groups
         groups = [g for step in self.stage.steps for g in self.document.groups.get(step, ()) if g.settings]
-        folded = self.folds_settings or len(groups) > _FEW
-        for group in groups:
+        for n, group in enumerate(groups):
             form = self._form(group)
-            if not folded:
+            if n == 0 and len(group.settings) <= _FEW and not self.folds_settings:
                 self._settings.addWidget(form)
                 continue
             foldout = Foldout(tr("{group} settings").format(group=tr(group.title)), is_group=True)
