@@ -13,12 +13,9 @@ from trunnion.geometry.curve import Curve
 from trunnion.toolpath.builder import PathBuilder
 from trunnion.toolpath.entry import ramp_along, ramp_round
 from trunnion.toolpath.lead import cut_closed, enter, fitting_lead, from_free, leave
-from trunnion.toolpath.link import step_aside, top_under
+from trunnion.toolpath.link import may_plunge, step_aside, top_under
 from trunnion.toolpath.order import nearest_first
 from trunnion.toolpath.reach import Room, parts_where, points_along
-
-SKIN = 0.6
-"""mm of material that a cutter may plunge into beside a contour: what roughing leaves on a floor."""
 
 PAST = (1.2, 0.6, 0.3)
 """Of the cutter's radius: how far past its end an open wall is followed, as far as there is room."""
@@ -83,7 +80,7 @@ def cut_open(builder: PathBuilder, part: Curve, z: float, room: Room, approach: 
     lead, free = fitting_lead(begin, heading, approach.radius, room, leaves=False), False
     if lead is not None:
         lead, free = from_free(builder, lead, heading, z, room)
-    if lead is not None and (free or top_under(builder, lead.before) - z < SKIN):
+    if lead is not None and (free or may_plunge(builder, lead.before, z)):
         enter(builder, lead, begin, z, feed)
     else:
         ramp_along(builder, part, max(top_under(builder, p) for p in part.points), z, approach.ramp)

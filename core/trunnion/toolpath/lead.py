@@ -12,7 +12,7 @@ from trunnion.geometry.arrays import Floats
 from trunnion.geometry.curve import Curve
 from trunnion.model.toolpath import Mark
 from trunnion.toolpath.builder import PathBuilder
-from trunnion.toolpath.link import is_free, travel
+from trunnion.toolpath.link import is_free, may_plunge, travel
 from trunnion.toolpath.reach import Room
 
 SHARES = (1.0, 0.6, 0.35, 0.2)
@@ -65,7 +65,7 @@ def cut_closed(builder: PathBuilder, loop: Curve, z: float, room: Room, feed: fl
     """Cut a closed contour from its best start, with a lead in, `rounds` times round, an overlap and a lead out.
 
     The best start has room for the largest lead, in a place that is certainly free, in the middle of a long straight. Say whether
-    there was room for a lead; nothing is cut otherwise.
+    a lead was found that begins in the room and in no full material; nothing is cut otherwise.
     """
     start = _best_start(builder, loop, z, room, radius)
     if start is None:
@@ -124,6 +124,8 @@ def _best_start(builder: PathBuilder, loop: Curve, z: float, room: Room, radius:
         if found is None:
             continue
         lead, free = from_free(builder, found, tangent, z, room)
+        if not free and not may_plunge(builder, lead.before, z):
+            continue
         worth = (free, lead.radius)
         if best is None or worth > best[0]:
             best = (worth, s, lead)

@@ -17,6 +17,9 @@ from trunnion.toolpath.reach import Room
 RIM = 2.0
 """Cells at the cutter's rim that may straddle a wall."""
 
+SKIN = 0.6
+"""mm of material that a cutter may go straight down into: what roughing leaves on a floor."""
+
 ASIDE = 1.5
 """mm that a cutter steps aside from a wall before it is lifted."""
 
@@ -43,6 +46,11 @@ def top_under(builder: PathBuilder, start: ArrayLike, radius: float = 0.0, end: 
     """
     stock = builder.stock()
     return stock.height(start, start if end is None else end, max(builder.tool.radius + radius - RIM * stock.cell, stock.cell))
+
+
+def may_plunge(builder: PathBuilder, place: ArrayLike, z: float) -> bool:
+    """Say whether so little material is under the cutter at a place that it may go straight down to height `z`."""
+    return top_under(builder, place) - z <= SKIN
 
 
 def travel(builder: PathBuilder, place: ArrayLike, z: float) -> None:
