@@ -135,6 +135,12 @@ def test_a_corner_sharper_than_any_cutter_is_an_error_with_a_remedy():
     assert told.code == "route.no-cutter" and "no tool is small enough" in told.text and told.remedy
 
 
+def test_a_sharp_inner_corner_is_cut_as_far_as_cutters_go_and_told():
+    tree = route(with_sizes(panel(), "pocket-01", corner_radius=0.0))
+    assert [f.code for f in tree.findings] == ["route.sharp-corner"]
+    assert any(o.id == "wall-pocket-01" for o in tree.operations)
+
+
 def test_a_fillet_no_cutter_has_is_stepped_and_told():
     tree = route(with_sizes(panel(), "pocket-01", floor_fillet=2.8))
     assert [f.code for f in tree.findings] == ["route.fillet"]

@@ -161,6 +161,10 @@ def _wishes_wall(draft: Draft, stage: Stage, features: Sequence[Feature]) -> lis
     def make(feature: Feature, bands: tuple[Band, ...]) -> Wish:
         islands = [tag for island in draft.space.islands_of(feature) for tag in island.with_role("wall", "corner", "floor_fillet")]
         faces = (*feature.with_role("wall", "corner", "floor_fillet"), *islands)
+        if feature.sizes.get("corner_radius") == 0.0:
+            draft.findings.append(warning(
+                "route.sharp-corner", f"{feature.id}: two of its walls meet in a sharp inner edge; the cutter leaves its radius there",
+                feature.id, *face_tags(feature.with_role("wall")), remedy="give the corner a radius, or finish it by other means"))
         task = _with_known_fillet(draft, stage, feature, _wall_task(draft, feature, bands))
         fine = candidates(task, catalogue(draft, stage), draft.settings.reach_clearance).tools
         if fine and all(t.stickout / t.diameter > draft.settings.slender for t in fine):
