@@ -188,7 +188,7 @@ def test_going_up_for_a_tool_change_is_a_rapid_like_any_other():
 
 def test_another_spindle_speed_begins_a_section_of_the_same_operation():
     again = read("(OPERATION a)\nG1 Z-5 F100\nS4000\nG1 X9")
-    assert [(s.operation, s.spindle) for s in again.sections] == [("line 4", 0.0), ("a", 9000.0), ("a", 4000.0)]
+    assert [(s.operation, s.spindle) for s in again.sections] == [("line 4", 9000.0), ("a", 9000.0), ("a", 4000.0)]
     assert again.sections[2].path.position.tolist() == [[0.0, 0.0, -5.0], [9.0, 0.0, -5.0]]
 
 

@@ -192,7 +192,7 @@ class _Reader:
             raise BadInput(f"line {line}: a move before a tool is loaded; put LOADTL first")
         point = (x * scale, y * scale, z * scale)
         if self.rapid and self.circle is None:
-            self.sections.rapid(line, point, tool)
+            self.sections.rapid(line, point, tool, (self.spindle, self.coolant))
             self.rapid = False
             return
         self.rapid = False

@@ -219,7 +219,7 @@ class _Control:
         if point is None:
             return
         if motion == Motion.RAPID:
-            self.sections.rapid(line, point, tool)
+            self.sections.rapid(line, point, tool, (self.spindle, self.coolant))
             return
         if not self.turning:
             raise BadInput(f"line {line}: a feed move while the spindle stands; give S and M3 first")
@@ -272,7 +272,7 @@ class _Control:
         if self.motion != Motion.RAPID or words.get("Z") != 0.0 or "X" in words or "Y" in words:
             raise BadInput(f"line {line}: of G53 only G53 G0 Z0, straight up to the top of the machine, is understood")
         if self.tool is not None:
-            self.sections.lift(line, self.tool)
+            self.sections.lift(line, self.tool, (self.spindle, self.coolant))
         self.over = None
 
     def centre(self, block: Block, motion: Motion, end: Point) -> Point:

@@ -19,11 +19,12 @@ NOWHERE = (math.nan, math.nan, math.nan)
 
 @dataclass(slots=True, kw_only=True)
 class _Open:
-    """A section that still grows; `cutting` is spindle and coolant at its first feed move."""
+    """A section that still grows; `cutting` is spindle and coolant at its first feed move, `idle` at its last rapid before."""
 
     operation: str
     tool: Tool
     cutting: tuple[float, str] | None = None
+    idle: tuple[float, str] = (0.0, "off")
     position: list[Point] = field(default_factory=list)
     motion: list[int] = field(default_factory=list)
     centre: list[Point] = field(default_factory=list)
@@ -37,7 +38,7 @@ class _Open:
         motion = np.array(self.motion)
         path = Toolpath(position=np.array(self.position), axis=axis, motion=motion, centre=np.array(self.centre),
                         feed=np.array(self.feed), mark=np.where(motion == Motion.RAPID, Mark.RETRACT, Mark.CUT))
-        spindle, coolant = self.cutting or (0.0, "off")
+        spindle, coolant = self.cutting or self.idle
         return ProgramSection(operation=self.operation, tool=self.tool, spindle=spindle, path=path, coolant=coolant,
                               block_lines=tuple(self.line))
 
@@ -70,15 +71,15 @@ class Sections:
             self._operation = "" if began_with_it else self._operation
         self.at = None
 
-    def lift(self, line: int, tool: Tool) -> None:
+    def lift(self, line: int, tool: Tool, state: tuple[float, str]) -> None:
         """Take the tool straight up out of sight (G53 G0 Z0)."""
         if self.at is not None:
             if self.at[2] < self.clearance - tolerance.WRITTEN:
-                self.rapid(line, (self.at[0], self.at[1], self.clearance), tool)
+                self.rapid(line, (self.at[0], self.at[1], self.clearance), tool, state)
             self.at = None
 
-    def rapid(self, line: int, point: Point, tool: Tool) -> None:
-        """Add a rapid to a point."""
+    def rapid(self, line: int, point: Point, tool: Tool, state: tuple[float, str]) -> None:
+        """Add a rapid to a point; `state` is spindle and coolant, for a section that cuts nothing."""
         if self._open is None:
             self._begin(line, tool)
             first = self.at if self.at is not None else (point[0], point[1], max(point[2], self.clearance))
@@ -86,6 +87,8 @@ class Sections:
             if low or (self.at is None and point[2] < self.clearance - tolerance.WRITTEN):
                 self._add(line, Motion.RAPID, first, NOWHERE, 0.0)
         self._add(line, Motion.RAPID, point, NOWHERE, 0.0)
+        if self._open is not None:
+            self._open.idle = state
 
     def feed(self, line: int, motion: Motion, point: Point, centre: Point, feed: float, tool: Tool, cutting: tuple[float, str]) -> None:
         """Add a feed move, a line or an arc, with the spindle and coolant it runs with."""
