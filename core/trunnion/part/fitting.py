@@ -1,0 +1,68 @@
+"""Few arcs through many points of a smooth plane curve."""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+
+from trunnion import tolerance
+from trunnion.geometry.arrays import Floats
+
+
+def arcs_through(points: Floats, within: float = tolerance.FITTED) -> tuple[Floats, Floats]:
+    """Return points (m, 2) out of `points` (k, 2), first and last among them, and bulges (m - 1,) of arcs that pass all within a distance.
+
+    Every arc goes through its two ends and the point in the middle between them, and is as long as the distance allows.
+    """
+    kept, bulges, at = [0], [], 0
+    while at < len(points) - 1:
+        best, bulge, step = at + 1, 0.0, 2
+        while True:
+            end = min(at + step, len(points) - 1)
+            found = _arc(points[at:end + 1], within) if end > at + 1 else None
+            if found is None:
+                break
+            best, bulge = end, found
+            if end == len(points) - 1:
+                break
+            step *= 2
+        low, high = best, min(at + step, len(points) - 1)
+        while high - low > 1:
+            middle = (low + high) // 2
+            found = _arc(points[at:middle + 1], within)
+            if found is None:
+                high = middle
+            else:
+                low, best, bulge = middle, middle, found
+        kept.append(best)
+        bulges.append(bulge)
+        at = best
+    return points[kept], np.array(bulges)
+
+
+def _arc(points: Floats, within: float) -> float | None:
+    """Return the bulge of the line or arc from first to last point that passes all points within a distance, or None."""
+    start, end = points[0], points[-1]
+    chord = end - start
+    size = math.hypot(*chord)
+    if size < tolerance.COINCIDENT:
+        return None
+    along, across = chord / size, np.array([-chord[1], chord[0]]) / size
+    flat = np.stack([(points - start) @ along, (points - start) @ across], axis=1)
+    if np.abs(flat[:, 1]).max() < 0.1 * within:
+        return 0.0
+    x, y = flat[len(flat) // 2]
+    # Circle through (0, 0), (size, 0) and (x, y); its centre is (size / 2, k).
+    if abs(y) < tolerance.PARAMETRIC:
+        return None
+    k = (x * x + y * y - size * x) / (2.0 * y)
+    radius = math.hypot(0.5 * size, k)
+    if np.abs(np.hypot(flat[:, 0] - 0.5 * size, flat[:, 1] - k) - radius).max() > within:
+        return None
+    angles = np.unwrap(np.arctan2(flat[:, 1] - k, flat[:, 0] - 0.5 * size))
+    sweep = float(angles[-1] - angles[0])
+    turns = np.diff(angles)
+    if abs(sweep) > math.pi or ((turns > 0.0).any() and (turns < 0.0).any()):
+        return None
+    return math.tan(0.25 * sweep)
