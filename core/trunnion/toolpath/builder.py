@@ -60,7 +60,9 @@ class PathBuilder:
     def stock(self) -> PlanningStock:
         """Return the stock as the moves so far leave it."""
         if self._known < len(self):
-            self._stock = self._stock.after(self._made(max(self._known - 1, 0)), self.tool)
+            if self._known == 0:
+                self._stock = self._stock.working()
+            self._stock.lower(self._made(max(self._known - 1, 0)), self.tool)
             self._known = len(self)
         return self._stock
 

@@ -58,19 +58,40 @@ class PlanningStock:
 
     def after(self, path: Toolpath, tool: Tool) -> PlanningStock:
         """Return the stock after the feed moves of a path."""
+        made = self.working()
+        made.lower(path, tool)
+        return replace(made, heights=_fixed(made.heights))
+
+    def working(self) -> PlanningStock:
+        """Return a copy that `lower` may change."""
+        return replace(self, heights=self.heights.copy())
+
+    def lower(self, path: Toolpath, tool: Tool) -> None:
+        """Take the feed moves of a path off this very field, which must be a `working` copy."""
         starts, ends, error = chords(path)
-        heights = self.heights.copy()
-        heightfield.lower(heights, self.corner[0], self.corner[1], self.cell, starts, ends, tool.radius - error, min(
-            tool.corner_radius, tool.radius - error))
-        return replace(self, heights=_fixed(heights))
+        radius = tool.radius - error
+        heightfield.lower(self.heights, self.corner[0], self.corner[1], self.cell, starts, ends, radius, min(tool.corner_radius, radius))
 
     def height(self, start: ArrayLike, end: ArrayLike, radius: float) -> float:
         """Return the greatest height that a disc may touch on its way from `start` to `end` (2,), or -inf over nothing."""
         a, b = np.asarray(start, dtype=np.float64)[:2], np.asarray(end, dtype=np.float64)[:2]
         return float(heightfield.highest(self.heights, self.corner[0], self.corner[1], self.cell, a, b, radius))
 
+    def is_clear(self, z: float, area: Region) -> bool:
+        """Say whether no cell in an area is higher than `z`; an area without cells is."""
+        if not area:
+            return True
+        some = self._above(z, area)
+        # Most areas that are not clear show it at a few places; only then are all of them looked at.
+        few = some[:: max(1, len(some) // 64)]
+        return not (len(few) and area.contains(few).any()) and not (len(some) and area.contains(some).any())
+
     def places_above(self, z: float, area: Region) -> Floats:
         """Return the centres (k, 2) of the cells in an area that are higher than `z`."""
+        centres = self._above(z, area)
+        return centres[area.contains(centres)] if len(centres) else centres
+
+    def _above(self, z: float, area: Region) -> Floats:
         if not area:
             return np.zeros((0, 2))
         low, high = area.box()
@@ -79,8 +100,7 @@ class PlanningStock:
         if (last <= first).any():
             return np.zeros((0, 2))
         rows = np.argwhere(self.heights[first[0] : last[0], first[1] : last[1]] > z)
-        centres = self.corner + (rows + first + 0.5) * self.cell
-        return centres[area.contains(centres)] if len(centres) else centres
+        return self.corner + (rows + first + 0.5) * self.cell
 
     def box(self) -> tuple[Floats, Floats]:
         """Return the lowest and highest corner (2,) of the field."""

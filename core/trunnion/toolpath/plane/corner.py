@@ -76,12 +76,15 @@ def corner(drive: PlaneDrive, tool: Tool, data: CuttingData, stock: PlanningStoc
         rooms: dict[float, tuple[Room, tuple[Curve, ...]]] = {}
         for rest in nearest_first(rests, lambda: builder.here, lambda r, p: abs(float(r.signed_distance(p)[0]))):
             clip, touched = rest.offset(tool.radius + OVERRUN), rest.offset(tool.radius - TOUCH)
+            beside: dict[float, list[Curve]] = {}
             for height in heights:
                 progress.check()
                 if height.distance not in rooms:
                     rooms[height.distance] = _passes(level, height.distance, step, _reaching(rests, tool))
                 room, rims = rooms[height.distance]
-                for part in _beside(rims, clip, touched):
+                if height.distance not in beside:
+                    beside[height.distance] = list(_beside(rims, clip, touched))
+                for part in beside[height.distance]:
                     if part.closed:
                         cut_parts(builder, [part], height.z, room, approach)
                     else:

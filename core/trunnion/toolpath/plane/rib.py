@@ -61,7 +61,7 @@ def rib_top(drive: PlaneDrive, tool: Tool, data: CuttingData, stock: PlanningSto
         rings = ring_tree(over, manner.step)
         for z in steps_down(above, level.bottom, data.depth):
             progress.at((drive.top - z) / max(drive.top - drive.bottom, tolerance.SEW), f"{drive.feature}: layer at {z:.3f}")
-            if stock.places_above(z + tolerance.COINCIDENT, level.wanted).size:
+            if not stock.is_clear(z + tolerance.COINCIDENT, level.wanted):
                 clear(builder, Layer(z=z, rings=rings, room=room, top=None), manner, progress)
             above = z
         left = level.wanted.minus(over.offset(_flat(tool) + tolerance.SEW)).area

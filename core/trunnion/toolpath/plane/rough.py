@@ -24,6 +24,9 @@ from trunnion.toolpath.stock import PlanningStock
 SMALLEST_LEFTOVER = 1.0
 """mm2: less that is left needs no word."""
 
+RIM = 3.0
+"""Cells at the rim of an area that a wall may keep high though everything is cut."""
+
 RIDGE = 0.3
 """mm: highest ridge between passes of a cutter with a rounded end; the next layer or the floor's finish takes it away."""
 
@@ -82,8 +85,8 @@ def _foot(drive: PlaneDrive, tool: Tool, z: float) -> float:
 def _is_clear(builder: PathBuilder, wanted: Region, z: float) -> bool:
     """Say whether the stock has nothing left above `z` over an area, its rim not looked at."""
     stock = builder.stock()
-    inner = wanted.offset(-3.0 * stock.cell)
-    return bool(inner) and not len(stock.places_above(z + tolerance.COINCIDENT, inner))
+    inner = wanted.offset(-RIM * stock.cell)
+    return bool(inner) and stock.is_clear(z + tolerance.COINCIDENT, inner)
 
 
 def _left(drive: PlaneDrive, level: DriveLevel, tool: Tool, made: dict[float, Passes]) -> list[Finding]:
