@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import os
+import sys
 import time
 from collections.abc import Callable
 from pathlib import Path
@@ -10,6 +11,8 @@ from typing import TYPE_CHECKING
 
 if TYPE_CHECKING:
     from PySide6.QtCore import QCoreApplication
+
+    from trunnion_gui.window import Window
 
 
 def shoot(part: str | Path, picture: str | Path, *, prepare: Callable[..., None] | None = None, size: tuple[int, int] = (1600, 1000),
@@ -47,6 +50,39 @@ def shoot(part: str | Path, picture: str | Path, *, prepare: Callable[..., None]
         window.close()
 
 
+def shoot_all(folder: str | Path) -> tuple[Path, ...]:
+    """Write the pictures of the documentation into a folder: the sample part with its features, and programmed, light and dark."""
+    from importlib.resources import as_file
+
+    import trunnion_resources
+
+    folder = Path(folder)
+    folder.mkdir(parents=True, exist_ok=True)
+    wanted = (("features", "route", "light", _show_feature), ("window", "verify", "light", _show_operation),
+              ("window-dark", "verify", "dark", _show_operation))
+    with as_file(trunnion_resources.sample("B1")) as part:
+        for name, until, theme, prepare in wanted:
+            shoot(part, folder / f"{name}.png", prepare=prepare, until=until, theme=theme)
+    return tuple(folder / f"{name}.png" for name, *_ in wanted)
+
+
+def _show_feature(window: Window) -> None:
+    window.panels["blank"].fold(False)
+    window.panels["route"].fold(False)
+    recognition = window.document.session.recognition
+    if recognition is not None:
+        window.document.select_feature(recognition.of_kind("pocket")[0].id)
+
+
+def _show_operation(window: Window) -> None:
+    window.panels["recognize"].fold(True)
+    window.panels["generate"].fold(False)
+    process = window.document.session.process
+    if process is not None:
+        window.show_dock("process")
+        window.document.select_operation(next(o.id for o in process.operations if o.kind.endswith("rough")))
+
+
 def _wait(app: QCoreApplication, is_done: Callable[[], bool], timeout_s: float) -> None:
     end = time.monotonic() + timeout_s
     while not is_done():
@@ -55,3 +91,7 @@ def _wait(app: QCoreApplication, is_done: Callable[[], bool], timeout_s: float) 
         app.processEvents()
         time.sleep(0.01)
     app.processEvents()
+
+
+if __name__ == "__main__":
+    shoot_all(sys.argv[1] if len(sys.argv) > 1 else "docs/pictures")

@@ -334,6 +334,13 @@ class Window(QMainWindow):
         self.resizeDocks([features, properties], [420, 300], Qt.Orientation.Vertical)
         self.resizeDocks([self.messages_dock], [170], Qt.Orientation.Vertical)
 
+    def show_dock(self, name: str) -> None:
+        """Bring a dock to the front by its name."""
+        dock = self.findChild(QDockWidget, name)
+        if isinstance(dock, QDockWidget):
+            dock.show()
+            dock.raise_()
+
     def _dock(self, name: str, title: str, widget: QWidget, area: Qt.DockWidgetArea) -> QDockWidget:
         dock = QDockWidget(title, self)
         dock.setObjectName(name)

@@ -104,10 +104,24 @@ def _run(engine: Any, progress: Progress, tell: Tell, session: Session, last: st
     steps = [s for s in until(last) if before[s] in ("empty", "stale")] or [last]
     for step in steps:
         tell("stage", (step, None))
-        session = engine.run(session, until=step, progress=progress.part(*share(step, steps)))
+        session = engine.run(session, until=step, progress=_own_share(progress.part(*share(step, steps)), step))
         if step != steps[-1]:
             tell("stage", (step, State(session, engine.states(session))))
     return State(session, engine.states(session))
+
+
+def _own_share(progress: Progress, step: str) -> Progress:
+    """Return the progress of one step whose engine counts the steps before it, done long ago, as so many equal shares."""
+    done = len(until(step)) - 1
+
+    def is_cancelled() -> bool:
+        try:
+            progress.check()
+        except Cancelled:
+            return True
+        return False
+
+    return Progress(lambda fraction, text: progress.at(fraction * (done + 1) - done, text), is_cancelled)
 
 
 def _states(engine: Any, _progress: Progress, _tell: Tell, session: Session) -> State:

@@ -1,0 +1,148 @@
+"""The sample part from file to verdict with the real engine: real window, real clicks, one run that every test here looks at."""
+
+from __future__ import annotations
+
+import time
+from importlib.resources import as_file
+
+import numpy as np
+import pytest
+from PySide6.QtCore import Qt
+from PySide6.QtTest import QTest
+
+import trunnion_resources
+from trunnion_gui.colours import kind_colour, rgb
+
+LEFT = Qt.MouseButton.LeftButton
+
+
+class Person:
+    """Somebody who uses the window: counts the clicks he makes and the files he chooses."""
+
+    def __init__(self, window):
+        self.window = window
+        self.interactions = 0
+
+    def chooses(self, path):
+        def choose():
+            self.interactions += 1
+            return str(path)
+
+        return choose
+
+    def clicks(self, widget, at=None):
+        self.interactions += 1
+        QTest.mouseClick(widget, LEFT, pos=at if at is not None else widget.rect().center())
+
+
+def wait_for_job(window, seconds):
+    end = time.monotonic() + seconds
+    while window.document.is_busy and time.monotonic() < end:
+        QTest.qWait(20)
+    assert not window.document.is_busy
+
+
+@pytest.fixture(scope="module")
+def programmed(tmp_path_factory, qapp):
+    """The window after a person has opened the sample part and pressed Program, and that person."""
+    from trunnion_gui.window import Window
+
+    with pytest.MonkeyPatch.context() as patch, as_file(trunnion_resources.sample("B1")) as part:
+        patch.setenv("TRUNNION_SETTINGS", str(tmp_path_factory.mktemp("settings")))
+        window = Window()
+        window.confirms_closing = False
+        window.resize(1440, 900)
+        window.show()
+        person = Person(window)
+        patch.setattr(window, "ask_open_path", person.chooses(part))
+        person.clicks(window.toolbar.widgetForAction(window.registry.action("file.open")))
+        wait_for_job(window, 120.0)
+        person.clicks(window.toolbar.widgetForAction(window.registry.action("run.program")))
+        wait_for_job(window, 280.0)
+        yield person
+        window.close()
+
+
+def test_the_part_is_programmed_in_at_most_five_interactions(programmed):
+    assert programmed.interactions <= 5
+    assert programmed.window.status.verdict.text().startswith("verdict: passed")
+
+
+def test_the_verdict_is_what_the_demo_promises(programmed):
+    verdict = programmed.window.document.session.verdict
+    assert verdict.releases
+    assert verdict.gouge <= 0.02
+    assert verdict.coverage >= 0.99
+    assert verdict.collisions == verdict.rapids_in_stock == 0
+
+
+def test_every_panel_says_done(programmed):
+    assert {name: panel.state for name, panel in programmed.window.panels.items()} == dict.fromkeys(programmed.window.panels, "done")
+
+
+def test_a_click_on_a_floor_selects_its_pocket_and_the_row_its_faces(programmed, qtbot):
+    window = programmed.window
+    window.registry.run("view.top")
+    qtbot.wait(20)
+    pocket = window.document.session.recognition.of_kind("pocket")[3]
+    floor = pocket.with_role("floor")[0]
+    mesh = window.document.mesh
+    rows = np.flatnonzero(mesh.face == floor)
+    point = mesh.corners()[rows[np.argmax(mesh.areas()[rows])]].mean(axis=0)
+    programmed.clicks(window.centre.scene.view, window.centre.scene.where(point).toPoint())
+    assert window.document.selection.id == pocket.id
+    assert window.features.tree.currentItem().text(0) == pocket.id
+    assert set(window.centre.scene._chosen) == set(pocket.tags)
+
+
+def test_a_pockets_floor_has_the_pockets_colour(programmed, qtbot):
+    window = programmed.window
+    window.document.select_face(0)
+    window.registry.action("view.paths").setChecked(False)
+    window.centre.show_layer("paths", False)
+    window.registry.run("view.top")
+    qtbot.wait(20)
+    mesh = window.document.mesh
+    floor = window.document.session.recognition.of_kind("pocket")[0].with_role("floor")[0]
+    rows = np.flatnonzero(mesh.face == floor)
+    point = mesh.corners()[rows[np.argmax(mesh.areas()[rows])]].mean(axis=0)
+    image = window.centre.scene.view.grab().toImage()
+    seen = np.array(image.pixelColor(window.centre.scene.where(point).toPoint()).toTuple()[:3], dtype=float)
+    wanted = np.array(rgb(kind_colour("pocket")), dtype=float)
+    seen, wanted = seen - seen.mean(), wanted - wanted.mean()
+    assert seen @ wanted / np.linalg.norm(seen) / np.linalg.norm(wanted) > 0.97
+
+
+def test_the_program_and_its_listing_are_there_to_read(programmed, qtbot):
+    window = programmed.window
+    window.show_dock("code")
+    qtbot.waitUntil(lambda: len(window.code.text.toPlainText()) > 1000)
+    operation = window.document.session.process.operations[0].id
+    window.document.select_operation(operation)
+    window.show_dock("listing")
+    qtbot.waitUntil(lambda: operation in window.listing.toPlainText())
+
+
+def test_a_suppressed_operation_makes_only_what_follows_stale(programmed, qtbot):
+    window = programmed.window
+    last = window.document.session.process.operations[-1].id
+    window.document.select_operation(last)
+    window.registry.run("edit.suppress")
+    qtbot.waitUntil(lambda: window.panels["generate"].state == "stale", timeout=30000)
+    assert window.panels["recognize"].state == "done"
+    window.registry.run("edit.undo")
+    qtbot.waitUntil(lambda: window.panels["generate"].state == "done", timeout=30000)
+
+
+def test_the_saved_project_opens_as_it_was(programmed, tmp_path, qtbot):
+    window = programmed.window
+    before = window.document.session
+    window.document.save(tmp_path / "B1.trunnion")
+    qtbot.waitUntil(lambda: not window.document.is_busy, timeout=60000)
+    window.document.open(tmp_path / "B1.trunnion")
+    qtbot.waitUntil(lambda: not window.document.is_busy, timeout=120000)
+    assert window.centre.notice.isHidden(), window.centre.notice.text
+    after = window.document.session
+    assert after.recognition.counts() == before.recognition.counts()
+    assert after.verdict.outcome == before.verdict.outcome
+    assert window.document.states["verify"] == "done"
