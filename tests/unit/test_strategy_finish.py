@@ -110,7 +110,7 @@ def test_a_closed_wall_is_cut_past_its_start() -> None:
 
 def test_a_spring_pass_goes_round_once_more() -> None:
     shop = roughed(PLAN, 3.0, mill(16, 3.0))
-    path = shop.run(wall, closed_pocket(PLAN, DEPTH, 3.0), mill(16, 3.0), WallSettings(spring=True, overlap=0.0), depth=15.0)
+    path = shop.run(wall, closed_pocket(PLAN, DEPTH, 3.0), mill(16, 3.0), WallSettings(spring=True, overlap=0.0, floor_rest=False), depth=15.0)
     assert path.lengths()[path.mark == Mark.CUT].sum() == pytest.approx(2 * PLAN.offset(-8.0).curves()[0].length)
 
 
@@ -153,10 +153,19 @@ def test_an_open_wall_is_cut_straight_past_its_ends() -> None:
     level = DriveLevel(top=0.0, bottom=-10.0, wanted=Region.rectangle(-10, 20, 70, 50), boundary=boundary)
     walls = (WallGuide(curve=guide, top=0.0, bottom=-10.0, fillet=0.0, faces=(1,)),)
     drive = closed_pocket(level.wanted, 10.0, levels=(level,), walls=walls)
-    path = wall(drive, mill(10), cutting(20, 1), PlanningStock.of(BLANK, SETUP), SETUP, WallSettings(), QUIET).path
+    path = wall(drive, mill(10), cutting(20, 1), PlanningStock.of(BLANK, SETUP), SETUP, WallSettings(floor_rest=False), QUIET).path
     cut = path.position[path.mark == Mark.CUT]
     assert cut[:, 1] == pytest.approx(25.0, abs=1e-3)
     assert cut[:, 0].max() - cut[:, 0].min() > 80.0
+
+
+def test_floor_between_walls_too_close_for_the_floor_cutter_is_finished_with_the_walls() -> None:
+    plan = rounded(0, 0, 60, 40, 10).minus(Region.rectangle(22, 16, 38, 24).offset(2))
+    shop, drive = roughed(plan, 0.0, mill(10)), closed_pocket(plan, DEPTH)
+    shop.run(floor, drive, mill(16), FloorSettings(wall_distance=0.6))
+    shop.run(wall, drive, mill(8), WallSettings(), depth=15.0)
+    assert shop.milled.area_above(shop.milled.pocket_target(plan, DEPTH), plan) == 0.0
+    assert shop.milled.crashes == []
 
 
 def test_a_wall_where_the_cutter_has_no_room_is_an_error() -> None:

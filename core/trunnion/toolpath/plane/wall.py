@@ -4,24 +4,32 @@ from __future__ import annotations
 
 import math
 
+import numpy as np
+
 from trunnion import tolerance
 from trunnion.findings import Finding, error, face_tags, info
-from trunnion.geometry.region import Region
+from trunnion.geometry.arrays import Floats
+from trunnion.geometry.region import Region, union_all
 from trunnion.model.operation import CuttingData
 from trunnion.model.setup import Setup
 from trunnion.model.tool import Tool
-from trunnion.plan.drive import PlaneDrive, WallGuide, foot_clearance
+from trunnion.plan.drive import Floor, PlaneDrive, WallGuide, foot_clearance
 from trunnion.progress import Progress
 from trunnion.settings import setting, settings
 from trunnion.toolpath.builder import PathBuilder
+from trunnion.toolpath.clear import Layer, Manner, clear
 from trunnion.toolpath.contour import Approach, contour_parts, cut_parts, length_out_of_reach
 from trunnion.toolpath.contract import Planned, strategy
 from trunnion.toolpath.levels import fillet_steps, steps_down
 from trunnion.toolpath.reach import Room, level_at
+from trunnion.toolpath.rings import ring_tree, safe_step
 from trunnion.toolpath.stock import PlanningStock
 
 SMALLEST_LEFTOVER = 1.0
 """mm2: less that is left needs no word."""
+
+RIM = 3.0
+"""Cells along the walls that the wall passes have cut, though the field can't be sure of it."""
 
 MOST_FILLET_STEPS = 40
 """More passes than this on one fillet mean that the cutter is the wrong one."""
@@ -37,6 +45,8 @@ class WallSettings:
     spring: bool = setting(False, label="Spring pass", help="Go along each wall a second time without moving in.")
     scallop: float = setting(0.01, unit="mm", low=0.001, high=1.0, label="Scallop",
                              help="Height of the cusps on a fillet that is larger than the cutter's corner.")
+    floor_rest: bool = setting(True, label="Rest of the floor",
+                               help="Finish what a larger floor cutter left between walls that stand close.")
     ramp_angle: float = setting(2.0, unit="deg", low=0.5, high=30.0, label="Entry angle", help="Slope of a ramp where no lead fits.")
     safety: float = setting(2.0, unit="mm", low=0.2, high=50.0, label="Safety distance",
                             help="Where a rapid ends above what may still be there.")
@@ -62,9 +72,40 @@ def wall(drive: PlaneDrive, tool: Tool, data: CuttingData, stock: PlanningStock,
             cut_parts(builder, parts, z, room, approach)
             found = found or bool(parts)
         findings += _left(drive, guide, tool, found, rooms)
+    if settings.floor_rest:
+        for each in drive.floors:
+            progress.check()
+            _cut_floor_rest(builder, drive, each, tool, approach, progress)
     if not drive.walls:
         findings.append(error("wall.none", f"{drive.feature} has no wall to finish", drive.feature, remedy="suppress the operation"))
     return Planned(path=builder.finished(), findings=tuple(findings))
+
+
+def _cut_floor_rest(builder: PathBuilder, drive: PlaneDrive, each: Floor, tool: Tool, approach: Approach,
+                    progress: Progress) -> None:
+    """Cut what a larger floor cutter left where it had no room: floor that neither it nor the wall passes have certainly reached."""
+    stock = builder.stock()
+    inner = each.region.offset(-each.fillet - RIM * stock.cell)
+    places = stock.places_above(each.z + tolerance.COINCIDENT, inner)
+    if not len(places):
+        return
+    rest = union_all([Region.rectangle(*(low - stock.cell), *(high + stock.cell)) for low, high in _clusters(places, tool.radius)])
+    distance = tool.radius + drive.wall_allowance + foot_clearance(each.fillet, tool.corner_radius, 0.0)
+    room = Room.of(level_at(drive, each.z).boundary, distance)
+    step = safe_step(tool, tool.radius)
+    clip = rest.offset(step)
+    layer = Layer(z=each.z, rings=ring_tree(room.region, step, clip), room=room, clip=clip)
+    clear(builder, layer, Manner(step=step, ramp=approach.ramp, slot=1.0), progress)
+
+
+def _clusters(places: Floats, apart: float) -> list[tuple[Floats, Floats]]:
+    """Return the boxes (low, high) around groups of places (k, 2) that are nearer to one another than `apart`, by squares of that size."""
+    squares = np.floor(places / apart).astype(int)
+    boxes = []
+    for square in np.unique(squares, axis=0):
+        inside = places[(squares == square).all(axis=1)]
+        boxes.append((inside.min(axis=0), inside.max(axis=0)))
+    return boxes
 
 
 def _heights(guide: WallGuide, tool: Tool, step: float, scallop: float) -> list[tuple[float, float]]:
