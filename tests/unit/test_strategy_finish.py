@@ -110,7 +110,8 @@ def test_a_closed_wall_is_cut_past_its_start() -> None:
 
 def test_a_spring_pass_goes_round_once_more() -> None:
     shop = roughed(PLAN, 3.0, mill(16, 3.0))
-    path = shop.run(wall, closed_pocket(PLAN, DEPTH, 3.0), mill(16, 3.0), WallSettings(spring=True, overlap=0.0, floor_rest=False), depth=15.0)
+    chosen = WallSettings(spring=True, overlap=0.0, floor_rest=False)
+    path = shop.run(wall, closed_pocket(PLAN, DEPTH, 3.0), mill(16, 3.0), chosen, depth=15.0)
     assert path.lengths()[path.mark == Mark.CUT].sum() == pytest.approx(2 * PLAN.offset(-8.0).curves()[0].length)
 
 
