@@ -119,14 +119,14 @@ def test_a_refused_pocket_takes_its_island_with_it():
     refused = tuple(replace(f, attributes={"refused": "its walls lean"}) if f.id == "pocket-02" else f for f in recognition)
     tree = route((part, replace(recognition, features=refused)))
     told = {f.text for f in tree.findings}
-    assert told >= {"pocket-02 was refused: its walls lean", "island-01 stands in pocket-02, which is not planned"}
+    assert told >= {"pocket-02 not planned: its walls lean", "island-01 not planned: it stands in pocket-02, which is not planned"}
 
 
 def test_holes_are_named_together():
     part, recognition = panel()
     holes = tuple(Feature(id=f"hole-0{n}", kind="hole", faces=(FaceRole(role="side", face=7),)) for n in (1, 2))
     (told,) = route((part, replace(recognition, features=(*recognition.features, *holes)))).findings
-    assert told.text.startswith("hole-01, hole-02 is a hole")
+    assert told.text == "hole-01, hole-02 not planned: the typical plan has no operation for a hole"
 
 
 def test_a_corner_sharper_than_any_cutter_is_an_error_with_a_remedy():

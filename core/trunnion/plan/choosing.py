@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 
 from trunnion import tolerance
@@ -19,8 +19,9 @@ class Task:
     should cover there (the room itself when empty). `corner_radius`: largest corner radius that leaves no material at the foot;
     `exact`: the corner radius has to be that one. `radius`: largest radius of the cutter (0: no bound). `missable`: share of the wanted
     area that may be left to smaller cutters. `spare`: how many of its radii must fit from rim to middle where the room is widest, so
-    that it can enter and turn. `near`: how much smaller than the largest candidate a cutter may be, as a share of its
-    diameter, to be chosen because it serves other tasks too.
+    that it can enter and turn. `keep`: for floors, the distance from the finished walls beside the fillet's own; then it is the cutter's
+    flat that has to cover what is wanted (below 0: the whole disc). `near`: how much smaller than the largest candidate a cutter may be,
+    as a share of its diameter, to be chosen because it serves other tasks too.
     """
 
     depth: float
@@ -31,6 +32,7 @@ class Task:
     radius: float = 0.0
     missable: float = 0.0
     spare: float = 1.0
+    keep: float = -1.0
     near: float = 0.5
 
 
@@ -65,8 +67,7 @@ def candidates(task: Task, tools: Sequence[Tool], clearance: float) -> Candidate
         return Candidates(tools=(), remedy="add a longer cutter to the tools folder, or allow a larger one by a larger corner radius",
                           reason=f"no tool reaches {trimmed(task.depth, 2)} mm deep with {trimmed(clearance, 2)} mm clearance; "
                                  f"the longest that fits reaches {trimmed(max(depth_reached(t) for t in foot), 2)} mm")
-    fitting = fitting_diameters(task, {t.diameter for t in deep})
-    inside = [t for t in deep if t.diameter in fitting]
+    inside = _fitting(task, deep) if task.keep < 0.0 else _fitting_floor(task, deep)
     if not inside:
         return Candidates(tools=(), remedy="add a smaller cutter to the tools folder, or machine the feature by other means",
                           reason=f"no tool is small enough: the smallest that reaches is D {trimmed(min(t.diameter for t in deep), 3)}")
@@ -80,19 +81,35 @@ def depth_reached(tool: Tool) -> float:
     return min(tool.neck_length, tool.stickout)
 
 
-def fitting_diameters(task: Task, diameters: Iterable[float]) -> set[float]:
-    """Return the diameters whose disc covers what is wanted without leaving the room, but for the share that may be missed."""
+def _fitting(task: Task, tools: Sequence[Tool]) -> list[Tool]:
+    """Return the cutters that cover what is wanted without leaving the room, but for the share that may be missed.
+
+    Where one fits, so do all smaller ones: the largest is looked for.
+    """
     wanted = task.wanted or task.room
     total = wanted.area
-    largest_first = sorted(diameters, reverse=True)
-    for n, diameter in enumerate(largest_first):
-        if task.spare > 1.0 and not task.room.offset(-task.spare * diameter / 2):
+    for tool in sorted(tools, key=lambda t: -t.diameter):
+        if task.spare > 1.0 and not task.room.offset(-task.spare * tool.radius):
             continue
-        covered = task.room.opened(diameter / 2)
+        covered = _covered(task, tool)
         left = wanted.minus(covered).area if covered else total
         if left <= task.missable * total + tolerance.AREA * max(total, 1.0):
-            return set(largest_first[n:])
-    return set()
+            return [t for t in tools if t.diameter <= tool.diameter]
+    return []
+
+
+def _fitting_floor(task: Task, tools: Sequence[Tool]) -> list[Tool]:
+    """Return the same for a floor, among sharp cutters and those with the largest corner radius: each radius has a flat of its own."""
+    radii = {min(t.corner_radius for t in tools), max(t.corner_radius for t in tools)}
+    return [t for radius in sorted(radii) for t in _fitting(task, [t for t in tools if t.corner_radius == radius])]
+
+
+def _covered(task: Task, tool: Tool) -> Region:
+    """Return what a cutter reaches: its disc in the room, or for a floor its flat, kept off the walls and their fillet."""
+    if task.keep < 0.0:
+        return task.room.opened(tool.radius)
+    flat = tool.radius - tool.corner_radius
+    return task.room.offset(-(task.keep + task.corner_radius + flat)).offset(flat)
 
 
 def covered_by_few(fits: Mapping[str, Sequence[Tool]], kept: Sequence[Tool] = ()) -> dict[str, Tool]:

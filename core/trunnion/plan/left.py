@@ -35,22 +35,22 @@ def plannable(recognition: Recognition, stages: Sequence[Stage]) -> tuple[list[F
         else:
             planned.append(feature)
     lost = [f for f in planned if (p := parent_of(f, recognition)) is not None and p.id in refusals]
-    refusals |= {f.id: f"stands in {parent.id}, which is not planned" for f in lost if (parent := parent_of(f, recognition))}
+    refusals |= {f.id: f"it stands in {parent.id}, which is not planned" for f in lost if (parent := parent_of(f, recognition))}
     return [f for f in planned if f.id not in refusals], refusals
 
 
 def _refusal(feature: Feature, known: set[str]) -> str:
     refused = feature.attributes.get("refused", feature.sizes.get("refused"))
     if refused:
-        return f"was refused: {refused}" if isinstance(refused, str) else "was refused"
+        return refused if isinstance(refused, str) else "it was refused"
     if feature.kind not in known:
-        return f"is a {feature.kind.replace('_', ' ')}, which the typical plan has no operation for"
+        return f"the typical plan has no operation for a {feature.kind.replace('_', ' ')}"
     if feature.kind in POCKETS and (feature.sizes.get("curved_floor") or "floor_z_max" in feature.sizes):
-        return "has a curved floor, which a plane operation would gouge or leave"
+        return "a curved floor, which a plane operation would gouge or leave"
     leans = feature.sizes.get("leans", ())
     steepest = max((abs(v) for v in leans), default=0.0) if isinstance(leans, tuple) else 0.0
     if steepest > ALLOWED_LEAN:
-        return f"has walls that lean by {trimmed(steepest, 2)} degrees, which a vertical cutter would gouge or leave"
+        return f"walls that lean by {trimmed(steepest, 2)} degrees, which a vertical cutter would gouge or leave"
     return ""
 
 
@@ -61,7 +61,7 @@ def without_lonely_ribs(planned: list[Feature], refusals: dict[str, str], recogn
     for feature in planned:
         left = sorted(i for i in beside.get(feature.id, ()) if i in refusals and kinds[i] in POCKETS)
         if feature.kind == "rib" and left:
-            refusals = {**refusals, feature.id: f"stands beside {left[0]}, which is not planned"}
+            refusals = {**refusals, feature.id: f"it stands beside {left[0]}, which is not planned"}
     return [f for f in planned if f.id not in refusals], refusals
 
 
@@ -74,7 +74,7 @@ def not_planned(refusals: Mapping[str, str], recognition: Recognition) -> list[F
     for reason, features in reasons.items():
         names = ", ".join(f.id for f in features)
         faces = face_tags(t for f in features for t in f.tags)
-        found.append(warning("route.not-planned", f"{names} {reason}", *(f.id for f in features), *faces,
+        found.append(warning("route.not-planned", f"{names} not planned: {reason}", *(f.id for f in features), *faces,
                              remedy="machine by hand or by another operation; the proof counts what is left"))
     return found
 

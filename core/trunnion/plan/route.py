@@ -21,7 +21,7 @@ from trunnion.plan.left import beside, no_cutter, not_planned, plannable, too_la
 from trunnion.plan.order import Job, ordered
 from trunnion.plan.regions import Sections, Space, parent_of
 from trunnion.plan.setups import from_below
-from trunnion.plan.wishes import DEPENDENT, WISHES, Draft, RouteSettings, Wish, catalogue, with_falling_sizes
+from trunnion.plan.wishes import DEPENDENT, WISHES, Draft, RouteSettings, Wish, catalogue, floor_distance, with_falling_sizes
 from trunnion.progress import Progress
 from trunnion.settings import Value, choose
 from trunnion.shop import Shop, Stage
@@ -31,9 +31,6 @@ __all__ = ["RouteSettings", "make_route"]
 
 FACE_WIDTH, FLOOR_WIDTH, WALL_STEP = 0.7, 0.6, 1.5
 """Width of a face mill's path over its diameter, of a floor's over the cutter's flat, and axial step of a wall over the diameter."""
-
-FLOOR_DISTANCE = 0.1
-"""mm that a floor's cutter keeps from what roughing left on the walls."""
 
 
 def make_route(recognition: Recognition, sizes: tuple[SizeEntry, ...], blank: Blank, setups: Sequence[Setup], shop: Shop, part: Sections,
@@ -54,7 +51,8 @@ def make_route(recognition: Recognition, sizes: tuple[SizeEntry, ...], blank: Bl
     operations: list[Operation] = []
     for n, setup in enumerate(setups):
         draft = Draft(space=Space.of(part, recognition, blank, setup), recognition=recognition, material=material,
-                      machine=shop.machine(setup.machine), settings=settings, shop=shop, beside=near)
+                      machine=shop.machine(setup.machine), settings=settings, shop=shop, beside=near,
+                      loaded=tuple(o.tool for o in operations))
         mine = [f for f in planned if _from_below(f, recognition, part) == (n > 0)]
         share = progress.part(n / len(setups), (n + 1) / len(setups))
         operations += _sequenced(draft, _with_cutters(draft, mine, plan.stages, share), plan.stages)
@@ -86,7 +84,7 @@ def _with_cutters(draft: Draft, features: Sequence[Feature], stages: Sequence[St
                 fits[wish.id] = found.tools
             elif wish.stage.cutter != "rest":
                 draft.findings.append(no_cutter(wish, found))
-        draft.tools |= covered_by_few(fits, list(draft.tools.values()))
+        draft.tools |= covered_by_few(fits, [*draft.loaded, *draft.tools.values()])
         wishes += [w for w in fresh if w.id in draft.tools]
     return with_falling_sizes(draft, wishes)
 
@@ -124,7 +122,7 @@ def _operation(draft: Draft, wish: Wish, after: frozenset[str]) -> Operation:
     depth, width = _engagement(draft, wish, tool, cutting)
     choices: dict[str, Value] = {} if stage.finish else {WALL_ALLOWANCE: chosen.wall_allowance, FLOOR_ALLOWANCE: chosen.floor_allowance}
     if stage.kind == "floor":
-        choices["plane.floor.wall_distance"] = chosen.wall_allowance + FLOOR_DISTANCE
+        choices["plane.floor.wall_distance"] = floor_distance(chosen)
     data = cutting_data(tool, draft.material, draft.machine, stage.kind, cutting, depth, width)
     rules = (stage.rule, *_tool_rules(wish, tool, chosen))
     return Operation(

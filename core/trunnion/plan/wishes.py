@@ -23,8 +23,14 @@ from trunnion.units import trimmed
 SPARE = 2.0
 """Radii of a roughing cutter that should fit from the rim to the middle of a pocket where it is widest: room for a helix and a turn."""
 
-NEAR_ROUGH, NEAR_WALL, NEAR_FLOOR = 0.75, 0.6, 0.5
+NEAR_ROUGH, NEAR_WALL, NEAR_FLOOR = 0.9, 0.6, 0.5
 """How much smaller than the largest that fits a cutter may be, over its diameter, when it serves other operations too."""
+
+STRIP_OVERLAP = 0.5
+"""mm that the strip of a floor finished by the wall's cutter and the part finished by the floor's cutter have in common."""
+
+FLOOR_DISTANCE = 0.1
+"""mm that a floor's cutter keeps from what roughing left on the walls."""
 
 SHARP = 0.02
 """Share of a pocket that corners sharper than the one its cutter is chosen for may keep: no cutter gets into them, the proof counts it."""
@@ -69,7 +75,7 @@ class Wish:
 
 @dataclass(slots=True)
 class Draft:
-    """What is known while one setup is planned."""
+    """What is known while one setup is planned; `loaded` are the tools of the setups before."""
 
     space: Space
     recognition: Recognition
@@ -78,9 +84,15 @@ class Draft:
     settings: RouteSettings
     shop: Shop
     beside: Mapping[str, frozenset[str]]
+    loaded: tuple[Tool, ...] = ()
     bands: dict[str, tuple[Band, ...]] = field(default_factory=dict)
     findings: list[Finding] = field(default_factory=list)
     tools: dict[str, Tool] = field(default_factory=dict)
+
+
+def floor_distance(settings: RouteSettings) -> float:
+    """Return what a floor's cutter keeps from the finished walls: it must not meet their allowance."""
+    return settings.wall_allowance + FLOOR_DISTANCE
 
 
 def catalogue(draft: Draft, stage: Stage) -> tuple[Tool, ...]:
@@ -150,8 +162,15 @@ def _wishes_floor(draft: Draft, stage: Stage, features: Sequence[Feature]) -> li
     def make(feature: Feature, bands: tuple[Band, ...]) -> Wish | None:
         if not feature.with_role("floor"):
             return None
-        task = Task(depth=_depth(draft, bands), room=bands[-1].boundary, wanted=bands[-1].wanted, corner_radius=floor_fillet(feature),
-                    missable=draft.settings.missable, near=NEAR_FLOOR)
+        # The wall's last pass finishes a strip of the floor as wide as its cutter's reach from the wall.
+        tools, clearance = catalogue(draft, stage), draft.settings.reach_clearance
+        walling = _wall_task(draft, feature, bands)
+        walls = candidates(walling, tools, clearance).tools or candidates(replace(walling, exact=False), tools, clearance).tools
+        inner = bands[-1].wanted.offset(STRIP_OVERLAP - min((t.diameter - t.corner_radius for t in walls), default=0.0))
+        whole = Task(depth=_depth(draft, bands), room=bands[-1].boundary, wanted=bands[-1].wanted, corner_radius=floor_fillet(feature),
+                     missable=draft.settings.missable, near=NEAR_FLOOR)
+        rest = replace(whole, wanted=inner, keep=floor_distance(draft.settings), missable=0.0)
+        task = rest if inner and candidates(rest, tools, clearance).tools else whole
         return _wish(stage, feature, bands, task, feature.with_role("floor"))
 
     return _pocket_wishes(draft, stage, features, make)
