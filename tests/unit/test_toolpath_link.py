@@ -60,10 +60,10 @@ def test_a_way_through_air_beside_the_blank_stays_low() -> None:
 def test_a_holder_that_would_touch_lifts_the_way() -> None:
     # The holder's nose hangs 45 mm above the tip and is wider than the slot: with 2 mm of safety the tip stays above -43, and 2 more.
     builder = PathBuilder(mill(10, stickout=45.0), cutting(4, 4), PlanningStock.of(BLANK, SETUP), SETUP, 2.0)
-    builder.rapid((-20, 30, 50))
-    builder.line((-20, 30, -50), 500.0)
-    builder.line((120, 30, -50), 500.0)
-    builder.rapid((120, 30, 10))
+    builder.rapid((-20, 24, 50))
+    for place in ((-20, 24), (120, 24), (120, 30), (-20, 30), (-20, 36), (120, 36)):
+        builder.line((*place, -50), 500.0)
+    builder.rapid((120, 36, 10))
     travel(builder, (50, 30), -50.0)
     path = builder.finished()
     assert path.position[path.motion == Motion.RAPID, 2].min() == pytest.approx(-41.0)
