@@ -185,11 +185,25 @@ def test_a_part_that_no_plane_can_cut_is_named() -> None:
         PanelFamily().recognize(part.graph(), Torn(), choose(PanelFamily.settings, {}), QUIET)  # type: ignore[arg-type]
 
 
+class TornInTheMiddle(BlockPart):
+    """A part that a plane in the middle between two floors can't cut."""
+
+    def section(self, frame, z):  # type: ignore[no-untyped-def]
+        if abs(z - 16.0) < 0.1:
+            raise ValueError("a seam lies in the plane")
+        return BlockPart.section(self, frame, z)
+
+
+def test_a_slice_that_fails_gives_way_to_one_beside_it() -> None:
+    whole = terrace((0, 10, 90, 100), (0, 10, 50, 60), ringed([[8]]))
+    assert recognized(TornInTheMiddle(whole.breaks, whole.full)).findings == ()
+
+
 class TornOnce(BlockPart):
     """A part that a plane at the height of the walls can't cut."""
 
     def section(self, frame, z):  # type: ignore[no-untyped-def]
-        if 15.0 < z < 30.0:
+        if 8.0 < z < 24.0:
             raise BadInput("the shell is open")
         return BlockPart.section(self, frame, z)
 

@@ -15,7 +15,10 @@ class Slicer(Protocol):
     """Something that can be cut by planes; a part satisfies it, and so does a table of regions in a test."""
 
     def section(self, frame: Frame, z: float) -> Region:
-        """Return the material that the plane `z` (mm) of a frame cuts, in the frame's xy."""
+        """Return the material that the plane `z` (mm) of a frame cuts, in the frame's xy.
+
+        Raises `BadInput` or `ValueError` when the part can't be cut there.
+        """
         ...
 
 

@@ -31,6 +31,10 @@ NARROW = 0.05
 """mm: open space narrower than this is the slope of an outer wall seen from above, or noise between two slices."""
 
 
+TRIES = (0.5, 0.37, 0.71)
+"""Where between two levels a slice lies; the next place is tried when the part can't be cut there (a seam or a vertex in the plane)."""
+
+
 @dataclass(frozen=True, slots=True, eq=False, kw_only=True)
 class Space:
     """One connected area to be emptied in a slice: its plan, whether material closes it all round, and the islands in it."""
@@ -100,15 +104,20 @@ def heights(graph: FaceGraph, classes: FaceClasses, low: float, high: float, dep
 
 
 def cut(slicer: Slicer, frame: Frame, levels: tuple[float, ...], progress: Progress) -> Slices:
-    """Return the slices in the middle between each two levels."""
+    """Return a slice between each two levels, in the middle when the part can be cut there; raise `BadInput` when no plane cuts it."""
     cuts: list[tuple[float, float, float, BaseGeometry]] = []
     findings: list[Finding] = []
     for bottom, top in progress.over(list(itertools.pairwise(levels)), "slicing"):
-        z = 0.5 * (bottom + top)
-        try:
-            cuts.append((z, bottom, top, plan(slicer.section(frame, z))))
-        except BadInput as reason:
-            findings.append(warning("panel.no-slice", f"the part can't be cut at height {z:.3f} mm: {reason}",
+        failed = ""
+        for share in TRIES:
+            z = bottom + share * (top - bottom)
+            try:
+                cuts.append((z, bottom, top, plan(slicer.section(frame, z))))
+                break
+            except (BadInput, ValueError) as reason:
+                failed = str(reason)
+        else:
+            findings.append(warning("panel.no-slice", f"the part can't be cut between the heights {bottom:.3f} and {top:.3f} mm: {failed}",
                                     remedy="the graph decides alone between the faces there; heal the part"))
     if not cuts:
         raise BadInput(f"the part can't be cut by a plane: {findings[0].text}" if findings else "the part has no height in its frame")

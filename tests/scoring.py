@@ -1,0 +1,50 @@
+"""Scores a recognition against a part's known truth with the scorer that comes with the parts."""
+
+from __future__ import annotations
+
+import importlib.util
+import json
+import sys
+from collections.abc import Callable
+from functools import cache
+from pathlib import Path
+from typing import Any
+
+import pytest
+
+from conftest import PARTS
+from trunnion.model.feature import Recognition
+
+Move = Callable[[list[float]], list[float]]
+
+
+@cache
+def _scorer() -> Any:
+    path = (PARTS or Path()).parent / "tools" / "score_recognition.py"
+    if not path.is_file():
+        pytest.skip("the scorer is not beside the parts")
+    spec = importlib.util.spec_from_file_location("score_recognition", path)
+    assert spec is not None and spec.loader is not None
+    module = importlib.util.module_from_spec(spec)
+    sys.modules[spec.name] = module
+    spec.loader.exec_module(module)
+    return module
+
+
+def truth_of(name: str) -> dict[str, Any]:
+    """Return the truth of a panel part."""
+    assert PARTS is not None
+    return json.loads((PARTS / "panel" / f"{name}.truth.json").read_text())
+
+
+def scored(name: str, file: Path, found: Recognition, move: Move = list) -> dict[str, Any]:
+    """Return recall, precision, faces and roles, and per kind (in the truth, found, matched); `move` says where the truth's points are."""
+    scorer, truth = _scorer(), truth_of(name)
+    for feature in truth["features"]:
+        for face in feature["faces"]:
+            face["at"] = move(face["at"])
+    faces = scorer.read_faces(file)
+    want, lost = scorer.truth_items(truth, scorer.Locator(faces), 1e-3)
+    items, faults = scorer.result_items({"features": [f.as_dict() for f in found.features]}, len(faces))
+    assert not faults
+    return dict(scorer.score(want, items, lost))

@@ -1,0 +1,124 @@
+"""Panels with known truth: everything of today's scope is found, the rest is named."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from functools import cache
+from pathlib import Path
+from typing import Any
+
+import pytest
+
+from conftest import PARTS, needs_parts
+from scoring import scored, truth_of
+from trunnion.model.feature import Recognition
+from trunnion.part.part import Part
+from trunnion.part.read import read_part
+from trunnion.plan.size import size_table
+from trunnion.progress import QUIET
+from trunnion.recognize.panel import PanelFamily
+from trunnion.settings import choose
+
+pytestmark = needs_parts
+PERFECT = {"recall": 1.0, "precision": 1.0, "faces": 1.0, "roles": 1.0}
+
+
+def file_of(name: str) -> Path:
+    assert PARTS is not None
+    return PARTS / "panel" / name
+
+
+def recognized(part: Part) -> Recognition:
+    return PanelFamily().recognize(part.graph(), part, choose(PanelFamily.settings, {}), QUIET)
+
+
+@cache
+def part_of(name: str) -> tuple[Part, Recognition]:
+    part = read_part(file_of(name))
+    return part, recognized(part)
+
+
+def figures(score: dict[str, Any]) -> dict[str, float]:
+    return {name: score[name] for name in PERFECT}
+
+
+@pytest.mark.parametrize("name", ["B1.step", "B1.igs"])
+def test_all_of_the_first_panel_is_found(name: str) -> None:
+    found = part_of(name)[1]
+    assert figures(scored("B1", file_of(name), found)) == PERFECT
+    assert found.unexplained == () and found.findings == ()
+
+
+def test_the_first_panel_lies_in_the_frame_that_a_programmer_would_choose() -> None:
+    frame, truth = part_of("B1.step")[1].frame, truth_of("B1")["frame"]
+    assert (frame.origin.tolist(), frame.x.tolist(), frame.z.tolist()) == (truth["origin"], truth["x"], truth["z"])
+
+
+def moved(part: Part, kind: str) -> tuple[Any, Callable[[list[float]], list[float]]]:
+    """Return the part's shape moved, and where a point of it is then."""
+    from OCP.BRepBuilderAPI import BRepBuilderAPI_Transform
+    from OCP.gp import gp_Ax1, gp_Ax2, gp_Dir, gp_Pnt, gp_Trsf, gp_Vec
+    way = gp_Trsf()
+    if kind == "turned":
+        way.SetRotation(gp_Ax1(gp_Pnt(10, 20, 30), gp_Dir(1, 2, 3)), 1.234)
+    elif kind == "mirrored":
+        way.SetMirror(gp_Ax2(gp_Pnt(5, 0, 0), gp_Dir(1, 1, 0.4)))
+    elif kind == "far away":
+        way.SetTranslation(gp_Vec(6000, -7000, 4000))
+
+    def move(point: list[float]) -> list[float]:
+        return list(gp_Pnt(*point).Transformed(way).Coord())
+
+    return BRepBuilderAPI_Transform(part.as_read, way, True).Shape(), move
+
+
+@pytest.mark.parametrize(("kind", "unit", "suffix"), [
+    ("turned", "mm", "step"), ("mirrored", "mm", "igs"), ("far away", "mm", "step"), ("", "inch", "step"), ("turned", "inch", "igs")])
+def test_the_first_panel_is_found_wherever_it_lies_and_in_inches(kind: str, unit: str, suffix: str, tmp_path: Path) -> None:
+    from trunnion.part.write import write_iges, write_step
+    shape, move = moved(part_of("B1.step")[0], kind)
+    file = tmp_path / f"B1.{suffix}"
+    (write_step if suffix == "step" else write_iges)(shape, file, unit=unit)
+    assert figures(scored("B1", file, recognized(read_part(file)), move)) == PERFECT
+
+
+@pytest.mark.parametrize("name", ["B2.step", "B3.step", "B4.step", "B5.step"])
+def test_harder_panels_keep_their_pockets_and_name_the_rest(name: str) -> None:
+    part, found = part_of(name)
+    score = scored(name[:2], file_of(name), found)
+    for kind in ("pocket", "open_pocket", "island", "rib", "profile", "datum"):
+        wanted, printed, matched = score["kinds"].get(kind, (0, 0, 0))
+        assert wanted == printed == matched, kind
+    explained = {tag for f in found.features for tag in f.tags}
+    assert explained | set(found.unexplained) == set(part.tags) and not explained & set(found.unexplained)
+    assert 0.0 < found.unexplained_share < 0.06
+
+
+@pytest.mark.parametrize(("name", "code"), [
+    ("B2.step", "panel.leaning-wall"), ("B3.step", "panel.curved-floor"), ("B3.step", "panel.undercut"), ("B4.step", "panel.hole"),
+    ("B5.step", "panel.below")])
+def test_what_is_not_handled_yet_is_a_finding(name: str, code: str) -> None:
+    assert code in {f.code for f in part_of(name)[1].findings}
+
+
+def test_every_pocket_with_a_leaning_wall_is_refused() -> None:
+    for pocket in part_of("B2.step")[1].of_kind("pocket"):
+        assert "lean" in str(pocket.attributes["refused"])
+
+
+def test_the_sizes_of_the_first_panel_are_the_truths() -> None:
+    found, truth = part_of("B1.step")[1], truth_of("B1")["features"]
+    for i, j in scored("B1", file_of("B1.step"), found)["given"].items():
+        sizes = found.features[j].sizes
+        for name, value in truth[i]["sizes"].items():
+            wanted = tuple(value) if isinstance(value, list) else value
+            assert name == "in" or sizes[name] == pytest.approx(wanted, abs=2e-3), (truth[i]["id"], name)
+
+
+def test_the_size_table_of_the_first_panel_holds_the_planners_sizes() -> None:
+    part, found = part_of("B1.step")
+    planning, table = truth_of("B1")["planning"], size_table(found, part.graph())
+    sizes = {e.name: e.value for e in table if e.feature == "part"}
+    assert sizes["smallest_corner_radius"] == planning["smallest_corner_radius"]
+    assert [sizes[f"stock_box_{n}"] for n in ("length", "width", "height")] == pytest.approx(planning["stock_box"]["size"], abs=1e-3)
+    assert sorted(e.value for e in table if e.name == "depth") == sorted(p["depth"] for p in planning["pockets"])
