@@ -1,0 +1,49 @@
+"""Trimmed faces as arrays: areas, normals and boxes against the CAD kernel's own."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+from pytest import approx
+
+from samples import block_with_pocket_shape, drilled_block_shape, moved, read, turned, two_pockets_and_a_rib_shape
+from trunnion.geometry.frame import WORLD, Frame
+from trunnion.part.surfaces import surfaces_of
+from trunnion.verify.coverage import samples_of
+
+SHAPES = {"pocket": block_with_pocket_shape, "hole": drilled_block_shape, "panel": two_pockets_and_a_rib_shape}
+
+
+@pytest.mark.parametrize("name", SHAPES)
+def test_the_samples_of_every_face_add_up_to_the_parts_area(name):
+    part = read(SHAPES[name]())
+    samples = samples_of(surfaces_of(part, WORLD), 0.25)
+    assert samples.area.sum() == approx(part.area, rel=1e-4)
+
+
+@pytest.mark.parametrize("name", SHAPES)
+def test_the_flow_through_the_samples_is_the_parts_volume(name):
+    # Gauss: the integral of the position along outward normals is three times the volume; it holds only when every normal points out.
+    part = read(SHAPES[name]())
+    samples = samples_of(surfaces_of(part, WORLD), 0.25)
+    flow = (samples.area[:, None] * samples.normal * samples.point).sum(axis=0)
+    assert flow == approx([part.volume] * 3, rel=2e-3)
+
+
+def test_faces_are_exact_strips_in_a_turned_part_and_its_own_frame():
+    part = read(turned(moved(block_with_pocket_shape(), (1000.0, 200.0, 0.0)), (1.0, 2.0, 3.0), 40.0))
+    half = np.radians(40.0) / 2
+    w, (x, y, z) = np.cos(half), np.sin(half) * np.array([1.0, 2.0, 3.0]) / np.sqrt(14.0)
+    turn = np.array([[1 - 2 * (y * y + z * z), 2 * (x * y - z * w), 2 * (x * z + y * w)],
+                     [2 * (x * y + z * w), 1 - 2 * (x * x + z * z), 2 * (y * z - x * w)],
+                     [2 * (x * z - y * w), 2 * (y * z + x * w), 1 - 2 * (x * x + y * y)]])
+    surfaces = surfaces_of(part, Frame(turn @ [1000.0, 200.0, 0.0], turn[:, 0], turn[:, 2]))
+    assert surfaces.bound == 0.0
+    assert sorted(surfaces.region_z.round(6)) == approx([0.0, 8.0, 18.0])
+
+
+def test_a_part_lying_askew_is_opened_into_triangles_and_says_so():
+    part = read(turned(drilled_block_shape(), (1.0, 2.0, 0.0), 30.0))
+    surfaces = surfaces_of(part, WORLD)
+    assert surfaces.bound > 0.0
+    assert samples_of(surfaces, 0.5).area.sum() == approx(part.area, rel=2e-3)
