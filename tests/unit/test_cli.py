@@ -8,6 +8,7 @@ import sys
 from pathlib import Path
 
 import pytest
+
 from trunnion.cli.main import BAD, COMMANDS, main
 
 HEAVY = ("OCP", "cadquery", "vtkmodules", "pyvista", "PySide6", "numba", "shapely")
@@ -38,17 +39,17 @@ def test_a_missing_file_is_one_line_and_exit_2(tmp_path: Path, capsys: pytest.Ca
 
 
 def test_a_setting_without_a_value_is_refused(capsys: pytest.CaptureFixture[str], sample_part: Path) -> None:
-    assert main(["recognize", str(sample_part), "--set", "plane.rough.stepover"]) == BAD
+    assert main(["recognize", str(sample_part), "--set", "plane.rough.slot_feed"]) == BAD
     assert "--set wants KEY=VALUE" in capsys.readouterr().err
 
 
 def test_an_unknown_setting_is_refused_with_what_may_be_meant(capsys: pytest.CaptureFixture[str], sample_part: Path) -> None:
-    assert main(["recognize", str(sample_part), "--set", "plane.ruff.stepover=0.4"]) == BAD
-    assert "plane.rough.stepover" in capsys.readouterr().err
+    assert main(["recognize", str(sample_part), "--set", "plane.ruff.slot_feed=0.4"]) == BAD
+    assert "plane.rough.slot_feed" in capsys.readouterr().err
 
 
 def test_a_value_out_of_range_is_refused_in_words(capsys: pytest.CaptureFixture[str], sample_part: Path) -> None:
-    assert main(["recognize", str(sample_part), "--set", "plane.rough.stepover=7"]) == BAD
+    assert main(["recognize", str(sample_part), "--set", "plane.rough.slot_feed=7"]) == BAD
     assert "must be" in capsys.readouterr().err
 
 
@@ -68,5 +69,5 @@ def test_sizes_blank_route_and_optimize_each_print_json(capsys: pytest.CaptureFi
 def test_every_setting_is_listed_with_its_range(capsys: pytest.CaptureFixture[str]) -> None:
     assert main(["settings", "--json"]) == 0
     listed = {entry["key"]: entry for entry in json.loads(capsys.readouterr().out)}
-    assert {"recognize.family", "plane.rough.stepover", "blank.top"} <= listed.keys()
+    assert {"recognize.family", "plane.rough.slot_feed", "blank.top"} <= listed.keys()
     assert listed["blank.top"]["unit"] == "mm"

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
+
 from trunnion import registry
 from trunnion.model.toolpath import Motion
 from trunnion.pipeline import Engine

@@ -17,6 +17,8 @@ from trunnion.settings import Value, declared
 from trunnion.shop import load_shop
 
 PROJECT_SUFFIX = ".trunnion"
+FRESH = ("done", "problem")
+"""States of a step whose result belongs to what it reads now."""
 
 
 class Engine:
@@ -88,7 +90,7 @@ class Engine:
         return {step.name: step.settings() for step in STEP_TABLE}
 
     def with_choices(self, session: Session, words: Mapping[str, Value]) -> Session:
-        """Return the session with settings chosen by full key (`plane.rough.stepover`); raise `BadInput` for a wrong key or value."""
+        """Return the session with settings chosen by full key (`plane.rough.slot_feed`); raise `BadInput` for a wrong key or value."""
         known = {d.key: d for groups in self.settings().values() for group in groups for d in declared(group)}
         chosen: dict[str, Value] = {}
         for key, value in words.items():
@@ -101,7 +103,12 @@ class Engine:
 
     def states(self, session: Session) -> dict[str, str]:
         """Return for each step whether it is `empty`, `stale`, `done`, or done with a `problem`."""
-        return {step.name: self._state(session, step) for step in STEP_TABLE}
+        found: dict[str, str] = {}
+        for step in STEP_TABLE:
+            state = self._state(session, step)
+            upstream = all(found[name] in FRESH for name in step.after)
+            found[step.name] = state if upstream or state == "empty" else "stale"
+        return found
 
     def _state(self, session: Session, step: Step) -> str:
         record = session.records.get(step.name)
@@ -115,7 +122,7 @@ class Engine:
         """Return the session with every stale step up to `until` computed again; the one given stays as it was."""
         last = STEPS.index(step_named(until).name)
         for n, step in enumerate(STEP_TABLE[: last + 1]):
-            if self._state(session, step) in ("done", "problem"):
+            if self._state(session, step) in FRESH:
                 continue
             share = progress.part(n / (last + 1), (n + 1) / (last + 1))
             share.at(0.0, step.title)
@@ -141,4 +148,6 @@ class Engine:
     def write(self, session: Session, folder: str | Path, *, name: str = "", date: str = "", progress: Progress = QUIET) -> tuple[str, ...]:
         """Write everything of a proven session into a folder (NC, CL, XML, tool list, report, project); return the file names."""
         from trunnion.pipeline.writing import write_all
+        if self.states(session)["verify"] not in FRESH:
+            raise BadCall("something changed since the proof: verify again before anything leaves")
         return write_all(self, session, Path(folder), name=name, date=date, progress=progress)

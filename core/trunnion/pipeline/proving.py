@@ -14,7 +14,6 @@ from trunnion.post.readers import read_program
 from trunnion.post.settings import PostSettings
 from trunnion.progress import Progress
 from trunnion.settings import checked, choose
-from trunnion.verify import prove
 from trunnion.verify.settings import ProofSettings
 
 
@@ -70,6 +69,7 @@ def prove_programs(session: Session, bench: Bench, programs: tuple[Program, ...]
     """Return the verdict on programs, wherever their motions come from."""
     if session.process is None or session.blank is None:
         raise BadCall("no blank or operations: nothing to prove against")
+    from trunnion.verify.verdict import prove
     machine = bench.shop.machines[session.process.setups[0].machine]
     planned = {tag for operation in session.process.operations if not operation.suppressed for tag in operation.faces}
     return prove(programs, bench.part, session.blank, bench.shop.tools, machine, checked(choose(ProofSettings, session.choices)),

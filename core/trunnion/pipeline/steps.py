@@ -48,10 +48,12 @@ class Result:
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Step:
-    """One step: its name, title, the settings it declares, the digest of what it reads, the work, and whether its result is there."""
+    """One step: name, title, the steps whose results it reads (`after`), the settings it declares, what it reads, the work, and whether its
+    result is there."""
 
     name: str
     title: str
+    after: tuple[str, ...]
     settings: Callable[[], tuple[type, ...]]
     reads: Callable[[Session, Bench], tuple[Any, ...]]
     work: Callable[[Session, Bench, Progress], Result]
@@ -171,20 +173,20 @@ def _operations_without_data(session: Session) -> tuple[Any, ...]:
 
 
 STEP_TABLE: tuple[Step, ...] = (
-    Step(name="recognize", title="Recognize", settings=_family_settings, work=_recognize,
+    Step(name="recognize", title="Recognize", after=(), settings=_family_settings, work=_recognize,
          reads=lambda s, b: (b.part.digest, b.part.solid), done=lambda s: s.recognition is not None),
-    Step(name="size", title="Size analysis", settings=lambda: (), work=_size,
+    Step(name="size", title="Size analysis", after=("recognize",), settings=lambda: (), work=_size,
          reads=lambda s, b: (s.recognition,), done=lambda s: "size" in s.records),
-    Step(name="blank", title="Blank", settings=lambda: (BlankSettings,), work=_blank,
+    Step(name="blank", title="Blank", after=("recognize",), settings=lambda: (BlankSettings,), work=_blank,
          reads=lambda s, b: (b.part.digest, s.recognition.frame if s.recognition else None, b.shop.digest),
          done=lambda s: s.blank is not None),
-    Step(name="route", title="Process route", settings=lambda: (SetupSettings, RouteSettings), work=_route,
+    Step(name="route", title="Process route", after=("size", "blank"), settings=lambda: (SetupSettings, RouteSettings), work=_route,
          reads=lambda s, b: (b.part.digest, s.recognition, s.blank, b.shop.digest), done=lambda s: s.process is not None),
-    Step(name="optimize", title="Optimize", settings=lambda: (CuttingSettings,), work=_optimize,
+    Step(name="optimize", title="Optimize", after=("route",), settings=lambda: (CuttingSettings,), work=_optimize,
          reads=lambda s, b: (_record_key(s, "route"), _operations_without_data(s), b.shop.digest), done=lambda s: s.process is not None),
-    Step(name="toolpath", title="Toolpaths", settings=strategy_settings, work=_toolpath,
+    Step(name="toolpath", title="Toolpaths", after=("optimize",), settings=strategy_settings, work=_toolpath,
          reads=lambda s, b: (b.part.digest, s.recognition, s.blank, s.setups, s.process), done=lambda s: "toolpath" in s.records),
-    Step(name="verify", title="Verify and post", settings=lambda: (PostSettings, ProofSettings), work=_verify,
+    Step(name="verify", title="Verify and post", after=("toolpath",), settings=lambda: (PostSettings, ProofSettings), work=_verify,
          reads=lambda s, b: (b.part.digest, s.blank, s.setups, s.process, tuple(p.key for p in s.paths)),
          done=lambda s: s.verdict is not None),
 )

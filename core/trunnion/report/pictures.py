@@ -184,6 +184,6 @@ def _deviation(session: Session, mesh: Mesh, palette: Palette) -> Plotter:
     cloud = pyvista.PolyData(np.asarray(shown.point))
     cloud["deviation mm"] = np.asarray(shown.deviation)
     limit = palette.deviation_limit
-    plotter.add_mesh(cloud, scalars="deviation mm", cmap=palette.deviation_map, clim=(-limit, limit), point_size=4.0, lighting=False,
+    plotter.add_mesh(cloud, scalars="deviation mm", cmap=palette.deviation_map, clim=(-limit, limit), point_size=6.0, lighting=False,
                      scalar_bar_args={"vertical": True, "position_x": 0.03, "position_y": 0.3, "height": 0.5, "color": "black"})
     return _look(plotter, session)

@@ -1,0 +1,175 @@
+"""The whole line on the sample panel B1: from the shipped file to proven text, and what a person may do to it on the way."""
+
+from __future__ import annotations
+
+import json
+import shutil
+from dataclasses import replace
+from pathlib import Path
+
+import numpy as np
+import pytest
+from PIL import Image
+
+import rs274
+from trunnion.cli.main import main
+from trunnion.findings import BadCall, Cancelled
+from trunnion.model.verdict import Outcome
+from trunnion.pipeline import STEPS, Engine
+from trunnion.pipeline.checking import verify_texts
+from trunnion.progress import QUIET, Progress
+from trunnion_resources import sample
+
+
+@pytest.fixture(scope="module")
+def line(tmp_path_factory):
+    """The engine, the proven session of B1 and the folder with everything written."""
+    folder = tmp_path_factory.mktemp("B1")
+    engine = Engine()
+    session = engine.run(engine.open(Path(str(sample("B1")))))
+    engine.write(session, folder, name="B1")
+    return engine, session, folder
+
+
+def test_b1_passes_its_proof(line):
+    verdict = line[1].verdict
+    assert verdict.outcome is Outcome.PASSED
+    assert verdict.gouge <= 0.02
+    assert verdict.coverage >= 0.99
+    assert (verdict.collisions, verdict.rapids_in_stock) == (0, 0)
+
+
+def test_every_operation_of_b1_passes(line):
+    assert {p.outcome for p in line[1].verdict.operations} == {Outcome.PASSED}
+
+
+def test_everything_is_written(line):
+    names = {path.name for path in line[2].iterdir()}
+    assert names == {f"B1.{end}" for end in ("S1.nc", "cl", "tools.json", "features.xml", "process.xml", "features.png", "toolpaths.png",
+                                             "deviation.png", "report.html", "trunnion")}
+
+
+def test_arcs_stay_arcs(line):
+    words = (line[2] / "B1.S1.nc").read_text().split()
+    assert words.count("G2") + words.count("G3") > 500
+
+
+@rs274.needs_rs274
+def test_linuxcnc_moves_as_we_mean(line, tmp_path):
+    session = line[1]
+    text = (line[2] / "B1.S1.nc").read_text()
+    assert rs274.compare(text, session.process.tools(), session.setups[0], tmp_path) > 3000
+
+
+def test_the_tool_list_has_the_documented_keys(line):
+    tools = json.loads((line[2] / "B1.tools.json").read_text())
+    assert {"number", "form", "diameter", "corner_radius", "taper_deg", "flute_length", "stickout", "gauge_length",
+            "holder"} <= tools[0].keys()
+
+
+def test_the_report_names_the_verdict_and_shows_pictures(line):
+    report = (line[2] / "B1.report.html").read_text()
+    assert '<span class="verdict passed">passed</span>' in report
+    assert report.count("data:image/png;base64,") == 3
+
+
+def test_the_features_picture_shows_each_kind_in_its_colour(line):
+    from trunnion.report.palette import load_palette
+    pixels = np.asarray(Image.open(line[2] / "B1.features.png").convert("RGB")).reshape(-1, 3).astype(float)
+    hues = pixels / np.maximum(np.linalg.norm(pixels, axis=1, keepdims=True), 1.0)
+    for kind in line[1].recognition.counts():
+        colour = np.array(load_palette().kind(kind), dtype=float)
+        alike = hues @ (colour / np.linalg.norm(colour)) > 0.999
+        assert alike.mean() > 0.0005, kind
+
+
+def test_every_face_is_in_a_feature(line):
+    recognition = line[1].recognition
+    explained = {tag for feature in recognition for tag in feature.tags}
+    assert explained | set(recognition.unexplained) == set(range(1, 261))
+
+
+def test_the_same_part_gives_the_same_bytes(line, tmp_path):
+    engine = Engine()
+    session = engine.run(engine.open(Path(str(sample("B1")))))
+    engine.write(session, tmp_path, name="B1")
+    for name in ("B1.S1.nc", "B1.cl", "B1.tools.json", "B1.features.xml", "B1.process.xml"):
+        assert (tmp_path / name).read_bytes() == (line[2] / name).read_bytes(), name
+
+
+def test_the_saved_project_opens_with_everything_done(line):
+    engine = Engine()
+    session = engine.open(line[2] / "B1.trunnion")
+    assert set(engine.states(session).values()) == {"done"}
+    assert session.verdict.outcome is Outcome.PASSED
+
+
+def test_a_changed_setting_makes_stale_what_depends_on_it_and_nothing_else(line):
+    engine, session, _ = line
+    states = engine.states(engine.with_choices(session, {"verify.coverage": "0.98"}))
+    assert states == {**dict.fromkeys(STEPS, "done"), "verify": "stale"}
+    states = engine.states(engine.with_choices(session, {"blank.top": "3"}))
+    assert [s for s in STEPS if states[s] == "done"] == ["recognize", "size"]
+
+
+def test_what_is_stale_can_not_be_written(line, tmp_path):
+    engine, session, _ = line
+    with pytest.raises(BadCall, match="verify again"):
+        engine.write(engine.with_choices(session, {"verify.coverage": "0.98"}), tmp_path)
+
+
+def test_an_operation_whose_inputs_are_the_same_keeps_its_toolpath(line):
+    engine, session, _ = line
+    last = session.process.operations[-1]
+    slower = replace(last, data=replace(last.data, feed=last.data.feed / 2), by_hand=True)
+    changed = engine.run(replace(session, process=session.process.with_operation(slower)), until="toolpath")
+    same = [a.operation for a, b in zip(session.paths, changed.paths, strict=True) if a is b]
+    assert same == [o.id for o in session.process.operations[:-1]]
+    assert changed.process.operation(last.id).data.feed == slower.data.feed
+
+
+def test_a_cancelled_job_leaves_the_session_as_it_was(line):
+    engine, session, _ = line
+    stale, asked = replace(session, records={}), []
+
+    def soon() -> bool:
+        asked.append(1)
+        return len(asked) > 40
+
+    with pytest.raises(Cancelled):
+        engine.run(stale, progress=Progress(cancelled=soon))
+    assert stale.records == {} and engine.states(session)["verify"] == "done"
+
+
+def test_a_program_edited_by_hand_is_judged_by_what_it_says(line, tmp_path):
+    engine, session, folder = line
+    text = (folder / "B1.S1.nc").read_text()
+    assert "Z-38 " in text
+    (tmp_path / "edited.nc").write_text(text.replace("Z-38 ", "Z-38.05 "))
+    judged = verify_texts(engine, session, [tmp_path / "edited.nc"], QUIET)
+    assert judged.verdict.outcome is Outcome.FAILED
+    assert judged.verdict.gouge == pytest.approx(0.05, abs=0.002)
+
+
+def test_a_program_that_fails_is_written_as_rejected_and_the_released_one_goes(line, tmp_path):
+    engine, session, folder = line
+    shutil.copytree(folder, tmp_path / "out")
+    without = tuple(replace(o, suppressed=o.kind == "wall") for o in session.process.operations)
+    failed = engine.run(replace(session, process=replace(session.process, operations=without)))
+    names = engine.write(failed, tmp_path / "out", name="B1")
+    assert failed.verdict.outcome is Outcome.FAILED and failed.verdict.coverage < 0.99
+    assert "B1.S1.REJECTED.nc" in names and not (tmp_path / "out" / "B1.S1.nc").exists()
+    assert "REJECTED: DO NOT RUN" in (tmp_path / "out" / "B1.S1.REJECTED.nc").read_text().splitlines()[1]
+    assert "REJECTED" in (tmp_path / "out" / "B1.cl").read_text()
+    assert "REJECTED" in (tmp_path / "out" / "B1.report.html").read_text()
+
+
+def test_the_command_line_prints_the_documented_keys(tmp_path, capsys, sample_panel):
+    code = main(["program", str(sample_panel), "-o", str(tmp_path), "--json"])
+    said = json.loads(capsys.readouterr().out)
+    assert code == (0 if said["verdict"].startswith("passed") else 1)
+    assert {"verdict", "coverage", "reachable", "gouge_mm", "collisions", "rapids_in_stock", "machining_time_s", "seconds", "setups",
+            "operations", "files", "findings"} <= said.keys()
+    assert {"name", "nc", "frame", "blank"} <= said["setups"][0].keys()
+    assert {"id", "kind", "feature", "tool", "verdict"} <= said["operations"][0].keys()
+    assert sorted(said["files"]) == sorted(path.name for path in tmp_path.iterdir())
