@@ -15,7 +15,7 @@ OPEN_MARGIN = 0.5
 OVERRUN = 1.0
 """mm that the whole cutter runs past an open side."""
 
-FAR = 1e4
+FAR = 10_000.0
 """mm: farther than any boundary, so that passes are parallel to walls and to nothing else."""
 
 

@@ -21,7 +21,7 @@ SPACING = 0.5
 CLIP_SPACING = 1.0
 """mm between the places that are looked at where a part's ends need not be exact: a clip is wider than what is wanted."""
 
-END = 1e-4
+END = tolerance.SHORT_MOVE
 """mm: how exactly the end of a part of a curve is found."""
 
 SHORTEST = 0.05

@@ -12,7 +12,7 @@ import math
 import numpy as np
 
 from trunnion.geometry.arrays import Bools, Floats
-from trunnion.model.material import Axis, Machine
+from trunnion.model.material import Machine
 from trunnion.model.toolpath import Motion, Toolpath
 from trunnion.units import SECONDS_PER_MINUTE
 
@@ -34,7 +34,7 @@ def block_times(path: Toolpath, machine: Machine) -> Floats:
         return times
     length = length[rows]
     first, last = _directions(path, rows)
-    axes = [_linear(machine, name) for name in "XYZ"]
+    axes = [machine.axis(name) for name in "XYZ"]
     rate = np.array([a.rapid / SECONDS_PER_MINUTE for a in axes])
     push = np.array([a.acceleration for a in axes])
     share = np.maximum(np.abs(first), np.abs(last))
@@ -49,10 +49,6 @@ def block_times(path: Toolpath, machine: Machine) -> Floats:
     joint = _joint_speeds(first, last, speed, acceleration, is_rapid)
     times[rows] = _trapezoids(length, speed, acceleration, _looked_ahead(length, joint, acceleration))
     return times
-
-
-def _linear(machine: Machine, name: str) -> Axis:
-    return machine.axis(name)
 
 
 def _directions(path: Toolpath, rows: np.ndarray) -> tuple[Floats, Floats]:
