@@ -153,18 +153,12 @@ class Space:
             wanted = holding(self.silhouette().minus(material), points)
             boundary = holding(self.around().minus(material).intersect(wanted.offset(AROUND)), points) if wanted else EMPTY_REGION
         else:
-            wanted = boundary = holding(self.around().minus(material), points)
+            wanted = boundary = enclosed(material, points)
         if not wanted:
-            raise Refused(f"{feature.id}: the part leaves no free space over its floor at z {z:.3f} of {self.setup.name}; "
+            raise Refused(f"{feature.id}: at z {z:.3f} of {self.setup.name} the part has no space over its floor, or does not close it; "
                           "correct the feature or machine it by hand")
-        if feature.kind != "open_pocket" and self._reaches_outside(wanted):
-            raise Refused(f"{feature.id}: the part does not close it at z {z:.3f} of {self.setup.name}; make it an open pocket")
         wanted, boundary = filled_over(wanted, sunken), filled_over(boundary, sunken)
         return Band(top=high, bottom=low, wanted=wanted, boundary=boundary)
-
-    def _reaches_outside(self, region: Region) -> bool:
-        low, high = region.box()
-        return bool((low < self.blank_low[:2] - tolerance.SEW).any() or (high > self.blank_high[:2] + tolerance.SEW).any())
 
     def _middle_of(self, feature: Feature) -> Floats:
         centre = feature.attributes.get("centre", feature.sizes.get("centre"))
@@ -203,6 +197,23 @@ def holding(region: Region, points: Iterable[Floats]) -> Region:
     if not region or not len(where):
         return EMPTY_REGION
     return Region(tuple(p for p in region.pieces if Region((p,)).contains(where).any()))
+
+
+def enclosed(material: Region, points: Iterable[Floats]) -> Region:
+    """Return the spaces that material encloses and that hold one of the points (2,), without what stands in them.
+
+    They are holes of its pieces, so their curves are the section's own.
+    """
+    where = np.array(list(points))
+    found = []
+    for hole in (h.reversed() for p in material.pieces for h in p.holes):
+        space = Region((Piece(hole),))
+        if space.contains(where).any():
+            standing = tuple(p.outer.reversed() for p in material.pieces if space.contains(p.outer.points[:1]).all())
+            inner = Region((Piece(hole, standing),))
+            if inner.contains(where).any():
+                found.append(inner.pieces[0])
+    return Region(tuple(found))
 
 
 def touching(region: Region, other: Region) -> Region:
