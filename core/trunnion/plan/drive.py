@@ -234,7 +234,7 @@ def _rib_top(operation: Operation, feature: Feature, space: Space) -> PlaneDrive
     for tag in tags[1:]:
         wanted = wanted.union(space.part.face_outline(frame, tag))
     # Free at the part's top as well: under a wall that leans over the rib no cutter gets in from above.
-    boundary = touching(space.free(z + beside).intersect(space.free(space.top - beside)), wanted)
+    boundary = touching(space.free_near(z + beside, wanted).intersect(space.free_near(space.top - beside, wanted)), wanted)
     walls = tuple(WallGuide(curve=run, top=space.top, bottom=z, fillet=0.0, faces=())
                   for curve in wanted.curves() for run in runs(curve, on_rim(curve, boundary)))
     return _top(operation, feature, space, z, wanted, boundary, walls)

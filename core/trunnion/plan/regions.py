@@ -29,6 +29,9 @@ from trunnion.plan.setups import box_in
 AROUND = 150.0
 """mm: how far free space is looked at around the blank; more than two diameters of the largest cutter."""
 
+NEAR = 60.0
+"""mm: how far free space is looked at around a top; more than a cutter of the largest diameter and its way in."""
+
 
 class Sections(Protocol):
     """What planning asks of a part."""
@@ -94,9 +97,10 @@ class Space:
         """Return the blank's area and plenty around it."""
         return Region.rectangle(*(self.blank_low[:2] - AROUND), *(self.blank_high[:2] + AROUND))
 
-    def free(self, z: float) -> Region:
-        """Return where there is no material of the part at a height, in the blank and around it."""
-        return self.around().minus(self.section(z))
+    def free_near(self, z: float, region: Region) -> Region:
+        """Return where there is no material of the part at a height, around a region by plenty for a cutter over it."""
+        low, high = region.box()
+        return Region.rectangle(*(low - NEAR), *(high + NEAR)).minus(self.section(z))
 
     def silhouette(self) -> Region:
         """Return the part's outline seen from above, its openings filled."""

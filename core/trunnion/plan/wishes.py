@@ -15,7 +15,7 @@ from trunnion.model.feature import Feature, Recognition
 from trunnion.model.material import Machine, Material
 from trunnion.model.tool import Tool
 from trunnion.plan.choosing import Task, candidates, depth_reached
-from trunnion.plan.regions import Band, Space, floor_fillet, number, parent_of
+from trunnion.plan.regions import Band, Space, floor_fillet, number, parent_of, touching
 from trunnion.settings import setting, settings
 from trunnion.shop import Shop, Stage
 from trunnion.units import trimmed
@@ -234,7 +234,7 @@ def _top_room(draft: Draft, feature: Feature, z: float, tops: Sequence[int]) -> 
     for tag in tops:
         wanted = wanted.union(space.part.face_outline(space.setup.frame, tag))
     if feature.kind != "island":
-        return space.free(z + tolerance.BESIDE_PLANE), wanted
+        return touching(space.free_near(z + tolerance.BESIDE_PLANE, wanted), wanted), wanted
     pocket = parent_of(feature, draft.recognition)
     over = [b for b in draft.bands.get(pocket.id, ()) if b.bottom <= z + tolerance.SEW] if pocket else []
     if not over:
