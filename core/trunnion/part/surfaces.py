@@ -26,6 +26,7 @@ import numpy as np
 from trunnion import tolerance
 from trunnion.geometry.arrays import Floats, Ints, floats, ints
 from trunnion.geometry.frame import Frame
+from trunnion.progress import QUIET, Progress
 
 if TYPE_CHECKING:
     from trunnion.part.part import Part
@@ -259,9 +260,10 @@ def level_face(tag: int, z: float, edges: list[Edge], side: float = 1.0) -> Face
                 np.vstack([np.zeros((0, 4)), *chords]), z)
 
 
-def surfaces_of(part: Part, frame: Frame) -> Surfaces:
+def surfaces_of(part: Part, frame: Frame, progress: Progress = QUIET) -> Surfaces:
     """Return the trimmed faces of a part in a frame, its z the tool's axis."""
-    return surfaces_from([_face(tag, part.face_shape(tag), frame) for tag in part.tags if part.face_shape(tag) is not None])
+    shapes = [(tag, part.face_shape(tag)) for tag in part.tags]
+    return surfaces_from([_face(tag, shape, frame) for tag, shape in progress.over(shapes, "Reading the exact faces") if shape is not None])
 
 
 def _distinct(values: list[float]) -> list[float]:

@@ -37,9 +37,10 @@ class Samples:
         return len(self.face)
 
 
-def samples_of(surfaces: Surfaces, spacing: float) -> Samples:
+def samples_of(surfaces: Surfaces, spacing: float, progress: Progress = QUIET) -> Samples:
     """Return samples about `spacing` mm apart on every face, the same ones each time; no face is without one."""
-    parts = [_strip_samples(strip, spacing) for strip in np.vstack([surfaces.strip, surfaces.level])]
+    strips = np.vstack([surfaces.strip, surfaces.level])
+    parts = [_strip_samples(strip, spacing) for strip in progress.over(strips, "Spreading samples")]
     face = np.repeat(np.concatenate([surfaces.strip_face, surfaces.level_face]), [len(p) for p in parts])
     rows = np.vstack([np.zeros((0, 7)), *parts])
     return Samples(face=face.astype(np.int64), point=rows[:, :3], normal=rows[:, 3:6], area=rows[:, 6])

@@ -22,7 +22,7 @@ from trunnion.verify.kernels import stock as kernel
 from trunnion.verify.motion import Moves
 from trunnion.verify.sweep import Sweep
 
-CHUNK_CELLS = 40_000_000
+CHUNK_CELLS = 10_000_000
 """Columns touched between two looks at cancel, about 0.1 s."""
 CHORD = 2e-3
 """Chord error of helices in the field, mm; levels and arcs have none."""

@@ -56,18 +56,19 @@ def prove(programs: Sequence[Program], part: Part, blank: Blank, tools: Sequence
     `tools` are the catalogue's, for what could be reached at all; `planned_faces` the tags that some operation means to finish.
     """
     frames = [p.setup.frame for p in programs] or [blank.frame]
-    return prove_surfaces(programs, [surfaces_of(part, f) for f in frames], blank, tools, machine, settings, progress, planned_faces)
+    surfaces = [surfaces_of(part, f, progress.part(0.0, 0.05)) for f in frames]
+    return prove_surfaces(programs, surfaces, blank, tools, machine, settings, progress.part(0.05, 1.0), planned_faces)
 
 
 def prove_surfaces(programs: Sequence[Program], surfaces: Sequence[Surfaces], blank: Blank, tools: Sequence[Tool], machine: Machine,
                    settings: ProofSettings, progress: Progress = QUIET, planned_faces: Collection[int] = ()) -> Verdict:
     """Return the verdict as `prove` does, on faces given in each setup's frame (without a program: in the blank's)."""
     frame = programs[0].setup.frame if programs else blank.frame
-    samples = samples_of(surfaces[0], settings.spacing)
+    samples = samples_of(surfaces[0], settings.spacing, progress.part(0.0, 0.05))
     contacts = [PartContact(s) for s in surfaces]
     proofs = []
     for k, program in enumerate(programs):
-        share = progress.part(0.8 * k / len(programs), 0.8 * (k + 1) / len(programs))
+        share = progress.part(0.05 + 0.75 * k / len(programs), 0.05 + 0.75 * (k + 1) / len(programs))
         proofs.append(_prove_setup(program, contacts[k], blank, machine, settings, _moved(samples, frame, program.setup.frame), share))
     findings = [f for p in proofs for f in _findings(p, surfaces[0], settings)]
     findings += [f for p in programs for f in limit_findings(p.setup.name, p.sections, machine)]
