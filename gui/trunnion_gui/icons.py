@@ -11,6 +11,8 @@ from PySide6.QtGui import QIcon, QPixmap
 from trunnion_gui.colours import Theme, theme
 
 _theme = theme("light")
+_DRAWN = 48
+"""Pixels an icon is drawn with once; smaller ones are made from it."""
 
 
 @cache
@@ -27,14 +29,30 @@ def use_theme(chosen: Theme) -> None:
 
 def icon(name: str, colour: str = "") -> QIcon:
     """Return an icon; raises `KeyError` for a name that resources do not have."""
-    import qtawesome
-
-    return qtawesome.icon(names()[name], color=colour or _theme.text, color_disabled=_theme.line)
+    return _icon(names()[name], colour or _theme.text, _theme.line)
 
 
 def pixmap(name: str, size: int, colour: str = "") -> QPixmap:
     """Return an icon as a picture."""
-    return icon(name, colour).pixmap(size, size)
+    return _pixmap(names()[name], size, colour or _theme.text, _theme.line)
+
+
+# Drawing a letter of the icon font takes milliseconds, and a tree has a hundred rows.
+@cache
+def _icon(font_name: str, colour: str, disabled: str) -> QIcon:
+    import qtawesome
+
+    drawn = qtawesome.icon(font_name, color=colour, color_disabled=disabled)
+    kept = QIcon(drawn.pixmap(_DRAWN, _DRAWN))
+    kept.addPixmap(drawn.pixmap(_DRAWN, _DRAWN, QIcon.Mode.Disabled), QIcon.Mode.Disabled)
+    return kept
+
+
+@cache
+def _pixmap(font_name: str, size: int, colour: str, disabled: str) -> QPixmap:
+    import qtawesome
+
+    return qtawesome.icon(font_name, color=colour, color_disabled=disabled).pixmap(size, size)
 
 
 def window_icon() -> QIcon:

@@ -16,19 +16,20 @@ from trunnion_gui.i18n import tr
 class _Words(QSyntaxHighlighter):
     """Comments muted, motion words in the colour of their motion, tool and spindle words in the accent."""
 
+    _PATTERN = re.compile(r"(?P<comment>\([^)]*\)|;.*$|^\$\$.*$)|(?P<rapid>\bG0?0\b|\bRAPID\b)|(?P<cut>\bG0?[123]\b|\bGOTO\b|\bCIRCLE\b)"
+                          r"|(?P<tool>\b[TMS]\d+(?:\.\d+)?\b|\b[A-Z]{4,}/)|(?P<number>\bN\d+\b)")
+
     def __init__(self, editor: QPlainTextEdit, theme: Theme) -> None:
         super().__init__(editor.document())
-        self._rules = ((re.compile(r"\bG0?0\b|\bRAPID\b"), motions()["rapid"]),
-                       (re.compile(r"\bG0?[123]\b|\bGOTO\b|\bCIRCLE\b"), motions()["cut"]),
-                       (re.compile(r"\b[TMS]\d+(\.\d+)?\b|\b[A-Z]{4,}/"), theme.accent), (re.compile(r"\bN\d+\b"), theme.muted),
-                       (re.compile(r"\([^)]*\)|;.*$|^\$\$.*$"), theme.muted))
+        colours = {"comment": theme.muted, "number": theme.muted, "tool": theme.accent}
+        colours |= {name: motions()[name] for name in ("rapid", "cut")}
+        self._looks = {name: QTextCharFormat() for name in colours}
+        for name, colour in colours.items():
+            self._looks[name].setForeground(QColor(colour))
 
     def highlightBlock(self, text: str) -> None:
-        for pattern, colour in self._rules:
-            look = QTextCharFormat()
-            look.setForeground(QColor(colour))
-            for match in pattern.finditer(text):
-                self.setFormat(match.start(), match.end() - match.start(), look)
+        for match in self._PATTERN.finditer(text):
+            self.setFormat(match.start(), match.end() - match.start(), self._looks[match.lastgroup or "comment"])
 
 
 class CodeDock(QWidget):

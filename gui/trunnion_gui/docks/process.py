@@ -107,10 +107,10 @@ class ProcessDock(QWidget):
         return menu
 
     def _add(self, top: QTreeWidgetItem, o: Operation, session: Session) -> None:
-        item = QTreeWidgetItem([f"{o.id}  {sentence(tr(kind_words(o.kind)))}", o.feature, f"T{o.tool.number}", amount(o.tool.diameter, 2)])
+        item = QTreeWidgetItem([label(o), o.feature, f"T{o.tool.number}", amount(o.tool.diameter, 2)])
         item.setData(0, _ID, o.id)
         item.setTextAlignment(3, RIGHT)
-        item.setToolTip(0, "<br>".join(o.rules))
+        item.setToolTip(0, "<br>".join((f"<b>{o.id}</b>", *o.rules)))
         item.setToolTip(2, o.tool.description or o.tool.name)
         item.setIcon(0, self._icon(o, session))
         if o.suppressed and self._theme is not None:
@@ -149,3 +149,9 @@ class ProcessDock(QWidget):
         if operation is not None:
             self.menu(operation).popup(self.tree.viewport().mapToGlobal(at))
 
+
+def label(o: Operation) -> str:
+    """Return what tells an operation from others of its feature: its kind, with what else its id says."""
+    rest = o.id.replace(f"-{o.feature}", "").removeprefix(o.kind).strip("-")
+    kind = sentence(tr(kind_words(o.kind)))
+    return f"{kind} {rest}" if rest else kind

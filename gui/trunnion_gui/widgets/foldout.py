@@ -43,6 +43,7 @@ class Foldout(QFrame):
         self.setObjectName("group" if is_group else "foldout")
         self._theme: Theme | None = None
         self.state = ""
+        self._drawn: tuple[str, Theme | None] = ("", None)
         self.is_folded = not is_open
         self.header = _Header()
         self._arrow, self._state, self._words, self._time = QLabel(), QLabel(), QLabel(), QLabel()
@@ -69,9 +70,10 @@ class Foldout(QFrame):
 
     def show_state(self, state: str, seconds: str) -> None:
         """Show a state (a key of `STATES`) and the time it took."""
-        self.state = state
         self._time.setText(seconds)
-        if self._theme is not None:
+        is_news = (state, self._theme) != self._drawn
+        self.state, self._drawn = state, (state, self._theme)
+        if self._theme is not None and is_news:
             colours = {"empty": self._theme.muted, "stale": self._theme.warning, "running": self._theme.accent, "done": self._theme.good,
                        "problem": self._theme.bad}
             self._state.setPixmap(icons.pixmap(state, 14, colours[state]))

@@ -21,6 +21,10 @@ _FEW = 4
 """The first group of a step is shown open when it has at most so many settings; everything else is folded."""
 
 
+_MANY = 3
+"""More groups than this are folded once more, all together."""
+
+
 class Panel(Foldout):
     """One step of the work. A subclass gives `command` (the main button), `fill` (results) and may add to `content`."""
 
@@ -116,17 +120,26 @@ class Panel(Foldout):
     def _make_forms(self) -> None:
         self._settings_shown = self.document.groups
         groups = [g for step in self.stage.steps for g in self.document.groups.get(step, ()) if g.settings]
+        inside = self._settings
+        if len(groups) > _MANY:
+            whole = self._folded(tr("Settings"))
+            self._settings.addWidget(whole)
+            inside = whole.content
         for n, group in enumerate(groups):
             form = self._form(group)
             if n == 0 and len(group.settings) <= _FEW and not self.folds_settings:
                 self._settings.addWidget(form)
                 continue
-            foldout = Foldout(tr("{group} settings").format(group=tr(group.title)), is_group=True)
-            if self.theme is not None:
-                foldout.use_theme(self.theme)
+            foldout = self._folded(tr("{group} settings").format(group=tr(group.title)))
             foldout.content.addWidget(form)
-            self._groups.append(foldout)
-            self._settings.addWidget(foldout)
+            inside.addWidget(foldout)
+
+    def _folded(self, title: str) -> Foldout:
+        foldout = Foldout(title, is_group=True)
+        if self.theme is not None:
+            foldout.use_theme(self.theme)
+        self._groups.append(foldout)
+        return foldout
 
     def _form(self, group: Group) -> Form:
         form = Form(group.settings)

@@ -70,9 +70,8 @@ def _normals(mesh: Mesh) -> np.ndarray:
     """Return the normal at every point (v, 3), smooth inside a face and sharp across its border."""
     a, b, c = np.moveaxis(mesh.corners(), 1, 0)
     across = np.cross(b - a, c - a)
-    total = np.zeros_like(mesh.points)
-    for corner in range(3):
-        np.add.at(total, mesh.triangles[:, corner], across)
+    n, rows = len(mesh.points), mesh.triangles.T.ravel()
+    total = np.stack([np.bincount(rows, weights=np.tile(across[:, k], 3), minlength=n) for k in range(3)], axis=1)
     length = np.linalg.norm(total, axis=1, keepdims=True)
     return np.divide(total, length, out=np.zeros_like(total), where=length > 0).astype(np.float32)
 
