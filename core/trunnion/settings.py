@@ -135,7 +135,8 @@ def digest(*things: Any) -> str:
 
 def _plain(thing: Any) -> Any:
     if dataclasses.is_dataclass(thing) and not isinstance(thing, type):
-        own = {f.name: _plain(getattr(thing, f.name)) for f in dataclasses.fields(thing)}
+        # A field that is not given at construction is a cache: it may be there or not yet.
+        own = {f.name: _plain(getattr(thing, f.name)) for f in dataclasses.fields(thing) if f.init}
         return {"": type(thing).__qualname__, **own}
     if isinstance(thing, Mapping):
         return {str(k): _plain(v) for k, v in thing.items()}

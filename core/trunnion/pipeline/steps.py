@@ -62,7 +62,7 @@ class Step:
 
     def key(self, session: Session, bench: Bench) -> str:
         """Return the digest of everything the step would be given now."""
-        chosen = tuple(checked(choose(group, session.choices)) for group in self.settings())
+        chosen: tuple[Any, ...] = tuple(checked(choose(group, session.choices)) for group in self.settings())
         return digest(self.name, self.version, chosen, self.reads(session, bench))
 
 
