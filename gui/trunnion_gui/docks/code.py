@@ -41,6 +41,8 @@ class CodeDock(QWidget):
         self._shown: tuple[PostedFile, ...] = ()
         self._words: _Words | None = None
         self.choice = QComboBox()
+        self.choice.setSizeAdjustPolicy(QComboBox.SizeAdjustPolicy.AdjustToContents)
+        self.choice.setMinimumContentsLength(18)
         self.lines = QLabel()
         self.lines.setObjectName("muted")
         self.text = QPlainTextEdit()

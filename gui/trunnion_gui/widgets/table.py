@@ -18,7 +18,7 @@ def tree(headers: Sequence[str], stretched: int = 0, kind: type[Tree] = QTreeWid
     made = kind()
     made.setHeaderLabels(list(headers))
     made.setUniformRowHeights(True)
-    made.setIndentation(14)
+    made.setIndentation(12)
     made.setSelectionMode(QAbstractItemView.SelectionMode.SingleSelection)
     made.setContextMenuPolicy(Qt.ContextMenuPolicy.CustomContextMenu)
     made.header().setStretchLastSection(False)
