@@ -117,6 +117,7 @@ def test_the_program_and_its_listing_are_there_to_read(programmed, qtbot):
     window = programmed.window
     window.show_dock("code")
     qtbot.waitUntil(lambda: len(window.code.text.toPlainText()) > 1000)
+    assert "REJECTED" not in window.code.text.toPlainText()
     operation = window.document.session.process.operations[0].id
     window.document.select_operation(operation)
     window.show_dock("listing")

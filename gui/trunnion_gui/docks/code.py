@@ -7,7 +7,8 @@ import re
 from PySide6.QtGui import QColor, QShowEvent, QSyntaxHighlighter, QTextCharFormat
 from PySide6.QtWidgets import QComboBox, QHBoxLayout, QLabel, QPlainTextEdit, QVBoxLayout, QWidget
 
-from trunnion.model.session import PostedFile
+from trunnion.findings import TrunnionError
+from trunnion.model.session import PostedFile, Session
 from trunnion_gui.colours import Theme, motions
 from trunnion_gui.document import Document
 from trunnion_gui.i18n import tr
@@ -39,6 +40,7 @@ class CodeDock(QWidget):
         super().__init__()
         self._document = document
         self._shown: tuple[PostedFile, ...] = ()
+        self._source: tuple[object, object] = ((), None)
         self._words: _Words | None = None
         self.choice = QComboBox()
         self.choice.setSizeAdjustPolicy(QComboBox.SizeAdjustPolicy.AdjustToContents)
@@ -69,10 +71,11 @@ class CodeDock(QWidget):
 
     def refresh(self) -> None:
         """Show the programs of the shown session, if anybody looks."""
-        posted = self._document.shown.posted
-        if not self.isVisible() or posted is self._shown:
+        session = self._document.shown
+        if not self.isVisible() or (session.posted, session.verdict) == self._source:
             return
-        self._shown = posted
+        self._source = (session.posted, session.verdict)
+        self._shown = posted = as_they_leave(session)
         self.choice.blockSignals(True)
         self.choice.clear()
         for file in posted:
@@ -90,3 +93,13 @@ class CodeDock(QWidget):
         text = self._shown[row].text if 0 <= row < len(self._shown) else ""
         self.text.setPlainText(text)
         self.lines.setText(tr("{n} lines").format(n=f"{text.count(chr(10)):,}".replace(",", " ")) if text else "")
+
+
+def as_they_leave(session: Session) -> tuple[PostedFile, ...]:
+    """Return the programs with the stamp that they would be written with now; not proven, they keep the one that forbids running."""
+    from trunnion.post.release import release
+
+    try:
+        return release(session)
+    except TrunnionError:
+        return session.posted
