@@ -190,17 +190,21 @@ def curve_distance(a: Floats, b: Floats) -> float:
 def depth_in_piece(piece: Floats, rho: float, h: float, rise: float) -> tuple[float, float, float]:
     """Return how deep a point at distance rho from the axis and height h above the tip is in a piece swept up by `rise`, and the slopes.
 
-    Positive inside. Slopes (by rho, by h) are a supergradient: the depth is concave. Negative rho is taken as zero.
+    Positive inside. Slopes (by rho, by h) are a supergradient: the depth is concave. Negative rho is taken as zero. Of a cone, the depth is
+    that in its whole swept body.
     """
     if piece[FORM] == 0.0:
         corner = piece[R_HIGH]
+        # While the flutes pass a point it is at most their length above the tip.
+        over = h > piece[Z_HIGH]
+        h = min(h, piece[Z_HIGH])
         qx, qy = max(rho, 0.0) - (piece[R_LOW] - corner), corner - h
         if qx > 0.0 and qy > 0.0:
             q = math.sqrt(qx * qx + qy * qy)
-            return corner - q, (-qx / q if rho > 0.0 else 0.0), qy / q
+            return corner - q, (-qx / q if rho > 0.0 else 0.0), (0.0 if over else qy / q)
         if qx > qy:
             return corner - qx, (-1.0 if rho > 0.0 else 0.0), 0.0
-        return corner - qy, 0.0, 1.0
+        return corner - qy, 0.0, (0.0 if over else 1.0)
     r0, r1, z0, z1 = piece[R_LOW], piece[R_HIGH], piece[Z_LOW], piece[Z_HIGH]
     slope = (r1 - r0) / (z1 - z0)
     cosine = 1.0 / math.sqrt(1.0 + slope * slope)
@@ -405,7 +409,8 @@ def move_depth(s: Floats, move: Floats, piece: Floats, enough: float, bound: flo
         most, u = strip_depth(s, path, z_low, z_high - z_low, piece, max(enough, best), bound, guide, stack)
         if most <= max(enough, best):
             continue
-        if z_high - z_low <= bound or top + 2 > len(spans):
+        # A rise of a fraction of the bound: where a trim leans more than it climbs, its end moves faster than the tip.
+        if z_high - z_low <= 0.125 * bound or top + 2 > len(spans):
             best, where = most, u
             continue
         middle = 0.5 * (t0 + t1)
