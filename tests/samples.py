@@ -22,7 +22,8 @@ if TYPE_CHECKING:
     from trunnion.part.part import Part
 
 Triple = Sequence[float]
-POCKET = {"length": 60.0, "width": 36.0, "height": 18.0, "pocket_length": 36.0, "pocket_width": 20.0, "depth": 10.0, "corner": 4.0, "fillet": 2.0}
+POCKET = {"length": 60.0, "width": 36.0, "height": 18.0, "pocket_length": 36.0, "pocket_width": 20.0, "depth": 10.0, "corner": 4.0,
+          "fillet": 2.0}
 """Sizes of `block_with_pocket_shape`, mm."""
 PANEL = {"length": 160.0, "width": 100.0, "height": 20.0, "floor": 4.0, "corner": 8.0, "fillet": 3.0, "rib_top": 14.0, "rib": 4.0}
 """Sizes of `two_pockets_and_a_rib_shape`, mm: `floor` is the height of every pocket's floor over the bottom, `rib_top` of the rib's top."""
@@ -70,9 +71,22 @@ def two_pockets_and_a_rib_shape() -> Any:
 
 
 @cache
+def oblique_cylinder_shape() -> Any:
+    """Return a cylinder R10, 60 long, that leans by 30 degrees about y: its sections are ellipses."""
+    return cq.Workplane("XY").circle(10.0).extrude(60.0).rotate((0, 0, 0), (0, 1, 0), 30.0).val().wrapped
+
+
+@cache
+def ball_shape() -> Any:
+    """Return a ball R10 around the origin with a flat at z = -5."""
+    return cq.Workplane("XY").sphere(10.0).cut(cq.Workplane("XY").box(30, 30, 10).translate((0, 0, -10))).val().wrapped
+
+
+@cache
 def two_blocks_shape() -> Any:
     """Return two separate solids: the plain box, and a smaller one beside it."""
-    return cq.Compound.makeCompound([cq.Shape.cast(box_shape()), cq.Shape.cast(box_shape(10.0, 10.0, 10.0)).translate(cq.Vector(60, 0, 0))]).wrapped
+    small = cq.Shape.cast(box_shape(10.0, 10.0, 10.0)).translate(cq.Vector(60, 0, 0))
+    return cq.Compound.makeCompound([cq.Shape.cast(box_shape()), small]).wrapped
 
 
 @cache
@@ -137,9 +151,16 @@ def written(shape: Any, suffix: str = "step", unit: str = "mm", name: str = "sam
 
 
 def read(shape: Any, suffix: str = "step", unit: str = "mm", solid: int | None = None) -> Part:
-    """Return the part of a shape that was written to a file and read back, once a session."""
-    from trunnion.part.read import read_part
-    key = written(shape, suffix, unit), solid
-    if key not in _PARTS:
-        _PARTS[key] = read_part(key[0], solid=solid)
-    return _PARTS[key]
+    """Return the part of a shape that was written to a file and read back, once a session and, for speed, in this process."""
+    from trunnion.part.child import Request
+    from trunnion.part.text import check_iges, check_step
+    from trunnion.part.transfer import read_file
+    file = written(shape, suffix, unit)
+    if (file, solid) not in _PARTS:
+        data = file.read_bytes()
+        is_iges = suffix in ("igs", "iges")
+        request = Request(file=file.name, path=str(file), name=file.stem, digest=hashlib.sha256(data).hexdigest(),
+                          kind="iges" if is_iges else "step", listed=(check_iges if is_iges else check_step)(data, file.name),
+                          solid=solid, size=len(data))
+        _PARTS[file, solid] = read_file(file, request)
+    return _PARTS[file, solid]

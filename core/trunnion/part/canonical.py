@@ -206,7 +206,7 @@ def _cone(found: Any) -> Surface:
     return Surface(kind="cone", axis_point=axes["axis_point"], axis=way * axes["axis"], radius=found.RefRadius(), minor=abs(angle))
 
 
-def _axis(found: Any) -> dict[str, Floats]:
+def _axis(found: Any) -> dict[str, Any]:
     return {"axis_point": _xyz(found.Axis().Location()), "axis": _xyz(found.Axis().Direction())}
 
 

@@ -78,8 +78,8 @@ def _answer(code: int, place: Path, request: Request, limits: ReadLimits) -> byt
         raise BadInput(refusal.read_text(encoding="utf-8"))
     last = (place / "words").read_bytes()[-4096:]
     if code == _NO_MEMORY or b"bad_alloc" in last or b"MemoryError" in last:
-        raise OutOfMemory(f"{request.file}: reading it needs more than {limits.memory} MB of memory; split the part or raise the limit")
-    raise BadInput(f"{request.file}: the CAD kernel failed on this file (exit code {code}); export the part again, if possible as STEP AP214")
+        raise OutOfMemory(f"{request.file}: reading it needs more than {limits.memory} MB of memory; raise the limit or split the part")
+    raise BadInput(f"{request.file}: the CAD kernel failed on this file (exit code {code}); export it again, as STEP AP214 if possible")
 
 
 def main(folder: str) -> int:

@@ -9,6 +9,29 @@ import numpy as np
 from trunnion import tolerance
 from trunnion.geometry.arrays import Floats
 
+_BETWEEN = np.arange(4) / 4.0
+
+
+def along_arcs(points: Floats, headings: Floats) -> Floats:
+    """Return points (4 k - 3, 2) along the arcs that join points (k, 2) with given directions (k, 2), the given ones among them.
+
+    Where the directions at both ends differ from the chord's by unlike angles, the arc takes their mean.
+    """
+    chord = np.diff(points, axis=0)
+    first, last = _turn(headings[:-1], chord), _turn(chord, headings[1:])
+    half = 0.5 * (first + last)[:, None]
+    share = _BETWEEN[None, :]
+    # A point at a share of an arc with half sweep h, seen from its start: the chord to it is shorter by sin(share h) / sin(h) and turned.
+    length = np.where(np.abs(half) > tolerance.PARAMETRIC, np.sin(share * half) / np.where(half == 0.0, 1.0, np.sin(half)), share)
+    angle = (share - 1.0) * half
+    x, y = length * np.cos(angle), length * np.sin(angle)
+    on = np.stack([x * chord[:, :1] - y * chord[:, 1:], y * chord[:, :1] + x * chord[:, 1:]], axis=-1)
+    return np.concatenate([(points[:-1, None] + on).reshape(-1, 2), points[-1:]])
+
+
+def _turn(a: Floats, b: Floats) -> Floats:
+    return np.arctan2(a[:, 0] * b[:, 1] - a[:, 1] * b[:, 0], (a * b).sum(axis=1))
+
 
 def arcs_through(points: Floats, within: float = tolerance.FITTED) -> tuple[Floats, Floats]:
     """Return points (m, 2) out of `points` (k, 2), first and last among them, and bulges (m - 1,) of arcs that pass all within a distance.

@@ -75,19 +75,27 @@ def face_graph(shape: Shape, faces: Mapping[int, Shape], n_faces: int) -> FaceGr
     columns = [rows.get(n, _ABSENT) for n in range(n_faces)]
     joints = [joint for edge in edges for joint in _joints(edge)]
     samples = [(n, c) for n, c in enumerate(columns) if len(c.points)]
+
+    def column(name: str) -> np.ndarray:
+        return np.array([getattr(c, name) for c in columns])
+
+    def of_surface(name: str) -> np.ndarray:
+        return np.array([getattr(c.surface, name) for c in columns])
+
+    def of_joint(name: str) -> np.ndarray:
+        return np.array([getattr(j, name) for j in joints])
+
     return FaceGraph(
-        surface=tuple(c.surface.kind for c in columns), area=[c.area for c in columns], centre=[c.centre for c in columns],
-        normal=[c.normal for c in columns], axis_point=[c.surface.axis_point for c in columns], axis=[c.surface.axis for c in columns],
-        radius=[c.surface.radius for c in columns], minor=[c.surface.minor for c in columns], bend=[c.bend for c in columns],
-        box_low=[c.low for c in columns], box_high=[c.high for c in columns],
+        surface=tuple(c.surface.kind for c in columns), area=column("area"), centre=column("centre"), normal=column("normal"),
+        axis_point=of_surface("axis_point"), axis=of_surface("axis"), radius=of_surface("radius"), minor=of_surface("minor"),
+        bend=column("bend"), box_low=column("low"), box_high=column("high"),
         sample_face=np.concatenate([np.full(len(c.points), n) for n, c in samples]),
         sample_point=np.concatenate([c.points for _, c in samples]), sample_normal=np.concatenate([c.normals for _, c in samples]),
-        edge_face=np.array([j.faces for j in joints]).reshape(-1, 2), convexity=[j.convexity for j in joints],
-        dihedral=[j.dihedral for j in joints], length=[j.length for j in joints],
-        edge_loop=np.array([j.loops for j in joints]).reshape(-1, 2), curve=tuple(j.curve.kind for j in joints),
+        edge_face=of_joint("faces").reshape(-1, 2), convexity=of_joint("convexity"), dihedral=of_joint("dihedral"),
+        length=of_joint("length"), edge_loop=of_joint("loops").reshape(-1, 2), curve=tuple(j.curve.kind for j in joints),
         start=_points(j.view.points[0] for j in joints), middle=_points(j.view.points[_ALONG_EDGE // 2] for j in joints),
         end=_points(j.view.points[-1] for j in joints), curve_centre=_points(j.curve.centre for j in joints),
-        curve_axis=_points(j.curve.axis for j in joints), curve_radius=[j.curve.radius for j in joints],
+        curve_axis=_points(j.curve.axis for j in joints), curve_radius=np.array([j.curve.radius for j in joints]),
         open_edges=sum(len(e.users) == 1 for e in edges))
 
 

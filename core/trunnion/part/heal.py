@@ -119,5 +119,5 @@ def _repaired(shape: Shape, tagged: list[Shape], image: Image, tags: tuple[int, 
         new = _tags(inside[0], tagged, lambda face: changes.Apply(image(face)))
         if sorted(new) == sorted(tags):
             return inside[0], new, (info("part.healed", "the solid had faults in its edges or tolerances that were repaired"),)
-    return shape, tags, (warning("part.invalid", "the CAD kernel finds faults in this solid that can't be repaired without changing its faces",
-                                 remedy="check the solid in the CAD system"),)
+    text = "the CAD kernel finds faults in this solid that can't be repaired without changing its faces"
+    return shape, tags, (warning("part.invalid", text, remedy="check the solid in the CAD system"),)

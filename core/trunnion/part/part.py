@@ -22,7 +22,7 @@ from trunnion.part.identity import Shape, faces_of
 _MAGIC = b"trunnion part 1\n"
 
 
-@dataclass(frozen=True, slots=True, eq=False, kw_only=True)
+@dataclass(frozen=True, slots=True, kw_only=True)
 class PartFacts:
     """What is known of a part beside its shape.
 

@@ -34,7 +34,7 @@ from trunnion.geometry.region import Region
 from trunnion.part.canonical import Surface, recognised
 from trunnion.part.extent import edge_extremes, face_box
 from trunnion.part.faces import FaceView
-from trunnion.part.fitting import arcs_through
+from trunnion.part.fitting import along_arcs, arcs_through
 from trunnion.part.graph import coedges
 from trunnion.part.identity import Shape
 from trunnion.part.tracing import trace
@@ -323,8 +323,9 @@ def _traced(face: Face, plane: Plane, own: Nodes, seams: set[int]) -> tuple[list
     """Return the pieces of a general curve, followed over the surface and fitted by arcs."""
     links: list[Link] = []
     loops: list[Curve] = []
-    for start, end, points in trace(face.view, plane, own, seams, face.low, face.high):
-        flat, bulges = arcs_through(plane.flat(points))
+    for start, end, points, headings in trace(face.view, plane, own, seams, face.low, face.high):
+        along = plane.frame.local_direction(headings)[:, :2]
+        flat, bulges = arcs_through(along_arcs(plane.flat(points), along))
         if start is None or end is None:
             loops.append(Curve(flat[:-1], bulges, True))
         else:

@@ -14,7 +14,7 @@ _REMARK = re.compile(rb"/\*.*?\*/", re.DOTALL)
 _DEFINED = re.compile(rb"(?:^|;)\s*#(\d+)\s*=", re.MULTILINE)
 _USED = re.compile(rb"#(\d+)")
 _STEP_FACE = re.compile(rb"=\s*(?:ADVANCED_FACE|FACE_SURFACE)\s*\(")
-_STEP_SHAPE = re.compile(rb"=\s*\(?\s*(?:MANIFOLD_SOLID_BREP|BREP_WITH_VOIDS|FACETED_BREP|SHELL_BASED_SURFACE_MODEL|OPEN_SHELL|CLOSED_SHELL)\b")
+_STEP_SHAPE = re.compile(rb"=\s*\(?\s*(?:MANIFOLD_SOLID_BREP|BREP_WITH_VOIDS|FACETED_BREP|OPEN_SHELL|CLOSED_SHELL)\b")
 _NO_NUMBER = re.compile(rb"(?<![A-Z0-9_#.'$])[-+]?(?:NAN|INF(?:INITY)?|1\.#(?:IND|INF|QNAN)\w*)(?![A-Z0-9_])", re.IGNORECASE)
 _IGES_LINE = re.compile(rb"[SGDPT][ 0-9]{7}$")
 IGES_COLUMNS = 72

@@ -1,4 +1,8 @@
-"""Follows the curve in which a plane meets a free surface, step by step in the surface's own parameters."""
+"""Follows the curve in which a plane meets a free surface, step by step in the surface's own parameters.
+
+A step is as long as an arc between its ends stays within `tolerance.FITTED` of the curve: for an arc both ends make the same angle with the
+chord, so half the difference of the two angles, times the chord, bounds what lies between.
+"""
 
 from __future__ import annotations
 
@@ -17,144 +21,227 @@ from trunnion.findings import BadInput
 from trunnion.geometry.arrays import Floats
 from trunnion.part.faces import FaceView
 
-_TURN = 0.08
-_SHARE, _FEWEST = 24.0, 1e4
-_MOST_STEPS = 20000
+_MOST_TURN = 0.5
+_LONGEST, _SHORTEST = 0.125, 1e-5
+_GROWTH = 1.6
+_MOST_STEPS, _NEWTON = 5000, 12
 _SEEDS = 21
 Node = tuple[int, int]
-Piece = tuple[Node | None, Node | None, Floats]
+Nodes = list[tuple[Node, Floats]]
+Piece = tuple[Node | None, Node | None, Floats, Floats]
+Triple = tuple[float, float, float]
+Place = tuple[float, float]
 
 
 @dataclass(slots=True, eq=False)
 class Tracer:
-    """One face cut by one plane."""
+    """One face cut by one plane; `size` (mm) is the face's. Inner loops use plain numbers: arrays of three cost more than they save."""
 
     view: FaceView
-    plane: Any
+    normal: Triple
+    offset: float
     size: float
-    places: Any = field(init=False)
-    wrap: tuple[float, float] = field(init=False)
+    bounds: tuple[float, float, float, float] = field(init=False)
+    wraps: tuple[str, str] = field(init=False)
+    _places: Any = field(init=False)
+    _held: tuple[Any, Any, Any] = field(init=False)
 
     def __post_init__(self) -> None:
-        self.places = ShapeAnalysis_Surface(BRep_Tool.Surface_s(self.view.face))
-        u0, u1, v0, v1 = self.view.bounds()
-        a = self.view.adaptor
-        self.wrap = (u1 - u0 if a.IsUClosed() and not a.IsUPeriodic() else 0.0, v1 - v0 if a.IsVClosed() and not a.IsVPeriodic() else 0.0)
+        surface = self.view.adaptor
+        self.bounds = self.view.bounds()
+        self.wraps = (_wrap(surface.IsUPeriodic(), surface.IsUClosed()), _wrap(surface.IsVPeriodic(), surface.IsVClosed()))
+        self._places = ShapeAnalysis_Surface(BRep_Tool.Surface_s(self.view.face))
+        self._held = (gp_Pnt(), gp_Vec(), gp_Vec())
 
-    def place(self, point: Floats) -> Floats:
+    def place(self, point: Floats) -> Place:
         """Return the (u, v) under a point on the surface."""
-        found = self.places.ValueOfUV(gp_Pnt(*point.tolist()), tolerance.COINCIDENT)
-        return np.array([found.X(), found.Y()])
+        found = self._places.ValueOfUV(gp_Pnt(*point.tolist()), tolerance.COINCIDENT)
+        return self._bounded(found.X(), found.Y())
 
-    def at(self, place: Floats) -> tuple[Floats, Floats, Floats]:
+    def at(self, place: Place) -> tuple[Triple, Triple, Triple]:
         """Return the point and the two first derivatives at (u, v)."""
-        point, du, dv = gp_Pnt(), gp_Vec(), gp_Vec()
-        self.view.adaptor.D1(float(place[0]), float(place[1]), point, du, dv)
-        return np.array(point.Coord()), np.array(du.Coord()), np.array(dv.Coord())
+        point, du, dv = self._held
+        self.view.adaptor.D1(place[0], place[1], point, du, dv)
+        return point.Coord(), du.Coord(), dv.Coord()
 
-    def direction(self, place: Floats) -> Floats:
-        """Return the unit direction (3,) of the curve at (u, v)."""
+    def above(self, point: Triple) -> float:
+        """Return the height of a point above the plane."""
+        return _dot(point, self.normal) - self.offset
+
+    def direction(self, place: Place) -> Triple:
+        """Return the unit direction of the curve at (u, v)."""
         _, du, dv = self.at(place)
-        along = np.cross(np.cross(du, dv), self.plane.normal)
-        size = float(np.linalg.norm(along))
-        return along / size if size > 0.0 else along
+        return _unit(_cross(_cross(du, dv), self.normal))
 
-    def stepped(self, place: Floats, along: Floats) -> tuple[Floats, Floats]:
-        """Return the place and the point on the plane after a step (3,) in space."""
+    def stepped(self, place: Place, along: Triple) -> Place:
+        """Return the place on the plane after a step in space."""
         _, du, dv = self.at(place)
-        move = np.linalg.lstsq(np.stack([du, dv], axis=1), along, rcond=None)[0]
-        return self.onto_plane(place + move)
+        a, b = _solved(du, dv, along)
+        return self.onto_plane((place[0] + a, place[1] + b))
 
-    def onto_plane(self, place: Floats) -> tuple[Floats, Floats]:
-        """Return the place and the point pulled onto the plane along the surface."""
-        for _ in range(12):
-            place = self._wrapped(place)
+    def onto_plane(self, place: Place) -> Place:
+        """Return the place pulled onto the plane along the surface's steepest direction."""
+        for _ in range(_NEWTON):
+            place = self._bounded(*place)
             point, du, dv = self.at(place)
-            miss = float(point @ self.plane.normal) - self.plane.offset
+            miss = self.above(point)
             if abs(miss) < tolerance.PARAMETRIC:
                 break
-            pull = self.plane.normal - _unit(np.cross(du, dv)) * float(self.plane.normal @ _unit(np.cross(du, dv)))
-            strength = float(pull @ self.plane.normal)
-            if strength < tolerance.PARAMETRIC:
+            across = _unit(_cross(du, dv))
+            lean = _dot(across, self.normal)
+            steep = 1.0 - lean * lean
+            if steep < tolerance.PARAMETRIC:
                 break
-            place = place + np.linalg.lstsq(np.stack([du, dv], axis=1), -miss / strength * pull, rcond=None)[0]
-        return place, point
+            a, b = _solved(du, dv, _scaled(_less(self.normal, _scaled(across, lean)), -miss / steep))
+            place = (place[0] + a, place[1] + b)
+        return self._bounded(*place)
 
-    def _wrapped(self, place: Floats) -> Floats:
-        u0, u1, v0, v1 = self.view.bounds()
-        for k, (low, high) in enumerate(((u0, u1), (v0, v1))):
-            if self.wrap[k] and not low <= place[k] <= high:
-                place = place.copy()
-                place[k] = low + math.fmod(place[k] - low + self.wrap[k], self.wrap[k])
-        return place
+    def _bounded(self, u: float, v: float) -> Place:
+        u0, u1, v0, v1 = self.bounds
+        return _bounded(u, u0, u1, self.wraps[0]), _bounded(v, v0, v1, self.wraps[1])
 
-    def follow(self, place: Floats, point: Floats, way: float, targets: list[tuple[Node, Floats]]) -> tuple[Node | None, Floats]:
-        """Return the node where the curve ends (None: where it began) and the points to it."""
-        points, step = [point], self.size / _SHARE
-        start, heading = point, way * self.direction(place)
-        travelled = 0.0
+    def follow(self, start: Place, way: float, targets: list[tuple[Node, Triple, Place]]) -> tuple[Node | None, Floats, Floats] | None:
+        """Return the node where the curve ends (None: where it began, when there are no targets), points to it and directions, or None."""
+        place, (point, _, _), step = start, self.at(start), self.size * _LONGEST
+        home, heading = point, _scaled(self.direction(start), way)
+        points, headings, travelled = [point], [heading], 0.0
         for _ in range(_MOST_STEPS):
-            ahead = [(float(np.linalg.norm(p - point)), n) for n, (_, p) in enumerate(targets)]
-            reached = [(d, n) for d, n in ahead if d <= 1.2 * step and float((targets[n][1] - point) @ heading) > -tolerance.COINCIDENT]
-            home = float(np.linalg.norm(start - point))
-            if not targets and travelled > 2.5 * step and home <= 1.2 * step and float((start - point) @ heading) > 0.0:
-                return None, np.array([*points, start])
-            after, there = self.stepped(place, step * heading)
-            towards = way * self.direction(after)
-            turn = math.acos(max(-1.0, min(1.0, float(towards @ heading))))
-            if turn > _TURN and step > self.size / _FEWEST:
+            end = self._end(point, heading, step, targets)
+            if end is None and not targets and travelled > 0.25 * self.size and _ahead(point, home, heading, step):
+                return None, np.array([*points, home]), np.array([*headings, headings[0]])
+            after = targets[end][2] if end is not None else self.stepped(place, _scaled(heading, step))
+            there = targets[end][1] if end is not None else self.at(after)[0]
+            towards = _scaled(self.direction(after), way)
+            if not _follows(point, heading, there, towards) and step > self.size * _SHORTEST:
                 step *= 0.5
                 continue
-            if reached:
-                distance, n = min(reached)
-                if distance <= step:
-                    return targets[n][0], np.array([*points, targets[n][1]])
-            travelled += float(np.linalg.norm(there - point))
+            points.append(there)
+            headings.append(towards)
+            if end is not None:
+                return targets[end][0], np.array(points), np.array(headings)
+            moved = math.dist(point, there)
+            if moved < 0.01 * step:
+                return None
+            travelled += moved
             place, point, heading = after, there, towards
-            points.append(point)
-            if turn < 0.4 * _TURN:
-                step = min(1.5 * step, self.size / _SHARE)
-        raise BadInput("a section curve could not be followed over a free-form face; heal the part in the CAD system")
+            step = min(_GROWTH * step, self.size * _LONGEST)
+        return None
+
+    @staticmethod
+    def _end(point: Triple, heading: Triple, step: float, targets: list[tuple[Node, Triple, Place]]) -> int | None:
+        near = [(math.dist(point, p), n) for n, (_, p, _) in enumerate(targets) if _ahead(point, p, heading, step)]
+        return min(near)[1] if near else None
 
 
-def trace(view: FaceView, plane: Any, own: list[tuple[Node, Floats]], seams: set[int], low: Floats, high: Floats) -> Iterator[Piece]:
-    """Yield the pieces of the curve in which a plane meets a trimmed face: nodes at both ends and points (k, 3) between, or a closed loop.
+def trace(view: FaceView, plane: Any, own: Nodes, seams: set[int], low: Floats, high: Floats) -> Iterator[Piece]:
+    """Yield the pieces of the curve in which a plane meets a trimmed face: nodes at both ends (None: a closed loop),
+    points (k, 3) from one to the other and the unit directions (k, 3) there.
 
-    `own` are the points where the plane meets the face's edges, `seams` the edges that are no boundary.
+    `own` are the points where the plane meets the face's edges, `seams` the edges that are no boundary, `low` and `high` the face's box.
+    Raises `BadInput` when a curve can't be followed from edge to edge.
     """
-    tracer = Tracer(view, plane, max(float(np.linalg.norm(high - low)), tolerance.COINCIDENT))
-    left = [(node, point) for node, point in own if node[0] not in seams]
+    size = max(float(np.linalg.norm(high - low)), tolerance.COINCIDENT)
+    tracer = Tracer(view, tuple(plane.normal.tolist()), plane.offset, size)
+    left = [(node, tuple(point.tolist()), tracer.place(point)) for node, point in own if node[0] not in seams]
     if not left:
         yield from _loops(tracer)
-        return
     while left:
-        node, point = left.pop(0)
-        place = tracer.place(point)
-        nudge = min(tracer.size / _SHARE, min((float(np.linalg.norm(p - point)) for _, p in left), default=tracer.size)) * 0.02
-        ways = [w for w in (1.0, -1.0) if view.holds(*tracer.stepped(place, w * nudge * tracer.direction(place))[0])]
-        if not left:
-            raise BadInput("a section curve ends inside a face; heal the part in the CAD system")
-        end, points = tracer.follow(place, point, ways[0] if ways else 1.0, left)
-        left = [item for item in left if item[0] != end]
-        yield node, end, points
+        node, point, place = left.pop(0)
+        nearest = min((math.dist(p, point) for _, p, _ in left), default=size)
+        nudge = 0.02 * min(size, nearest)
+        ways = sorted((1.0, -1.0), key=lambda way: not view.holds(*tracer.stepped(place, _scaled(tracer.direction(place), way * nudge))))
+        found = next((f for f in (tracer.follow(place, way, left) for way in ways) if f is not None), None) if left else None
+        if found is None:
+            raise BadInput("a section curve ends inside a free-form face; heal the part in the CAD system")
+        left = [item for item in left if item[0] != found[0]]
+        yield node, *found
 
 
 def _loops(tracer: Tracer) -> Iterator[Piece]:
-    """Yield the closed curve of a plane that meets a face but none of its edges, from the first place where samples change side."""
+    """Yield the closed curves of a plane that meets a face but none of its edges, from places where samples change side."""
     places = np.array(tracer.view.grid(_SEEDS)).reshape(_SEEDS, _SEEDS, 2)
-    heights = np.array([[tracer.at(p)[0] @ tracer.plane.normal - tracer.plane.offset for p in row] for row in places])
+    heights = np.array([[tracer.above(tracer.at((u, v))[0]) for u, v in row] for row in places.tolist()])
     done: list[Floats] = []
     for k, m in zip(*np.nonzero((heights[:, :-1] > 0.0) != (heights[:, 1:] > 0.0)), strict=True):
         share = heights[k, m] / (heights[k, m] - heights[k, m + 1])
-        place, point = tracer.onto_plane(places[k, m] + share * (places[k, m + 1] - places[k, m]))
-        if not tracer.view.holds(float(place[0]), float(place[1])):
+        u, v = (places[k, m] + share * (places[k, m + 1] - places[k, m])).tolist()
+        place = tracer.onto_plane((u, v))
+        point = np.array(tracer.at(place)[0])
+        if not tracer.view.holds(*place) or any(_beside(points, point) for points in done):
             continue
-        if any(np.linalg.norm(points - point, axis=1).min() < tracer.size / _SHARE for points in done):
-            continue
-        points = tracer.follow(place, point, 1.0, [])[1]
-        done.append(points)
-        yield None, None, points
+        found = tracer.follow(place, 1.0, [])
+        if found is None:
+            raise BadInput("a closed section curve can't be followed over a free-form face; heal the part in the CAD system")
+        done.append(found[1])
+        yield None, *found
 
 
-def _unit(vector: Floats) -> Floats:
-    return vector / (float(np.linalg.norm(vector)) or 1.0)
+def _beside(points: Floats, point: Floats) -> bool:
+    """Say whether a point lies on a curve that was followed already: nearer to a chord than a tenth of its length."""
+    start, chord = points[:-1], np.diff(points, axis=0)
+    square = (chord * chord).sum(axis=1)
+    share = np.clip(((point - start) * chord).sum(axis=1) / np.maximum(square, tolerance.PARAMETRIC**2), 0.0, 1.0)
+    away = np.linalg.norm(start + share[:, None] * chord - point, axis=1)
+    return bool((away < 0.15 * np.sqrt(square)).any())
+
+
+def _follows(point: Triple, heading: Triple, there: Triple, towards: Triple) -> bool:
+    """Say whether an arc between two points with given directions is within `tolerance.FITTED` of the curve between."""
+    chord = _less(there, point)
+    size = math.sqrt(_dot(chord, chord))
+    if size < tolerance.COINCIDENT:
+        return True
+    first, last = _angle(heading, chord, size), _angle(towards, chord, size)
+    return first + last < _MOST_TURN and 0.2 * size * abs(first - last) < tolerance.FITTED
+
+
+def _angle(direction: Triple, chord: Triple, size: float) -> float:
+    across = _cross(direction, chord)
+    return math.atan2(math.sqrt(_dot(across, across)) / size, _dot(direction, chord) / size)
+
+
+def _ahead(point: Triple, target: Triple, heading: Triple, step: float) -> bool:
+    way = _less(target, point)
+    return math.sqrt(_dot(way, way)) <= step and _dot(way, heading) > -tolerance.COINCIDENT
+
+
+def _wrap(is_periodic: bool, is_closed: bool) -> str:
+    return "free" if is_periodic else "round" if is_closed else "bound"
+
+
+def _bounded(value: float, low: float, high: float, wrap: str) -> float:
+    """Return a parameter where the surface has it: one that is periodic goes on for ever, others end or begin again at their bounds."""
+    if wrap == "free" or low <= value <= high:
+        return value
+    return low + (value - low) % (high - low) if wrap == "round" else min(max(value, low), high)
+
+
+def _solved(du: Triple, dv: Triple, along: Triple) -> tuple[float, float]:
+    """Return the shares of two directions that come nearest to a vector."""
+    uu, uv, vv = _dot(du, du), _dot(du, dv), _dot(dv, dv)
+    a, b = _dot(du, along), _dot(dv, along)
+    det = uu * vv - uv * uv
+    if det <= tolerance.PARAMETRIC**2 * max(uu, vv) ** 2:
+        return (a / uu, 0.0) if uu >= vv and uu > 0.0 else (0.0, b / vv if vv > 0.0 else 0.0)
+    return (a * vv - b * uv) / det, (b * uu - a * uv) / det
+
+
+def _dot(a: Any, b: Any) -> float:
+    return a[0] * b[0] + a[1] * b[1] + a[2] * b[2]
+
+
+def _cross(a: Any, b: Any) -> Triple:
+    return a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]
+
+
+def _less(a: Triple, b: Triple) -> Triple:
+    return a[0] - b[0], a[1] - b[1], a[2] - b[2]
+
+
+def _scaled(a: Triple, by: float) -> Triple:
+    return a[0] * by, a[1] * by, a[2] * by
+
+
+def _unit(a: Triple) -> Triple:
+    size = math.sqrt(_dot(a, a))
+    return _scaled(a, 1.0 / size) if size > 0.0 else a

@@ -22,7 +22,7 @@ from trunnion.part.part import Part, PartFacts
 from trunnion.part.quiet import hush
 
 _IGES_UNITS = {1: "inch", 2: "mm", 4: "foot", 5: "mile", 6: "metre", 7: "km", 8: "mil", 9: "micrometre", 10: "cm", 11: "microinch"}
-_UNIT_WORDS = {"millimetre": "mm", "millimeter": "mm", "centimetre": "cm", "metre": "metre", "meter": "metre", "inch": "inch", "foot": "foot"}
+_UNIT_WORDS = {"millimetre": "mm", "millimeter": "mm", "centimetre": "cm", "centimeter": "cm", "metre": "metre", "meter": "metre"}
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -139,11 +139,16 @@ def _part(read: Read, request: Request) -> Part:
 
 def _chosen(bodies: list[Body], request: Request) -> int:
     if request.solid is None:
-        return max(range(len(bodies)), key=lambda n: (bodies[n].is_closed, abs(bodies[n].volume), bodies[n].area, -n)) + 1
+        return max(range(len(bodies)), key=lambda n: (bodies[n].is_closed, *_size(bodies[n]), -n)) + 1
     if not 1 <= request.solid <= len(bodies):
         have = "one solid" if len(bodies) == 1 else f"{len(bodies)} solids"
         raise BadInput(f"{request.file}: there is no solid {request.solid}; the file holds {have}, counted from 1")
     return request.solid
+
+
+def _size(body: Body) -> tuple[float, float]:
+    """Return volume and area to nine figures: solids that are alike must not be told apart by rounding."""
+    return float(f"{abs(body.volume):.9g}"), float(f"{body.area:.9g}")
 
 
 def _other_solids(bodies: list[Body], chosen: int, request: Request) -> list[Finding]:
@@ -159,7 +164,8 @@ def _loose(bodies: list[Body], count: int, request: Request) -> list[Finding]:
     if not loose:
         return []
     text = f"{len(loose)} of {count} faces belong to no solid and are left out; nothing is cut on them"
-    return [warning("part.loose-faces", text, request.file, *face_tags(loose), remedy="remove them in the CAD system, or make them part of the solid")]
+    remedy = "remove them in the CAD system, or make them part of the solid"
+    return [warning("part.loose-faces", text, request.file, *face_tags(loose), remedy=remedy)]
 
 
 def _count_findings(tagged: list[Shape], request: Request) -> list[Finding]:

@@ -1,0 +1,113 @@
+"""Sections and outlines: exact lines and arcs, the same through STEP and IGES."""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+import pytest
+
+import samples
+from trunnion import tolerance
+from trunnion.findings import BadInput
+from trunnion.geometry.frame import WORLD, Frame
+
+BOTH = pytest.mark.parametrize("suffix", ["step", "igs"])
+TOP = 60 * 36 - (36 * 20 - (4 - math.pi) * 4**2)
+
+
+@BOTH
+def test_a_box_is_cut_to_its_rectangle(suffix: str) -> None:
+    region = samples.read(samples.box_shape(), suffix).section(WORLD, 7.0)
+    assert region.area == pytest.approx(40 * 30, abs=1e-6)
+    assert np.concatenate(region.box()) == pytest.approx([0, 0, 40, 30])
+
+
+@BOTH
+def test_a_bore_is_cut_to_an_exact_circle(suffix: str) -> None:
+    region = samples.read(samples.drilled_block_shape(), suffix).section(WORLD, 7.0)
+    assert region.area == pytest.approx(40 * 30 - math.pi * 16, abs=1e-6)
+    assert region.pieces[0].holes[0].segments().radius == pytest.approx([4.0, 4.0])
+
+
+@BOTH
+def test_a_pocket_above_its_fillet_is_lines_and_four_arcs(suffix: str) -> None:
+    region = samples.read(samples.block_with_pocket_shape(), suffix).section(WORLD, 15.0)
+    assert region.area == pytest.approx(TOP, abs=1e-5)
+    radii = region.pieces[0].holes[0].segments().radius
+    assert np.sort(radii[np.isfinite(radii)]) == pytest.approx([4.0] * 4, abs=1e-6)
+
+
+@BOTH
+def test_a_pocket_inside_its_fillet_is_narrower_by_the_fillet(suffix: str) -> None:
+    # Half a fillet's radius (2) over the floor: narrower by 2 - sqrt(4 - 1) all round, corner radius by as much.
+    by = 2 - math.sqrt(3)
+    hollow = (36 - 2 * by) * (20 - 2 * by) - (4 - math.pi) * (4 - by) ** 2
+    region = samples.read(samples.block_with_pocket_shape(), suffix).section(WORLD, 9.0)
+    assert region.area == pytest.approx(60 * 36 - hollow, abs=1e-4)
+
+
+@BOTH
+def test_a_plane_in_a_floor_or_through_corners_cuts_a_hair_above(suffix: str) -> None:
+    part = samples.read(samples.block_with_pocket_shape(), suffix)
+    assert part.section(WORLD, 10.0).area == pytest.approx(TOP, abs=1e-3)
+    assert not part.section(WORLD, 18.0)
+    assert not part.section(WORLD, 30.0)
+
+
+@BOTH
+def test_a_leaning_cylinder_is_cut_to_an_ellipse_within_the_fit(suffix: str) -> None:
+    region = samples.read(samples.oblique_cylinder_shape(), suffix).section(WORLD, 25.0)
+    long, short = 10 / math.cos(math.radians(30)), 10.0
+    assert region.area == pytest.approx(math.pi * long * short, rel=1e-5)
+    middle = 25 * math.tan(math.radians(30))
+    angles = np.linspace(0, 2 * math.pi, 50)
+    ellipse = np.stack([middle + long * np.cos(angles), short * np.sin(angles)], axis=1)
+    assert region.pieces[0].outer.distance(ellipse).max() < 2 * tolerance.FITTED
+
+
+@BOTH
+def test_a_ball_is_cut_to_a_circle(suffix: str) -> None:
+    region = samples.read(samples.ball_shape(), suffix).section(WORLD, 6.0)
+    assert region.area == pytest.approx(math.pi * 64, rel=1e-5)
+
+
+@BOTH
+@pytest.mark.parametrize(("axis", "degrees"), [((1, 2, 3), 40.0), ((0, 1, 0), 90.0), ((1, 0, 0), 180.0)])
+def test_a_turned_part_is_cut_the_same_in_its_own_frame(suffix: str, axis: tuple[float, ...], degrees: float) -> None:
+    part = samples.read(samples.turned(samples.block_with_pocket_shape(), axis, degrees, (5.0, 7.0, 9.0)), suffix)
+    from scipy.spatial.transform import Rotation
+    turn = Rotation.from_rotvec(np.radians(degrees) * np.array(axis) / np.linalg.norm(axis)).as_matrix()
+    about = np.array([5.0, 7.0, 9.0])
+    frame = Frame(about - turn @ about, turn[:, 0], turn[:, 2])
+    assert part.section(frame, 15.0).area == pytest.approx(TOP, abs=1e-4)
+    assert part.section(frame, 9.0).pieces[0].holes[0].n_segments == 8
+
+
+@BOTH
+def test_sections_added_up_are_the_volume(suffix: str) -> None:
+    part = samples.read(samples.two_pockets_and_a_rib_shape(), suffix)
+    heights = (np.arange(200) + 0.5) * 0.1
+    assert sum(part.section(WORLD, float(z)).area for z in heights) * 0.1 == pytest.approx(part.volume, rel=1e-4)
+
+
+def test_a_section_is_computed_once() -> None:
+    part = samples.read(samples.box_shape())
+    assert part.section(WORLD, 3.0) is part.section(WORLD, 3.0)
+
+
+@BOTH
+def test_a_level_face_has_its_outline_with_arcs_and_holes(suffix: str) -> None:
+    part = samples.read(samples.block_with_pocket_shape(), suffix)
+    graph = part.graph()
+    top = next(t for t in part.tags if graph.normal[t - 1][2] > 0.99 and graph.centre[t - 1][2] == pytest.approx(18.0))
+    region = part.face_outline(WORLD, top)
+    assert region.area == pytest.approx(TOP, abs=1e-5)
+    assert len(region.pieces[0].holes) == 1
+
+
+def test_a_leaning_face_has_no_outline() -> None:
+    part = samples.read(samples.box_shape())
+    wall = next(t for t in part.tags if abs(part.graph().normal[t - 1][0]) > 0.99)
+    with pytest.raises(BadInput, match=f"face {wall} of sample is not level"):
+        part.face_outline(WORLD, wall)
