@@ -84,11 +84,11 @@ class PartContact:
 
     def clear(self, rows: Floats, pieces: Floats, allowed: float) -> Bools:
         """Say for each move or pose (n, 15) of one tool whether none of its pieces enters the part deeper than allowed."""
-        depth = self._measure(rows, np.zeros(len(rows), np.int64), pieces, np.array([0, len(pieces)]), QUIET)[0]
+        depth = self._measure(rows, np.zeros(len(rows), np.int64), pieces, np.array([0, len(pieces)]), QUIET, allowed)[0]
         return (depth[:, 0] <= allowed) & (depth[:, 1] <= allowed)
 
-    def _measure(self, rows: Floats, tool: Ints, pieces: Floats, piece_start: Ints,
-                 progress: Progress) -> tuple[Floats, Ints, Floats, Floats, Ints]:
+    def _measure(self, rows: Floats, tool: Ints, pieces: Floats, piece_start: Ints, progress: Progress,
+                 settle: float = np.inf) -> tuple[Floats, Ints, Floats, Floats, Ints]:
         s, g = self.surfaces, self._grid
         n, bound = len(rows), tolerance.CONTACT_BOUND / 2
         depth, which, where = np.full((n, 2), -np.inf), np.full((n, 2), -1), np.zeros((n, 2))
@@ -96,7 +96,7 @@ class PartContact:
         for first in range(0, n, CHUNK_WORK):
             progress.at(first / n, "Measuring gouges and collisions")
             kernel.contact_loop(first, min(first + CHUNK_WORK, n), rows, tool, pieces, piece_start, s.strip, s.strip_face, g.start, g.rows,
-                                g.frame, g.shape, s.region_z, s.region_face, s.region_box, s.region_start, s.chords, bound, bound, np.inf,
+                                g.frame, g.shape, s.region_z, s.region_face, s.region_box, s.region_start, s.chords, bound, bound, settle,
                                 depth, which, where, face_depth, face_move)
         return depth, which, where, face_depth, face_move
 

@@ -468,14 +468,15 @@ def _region_depth(piece: Floats, z: float, z_low: float, rise: float) -> float:
 @njit(cache=True, nogil=True)
 def contact_loop(first: int, last: int, moves: Floats, tool: Ints, pieces: Floats, piece_start: Ints, strips: Floats, strip_face: Ints,
                  cell_start: Ints, cell_strip: Ints, grid: Floats, shape: Ints, region_z: Floats, region_face: Ints, region_box: Floats,
-                 region_start: Ints, chords: Floats, enough: float, bound: float, stop_at: float, depth: Floats, which: Ints,
+                 region_start: Ints, chords: Floats, enough: float, bound: float, settle: float, depth: Floats, which: Ints,
                  where: Floats, face_depth: Floats, face_move: Ints) -> int:
     """Measure moves `first` to `last` against every strip and every level region near them.
 
     moves (n, 15), tool (n,) rows of piece_start; pieces (k, 7), the first piece of a tool is its cutter. grid (3,) is x, y of the strips'
     grid and its pitch, shape (2,) its cells, cell_start and cell_strip its lists. region_* and chords (c, 4) are level faces.
     Fills depth (n, 2) for the cutter and for what is above it, which (n, 2) strip rows or -1 - region, where (n, 2) profile parameters,
-    face_depth (f, 2) and face_move (f, 2). Returns the row after the last one done; stops early at a depth above `stop_at`.
+    face_depth (f, 2) and face_move (f, 2). Returns the row after the last one done. A move found deeper than `settle` is not looked at
+    further: its depth is then only known to be above it.
     """
     guide, path = np.zeros(MOVE_COLUMNS), np.zeros(MOVE_COLUMNS)
     stack, spans = np.zeros((96, 2)), np.zeros((96, 2))
@@ -499,7 +500,7 @@ def contact_loop(first: int, last: int, moves: Floats, tool: Ints, pieces: Float
                         continue
                     seen[k] = n
                     s = strips[k]
-                    if s[BZ1] - z_low <= enough:
+                    if s[BZ1] - z_low <= enough or depth[n, 0] > settle or depth[n, 1] > settle:
                         continue
                     gx, gy = max(max(s[BX0] - x1, x0 - s[BX1]), 0.0), max(max(s[BY0] - y1, y0 - s[BY1]), 0.0)
                     gap = math.sqrt(gx * gx + gy * gy)
@@ -515,7 +516,7 @@ def contact_loop(first: int, last: int, moves: Floats, tool: Ints, pieces: Float
                             if d > face_depth[strip_face[k], kind]:
                                 face_depth[strip_face[k], kind], face_move[strip_face[k], kind] = d, n
         for r in range(len(region_z)):
-            if region_z[r] - z_low <= enough:
+            if region_z[r] - z_low <= enough or depth[n, 0] > settle or depth[n, 1] > settle:
                 continue
             # The boundary is measured by strips; a move that never meets it is inside or outside as a whole.
             if move[X0] < region_box[r, 0] or move[X0] > region_box[r, 2] or move[Y0] < region_box[r, 1] or move[Y0] > region_box[r, 3]:
@@ -530,8 +531,6 @@ def contact_loop(first: int, last: int, moves: Floats, tool: Ints, pieces: Float
                         depth[n, kind], which[n, kind], where[n, kind] = d, -2 - r, 0.0
                     if d > face_depth[region_face[r], kind]:
                         face_depth[region_face[r], kind], face_move[region_face[r], kind] = d, n
-        if depth[n, 0] > stop_at or depth[n, 1] > stop_at:
-            return n + 1
     return last
 
 
