@@ -12,8 +12,9 @@ from OCP.TopTools import TopTools_IndexedDataMapOfShapeListOfShape
 
 from trunnion.part.identity import Shape
 
-ACCURACY = 1e-6
-"""Relative accuracy asked of the kernel's integrals; without it areas of trimmed free-form faces are off by 1.6e-4 (measured)."""
+ACCURACY = 1e-3
+"""Accuracy asked of the kernel's integrals face by face. Areas come out within 4e-6, volumes within 1e-4 (measured); asking for more
+takes twenty times as long, asking for none is off by 1.6e-4 on trimmed free-form faces."""
 
 
 def volume_of(shape: Shape) -> float:
