@@ -1,4 +1,4 @@
-"""What every test may use: where the shared parts are, and the marker for tests that need them."""
+"""What every test may use: small parts as files."""
 
 from __future__ import annotations
 
@@ -7,19 +7,12 @@ from pathlib import Path
 
 import pytest
 
-ROOT = Path(__file__).resolve().parent.parent
-_beside = ROOT.parent / "shared" / "parts"
-PARTS: Path | None = _beside if _beside.is_dir() else None
-"""The folder of parts with known truth beside the project, or None."""
-
-needs_parts = pytest.mark.skipif(PARTS is None, reason="the folder ../shared/parts with known truths is not beside the project")
-
 os.environ.setdefault("QT_QPA_PLATFORM", "offscreen")
 
 
 @pytest.fixture(scope="session")
-def sample_part(tmp_path_factory: pytest.TempPathFactory) -> Path:
-    """A small panel as STEP: a block with a pocket."""
+def sample_part() -> Path:
+    """A small part as STEP: a block with a pocket."""
     from samples import block_with_pocket
     return Path(block_with_pocket())
 

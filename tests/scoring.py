@@ -12,7 +12,7 @@ from typing import Any
 
 import pytest
 
-from conftest import PARTS
+from parts import PARTS
 from trunnion.model.feature import Recognition
 
 Move = Callable[[list[float]], list[float]]

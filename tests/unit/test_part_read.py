@@ -10,7 +10,7 @@ import numpy as np
 import pytest
 
 import samples
-from conftest import PARTS, needs_parts
+from parts import PARTS, needs_parts
 from trunnion.findings import BadInput, Cancelled, OutOfMemory
 from trunnion.part.limits import ReadLimits
 from trunnion.part.part import Part

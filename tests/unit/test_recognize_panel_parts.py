@@ -9,7 +9,7 @@ from typing import Any
 
 import pytest
 
-from conftest import PARTS, needs_parts
+from parts import PARTS, needs_parts
 from scoring import scored, truth_of
 from trunnion.model.feature import Recognition
 from trunnion.part.part import Part

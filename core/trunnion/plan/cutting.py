@@ -45,7 +45,7 @@ class CuttingSettings:
                                   help="Feed downwards over the feed across.")
     slender: float = setting(4.0, unit="diameters", low=1.0, high=20.0, label="Slender from",
                              help="Stickout over diameter from which feed and depth are reduced.")
-    slender_share: float = setting(0.5, unit="", low=0.1, high=1.0, label="Slenderest",
+    slender_share: float = setting(0.5, unit="of both", low=0.1, high=1.0, label="Slenderest",
                                    help="What is left of feed and depth at two and a half times that length, and beyond.")
 
 

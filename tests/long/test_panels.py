@@ -1,0 +1,48 @@
+"""The other panels with known truth, and B1 lying elsewhere, through the whole line: minutes, so left to `make test-long`."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+from parts import PARTS, needs_parts
+from trunnion.model.verdict import Outcome
+from trunnion.pipeline import Engine
+
+pytestmark = [pytest.mark.long, needs_parts, pytest.mark.timeout(900)]
+
+
+def programmed(path):
+    engine = Engine()
+    return engine.run(engine.open(path))
+
+
+def test_b4_is_programmed_and_proven():
+    verdict = programmed(PARTS / "panel" / "B4.step").verdict
+    assert verdict.releases and verdict.reachable >= 0.99
+    assert (verdict.gouge, verdict.collisions, verdict.rapids_in_stock) == (0.0, 0, 0)
+
+
+@pytest.mark.parametrize("name", ["B2", "B3", "B5"])
+def test_what_can_not_be_cut_is_rejected_without_a_gouge(name):
+    verdict = programmed(PARTS / "panel" / f"{name}.step").verdict
+    assert verdict.outcome is Outcome.FAILED
+    assert {f.code for f in verdict.findings if f.severity == "error"} == {"verify.coverage"}
+    assert (verdict.gouge, verdict.collisions, verdict.rapids_in_stock) == (0.0, 0, 0)
+
+
+def test_b1_is_proven_from_iges_too():
+    verdict = programmed(PARTS / "panel" / "B1.igs").verdict
+    assert verdict.outcome is Outcome.PASSED and verdict.gouge <= 0.02 and verdict.coverage >= 0.99
+
+
+def test_b1_is_proven_however_it_lies(tmp_path):
+    from OCP.STEPControl import STEPControl_Reader
+
+    from samples import turned, written
+    reader = STEPControl_Reader()
+    reader.ReadFile(str(PARTS / "panel" / "B1.step"))
+    reader.TransferRoots()
+    verdict = programmed(written(turned(reader.OneShape(), (1.0, -2.0, 0.7), 77.0, (3000.0, -200.0, 50.0)))).verdict
+    assert verdict.outcome is Outcome.PASSED and verdict.coverage >= 0.99
+    assert np.isfinite(verdict.machining_time_s)
