@@ -178,6 +178,6 @@ def _count_findings(tagged: list[Shape], request: Request) -> list[Finding]:
         text = f"the file lists {request.listed} faces, only {unlike} could be read"
         return [error("part.lost-faces", text, request.file, remedy="export the part again; don't trust a plan for this one")]
     if unlike > request.listed > 0:
-        text = f"the file lists {request.listed} faces, the reader split them into {unlike}: an outline crosses itself"
+        text = f"the file lists {request.listed} faces, the reader split them into {unlike}, as it does where an outline crosses itself"
         return [warning("part.split-faces", text, request.file, remedy="look at the outline in the CAD system")]
     return []
