@@ -9,7 +9,7 @@ from collections.abc import Iterable, Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from trunnion.findings import BadCall, Finding, has_errors
+from trunnion.findings import BadCall, Finding, Severity, has_errors
 from trunnion.progress import Progress
 
 if TYPE_CHECKING:
@@ -76,11 +76,17 @@ def show_json(data: Any) -> None:
 
 
 def show_findings(chosen: argparse.Namespace, findings: Iterable[Finding]) -> None:
-    """Print findings on standard error, one a line, unless asked to be quiet or to print JSON."""
+    """Print findings on standard error, one a line, unless asked to be quiet or to print JSON; what only informs is counted."""
     if chosen.quiet or chosen.json:
         return
+    notes = 0
     for finding in findings:
-        print(str(finding), file=sys.stderr)
+        if finding.severity is Severity.INFO:
+            notes += 1
+        else:
+            print(str(finding), file=sys.stderr)
+    if notes:
+        print(f"{notes} notes that ask for nothing stand in --json and in the report", file=sys.stderr)
 
 
 def table(rows: Sequence[tuple[str, ...]], right: tuple[int, ...] = ()) -> str:
