@@ -28,10 +28,11 @@ def graph(path: Path, folder: Path, compared: Compare) -> Iterator[Any]:
     """The attributed face graph, beside the kernel's own validity check of the same shape."""
     from OCP.BRepCheck import BRepCheck_Analyzer
 
-    from trunnion.part.graph import face_graph
+    from trunnion.part.part import Part
     from trunnion.part.read import read_part
     part = read_part(path)
-    yield compared("face graph", "B1", lambda: face_graph(part), lambda: BRepCheck_Analyzer(part.shape).IsValid(),
+    data = part.to_bytes()
+    yield compared("face graph", "B1", lambda: Part.from_bytes(data).graph(), lambda: BRepCheck_Analyzer(part.shape).IsValid(),
                    "the CAD kernel's validity check", "< 6")
 
 
@@ -40,22 +41,24 @@ def recognition(path: Path, folder: Path, compared: Compare) -> Iterator[Any]:
     from OCP.BRepAlgoAPI import BRepAlgoAPI_Section
     from OCP.gp import gp_Dir, gp_Pln, gp_Pnt
 
+    from trunnion.part.part import Part
     from trunnion.part.read import read_part
     from trunnion.recognize.panel import PanelFamily
     part = read_part(path)
     face_graph = part.graph()
     family = PanelFamily()
 
+    data = part.to_bytes()
+
     def fresh() -> Any:
-        part.forget_sections()
-        return family.recognize(face_graph, part, family.settings(), QUIET)
+        return family.recognize(face_graph, Part.from_bytes(data), family.settings(), QUIET)
 
     def by_boolean() -> None:
         for z in range(1, 26):
             cut = BRepAlgoAPI_Section(part.shape, gp_Pln(gp_Pnt(0, 0, z * 1.51), gp_Dir(0, 0, 1)), False)
             cut.Build()
 
-    yield compared("recognition", "B1", fresh, by_boolean, "25 sections by the CAD kernel's boolean", "< 2")
+    yield compared("recognition", "B1", fresh, by_boolean, "25 sections by the CAD kernel's boolean", "< 1.5")
 
 
 def roughing(path: Path, folder: Path, compared: Compare) -> Iterator[Any]:
@@ -114,7 +117,7 @@ def contact(path: Path, folder: Path, compared: Compare) -> Iterator[Any]:
         return nearest
 
     yield compared(f"contact, {len(moves)} blocks", "B1", lambda: engine_of_contact.along(moves), sampled,
-                   f"the mesh's {len(points)} points against every hundredth block", "< 20")
+                   f"the mesh's {len(points)} points against every hundredth block", "< 1")
 
 
 def stock(path: Path, folder: Path, compared: Compare) -> Iterator[Any]:
@@ -144,7 +147,7 @@ def stock(path: Path, folder: Path, compared: Compare) -> Iterator[Any]:
         return float(heights.sum())
 
     yield compared("stock, 50,000 moves", "block", lambda: run_stock(Field.of(blank, WORLD, 0.5), moves, sweep), plain,
-                   "500 moves in a plain numpy field", "< 10")
+                   "500 moves in a plain numpy field", "< 3")
 
 
 def whole_line(path: Path, folder: Path, compared: Compare) -> Iterator[Any]:

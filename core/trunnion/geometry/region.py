@@ -241,10 +241,11 @@ def _nested(curves: list[Curve]) -> Region:
         raise ValueError("region: every curve must be closed")
     loops = sorted(((abs(c.area), n, c) for n, c in enumerate(curves)), key=lambda t: (-t[0], t[1]))
     kept = [c if c.area > 0.0 else c.reversed() for area, _, c in loops if area > tolerance.AREA]
+    boxes = np.array([np.concatenate(c.box()) for c in kept]).reshape(-1, 4)
     parents: list[int] = []
     depths: list[int] = []
     for n, curve in enumerate(kept):
-        around = [k for k in range(n) if _is_inside(curve, kept[k])]
+        around = [k for k in _boxed(boxes, n) if _is_inside(curve, kept[k])]
         parents.append(max(around, default=-1))
         depths.append(len(around))
     holes: dict[int, list[Curve]] = {n: [] for n, depth in enumerate(depths) if depth % 2 == 0}
@@ -254,12 +255,15 @@ def _nested(curves: list[Curve]) -> Region:
     return Region(tuple(Piece(kept[n], tuple(found)) for n, found in holes.items()))
 
 
+def _boxed(boxes: Floats, n: int) -> list[int]:
+    """Return which of the boxes (low x, low y, high x, high y) before row n hold box n."""
+    slack = tolerance.COINCIDENT
+    low, high = boxes[:n, :2] - slack, boxes[:n, 2:] + slack
+    return [int(k) for k in np.flatnonzero((boxes[n, :2] >= low).all(axis=1) & (boxes[n, 2:] <= high).all(axis=1))]
+
+
 def _is_inside(inner: Curve, outer: Curve) -> bool:
     """Say whether most of one curve is inside another; they may touch."""
-    (low, high), (outer_low, outer_high) = inner.box(), outer.box()
-    slack = tolerance.COINCIDENT
-    if (low < outer_low - slack).any() or (high > outer_high + slack).any():
-        return False
     s = inner.segments()
     rows = np.arange(len(s))
     probes = np.concatenate([s.start, s.at(rows, 0.5 * s.length)])
