@@ -12,31 +12,18 @@ import subprocess
 import sys
 import tempfile
 import time
-from dataclasses import asdict, dataclass
+from dataclasses import asdict
 from pathlib import Path
 
 from trunnion.findings import BadInput, OutOfMemory, TrunnionError
 from trunnion.part.limits import ReadLimits
+from trunnion.part.request import Request
 from trunnion.progress import Progress
 
 _LOOK = 0.02
 _CHECK = 0.2
 _REFUSED, _NO_MEMORY = 3, 4
 _MEGA = 1 << 20
-
-
-@dataclass(frozen=True, slots=True, kw_only=True)
-class Request:
-    """What the reading process is told: the file's name and path, digest, kind ("step" or "iges"), the faces its text lists."""
-
-    file: str
-    path: str
-    name: str
-    digest: str
-    kind: str
-    listed: int
-    solid: int | None
-    size: int
 
 
 def run(request: Request, data: bytes, limits: ReadLimits, progress: Progress) -> bytes:

@@ -39,7 +39,8 @@ def read_part_bytes(data: bytes, name: str, suffix: str, *, solid: int | None = 
 
 
 def _read(data: bytes, file: str, path: str, solid: int | None, limits: ReadLimits, progress: Progress) -> Part:
-    from trunnion.part.child import Request, run
+    from trunnion.part.child import run
+    from trunnion.part.request import Request
     progress.at(0.0, "reading")
     plain = _unpacked(data, file, limits)
     kind = kind_of(plain, file)

@@ -147,7 +147,11 @@ class Engine:
 
     def write(self, session: Session, folder: str | Path, *, name: str = "", date: str = "", progress: Progress = QUIET) -> tuple[str, ...]:
         """Write everything of a proven session into a folder (NC, CL, XML, tool list, report, project); return the file names."""
-        from trunnion.pipeline.writing import write_all
+        from trunnion.pipeline.writing import name_of, write_documents
         if self.states(session)["verify"] not in FRESH:
             raise BadCall("something changed since the proof: verify again before anything leaves")
-        return write_all(self, session, Path(folder), name=name, date=date, progress=progress)
+        files = write_documents(session, self.mesh(session), Path(folder), name=name, date=date, progress=progress.part(0.0, 0.9))
+        project = f"{name_of(session, name)}{PROJECT_SUFFIX}"
+        progress.at(0.9, "saving the project")
+        self.save(session, Path(folder) / project)
+        return (*files, project)

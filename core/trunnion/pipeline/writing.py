@@ -4,17 +4,14 @@ from __future__ import annotations
 
 import json
 from pathlib import Path
-from typing import TYPE_CHECKING
 
 from trunnion.findings import BadCall, BadInput
+from trunnion.geometry.mesh import Mesh
 from trunnion.model.session import Session
 from trunnion.post.release import release
 from trunnion.progress import Progress
 from trunnion.store.atomic import write_text
 from trunnion.store.programs import write_programs as write_texts
-
-if TYPE_CHECKING:
-    from trunnion.pipeline.engine import Engine
 
 
 def write_programs(session: Session, folder: Path, *, name: str = "", date: str = "", progress: Progress) -> tuple[str, ...]:
@@ -23,8 +20,8 @@ def write_programs(session: Session, folder: Path, *, name: str = "", date: str 
     return write_texts(folder, name_of(session, name), release(session, name=name, date=date))
 
 
-def write_all(engine: Engine, session: Session, folder: Path, *, name: str, date: str, progress: Progress) -> tuple[str, ...]:
-    """Write everything of a proven session and return the file names."""
+def write_documents(session: Session, mesh: Mesh, folder: Path, *, name: str, date: str, progress: Progress) -> tuple[str, ...]:
+    """Write programs, tool list, XML, pictures and report of a proven session and return the file names."""
     from trunnion.report.html import report_html
     from trunnion.report.palette import load_palette
     from trunnion.report.pictures import write_pictures
@@ -40,13 +37,10 @@ def write_all(engine: Engine, session: Session, folder: Path, *, name: str, date
     write_features(session, folder / f"{stem}.features.xml")
     write_process(session, folder / f"{stem}.process.xml")
     progress.at(0.3, "drawing pictures")
-    pictures = write_pictures(session, engine.mesh(session), folder, stem, load_palette())
+    pictures = write_pictures(session, mesh, folder, stem, load_palette())
     write_text(folder / f"{stem}.report.html", report_html(session, stem, pictures, folder, date))
-    progress.at(0.8, "saving the project")
-    engine.save(session, folder / f"{stem}.trunnion")
-    progress.at(1.0, "written")
-    return (*files, f"{stem}.tools.json", f"{stem}.features.xml", f"{stem}.process.xml", *(p.file for p in pictures), f"{stem}.report.html",
-            f"{stem}.trunnion")
+    progress.at(1.0, "report written")
+    return (*files, f"{stem}.tools.json", f"{stem}.features.xml", f"{stem}.process.xml", *(p.file for p in pictures), f"{stem}.report.html")
 
 
 def name_of(session: Session, name: str) -> str:

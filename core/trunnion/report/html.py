@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import base64
+import math
 from collections.abc import Sequence
 from pathlib import Path
 
@@ -10,6 +11,9 @@ from trunnion.model.session import Session
 from trunnion.report.pictures import Picture
 from trunnion.units import SECONDS_PER_MINUTE
 from trunnion_resources import folder as resource_folder
+
+ROUNDING = 1e-6
+"""What sums of thousands of areas may be short of a whole, in hundredths of a per cent."""
 
 
 def report_html(session: Session, name: str, pictures: Sequence[Picture], folder: Path, date: str = "") -> str:
@@ -32,7 +36,7 @@ def duration(seconds: float) -> str:
 
 def share(value: float) -> str:
     """Return a share as per cent with two decimals, never rounded up to a goal it does not reach."""
-    return f"{int(value * 10_000) / 100:.2f} %"
+    return f"{math.floor(value * 10_000 + ROUNDING) / 100:.2f} %"
 
 
 def left_faces(session: Session) -> list[tuple[int, float, float, bool, bool]]:

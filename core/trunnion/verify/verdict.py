@@ -222,8 +222,9 @@ def _coverage(samples: Samples, surfaces: Surfaces, contact: PartContact, blank:
     gouge = np.max([np.zeros(n), *(p.contact.face_depth[:, 0] for p in proofs)], axis=0)
     planned = set(planned_faces)
     faces = _faces(samples, surfaces, left, area, done, away, gouge, blank_face, planned)
-    coverage = float(done.sum()) / wanted if wanted and proofs else 0.0
-    of_reachable = float(done.sum()) / reachable_area if reachable_area > 0.0 and proofs else 0.0
+    # Sums of thousands of areas differ in their last digits: nine decimals are far finer than any goal.
+    coverage = round(float(done.sum()) / wanted, 9) if wanted and proofs else 0.0
+    of_reachable = round(float(done.sum()) / reachable_area, 9) if reachable_area > 0.0 and proofs else 0.0
     return Covered(coverage=coverage, reachable=of_reachable, faces=faces, findings=_coverage_findings(faces, of_reachable, settings),
                    deviation=Deviation(face=surfaces.tag[samples.face], point=frame.to_world(samples.point), deviation=left))
 

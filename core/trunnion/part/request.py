@@ -1,0 +1,19 @@
+"""What a reading process is told of the file it reads."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Request:
+    """What the reading process is told: the file's name and path, digest, kind ("step" or "iges"), the faces its text lists."""
+
+    file: str
+    path: str
+    name: str
+    digest: str
+    kind: str
+    listed: int
+    solid: int | None
+    size: int
