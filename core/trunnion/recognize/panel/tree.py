@@ -47,9 +47,7 @@ class SpaceTree:
     def covered(self, node: Node) -> float:
         """Return the largest share of a space that material stands over: 0 when a cutter can look at all of it from above."""
         own = self.space(node).plan
-        x0, y0, x1, y1 = own.bounds
-        over = (shapely.clip_by_rect(layer.material, x0, y0, x1, y1) for layer in self.slices.layers[node[0] + 1:])
-        return max((float(own.intersection(m).area / own.area) for m in over), default=0.0)
+        return max((float(own.intersection(layer.material).area / own.area) for layer in self.slices.layers[node[0] + 1:]), default=0.0)
 
 
 def build_tree(slices: Slices) -> SpaceTree:
