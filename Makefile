@@ -48,7 +48,9 @@ run: setup
 	env -u QT_QPA_PLATFORM $(BIN)/trunnion-gui
 
 docs: setup
-	$(BIN)/trunnion settings --markdown > docs/settings-table.md
+	$(BIN)/trunnion settings --markdown > docs/settings.md
+	$(BIN)/python -m pip install -q --disable-pip-version-check "mkdocs-material>=9.6"
+	$(BIN)/mkdocs build -q --strict
 
 clean:
 	rm -rf out build dist .mypy_cache .ruff_cache .hypothesis bench.json

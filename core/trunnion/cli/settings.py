@@ -25,9 +25,10 @@ def run(chosen: argparse.Namespace) -> int:
         show_json([{"key": d.key, "step": step, "label": d.label, "default": d.default, "unit": d.unit, "low": d.low, "high": d.high,
                     "choices": list(d.choices), "help": d.help} for step, d in groups])
     elif chosen.markdown:
+        print("# Settings\n\nEverything that `--set KEY=VALUE` and the panels can change; made by `make docs` from the declarations.\n")
         print("| key | default | allowed | what it does |\n|---|---|---|---|")
         for _, d in groups:
-            print(f"| `{d.key}` | {d.default} {d.unit} | {d.allowed()} | **{d.label}.** {d.help} |")
+            print(f"| `{d.key}` | {f"{d.default} {d.unit}".strip()} | {d.allowed()} | **{d.label}.** {d.help} |")
     else:
         rows = [("key", "default", "allowed", "what it does")]
         rows += [(d.key, str(d.default), d.allowed(), f"{d.label}: {d.help}") for _, d in groups]
