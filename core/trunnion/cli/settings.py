@@ -28,7 +28,8 @@ def run(chosen: argparse.Namespace) -> int:
         print("# Settings\n\nEverything that `--set KEY=VALUE` and the panels can change; made by `make docs` from the declarations.\n")
         print("| key | default | allowed | what it does |\n|---|---|---|---|")
         for _, d in groups:
-            print(f"| `{d.key}` | {f"{d.default} {d.unit}".strip()} | {d.allowed()} | **{d.label}.** {d.help} |")
+            default = f"{d.default} {d.unit}".strip()
+            print(f"| `{d.key}` | {default} | {d.allowed()} | **{d.label}.** {d.help} |")
     else:
         rows = [("key", "default", "allowed", "what it does")]
         rows += [(d.key, str(d.default), d.allowed(), f"{d.label}: {d.help}") for _, d in groups]
