@@ -71,3 +71,34 @@ def test_every_setting_is_listed_with_its_range(capsys: pytest.CaptureFixture[st
     listed = {entry["key"]: entry for entry in json.loads(capsys.readouterr().out)}
     assert {"recognize.family", "plane.rough.slot_feed", "blank.top"} <= listed.keys()
     assert listed["blank.top"]["unit"] == "mm"
+
+
+@pytest.mark.parametrize("command", ["program", "post"])
+def test_a_folder_that_can_not_be_made_is_refused_before_the_part_is_read(command: str, tmp_path: Path,
+                                                                          capsys: pytest.CaptureFixture[str]) -> None:
+    (tmp_path / "file").write_text("in the way", encoding="utf-8")
+    assert main([command, str(tmp_path / "none.step"), "-o", str(tmp_path / "file" / "deeper")]) == BAD
+    said = capsys.readouterr().err
+    assert said == f"trunnion: {tmp_path / 'file' / 'deeper'}: can't be written to: {tmp_path / 'file'} is not a folder\n"
+
+
+def test_an_empty_folder_name_is_refused_not_taken_for_the_current_folder(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    with pytest.raises(SystemExit) as left:
+        main(["program", str(tmp_path / "none.step"), "-o", ""])
+    assert left.value.code == BAD and "the name of a folder is empty" in capsys.readouterr().err
+
+
+def test_a_name_that_is_no_file_name_is_refused_before_the_part_is_read(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    assert main(["program", str(tmp_path / "none.step"), "-o", str(tmp_path), "--name", "a/b"]) == BAD
+    assert "can't be the name of files" in capsys.readouterr().err
+
+
+def test_a_user_folder_that_is_missing_is_refused(capsys: pytest.CaptureFixture[str], sample_part: Path, tmp_path: Path) -> None:
+    assert main(["info", str(sample_part), "--user-folder", str(tmp_path / "shop")]) == BAD
+    assert capsys.readouterr().err == f"trunnion: {tmp_path / 'shop'}: no such folder of tools, materials, machines and plans\n"
+
+
+def test_a_blank_that_can_not_be_written_is_one_line(capsys: pytest.CaptureFixture[str], sample_part: Path, tmp_path: Path) -> None:
+    assert main(["blank", str(sample_part), "--step", str(tmp_path / "none" / "blank.step")]) == BAD
+    said = capsys.readouterr().err
+    assert "blank.step: can't be written: No such file or directory" in said and len(said.splitlines()) == 1

@@ -7,7 +7,7 @@ import sys
 from pathlib import Path
 from typing import Any
 
-from trunnion.cli.common import add_options, open_session, progress_of, show_json, table
+from trunnion.cli.common import add_options, add_output, check_output, open_session, progress_of, show_json, table
 from trunnion.cli.proof import verdict_code
 from trunnion.findings import TrunnionError
 
@@ -16,13 +16,14 @@ def add(commands: Any) -> None:
     """Add the command to the command line."""
     made = commands.add_parser("batch", help="program many parts", description="Programs many parts, each into a folder named after it.")
     made.add_argument("parts", nargs="+", metavar="PART", help="part files")
-    made.add_argument("-o", "--output", type=Path, required=True, metavar="DIR", help="folder to write to (made when missing)")
+    add_output(made)
     add_options(made)
     made.set_defaults(run=run, name="", date="")
 
 
 def run(chosen: argparse.Namespace) -> int:
     """Program every part and print a line for each."""
+    check_output(chosen.output)
     results, worst = [], 0
     for part in chosen.parts:
         code, words = _one(chosen, part)

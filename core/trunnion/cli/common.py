@@ -4,12 +4,13 @@ from __future__ import annotations
 
 import argparse
 import json
+import os
 import sys
 from collections.abc import Iterable, Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from trunnion.findings import BadCall, Finding, Severity, has_errors
+from trunnion.findings import BadCall, BadInput, Finding, Severity, has_errors
 from trunnion.progress import Progress
 
 if TYPE_CHECKING:
@@ -30,9 +31,31 @@ def add_options(made: argparse.ArgumentParser) -> None:
     made.add_argument("--set", action="append", default=[], metavar="KEY=VALUE", dest="words",
                       help="change a setting (`trunnion settings` lists them); may be repeated")
     made.add_argument("--solid", type=int, default=None, metavar="N", help="which solid of a file with several (1-based)")
-    made.add_argument("--user-folder", type=Path, default=None, metavar="DIR", help="a shop's own tools, materials, machines and plans")
+    made.add_argument("--user-folder", type=folder_named, default=None, metavar="DIR",
+                      help="a shop's own tools, materials, machines and plans")
     made.add_argument("--json", action="store_true", help="print the result as JSON")
     made.add_argument("--quiet", action="store_true", help="print results only, no progress and no findings")
+
+
+def folder_named(word: str) -> Path:
+    """Return the folder that a word on the command line names; an empty word would be taken for the current folder."""
+    if not word.strip():
+        raise argparse.ArgumentTypeError("the name of a folder is empty")
+    return Path(word)
+
+
+def add_output(made: argparse.ArgumentParser) -> None:
+    """Add the option that says where to write."""
+    made.add_argument("-o", "--output", type=folder_named, required=True, metavar="DIR", help="folder to write to (made when missing)")
+
+
+def check_output(folder: Path) -> None:
+    """Raise `BadInput` when a folder can't be written to or made, before anything is computed; nothing is made yet."""
+    there = next((f for f in (folder, *folder.absolute().parents) if f.exists()), folder)
+    if not there.is_dir():
+        raise BadInput(f"{folder}: can't be written to: {there} is not a folder")
+    if not os.access(there, os.W_OK | os.X_OK):
+        raise BadInput(f"{folder}: can't be written to: no permission in {there}")
 
 
 def words_of(chosen: argparse.Namespace) -> dict[str, str]:
@@ -61,6 +84,8 @@ def progress_of(chosen: argparse.Namespace) -> Progress:
 def open_session(chosen: argparse.Namespace, until: str | None) -> tuple[Engine, Session]:
     """Return the engine and the session of the part, with every step up to `until` done."""
     from trunnion.pipeline import Engine
+    if chosen.user_folder is not None and not chosen.user_folder.is_dir():
+        raise BadInput(f"{chosen.user_folder}: no such folder of tools, materials, machines and plans")
     engine = Engine(chosen.user_folder)
     progress = progress_of(chosen)
     session = engine.open(chosen.part, solid=chosen.solid, progress=progress.part(0.0, 0.1))

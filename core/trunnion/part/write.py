@@ -41,8 +41,11 @@ def write_iges(shape: Shape, path: str | os.PathLike[str], *, unit: str = "mm") 
 
 def _written(path: Path, write: object) -> None:
     # The kernel opens files by narrow names; a temporary name beside the target is plain, and renaming is all or nothing.
-    with tempfile.TemporaryDirectory(prefix=".trunnion-", dir=path.parent) as folder:
-        made = os.path.join(folder, "shape")
-        if not callable(write) or not write(made):
-            raise BadInput(f"{path}: the shape can't be written")
-        os.replace(made, path)
+    try:
+        with tempfile.TemporaryDirectory(prefix=".trunnion-", dir=path.parent) as folder:
+            made = os.path.join(folder, "shape")
+            if not callable(write) or not write(made):
+                raise BadInput(f"{path}: the shape can't be written")
+            os.replace(made, path)
+    except OSError as reason:
+        raise BadInput(f"{path}: can't be written: {reason.strerror or reason}") from None

@@ -45,8 +45,12 @@ def write_documents(session: Session, mesh: Mesh, folder: Path, *, name: str, da
 
 def name_of(session: Session, name: str) -> str:
     """Return the NAME of a session's files: what was asked for, else the part's; raise `BadInput` when it can't be a file name."""
-    wanted = name or (session.part.name if session.part else "")
-    if not wanted or wanted in (".", "..") or any(c in wanted for c in "/\\\0\n"):
-        raise BadInput(f"{wanted!r} can't be the name of files: choose one without slashes")
-    return wanted
+    return checked_name(name or (session.part.name if session.part else ""))
+
+
+def checked_name(name: str) -> str:
+    """Return a name that files can have; raise `BadInput` when they can't."""
+    if not name or name in (".", "..") or any(c in name for c in "/\\\0\n"):
+        raise BadInput(f"{name!r} can't be the name of files: choose one without slashes")
+    return name
 
