@@ -8,7 +8,7 @@ from pytest import approx
 
 from samples import block_with_pocket_shape, drilled_block_shape, moved, read, turned, two_pockets_and_a_rib_shape
 from trunnion.geometry.frame import WORLD, Frame
-from trunnion.part.surfaces import surfaces_of
+from trunnion.part.surfaces import level_face, line_edges, surfaces_of
 from trunnion.verify.coverage import samples_of
 
 SHAPES = {"pocket": block_with_pocket_shape, "hole": drilled_block_shape, "panel": two_pockets_and_a_rib_shape}
@@ -47,3 +47,10 @@ def test_a_part_lying_askew_is_opened_into_triangles_and_says_so():
     surfaces = surfaces_of(part, WORLD)
     assert surfaces.bound > 0.0
     assert samples_of(surfaces, 0.5).area.sum() == approx(part.area, rel=2e-3)
+
+
+def test_an_outline_with_a_gap_of_one_rounding_error_is_closed() -> None:
+    sides = ((0.0, 0.0, 4.0, 0.0), (4.0, 0.0, 4.0, 3.0), (4.0, 3.0000000000000004, 0.0, 3.0), (0.0, 3.0, 0.0, 0.0))
+    edges = [e for side in sides for e in line_edges(np.array(side).reshape(2, 2))]
+    ends = [tuple(end) for end in level_face(1, 0.0, edges).chords.reshape(-1, 2)]
+    assert sorted(ends.count(end) for end in set(ends)) == [2, 2, 2, 2]

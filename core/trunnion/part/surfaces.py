@@ -257,7 +257,25 @@ def level_face(tag: int, z: float, edges: list[Edge], side: float = 1.0) -> Face
     level = strips_of(Guide(0, 0.0, 0.0, 1.0, 0.0), Profile(0.0, z, 1.0, 0.0), edges, -side)
     empty = np.zeros((0, STRIP_COLUMNS))
     return Face(tag, np.array(boundary).reshape(-1, STRIP_COLUMNS), empty if level is None else level,
-                np.vstack([np.zeros((0, 4)), *chords]), z)
+                closed_up(np.vstack([np.zeros((0, 4)), *chords])), z)
+
+
+def closed_up(chords: Floats) -> Floats:
+    """Return an outline's chords (c, 4) with the ends that meet made the very same point.
+
+    Whether a point is inside is told by counting the chords a ray crosses; through a gap of one rounding error a ray slips uncounted, and
+    the face would seem to cover its own openings. Ends meet when each is the other's nearest, no further than trimmed surfaces are sewn.
+    """
+    from scipy.spatial import cKDTree
+
+    ends = chords.reshape(-1, 2)
+    if not len(ends):
+        return chords
+    own = np.arange(len(ends))
+    _, near = cKDTree(ends).query(ends, k=2, distance_upper_bound=tolerance.SEW)
+    other = np.where(near[:, 1] == own, near[:, 0], near[:, 1])
+    other = np.where(other == len(ends), own, other)
+    return ends[np.where(other[other] == own, np.minimum(own, other), own)].reshape(-1, 4)
 
 
 def surfaces_of(part: Part, frame: Frame, progress: Progress = QUIET) -> Surfaces:
