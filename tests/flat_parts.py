@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 
 import numpy as np
 
@@ -131,6 +131,25 @@ def open_panel() -> tuple[FlatPart, Recognition]:
     pocket = Feature(id="open_pocket-01", kind="open_pocket", faces=(FaceRole(role="floor", face=2), FaceRole(role="wall", face=3)),
                      sizes={"floor_z": 10.0, "top_z": 20.0, "corner_radius": 8.0, "floor_fillet": 0.0, "leans": (0.0,)})
     return part, Recognition(family="panel", frame=WORLD, features=(pocket,))
+
+
+def open_panel_with_island() -> tuple[FlatPart, Recognition]:
+    """Return the open panel with an island of height 15 in its pocket: x 70 to 90, y 20 to 40, corners of 8."""
+    part, recognition = open_panel()
+    island = Feature(id="island-01", kind="island", faces=(FaceRole(role="top", face=4), FaceRole(role="wall", face=5)),
+                     sizes={"top_z": 15.0, "in": "open_pocket-01"})
+    standing = Prism(area=rounded(70, 20, 90, 40, 8), low=10, high=15, face=4, side=5, at=(80, 30))
+    return replace(part, islands=(standing,)), replace(recognition, features=(*recognition.features, island))
+
+
+def narrow_panel() -> tuple[FlatPart, Recognition]:
+    """Return a panel 200 x 100 x 25 with one pocket, x 10 to 190, y 10 to 90, floor 5, and an island 12 away from its wall."""
+    part = FlatPart(outline=Region.rectangle(0, 0, 200, 100), height=25.0,
+                    cuts=(Prism(area=rounded(10, 10, 190, 90, 8), low=5, high=26, face=2, side=3, at=(30, 80)),),
+                    islands=(Prism(area=rounded(90, 22, 110, 42, 9), low=5, high=15, face=4, side=5, at=(100, 32)),))
+    island = Feature(id="island-01", kind="island", faces=(FaceRole(role="top", face=4), FaceRole(role="wall", face=5)),
+                     sizes={"top_z": 15.0, "in": "pocket-01"})
+    return part, Recognition(family="panel", frame=WORLD, features=(_pocket("pocket-01", 2, 3, floor_z=5.0), island))
 
 
 def stepped_panel() -> tuple[FlatPart, Recognition]:

@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 from pytest import approx
 
-from flat_parts import FlatPart, Prism, blank_of, open_panel, operation, panel, rounded, stepped_panel
+from flat_parts import FlatPart, Prism, blank_of, open_panel, open_panel_with_island, operation, panel, rounded, stepped_panel
 from trunnion.findings import Refused
 from trunnion.geometry.frame import WORLD
 from trunnion.model.feature import FaceRole, Feature, Recognition
@@ -105,6 +105,12 @@ def test_an_open_pockets_wall_is_open_where_there_is_no_material():
     assert not wall.curve.closed
     assert wall.curve.length == approx(2 * 72 + 24 + 8 * math.pi)
     assert np.array([wall.curve.start[0], wall.curve.end[0]]) == approx([105.0, 105.0])
+
+
+def test_an_open_pockets_wall_is_one_guide_past_the_top_of_its_island():
+    around, island = drive(open_panel_with_island(), "wall", "open_pocket-01").walls
+    assert (around.curve.closed, around.top, around.bottom) == (False, approx(-2.0), approx(-12.0))
+    assert (island.curve.closed, island.top, island.bottom) == (True, approx(-7.0), approx(-12.0))
 
 
 def test_a_step_gives_two_levels_and_two_floors():

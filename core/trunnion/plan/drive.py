@@ -192,7 +192,7 @@ def _pocket_walls(feature: Feature, bands: tuple[Band, ...], space: Space, fille
         stepped = n > 0 and any(abs(z - band.top) < tolerance.SEW for z in floors)
         on_floor = any(abs(z - band.bottom) < tolerance.SEW for z in floors)
         for curve in _walled(feature, band):
-            above = next((k for k, g in enumerate(guides) if abs(g.bottom - band.top) < tolerance.SEW and g.curve.closed == curve.closed
+            above = next((k for k, g in enumerate(guides) if abs(g.bottom - band.top) < tolerance.SEW
                           and same_curve(g.curve, curve)), None)
             top = band.top if above is None else guides[above].top
             if above is None and stepped:

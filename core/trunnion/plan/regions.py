@@ -263,9 +263,12 @@ def on_rim(curve: Curve, region: Region) -> Bools:
 
 
 def same_curve(a: Curve, b: Curve) -> bool:
-    """Say whether two closed curves run along each other."""
-    alike = abs(a.length - b.length) < tolerance.SEW and abs(a.area - b.area) < tolerance.SEW * max(a.length, 1.0)
-    return alike and bool((a.distance(b.points) < tolerance.SEW).all())
+    """Say whether two curves run along each other from end to end, both closed or both open."""
+    if a.closed != b.closed or abs(a.length - b.length) >= tolerance.SEW:
+        return False
+    if a.closed and abs(a.area - b.area) >= tolerance.SEW * max(a.length, 1.0):
+        return False
+    return bool((a.distance(b.points) < tolerance.SEW).all())
 
 
 def _distinct(heights: Iterable[float]) -> list[float]:
