@@ -7,7 +7,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from flat_parts import blank_of, open_panel, panel, stepped_panel
+from flat_parts import blank_of, narrow_panel, open_panel, panel, stepped_panel
 from trunnion.findings import Severity
 from trunnion.model.blank import Blank
 from trunnion.model.feature import FaceRole, Feature
@@ -74,6 +74,12 @@ def test_a_corner_is_roughed_again_where_the_first_cutter_did_not_fit():
     assert place("rough-pocket-01") < place("corner-pocket-01") < place("wall-pocket-01")
 
 
+def test_a_walls_cutter_passes_between_an_island_and_the_wall():
+    tree = route(narrow_panel())
+    assert tree.operation("wall-pocket-01").tool.diameter <= 12.0
+    assert tree.operation("corner-pocket-01").tool.diameter <= 12.0 < tree.operation("rough-pocket-01").tool.diameter
+
+
 def test_roughing_leaves_allowances_and_finishing_none():
     assert TREE.operation("rough-pocket-01").choices["route.wall_allowance"] == 0.5
     assert not TREE.operation("wall-pocket-01").choices
@@ -135,10 +141,18 @@ def test_a_corner_sharper_than_any_cutter_is_an_error_with_a_remedy():
     assert told.code == "route.no-cutter" and "no tool is small enough" in told.text and told.remedy
 
 
+def test_walls_are_finished_also_where_no_cutter_gets_into_the_corners():
+    tree = route(with_sizes(panel(), "pocket-01", corner_radius=1.0))
+    assert tree.operation("wall-pocket-01").tool.corner_radius == 3.0
+    assert "corner_finish-pocket-01" not in [o.id for o in tree.operations]
+
+
 def test_a_sharp_inner_corner_is_cut_as_far_as_cutters_go_and_told():
     tree = route(with_sizes(panel(), "pocket-01", corner_radius=0.0))
     assert [f.code for f in tree.findings] == ["route.sharp-corner"]
     assert any(o.id == "wall-pocket-01" for o in tree.operations)
+    fillets = [t.diameter for t in SHOP.tools if t.corner_radius == 3.0 and t.neck_length >= 26.0]
+    assert tree.operation("corner_finish-pocket-01").tool.diameter == min(fillets)
 
 
 def test_a_fillet_no_cutter_has_is_stepped_and_told():

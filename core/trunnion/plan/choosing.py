@@ -2,13 +2,16 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 
 from trunnion import tolerance
 from trunnion.geometry.region import Region
 from trunnion.model.tool import Tool
 from trunnion.units import trimmed
+
+CUSP_SPREAD = 1.1
+"""What a cutter leaves in sharp edges over the square of its radius, over the same of the smallest: 1 between straight walls."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -21,7 +24,8 @@ class Task:
     area that may be left to smaller cutters. `spare`: how many of its radii must fit from rim to middle where the room is widest, so
     that it can enter and turn. `keep`: for floors, the distance from the finished walls beside the fillet's own; then it is the cutter's
     flat that has to cover what is wanted (below 0: the whole disc). `near`: how much smaller than the largest candidate a cutter may be,
-    as a share of its diameter, to be chosen because it serves other tasks too.
+    as a share of its diameter, to be chosen because it serves other tasks too. `cusps`: only what stays in sharp inner edges may be
+    missed, where no cutter gets; a passage that smaller cutters get through may not.
     """
 
     depth: float
@@ -34,6 +38,7 @@ class Task:
     spare: float = 1.0
     keep: float = -1.0
     near: float = 0.5
+    cusps: bool = False
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -86,16 +91,35 @@ def _fitting(task: Task, tools: Sequence[Tool]) -> list[Tool]:
 
     Where one fits, so do all smaller ones: the largest is looked for.
     """
-    wanted = task.wanted or task.room
-    total = wanted.area
+    most = _missable(task, tools)
     for tool in sorted(tools, key=lambda t: -t.diameter):
         if task.spare > 1.0 and not task.room.offset(-task.spare * tool.radius):
             continue
-        covered = _covered(task, tool)
-        left = wanted.minus(covered).area if covered else total
-        if left <= task.missable * total + tolerance.AREA * max(total, 1.0):
+        if _left(task, tool) <= most(tool):
             return [t for t in tools if t.diameter <= tool.diameter]
     return []
+
+
+def fits_through(task: Task, tool: Tool, tools: Sequence[Tool]) -> bool:
+    """Say whether a cutter covers what is wanted, but for what may be missed, as well as the others of the catalogue would."""
+    return _left(task, tool) <= _missable(task, tools)(tool)
+
+
+def _left(task: Task, tool: Tool) -> float:
+    """Return the area of what is wanted that a cutter doesn't cover."""
+    wanted, covered = task.wanted or task.room, _covered(task, tool)
+    return wanted.minus(covered).area if covered else wanted.area
+
+
+def _missable(task: Task, tools: Sequence[Tool]) -> Callable[[Tool], float]:
+    """Return the area that each cutter may leave: in sharp edges it grows with the square of the cutter's radius."""
+    total = (task.wanted or task.room).area
+    most, slack = task.missable * total, tolerance.AREA * max(total, 1.0)
+    if not task.cusps:
+        return lambda tool: most + slack
+    smallest = min(tools, key=lambda t: t.diameter)
+    cusps = CUSP_SPREAD * _left(task, smallest)
+    return lambda tool: min(most, cusps * (tool.radius / smallest.radius) ** 2) + slack
 
 
 def _fitting_floor(task: Task, tools: Sequence[Tool]) -> list[Tool]:

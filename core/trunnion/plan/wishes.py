@@ -14,7 +14,7 @@ from trunnion.geometry.region import EMPTY_REGION, Region
 from trunnion.model.feature import Feature, Recognition
 from trunnion.model.material import Machine, Material
 from trunnion.model.tool import Tool
-from trunnion.plan.choosing import Task, candidates, depth_reached
+from trunnion.plan.choosing import Task, candidates, depth_reached, fits_through
 from trunnion.plan.regions import Band, Space, floor_fillet, number, parent_of, touching
 from trunnion.settings import setting, settings
 from trunnion.shop import Shop, Stage
@@ -151,9 +151,12 @@ def _wishes_rest(draft: Draft, stage: Stage, features: Sequence[Feature]) -> lis
     def make(feature: Feature, bands: tuple[Band, ...]) -> Wish | None:
         before = draft.tools.get(f"rough-{feature.id}")
         corner = number(feature, "corner_radius")
-        if before is None or not 0.0 < corner < before.radius:
+        if before is None:
             return None
-        return _wish(stage, feature, bands, replace(_wall_task(draft, feature, bands), exact=False), ())
+        task = replace(_wall_task(draft, feature, bands), exact=False)
+        if not 0.0 < corner < before.radius and fits_through(task, before, catalogue(draft, stage)):
+            return None
+        return _wish(stage, feature, bands, task, ())
 
     return _pocket_wishes(draft, stage, features, make)
 
@@ -186,10 +189,10 @@ def _wishes_wall(draft: Draft, stage: Stage, features: Sequence[Feature]) -> lis
                 feature.id, *face_tags(feature.with_role("wall")), remedy="give the corner a radius, or finish it by other means"))
         task = _with_known_fillet(draft, stage, feature, _wall_task(draft, feature, bands))
         fine = candidates(task, catalogue(draft, stage), draft.settings.reach_clearance).tools
-        if fine and all(t.stickout / t.diameter > draft.settings.slender for t in fine):
-            stiff = replace(task, radius=0.0, missable=draft.settings.missable)
+        if all(t.stickout / t.diameter > draft.settings.slender for t in fine):
+            stiff = replace(task, radius=0.0, missable=draft.settings.missable, cusps=False)
             larger = candidates(stiff, catalogue(draft, stage), draft.settings.reach_clearance).tools
-            if any(t.stickout / t.diameter <= draft.settings.slender for t in larger):
+            if any(not fine or t.stickout / t.diameter <= draft.settings.slender for t in larger):
                 task = stiff
         return _wish(stage, feature, bands, task, faces)
 
@@ -199,9 +202,14 @@ def _wishes_wall(draft: Draft, stage: Stage, features: Sequence[Feature]) -> lis
 def _wishes_corner(draft: Draft, stage: Stage, features: Sequence[Feature]) -> list[Wish]:
     def make(feature: Feature, bands: tuple[Band, ...]) -> Wish | None:
         wall, corner = draft.tools.get(f"wall-{feature.id}"), number(feature, "corner_radius")
-        if wall is None or corner <= 0.0 or wall.radius <= corner * draft.settings.corner_share + tolerance.COINCIDENT:
+        is_sharp = feature.sizes.get("corner_radius") == 0.0
+        if wall is None or (corner <= 0.0 and not is_sharp) or wall.radius <= corner * draft.settings.corner_share + tolerance.COINCIDENT:
             return None
         task = _with_known_fillet(draft, stage, feature, _wall_task(draft, feature, bands))
+        if is_sharp:
+            task = replace(task, radius=_smallest(draft, stage, task))
+            if task.radius >= wall.radius:
+                return None
         return _wish(stage, feature, bands, task, feature.with_role("corner"))
 
     return _pocket_wishes(draft, stage, features, make)
@@ -282,7 +290,7 @@ def _depth(draft: Draft, bands: tuple[Band, ...]) -> float:
 def _wall_task(draft: Draft, feature: Feature, bands: tuple[Band, ...]) -> Task:
     return Task(depth=_depth(draft, bands), room=bands[-1].boundary, wanted=bands[-1].wanted,
                 corner_radius=floor_fillet(feature), exact=True, radius=number(feature, "corner_radius") * draft.settings.corner_share,
-                missable=SHARP, near=NEAR_WALL)
+                missable=SHARP, near=NEAR_WALL, cusps=True)
 
 
 def _with_known_fillet(draft: Draft, stage: Stage, feature: Feature, task: Task) -> Task:
@@ -297,6 +305,12 @@ def _with_known_fillet(draft: Draft, stage: Stage, feature: Feature, task: Task)
         *face_tags(feature.with_role("floor_fillet")),
         remedy="add a cutter with the fillet's radius to the tools folder"))
     return replace(task, corner_radius=next_smaller)
+
+
+def _smallest(draft: Draft, stage: Stage, task: Task) -> float:
+    """Return the radius of the smallest cutter that gets to the foot of a wall."""
+    found = candidates(replace(task, missable=1.0, cusps=False, near=0.0), catalogue(draft, stage), draft.settings.reach_clearance).tools
+    return min((t.radius for t in found), default=math.inf)
 
 
 def with_falling_sizes(draft: Draft, wishes: Sequence[Wish]) -> list[Wish]:
