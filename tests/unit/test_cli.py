@@ -9,6 +9,7 @@ from pathlib import Path
 
 import pytest
 
+from parts import PARTS, needs_parts
 from trunnion.cli.main import BAD, COMMANDS, main
 
 HEAVY = ("OCP", "cadquery", "vtkmodules", "pyvista", "PySide6", "numba", "shapely")
@@ -102,3 +103,15 @@ def test_a_blank_that_can_not_be_written_is_one_line(capsys: pytest.CaptureFixtu
     assert main(["blank", str(sample_part), "--step", str(tmp_path / "none" / "blank.step")]) == BAD
     said = capsys.readouterr().err
     assert "blank.step: can't be written: No such file or directory" in said and len(said.splitlines()) == 1
+
+
+@needs_parts
+@pytest.mark.parametrize(("part", "cause"), [("open_shell.step", "the part is not closed"),
+                                             ("huge_20_metres.step", "the blank exceeds the machine's travel")])
+def test_a_part_that_can_not_be_planned_is_named_with_the_cause(part: str, cause: str, tmp_path: Path,
+                                                                capsys: pytest.CaptureFixture[str]) -> None:
+    assert PARTS is not None
+    assert main(["program", str(PARTS / "nasty" / part), "-o", str(tmp_path / "out")]) == BAD
+    said = capsys.readouterr().err
+    assert said.startswith(f"trunnion: {part}: ") and cause in said and len(said.splitlines()) == 1
+    assert not (tmp_path / "out").exists()

@@ -7,7 +7,7 @@ from collections.abc import Mapping
 from dataclasses import replace
 from pathlib import Path
 
-from trunnion.findings import BadCall, BadInput, has_errors
+from trunnion.findings import BadCall, BadInput, Severity, TrunnionError, has_errors
 from trunnion.geometry.mesh import Mesh
 from trunnion.model.session import Session, StepRecord
 from trunnion.pipeline.bench import Bench
@@ -133,7 +133,10 @@ class Engine:
     def _run_one(self, session: Session, step: Step, progress: Progress) -> Session:
         began = time.perf_counter()
         key = step.key(session, self.bench)
-        result = step.work(session, self.bench, progress)
+        try:
+            result = step.work(session, self.bench, progress)
+        except TrunnionError as reason:
+            raise type(reason)(_whole_line(session, str(reason))) from None
         record = StepRecord(key=key, seconds=time.perf_counter() - began, findings=result.findings)
         kept = {name: session.records[name] for name in STEPS if name in session.records}
         return replace(result.session, records={name: record if name == step.name else kept[name]
@@ -155,3 +158,11 @@ class Engine:
         progress.at(0.9, "saving the project")
         self.save(session, Path(folder) / project)
         return (*files, project)
+
+
+def _whole_line(session: Session, reason: str) -> str:
+    """Return why a step stopped, with the part's file named and the errors found before it, which are the likely cause."""
+    file = Path(session.part.path).name if session.part else ""
+    line = reason if not file or file in reason else f"{file}: {reason}"
+    before = [f.text for f in session.findings() if f.severity is Severity.ERROR]
+    return f"{line}; found before: {'; '.join(before)}" if before else line
