@@ -3,13 +3,17 @@
 from __future__ import annotations
 
 import multiprocessing
+import os
 import sys
 from collections.abc import Sequence
+
+from trunnion.findings import BadCall
 
 
 def main(arguments: Sequence[str] | None = None) -> int:
     """Open the window, with the part or project given as first argument, and return the exit code."""
     multiprocessing.freeze_support()
+    check_display()
     from PySide6.QtCore import Qt
     from PySide6.QtGui import QGuiApplication
     from PySide6.QtWidgets import QApplication
@@ -28,6 +32,12 @@ def main(arguments: Sequence[str] | None = None) -> int:
     if words:
         window.document.open(words[0])
     return QApplication.exec()
+
+
+def check_display() -> None:
+    """Raise `BadCall` where there is no screen to open a window on: Qt would end the process without a word of ours."""
+    if sys.platform.startswith("linux") and not any(os.environ.get(name) for name in ("DISPLAY", "WAYLAND_DISPLAY", "QT_QPA_PLATFORM")):
+        raise BadCall("no screen to open the window on (neither DISPLAY nor WAYLAND_DISPLAY is set); start a desktop, or use the commands")
 
 
 if __name__ == "__main__":

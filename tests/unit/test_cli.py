@@ -115,3 +115,12 @@ def test_a_part_that_can_not_be_planned_is_named_with_the_cause(part: str, cause
     said = capsys.readouterr().err
     assert said.startswith(f"trunnion: {part}: ") and cause in said and len(said.splitlines()) == 1
     assert not (tmp_path / "out").exists()
+
+
+def test_a_window_without_a_screen_is_refused_in_one_line(capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch) -> None:
+    for name in ("DISPLAY", "WAYLAND_DISPLAY", "QT_QPA_PLATFORM"):
+        monkeypatch.delenv(name, raising=False)
+    monkeypatch.setattr(sys, "platform", "linux")
+    assert main(["gui"]) == BAD
+    said = capsys.readouterr().err
+    assert said.startswith("trunnion: no screen to open the window on") and len(said.splitlines()) == 1
