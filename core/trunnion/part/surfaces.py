@@ -272,7 +272,7 @@ def closed_up(chords: Floats) -> Floats:
     if not len(ends):
         return chords
     own = np.arange(len(ends))
-    _, near = cKDTree(ends).query(ends, k=2, distance_upper_bound=tolerance.SEW)
+    near = np.asarray(cKDTree(ends).query(ends, k=2, distance_upper_bound=tolerance.SEW)[1])
     other = np.where(near[:, 1] == own, near[:, 0], near[:, 1])
     other = np.where(other == len(ends), own, other)
     return ends[np.where(other[other] == own, np.minimum(own, other), own)].reshape(-1, 4)
