@@ -97,10 +97,35 @@ class Space:
         """Return the blank's area and plenty around it."""
         return Region.rectangle(*(self.blank_low[:2] - AROUND), *(self.blank_high[:2] + AROUND))
 
+    def standing_over(self, z: float, near: Region) -> Region:
+        """Return the part's material at a height, with all that hangs over it near a region: what an upright cutter must stay out of.
+
+        A section through a recess in a wall shows free space that no upright cutter gets into; the section just over the recess closes it.
+        """
+        material = self.section(z)
+        if not near:
+            return material
+        low, high = near.box()
+        graph = self.part.graph()
+        points, normals = self.setup.frame.to_local(graph.sample_point), self.setup.frame.local_direction(graph.sample_normal)
+        hanging = (normals[:, 2] < -np.sin(tolerance.TANGENT)) & (points[:, 2] > z)
+        over = [k for k in dict.fromkeys(graph.sample_face[hanging].tolist()) if self._beside(k, low, high)]
+        ceilings = _distinct(float(points[graph.sample_face == k, 2].max()) for k in over)
+        above = [self.section(c + tolerance.BESIDE_PLANE) for c in ceilings if c + tolerance.BESIDE_PLANE < self.top]
+        return union_all([material, *above]) if above else material
+
+    def _beside(self, row: int, low: Floats, high: Floats) -> bool:
+        graph = self.part.graph()
+        edges = list(graph.edges_of[row])
+        points = np.vstack([graph.start[edges], graph.middle[edges], graph.end[edges], graph.centre[[row]]])
+        plan = self.setup.frame.to_local(points)[:, :2]
+        return bool((plan.min(axis=0) <= high).all() and (plan.max(axis=0) >= low).all())
+
     def free_near(self, z: float, region: Region) -> Region:
-        """Return where there is no material of the part at a height, around a region by plenty for a cutter over it."""
+        """Return where nothing of the part stands at a height or hangs over it, around a region by plenty for a cutter over it."""
         low, high = region.box()
-        return Region.rectangle(*(low - NEAR), *(high + NEAR)).minus(self.section(z))
+        room = Region.rectangle(*(low - NEAR), *(high + NEAR))
+        return room.minus(self.standing_over(z, room))
 
     def silhouette(self) -> Region:
         """Return the part's outline seen from above, its openings filled."""
@@ -152,7 +177,7 @@ class Space:
         return tuple(bands)
 
     def _band(self, feature: Feature, high: float, low: float, z: float, points: list[Floats], sunken: list[Floats]) -> Band:
-        material = self.section(z)
+        material = self.standing_over(z, self._over(feature))
         if feature.kind == "open_pocket":
             wanted = holding(self.silhouette().minus(material), points)
             boundary = holding(self.around().minus(material).intersect(wanted.offset(AROUND)), points) if wanted else EMPTY_REGION
@@ -163,6 +188,16 @@ class Space:
                           "correct the feature or machine it by hand")
         wanted, boundary = filled_over(wanted, sunken), filled_over(boundary, sunken)
         return Band(top=high, bottom=low, wanted=wanted, boundary=boundary)
+
+    def _over(self, feature: Feature) -> Region:
+        """Return the plan box of a feature's faces."""
+        graph = self.part.graph()
+        edges = sorted({e for tag in feature.tags for e in graph.edges_of[tag - 1]})
+        if not edges:
+            return EMPTY_REGION
+        plan = self.setup.frame.to_local(np.vstack([graph.start[edges], graph.middle[edges], graph.end[edges]]))[:, :2]
+        low, high = plan.min(axis=0), plan.max(axis=0)
+        return Region.rectangle(*low, *high) if (high - low > tolerance.COINCIDENT).all() else EMPTY_REGION
 
     def _middle_of(self, feature: Feature) -> Floats:
         centre = feature.attributes.get("centre", feature.sizes.get("centre"))
