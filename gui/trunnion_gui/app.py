@@ -6,8 +6,9 @@ import multiprocessing
 import os
 import sys
 from collections.abc import Sequence
+from typing import NoReturn
 
-from trunnion.findings import BadCall
+from trunnion.findings import BadCall, TrunnionError
 
 
 def main(arguments: Sequence[str] | None = None) -> int:
@@ -40,5 +41,14 @@ def check_display() -> None:
         raise BadCall("no screen to open the window on (neither DISPLAY nor WAYLAND_DISPLAY is set); start a desktop, or use the commands")
 
 
+def run() -> NoReturn:
+    """Run the window as a program of its own: what stops it is one line and exit code 2, as on the command line."""
+    try:
+        sys.exit(main())
+    except TrunnionError as reason:
+        print(f"trunnion-gui: {reason}", file=sys.stderr)  # noqa: T201
+        sys.exit(2)
+
+
 if __name__ == "__main__":
-    sys.exit(main())
+    run()

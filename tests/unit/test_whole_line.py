@@ -173,3 +173,21 @@ def test_the_command_line_prints_the_documented_keys(tmp_path, capsys, sample_pa
     assert {"name", "nc", "frame", "blank"} <= said["setups"][0].keys()
     assert {"id", "kind", "feature", "tool", "verdict"} <= said["operations"][0].keys()
     assert sorted(said["files"]) == sorted(path.name for path in tmp_path.iterdir())
+
+
+def test_a_plan_with_errors_is_not_released_however_well_the_rest_is_cut(line):
+    from trunnion.findings import error
+    from trunnion.pipeline.proving import held_back
+    verdict = held_back(line[1].verdict, [error("route.no-cutter", "no tool is small enough", "pocket-01", remedy="choose another")])
+    assert verdict.outcome is Outcome.FAILED
+    assert verdict.findings[0].code == "verify.errors-before" and "no tool is small enough" in verdict.findings[0].text
+
+
+def test_the_window_without_a_screen_is_one_line_and_exit_2():
+    import os
+    import subprocess
+    import sys
+    bare = {k: v for k, v in os.environ.items() if k not in ("DISPLAY", "WAYLAND_DISPLAY", "QT_QPA_PLATFORM")}
+    said = subprocess.run([sys.executable, "-m", "trunnion_gui.app"], capture_output=True, text=True, env=bare, check=False)
+    assert said.returncode == 2
+    assert said.stderr.startswith("trunnion-gui: no screen") and len(said.stderr.strip().splitlines()) == 1

@@ -2,12 +2,15 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
+from dataclasses import replace
+
 from trunnion import registry
-from trunnion.findings import BadCall
+from trunnion.findings import BadCall, Finding, Severity, error
 from trunnion.model.program import Program, ProgramSection
 from trunnion.model.session import PostedFile, Session
 from trunnion.model.setup import Setup
-from trunnion.model.verdict import Verdict
+from trunnion.model.verdict import Outcome, Verdict
 from trunnion.pipeline.bench import Bench
 from trunnion.post.header import Header
 from trunnion.post.readers import read_program
@@ -62,7 +65,25 @@ def prove_session(session: Session, bench: Bench, progress: Progress) -> tuple[V
     posted = post_texts(session, Header.of(session))
     progress.at(0.05, "reading the text back")
     programs = read_back(session, posted)
-    return prove_programs(session, bench, programs, progress.part(0.1, 1.0)), posted
+    verdict = prove_programs(session, bench, programs, progress.part(0.1, 1.0))
+    return held_back(verdict, errors_before(session)), posted
+
+
+def errors_before(session: Session) -> tuple[Finding, ...]:
+    """Return the errors that the part and the steps before the proof have told."""
+    told = (session.part.findings if session.part else ()) + tuple(f for step, r in session.records.items() if step != "verify"
+                                                                   for f in r.findings)
+    return tuple(f for f in told if f.severity is Severity.ERROR)
+
+
+def held_back(verdict: Verdict, errors: Sequence[Finding]) -> Verdict:
+    """Return the verdict, failed when there were errors before the proof: a plan that could not be made whole is not released."""
+    if not errors:
+        return verdict
+    codes = ", ".join(dict.fromkeys(f.code for f in errors))
+    held = error("verify.errors-before", f"{len(errors)} errors were told before the proof ({codes}): {errors[0].text}", *errors[0].where,
+                 remedy="mend what they name, then program the part again")
+    return replace(verdict, outcome=Outcome.FAILED, findings=(held, *verdict.findings))
 
 
 def prove_programs(session: Session, bench: Bench, programs: tuple[Program, ...], progress: Progress) -> Verdict:
