@@ -6,11 +6,8 @@ from dataclasses import dataclass
 
 from trunnion.geometry.region import Region
 from trunnion.model.tool import Tool
-from trunnion.toolpath.reach import Room
+from trunnion.toolpath.reach import OPEN_MARGIN, Room
 from trunnion.toolpath.rings import Ring, ring_tree
-
-OPEN_MARGIN = 0.5
-"""mm: a boundary that runs on past the wanted area by more than this is open there."""
 
 OVERRUN = 1.0
 """mm that the whole cutter runs past an open side."""
@@ -28,12 +25,16 @@ class Passes:
     clip: Region | None
 
 
-def passes_over(wanted: Region, boundary: Region, tool: Tool, distance: float, step: float) -> Passes:
-    """Return the passes of a cutter whose axis keeps `distance` from the boundary's rim; none when it fits nowhere."""
-    room = Room.of(boundary, distance)
+def passes_over(wanted: Region, boundary: Region, tool: Tool, distance: float, step: float, *, mitred: bool = False) -> Passes:
+    """Return the passes of a cutter whose axis keeps `distance` from the boundary's rim; none when it fits nowhere.
+
+    `mitred`: the walls have a fillet at their foot, which `Room.of` must keep whole at sharp edges.
+    """
+    closed = not boundary.minus(wanted.offset(OPEN_MARGIN))
+    room = Room.of(boundary, distance, mitred=mitred and closed)
     if not room.region or not wanted:
         return Passes(room, (), None)
-    if not boundary.minus(wanted.offset(OPEN_MARGIN)):
+    if closed:
         return Passes(room, ring_tree(room.region, step), None)
     clip = wanted.offset(tool.radius + OVERRUN)
     near = clip.offset(distance + OVERRUN)

@@ -12,8 +12,11 @@ from trunnion import tolerance
 from trunnion.findings import Refused
 from trunnion.geometry.arrays import Floats
 from trunnion.geometry.curve import Curve, segment_boxes
-from trunnion.geometry.region import Region
+from trunnion.geometry.region import Region, union_all
 from trunnion.plan.drive import DriveLevel, PlaneDrive
+
+OPEN_MARGIN = 0.5
+"""mm: a boundary that runs on past the wanted area by more than this is open there."""
 
 SPACING = 0.5
 """mm between the places of a curve that are looked at; the ends of its parts are then found to `END`."""
@@ -35,9 +38,14 @@ class Room:
     region: Region
 
     @staticmethod
-    def of(boundary: Region, distance: float) -> Room:
-        """Return the room of an axis that keeps `distance` from the rim of `boundary`."""
-        return Room(boundary.offset(-distance))
+    def of(boundary: Region, distance: float, *, mitred: bool = False) -> Room:
+        """Return the room of an axis that keeps `distance` from the rim of `boundary`.
+
+        Round a sharp edge of the part the axis may go in an arc; when `mitred`, only straight on to where both its walls' passes meet: a
+        fillet at the foot of such walls is mitred at their edge, and a cutter that went round would cut into the mitre.
+        """
+        room = boundary.offset(-distance)
+        return Room(room.minus(union_all(_mitres(boundary, distance))) if mitred and room else room)
 
     def depth(self, points: ArrayLike) -> Floats:
         """Return how far inside the room points (k, 2) are (negative outside)."""
@@ -52,6 +60,29 @@ class Room:
         a, b = np.asarray(start, dtype=np.float64)[:2], np.asarray(end, dtype=np.float64)[:2]
         count = max(2, int(np.hypot(*(b - a)) / SPACING) + 2)
         return self.holds(a + np.linspace(0.0, 1.0, count)[:, None] * (b - a))
+
+
+def is_closed(level: DriveLevel) -> bool:
+    """Say whether a band's walls close it all round: its boundary does not run on past what is wanted."""
+    return not level.boundary.minus(level.wanted.offset(OPEN_MARGIN))
+
+
+def _mitres(boundary: Region, distance: float) -> list[Region]:
+    """Return the kites between the sharp edges of the part in a boundary's rim and the meeting points of the passes beside them."""
+    kites = []
+    for curve in boundary.curves():
+        seg = curve.segments()
+        straight = np.isnan(seg.radius)
+        before = np.roll(np.arange(len(seg)), 1)
+        ways = np.divide(seg.end - seg.start, seg.length[:, None])
+        turns = ways[before, 0] * ways[:, 1] - ways[before, 1] * ways[:, 0]
+        # The region lies on the left: where its rim turns right by more than a blend does, the part has a sharp edge.
+        for k in np.flatnonzero(straight & straight[before] & (turns < -np.sin(tolerance.TANGENT))):
+            left = np.array([[-w[1], w[0]] for w in (ways[before[k]], ways[k])]) * distance
+            along = left.sum(axis=0)
+            tip = along * (2.0 * distance**2 / (along @ along))
+            kites.append(Region.of([Curve.polygon(seg.start[k] + np.array([np.zeros(2), left[1], tip, left[0]]))]))
+    return kites
 
 
 def level_at(drive: PlaneDrive, z: float) -> DriveLevel:

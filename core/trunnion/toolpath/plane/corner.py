@@ -21,7 +21,7 @@ from trunnion.toolpath.contour import Approach, cut_open, cut_parts
 from trunnion.toolpath.contract import Planned, strategy
 from trunnion.toolpath.levels import fillet_steps, steps_down
 from trunnion.toolpath.order import nearest_first
-from trunnion.toolpath.reach import Room, parts_where
+from trunnion.toolpath.reach import Room, is_closed, parts_where
 from trunnion.toolpath.rings import depth_first, ring_tree, safe_step
 from trunnion.toolpath.stock import PlanningStock
 
@@ -80,7 +80,7 @@ def corner(drive: PlaneDrive, tool: Tool, data: CuttingData, stock: PlanningStoc
             for height in heights:
                 progress.check()
                 if height.distance not in rooms:
-                    rooms[height.distance] = _passes(level, height.distance, step, _reaching(rests, tool))
+                    rooms[height.distance] = _passes(level, height.distance, step, _reaching(rests, tool), mitred=drive.fillet > 0.0)
                 room, rims = rooms[height.distance]
                 if height.distance not in beside:
                     beside[height.distance] = list(_beside(rims, clip, touched))
@@ -128,9 +128,9 @@ def _reaching(rests: tuple[Region, ...], tool: Tool) -> Region:
     return Region(tuple(p for r in rests for p in r.offset(tool.radius).pieces))
 
 
-def _passes(level: DriveLevel, distance: float, step: float, near: Region) -> tuple[Room, tuple[Curve, ...]]:
+def _passes(level: DriveLevel, distance: float, step: float, near: Region, *, mitred: bool) -> tuple[Room, tuple[Curve, ...]]:
     """Return the room and the rims of its rings that come near a rest, the innermost first."""
-    room = Room.of(level.boundary, distance)
+    room = Room.of(level.boundary, distance, mitred=mitred and is_closed(level))
     if not room.region:
         return room, ()
     return room, tuple(c for ring in depth_first(ring_tree(room.region, step, near)) for c in ring.curves())

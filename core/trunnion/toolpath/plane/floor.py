@@ -52,7 +52,7 @@ def floor(drive: PlaneDrive, tool: Tool, data: CuttingData, stock: PlanningStock
         progress.at(n / len(floors), f"{drive.feature}: floor at {each.z:.3f}")
         level = level_at(drive, each.z)
         distance = tool.radius + settings.wall_distance + foot_clearance(each.fillet, tool.corner_radius, 0.0)
-        passes = passes_over(each.region, level.boundary, tool, distance, manner.step)
+        passes = passes_over(each.region, level.boundary, tool, distance, manner.step, mitred=each.fillet > 0.0)
         if not passes.rings:
             findings.append(error("floor.too-wide", f"{tool.name} does not fit between the walls around the floor at {each.z:.2f}: "
                                   f"{each.region.area:.0f} mm2 stay", drive.feature, f"face {each.face}", remedy="choose a smaller cutter"))

@@ -58,7 +58,8 @@ def rough(drive: PlaneDrive, tool: Tool, data: CuttingData, stock: PlanningStock
             progress.at((drive.top - z) / max(drive.top - drive.bottom, tolerance.SEW), f"{drive.feature}: layer at {z:.3f}")
             distance = tool.radius + drive.wall_allowance + _foot(drive, tool, z)
             if distance not in made:
-                made[distance] = passes_over(level.wanted, level.boundary, tool, distance, manner.step)
+                made[distance] = passes_over(level.wanted, level.boundary, tool, distance, manner.step,
+                                             mitred=drive.fillet > 0.0)
             passes = made[distance]
             if passes.rings and not _is_clear(builder, level.wanted, z):
                 known = None if first or passes.clip is not None else above

@@ -21,7 +21,7 @@ from trunnion.toolpath.clear import Layer, Manner, clear
 from trunnion.toolpath.contour import Approach, contour_parts, cut_parts, length_out_of_reach
 from trunnion.toolpath.contract import Planned, strategy
 from trunnion.toolpath.levels import fillet_steps, steps_down
-from trunnion.toolpath.reach import Room, level_at
+from trunnion.toolpath.reach import Room, is_closed, level_at
 from trunnion.toolpath.rings import ring_tree, safe_step
 from trunnion.toolpath.stock import PlanningStock
 
@@ -60,14 +60,14 @@ def wall(drive: PlaneDrive, tool: Tool, data: CuttingData, stock: PlanningStock,
     approach = Approach(radius=settings.lead_radius, overlap=settings.overlap, ramp=math.radians(settings.ramp_angle),
                         rounds=2 if settings.spring else 1)
     findings: list[Finding] = []
-    rooms: dict[tuple[int, float], Room] = {}
+    rooms: dict[tuple[int, float, bool], Room] = {}
     for n, guide in enumerate(drive.walls):
         found = False
         for z, extra in _heights(guide, tool, min(data.depth, tool.flute_length), settings.scallop):
             progress.at(n / len(drive.walls), f"{drive.feature}: wall at {z:.3f}")
             boundary = level_at(drive, z).boundary
             distance = tool.radius + drive.wall_allowance + extra
-            room = _room(rooms, boundary, distance)
+            room = _room(rooms, boundary, distance, mitred=guide.fillet > 0.0 and guide.curve.closed)
             parts = contour_parts(room, guide.curve, distance)
             cut_parts(builder, parts, z, room, approach)
             found = found or bool(parts)
@@ -91,7 +91,8 @@ def _cut_floor_rest(builder: PathBuilder, drive: PlaneDrive, each: Floor, tool: 
         return
     rest = union_all([Region.rectangle(*(low - stock.cell), *(high + stock.cell)) for low, high in _clusters(places, tool.radius)])
     distance = tool.radius + drive.wall_allowance + foot_clearance(each.fillet, tool.corner_radius, 0.0)
-    room = Room.of(level_at(drive, each.z).boundary, distance)
+    level = level_at(drive, each.z)
+    room = Room.of(level.boundary, distance, mitred=each.fillet > 0.0 and is_closed(level))
     step = safe_step(tool, tool.radius)
     clip = rest.offset(step)
     layer = Layer(z=each.z, rings=ring_tree(room.region, step, clip), room=room, clip=clip)
@@ -116,14 +117,14 @@ def _heights(guide: WallGuide, tool: Tool, step: float, scallop: float) -> list[
     return [(z, foot_clearance(guide.fillet, tool.corner_radius, z - guide.bottom)) for z in heights]
 
 
-def _room(rooms: dict[tuple[int, float], Room], boundary: Region, distance: float) -> Room:
-    key = (id(boundary), distance)
+def _room(rooms: dict[tuple[int, float, bool], Room], boundary: Region, distance: float, *, mitred: bool = False) -> Room:
+    key = (id(boundary), distance, mitred)
     if key not in rooms:
-        rooms[key] = Room.of(boundary, distance)
+        rooms[key] = Room.of(boundary, distance, mitred=mitred)
     return rooms[key]
 
 
-def _left(drive: PlaneDrive, guide: WallGuide, tool: Tool, found: bool, rooms: dict[tuple[int, float], Room]) -> list[Finding]:
+def _left(drive: PlaneDrive, guide: WallGuide, tool: Tool, found: bool, rooms: dict[tuple[int, float, bool], Room]) -> list[Finding]:
     height = guide.top - guide.bottom
     if not found:
         return [error("wall.too-narrow", f"{tool.name} can't come to a wall of {drive.feature}: {guide.curve.length * height:.0f} mm2 stay",
