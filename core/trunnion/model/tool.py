@@ -4,9 +4,13 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass
+from itertools import pairwise
 from typing import Any
 
-FORMS = ("flat", "bull", "ball")
+FORMS = ("flat", "bull", "ball", "taper", "barrel", "t-slot", "drill", "form")
+PLAIN_FORMS = ("flat", "bull", "ball")
+"""Forms that are an end of a radius and a corner radius, and nothing else."""
+_ROUNDING = 1e-9
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -29,10 +33,20 @@ class Holder:
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Tool:
-    """An end mill in its holder. Heights are from the tip (the lowest point, on the axis), mm.
+    """A rotating tool in its holder. Heights are from the tip (the lowest point, on the axis), mm.
 
     `flute_length` cuts; above it a neck of `neck_diameter` up to `neck_length` (equal to the flute's when there is none), then the shank of
     `shank_diameter` up to `stickout`, where the holder's nose is. `gauge_length` is from tip to spindle face.
+
+    What cuts, by `form`:
+
+    - flat, bull, ball: `diameter`, `corner_radius`.
+    - taper: a bull end of `diameter` and `corner_radius`, and above its corner a flank that leans out by `taper_angle` (degrees).
+    - barrel: a round tip of `corner_radius`, tangent to a flank of `barrel_radius` whose widest circle is `diameter`.
+    - t-slot: a disc of `diameter`, as thick as the flutes are long, rounded below and above by `corner_radius`; it cuts upwards too.
+    - drill: a cone of `point_angle` (degrees, over both sides) and a cylinder of `diameter`.
+    - form: `outline`, points (r, z, bulge) from the tip to the top of the flutes; the bulge (tan of a quarter of the arc's angle, positive
+      where the cutter is rounded outwards) belongs to the way to the next point.
     """
 
     number: int
@@ -51,6 +65,10 @@ class Tool:
     helix_angle: float
     holder: Holder
     description: str = ""
+    taper_angle: float = 0.0
+    barrel_radius: float = 0.0
+    point_angle: float = 180.0
+    outline: tuple[tuple[float, float, float], ...] = ()
 
     def __post_init__(self) -> None:
         if self.form not in FORMS:
@@ -59,6 +77,49 @@ class Tool:
             raise ValueError(f"tool {self.name}: corner radius {self.corner_radius} does not fit diameter {self.diameter}")
         if not 0.0 < self.flute_length <= self.neck_length <= self.stickout <= self.gauge_length:
             raise ValueError(f"tool {self.name}: flute, neck, stickout and gauge length must grow in this order")
+        wrong = self._wrong_form()
+        if wrong:
+            raise ValueError(f"tool {self.name}: {wrong}")
+
+    def _wrong_form(self) -> str:
+        """Say what the numbers of a form lack, or nothing."""
+        c, r = self.corner_radius, self.radius
+        if self.form == "flat" and c != 0.0:
+            return "a flat end has no corner radius; the form is bull"
+        if self.form == "taper" and not 0.0 < self.taper_angle < 90.0:
+            return "a taper needs a taper angle between 0 and 90 degrees"
+        if self.form == "barrel":
+            if not 0.0 < c < r < self.barrel_radius:
+                return "a barrel's tip radius, radius and barrel radius must grow in this order"
+            if self.flute_length <= self.widest_height:
+                return f"a barrel's flutes must reach above its widest circle, {self.widest_height:.3f} mm"
+        if self.form == "t-slot" and 2 * c > self.flute_length:
+            return "a T-slot cutter must be thicker than both its corner radii"
+        if self.form == "drill":
+            if not 0.0 < self.point_angle <= 180.0 or c != 0.0:
+                return "a drill needs a point angle up to 180 degrees and no corner radius"
+            if self.flute_length <= self.point_length:
+                return f"a drill's flutes must be longer than its point, {self.point_length:.3f} mm"
+        if self.form == "form":
+            rows = self.outline
+            if len(rows) < 2 or rows[0][1] != 0.0 or rows[-1][1] != self.flute_length or any(b[1] < a[1] for a, b in pairwise(rows)):
+                return "the outline must rise from 0 to the flute length"
+            if not all(0.0 <= row[0] <= r * (1.0 + _ROUNDING) and abs(row[2]) <= 1.0 for row in rows):
+                return "the outline must stay between the axis and the radius, with arcs up to half a circle"
+        return ""
+
+    @property
+    def point_length(self) -> float:
+        """Height of a drill's point; 0 for other forms."""
+        return self.radius / math.tan(math.radians(self.point_angle / 2)) if self.form == "drill" else 0.0
+
+    @property
+    def widest_height(self) -> float:
+        """Height of a barrel's widest circle: its tip's and its flank's arcs touch, one inside the other. 0 for other forms."""
+        if self.form != "barrel":
+            return 0.0
+        between, across = self.barrel_radius - self.corner_radius, self.barrel_radius - self.radius
+        return self.corner_radius + math.sqrt(max(between**2 - across**2, 0.0))
 
     @property
     def radius(self) -> float:
@@ -92,6 +153,8 @@ class Tool:
     def as_dict(self) -> dict[str, Any]:
         """Return the tool as `NAME.tools.json` has it."""
         return {"number": self.number, "name": self.name, "form": self.form, "diameter": self.diameter, "corner_radius": self.corner_radius,
-                "taper_deg": 0.0, "flute_length": self.flute_length, "neck_diameter": self.neck_diameter, "neck_length": self.neck_length,
+                "taper_deg": self.taper_angle, "barrel_radius": self.barrel_radius, "point_deg": self.point_angle,
+                "outline": [list(row) for row in self.outline], "flute_length": self.flute_length,
+                "neck_diameter": self.neck_diameter, "neck_length": self.neck_length,
                 "shank_diameter": self.shank_diameter, "stickout": self.stickout, "gauge_length": self.gauge_length, "teeth": self.teeth,
                 "holder": [list(row) for row in self.holder.rows], "holder_name": self.holder.name, "description": self.description}

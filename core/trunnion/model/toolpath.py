@@ -9,14 +9,17 @@ import numpy as np
 
 from trunnion.geometry.arrays import Floats, Ints, floats, ints
 
+_SAME_AXIS = 1e-9
+"""Two axes that differ by less are written the same."""
 
 class Motion(IntEnum):
     """How a block moves from the end of the block before it."""
 
     RAPID = 0
     LINE = 1
+    """Straight with the tip; where the axis differs from the block before, it turns on the way at an even rate in their common plane."""
     ARC_CW = 2
-    """Clockwise seen along -z of the setup frame (G2 in G17); a helix when z changes along it."""
+    """About the tool axis, which keeps still, clockwise seen along it towards the tip (G2 in G17 when that is z); a helix when it climbs."""
     ARC_CCW = 3
 
 
@@ -39,9 +42,9 @@ class Toolpath:
     """The motions of one operation, in the setup frame.
 
     position (n, 3) mm: the tip at the end of each block; block 0 is a rapid, its start is wherever the tool was.
-    axis (n, 3) unit: the tool axis, from tip to spindle. motion (n,), mark (n,): `Motion`, `Mark`.
-    centre (n, 3): centre of an arc at the height of its start, NaN otherwise. An arc turns less than a full turn unless it ends in xy
-    where it starts: then one full turn.
+    axis (n, 3) unit: the tool axis at the end of each block, from tip to spindle. motion (n,), mark (n,): `Motion`, `Mark`.
+    centre (n, 3): centre of an arc (its place along the axis doesn't matter), NaN otherwise. An arc turns less than a full turn unless it
+    ends beside its centre where it starts: then one full turn.
     feed (n,) mm/min, 0 for rapids.
     """
 
@@ -65,6 +68,9 @@ class Toolpath:
         arcs = self.motion >= Motion.ARC_CW
         if not np.isfinite(self.centre[arcs]).all():
             raise ValueError("toolpath: every arc needs a centre")
+        turns = np.abs(self.axis[1:] - self.axis[:-1]).max(axis=1, initial=0.0) > _SAME_AXIS
+        if n and (turns & arcs[1:]).any():
+            raise ValueError("toolpath: an arc can't turn the tool axis; write it as lines")
         if (self.feed[self.motion != Motion.RAPID] <= 0.0).any():
             raise ValueError("toolpath: every feed move needs a feed above zero")
 
@@ -77,12 +83,11 @@ class Toolpath:
 
     def sweeps(self) -> Floats:
         """Return the signed angle in radians that each arc turns (n,), anticlockwise positive, 0 for lines and rapids."""
-        start, out = self.starts(), np.zeros(len(self))
+        out = np.zeros(len(self))
         rows = np.flatnonzero(self.motion >= Motion.ARC_CW)
         if len(rows):
-            a = start[rows, :2] - self.centre[rows, :2]
-            b = self.position[rows, :2] - self.centre[rows, :2]
-            turn = np.arctan2(a[:, 0] * b[:, 1] - a[:, 1] * b[:, 0], (a * b).sum(axis=1))
+            a, b, axis = *self._radii(rows), self.axis[rows]
+            turn = np.arctan2((np.cross(a, b) * axis).sum(axis=1), (a * b).sum(axis=1))
             sign = np.where(self.motion[rows] == Motion.ARC_CCW, 1.0, -1.0)
             turn = sign * np.mod(sign * turn, 2 * np.pi)
             closed = np.linalg.norm(a - b, axis=1) < 1e-9
@@ -93,10 +98,18 @@ class Toolpath:
         """Return the length of each block (n,) in mm; the first block, whose start is unknown, counts 0."""
         start, sweep = self.starts(), self.sweeps()
         run = np.linalg.norm(self.position - start, axis=1)
-        arcs = self.motion >= Motion.ARC_CW
-        radius = np.linalg.norm(start[arcs, :2] - self.centre[arcs, :2], axis=1)
-        run[arcs] = np.hypot(radius * np.abs(sweep[arcs]), self.position[arcs, 2] - start[arcs, 2])
+        rows = np.flatnonzero(self.motion >= Motion.ARC_CW)
+        if len(rows):
+            radius = np.linalg.norm(self._radii(rows)[0], axis=1)
+            climb = ((self.position[rows] - start[rows]) * self.axis[rows]).sum(axis=1)
+            run[rows] = np.hypot(radius * np.abs(sweep[rows]), climb)
         return run
+
+    def _radii(self, rows: Ints) -> tuple[Floats, Floats]:
+        """Return from centre to start and to end of arcs (k, 3), across their axis."""
+        axis, centre = self.axis[rows], self.centre[rows]
+        start, end = self.starts()[rows] - centre, self.position[rows] - centre
+        return start - (start * axis).sum(axis=1, keepdims=True) * axis, end - (end * axis).sum(axis=1, keepdims=True) * axis
 
     @staticmethod
     def join(paths: list[Toolpath]) -> Toolpath:

@@ -1,4 +1,4 @@
-"""The blocks of a setup's program as plan curves with heights, the one form that every engine of the proof reads."""
+"""The blocks of a setup's program as the engines of the proof read them: tips and axes in space, and plan curves for an upright tool."""
 
 from __future__ import annotations
 
@@ -7,12 +7,11 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from trunnion.findings import BadInput
 from trunnion.geometry.arrays import Bools, Floats, Ints
 from trunnion.model.program import ProgramSection
 from trunnion.model.tool import Tool
 from trunnion.model.toolpath import Motion
-from trunnion.verify.cutter import PIECE_COLUMNS, pieces_of, widest
+from trunnion.verify.cutter import PIECE_COLUMNS, Bodies, bodies_of, pieces_of, widest
 from trunnion.verify.kernels.contact import (
     COS_HALF,
     CX,
@@ -40,10 +39,20 @@ AXIS_LEAN = 1e-9
 class Moves:
     """The moves of one setup, n in order.
 
-    row (n, 15) as the contact kernel reads them; section (n,), block (n,) where each comes from; rapid (n,); feed (n,) mm/min; length (n,)
-    mm. tools: the tools in use, tool (n,) their rows; pieces (k, 7) of all tools, piece_start (t + 1,).
+    start, end (n, 3) tips and start_axis, end_axis (n, 3) unit tool axes, in the setup frame; between them the tip runs straight (or along
+    an arc about the axis) and the axis turns at an even rate in the plane of both. centre (n, 3) of arcs, NaN otherwise; sweep (n,) the
+    signed angle an arc turns, rad. upright (n,): the axis is +z all along; row (n, 15): those as the strip kernel reads them.
+    section (n,), block (n,) where each comes from; rapid (n,); feed (n,) mm/min; length (n,) mm of the tip's way.
+    tools: the tools in use, tool (n,) their rows, bodies theirs; pieces (k, 7) of all tools, piece_start (t + 1,).
     """
 
+    start: Floats
+    end: Floats
+    start_axis: Floats
+    end_axis: Floats
+    centre: Floats
+    sweep: Floats
+    upright: Bools
     row: Floats
     section: Ints
     block: Ints
@@ -52,11 +61,17 @@ class Moves:
     length: Floats
     tools: tuple[Tool, ...]
     tool: Ints
+    bodies: Bodies
     pieces: Floats
     piece_start: Ints
 
     def __len__(self) -> int:
         return len(self.row)
+
+    @property
+    def turning(self) -> Bools:
+        """Whether the tool axis turns along each move (n,)."""
+        return np.asarray(np.abs(self.end_axis - self.start_axis).max(axis=1, initial=0.0) > AXIS_LEAN)
 
     @property
     def cutters(self) -> Floats:
@@ -74,16 +89,26 @@ class Moves:
 def moves_of(sections: Sequence[ProgramSection]) -> Moves:
     """Return the moves of a setup's sections in order.
 
-    A section's first block starts where it ends: the tool comes from its change. Raises `BadInput` for a turning tool axis.
+    A section's first block starts where it ends: the tool comes from its change.
     """
+    starts: list[Floats] = []
+    ends: list[Floats] = []
+    start_axes: list[Floats] = []
+    end_axes: list[Floats] = []
+    centres: list[Floats] = []
+    sweeps: list[Floats] = []
     rows, sections_of, blocks, rapid, feeds, lengths, tool_row = [], [], [], [], [], [], []
     tools: dict[Tool, int] = {}
     for index, section in enumerate(sections):
         path = section.path
         n = len(path)
-        if n and np.abs(path.axis[:, :2]).max() > AXIS_LEAN:
-            raise BadInput(f"operation {section.operation} turns the tool axis; this proof reads a fixed axis only: split the setup")
         start, sweep = path.starts(), path.sweeps()
+        starts.append(start)
+        ends.append(path.position)
+        start_axes.append(np.vstack([path.axis[:1], path.axis[:-1]]))
+        end_axes.append(path.axis)
+        centres.append(path.centre)
+        sweeps.append(sweep)
         rows.append(_rows(start, path.position, path.centre, sweep, path.motion))
         sections_of.append(np.full(n, index))
         blocks.append(np.arange(n))
@@ -92,10 +117,18 @@ def moves_of(sections: Sequence[ProgramSection]) -> Moves:
         lengths.append(path.lengths())
         tool_row.append(np.full(n, tools.setdefault(section.tool, len(tools))))
     pieces = [pieces_of(t) for t in tools]
-    return Moves(row=np.vstack([np.zeros((0, MOVE_COLUMNS)), *rows]), section=_ints(sections_of), block=_ints(blocks),
+    first, last = _points(start_axes), _points(end_axes)
+    upright = (np.abs(np.hstack([first[:, :2], last[:, :2]])) <= AXIS_LEAN).all(axis=1) & (first[:, 2] > 0.0) & (last[:, 2] > 0.0)
+    return Moves(start=_points(starts), end=_points(ends), start_axis=first, end_axis=last, centre=_points(centres),
+                 sweep=np.concatenate([np.zeros(0), *sweeps]), upright=upright, bodies=bodies_of(tuple(tools)),
+                 row=np.vstack([np.zeros((0, MOVE_COLUMNS)), *rows]), section=_ints(sections_of), block=_ints(blocks),
                  rapid=np.concatenate([np.zeros(0, bool), *rapid]), feed=np.concatenate([np.zeros(0), *feeds]),
                  length=np.concatenate([np.zeros(0), *lengths]), tools=tuple(tools), tool=_ints(tool_row),
                  pieces=np.vstack([np.zeros((0, PIECE_COLUMNS)), *pieces]), piece_start=np.cumsum([0, *(len(p) for p in pieces)]))
+
+
+def _points(parts: list[Floats]) -> Floats:
+    return np.vstack([np.zeros((0, 3)), *parts])
 
 
 def pose_rows(tips: Floats) -> Floats:
