@@ -19,7 +19,7 @@ class Motion(IntEnum):
     LINE = 1
     """Straight with the tip; where the axis differs from the block before, it turns on the way at an even rate in their common plane."""
     ARC_CW = 2
-    """About the tool axis, which keeps still, clockwise seen along it towards the tip (G2 in G17 when that is z); a helix when it climbs."""
+    """About the tool axis, which keeps still, clockwise seen along it towards the tip (G2 in G17 if that is z); a helix when it climbs."""
     ARC_CCW = 3
 
 
