@@ -13,7 +13,7 @@ from trunnion import tolerance
 from trunnion.part import surfaces
 from trunnion.part.surfaces import STRIP_COLUMNS, Edge, Face, Guide, Profile, strip_row, surfaces_from
 from trunnion.verify.contact import PartContact
-from trunnion.verify.kernels import contact as kernel
+from trunnion.verify.kernels import strips as kernel
 from trunnion.verify.motion import moves_of
 from verify_tools import bull, flat, program_section
 

@@ -24,7 +24,7 @@ from trunnion.part.surfaces import (
 )
 from trunnion.verify.contact import PartContact
 from trunnion.verify.cutter import pieces_of
-from trunnion.verify.kernels import contact as kernel
+from trunnion.verify.kernels import strips as kernel
 from trunnion.verify.motion import moves_of
 from trunnion.verify.sweep import Sweep
 from verify_tools import bull, flat, program_section

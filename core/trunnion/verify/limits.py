@@ -11,7 +11,7 @@ from trunnion.findings import Finding, error
 from trunnion.geometry.arrays import Floats
 from trunnion.model.material import Machine
 from trunnion.model.program import ProgramSection
-from trunnion.verify.kernels import contact as columns
+from trunnion.verify.kernels import strips as columns
 from trunnion.verify.kernels.timing import block_times
 from trunnion.verify.motion import Moves
 

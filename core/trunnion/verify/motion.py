@@ -12,7 +12,7 @@ from trunnion.model.program import ProgramSection
 from trunnion.model.tool import Tool
 from trunnion.model.toolpath import Motion
 from trunnion.verify.cutter import PIECE_COLUMNS, Bodies, bodies_of, pieces_of, widest
-from trunnion.verify.kernels.contact import (
+from trunnion.verify.kernels.strips import (
     COS_HALF,
     CX,
     CY,

@@ -17,7 +17,7 @@ from trunnion.geometry.arrays import Floats, Ints
 from trunnion.geometry.frame import Frame
 from trunnion.model.blank import Blank
 from trunnion.progress import QUIET, Progress
-from trunnion.verify.kernels import contact as contact_kernel
+from trunnion.verify.kernels import strips as contact_kernel
 from trunnion.verify.kernels import field as kernel
 from trunnion.verify.motion import Moves
 from trunnion.verify.sweep import Sweep

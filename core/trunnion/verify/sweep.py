@@ -10,7 +10,7 @@ from trunnion import tolerance
 from trunnion.geometry.arrays import Bools, Floats, Ints
 from trunnion.progress import QUIET, Progress
 from trunnion.verify.contact import Grid, grid_of
-from trunnion.verify.kernels import contact as kernel
+from trunnion.verify.kernels import left as kernel
 from trunnion.verify.motion import Moves
 
 CELL = 4.0

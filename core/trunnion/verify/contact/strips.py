@@ -14,15 +14,14 @@ from trunnion import tolerance
 from trunnion.geometry.arrays import Bools, Floats, Ints
 from trunnion.part.surfaces import BX0, BY1, DX, DY, GUIDE, L_KIND, OX, OY, PROFILE, PW0, PW1, PZ0, PZ1, R_KIND, U0, U1, Surfaces
 from trunnion.progress import QUIET, Progress
-from trunnion.verify.kernels import contact as kernel
+from trunnion.verify.contact.grid import grid_of
+from trunnion.verify.kernels import strips as kernel
 from trunnion.verify.motion import Moves
 
 CHUNK_WORK = 2000
 """Blocks between two looks at cancel; a chunk stays far below 0.2 s."""
 GRID_PITCH = 10.0
 """mm, pitch of the grid that finds the faces near a block: about a cutter's radius."""
-GRID_CELLS = 1_000_000
-"""Most cells of a grid; the pitch grows when a part is larger than that."""
 
 
 @dataclass(frozen=True, slots=True, eq=False, kw_only=True)
@@ -38,33 +37,6 @@ class Contact:
     place: Floats
     face_depth: Floats
     face_move: Ints
-
-
-@dataclass(frozen=True, slots=True, eq=False)
-class Grid:
-    """Boxes listed by the cells of a plan grid: frame (3,) is x, y and pitch; shape (2,) cells; start (cells + 1,) into rows."""
-
-    frame: Floats
-    shape: Ints
-    start: Ints
-    rows: Ints
-
-
-def grid_of(boxes: Floats, pitch: float, order: Ints | None = None) -> Grid:
-    """Return the grid over plan boxes (n, 4); the rows of a cell come in the boxes' order, or in that of `order`."""
-    if not len(boxes):
-        return Grid(np.array([0.0, 0.0, pitch]), np.zeros(2, np.int64), np.zeros(1, np.int64), np.zeros(0, np.int64))
-    order = np.arange(len(boxes)) if order is None else order
-    boxes = boxes[order]
-    low, high = boxes[:, :2].min(axis=0), boxes[:, 2:].max(axis=0)
-    pitch = max(pitch, float(np.sqrt(np.prod(high - low) / GRID_CELLS)), float((high - low).max() / GRID_CELLS))
-    frame, shape = np.array([*low, pitch]), (np.floor((high - low) / pitch) + 1).astype(np.int64)
-    counts = np.zeros(int(shape.prod()), np.int64)
-    kernel.fill_cells(boxes, frame, shape, counts, np.zeros(0, np.int64), np.zeros(0, np.int64))
-    start = np.concatenate([[0], np.cumsum(counts)])
-    rows = np.zeros(int(start[-1]), np.int64)
-    kernel.fill_cells(boxes, frame, shape, counts, start, rows)
-    return Grid(frame, shape, start, order[rows])
 
 
 class PartContact:
