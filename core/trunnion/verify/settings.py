@@ -20,3 +20,8 @@ class ProofSettings:
                           help="Distance of the columns that the stock is made of. Halving it takes four times the memory.")
     spacing: float = setting(2.0, unit="mm", low=0.2, high=20.0, label="Sample spacing",
                              help="Distance of the samples that measure which area is finished.")
+    bundles: str = setting("auto", label="Stock bundles", choices=("auto", "z", "xyz"),
+                           help="Directions of the columns that the stock is made of. auto: z alone while every tool stands upright on the "
+                                "blank and cuts nothing from below, all three otherwise.")
+    threads: int = setting(0, unit="", low=0, high=256, label="Threads", help="Cores that the proof works on; 0 takes all there are. The "
+                           "result is the same.")

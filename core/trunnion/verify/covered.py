@@ -1,0 +1,128 @@
+"""How much of the part is finished, face by face, and what is said of the rest."""
+
+from __future__ import annotations
+
+from collections.abc import Collection, Sequence
+from dataclasses import dataclass
+
+import numpy as np
+
+from trunnion import tolerance
+from trunnion.findings import Finding, error, face_tags, info, warning
+from trunnion.geometry.arrays import Bools, Floats, Ints
+from trunnion.geometry.frame import Frame
+from trunnion.model.blank import Blank
+from trunnion.model.tool import Tool
+from trunnion.model.verdict import Deviation, FaceProof
+from trunnion.progress import QUIET, Progress
+from trunnion.verify.contact import PartContact
+from trunnion.verify.coverage import Reach, Samples, depth_in_blank, on_blank
+from trunnion.verify.settings import ProofSettings
+from trunnion.verify.setups import SetupProof
+from trunnion.verify.stock import blank_box
+
+DECIMALS = 9
+"""Decimals of a share of area: sums of thousands of areas differ in their last digits, and no goal is that fine."""
+
+
+@dataclass(frozen=True, slots=True, eq=False, kw_only=True)
+class Covered:
+    """Coverage and what goes with it."""
+
+    coverage: float
+    reachable: float
+    faces: tuple[FaceProof, ...]
+    deviation: Deviation
+    findings: tuple[Finding, ...]
+
+
+@dataclass(frozen=True, slots=True, eq=False, kw_only=True)
+class Side:
+    """A side that the part is machined from: its frame and the part's contact in it."""
+
+    frame: Frame
+    contact: PartContact
+
+
+def covered(samples: Samples, tags: Ints, sides: Sequence[Side], blank: Blank, proofs: Sequence[SetupProof], tools: Sequence[Tool],
+            settings: ProofSettings, planned: Collection[int], progress: Progress = QUIET) -> Covered:
+    """Return what all setups together finish of the part.
+
+    `samples` are in the frame of the first side; `tags` (f,) those of the face rows; `tools` the catalogue's, tried from every side where
+    something is not finished.
+    """
+    frame = sides[0].frame
+    low, high = blank_box(blank, frame)
+    left = depth_in_blank(samples.point, low, high)
+    for p in proofs:
+        left = np.minimum(left, p.left)
+    n = len(tags)
+    blank_face = on_blank(samples, low, high, n)
+    finished = (np.abs(left) <= settings.tolerance + settings.allowance) & ~blank_face[samples.face]
+    open_rows = np.flatnonzero(~finished & ~blank_face[samples.face] & (left > 0.0))
+    lost = np.zeros(len(samples), bool)
+    lost[_unreached(samples, open_rows, sides, tools, settings, progress)] = True
+    area, done, away = (_by_face(samples, samples.area * share, n) for share in (1.0, finished, lost))
+    wanted = float(area[~blank_face].sum())
+    reachable_area = wanted - float(away.sum())
+    gouge = np.max([np.zeros(n), *(p.contact.face_depth[:, 0] for p in proofs)], axis=0)
+    faces = _faces(samples, tags, left, area, done, away, gouge, blank_face, set(planned))
+    coverage = round(float(done.sum()) / wanted, DECIMALS) if wanted and proofs else 0.0
+    of_reachable = round(float(done.sum()) / reachable_area, DECIMALS) if reachable_area > 0.0 and proofs else 0.0
+    return Covered(coverage=coverage, reachable=of_reachable, faces=faces, findings=_findings(faces, of_reachable, settings),
+                   deviation=Deviation(face=tags[samples.face], point=frame.to_world(samples.point), deviation=left))
+
+
+def _unreached(samples: Samples, rows: Ints, sides: Sequence[Side], tools: Sequence[Tool], settings: ProofSettings,
+               progress: Progress) -> Ints:
+    """Return the rows of samples that no cutter reaches from any side."""
+    home = sides[0].frame
+    for k, side in enumerate(sides):
+        here = samples if side.frame is home else Samples(
+            face=samples.face, area=samples.area, point=side.frame.to_local(home.to_world(samples.point)),
+            normal=side.frame.local_direction(home.world_direction(samples.normal)))
+        share = progress.part(k / len(sides), (k + 1) / len(sides))
+        reached = Reach(side.contact, tools, settings.tolerance).reached(here, rows, share)
+        rows = rows[~reached]
+    return rows
+
+
+def _by_face(samples: Samples, weight: Floats, n: int) -> Floats:
+    return np.bincount(samples.face, weight, n).astype(np.float64)
+
+
+def _faces(samples: Samples, tags: Ints, left: Floats, area: Floats, done: Floats, away: Floats, gouge: Floats,
+           blank_face: Bools, planned: set[int]) -> tuple[FaceProof, ...]:
+    n = len(tags)
+    least, most = np.full(n, np.inf), np.full(n, -np.inf)
+    np.minimum.at(least, samples.face, left)
+    np.maximum.at(most, samples.face, left)
+    mean = _by_face(samples, samples.area * left, n) / np.maximum(area, tolerance.PARAMETRIC)
+    least, most = np.where(np.isfinite(least), least, 0.0), np.where(np.isfinite(most), most, 0.0)
+    return tuple(FaceProof(face=int(tags[k]), area=float(area[k]), finished=float(done[k]), gouge=float(gouge[k]),
+                           left_min=float(least[k]), left_mean=float(mean[k]), left_max=float(most[k]),
+                           planned=int(tags[k]) in planned, reachable=bool(away[k] == 0.0), blank_surface=bool(blank_face[k]))
+                 for k in range(n))
+
+
+def _findings(faces: tuple[FaceProof, ...], of_reachable: float, settings: ProofSettings) -> tuple[Finding, ...]:
+    found = []
+    open_faces = [f for f in faces if not f.blank_surface and f.area - f.finished > tolerance.AREA]
+    if of_reachable < settings.coverage:
+        found.append(error("verify.coverage", f"{100 * of_reachable:.2f} % of the reachable area is finished, the goal is "
+                           f"{100 * settings.coverage:.2f} %", *face_tags(f.face for f in open_faces),
+                           remedy="add operations for these faces, or accept the shortfall by name"))
+    elif open_faces:
+        found.append(info("verify.unfinished", f"{len(open_faces)} faces have places outside the tolerance",
+                          *face_tags(f.face for f in open_faces)))
+    missed = [f for f in faces if not f.planned and not f.blank_surface]
+    if missed:
+        unfinished = [f for f in missed if f.area - f.finished > tolerance.AREA]
+        say = warning if unfinished else info
+        found.append(say("verify.unplanned", f"no operation planned {len(missed)} faces, {len(unfinished)} of them are not finished",
+                         *face_tags((f.face for f in missed), most=len(missed)), remedy="add operations for these faces"))
+    lost = [f for f in faces if not f.reachable]
+    if lost:
+        found.append(info("verify.unreachable", f"no cutter of the catalogue reaches all of {len(lost)} faces from this side",
+                          *face_tags((f.face for f in lost), most=len(lost))))
+    return tuple(found)

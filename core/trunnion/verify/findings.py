@@ -1,0 +1,79 @@
+"""What is said of a setup's measurements: gouges, collisions and rapids in stock, each with its block, place, depth and face."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from trunnion.findings import Finding, error
+from trunnion.geometry.arrays import Floats, Ints
+from trunnion.model.program import ProgramSection
+from trunnion.verify.settings import ProofSettings
+from trunnion.verify.setups import SetupProof
+
+MOST_FINDINGS = 5
+"""Places that one operation's finding list names of each kind; the worst come first."""
+
+
+def setup_findings(proof: SetupProof, tags: Ints, settings: ProofSettings) -> list[Finding]:
+    """Return an error for every face that is gouged or touched, and for the worst rapids; `tags` (f,) are those of the face rows."""
+    found = []
+    for k, section in enumerate(proof.program.sections):
+        rows = np.flatnonzero(proof.moves.section == k)
+        found += _gouges(proof, section, rows, tags, settings)
+        found += _collisions(proof, section, rows, tags, settings)
+        found += _rapids(proof, section, rows)
+    return found
+
+
+def block_of(proof: SetupProof, section: ProgramSection, row: int) -> str:
+    """Return where a move stands in its program: the line of the text when it was read back, else the block of its operation."""
+    block = int(proof.moves.block[row])
+    return f"line {section.block_lines[block]}" if block < len(section.block_lines) else f"block {block}"
+
+
+def place_of(point: Floats) -> str:
+    """Return a place in words."""
+    return "x {:.2f} y {:.2f} z {:.2f}".format(*(float(v) + 0.0 for v in point))
+
+
+def _gouges(proof: SetupProof, section: ProgramSection, rows: Ints, tags: Ints, settings: ProofSettings) -> list[Finding]:
+    depth, faces = proof.contact.depth[rows, 0], proof.contact.face[rows, 0]
+    found = []
+    for face in _worst(faces, depth, settings.tolerance):
+        row = rows[np.argmax(np.where(faces == face, depth, -1.0))]
+        found.append(error("verify.gouge", f"{section.operation} cuts {proof.contact.depth[row, 0]:.3f} mm into face "
+                           f"{tags[face]} at {place_of(proof.contact.place[row, 0])}", section.operation, block_of(proof, section, row),
+                           f"face {tags[face]}", remedy="keep the cutter off this face, or choose a cutter that fits"))
+    return found
+
+
+def _collisions(proof: SetupProof, section: ProgramSection, rows: Ints, tags: Ints, settings: ProofSettings) -> list[Finding]:
+    found = []
+    depth, faces = proof.contact.depth[rows, 1], proof.contact.face[rows, 1]
+    for face in _worst(faces, depth, settings.tolerance):
+        row = rows[np.argmax(np.where(faces == face, depth, -1.0))]
+        found.append(error("verify.collision", f"shank or holder of {section.tool.name} enters face {tags[face]} by "
+                           f"{proof.contact.depth[row, 1]:.3f} mm at {place_of(proof.contact.place[row, 1])}", section.operation,
+                           block_of(proof, section, row), f"face {tags[face]}", remedy="choose a longer or slimmer tool"))
+    body = proof.stock.body_depth[rows]
+    if body.max(initial=0.0) > settings.tolerance:
+        row = rows[np.argmax(body)]
+        found.append(error("verify.collision-stock", f"shank or holder of {section.tool.name} enters standing stock by {body.max():.3f} mm "
+                           f"near {place_of(proof.moves.end[row])}", section.operation, block_of(proof, section, row),
+                           remedy="clear the stock around first, or choose a longer tool"))
+    return found
+
+
+def _worst(faces: Ints, depth: Floats, limit: float) -> list[int]:
+    """Return the faces entered deeper than a limit, the deepest first, at most a few."""
+    bad = depth > limit
+    worst = {int(f): float(depth[bad & (faces == f)].max()) for f in np.unique(faces[bad])}
+    return sorted(worst, key=lambda f: (-worst[f], f))[:MOST_FINDINGS]
+
+
+def _rapids(proof: SetupProof, section: ProgramSection, rows: Ints) -> list[Finding]:
+    depth = proof.stock.rapid_depth
+    worst = rows[np.argsort(-depth[rows], kind="stable")[:MOST_FINDINGS]]
+    return [error("verify.rapid-in-stock", f"a rapid of {section.operation} goes {depth[row]:.3f} mm into stock at "
+                  f"{place_of(proof.stock.rapid_place[row])}", section.operation, block_of(proof, section, row),
+                  remedy="lift the rapid, or make it a feed move") for row in worst if depth[row] > 0.0]
