@@ -11,6 +11,7 @@ from trunnion.geometry.arrays import Bools, Floats, Ints
 from trunnion.progress import QUIET, Progress
 from trunnion.verify.contact import Grid, grid_of
 from trunnion.verify.kernels import left as kernel
+from trunnion.verify.kernels import strips as columns
 from trunnion.verify.motion import Moves
 
 CELL = 4.0
@@ -33,7 +34,7 @@ class Sweep:
     def of(moves: Moves, near: float) -> Sweep:
         """Return the sweep of a setup's feed moves."""
         cutter = moves.cutters
-        low = np.minimum(moves.row[:, kernel.Z_START], moves.row[:, kernel.Z_END])
+        low = np.minimum(moves.row[:, columns.Z_START], moves.row[:, columns.Z_END])
         feeds = np.flatnonzero(~moves.rapid)
         order = feeds[np.argsort(low[feeds], kind="stable")]
         boxes = kernel.move_boxes(moves.row, cutter[:, 0] + near)
