@@ -6,15 +6,21 @@ import time
 from collections.abc import Mapping
 from dataclasses import replace
 from pathlib import Path
+from typing import TYPE_CHECKING
 
+from trunnion import tolerance
 from trunnion.findings import BadCall, BadInput, Severity, TrunnionError, has_errors
 from trunnion.geometry.mesh import Mesh
+from trunnion.model.playback import Moment, Timeline
 from trunnion.model.session import Session, StepRecord
 from trunnion.pipeline.bench import Bench
 from trunnion.pipeline.steps import STEP_TABLE, STEPS, Step, step_named
 from trunnion.progress import QUIET, Progress
 from trunnion.settings import Value, declared
 from trunnion.shop import load_shop
+
+if TYPE_CHECKING:
+    from trunnion.pipeline.playback import Playback
 
 PROJECT_SUFFIX = ".trunnion"
 FRESH = ("done", "problem")
@@ -31,6 +37,7 @@ class Engine:
         self._shop = load_shop(user_folder)
         self._bench: Bench | None = None
         self._file: tuple[bytes, str] = (b"", "")
+        self._playback: Playback | None = None
 
     def open(self, path: str | Path, *, solid: int | None = None, progress: Progress = QUIET) -> Session:
         """Return a new session of a part file (STEP, IGES, gzipped STEP) or the saved session of a project file."""
@@ -142,6 +149,18 @@ class Engine:
         return replace(result.session, records={name: record if name == step.name else kept[name]
                                                 for name in STEPS if name == step.name or name in kept})
 
+    def playback(self, session: Session, cell: float = 0.0) -> Timeline:
+        """Take up a plan for playback and return its blocks over time; `moment` then shows its stock."""
+        from trunnion.pipeline.playback import Playback
+        self._playback = Playback(session, self.bench, cell)
+        return self._playback.timeline
+
+    def moment(self, key: str, position: float, seconds: float = float("inf"), progress: Progress = QUIET) -> Moment:
+        """Return the stock of the plan that is played (by its timeline's key) at a position, or on the way there after some seconds."""
+        if self._playback is None or self._playback.timeline.key != key:
+            raise BadCall("this plan is not played any more: start the playback again")
+        return self._playback.towards(position, seconds, progress)
+
     def save(self, session: Session, path: str | Path) -> None:
         """Write the project file, whole or not at all."""
         from trunnion.store.project import save_project
@@ -153,7 +172,8 @@ class Engine:
         from trunnion.pipeline.writing import name_of, write_documents
         if self.states(session)["verify"] not in FRESH:
             raise BadCall("something changed since the proof: verify again before anything leaves")
-        files = write_documents(session, self.mesh(session), Path(folder), name=name, date=date, progress=progress.part(0.0, 0.9))
+        mesh = self.bench.part.mesh(tolerance.PICTURE)
+        files = write_documents(session, mesh, Path(folder), name=name, date=date, progress=progress.part(0.0, 0.9))
         project = f"{name_of(session, name)}{PROJECT_SUFFIX}"
         progress.at(0.9, "saving the project")
         self.save(session, Path(folder) / project)

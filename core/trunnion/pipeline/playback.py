@@ -1,0 +1,250 @@
+"""Playback: the plan's blocks over time, and the stock cut forward to any of them.
+
+What is played is the posted text read back when it belongs to the plan, so that every block knows its line; else the toolpaths.
+The stock is cut forward from the nearest snapshot. Cutting a part of a block first and the whole of it later leaves the same stock, so a
+playback may stop anywhere.
+"""
+
+from __future__ import annotations
+
+import time
+from dataclasses import replace
+from typing import Any
+
+import numpy as np
+
+from trunnion.findings import BadCall, Refused
+from trunnion.geometry.arrays import Bools, Floats, Ints
+from trunnion.geometry.frame import Frame
+from trunnion.model.blank import Blank
+from trunnion.model.material import Machine
+from trunnion.model.playback import Moment, Passage, Timeline
+from trunnion.model.program import Program
+from trunnion.model.session import PostedFile, Session
+from trunnion.model.toolpath import Mark, Motion, Toolpath
+from trunnion.pipeline.bench import Bench
+from trunnion.pipeline.proving import programs_of, read_back
+from trunnion.post.release import release
+from trunnion.progress import QUIET, Progress
+from trunnion.settings import digest
+from trunnion.verify.limits import times_of
+from trunnion.verify.motion import Moves, moves_of
+from trunnion.verify.stock import Field, run_stock
+from trunnion.verify.sweep import Sweep
+
+FINENESS = 400
+"""Cells along the longest side of the blank when nobody chooses: finer than a picture shows, coarse enough to be cut at once."""
+SNAPSHOTS = 32
+"""Places of the plan that the stock is remembered at."""
+_LEAST = 1e-3
+"""mm: a part of a block shorter than this is not cut on its own."""
+_FIRST_CHUNK = 256
+"""Blocks cut before the first look at the clock; later chunks take what the clock allows."""
+_TOGETHER_S = 0.1
+"""Time that blocks cut together should take."""
+_MOST_TOGETHER = 20_000
+_PER_MOVE = ("start", "end", "start_axis", "end_axis", "centre", "sweep", "upright", "row", "section", "block", "rapid", "feed", "length",
+             "tool")
+
+
+class Playback:
+    """A plan that can be looked at from its first block to its last. Not for several threads at a time."""
+
+    def __init__(self, session: Session, bench: Bench, cell: float = 0.0) -> None:
+        """`cell` mm is the fineness of the stock; 0: the blank's length over `FINENESS`. Raises `BadCall` where nothing can be played."""
+        if session.process is None or session.blank is None:
+            raise BadCall("no toolpaths yet: generate them first")
+        programs, files = played(session)
+        if not any(p.sections for p in programs):
+            raise BadCall("no toolpaths yet: generate them first")
+        self.blank = session.blank
+        self.cell = cell or float(np.max(self.blank.size)) / FINENESS
+        self._programs = programs
+        self._moves = [moves_of(p.sections) for p in programs]
+        machine = bench.shop.machines[programs[0].setup.machine]
+        self.timeline = timeline_of(programs, self._moves, files, machine, digest(self.cell, [f.text for f in files], _keys(session)))
+        self._starts = np.cumsum([0, *(len(m) for m in self._moves)])
+        self._every = max(1, -(-len(self.timeline) // SNAPSHOTS))
+        self._chunk = _FIRST_CHUNK
+        self._stock = Piece(self.blank, self.cell)
+        self._position, self._removed = 0.0, 0.0
+        self._kept: dict[int, tuple[Any, float]] = {0: (self._stock.snapshot(), 0.0)}
+
+    @property
+    def n_blocks(self) -> int:
+        """Number of blocks of all programs."""
+        return len(self.timeline)
+
+    def at(self, position: float, progress: Progress = QUIET) -> Moment:
+        """Return the stock at a position (blocks done, from 0 to `n_blocks`)."""
+        return self.towards(position, np.inf, progress)
+
+    def towards(self, position: float, seconds: float, progress: Progress = QUIET) -> Moment:
+        """Return the stock at a position, or on the way there when it is not reached in some seconds: ask again to go on."""
+        wanted = min(max(float(position), 0.0), float(self.n_blocks))
+        if wanted < self._position:
+            self._go_back(wanted)
+        began, start, end = self._position, time.perf_counter(), time.perf_counter() + seconds
+        while self._position < wanted:
+            progress.at((self._position - began) / max(wanted - began, 1.0), "cutting the stock")
+            self._step(wanted, progress)
+            now = time.perf_counter()
+            # A block may take a thousand times as long as another: the chunk at most doubles.
+            self._chunk = int(np.clip(self._chunk * _TOGETHER_S / max(now - start, 1e-6), 16, min(2 * self._chunk, _MOST_TOGETHER)))
+            start = now
+            if now >= end:
+                break
+        return self._moment()
+
+    def _step(self, wanted: float, progress: Progress) -> None:
+        """Cut some blocks: not beyond the position wanted, the next snapshot or the end of a program."""
+        first = int(self._position)
+        program = int(np.searchsorted(self._starts, first, side="right")) - 1
+        stop = min(wanted, first + self._chunk, (first // self._every + 1) * self._every, self._starts[program + 1])
+        last = int(stop)
+        own = self._moves[program]
+        rows = np.arange(first, last) - self._starts[program]
+        pieces = [taken(own, rows[~own.rapid[rows]])]
+        if stop > last:
+            pieces.append(self._part(program, last, stop - last))
+        for moves in pieces:
+            if len(moves):
+                self._removed += self._stock.cut(moves, self._programs[program].setup.frame, progress)
+        self._position = float(stop)
+        if stop == last and last % self._every == 0 and last not in self._kept:
+            self._kept[last] = (self._stock.snapshot(), self._removed)
+
+    def _part(self, program: int, block: int, share: float) -> Moves:
+        """Return the first part of a block as moves of its own: none for a rapid, or when it is too short to matter."""
+        own, row = self._moves[program], block - int(self._starts[program])
+        nothing = taken(own, np.zeros(0, np.int64))
+        if own.rapid[row] or share * own.length[row] < _LEAST:
+            return nothing
+        section = self._programs[program].sections[own.section[row]]
+        frame = self._programs[program].setup.frame
+        tip, axis = self.timeline.pose(block + share)
+        k = int(own.block[row])
+        path = Toolpath(position=np.stack([own.start[row], frame.to_local(tip)]), centre=np.stack([np.full(3, np.nan), own.centre[row]]),
+                        axis=np.stack([own.start_axis[row], frame.local_direction(axis)]), feed=np.array([0.0, own.feed[row]]),
+                        motion=np.array([Motion.RAPID, section.path.motion[k]]), mark=np.array([Mark.RETRACT, section.path.mark[k]]))
+        return taken(moves_of([replace(section, path=path)]), np.array([1]))
+
+    def _go_back(self, wanted: float) -> None:
+        nearest = max(k for k in self._kept if k <= wanted)
+        snapshot, self._removed = self._kept[nearest]
+        self._stock.restore(snapshot)
+        self._position = float(nearest)
+
+    def _moment(self) -> Moment:
+        line = self.timeline
+        points, triangles = self._stock.mesh()
+        tip, axis = line.pose(self._position)
+        return Moment(position=self._position, points=self.blank.frame.to_world(points).astype(np.float32),
+                      triangles=triangles.astype(np.int32), fresh=fresh_of(points, triangles, self.blank, 1e-4 * self.cell), tip=tip,
+                      axis=axis, operation=line.passage(self._position).operation, line=int(line.line[line.block(self._position)]),
+                      removed=self._removed, time=line.seconds_at(self._position))
+
+
+def played(session: Session) -> tuple[tuple[Program, ...], tuple[PostedFile, ...]]:
+    """Return the programs to play, and the posted file of each: of the text that belongs to the plan, else of the toolpaths, without."""
+    try:
+        files = tuple(f for f in release(session) if f.setup)
+    except (BadCall, Refused):
+        return programs_of(session), ()
+    return read_back(session, session.posted), files
+
+
+def _keys(session: Session) -> tuple[str, ...]:
+    return tuple(p.key for p in session.paths)
+
+
+def timeline_of(programs: tuple[Program, ...], moves: list[Moves], files: tuple[PostedFile, ...], machine: Machine, key: str) -> Timeline:
+    """Return all blocks of some programs over time; a change of the tool counts to the first block after it."""
+    passages: list[Passage] = []
+    spans: list[Floats] = []
+    lines: list[Ints] = []
+    for k, (program, own) in enumerate(zip(programs, moves, strict=True)):
+        span = times_of(own, machine)
+        begins = np.cumsum([0, *(len(s.path) for s in program.sections)])
+        for n, section in enumerate(program.sections):
+            if n == 0 or program.sections[n - 1].tool.number != section.tool.number:
+                span[begins[n]] += machine.tool_change_s
+            passages.append(Passage(operation=section.operation, setup=program.setup.name, tool=section.tool,
+                                    file=files[k].suffix if files else ""))
+            lines.append(np.array(section.block_lines or np.zeros(len(section.path)), dtype=np.int64))
+        spans.append(span)
+    sections = [(p.setup.frame, s) for p in programs for s in p.sections]
+    return Timeline(
+        key=key, passages=tuple(passages), first=np.cumsum([0, *(len(s.path) for _, s in sections)]),
+        tip=np.vstack([f.to_world(s.path.position) for f, s in sections]),
+        axis=np.vstack([f.world_direction(s.path.axis) for f, s in sections]),
+        centre=np.vstack([f.to_world(s.path.centre) for f, s in sections]), sweep=np.concatenate([s.path.sweeps() for _, s in sections]),
+        rapid=np.concatenate([s.path.motion == Motion.RAPID for _, s in sections]), mark=np.concatenate([s.path.mark for _, s in sections]),
+        line=np.concatenate(lines), time=np.concatenate([[0.0], np.cumsum(np.concatenate(spans))]))
+
+
+def taken(moves: Moves, rows: Ints) -> Moves:
+    """Return some rows of moves, with the same tools."""
+    return replace(moves, **{name: getattr(moves, name)[rows] for name in _PER_MOVE})
+
+
+def fresh_of(points: Floats, triangles: Ints, blank: Blank, near: float) -> Bools:
+    """Say for each triangle (t,) of a stock's surface in the blank's frame whether it was cut: it doesn't lie in a side of the blank."""
+    sides = np.zeros(len(points), np.uint8)
+    for n in range(3):
+        sides |= (np.abs(points[:, n] - blank.low[n]) <= near).astype(np.uint8) << (2 * n)
+        sides |= (np.abs(points[:, n] - blank.high[n]) <= near).astype(np.uint8) << (2 * n + 1)
+    a, b, c = (sides[triangles[:, k]] for k in range(3))
+    return np.asarray(a & b & c == 0)
+
+
+class Piece:
+    """The stock of a playback, in the blank's frame."""
+
+    def __init__(self, blank: Blank, cell: float) -> None:
+        self._blank, self._cell = blank, cell
+        self._frame = blank.frame
+        self._field = Field.of(blank, blank.frame, cell)
+
+    def cut(self, moves: Moves, frame: Frame, progress: Progress) -> float:
+        """Cut feed moves given in a setup's frame; return the removed volume in mm3."""
+        if frame is not self._frame:
+            self._frame, self._field = frame, Field.of(self._blank, frame, self._cell)
+        return float(run_stock(self._field, moves, Sweep.of(moves, 0.0), progress).removed.sum())
+
+    def snapshot(self) -> Any:
+        """Return what `restore` goes back to."""
+        return self._frame, self._field.top.copy()
+
+    def restore(self, snapshot: Any) -> None:
+        """Go back to a snapshot."""
+        self._frame, top = snapshot
+        self._field = replace(Field.of(self._blank, self._frame, self._cell), top=top.copy())
+
+    def mesh(self) -> tuple[Floats, Ints]:
+        """Return points (v, 3) in the blank's frame and triangles (t, 3), closed and outward."""
+        points, triangles = mesh_of(self._field)
+        return self._blank.frame.to_local(self._frame.to_world(points)), triangles
+
+
+def mesh_of(field: Field) -> tuple[Floats, Ints]:
+    """Return a height field as a closed surface: a roof through the tops of the columns, walls at the blank's sides, a bottom.
+
+    Where a column is cut down to the bottom, the roof meets it, and triangles that lie in both are left out of both.
+    """
+    rows, columns = field.top.shape
+    x, y = (np.concatenate([[low], low + (np.arange(n) + 0.5) * field.pitch, [high]]).clip(low, high)
+            for low, n, high in ((field.low[0], columns, field.high[0]), (field.low[1], rows, field.high[1])))
+    roof = np.pad(field.top, 1, mode="edge")
+    grid = np.stack([*np.meshgrid(x, y), roof], axis=-1).reshape(-1, 3)
+    n = len(grid)
+    bottom = grid.copy()
+    bottom[:, 2] = field.low[2]
+    at = np.arange(n).reshape(roof.shape)
+    a, b, c, d = at[:-1, :-1].ravel(), at[:-1, 1:].ravel(), at[1:, 1:].ravel(), at[1:, :-1].ravel()
+    upper = np.concatenate([np.column_stack([a, b, c]), np.column_stack([a, c, d])])
+    upper = upper[(grid[upper, 2] > field.low[2]).any(axis=1)]
+    around = np.concatenate([at[0], at[1:, -1], at[-1, -2::-1], at[-2:0:-1, 0]])
+    p, q = around, np.roll(around, -1)
+    walls = np.concatenate([np.column_stack([p + n, q + n, q]), np.column_stack([p + n, q, p])])
+    return np.vstack([grid, bottom]), np.concatenate([upper, upper[:, ::-1] + n, walls])
