@@ -32,7 +32,12 @@ class Material:
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Axis:
-    """One machine axis: limits and speeds in mm, mm/min, mm/s2 (degrees for rotary ones)."""
+    """One machine axis: limits and speeds in mm, mm/min, mm/s2 (degrees for rotary ones).
+
+    A rotary axis turns what it carries (`tool` or `work`) right-handed about `direction` (unit) as its value grows, about the line
+    through `point` (mm, all axes at 0): from the middle of the table's top when it carries the work, from the middle of the spindle's face
+    when it carries the tool.
+    """
 
     name: str
     kind: str
@@ -40,11 +45,17 @@ class Axis:
     high: float
     rapid: float
     acceleration: float
+    direction: tuple[float, float, float] = (0.0, 0.0, 0.0)
+    carries: str = ""
+    point: tuple[float, float, float] = (0.0, 0.0, 0.0)
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Machine:
-    """A machine: axes, spindle with its power curve (rows: 1/min, kW), largest feed mm/min, tool-change height and seconds."""
+    """A machine: axes, spindle with its power curve (rows: 1/min, kW), largest feed mm/min, tool-change height and seconds.
+
+    Rotary axes that carry the same side stand in the order from the machine's bed outwards: the second one rides on the first.
+    """
 
     name: str
     title: str
@@ -65,6 +76,11 @@ class Machine:
             if spindle <= n1:
                 return p0 + (p1 - p0) * (spindle - n0) / (n1 - n0)
         return rows[-1][1]
+
+    @property
+    def rotary(self) -> tuple[Axis, ...]:
+        """The rotary axes, in their order."""
+        return tuple(a for a in self.axes if a.kind == "rotary")
 
     def axis(self, name: str) -> Axis:
         """Return the axis with a name; raise `KeyError` when there is none."""

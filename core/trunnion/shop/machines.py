@@ -1,14 +1,20 @@
-"""Machines of the catalogue: axes with their travel, spindle with its power curve."""
+"""Machines of the catalogue: axes with their travel and how they turn, spindle with its power curve."""
 
 from __future__ import annotations
 
+import math
 from itertools import pairwise
 from pathlib import Path
+from typing import Any
 
 from trunnion.model.material import Axis, Machine
 from trunnion.shop.reading import Entry, by_name, entries
 
 AXIS_KINDS = ("linear", "rotary")
+CARRIES = ("tool", "work")
+MOST_ROTARY = 2
+_SHORTEST = 1e-6
+_LEAST_BETWEEN = 1e-3
 _FAR = 100_000.0
 _FASTEST = 500_000.0
 _STRONGEST = 1_000.0
@@ -30,6 +36,7 @@ def _machine(entry: Entry) -> Machine:
     missing = {"X", "Y", "Z"} - {a.name for a in axes}
     if missing or len({a.name for a in axes}) < len(axes):
         raise entry.wrong("axes must name X, Y and Z, each once")
+    _check_rotary(entry, axes)
     machine = Machine(name=entry.name, title=entry.text("title"), axes=axes, spindle_low=low, spindle_high=high, power=power,
                       feed_max=entry.number("feed_max", 1.0, _FASTEST), tool_change_s=entry.number("tool_change_s", 0.0, _FASTEST),
                       tool_places=entry.count("tool_places", 1, 10_000))
@@ -38,10 +45,35 @@ def _machine(entry: Entry) -> Machine:
 
 
 def _axis(entry: Entry) -> Axis:
-    axis = Axis(name=entry.text("name"), kind=entry.text("kind"),
-                low=entry.number("low", -_FAR, _FAR), high=entry.number("high", -_FAR, _FAR),
-                rapid=entry.number("rapid", 1.0, _FASTEST), acceleration=entry.number("acceleration", 1.0, _FASTEST))
-    if axis.kind not in AXIS_KINDS or axis.low >= axis.high:
-        raise entry.wrong(f"kind must be one of {', '.join(AXIS_KINDS)} and low must be below high")
+    kind = entry.text("kind")
+    if kind not in AXIS_KINDS:
+        raise entry.wrong(f"kind must be one of {', '.join(AXIS_KINDS)}; got {kind!r}")
+    turning = _turning(entry) if kind == "rotary" else {}
+    axis = Axis(name=entry.text("name"), kind=kind, low=entry.number("low", -_FAR, _FAR), high=entry.number("high", -_FAR, _FAR),
+                rapid=entry.number("rapid", 1.0, _FASTEST), acceleration=entry.number("acceleration", 1.0, _FASTEST), **turning)
+    if axis.low >= axis.high or (kind == "rotary" and not axis.low <= 0.0 <= axis.high):
+        raise entry.wrong("low must be below high, and a rotary axis must be able to stand at 0")
     entry.done()
     return axis
+
+
+def _turning(entry: Entry) -> dict[str, Any]:
+    """Return what a rotary axis says beyond a linear one."""
+    carries = entry.text("carries")
+    if carries not in CARRIES:
+        raise entry.wrong(f"carries must be one of {', '.join(CARRIES)}; got {carries!r}")
+    direction, point = entry.numbers("direction", -1.0, 1.0), entry.numbers("point", -_FAR, _FAR)
+    length = math.hypot(*direction)
+    if len(direction) != 3 or len(point) != 3 or length < _SHORTEST:
+        raise entry.wrong("direction and point must be three numbers each, and a direction must not be 0")
+    return {"carries": carries, "direction": tuple(v / length for v in direction), "point": point}
+
+
+def _check_rotary(entry: Entry, axes: tuple[Axis, ...]) -> None:
+    turning = [a for a in axes if a.kind == "rotary"]
+    if len(turning) > MOST_ROTARY:
+        raise entry.wrong(f"{len(turning)} rotary axes: at most {MOST_ROTARY} are understood")
+    if len(turning) == MOST_ROTARY:
+        (ax, ay, az), (bx, by, bz) = (a.direction for a in turning)
+        if math.hypot(ay * bz - az * by, az * bx - ax * bz, ax * by - ay * bx) < _LEAST_BETWEEN:
+            raise entry.wrong(f"rotary axes {turning[0].name} and {turning[1].name} must not be parallel")

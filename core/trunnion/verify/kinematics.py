@@ -1,0 +1,176 @@
+"""Where a machine's axes stand for each pose of the tool: rotary angles by the nearer way, linear positions with the pivots in them.
+
+A pose asks that the tool's direction on the machine and the axis in the work agree: Rot(p, alpha) Rot(q, beta) v = w for two rotary axes,
+solved in closed form with both ways to stand (Paden and Kahan's second subproblem; Murray, Li, Sastry, A Mathematical Introduction to
+Robotic Manipulation, 1994, section 3.2).
+"""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+
+import numpy as np
+
+from trunnion.geometry.arrays import Bools, Floats, Ints
+from trunnion.model.material import Axis, Machine
+from trunnion.verify.kernels.rotary import follow
+from trunnion.verify.motion import Moves
+
+STEP = math.radians(2.0)
+"""Largest turn of the tool axis, or of an arc, between two poses that are looked at."""
+STANDS = 1e-9
+"""Two directions closer than this (their difference's length) are one."""
+SLACK = 1e-6
+"""rad: how far an angle may be beyond a limit before it counts as outside."""
+UP = np.array([0.0, 0.0, 1.0])
+
+
+@dataclass(frozen=True, slots=True, eq=False, kw_only=True)
+class Stands:
+    """How a machine stands along the moves of a setup, at poses k close enough to follow every turn.
+
+    move (k,): the move that each pose belongs to; a move's first pose is its start. linear (k, 3) mm: the positions of X, Y, Z up to where
+    zero is. rotary (k, a) rad, in the order of `Machine.rotary`. reached (n,): whether the machine can hold the axis of each move.
+    turns (n,): whether the axis turns on the way.
+    """
+
+    move: Ints
+    linear: Floats
+    rotary: Floats
+    reached: Bools
+    turns: Bools
+
+
+def stands_of(moves: Moves, machine: Machine, foot: Floats) -> Stands:
+    """Return how a machine stands along moves; `foot` (3,) is the place of the work, in the setup frame, on the middle of the table."""
+    move, tip, axis = poses_of(moves)
+    rotary, good = rotary_angles(axis, machine)
+    reached = np.ones(len(moves), bool)
+    reached[move[~good]] = False
+    gauge = np.array([t.gauge_length for t in moves.tools])[moves.tool[move]] if len(move) else np.zeros(0)
+    return Stands(move=move, linear=linear_positions(tip - foot, gauge, rotary, machine), rotary=rotary, reached=reached,
+                  turns=moves.turning)
+
+
+def poses_of(moves: Moves) -> tuple[Ints, Floats, Floats]:
+    """Return poses along moves, start and end of each among them: move (k,), tip (k, 3), axis (k, 3)."""
+    between = angle_between(moves.start_axis, moves.end_axis)
+    steps = np.maximum(1, np.ceil(np.maximum(between, np.abs(moves.sweep)) / STEP - STANDS)).astype(np.int64)
+    move = np.repeat(np.arange(len(moves)), steps + 1)
+    share = (np.arange(len(move)) - np.repeat(np.cumsum(steps + 1) - steps - 1, steps + 1)) / steps[move]
+    tip = moves.start[move] + share[:, None] * (moves.end - moves.start)[move]
+    arc = moves.sweep[move] != 0.0
+    if arc.any():
+        tip[arc] = _on_arcs(moves, move[arc], share[arc])
+    return move, tip, turned_axes(moves.start_axis[move], moves.end_axis[move], between[move], share)
+
+
+def angle_between(a: Floats, b: Floats) -> Floats:
+    """Return the angle (k,) between unit directions (k, 3)."""
+    return np.asarray(2.0 * np.arctan2(np.linalg.norm(a - b, axis=1), np.linalg.norm(a + b, axis=1)))
+
+
+def turned_axes(start: Floats, end: Floats, between: Floats, share: Floats) -> Floats:
+    """Return the directions (k, 3) at a share (k,) of the even turn from start to end, which are `between` (k,) rad apart."""
+    still = between < STANDS
+    sine = np.where(still, 1.0, np.sin(between))
+    a, b = np.sin((1.0 - share) * between) / sine, np.sin(share * between) / sine
+    return np.where(still[:, None], start, a[:, None] * start + b[:, None] * end)
+
+
+def rotary_angles(axis: Floats, machine: Machine) -> tuple[Floats, Bools]:
+    """Return the rotary angles (k, a) in rad at which a machine holds tool axes (k, 3), each near the one before, and which it can hold.
+
+    Of both ways to begin, the one that passes the limits at fewer poses is taken, then the one that turns less.
+    """
+    rotary = machine.rotary
+    if not rotary:
+        return np.zeros((len(axis), 0)), np.asarray(np.linalg.norm(axis - UP, axis=1) < STANDS)
+    if (axis == UP).all():
+        return np.zeros((len(axis), len(rotary))), np.ones(len(axis), bool)
+    angles, free, good = _both_ways(axis, rotary)
+    low, high = (np.radians([getattr(a, end) for a in rotary]) for end in ("low", "high"))
+    tried = []
+    for first in (0, 1):
+        chosen = np.zeros((len(axis), len(rotary)))
+        turned, outside = follow(angles, free, low, high, first, SLACK, chosen)
+        tried.append((outside, turned, first, chosen))
+    return min(tried, key=lambda t: t[:3])[3], good
+
+
+def linear_positions(tip: Floats, gauge: Floats, rotary: Floats, machine: Machine) -> Floats:
+    """Return the positions (k, 3) of X, Y, Z that put the tips (k, 3), from the middle of the table, where they belong.
+
+    gauge (k,) mm from the tip to the spindle's face.
+    """
+    axes = machine.rotary
+    work, tool = tip, np.outer(-gauge, UP)
+    for k in reversed(range(len(axes))):
+        point = np.array(axes[k].point)
+        if axes[k].carries == "work":
+            work = point + turned(work - point, axes[k], rotary[:, k])
+        else:
+            tool = point + turned(tool - point, axes[k], rotary[:, k])
+    return work - tool
+
+
+def turned(vectors: Floats, axis: Axis, angle: Floats) -> Floats:
+    """Return vectors (k, 3) turned about an axis's direction by angles (k,)."""
+    u = np.array(axis.direction)
+    cosine, sine = np.cos(angle)[:, None], np.sin(angle)[:, None]
+    return np.asarray(vectors * cosine + np.cross(u, vectors) * sine + np.outer(vectors @ u, u) * (1.0 - cosine))
+
+
+def _on_arcs(moves: Moves, move: Ints, share: Floats) -> Floats:
+    """Return the tips at shares (k,) of arcs, which turn about the tool axis and may climb along it."""
+    axis, centre = moves.start_axis[move], moves.centre[move]
+    start, end = moves.start[move], moves.end[move]
+    out = start - centre
+    height = (out * axis).sum(axis=1, keepdims=True) * axis
+    climb = ((end - start) * axis).sum(axis=1, keepdims=True) * axis
+    out = out - height
+    angle = (share * moves.sweep[move])[:, None]
+    return np.asarray(centre + height + share[:, None] * climb + np.cos(angle) * out + np.sin(angle) * np.cross(axis, out))
+
+
+def _both_ways(axis: Floats, rotary: tuple[Axis, ...]) -> tuple[Floats, Bools, Bools]:
+    """Return both ways (k, 2, a) of rotary angles, which of them are free (k, 2, a), and which poses can be held (k,)."""
+    up = np.broadcast_to(UP, axis.shape)
+    first = rotary[0]
+    if len(rotary) == 1:
+        v, w = (axis, up) if first.carries == "work" else (up, axis)
+        u = np.array(first.direction)
+        angle, free = _about(u, v, w)
+        good = np.linalg.norm(turned(v, first, angle) - w, axis=1) < math.sqrt(STANDS)
+        return np.repeat(angle[:, None, None], 2, axis=1), np.repeat(free[:, None, None], 2, axis=1), good
+    one, two = rotary
+    if one.carries != two.carries:
+        work, tool = (one, two) if one.carries == "work" else (two, one)
+        angles, free, good = _second_subproblem(np.array(work.direction), np.array(tool.direction), up, axis)
+        angles[:, :, 0] *= -1.0
+        return (angles, free, good) if work is one else (angles[:, :, ::-1], free[:, :, ::-1], good)
+    v, w = (axis, up) if one.carries == "work" else (up, axis)
+    return _second_subproblem(np.array(one.direction), np.array(two.direction), v, w)
+
+
+def _second_subproblem(p: Floats, q: Floats, v: Floats, w: Floats) -> tuple[Floats, Bools, Bools]:
+    """Solve Rot(p, alpha) Rot(q, beta) v = w for unit v, w (k, 3): both ways (k, 2, 2), which angles are free, whether there is one."""
+    pq, across = float(p @ q), np.cross(p, q)
+    vq, wp = v @ q, w @ p
+    a, b = (pq * vq - wp) / (pq * pq - 1.0), (pq * wp - vq) / (pq * pq - 1.0)
+    rest = (1.0 - a * a - b * b - 2.0 * a * b * pq) / float(across @ across)
+    side = np.sqrt(np.maximum(rest, 0.0))
+    angles, free = np.zeros((len(v), 2, 2)), np.zeros((len(v), 2, 2), bool)
+    for way, sign in enumerate((1.0, -1.0)):
+        middle = np.outer(a, p) + np.outer(b, q) + np.outer(sign * side, across)
+        angles[:, way, 0], free[:, way, 0] = _about(p, middle, w)
+        angles[:, way, 1], free[:, way, 1] = _about(q, v, middle)
+    return angles, free, rest > -math.sqrt(STANDS)
+
+
+def _about(u: Floats, v: Floats, w: Floats) -> tuple[Floats, Bools]:
+    """Return the angles (k,) about u that bring v to w (k, 3), and where any angle does because v lies along u."""
+    a, b = v - np.outer(v @ u, u), w - np.outer(w @ u, u)
+    angle = np.arctan2(np.cross(a, b) @ u, (a * b).sum(axis=1))
+    return np.asarray(angle), np.asarray(np.minimum(np.linalg.norm(a, axis=1), np.linalg.norm(b, axis=1)) < math.sqrt(STANDS))
