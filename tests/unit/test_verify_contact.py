@@ -23,7 +23,6 @@ from trunnion.part.surfaces import (
     triangle_face,
 )
 from trunnion.verify.contact import PartContact
-from trunnion.verify.cutter import pieces_of
 from trunnion.verify.kernels import strips as kernel
 from trunnion.verify.motion import moves_of
 from trunnion.verify.sweep import Sweep
@@ -124,18 +123,11 @@ def test_triangles_stand_for_a_face_of_any_shape():
     assert depth[1, 0] == approx(0.1)
 
 
-def test_every_piece_of_a_tool_above_the_flutes_is_a_cone_with_its_free_sides():
-    pieces = pieces_of(flat(10.0)(flute=5.0))
-    assert pieces[:, 0].tolist() == [0.0, 1.0, 1.0, 1.0, 1.0]
-    assert pieces[:, 5].tolist() == [0.0, 0.0, 1.0, 1.0, 0.0]
-    assert pieces[:, 6].tolist() == [0.0, 0.0, 0.0, 0.0, 1.0]
-
-
 def test_compiled_loops_agree_with_themselves_uncompiled():
     moves = moves_of([program_section(bull(8.0, 2.0)(), [(0, -9, 3), (40, -3.9, 1), ((44.0, 0.0, 1.0), (40.0, 0.1))])])
     guide, path, stack, spans = (np.zeros(kernel.MOVE_COLUMNS), np.zeros(kernel.MOVE_COLUMNS), np.zeros((96, 2)), np.zeros((96, 2)))
     for row in moves.row[1:]:
-        both = [f(WALL, row, moves.pieces[0], 0.001, 0.001, path, guide, stack, spans)
+        both = [f(WALL, row, moves.bodies.arc, moves.bodies.piece[0], 0.001, 0.001, path, guide, stack, spans)
                 for f in (kernel.move_depth, kernel.move_depth.py_func)]
         assert both[0] == approx(both[1], abs=1e-12)
 

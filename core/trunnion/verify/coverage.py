@@ -18,8 +18,7 @@ from trunnion.model.tool import Tool
 from trunnion.part.surfaces import DX, DY, GUIDE, L_KIND, PROFILE, PW0, PW1, PZ0, PZ1, R_KIND, SIDE, U0, U1, Surfaces
 from trunnion.progress import QUIET, Progress
 from trunnion.verify.contact import PartContact, guide_points
-from trunnion.verify.cutter import pieces_of
-from trunnion.verify.motion import pose_rows
+from trunnion.verify.motion import poses_of
 
 POSES = 2048
 """Poses tried between two looks at cancel."""
@@ -134,7 +133,6 @@ class Reach:
     def _try(self, samples: Samples, rows: Ints, progress: Progress) -> Bools:
         found = np.zeros(len(rows), bool)
         for k, tool in enumerate(self._tools):
-            pieces = pieces_of(tool)
             for shape in range(_n_poses(tool)):
                 open_rows = np.flatnonzero(~found)
                 for first in range(0, len(open_rows), POSES):
@@ -142,7 +140,7 @@ class Reach:
                     some = open_rows[first:first + POSES]
                     tips, possible = _pose(tool, samples.point[rows[some]], samples.normal[rows[some]], shape)
                     if possible.any():
-                        clear = self._contact.clear(pose_rows(tips[possible]), pieces, self._allowed)
+                        clear = self._contact.clear(poses_of(tool, tips[possible]), self._allowed)
                         found[some[possible]] |= clear
             if found.all():
                 break

@@ -194,7 +194,7 @@ def _arcs(spans: list[Span], low_free: bool, high_free: bool, overlap: float) ->
         rows += _corner(*_end_point(r, z, first, -overlap if not low_free else 0.0), (0.0, -1.0), first)
     for k, (span, (n0, n1)) in enumerate(corners):
         if span[6] > 0.0:
-            rows.append((span[4], span[5], span[6], *n0, *n1))
+            rows += _halves(span[4], span[5], span[6], n0, n1)
         if k + 1 < len(corners):
             rows += _corner(span[2], span[3], n1, corners[k + 1][1][0])
     (r, z), last = spans[-1][2:4], corners[-1][1][1]
@@ -217,7 +217,14 @@ def _end_point(r: float, z: float, normal: tuple[float, float], by: float) -> tu
 
 def _corner(r: float, z: float, n0: tuple[float, float], n1: tuple[float, float]) -> list[tuple[float, ...]]:
     turn = n0[0] * n1[1] - n0[1] * n1[0]
-    return [(r, z, 0.0, *n0, *n1)] if turn > tolerance.PARAMETRIC else []
+    return _halves(r, z, 0.0, n0, n1) if turn > tolerance.PARAMETRIC else []
+
+
+def _halves(r: float, z: float, radius: float, n0: tuple[float, float], n1: tuple[float, float]) -> list[tuple[float, ...]]:
+    """Return an arc, in two where its normals go from down to up."""
+    if n0[1] < -tolerance.PARAMETRIC and n1[1] > tolerance.PARAMETRIC:
+        return [(r, z, radius, *n0, 1.0, 0.0), (r, z, radius, 1.0, 0.0, *n1)]
+    return [(r, z, radius, *n0, *n1)]
 
 
 def _widest(spans: list[Span]) -> float:

@@ -3,11 +3,12 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
 from trunnion.geometry.arrays import Bools, Floats, Ints
+from trunnion.geometry.frame import Frame
 from trunnion.model.program import ProgramSection
 from trunnion.model.tool import Tool
 from trunnion.model.toolpath import Motion
@@ -118,23 +119,38 @@ def moves_of(sections: Sequence[ProgramSection]) -> Moves:
         tool_row.append(np.full(n, tools.setdefault(section.tool, len(tools))))
     pieces = [pieces_of(t) for t in tools]
     first, last = _points(start_axes), _points(end_axes)
-    upright = (np.abs(np.hstack([first[:, :2], last[:, :2]])) <= AXIS_LEAN).all(axis=1) & (first[:, 2] > 0.0) & (last[:, 2] > 0.0)
     return Moves(start=_points(starts), end=_points(ends), start_axis=first, end_axis=last, centre=_points(centres),
-                 sweep=np.concatenate([np.zeros(0), *sweeps]), upright=upright, bodies=bodies_of(tuple(tools)),
+                 sweep=np.concatenate([np.zeros(0), *sweeps]), upright=_upright(first, last), bodies=bodies_of(tuple(tools)),
                  row=np.vstack([np.zeros((0, MOVE_COLUMNS)), *rows]), section=_ints(sections_of), block=_ints(blocks),
                  rapid=np.concatenate([np.zeros(0, bool), *rapid]), feed=np.concatenate([np.zeros(0), *feeds]),
                  length=np.concatenate([np.zeros(0), *lengths]), tools=tuple(tools), tool=_ints(tool_row),
                  pieces=np.vstack([np.zeros((0, PIECE_COLUMNS)), *pieces]), piece_start=np.cumsum([0, *(len(p) for p in pieces)]))
 
 
+def seen_from(moves: Moves, frame: Frame, other: Frame) -> Moves:
+    """Return moves given in a frame as they are in another."""
+    if other is frame:
+        return moves
+    start, end, centre = (other.to_local(frame.to_world(p)) for p in (moves.start, moves.end, moves.centre))
+    first, last = (other.local_direction(frame.world_direction(a)) for a in (moves.start_axis, moves.end_axis))
+    motion = np.where(moves.sweep == 0.0, Motion.LINE, Motion.ARC_CCW)
+    return replace(moves, start=start, end=end, start_axis=first, end_axis=last, centre=centre, upright=_upright(first, last),
+                   row=_rows(start, end, centre, moves.sweep, motion))
+
+
 def _points(parts: list[Floats]) -> Floats:
     return np.vstack([np.zeros((0, 3)), *parts])
 
 
-def pose_rows(tips: Floats) -> Floats:
-    """Return moves (n, 15) that stand still at tips (n, 3)."""
+def poses_of(tool: Tool, tips: Floats, axes: Floats | None = None) -> Moves:
+    """Return moves of one tool that stand still at tips (n, 3), upright or with unit axes (n, 3)."""
     tips = np.asarray(tips, dtype=np.float64).reshape(-1, 3)
-    return _rows(tips, tips, np.full_like(tips, np.nan), np.zeros(len(tips)), np.zeros(len(tips), int))
+    n, nowhere = len(tips), np.full_like(tips, np.nan)
+    axes = np.tile([0.0, 0.0, 1.0], (n, 1)) if axes is None else np.asarray(axes, dtype=np.float64).reshape(-1, 3)
+    return Moves(start=tips, end=tips, start_axis=axes, end_axis=axes, centre=nowhere, sweep=np.zeros(n), upright=_upright(axes, axes),
+                 row=_rows(tips, tips, nowhere, np.zeros(n), np.zeros(n, int)), section=np.zeros(n, np.int64), block=np.arange(n),
+                 rapid=np.zeros(n, bool), feed=np.zeros(n), length=np.zeros(n), tools=(tool,), tool=np.zeros(n, np.int64),
+                 bodies=bodies_of((tool,)), pieces=pieces_of(tool), piece_start=np.array([0, len(pieces_of(tool))]))
 
 
 def _ints(parts: list[Ints]) -> Ints:

@@ -1,12 +1,14 @@
-"""Does anything enter what it must not? Cutter, shank and holder against the finished part, along every block.
+"""Closed forms: a body of revolution that stands upright, against faces that are strips and level regions (`part/surfaces.py`).
 
-Closed forms in plan and a bounded search over the profile (`kernels/contact.py`): a reported depth is attained, and the true one is at
-most `tolerance.CONTACT_BOUND` deeper, plus `Surfaces.bound` where faces had to be opened into triangles.
+Closed forms in plan and a bounded search over the profile (`kernels/strips.py`): a reported depth is attained, and the true one is at
+most `tolerance.CONTACT_BOUND` deeper, plus `Surfaces.bound` where faces had to be opened into triangles. A move along its own axis counts
+as one body, swept from its lowest to its highest place.
 """
 
 from __future__ import annotations
 
 from dataclasses import dataclass
+from threading import Lock
 
 import numpy as np
 
@@ -17,19 +19,20 @@ from trunnion.progress import QUIET, Progress
 from trunnion.verify.contact.grid import grid_of
 from trunnion.verify.kernels import strips as kernel
 from trunnion.verify.motion import Moves
+from trunnion.verify.threads import in_parallel
 
-CHUNK_WORK = 2000
-"""Blocks between two looks at cancel; a chunk stays far below 0.2 s."""
+CHUNK = 2000
+"""Moves between two looks at cancel; a chunk stays far below 0.2 s."""
 GRID_PITCH = 10.0
-"""mm, pitch of the grid that finds the faces near a block: about a cutter's radius."""
+"""mm, pitch of the grid that finds the faces near a move: about a cutter's radius."""
 
 
 @dataclass(frozen=True, slots=True, eq=False, kw_only=True)
-class Contact:
-    """What was measured. n moves, f faces; column 0 is the fluted cutter, column 1 what is above it.
+class Touch:
+    """How deep some moves enter faces. k moves, f faces; column 0 is what cuts, column 1 what does not.
 
-    depth (n, 2) mm, 0 when clear; face (n, 2) rows of the deepest face or -1; place (n, 2, 3) where, NaN when clear; face_depth (f, 2),
-    face_move (f, 2) the move that is deepest in each face or -1.
+    depth (k, 2) mm, -inf when clear; face (k, 2) rows of the deepest face or -1; place (k, 2, 3) where, NaN when clear; face_depth (f, 2),
+    face_move (f, 2) the row of the move that is deepest in each face (of equal ones the first), or -1.
     """
 
     depth: Floats
@@ -39,45 +42,68 @@ class Contact:
     face_move: Ints
 
 
-class PartContact:
-    """A part's faces made ready for many questions. `surfaces` must be in the frame of the moves."""
+@dataclass(frozen=True, slots=True, eq=False, kw_only=True)
+class _Measured:
+    """What the kernel fills for k moves and f faces."""
+
+    depth: Floats
+    which: Ints
+    where: Floats
+    face_depth: Floats
+    face_move: Ints
+
+    @staticmethod
+    def empty(k: int, f: int) -> _Measured:
+        return _Measured(depth=np.full((k, 2), -np.inf), which=np.full((k, 2), -1), where=np.zeros((k, 2)),
+                         face_depth=np.full((f, 2), -np.inf), face_move=np.full((f, 2), -1))
+
+    def deepen(self, face_depth: Floats, face_move: Ints) -> None:
+        """Take in what one chunk found; of equal depths the first move counts, so that the order of chunks does not."""
+        better = (face_depth > self.face_depth) | ((face_depth == self.face_depth) & (face_move < self.face_move))
+        self.face_depth[better], self.face_move[better] = face_depth[better], face_move[better]
+
+
+class StripContact:
+    """Trimmed faces made ready for upright moves. `surfaces` must be in the frame of the moves."""
 
     def __init__(self, surfaces: Surfaces) -> None:
         self.surfaces = surfaces
         self._grid = grid_of(surfaces.strip[:, BX0:BY1 + 1], GRID_PITCH)
 
-    def along(self, moves: Moves, progress: Progress = QUIET) -> Contact:
-        """Return how deep every move of a program enters the part."""
-        depth, which, where, face_depth, face_move = self._measure(moves.row, moves.tool, moves.pieces, moves.piece_start, progress)
-        face, place = np.full((len(moves), 2), -1), np.full((len(moves), 2, 3), np.nan)
-        for n, k in np.argwhere(which != -1):
-            face[n, k], place[n, k] = self._place(moves.row[n], int(which[n, k]), float(where[n, k]))
-        return Contact(depth=np.maximum(depth, 0.0), face=face, place=place, face_depth=np.maximum(face_depth, 0.0), face_move=face_move)
+    def along(self, moves: Moves, rows: Ints, progress: Progress = QUIET, threads: int = 0) -> Touch:
+        """Return how deep the moves of some rows (k,) enter the faces; they must stand upright."""
+        found = self._measure(moves, rows, progress, threads)
+        face, place = np.full((len(rows), 2), -1), np.full((len(rows), 2, 3), np.nan)
+        for k, kind in np.argwhere(found.which != -1):
+            face[k, kind], place[k, kind] = self._place(moves.row[rows[k]], int(found.which[k, kind]), float(found.where[k, kind]))
+        return Touch(depth=found.depth, face=face, place=place, face_depth=found.face_depth, face_move=found.face_move)
 
-    def clear(self, rows: Floats, pieces: Floats, allowed: float) -> Bools:
-        """Say for each move or pose (n, 15) of one tool whether none of its pieces enters the part deeper than allowed."""
-        depth = self._measure(rows, np.zeros(len(rows), np.int64), pieces, np.array([0, len(pieces)]), QUIET, allowed)[0]
-        return (depth[:, 0] <= allowed) & (depth[:, 1] <= allowed)
+    def clear(self, moves: Moves, rows: Ints, allowed: float) -> Bools:
+        """Say for the moves of some rows (k,) whether nothing of the tool enters the faces deeper than allowed; they must stand upright."""
+        return np.asarray((self._measure(moves, rows, QUIET, 1, allowed).depth <= allowed).all(axis=1))
 
-    def _measure(self, rows: Floats, tool: Ints, pieces: Floats, piece_start: Ints, progress: Progress,
-                 settle: float = np.inf) -> tuple[Floats, Ints, Floats, Floats, Ints]:
-        s, g = self.surfaces, self._grid
-        n, bound = len(rows), tolerance.CONTACT_BOUND / 2
-        depth, which, where = np.full((n, 2), -np.inf), np.full((n, 2), -1), np.zeros((n, 2))
-        face_depth, face_move = np.full((len(s.tag), 2), -np.inf), np.full((len(s.tag), 2), -1)
-        for first in range(0, n, CHUNK_WORK):
-            progress.at(first / n, "Measuring gouges and collisions")
-            kernel.contact_loop(first, min(first + CHUNK_WORK, n), rows, tool, pieces, piece_start, s.strip, s.strip_face, g.start, g.rows,
-                                g.frame, g.shape, s.region_z, s.region_face, s.region_box, s.region_start, s.chords, bound, bound, settle,
-                                depth, which, where, face_depth, face_move)
-        return depth, which, where, face_depth, face_move
+    def _measure(self, moves: Moves, rows: Ints, progress: Progress, threads: int, settle: float = np.inf) -> _Measured:
+        s, g, bodies, bound = self.surfaces, self._grid, moves.bodies, tolerance.CONTACT_BOUND / 2
+        found, merging = _Measured.empty(len(rows), len(s.tag)), Lock()
 
-    def _place(self, move: Floats, which: int, u: float) -> tuple[int, Floats]:
+        def work(first: int, last: int) -> None:
+            face_depth, face_move = np.full_like(found.face_depth, -np.inf), np.full_like(found.face_move, -1)
+            kernel.contact_loop(first, last, rows, moves.row, moves.tool, bodies.arc, bodies.piece, bodies.start, s.strip, s.strip_face,
+                                g.start, g.rows, g.frame, g.shape, s.region_z, s.region_face, s.region_box, s.region_start, s.chords,
+                                bound, bound, settle, found.depth, found.which, found.where, face_depth, face_move)
+            with merging:
+                found.deepen(face_depth, face_move)
+
+        in_parallel(work, len(rows), CHUNK, progress, "Measuring gouges and collisions", threads)
+        return found
+
+    def _place(self, move: Floats, which: int, where: float) -> tuple[int, Floats]:
         s = self.surfaces
         if which < -1:
-            region = -2 - which
-            return int(s.region_face[region]), np.array([move[kernel.X0], move[kernel.Y0], s.region_z[region]])
-        points = guide_points(s.strip[which], u, np.linspace(0.0, 1.0, 65))
+            region, path = -2 - which, np.zeros(kernel.MOVE_COLUMNS)
+            kernel.part_of_move(move, where, where, path)
+            return int(s.region_face[region]), np.array([path[kernel.X0], path[kernel.Y0], s.region_z[region]])
+        points = guide_points(s.strip[which], where, np.linspace(0.0, 1.0, 65))
         distance = [kernel.point_distance(x, y, move) for x, y in points[:, :2]]
         return int(s.strip_face[which]), points[int(np.argmin(distance))]
 

@@ -1,8 +1,8 @@
 """Compiled answers about one convex body of revolution: depth of a point, support, radius at a height, heights at a distance.
 
 A body is a run of arcs in (rho, h): an arc about (CR, CZ) of radius R >= 0 covers the outward normals from (A0R, A0Z) to (A1R, A1Z),
-anticlockwise from straight down over straight out to straight up. Where two cones of neighbours meet there is a straight flank. What no
-arc covers (an open end) does not bound the body.
+anticlockwise from straight down over straight out to straight up, and lies on one side of straight out: it looks down or up. Where two
+cones of neighbours meet there is a straight flank. What no arc covers (an open end) does not bound the body.
 """
 
 from __future__ import annotations
@@ -43,6 +43,35 @@ def depth_in_body(arcs: Floats, first: int, last: int, rho: float, h: float) -> 
         if depth < best:
             best, nr, nz = depth, a, b
     return best, nr, nz
+
+
+@njit(cache=True, nogil=True)
+def swept_depth(arcs: Floats, piece: Floats, rho: float, h: float, rise: float) -> tuple[float, float, float]:
+    """Return how deep a point is in a piece's open run that is swept upwards by `rise` along its axis, and the slopes (by rho, by h).
+
+    What looks down is met at the lowest place of the sweep where the piece passes the point at all, what looks up at the highest. The
+    depth is concave with these slopes and never grows with rho; rho below zero is taken as zero.
+    """
+    first, last = int(piece[FIRST]), int(piece[LAST])
+    low, high = min(h, piece[Z_HIGH]), max(h - rise, piece[Z_LOW])
+    r = max(rho, 0.0)
+    best, nr, nz = np.inf, 1.0, 0.0
+    for k in range(first, last):
+        up = arcs[k, A0Z] + arcs[k, A1Z] > 0.0
+        dr, dz = r - arcs[k, CR], (high if up else low) - arcs[k, CZ]
+        d0, d1 = dr * arcs[k, A0R] + dz * arcs[k, A0Z], dr * arcs[k, A1R] + dz * arcs[k, A1Z]
+        if dr * arcs[k, A1Z] >= dz * arcs[k, A1R] and dz * arcs[k, A0R] >= dr * arcs[k, A0Z] and d0 + d1 > 0.0:
+            far = math.sqrt(dr * dr + dz * dz)
+            depth, a, b = arcs[k, R] - far, dr / far, dz / far
+        elif d0 >= d1:
+            depth, a, b = arcs[k, R] - d0, arcs[k, A0R], arcs[k, A0Z]
+        else:
+            depth, a, b = arcs[k, R] - d1, arcs[k, A1R], arcs[k, A1Z]
+        if depth < best:
+            best, nr, nz = depth, a, b
+    # A sweep goes on past a piece's own end without growing: there the height no longer counts.
+    still = rise > 0.0 and (h > piece[Z_HIGH] if nz < 0.0 else h - rise < piece[Z_LOW])
+    return best, (-nr if rho > 0.0 else 0.0), (0.0 if still else -nz)
 
 
 @njit(cache=True, nogil=True)

@@ -11,7 +11,7 @@ branch and bound that ends within a stated bound:
   the distance; with these the distance is never below the chord between two evaluations by more than a known sag;
 * an arc profile leaves its chord by its sagitta.
 
-All kernels that call each other live in this one module: a cached caller does not notice a change in another file.
+Bodies come from `kernels/body.py`: a cached caller does not notice a change there, so after one the cache is to be emptied.
 """
 
 from __future__ import annotations
@@ -60,16 +60,14 @@ from trunnion.part.surfaces import (
     U0,
     U1,
 )
+from trunnion.verify.kernels.body import KIND as PIECE_KIND
+from trunnion.verify.kernels.body import R_MAX, Z_HIGH, Z_LOW, swept_depth
 
 # Columns of a move: its plan curve first (shared with guides), then heights.
 KIND, X0, Y0, X1, Y1, CX, CY, RADIUS, MX, MY, COS_HALF = range(11)
 """Plan curve: kind (0 line, 1 arc), ends, centre, radius, direction of an arc's middle, cosine of half its sweep."""
 START_ANGLE, SWEEP, Z_START, Z_END = range(11, 15)
 MOVE_COLUMNS = 15
-
-# Columns of a piece of the tool.
-FORM, R_LOW, R_HIGH, Z_LOW, Z_HIGH, CAP_LOW, CAP_HIGH = range(7)
-"""Form 0: the fluted cutter, R_LOW its radius, R_HIGH its corner radius; form 1: a truncated cone."""
 
 _TINY = 1e-12
 
@@ -186,42 +184,6 @@ def curve_distance(a: Floats, b: Floats) -> float:
     return _arcs(a, b)
 
 
-@njit(cache=True, nogil=True)
-def depth_in_piece(piece: Floats, rho: float, h: float, rise: float) -> tuple[float, float, float]:
-    """Return how deep a point at distance rho from the axis and height h above the tip is in a piece swept up by `rise`, and the slopes.
-
-    Positive inside. Slopes (by rho, by h) are a supergradient: the depth is concave. Negative rho is taken as zero. Of a cone, the depth is
-    that in its whole swept body.
-    """
-    if piece[FORM] == 0.0:
-        corner = piece[R_HIGH]
-        # While the flutes pass a point it is at most their length above the tip.
-        over = h > piece[Z_HIGH]
-        h = min(h, piece[Z_HIGH])
-        qx, qy = max(rho, 0.0) - (piece[R_LOW] - corner), corner - h
-        if qx > 0.0 and qy > 0.0:
-            q = math.sqrt(qx * qx + qy * qy)
-            return corner - q, (-qx / q if rho > 0.0 else 0.0), (0.0 if over else qy / q)
-        if qx > qy:
-            return corner - qx, (-1.0 if rho > 0.0 else 0.0), 0.0
-        return corner - qy, 0.0, (0.0 if over else 1.0)
-    r0, r1, z0, z1 = piece[R_LOW], piece[R_HIGH], piece[Z_LOW], piece[Z_HIGH]
-    slope = (r1 - r0) / (z1 - z0)
-    cosine = 1.0 / math.sqrt(1.0 + slope * slope)
-    out = -1.0 if rho > 0.0 else 0.0
-    rho = max(rho, 0.0)
-    base = h - z0 if slope >= 0.0 else h - z0 - rise
-    depth, by_rho, by_h = (r0 + slope * base - rho) * cosine, out * cosine, slope * cosine
-    widest = max(r0, r1) - rho
-    if widest < depth:
-        depth, by_rho, by_h = widest, out, 0.0
-    if piece[CAP_LOW] != 0.0 and h - z0 < depth:
-        depth, by_rho, by_h = h - z0, 0.0, 1.0
-    if piece[CAP_HIGH] != 0.0 and z1 + rise - h < depth:
-        depth, by_rho, by_h = z1 + rise - h, 0.0, -1.0
-    return depth, by_rho, by_h
-
-
 @njit(cache=True, nogil=True, inline="always")
 def _profile_w(s: Floats, u: float) -> float:
     if s[PROFILE] == 0.0:
@@ -284,18 +246,18 @@ def _guide(s: Floats, w: float, u0: float, u1: float, out: Floats) -> None:
 
 
 @njit(cache=True, nogil=True)
-def _depth_at(s: Floats, u: float, path: Floats, z_low: float, rise: float, piece: Floats, guide: Floats) -> float:
+def _depth_at(s: Floats, u: float, path: Floats, z_low: float, rise: float, arcs: Floats, piece: Floats, guide: Floats) -> float:
     _guide(s, _profile_w(s, u), u, u, guide)
-    depth, _r, _h = depth_in_piece(piece, curve_distance(path, guide), _profile_z(s, u) - z_low, rise)
+    depth, _r, _h = swept_depth(arcs, piece, curve_distance(path, guide), _profile_z(s, u) - z_low, rise)
     return depth
 
 
 @njit(cache=True, nogil=True)
-def strip_depth(s: Floats, path: Floats, z_low: float, rise: float, piece: Floats, enough: float, bound: float, guide: Floats,
-                stack: Floats) -> tuple[float, float]:
+def strip_depth(s: Floats, path: Floats, z_low: float, rise: float, arcs: Floats, piece: Floats, enough: float, bound: float,
+                guide: Floats, stack: Floats) -> tuple[float, float]:
     """Return the deepest that one piece enters one strip while its tip runs along a plan path between z_low and z_low + rise.
 
-    The move is level or vertical, so that the lowest height counts everywhere. Returns a depth that is attained and at most `bound` below
+    The move is level or vertical, so that the whole rise counts everywhere. Returns a depth that is attained and at most `bound` below
     the deepest, or anything at most `enough` when the deepest is not above `enough`; and the profile parameter where.
     """
     z_from, z_to = z_low + piece[Z_LOW], z_low + rise + piece[Z_HIGH]
@@ -331,8 +293,8 @@ def strip_depth(s: Floats, path: Floats, z_low: float, rise: float, piece: Float
             if nearest > 0.0:
                 sag = min(sag, 0.125 * span * span / min(nearest, r_path))
         arch = s[PW1] * (1.0 - math.cos(0.5 * (u1 - u0))) if s[PROFILE] != 0.0 else 0.0
-        d0, r0, h0 = depth_in_piece(piece, rho0 - sag, z0 - z_low, rise)
-        d1, r1, h1 = depth_in_piece(piece, rho1 - sag, z1 - z_low, rise)
+        d0, r0, h0 = swept_depth(arcs, piece, rho0 - sag, z0 - z_low, rise)
+        d1, r1, h1 = swept_depth(arcs, piece, rho1 - sag, z1 - z_low, rise)
         m0 = r0 * (rho1 - rho0) + h0 * (z1 - z0)
         m1 = r1 * (rho1 - rho0) + h1 * (z1 - z0)
         share, most = 0.5, d0
@@ -347,7 +309,7 @@ def strip_depth(s: Floats, path: Floats, z_low: float, rise: float, piece: Float
         if most <= max(enough, best + bound):
             continue
         at = u0 + share * (u1 - u0)
-        depth = _depth_at(s, at, path, z_low, rise, piece, guide)
+        depth = _depth_at(s, at, path, z_low, rise, arcs, piece, guide)
         if depth > best:
             best, where = depth, at
         if most <= max(enough, best + bound) or u1 - u0 < 1e-9 or top + 2 > len(stack):
@@ -395,11 +357,12 @@ def is_sloped(move: Floats) -> bool:
 
 
 @njit(cache=True, nogil=True)
-def move_depth(s: Floats, move: Floats, piece: Floats, enough: float, bound: float, path: Floats, guide: Floats, stack: Floats,
-               spans: Floats) -> tuple[float, float]:
+def move_depth(s: Floats, move: Floats, arcs: Floats, piece: Floats, enough: float, bound: float, path: Floats, guide: Floats,
+               stack: Floats, spans: Floats) -> tuple[float, float]:
     """Return the deepest that one piece enters one strip along a whole move, as `strip_depth`; ramps and helices are halved until flat."""
     if not is_sloped(move):
-        return strip_depth(s, move, min(move[Z_START], move[Z_END]), abs(move[Z_END] - move[Z_START]), piece, enough, bound, guide, stack)
+        return strip_depth(s, move, min(move[Z_START], move[Z_END]), abs(move[Z_END] - move[Z_START]), arcs, piece, enough, bound, guide,
+                           stack)
     best, where = -np.inf, s[U0]
     spans[0, 0], spans[0, 1] = 0.0, 1.0
     top = 1
@@ -407,7 +370,7 @@ def move_depth(s: Floats, move: Floats, piece: Floats, enough: float, bound: flo
         top -= 1
         t0, t1 = spans[top, 0], spans[top, 1]
         z_low, z_high = part_of_move(move, t0, t1, path)
-        most, u = strip_depth(s, path, z_low, z_high - z_low, piece, max(enough, best), bound, guide, stack)
+        most, u = strip_depth(s, path, z_low, z_high - z_low, arcs, piece, max(enough, best), bound, guide, stack)
         if most <= max(enough, best):
             continue
         # A rise of a fraction of the bound: where a trim leans more than it climbs, its end moves faster than the tip.
@@ -416,7 +379,7 @@ def move_depth(s: Floats, move: Floats, piece: Floats, enough: float, bound: flo
             continue
         middle = 0.5 * (t0 + t1)
         z, _z = part_of_move(move, middle, middle, path)
-        depth, u = strip_depth(s, path, z, 0.0, piece, best, bound, guide, stack)
+        depth, u = strip_depth(s, path, z, 0.0, arcs, piece, best, bound, guide, stack)
         if depth > best:
             best, where = depth, u
         if most <= best + bound:
@@ -442,11 +405,6 @@ def move_box(move: Floats) -> tuple[float, float, float, float]:
 
 
 @njit(cache=True, nogil=True)
-def _piece_radius(piece: Floats) -> float:
-    return piece[R_LOW] if piece[FORM] == 0.0 else max(piece[R_LOW], piece[R_HIGH])
-
-
-@njit(cache=True, nogil=True)
 def _inside(x: float, y: float, outline: Floats) -> bool:
     """Say whether a point is inside closed chords (k, 4) by the parity of crossings to its right."""
     odd = False
@@ -458,37 +416,87 @@ def _inside(x: float, y: float, outline: Floats) -> bool:
 
 
 @njit(cache=True, nogil=True)
-def _region_depth(piece: Floats, z: float, z_low: float, rise: float) -> float:
-    h = z - z_low
+def _level_depth(arcs: Floats, piece: Floats, h: float, rise: float) -> float:
+    """Return how deep a piece's axis is in a level face, h above the tip at its lowest."""
     if h < piece[Z_LOW] or h > piece[Z_HIGH] + rise:
         return -np.inf
-    depth, _r, _h = depth_in_piece(piece, 0.0, h, rise)
+    depth, _r, _h = swept_depth(arcs, piece, 0.0, h, rise)
     return depth
 
 
 @njit(cache=True, nogil=True)
-def contact_loop(first: int, last: int, moves: Floats, tool: Ints, pieces: Floats, piece_start: Ints, strips: Floats, strip_face: Ints,
-                 cell_start: Ints, cell_strip: Ints, grid: Floats, shape: Ints, region_z: Floats, region_face: Ints, region_box: Floats,
-                 region_start: Ints, chords: Floats, enough: float, bound: float, settle: float, depth: Floats, which: Ints,
-                 where: Floats, face_depth: Floats, face_move: Ints) -> int:
-    """Measure moves `first` to `last` against every strip and every level region near them.
+def deepest_height(arcs: Floats, piece: Floats) -> float:
+    """Return the height between a piece's ends at which a point on its axis is deepest in it, within a tenth of a micrometre."""
+    low, high = piece[Z_LOW], piece[Z_HIGH]
+    while high - low > 1e-4:
+        middle = 0.5 * (low + high)
+        _depth, _r, slope = swept_depth(arcs, piece, 0.0, middle, 0.0)
+        if slope > 0.0:
+            low = middle
+        else:
+            high = middle
+    return 0.5 * (low + high)
 
-    moves (n, 15), tool (n,) rows of piece_start; pieces (k, 7), the first piece of a tool is its cutter. grid (3,) is x, y of the strips'
-    grid and its pitch, shape (2,) its cells, cell_start and cell_strip its lists. region_* and chords (c, 4) are level faces.
-    Fills depth (n, 2) for the cutter and for what is above it, which (n, 2) strip rows or -1 - region, where (n, 2) profile parameters,
-    face_depth (f, 2) and face_move (f, 2). Returns the row after the last one done. A move found deeper than `settle` is not looked at
-    further: its depth is then only known to be above it.
+
+@njit(cache=True, nogil=True)
+def region_depth(z: float, box: Floats, chords: Floats, move: Floats, arcs: Floats, piece: Floats,
+                 path: Floats) -> tuple[float, float]:
+    """Return how deep one piece enters a level face (z, its plan box and chords) where its axis passes over or under it, and at which
+    share of the move.
+
+    Where the axis crosses the outline, the boundary's strips are as deep; so the ends of a move count, and of a climbing one the moment
+    at which the piece is deepest.
+    """
+    z_low, rise = min(move[Z_START], move[Z_END]), abs(move[Z_END] - move[Z_START])
+    if not is_sloped(move):
+        if z - z_low < piece[Z_LOW] or z - z_low > piece[Z_HIGH] + rise or not _over(move[X0], move[Y0], box, chords):
+            return -np.inf, 0.0
+        return _level_depth(arcs, piece, z - z_low, rise), 0.0
+    most, when = -np.inf, 0.0
+    climb = move[Z_END] - move[Z_START]
+    for moment in range(3):
+        t = 0.5 * moment
+        if moment == 1:
+            t = (z - deepest_height(arcs, piece) - move[Z_START]) / climb
+            if not 0.0 < t < 1.0:
+                continue
+        tip, _z = part_of_move(move, t, t, path)
+        if _over(path[X0], path[Y0], box, chords):
+            depth = _level_depth(arcs, piece, z - tip, 0.0)
+            if depth > most:
+                most, when = depth, t
+    return most, when
+
+
+@njit(cache=True, nogil=True, inline="always")
+def _over(x: float, y: float, box: Floats, chords: Floats) -> bool:
+    return box[0] <= x <= box[2] and box[1] <= y <= box[3] and _inside(x, y, chords)
+
+
+@njit(cache=True, nogil=True)
+def contact_loop(first: int, last: int, rows: Ints, moves: Floats, tool: Ints, arcs: Floats, pieces: Floats, piece_start: Ints,
+                 strips: Floats, strip_face: Ints, cell_start: Ints, cell_strip: Ints, grid: Floats, shape: Ints, region_z: Floats,
+                 region_face: Ints, region_box: Floats, region_start: Ints, chords: Floats, enough: float, bound: float, settle: float,
+                 depth: Floats, which: Ints, where: Floats, face_depth: Floats, face_move: Ints) -> None:
+    """Measure the moves of rows `first` to `last` against every strip and every level region near them.
+
+    rows (k,) into moves (n, 15) and tool (n,), which is into piece_start; arcs and pieces as in `kernels/body.py`. grid (3,) is x, y of
+    the strips' grid and its pitch, shape (2,) its cells, cell_start and cell_strip its lists. region_* and chords (c, 4) are level faces.
+    Fills depth (k, 2) for what cuts and for what does not; which (k, 2) strip rows or -2 - region; where (k, 2) profile parameters, of a
+    region the share of the move; face_depth (f, 2) and face_move (f, 2), rows of moves. A move found deeper than `settle` is not looked
+    at further: its depth is then only known to be above it.
     """
     guide, path = np.zeros(MOVE_COLUMNS), np.zeros(MOVE_COLUMNS)
     stack, spans = np.zeros((96, 2)), np.zeros((96, 2))
     seen = np.full(len(strips), -1)
-    for n in range(first, last):
+    for k in range(first, last):
+        n = rows[k]
         move = moves[n]
         z_low, rise = min(move[Z_START], move[Z_END]), abs(move[Z_END] - move[Z_START])
         p0, p1 = piece_start[tool[n]], piece_start[tool[n] + 1]
         widest = 0.0
         for p in range(p0, p1):
-            widest = max(widest, _piece_radius(pieces[p]))
+            widest = max(widest, pieces[p, R_MAX])
         x0, y0, x1, y1 = move_box(move)
         i0, i1 = int(math.floor((x0 - widest - grid[0]) / grid[2])), int(math.floor((x1 + widest - grid[0]) / grid[2]))
         j0, j1 = int(math.floor((y0 - widest - grid[1]) / grid[2])), int(math.floor((y1 + widest - grid[1]) / grid[2]))
@@ -496,43 +504,40 @@ def contact_loop(first: int, last: int, moves: Floats, tool: Ints, pieces: Float
             for i in range(max(i0, 0), min(i1, shape[0] - 1) + 1):
                 cell = j * shape[0] + i
                 for c in range(cell_start[cell], cell_start[cell + 1]):
-                    k = cell_strip[c]
-                    if seen[k] == n:
+                    m = cell_strip[c]
+                    if seen[m] == n:
                         continue
-                    seen[k] = n
-                    s = strips[k]
-                    if s[BZ1] - z_low <= enough or depth[n, 0] > settle or depth[n, 1] > settle:
+                    seen[m] = n
+                    s = strips[m]
+                    if s[BZ1] - z_low <= enough or depth[k, 0] > settle or depth[k, 1] > settle:
                         continue
                     gx, gy = max(max(s[BX0] - x1, x0 - s[BX1]), 0.0), max(max(s[BY0] - y1, y0 - s[BY1]), 0.0)
                     gap = math.sqrt(gx * gx + gy * gy)
                     for p in range(p0, p1):
                         piece = pieces[p]
-                        if s[BZ1] < z_low + piece[Z_LOW] or gap >= _piece_radius(piece) - enough:
+                        if s[BZ1] < z_low + piece[Z_LOW] or s[BZ0] > z_low + rise + piece[Z_HIGH] or gap >= piece[R_MAX] - enough:
                             continue
-                        d, u = move_depth(s, move, piece, enough, bound, path, guide, stack, spans)
+                        d, u = move_depth(s, move, arcs, piece, enough, bound, path, guide, stack, spans)
                         if d > enough:
-                            kind = 0 if p == p0 else 1
-                            if d > depth[n, kind]:
-                                depth[n, kind], which[n, kind], where[n, kind] = d, k, u
-                            if d > face_depth[strip_face[k], kind]:
-                                face_depth[strip_face[k], kind], face_move[strip_face[k], kind] = d, n
+                            kind = int(piece[PIECE_KIND])
+                            if d > depth[k, kind]:
+                                depth[k, kind], which[k, kind], where[k, kind] = d, m, u
+                            if d > face_depth[strip_face[m], kind]:
+                                face_depth[strip_face[m], kind], face_move[strip_face[m], kind] = d, n
         for r in range(len(region_z)):
-            if region_z[r] - z_low <= enough or depth[n, 0] > settle or depth[n, 1] > settle:
+            if region_z[r] - z_low <= enough or depth[k, 0] > settle or depth[k, 1] > settle:
                 continue
-            # The boundary is measured by strips; a move that never meets it is inside or outside as a whole.
-            if move[X0] < region_box[r, 0] or move[X0] > region_box[r, 2] or move[Y0] < region_box[r, 1] or move[Y0] > region_box[r, 3]:
+            if x1 < region_box[r, 0] or x0 > region_box[r, 2] or y1 < region_box[r, 1] or y0 > region_box[r, 3]:
                 continue
-            if not _inside(move[X0], move[Y0], chords[region_start[r]:region_start[r + 1]]):
-                continue
+            outline = chords[region_start[r]:region_start[r + 1]]
             for p in range(p0, p1):
-                d = _region_depth(pieces[p], region_z[r], z_low, rise)
+                d, t = region_depth(region_z[r], region_box[r], outline, move, arcs, pieces[p], path)
                 if d > enough:
-                    kind = 0 if p == p0 else 1
-                    if d > depth[n, kind]:
-                        depth[n, kind], which[n, kind], where[n, kind] = d, -2 - r, 0.0
+                    kind = int(pieces[p, PIECE_KIND])
+                    if d > depth[k, kind]:
+                        depth[k, kind], which[k, kind], where[k, kind] = d, -2 - r, t
                     if d > face_depth[region_face[r], kind]:
                         face_depth[region_face[r], kind], face_move[region_face[r], kind] = d, n
-    return last
 
 
 @njit(cache=True, nogil=True)
