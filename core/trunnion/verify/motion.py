@@ -138,6 +138,11 @@ def seen_from(moves: Moves, frame: Frame, other: Frame) -> Moves:
                    row=_rows(start, end, centre, moves.sweep, motion))
 
 
+def _upright(first: Floats, last: Floats) -> Bools:
+    still = np.abs(np.hstack([first[:, :2], last[:, :2]])) <= AXIS_LEAN
+    return np.asarray(still.all(axis=1) & (first[:, 2] > 0.0) & (last[:, 2] > 0.0))
+
+
 def _points(parts: list[Floats]) -> Floats:
     return np.vstack([np.zeros((0, 3)), *parts])
 
