@@ -125,7 +125,7 @@ def stock(path: Path, folder: Path, compared: Compare) -> Iterator[Any]:
     from trunnion.geometry.frame import WORLD
     from trunnion.model.blank import Blank
     from trunnion.verify.motion import moves_of
-    from trunnion.verify.stock import Field, run_stock
+    from trunnion.verify.stock import Stock, run_stock
     from trunnion.verify.sweep import Sweep
     blank = Blank(frame=WORLD, low=np.zeros(3), high=np.array([300.0, 300.0, 20.0]), material="x", density=1.0)
     tip = _spiral(50_000)
@@ -146,7 +146,7 @@ def stock(path: Path, folder: Path, compared: Compare) -> Iterator[Any]:
             piece[inside] = np.minimum(piece[inside], a[2])
         return float(heights.sum())
 
-    yield compared("stock, 50,000 moves", "block", lambda: run_stock(Field.of(blank, WORLD, 0.5), moves, sweep), plain,
+    yield compared("stock, 50,000 moves", "block", lambda: run_stock(Stock.of(blank, 0.5), moves, WORLD, sweep), plain,
                    "500 moves in a plain numpy field", "< 3")
 
 

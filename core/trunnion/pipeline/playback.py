@@ -29,8 +29,8 @@ from trunnion.progress import QUIET, Progress
 from trunnion.settings import digest
 from trunnion.verify.limits import times_of
 from trunnion.verify.motion import Moves, moves_of
-from trunnion.verify.stock import Field, run_stock
-from trunnion.verify.sweep import Sweep
+from trunnion.verify.stock import Stock, blank_box, run_stock
+from trunnion.verify.stock.field import Field
 
 FINENESS = 400
 """Cells along the longest side of the blank when nobody chooses: finer than a picture shows, coarse enough to be cut at once."""
@@ -203,28 +203,33 @@ class Piece:
 
     def __init__(self, blank: Blank, cell: float) -> None:
         self._blank, self._cell = blank, cell
-        self._frame = blank.frame
-        self._field = Field.of(blank, blank.frame, cell)
+        self._stock = self._whole(blank.frame)
 
     def cut(self, moves: Moves, frame: Frame, progress: Progress) -> float:
         """Cut feed moves given in a setup's frame; return the removed volume in mm3."""
-        if frame is not self._frame:
-            self._frame, self._field = frame, Field.of(self._blank, frame, self._cell)
-        return float(run_stock(self._field, moves, Sweep.of(moves, 0.0), progress).removed.sum())
+        if frame is not self._stock.frame:
+            self._stock = self._whole(frame)
+        return float(run_stock(self._stock, moves, frame, progress=progress).removed.sum())
+
+    def _whole(self, frame: Frame) -> Stock:
+        low, high = blank_box(self._blank, frame)
+        return Stock.of(replace(self._blank, frame=frame, low=low, high=high), self._cell)
 
     def snapshot(self) -> Any:
         """Return what `restore` goes back to."""
-        return self._frame, self._field.top.copy()
+        return self._stock.frame, self._stock.snapshot()
 
     def restore(self, snapshot: Any) -> None:
         """Go back to a snapshot."""
-        self._frame, top = snapshot
-        self._field = replace(Field.of(self._blank, self._frame, self._cell), top=top.copy())
+        frame, kept = snapshot
+        if frame is not self._stock.frame:
+            self._stock = self._whole(frame)
+        self._stock.restore(kept)
 
     def mesh(self) -> tuple[Floats, Ints]:
         """Return points (v, 3) in the blank's frame and triangles (t, 3), closed and outward."""
-        points, triangles = mesh_of(self._field)
-        return self._blank.frame.to_local(self._frame.to_world(points)), triangles
+        points, triangles = mesh_of(self._stock.field)
+        return self._blank.frame.to_local(self._stock.frame.to_world(points)), triangles
 
 
 def mesh_of(field: Field) -> tuple[Floats, Ints]:

@@ -1,52 +1,94 @@
-"""The proof of one setup: its moves held against part and stock, timed, and asked what they leave."""
+"""The proof of one setup: its moves held against part and stock, timed, and asked what they load and leave."""
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
 
-from trunnion.geometry.arrays import Bools, Floats
+from trunnion import tolerance
+from trunnion.geometry.arrays import Bools, Floats, Ints
+from trunnion.geometry.frame import Frame
 from trunnion.model.blank import Blank
-from trunnion.model.material import Machine
+from trunnion.model.material import Machine, Material
 from trunnion.model.program import Program
+from trunnion.model.tool import Tool
 from trunnion.progress import QUIET, Progress
 from trunnion.verify.contact import Contact, PartContact
 from trunnion.verify.coverage import depth_in_blank
-from trunnion.verify.limits import times_of
+from trunnion.verify.kinematics import Stands, stands_of
+from trunnion.verify.load import Load, load_of
 from trunnion.verify.motion import Moves, moves_of
 from trunnion.verify.settings import ProofSettings
-from trunnion.verify.stock import Field, StockRun, blank_box, run_stock
+from trunnion.verify.stock import Stock, StockRun, blank_box, run_stock
 from trunnion.verify.sweep import Sweep
+from trunnion.verify.times import Times, times_of
 
 NEAR = 2.0
 """mm: material left beyond this is only known to be more, unless the blank's surface is nearer."""
+BUNDLES = {"z": ("z",), "xyz": ("x", "y", "z")}
 
 
 @dataclass(frozen=True, slots=True, eq=False, kw_only=True)
 class SetupProof:
-    """What was measured in one setup: contact and stock by move, times (n,) s, and what is left (s,) mm on the samples."""
+    """What was measured in one setup: contact, stock, stands, times and load by move; left (s,) mm on the samples, and the move nearest to
+    each (-1: none)."""
 
     program: Program
     moves: Moves
     contact: Contact
     stock: StockRun
-    times: Floats
+    stands: Stands
+    times: Times
+    load: Load
     left: Floats
+    nearest: Ints
 
     def collides(self, allowed: float) -> Bools:
         """Say for each move whether shank or holder enter part or stock deeper than allowed."""
         return np.asarray((self.contact.depth[:, 1] > allowed) | (self.stock.body_depth > allowed))
 
 
-def prove_setup(program: Program, contact: PartContact, blank: Blank, machine: Machine, settings: ProofSettings, points: Floats,
-                progress: Progress = QUIET) -> SetupProof:
-    """Return what is measured of one setup's program; `points` (s, 3) are the samples in its frame."""
+def prove_setup(program: Program, contact: PartContact, stock: Stock, machine: Machine, material: Material | None, settings: ProofSettings,
+                points: Floats, progress: Progress = QUIET) -> SetupProof:
+    """Return what is measured of one setup's program; `stock` is cut by it, `points` (s, 3) are the samples in its frame."""
+    frame = program.setup.frame
     moves = moves_of(program.sections)
     sweep = Sweep.of(moves, NEAR)
-    touched = contact.along(moves, progress.part(0.0, 0.4))
-    field = Field.of(blank, program.setup.frame, settings.cell)
-    stock = run_stock(field, moves, sweep, progress.part(0.4, 0.7))
-    low, high = blank_box(blank, program.setup.frame)
-    left, _ = sweep.left(points, np.minimum(depth_in_blank(points, low, high), NEAR), progress.part(0.7, 1.0))
-    return SetupProof(program=program, moves=moves, contact=touched, stock=stock, times=times_of(moves, machine), left=left)
+    touched = contact.along(moves, progress.part(0.0, 0.4), settings.threads)
+    run = run_stock(stock, moves, frame, sweep, progress.part(0.4, 0.7), settings.threads)
+    low, high = blank_box(stock.blank, frame)
+    left, nearest = sweep.left(points, np.minimum(depth_in_blank(points, low, high), NEAR), progress.part(0.7, 1.0))
+    stands = stands_of(moves, machine, foot_of(stock.blank, frame))
+    times = times_of(moves, stands, machine)
+    load = load_of(moves, run.removed, run.engagement, times.speed, program.sections, settings.cell, material)
+    return SetupProof(program=program, moves=moves, contact=touched, stock=run, stands=stands, times=times, load=load, left=left,
+                      nearest=nearest)
+
+
+def foot_of(blank: Blank, frame: Frame) -> Floats:
+    """Return the middle of the blank's underside in a setup's frame (3,): it stands on the middle of the machine's table."""
+    low, high = blank_box(blank, frame)
+    return np.array([*(0.5 * (low + high))[:2], low[2]])
+
+
+def bundles_of(programs: Sequence[Program], blank: Blank, settings: ProofSettings) -> tuple[str, ...]:
+    """Return the directions of the rays that the stock is made of, chosen by the settings or by what the programs do."""
+    if settings.bundles in BUNDLES:
+        return BUNDLES[settings.bundles]
+    plain = all(_from_above(p, blank) for p in programs)
+    return BUNDLES["z" if plain else "xyz"]
+
+
+def _from_above(program: Program, blank: Blank) -> bool:
+    """Say whether every cut of a setup comes straight from above on the blank, by a cutter that is nowhere wider below than above."""
+    up = program.setup.frame.local_direction(blank.frame.z)
+    upright = all(np.linalg.norm(s.path.axis - up, axis=1).max(initial=0.0) < tolerance.PARAMETRIC for s in program.sections)
+    return upright and not any(undercuts(s.tool) for s in program.sections)
+
+
+def undercuts(tool: Tool) -> bool:
+    """Say whether a cutter leaves material over a part of its flutes when it comes from the side."""
+    radii = [row[0] for row in tool.outline]
+    return tool.form in ("t-slot", "barrel") or any(b < a for a, b in zip(radii, radii[1:], strict=False))
