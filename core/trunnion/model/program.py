@@ -11,7 +11,10 @@ from trunnion.model.toolpath import Toolpath
 
 @dataclass(frozen=True, slots=True, eq=False, kw_only=True)
 class ProgramSection:
-    """The motions of one operation with one tool. `spindle` 1/min; `block_lines` the text line of each block when read back, else empty."""
+    """The motions of one operation with one tool. `spindle` 1/min; `block_lines` the text line of each block when read back, else empty.
+
+    `width` ae and `depth` ap mm are the engagement that a `feed` in mm/min was chosen for; 0 where nothing is known of it.
+    """
 
     operation: str
     tool: Tool
@@ -19,6 +22,9 @@ class ProgramSection:
     path: Toolpath
     coolant: str = "flood"
     block_lines: tuple[int, ...] = ()
+    width: float = 0.0
+    depth: float = 0.0
+    feed: float = 0.0
 
 
 @dataclass(frozen=True, slots=True, eq=False, kw_only=True)

@@ -27,10 +27,10 @@ from trunnion.pipeline.proving import programs_of, read_back
 from trunnion.post.release import release
 from trunnion.progress import QUIET, Progress
 from trunnion.settings import digest
-from trunnion.verify.limits import times_of
 from trunnion.verify.motion import Moves, moves_of
 from trunnion.verify.stock import Stock, blank_box, run_stock
 from trunnion.verify.stock.field import Field
+from trunnion.verify.times import seconds_of
 
 FINENESS = 400
 """Cells along the longest side of the blank when nobody chooses: finer than a picture shows, coarse enough to be cut at once."""
@@ -164,7 +164,7 @@ def timeline_of(programs: tuple[Program, ...], moves: list[Moves], files: tuple[
     spans: list[Floats] = []
     lines: list[Ints] = []
     for k, (program, own) in enumerate(zip(programs, moves, strict=True)):
-        span = times_of(own, machine)
+        span = seconds_of(own, machine, np.zeros(3))
         begins = np.cumsum([0, *(len(s.path) for s in program.sections)])
         for n, section in enumerate(program.sections):
             if n == 0 or program.sections[n - 1].tool.number != section.tool.number:

@@ -7,6 +7,7 @@ from dataclasses import replace
 
 from trunnion import registry
 from trunnion.findings import BadCall, Finding, Severity, error
+from trunnion.model.process import ProcessTree
 from trunnion.model.program import Program, ProgramSection
 from trunnion.model.session import PostedFile, Session
 from trunnion.model.setup import Setup
@@ -28,7 +29,8 @@ def program_of(session: Session, setup: Setup) -> Program:
     for operation in session.process.of_setup(setup.name):
         made = session.path_of(operation.id)
         if made is not None and len(made.path):
-            sections.append(ProgramSection(operation=operation.id, tool=operation.tool, spindle=operation.data.spindle, path=made.path))
+            sections.append(ProgramSection(operation=operation.id, tool=operation.tool, spindle=operation.data.spindle, path=made.path,
+                                           width=operation.data.width, depth=operation.data.depth, feed=operation.data.feed))
     return Program(name=f"{session.part.name}.{setup.name}", setup=setup, sections=tuple(sections))
 
 
@@ -54,7 +56,16 @@ def read_back(session: Session, posted: tuple[PostedFile, ...]) -> tuple[Program
     if session.process is None:
         raise BadCall("no operations yet: generate the route first")
     tools = session.process.tools()
-    return tuple(read_program(f.dialect, f.text, tools, session.process.setup(f.setup)) for f in posted if f.setup)
+    read = (read_program(f.dialect, f.text, tools, session.process.setup(f.setup)) for f in posted if f.setup)
+    return tuple(with_engagement(p, session.process) for p in read)
+
+
+def with_engagement(program: Program, process: ProcessTree) -> Program:
+    """Return a program whose sections know the engagement that their operations' feeds were chosen for: no text says that."""
+    known = {o.id: o.data for o in process.operations}
+    sections = tuple(replace(s, width=known[s.operation].width, depth=known[s.operation].depth, feed=known[s.operation].feed)
+                     if s.operation in known else s for s in program.sections)
+    return replace(program, sections=sections)
 
 
 def prove_session(session: Session, bench: Bench, progress: Progress) -> tuple[Verdict, tuple[PostedFile, ...]]:
@@ -94,4 +105,4 @@ def prove_programs(session: Session, bench: Bench, programs: tuple[Program, ...]
     machine = bench.shop.machines[session.process.setups[0].machine]
     planned = {tag for operation in session.process.operations if not operation.suppressed for tag in operation.faces}
     return prove(programs, bench.part, session.blank, bench.shop.tools, machine, checked(choose(ProofSettings, session.choices)),
-                 progress, planned_faces=sorted(planned))
+                 progress, planned_faces=sorted(planned), material=bench.shop.materials.get(session.process.material))

@@ -24,6 +24,7 @@ def operation_proofs(proof: SetupProof, machine: Machine, settings: ProofSetting
         found.append(OperationProof(
             operation=section.operation, setup=proof.program.setup.name, outcome=Outcome.FAILED if failed else Outcome.PASSED, gouge=gouge,
             collisions=int(collides[rows].sum()), rapids_in_stock=int(rapids.sum()),
-            time_s=float(proof.times[rows].sum()) + machine.tool_change_s * new_tool, removed=float(proof.stock.removed[rows].sum()),
+            time_s=float(proof.times.seconds[rows].sum()) + machine.tool_change_s * new_tool,
+            removed=float(proof.stock.removed[rows].sum()),
             air_share=air / run if run > 0.0 else 0.0))
     return found

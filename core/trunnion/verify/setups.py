@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass
+from itertools import pairwise
 
 import numpy as np
 
@@ -91,4 +92,4 @@ def _from_above(program: Program, blank: Blank) -> bool:
 def undercuts(tool: Tool) -> bool:
     """Say whether a cutter leaves material over a part of its flutes when it comes from the side."""
     radii = [row[0] for row in tool.outline]
-    return tool.form in ("t-slot", "barrel") or any(b < a for a, b in zip(radii, radii[1:], strict=False))
+    return tool.form in ("t-slot", "barrel") or any(b < a for a, b in pairwise(radii))

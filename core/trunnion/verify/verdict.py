@@ -8,11 +8,11 @@ from __future__ import annotations
 
 from collections.abc import Collection, Sequence
 
-from trunnion.findings import Finding, Severity, remark
+from trunnion.findings import Finding, Severity
 from trunnion.geometry.arrays import Floats
 from trunnion.geometry.frame import Frame
 from trunnion.model.blank import Blank
-from trunnion.model.material import Machine
+from trunnion.model.material import Machine, Material
 from trunnion.model.program import Program
 from trunnion.model.tool import Tool
 from trunnion.model.verdict import Outcome, Verdict
@@ -26,35 +26,39 @@ from trunnion.verify.findings import setup_findings
 from trunnion.verify.limits import limit_findings
 from trunnion.verify.operations import operation_proofs
 from trunnion.verify.settings import ProofSettings
-from trunnion.verify.setups import prove_setup
+from trunnion.verify.setups import bundles_of, prove_setup
+from trunnion.verify.stock import Stock
 
 
 def prove(programs: Sequence[Program], part: Part, blank: Blank, tools: Sequence[Tool], machine: Machine, settings: ProofSettings,
-          progress: Progress = QUIET, planned_faces: Collection[int] = ()) -> Verdict:
-    """Return the verdict on the programs of all setups.
+          progress: Progress = QUIET, planned_faces: Collection[int] = (), material: Material | None = None) -> Verdict:
+    """Return the verdict on the programs of all setups, in the order they are cut: each finds the stock that those before it left.
 
-    `tools` are the catalogue's, for what could be reached at all; `planned_faces` the tags that some operation means to finish.
+    `tools` are the catalogue's, for what could be reached at all; `planned_faces` the tags that some operation means to finish. Without a
+    material nothing is said of power.
     """
     frames = [p.setup.frame for p in programs] or [blank.frame]
     surfaces = [surfaces_of(part, f, progress.part(0.0, 0.05)) for f in frames]
-    return prove_surfaces(programs, surfaces, blank, tools, machine, settings, progress.part(0.05, 1.0), planned_faces)
+    return prove_surfaces(programs, surfaces, blank, tools, machine, settings, progress.part(0.05, 1.0), planned_faces, material)
 
 
 def prove_surfaces(programs: Sequence[Program], surfaces: Sequence[Surfaces], blank: Blank, tools: Sequence[Tool], machine: Machine,
-                   settings: ProofSettings, progress: Progress = QUIET, planned_faces: Collection[int] = ()) -> Verdict:
+                   settings: ProofSettings, progress: Progress = QUIET, planned_faces: Collection[int] = (),
+                   material: Material | None = None) -> Verdict:
     """Return the verdict as `prove` does, on faces given in each setup's frame (without a program: in the blank's)."""
     frames = [p.setup.frame for p in programs] or [blank.frame]
     sides = [Side(frame=f, contact=PartContact(s)) for f, s in zip(frames, surfaces, strict=True)]
     samples = samples_of(surfaces[0], settings.spacing, progress.part(0.0, 0.05))
+    stock = Stock.of(blank, settings.cell, bundles_of(programs, blank, settings))
     proofs = []
     for k, (program, side) in enumerate(zip(programs, sides, strict=False)):
         share = progress.part(0.05 + 0.75 * k / len(programs), 0.05 + 0.75 * (k + 1) / len(programs))
-        proofs.append(prove_setup(program, side.contact, blank, machine, settings, _moved(samples, frames[0], side.frame), share))
-    findings: list[Finding] = [f for p in proofs for f in setup_findings(p, surfaces[0].tag, settings)]
-    findings += [f for p in programs for f in limit_findings(p.setup.name, p.sections, machine)]
-    if len(programs) > 1:
-        findings.append(remark("verify.stock-per-setup", "each setup is proven against a full blank: material that an earlier setup has "
-                               "removed still counts as standing", remedy="read rapids in stock of later setups with this in mind"))
+        points = _moved(samples, frames[0], side.frame)
+        proofs.append(prove_setup(program, side.contact, stock, machine, material, settings, points, share))
+    findings: list[Finding] = []
+    for p in proofs:
+        findings += setup_findings(p, surfaces[0].tag, settings)
+        findings += limit_findings(p.program.setup.name, p.program.sections, p.moves, p.stands, machine)
     whole = covered(samples, surfaces[0].tag, sides, blank, proofs, tools, settings, planned_faces, progress.part(0.8, 1.0))
     findings += whole.findings
     operations = tuple(o for p in proofs for o in operation_proofs(p, machine, settings))

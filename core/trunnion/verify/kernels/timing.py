@@ -10,8 +10,8 @@ from trunnion.geometry.arrays import Floats
 
 
 @njit(cache=True, nogil=True)
-def block_times(length: Floats, speed: Floats, turn: Floats, acceleration: float, times: Floats) -> None:
-    """Fill `times` (n,) in s for blocks of a length (n,) mm at most as fast as `speed` (n,) mm/s.
+def block_times(length: Floats, speed: Floats, turn: Floats, acceleration: float, times: Floats, top: Floats) -> None:
+    """Fill `times` (n,) in s and `top` (n,) in mm/s, the greatest speed reached, for blocks of a length (n,) mm and a speed (n,) mm/s.
 
     turn (n,) is the cosine of the angle between a block's beginning and the end of the one before it: the tool passes a bend at the speed
     times that cosine, and stops where it turns back. Speeds change by `acceleration` mm/s2.
@@ -26,11 +26,12 @@ def block_times(length: Floats, speed: Floats, turn: Floats, acceleration: float
     after = 0.0
     for k in range(n - 1, -1, -1):
         entry[k] = min(entry[k], math.sqrt(after * after + 2.0 * acceleration * length[k]))
-        v0, v1, top = entry[k], after, speed[k]
+        v0, v1 = entry[k], after
         after = entry[k]
-        if length[k] <= 0.0 or top <= 0.0:
-            times[k] = 0.0
+        if length[k] <= 0.0 or speed[k] <= 0.0:
+            times[k], top[k] = 0.0, 0.0
             continue
-        peak = min(top, math.sqrt(0.5 * (v0 * v0 + v1 * v1) + acceleration * length[k]))
+        peak = min(speed[k], math.sqrt(0.5 * (v0 * v0 + v1 * v1) + acceleration * length[k]))
         ramps = (2.0 * peak * peak - v0 * v0 - v1 * v1) / (2.0 * acceleration)
         times[k] = (2.0 * peak - v0 - v1) / acceleration + max(length[k] - ramps, 0.0) / peak
+        top[k] = peak

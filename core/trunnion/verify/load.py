@@ -1,0 +1,98 @@
+"""What cutting asks of cutter and spindle, move by move: removal rate, thickest chip, power and torque.
+
+The stock engine says what a move removes and over which angle the cutter is engaged. Both come in steps of the stock's cells, so volumes
+are taken over a stretch of the path around each move. Power follows Kienzle: k_c = k_c1.1 h^-m with the mean chip thickness h over the arc of
+contact (Kienzle, Die Bestimmung von Kräften und Leistungen an spanenden Werkzeugen, VDI-Z 94, 1952; the constants stand with their source
+in the catalogue of materials).
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+
+from trunnion.geometry.arrays import Floats
+from trunnion.model.material import Material
+from trunnion.model.program import ProgramSection
+from trunnion.units import MM_PER_METRE, SECONDS_PER_MINUTE, WATTS_PER_KILOWATT
+from trunnion.verify.motion import Moves
+
+STRETCH = 0.5
+"""Length of the stretch over the cutter's diameter: it turns more often than that before its load is felt."""
+CELLS = 4.0
+"""Least length of the stretch in cells of the stock."""
+NEWTON_METRES = SECONDS_PER_MINUTE * WATTS_PER_KILOWATT / (2.0 * math.pi)
+"""Torque in Nm of one kW at one turn a minute."""
+LEAST_CHIP = 1e-3
+"""mm: below this a cutter rubs; Kienzle's formula is not held there."""
+
+
+@dataclass(frozen=True, slots=True, eq=False, kw_only=True)
+class Load:
+    """Load of moves n, 0 where nothing is cut.
+
+    rate (n,) cm3/min, chip (n,) mm the thickest, mean_chip (n,) mm over the arc of contact, power (n,) kW at the cutter, torque (n,) Nm.
+    """
+
+    rate: Floats
+    chip: Floats
+    mean_chip: Floats
+    power: Floats
+    torque: Floats
+
+
+def load_of(moves: Moves, removed: Floats, engagement: Floats, speed: Floats, sections: Sequence[ProgramSection], cell: float,
+            material: Material | None) -> Load:
+    """Return the load of every move.
+
+    removed (n,) mm3; engagement (n,) rad; speed (n,) mm/s of the tip; `cell` mm of the stock. Without a material there is no power.
+    """
+    radius = np.array([t.radius for t in moves.tools])[moves.tool] if len(moves) else np.zeros(0)
+    teeth = np.array([s.tool.teeth for s in sections])[moves.section] if len(moves) else np.zeros(0)
+    spindle = np.array([s.spindle for s in sections])[moves.section] if len(moves) else np.zeros(0)
+    area = stretched(moves, removed, np.maximum(2.0 * STRETCH * radius, CELLS * cell))
+    cuts = (area > 0.0) & ~moves.rapid
+    feed = np.where(cuts, speed * SECONDS_PER_MINUTE, 0.0)
+    rate = np.where(cuts, area, 0.0) * feed / MM_PER_METRE
+    per_tooth = np.divide(feed, teeth * spindle, out=np.zeros(len(moves)), where=spindle > 0.0)
+    angle = np.clip(engagement, 0.0, math.pi)
+    chip = per_tooth * np.sin(np.minimum(angle, math.pi / 2.0))
+    mean = per_tooth * mean_share(angle)
+    power = np.zeros(len(moves)) if material is None else rate * specific_force(material, mean) / (SECONDS_PER_MINUTE * WATTS_PER_KILOWATT)
+    torque = NEWTON_METRES * np.divide(power, spindle, out=np.zeros(len(moves)), where=spindle > 0.0)
+    return Load(rate=rate, chip=np.where(cuts, chip, 0.0), mean_chip=np.where(cuts, mean, 0.0), power=power, torque=torque)
+
+
+def mean_share(angle: Floats) -> Floats:
+    """Return the mean chip thickness over the feed per tooth for angles of contact (n,) rad that begin at the cutter's side.
+
+    The chip is fz sin(a) thick, a from 0 to the angle: its mean is fz (1 - cos(angle)) / angle.
+    """
+    return np.divide(1.0 - np.cos(angle), angle, out=np.zeros_like(angle), where=angle > 0.0)
+
+
+def specific_force(material: Material, chip: Floats) -> Floats:
+    """Return the specific cutting force k_c in N/mm2 at mean chip thicknesses (n,) mm."""
+    return np.asarray(material.force * np.maximum(chip, LEAST_CHIP) ** -material.force_exponent)
+
+
+def stretched(moves: Moves, removed: Floats, stretch: Floats) -> Floats:
+    """Return the cross-section (n,) mm2 that each feed move takes away: volume over way, on a stretch (n,) mm around it.
+
+    A stretch does not go beyond a rapid: it ends there.
+    """
+    feeds = ~moves.rapid
+    length, volume = np.where(feeds, moves.length, 0.0), np.where(feeds, removed, 0.0)
+    # Rapids are given a way that no stretch bridges, along which neither way nor volume grows.
+    room = float(stretch.max(initial=0.0))
+    at = np.concatenate([[0.0], np.cumsum(length + np.where(feeds, 0.0, room))])
+    run, taken = (np.concatenate([[0.0], np.cumsum(v)]) for v in (length, volume))
+    spare = 0.5 * np.maximum(stretch - length, 0.0)
+    low, high = at[:-1] - spare, at[1:] + spare
+    way = np.interp(high, at, run) - np.interp(low, at, run)
+    cut = np.interp(high, at, taken) - np.interp(low, at, taken)
+    return np.divide(cut, way, out=np.zeros(len(moves)), where=feeds & (way > 0.0))
+
