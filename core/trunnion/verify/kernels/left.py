@@ -1,53 +1,371 @@
-"""Compiled loops that measure how near the cutting part of a tool comes to points of the part, along moves."""
+"""Compiled loops that measure how near the cutting part of a tool comes to points of the part, along moves.
+
+Seen from the tool, a point goes along a straight chord while the tool moves straight with a still axis, and leaves that chord by a known
+sag of second order where the tip turns along an arc or the axis turns. The signed distance to a convex body is convex along a chord, so
+tangents at both ends bound it from below; a span whose sag is too large is split. A value that is returned is attained somewhere on the
+move, and the true one is at most the bound smaller.
+
+Level and upright moves of plain cutters have a closed form in plan and are listed by the cells of a plan grid. All others are spans in a
+tree of poses: each node stands for poses within a distance and an angle of its own, and since a signed distance changes no faster than
+the point moves, one look at the node's pose tells the least that any of them can give.
+"""
 
 from __future__ import annotations
 
 import math
+from typing import NamedTuple
 
 import numpy as np
 from numba import njit
 
 from trunnion.geometry.arrays import Bools, Floats, Ints
-from trunnion.verify.kernels.strips import MOVE_COLUMNS, Z_END, Z_START, is_sloped, move_box, part_of_move, point_distance
+from trunnion.verify.kernels.body import depth_in_body
+from trunnion.verify.kernels.strips import Z_END, Z_START, move_box, point_distance
+
+# Columns of a way: how a tool moves in space, seen from itself.
+PX, PY, PZ, DX, DY, DZ, AX, AY, AZ, EX, EY, EZ, TURN, CX, CY, RADIUS, PHASE, SWEEP = range(18)
+"""P the tip at the start and D from there to its end; A the axis at the start, E the unit direction across it in which the axis turns by
+the angle TURN. Of arcs (RADIUS above 0): centre along E and along A x E, radius, angle at the start and the signed angle turned."""
+WAY_COLUMNS = 18
+BUCKET = 4
+"""Spans in a node without children: as many as cost about what two nodes do."""
+_LEVEL = 1e-9
+_ROUNDS = 60
+_NO_END = 2**62
+
+
+class Flutes(NamedTuple):
+    """The cutting bodies of tools, closed at the flutes' top.
+
+    arc (a, 7) as `kernels/body.py` names its columns; first, last (b,) the arcs of each body, endless (b,) its last without the top of the
+    flutes (of plain cutters); start (t + 1,) the bodies of each tool; middle (t,) half the flutes' height.
+    """
+
+    arc: Floats
+    first: Ints
+    last: Ints
+    endless: Ints
+    start: Ints
+    middle: Floats
+
+
+class Tree(NamedTuple):
+    """Spans of ways in a tree of poses, for each tool its own.
+
+    way (w, 18), move (w,) their rows among the moves, tool (w,). Spans: of (k,) the row of the way, low and high (k,) shares of it, reach
+    (k,) how far it is from its middle pose. Nodes: pose (m, 8) place of the middle of the flutes, axis, how far and by what chord of angle
+    poses below it differ; link (m, 5) children or -1, first and last span, tool. root (r,) nodes.
+    """
+
+    way: Floats
+    move: Ints
+    tool: Ints
+    of: Ints
+    low: Floats
+    high: Floats
+    reach: Floats
+    pose: Floats
+    link: Ints
+    root: Ints
 
 
 @njit(cache=True, nogil=True)
-def signed_distance(radius: float, corner: float, rho: float, h: float) -> float:
-    """Return the signed distance of a point to a cutter that is endless upwards; negative inside."""
+def plain_distance(radius: float, corner: float, top: float, rho: float, h: float) -> float:
+    """Return the signed distance of a point to a plain cutter whose flutes end at `top` (at least its corner radius); negative inside."""
+    over = h - top
+    if over > 0.0:
+        out = max(rho - radius, 0.0)
+        return math.sqrt(out * out + over * over)
     qx, qy = rho - (radius - corner), corner - h
     out = math.sqrt(max(qx, 0.0) * max(qx, 0.0) + max(qy, 0.0) * max(qy, 0.0))
-    return out + min(max(qx, qy), 0.0) - corner
+    return max(out + min(max(qx, qy), 0.0) - corner, over)
 
 
 @njit(cache=True, nogil=True)
-def left_by_move(x: float, y: float, z: float, move: Floats, radius: float, corner: float, flute: float, best: float, bound: float,
-                 path: Floats, spans: Floats) -> float:
-    """Return the smaller of `best` and the signed distance of a point to the fluted cutter along a move (ramps within `bound`)."""
-    if not is_sloped(move):
-        low, high = min(move[Z_START], move[Z_END]), max(move[Z_START], move[Z_END])
-        reach = max(low - z, z - high - flute)
-        if reach >= best:
-            return best
-        return min(best, max(signed_distance(radius, corner, point_distance(x, y, move), z - low), reach))
-    spans[0, 0], spans[0, 1] = 0.0, 1.0
+def left_by_move(x: float, y: float, z: float, move: Floats, radius: float, corner: float, top: float, best: float) -> float:
+    """Return the smaller of `best` and the signed distance of a point to a plain cutter along a level or upright move.
+
+    The flutes are at least twice as long as the corner is high: where the cutter passes up and down, no height is then nearer than one
+    clear of both ends of the flank.
+    """
+    low, high = min(move[Z_START], move[Z_END]), max(move[Z_START], move[Z_END])
+    if low - z >= best:
+        return best
+    rho = point_distance(x, y, move)
+    if rho - radius >= best:
+        return best
+    deep = min(max(radius - rho, 0.0), 0.5 * top)
+    h = min(max(z - high, max(corner, deep)), z - low)
+    return min(best, plain_distance(radius, corner, top, rho, h))
+
+
+@njit(cache=True, nogil=True)
+def in_tool(w: Floats, x: float, y: float, z: float, t: float) -> tuple[float, float, float]:
+    """Return where a point is seen from the tool at a share of its way: across its axis along E and A x E, and above its tip."""
+    nx, ny, nz = w[AY] * w[EZ] - w[AZ] * w[EY], w[AZ] * w[EX] - w[AX] * w[EZ], w[AX] * w[EY] - w[AY] * w[EX]
+    if w[RADIUS] > 0.0:
+        angle = w[PHASE] + t * w[SWEEP]
+        climb = w[DX] * w[AX] + w[DY] * w[AY] + w[DZ] * w[AZ]
+        return (x * w[EX] + y * w[EY] + z * w[EZ] - w[CX] - w[RADIUS] * math.cos(angle),
+                x * nx + y * ny + z * nz - w[CY] - w[RADIUS] * math.sin(angle),
+                (x - w[PX]) * w[AX] + (y - w[PY]) * w[AY] + (z - w[PZ]) * w[AZ] - t * climb)
+    vx, vy, vz = x - w[PX] - t * w[DX], y - w[PY] - t * w[DY], z - w[PZ] - t * w[DZ]
+    e, n, a = vx * w[EX] + vy * w[EY] + vz * w[EZ], vx * nx + vy * ny + vz * nz, vx * w[AX] + vy * w[AY] + vz * w[AZ]
+    if w[TURN] > 0.0:
+        c, s = math.cos(t * w[TURN]), math.sin(t * w[TURN])
+        return c * e - s * a, n, c * a + s * e
+    return e, n, a
+
+
+@njit(cache=True, nogil=True)
+def flute_distance(flutes: Flutes, tool: int, rho: float, h: float, endless: bool) -> float:
+    """Return the signed distance of a point to what cuts of a tool, negative inside."""
+    best = np.inf
+    for b in range(flutes.start[tool], flutes.start[tool + 1]):
+        depth, _r, _h = depth_in_body(flutes.arc, flutes.first[b], flutes.endless[b] if endless else flutes.last[b], rho, h)
+        best = min(best, -depth)
+    return best
+
+
+@njit(cache=True, nogil=True)
+def _slope(arcs: Floats, first: int, last: int, x: float, y: float, z: float, dx: float, dy: float, dz: float) -> tuple[float, float]:
+    rho = math.sqrt(x * x + y * y)
+    depth, nr, nz = depth_in_body(arcs, first, last, rho, z)
+    return -depth, nz * dz + (nr * (x * dx + y * dy) / rho if rho > 0.0 else 0.0)
+
+
+@njit(cache=True, nogil=True)
+def least_on_chord(arcs: Floats, first: int, last: int, x0: float, y0: float, z0: float, x1: float, y1: float, z1: float, stop: float,
+                   close: float) -> tuple[float, float]:
+    """Return a bound from below of the signed distance to a convex body along a chord, and the share where it is nearly so small.
+
+    The bound is at most `close` below what the share attains, or it is above `stop`.
+    """
+    dx, dy, dz = x1 - x0, y1 - y0, z1 - z0
+    a, b = 0.0, 1.0
+    fa, ma = _slope(arcs, first, last, x0, y0, z0, dx, dy, dz)
+    if ma >= 0.0:
+        return fa, 0.0
+    fb, mb = _slope(arcs, first, last, x1, y1, z1, dx, dy, dz)
+    if mb <= 0.0:
+        return fb, 1.0
+    lower = -np.inf
+    for _round in range(_ROUNDS):
+        t = min(max((fb - fa + ma * a - mb * b) / (ma - mb), a), b)
+        lower = min(fa + ma * (t - a), fb + mb * (t - b))
+        if lower >= stop or min(fa, fb) - lower <= close:
+            break
+        f, m = _slope(arcs, first, last, x0 + t * dx, y0 + t * dy, z0 + t * dz, dx, dy, dz)
+        if f - lower <= close or m == 0.0:
+            return (f if m == 0.0 else lower), t
+        if m > 0.0:
+            b, fb, mb = t, f, m
+        else:
+            a, fa, ma = t, f, m
+    return lower, (a if fa <= fb else b)
+
+
+@njit(cache=True, nogil=True)
+def _level_rho(w: Floats, x: float, y: float, z: float, t0: float, t1: float) -> tuple[float, float]:
+    """Return the smallest distance of a point from the axis along a way across the axis, and its height above the tip."""
+    ax, ay, h = in_tool(w, x, y, z, t0)
+    bx, by, _h = in_tool(w, x, y, z, t1)
+    if w[RADIUS] > 0.0:
+        # Seen from the arc's centre the point stands still, and the tip turns past it.
+        angle = w[PHASE] + t0 * w[SWEEP]
+        px, py = ax + w[RADIUS] * math.cos(angle), ay + w[RADIUS] * math.sin(angle)
+        off = math.atan2(py, px) - (w[PHASE] + 0.5 * (t0 + t1) * w[SWEEP])
+        off -= 2.0 * math.pi * math.floor(off / (2.0 * math.pi) + 0.5)
+        if abs(off) <= 0.5 * abs(w[SWEEP]) * (t1 - t0):
+            return abs(math.sqrt(px * px + py * py) - w[RADIUS]), h
+        return math.sqrt(min(ax * ax + ay * ay, bx * bx + by * by)), h
+    dx, dy = bx - ax, by - ay
+    square = dx * dx + dy * dy
+    t = min(max(-(ax * dx + ay * dy) / square, 0.0), 1.0) if square > 0.0 else 0.0
+    px, py = ax + t * dx, ay + t * dy
+    return math.sqrt(px * px + py * py), h
+
+
+@njit(cache=True, nogil=True)
+def _sag(w: Floats, span: float, far: float) -> float:
+    """Return how far a point `far` from the tip leaves its chord, seen from the tool, over a share of the way."""
+    if w[RADIUS] > 0.0:
+        turn = w[SWEEP] * span
+        return min(0.125 * turn * turn, 2.0) * w[RADIUS]
+    if w[TURN] > 0.0:
+        turn = w[TURN] * span
+        return turn * (0.125 * turn * far + 0.25 * span * math.sqrt(w[DX] * w[DX] + w[DY] * w[DY] + w[DZ] * w[DZ]))
+    return 0.0
+
+
+@njit(cache=True, nogil=True)
+def left_along(w: Floats, flutes: Flutes, tool: int, x: float, y: float, z: float, t0: float, t1: float, best: float, bound: float,
+               endless: bool, spans: Floats) -> float:
+    """Return the smaller of `best` and the signed distance of a point to what cuts of a tool along a way between two shares.
+
+    What is returned is attained; the true one is at most `bound` smaller. `spans` (k, 2) is room to work in.
+    """
+    if w[TURN] == 0.0 and abs(w[DX] * w[AX] + w[DY] * w[AY] + w[DZ] * w[AZ]) <= _LEVEL:
+        rho, h = _level_rho(w, x, y, z, t0, t1)
+        return min(best, flute_distance(flutes, tool, rho, h, endless))
+    spans[0, 0], spans[0, 1] = t0, t1
     top = 1
     while top > 0:
         top -= 1
-        t0, t1 = spans[top, 0], spans[top, 1]
-        low, high = part_of_move(move, t0, t1, path)
-        least = max(signed_distance(radius, corner, point_distance(x, y, path), z - low), z - high - flute)
-        if least >= best - bound:
+        a, b = spans[top, 0], spans[top, 1]
+        x0, y0, z0 = in_tool(w, x, y, z, a)
+        x1, y1, z1 = in_tool(w, x, y, z, b)
+        sag = _sag(w, b - a, math.sqrt(max(x0 * x0 + y0 * y0 + z0 * z0, x1 * x1 + y1 * y1 + z1 * z1)))
+        least, share = np.inf, 0.0
+        for k in range(flutes.start[tool], flutes.start[tool + 1]):
+            lower, s = least_on_chord(flutes.arc, flutes.first[k], flutes.endless[k] if endless else flutes.last[k], x0, y0, z0, x1, y1, z1,
+                                      min(best, least + sag) - bound + sag, 0.25 * bound)
+            if lower < least:
+                least, share = lower, s
+        if least - sag >= best - bound:
             continue
-        if high - low <= bound or top + 2 > len(spans):
-            best = least
+        t = a + share * (b - a)
+        xt, yt, zt = in_tool(w, x, y, z, t)
+        best = min(best, flute_distance(flutes, tool, math.sqrt(xt * xt + yt * yt), zt, endless))
+        if least - sag >= best - bound or top + 2 > len(spans):
             continue
-        middle = 0.5 * (t0 + t1)
-        tip, _z = part_of_move(move, middle, middle, path)
-        best = min(best, max(signed_distance(radius, corner, point_distance(x, y, path), z - tip), z - tip - flute))
-        spans[top, 0], spans[top, 1] = t0, middle
-        spans[top + 1, 0], spans[top + 1, 1] = middle, t1
+        middle = t if 0.1 <= share <= 0.9 else 0.5 * (a + b)
+        spans[top, 0], spans[top, 1] = a, middle
+        spans[top + 1, 0], spans[top + 1, 1] = middle, b
         top += 2
     return best
+
+
+@njit(cache=True, nogil=True)
+def _node_least(tree: Tree, flutes: Flutes, n: int, x: float, y: float, z: float, above: bool) -> float:
+    """Return the least signed distance that any pose below a node can give."""
+    p, tool = tree.pose[n], tree.link[n, 4]
+    vx, vy, vz = x - p[0], y - p[1], z - p[2]
+    square = vx * vx + vy * vy + vz * vz
+    h = vx * p[3] + vy * p[4] + vz * p[5]
+    rho = math.sqrt(max(square - h * h, 0.0))
+    return flute_distance(flutes, tool, rho, h + flutes.middle[tool], above) - p[6] - p[7] * math.sqrt(square)
+
+
+@njit(cache=True, nogil=True)
+def nearest_span(x: float, y: float, z: float, tree: Tree, flutes: Flutes, best: float, by: int, bound: float, before: int, above: bool,
+                 enough: float, nodes: Ints, least: Floats, spans: Floats) -> tuple[float, int]:
+    """Return the smaller of `best` and the signed distance of a point to what cuts along the spans of a tree, and the move (else `by`).
+
+    Moves from row `before` on don't count. `above`: an upright plain cutter has also removed what is above it. The search ends at the first
+    value not above `enough`. nodes and least (k,), spans (k, 2) are room to work in.
+    """
+    top = 0
+    for r in range(len(tree.root)):
+        nodes[top], least[top] = tree.root[r], _node_least(tree, flutes, tree.root[r], x, y, z, above)
+        top += 1
+    while top > 0 and best > enough:
+        top -= 1
+        n = nodes[top]
+        if least[top] >= best - bound:
+            continue
+        left, right = tree.link[n, 0], tree.link[n, 1]
+        if left >= 0:
+            a, b = _node_least(tree, flutes, left, x, y, z, above), _node_least(tree, flutes, right, x, y, z, above)
+            if a < b:
+                left, right, a, b = right, left, b, a
+            nodes[top], least[top], nodes[top + 1], least[top + 1] = left, a, right, b
+            top += 2
+            continue
+        tool = tree.link[n, 4]
+        for k in range(tree.link[n, 2], tree.link[n, 3]):
+            row = tree.of[k]
+            if tree.move[row] >= before:
+                continue
+            w = tree.way[row]
+            endless = above and w[AZ] > 1.0 - _LEVEL and w[TURN] == 0.0
+            mx, my, mz = in_tool(w, x, y, z, 0.5 * (tree.low[k] + tree.high[k]))
+            turn = w[TURN] * (tree.high[k] - tree.low[k])
+            most = tree.reach[k] + 0.5 * turn * math.sqrt(mx * mx + my * my + mz * mz)
+            if flute_distance(flutes, tool, math.sqrt(mx * mx + my * my), mz, endless) - most >= best - bound:
+                continue
+            value = left_along(w, flutes, tool, x, y, z, tree.low[k], tree.high[k], best, bound, endless, spans)
+            if value < best:
+                best, by = value, tree.move[row]
+    return best, by
+
+
+@njit(cache=True, nogil=True)
+def span_poses(way: Floats, of: Ints, low: Floats, high: Floats, middle: Floats) -> tuple[Floats, Floats]:
+    """Return the middle pose of spans (k, 6), place of the middle of the flutes and axis, and how far and by what chord of angle (k, 2)
+    the others of the span differ.
+
+    middle (k,) is the height of that place above the tip.
+    """
+    pose, reach = np.empty((len(of), 6)), np.empty((len(of), 2))
+    for k in range(len(of)):
+        w, t, share = way[of[k]], 0.5 * (low[k] + high[k]), high[k] - low[k]
+        ax, ay, az = w[AX], w[AY], w[AZ]
+        px, py, pz = w[PX] + t * w[DX], w[PY] + t * w[DY], w[PZ] + t * w[DZ]
+        length = math.sqrt(w[DX] * w[DX] + w[DY] * w[DY] + w[DZ] * w[DZ]) * share
+        if w[RADIUS] > 0.0:
+            # Seen from its own tip the origin is at minus the tip's place.
+            ox, oy, oz = in_tool(w, 0.0, 0.0, 0.0, t)
+            nx, ny, nz = ay * w[EZ] - az * w[EY], az * w[EX] - ax * w[EZ], ax * w[EY] - ay * w[EX]
+            px, py, pz = -ox * w[EX] - oy * nx - oz * ax, -ox * w[EY] - oy * ny - oz * ay, -ox * w[EZ] - oy * nz - oz * az
+            climb = (w[DX] * ax + w[DY] * ay + w[DZ] * az) * share
+            length = math.sqrt(climb * climb + (w[RADIUS] * w[SWEEP] * share) ** 2)
+        elif w[TURN] > 0.0:
+            c, s = math.cos(t * w[TURN]), math.sin(t * w[TURN])
+            ax, ay, az = c * ax + s * w[EX], c * ay + s * w[EY], c * az + s * w[EZ]
+        half = 0.5 * w[TURN] * share
+        pose[k] = px + middle[k] * ax, py + middle[k] * ay, pz + middle[k] * az, ax, ay, az
+        reach[k, 0], reach[k, 1] = 0.5 * length + middle[k] * half, half
+    return pose, reach
+
+
+@njit(cache=True, nogil=True)
+def grow_tree(pose: Floats, reach: Floats, start: Ints, tools: Ints, nodes: Floats, links: Ints, root: Ints) -> int:
+    """Fill the nodes (m, 8) and links (m, 5) of trees over spans in their order; return how many nodes there are.
+
+    start (r + 1,): where the spans of each tree begin; tools (r,) theirs; root (r,) gets the first node of each.
+    """
+    count = 0
+    work = np.zeros((128, 3), np.int64)
+    for r in range(len(tools)):
+        root[r] = count
+        work[0, 0], work[0, 1], work[0, 2] = start[r], start[r + 1], count
+        count += 1
+        top = 1
+        while top > 0:
+            top -= 1
+            first, last, n = work[top, 0], work[top, 1], work[top, 2]
+            _bounding(pose, reach, first, last, nodes[n])
+            links[n, 0], links[n, 1], links[n, 2], links[n, 3], links[n, 4] = -1, -1, first, last, tools[r]
+            if last - first > BUCKET:
+                middle = (first + last) // 2
+                links[n, 0], links[n, 1] = count, count + 1
+                work[top, 0], work[top, 1], work[top, 2] = first, middle, count
+                work[top + 1, 0], work[top + 1, 1], work[top + 1, 2] = middle, last, count + 1
+                count += 2
+                top += 2
+    return count
+
+
+@njit(cache=True, nogil=True)
+def _bounding(pose: Floats, reach: Floats, first: int, last: int, out: Floats) -> None:
+    low, high, axis = pose[first, :3].copy(), pose[first, :3].copy(), np.zeros(3)
+    for k in range(first, last):
+        for c in range(3):
+            low[c], high[c] = min(low[c], pose[k, c]), max(high[c], pose[k, c])
+            axis[c] += pose[k, 3 + c]
+    size = math.sqrt(axis[0] * axis[0] + axis[1] * axis[1] + axis[2] * axis[2])
+    for c in range(3):
+        out[c] = 0.5 * (low[c] + high[c])
+        # Axes that cancel have no middle: any of them will do.
+        out[3 + c] = axis[c] / size if size > 1e-6 else pose[first, 3 + c]
+    out[6] = out[7] = 0.0
+    for k in range(first, last):
+        far, turn = 0.0, 0.0
+        for c in range(3):
+            far += (pose[k, c] - out[c]) ** 2
+            turn += (pose[k, 3 + c] - out[3 + c]) ** 2
+        out[6], out[7] = max(out[6], math.sqrt(far) + reach[k, 0]), max(out[7], math.sqrt(turn) + reach[k, 1])
 
 
 @njit(cache=True, nogil=True)
@@ -62,47 +380,59 @@ def move_boxes(moves: Floats, margin: Floats) -> Floats:
 
 @njit(cache=True, nogil=True)
 def left_loop(first: int, last: int, points: Floats, order: Ints, moves: Floats, cutter: Floats, low: Floats, cell_start: Ints,
-              cell_move: Ints, grid: Floats, shape: Ints, bound: float, left: Floats, nearest: Ints) -> None:
-    """Lower `left` (s,) to the smallest signed distance of each point to the fluted cutter of the moves listed in its cell.
+              cell_move: Ints, grid: Floats, shape: Ints, tree: Tree, flutes: Flutes, bound: float, left: Floats, nearest: Ints) -> None:
+    """Lower `left` (s,) to the smallest signed distance of each point to what cuts along the moves of its cell and of the tree.
 
     order (s,) says in which order points are visited. cutter (n, 3) is radius, corner radius and flute length of each move, low (n,) its
     lowest tip, by which the lists of a cell are sorted: what comes later is higher and can't be nearer. nearest (s,) gets the move.
     """
-    path, spans = np.zeros(MOVE_COLUMNS), np.zeros((96, 2))
+    nodes, least, spans = np.zeros(len(tree.root) + 128, np.int64), np.zeros(len(tree.root) + 128), np.zeros((96, 2))
     for k in range(first, last):
         n = order[k]
         x, y, z = points[n, 0], points[n, 1], points[n, 2]
+        best, by = left[n], nearest[n]
         i, j = int(math.floor((x - grid[0]) / grid[2])), int(math.floor((y - grid[1]) / grid[2]))
-        if i < 0 or j < 0 or i >= shape[0] or j >= shape[1]:
-            continue
-        cell = j * shape[0] + i
-        best, by = left[n], -1
-        for c in range(cell_start[cell], cell_start[cell + 1]):
-            m = cell_move[c]
-            if low[m] - z >= best:
-                break
-            d = left_by_move(x, y, z, moves[m], cutter[m, 0], cutter[m, 1], cutter[m, 2], best, bound, path, spans)
-            if d < best:
-                best, by = d, m
-        left[n], nearest[n] = best, by
+        if 0 <= i < shape[0] and 0 <= j < shape[1]:
+            cell = j * shape[0] + i
+            for c in range(cell_start[cell], cell_start[cell + 1]):
+                m = cell_move[c]
+                if low[m] - z >= best:
+                    break
+                d = left_by_move(x, y, z, moves[m], cutter[m, 0], cutter[m, 1], cutter[m, 2], best)
+                if d < best:
+                    best, by = d, m
+        left[n], nearest[n] = nearest_span(x, y, z, tree, flutes, best, by, bound, _NO_END, False, -np.inf, nodes, least,
+                                           spans)
 
 
 @njit(cache=True, nogil=True)
-def is_cut(points: Floats, before: int, moves: Floats, cutter: Floats, low: Floats, cell_start: Ints, cell_move: Ints, grid: Floats,
-           shape: Ints, bound: float, out: Bools) -> None:
-    """Say for each point (s, 3) whether one of the moves listed in its cell with a row below `before` has removed all above it."""
-    path, spans = np.zeros(MOVE_COLUMNS), np.zeros((96, 2))
-    for n in range(len(points)):
+def far_loop(first: int, last: int, points: Floats, order: Ints, tree: Tree, flutes: Flutes, bound: float, left: Floats,
+             nearest: Ints) -> None:
+    """Lower `left` (s,) as `left_loop` does, by the moves of a tree alone."""
+    nodes, least, spans = np.zeros(len(tree.root) + 128, np.int64), np.zeros(len(tree.root) + 128), np.zeros((96, 2))
+    for k in range(first, last):
+        n = order[k]
+        left[n], nearest[n] = nearest_span(points[n, 0], points[n, 1], points[n, 2], tree, flutes, left[n], nearest[n], bound, _NO_END,
+                                           False, -np.inf, nodes, least, spans)
+
+
+@njit(cache=True, nogil=True)
+def cut_loop(first: int, last: int, points: Floats, before: int, moves: Floats, cutter: Floats, low: Floats, cell_start: Ints,
+             cell_move: Ints, grid: Floats, shape: Ints, tree: Tree, flutes: Flutes, bound: float, out: Bools) -> None:
+    """Say for each point (s, 3) whether one of the moves with a row below `before` has removed it; upright plain ones also all above."""
+    nodes, least, spans = np.zeros(len(tree.root) + 128, np.int64), np.zeros(len(tree.root) + 128), np.zeros((96, 2))
+    for n in range(first, last):
         x, y, z = points[n, 0], points[n, 1], points[n, 2]
         out[n] = False
         i, j = int(math.floor((x - grid[0]) / grid[2])), int(math.floor((y - grid[1]) / grid[2]))
-        if i < 0 or j < 0 or i >= shape[0] or j >= shape[1]:
-            continue
-        cell = j * shape[0] + i
-        for c in range(cell_start[cell], cell_start[cell + 1]):
-            m = cell_move[c]
-            if low[m] > z:
-                break
-            if m < before and left_by_move(x, y, z, moves[m], cutter[m, 0], cutter[m, 1], np.inf, 1.0, bound, path, spans) <= bound:
-                out[n] = True
-                break
+        if 0 <= i < shape[0] and 0 <= j < shape[1]:
+            cell = j * shape[0] + i
+            for c in range(cell_start[cell], cell_start[cell + 1]):
+                m = cell_move[c]
+                if low[m] > z:
+                    break
+                if m < before and left_by_move(x, y, z, moves[m], cutter[m, 0], cutter[m, 1], np.inf, 1.0) <= bound:
+                    out[n] = True
+                    break
+        if not out[n]:
+            out[n] = nearest_span(x, y, z, tree, flutes, 2.0 * bound, -1, bound, before, True, bound, nodes, least, spans)[1] >= 0
