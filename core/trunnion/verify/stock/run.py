@@ -16,9 +16,11 @@ from trunnion.findings import BadInput
 from trunnion.geometry.arrays import Floats, Ints
 from trunnion.geometry.frame import Frame
 from trunnion.progress import QUIET, Progress
+from trunnion.verify.engagement import Tally, engagement_of, probes_of
 from trunnion.verify.kernels import field as kernel
 from trunnion.verify.kernels import strips as columns
 from trunnion.verify.motion import Moves, seen_from
+from trunnion.verify.profile import cones_of, profiles_of
 from trunnion.verify.stock.stock import Stock
 from trunnion.verify.sweep import Sweep
 
@@ -63,7 +65,9 @@ def run_stock(stock: Stock, moves: Moves, frame: Frame, sweep: Sweep | None = No
     n = len(moves)
     removed, depth, cell, body = np.zeros(n), np.full(n, -np.inf), np.full(n, -1), np.full(n, -np.inf)
     place = np.full((n, 3), np.nan)
-    bodies, body_start = _bodies(moves)
+    profiles, (cones, cone_start), probes = profiles_of(moves.tools, moves.bodies), cones_of(moves.tools), probes_of(moves)
+    profiles[:, kernel.OPEN] = np.inf
+    tally = Tally.empty(int(probes.start[-1]))
     work = np.cumsum(_cells_touched(moves, field.pitch))
     rims, rim_start = np.zeros(RIMS, np.int64), np.zeros(n + 1, np.int64)
     first = 0
@@ -72,9 +76,10 @@ def run_stock(stock: Stock, moves: Moves, frame: Frame, sweep: Sweep | None = No
         done = work[first - 1] if first else 0.0
         last = max(first + 1, int(np.searchsorted(work, done + CHUNK_CELLS)))
         rim_start[first] = 0
-        stop = kernel.stock_loop(first, min(last, n), field.top, field.low[:2], field.pitch, field.low[2], field.high[2], local.row,
-                                 moves.rapid, moves.cutters, bodies, body_start, moves.tool, CHORD, tolerance.RAPID_DEPTH, removed,
-                                 depth, cell, body, rims, rim_start)
+        stop, _ = kernel.stock_loop(first, min(last, n), field.top, field.low[:2], field.pitch, field.low[2], field.high[2], local.row,
+                                    moves.rapid, moves.tool, profiles, moves.bodies.arc, moves.bodies.piece, cones, cone_start, CHORD,
+                                    tolerance.RAPID_DEPTH, removed, depth, cell, body, rims, rim_start, probes.start, probes.circle,
+                                    probes.rings, tally.counted, tally.spans)
         for row in range(first, stop):
             if sweep is not None and rim_start[row + 1] > rim_start[row]:
                 progress.check()
@@ -85,15 +90,10 @@ def run_stock(stock: Stock, moves: Moves, frame: Frame, sweep: Sweep | None = No
     for row in map(int, np.flatnonzero((depth > tolerance.RAPID_DEPTH) & (cell >= 0) & np.isnan(place[:, 0]))):
         at = field.centre(int(cell[row]))
         place[row] = *at, local.row[row, [columns.Z_START, columns.Z_END]].min()
+    engaged = engagement_of(probes, tally, moves)
     return StockRun(removed=removed * field.pitch**2, rapid_depth=np.where(depth > tolerance.RAPID_DEPTH, depth, 0.0),
-                    rapid_place=frame.to_local(stock.frame.to_world(place)), body_depth=np.maximum(body, 0.0), engagement=np.zeros(n),
-                    depth_of_cut=np.zeros(n))
-
-
-def _bodies(moves: Moves) -> tuple[Floats, Ints]:
-    """Return what is above the flutes of every tool, and where each tool's begins."""
-    parts = [moves.pieces[a + 1:b] for a, b in zip(moves.piece_start[:-1], moves.piece_start[1:], strict=True)]
-    return np.vstack([np.zeros((0, moves.pieces.shape[1])), *parts]), np.cumsum([0, *(len(p) for p in parts)])
+                    rapid_place=frame.to_local(stock.frame.to_world(place)), body_depth=np.maximum(body, 0.0), engagement=engaged.largest,
+                    depth_of_cut=engaged.depth)
 
 
 def _cells_touched(moves: Moves, pitch: float) -> Floats:
