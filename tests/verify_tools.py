@@ -38,14 +38,106 @@ def flat(diameter):
 
 def bull(diameter, corner):
     """Return a maker of cutters of a diameter and a corner radius."""
+    form = "flat" if corner == 0.0 else "ball" if corner == diameter / 2 else "bull"
 
     def make(flute=30.0, number=1):
-        form = "flat" if corner == 0.0 else "ball" if corner == diameter / 2 else "bull"
-        return Tool(number=number, name=f"{form} {diameter:g}", form=form, diameter=diameter, corner_radius=corner, flute_length=flute,
-                    neck_diameter=diameter - 1.0, neck_length=flute + 1.0, shank_diameter=diameter, stickout=flute + 3.0,
-                    gauge_length=flute + 60.0, teeth=3, centre_cutting=True, helix_angle=30.0, holder=HOLDER)
+        return tool_of(form, diameter=diameter, corner_radius=corner, flute_length=flute, number=number)
 
     return make
+
+
+def tool_of(form, *, diameter=10.0, flute_length=30.0, **fields):
+    """Return a tool of a form, with a neck 1 mm long and 1 mm thinner, a shank of 2 mm and the test holder unless fields say otherwise."""
+    plain = {"number": 1, "name": f"{form} {diameter:g}", "form": form, "corner_radius": 0.0, "neck_diameter": diameter - 1.0,
+             "neck_length": flute_length + 1.0, "shank_diameter": diameter, "stickout": flute_length + 3.0,
+             "gauge_length": flute_length + 60.0, "teeth": 3, "centre_cutting": True, "helix_angle": 30.0, "holder": HOLDER}
+    return Tool(diameter=diameter, flute_length=flute_length, **{**plain, **fields})
+
+
+FORMS = {
+    "flat": tool_of("flat"),
+    "bull": tool_of("bull", corner_radius=2.0),
+    "ball": tool_of("ball", corner_radius=5.0, flute_length=8.0),
+    "taper": tool_of("taper", diameter=6.0, corner_radius=1.0, taper_angle=10.0, flute_length=20.0, neck_diameter=13.0,
+                     shank_diameter=13.0),
+    "taper ball": tool_of("taper", diameter=4.0, corner_radius=2.0, taper_angle=5.0, flute_length=12.0),
+    "barrel": tool_of("barrel", corner_radius=2.0, barrel_radius=60.0, flute_length=28.0, neck_diameter=9.0),
+    "t-slot": tool_of("t-slot", diameter=20.0, corner_radius=0.5, flute_length=6.0, neck_diameter=8.0, neck_length=16.0,
+                      shank_diameter=12.0, stickout=20.0),
+    "drill": tool_of("drill", diameter=8.0, point_angle=120.0),
+    # A cone, an arc that bends outwards, a cylinder, and a cone that goes in again.
+    "form": tool_of("form", diameter=14.0, flute_length=20.0, outline=(
+        (1.0, 0.0, 0.0), (4.0, 2.0, 0.09), (7.0, 5.0, 0.0), (7.0, 12.0, 0.0), (5.0, 20.0, 0.0)), neck_diameter=10.0),
+}
+"""One tool of every form, all short enough to touch with every part of it."""
+
+
+def supports_of(tool):
+    """Return a tool's convex parts from below, written anew: rows of arcs (r, z, radius, first and last angle), z low, z high, what it is.
+
+    An arc stands for the lines that touch it; their normals' angles are from straight out, upwards. The depth of a point is its smallest
+    distance to all these lines.
+    """
+    parts = [_cutting(tool)]
+    parts += [([_line(math.atan2(r0 - r1, z1 - z0), r0, z0)], z0, z1, (r0, r1), 1) for z0, r0, z1, r1 in tool.profile()]
+    found = []
+    for k, (rows, low, high, (below, above), kind) in enumerate(parts):
+        under, over = (parts[k - 1][3][1] if k else 0.0), (parts[k + 1][3][0] if k + 1 < len(parts) else 0.0)
+        if not k or below > under + 1e-9:
+            rows = [(below, low, 0.0, DOWN, rows[0][3]), *rows]
+        if above > over + 1e-9:
+            rows = [*rows, (above, high, 0.0, rows[-1][4], -DOWN)]
+        found.append((rows, low, high, kind))
+    return found
+
+
+DOWN = -math.pi / 2
+
+
+def _cutting(tool):
+    r, c, top = tool.radius, tool.corner_radius, tool.flute_length
+    if tool.form == "taper":
+        lean = math.radians(tool.taper_angle)
+        edge = r - c + c * math.cos(lean) + (top - c + c * math.sin(lean)) * math.tan(lean)
+        return [(r - c, c, c, DOWN, -lean)], 0.0, top, (r - c, edge), 0
+    if tool.form == "barrel":
+        across, height = r - tool.barrel_radius, tool.widest_height
+        touch, end = math.atan2(c - height, -across), math.asin((top - height) / tool.barrel_radius)
+        rows = [(0.0, c, c, DOWN, touch), (across, height, tool.barrel_radius, touch, end)]
+        return rows, 0.0, top, (0.0, across + tool.barrel_radius * math.cos(end)), 0
+    if tool.form == "t-slot":
+        return [(r - c, c, c, DOWN, 0.0), (r - c, top - c, c, 0.0, -DOWN)], 0.0, top, (r - c, r - c), 0
+    if tool.form == "drill":
+        half = math.radians(tool.point_angle) / 2
+        return [(0.0, 0.0, 0.0, DOWN, -half), (r, r / math.tan(half), 0.0, -half, 0.0)], 0.0, top, (0.0, r), 0
+    if tool.form == "form":
+        # The outline of FORMS: what a bulge of 0.09 between (4, 2) and (7, 5) is, by its half angle of 2 atan 0.09.
+        half = 2.0 * math.atan(0.09)
+        radius = math.hypot(3.0, 3.0) / 2.0 / math.sin(half)
+        away = radius * math.cos(half) * math.sqrt(0.5)
+        cone, middle, slope = -math.atan2(3.0, 2.0), -math.pi / 4, math.atan2(2.0, 8.0)
+        rows = [(1.0, 0.0, 0.0, DOWN, cone), (4.0, 2.0, 0.0, cone, middle - half),
+                (5.5 - away, 3.5 + away, radius, middle - half, middle + half), (7.0, 5.0, 0.0, middle + half, 0.0),
+                (7.0, 12.0, 0.0, 0.0, slope)]
+        return rows, 0.0, top, (1.0, 5.0), 0
+    return [(r - c, c, c, DOWN, 0.0)], 0.0, top, (r - c, r), 0
+
+
+def _line(angle, r, z):
+    return r, z, 0.0, angle, angle
+
+
+def plain_depth(part, rho, h, rise=0.0):
+    """Return how deep points (n,) are in one of `supports_of`, swept upwards by `rise`; -inf above and below its ends."""
+    rows, low, high, _ = part
+    depth = np.full(np.shape(rho), np.inf)
+    for r, z, radius, first, last in rows:
+        for a, b, at in ((first, min(last, 0.0), np.minimum(h, high)), (max(first, 0.0), last, np.maximum(h - rise, low))):
+            if a <= b:
+                middle, angle = (a + b) / 2, np.arctan2(at - z, rho - r)
+                nearest = middle + np.clip(np.remainder(angle - middle + math.pi, math.tau) - math.pi, a - middle, b - middle)
+                depth = np.minimum(depth, radius - np.cos(nearest) * (rho - r) - np.sin(nearest) * (at - z))
+    return np.where((h >= low) & (h <= high + rise), depth, -np.inf)
 
 
 def program_section(tool, stops, operation="op", rapid_to=0):

@@ -15,19 +15,19 @@ from trunnion.part.surfaces import STRIP_COLUMNS, Edge, Face, Guide, Profile, st
 from trunnion.verify.contact import PartContact
 from trunnion.verify.kernels import strips as kernel
 from trunnion.verify.motion import moves_of
-from verify_tools import bull, flat, program_section
+from verify_tools import FORMS, plain_depth, program_section, supports_of
 
 NUMBER = st.integers(-1000, 1000).map(lambda n: n / 50)
 
 
-def sampled_depth(strip, move, piece, rounds=10, grid=(9, 15, 9), kept=6):
-    """Return the deepest that a piece enters a strip along a move, by samples of (t, s, u) that close in on the best few places."""
+def sampled_depth(strip, move, part, rounds=10, grid=(9, 15, 9), kept=6):
+    """Return the deepest that a part of a tool enters a strip, by samples of move, guide and profile that close in on the best places."""
     best, boxes = -np.inf, [np.array([[0.0, 1.0]] * 3)]
     shares = np.stack(np.meshgrid(*(np.linspace(0.0, 1.0, n) for n in grid), indexing="ij"), axis=-1).reshape(-1, 3)
     size = np.ones(3)
     for _ in range(rounds):
         places = np.vstack([box[:, 0] + shares * (box[:, 1] - box[:, 0]) for box in boxes])
-        depth = _depths(strip, move, piece, *places.T)
+        depth = _depths(strip, move, part, *places.T)
         best = max(best, float(depth.max()))
         size = size * 0.35
         boxes = []
@@ -39,7 +39,7 @@ def sampled_depth(strip, move, piece, rounds=10, grid=(9, 15, 9), kept=6):
     return best
 
 
-def _depths(strip, move, piece, t, s, u):
+def _depths(strip, move, part, t, s, u):
     x, y, z = surface_points(strip, s, u)
     tip = move[kernel.Z_START] + t * (move[kernel.Z_END] - move[kernel.Z_START])
     if move[kernel.KIND] == 0.0:
@@ -47,8 +47,11 @@ def _depths(strip, move, piece, t, s, u):
     else:
         angle = move[kernel.START_ANGLE] + t * move[kernel.SWEEP]
         px, py = move[kernel.CX] + move[kernel.RADIUS] * np.cos(angle), move[kernel.CY] + move[kernel.RADIUS] * np.sin(angle)
-    rho, h = np.hypot(x - px, y - py), z - tip
-    return np.where((h >= piece[3]) & (h <= piece[4]), plain_depth(piece, rho, h), -np.inf)
+    # Upright, a move is one body, swept from its lowest to its highest place.
+    upright = move[kernel.KIND] == 0.0 and move[kernel.X0] == move[kernel.X1] and move[kernel.Y0] == move[kernel.Y1]
+    ends = move[[kernel.Z_START, kernel.Z_END]]
+    tip, rise = (ends.min(), np.ptp(ends)) if upright else (tip, 0.0)
+    return plain_depth(part, np.hypot(x - px, y - py), z - tip, rise)
 
 
 def surface_points(strip, s, u):
@@ -66,21 +69,6 @@ def surface_points(strip, s, u):
         return strip[surfaces.OX] + w * np.cos(along), strip[surfaces.OY] + w * np.sin(along), z
     return (strip[surfaces.OX] - w * strip[surfaces.DY] + along * strip[surfaces.DX],
             strip[surfaces.OY] + w * strip[surfaces.DX] + along * strip[surfaces.DY], z)
-
-
-def plain_depth(piece, rho, h):
-    """Return the depth in a piece, written anew: the distance to the nearest side of a convex body."""
-    if piece[0] == 0.0:
-        radius, corner = piece[1], piece[2]
-        out = np.hypot(np.maximum(rho - radius + corner, 0.0), np.maximum(corner - h, 0.0))
-        core = np.minimum(np.maximum(rho - radius + corner, corner - h), 0.0)
-        return corner - out - core
-    _, r0, r1, z0, z1, low, high = piece
-    length = math.hypot(r1 - r0, z1 - z0)
-    side = ((z1 - z0) * (r0 - rho) + (r1 - r0) * (h - z0)) / length
-    side = np.minimum(side, max(r0, r1) - rho)
-    side = np.minimum(side, h - z0) if low else side
-    return np.minimum(side, z1 - h) if high else side
 
 
 @st.composite
@@ -104,13 +92,6 @@ def strips(draw):
 
 
 @st.composite
-def tools(draw):
-    """A flat or bull cutter with a neck, a thicker shank and a conical holder, short enough to touch with all of it."""
-    make = bull(10.0, draw(st.sampled_from([0.5, 2.0, 5.0]))) if draw(st.booleans()) else flat(draw(st.sampled_from([6.0, 12.0])))
-    return make(flute=draw(st.sampled_from([2.0, 8.0, 30.0])))
-
-
-@st.composite
 def paths(draw):
     """One rapid above and one block: a line or an arc, level, upright or climbing."""
     start = [draw(NUMBER), draw(NUMBER), draw(st.floats(-2.0, 3.0))]
@@ -127,23 +108,22 @@ def paths(draw):
     return start, [centre[0] + c * away[0] - s * away[1], centre[1] + s * away[0] + c * away[1], z], centre
 
 
-@settings(deadline=None, max_examples=30, phases=[Phase.explicit, Phase.generate])
-@given(strip=strips(), tool=tools(), path=paths())
-def test_the_deepest_of_a_random_block_is_within_the_bound_of_a_far_finer_search(strip, tool, path):
-    moves = moves_of([program_section(tool, [path[0], path[1:]])])
+@settings(deadline=None, max_examples=40, phases=[Phase.explicit, Phase.generate])
+@given(strip=strips(), form=st.sampled_from(sorted(FORMS)), path=paths())
+def test_the_deepest_of_a_random_block_is_within_the_bound_of_a_far_finer_search(strip, form, path):
+    moves = moves_of([program_section(FORMS[form], [path[0], path[1:]])])
     empty = np.zeros((0, STRIP_COLUMNS))
     contact = PartContact(surfaces_from([Face(1, strip[None], empty, np.zeros((0, 4)))])).along(moves)
-    pieces = moves.pieces
-    cutter, above = contact.depth[1]
-    assert cutter == approx(_deepest(strip, moves.row[1], pieces[:1], cutter), abs=tolerance.CONTACT_BOUND)
-    # What is above the flutes counts in its swept body on an upright move, which may be deeper than it is at any moment.
-    if path[0][:2] != path[1][:2]:
-        assert above == approx(_deepest(strip, moves.row[1], pieces[1:], above), abs=tolerance.CONTACT_BOUND)
+    parts = supports_of(FORMS[form])
+    for kind in (0, 1):
+        measured = contact.depth[1, kind]
+        expected = _deepest(strip, moves.row[1], [part for part in parts if part[3] == kind], measured)
+        assert measured == approx(expected, abs=tolerance.CONTACT_BOUND)
 
 
-def _deepest(strip, move, pieces, measured):
+def _deepest(strip, move, parts, measured):
     """Return the reference, searched once more and far closer where the quick search stays below what was measured."""
-    quick = max([0.0, *(sampled_depth(strip, move, p) for p in pieces)])
+    quick = max([0.0, *(sampled_depth(strip, move, p) for p in parts)])
     if quick >= measured - tolerance.CONTACT_BOUND:
         return quick
-    return max(sampled_depth(strip, move, p, rounds=14, grid=(31, 51, 31), kept=20) for p in pieces)
+    return max(sampled_depth(strip, move, p, rounds=14, grid=(31, 51, 31), kept=20) for p in parts)
