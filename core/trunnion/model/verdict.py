@@ -4,11 +4,16 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 from enum import StrEnum
+from typing import TypeAlias
 
 import numpy as np
+import numpy.typing as npt
 
 from trunnion.findings import Finding
 from trunnion.geometry.arrays import Floats, Ints
+
+Smalls: TypeAlias = npt.NDArray[np.float32]
+Small: TypeAlias = npt.NDArray[np.int32]
 
 
 class Outcome(StrEnum):
@@ -37,8 +42,15 @@ class FaceProof:
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class OperationProof:
-    """What was measured on one operation: deepest gouge, collisions (shank, holder), rapids in stock, time at the machine, removed volume
-    (mm3)."""
+    """What was measured on one operation.
+
+    gouge: deepest, mm; gouges: deepest by face tag, of faces that are entered by more than can be measured, deepest first; collisions of
+    shank, holder or anything with fixtures; time_s at the machine; removed mm3; air_share of its feed moves' way.
+    left_min, left_mean, left_max: material on the samples that it cut last or came nearest to, mm. engaged, engaged_mean: angle of the
+    cutter's circumference in material, rad, largest and mean over the way that cuts; depth: largest depth of cut along the axis, mm.
+    rate, rate_mean: removal rate, cm3/min; power kW and torque Nm at the cutter, largest, and power_limit, what the spindle gives at its
+    speed; chip: thickest chip, mm.
+    """
 
     operation: str
     setup: str
@@ -49,6 +61,53 @@ class OperationProof:
     time_s: float
     removed: float
     air_share: float
+    gouges: tuple[tuple[int, float], ...] = ()
+    left_min: float = 0.0
+    left_mean: float = 0.0
+    left_max: float = 0.0
+    engaged: float = 0.0
+    engaged_mean: float = 0.0
+    depth: float = 0.0
+    rate: float = 0.0
+    rate_mean: float = 0.0
+    power: float = 0.0
+    power_limit: float = 0.0
+    torque: float = 0.0
+    chip: float = 0.0
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Offer:
+    """What the proof offers for a finding: `kind` feed (run blocks `first` to `last` of the operation at `feed` mm/min) or rest (cut only
+    what still stands there). Blocks count from 0 in the operation; `reason` is the finding's code."""
+
+    kind: str
+    operation: str
+    setup: str
+    reason: str
+    first: int
+    last: int
+    feed: float = 0.0
+
+
+@dataclass(frozen=True, slots=True, eq=False, kw_only=True)
+class BlockProof:
+    """What was measured block by block in one setup, for charts and playback, n blocks in the program's order.
+
+    section (n,) the operation's place in the setup; time (n,) s; gouge (n,) mm, collision (n,) mm of shank or holder; removed (n,) mm3;
+    engaged (n,) rad; depth (n,) mm; rate (n,) cm3/min; power (n,) kW. 32-bit floats.
+    """
+
+    setup: str
+    section: Small
+    time: Smalls
+    gouge: Smalls
+    collision: Smalls
+    removed: Smalls
+    engaged: Smalls
+    depth: Smalls
+    rate: Smalls
+    power: Smalls
 
 
 @dataclass(frozen=True, slots=True, eq=False, kw_only=True)
@@ -81,6 +140,8 @@ class Verdict:
     faces: tuple[FaceProof, ...] = ()
     findings: tuple[Finding, ...] = ()
     deviation: Deviation = NO_DEVIATION
+    blocks: tuple[BlockProof, ...] = ()
+    offers: tuple[Offer, ...] = ()
     accepted_by: str = ""
 
     @property

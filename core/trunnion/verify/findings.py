@@ -7,6 +7,7 @@ import numpy as np
 from trunnion.findings import Finding, error
 from trunnion.geometry.arrays import Floats, Ints
 from trunnion.model.program import ProgramSection
+from trunnion.verify.places import block_of, place_of
 from trunnion.verify.settings import ProofSettings
 from trunnion.verify.setups import SetupProof
 
@@ -23,17 +24,6 @@ def setup_findings(proof: SetupProof, tags: Ints, settings: ProofSettings) -> li
         found += _collisions(proof, section, rows, tags, settings)
         found += _rapids(proof, section, rows)
     return found
-
-
-def block_of(proof: SetupProof, section: ProgramSection, row: int) -> str:
-    """Return where a move stands in its program: the line of the text when it was read back, else the block of its operation."""
-    block = int(proof.moves.block[row])
-    return f"line {section.block_lines[block]}" if block < len(section.block_lines) else f"block {block}"
-
-
-def place_of(point: Floats) -> str:
-    """Return a place in words."""
-    return "x {:.2f} y {:.2f} z {:.2f}".format(*(float(v) + 0.0 for v in point))
 
 
 def _gouges(proof: SetupProof, section: ProgramSection, rows: Ints, tags: Ints, settings: ProofSettings) -> list[Finding]:

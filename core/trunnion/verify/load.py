@@ -1,9 +1,9 @@
 """What cutting asks of cutter and spindle, move by move: removal rate, thickest chip, power and torque.
 
 The stock engine says what a move removes and over which angle the cutter is engaged. Both come in steps of the stock's cells, so volumes
-are taken over a stretch of the path around each move. Power follows Kienzle: k_c = k_c1.1 h^-m with the mean chip thickness h over the arc of
-contact (Kienzle, Die Bestimmung von Kräften und Leistungen an spanenden Werkzeugen, VDI-Z 94, 1952; the constants stand with their source
-in the catalogue of materials).
+are taken over a stretch of the path around each move. Power follows Kienzle: k_c = k_c1.1 h^-m with the mean chip thickness h over the arc
+of contact (O. Kienzle, Die Bestimmung von Kräften und Leistungen an spanenden Werkzeugen und Werkzeugmaschinen, VDI-Z 94, 1952); the
+constants stand with their source in the catalogue of materials.
 """
 
 from __future__ import annotations

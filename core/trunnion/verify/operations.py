@@ -1,30 +1,73 @@
-"""What was measured on each operation of a setup."""
+"""What was measured on each operation of a setup, and on each of its blocks."""
 
 from __future__ import annotations
 
+import numpy as np
+
+from trunnion import tolerance
+from trunnion.geometry.arrays import Floats, Ints
 from trunnion.model.material import Machine
-from trunnion.model.verdict import OperationProof, Outcome
+from trunnion.model.verdict import BlockProof, OperationProof, Outcome
+from trunnion.units import MM_PER_METRE, SECONDS_PER_MINUTE
 from trunnion.verify.settings import ProofSettings
 from trunnion.verify.setups import SetupProof
 
 
-def operation_proofs(proof: SetupProof, machine: Machine, settings: ProofSettings) -> list[OperationProof]:
-    """Return the measurements of every section of a setup's program, in order."""
+def operation_proofs(proof: SetupProof, tags: Ints, area: Floats, machine: Machine, settings: ProofSettings) -> list[OperationProof]:
+    """Return the measurements of every section of a setup's program, in order.
+
+    tags (f,) are those of the face rows; area (s,) mm2 that each sample stands for.
+    """
     collides = proof.collides(settings.tolerance)
+    load, stock, moves = proof.load, proof.stock, proof.moves
+    served = np.where(proof.nearest >= 0, moves.section[proof.nearest], -1) if len(moves) else np.zeros(0, int)
     found = []
     for k, section in enumerate(proof.program.sections):
-        rows = proof.moves.section == k
-        rapids = rows & (proof.stock.rapid_depth > 0.0)
+        rows = moves.section == k
+        feeds = rows & ~moves.rapid
+        cuts = feeds & (stock.removed > 0.0)
+        rapids = rows & (stock.rapid_depth > 0.0)
         gouge = float(proof.contact.depth[rows, 0].max(initial=0.0))
-        feeds = rows & ~proof.moves.rapid
-        run = float(proof.moves.length[feeds].sum())
-        air = float(proof.moves.length[feeds & (proof.stock.removed <= 0.0)].sum())
         failed = gouge > settings.tolerance or collides[rows].any() or rapids.any()
         new_tool = k == 0 or proof.program.sections[k - 1].tool.number != section.tool.number
+        removed = float(stock.removed[rows].sum())
+        left = proof.left[served == k]
         found.append(OperationProof(
             operation=section.operation, setup=proof.program.setup.name, outcome=Outcome.FAILED if failed else Outcome.PASSED, gouge=gouge,
             collisions=int(collides[rows].sum()), rapids_in_stock=int(rapids.sum()),
-            time_s=float(proof.times.seconds[rows].sum()) + machine.tool_change_s * new_tool,
-            removed=float(proof.stock.removed[rows].sum()),
-            air_share=air / run if run > 0.0 else 0.0))
+            time_s=float(proof.times.seconds[rows].sum()) + machine.tool_change_s * new_tool, removed=removed,
+            air_share=1.0 - _share(float(moves.length[cuts].sum()), float(moves.length[feeds].sum()), 1.0),
+            gouges=_gouges(proof, rows, tags),
+            left_min=float(left.min(initial=np.inf)) if len(left) else 0.0, left_max=float(left.max(initial=-np.inf)) if len(left) else 0.0,
+            left_mean=float(np.average(left, weights=area[served == k])) if len(left) else 0.0,
+            engaged=float(stock.engagement[feeds].max(initial=0.0)),
+            engaged_mean=_share(float((stock.engagement * moves.length)[cuts].sum()), float(moves.length[cuts].sum())),
+            depth=float(stock.depth_of_cut[feeds].max(initial=0.0)), rate=float(load.rate[rows].max(initial=0.0)),
+            rate_mean=_share(removed / MM_PER_METRE * SECONDS_PER_MINUTE, float(proof.times.seconds[cuts].sum())),
+            power=float(load.power[rows].max(initial=0.0)), power_limit=machine.power_at(section.spindle),
+            torque=float(load.torque[rows].max(initial=0.0)), chip=float(load.chip[rows].max(initial=0.0))))
     return found
+
+
+def block_proof(proof: SetupProof) -> BlockProof:
+    """Return what was measured block by block."""
+    def small(values: Floats) -> np.ndarray:
+        return values.astype(np.float32)
+
+    return BlockProof(
+        setup=proof.program.setup.name, section=proof.moves.section.astype(np.int32), time=small(proof.times.seconds),
+        gouge=small(proof.contact.depth[:, 0]), collision=small(np.maximum(proof.contact.depth[:, 1], proof.stock.body_depth)),
+        removed=small(proof.stock.removed), engaged=small(proof.stock.engagement), depth=small(proof.stock.depth_of_cut),
+        rate=small(proof.load.rate), power=small(proof.load.power))
+
+
+def _gouges(proof: SetupProof, rows: np.ndarray, tags: Ints) -> tuple[tuple[int, float], ...]:
+    """Return the deepest gouge by face tag, of moves that are deepest there, where it is more than can be measured."""
+    depth, face = proof.contact.depth[rows, 0], proof.contact.face[rows, 0]
+    real = depth > tolerance.CONTACT_BOUND
+    worst = {int(tags[f]): float(depth[real & (face == f)].max()) for f in np.unique(face[real])}
+    return tuple(sorted(worst.items(), key=lambda pair: (-pair[1], pair[0])))
+
+
+def _share(part: float, whole: float, empty: float = 0.0) -> float:
+    return part / whole if whole > 0.0 else empty

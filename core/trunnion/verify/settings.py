@@ -25,3 +25,13 @@ class ProofSettings:
                                 "blank and cuts nothing from below, all three otherwise.")
     threads: int = setting(0, unit="", low=0, high=256, label="Threads", help="Cores that the proof works on; 0 takes all there are. The "
                            "result is the same.")
+    power: float = setting(1.0, unit="of the spindle's", low=0.05, high=2.0, label="Power",
+                           help="Share of the spindle's power at its speed that cutting may take; more is an error.")
+    removal: float = setting(3.5, unit="times the chosen", low=1.0, high=20.0, label="Removal rate",
+                             help="How far the removal rate may pass what an operation's feed is chosen for, or what the material's tables "
+                                  "allow its cutter when that is more. A first cut in full width at reduced feed comes to 2.4.")
+    chip: float = setting(1.5, unit="times the chosen", low=1.0, high=5.0, label="Chip thickness",
+                          help="How far the thickest chip may pass that of the chosen engagement, or the material's largest feed per tooth "
+                               "when that is more.")
+    air: float = setting(0.8, unit="of the way", low=0.0, high=1.0, label="Air cutting",
+                         help="Share of an operation's feed moves that may cut nothing before it is remarked.")

@@ -15,16 +15,17 @@ from trunnion.model.blank import Blank
 from trunnion.model.material import Machine, Material
 from trunnion.model.program import Program
 from trunnion.model.tool import Tool
-from trunnion.model.verdict import Outcome, Verdict
+from trunnion.model.verdict import Offer, Outcome, Verdict
 from trunnion.part.part import Part
 from trunnion.part.surfaces import Surfaces, surfaces_of
 from trunnion.progress import QUIET, Progress
 from trunnion.verify.contact import PartContact
 from trunnion.verify.coverage import Samples, samples_of
 from trunnion.verify.covered import Side, covered
+from trunnion.verify.excess import load_findings
 from trunnion.verify.findings import setup_findings
 from trunnion.verify.limits import limit_findings
-from trunnion.verify.operations import operation_proofs
+from trunnion.verify.operations import block_proof, operation_proofs
 from trunnion.verify.settings import ProofSettings
 from trunnion.verify.setups import bundles_of, prove_setup
 from trunnion.verify.stock import Stock
@@ -56,17 +57,21 @@ def prove_surfaces(programs: Sequence[Program], surfaces: Sequence[Surfaces], bl
         points = _moved(samples, frames[0], side.frame)
         proofs.append(prove_setup(program, side.contact, stock, machine, material, settings, points, share))
     findings: list[Finding] = []
+    offers: list[Offer] = []
     for p in proofs:
         findings += setup_findings(p, surfaces[0].tag, settings)
+        said, offered = load_findings(p, machine, material, settings)
+        findings, offers = findings + said, offers + offered
         findings += limit_findings(p.program.setup.name, p.program.sections, p.moves, p.stands, machine)
     whole = covered(samples, surfaces[0].tag, sides, blank, proofs, tools, settings, planned_faces, progress.part(0.8, 1.0))
     findings += whole.findings
-    operations = tuple(o for p in proofs for o in operation_proofs(p, machine, settings))
+    operations = tuple(o for p in proofs for o in operation_proofs(p, surfaces[0].tag, samples.area, machine, settings))
     return Verdict(
         outcome=outcome_of(findings), coverage=whole.coverage, reachable=whole.reachable,
         gouge=max((o.gouge for o in operations), default=0.0), collisions=sum(o.collisions for o in operations),
         rapids_in_stock=sum(o.rapids_in_stock for o in operations), machining_time_s=sum(o.time_s for o in operations),
-        operations=operations, faces=whole.faces, findings=tuple(findings), deviation=whole.deviation)
+        operations=operations, faces=whole.faces, findings=tuple(findings), deviation=whole.deviation,
+        blocks=tuple(block_proof(p) for p in proofs), offers=tuple(offers))
 
 
 def outcome_of(findings: Sequence[Finding]) -> Outcome:

@@ -1,0 +1,151 @@
+"""Whether cutter and spindle bear what they are asked, and what to offer where they don't: another feed, or a rest operation.
+
+An operation's feed is chosen for an engagement: `ProgramSection` says which. Where more is in front of the cutter, its load is held against
+that of the chosen data, or of what the material's tables allow this cutter when that is more, with a margin.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable
+from dataclasses import dataclass
+from itertools import pairwise
+
+import numpy as np
+
+from trunnion.findings import Finding, error, remark, warning
+from trunnion.geometry.arrays import Bools, Floats, Ints
+from trunnion.model.material import Machine, Material
+from trunnion.model.program import ProgramSection
+from trunnion.model.verdict import Offer
+from trunnion.units import MM_PER_METRE, SECONDS_PER_MINUTE
+from trunnion.verify.load import NEWTON_METRES
+from trunnion.verify.places import block_of
+from trunnion.verify.settings import ProofSettings
+from trunnion.verify.setups import SetupProof
+
+MOST_OFFERS = 5
+"""Runs of blocks that one operation is offered another feed for; the worst come first."""
+AIR_WORTH = 10.0
+"""s: less time in air than this is not worth another operation."""
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Chosen:
+    """Load that an operation may bring: removal rate cm3/min and thickest chip mm; infinite where nothing is known."""
+
+    rate: float
+    chip: float
+
+
+def load_findings(proof: SetupProof, machine: Machine, material: Material | None,
+                  settings: ProofSettings) -> tuple[list[Finding], list[Offer]]:
+    """Return what is said of the load on cutter and spindle in a setup, and what is offered for it."""
+    found: list[Finding] = []
+    offers: list[Offer] = []
+    for k, section in enumerate(proof.program.sections):
+        rows = np.flatnonzero((proof.moves.section == k) & ~proof.moves.rapid)
+        if len(rows):
+            for said, offered in (_power(proof, section, rows, machine, material, settings),
+                                  _excess(proof, section, rows, material, settings), _air(proof, section, rows, settings)):
+                found += said
+                offers += offered
+    return found, offers
+
+
+def chosen_load(section: ProgramSection, material: Material | None) -> Chosen:
+    """Return the load that a section's cutting data were chosen for, or the material's tables allow its cutter when that is more."""
+    tool = section.tool
+    feed = section.feed or float(section.path.feed.max(initial=0.0))
+    area, angle = section.width * section.depth, _angle(section.width, tool.diameter)
+    per_tooth = feed / (tool.teeth * section.spindle) if section.spindle > 0.0 else 0.0
+    chip = per_tooth * math.sin(min(angle, math.pi / 2.0))
+    if material is not None:
+        area = max(area, material.depth_factor * material.width_factor * tool.diameter**2)
+        chip = max(chip, _thickest(material, tool.diameter))
+    return Chosen(rate=area * feed / MM_PER_METRE or math.inf, chip=chip or math.inf)
+
+
+def _angle(width: float, diameter: float) -> float:
+    """Return the angle that a cutter is engaged over at a width from its side."""
+    return math.acos(max(1.0 - 2.0 * min(width, diameter) / diameter, -1.0))
+
+
+def _thickest(material: Material, diameter: float) -> float:
+    """Return the largest feed per tooth of the material's table at a diameter, straight between rows and in proportion below them."""
+    rows = [(d, most) for d, _, most in material.feeds]
+    if diameter <= rows[0][0]:
+        return rows[0][1] * diameter / rows[0][0]
+    for (d0, f0), (d1, f1) in pairwise(rows):
+        if diameter <= d1:
+            return f0 + (f1 - f0) * (diameter - d0) / (d1 - d0)
+    return rows[-1][1]
+
+
+Said = tuple[list[Finding], list[Offer]]
+
+
+def _power(proof: SetupProof, section: ProgramSection, rows: Ints, machine: Machine, material: Material | None,
+           settings: ProofSettings) -> Said:
+    if material is None:
+        return [], []
+    limit = machine.power_at(section.spindle) * settings.power
+    power = proof.load.power[rows]
+    over = power > limit
+    if not over.any():
+        return [], []
+    worst = rows[int(np.argmax(power))]
+    offers = _feeds(proof, section, rows, over, "verify.power", lambda at: (limit / proof.load.power[at]) ** (1.0 / (
+        1.0 - material.force_exponent)))
+    torque = NEWTON_METRES * limit / section.spindle
+    return [error("verify.power", f"{section.operation} asks {proof.load.power[worst]:.1f} kW ({proof.load.torque[worst]:.0f} Nm) of the "
+                  f"spindle at {section.spindle:.0f} 1/min, {machine.title} gives {limit:.1f} kW ({torque:.0f} Nm)", section.operation,
+                  block_of(proof, section, worst), remedy=_feed_remedy(proof, section, offers))], offers
+
+
+def _excess(proof: SetupProof, section: ProgramSection, rows: Ints, material: Material | None, settings: ProofSettings) -> Said:
+    chosen, load = chosen_load(section, material), proof.load
+    times = np.maximum(load.rate / (settings.removal * chosen.rate), load.chip / (settings.chip * chosen.chip))
+    over = times[rows] > 1.0
+    if not over.any():
+        return [], []
+    worst = rows[int(np.argmax(times[rows]))]
+    offers = _feeds(proof, section, rows, over, "verify.load", lambda at: 1.0 / times[at])
+    return [warning("verify.load", f"{section.operation} removes {load.rate[worst]:.0f} cm3/min in chips of {load.chip[worst]:.2f} mm with "
+                    f"{math.degrees(proof.stock.engagement[worst]):.0f} degrees of {section.tool.name} engaged; its data are for "
+                    f"{chosen.rate:.0f} cm3/min and {chosen.chip:.2f} mm", section.operation, block_of(proof, section, worst),
+                    remedy=_feed_remedy(proof, section, offers))], offers
+
+
+def _feeds(proof: SetupProof, section: ProgramSection, rows: Ints, over: Bools, reason: str,
+           share: Callable[[Ints], Floats]) -> list[Offer]:
+    """Return the feeds that keep a limit, for runs of blocks that pass it, the largest change first."""
+    offers = []
+    edges = np.flatnonzero(np.diff(np.concatenate([[False], over, [False]])))
+    for first, last in edges.reshape(-1, 2):
+        run = rows[first:last]
+        # Cut to a whole number: a feed of 0 would stand still.
+        feed = max(1.0, math.floor(float((proof.times.speed[run] * SECONDS_PER_MINUTE * share(run)).min())))
+        offers.append(Offer(kind="feed", operation=section.operation, setup=proof.program.setup.name, reason=reason,
+                            first=int(proof.moves.block[run[0]]), last=int(proof.moves.block[run[-1]]), feed=feed))
+    return sorted(offers, key=lambda o: (o.feed, o.first))[:MOST_OFFERS]
+
+
+def _feed_remedy(proof: SetupProof, section: ProgramSection, offers: list[Offer]) -> str:
+    """Say which feeds are offered."""
+    lines = section.block_lines
+    places = [(f"line {lines[o.first]} to {lines[o.last]}" if lines else f"block {o.first} to {o.last}", o.feed) for o in offers]
+    return "feed at most " + ", ".join(f"{feed:.0f} mm/min from {place}" for place, feed in places) + "; or clear the material before"
+
+
+def _air(proof: SetupProof, section: ProgramSection, rows: Ints, settings: ProofSettings) -> Said:
+    air = proof.stock.removed[rows] <= 0.0
+    length, seconds = proof.moves.length[rows], proof.times.seconds[rows]
+    run, wasted = float(length.sum()), float(seconds[air].sum())
+    if run <= 0.0 or float(length[air].sum()) <= settings.air * run or wasted < AIR_WORTH:
+        return [], []
+    offer = Offer(kind="rest", operation=section.operation, setup=proof.program.setup.name, reason="verify.air",
+                  first=int(proof.moves.block[rows[0]]), last=int(proof.moves.block[rows[-1]]))
+    return [remark("verify.air", f"{section.operation} cuts air on {100 * float(length[air].sum()) / run:.0f} % of its way, {wasted:.0f} s",
+                   section.operation, remedy="let it cut only what still stands, as a rest operation, or move it before what clears its "
+                   "place")], [offer]
