@@ -232,25 +232,3 @@ def _widest(spans: list[Span]) -> float:
     bulging = [cr + radius for r0, z0, r1, z1, cr, cz, radius in spans if radius > 0.0 and min(z0, z1) <= cz <= max(z0, z1)]
     return max([max(s[0], s[2]) for s in spans] + bulging)
 
-
-PIECE_COLUMNS = 7
-
-
-def pieces_of(tool: Tool) -> Floats:
-    """Return the convex pieces of a tool (k, 7): form, radius low, radius high, z low, z high, free face below, free face above.
-
-    Row 0 is the fluted cutter (form 0, its radius and corner radius); the others are truncated cones (form 1). A piece has a free face
-    where its neighbour is thinner. Heights are from the tip, mm.
-    """
-    cones = [row for row in tool.profile() if row[2] - row[0] > tolerance.PARAMETRIC]
-    below = [tool.radius, *(row[3] for row in cones)]
-    above = [*(row[1] for row in cones[1:]), 0.0]
-    rows = [(0.0, tool.radius, tool.corner_radius, 0.0, tool.flute_length, 0.0, 0.0)]
-    for (z0, r0, z1, r1), under, over in zip(cones, below, above, strict=False):
-        rows.append((1.0, r0, r1, z0, z1, float(r0 > under + tolerance.PARAMETRIC), float(r1 > over + tolerance.PARAMETRIC)))
-    return np.array(rows)
-
-
-def widest(pieces: Floats) -> float:
-    """Return the largest radius of a tool's pieces."""
-    return float(np.where(pieces[:, 0] == 0.0, pieces[:, 1], np.maximum(pieces[:, 1], pieces[:, 2])).max())

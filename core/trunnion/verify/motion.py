@@ -12,7 +12,7 @@ from trunnion.geometry.frame import Frame
 from trunnion.model.program import ProgramSection
 from trunnion.model.tool import Tool
 from trunnion.model.toolpath import Motion
-from trunnion.verify.cutter import PIECE_COLUMNS, Bodies, bodies_of, pieces_of, widest
+from trunnion.verify.cutter import Bodies, bodies_of
 from trunnion.verify.kernels.strips import (
     COS_HALF,
     CX,
@@ -44,7 +44,7 @@ class Moves:
     an arc about the axis) and the axis turns at an even rate in the plane of both. centre (n, 3) of arcs, NaN otherwise; sweep (n,) the
     signed angle an arc turns, rad. upright (n,): the axis is +z all along; row (n, 15): those as the strip kernel reads them.
     section (n,), block (n,) where each comes from; rapid (n,); feed (n,) mm/min; length (n,) mm of the tip's way.
-    tools: the tools in use, tool (n,) their rows, bodies theirs; pieces (k, 7) of all tools, piece_start (t + 1,).
+    tools: the tools in use, tool (n,) their rows, bodies theirs.
     """
 
     start: Floats
@@ -63,8 +63,6 @@ class Moves:
     tools: tuple[Tool, ...]
     tool: Ints
     bodies: Bodies
-    pieces: Floats
-    piece_start: Ints
 
     def __len__(self) -> int:
         return len(self.row)
@@ -83,8 +81,7 @@ class Moves:
     @property
     def reach(self) -> Floats:
         """The largest radius of the whole tool of each move (n,)."""
-        each = np.array([widest(self.pieces[a:b]) for a, b in zip(self.piece_start[:-1], self.piece_start[1:], strict=True)])
-        return each[self.tool]
+        return self.bodies.widest()[self.tool]
 
 
 def moves_of(sections: Sequence[ProgramSection]) -> Moves:
@@ -117,14 +114,12 @@ def moves_of(sections: Sequence[ProgramSection]) -> Moves:
         feeds.append(path.feed)
         lengths.append(path.lengths())
         tool_row.append(np.full(n, tools.setdefault(section.tool, len(tools))))
-    pieces = [pieces_of(t) for t in tools]
     first, last = _points(start_axes), _points(end_axes)
     return Moves(start=_points(starts), end=_points(ends), start_axis=first, end_axis=last, centre=_points(centres),
                  sweep=np.concatenate([np.zeros(0), *sweeps]), upright=_upright(first, last), bodies=bodies_of(tuple(tools)),
                  row=np.vstack([np.zeros((0, MOVE_COLUMNS)), *rows]), section=_ints(sections_of), block=_ints(blocks),
                  rapid=np.concatenate([np.zeros(0, bool), *rapid]), feed=np.concatenate([np.zeros(0), *feeds]),
-                 length=np.concatenate([np.zeros(0), *lengths]), tools=tuple(tools), tool=_ints(tool_row),
-                 pieces=np.vstack([np.zeros((0, PIECE_COLUMNS)), *pieces]), piece_start=np.cumsum([0, *(len(p) for p in pieces)]))
+                 length=np.concatenate([np.zeros(0), *lengths]), tools=tuple(tools), tool=_ints(tool_row))
 
 
 def seen_from(moves: Moves, frame: Frame, other: Frame) -> Moves:
@@ -155,7 +150,7 @@ def poses_of(tool: Tool, tips: Floats, axes: Floats | None = None) -> Moves:
     return Moves(start=tips, end=tips, start_axis=axes, end_axis=axes, centre=nowhere, sweep=np.zeros(n), upright=_upright(axes, axes),
                  row=_rows(tips, tips, nowhere, np.zeros(n), np.zeros(n, int)), section=np.zeros(n, np.int64), block=np.arange(n),
                  rapid=np.zeros(n, bool), feed=np.zeros(n), length=np.zeros(n), tools=(tool,), tool=np.zeros(n, np.int64),
-                 bodies=bodies_of((tool,)), pieces=pieces_of(tool), piece_start=np.array([0, len(pieces_of(tool))]))
+                 bodies=bodies_of((tool,)))
 
 
 def _ints(parts: list[Ints]) -> Ints:
