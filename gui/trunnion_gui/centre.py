@@ -4,56 +4,88 @@ from __future__ import annotations
 
 from collections.abc import Callable
 
-from PySide6.QtCore import Qt
+import numpy as np
+from PySide6.QtCore import QPointF, Qt, Signal
 from PySide6.QtGui import QResizeEvent
 from PySide6.QtWidgets import QHBoxLayout, QLabel, QSlider, QVBoxLayout, QWidget
 
+from trunnion.model.playback import Moment
 from trunnion.model.session import Session, SizeEntry
+from trunnion.report.deviation import DeviationMap, WorstPlace
+from trunnion.report.palette import load_palette
 from trunnion_gui.actions import Registry
-from trunnion_gui.colours import Theme, kind_colour, motions
+from trunnion_gui.colours import Theme, kind_colour, motions, stock_colours, tool_colours
+from trunnion_gui.deviation import DeviationSource
 from trunnion_gui.document import Document, Selection
 from trunnion_gui.i18n import tr
+from trunnion_gui.player import Player
 from trunnion_gui.viewport.scene import Scene
 from trunnion_gui.widgets.legend import Legend
 from trunnion_gui.widgets.notice import Notice
+from trunnion_gui.widgets.scale import Scale
 from trunnion_gui.widgets.welcome import Welcome
-from trunnion_gui.words import amount, kind_words, sentence
+from trunnion_gui.words import amount, fine_amount, kind_words, sentence
 
 _EDGE = 14
+_TIP_AWAY = 16
+_CLOSE_LOOK = 12.0
+"""mm above and below a worst place that a click on it shows."""
 
 
 class Centre(QWidget):
     """Notice on top, picture, section slider; legend and welcome card above the picture."""
 
-    def __init__(self, document: Document, registry: Registry, theme: Theme) -> None:
+    hinted = Signal(str)
+    """Words for the status line about what is under the mouse."""
+
+    def __init__(self, document: Document, registry: Registry, theme: Theme, player: Player, deviation: DeviationSource) -> None:
         super().__init__()
         self._document = document
+        self._player, self._deviation = player, deviation
+        self._theme = theme
+        self._tool: object = None
+        self._run: tuple[int, np.ndarray, np.ndarray] = (-1, np.zeros((0, 3)), np.zeros(0))
+        self._deviation_colours = load_palette().deviation
         self._drawn: dict[str, object] = {}
         self.shows = {"colours": True, "blank": True, "paths": True, "isolate": False}
         self.motions: tuple[str, ...] = tuple(motions())
         self.notice = Notice()
         self.scene = Scene(theme)
         self.legend = Legend(self.scene)
+        self.scale = Scale(self.scene, theme, self._deviation_colours)
+        self.tip = self._make_tip()
         self.welcome = Welcome(document, registry, self.scene)
         self.section_bar, self.section_slider = self._make_section_bar()
-        column = QVBoxLayout(self)
-        column.setContentsMargins(0, 0, 0, 0)
-        column.setSpacing(4)
-        column.addWidget(self.notice)
-        column.addWidget(self.scene, 1)
-        column.addWidget(self.section_bar)
+        self._column = QVBoxLayout(self)
+        self._column.setContentsMargins(0, 0, 0, 0)
+        self._column.setSpacing(4)
+        self._column.addWidget(self.notice)
+        self._column.addWidget(self.scene, 1)
+        self._column.addWidget(self.section_bar)
         self.scene.clicked.connect(document.select_face)
         self.scene.hovered.connect(self._hover)
         document.mesh_changed.connect(self._show_mesh)
         document.changed.connect(self.refresh)
         document.selected.connect(self._choose)
+        self.scene.pointed.connect(self._point)
+        player.opened.connect(self._open_playback)
+        player.moved.connect(self._move_tool)
+        player.cut.connect(self._show_stock)
+        deviation.arrived.connect(self._show_map)
 
     def use_theme(self, theme: Theme) -> None:
         """Draw in the colours of a theme."""
+        self._theme = theme
         self.scene.use_theme(theme)
+        self.scale.use_theme(theme)
         self._drawn = {}
+        self._show_map(self._deviation.shown if self._deviation.is_on else None)
         self.refresh()
         self._choose(self._document.selection)
+
+    def add_bar(self, bar: QWidget) -> None:
+        """Put a bar below the picture."""
+        self._column.addWidget(bar)
 
     def show_layer(self, name: str, on: bool) -> None:
         """Show or hide colours, blank or paths; fade what is not selected (`isolate`)."""
@@ -81,10 +113,10 @@ class Centre(QWidget):
         session = self._document.shown
         self._once("frame", (session.recognition,), lambda: self._use_frame(session))
         self._once("kinds", (session.recognition, self.shows["colours"], self._shows_paths(session)), lambda: self._paint(session))
-        self._once("blank", (session.blank, self.shows["blank"], self._shows_paths(session)), lambda: self.scene.show_blank(
-            session.blank if self.shows["blank"] and not self._shows_paths(session) else None))
+        shows_blank = self.shows["blank"] and not self._shows_paths(session) and not self._plays and not self._shows_map
+        self._once("blank", (session.blank, shows_blank), lambda: self.scene.show_blank(session.blank if shows_blank else None))
         self._once("setups", (session.setups, self._document.mesh), lambda: self.scene.show_setups(session.setups))
-        self._once("paths", (session.paths, session.process, self.shows["paths"], self.motions, self._operation()),
+        self._once("paths", (session.paths, session.process, self._shows_paths(session), self.motions, self._operation()),
                    lambda: self._draw_paths(session))
         self.legend.show_rows(self._legend(session))
         self._place()
@@ -104,6 +136,7 @@ class Centre(QWidget):
 
     def _place(self) -> None:
         self.legend.move(_EDGE, _EDGE)
+        self.scale.move(_EDGE, _EDGE)
         self.welcome.move((self.scene.width() - self.welcome.width()) // 2, max((self.scene.height() - self.welcome.height()) // 2 - 20, 8))
 
     def _show_mesh(self) -> None:
@@ -120,7 +153,15 @@ class Centre(QWidget):
         return chosen.id if chosen.kind == "operation" else ""
 
     def _shows_paths(self, session: Session) -> bool:
-        return self.shows["paths"] and bool(session.paths)
+        return self.shows["paths"] and bool(session.paths) and not self._plays and not self._shows_map
+
+    @property
+    def _plays(self) -> bool:
+        return self._player.is_on and self._player.timeline is not None
+
+    @property
+    def _shows_map(self) -> bool:
+        return self._deviation.is_on and self._deviation.shown is not None
 
     def _paint(self, session: Session) -> None:
         colours: dict[int, str] = {}
@@ -142,6 +183,14 @@ class Centre(QWidget):
 
     def _legend(self, session: Session) -> list[tuple[str, str, str]]:
         rows: list[tuple[str, str, str]] = []
+        if self._plays:
+            raw, cut = stock_colours(self._theme)
+            tool = tool_colours()
+            return [(raw, tr("Blank"), ""), (cut, tr("Cut surface"), ""), ("", "", ""),
+                    *((tool[name], sentence(tr(name)), "") for name in ("cutter", "shank", "holder")), ("", "", ""),
+                    *((tool[name], sentence(tr(name)), "") for name in ("feed", "rapid"))]
+        if self._shows_map:
+            return rows
         found = session.recognition
         if found is not None and self.shows["colours"]:
             rows += [(kind_colour(kind), sentence(tr(kind_words(kind))), str(n)) for kind, n in found.counts().items()]
@@ -163,6 +212,75 @@ class Centre(QWidget):
         self.scene.hover(feature.tags if feature else (tag,) if tag else ())
         words = f"{feature.id} · face {tag}" if feature else f"face {tag}" if tag else ""
         self.scene.view.setToolTip(words)
+
+    # playback
+
+    def _open_playback(self) -> None:
+        line = self._player.timeline
+        self._tool, self._run = None, (-1, np.zeros((0, 3)), np.zeros(0))
+        if line is None:
+            self.scene.use_tool(None)
+            self.scene.show_trail(np.zeros((0, 3)), np.zeros(0, bool))
+            self.scene.show_stock(None)
+        self.refresh()
+
+    def _move_tool(self, position: float) -> None:
+        line = self._player.timeline
+        if line is None:
+            return
+        row = line.row(position)
+        if line.passages[row].tool is not self._tool:
+            self._tool = line.passages[row].tool
+            self.scene.use_tool(line.passages[row].tool)
+        if row != self._run[0]:
+            self._run = (row, *line.run(row))
+        tip, axis = line.pose(position)
+        _, points, reached = self._run
+        done = int(np.searchsorted(reached, position, side="right"))
+        blocks = np.append(np.ceil(reached[1:done]) - 1, line.block(position)).astype(int)
+        self.scene.show_trail(np.vstack([points[:done], tip]), line.rapid[blocks])
+        self.scene.move_tool(tip, axis)
+
+    def _show_stock(self, moment: Moment) -> None:
+        if self._plays:
+            self.scene.show_stock(moment)
+
+    # deviation map
+
+    def _show_map(self, shown: DeviationMap | None) -> None:
+        self.scene.show_map(shown, self._deviation_colours)
+        self.scale.show_map(shown)
+        self._point(None, QPointF())
+        self.refresh()
+
+    def look_at_place(self, place: WorstPlace) -> None:
+        """Go to a worst place of the map."""
+        self.scene.look_at(place.point, _CLOSE_LOOK)
+        self.scene.show_label(fine_amount(place.deviation), place.point)
+
+    def _point(self, found: tuple[int, float, tuple[float, float, float]] | None, at: QPointF) -> None:
+        """Say what the map shows under the mouse: in the status line, in a small tip and on the scale."""
+        self.scale.point(found[1] if found else None)
+        self.tip.setVisible(found is not None)
+        if found is None:
+            self.hinted.emit("")
+            return
+        face, value, place = found
+        owners = [f for f in self._document.shown.recognition or () if face in f.tags]
+        owner = min(owners, key=lambda f: len(f.tags)).id if owners else ""
+        where = "x {:.2f}  y {:.2f}  z {:.2f}".format(*place)
+        self.hinted.emit(" · ".join(w for w in (fine_amount(value), f"{tr('face')} {face}", owner, where) if w))
+        self.tip.setText(fine_amount(value))
+        self.tip.adjustSize()
+        x = min(int(at.x()) + _TIP_AWAY, self.scene.width() - self.tip.width() - 4)
+        self.tip.move(x, min(int(at.y()) + _TIP_AWAY, self.scene.height() - self.tip.height() - 4))
+
+    def _make_tip(self) -> QLabel:
+        tip = QLabel(self.scene)
+        tip.setObjectName("tip")
+        tip.setAttribute(Qt.WidgetAttribute.WA_TransparentForMouseEvents)
+        tip.hide()
+        return tip
 
     def _make_section_bar(self) -> tuple[QWidget, QSlider]:
         bar, slider = QWidget(), QSlider(Qt.Orientation.Horizontal)

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import json
 import tomllib
+from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import cache
 from importlib.resources import files
@@ -61,6 +62,24 @@ def kinds() -> dict[str, str]:
 def motions() -> dict[str, str]:
     """Return the colour of every kind of motion."""
     return {name: colour for name, colour in _palette()["motions"].items() if name in MOTIONS}
+
+
+def tool_colours() -> dict[str, str]:
+    """Return the colours of cutter, shank and holder, and of the way the tip came by feed and by rapid."""
+    return _palette()["tool"]
+
+
+def tool_cycle(numbers: Sequence[int]) -> tuple[str, ...]:
+    """Return a colour for each of some tools by their number, the same for the same tool."""
+    wheel = [kinds()[name] for name in ("pocket", "rib", "profile", "island", "hole", "open_pocket", "pit", "chamfer")]
+    rows = {number: n for n, number in enumerate(dict.fromkeys(numbers))}
+    return tuple(wheel[rows[number] % len(wheel)] for number in numbers)
+
+
+def stock_colours(chosen: Theme) -> tuple[str, str]:
+    """Return the colours of the blank's own surface and of what was cut."""
+    raw, cut = (_palette()["stock"][name] for name in ("blank", "cut"))
+    return (mixed(raw, chosen.part, 0.3), mixed(cut, chosen.part, 0.3)) if chosen.name == "dark" else (raw, cut)
 
 
 def kind_colour(kind: str) -> str:

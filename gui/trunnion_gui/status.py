@@ -67,6 +67,11 @@ class Status(QStatusBar):
         self.verdict.style().unpolish(self.verdict)
         self.verdict.style().polish(self.verdict)
 
+    def hint(self, words: str) -> None:
+        """Say something about what is under the mouse while nothing runs."""
+        if self._document.job is None:
+            self.text.setText(words)
+
     def _say(self, words: str) -> None:
         self.text.setText(words)
 

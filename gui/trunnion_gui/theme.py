@@ -82,6 +82,8 @@ QStatusBar::item {{ border: none; }}
 QToolTip {{ background: {text}; color: {panel}; border: none; padding: 5px 8px; }}
 QLabel {{ color: {text}; background: transparent; }}
 QLabel#muted {{ color: {muted}; }}
+QLabel#tip {{ background: {text}; color: {panel}; border-radius: 4px; padding: 3px 7px; font-weight: 600; }}
+QToolButton#run {{ background: {accent_soft}; padding: 5px 9px; }}
 QLabel#title {{ font-size: 15px; font-weight: 600; }}
 QLabel#welcome {{ font-size: 22px; font-weight: 600; }}
 QLabel#number {{ color: {muted}; font-weight: 600; }}

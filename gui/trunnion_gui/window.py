@@ -9,7 +9,7 @@ from importlib.resources import as_file
 from pathlib import Path
 
 from PySide6.QtCore import QSize, Qt, QTimer
-from PySide6.QtGui import QCloseEvent, QDragEnterEvent, QDropEvent
+from PySide6.QtGui import QCloseEvent, QDragEnterEvent, QDropEvent, QShowEvent
 from PySide6.QtWidgets import (
     QDockWidget,
     QFileDialog,
@@ -18,6 +18,7 @@ from PySide6.QtWidgets import (
     QMessageBox,
     QScrollArea,
     QSizePolicy,
+    QTabBar,
     QTabWidget,
     QToolBar,
     QToolButton,
@@ -31,10 +32,13 @@ from trunnion.findings import Finding, Severity
 from trunnion_gui import colours, commands, i18n, icons, remembered, theme
 from trunnion_gui.actions import Command, Registry
 from trunnion_gui.centre import Centre
+from trunnion_gui.deviation import DeviationSource
 from trunnion_gui.docks.code import CodeDock
+from trunnion_gui.docks.deviation import DeviationDock
 from trunnion_gui.docks.features import FeatureDock
 from trunnion_gui.docks.listing import ListingDock
 from trunnion_gui.docks.messages import MessagesDock
+from trunnion_gui.docks.playback import PlaybackBar
 from trunnion_gui.docks.process import ProcessDock
 from trunnion_gui.docks.properties import PropertiesDock
 from trunnion_gui.document import PROJECT, Document
@@ -46,6 +50,7 @@ from trunnion_gui.panels.optimize import OptimizePanel
 from trunnion_gui.panels.recognize import RecognizePanel
 from trunnion_gui.panels.route import RoutePanel
 from trunnion_gui.panels.size import SizePanel
+from trunnion_gui.player import Player
 from trunnion_gui.status import Status
 from trunnion_gui.steps import STAGES
 from trunnion_gui.widgets.panel import Panel
@@ -55,16 +60,20 @@ PANELS: dict[str, type[Panel]] = {"recognize": RecognizePanel, "size": SizePanel
                                   "optimize": OptimizePanel, "generate": GeneratePanel}
 PART_FILES = "STEP, IGES, Trunnion (*.step *.stp *.stpz *.igs *.iges *.trunnion)"
 _AUTOSAVE_MS = 20_000
+_FOLLOW_MS = 66
+"""G-code and process tree follow the tool this often at most."""
 _LEFT_WIDTH = 344
 _RIGHT_WIDTH = 380
 _LEFT = Qt.DockWidgetArea.LeftDockWidgetArea
 _RIGHT = Qt.DockWidgetArea.RightDockWidgetArea
 _BELOW = Qt.DockWidgetArea.BottomDockWidgetArea
-_MENUS = ("File", "Edit", "Steps", "View", "Help")
-_MENU_OF = {"file": "File", "edit": "Edit", "run": "Steps", "step": "Steps", "job": "Steps", "view": "View", "help": "Help"}
+_MENUS = ("File", "Edit", "Steps", "Playback", "View", "Help")
+_MENU_OF = {"file": "File", "edit": "Edit", "run": "Steps", "step": "Steps", "job": "Steps", "play": "Playback", "view": "View",
+            "help": "Help"}
 """The menu of a command, by the first word of its id."""
 _TOOLBAR = ("file.open", "file.save", "", "edit.undo", "edit.redo", "", "run.program", "", "view.isometric", "view.top", "view.front",
-            "view.right", "view.fit", "", "view.colours", "view.blank", "view.paths", "view.section", "view.isolate", ">", "view.find",
+            "view.right", "view.fit", "", "view.colours", "view.blank", "view.paths", "view.section", "view.isolate", "", "play.show",
+            "view.deviation", ">", "view.find",
             "view.theme")
 
 
@@ -82,8 +91,10 @@ class Window(QMainWindow):
         theme.apply(self.theme)
         self.document = Document(factory, self)
         self.registry = Registry(self)
+        self.player, self.deviation = Player(self.document, self), DeviationSource(self.document, self)
         self._add_commands()
-        self.centre = Centre(self.document, self.registry, self.theme)
+        self._add_playing()
+        self.centre = Centre(self.document, self.registry, self.theme, self.player, self.deviation)
         self.setCentralWidget(self.centre)
         self.panels = {s.name: PANELS[s.name](s, n, self.document, self.registry) for n, s in enumerate(STAGES, 1)}
         self._make_docks()
@@ -199,6 +210,7 @@ class Window(QMainWindow):
     def forget_arrangement(self) -> None:
         """Put docks back where they were at first."""
         self.restoreState(self._arrangement)
+        self._hide_old_tabs()
 
     def about(self) -> None:
         """Say what this is."""
@@ -216,6 +228,10 @@ class Window(QMainWindow):
         if paths:
             event.acceptProposedAction()
             self.document.open(paths[0])
+
+    def showEvent(self, event: QShowEvent) -> None:
+        super().showEvent(event)
+        QTimer.singleShot(0, self._hide_old_tabs)
 
     def closeEvent(self, event: QCloseEvent) -> None:
         if self.confirms_closing and self.document.has_part and self.document.history.is_dirty and not self._may_close():
@@ -288,11 +304,56 @@ class Window(QMainWindow):
                         menu="View"))
         add(Command(id="view.section", text="Section", run=self._section, icon="section", keys="X", checkable=True, menu="View",
                     help="Cut the part open across its height"))
+        add(Command(id="view.deviation", text="Deviation map", run=self.show_deviation, icon="deviation", keys="D", checkable=True,
+                    menu="View", help="Colour the part by gouges and material left, as the proof measured them",
+                    enabled=lambda: self.deviation.can_show or self.deviation.is_on))
         command("view.find", "Find a command…", self._find, "search", "Ctrl+Shift+P", "", None)
         command("view.theme", "Light or dark", self.change_theme, "theme", "Ctrl+Shift+L", "", None)
         command("view.arrangement", "Put docks back", self.forget_arrangement, "reset", "", "", None)
         command("view.language", "Next language", self.change_language, "language", "", "", None)
         command("help.about", "About Trunnion", self.about, "help", "", "", None)
+
+    def _add_playing(self) -> None:
+        player = self.player
+
+        def is_open() -> bool:
+            return player.timeline is not None
+
+        def command(id: str, text: str, run: Callable[[], object], icon: str, keys: str, help: str = "") -> None:
+            self.registry.add(Command(id=id, text=text, run=run, icon=icon, keys=keys, help=help, menu="Playback", enabled=is_open))
+
+        self.registry.add(Command(id="play.show", text="Playback", run=self.show_playback, icon="playback", keys="P", checkable=True,
+                                  menu="Playback", help="See the stock being cut, block by block",
+                                  enabled=lambda: player.can_play or player.is_on))
+        command("play.run", "Play", player.toggle, "play", "K", "Play or pause")
+        command("play.back", "One block back", lambda: player.step(-1), "step_back", ",")
+        command("play.forward", "One block on", lambda: player.step(1), "step_forward", ".")
+        command("play.previous", "Previous operation", lambda: player.skip(-1), "previous", "J")
+        command("play.next", "Next operation", lambda: player.skip(1), "next", "L")
+        command("play.begin", "To the beginning", lambda: player.go(0.0), "first", "Home")
+        command("play.end", "To the end", lambda: player.go(player.end), "last", "End")
+        command("play.slower", "Slower", lambda: player.faster(-1), "slower", "-")
+        command("play.faster", "Faster", player.faster, "faster", "+")
+
+    def show_playback(self, on: bool) -> None:
+        """Open or close the playback; the deviation map and the playback take turns."""
+        action = self.registry.action("play.show")
+        action.setChecked(on)
+        if on and self.deviation.is_on:
+            self.show_deviation(False)
+        self.playback.setVisible(on)
+        if on:
+            self.show_dock("code")
+        self.player.switch(on)
+
+    def show_deviation(self, on: bool) -> None:
+        """Show the deviation map, or the part in its own colours."""
+        self.registry.action("view.deviation").setChecked(on)
+        if on and self.player.is_on:
+            self.show_playback(False)
+        self.deviation.switch(on)
+        if on:
+            self.show_dock("deviation")
 
     def _look(self, view: str) -> None:
         self.centre.scene.look(view)
@@ -316,6 +377,9 @@ class Window(QMainWindow):
         self.features, self.process = FeatureDock(self.document), ProcessDock(self.document)
         self.properties, self.messages = PropertiesDock(self.document), MessagesDock(self.document)
         self.code, self.listing = CodeDock(self.document), ListingDock(self.document)
+        self.places = DeviationDock(self.document)
+        self.playback = PlaybackBar(self.player, self.registry, self.theme)
+        self.centre.add_bar(self.playback)
         steps = self._dock("steps", tr("Steps"), self._steps(), _LEFT)
         features = self._dock("features", tr("Features"), self.features, _RIGHT)
         process = self._dock("process", tr("Process tree"), self.process, _RIGHT)
@@ -323,16 +387,26 @@ class Window(QMainWindow):
         self.messages_dock = self._dock("messages", tr("Messages"), self.messages, _BELOW)
         code = self._dock("code", tr("G-code"), self.code, _BELOW)
         listing = self._dock("listing", tr("Listing"), self.listing, _BELOW)
+        places = self._dock("deviation", tr("Deviation"), self.places, _BELOW)
         self.tabifyDockWidget(features, process)
         self.tabifyDockWidget(self.messages_dock, code)
         self.tabifyDockWidget(code, listing)
-        for dock in (features, process, self.messages_dock, code, listing):
+        self.tabifyDockWidget(listing, places)
+        for dock in (features, process, self.messages_dock, code, listing, places):
             dock.setTitleBarWidget(QWidget())  # the tab is title enough, and can be dragged
         features.raise_()
         self.messages_dock.raise_()
         self.resizeDocks([steps, features], [_LEFT_WIDTH, _RIGHT_WIDTH], Qt.Orientation.Horizontal)
         self.resizeDocks([features, properties], [420, 300], Qt.Orientation.Vertical)
         self.resizeDocks([self.messages_dock], [170], Qt.Orientation.Vertical)
+
+    def _hide_old_tabs(self) -> None:
+        """Hide the tab bars that Qt made while docks were put together and has no use for: they would show where docks move away."""
+        bars = self.findChildren(QTabBar, options=Qt.FindChildOption.FindDirectChildrenOnly)
+        titles = [{bar.tabText(n) for n in range(bar.count())} for bar in bars]
+        for n, bar in enumerate(bars):
+            if any(titles[n] <= later for later in titles[n + 1:]):
+                bar.hide()
 
     def show_dock(self, name: str) -> None:
         """Bring a dock to the front by its name."""
@@ -415,7 +489,40 @@ class Window(QMainWindow):
         assert isinstance(size, SizePanel)
         assert isinstance(generate, GeneratePanel)
         size.pointed.connect(self.centre.show_size)
+        self._connect_playing()
         generate.motions_changed.connect(self.centre.show_motions)
+
+    def _connect_playing(self) -> None:
+        self._soon = QTimer(self)
+        self._soon.setSingleShot(True)
+        self._soon.setInterval(_FOLLOW_MS)
+        self._soon.timeout.connect(self._follow_tool)
+        self.player.moved.connect(lambda _: self._soon.isActive() or self._soon.start())
+        self.player.opened.connect(self._follow_tool)
+        for changed in (self.player.opened, self.player.changed, self.deviation.arrived):
+            changed.connect(lambda *_: self.registry.refresh())
+        self.code.line_chosen.connect(self._go_to_line)
+        self.deviation.arrived.connect(self.places.show_map)
+        self.places.chosen.connect(self.centre.look_at_place)
+        self.centre.hinted.connect(lambda words: self.status.hint(words))
+
+    def _follow_tool(self) -> None:
+        """Let G-code and process tree stand where the tool is."""
+        line, position = self.player.timeline, self.player.position
+        if line is None:
+            self.process.mark("")
+            self.code.show_line("", 0)
+            return
+        passage = line.passage(position)
+        self.process.mark(passage.operation)
+        self.code.show_line(passage.file, int(line.line[line.block(position)]))
+
+    def _go_to_line(self, file: str, number: int) -> None:
+        line = self.player.timeline
+        position = line.position_of(file, number) if line is not None else None
+        if position is not None:
+            self.player.pause()
+            self.player.go(position)
 
     def use_theme(self, chosen: colours.Theme) -> None:
         """Give everything the look of a theme."""
@@ -425,7 +532,7 @@ class Window(QMainWindow):
         # The main button is drawn on the accent colour, in both themes.
         self.registry.action("run.program").setIcon(icons.icon("program", chosen.accent_text))
         self.centre.use_theme(chosen)
-        for dock in (self.process, self.messages, self.code):
+        for dock in (self.process, self.messages, self.code, self.places, self.playback):
             dock.use_theme(chosen)
         for panel in self.panels.values():
             panel.use_theme(chosen)

@@ -73,3 +73,35 @@ def share(value: float) -> str:
     if value >= 1.0:
         return "100 %"
     return f"{int(value * 1000) / 10:.1f} %"
+
+
+def clock(seconds: float) -> str:
+    """Return a time as a clock shows it.
+
+    >>> clock(74.6), clock(3725)
+    ('1:14', '1:02:05')
+    """
+    whole = int(seconds)
+    hours, minutes = divmod(whole // 60, 60)
+    return f"{hours}:{minutes:02d}:{whole % 60:02d}" if hours else f"{minutes}:{whole % 60:02d}"
+
+
+def grouped(number: int) -> str:
+    """Return a whole number with its thousands apart.
+
+    >>> grouped(6526)
+    '6 526'
+    """
+    return f"{number:,}".replace(",", " ")
+
+
+def fine_amount(millimetres: float) -> str:
+    """Return a small length with its sign, in the unit it reads best in.
+
+    >>> fine_amount(0.0124), fine_amount(-0.05), fine_amount(1.5)
+    ('+12 µm', '-50 µm', '+1.50 mm')
+    """
+    microns = millimetres * 1000.0
+    if abs(microns) < 9.95:
+        return f"{microns:+.1f} µm" if abs(microns) >= 0.05 else "0 µm"
+    return f"{microns:+.0f} µm" if abs(microns) < 999.5 else f"{millimetres:+.2f} mm"

@@ -142,6 +142,18 @@ def _write(engine: Any, progress: Progress, _tell: Tell, session: Session, folde
     return tuple(str(name) for name in engine.write(session, folder, progress=progress))
 
 
+def _playback(engine: Any, _progress: Progress, _tell: Tell, session: Session) -> Any:
+    return engine.playback(session)
+
+
+def _moment(engine: Any, progress: Progress, _tell: Tell, key: str, position: float, seconds: float) -> Any:
+    return engine.moment(key, position, seconds, progress)
+
+
+def _deviation(engine: Any, _progress: Progress, _tell: Tell, session: Session) -> Any:
+    return engine.deviation_map(session)
+
+
 def _settings(engine: Any, _progress: Progress, _tell: Tell) -> dict[str, tuple[Group, ...]]:
     return {step: tuple(Group(c.GROUP, _title(c), tuple(_offered(d) for d in declared(c))) for c in classes)
             for step, classes in engine.settings().items()}
@@ -161,7 +173,8 @@ def _offered(setting: Declared) -> Declared:
 _CATALOGUES = {"blank.material": "materials", "setup.machine": "machines"}
 """Settings that name a thing of a catalogue: the form offers what there is."""
 VERBS: dict[str, Callable[..., Any]] = {
-    "open": _open, "run": _run, "states": _states, "attach": _attach, "save": _save, "write": _write, "settings": _settings}
+    "open": _open, "run": _run, "states": _states, "attach": _attach, "save": _save, "write": _write, "settings": _settings,
+    "playback": _playback, "moment": _moment, "deviation": _deviation}
 
 
 def _title(group: Any) -> str:

@@ -2,8 +2,9 @@
 
 from __future__ import annotations
 
+import re
 import time
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING
@@ -11,16 +12,19 @@ from typing import TYPE_CHECKING
 from trunnion import tolerance
 from trunnion.findings import BadCall, BadInput, Severity, TrunnionError, has_errors
 from trunnion.geometry.mesh import Mesh
+from trunnion.model.fixture import Fixture
 from trunnion.model.playback import Moment, Timeline
 from trunnion.model.session import Session, StepRecord
 from trunnion.pipeline.bench import Bench
 from trunnion.pipeline.steps import STEP_TABLE, STEPS, Step, step_named
 from trunnion.progress import QUIET, Progress
-from trunnion.settings import Value, declared
+from trunnion.settings import Value, checked, choose, declared
 from trunnion.shop import load_shop
+from trunnion.verify.settings import ProofSettings
 
 if TYPE_CHECKING:
     from trunnion.pipeline.playback import Playback
+    from trunnion.report.deviation import DeviationMap
 
 PROJECT_SUFFIX = ".trunnion"
 FRESH = ("done", "problem")
@@ -108,6 +112,19 @@ class Engine:
             chosen[key] = known[key].parse(value)
         return replace(session, choices={**session.choices, **chosen})
 
+    def with_fixtures(self, session: Session, words: Sequence[str], progress: Progress = QUIET) -> Session:
+        """Return the session with the fixtures of some files (`FILE`, or `SETUP=FILE` for one setup) in place of those it had.
+
+        The files' coordinates are the part's. Raises `BadInput` for a file that can't be read.
+        """
+        from trunnion.part.fixture import read_fixture
+        found = []
+        for n, word in enumerate(words):
+            setup, file = fixture_word(word)
+            mesh = read_fixture(file, progress=progress.part(n / len(words), (n + 1) / len(words)))
+            found.append(Fixture(name=file.stem, mesh=mesh, setup=setup))
+        return replace(session, fixtures=tuple(found))
+
     def states(self, session: Session) -> dict[str, str]:
         """Return for each step whether it is `empty`, `stale`, `done`, or done with a `problem`."""
         found: dict[str, str] = {}
@@ -161,6 +178,14 @@ class Engine:
             raise BadCall("this plan is not played any more: start the playback again")
         return self._playback.towards(position, seconds, progress)
 
+    def deviation_map(self, session: Session) -> DeviationMap:
+        """Return the deviation of the finished part as triangles to be drawn; raise `BadCall` before a proof."""
+        from trunnion.report.deviation import deviation_map
+        if session.verdict is None:
+            raise BadCall("nothing is proven yet: verify first")
+        chosen = checked(choose(ProofSettings, session.choices))
+        return deviation_map(self.mesh(session), session.verdict.deviation, chosen.tolerance, chosen.allowance)
+
     def save(self, session: Session, path: str | Path) -> None:
         """Write the project file, whole or not at all."""
         from trunnion.store.project import save_project
@@ -178,6 +203,18 @@ class Engine:
         progress.at(0.9, "saving the project")
         self.save(session, Path(folder) / project)
         return (*files, project)
+
+
+def fixture_word(word: str) -> tuple[str, Path]:
+    """Return the setup (empty: all) and the file that a word names: `FILE`, or `S2=FILE`.
+
+    >>> fixture_word("S2=clamp.stl")
+    ('S2', PosixPath('clamp.stl'))
+    """
+    setup, equals, file = word.partition("=")
+    if equals and re.fullmatch(r"S[0-9]+", setup):
+        return setup, Path(file)
+    return "", Path(word)
 
 
 def _whole_line(session: Session, reason: str) -> str:

@@ -4,21 +4,47 @@ from __future__ import annotations
 
 import tomllib
 from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
 
 from trunnion.findings import BadInput
+from trunnion.geometry.arrays import Floats
 from trunnion_resources import folder
 
 Colour = tuple[int, int, int]
 
 
+@dataclass(frozen=True, slots=True, kw_only=True)
+class DeviationColours:
+    """Colours of the deviation map: finished, and two families from just outside the tolerance to the end of the range."""
+
+    finished: Colour
+    gouge: tuple[Colour, ...]
+    left: tuple[Colour, ...]
+
+    def at(self, value: Floats, low: float, high: float, limit: float) -> NDArray[np.uint8]:
+        """Return the colour (v, 3) of deviations (v,) mm: gouge below `low`, left above `high`, both ending at `limit` from 0."""
+        value = np.asarray(value, dtype=np.float64)
+        found = np.tile(np.array(self.finished, np.float64), (len(value), 1))
+        for colours, bad, share in ((self.gouge, value < low, (low - value) / (limit + low)),
+                                    (self.left, value > high, (value - high) / (limit - high))):
+            steps = np.linspace(0.0, 1.0, len(colours))
+            for channel in range(3):
+                found[bad, channel] = np.interp(share[bad], steps, [c[channel] for c in colours])
+        return np.round(found).astype(np.uint8)
+
+
 @dataclass(frozen=True, kw_only=True)
 class Palette:
-    """Colours of feature kinds and of motions, and the map of deviations with its limit in mm."""
+    """Colours of feature kinds, of motions and of deviations."""
 
     kinds: dict[str, Colour]
     motions: dict[str, Colour]
     deviation_map: str
     deviation_limit: float
+    deviation: DeviationColours
 
     def kind(self, name: str) -> Colour:
         """Return the colour of a feature kind; kinds without one of their own share that of `other`."""
@@ -33,7 +59,13 @@ def load_palette() -> Palette:
     """Return the palette that is shipped; raise `BadInput` when a colour is not written as `#rrggbb`."""
     data = tomllib.loads((folder("palette") / "palette.toml").read_text(encoding="utf-8"))
     kinds, motions = ({k: _colour(k, v) for k, v in data[table].items()} for table in ("kinds", "motions"))
-    return Palette(kinds=kinds, motions=motions, deviation_map=data["deviation"]["map"], deviation_limit=float(data["deviation"]["limit"]))
+    return Palette(kinds=kinds, motions=motions, deviation_map=data["deviation"]["map"], deviation_limit=float(data["deviation"]["limit"]),
+                   deviation=_deviation(data["deviation"]))
+
+
+def _deviation(data: dict[str, Any]) -> DeviationColours:
+    gouge, left = (tuple(_colour(name, text) for text in data[name]) for name in ("gouge", "left"))
+    return DeviationColours(finished=_colour("finished", data["finished"]), gouge=gouge, left=left)
 
 
 def _colour(name: str, text: str) -> Colour:

@@ -2,55 +2,37 @@
 
 from __future__ import annotations
 
-import re
-
-from PySide6.QtGui import QColor, QShowEvent, QSyntaxHighlighter, QTextCharFormat
-from PySide6.QtWidgets import QComboBox, QHBoxLayout, QLabel, QPlainTextEdit, QVBoxLayout, QWidget
+from PySide6.QtCore import Signal
+from PySide6.QtGui import QShowEvent
+from PySide6.QtWidgets import QComboBox, QHBoxLayout, QLabel, QVBoxLayout, QWidget
 
 from trunnion.findings import TrunnionError
 from trunnion.model.session import PostedFile, Session
-from trunnion_gui.colours import Theme, motions
+from trunnion_gui.colours import Theme
 from trunnion_gui.document import Document
 from trunnion_gui.i18n import tr
-
-
-class _Words(QSyntaxHighlighter):
-    """Comments muted, motion words in the colour of their motion, tool and spindle words in the accent."""
-
-    _PATTERN = re.compile(r"(?P<comment>\([^)]*\)|;.*$|^\$\$.*$)|(?P<rapid>\bG0?0\b|\bRAPID\b)|(?P<cut>\bG0?[123]\b|\bGOTO\b|\bCIRCLE\b)"
-                          r"|(?P<tool>\b[TMS]\d+(?:\.\d+)?\b|\b[A-Z]{4,}/)|(?P<number>\bN\d+\b)")
-
-    def __init__(self, editor: QPlainTextEdit, theme: Theme) -> None:
-        super().__init__(editor.document())
-        colours = {"comment": theme.muted, "number": theme.muted, "tool": theme.accent}
-        colours |= {name: motions()[name] for name in ("rapid", "cut")}
-        self._looks = {name: QTextCharFormat() for name in colours}
-        for name, colour in colours.items():
-            self._looks[name].setForeground(QColor(colour))
-
-    def highlightBlock(self, text: str) -> None:
-        for match in self._PATTERN.finditer(text):
-            self.setFormat(match.start(), match.end() - match.start(), self._looks[match.lastgroup or "comment"])
+from trunnion_gui.widgets.code import CodeView
+from trunnion_gui.words import grouped
 
 
 class CodeDock(QWidget):
     """The text of the chosen program; filled when it is looked at."""
+
+    line_chosen = Signal(str, int)
+    """A clicked line: the suffix of the file it stands in, and its number from 1."""
 
     def __init__(self, document: Document) -> None:
         super().__init__()
         self._document = document
         self._shown: tuple[PostedFile, ...] = ()
         self._source: tuple[object, object] = ((), None)
-        self._words: _Words | None = None
+        self._at = ("", 0)
         self.choice = QComboBox()
         self.choice.setSizeAdjustPolicy(QComboBox.SizeAdjustPolicy.AdjustToContents)
         self.choice.setMinimumContentsLength(18)
         self.lines = QLabel()
         self.lines.setObjectName("muted")
-        self.text = QPlainTextEdit()
-        self.text.setObjectName("code")
-        self.text.setReadOnly(True)
-        self.text.setLineWrapMode(QPlainTextEdit.LineWrapMode.NoWrap)
+        self.text = CodeView()
         self.text.setPlaceholderText(tr("The program appears here when it has been generated and verified."))
         top = QHBoxLayout()
         top.setContentsMargins(10, 6, 10, 0)
@@ -63,11 +45,22 @@ class CodeDock(QWidget):
         column.addLayout(top)
         column.addWidget(self.text)
         self.choice.currentIndexChanged.connect(self._read)
+        self.text.clicked.connect(self._choose)
         document.changed.connect(self.refresh)
 
     def use_theme(self, theme: Theme) -> None:
         """Draw in the colours of a theme."""
-        self._words = _Words(self.text, theme)
+        self.text.use_theme(theme)
+
+    def show_line(self, suffix: str, line: int) -> None:
+        """Mark the line of a file that is being played, if anybody looks; line 0 marks none."""
+        self._at = (suffix, line)
+        if not self.isVisible():
+            return
+        rows = [n for n, file in enumerate(self._shown) if file.suffix == suffix]
+        if line and rows and self.choice.currentIndex() != rows[0]:
+            self.choice.setCurrentIndex(rows[0])
+        self.text.mark(line if rows else 0)
 
     def refresh(self) -> None:
         """Show the programs of the shown session, if anybody looks."""
@@ -87,12 +80,18 @@ class CodeDock(QWidget):
     def showEvent(self, event: QShowEvent) -> None:
         super().showEvent(event)
         self.refresh()
+        self.show_line(*self._at)
+
+    def _choose(self, line: int) -> None:
+        row = self.choice.currentIndex()
+        if 0 <= row < len(self._shown):
+            self.line_chosen.emit(self._shown[row].suffix, line)
 
     def _read(self) -> None:
         row = self.choice.currentIndex()
         text = self._shown[row].text if 0 <= row < len(self._shown) else ""
-        self.text.setPlainText(text)
-        self.lines.setText(tr("{n} lines").format(n=f"{text.count(chr(10)):,}".replace(",", " ")) if text else "")
+        self.text.show_text(text)
+        self.lines.setText(tr("{n} lines").format(n=grouped(text.count("\n"))) if text else "")
 
 
 def as_they_leave(session: Session) -> tuple[PostedFile, ...]:

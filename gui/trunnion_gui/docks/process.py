@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from PySide6.QtCore import QPoint, Qt, Signal
-from PySide6.QtGui import QColor, QDropEvent, QIcon
+from PySide6.QtGui import QBrush, QColor, QDropEvent, QFont, QIcon
 from PySide6.QtWidgets import QAbstractItemView, QMenu, QTreeWidget, QTreeWidgetItem, QVBoxLayout, QWidget
 
 from trunnion.model.operation import Operation
@@ -50,6 +50,7 @@ class ProcessDock(QWidget):
         self._theme: Theme | None = None
         self._shown: tuple = ()
         self._items: dict[str, QTreeWidgetItem] = {}
+        self._marked = ""
         self.tree = tree([tr("Operation"), tr("Feature"), tr("Tool"), "⌀ mm"], kind=_Tree)
         self.tree.setDragDropMode(QAbstractItemView.DragDropMode.InternalMove)
         column = QVBoxLayout(self)
@@ -86,7 +87,29 @@ class ProcessDock(QWidget):
                     self._add(top, o, session)
             top.setExpanded(True)
         self.tree.blockSignals(False)
+        marked, self._marked = self._marked, ""
+        self.mark(marked)
         self._follow(self._document.selection)
+
+    def mark(self, id: str) -> None:
+        """Show which operation is being played; none for an empty id."""
+        if id == self._marked:
+            return
+        for name, is_played in ((self._marked, False), (id, True)):
+            item = self._items.get(name)
+            if item is not None:
+                self._stress(item, is_played)
+                if is_played:
+                    self.tree.scrollToItem(item)
+        self._marked = id
+
+    def _stress(self, item: QTreeWidgetItem, is_played: bool) -> None:
+        font = QFont(item.font(0))
+        font.setBold(is_played)
+        ground = QBrush(QColor(self._theme.accent_soft)) if is_played and self._theme is not None else QBrush()
+        for column in range(self.tree.columnCount()):
+            item.setFont(column, font)
+            item.setBackground(column, ground)
 
     def item(self, id: str) -> QTreeWidgetItem:
         """Return the row of an operation."""

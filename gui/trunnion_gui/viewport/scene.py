@@ -13,14 +13,21 @@ from PySide6.QtWidgets import QVBoxLayout, QWidget
 from trunnion.geometry.frame import WORLD, Frame
 from trunnion.geometry.mesh import Mesh
 from trunnion.model.blank import Blank
+from trunnion.model.playback import Moment
 from trunnion.model.setup import Setup
+from trunnion.model.tool import Tool
 from trunnion.model.toolpath import Toolpath
+from trunnion.report.deviation import DeviationMap
+from trunnion.report.palette import DeviationColours
 from trunnion_gui.colours import MOTIONS, Theme, mixed, rgb
 from trunnion_gui.viewport.layers.blank import draw_blank
+from trunnion_gui.viewport.layers.deviation import DeviationLayer
 from trunnion_gui.viewport.layers.label import draw_label
 from trunnion_gui.viewport.layers.part import PartLayer
 from trunnion_gui.viewport.layers.paths import draw_paths
 from trunnion_gui.viewport.layers.setups import draw_setups
+from trunnion_gui.viewport.layers.stock import draw_stock
+from trunnion_gui.viewport.layers.tool import draw_tool, draw_trail, place_tool
 from trunnion_gui.viewport.pick import FacePicker
 from trunnion_gui.viewport.view import make_view
 
@@ -49,6 +56,8 @@ class Scene(QWidget):
     clicked = Signal(int)
     """The tag of the face that was clicked, 0 beside the part."""
     hovered = Signal(int)
+    pointed = Signal(object, QPointF)
+    """Face tag, deviation and place under the mouse while the map is shown (None beside the part), and where the mouse is."""
 
     def __init__(self, theme: Theme, parent: QWidget | None = None) -> None:
         super().__init__(parent)
@@ -70,6 +79,9 @@ class Scene(QWidget):
         self._is_isolated = False
         self._pressed: QPointF | None = None
         self._section: float | None = None
+        self._map: DeviationLayer | None = None
+        self._is_playing = False
+        self._room = (0.0, 0.0)
         self.view.enable_parallel_projection()
         self.use_theme(theme)
         self.view.installEventFilter(self)
@@ -129,6 +141,47 @@ class Scene(QWidget):
         draw_paths(self.view, paths, motions)
         self.view.render()
 
+    def show_map(self, shown: DeviationMap | None, colours: DeviationColours | None = None) -> None:
+        """Show a deviation map instead of the part's colours, or those again."""
+        self.view.remove_actor("deviation", render=False)
+        self._map = DeviationLayer(self.view, shown, colours) if shown is not None and colours is not None else None
+        self._apply_section()
+        self._hide()
+        self.view.render()
+
+    def show_stock(self, moment: Moment | None) -> None:
+        """Show the stock at a moment instead of the part, or the part again."""
+        draw_stock(self.view, moment, self._theme)
+        if self._is_playing != (moment is not None):
+            self._is_playing = moment is not None
+            self._hide()
+        self._apply_section()
+        self.view.render()
+
+    def use_tool(self, tool: Tool | None) -> None:
+        """Show a tool, or none."""
+        draw_tool(self.view, tool, self._theme)
+        self.view.render()
+
+    def move_tool(self, tip: np.ndarray, axis: np.ndarray) -> None:
+        """Stand the tool somewhere (the part's coordinates)."""
+        place_tool(self.view, tip, axis)
+        self.view.render()
+
+    def show_trail(self, points: np.ndarray, rapid: np.ndarray) -> None:
+        """Show the way of the tip: points (k + 1, 3), and whether each chord (k,) was a rapid."""
+        draw_trail(self.view, points, rapid)
+
+    def look_at(self, place: Sequence[float], half_height: float) -> None:
+        """Bring a place into the middle of the picture, from the same side, showing so many mm above and below it."""
+        camera = self.view.camera
+        away = np.subtract(camera.position, camera.focal_point)
+        camera.focal_point = tuple(place)
+        camera.position = tuple(np.add(place, away))
+        camera.parallel_scale = half_height
+        self.view.renderer.ResetCameraClippingRange()
+        self.view.render()
+
     def show_label(self, text: str, at: tuple[float, ...] = ()) -> None:
         """Write a size at a point of the part."""
         draw_label(self.view, text if len(at) == 3 else "", at, self._theme)
@@ -160,7 +213,7 @@ class Scene(QWidget):
 
     def face_at(self, at: QPointF) -> int:
         """Return the tag of the face at a point of the view widget, 0 beside the part."""
-        if self._picker is None:
+        if self._picker is None or self._is_playing:
             return 0
         ratio = self.view.devicePixelRatioF()
         return self._picker.at(at.x() * ratio, (self.view.height() - at.y() - 1) * ratio, self.view.renderer)
@@ -197,8 +250,25 @@ class Scene(QWidget):
                 if event.button() == Qt.MouseButton.LeftButton and abs(moved.x()) + abs(moved.y()) <= _CLICK:
                     self.clicked.emit(self.face_at(event.position()))
             elif kind == QEvent.Type.MouseMove and event.buttons() == Qt.MouseButton.NoButton:
-                self.hovered.emit(self.face_at(event.position()))
+                self._point(event.position())
+        elif event.type() == QEvent.Type.Leave and self._map is not None:
+            self.pointed.emit(None, QPointF())
         return False
+
+    def _point(self, at: QPointF) -> None:
+        if self._map is None or self._is_playing:
+            self.hovered.emit(self.face_at(at))
+            return
+        ratio = self.view.devicePixelRatioF()
+        self.pointed.emit(self._map.at(at.x() * ratio, (self.view.height() - at.y() - 1) * ratio, self.view.renderer), at)
+
+    def _hide(self) -> None:
+        """Hide the part's own look while the stock or the map is shown."""
+        for name, is_shown in (("part", not self._is_playing and self._map is None), ("edges", not self._is_playing),
+                               ("chosen", not self._is_playing), ("hover", not self._is_playing), ("deviation", not self._is_playing)):
+            actor = self.view.actors.get(name)
+            if actor is not None:
+                actor.visibility = is_shown
 
     def hover(self, faces: tuple[int, ...]) -> None:
         """Outline faces lightly, or none."""
@@ -211,6 +281,7 @@ class Scene(QWidget):
         if self._part is not None and self._mesh is not None:
             self._part.paint(self._palette(int(self._mesh.face.max())))
         self._apply_section()
+        self._hide()
         self.view.render()
 
     def _palette(self, n_faces: int) -> np.ndarray:
@@ -247,7 +318,7 @@ class Scene(QWidget):
         return tuple(float(v) for pair in zip(low, high) for v in pair)
 
     def _apply_section(self) -> None:
-        for name in ("part", "edges", "chosen"):
+        for name in ("part", "edges", "chosen", "deviation", "stock"):
             actor = self.view.actors.get(name)
             if actor is None:
                 continue

@@ -61,12 +61,12 @@ def border_edges(mesh: Mesh) -> tuple[np.ndarray, np.ndarray]:
 def _surface(mesh: Mesh) -> pv.PolyData:
     cells = np.hstack([np.full((len(mesh.triangles), 1), 3), mesh.triangles])
     surface = pv.PolyData(np.asarray(mesh.points, dtype=np.float32), cells.ravel())
-    surface.point_data["Normals"] = _normals(mesh)
+    surface.point_data["Normals"] = normals_of(mesh)
     surface.GetPointData().SetActiveNormals("Normals")
     return surface
 
 
-def _normals(mesh: Mesh) -> np.ndarray:
+def normals_of(mesh: Mesh) -> np.ndarray:
     """Return the normal at every point (v, 3), smooth inside a face and sharp across its border."""
     a, b, c = np.moveaxis(mesh.corners(), 1, 0)
     across = np.cross(b - a, c - a)

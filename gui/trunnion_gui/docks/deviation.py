@@ -1,0 +1,57 @@
+"""The worst places of the deviation map; a click goes there."""
+
+from __future__ import annotations
+
+from PySide6.QtCore import Signal
+from PySide6.QtWidgets import QTableWidget, QVBoxLayout, QWidget
+
+from trunnion.report.deviation import DeviationMap, WorstPlace
+from trunnion_gui import icons
+from trunnion_gui.colours import Theme
+from trunnion_gui.document import Document
+from trunnion_gui.i18n import tr
+from trunnion_gui.widgets import table as tables
+from trunnion_gui.words import fine_amount
+
+
+class DeviationDock(QWidget):
+    """One row a place: what is wrong, how much, on which face of which feature, where."""
+
+    chosen = Signal(object)
+    """A `WorstPlace` that a person wants to see."""
+
+    def __init__(self, document: Document) -> None:
+        super().__init__()
+        self._document = document
+        self._theme: Theme | None = None
+        self.shown: DeviationMap | None = None
+        self.places: tuple[WorstPlace, ...] = ()
+        self.table: QTableWidget = tables.table(["", tr("Deviation"), tr("Face"), tr("Feature"), "x", "y", "z"], stretched=(0, 3))
+        column = QVBoxLayout(self)
+        column.setContentsMargins(0, 0, 0, 0)
+        column.addWidget(self.table)
+        self.table.cellClicked.connect(lambda row, _: self.chosen.emit(self.places[row]))
+
+    def use_theme(self, theme: Theme) -> None:
+        """Draw in the colours of a theme."""
+        self._theme = theme
+        self.show_map(self.shown)
+
+    def show_map(self, shown: DeviationMap | None) -> None:
+        """List the worst places of a map."""
+        self.shown = shown
+        self.places = shown.worst if shown is not None else ()
+        rows, drawn = [], []
+        for place in self.places:
+            is_gouge = place.deviation < 0.0
+            rows.append((tr("gouge") if is_gouge else tr("material left"), fine_amount(place.deviation), str(place.face),
+                         self._feature(place.face), *(f"{v:.2f}" for v in place.point)))
+            drawn.append(icons.icon("gouge" if is_gouge else "left_over", self._colour(is_gouge)))
+        tables.fill(self.table, rows, right=(1, 2, 4, 5, 6), icons=drawn)
+
+    def _colour(self, is_gouge: bool) -> str:
+        return "" if self._theme is None else self._theme.bad if is_gouge else self._theme.accent
+
+    def _feature(self, tag: int) -> str:
+        owners = [f for f in self._document.shown.recognition or () if tag in f.tags]
+        return min(owners, key=lambda f: len(f.tags)).id if owners else ""

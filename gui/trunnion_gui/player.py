@@ -1,0 +1,251 @@
+"""The playback's clock: where the tool is, how fast it goes, and which stock is asked of the worker.
+
+The tool runs in the window's process; the stock arrives from the worker when it is ready. While playing, the stock of a place a little
+ahead is asked for: the tool goes there meanwhile, waits when it gets there first, and the stock changes as it passes. So tool and stock
+never drift apart, and the window never waits.
+"""
+
+from __future__ import annotations
+
+import math
+import time
+from typing import Any
+
+from PySide6.QtCore import QObject, Qt, QTimer, Signal
+
+from trunnion.model.playback import Moment, Timeline
+from trunnion_gui.document import Document
+from trunnion_gui.worker import Reply
+
+SPEEDS = (1, 2, 5, 10, 20, 50, 100, 200, 500, 1000)
+"""How many times faster than the machine; a block at a time: blocks a second."""
+_TICK_MS = 33
+_LONGEST_TICK_S = 0.25
+"""A tick that was held up moves the tool no further than this."""
+_LEAST_LEAD_S, _MOST_LEAD_S = 0.08, 1.0
+"""How far ahead of the tool, in the person's time, the stock is asked for: a little more than the worker needs."""
+_ANSWER_S = 0.25
+"""Time after which the worker shows how far it got."""
+
+
+class Player(QObject):
+    """Plays the shown session's plan while it is switched on."""
+
+    opened = Signal()
+    """There is another timeline, or none."""
+    moved = Signal(float)
+    """The tool is at another position."""
+    cut = Signal(object)
+    """A `Moment`: the stock to show."""
+    changed = Signal()
+    """Playing or not, speed, mode."""
+
+    def __init__(self, document: Document, parent: QObject | None = None) -> None:
+        super().__init__(parent)
+        self._document = document
+        self.timeline: Timeline | None = None
+        self.position = 0.0
+        self.speed = 10
+        self.by_block = False
+        self.is_on = False
+        self._source: tuple[Any, ...] = ()
+        self._asked = 0
+        self._asked_at, self._asked_for = 0.0, 0.0
+        self._opening = 0
+        self._ahead: Moment | None = None
+        self._stock_at = -1.0
+        self._lead = _LEAST_LEAD_S
+        self._last = 0.0
+        self._timer = QTimer(self)
+        self._timer.setTimerType(Qt.TimerType.PreciseTimer)
+        self._timer.setInterval(_TICK_MS)
+        self._timer.timeout.connect(self._tick)
+        document.worker.replied.connect(self._receive)
+        document.worker.restarted.connect(self._restart)
+        document.changed.connect(self._follow)
+        document.job_changed.connect(self._follow)
+
+    @property
+    def is_playing(self) -> bool:
+        """Whether the tool runs."""
+        return self._timer.isActive()
+
+    @property
+    def can_play(self) -> bool:
+        """Whether the session has toolpaths, and the worker is free."""
+        session = self._document.session
+        return not self._document.is_busy and session.blank is not None and any(len(p.path) for p in session.paths)
+
+    @property
+    def end(self) -> float:
+        """The last position."""
+        return float(len(self.timeline)) if self.timeline is not None else 0.0
+
+    def switch(self, on: bool) -> None:
+        """Begin or end the playback."""
+        self.is_on = on
+        if on:
+            self._follow()
+        else:
+            self.forget()
+
+    def forget(self) -> None:
+        """Let the timeline go; it is asked for again when it is wanted."""
+        self.pause()
+        self.timeline, self._source, self._opening, self._asked, self._ahead = None, (), 0, 0, None
+        self._stock_at = -1.0
+        self.opened.emit()
+
+    def play(self) -> None:
+        """Run on from where the tool is; from the beginning when it is at the end."""
+        if self.timeline is None or self.is_playing:
+            return
+        if self.position >= self.end:
+            self.go(0.0)
+        self._last = time.perf_counter()
+        self._ahead = None
+        self._timer.start()
+        self.changed.emit()
+        self._ask()
+
+    def pause(self) -> None:
+        """Stop where the tool is."""
+        if self.is_playing:
+            self._timer.stop()
+            self._ahead = None
+            self.changed.emit()
+            self._ask()
+
+    def toggle(self) -> None:
+        """Play, or pause."""
+        (self.pause if self.is_playing else self.play)()
+
+    def go(self, position: float) -> None:
+        """Put the tool at a position; the stock follows."""
+        self._ahead = None
+        self._move(min(max(position, 0.0), self.end))
+        self._ask()
+
+    def step(self, blocks: int) -> None:
+        """Go some whole blocks on or back."""
+        self.pause()
+        self.go(float((math.floor if blocks > 0 else math.ceil)(self.position) + blocks))
+
+    def skip(self, operations: int) -> None:
+        """Go to the beginning of an operation: the next one, this one's, or the one before when the tool stands at a beginning."""
+        if self.timeline is None:
+            return
+        first = self.timeline.first
+        if operations > 0:
+            after = first[first > self.position]
+            self.go(float(after[0]) if len(after) else self.end)
+        else:
+            before = first[first < self.position]
+            self.go(float(before[-1]) if len(before) else 0.0)
+
+    def set_speed(self, speed: int) -> None:
+        """Play so many times faster than the machine (a block at a time: so many blocks a second)."""
+        self.speed = speed
+        self.changed.emit()
+
+    def faster(self, steps: int = 1) -> None:
+        """Take the next higher speed, or a lower one."""
+        nearest = min(range(len(SPEEDS)), key=lambda n: abs(SPEEDS[n] - self.speed))
+        self.set_speed(SPEEDS[min(max(nearest + steps, 0), len(SPEEDS) - 1)])
+
+    def set_by_block(self, on: bool) -> None:
+        """Play a block at a time, each as long as the others, or at the machine's time."""
+        self.by_block = on
+        self.changed.emit()
+
+    # inside
+
+    def _restart(self) -> None:
+        """Play the plan anew in a fresh worker."""
+        self.forget()
+        self._follow()
+
+    def _follow(self) -> None:
+        """Ask for the timeline when the plan is another one; nothing is asked while a job runs."""
+        if self._document.is_busy:
+            self.pause()
+        if not self.is_on or self._document.is_busy:
+            return
+        session = self._document.session
+        source = (session.paths, session.posted, session.process, session.blank)
+        if len(source) == len(self._source) and all(a is b for a, b in zip(source, self._source)):
+            return
+        if not self.can_play:
+            self.forget()
+            return
+        self._source = source
+        self._opening = self._document.worker.ask("playback", session)
+
+    def _after(self, position: float, seconds: float) -> float:
+        """Return the position some of the person's seconds later."""
+        assert self.timeline is not None
+        if self.by_block:
+            return min(position + seconds * self.speed, self.end)
+        return self.timeline.position_at(self.timeline.seconds_at(position) + seconds * self.speed)
+
+    def _tick(self) -> None:
+        now = time.perf_counter()
+        passed, self._last = min(now - self._last, _LONGEST_TICK_S), now
+        bound = self._ahead.position if self._ahead is not None else self._asked_for if self._asked else self.end
+        self._move(max(min(self._after(self.position, passed), bound), self.position))
+        if self._ahead is not None and self.position >= self._ahead.position:
+            self._show(self._ahead)
+        if self._ahead is None and not self._asked:
+            if self.position >= self.end:
+                self.pause()
+            else:
+                self._ask()
+
+    def _move(self, position: float) -> None:
+        self.position = position
+        self.moved.emit(position)
+
+    def _show(self, moment: Moment) -> None:
+        self._ahead, self._stock_at = None, moment.position
+        self.cut.emit(moment)
+
+    def _ask(self) -> None:
+        """Ask for the stock where the tool is, or where it will be when the answer comes; one question at a time."""
+        if self.timeline is None or self._asked or self._document.is_busy:
+            return
+        wanted = self._after(self.position, self._lead) if self.is_playing else self.position
+        if wanted != self._stock_at:
+            self._asked_at, self._asked_for = time.perf_counter(), wanted
+            self._asked = self._document.worker.ask("moment", self.timeline.key, wanted, _ANSWER_S)
+
+    def _receive(self, reply: Reply) -> None:
+        if not reply.is_last or reply.number not in (self._opening, self._asked):
+            return
+        if reply.number == self._opening:
+            self._opening = 0
+            self._open(reply)
+            return
+        self._asked = 0
+        if reply.kind != "done":
+            self._source = ()
+            if reply.kind == "failed":
+                self._document.notice(reply.text)
+            return
+        needed = time.perf_counter() - self._asked_at
+        self._lead = min(max(0.5 * self._lead + 0.6 * needed, _LEAST_LEAD_S), _MOST_LEAD_S)
+        if self.is_playing and reply.value.position > self.position:
+            self._ahead = reply.value
+        else:
+            self._show(reply.value)
+            self._ask()
+
+    def _open(self, reply: Reply) -> None:
+        if reply.kind != "done":
+            self.forget()
+            if reply.kind == "failed":
+                self._document.notice(reply.text)
+            return
+        self.timeline, self._ahead, self._stock_at = reply.value, None, -1.0
+        self.position = min(self.position, self.end)
+        self.opened.emit()
+        self.go(self.position)
