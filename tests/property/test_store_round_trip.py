@@ -38,7 +38,8 @@ def operation_paths(draw):
     motion = rng.integers(0, 4, n)
     motion[:1] = 0
     centre = np.where((motion >= 2)[:, None], rng.normal(size=(n, 3)), np.nan)
-    path = Toolpath(position=rng.normal(size=(n, 3)) * 10.0 ** rng.integers(-9, 9), axis=rng.normal(size=(n, 3)), motion=motion,
+    keeps = np.maximum.accumulate(np.where(motion >= 2, 0, np.arange(n))) if n else motion  # an arc keeps the axis of the block before
+    path = Toolpath(position=rng.normal(size=(n, 3)) * 10.0 ** rng.integers(-9, 9), axis=rng.normal(size=(n, 3))[keeps], motion=motion,
                     centre=centre, feed=np.where(motion == 0, 0.0, rng.uniform(1, 9000, n)), mark=rng.integers(0, 5, n))
     return OperationPath(operation=draw(texts), path=path, findings=tuple(draw(st.lists(findings, max_size=2))), key=draw(texts))
 

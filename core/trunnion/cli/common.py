@@ -31,6 +31,8 @@ def add_options(made: argparse.ArgumentParser) -> None:
     made.add_argument("--set", action="append", default=[], metavar="KEY=VALUE", dest="words",
                       help="change a setting (`trunnion settings` lists them); may be repeated")
     made.add_argument("--solid", type=int, default=None, metavar="N", help="which solid of a file with several (1-based)")
+    made.add_argument("--fixture", action="append", default=[], metavar="[SETUP=]FILE", dest="fixtures",
+                      help="STEP, IGES or STL file of what holds the part, in the part's coordinates; may be repeated")
     made.add_argument("--user-folder", type=folder_named, default=None, metavar="DIR",
                       help="a shop's own tools, materials, machines and plans")
     made.add_argument("--json", action="store_true", help="print the result as JSON")
@@ -90,6 +92,8 @@ def open_session(chosen: argparse.Namespace, until: str | None) -> tuple[Engine,
     progress = progress_of(chosen)
     session = engine.open(chosen.part, solid=chosen.solid, progress=progress.part(0.0, 0.1))
     session = engine.with_choices(session, words_of(chosen))
+    if chosen.fixtures:
+        session = engine.with_fixtures(session, chosen.fixtures, progress)
     if until is not None:
         session = engine.run(session, until, progress.part(0.1, 1.0))
     return engine, session

@@ -9,6 +9,7 @@ from trunnion.findings import Finding
 from trunnion.geometry.arrays import Floats
 from trunnion.model.blank import Blank
 from trunnion.model.feature import Recognition
+from trunnion.model.fixture import Fixture
 from trunnion.model.operation import OperationPath
 from trunnion.model.process import ProcessTree
 from trunnion.model.setup import Setup
@@ -83,6 +84,7 @@ class Session:
     sizes: tuple[SizeEntry, ...] = ()
     blank: Blank | None = None
     setups: tuple[Setup, ...] = ()
+    fixtures: tuple[Fixture, ...] = ()
     process: ProcessTree | None = None
     paths: tuple[OperationPath, ...] = ()
     posted: tuple[PostedFile, ...] = ()
@@ -92,6 +94,10 @@ class Session:
     def path_of(self, operation: str) -> OperationPath | None:
         """Return the toolpath of an operation, or None when it has not been made."""
         return next((p for p in self.paths if p.operation == operation), None)
+
+    def fixtures_of(self, setup: str) -> tuple[Fixture, ...]:
+        """Return the fixtures that are there in a setup."""
+        return tuple(f for f in self.fixtures if f.setup in ("", setup))
 
     def findings(self) -> tuple[Finding, ...]:
         """Return the findings of the part and of every step that is done, in the order of the work."""

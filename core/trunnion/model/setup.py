@@ -5,6 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 from trunnion.geometry.frame import Frame
+from trunnion.model.fixture import Fixture
 
 
 @dataclass(frozen=True, slots=True, eq=False, kw_only=True)
@@ -12,7 +13,8 @@ class Setup:
     """One clamping.
 
     `frame` is the work offset's frame in the part's coordinates (z towards the spindle): toolpath positions are in it.
-    `clearance` is the height in that frame above everything; `machine` a catalogue name; `work_offset` a word (`G54`).
+    `clearance` is the height in that frame above everything; `machine` a catalogue name; `work_offset` a word (`G54`); `fixtures` what
+    holds the part in it, which the proof lets nothing touch.
     """
 
     name: str
@@ -20,3 +22,4 @@ class Setup:
     work_offset: str
     clearance: float
     machine: str
+    fixtures: tuple[Fixture, ...] = ()

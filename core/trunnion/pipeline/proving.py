@@ -6,7 +6,7 @@ from collections.abc import Sequence
 from dataclasses import replace
 
 from trunnion import registry
-from trunnion.findings import BadCall, Finding, Severity, error
+from trunnion.findings import BadCall, BadInput, Finding, Severity, error
 from trunnion.model.process import ProcessTree
 from trunnion.model.program import Program, ProgramSection
 from trunnion.model.session import PostedFile, Session
@@ -31,7 +31,12 @@ def program_of(session: Session, setup: Setup) -> Program:
         if made is not None and len(made.path):
             sections.append(ProgramSection(operation=operation.id, tool=operation.tool, spindle=operation.data.spindle, path=made.path,
                                            width=operation.data.width, depth=operation.data.depth, feed=operation.data.feed))
-    return Program(name=f"{session.part.name}.{setup.name}", setup=setup, sections=tuple(sections))
+    return Program(name=f"{session.part.name}.{setup.name}", setup=held(session, setup), sections=tuple(sections))
+
+
+def held(session: Session, setup: Setup) -> Setup:
+    """Return a setup with the fixtures that hold the part in it."""
+    return replace(setup, fixtures=session.fixtures_of(setup.name))
 
 
 def programs_of(session: Session) -> tuple[Program, ...]:
@@ -56,7 +61,7 @@ def read_back(session: Session, posted: tuple[PostedFile, ...]) -> tuple[Program
     if session.process is None:
         raise BadCall("no operations yet: generate the route first")
     tools = session.process.tools()
-    read = (read_program(f.dialect, f.text, tools, session.process.setup(f.setup)) for f in posted if f.setup)
+    read = (read_program(f.dialect, f.text, tools, held(session, session.process.setup(f.setup))) for f in posted if f.setup)
     return tuple(with_engagement(p, session.process) for p in read)
 
 
@@ -102,6 +107,10 @@ def prove_programs(session: Session, bench: Bench, programs: tuple[Program, ...]
     if session.process is None or session.blank is None:
         raise BadCall("no blank or operations: nothing to prove against")
     from trunnion.verify.verdict import prove
+    names = [s.name for s in session.process.setups]
+    strange = next((f for f in session.fixtures if f.setup and f.setup not in names), None)
+    if strange is not None:
+        raise BadInput(f"fixture {strange.name} is for setup {strange.setup}; the part has {', '.join(names)}")
     machine = bench.shop.machines[session.process.setups[0].machine]
     planned = {tag for operation in session.process.operations if not operation.suppressed for tag in operation.faces}
     return prove(programs, bench.part, session.blank, bench.shop.tools, machine, checked(choose(ProofSettings, session.choices)),

@@ -187,7 +187,8 @@ STEP_TABLE: tuple[Step, ...] = (
     Step(name="toolpath", title="Toolpaths", after=("optimize",), settings=strategy_settings, work=_toolpath,
          reads=lambda s, b: (b.part.digest, s.recognition, s.blank, s.setups, s.process), done=lambda s: "toolpath" in s.records),
     Step(name="verify", title="Verify and post", after=("toolpath",), settings=lambda: (PostSettings, ProofSettings), work=_verify,
-         reads=lambda s, b: (b.part.digest, s.blank, s.setups, s.process, tuple(p.key for p in s.paths)),
+         reads=lambda s, b: (b.part.digest, s.blank, s.setups, s.process, tuple(p.key for p in s.paths),
+                             s.fixtures),
          done=lambda s: s.verdict is not None),
 )
 
