@@ -54,7 +54,7 @@ def cones_of(tools: Sequence[Tool]) -> tuple[Floats, Ints]:
     rows: list[tuple[float, ...]] = []
     start = [0]
     for tool in tools:
-        under = tool.radius
+        under = outline_of(tool)[-1][2]
         for z0, r0, z1, r1 in tool.profile():
             if z1 - z0 > tolerance.PARAMETRIC:
                 rows.append((r0, r1, z0, z1, float(r0 > under + tolerance.PARAMETRIC)))

@@ -101,14 +101,12 @@ def _box(move: Floats, radius: float) -> tuple[float, float, float, float]:
 
 
 @njit(cache=True, nogil=True)
-def _cut_row(row: Floats, px: float, py: float, pitch: float, dx: float, dy: float, inverse: float, z: float, floor: float, upper: float,
-             profile: Floats, arcs: Floats, pieces: Floats) -> tuple[float, int]:
-    """Cut cells of a row that a level line passes. px, py: the first cell's centre from the line's start; inverse: 1 / length squared."""
+def _cut_row_plain(row: Floats, px: float, py: float, pitch: float, dx: float, dy: float, inverse: float, z: float, floor: float,
+                   upper: float, radius: float, corner: float) -> tuple[float, int]:
+    """Cut cells of a row that a plain cutter passes. px, py: the first cell's centre from the line's start; inverse: 1 / length squared."""
     removed, stands = 0.0, 0
-    corner, limit = profile[CORNER], profile[RADIUS] * profile[RADIUS]
-    inner = profile[RADIUS] - corner
-    plain, flat = profile[PLAIN] != 0.0, inner * inner
-    bottom = max(z, floor)
+    inner, limit, bottom = radius - corner, radius * radius, max(z, floor)
+    flat = inner * inner
     for i in range(len(row)):
         h = row[i]
         if h > bottom:
@@ -118,11 +116,33 @@ def _cut_row(row: Floats, px: float, py: float, pitch: float, dx: float, dy: flo
             d = ex * ex + ey * ey
             if d < limit:
                 cut = bottom
-                if not plain:
-                    cut = max(z + formed_height(d, profile, arcs, pieces), floor)
-                elif d > flat:
+                if d > flat:
                     out = math.sqrt(d) - inner
                     cut = max(z + (corner - math.sqrt(max(corner * corner - out * out, 0.0))), floor)
+                if cut < h:
+                    if h > upper:
+                        stands += 1
+                    else:
+                        removed += h - cut
+                        row[i] = cut
+    return removed, stands
+
+
+@njit(cache=True, nogil=True)
+def _cut_row_formed(row: Floats, px: float, py: float, pitch: float, dx: float, dy: float, inverse: float, z: float, floor: float,
+                    upper: float, profile: Floats, arcs: Floats, pieces: Floats) -> tuple[float, int]:
+    """Cut cells of a row that a cutter of any form passes."""
+    removed, stands = 0.0, 0
+    limit, bottom = profile[RADIUS] * profile[RADIUS], max(z, floor)
+    for i in range(len(row)):
+        h = row[i]
+        if h > bottom:
+            x = px + i * pitch
+            t = min(max((x * dx + py * dy) * inverse, 0.0), 1.0)
+            ex, ey = x - t * dx, py - t * dy
+            d = ex * ex + ey * ey
+            if d < limit:
+                cut = max(z + formed_height(d, profile, arcs, pieces), floor)
                 if cut < h:
                     if h > upper:
                         stands += 1
@@ -157,17 +177,6 @@ def _cut_row_ball(row: Floats, px: float, py: float, pitch: float, dx: float, dy
     return removed, stands
 
 
-@njit(cache=True, nogil=True)
-def _cut_cells(row: Floats, first: int, last: int, x: float, py: float, pitch: float, dx: float, dy: float, inverse: float, z: float,
-               floor: float, upper: float, profile: Floats, arcs: Floats, pieces: Floats) -> tuple[float, int]:
-    """Cut the cells first to last of a row, whose cell 0 is x beside the line's start."""
-    if last < first:
-        return 0.0, 0
-    if profile[PLAIN] != 0.0 and profile[CORNER] == profile[RADIUS]:
-        return _cut_row_ball(row[first:last + 1], x + first * pitch, py, pitch, dx, dy, inverse, z, floor, upper, profile[RADIUS])
-    return _cut_row(row[first:last + 1], x + first * pitch, py, pitch, dx, dy, inverse, z, floor, upper, profile, arcs, pieces)
-
-
 @njit(cache=True, nogil=True, inline="always")
 def _capsule_row(y: float, x0: float, y0: float, x1: float, y1: float, radius: float, sx: float, sy: float, inv_dy: float,
                  dx: float) -> tuple[float, float]:
@@ -200,7 +209,8 @@ def _cut_level_line(top: Floats, origin: Floats, pitch: float, floor: float, x0:
 
     Then what is behind the start's perpendicular is done, and so is all that the level end of the cutter covers there.
     """
-    radius = profile[RADIUS]
+    radius, corner = profile[RADIUS], profile[CORNER]
+    plain, ball = profile[PLAIN] != 0.0, profile[PLAIN] != 0.0 and corner == radius
     dx, dy = x1 - x0, y1 - y0
     square = dx * dx + dy * dy
     moves = square > STILL * STILL
@@ -208,35 +218,45 @@ def _cut_level_line(top: Floats, origin: Floats, pitch: float, floor: float, x0:
     length = math.sqrt(square)
     sx, sy = (-radius * dy / length, radius * dx / length) if moves else (0.0, 0.0)
     inv_dy = 1.0 / dy if abs(dy) > STILL else 0.0
-    level = radius - profile[CORNER] if profile[PLAIN] != 0.0 else 0.0
+    slant = dy / dx if abs(dx) > STILL else 0.0
+    level = radius - corner if plain and joined else 0.0
     removed, stands = 0.0, 0
-    columns, cell = top.shape[1], 1.0 / pitch
-    left = origin[0] + 0.5 * pitch
+    columns, cell, left = top.shape[1], 1.0 / pitch, origin[0] + 0.5 * pitch
+    x = left - x0
     for j in range(first_cell(min(y0, y1) - radius, origin[1], pitch), last_cell(max(y0, y1) + radius, origin[1], pitch, top.shape[0]) + 1):
         y = origin[1] + (j + 0.5) * pitch
         py = y - y0
         low, high = _capsule_row(y, x0, y0, x1, y1, radius, sx, sy, inv_dy, dx)
         if joined and moves:
             if dx > STILL:
-                low = max(low, x0 - py * dy / dx)
+                low = max(low, x0 - py * slant)
             elif dx < -STILL:
-                high = min(high, x0 - py * dy / dx)
+                high = min(high, x0 - py * slant)
             elif py * dy < 0.0:
                 continue
         if low > high:
             continue
         a, b = max(int(math.floor((low - left) * cell)), 0), min(int(math.ceil((high - left) * cell)), columns - 1)
-        row, x = top[j], left - x0
+        # The cells from c to d are done.
+        c, d = b + 1, b
         gap = level * level - py * py
-        if joined and gap > SHRINK:
+        if gap > SHRINK:
             half = math.sqrt(gap) - SHRINK
             c, d = int(math.ceil((x0 - half - left) * cell)), int(math.floor((x0 + half - left) * cell))
-            if c <= d:
-                r, s = _cut_cells(row, a, min(b, c - 1), x, py, pitch, dx, dy, inverse, z, floor, upper, profile, arcs, pieces)
-                removed, stands = removed + r, stands + s
-                a = max(a, d + 1)
-        r, s = _cut_cells(row, a, b, x, py, pitch, dx, dy, inverse, z, floor, upper, profile, arcs, pieces)
-        removed, stands = removed + r, stands + s
+            if c > d:
+                c, d = b + 1, b
+        for side in range(2):
+            p, q = (a, min(b, c - 1)) if side == 0 else (max(a, d + 1), b)
+            if p > q:
+                continue
+            row, px = top[j, p:q + 1], x + p * pitch
+            if ball:
+                r, s = _cut_row_ball(row, px, py, pitch, dx, dy, inverse, z, floor, upper, radius)
+            elif plain:
+                r, s = _cut_row_plain(row, px, py, pitch, dx, dy, inverse, z, floor, upper, radius, corner)
+            else:
+                r, s = _cut_row_formed(row, px, py, pitch, dx, dy, inverse, z, floor, upper, profile, arcs, pieces)
+            removed, stands = removed + r, stands + s
     return removed, stands
 
 
@@ -355,37 +375,45 @@ def _formed_on_slope(across: float, low: float, high: float, slope: float, profi
     return best
 
 
+@njit(cache=True, nogil=True, inline="always")
+def _rise(w: float, square: float, inner: float, corner: float) -> float:
+    """Return how fast a bull's end rises along the way at w, a squared distance `square` beside it."""
+    rho = math.sqrt(square + w * w)
+    out = rho - inner
+    if out <= 0.0:
+        return 0.0
+    if out >= corner:
+        return np.inf if w > 0.0 else -np.inf
+    return out / math.sqrt(corner * corner - out * out) * w / rho
+
+
 @njit(cache=True, nogil=True)
-def lowest_on_slope(px: float, py: float, dx: float, dy: float, length: float, z0: float, slope: float, profile: Floats, arcs: Floats,
-                    pieces: Floats) -> float:
-    """Return the lowest height of a cutter over a column (px, py) from the start of its slope; infinite when it never covers it."""
-    along, across = (px * dx + py * dy) / length, (px * dy - py * dx) / length
-    radius, corner = profile[RADIUS], profile[CORNER]
+def _lowest_on_slope(along: float, across: float, length: float, z0: float, slope: float, radius: float, corner: float) -> float:
+    """Return the lowest height of a plain cutter over a column while it runs along a slope; infinite when it never covers it."""
     square = across * across
     gap = radius * radius - square
     if gap <= 0.0:
         return np.inf
     half = math.sqrt(gap)
-    # w runs along the way, from the column's foot on it: the cutter's axis is there at w.
+    # w runs along the way, from the column's foot on it: there the cutter's axis is.
     low, high = max(-half, -along), min(half, length - along)
     if low > high:
         return np.inf
-    base = z0 + along * slope
-    if profile[PLAIN] == 0.0:
-        return base + _formed_on_slope(abs(across), low, high, slope, profile, arcs, pieces)
+    base, inner = z0 + along * slope, radius - corner
     if corner == 0.0:
         return base + min(low * slope, high * slope)
-    inner = radius - corner
     if inner <= 0.0:
-        w = -slope * half / math.sqrt(1.0 + slope * slope)
-    elif slope == 0.0:
-        w = 0.0
+        w = min(max(-slope * half / math.sqrt(1.0 + slope * slope), low), high)
+    # The height over w is convex: where it rises at the low end already, that is the lowest; on short moves nearly everywhere.
+    elif slope + _rise(low, square, inner, corner) >= 0.0:
+        w = low
+    elif slope + _rise(high, square, inner, corner) <= 0.0:
+        w = high
     else:
         p = _steepness(abs(slope), abs(across), inner, corner)
-        rho = inner + corner * p / math.sqrt(1.0 + p * p) if p < np.inf else radius
+        rho = inner + corner * p / math.sqrt(1.0 + p * p)
         w = math.sqrt(max(rho * rho - square, 0.0))
-        w = -w if slope > 0.0 else w
-    w = min(max(w, low), high)
+        w = min(max(-w if slope > 0.0 else w, low), high)
     return base + w * slope + _round_height(min(square + w * w, radius * radius), inner, corner)
 
 
@@ -393,10 +421,11 @@ def lowest_on_slope(px: float, py: float, dx: float, dy: float, length: float, z
 def _cut_slope(top: Floats, origin: Floats, pitch: float, floor: float, x0: float, y0: float, z0: float, x1: float, y1: float, z1: float,
                upper: float, joined: bool, profile: Floats, arcs: Floats, pieces: Floats) -> tuple[float, int]:
     """Cut a slope. A column behind the start of a joined one that climbs is done: the cutter only goes up and away from it."""
-    dx, dy, radius = x1 - x0, y1 - y0, profile[RADIUS]
+    dx, dy, radius, corner = x1 - x0, y1 - y0, profile[RADIUS], profile[CORNER]
     length = math.sqrt(dx * dx + dy * dy)
-    slope = (z1 - z0) / length
-    sx, sy = -radius * dy / length, radius * dx / length
+    slope, plain = (z1 - z0) / length, profile[PLAIN] != 0.0
+    ux, uy = dx / length, dy / length
+    sx, sy = -radius * uy, radius * ux
     inv_dy = 1.0 / dy if abs(dy) > STILL else 0.0
     done_behind = joined and z1 >= z0
     lowest, removed, stands = max(min(z0, z1), floor), 0.0, 0
@@ -406,15 +435,22 @@ def _cut_slope(top: Floats, origin: Floats, pitch: float, floor: float, x0: floa
         low, high = _capsule_row(y, x0, y0, x1, y1, radius, sx, sy, inv_dy, dx)
         if low > high:
             continue
-        row, py = top[j], y - y0
-        for i in range(max(int(math.floor((low - left) / pitch)), 0), min(int(math.ceil((high - left) / pitch)), top.shape[1] - 1) + 1):
+        py = y - y0
+        first = max(int(math.floor((low - left) / pitch)), 0)
+        row = top[j, first:min(int(math.ceil((high - left) / pitch)), top.shape[1] - 1) + 1]
+        for i in range(len(row)):
             h = row[i]
             if h <= lowest:
                 continue
-            px = left + i * pitch - x0
-            if done_behind and px * dx + py * dy < 0.0:
+            px = left + (first + i) * pitch - x0
+            along, across = px * ux + py * uy, px * uy - py * ux
+            if done_behind and along < 0.0:
                 continue
-            cut = max(lowest_on_slope(px, py, dx, dy, length, z0, slope, profile, arcs, pieces), floor)
+            if plain:
+                cut = max(_lowest_on_slope(along, across, length, z0, slope, radius, corner), floor)
+            else:
+                low, high = -along, length - along
+                cut = max(z0 + along * slope + _formed_on_slope(abs(across), low, high, slope, profile, arcs, pieces), floor)
             if cut < h:
                 if h > upper:
                     stands += 1
@@ -593,6 +629,11 @@ def _judge(top: Floats, origin: Floats, pitch: float, highest: float, move: Floa
     A slope is halved until its pieces are clear or lower by less than `allowed` from end to end.
     """
     depth, cell, body = -np.inf, -1, -np.inf
+    lowest = np.inf
+    for k in range(first, last):
+        lowest = min(lowest, cones[k, 2])
+    if highest <= min(move[Z_START], move[Z_END]) + (0.0 if is_rapid else lowest):
+        return depth, cell, body
     line, spans = np.empty(4), np.empty((64, 2))
     spans[0, 0], spans[0, 1] = 0.0, 1.0
     dx, dy, dz = move[X1] - move[X0], move[Y1] - move[Y0], move[Z_END] - move[Z_START]
