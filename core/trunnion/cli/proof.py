@@ -2,11 +2,13 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Mapping
 from typing import Any
 
 from trunnion.findings import has_errors
 from trunnion.model.session import Session
+from trunnion.model.verdict import Offer, OperationProof
 
 
 def proof_dict(session: Session, files: tuple[str, ...], seconds: Mapping[str, float]) -> dict[str, Any]:
@@ -18,16 +20,31 @@ def proof_dict(session: Session, files: tuple[str, ...], seconds: Mapping[str, f
     operations = []
     for o in process.operations:
         p = proofs.get(o.id)
-        operations.append({"id": o.id, "kind": o.kind, "feature": o.feature, "tool": o.tool.number, "setup": o.setup,
-                           "verdict": str(p.outcome) if p else "not cut", "gouge_mm": p.gouge if p else 0.0,
-                           "time_s": p.time_s if p else 0.0, "removed_mm3": p.removed if p else 0.0,
-                           "air_share": p.air_share if p else 0.0})
+        measured = operation_dict(p) if p else {"verdict": "not cut", "gouge_mm": 0.0, "time_s": 0.0, "removed_mm3": 0.0, "air_share": 0.0}
+        operations.append({"id": o.id, "kind": o.kind, "feature": o.feature, "tool": o.tool.number, "setup": o.setup, **measured})
     return {"verdict": str(verdict.outcome), "coverage": verdict.coverage, "reachable": verdict.reachable, "gouge_mm": verdict.gouge,
             "collisions": verdict.collisions, "rapids_in_stock": verdict.rapids_in_stock, "machining_time_s": verdict.machining_time_s,
             "seconds": dict(seconds),
             "setups": [{"name": s.name, "nc": next((f for f in files if f".{s.name}." in f), ""), "frame": s.frame.as_dict(),
                         "work_offset": s.work_offset, "blank": box} for s in process.setups],
-            "operations": operations, "files": list(files), "findings": [f.as_dict() for f in session.findings()]}
+            "operations": operations, "offers": [offer_dict(o) for o in verdict.offers], "files": list(files),
+            "findings": [f.as_dict() for f in session.findings()]}
+
+
+def operation_dict(p: OperationProof) -> dict[str, Any]:
+    """Return what was measured on one operation as JSON data."""
+    gouges = [{"face": f"face {tag}", "depth_mm": depth} for tag, depth in p.gouges]
+    return {"verdict": str(p.outcome), "gouge_mm": p.gouge, "gouges": gouges, "collisions": p.collisions,
+            "rapids_in_stock": p.rapids_in_stock, "time_s": p.time_s, "removed_mm3": p.removed, "air_share": p.air_share, "left_mm": {"min": p.left_min, "mean": p.left_mean, "max": p.left_max},
+            "engaged_deg": {"mean": math.degrees(p.engaged_mean), "max": math.degrees(p.engaged)}, "depth_of_cut_mm": p.depth,
+            "removal_cm3_min": {"mean": p.rate_mean, "max": p.rate}, "chip_mm": p.chip, "power_kw": p.power,
+            "power_limit_kw": p.power_limit, "torque_nm": p.torque}
+
+
+def offer_dict(offer: Offer) -> dict[str, Any]:
+    """Return what the proof offers for a finding as JSON data."""
+    return {"kind": offer.kind, "operation": offer.operation, "setup": offer.setup, "reason": offer.reason, "first_block": offer.first,
+            "last_block": offer.last, "feed_mm_min": offer.feed}
 
 
 def proof_text(session: Session) -> str:

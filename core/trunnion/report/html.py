@@ -9,7 +9,7 @@ from pathlib import Path
 
 from trunnion.model.session import Session
 from trunnion.report.pictures import Picture
-from trunnion.units import SECONDS_PER_MINUTE
+from trunnion.units import SECONDS_PER_MINUTE, degrees
 from trunnion_resources import folder as resource_folder
 
 ROUNDING = 1e-6
@@ -24,6 +24,7 @@ def report_html(session: Session, name: str, pictures: Sequence[Picture], folder
     shown = [(p.caption, base64.b64encode((folder / p.file).read_bytes()).decode("ascii")) for p in pictures]
     proofs = {p.operation: p for p in session.verdict.operations} if session.verdict else {}
     return page.render(name=name, date=date, session=session, pictures=shown, proofs=proofs, duration=duration, share=share,
+                       degrees=degrees,
                        left_faces=left_faces(session), seconds=[(step, r.seconds) for step, r in session.records.items()])
 
 
