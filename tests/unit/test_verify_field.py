@@ -29,8 +29,8 @@ def cut(tool, stops, *, joined=True, floor=0.0, size=(60, 80), top=TOP):
     done = []
     for k in np.flatnonzero(~moves.rapid):
         goes_on = joined and kernel.joins(moves.row, moves.rapid, moves.tool, k)
-        done.append(kernel.cut_move(heights, np.zeros(2), PITCH, floor, moves.row[k], goes_on, profile, moves.bodies.arc, moves.bodies.piece,
-                                    CHORD))
+        done.append(kernel.cut_move(heights, np.zeros(2), PITCH, floor, moves.row[k], goes_on, profile, moves.bodies.arc,
+                                    moves.bodies.piece, CHORD))
     return heights, np.array([r for r, _ in done]), np.array([s for _, s in done])
 
 
