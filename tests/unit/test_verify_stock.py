@@ -34,17 +34,17 @@ def test_a_level_line_removes_a_capsule():
 
 
 def test_an_arc_removes_a_bent_capsule():
-    stock, run = cut(flat(10.0)(), [(70, 30, 25), (70, 30, 15), ((30, 30, 15), (50, 30))])
+    run = cut(flat(10.0)(), [(70, 30, 25), (70, 30, 15), ((30, 30, 15), (50, 30))])[1]
     assert run.removed.sum() == approx((math.pi * 25 + math.pi * 20 * 10) * 5, rel=2e-3)
 
 
 def test_a_ball_leaves_half_a_cylinder():
-    stock, run = cut(bull(10.0, 5.0)(), [(-20, 30, 15), (120, 30, 15)], rapid_to=0)
+    run = cut(bull(10.0, 5.0)(), [(-20, 30, 15), (120, 30, 15)], rapid_to=0)[1]
     assert run.removed[1] == approx(math.pi * 25 / 2 * 100, rel=2e-3)
 
 
 def test_a_ramp_leaves_the_lowest_that_its_sweep_reaches():
-    stock, run = cut(flat(10.0)(), [(20, 30, 20), (80, 30, 14)])
+    stock = cut(flat(10.0)(), [(20, 30, 20), (80, 30, 14)])[0]
     row = stock.field.top[120]
     # Column at x = 50.125 is last under the rim when the axis is 5 further on.
     assert row[200] == approx(20.0 - 6.0 * (50.125 + math.sqrt(25 - 0.125**2) - 20.0) / 60.0)
@@ -52,7 +52,7 @@ def test_a_ramp_leaves_the_lowest_that_its_sweep_reaches():
 
 def test_every_column_is_as_a_plain_loop_says():
     tool, stops = bull(12.0, 3.0)(), [(10, 10, 25), (30, 20, 15), (55, 41.3, 13), ((35.0, 41.3, 13.0), (45.0, 41.3))]
-    stock, run = cut(tool, stops, cell=2.0)
+    stock = cut(tool, stops, cell=2.0)[0]
     y, x = (np.indices(stock.field.top.shape) + 0.5) * 2.0
     top = np.full(x.shape, 20.0)
     for t in np.linspace(0.0, 1.0, 4001):
@@ -67,7 +67,7 @@ def test_every_column_is_as_a_plain_loop_says():
 
 def test_a_rapid_over_the_stock_is_clear_and_through_it_is_not():
     stops = [(20, 30, 25), (20, 30, 20.005), (80, 30, 20.005), (80, 30, 19.9), (90, 30, 19.9)]
-    stock, run = cut(flat(10.0)(), stops, rapid_to=5)
+    run = cut(flat(10.0)(), stops, rapid_to=5)[1]
     assert run.rapid_depth == approx([0.0, 0.0, 0.0, 0.1, 0.1])
 
 
@@ -80,15 +80,21 @@ def test_a_rapid_back_over_a_fresh_floor_is_clear():
 
 
 def test_a_sloped_rapid_is_judged_at_the_height_it_has():
-    stock, run = cut(flat(10.0)(), [(-20, 30, 15), (-20, 30, 15), (-6.5, 30, 19.0), (50, 30, 60)], rapid_to=4)
+    run = cut(flat(10.0)(), [(-20, 30, 15), (-20, 30, 15), (-6.5, 30, 19.0), (50, 30, 60)], rapid_to=4)[1]
     assert run.rapid_depth.max() == 0.0
 
 
 def test_a_holder_beside_standing_stock_is_seen():
-    # Stickout 8, nose radius 12: a slot 9 deep leaves stock 1 mm into the holder.
-    stock, run = cut(flat(10.0)(flute=5.0), [(20, 30, 25), (20, 30, 11), (80, 30, 11)])
-    assert run.body_depth[2] == approx(1.0, abs=0.1)
-    assert cut(flat(10.0)(flute=8.0), [(20, 30, 25), (20, 30, 11), (80, 30, 11)])[1].body_depth.max() == 0.0
+    # Stickout 8, nose radius 12: a slot 9 deep, cut in two levels, leaves stock 1 mm into the holder.
+    stops = [(20, 30, 25), (20, 30, 15), (80, 30, 15), (80, 30, 11), (20, 30, 11)]
+    assert cut(flat(10.0)(flute=5.0), stops)[1].body_depth[4] == approx(1.0, abs=0.1)
+    assert cut(flat(10.0)(flute=8.0), stops)[1].body_depth.max() == approx(0.0, abs=tolerance.COINCIDENT)
+
+
+def test_what_short_flutes_leave_above_them_is_met_by_the_shank():
+    # Flutes of 5 in a slot 9 deep leave a roof from 16 to 20; the shank is from 17 on, the holder from 19.
+    run = cut(flat(10.0)(flute=5.0), [(20, 30, 25), (20, 30, 11), (80, 30, 11)])[1]
+    assert run.body_depth[2] > 1.0
 
 
 def test_a_field_too_large_is_refused_with_what_to_do():
@@ -105,6 +111,6 @@ def test_a_blank_is_found_in_a_turned_setup():
 def test_removed_volume_never_depends_on_where_the_work_is_cut_in_chunks(monkeypatch):
     stops = [(20, 30, 25), *((20 + k, 30 + 5 * math.sin(k), 15.0) for k in range(60))]
     whole = cut(flat(10.0)(), stops)[1]
-    monkeypatch.setattr("trunnion.verify.stock.run.CHUNK_CELLS", 1)
+    monkeypatch.setattr("trunnion.verify.stock.heights.CHUNK_CELLS", 1)
     assert cut(flat(10.0)(), stops)[1].removed.tobytes() == whole.removed.tobytes()
     assert whole.rapid_depth.max() < tolerance.RAPID_DEPTH

@@ -2,14 +2,22 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass
+from itertools import pairwise
 
 import numpy as np
+from numpy.typing import NDArray
 
 from trunnion import tolerance
-from trunnion.geometry.arrays import Floats
+from trunnion.geometry.arrays import Bools, Floats
 from trunnion.geometry.frame import Frame
 from trunnion.model.blank import Blank
+
+Part = tuple[NDArray, ...]
+"""A tile's copy: heights of columns, or of rays how many intervals each has, and all their lower and upper ends, closely packed."""
+TILES = 16
+"""Bands of rows that a bundle is cut in; fixed, so that nothing depends on the number of threads."""
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -32,6 +40,20 @@ class Field:
         """Volume in mm3, by the columns."""
         return float((self.top - self.low[2]).sum()) * self.pitch**2
 
+    def contains(self, points: Floats) -> Bools:
+        """Say for points (k, 3) in the blank's box whether the nearest column reaches as high."""
+        column, row = np.floor((points[:, :2] - self.low[:2]) / self.pitch).astype(np.int64).T
+        rows, columns = self.top.shape
+        return np.asarray(points[:, 2] < self.top[np.clip(row, 0, rows - 1), np.clip(column, 0, columns - 1)])
+
+    def parts(self) -> list[Part]:
+        """Return a copy of each tile."""
+        return [(self.top[first:last].copy(),) for first, last in tiles_of(len(self.top))]
+
+    def put(self, parts: Sequence[Part]) -> None:
+        """Become what copies of all tiles say."""
+        self.top[:] = np.vstack([p[0] for p in parts])
+
     def centre(self, cell: int) -> Floats:
         """Return the plan centre (2,) of a cell by its flat index."""
         row, column = divmod(cell, self.top.shape[1])
@@ -41,6 +63,12 @@ class Field:
 def cells_along(size: Floats, pitch: float) -> tuple[int, ...]:
     """Return how many cells of a pitch cover each of some lengths."""
     return tuple(int(max(1, np.ceil(s / pitch - tolerance.PARAMETRIC))) for s in size)
+
+
+def tiles_of(rows: int) -> list[tuple[int, int]]:
+    """Return the first row and the one after the last of each tile of some rows."""
+    edges = np.linspace(0, rows, min(TILES, rows) + 1).round().astype(int)
+    return [(int(a), int(b)) for a, b in pairwise(edges)]
 
 
 def blank_box(blank: Blank, frame: Frame) -> tuple[Floats, Floats]:

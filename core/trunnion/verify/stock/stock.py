@@ -2,49 +2,74 @@
 
 from __future__ import annotations
 
+import dataclasses
 import math
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
-from trunnion.findings import OutOfMemory
+from trunnion.findings import BadInput, OutOfMemory
 from trunnion.geometry.arrays import Bools, Floats
 from trunnion.geometry.frame import Frame
 from trunnion.model.blank import Blank
-from trunnion.verify.stock.field import Field, cells_along
+from trunnion.verify.stock.bundles import AXES, ROOM, Bundle
+from trunnion.verify.stock.field import Field, Part, cells_along
+from trunnion.verify.sweep import Sweep
 
 MOST_BYTES = 2_000_000_000
 """Most memory that the stock may take."""
+
+
+HEIGHTS = "heights"
+"""The height field's name in a snapshot."""
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Snapshot:
+    """A stock at a moment: copies of the tiles of each bundle, shared with the snapshot before where nothing has changed since."""
+
+    parts: dict[str, tuple[Part, ...]]
+    cut_by: tuple[tuple[Sweep, Frame], ...]
+
+    @property
+    def nbytes(self) -> int:
+        """Bytes that it takes, with what it shares."""
+        return sum(a.nbytes for tiles in self.parts.values() for tile in tiles for a in tile)
 
 
 @dataclass(slots=True, eq=False)
 class Stock:
     """What is left of a blank: rays `pitch` apart through it along some of its axes (`bundles`), and where material is on them.
 
-    The z bundle is a height field while every cut came from above.
+    While every cut came from above, the z bundle is a height field (`field`), else one of intervals (`rays["z"]`), as the others always
+    are. `cut_by`: the sweeps that went through it, with their setups' frames.
     """
 
     blank: Blank
     pitch: float
     bundles: tuple[str, ...]
-    field: Field
+    field: Field | None
+    rays: dict[str, Bundle]
+    cut_by: list[tuple[Sweep, Frame]] = dataclasses.field(default_factory=list)
+    _last: Snapshot | None = None
 
     @staticmethod
     def of(blank: Blank, pitch: float, bundles: Sequence[str] = ("z",)) -> Stock:
         """Return a whole blank; raise `OutOfMemory` when rays so close would need too much memory."""
-        need = Stock.need(blank, pitch, bundles)
-        if need > MOST_BYTES:
-            least = math.ceil(100.0 * pitch * math.sqrt(need / MOST_BYTES)) / 100.0
-            raise OutOfMemory(f"stock at cells of {pitch:g} mm would need {need / 1e6:.0f} MB: choose verify.cell of at least "
-                              f"{least:.2f} mm")
-        return Stock(blank, pitch, tuple(bundles), Field.of(blank, pitch))
+        if not bundles or any(name not in AXES for name in bundles):
+            raise BadInput(f"stock: its bundles are some of {', '.join(AXES)}, not {', '.join(bundles) or 'none'}")
+        _refuse(Stock.need(blank, pitch, bundles), pitch)
+        rays = {name: Bundle.of(blank, pitch, AXES.index(name)) for name in bundles if name != "z"}
+        return Stock(blank, pitch, tuple(bundles), Field.of(blank, pitch) if "z" in bundles else None, rays)
 
     @staticmethod
     def need(blank: Blank, pitch: float, bundles: Sequence[str] = ("z",)) -> int:
-        """Return the bytes that a stock takes at its beginning."""
-        columns, rows = cells_along(blank.size[:2], pitch)
-        return 8 * rows * columns
+        """Return the bytes that a stock takes at its beginning; ragged ones grow, up to `MOST_BYTES`."""
+        x, y, z = cells_along(blank.size, pitch)
+        rays = {"x": y * z, "y": z * x, "z": x * y}
+        ray = 8 * (1 + 2 * ROOM)
+        return sum(rays[name] * (8 if tuple(bundles) == ("z",) else ray) for name in bundles)
 
     @property
     def frame(self) -> Frame:
@@ -53,22 +78,60 @@ class Stock:
 
     @property
     def volume(self) -> float:
-        """Volume in mm3."""
-        return self.field.volume
+        """Volume in mm3: the mean of what the bundles say."""
+        volumes = [b.volume for b in self.rays.values()] + ([self.field.volume] if self.field is not None else [])
+        return float(np.mean(volumes))
 
     def contains(self, points: Floats) -> Bools:
-        """Say for points (k, 3) in the blank's frame whether they are in material, as the nearest rays see it."""
+        """Say for points (k, 3) in the blank's frame whether they are in material: what most of the nearest rays say."""
         points = np.asarray(points, dtype=np.float64).reshape(-1, 3)
+        said = [b.contains(points) for b in self.rays.values()] + ([self.field.contains(points)] if self.field is not None else [])
         inside = ((points >= self.blank.low) & (points <= self.blank.high)).all(axis=1)
-        cell = np.floor((points[:, :2] - self.field.low[:2]) / self.pitch).astype(np.int64)
-        rows, columns = self.field.top.shape
-        top = self.field.top[np.clip(cell[:, 1], 0, rows - 1), np.clip(cell[:, 0], 0, columns - 1)]
-        return np.asarray(inside & (points[:, 2] < top))
+        return np.asarray(inside & (2 * np.sum(said, axis=0) > len(said)))
 
-    def snapshot(self) -> Floats:
-        """Return what `restore` goes back to."""
-        return self.field.top.copy()
+    def patch(self, low: Floats, high: Floats, pitch: float) -> Stock:
+        """Return a box of the blank, whole, with finer rays: cut it by the moves that touch it to see this place closely."""
+        low, high = np.maximum(low, self.blank.low), np.minimum(high, self.blank.high)
+        if not (high > low).all():
+            raise BadInput("stock: a patch must have its box in the blank")
+        return Stock.of(replace(self.blank, low=low, high=high), pitch, self.bundles)
 
-    def restore(self, snapshot: Floats) -> None:
+    def open_field(self) -> None:
+        """Turn the height field into intervals: from now on anything may be cut."""
+        if self.field is not None:
+            _refuse(8 * (1 + 2 * ROOM) * self.field.top.size + sum(b.nbytes for b in self.rays.values()), self.pitch)
+            self.rays["z"], self.field = Bundle.of_field(self.field), None
+
+    def snapshot(self) -> Snapshot:
+        """Return what `restore` goes back to. Tiles that have not changed since the last one are not copied again."""
+        parts = {name: b.parts() for name, b in self.rays.items()}
+        if self.field is not None:
+            parts[HEIGHTS] = self.field.parts()
+        before = self._last.parts if self._last is not None else {}
+        self._last = Snapshot({name: _shared(before.get(name, ()), own) for name, own in parts.items()}, tuple(self.cut_by))
+        return self._last
+
+    def restore(self, snapshot: Snapshot) -> None:
         """Go back to a snapshot of this stock."""
-        self.field.top[:] = snapshot
+        if HEIGHTS in snapshot.parts:
+            self.rays.pop("z", None)
+            self.field = self.field or Field.of(self.blank, self.pitch)
+            self.field.put(snapshot.parts[HEIGHTS])
+        else:
+            self.open_field()
+        for name, bundle in self.rays.items():
+            bundle.put(snapshot.parts[name])
+        self.cut_by, self._last = list(snapshot.cut_by), snapshot
+
+
+def _shared(before: Sequence[Part], now: Sequence[Part]) -> tuple[Part, ...]:
+    """Return the tiles as they are now, those that are as before by the older copy."""
+    if len(before) != len(now):
+        return tuple(now)
+    return tuple(old if all(map(np.array_equal, old, new)) else new for old, new in zip(before, now, strict=True))
+
+
+def _refuse(need: int, pitch: float) -> None:
+    if need > MOST_BYTES:
+        least = math.ceil(100.0 * pitch * math.sqrt(need / MOST_BYTES)) / 100.0
+        raise OutOfMemory(f"stock at cells of {pitch:g} mm would need {need / 1e6:.0f} MB: choose verify.cell of at least {least:.2f} mm")

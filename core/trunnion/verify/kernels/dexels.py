@@ -1,0 +1,366 @@
+"""Compiled loops of the stock engine: bundles of parallel rays, cut by convex bodies of revolution that move and turn.
+
+A bundle's rays run along w and stand at cell centres in (u, v): its coordinates are the blank's, turned in a cycle. A span is a short piece
+of a move: within it the tool's tip runs straight, and so does every point seen from the tool, up to an error that the spans' maker keeps
+below `tolerance.STOCK_CHORD`. How deep a point of a ray is in the body (`kernels/body.py`) is then concave in its place w and, at one
+place, in the time t; tangents bound it from above. So one look at the end of the material that is nearest rejects most rays, and the ends
+of what is cut are found by Newton steps from outside, which never go too far. Nothing is sampled over time: the envelope leaves no ridges.
+"""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+from numba import njit
+
+from trunnion.geometry.arrays import Bools, Floats, Ints
+from trunnion.verify.kernels.body import CLOSED_FIRST, CLOSED_LAST, KIND, R_MAX, Z_HIGH, Z_LOW, depth_in_body
+from trunnion.verify.kernels.engagement import look_in_intervals
+
+# Columns of a span: tip and tool frame (its rows: two axes across, the tool axis) at both ends, then the boxes of what cuts and of all.
+TIP0, FRAME0, TIP1, FRAME1, CUT_BOX, ALL_BOX = 0, 3, 12, 15, 24, 30
+SPAN_COLUMNS = 36
+SHRINK = 1e-6
+"""mm that bodies are made smaller by: a surface that was just cut to is not cut again by what only touches it."""
+NOISE = 1e-7
+"""mm: depths less apart are the same."""
+THIN = 1e-6
+"""mm: material thinner than this is nothing."""
+
+
+@njit(cache=True, nogil=True)
+def _depth(arcs: Floats, first: int, last: int, limit: float, ray: Floats, w: float, t: float) -> tuple[float, float, float]:
+    """Return how deep a ray's point is in a body at a time, and the slopes along w and t."""
+    gx, gy, gz = ray[6] + w * ray[9], ray[7] + w * ray[10], ray[8] + w * ray[11]
+    x, y, h = ray[0] + w * ray[3] + t * gx, ray[1] + w * ray[4] + t * gy, ray[2] + w * ray[5] + t * gz
+    rho = math.sqrt(x * x + y * y)
+    depth, nr, nz = depth_in_body(arcs, first, last, rho, h)
+    if limit - h < depth:
+        depth, nr, nz = limit - h, 0.0, 1.0
+    nx, ny = 0.0, 0.0
+    if rho > 0.0:
+        nx, ny = nr * x / rho, nr * y / rho
+    along = -(nx * (ray[3] + t * ray[9]) + ny * (ray[4] + t * ray[10]) + nz * (ray[5] + t * ray[11]))
+    return depth - SHRINK, along, -(nx * gx + ny * gy + nz * gz)
+
+
+@njit(cache=True, nogil=True)
+def _over_time(arcs: Floats, first: int, last: int, limit: float, ray: Floats, w: float) -> tuple[float, float]:
+    """Return the largest depth of a ray's point over a span (from above, within `NOISE` or a share of it outside) and its slope."""
+    f0, slope0, s0 = _depth(arcs, first, last, limit, ray, w, 0.0)
+    if s0 <= 0.0:
+        return f0, slope0
+    f1, slope1, s1 = _depth(arcs, first, last, limit, ray, w, 1.0)
+    if s1 >= 0.0:
+        return f1, slope1
+    t0, t1 = 0.0, 1.0
+    best, slope = (f0, slope0) if f0 >= f1 else (f1, slope1)
+    for step in range(60):
+        t = (f1 - f0 + s0 * t0 - s1 * t1) / (s0 - s1)
+        most = f0 + s0 * (t - t0)
+        if most - best <= NOISE or (most < 0.0 and most - best <= -0.05 * most):
+            return max(most, best), slope
+        if step % 2:
+            t = t0 + (t1 - t0) * s0 / (s0 - s1)
+        t = min(max(t, t0 + 1e-3 * (t1 - t0)), t1 - 1e-3 * (t1 - t0))
+        f, along, s = _depth(arcs, first, last, limit, ray, w, t)
+        if f >= best:
+            best, slope = f, along
+        if s > 0.0:
+            t0, f0, s0 = t, f, s
+        else:
+            t1, f1, s1 = t, f, s
+    return best, slope
+
+
+@njit(cache=True, nogil=True)
+def _bisected(arcs: Floats, first: int, last: int, limit: float, ray: Floats, outside: float, inside: float) -> float:
+    """Return where a ray enters what is swept, between a place outside and one inside."""
+    while abs(inside - outside) > THIN:
+        w = 0.5 * (inside + outside)
+        if _over_time(arcs, first, last, limit, ray, w)[0] > 0.0:
+            inside = w
+        else:
+            outside = w
+    return inside
+
+
+@njit(cache=True, nogil=True)
+def _entered(arcs: Floats, first: int, last: int, limit: float, ray: Floats, w: float, end: float) -> float:
+    """Return where a ray that goes from w towards `end` enters what is swept; NaN when it doesn't before."""
+    way = 1.0 if end > w else -1.0
+    before = w
+    for step in range(100):
+        f, slope = _over_time(arcs, first, last, limit, ray, w)
+        if f > 1e-5 and step > 0:
+            # Only where the body turns is the depth not quite concave, and a step too long.
+            return _bisected(arcs, first, last, limit, ray, before, w)
+        if f >= -NOISE:
+            return w
+        slope *= way
+        if slope <= 1e-12:
+            return np.nan
+        before = w
+        w += way * max(-f / slope, NOISE)
+        if (end - w) * way < 0.0:
+            return np.nan
+    return np.nan
+
+
+@njit(cache=True, nogil=True)
+def _bound(arcs: Floats, first: int, last: int, limit: float, ray: Floats, w: float, end: float) -> float:
+    """Return a bound from above for the depth between two places over a span, from one look at w."""
+    f, slope, s = _depth(arcs, first, last, limit, ray, w, 0.0)
+    return f + max(slope * (end - w), 0.0) + max(s, 0.0) + ray[12] * abs(end - w)
+
+
+@njit(cache=True, nogil=True)
+def _highest(arcs: Floats, first: int, last: int, limit: float, ray: Floats, low: float, high: float) -> tuple[float, float]:
+    """Return the largest depth between two places of a ray over a span, and its place."""
+    f0, s0 = _over_time(arcs, first, last, limit, ray, low)
+    f1, s1 = _over_time(arcs, first, last, limit, ray, high)
+    best, place = (f0, low) if f0 >= f1 else (f1, high)
+    if s0 <= 0.0 or s1 >= 0.0:
+        return best, place
+    for step in range(60):
+        w = (f1 - f0 + s0 * low - s1 * high) / (s0 - s1)
+        if f0 + s0 * (w - low) - best <= 1e-5:
+            break
+        if step % 2:
+            w = low + (high - low) * s0 / (s0 - s1)
+        w = min(max(w, low + 1e-3 * (high - low)), high - 1e-3 * (high - low))
+        f, s = _over_time(arcs, first, last, limit, ray, w)
+        if f > best:
+            best, place = f, w
+        if s > 0.0:
+            low, f0, s0 = w, f, s
+        else:
+            high, f1, s1 = w, f, s
+    return best, place
+
+
+@njit(cache=True, nogil=True)
+def _aim(ray: Floats, span: Floats, u: float, v: float) -> None:
+    """Write a ray as a span's tool frames see it: its foot and direction at the start, and how both go on until the end."""
+    for m in range(3):
+        a, b = FRAME0 + 3 * m, FRAME1 + 3 * m
+        foot = span[a] * (u - span[TIP0]) + span[a + 1] * (v - span[TIP0 + 1]) - span[a + 2] * span[TIP0 + 2]
+        after = span[b] * (u - span[TIP1]) + span[b + 1] * (v - span[TIP1 + 1]) - span[b + 2] * span[TIP1 + 2]
+        ray[m], ray[3 + m] = foot, span[a + 2]
+        ray[6 + m], ray[9 + m] = after - foot, span[b + 2] - span[a + 2]
+
+
+@njit(cache=True, nogil=True)
+def _box(box: Floats, span: Floats, piece: Floats) -> None:
+    """Write the box of what a piece sweeps in a span: low and high of u, v, w. A closed body may reach a millimetre beyond its ends."""
+    r = piece[R_MAX] + 1e-2
+    for m in range(3):
+        low, high = np.inf, -np.inf
+        for end in range(2):
+            tip = span[TIP0 + m] if end == 0 else span[TIP1 + m]
+            a = span[FRAME0 + 6 + m] if end == 0 else span[FRAME1 + 6 + m]
+            across = r * math.sqrt(max(1.0 - a * a, 0.0)) + 1e-2
+            p, q = tip + a * piece[Z_LOW], tip + a * piece[Z_HIGH]
+            low, high = min(low, min(p, q) - across), max(high, max(p, q) + across)
+        box[m], box[3 + m] = low, high
+
+
+@njit(cache=True, nogil=True)
+def _cells(low: float, high: float, origin: float, pitch: float, first: int, last: int) -> tuple[int, int]:
+    """Return the first cell and the one after the last whose centres lie between two coordinates, of those from `first` to `last`."""
+    a = int(math.ceil((low - origin) / pitch - 0.5))
+    b = int(math.floor((high - origin) / pitch - 0.5)) + 1
+    return max(a, first), min(b, last)
+
+
+@njit(cache=True, nogil=True)
+def take_away(count: Ints, low: Floats, high: Floats, cell: int, k: int, a: float, b: float) -> float:
+    """Take what lies between a and b off a ray's interval k (a < b, both within it); return the length that is gone."""
+    left, right = a - low[cell, k] > THIN, high[cell, k] - b > THIN
+    if left and right:
+        for m in range(count[cell], k + 1, -1):
+            low[cell, m], high[cell, m] = low[cell, m - 1], high[cell, m - 1]
+        low[cell, k + 1], high[cell, k + 1] = b, high[cell, k]
+        high[cell, k] = a
+        count[cell] += 1
+        return b - a
+    if left:
+        gone = high[cell, k] - a
+        high[cell, k] = a
+        return gone
+    if right:
+        gone = b - low[cell, k]
+        low[cell, k] = b
+        return gone
+    gone = high[cell, k] - low[cell, k]
+    for m in range(k, count[cell] - 1):
+        low[cell, m], high[cell, m] = low[cell, m + 1], high[cell, m + 1]
+    count[cell] -= 1
+    return gone
+
+
+@njit(cache=True, nogil=True)
+def _cut_ray(arcs: Floats, first: int, last: int, limit: float, ray: Floats, count: Ints, low: Floats, high: Floats, cell: int,
+             w_low: float, w_high: float) -> float:
+    """Cut a ray by a piece within a span; return the length that is gone."""
+    gone = 0.0
+    middle = 0.5 * (w_low + w_high)
+    k = 0
+    while k < count[cell]:
+        a, b = max(low[cell, k], w_low), min(high[cell, k], w_high)
+        if b <= a:
+            k += 1
+            continue
+        near, far = (a, b) if abs(a - middle) < abs(b - middle) else (b, a)
+        if _bound(arcs, first, last, limit, ray, near, far) <= NOISE:
+            k += 1
+            continue
+        turns = ray[12] > 0.0
+        from_near = _entered(arcs, first, last, limit, ray, near, far)
+        from_far = np.nan if math.isnan(from_near) and not turns else _entered(arcs, first, last, limit, ray, far, near)
+        if math.isnan(from_near) and math.isnan(from_far):
+            k += 1
+            continue
+        if math.isnan(from_near):
+            from_near = _bisected(arcs, first, last, limit, ray, near, from_far)
+        elif math.isnan(from_far):
+            from_far = _bisected(arcs, first, last, limit, ray, far, from_near)
+        from_a, from_b = min(from_near, from_far), max(from_near, from_far)
+        if (from_far - from_near) * (far - near) <= 0.0:
+            k += 1
+            continue
+        gap = np.nan
+        if turns and from_b - from_a > 1.0:
+            for m in range(1, 4):
+                w = from_a + 0.25 * m * (from_b - from_a)
+                if _over_time(arcs, first, last, limit, ray, w)[0] < 0.0:
+                    gap = w
+                    break
+        before = count[cell]
+        if math.isnan(gap):
+            gone += take_away(count, low, high, cell, k, from_a, from_b)
+        else:
+            # A tool that swings about its middle sweeps two lobes: what lies between them stays.
+            gone += take_away(count, low, high, cell, k, _bisected(arcs, first, last, limit, ray, gap, from_b), from_b)
+            gone += take_away(count, low, high, cell, k, from_a, _bisected(arcs, first, last, limit, ray, gap, from_a))
+        k += 1 + count[cell] - before
+    return gone
+
+
+@njit(cache=True, nogil=True)
+def _limit(piece: Floats, p: int, last: int) -> float:
+    """Return the height where a tool's flutes end, for the last piece that cuts: its closed body reaches beyond."""
+    if piece[p, KIND] == 0.0 and p + 1 < last and piece[p + 1, KIND] != 0.0:
+        return piece[p, Z_HIGH]
+    return np.inf
+
+
+@njit(cache=True, nogil=True)
+def cut_tile(last: int, span: Floats, span_start: Ints, arcs: Floats, piece: Floats, piece_start: Ints, tool: Ints, rapid: Bools,
+             leaves: Bools, count: Ints, low: Floats, high: Floats, columns: int, row: int, end_row: int, origin: Floats, pitch: float,
+             resume: Ints, removed: Floats, depth: Floats, place: Floats, body: Floats, way: Floats, rings: Floats, flute: Floats,
+             circle: Floats, probe_start: Ints, counted: Ints, seen: Floats) -> bool:
+    """Run moves up to `last` through a tile of a bundle: cut with feed moves, and judge rapids and what doesn't cut against what stands.
+
+    span (s, `SPAN_COLUMNS`) in the bundle's coordinates, span_start (n + 1,); arcs, piece, piece_start, tool (n,) as `Bodies` has them;
+    leaves (n,): the move goes straight out along its axis. count (c,), low and high (c, k) the bundle's intervals, the tile's rows from
+    `row` to `end_row`, `columns` cells each; origin (2,) of the cells.
+    resume (6,): move, span, piece, row and column to begin with, and whether that move has been looked at; changed. removed (n,) gets the
+    length that is gone, depth (n,) and place (n, 3) how deep a rapid's cutter is in material and where (u, v, w), body (n,) how deep what
+    doesn't cut is. way (n, 16): start, end, both axes, centre and sweep as `Moves` has them; rings, flute, circle, probe_start (n + 1,),
+    counted and seen: see `kernels/engagement.py`; without probes nothing is looked at.
+    Returns whether all is done: when rays have no room for one more interval, `resume` says where to go on.
+    """
+    room = low.shape[1] - 2
+    ray, box, corner = np.zeros(13), np.empty(6), np.empty(2)
+    bottom, top = np.inf, -np.inf
+    for cell in range(row * columns, end_row * columns):
+        if count[cell] > 0:
+            bottom, top = min(bottom, low[cell, 0]), max(top, high[cell, count[cell] - 1])
+    v_low, v_high = origin[1] + row * pitch, origin[1] + end_row * pitch
+    for n in range(resume[0], last):
+        going_on = n == resume[0]
+        p0, p1 = piece_start[tool[n]], piece_start[tool[n] + 1]
+        if not rapid[n]:
+            if probe_start[n + 1] > probe_start[n] and not (going_on and resume[5] != 0):
+                a, b = row * columns, end_row * columns
+                corner[0], corner[1] = origin[0], v_low
+                look_in_intervals(count[a:b], low[a:b], high[a:b], corner, pitch, end_row - row, columns, way[n, 0:3], way[n, 3:6],
+                                  way[n, 6:9], way[n, 9:12], way[n, 12:15], way[n, 15], rings[tool[n]], flute[tool[n]], circle,
+                                  probe_start[n], probe_start[n + 1], counted, seen)
+            for s in range(max(resume[1], span_start[n]) if going_on else span_start[n], span_start[n + 1]):
+                going_on = going_on and s == resume[1]
+                if span[s, CUT_BOX + 1] > v_high or span[s, CUT_BOX + 4] < v_low or span[s, CUT_BOX + 2] > top or \
+                        span[s, CUT_BOX + 5] < bottom:
+                    continue
+                ray[12] = _motion(span[s])
+                for p in range(max(resume[2], p0) if going_on else p0, p1):
+                    going_on = going_on and p == resume[2]
+                    if piece[p, KIND] != 0.0:
+                        break
+                    _box(box, span[s], piece[p])
+                    if box[2] > top or box[5] < bottom:
+                        continue
+                    first, end = int(piece[p, CLOSED_FIRST]), int(piece[p, CLOSED_LAST])
+                    limit = _limit(piece, p, p1)
+                    i0, i1 = _cells(box[0], box[3], origin[0], pitch, 0, columns)
+                    j0, j1 = _cells(box[1], box[4], origin[1], pitch, row, end_row)
+                    for j in range(max(j0, resume[3]) if going_on else j0, j1):
+                        v = origin[1] + (j + 0.5) * pitch
+                        for i in range(max(i0, resume[4]) if going_on and j == resume[3] else i0, i1):
+                            cell = j * columns + i
+                            c = count[cell]
+                            if c == 0 or low[cell, 0] >= box[5] or high[cell, c - 1] <= box[2]:
+                                continue
+                            if c > room:
+                                resume[0], resume[1], resume[2], resume[3], resume[4], resume[5] = n, s, p, j, i, 1
+                                return False
+                            _aim(ray, span[s], origin[0] + (i + 0.5) * pitch, v)
+                            removed[n] += _cut_ray(arcs, first, end, limit, ray, count, low, high, cell, box[2], box[5])
+        if leaves[n]:
+            continue
+        for s in range(span_start[n], span_start[n + 1]):
+            if span[s, ALL_BOX + 1] > v_high or span[s, ALL_BOX + 4] < v_low or span[s, ALL_BOX + 2] > top or \
+                    span[s, ALL_BOX + 5] < bottom:
+                continue
+            ray[12] = _motion(span[s])
+            for p in range(p0, p1):
+                cuts = piece[p, KIND] == 0.0
+                if cuts and not rapid[n]:
+                    continue
+                _box(box, span[s], piece[p])
+                if box[2] > top or box[5] < bottom:
+                    continue
+                first, end = int(piece[p, CLOSED_FIRST]), int(piece[p, CLOSED_LAST])
+                i0, i1 = _cells(box[0], box[3], origin[0], pitch, 0, columns)
+                j0, j1 = _cells(box[1], box[4], origin[1], pitch, row, end_row)
+                for j in range(j0, j1):
+                    v = origin[1] + (j + 0.5) * pitch
+                    for i in range(i0, i1):
+                        cell = j * columns + i
+                        c = count[cell]
+                        if c == 0 or low[cell, 0] >= box[5] or high[cell, c - 1] <= box[2]:
+                            continue
+                        u = origin[0] + (i + 0.5) * pitch
+                        _aim(ray, span[s], u, v)
+                        for k in range(c):
+                            a, b = max(low[cell, k], box[2]), min(high[cell, k], box[5])
+                            best = depth[n] if cuts else body[n]
+                            if b <= a or _bound(arcs, first, end, np.inf, ray, a, b) <= best:
+                                continue
+                            deepest, w = _highest(arcs, first, end, np.inf, ray, a, b)
+                            if deepest > best and cuts:
+                                depth[n], place[n, 0], place[n, 1], place[n, 2] = deepest, u, v, w
+                            elif deepest > best:
+                                body[n] = deepest
+    return True
+
+
+@njit(cache=True, nogil=True)
+def _motion(span: Floats) -> float:
+    """Return how far the direction of rays turns in a span as the tool sees it; 0 when its axis keeps still."""
+    x = span[FRAME1 + 2] - span[FRAME0 + 2]
+    y = span[FRAME1 + 5] - span[FRAME0 + 5]
+    z = span[FRAME1 + 8] - span[FRAME0 + 8]
+    return math.sqrt(x * x + y * y + z * z)

@@ -1,0 +1,110 @@
+"""Bundles of rays along an axis of the blank: where material is on each, as sorted intervals in flat arrays."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+
+from trunnion.geometry.arrays import Bools, Floats, Ints
+from trunnion.model.blank import Blank
+from trunnion.verify.stock.field import Field, Part, cells_along, tiles_of
+
+AXES = ("x", "y", "z")
+UP = 2
+"""The axis whose rays tell how far the cutter is engaged."""
+ROOM = 4
+"""Intervals that a ray has room for at first: two, and two more while it is cut."""
+
+
+@dataclass(slots=True, eq=False)
+class Bundle:
+    """Rays along one axis of a blank's box.
+
+    Coordinates (u, v, w) of a bundle are the blank's turned in a cycle, w along the rays: (y, z, x) for x, (z, x, y) for y, (x, y, z)
+    for z.
+    Rays stand at the centres of rows (v) of columns (u) of cells, `pitch` wide, from the blank's corner `origin` (u, v). Ray c = row *
+    columns + column has material on count[c] intervals from low[c, k] to high[c, k], upwards; low, high (rays, room).
+    """
+
+    axis: int
+    pitch: float
+    rows: int
+    columns: int
+    origin: Floats
+    count: Ints
+    low: Floats
+    high: Floats
+
+    @staticmethod
+    def of(blank: Blank, pitch: float, axis: int) -> Bundle:
+        """Return a whole blank as rays along an axis (0, 1, 2)."""
+        turned = cycle(axis)
+        columns, rows = cells_along(blank.size[turned[:2]], pitch)
+        low, high = np.zeros((rows * columns, ROOM)), np.zeros((rows * columns, ROOM))
+        low[:, 0], high[:, 0] = blank.low[axis], blank.high[axis]
+        return Bundle(axis, pitch, rows, columns, blank.low[turned[:2]].copy(), np.ones(rows * columns, np.int64), low, high)
+
+    @staticmethod
+    def of_field(field: Field) -> Bundle:
+        """Return a height field as rays along z."""
+        rows, columns = field.top.shape
+        low, high = np.zeros((rows * columns, ROOM)), np.zeros((rows * columns, ROOM))
+        low[:, 0], high[:, 0] = field.low[2], field.top.ravel()
+        return Bundle(2, field.pitch, rows, columns, field.low[:2].copy(), (high[:, 0] > field.low[2]).astype(np.int64), low, high)
+
+    @property
+    def room(self) -> int:
+        """Intervals that each ray has room for."""
+        return self.low.shape[1]
+
+    @property
+    def nbytes(self) -> int:
+        """Bytes that it takes."""
+        return self.count.nbytes + self.low.nbytes + self.high.nbytes
+
+    @property
+    def volume(self) -> float:
+        """Volume in mm3 as these rays see it."""
+        there = np.arange(self.room) < self.count[:, None]
+        return float(np.where(there, self.high - self.low, 0.0).sum()) * self.pitch**2
+
+    def tiles(self) -> list[tuple[int, int]]:
+        """Return the first row and the one after the last of each tile."""
+        return tiles_of(self.rows)
+
+    def parts(self) -> list[Part]:
+        """Return a copy of each tile."""
+        there = np.arange(self.room) < self.count[:, None]
+        found: list[Part] = []
+        for first, last in self.tiles():
+            own = slice(first * self.columns, last * self.columns)
+            found.append((self.count[own].copy(), self.low[own][there[own]], self.high[own][there[own]]))
+        return found
+
+    def put(self, parts: Sequence[Part]) -> None:
+        """Become what copies of all tiles say."""
+        self.count = np.concatenate([p[0] for p in parts])
+        while self.count.max(initial=0) > self.room:
+            self.grow()
+        there = np.arange(self.room) < self.count[:, None]
+        self.low[there], self.high[there] = (np.concatenate([p[k] for p in parts]) for k in (1, 2))
+
+    def grow(self) -> None:
+        """Give every ray twice the room."""
+        self.low, self.high = (np.pad(a, ((0, 0), (0, self.room))) for a in (self.low, self.high))
+
+    def contains(self, points: Floats) -> Bools:
+        """Say for points (k, 3) in the blank's frame whether the nearest ray has material there."""
+        u, v, w = points[:, cycle(self.axis)].T
+        column = np.clip(np.floor((u - self.origin[0]) / self.pitch).astype(np.int64), 0, self.columns - 1)
+        row = np.clip(np.floor((v - self.origin[1]) / self.pitch).astype(np.int64), 0, self.rows - 1)
+        cell = row * self.columns + column
+        there = np.arange(self.room) < self.count[cell][:, None]
+        return np.asarray((there & (self.low[cell] <= w[:, None]) & (w[:, None] <= self.high[cell])).any(axis=1))
+
+
+def cycle(axis: int) -> list[int]:
+    """Return which of the blank's axes are a bundle's u, v, w."""
+    return [(axis + 1) % 3, (axis + 2) % 3, axis]

@@ -1,0 +1,169 @@
+"""Moves run through bundles of rays, tile by tile on all cores; what is summed is summed in the order of the tiles."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+
+from trunnion import tolerance
+from trunnion.findings import OutOfMemory
+from trunnion.geometry.arrays import Bools, Floats, Ints
+from trunnion.model.blank import Blank
+from trunnion.progress import Progress
+from trunnion.verify.cutter import Bodies
+from trunnion.verify.engagement import Probes, Tally
+from trunnion.verify.kernels import dexels as kernel
+from trunnion.verify.motion import Moves
+from trunnion.verify.stock.bundles import UP, Bundle, cycle
+from trunnion.verify.stock.spans import Spans, spans_each, spans_of
+from trunnion.verify.threads import in_parallel
+
+SPANS = 20_000
+"""Spans made ready together: 6 MB."""
+LOOKS = 8_000_000
+"""Rays near the cutter that a tile may have to look at between two looks at cancel: a tenth of a second at most."""
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Passed:
+    """What moves (n,) did: removed mm3 (the mean of the bundles), depth and place (n, 3) in the blank's frame of rapids, how deep what
+    doesn't cut went, and what the probes saw."""
+
+    removed: Floats
+    depth: Floats
+    place: Floats
+    body: Floats
+    tally: Tally
+
+    @staticmethod
+    def empty(n: int, probes: Probes) -> Passed:
+        """Return that nothing happened."""
+        return Passed(np.zeros(n), np.zeros(n), np.full((n, 3), np.nan), np.zeros(n), Tally.empty(int(probes.start[-1])))
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Going:
+    """A bundle and the first move that goes through it; `looked` when the probes of that move have been looked at."""
+
+    bundle: Bundle
+    first: int = 0
+    looked: bool = False
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class _Batch:
+    """Moves made ready together: where each one's spans start and the spans in each bundle's coordinates, tool, whether rapid and whether
+    straight out, its way, and its probes."""
+
+    start: Ints
+    spans: list[Floats]
+    bodies: Bodies
+    tool: Ints
+    rapid: Bools
+    leaves: Bools
+    way: Floats
+    probes: Probes
+    probe_start: Ints
+
+
+def run_rays(going: Sequence[Going], moves: Moves, blank: Blank, probes: Probes, found: Passed, share: float, most_bytes: int,
+             progress: Progress, threads: int) -> None:
+    """Run moves given in the blank's frame through bundles (changed in place) and add to what was found.
+
+    `share` is what the volume that one bundle loses counts. Raises `OutOfMemory` when rays are cut in so many pieces that the bundles would
+    take more than `most_bytes`.
+    """
+    n = len(moves)
+    each, leaves = spans_each(moves), _leaves(moves)
+    ends = np.cumsum(each)
+    row = min((g.first for g in going), default=n)
+    bundles = [g.bundle for g in going]
+    way = np.column_stack([moves.start, moves.end, moves.start_axis, moves.end_axis, moves.centre, moves.sweep])
+    while row < n:
+        begun = ends[row] - each[row]
+        rows = np.arange(row, max(row + 1, int(np.searchsorted(ends, begun + SPANS, side="right"))))
+        spans = spans_of(moves, rows, each[rows])
+        batch = _Batch(spans.start, [spans.along(axis) for axis in range(3)], moves.bodies, moves.tool[rows], moves.rapid[rows],
+                       leaves[rows], way[rows], probes, probes.start[row:rows[-1] + 2])
+        looks = np.cumsum(_looks(spans, blank, bundles))
+        first = 0
+        while first < len(rows):
+            before = looks[first - 1] if first else 0.0
+            last = min(max(first + 1, int(np.searchsorted(looks, before + LOOKS, side="right"))), len(rows))
+            jobs = [_Job(g, tile, batch, max(first, g.first - row), last, g.looked and g.first >= row + first)
+                    for g in going if g.first < row + last for tile in g.bundle.tiles()]
+            part = progress.part(float(begun + spans.start[first]) / ends[-1], float(begun + spans.start[last]) / ends[-1])
+            _run(jobs, bundles, most_bytes, part, threads)
+            for job in jobs:
+                job.note(found, row, share)
+            first = last
+        row = int(rows[-1]) + 1
+
+
+def _run(jobs: list[_Job], bundles: Sequence[Bundle], most_bytes: int, progress: Progress, threads: int) -> None:
+    """Run jobs until all are done, giving rays more room where they need it."""
+    waiting = jobs
+    while waiting:
+        def work(first: int, last: int, waiting: list[_Job] = waiting) -> None:
+            for job in waiting[first:last]:
+                job.run()
+
+        in_parallel(work, len(waiting), 1, progress, "Cutting the stock", threads)
+        waiting = [job for job in waiting if not job.done]
+        for bundle in {job.bundle.axis: job.bundle for job in waiting}.values():
+            if sum(b.nbytes for b in bundles) + bundle.nbytes > most_bytes:
+                raise OutOfMemory(f"stock at cells of {bundle.pitch:g} mm has become so ragged that it would need more than "
+                                  f"{most_bytes / 1e6:.0f} MB: choose a coarser verify.cell")
+            bundle.grow()
+
+
+class _Job:
+    """Some moves of a batch through one tile."""
+
+    def __init__(self, going: Going, tile: tuple[int, int], batch: _Batch, first: int, last: int, looked: bool) -> None:
+        n = last - first
+        self.bundle, self.tile, self.batch, self.first, self.last, self.done = going.bundle, tile, batch, first, last, False
+        self.resume = np.array([0, 0, 0, 0, 0, int(looked)])
+        self.removed, self.depth, self.place, self.body = np.zeros(n), np.zeros(n), np.full((n, 3), np.nan), np.zeros(n)
+        self.probe = batch.probe_start[first:last + 1] if self.bundle.axis == UP else np.zeros(n + 1, np.int64)
+        self.tally = Tally.empty(int(self.probe[-1] - self.probe[0]))
+
+    def run(self) -> None:
+        """Go on until all moves are done or a ray has no room."""
+        own, b, m = slice(self.first, self.last), self.bundle, self.batch
+        self.done = kernel.cut_tile(
+            self.last - self.first, m.spans[b.axis], m.start[self.first:self.last + 1], m.bodies.arc, m.bodies.piece, m.bodies.start,
+            m.tool[own], m.rapid[own], m.leaves[own], b.count, b.low, b.high, b.columns, *self.tile, b.origin, b.pitch, self.resume,
+            self.removed, self.depth, self.place, self.body, m.way[own], m.probes.rings, m.probes.flute, m.probes.circle,
+            self.probe - self.probe[0], self.tally.counted, self.tally.spans)
+
+    def note(self, found: Passed, row: int, share: float) -> None:
+        """Add what happened to what was found in other tiles; the batch's moves count from `row`."""
+        own = slice(row + self.first, row + self.last)
+        found.removed[own] += self.removed * (self.bundle.pitch**2 * share)
+        found.body[own] = np.maximum(found.body[own], self.body)
+        deeper = np.flatnonzero(self.depth > found.depth[own])
+        found.depth[own][deeper] = self.depth[deeper]
+        found.place[own][deeper[:, None], cycle(self.bundle.axis)] = self.place[deeper]
+        seen = slice(self.probe[0], self.probe[-1])
+        found.tally.counted[seen] += self.tally.counted
+        found.tally.spans[seen] = Tally(found.tally.counted[seen], found.tally.spans[seen]).plus(self.tally).spans
+
+
+def _leaves(moves: Moves) -> Bools:
+    """Say for each move (n,) whether the tool goes straight out along its axis: through what its own cut has opened."""
+    way = moves.end - moves.start
+    along = (way * moves.start_axis).sum(axis=1)
+    beside = np.linalg.norm(way - along[:, None] * moves.start_axis, axis=1)
+    return np.asarray((along > 0.0) & (beside <= tolerance.COINCIDENT) & (moves.sweep == 0.0) & ~moves.turning)
+
+
+def _looks(spans: Spans, blank: Blank, bundles: Sequence[Bundle]) -> Floats:
+    """Return a bound for the rays that each move may have to look at."""
+    box = spans.row[:, kernel.ALL_BOX:kernel.ALL_BOX + 6].reshape(-1, 2, 3)
+    size = np.minimum(box[:, 1], blank.high) - np.maximum(box[:, 0], blank.low)
+    there = (size > 0.0).all(axis=1)
+    rays = 50.0 + sum(there * size[:, cycle(b.axis)[:2]].prod(axis=1) / b.pitch**2 for b in bundles)
+    return np.add.reduceat(rays, spans.start[:-1])

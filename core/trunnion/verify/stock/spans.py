@@ -1,0 +1,119 @@
+"""Moves cut into spans so short that within each every point runs straight past the tool, up to `tolerance.STOCK_CHORD`."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from trunnion import tolerance
+from trunnion.geometry.arrays import Floats, Ints
+from trunnion.verify.kernels import body as body_kernel
+from trunnion.verify.kernels import dexels as kernel
+from trunnion.verify.motion import AXIS_LEAN, Moves
+from trunnion.verify.stock.bundles import cycle
+
+VECTORS = kernel.SPAN_COLUMNS // 3
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Spans:
+    """Spans of some moves, in the blank's frame: row (s, `SPAN_COLUMNS`) as `kernels/dexels.py` names its columns; start (n + 1,)."""
+
+    row: Floats
+    start: Ints
+
+    def along(self, axis: int) -> Floats:
+        """Return the rows in the coordinates of a bundle."""
+        turned = self.row.reshape(-1, VECTORS, 3)[:, :, cycle(axis)]
+        return np.ascontiguousarray(turned.reshape(-1, kernel.SPAN_COLUMNS))
+
+
+def spans_each(moves: Moves) -> Ints:
+    """Return into how many spans each move (n,) is cut."""
+    size = _sizes(moves)[moves.tool]
+    theta = _turns(moves)
+    run = np.linalg.norm(moves.end - moves.start, axis=1)
+    # A point's way past a turning tool bends by the turn squared at arm's length, and by turn and way together.
+    turning = np.sqrt((theta**2 * np.hypot(size[:, 0], size[:, 2]) + 2.0 * theta * run) / (8.0 * tolerance.STOCK_CHORD))
+    away = moves.start - np.where(np.isnan(moves.centre), moves.start, moves.centre)
+    away -= (away * moves.start_axis).sum(axis=1, keepdims=True) * moves.start_axis
+    radius = np.linalg.norm(away, axis=1)
+    arcs = np.abs(moves.sweep) * np.sqrt(radius / (8.0 * tolerance.STOCK_CHORD))
+    return np.maximum(1, np.ceil(np.maximum(turning, arcs) - tolerance.PARAMETRIC)).astype(np.int64)
+
+
+def spans_of(moves: Moves, rows: Ints, each: Ints) -> Spans:
+    """Return the spans of some moves given in the blank's frame; each (r,) how many of every one."""
+    start = np.concatenate([[0], np.cumsum(each)])
+    move = np.repeat(rows, each)
+    step, steps = np.arange(start[-1]) - np.repeat(start[:-1], each), np.repeat(each, each)
+    row = np.empty((len(move), VECTORS, 3))
+    poses = _Poses(moves, move)
+    for k, share in enumerate((step / steps, (step + 1) / steps)):
+        row[:, 4 * k], row[:, 4 * k + 1:4 * k + 4] = poses.at(share)
+    size = _sizes(moves)[moves.tool[move]]
+    row[:, 8:10] = _boxes(row, size[:, 0], size[:, 2])
+    row[:, 10:12] = _boxes(row, size[:, 1], size[:, 3])
+    return Spans(row.reshape(-1, kernel.SPAN_COLUMNS), start)
+
+
+class _Poses:
+    """Where the tools of some moves are, and how they stand."""
+
+    def __init__(self, moves: Moves, rows: Ints) -> None:
+        self.start, self.way = moves.start[rows], moves.end[rows] - moves.start[rows]
+        self.sweep = moves.sweep[rows]
+        axis = moves.start_axis[rows]
+        self.theta = _turns(moves)[rows]
+        ahead = moves.end_axis[rows] - (moves.end_axis[rows] * axis).sum(axis=1, keepdims=True) * axis
+        # A tool that keeps its axis may be looked at from anywhere across it.
+        across = np.eye(3)[np.abs(axis).argmin(axis=1)]
+        across = across - (across * axis).sum(axis=1, keepdims=True) * axis
+        ahead = np.where((self.theta > 0.0)[:, None], ahead, across)
+        self.axis, self.ahead = axis, ahead / np.linalg.norm(ahead, axis=1, keepdims=True)
+        self.beside = np.cross(self.axis, self.ahead)
+        arc = self.sweep != 0.0
+        away = np.where(arc[:, None], self.start - moves.centre[rows], 0.0)
+        self.climb = (self.way * axis).sum(axis=1, keepdims=True) * axis
+        self.away = away - (away * axis).sum(axis=1, keepdims=True) * axis
+        self.over = np.cross(axis, self.away)
+        self.arc = arc[:, None]
+
+    def at(self, share: Floats) -> tuple[Floats, Floats]:
+        """Return tips (s, 3) and tool frames (s, 3, 3) at shares (s,) of each way."""
+        t = share[:, None]
+        angle = t * self.sweep[:, None]
+        bent = self.start + t * self.climb + (np.cos(angle) - 1.0) * self.away + np.sin(angle) * self.over
+        tip = np.where(self.arc, bent, self.start + t * self.way)
+        turn = t * self.theta[:, None]
+        axis = self.axis * np.cos(turn) + self.ahead * np.sin(turn)
+        ahead = self.ahead * np.cos(turn) - self.axis * np.sin(turn)
+        return tip, np.stack([ahead, self.beside, axis], axis=1)
+
+
+def _turns(moves: Moves) -> Floats:
+    """Return the angle that the axis of each move turns by (n,), 0 where it keeps still."""
+    across = np.linalg.norm(np.cross(moves.start_axis, moves.end_axis), axis=1)
+    theta = np.arctan2(across, (moves.start_axis * moves.end_axis).sum(axis=1))
+    return np.where(moves.turning & (across > AXIS_LEAN), theta, 0.0)
+
+
+def _sizes(moves: Moves) -> Floats:
+    """Return for each tool (t, 4): height of what cuts, of all of it, and the largest radius of both."""
+    found = []
+    for k in range(len(moves.tools)):
+        piece = moves.bodies.of(k)
+        cutting = piece[piece[:, body_kernel.KIND] == 0.0]
+        found.append([p[:, column].max() for column in (body_kernel.Z_HIGH, body_kernel.R_MAX) for p in (cutting, piece)])
+    return np.array(found).reshape(-1, 4)
+
+
+def _boxes(row: Floats, height: Floats, radius: Floats) -> Floats:
+    """Return the boxes (s, 2, 3) of tools of some height and radius in spans."""
+    low, high = np.full((len(row), 3), np.inf), np.full((len(row), 3), -np.inf)
+    for tip, axis in ((row[:, 0], row[:, 3]), (row[:, 4], row[:, 7])):
+        across = radius[:, None] * np.sqrt(np.clip(1.0 - axis**2, 0.0, None)) + 0.05
+        top = tip + height[:, None] * axis
+        low, high = np.minimum(low, np.minimum(tip, top) - across), np.maximum(high, np.maximum(tip, top) + across)
+    return np.stack([low, high], axis=1)
