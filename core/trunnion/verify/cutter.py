@@ -160,7 +160,7 @@ def _convex_runs(spans: list[Span]) -> list[list[Span]]:
 
 
 def _opened(span: Span) -> list[Span]:
-    """Return the chords of a hollow arc; they lie inside the cutter's true body by at most a quarter of the contact bound."""
+    """Return the chords of a hollow arc; the cutter grows by at most a quarter of the contact bound."""
     r0, z0, r1, z1, cr, cz, radius = span
     a, b = math.atan2(z0 - cz, r0 - cr), math.atan2(z1 - cz, r1 - cr)
     turn = math.remainder(b - a, math.tau)
