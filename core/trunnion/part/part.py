@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import io
 import json
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 from dataclasses import asdict, dataclass, field, replace
 from typing import Any
 
@@ -12,7 +12,8 @@ import numpy as np
 
 from trunnion import tolerance
 from trunnion.findings import BadInput, Finding, Severity
-from trunnion.geometry.arrays import Floats
+from trunnion.geometry.arrays import Floats, Ints
+from trunnion.geometry.boundary import Boundary
 from trunnion.geometry.facegraph import FaceGraph
 from trunnion.geometry.frame import Frame
 from trunnion.geometry.mesh import Mesh
@@ -141,6 +142,13 @@ class Part:
                 self._slicer = SolidSlicer(self.shape, list(self._faces.values()))
             self._sections[key] = self._slicer.section(frame, float(z))
         return self._sections[key]
+
+    def boundary(self, parts: Callable[[Floats], Ints] | None = None) -> Boundary:
+        """Return the boundary of every face as read (healing may move edges): each edge cut into `parts(lengths)` pieces of equal length,
+        or with the points that are farthest along x, y and z."""
+        from trunnion.part.boundary import boundary_of
+        own = set(self._faces)
+        return boundary_of(((tag, face) for tag, face in enumerate(faces_of(self.as_read), 1) if tag in own), parts)
 
     def face_outline(self, frame: Frame, tag: int) -> Region:
         """Return the plan projection, in the frame's x and y, of a plane face that is level or nearly so; raise `BadInput` otherwise."""

@@ -101,14 +101,19 @@ class Engine:
         return {step.name: step.settings() for step in STEP_TABLE}
 
     def with_choices(self, session: Session, words: Mapping[str, Value]) -> Session:
-        """Return the session with settings chosen by full key (`plane.rough.slot_feed`); raise `BadInput` for a wrong key or value."""
+        """Return the session with settings chosen by key, `plane.rough.slot_feed` or `slot_feed` alone where only one is named so.
+
+        Raises `BadInput` for a wrong key or value.
+        """
         known = {d.key: d for groups in self.settings().values() for group in groups for d in declared(group)}
         chosen: dict[str, Value] = {}
         for key, value in words.items():
             if key not in known:
                 near = [k for k in known if k.rsplit(".", 1)[-1] == key.rsplit(".", 1)[-1]]
-                advice = f"did you mean {' or '.join(near)}?" if near else "`trunnion settings` lists them"
-                raise BadInput(f"unknown setting {key}; {advice}")
+                if len(near) != 1 or "." in key:
+                    advice = f"did you mean {' or '.join(near)}?" if near else "`trunnion settings` lists them"
+                    raise BadInput(f"unknown setting {key}; {advice}")
+                key = near[0]
             chosen[key] = known[key].parse(value)
         return replace(session, choices={**session.choices, **chosen})
 

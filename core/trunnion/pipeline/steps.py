@@ -28,6 +28,8 @@ from trunnion.settings import checked, choose, digest, setting, settings
 from trunnion.verify.settings import ProofSettings
 
 AUTOMATIC = "auto"
+PLANNED = ("panel",)
+"""Families that a process plan can be made for."""
 
 
 @settings("recognize")
@@ -127,6 +129,9 @@ def _route(session: Session, bench: Bench, progress: Progress) -> Result:
     recognition = _recognition(session)
     if session.blank is None:
         raise BadCall("no blank yet: create the blank first")
+    if recognition.family not in PLANNED:
+        raise BadInput(f"parts of the family {recognition.family} are segmented and measured, but not planned yet; for flat pockets and "
+                       f"outlines choose recognize.family = {' or '.join(PLANNED)}")
     setup = checked(choose(SetupSettings, session.choices))
     if setup.machine not in bench.shop.machines:
         raise BadInput(f"there is no machine {setup.machine} in the catalogue; known: {', '.join(sorted(bench.shop.machines))}")

@@ -2,8 +2,11 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from typing import Any, Protocol
 
+from trunnion.geometry.arrays import Floats, Ints
+from trunnion.geometry.boundary import Boundary
 from trunnion.geometry.facegraph import FaceGraph
 from trunnion.geometry.frame import Frame
 from trunnion.geometry.region import Region
@@ -22,6 +25,14 @@ class Slicer(Protocol):
         ...
 
 
+class Bounded(Protocol):
+    """Something whose faces have boundaries; a part satisfies it."""
+
+    def boundary(self, parts: Callable[[Floats], Ints] | None) -> Boundary:
+        """Return the boundary of every face: each edge cut into `parts(lengths)` pieces of equal length, or its exact extremes."""
+        ...
+
+
 class Family(Protocol):
     """A family of parts with its own features: the name it is registered under, its settings and its recogniser.
 
@@ -35,8 +46,10 @@ class Family(Protocol):
         """Return how well the family fits a part, from 0 (not at all) to 1."""
         ...
 
-    def recognize(self, graph: FaceGraph, slicer: Slicer, settings: Any, progress: Progress) -> Recognition:
-        """Return the features of a part. Every face is in a feature or in `unexplained`, with a finding that names it.
+    def recognize(self, graph: FaceGraph, slicer: Any, settings: Any, progress: Progress) -> Recognition:
+        """Return the features of a part, given as a face graph and as what may be asked of it (`Slicer`, `Bounded`).
+
+        Every face is in a feature or in `unexplained`, with a finding that names it.
 
         Raises `Cancelled` when a person asked to stop.
         """

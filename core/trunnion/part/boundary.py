@@ -1,0 +1,98 @@
+"""What bounds the trimmed faces: edges with their lengths, points at equal arc length on them, and their exact boxes."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterable
+
+import numpy as np
+from OCP.BRep import BRep_Tool
+from OCP.BRepAdaptor import BRepAdaptor_Curve
+from OCP.GCPnts import GCPnts_AbscissaPoint, GCPnts_QuasiUniformAbscissa
+from OCP.GeomAbs import GeomAbs_Line
+from OCP.TopoDS import TopoDS
+from scipy.spatial import cKDTree
+
+from trunnion import tolerance
+from trunnion.geometry.arrays import Floats, Ints
+from trunnion.geometry.boundary import Boundary
+from trunnion.part.identity import Shape, edges_of
+
+_SAMPLES, _CLOSER, _ROUNDS = 33, 9, 5
+"""Points an edge is searched at for its extremes, and how often the span around the best is looked at again with so many."""
+_PLACES = (0.0, 0.25, 0.5, 0.75, 1.0)
+"""Shares of a curve's parameters at which two curves in the same place are compared."""
+
+
+def boundary_of(faces: Iterable[tuple[int, Shape]], parts: Callable[[Floats], Ints] | None) -> Boundary:
+    """Return the boundary of trimmed faces, given with their tags, in the coordinates of the shape.
+
+    `parts` says for edge lengths (e,) in mm into how many pieces of equal length each is cut; every edge gives its end points and the
+    points between the pieces. Without it the points hold those of each face that are farthest along x, y and z, within
+    a tenth of `tolerance.FITTED` of the true ones. Seams and edges without length bound nothing.
+    """
+    owner: list[int] = []
+    curves: list[BRepAdaptor_Curve] = []
+    for tag, face in faces:
+        found = _bounding(face)
+        curves += found
+        owner += [tag] * len(found)
+    length = np.array([GCPnts_AbscissaPoint.Length_s(c) for c in curves])
+    rows = np.array(owner, dtype=np.int64)
+    if parts is None:
+        points = _farthest(curves, rows)
+    else:
+        points = [_spread(c, int(n)) for c, n in zip(curves, parts(length), strict=True)]
+    return Boundary(face=rows, length=length, edge=np.repeat(np.arange(len(curves)), [len(p) for p in points]),
+                    point=np.vstack([np.zeros((0, 3)), *points]))
+
+
+def _bounding(face: Shape) -> list[BRepAdaptor_Curve]:
+    """Return the curves that bound a face, without its seams: one edge that is there twice, or (in IGES) two edges in the same place."""
+    curves = [BRepAdaptor_Curve(e) for e in edges_of(face)
+              if not BRep_Tool.Degenerated_s(e) and not BRep_Tool.IsClosed_s(e, TopoDS.Face_s(face))]
+    places = np.array([[c.Value(c.FirstParameter() + share * (c.LastParameter() - c.FirstParameter())).Coord() for share in _PLACES]
+                       for c in curves]).reshape(-1, len(_PLACES), 3)
+    seam = set()
+    for a, b in cKDTree(places[:, len(_PLACES) // 2]).query_pairs(tolerance.SLIVER) if len(curves) > 1 else ():
+        if min(np.abs(places[a] - places[b]).max(), np.abs(places[a] - places[b][::-1]).max()) < tolerance.SLIVER:
+            seam |= {a, b}
+    return [c for k, c in enumerate(curves) if k not in seam]
+
+
+def _spread(curve: BRepAdaptor_Curve, parts: int) -> Floats:
+    """Return the ends of an edge and the points that cut it into parts of equal length."""
+    if parts <= 1:
+        return np.array([curve.Value(t).Coord() for t in (curve.FirstParameter(), curve.LastParameter())])
+    found = GCPnts_QuasiUniformAbscissa(curve, parts + 1)
+    return np.array([curve.Value(found.Parameter(k)).Coord() for k in range(1, found.NbPoints() + 1)])
+
+
+def _farthest(curves: list[BRepAdaptor_Curve], owner: Ints) -> list[Floats]:
+    """Return points of every curve; where a face may reach farther between them, the farthest point too."""
+    at = [np.linspace(c.FirstParameter(), c.LastParameter(), 2 if c.GetType() == GeomAbs_Line else _SAMPLES) for c in curves]
+    points = [np.array([c.Value(t).Coord() for t in ts]) for c, ts in zip(curves, at, strict=True)]
+    # Between two points a curve is hardly longer than twice their distance: it can't reach farther than that.
+    slack = np.array([np.abs(np.diff(p, axis=0)).max() if len(p) > 2 else 0.0 for p in points])
+    for axis in range(3):
+        for sign in (1.0, -1.0):
+            most = np.array([(sign * p[:, axis]).max() for p in points])
+            best = np.full(int(owner.max(initial=0)) + 1, -np.inf)
+            np.maximum.at(best, owner, most)
+            for k in np.flatnonzero((slack > 0.0) & (most + slack > best[owner])):
+                n = int(np.argmax(sign * points[k][:_SAMPLES, axis]))
+                found = _closer(curves[k], at[k][max(n - 1, 0)], at[k][min(n + 1, _SAMPLES - 1)], axis, sign)
+                points[k] = np.vstack([points[k], found])
+    return points
+
+
+def _closer(curve: BRepAdaptor_Curve, low: float, high: float, axis: int, sign: float) -> tuple[float, float, float]:
+    """Return the farthest point of a span that holds one extreme."""
+    for _ in range(_ROUNDS):
+        at = np.linspace(low, high, _CLOSER)
+        points = [curve.Value(t).Coord() for t in at]
+        best = max(range(_CLOSER), key=lambda k: sign * points[k][axis])
+        beside = max(best - 1, 0), min(best + 1, _CLOSER - 1)
+        if max(abs(points[best][axis] - points[k][axis]) for k in beside) < 0.1 * tolerance.FITTED:
+            break
+        low, high = at[beside[0]], at[beside[1]]
+    return points[best]

@@ -1,0 +1,72 @@
+"""Complex curved surfaces: quick segmentation of trimmed patches by feature size, and the local features among them."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from trunnion.findings import Finding, face_tags, info
+from trunnion.geometry.arrays import Bools, Floats, Ints
+from trunnion.geometry.facegraph import FaceGraph
+from trunnion.model.feature import FaceRole, Feature, Recognition
+from trunnion.progress import QUIET, Progress
+from trunnion.recognize.contract import Bounded
+from trunnion.recognize.surface.groups import aligned_groups, invariant_groups
+from trunnion.recognize.surface.settings import ALIGNED, EXACT, SurfaceSettings
+from trunnion.recognize.surface.size import PatchSizes, patch_sizes
+
+FREE_FORM = ("spline", "revolution", "extrusion", "other")
+ENOUGH = 0.25
+"""Share of the area that is free-form on a part that is surely of this family; panels have a twentieth at most."""
+
+
+class SurfaceFamily:
+    """Blades, small impellers and other parts of free-form patches with local features on them."""
+
+    name = "surface"
+    settings = SurfaceSettings
+
+    def suits(self, graph: FaceGraph) -> float:
+        """Return how near the free-form share of the part's area comes to `ENOUGH`."""
+        free = np.array([kind in FREE_FORM for kind in graph.surface])
+        return min(1.0, float(graph.area[free].sum() / graph.area.sum()) / ENOUGH)
+
+    def recognize(self, graph: FaceGraph, bounded: Bounded, settings: SurfaceSettings, progress: Progress = QUIET) -> Recognition:
+        """Return one feature a group of equal patches, largest first; local ones are marked. Raises `Cancelled` when asked to stop."""
+        progress.at(0.0, "measuring patches")
+        present = np.flatnonzero(graph.area > 0.0)
+        sizes = patch_sizes(bounded, [int(r) + 1 for r in present], graph.area[present], exact=settings.boundary == EXACT)
+        progress.at(0.8, "grouping patches")
+        size = sizes.diagonal if settings.grouping == ALIGNED else sizes.diameter
+        sliver = sizes.width < settings.sliver_width
+        small = ~sliver & (size < settings.smallest)
+        rows = np.flatnonzero(~sliver & ~small)
+        if settings.grouping == ALIGNED:
+            groups = aligned_groups(sizes, rows, settings.tolerance, relative=settings.relative, subdivide=settings.subdivide)
+        else:
+            groups = invariant_groups(sizes, rows, settings.tolerance, relative=settings.relative)
+        features = tuple(_feature(k, g, sizes, size, settings) for k, g in enumerate(groups, 1))
+        apart = sliver | small
+        return Recognition(family=self.name, features=features, unexplained=tuple(int(t) for t in sizes.tag[apart]),
+                           unexplained_share=float(sizes.area[apart].sum() / sizes.area.sum()),
+                           findings=_findings(sizes, sliver, small, settings))
+
+
+def _feature(number: int, rows: Ints, sizes: PatchSizes, size: Floats, settings: SurfaceSettings) -> Feature:
+    ratio = float(size[rows].max() / size.max())
+    return Feature(id=f"group-{number:02}", kind="group", faces=tuple(FaceRole(role="face", face=int(t)) for t in np.sort(sizes.tag[rows])),
+                   sizes={"feature_size": float(size[rows].mean()), "feature_size_min": float(size[rows].min()),
+                          "feature_size_max": float(size[rows].max()), "size_ratio": ratio, "diagonal": float(sizes.diagonal[rows].mean()),
+                          "diameter": float(sizes.diameter[rows].mean()), "boundary_length": float(sizes.length[rows].mean()),
+                          "area": float(sizes.area[rows].sum())},
+                   attributes={"local": ratio < settings.local_ratio})
+
+
+def _findings(sizes: PatchSizes, sliver: Bools, small: Bools, settings: SurfaceSettings) -> tuple[Finding, ...]:
+    found = []
+    for rows, code, words in ((sliver, "surface.sliver", f"narrower than {settings.sliver_width:g} mm on average"),
+                              (small, "surface.small", f"below the smallest size of {settings.smallest:g} mm")):
+        if rows.any():
+            tags = [int(t) for t in sizes.tag[rows]]
+            found.append(info(code, f"{len(tags)} patches are {words} and join no group", *face_tags(tags),
+                              remedy="lower the limit to keep them"))
+    return tuple(found)

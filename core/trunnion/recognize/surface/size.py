@@ -1,0 +1,64 @@
+"""The feature size of every patch: what tells equal patches from others (quick segmentation, section on feature size)."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+
+from trunnion.geometry.arrays import Floats, Ints
+from trunnion.recognize.contract import Bounded
+
+REPAIR = ((0.7, 8), (0.5, 6), (0.3, 4), (0.1, 2))
+"""The paper's boundary repair: an edge longer than this share of the datum length is cut into so many equal parts."""
+SPREAD, LEAST = 1000, 48
+"""Where the largest distance of two boundary points is wanted: points along the longest edge, and the fewest on any."""
+BLOCK = 1000
+"""Rows of the table of distances that are looked at together."""
+
+
+@dataclass(frozen=True, slots=True, eq=False, kw_only=True)
+class PatchSizes:
+    """Sizes of the patches, a row a tag: sides (n, 3) and diagonal (n,) of the axis-aligned box of the boundary, diameter (n,) its
+    largest distance of two points, length (n,) of the boundary, mm; area (n,) mm2."""
+
+    tag: Ints
+    sides: Floats
+    diagonal: Floats
+    diameter: Floats
+    length: Floats
+    area: Floats
+
+    @property
+    def width(self) -> Floats:
+        """Mean width (n,): that of a long rectangle of the same area and boundary, mm."""
+        return np.asarray(np.divide(2.0 * self.area, self.length, out=np.zeros_like(self.area), where=self.length > 0.0))
+
+
+def patch_sizes(bounded: Bounded, tags: Sequence[int], area: Floats, *, exact: bool) -> PatchSizes:
+    """Return the sizes of patches, given by tag with their area (n,) mm2; by the paper's points on the edges unless `exact`."""
+    boxes = bounded.boundary(None if exact else _repaired)
+    spread = bounded.boundary(lambda length: np.maximum(np.ceil(SPREAD * length / length.max(initial=1.0)), LEAST).astype(np.int64))
+    sides = np.array([np.ptp(p, axis=0) if len(p) else np.zeros(3) for p in map(boxes.points_of, tags)]).reshape(-1, 3)
+    return PatchSizes(tag=np.array(tags, dtype=np.int64), sides=sides, diagonal=np.linalg.norm(sides, axis=1),
+                      diameter=np.array([_diameter(spread.points_of(t)) for t in tags]),
+                      length=np.array([boxes.length_of(t) for t in tags]), area=np.asarray(area, dtype=np.float64))
+
+
+def _repaired(length: Floats) -> Ints:
+    """Return how many parts each edge is cut into; the datum length is the longest edge's, for want of a better estimate."""
+    share = length / length.max(initial=1.0)
+    parts = np.ones(len(length), dtype=np.int64)
+    for above, count in reversed(REPAIR):
+        parts[share > above] = count
+    return parts
+
+
+def _diameter(points: Floats) -> float:
+    most = 0.0
+    for first in range(0, len(points), BLOCK):
+        rows = points[first:first + BLOCK]
+        square = (rows**2).sum(axis=1)[:, None] + (points**2).sum(axis=1) - 2.0 * rows @ points.T
+        most = max(most, float(square.max(initial=0.0)))
+    return float(np.sqrt(most))

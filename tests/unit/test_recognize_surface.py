@@ -1,0 +1,115 @@
+"""Segmentation of curved surfaces: sizes, groups, slivers, local features."""
+
+from __future__ import annotations
+
+import json
+import math
+
+import numpy as np
+import pytest
+
+from parts import PARTS, needs_parts
+from trunnion.geometry.boundary import Boundary
+from trunnion.part.boundary import boundary_of
+from trunnion.part.identity import faces_of
+from trunnion.pipeline import Engine
+from trunnion.recognize.surface.groups import aligned_groups, grouped, invariant_groups
+from trunnion.recognize.surface.size import patch_sizes
+
+
+class Rectangles:
+    """Flat patches by width, height and angle about z (radians), as something with boundaries."""
+
+    def __init__(self, *patches: tuple[float, float, float]) -> None:
+        self.patches = patches
+
+    def boundary(self, parts=None):
+        corners = []
+        for width, height, turn in self.patches:
+            square = np.array([[0.0, 0.0], [width, 0.0], [width, height], [0.0, height]])
+            spin = np.array([[math.cos(turn), math.sin(turn)], [-math.sin(turn), math.cos(turn)]])
+            corners.append(np.column_stack([square @ spin, np.zeros(4)]))
+        points = np.array([[c[k], c[(k + 1) % 4]] for c in corners for k in range(4)]).reshape(-1, 3)
+        n = len(self.patches)
+        length = np.linalg.norm(points[1::2] - points[::2], axis=1)
+        return Boundary(face=np.repeat(np.arange(1, n + 1), 4), length=length, edge=np.repeat(np.arange(4 * n), 2), point=points)
+
+
+def sizes_of(*patches):
+    areas = np.array([w * h for w, h, _ in patches])
+    return patch_sizes(Rectangles(*patches), range(1, len(patches) + 1), areas, exact=True)
+
+
+def as_lists(groups):
+    return [g.tolist() for g in groups]
+
+
+def test_a_patch_joins_the_one_before_it_not_the_first_of_the_group() -> None:
+    size = np.array([10.0, 10.08, 10.04, 9.0])
+    assert as_lists(grouped(np.arange(4), size, 0.05)) == [[1, 2, 0], [3]]
+
+
+def test_a_relative_tolerance_is_a_share_of_the_size() -> None:
+    assert as_lists(grouped(np.arange(3), np.array([100.0, 96.0, 90.0]), 0.05, relative=True)) == [[0, 1], [2]]
+
+
+def test_equal_patches_at_different_angles_are_equal_only_by_what_does_not_turn() -> None:
+    sizes = sizes_of((40.0, 10.0, 0.0), (40.0, 10.0, 0.7), (40.0, 10.0, 1.9))
+    rows = np.arange(3)
+    assert as_lists(invariant_groups(sizes, rows, 0.05, relative=False)) == [[0, 1, 2]]
+    assert len(aligned_groups(sizes, rows, 0.05, relative=False, subdivide=False)) == 3
+
+
+def test_equal_diagonals_with_other_sides_are_told_apart_by_the_sides() -> None:
+    sizes = sizes_of((30.0, 40.0, 0.0), (14.0, 48.0, 0.0), (40.0, 30.0, 0.0))
+    assert as_lists(aligned_groups(sizes, np.arange(3), 0.05, relative=False, subdivide=False)) == [[0, 1, 2]]
+    assert sorted(as_lists(aligned_groups(sizes, np.arange(3), 0.05, relative=False, subdivide=True))) == [[0, 2], [1]]
+
+
+def test_the_mean_width_tells_a_long_sliver_from_a_patch() -> None:
+    assert sizes_of((50.0, 0.02, 0.0), (50.0, 5.0, 0.0)).width == pytest.approx([0.02, 5.0 / 1.1], rel=1e-3)
+
+
+def test_the_boundary_of_a_cylinder_has_no_seam_and_the_box_of_its_circles() -> None:
+    from OCP.BRepPrimAPI import BRepPrimAPI_MakeCylinder
+    faces = list(enumerate(faces_of(BRepPrimAPI_MakeCylinder(5.0, 20.0).Shape()), 1))
+    side = max(faces, key=lambda f: len(boundary_of([f], None).length))[0]
+    bounds = boundary_of(faces, None)
+    assert bounds.length_of(side) == pytest.approx(20.0 * math.pi)
+    assert np.ptp(bounds.points_of(side), axis=0) == pytest.approx([10.0, 10.0, 20.0], abs=2e-5)
+
+
+def test_an_edge_is_cut_into_pieces_of_equal_length() -> None:
+    from OCP.BRepPrimAPI import BRepPrimAPI_MakeCylinder
+    faces = list(enumerate(faces_of(BRepPrimAPI_MakeCylinder(5.0, 20.0).Shape()), 1))
+    bounds = boundary_of(faces, lambda length: np.full(len(length), 8))
+    ring = bounds.point[bounds.edge == 0]
+    assert np.linalg.norm(np.diff(ring, axis=0), axis=1) == pytest.approx(np.full(8, 10.0 * math.sin(math.pi / 8)), rel=1e-3)
+
+
+GROUPINGS = (("aligned", "features"), ("invariant", "features_by_invariant_size"))
+
+
+@needs_parts
+@pytest.mark.parametrize("name", ["D1.igs", "D2.step", pytest.param("D3.step", marks=pytest.mark.long),
+                                  pytest.param("D3.igs", marks=pytest.mark.long)])
+def test_groups_are_those_of_the_truth(name: str) -> None:
+    truth = json.loads((PARTS / "surface" / f"{name[:2]}.truth.json").read_text())
+    number = "step_face" if name.endswith("step") else "iges_face"
+    by_place = {tuple(f["at"]): f[number] for f in truth["faces"]}
+    engine = Engine()
+    opened = engine.open(PARTS / "surface" / name)
+    for grouping, key in GROUPINGS:
+        wanted = truth[key] if grouping == "aligned" else truth[key]["features"]
+        found = engine.run(engine.with_choices(opened, {"grouping": grouping}), until="recognize").recognition
+        assert found.family == "surface"
+        assert {frozenset(f.tags) for f in found.features} == {frozenset(by_place[tuple(q["at"])] for q in f["faces"]) for f in wanted}
+        assert not found.unexplained
+
+
+@needs_parts
+@pytest.mark.long
+def test_an_impeller_gives_one_group_for_each_kind_of_blade_face() -> None:
+    engine = Engine()
+    found = engine.run(engine.open(PARTS / "impeller" / "C3.step"), until="recognize").recognition
+    assert {len(f.tags) for f in found.features} == {1, 2, 11}
