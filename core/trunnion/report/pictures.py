@@ -41,13 +41,13 @@ def write_pictures(session: Session, mesh: Mesh, folder: Path, name: str, palett
     """Write the pictures of a session as PNG files `NAME.*.png` into a folder and return them in the order of the work."""
     made = []
     if session.recognition is not None:
-        _features(session, mesh, palette).screenshot(str(folder / f"{name}.features.png"))
+        _shoot(_features(session, mesh, palette), folder / f"{name}.features.png")
         made.append(Picture(file=f"{name}.features.png", caption="Features by kind"))
     if any(len(p.path) for p in session.paths):
-        _toolpaths(session, mesh, palette).screenshot(str(folder / f"{name}.toolpaths.png"))
+        _shoot(_toolpaths(session, mesh, palette), folder / f"{name}.toolpaths.png")
         made.append(Picture(file=f"{name}.toolpaths.png", caption="Toolpaths by kind of motion"))
     if session.verdict is not None and len(session.verdict.deviation.face):
-        _deviation(session, mesh, palette).screenshot(str(folder / f"{name}.deviation.png"))
+        _shoot(_deviation(session, mesh, palette), folder / f"{name}.deviation.png")
         made.append(Picture(file=f"{name}.deviation.png", caption="Deviation of the finished part, mm: + is material left, - is gouge"))
     return tuple(made)
 
@@ -84,12 +84,19 @@ def motion_class(path: Toolpath) -> tuple[str, ...]:
 def _plotter() -> Plotter:
     if sys.platform.startswith("linux"):
         os.environ.setdefault("VTK_DEFAULT_OPENGL_WINDOW", "vtkEGLRenderWindow")
+        # Without it pyvista asks an X server and opens a window on trial, for a warning that a window without a screen does not need.
+        os.environ.setdefault("ALLOW_PLOTTING", "true")
     import pyvista
     made = pyvista.Plotter(off_screen=True, window_size=list(SIZE))
     made.set_background("white")
     made.render_window.SetMultiSamples(0)
     made.enable_anti_aliasing("ssaa")
     return made
+
+
+def _shoot(plotter: Plotter, file: Path) -> None:
+    plotter.screenshot(str(file))
+    plotter.close()
 
 
 def _surface(mesh: Mesh) -> Any:
