@@ -17,7 +17,7 @@ point is inside, strips of one point for their exact boundary. What none of this
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from itertools import pairwise
 from typing import TYPE_CHECKING, Any
 
@@ -50,7 +50,7 @@ class Surfaces:
 
     tag (f,); strip (m, 37) with face row strip_face (m,); boundaries of level faces are strips of one point. level (k, 37) and level_face
     (k,): the areas of level faces as strips, for samples. region_z (r,), region_face (r,), region_box (r, 4), region_start (r + 1,) into
-    chords (c, 4). bound: how far the arrays may be from the faces, mm.
+    chords (c, 4). opened (k,): rows of the faces without closed form, whose strips are triangles; bound: how far those may be off, mm.
     """
 
     tag: Ints
@@ -63,6 +63,7 @@ class Surfaces:
     region_box: Floats
     region_start: Ints
     chords: Floats
+    opened: Ints = field(default_factory=lambda: np.zeros(0, np.int64))
     bound: float = 0.0
 
     def __post_init__(self) -> None:
@@ -77,6 +78,7 @@ class Surfaces:
         object.__setattr__(self, "region_box", floats(self.region_box, (n, 4), "region_box"))
         object.__setattr__(self, "region_start", ints(self.region_start, (n + 1,), "region_start"))
         object.__setattr__(self, "chords", floats(self.chords, (None, 4), "chords"))
+        object.__setattr__(self, "opened", ints(self.opened, (None,), "opened"))
 
 
 @dataclass(frozen=True, slots=True)
@@ -220,6 +222,7 @@ def surfaces_from(faces: list[Face]) -> Surfaces:
         region_box=np.array([[*np.minimum(f.chords[:, :2], f.chords[:, 2:]).min(axis=0),
                               *np.maximum(f.chords[:, :2], f.chords[:, 2:]).max(axis=0)] for _, f in regions]).reshape(-1, 4),
         region_start=starts, chords=np.vstack([np.zeros((0, 4)), *(f.chords for _, f in regions)]),
+        opened=np.array([row for row, f in enumerate(faces) if f.bound > 0.0], dtype=int),
         bound=max((f.bound for f in faces), default=0.0))
 
 

@@ -1,20 +1,31 @@
-"""Does anything enter what it must not? Cutter, shank and holder against the finished part and its fixtures, along every block."""
+"""Does anything enter what it must not? Cutter, shank and holder against the finished part and its fixtures, along every block.
+
+An upright tool against faces of closed form is measured in closed form (`strips.py`); free-form faces, and every face while the tool leans
+or turns, by triangles and bounds (`facets.py`); fixtures are triangles from the start.
+"""
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
 
 import numpy as np
 
 from trunnion.findings import BadInput
 from trunnion.geometry.arrays import Bools, Floats, Ints
+from trunnion.part.facets import Facets
 from trunnion.part.surfaces import Surfaces
 from trunnion.progress import QUIET, Progress
+from trunnion.verify.contact.facets import FacetContact
 from trunnion.verify.contact.grid import Grid as Grid
 from trunnion.verify.contact.grid import grid_of as grid_of
 from trunnion.verify.contact.strips import StripContact
 from trunnion.verify.contact.strips import guide_points as guide_points
+from trunnion.verify.contact.touch import Touch
 from trunnion.verify.motion import Moves
+
+LEANING_COST = 50.0
+"""What a leaning move costs against an upright one, about: only for the share of progress."""
 
 
 @dataclass(frozen=True, slots=True, eq=False, kw_only=True)
@@ -37,27 +48,77 @@ class Contact:
 
 
 class PartContact:
-    """A part's faces made ready for many questions. `surfaces` must be in the frame of the moves."""
+    """A part's faces and its fixtures made ready for many questions, all in the frame of the moves.
 
-    def __init__(self, surfaces: Surfaces) -> None:
+    `facets` are the same faces as triangles: without them leaning tools are refused, and faces without closed form are measured on the
+    strips that stand for them. `fixtures` are closed meshes, a row each.
+    """
+
+    def __init__(self, surfaces: Surfaces, facets: Facets | None = None, fixtures: Sequence[Facets] = ()) -> None:
         self.surfaces = surfaces
-        self._strips = StripContact(surfaces)
+        opened = surfaces.opened if facets is not None else np.zeros(0, np.int64)
+        self._strips = StripContact(_without(surfaces, opened))
+        self._every = None if facets is None else FacetContact(facets)
+        self._opened = None if facets is None or not len(opened) else FacetContact(_only(facets, opened))
+        self._fixtures = FacetContact(_joined(fixtures)) if fixtures else None
 
     def along(self, moves: Moves, progress: Progress = QUIET, threads: int = 0) -> Contact:
-        """Return how deep every move of a program enters the part, measured on `threads` threads (0: one a core)."""
-        n = len(moves)
-        touch = self._strips.along(moves, _all_upright(moves), progress, threads)
-        return Contact(depth=np.maximum(touch.depth, 0.0), face=touch.face, place=touch.place,
-                       face_depth=np.maximum(touch.face_depth, 0.0), face_move=touch.face_move, fixture_depth=np.zeros(n),
-                       fixture=np.full(n, -1), fixture_place=np.full((n, 3), np.nan))
+        """Return how deep every move of a program enters part and fixtures, measured on `threads` threads (0: one a core)."""
+        found, rows = Touch.none(len(moves), len(self.surfaces.tag)), np.arange(len(moves))
+        engines = [*self._engines(moves), *([(self._fixtures, rows)] if self._fixtures else [])]
+        cost = np.cumsum([0.0, *(len(some) * (1.0 if engine is self._strips else LEANING_COST) for engine, some in engines)])
+        fixed = Touch.none(len(moves), 0)
+        for k, (engine, some) in enumerate(engines):
+            touch = engine.along(moves, some, progress.part(cost[k] / max(cost[-1], 1.0), cost[k + 1] / max(cost[-1], 1.0)), threads)
+            if engine is self._fixtures:
+                fixed = touch
+            else:
+                found.take(touch, some)
+        kind = np.argmax(fixed.depth, axis=1)
+        return Contact(depth=np.maximum(found.depth, 0.0), face=found.face, place=found.place,
+                       face_depth=np.maximum(found.face_depth, 0.0), face_move=found.face_move,
+                       fixture_depth=np.maximum(fixed.depth[rows, kind], 0.0), fixture=fixed.face[rows, kind],
+                       fixture_place=fixed.place[rows, kind])
 
     def clear(self, moves: Moves, allowed: float) -> Bools:
-        """Say for each move or pose (n,) whether nothing of its tool enters the part deeper than allowed."""
-        return self._strips.clear(moves, _all_upright(moves), allowed)
+        """Say for each move or pose (n,) whether nothing of its tool enters part or fixtures deeper than allowed."""
+        clear = np.ones(len(moves), bool)
+        for engine, rows in self._engines(moves):
+            clear[rows] &= engine.clear(moves, rows, allowed)
+        if self._fixtures:
+            rows = np.flatnonzero(clear)
+            clear[rows] = self._fixtures.clear(moves, rows, allowed)
+        return clear
+
+    def _engines(self, moves: Moves) -> list[tuple[StripContact | FacetContact, Ints]]:
+        """Return what measures which rows of the moves against the part."""
+        upright, leaning = np.flatnonzero(moves.upright), np.flatnonzero(~moves.upright)
+        engines: list[tuple[StripContact | FacetContact, Ints]] = [(self._strips, upright)]
+        if self._opened is not None:
+            engines.append((self._opened, upright))
+        if len(leaning):
+            if self._every is None:
+                raise BadInput(f"contact of a leaning tool needs the part's facets: block {int(moves.block[leaning[0]])} leans")
+            engines.append((self._every, leaning))
+        return engines
 
 
-def _all_upright(moves: Moves) -> Ints:
-    leaning = np.flatnonzero(~moves.upright)
-    if len(leaning):
-        raise BadInput(f"contact of a leaning tool needs the part's facets: block {int(moves.block[leaning[0]])} leans")
-    return np.arange(len(moves))
+def _without(surfaces: Surfaces, faces: Ints) -> Surfaces:
+    """Return surfaces without the strips of some faces; all faces keep their rows."""
+    keep = ~np.isin(surfaces.strip_face, faces)
+    return surfaces if keep.all() else replace(surfaces, strip=surfaces.strip[keep], strip_face=surfaces.strip_face[keep])
+
+
+def _only(facets: Facets, faces: Ints) -> Facets:
+    """Return the facets of some faces; all faces keep their rows."""
+    keep = np.isin(facets.face, faces)
+    return replace(facets, triangles=facets.triangles[keep], face=facets.face[keep])
+
+
+def _joined(fixtures: Sequence[Facets]) -> Facets:
+    """Return fixtures as one mesh whose faces are the fixtures."""
+    first = np.cumsum([0, *(len(f.points) for f in fixtures)])
+    return Facets(tag=np.arange(len(fixtures)), points=np.vstack([f.points for f in fixtures]),
+                  triangles=np.vstack([f.triangles + k for f, k in zip(fixtures, first, strict=False)]),
+                  face=np.repeat(np.arange(len(fixtures)), [len(f.triangles) for f in fixtures]),
+                  bound=max(f.bound for f in fixtures))

@@ -17,6 +17,7 @@ from trunnion.geometry.arrays import Bools, Floats, Ints
 from trunnion.part.surfaces import BX0, BY1, DX, DY, GUIDE, L_KIND, OX, OY, PROFILE, PW0, PW1, PZ0, PZ1, R_KIND, U0, U1, Surfaces
 from trunnion.progress import QUIET, Progress
 from trunnion.verify.contact.grid import grid_of
+from trunnion.verify.contact.touch import Touch, deepen
 from trunnion.verify.kernels import strips as kernel
 from trunnion.verify.motion import Moves
 from trunnion.verify.threads import in_parallel
@@ -25,21 +26,6 @@ CHUNK = 2000
 """Moves between two looks at cancel; a chunk stays far below 0.2 s."""
 GRID_PITCH = 10.0
 """mm, pitch of the grid that finds the faces near a move: about a cutter's radius."""
-
-
-@dataclass(frozen=True, slots=True, eq=False, kw_only=True)
-class Touch:
-    """How deep some moves enter faces. k moves, f faces; column 0 is what cuts, column 1 what does not.
-
-    depth (k, 2) mm, -inf when clear; face (k, 2) rows of the deepest face or -1; place (k, 2, 3) where, NaN when clear; face_depth (f, 2),
-    face_move (f, 2) the row of the move that is deepest in each face (of equal ones the first), or -1.
-    """
-
-    depth: Floats
-    face: Ints
-    place: Floats
-    face_depth: Floats
-    face_move: Ints
 
 
 @dataclass(frozen=True, slots=True, eq=False, kw_only=True)
@@ -57,11 +43,6 @@ class _Measured:
         return _Measured(depth=np.full((k, 2), -np.inf), which=np.full((k, 2), -1), where=np.zeros((k, 2)),
                          face_depth=np.full((f, 2), -np.inf), face_move=np.full((f, 2), -1))
 
-    def deepen(self, face_depth: Floats, face_move: Ints) -> None:
-        """Take in what one chunk found; of equal depths the first move counts, so that the order of chunks does not."""
-        better = (face_depth > self.face_depth) | ((face_depth == self.face_depth) & (face_move < self.face_move))
-        self.face_depth[better], self.face_move[better] = face_depth[better], face_move[better]
-
 
 class StripContact:
     """Trimmed faces made ready for upright moves. `surfaces` must be in the frame of the moves."""
@@ -73,9 +54,8 @@ class StripContact:
     def along(self, moves: Moves, rows: Ints, progress: Progress = QUIET, threads: int = 0) -> Touch:
         """Return how deep the moves of some rows (k,) enter the faces; they must stand upright."""
         found = self._measure(moves, rows, progress, threads)
-        face, place = np.full((len(rows), 2), -1), np.full((len(rows), 2, 3), np.nan)
-        for k, kind in np.argwhere(found.which != -1):
-            face[k, kind], place[k, kind] = self._place(moves.row[rows[k]], int(found.which[k, kind]), float(found.where[k, kind]))
+        s, face, place = self.surfaces, np.full((len(rows), 2), -1), np.full((len(rows), 2, 3), np.nan)
+        kernel.places(rows, moves.row, found.which, found.where, s.strip, s.strip_face, s.region_z, s.region_face, face, place)
         return Touch(depth=found.depth, face=face, place=place, face_depth=found.face_depth, face_move=found.face_move)
 
     def clear(self, moves: Moves, rows: Ints, allowed: float) -> Bools:
@@ -92,20 +72,10 @@ class StripContact:
                                 g.start, g.rows, g.frame, g.shape, s.region_z, s.region_face, s.region_box, s.region_start, s.chords,
                                 bound, bound, settle, found.depth, found.which, found.where, face_depth, face_move)
             with merging:
-                found.deepen(face_depth, face_move)
+                deepen(found.face_depth, found.face_move, face_depth, face_move)
 
         in_parallel(work, len(rows), CHUNK, progress, "Measuring gouges and collisions", threads)
         return found
-
-    def _place(self, move: Floats, which: int, where: float) -> tuple[int, Floats]:
-        s = self.surfaces
-        if which < -1:
-            region, path = -2 - which, np.zeros(kernel.MOVE_COLUMNS)
-            kernel.part_of_move(move, where, where, path)
-            return int(s.region_face[region]), np.array([path[kernel.X0], path[kernel.Y0], s.region_z[region]])
-        points = guide_points(s.strip[which], where, np.linspace(0.0, 1.0, 65))
-        distance = [kernel.point_distance(x, y, move) for x, y in points[:, :2]]
-        return int(s.strip_face[which]), points[int(np.argmin(distance))]
 
 
 def guide_points(strip: Floats, u: float, shares: Floats) -> Floats:

@@ -541,6 +541,40 @@ def contact_loop(first: int, last: int, rows: Ints, moves: Floats, tool: Ints, a
 
 
 @njit(cache=True, nogil=True)
+def guide_point(s: Floats, u: float, share: float) -> tuple[float, float, float]:
+    """Return the point of a strip at one profile parameter, at a share of the way from its left end to its right one."""
+    low = _end(s[L_KIND], s[LA], s[LB], s[LC], s[L_SIGN], u, s[U0])
+    high = _end(s[R_KIND], s[RA], s[RB], s[RC], s[R_SIGN], u, s[U0])
+    at, w = low + share * (high - low), _profile_w(s, u)
+    if s[GUIDE] != 0.0:
+        return s[OX] + w * math.cos(at), s[OY] + w * math.sin(at), _profile_z(s, u)
+    return s[OX] - w * s[DY] + at * s[DX], s[OY] + w * s[DX] + at * s[DY], _profile_z(s, u)
+
+
+@njit(cache=True, nogil=True)
+def places(rows: Ints, moves: Floats, which: Ints, where: Floats, strips: Floats, strip_face: Ints, region_z: Floats, region_face: Ints,
+           face: Ints, place: Floats) -> None:
+    """Fill face (k, 2) and place (k, 2, 3) of what `contact_loop` found: on a guide, the nearest to the path of 65 even points."""
+    path = np.zeros(MOVE_COLUMNS)
+    for k in range(len(rows)):
+        move = moves[rows[k]]
+        for kind in range(2):
+            found, u = which[k, kind], where[k, kind]
+            if found < -1:
+                part_of_move(move, u, u, path)
+                face[k, kind] = region_face[-2 - found]
+                place[k, kind, 0], place[k, kind, 1], place[k, kind, 2] = path[X0], path[Y0], region_z[-2 - found]
+            elif found >= 0:
+                face[k, kind], nearest = strip_face[found], np.inf
+                for n in range(65):
+                    x, y, z = guide_point(strips[found], u, n / 64.0)
+                    distance = point_distance(x, y, move)
+                    if distance < nearest:
+                        nearest = distance
+                        place[k, kind, 0], place[k, kind, 1], place[k, kind, 2] = x, y, z
+
+
+@njit(cache=True, nogil=True)
 def fill_cells(boxes: Floats, grid: Floats, shape: Ints, counts: Ints, start: Ints, rows: Ints) -> None:
     """Count (rows empty) or list the boxes (n, 4) that touch each cell of a grid; `counts` (cells,) is filled either way."""
     counts[:] = 0

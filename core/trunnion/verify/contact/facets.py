@@ -1,0 +1,92 @@
+"""A tool whose axis leans or turns, or faces of any form: the deepest contact with triangles, by a tree and bounds (`kernels/facets.py`).
+
+A reported depth is attained on a triangle at a moment of the move; the true one is at most `tolerance.CONTACT_BOUND` deeper where the axis
+keeps still and `tolerance.TURNING_BOUND` where it turns, plus `Facets.bound`, which is how far the triangles may be from the faces. Depths
+beyond 1 mm are only known to be at least that.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from threading import Lock
+
+import numpy as np
+
+from trunnion import tolerance
+from trunnion.geometry.arrays import Bools, Floats, Ints
+from trunnion.part.facets import Facets
+from trunnion.progress import QUIET, Progress
+from trunnion.verify.contact.touch import Touch, deepen
+from trunnion.verify.kernels import facets as kernel
+from trunnion.verify.motion import Moves
+from trunnion.verify.threads import in_parallel
+
+CHUNK = 100
+"""Moves between two looks at cancel."""
+LEAF = 4
+"""Most triangles of a leaf."""
+
+
+@dataclass(frozen=True, slots=True, eq=False, kw_only=True)
+class Tree:
+    """Triangles in the order of the leaves of a tree of boxes, in preorder; `kernels/facets.py` names the columns."""
+
+    boxes: Floats
+    skip: Ints
+    leaves: Ints
+    node_face: Ints
+    corners: Floats
+    normals: Floats
+    face: Ints
+
+
+def tree_of(points: Floats, triangles: Ints, face: Ints) -> Tree:
+    """Return the tree over triangles (t, 3) of points (v, 3), each with the row of its face (t,)."""
+    corners = points[triangles]
+    t = len(corners)
+    order, boxes = np.zeros(t, np.int64), np.zeros((2 * t, 6))
+    skip, leaves, node_face = np.zeros(2 * t, np.int64), np.zeros((2 * t, 2), np.int64), np.zeros(2 * t, np.int64)
+    count = kernel.tree_of(corners.min(axis=1), corners.max(axis=1), face, LEAF, order, boxes, skip, leaves, node_face) if t else 0
+    corners = corners[order]
+    across = np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0])
+    size = np.linalg.norm(across, axis=1, keepdims=True)
+    # Any direction bounds a triangle without area.
+    normals = np.where(size > 0.0, across / np.where(size > 0.0, size, 1.0), np.array([0.0, 0.0, 1.0]))
+    return Tree(boxes=boxes[:count].copy(), skip=skip[:count].copy(), leaves=leaves[:count].copy(), node_face=node_face[:count].copy(),
+                corners=corners.reshape(-1, 9), normals=normals, face=face[order])
+
+
+class FacetContact:
+    """Triangles made ready for many questions. `facets` must be in the frame of the moves."""
+
+    def __init__(self, facets: Facets) -> None:
+        self.facets = facets
+        self._tree = tree_of(facets.points, facets.triangles, facets.face)
+
+    def along(self, moves: Moves, rows: Ints, progress: Progress = QUIET, threads: int = 0) -> Touch:
+        """Return how deep the moves of some rows (k,) enter the faces, whichever way the tool stands."""
+        return self._measure(moves, rows, progress, threads)
+
+    def clear(self, moves: Moves, rows: Ints, allowed: float) -> Bools:
+        """Say for the moves of some rows (k,) whether nothing of the tool enters the faces deeper than allowed."""
+        return np.asarray((self._measure(moves, rows, QUIET, 1, allowed).depth <= allowed).all(axis=1))
+
+    def _measure(self, moves: Moves, rows: Ints, progress: Progress, threads: int, settle: float = np.inf) -> Touch:
+        tree, bodies, k, f = self._tree, moves.bodies, len(rows), len(self.facets.tag)
+        bound = np.where(moves.turning[rows], tolerance.TURNING_BOUND, tolerance.CONTACT_BOUND)
+        enough = np.full(k, settle) if np.isfinite(settle) else bound
+        touch = Touch(depth=np.full((k, 2), -np.inf), face=np.full((k, 2), -1), place=np.full((k, 2, 3), np.nan),
+                      face_depth=np.full((f, 2), -np.inf), face_move=np.full((f, 2), -1))
+        merging = Lock()
+
+        def work(first: int, last: int) -> None:
+            face_depth, face_move = np.full((f, 2), -np.inf), np.full((f, 2), -1)
+            kernel.contact_loop(first, last, rows, moves.start, moves.end, moves.start_axis, moves.end_axis, moves.centre, moves.sweep,
+                                moves.tool, bodies.arc, bodies.piece, bodies.start, tree.boxes, tree.skip, tree.leaves, tree.node_face,
+                                tree.corners, tree.normals, tree.face, f, bound, enough, settle, touch.depth, touch.face, touch.place,
+                                face_depth, face_move)
+            with merging:
+                deepen(touch.face_depth, touch.face_move, face_depth, face_move)
+
+        in_parallel(work, k, CHUNK, progress, "Measuring gouges and collisions of leaning tools", threads)
+        return touch

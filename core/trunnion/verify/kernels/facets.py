@@ -1,0 +1,604 @@
+"""Compiled search for the deepest that a moving body of revolution enters triangles, for axes that lean or turn.
+
+A triangle and a span of time are looked at together. In the frame that turns with the tool the triangle's corners at both ends of the span
+are six points; all it does in between lies in their hull, up to a sag of second order (angle^2 distance / 8 + angle length / 4, and an
+arc's own). Depth in a convex body is concave with slope one, so every supporting half-space of the body, and every tangent to the depth,
+bounds it from above over the whole hull by its values at six points; two of them together bound it better than each. The bounds are
+
+* the half-space against the triangle's own normal: exact where the contact is inside the triangle, however large that is;
+* tangents at the hull's middle and at the place that is nearest to the body's core: exact where the contact is on an edge or a corner;
+
+and what they leave open is halved, in time or across an edge, until it is below what is asked. Boxes of a tree are pruned by a tangent too.
+Nothing is sampled: a sharp rim that touches a strip between two places is found.
+"""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+from numba import njit
+
+from trunnion.geometry.arrays import Floats, Ints
+from trunnion.verify.kernels.body import A0R, A0Z, A1R, A1Z, CLOSED_FIRST, CLOSED_LAST, CR, CZ, KIND, R, R_MAX, depth_in_body, support
+
+# A way: how the tool goes along one move.
+START, VECTOR, AXIS, PIVOT, ANGLE, CENTRE, ACROSS, ALONG, R_START, R_END, SWEEP, CLIMB, LENGTH = 0, 3, 6, 9, 12, 13, 16, 19, 22, 23, 24, 25, 26
+WAY_COLUMNS = 27
+"""START and VECTOR of the tip; AXIS at the start turns about PIVOT by ANGLE. An arc (SWEEP not 0) is about CENTRE from ACROSS towards ALONG."""
+
+# A span of a way: one row an end of the matrix (9) that turns what is relative to the tip into the middle's frame, and the tip (3).
+MATRIX, TIP, END_COLUMNS = 0, 9, 12
+S_AXIS, S_ANGLE, S_LENGTH, S_BULGE, S_FROM, S_TO = 0, 3, 4, 5, 6, 7
+SPAN_COLUMNS = 8
+
+# A piece of a triangle in a piece of time, waiting to be looked at.
+CORNERS, T_FROM, T_TO, UPPER, HALVE = 0, 9, 10, 11, 12
+TASK_COLUMNS = 13
+TASKS = 160
+
+MOST_TURN, MOST_SWEEP = 0.1, 0.25
+"""rad: how far the axis turns, or an arc goes, in one span: their sags stay far below the size of a tool."""
+DEEP = 1.0
+"""mm: depths beyond this need not be known."""
+_FLAT = 1e-12
+_SMALLEST = 1e-7
+
+
+@njit(cache=True, nogil=True)
+def fill_way(start: Floats, end: Floats, axis: Floats, end_axis: Floats, centre: Floats, sweep: float, way: Floats) -> None:
+    """Fill `way` (27,) from a move's ends (3,), its axes at both, and an arc's centre and angle (0: a line)."""
+    way[:] = 0.0
+    square = 0.0
+    for k in range(3):
+        way[START + k], way[VECTOR + k], way[AXIS + k] = start[k], end[k] - start[k], axis[k]
+        square += way[VECTOR + k] * way[VECTOR + k]
+    way[LENGTH] = math.sqrt(square)
+    if sweep != 0.0:
+        _fill_arc(start, end, axis, centre, sweep, way)
+        return
+    wx, wy, wz = (axis[1] * end_axis[2] - axis[2] * end_axis[1], axis[2] * end_axis[0] - axis[0] * end_axis[2],
+                  axis[0] * end_axis[1] - axis[1] * end_axis[0])
+    sine, cosine = math.sqrt(wx * wx + wy * wy + wz * wz), axis[0] * end_axis[0] + axis[1] * end_axis[1] + axis[2] * end_axis[2]
+    if sine < _FLAT:
+        if cosine > 0.0:
+            return
+        # Turned right over: no plane is given, so any will do, the same one each time.
+        if abs(axis[0]) < 0.9:
+            wx, wy, wz = 0.0, axis[2], -axis[1]
+        else:
+            wx, wy, wz = -axis[2], 0.0, axis[0]
+    size = math.sqrt(wx * wx + wy * wy + wz * wz)
+    way[PIVOT], way[PIVOT + 1], way[PIVOT + 2], way[ANGLE] = wx / size, wy / size, wz / size, math.atan2(sine, cosine)
+
+
+@njit(cache=True, nogil=True)
+def _fill_arc(start: Floats, end: Floats, axis: Floats, centre: Floats, sweep: float, way: Floats) -> None:
+    up = climb = 0.0
+    for k in range(3):
+        up += (start[k] - centre[k]) * axis[k]
+        climb += (end[k] - start[k]) * axis[k]
+    square = last = 0.0
+    for k in range(3):
+        way[CENTRE + k] = centre[k] + up * axis[k]
+        way[ACROSS + k] = start[k] - way[CENTRE + k]
+        square += way[ACROSS + k] ** 2
+        last += (end[k] - climb * axis[k] - way[CENTRE + k]) ** 2
+    radius = math.sqrt(square)
+    for k in range(3):
+        way[ACROSS + k] /= max(radius, _FLAT)
+    for k in range(3):
+        i, j = (k + 1) % 3, (k + 2) % 3
+        way[ALONG + k] = axis[i] * way[ACROSS + j] - axis[j] * way[ACROSS + i]
+    way[R_START], way[R_END], way[SWEEP], way[CLIMB] = radius, math.sqrt(last), sweep, climb
+    way[LENGTH] = math.hypot(max(radius, way[R_END]) * abs(sweep), climb)
+
+
+@njit(cache=True, nogil=True)
+def tip_at(way: Floats, t: float) -> tuple[float, float, float]:
+    """Return the tip at a share of the way."""
+    if way[SWEEP] == 0.0:
+        return way[START] + t * way[VECTOR], way[START + 1] + t * way[VECTOR + 1], way[START + 2] + t * way[VECTOR + 2]
+    radius = way[R_START] + t * (way[R_END] - way[R_START])
+    a, b, c = radius * math.cos(t * way[SWEEP]), radius * math.sin(t * way[SWEEP]), t * way[CLIMB]
+    return (way[CENTRE] + a * way[ACROSS] + b * way[ALONG] + c * way[AXIS],
+            way[CENTRE + 1] + a * way[ACROSS + 1] + b * way[ALONG + 1] + c * way[AXIS + 1],
+            way[CENTRE + 2] + a * way[ACROSS + 2] + b * way[ALONG + 2] + c * way[AXIS + 2])
+
+
+@njit(cache=True, nogil=True)
+def axis_at(way: Floats, t: float) -> tuple[float, float, float]:
+    """Return the tool axis at a share of the way; the pivot is across it."""
+    ax, ay, az = way[AXIS], way[AXIS + 1], way[AXIS + 2]
+    if way[ANGLE] == 0.0:
+        return ax, ay, az
+    wx, wy, wz = way[PIVOT], way[PIVOT + 1], way[PIVOT + 2]
+    c, s = math.cos(t * way[ANGLE]), math.sin(t * way[ANGLE])
+    return c * ax + s * (wy * az - wz * ay), c * ay + s * (wz * ax - wx * az), c * az + s * (wx * ay - wy * ax)
+
+
+@njit(cache=True, nogil=True)
+def fill_span(way: Floats, t0: float, t1: float, ends: Floats, span: Floats) -> None:
+    """Fill `ends` (2, 12) and `span` (8,) for the way between two shares of it."""
+    middle = 0.5 * (t0 + t1)
+    span[S_AXIS], span[S_AXIS + 1], span[S_AXIS + 2] = axis_at(way, middle)
+    share = t1 - t0
+    span[S_ANGLE], span[S_LENGTH], span[S_BULGE] = share * way[ANGLE], share * way[LENGTH], 0.0
+    span[S_FROM], span[S_TO] = t0, t1
+    if way[SWEEP] != 0.0:
+        turn = min(share * abs(way[SWEEP]), math.pi)
+        drift = share * abs(way[R_END] - way[R_START])
+        span[S_BULGE] = max(way[R_START], way[R_END]) * (1.0 - math.cos(0.5 * turn)) + 0.25 * drift * turn
+    for e in range(2):
+        ends[e, TIP], ends[e, TIP + 1], ends[e, TIP + 2] = tip_at(way, t0 if e == 0 else t1)
+        half = 0.5 * span[S_ANGLE] if e == 0 else -0.5 * span[S_ANGLE]
+        c, s = math.cos(half), math.sin(half)
+        wx, wy, wz = way[PIVOT], way[PIVOT + 1], way[PIVOT + 2]
+        v = 1.0 - c
+        ends[e, 0], ends[e, 1], ends[e, 2] = c + v * wx * wx, v * wx * wy - s * wz, v * wx * wz + s * wy
+        ends[e, 3], ends[e, 4], ends[e, 5] = v * wx * wy + s * wz, c + v * wy * wy, v * wy * wz - s * wx
+        ends[e, 6], ends[e, 7], ends[e, 8] = v * wx * wz - s * wy, v * wy * wz + s * wx, c + v * wz * wz
+
+
+@njit(cache=True, nogil=True, inline="always")
+def _seen(ends: Floats, e: int, px: float, py: float, pz: float) -> tuple[float, float, float]:
+    """Return a point of space as the tool sees it at one end of a span, in the frame of its middle."""
+    x, y, z = px - ends[e, TIP], py - ends[e, TIP + 1], pz - ends[e, TIP + 2]
+    return (ends[e, 0] * x + ends[e, 1] * y + ends[e, 2] * z, ends[e, 3] * x + ends[e, 4] * y + ends[e, 5] * z,
+            ends[e, 6] * x + ends[e, 7] * y + ends[e, 8] * z)
+
+
+@njit(cache=True, nogil=True)
+def _tangent(arcs: Floats, first: int, last: int, ax: float, ay: float, az: float, x: float, y: float,
+             z: float) -> tuple[float, float, float, float]:
+    """Return the depth of a point relative to the tip, and the normal (3) of the side that is nearest."""
+    h = x * ax + y * ay + z * az
+    ex, ey, ez = x - h * ax, y - h * ay, z - h * az
+    rho = math.sqrt(ex * ex + ey * ey + ez * ez)
+    depth, nr, nh = depth_in_body(arcs, first, last, rho, h)
+    share = nr / rho if rho > _FLAT else 0.0
+    return depth, share * ex + nh * ax, share * ey + nh * ay, share * ez + nh * az
+
+
+@njit(cache=True, nogil=True)
+def depth_at(way: Floats, t: float, arcs: Floats, first: int, last: int, px: float, py: float, pz: float) -> float:
+    """Return how deep a point of space is in a body at a share of the way."""
+    ax, ay, az = axis_at(way, t)
+    cx, cy, cz = tip_at(way, t)
+    return _tangent(arcs, first, last, ax, ay, az, px - cx, py - cy, pz - cz)[0]
+
+
+@njit(cache=True, nogil=True)
+def _core(arcs: Floats, first: int, last: int, rho: float, h: float) -> tuple[float, float]:
+    """Return the place (rho, h) in a body that its nearest side is round about: an arc's centre, or the axis beside a straight flank."""
+    best, cr, ch = np.inf, rho, h
+    for k in range(first, last):
+        dr, dz = rho - arcs[k, CR], h - arcs[k, CZ]
+        c0 = arcs[k, A0R] * dz - arcs[k, A0Z] * dr
+        c1 = dr * arcs[k, A1Z] - dz * arcs[k, A1R]
+        if c0 >= 0.0 and c1 >= 0.0 and (dr * (arcs[k, A0R] + arcs[k, A1R]) + dz * (arcs[k, A0Z] + arcs[k, A1Z])) > 0.0:
+            depth, r, z = arcs[k, R] - math.sqrt(dr * dr + dz * dz), arcs[k, CR], arcs[k, CZ]
+        else:
+            d0, d1 = dr * arcs[k, A0R] + dz * arcs[k, A0Z], dr * arcs[k, A1R] + dz * arcs[k, A1Z]
+            nr, nz = (arcs[k, A0R], arcs[k, A0Z]) if d0 >= d1 else (arcs[k, A1R], arcs[k, A1Z])
+            depth = arcs[k, R] - max(d0, d1)
+            r, z = (0.0, h - rho * nz / nr) if nr > 0.5 else (rho, h - nz)
+        if depth < best:
+            best, cr, ch = depth, r, z
+    return cr, ch
+
+
+@njit(cache=True, nogil=True)
+def _together(one: Floats, other: Floats) -> float:
+    """Return the least over all mixtures of two bounds (6,) of their greatest value."""
+    share, top = 0.0, 0
+    for i in range(1, 6):
+        if one[i] > one[top] or (one[i] == one[top] and other[i] > other[top]):
+            top = i
+    value = one[top]
+    for _ in range(6):
+        slope = other[top] - one[top]
+        if slope >= 0.0:
+            return value
+        step, after = 1.0 - share, -1
+        for i in range(6):
+            steeper = other[i] - one[i] - slope
+            if steeper > 0.0:
+                reach = (value - one[i] - share * (other[i] - one[i])) / steeper
+                if reach < step or (reach == step and after >= 0 and other[i] - one[i] > other[after] - one[after]):
+                    step, after = max(reach, 0.0), i
+        share += step
+        value += step * slope
+        if after < 0:
+            return value
+        top = after
+    return value
+
+
+@njit(cache=True, nogil=True)
+def _nearest_of_triangle(p: Floats, x: float, y: float, z: float) -> tuple[float, float]:
+    """Return the place (v, w) of the point a + v (b - a) + w (c - a) of a triangle (3, 3) that is nearest to a point."""
+    abx, aby, abz = p[1, 0] - p[0, 0], p[1, 1] - p[0, 1], p[1, 2] - p[0, 2]
+    acx, acy, acz = p[2, 0] - p[0, 0], p[2, 1] - p[0, 1], p[2, 2] - p[0, 2]
+    apx, apy, apz = x - p[0, 0], y - p[0, 1], z - p[0, 2]
+    d1, d2 = abx * apx + aby * apy + abz * apz, acx * apx + acy * apy + acz * apz
+    if d1 <= 0.0 and d2 <= 0.0:
+        return 0.0, 0.0
+    bb, bc, cc = abx * abx + aby * aby + abz * abz, abx * acx + aby * acy + abz * acz, acx * acx + acy * acy + acz * acz
+    d3, d4 = d1 - bb, d2 - bc
+    if d3 >= 0.0 and d4 <= d3:
+        return 1.0, 0.0
+    vc = d1 * d4 - d3 * d2
+    if vc <= 0.0 and d1 >= 0.0 and d3 <= 0.0:
+        return d1 / (d1 - d3), 0.0
+    d5, d6 = d1 - bc, d2 - cc
+    if d6 >= 0.0 and d5 <= d6:
+        return 0.0, 1.0
+    vb = d5 * d2 - d1 * d6
+    if vb <= 0.0 and d2 >= 0.0 and d6 <= 0.0:
+        return 0.0, d2 / (d2 - d6)
+    va = d3 * d6 - d5 * d4
+    if va <= 0.0 and d4 - d3 >= 0.0 and d5 - d6 >= 0.0:
+        w = (d4 - d3) / ((d4 - d3) + (d5 - d6))
+        return 1.0 - w, w
+    total = va + vb + vc
+    return vb / total, vc / total
+
+
+@njit(cache=True, nogil=True)
+def _attain(way: Floats, t: float, arcs: Floats, first: int, last: int, px: float, py: float, pz: float, found: Floats) -> None:
+    depth = depth_at(way, t, arcs, first, last, px, py, pz)
+    if depth > found[0]:
+        found[0], found[1], found[2], found[3] = depth, px, py, pz
+
+
+@njit(cache=True, nogil=True)
+def _look(task: Floats, normal: Floats, way: Floats, arcs: Floats, first: int, last: int, enough: float, bound: float, found: Floats,
+          ends: Floats, span: Floats, six: Floats, cuts: Floats, flat: Floats) -> float:
+    """Return a bound on the depth of a task (13,), -inf when it settles below what is asked; say in it how to halve it.
+
+    Raises `found` (depth, place (3,)) to what is attained at the places looked at.
+    """
+    if span[S_FROM] != task[T_FROM] or span[S_TO] != task[T_TO]:
+        fill_span(way, task[T_FROM], task[T_TO], ends, span)
+    ax, ay, az = span[S_AXIS], span[S_AXIS + 1], span[S_AXIS + 2]
+    far = 0.0
+    for i in range(6):
+        c = CORNERS + 3 * (i % 3)
+        x, y, z = _seen(ends, i // 3, task[c], task[c + 1], task[c + 2])
+        six[i, 0], six[i, 1], six[i, 2] = x, y, z
+        far = max(far, x * x + y * y + z * z)
+    drift = span[S_ANGLE] * (0.125 * span[S_ANGLE] * math.sqrt(far) + 0.25 * span[S_LENGTH]) + span[S_BULGE]
+    settled = max(enough, found[0] + bound) - drift
+
+    nx, ny, nz = -normal[0], -normal[1], -normal[2]
+    nh = nx * ax + ny * ay + nz * az
+    reach = support(arcs, first, last, math.sqrt(max(1.0 - nh * nh, 0.0)), nh)
+    upper = -np.inf
+    for i in range(6):
+        cuts[0, i] = reach - nx * six[i, 0] - ny * six[i, 1] - nz * six[i, 2]
+        upper = max(upper, cuts[0, i])
+    if upper <= settled:
+        return -np.inf
+
+    x = y = z = 0.0
+    for i in range(6):
+        x, y, z = x + six[i, 0] / 6.0, y + six[i, 1] / 6.0, z + six[i, 2] / 6.0
+    least = _cut(arcs, first, last, ax, ay, az, x, y, z, six, cuts[1])
+    if least <= settled:
+        return -np.inf
+    upper = min(upper, least, _together(cuts[0], cuts[1]))
+    if upper <= settled:
+        return -np.inf
+
+    # The place in the triangle and the time at which it is nearest to what the body is round about, one after the other.
+    h = x * ax + y * ay + z * az
+    ex, ey, ez = x - h * ax, y - h * ay, z - h * az
+    rho = math.sqrt(ex * ex + ey * ey + ez * ez)
+    cr, ch = _core(arcs, first, last, rho, h)
+    share = cr / rho if rho > _FLAT else 0.0
+    cx, cy, cz = share * ex + ch * ax, share * ey + ch * ay, share * ez + ch * az
+    s = 0.5
+    v = w = 0.0
+    for _ in range(2):
+        for i in range(3):
+            for k in range(3):
+                flat[i, k] = six[i, k] + s * (six[i + 3, k] - six[i, k])
+        v, w = _nearest_of_triangle(flat, cx, cy, cz)
+        dot = square = 0.0
+        for k in range(3):
+            one = six[0, k] + v * (six[1, k] - six[0, k]) + w * (six[2, k] - six[0, k])
+            other = six[3, k] + v * (six[4, k] - six[3, k]) + w * (six[5, k] - six[3, k])
+            gap = (cx if k == 0 else cy if k == 1 else cz) - one
+            dot, square = dot + gap * (other - one), square + (other - one) * (other - one)
+        if square <= _FLAT:
+            break
+        s = min(max(dot / square, 0.0), 1.0)
+    u = 1.0 - v - w
+    p = 1.0 - s
+    x = p * (u * six[0, 0] + v * six[1, 0] + w * six[2, 0]) + s * (u * six[3, 0] + v * six[4, 0] + w * six[5, 0])
+    y = p * (u * six[0, 1] + v * six[1, 1] + w * six[2, 1]) + s * (u * six[3, 1] + v * six[4, 1] + w * six[5, 1])
+    z = p * (u * six[0, 2] + v * six[1, 2] + w * six[2, 2]) + s * (u * six[3, 2] + v * six[4, 2] + w * six[5, 2])
+    least = _cut(arcs, first, last, ax, ay, az, x, y, z, six, cuts[2])
+    a, b, c = CORNERS, CORNERS + 3, CORNERS + 6
+    t = task[T_FROM] + s * (task[T_TO] - task[T_FROM])
+    _attain(way, t, arcs, first, last, u * task[a] + v * task[b] + w * task[c], u * task[a + 1] + v * task[b + 1] + w * task[c + 1],
+            u * task[a + 2] + v * task[b + 2] + w * task[c + 2], found)
+    settled = max(enough, found[0] + bound) - drift
+    upper = min(upper, least, _together(cuts[0], cuts[2]), _together(cuts[1], cuts[2]))
+    if upper <= settled:
+        return -np.inf
+    task[HALVE] = _halving(task, six, drift > 0.5 * (upper - settled))
+    task[UPPER] = upper + drift
+    return upper + drift
+
+
+@njit(cache=True, nogil=True)
+def _cut(arcs: Floats, first: int, last: int, ax: float, ay: float, az: float, x: float, y: float, z: float, six: Floats,
+         out: Floats) -> float:
+    """Fill `out` (6,) with the tangent to the depth at a point, at six points, and return its greatest value there."""
+    depth, nx, ny, nz = _tangent(arcs, first, last, ax, ay, az, x, y, z)
+    most = -np.inf
+    for i in range(6):
+        out[i] = depth - nx * (six[i, 0] - x) - ny * (six[i, 1] - y) - nz * (six[i, 2] - z)
+        most = max(most, out[i])
+    return most
+
+
+@njit(cache=True, nogil=True)
+def _halving(task: Floats, six: Floats, is_drift: bool) -> float:
+    """Return what to halve: 0 the time, 1 to 3 the edge after that corner; the longest, or the time where its sag is what is left open."""
+    if is_drift:
+        return 0.0
+    longest, at = 0.0, 0
+    for i in range(3):
+        j = (i + 1) % 3
+        square = way = 0.0
+        for k in range(3):
+            square += (task[CORNERS + 3 * j + k] - task[CORNERS + 3 * i + k]) ** 2
+            way += (six[i + 3, k] - six[i, k]) ** 2
+        if square > longest:
+            longest, at = square, i + 1
+        if way > longest:
+            longest, at = way, 0
+    return float(at)
+
+
+@njit(cache=True, nogil=True)
+def _halve(task: Floats, one: Floats, other: Floats) -> None:
+    one[:] = task
+    other[:] = task
+    what = int(task[HALVE])
+    if what == 0:
+        one[T_TO] = other[T_FROM] = 0.5 * (task[T_FROM] + task[T_TO])
+        return
+    i, j = CORNERS + 3 * (what - 1), CORNERS + 3 * (what % 3)
+    for k in range(3):
+        one[j + k] = other[i + k] = 0.5 * (task[i + k] + task[j + k])
+
+
+@njit(cache=True, nogil=True)
+def enter_triangle(corners: Floats, normal: Floats, way: Floats, t0: float, t1: float, arcs: Floats, first: int, last: int, enough: float,
+                   bound: float, settle: float, found: Floats, tasks: Floats, task: Floats, ends: Floats, span: Floats, six: Floats,
+                   cuts: Floats, flat: Floats) -> None:
+    """Raise `found` (depth, place (3,)) to the deepest that a body enters a triangle (9,) between two shares of its way.
+
+    What it ends with is attained and at most `bound` below the deepest, or anything when the deepest is at most `enough`. Beyond `settle`
+    it may be any depth larger than that.
+    """
+    tasks[0, CORNERS:CORNERS + 9] = corners
+    tasks[0, T_FROM], tasks[0, T_TO] = t0, t1
+    if _look(tasks[0], normal, way, arcs, first, last, enough, bound, found, ends, span, six, cuts, flat) == -np.inf:
+        return
+    top = 1
+    while top > 0 and found[0] <= settle:
+        top -= 1
+        task[:] = tasks[top]
+        if task[UPPER] <= max(enough, found[0] + bound) or top + 2 > TASKS:
+            continue
+        _halve(task, tasks[top], tasks[top + 1])
+        one = _look(tasks[top], normal, way, arcs, first, last, enough, bound, found, ends, span, six, cuts, flat)
+        other = _look(tasks[top + 1], normal, way, arcs, first, last, enough, bound, found, ends, span, six, cuts, flat)
+        # The more promising half is looked at next.
+        if one > other:
+            task[:] = tasks[top]
+            tasks[top] = tasks[top + 1]
+            tasks[top + 1] = task
+            one, other = other, one
+        if one == -np.inf:
+            tasks[top] = tasks[top + 1]
+        top += (one > -np.inf) + (other > -np.inf)
+
+
+@njit(cache=True, nogil=True)
+def _box_depth(box: Floats, ends: Floats, span: Floats, arcs: Floats, first: int, last: int) -> float:
+    """Return a bound on how deep any point of a box (centre (3,), half sides (3,)) gets into a body during a span."""
+    ax, ay, az = span[S_AXIS], span[S_AXIS + 1], span[S_AXIS + 2]
+    x0, y0, z0 = _seen(ends, 0, box[0], box[1], box[2])
+    x1, y1, z1 = _seen(ends, 1, box[0], box[1], box[2])
+    depth, nx, ny, nz = _tangent(arcs, first, last, ax, ay, az, 0.5 * (x0 + x1), 0.5 * (y0 + y1), 0.5 * (z0 + z1))
+    depth += 0.5 * abs(nx * (x1 - x0) + ny * (y1 - y0) + nz * (z1 - z0)) + span[S_BULGE]
+    if span[S_ANGLE] == 0.0:
+        return depth + abs(nx) * box[3] + abs(ny) * box[4] + abs(nz) * box[5]
+    most = 0.0
+    for e in range(2):
+        m = ends[e]
+        most = max(most, abs(m[0] * nx + m[3] * ny + m[6] * nz) * box[3] + abs(m[1] * nx + m[4] * ny + m[7] * nz) * box[4]
+                   + abs(m[2] * nx + m[5] * ny + m[8] * nz) * box[5])
+    half = math.sqrt(box[3] * box[3] + box[4] * box[4] + box[5] * box[5])
+    far = math.sqrt(max(x0 * x0 + y0 * y0 + z0 * z0, x1 * x1 + y1 * y1 + z1 * z1)) + half
+    return depth + most + span[S_ANGLE] * (0.125 * span[S_ANGLE] * far + 0.25 * span[S_LENGTH])
+
+
+@njit(cache=True, nogil=True)
+def spans_of(way: Floats, radius: float) -> int:
+    """Return into how many equal spans a way is cut for a body of a radius: none goes further than the body is wide."""
+    most = max(way[LENGTH] / (2.0 * max(radius, DEEP)), way[ANGLE] / MOST_TURN, abs(way[SWEEP]) / MOST_SWEEP)
+    return max(1, int(math.ceil(most)))
+
+
+@njit(cache=True, nogil=True)
+def contact_loop(first: int, last: int, rows: Ints, start: Floats, end: Floats, axis: Floats, end_axis: Floats, centre: Floats,
+                 sweep: Floats, tool: Ints, arcs: Floats, pieces: Floats, piece_start: Ints, boxes: Floats, skip: Ints, leaves: Ints,
+                 node_face: Ints, corners: Floats, normals: Floats, face: Ints, n_faces: int, bound: Floats, enough: Floats,
+                 settle: float, depth: Floats, which: Ints, place: Floats, face_depth: Floats, face_move: Ints) -> None:
+    """Measure the moves of `rows[first:last]` against all triangles.
+
+    The tree is in preorder: boxes (m, 6) centre and half sides, skip (m,) the node after a subtree, leaves (m, 2) first triangle and count
+    (0: not a leaf), node_face (m,) the face of all its triangles or -1. corners (t, 9), normals (t, 3), face (t,). bound and enough (k,).
+    Fills depth (k, 2), which (k, 2) faces, place (k, 2, 3), and face_depth, face_move (f, 2). A move deeper than `settle` may stop there.
+    """
+    way, ends, span = np.zeros(WAY_COLUMNS), np.zeros((2, END_COLUMNS)), np.zeros(SPAN_COLUMNS)
+    near_ends, near = np.zeros((2, END_COLUMNS)), np.zeros(SPAN_COLUMNS)
+    tasks, task, found = np.zeros((TASKS, TASK_COLUMNS)), np.zeros(TASK_COLUMNS), np.zeros(4)
+    six, cuts, flat = np.zeros((6, 3)), np.zeros((3, 6)), np.zeros((3, 3))
+    best, best_place, stamp = np.full((n_faces, 2), -np.inf), np.zeros((n_faces, 2, 3)), np.full(n_faces, -1)
+    touched = np.zeros(n_faces, np.int64)
+    for k in range(first, last):
+        n = rows[k]
+        fill_way(start[n], end[n], axis[n], end_axis[n], centre[n], sweep[n], way)
+        n_touched, done = 0, False
+        for p in range(piece_start[tool[n]], piece_start[tool[n] + 1]):
+            a, b = int(pieces[p, CLOSED_FIRST]), int(pieces[p, CLOSED_LAST])
+            column = 0 if pieces[p, KIND] == 0.0 else 1
+            count = spans_of(way, pieces[p, R_MAX])
+            for q in range(count):
+                fill_span(way, q / count, (q + 1) / count, ends, span)
+                node = 0
+                while node < len(boxes) and not done:
+                    f = node_face[node]
+                    known = f >= 0 and stamp[f] == k and best[f, column] >= DEEP
+                    if known or _box_depth(boxes[node], ends, span, arcs, a, b) <= enough[k]:
+                        node = skip[node]
+                        continue
+                    for m in range(leaves[node, 0], leaves[node, 0] + leaves[node, 1]):
+                        f = face[m]
+                        if stamp[f] != k:
+                            stamp[f], best[f, 0], best[f, 1] = k, -np.inf, -np.inf
+                            touched[n_touched] = f
+                            n_touched += 1
+                        found[0] = before = best[f, column]
+                        if before >= DEEP:
+                            continue
+                        enter_triangle(corners[m], normals[m], way, q / count, (q + 1) / count, arcs, a, b, enough[k], bound[k],
+                                       min(settle, DEEP), found, tasks, task, near_ends, near, six, cuts, flat)
+                        if found[0] > before:
+                            best[f, column] = found[0]
+                            best_place[f, column] = found[1:]
+                            if found[0] > settle:
+                                done = True
+                                break
+                    node += 1
+        for i in range(n_touched):
+            f = touched[i]
+            for column in range(2):
+                d = best[f, column]
+                if d <= enough[k]:
+                    continue
+                if d > depth[k, column] or (d == depth[k, column] and f < which[k, column]):
+                    depth[k, column], which[k, column] = d, f
+                    place[k, column] = best_place[f, column]
+                if d > face_depth[f, column]:
+                    face_depth[f, column], face_move[f, column] = d, n
+
+
+@njit(cache=True, nogil=True)
+def tree_of(low: Floats, high: Floats, face: Ints, leaf: int, order: Ints, boxes: Floats, skip: Ints, leaves: Ints, node_face: Ints) -> int:
+    """Build the tree over boxes low, high (t, 3) top down, halved where the boxes' surfaces weigh least; return how many nodes it has.
+
+    order (t,) gets the rows in the order of the leaves; the arrays of nodes hold at least 2 t rows. See `contact_loop` for them.
+    """
+    t = len(low)
+    middle = 0.5 * (low + high)
+    for i in range(t):
+        order[i] = i
+    stack = np.zeros((128, 2), np.int64)
+    stack[0, 1] = t
+    top, count = 1, 0
+    bins = 16
+    bin_low, bin_high, bin_count = np.zeros((bins, 3)), np.zeros((bins, 3)), np.zeros(bins, np.int64)
+    right_weight = np.zeros(bins)
+    keep = np.zeros(t, np.int64)
+    while top > 0:
+        top -= 1
+        a, b = stack[top, 0], stack[top, 1]
+        node = count
+        count += 1
+        same = face[order[a]]
+        box_low, box_high = low[order[a]].copy(), high[order[a]].copy()
+        mid_low, mid_high = middle[order[a]].copy(), middle[order[a]].copy()
+        for i in range(a + 1, b):
+            r = order[i]
+            if face[r] != same:
+                same = -1
+            for k in range(3):
+                box_low[k], box_high[k] = min(box_low[k], low[r, k]), max(box_high[k], high[r, k])
+                mid_low[k], mid_high[k] = min(mid_low[k], middle[r, k]), max(mid_high[k], middle[r, k])
+        for k in range(3):
+            boxes[node, k], boxes[node, k + 3] = 0.5 * (box_low[k] + box_high[k]), 0.5 * (box_high[k] - box_low[k])
+        node_face[node] = same
+        leaves[node, 0], leaves[node, 1] = a, 0
+        if b - a <= leaf:
+            leaves[node, 1] = b - a
+            continue
+        cost, along, at = np.inf, -1, 0
+        for k in range(3):
+            size = mid_high[k] - mid_low[k]
+            if size <= 0.0:
+                continue
+            bin_count[:] = 0
+            bin_low[:, :] = np.inf
+            bin_high[:, :] = -np.inf
+            for i in range(a, b):
+                r = order[i]
+                c = min(int(bins * (middle[r, k] - mid_low[k]) / size), bins - 1)
+                bin_count[c] += 1
+                for j in range(3):
+                    bin_low[c, j], bin_high[c, j] = min(bin_low[c, j], low[r, j]), max(bin_high[c, j], high[r, j])
+            box_low[:], box_high[:], number = np.inf, -np.inf, 0
+            for c in range(bins - 1, 0, -1):
+                number += bin_count[c]
+                for j in range(3):
+                    box_low[j], box_high[j] = min(box_low[j], bin_low[c, j]), max(box_high[j], bin_high[c, j])
+                right_weight[c] = number * _skin(box_low, box_high) if number else 0.0
+            box_low[:], box_high[:], number = np.inf, -np.inf, 0
+            for c in range(bins - 1):
+                number += bin_count[c]
+                for j in range(3):
+                    box_low[j], box_high[j] = min(box_low[j], bin_low[c, j]), max(box_high[j], bin_high[c, j])
+                if 0 < number < b - a:
+                    weight = number * _skin(box_low, box_high) + right_weight[c + 1]
+                    if weight < cost:
+                        cost, along, at = weight, k, c + 1
+        # Boxes all about one place are halved by count.
+        cut, rest = a, 0
+        if along >= 0:
+            size = mid_high[along] - mid_low[along]
+            for i in range(a, b):
+                r = order[i]
+                if min(int(bins * (middle[r, along] - mid_low[along]) / size), bins - 1) < at:
+                    order[cut] = r
+                    cut += 1
+                else:
+                    keep[rest] = r
+                    rest += 1
+            for i in range(rest):
+                order[cut + i] = keep[i]
+        else:
+            cut = (a + b) // 2
+        if top + 2 > len(stack):
+            # A chain so deep is left as one leaf.
+            leaves[node, 1] = b - a
+            continue
+        stack[top, 0], stack[top, 1] = cut, b
+        stack[top + 1, 0], stack[top + 1, 1] = a, cut
+        top += 2
+    for node in range(count - 1, -1, -1):
+        skip[node] = node + 1 if leaves[node, 1] > 0 else skip[skip[node + 1]]
+    return count
+
+
+@njit(cache=True, nogil=True)
+def _skin(low: Floats, high: Floats) -> float:
+    a, b, c = high[0] - low[0], high[1] - low[1], high[2] - low[2]
+    return a * b + b * c + c * a
