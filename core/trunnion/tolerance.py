@@ -46,9 +46,6 @@ TURNING_BOUND = 5e-3
 FACET_CHORD = 2.5e-3
 """Chord error of the triangles that stand for curved faces in the contact engine: half of what a turning axis is judged to."""
 
-TURNING_BOUND = 5e-3
-"""How far the contact engine's figure may be from the truth while the tool axis turns."""
-
 STOCK_CHORD = 2e-3
 """How far a cutter's way through the stock may be from the spans it is cut in: ridges and steps stay below it."""
 

@@ -26,7 +26,7 @@ def tessellated(shape: Shape, faces: Mapping[int, Shape], chord: float, angle: f
     BRepMesh_IncrementalMesh(shape, chord, False, angle, False)
     points, triangles, owners, count = [], [], [], 0
     for tag in sorted(faces):
-        p, t = _face_triangles(faces[tag])
+        p, t = face_triangles(faces[tag])
         points.append(p)
         triangles.append(t + count)
         owners.append(np.full(len(t), tag))
@@ -35,7 +35,8 @@ def tessellated(shape: Shape, faces: Mapping[int, Shape], chord: float, angle: f
     return Mesh(np.concatenate(points), np.concatenate(triangles), np.concatenate(owners))
 
 
-def _face_triangles(face: Shape) -> tuple[np.ndarray, np.ndarray]:
+def face_triangles(face: Shape) -> tuple[np.ndarray, np.ndarray]:
+    """Return the points (v, 3) and triangles (t, 3) that the mesher has left on a face, anticlockwise seen from outside."""
     place = TopLoc_Location()
     found = BRep_Tool.Triangulation_s(face, place)
     if found is None or not found.NbTriangles():
