@@ -11,9 +11,12 @@ from lxml import etree
 import programs
 from trunnion.findings import BadCall, BadInput
 from trunnion.model.session import Session
+from trunnion.model.tool import Tool
 from trunnion.store import xml
 from trunnion.store.features import features_xml, read_features, write_features
+from trunnion.store.mapping import Members, from_xml, to_xml
 from trunnion.store.process import process_xml, read_process, write_process
+from verify_tools import FORMS
 
 SESSION = programs.session()
 
@@ -27,6 +30,16 @@ def test_a_process_tree_comes_back_as_it_was(tmp_path):
         (s.name, s.work_offset, s.clearance, s.machine) for s in before.setups]
     assert all(np.allclose(a.frame.axes, b.frame.axes) and np.allclose(a.frame.origin, b.frame.origin)
                for a, b in zip(again.setups, before.setups, strict=True))
+
+
+@pytest.mark.parametrize("form", FORMS)
+def test_a_tool_of_every_form_comes_back_as_it_was(tmp_path, form):
+    tree = programs.process_tree()
+    operation = replace(tree.operations[0], tool=FORMS[form])
+    (tmp_path / "a.xml").write_bytes(process_xml(replace(tree, operations=(operation,)), programs.part_info()))
+    assert read_process(tmp_path / "a.xml").operations[0].tool == FORMS[form]
+    members = Members()
+    assert from_xml(to_xml(FORMS[form], Tool, "tool", members), Tool, members) == FORMS[form]
 
 
 def test_features_come_back_as_they_were(tmp_path):
@@ -89,7 +102,8 @@ def test_an_empty_session_has_nothing_to_write(tmp_path):
     ('tool="7"', 'tool="9"', r"line \d+: .*No match found for key-sequence \['9'\]"),
     ('setup="S2"', 'setup="S3"', r"line \d+: .*No match found for key-sequence \['S3'\]"),
     ('teeth="3"', 'teeth="-3"', r"line \d+: .*'-3' is not a valid value"),
-    ('form="bull"', 'form="drill"', r"line \d+: .*'drill'"),
+    ('form="bull"', 'form="saw"', r"line \d+: .*'saw'"),
+    ('form="bull"', 'form="drill"', "can't be used: tool bull 10 R1: a drill needs a point angle up to 180 degrees and no corner radius"),
     ("<cutting", "<cuting", r"damaged XML: Opening and ending tag mismatch: cuting"),
     ('<operation id="wall-01"', '<operation id="pocket-01.rough"', r"line \d+: .*Duplicate key-sequence \['pocket-01.rough'\]"),
     ('version="1"', 'version="2"', "written in format 2; this Trunnion reads format 1"),

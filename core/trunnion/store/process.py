@@ -70,6 +70,8 @@ def _tools(process: ProcessTree) -> dict[int, Tool]:
 
 def _add_tool(root: Any, tool: Tool) -> None:
     element = etree.SubElement(root, "tool", attributes(tool))
+    for r, z, bulge in tool.outline:
+        add(element, "point", r=text_of(float(r)), z=text_of(float(z)), bulge=text_of(float(bulge)))
     holder = add(element, "holder", name=tool.holder.name)
     for z0, r0, z1, r1 in tool.holder.rows:
         add(holder, "cone", z0=text_of(float(z0)), r0=text_of(float(r0)), z1=text_of(float(z1)), r1=text_of(float(r1)))
@@ -78,7 +80,8 @@ def _add_tool(root: Any, tool: Tool) -> None:
 def _tool(element: Any) -> Tool:
     holder = element.find("holder")
     rows = tuple((float(c.get("z0")), float(c.get("r0")), float(c.get("z1")), float(c.get("r1"))) for c in holder.findall("cone"))
-    return made(Tool, element, holder=Holder(name=holder.get("name"), rows=rows))
+    outline = tuple((float(p.get("r")), float(p.get("z")), float(p.get("bulge"))) for p in element.findall("point"))
+    return made(Tool, element, outline=outline, holder=Holder(name=holder.get("name"), rows=rows))
 
 
 def _add_operation(root: Any, operation: Operation) -> None:
