@@ -160,7 +160,7 @@ def flutes_of(moves: Moves) -> Flutes:
         start.append(len(first))
     return Flutes(arc=np.vstack([np.zeros((0, body.ARC_COLUMNS)), *arcs]), first=np.array(first, dtype=np.int64),
                   last=np.array(last, dtype=np.int64), endless=np.array(endless, dtype=np.int64), start=np.array(start, dtype=np.int64),
-                  middle=np.array([t.flute_length / 2 for t in moves.tools]))
+                  middle=np.array([min(t.radius, t.flute_length / 2) for t in moves.tools]))
 
 
 def _cutting(bodies: Bodies, tool: int) -> list[Floats]:
@@ -197,7 +197,7 @@ def ways_of(moves: Moves, rows: Ints) -> Floats:
         n, centre, at = np.cross(a, e)[arcs], moves.centre[rows[arcs]], rows[arcs]
         c = np.column_stack([(centre * e[arcs]).sum(axis=1), (centre * n).sum(axis=1)])
         start, end = (np.column_stack([(p * e[arcs]).sum(axis=1), (p * n).sum(axis=1)]) - c for p in (moves.start[at], moves.end[at]))
-        out[arcs, kernel.CX:kernel.CY + 1] = c
+        out[arcs, kernel.CENTRE_E:kernel.CENTRE_N + 1] = c
         # Posted ends are rounded: the mean of both radii halves what an end may lie off the arc.
         out[arcs, kernel.RADIUS] = 0.5 * (np.hypot(*start.T) + np.hypot(*end.T))
         out[arcs, kernel.PHASE], out[arcs, kernel.SWEEP] = np.arctan2(start[:, 1], start[:, 0]), moves.sweep[at]

@@ -23,7 +23,7 @@ from trunnion.verify.kernels.body import depth_in_body
 from trunnion.verify.kernels.strips import Z_END, Z_START, move_box, point_distance
 
 # Columns of a way: how a tool moves in space, seen from itself.
-PX, PY, PZ, DX, DY, DZ, AX, AY, AZ, EX, EY, EZ, TURN, CX, CY, RADIUS, PHASE, SWEEP = range(18)
+PX, PY, PZ, DX, DY, DZ, AX, AY, AZ, EX, EY, EZ, TURN, CENTRE_E, CENTRE_N, RADIUS, PHASE, SWEEP = range(18)
 """P the tip at the start and D from there to its end; A the axis at the start, E the unit direction across it in which the axis turns by
 the angle TURN. Of arcs (RADIUS above 0): centre along E and along A x E, radius, angle at the start and the signed angle turned."""
 WAY_COLUMNS = 18
@@ -33,12 +33,15 @@ _LEVEL = 1e-9
 _ROUNDS = 60
 _NO_END = 2**62
 
+_depth = njit(nogil=True, inline="always")(depth_in_body.py_func)
+"""Written into its callers: the call would cost ten times its arithmetic (measured)."""
+
 
 class Flutes(NamedTuple):
     """The cutting bodies of tools, closed at the flutes' top.
 
     arc (a, 7) as `kernels/body.py` names its columns; first, last (b,) the arcs of each body, endless (b,) its last without the top of the
-    flutes (of plain cutters); start (t + 1,) the bodies of each tool; middle (t,) half the flutes' height.
+    flutes (of plain cutters); start (t + 1,) the bodies of each tool; middle (t,) height of the place by which its poses are compared.
     """
 
     arc: Floats
@@ -53,7 +56,7 @@ class Tree(NamedTuple):
     """Spans of ways in a tree of poses, for each tool its own.
 
     way (w, 18), move (w,) their rows among the moves, tool (w,). Spans: of (k,) the row of the way, low and high (k,) shares of it, reach
-    (k,) how far it is from its middle pose. Nodes: pose (m, 8) place of the middle of the flutes, axis, how far and by what chord of angle
+    (k,) how far its tip goes from its middle. Nodes: pose (m, 8) a place on the axis, the axis, and how far and by what chord of angle
     poses below it differ; link (m, 5) children or -1, first and last span, tool. root (r,) nodes.
     """
 
@@ -99,15 +102,15 @@ def left_by_move(x: float, y: float, z: float, move: Floats, radius: float, corn
     return min(best, plain_distance(radius, corner, top, rho, h))
 
 
-@njit(cache=True, nogil=True)
+@njit(cache=True, nogil=True, inline="always")
 def in_tool(w: Floats, x: float, y: float, z: float, t: float) -> tuple[float, float, float]:
     """Return where a point is seen from the tool at a share of its way: across its axis along E and A x E, and above its tip."""
     nx, ny, nz = w[AY] * w[EZ] - w[AZ] * w[EY], w[AZ] * w[EX] - w[AX] * w[EZ], w[AX] * w[EY] - w[AY] * w[EX]
     if w[RADIUS] > 0.0:
         angle = w[PHASE] + t * w[SWEEP]
         climb = w[DX] * w[AX] + w[DY] * w[AY] + w[DZ] * w[AZ]
-        return (x * w[EX] + y * w[EY] + z * w[EZ] - w[CX] - w[RADIUS] * math.cos(angle),
-                x * nx + y * ny + z * nz - w[CY] - w[RADIUS] * math.sin(angle),
+        return (x * w[EX] + y * w[EY] + z * w[EZ] - w[CENTRE_E] - w[RADIUS] * math.cos(angle),
+                x * nx + y * ny + z * nz - w[CENTRE_N] - w[RADIUS] * math.sin(angle),
                 (x - w[PX]) * w[AX] + (y - w[PY]) * w[AY] + (z - w[PZ]) * w[AZ] - t * climb)
     vx, vy, vz = x - w[PX] - t * w[DX], y - w[PY] - t * w[DY], z - w[PZ] - t * w[DZ]
     e, n, a = vx * w[EX] + vy * w[EY] + vz * w[EZ], vx * nx + vy * ny + vz * nz, vx * w[AX] + vy * w[AY] + vz * w[AZ]
@@ -117,20 +120,20 @@ def in_tool(w: Floats, x: float, y: float, z: float, t: float) -> tuple[float, f
     return e, n, a
 
 
-@njit(cache=True, nogil=True)
+@njit(cache=True, nogil=True, inline="always")
 def flute_distance(flutes: Flutes, tool: int, rho: float, h: float, endless: bool) -> float:
     """Return the signed distance of a point to what cuts of a tool, negative inside."""
     best = np.inf
     for b in range(flutes.start[tool], flutes.start[tool + 1]):
-        depth, _r, _h = depth_in_body(flutes.arc, flutes.first[b], flutes.endless[b] if endless else flutes.last[b], rho, h)
+        depth, _r, _h = _depth(flutes.arc, flutes.first[b], flutes.endless[b] if endless else flutes.last[b], rho, h)
         best = min(best, -depth)
     return best
 
 
-@njit(cache=True, nogil=True)
+@njit(cache=True, nogil=True, inline="always")
 def _slope(arcs: Floats, first: int, last: int, x: float, y: float, z: float, dx: float, dy: float, dz: float) -> tuple[float, float]:
     rho = math.sqrt(x * x + y * y)
-    depth, nr, nz = depth_in_body(arcs, first, last, rho, z)
+    depth, nr, nz = _depth(arcs, first, last, rho, z)
     return -depth, nz * dz + (nr * (x * dx + y * dy) / rho if rho > 0.0 else 0.0)
 
 
@@ -239,12 +242,12 @@ def left_along(w: Floats, flutes: Flutes, tool: int, x: float, y: float, z: floa
 @njit(cache=True, nogil=True)
 def _node_least(tree: Tree, flutes: Flutes, n: int, x: float, y: float, z: float, above: bool) -> float:
     """Return the least signed distance that any pose below a node can give."""
-    p, tool = tree.pose[n], tree.link[n, 4]
-    vx, vy, vz = x - p[0], y - p[1], z - p[2]
+    pose, tool = tree.pose, tree.link[n, 4]
+    vx, vy, vz = x - pose[n, 0], y - pose[n, 1], z - pose[n, 2]
     square = vx * vx + vy * vy + vz * vz
-    h = vx * p[3] + vy * p[4] + vz * p[5]
+    h = vx * pose[n, 3] + vy * pose[n, 4] + vz * pose[n, 5]
     rho = math.sqrt(max(square - h * h, 0.0))
-    return flute_distance(flutes, tool, rho, h + flutes.middle[tool], above) - p[6] - p[7] * math.sqrt(square)
+    return flute_distance(flutes, tool, rho, h + flutes.middle[tool], above) - pose[n, 6] - pose[n, 7] * math.sqrt(square)
 
 
 @njit(cache=True, nogil=True)
@@ -292,8 +295,8 @@ def nearest_span(x: float, y: float, z: float, tree: Tree, flutes: Flutes, best:
 
 @njit(cache=True, nogil=True)
 def span_poses(way: Floats, of: Ints, low: Floats, high: Floats, middle: Floats) -> tuple[Floats, Floats]:
-    """Return the middle pose of spans (k, 6), place of the middle of the flutes and axis, and how far and by what chord of angle (k, 2)
-    the others of the span differ.
+    """Return the middle pose of spans (k, 6), a place on the axis and the axis, and how far and by what chord of angle (k, 2) the others of
+    the span differ.
 
     middle (k,) is the height of that place above the tip.
     """
