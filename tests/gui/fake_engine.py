@@ -11,6 +11,7 @@ import pickle
 import time
 from dataclasses import replace
 from pathlib import Path
+from types import SimpleNamespace
 
 import numpy as np
 
@@ -25,7 +26,7 @@ from trunnion.model.session import PartInfo, PostedFile, Session, SizeEntry, Ste
 from trunnion.model.setup import Setup
 from trunnion.model.tool import Holder, Tool
 from trunnion.model.toolpath import Mark, Motion, Toolpath
-from trunnion.model.verdict import OperationProof, Outcome, Verdict
+from trunnion.model.verdict import Deviation, OperationProof, Outcome, Verdict
 from trunnion.progress import QUIET
 from trunnion.settings import choose, digest, setting, settings
 
@@ -128,6 +129,36 @@ def zigzag(box: tuple[float, float, float, float], z: float, step: float) -> Too
                     centre=np.array([r[3] or (np.nan,) * 3 for r in rows]),
                     feed=np.array([0.0 if r[1] is Motion.RAPID else 2400.0 for r in rows]))
 
+HEADER = ("%", "(tray)", "N10 G21 G90 G17", "N20 T1 M6", "N30 S7200 M3", "N40 G0 X10. Y20. Z40.", "N50 G1 Z-24. F800.",
+          "N60 G2 X20. Y30. I5. J5. F2400.")
+"""The first lines of the made-up program; a line for each block follows."""
+GOUGE, LEFT = (175.0, 37.0), (175.0, 103.0)
+"""Where the made-up proof found a gouge of 50 µm in the second pocket's floor, and 0.2 mm left in the third's."""
+SPOT = 9.0
+"""Radius of both spots, mm."""
+
+
+def posted_text(session: Session) -> str:
+    """Return the made-up program of a session."""
+    words = [f"G{min(int(m), 1)} X{x:.3f} Y{y:.3f} Z{z:.3f}" for p in session.paths
+             for m, (x, y, z) in zip(p.path.motion, p.path.position, strict=True)]
+    return "\n".join([*HEADER, *words, "M30", "%", ""])
+
+
+def measured(mesh: Mesh, features: dict[str, list[tuple[str, int]]]) -> Deviation:
+    """Return samples 4 mm apart on the pockets' floors, all finished but for the two spots."""
+    faces, points, found = [], [], []
+    for id, (x0, y0, x1, y1) in zip(("pocket-01", "pocket-02", "pocket-03"), POCKETS, strict=True):
+        floor = next(tag for role, tag in features[id] if role == "floor")
+        x, y = np.meshgrid(np.arange(x0 + 2, x1, 4.0), np.arange(y0 + 2, y1, 4.0))
+        place = np.column_stack([x.ravel(), y.ravel(), np.full(x.size, FLOOR)])
+        value = np.where(np.hypot(*(place[:, :2] - GOUGE).T) < SPOT, -0.05, 0.0)
+        value[np.hypot(*(place[:, :2] - LEFT).T) < SPOT] = 0.2
+        faces.append(np.full(len(place), floor))
+        points.append(place)
+        found.append(value)
+    return Deviation(face=np.concatenate(faces), point=np.vstack(points), deviation=np.concatenate(found))
+
 
 class FakeEngine:
     """Answers what `trunnion.pipeline.Engine` answers, about the made-up plate."""
@@ -137,6 +168,25 @@ class FakeEngine:
     def __init__(self, user_folder: Path | None = None) -> None:
         self._mesh, self._features = box_mesh()
         self._attached = ""
+        self._playback = None
+
+    def playback(self, session, cell=0.0):
+        from trunnion.pipeline.playback import Playback
+        from trunnion.shop import load_shop
+
+        machine = next(iter(load_shop().machines.values()))
+        self._playback = Playback(session, SimpleNamespace(shop=SimpleNamespace(machines={"vmc": machine})), 1.0)
+        line = self._playback.timeline
+        return replace(line, line=np.arange(len(line)) + len(HEADER) + 1,
+                       passages=tuple(replace(p, file="S1.nc") for p in line.passages))
+
+    def moment(self, key, position, seconds=np.inf, progress=QUIET):
+        return self._playback.towards(position, seconds, progress)
+
+    def deviation_map(self, session):
+        from trunnion.report.deviation import deviation_map
+
+        return deviation_map(self._mesh, session.verdict.deviation, 0.02)
 
     def settings(self) -> dict[str, tuple[type, ...]]:
         return dict.fromkeys(STEPS, ()) | {"blank": (BlankSettings,), "toolpath": (RoughSettings,)}
@@ -253,9 +303,8 @@ class FakeEngine:
         proofs = tuple(OperationProof(operation=o.id, setup="S1", outcome=Outcome.PASSED, gouge=0.0, collisions=0, rapids_in_stock=0,
                                       time_s=95.0, removed=2e4, air_share=0.1) for o in session.process.operations)
         verdict = Verdict(outcome=Outcome.PASSED, coverage=0.996, reachable=1.0, gouge=0.004, collisions=0, rapids_in_stock=0,
-                          machining_time_s=754.0, operations=proofs)
-        text = ("%\n(tray)\nN10 G21 G90 G17\nN20 T1 M6\nN30 S7200 M3\nN40 G0 X10. Y20. Z40.\n"
-                "N50 G1 Z-24. F800.\nN60 G2 X20. Y30. I5. J5. F2400.\nM30\n%\n")
+                          machining_time_s=754.0, operations=proofs, deviation=measured(self._mesh, self._features))
+        text = posted_text(session)
         return replace(session, verdict=verdict, posted=(PostedFile(suffix="S1.nc", dialect="linuxcnc", setup="S1", text=text),))
 
 
