@@ -22,7 +22,6 @@ from trunnion.part.surfaces import (
     strip_row,
     strips_of,
     surfaces_from,
-    triangle_face,
 )
 from trunnion.verify.contact import PartContact, guide_points
 from trunnion.verify.contact import strips as strips_module
@@ -333,13 +332,6 @@ def test_a_holder_over_a_clamp_is_a_contact_with_the_fixture_and_not_with_the_pa
 def test_a_pose_with_its_cutter_in_a_clamp_is_not_clear():
     contact = PartContact(level(-1.0, (0, 0), (100, 50)), fixtures=(box_mesh((30, 7, 0), (60, 40, 20)),))
     assert contact.clear(poses_of(flat(10.0)(), np.array([[45, 1.9, 5.0], [45, 2.1, 5.0]])), 0.02).tolist() == [True, False]
-
-
-def test_triangles_stand_for_a_face_of_any_shape():
-    corners = np.array([[0, 0, 0], [40, 0, 0], [0, 0, 30.0]])
-    face = triangle_face(1, corners)
-    depth = PartContact(surfaces_from([face])).along(moves_of([program_section(flat(10.0)(), [(10, -20, 2), (10, -4.9, 2)])])).depth
-    assert depth[1, 0] == approx(0.1)
 
 
 def test_compiled_loops_agree_with_themselves_uncompiled():

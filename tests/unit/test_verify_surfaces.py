@@ -7,8 +7,11 @@ import pytest
 from pytest import approx
 
 from samples import block_with_pocket_shape, drilled_block_shape, moved, read, turned, two_pockets_and_a_rib_shape
+from trunnion.findings import BadInput
 from trunnion.geometry.frame import WORLD, Frame
+from trunnion.part.facets import facets_of
 from trunnion.part.surfaces import level_face, line_edges, surfaces_of
+from trunnion.verify.contact import PartContact
 from trunnion.verify.coverage import samples_of
 
 SHAPES = {"pocket": block_with_pocket_shape, "hole": drilled_block_shape, "panel": two_pockets_and_a_rib_shape}
@@ -38,15 +41,27 @@ def test_faces_are_exact_strips_in_a_turned_part_and_its_own_frame():
                      [2 * (x * y + z * w), 1 - 2 * (x * x + z * z), 2 * (y * z - x * w)],
                      [2 * (x * z - y * w), 2 * (y * z + x * w), 1 - 2 * (x * x + y * y)]])
     surfaces = surfaces_of(part, Frame(turn @ [1000.0, 200.0, 0.0], turn[:, 0], turn[:, 2]))
-    assert surfaces.bound == 0.0
+    assert not len(surfaces.free)
     assert sorted(surfaces.region_z.round(6)) == approx([0.0, 8.0, 18.0])
 
 
-def test_a_part_lying_askew_is_opened_into_triangles_and_says_so():
+def test_a_part_lying_askew_has_its_hole_listed_as_free_and_samples_on_its_facets():
+    part = read(turned(drilled_block_shape(), (1.0, 2.0, 0.0), 30.0))
+    surfaces, facets = surfaces_of(part, WORLD), facets_of(part, WORLD)
+    assert len(surfaces.free) == 1
+    samples = samples_of(surfaces, 0.5, facets=facets)
+    assert set(samples.face) == set(range(len(surfaces.tag)))
+    assert samples.area.sum() == approx(part.area, rel=1e-3)
+    flow = (samples.area[:, None] * samples.normal * samples.point).sum(axis=0)
+    assert flow == approx([part.volume] * 3, rel=5e-3)
+
+
+def test_contact_with_a_face_without_closed_form_is_refused_without_its_facets():
     part = read(turned(drilled_block_shape(), (1.0, 2.0, 0.0), 30.0))
     surfaces = surfaces_of(part, WORLD)
-    assert surfaces.bound > 0.0
-    assert samples_of(surfaces, 0.5).area.sum() == approx(part.area, rel=2e-3)
+    with pytest.raises(BadInput, match=f"face {surfaces.tag[surfaces.free[0]]} has no closed form"):
+        PartContact(surfaces)
+    PartContact(surfaces, facets_of(part, WORLD, only=surfaces.tag[surfaces.free]))
 
 
 def test_an_outline_with_a_gap_of_one_rounding_error_is_closed() -> None:

@@ -34,7 +34,7 @@ class Facets:
     """Triangles of trimmed faces in a frame. f faces in rows, v points, t triangles.
 
     tag (f,) as `Surfaces.tag`; points (v, 3) mm; triangles (t, 3) rows of points, anticlockwise seen from outside; face (t,) rows of tag.
-    bound: how far the triangles may be from the faces, mm.
+    bound: how far the triangles may be from the faces, mm. whole: no face was left out.
     """
 
     tag: Ints
@@ -42,6 +42,7 @@ class Facets:
     triangles: Ints
     face: Ints
     bound: float = 0.0
+    whole: bool = True
 
     def __post_init__(self) -> None:
         object.__setattr__(self, "tag", ints(self.tag, (None,), "facets tag"))
@@ -58,9 +59,10 @@ class Facets:
         """Return the same facets, given in one frame, in another one."""
         return replace(self, points=other.to_local(frame.to_world(self.points)))
 
-    def corners(self) -> Floats:
-        """Return the corners of every triangle (t, 3, 3)."""
-        return self.points[self.triangles]
+    def of_faces(self, rows: Ints) -> Facets:
+        """Return the facets of some faces; all faces keep their rows."""
+        keep = np.isin(self.face, rows)
+        return replace(self, triangles=self.triangles[keep], face=self.face[keep], whole=False)
 
 
 def facets_of(part: Part, frame: Frame, chord: float = tolerance.FACET_CHORD, progress: Progress = QUIET,
@@ -88,7 +90,8 @@ def facets_of(part: Part, frame: Frame, chord: float = tolerance.FACET_CHORD, pr
         made += len(t)
         if made > MOST_TRIANGLES:
             BRepTools.Clean_s(part.shape)
-            raise OutOfMemory(f"{part.name} needs more than {MOST_TRIANGLES} triangles at a chord error of {chord:g} mm: allow a larger one")
+            raise OutOfMemory(f"{part.name} needs more than {MOST_TRIANGLES} triangles at a chord error of {chord:g} mm: "
+                              "allow a larger one")
         bound = max(bound, _off(shape, p, t, chord))
         points.append(p)
         triangles.append(t + count)
@@ -96,7 +99,49 @@ def facets_of(part: Part, frame: Frame, chord: float = tolerance.FACET_CHORD, pr
         count += len(p)
     BRepTools.Clean_s(part.shape)
     return Facets(tag=np.array(tags), points=frame.to_local(np.concatenate(points)), triangles=np.concatenate(triangles),
-                  face=np.concatenate(owners), bound=bound)
+                  face=np.concatenate(owners), bound=bound, whole=len(wanted) == len(tags))
+
+
+def facet_samples(facets: Facets, rows: Ints, spacing: float) -> tuple[Ints, Floats, Floats, Floats]:
+    """Return samples of some faces about `spacing` mm apart: face (s,) rows, point and outward normal (s, 3), area (s,) mm2.
+
+    Triangles wider than that are cut into equal ones; of those that share a cell of a grid one stands for all.
+    """
+    chosen = np.isin(facets.face, rows)
+    corners, face = facets.points[facets.triangles[chosen]], facets.face[chosen]
+    normal, area = _normals(corners)
+    width = np.linalg.norm(np.roll(corners, -1, axis=1) - corners, axis=2).max(axis=1, initial=0.0)
+    cuts = np.maximum(np.ceil(width / spacing), 1.0).astype(np.int64)
+    parts = [_middles(corners[cuts == n], int(n)) for n in np.unique(cuts)]
+    owner = np.concatenate([np.zeros(0, np.int64), *(np.repeat(np.flatnonzero(cuts == n), n * n) for n in np.unique(cuts))])
+    point, share = np.vstack([np.zeros((0, 3)), *parts]), (area / cuts**2)[owner]
+    cell = np.column_stack([face[owner], np.floor(point / spacing).astype(np.int64)])
+    _, group = np.unique(cell, axis=0, return_inverse=True)
+    total: Floats = np.bincount(group, share).astype(np.float64)
+    middle = np.column_stack([np.bincount(group, share * point[:, k]).astype(np.float64) for k in range(3)])
+    middle = middle / np.maximum(total, tolerance.COINCIDENT**2)[:, None]
+    away = np.linalg.norm(point - middle[group], axis=1)
+    order = np.lexsort((away, group))
+    first = order[np.flatnonzero(np.diff(group[order], prepend=-1))]
+    return face[owner[first]], point[first], normal[owner[first]], total
+
+
+def _normals(corners: Floats) -> tuple[Floats, Floats]:
+    """Return unit normals (t, 3) and areas (t,) of triangles (t, 3, 3)."""
+    across = np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0])
+    size = np.linalg.norm(across, axis=1)
+    return across / np.maximum(size, tolerance.COINCIDENT**2)[:, None], 0.5 * size
+
+
+def _middles(corners: Floats, n: int) -> Floats:
+    """Return the middles (t n n, 3) of the n n equal triangles that each of t triangles (t, 3, 3) is cut into."""
+    i, j = (a.ravel() for a in np.meshgrid(np.arange(n), np.arange(n), indexing="ij"))
+    up = i + j < n
+    # Upright ones at (i, j) with i + j < n; the others stand on their heads in between.
+    v = np.concatenate([i[up] + 1.0 / 3.0, i[i + j < n - 1] + 2.0 / 3.0]) / n
+    w = np.concatenate([j[up] + 1.0 / 3.0, j[i + j < n - 1] + 2.0 / 3.0]) / n
+    shares = np.column_stack([1.0 - v - w, v, w])
+    return np.einsum("sk,tkd->tsd", shares, corners).reshape(-1, 3)
 
 
 def _mesher(chord: float) -> Any:
@@ -129,7 +174,5 @@ def _off(shape: Any, points: Floats, triangles: Ints, chord: float) -> float:
     uv = shares @ np.array([[place[int(n)] for n in row] for row in chosen])
     on = np.array([surface.Value(float(u), float(v)).Coord() for u, v in uv.reshape(-1, 2)]).reshape(-1, 4, 3)
     ends = points[chosen]
-    across = np.cross(ends[:, 1] - ends[:, 0], ends[:, 2] - ends[:, 0])
-    across /= np.maximum(np.linalg.norm(across, axis=1, keepdims=True), tolerance.COINCIDENT**2)
-    off = np.abs(((on - shares @ ends) * across[:, None]).sum(axis=2)).max()
+    off = np.abs(((on - shares @ ends) * _normals(ends)[0][:, None]).sum(axis=2)).max()
     return UNMEASURED * max(float(off), chord)

@@ -10,14 +10,14 @@ a vertical or level axis, and every cone, torus and sphere about a vertical axis
 
 The trim is read from the edges' own curves in the surface's parameters: the face is cut into bands at every vertex, and a band's two ends
 are lines or circles in (s, u), s along the guide and u along the profile. Level planes are regions: chords for the question whether a
-point is inside, strips of one point for their exact boundary. What none of this fits is opened into fine triangles, each a sloped plane;
-`Surfaces.bound` says how far they may be from the face.
+point is inside, strips of one point for their exact boundary. What none of this fits is only
+listed, in `Surfaces.free`: `part/facets.py` has it.
 """
 
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass, field
+from dataclasses import dataclass
 from itertools import pairwise
 from typing import TYPE_CHECKING, Any
 
@@ -50,7 +50,7 @@ class Surfaces:
 
     tag (f,); strip (m, 37) with face row strip_face (m,); boundaries of level faces are strips of one point. level (k, 37) and level_face
     (k,): the areas of level faces as strips, for samples. region_z (r,), region_face (r,), region_box (r, 4), region_start (r + 1,) into
-    chords (c, 4). opened (k,): rows of the faces without closed form, whose strips are triangles; bound: how far those may be off, mm.
+    chords (c, 4). free (k,): rows of the faces without closed form, of which nothing else is here.
     """
 
     tag: Ints
@@ -63,8 +63,7 @@ class Surfaces:
     region_box: Floats
     region_start: Ints
     chords: Floats
-    opened: Ints = field(default_factory=lambda: np.zeros(0, np.int64))
-    bound: float = 0.0
+    free: Ints
 
     def __post_init__(self) -> None:
         object.__setattr__(self, "tag", ints(self.tag, (None,), "tag"))
@@ -78,7 +77,7 @@ class Surfaces:
         object.__setattr__(self, "region_box", floats(self.region_box, (n, 4), "region_box"))
         object.__setattr__(self, "region_start", ints(self.region_start, (n + 1,), "region_start"))
         object.__setattr__(self, "chords", floats(self.chords, (None, 4), "chords"))
-        object.__setattr__(self, "opened", ints(self.opened, (None,), "opened"))
+        object.__setattr__(self, "free", ints(self.free, (None,), "free"))
 
 
 @dataclass(frozen=True, slots=True)
@@ -222,20 +221,22 @@ def surfaces_from(faces: list[Face]) -> Surfaces:
         region_box=np.array([[*np.minimum(f.chords[:, :2], f.chords[:, 2:]).min(axis=0),
                               *np.maximum(f.chords[:, :2], f.chords[:, 2:]).max(axis=0)] for _, f in regions]).reshape(-1, 4),
         region_start=starts, chords=np.vstack([np.zeros((0, 4)), *(f.chords for _, f in regions)]),
-        opened=np.array([row for row, f in enumerate(faces) if f.bound > 0.0], dtype=int),
-        bound=max((f.bound for f in faces), default=0.0))
+        free=np.array([row for row, f in enumerate(faces) if f.is_free], dtype=int))
 
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Face:
-    """One face before it goes into `Surfaces`: strips (m, 37); of a level one also its area `level` (k, 37), chords (c, 4) and height."""
+    """One face before it goes into `Surfaces`: strips (m, 37); of a level one also its area `level` (k, 37), chords (c, 4) and height.
+
+    One without closed form `is_free`.
+    """
 
     tag: int
     strips: Floats
     level: Floats
     chords: Floats
     z: float = 0.0
-    bound: float = 0.0
+    is_free: bool = False
 
 
 def level_face(tag: int, z: float, edges: list[Edge], side: float = 1.0) -> Face:
@@ -323,7 +324,10 @@ def _face(tag: int, shape: Any, frame: Frame) -> Face:
         made = _plane(tag, face, surface.Plane(), sign, frame)
     elif kind in (Kind.GeomAbs_Cylinder, Kind.GeomAbs_Cone, Kind.GeomAbs_Torus, Kind.GeomAbs_Sphere):
         made = _round(tag, face, surface, sign, frame)
-    return made if made is not None else _triangles(tag, shape, frame)
+    if made is not None:
+        return made
+    nothing = np.zeros((0, STRIP_COLUMNS))
+    return Face(tag, nothing, nothing, np.zeros((0, 4)), is_free=True)
 
 
 def _forward() -> Any:
@@ -461,47 +465,3 @@ def _sampled(curve: Any, first: float, last: float, matrix: Floats, shift: Float
         if error < tolerance.CONTACT_BOUND / 4 or count >= 4096:
             return line_edges(path[::2])
         count *= 2
-
-
-def _triangles(tag: int, shape: Any, frame: Frame) -> Face:
-    """Return a face as fine triangles, each a sloped or level plane of its own."""
-    from OCP.BRep import BRep_Tool
-    from OCP.BRepBuilderAPI import BRepBuilderAPI_Copy
-    from OCP.BRepMesh import BRepMesh_IncrementalMesh
-    from OCP.TopLoc import TopLoc_Location
-    from OCP.TopoDS import TopoDS
-
-    copy = TopoDS.Face_s(BRepBuilderAPI_Copy(shape).Shape())
-    BRepMesh_IncrementalMesh(copy, tolerance.CHORD, False, tolerance.MESH_ANGLE)
-    place = TopLoc_Location()
-    mesh = BRep_Tool.Triangulation_s(copy, place)
-    move = place.Transformation()
-    nodes = frame.to_local(np.array([_vector(mesh.Node(i).Transformed(move)) for i in range(1, mesh.NbNodes() + 1)]))
-    corners = nodes[np.array([mesh.Triangle(i).Get() for i in range(1, mesh.NbTriangles() + 1)]) - 1]
-    if shape.Orientation() != _forward():
-        corners = corners[:, ::-1]
-    parts = [triangle_face(tag, c) for c in corners]
-    empty = np.zeros((0, STRIP_COLUMNS))
-    return Face(tag, np.vstack([empty, *(p.strips for p in parts)]), np.vstack([empty, *(p.level for p in parts)]),
-                np.zeros((0, 4)), bound=tolerance.CHORD)
-
-
-def triangle_face(tag: int, corners: Floats) -> Face:
-    """Return one triangle (3, 3), anticlockwise seen from outside, as strips; a level one keeps its boundary and its area."""
-    normal = np.cross(corners[1] - corners[0], corners[2] - corners[0])
-    size = float(np.linalg.norm(normal))
-    empty = np.zeros((0, STRIP_COLUMNS))
-    if size < tolerance.COINCIDENT**2:
-        return Face(tag, empty, empty, np.zeros((0, 4)))
-    normal = normal / size
-    ring = np.vstack([corners, corners[:1]])
-    if _flat_enough(math.hypot(normal[0], normal[1]), float(np.ptp(corners, axis=0).max())):
-        return level_face(tag, float(corners[:, 2].mean()), line_edges(ring[:, :2]), math.copysign(1.0, normal[2]))
-    along = np.array([-normal[1], normal[0], 0.0]) / math.hypot(normal[0], normal[1])
-    up, across = np.cross(normal, along), np.array([-along[1], along[0], 0.0])
-    local = ring - corners[0]
-    dw = float(up @ across)
-    side = math.copysign(1.0, (normal @ across) * up[2] - normal[2] * dw)
-    strips = strips_of(Guide(0, corners[0, 0], corners[0, 1], along[0], along[1]), Profile(0.0, corners[0, 2], dw, up[2]),
-                       line_edges(np.column_stack([local @ along, local @ up])), side)
-    return Face(tag, empty if strips is None else strips, empty, np.zeros((0, 4)))

@@ -15,6 +15,7 @@ from scipy.spatial import cKDTree
 from trunnion import tolerance
 from trunnion.geometry.arrays import Bools, Floats, Ints
 from trunnion.model.tool import Tool
+from trunnion.part.facets import Facets, facet_samples
 from trunnion.part.surfaces import DX, DY, GUIDE, L_KIND, PROFILE, PW0, PW1, PZ0, PZ1, R_KIND, SIDE, U0, U1, Surfaces
 from trunnion.progress import QUIET, Progress
 from trunnion.verify.contact import PartContact, guide_points
@@ -39,13 +40,20 @@ class Samples:
         return len(self.face)
 
 
-def samples_of(surfaces: Surfaces, spacing: float, progress: Progress = QUIET) -> Samples:
-    """Return samples about `spacing` mm apart on every face, the same ones each time; no face is without one."""
+def samples_of(surfaces: Surfaces, spacing: float, progress: Progress = QUIET, facets: Facets | None = None) -> Samples:
+    """Return samples about `spacing` mm apart on every face, the same ones each time; no face is without one.
+
+    Those of faces without closed form lie on their facets, which must be in the frame of the surfaces.
+    """
     strips = np.vstack([surfaces.strip, surfaces.level])
     parts = [_strip_samples(strip, spacing) for strip in progress.over(strips, "Spreading samples")]
     face = np.repeat(np.concatenate([surfaces.strip_face, surfaces.level_face]), [len(p) for p in parts])
     rows = np.vstack([np.zeros((0, 7)), *parts])
-    return Samples(face=face.astype(np.int64), point=rows[:, :3], normal=rows[:, 3:6], area=rows[:, 6])
+    if facets is None or not len(surfaces.free):
+        return Samples(face=face.astype(np.int64), point=rows[:, :3], normal=rows[:, 3:6], area=rows[:, 6])
+    free, point, normal, area = facet_samples(facets, surfaces.free, spacing)
+    return Samples(face=np.concatenate([face.astype(np.int64), free]), point=np.vstack([rows[:, :3], point]),
+                   normal=np.vstack([rows[:, 3:6], normal]), area=np.concatenate([rows[:, 6], area]))
 
 
 def _strip_samples(strip: Floats, spacing: float) -> Floats:

@@ -7,7 +7,7 @@ or turns, by triangles and bounds (`facets.py`); fixtures are triangles from the
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 
 import numpy as np
 
@@ -50,16 +50,18 @@ class Contact:
 class PartContact:
     """A part's faces and its fixtures made ready for many questions, all in the frame of the moves.
 
-    `facets` are the same faces as triangles: without them leaning tools are refused, and faces without closed form are measured on the
-    strips that stand for them. `fixtures` are closed meshes, a row each.
+    `facets` are the same faces as triangles: `BadInput` when they lack a face without closed form; unless they are whole, tools that lean
+    are refused. `fixtures` are closed meshes, a row each.
     """
 
     def __init__(self, surfaces: Surfaces, facets: Facets | None = None, fixtures: Sequence[Facets] = ()) -> None:
         self.surfaces = surfaces
-        opened = surfaces.opened if facets is not None else np.zeros(0, np.int64)
-        self._strips = StripContact(_without(surfaces, opened))
-        self._every = None if facets is None else FacetContact(facets)
-        self._opened = None if facets is None or not len(opened) else FacetContact(_only(facets, opened))
+        missing = np.setdiff1d(surfaces.free, [] if facets is None else facets.face)
+        if len(missing):
+            raise BadInput(f"face {int(surfaces.tag[missing[0]])} has no closed form: its contact needs the part's facets")
+        self._strips = StripContact(surfaces)
+        self._every = FacetContact(facets) if facets is not None and facets.whole else None
+        self._free = FacetContact(facets.of_faces(surfaces.free)) if facets is not None and len(surfaces.free) else None
         self._fixtures = FacetContact(_joined(fixtures)) if fixtures else None
 
     def along(self, moves: Moves, progress: Progress = QUIET, threads: int = 0) -> Contact:
@@ -94,25 +96,13 @@ class PartContact:
         """Return what measures which rows of the moves against the part."""
         upright, leaning = np.flatnonzero(moves.upright), np.flatnonzero(~moves.upright)
         engines: list[tuple[StripContact | FacetContact, Ints]] = [(self._strips, upright)]
-        if self._opened is not None:
-            engines.append((self._opened, upright))
+        if self._free is not None:
+            engines.append((self._free, upright))
         if len(leaning):
             if self._every is None:
                 raise BadInput(f"contact of a leaning tool needs the part's facets: block {int(moves.block[leaning[0]])} leans")
             engines.append((self._every, leaning))
         return engines
-
-
-def _without(surfaces: Surfaces, faces: Ints) -> Surfaces:
-    """Return surfaces without the strips of some faces; all faces keep their rows."""
-    keep = ~np.isin(surfaces.strip_face, faces)
-    return surfaces if keep.all() else replace(surfaces, strip=surfaces.strip[keep], strip_face=surfaces.strip_face[keep])
-
-
-def _only(facets: Facets, faces: Ints) -> Facets:
-    """Return the facets of some faces; all faces keep their rows."""
-    keep = np.isin(facets.face, faces)
-    return replace(facets, triangles=facets.triangles[keep], face=facets.face[keep])
 
 
 def _joined(fixtures: Sequence[Facets]) -> Facets:

@@ -1,8 +1,7 @@
 """Closed forms: a body of revolution that stands upright, against faces that are strips and level regions (`part/surfaces.py`).
 
 Closed forms in plan and a bounded search over the profile (`kernels/strips.py`): a reported depth is attained, and the true one is at
-most `tolerance.CONTACT_BOUND` deeper, plus `Surfaces.bound` where faces had to be opened into triangles. A move along its own axis counts
-as one body, swept from its lowest to its highest place.
+most `tolerance.CONTACT_BOUND` deeper. A move along its own axis counts as one body, swept from its lowest to its highest place.
 """
 
 from __future__ import annotations

@@ -20,15 +20,17 @@ import numpy as np
 from numba import njit
 
 from trunnion.geometry.arrays import Floats, Ints
-from trunnion.verify.kernels.body import A0R, A0Z, A1R, A1Z, CLOSED_FIRST, CLOSED_LAST, CR, CZ, KIND, R, R_MAX, depth_in_body, support
+from trunnion.verify.kernels.body import A0R, A0Z, A1R, A1Z, CLOSED_FIRST, CLOSED_LAST, CR, CZ, KIND, R_MAX, R, depth_in_body, support
 
 # A way: how the tool goes along one move.
-START, VECTOR, AXIS, PIVOT, ANGLE, CENTRE, ACROSS, ALONG, R_START, R_END, SWEEP, CLIMB, LENGTH = 0, 3, 6, 9, 12, 13, 16, 19, 22, 23, 24, 25, 26
+START, VECTOR, AXIS, PIVOT, ANGLE, CENTRE, ACROSS, ALONG = 0, 3, 6, 9, 12, 13, 16, 19
+R_START, R_END, SWEEP, CLIMB, LENGTH = range(22, 27)
 WAY_COLUMNS = 27
-"""START and VECTOR of the tip; AXIS at the start turns about PIVOT by ANGLE. An arc (SWEEP not 0) is about CENTRE from ACROSS towards ALONG."""
+"""START and VECTOR of the tip; AXIS at the start turns about PIVOT by ANGLE. An arc (SWEEP not 0) is about CENTRE, from ACROSS towards
+ALONG."""
 
-# A span of a way: one row an end of the matrix (9) that turns what is relative to the tip into the middle's frame, and the tip (3).
-MATRIX, TIP, END_COLUMNS = 0, 9, 12
+# A span of a way: for each end the matrix (9) that turns what is relative to the tip into the frame of the middle, and the tip (3).
+TIP, END_COLUMNS = 9, 12
 S_AXIS, S_ANGLE, S_LENGTH, S_BULGE, S_FROM, S_TO = 0, 3, 4, 5, 6, 7
 SPAN_COLUMNS = 8
 
@@ -457,6 +459,8 @@ def contact_loop(first: int, last: int, rows: Ints, start: Floats, end: Floats, 
     for k in range(first, last):
         n = rows[k]
         fill_way(start[n], end[n], axis[n], end_axis[n], centre[n], sweep[n], way)
+        # What was filled for the move before is not this one's, though its shares be the same.
+        near[S_FROM] = near[S_TO] = -1.0
         n_touched, done = 0, False
         for p in range(piece_start[tool[n]], piece_start[tool[n] + 1]):
             a, b = int(pieces[p, CLOSED_FIRST]), int(pieces[p, CLOSED_LAST])
