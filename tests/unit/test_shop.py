@@ -2,12 +2,15 @@
 
 from __future__ import annotations
 
+import math
 from pathlib import Path
 
 import pytest
 
 from trunnion.findings import BadInput
 from trunnion.shop import load_shop
+from trunnion.verify.cutter import bodies_of
+from trunnion.verify.kernels.body import radius_at
 
 HOLDER = '["Chuck"]\ntitle = "A chuck"\nrows = [[0, 10, 30, 12]]\n'
 TOOL = """
@@ -43,6 +46,38 @@ def test_the_catalogue_has_cutters_from_4_to_25_mm_in_flat_and_bull_form():
     assert {t.corner_radius for t in tools} == {0, 0.5, 1, 1.5, 2, 2.5, 3, 4}
 
 
+def test_the_catalogue_has_cutters_of_every_form_but_special_ones():
+    assert {t.form for t in load_shop().tools} == {"flat", "bull", "ball", "taper", "barrel", "t-slot", "drill"}
+
+
+def test_ball_ends_are_for_curved_faces_and_keep_out_of_plane_work():
+    shop = load_shop()
+    balls = {t.diameter for t in shop.tools_for("S", "surface") if t.form == "ball"}
+    assert balls == {2, 3, 4, 5, 6, 8, 10, 12, 16, 20}
+    assert not {t.form for use in ("face", "rough", "finish") for t in shop.tools_for("N", use)} - {"flat", "bull"}
+
+
+@pytest.mark.parametrize(("name", "field", "value"), [
+    ("AL2-ball D6 R3", "corner_radius", 3.0), ("HM4-taper D4 R2 A4", "taper_angle", 4.0), ("HM4-barrel D10 R2 B85", "barrel_radius", 85.0),
+    ("UC6 D20 R0.5 H4", "flute_length", 4.0), ("DR-L D8.5", "point_angle", 140.0),
+])
+def test_a_cutter_is_named_by_what_its_form_needs(name, field, value):
+    tool = next(t for t in load_shop().tools if t.name == name)
+    assert getattr(tool, field) == value
+
+
+def test_a_tapered_cutter_is_no_thicker_than_its_shank_where_its_flutes_end():
+    for tool in (t for t in load_shop().tools if t.form == "taper"):
+        body = bodies_of([tool])
+        assert radius_at(body.arc, 0, int(body.piece[0, 1]), tool.flute_length) <= tool.shank_diameter / 2
+
+
+def test_drills_reach_as_deep_as_their_standard_says():
+    drills = {t.name: t for t in load_shop().tools_for("N", "drill")}
+    assert [drills[name].flute_length for name in ("DR-K D6", "DR-L D6", "DR-K D10.2", "DR-L D20")] == [28.0, 44.0, 55.0, 101.0]
+    assert drills["DR-L D6"].point_length == pytest.approx(3.0 / math.tan(math.radians(70.0)))
+
+
 def test_cutters_for_aluminium_have_fewer_teeth_than_those_for_titanium():
     shop = load_shop()
     assert max(t.teeth for t in shop.tools_for("N", "rough")) == 3
@@ -73,6 +108,20 @@ def test_a_user_adds_a_cutter_in_a_holder_of_his_own(tmp_path):
     shop = load_shop(folder(tmp_path, holders=HOLDER, tools=TOOL))
     tool = next(t for t in shop.tools if t.name == "My D6")
     assert (tool.form, tool.gauge_length, tool.number) == ("bull", 54.0, 0)
+
+
+@pytest.mark.parametrize(("form", "fields", "said"), [
+    ("taper", "taper_angle = 5", {"taper_angle": 5.0}),
+    ("barrel", "barrel_radius = 30", {"barrel_radius": 30.0}),
+    ("t-slot", "", {}),
+    ("drill", "point_angle = 118", {"point_angle": 118.0, "corner_radius": 0.0}),
+    ("form", "outline = [[1, 0, 0], [2, 1, -0.3], [3, 12, 0]]", {"outline": ((1.0, 0.0, 0.0), (2.0, 1.0, -0.3), (3.0, 12.0, 0.0))}),
+])
+def test_a_user_adds_a_cutter_of_any_form(tmp_path, form, fields, said):
+    text = TOOL.replace("diameter = 6", f'form = "{form}"\ndiameter = 6\n{fields}', 1)
+    text = text.replace("corner_radius = 1\n", "") if form in ("drill", "form") else text
+    tool = next(t for t in load_shop(folder(tmp_path, holders=HOLDER, tools=text)).tools if t.name == "My D6")
+    assert tool.form == form and {name: getattr(tool, name) for name in said} == said
 
 
 def test_a_user_replaces_a_machine_of_the_same_name(tmp_path):
@@ -111,6 +160,13 @@ def test_a_user_without_a_folder_gets_the_programs_own(tmp_path):
     ("helix_angle", "helix_angel", "is missing"),
     ('suits = ["N"]', 'suits = ["N"]\ncolour = "red"', "colour is not a field here"),
     ('suits = ["N"]', 'suits = ["X"]', "suits knows P, M, K, N, S, H; got 'X'"),
+    ("teeth = 3", 'teeth = 3\nform = "saw"', "form knows end mill, taper, barrel, t-slot, drill, form; got 'saw'"),
+    ("teeth = 3", 'teeth = 3\nform = "taper"', "taper_angle is missing"),
+    ("teeth = 3", 'teeth = 3\nform = "taper"\ntaper_angle = 95', "taper_angle must be a number from 0 to 90; got 95"),
+    ("teeth = 3", 'teeth = 3\nform = "barrel"\nbarrel_radius = 2', "a barrel's tip radius, radius and barrel radius must grow"),
+    ("teeth = 3", 'teeth = 3\ntaper_angle = 5', "taper_angle is not a field here"),
+    ("corner_radius = 1", 'form = "form"\noutline = [[1, 2], [3, 12]]', "outline must be rows of 3 numbers"),
+    ("corner_radius = 1", 'form = "form"\noutline = [[1, 0, 0], [3, 11, 0]]', "the outline must rise from 0 to the flute length"),
 ])
 def test_a_fault_in_a_tool_is_told_in_one_line_with_file_entry_and_field(tmp_path, old, new, words):
     with pytest.raises(BadInput) as told:

@@ -3,25 +3,35 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from itertools import pairwise
 from pathlib import Path
+from typing import Any
 
 from trunnion.model.tool import Holder, Tool
 from trunnion.shop.reading import Entry, by_name, entries
 from trunnion.units import trimmed
 
-USES = ("face", "rough", "finish")
+USES = ("face", "rough", "finish", "surface", "undercut", "drill")
+END_MILL = "end mill"
+"""A form that the corner radius decides: flat, bull or ball."""
+KINDS = (END_MILL, "taper", "barrel", "t-slot", "drill", "form")
+_USE = {"taper": ("surface",), "barrel": ("surface",), "t-slot": ("undercut",), "drill": ("drill",)}
+"""What a form is for unless its entry says so."""
 ISO_GROUPS = ("P", "M", "K", "N", "S", "H")
 _LARGEST = 1000.0
 """mm: no length of a cutter or holder is larger."""
 _FEWEST, _MOST_TEETH = 1, 20
 _STEEPEST_HELIX = 60.0
+_HALF_TURN, _QUARTER_TURN = 180.0, 90.0
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Cutter:
-    """A catalogue cutter with what it is made for: ISO 513 groups and uses (`face`, `rough`, `finish`)."""
+    """A catalogue cutter with what it is made for: ISO 513 groups and uses.
+
+    Uses are `face`, `rough` and `finish` of plane work, `surface` (curved faces), `undercut` and `drill`.
+    """
 
     tool: Tool
     suits: tuple[str, ...]
@@ -37,7 +47,9 @@ def load_cutters(holders: Mapping[str, Holder], user_folder: Path | None) -> tup
     """Return the cutters, sorted by diameter, corner radius, reach and name.
 
     A file of tools holds `[tool.NAME]` tables of one cutter each and `[series.NAME]` tables whose `sizes` give one cutter for each
-    diameter and corner radius, named `SERIES D12 R3`. A user's series or tool replaces the program's of the same name.
+    diameter and corner radius, named `SERIES D12 R3` and what else its form needs: a taper's angle (A3), a barrel's radius (B85), how
+    thick a T-slot cutter is (H6); a drill is `SERIES D8.5`. `form` is one of `KINDS`. A user's series or tool replaces the program's of
+    the same name.
     """
     found: list[tuple[int, Entry]] = []
     for layer, group in entries("tools", user_folder):
@@ -66,45 +78,78 @@ def _holder(entry: Entry) -> Holder:
 
 
 def _single(entry: Entry, name: str, holders: Mapping[str, Holder]) -> Cutter:
-    corner = entry.number("corner_radius", 0.0, _LARGEST)
-    tool = _tool(entry, entry, name, corner, holders)
-    cutter = Cutter(tool=tool, suits=_suits(entry), use=entry.texts("use", USES, USES))
+    kind = _kind(entry, END_MILL)
+    corner = 0.0 if kind in ("drill", "form") else entry.number("corner_radius", 0.0, _LARGEST)
+    tool = _tool(entry, entry, kind, name, corner, holders)
+    cutter = Cutter(tool=tool, suits=_suits(entry), use=entry.texts("use", _USE.get(kind, ("face", "rough", "finish")), USES))
     entry.done()
     return cutter
 
 
 def _series(entry: Entry, name: str, holders: Mapping[str, Holder]) -> list[Cutter]:
-    entry.text("form")
-    suits, use = _suits(entry), entry.texts("use", ("rough", "finish"), USES)
+    kind = _kind(entry)
+    suits, use = _suits(entry), entry.texts("use", _USE.get(kind, ("rough", "finish")), USES)
     made = []
     for size in entry.tables("sizes"):
         diameter = size.number("diameter", 0.0, _LARGEST)
-        for corner in size.numbers("corner_radii", 0.0, _LARGEST):
-            full = f"{name} D{trimmed(diameter, 3)} R{trimmed(corner, 3)}"
-            made.append(Cutter(tool=_tool(entry, size, full, corner, holders), suits=suits, use=use))
+        corners = (0.0,) if kind in ("drill", "form") else size.numbers("corner_radii", 0.0, _LARGEST)
+        for corner in corners:
+            tool = _tool(entry, size, kind, f"{name} D{trimmed(diameter, 3)}", corner, holders)
+            made.append(Cutter(tool=replace(tool, name=tool.name + _size_name(tool)), suits=suits, use=use))
         size.done()
     entry.done()
     return made
+
+
+def _kind(entry: Entry, default: str | None = None) -> str:
+    kind = entry.text("form", default)
+    if kind not in KINDS:
+        raise entry.wrong(f"form knows {', '.join(KINDS)}; got {kind!r}")
+    return kind
+
+
+def _size_name(tool: Tool) -> str:
+    """Return what tells a size apart from others of its series and diameter."""
+    corner = f" R{trimmed(tool.corner_radius, 3)}"
+    return {"taper": f"{corner} A{trimmed(tool.taper_angle, 3)}", "barrel": f"{corner} B{trimmed(tool.barrel_radius, 3)}",
+            "t-slot": f"{corner} H{trimmed(tool.flute_length, 3)}", "drill": "", "form": ""}.get(tool.form, corner)
 
 
 def _suits(entry: Entry) -> tuple[str, ...]:
     return entry.texts("suits", ISO_GROUPS, ISO_GROUPS)
 
 
-def _tool(series: Entry, size: Entry, name: str, corner: float, holders: Mapping[str, Holder]) -> Tool:
+def _tool(series: Entry, size: Entry, kind: str, name: str, corner: float, holders: Mapping[str, Holder]) -> Tool:
     """Return one cutter: what all sizes share from `series`, its lengths from `size`."""
     holder_name = size.text("holder")
     if holder_name not in holders:
         raise size.wrong(f"holder {holder_name!r} is not in the catalogue of holders")
     holder, stickout = holders[holder_name], size.number("stickout", 0.0, _LARGEST)
     diameter = size.number("diameter", 0.0, _LARGEST)
-    form = "flat" if corner == 0.0 else "ball" if 2 * corner == diameter else "bull"
+    end = "flat" if corner == 0.0 else "ball" if 2 * corner == diameter else "bull"
     try:
-        return Tool(number=0, name=name, form=form, diameter=diameter, corner_radius=corner,
+        return Tool(number=0, name=name, form=end if kind == END_MILL else kind, diameter=diameter, corner_radius=corner,
                     flute_length=size.number("flute_length", 0.0, _LARGEST), neck_diameter=size.number("neck_diameter", 0.0, _LARGEST),
                     neck_length=size.number("neck_length", 0.0, _LARGEST), shank_diameter=size.number("shank_diameter", 0.0, _LARGEST),
                     stickout=stickout, gauge_length=stickout + holder.length, teeth=series.count("teeth", _FEWEST, _MOST_TEETH),
                     centre_cutting=series.flag("centre_cutting"), helix_angle=series.number("helix_angle", 0.0, _STEEPEST_HELIX),
-                    holder=holder, description=series.text("title"))
+                    holder=holder, description=series.text("title"), **_shape(series, size, kind))
     except ValueError as reason:
         raise size.wrong(str(reason)) from None
+
+
+def _shape(series: Entry, size: Entry, kind: str) -> dict[str, Any]:
+    """Return the fields that only one form has; a size's own go before those of its series."""
+    if kind == "taper":
+        return {"taper_angle": _given(series, size, "taper_angle").number("taper_angle", 0.0, _QUARTER_TURN)}
+    if kind == "barrel":
+        return {"barrel_radius": _given(series, size, "barrel_radius").number("barrel_radius", 0.0, _LARGEST)}
+    if kind == "drill":
+        return {"point_angle": _given(series, size, "point_angle").number("point_angle", 0.0, _HALF_TURN)}
+    if kind == "form":
+        return {"outline": size.rows("outline", 3, -1.0, _LARGEST)}
+    return {}
+
+
+def _given(series: Entry, size: Entry, field: str) -> Entry:
+    return size if size.has(field) else series
