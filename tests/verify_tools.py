@@ -251,11 +251,12 @@ def pocketing(skip_walls=False, approach=20.5):
     return [*stops, (-4.0, 0.0, 30.0)]
 
 
-def proof(*sections, blank=BLANK, tools=(POCKETING,), progress=QUIET, **choices):
+def proof(*sections, blank=BLANK, tools=(POCKETING,), progress=QUIET, machine=MACHINE, material=None, setup=SETUP, facets=(), **choices):
     """Return the verdict on sections that cut the block."""
-    program = Program(name="test", setup=SETUP, sections=sections)
+    program = Program(name="test", setup=setup, sections=sections)
     chosen = ProofSettings(**{"cell": 0.5, "spacing": 1.0, **choices})
-    return prove_surfaces((program,), (block_with_pocket(),), blank, tools, MACHINE, chosen, progress, planned_faces=range(1, 24))
+    return prove_surfaces((program,), (block_with_pocket(),), blank, tools, machine, chosen, progress, planned_faces=range(1, 24),
+                          material=material, facets=facets)
 
 
 def clean_plan(pocket=None, tool=POCKETING, extra=()):

@@ -47,7 +47,8 @@ class OperationProof:
     gouge: deepest, mm; gouges: deepest by face tag, of faces that are entered by more than can be measured, deepest first; collisions of
     shank, holder or anything with fixtures; time_s at the machine; removed mm3; air_share of its feed moves' way.
     left_min, left_mean, left_max: material on the samples that it cut last or came nearest to, mm. engaged, engaged_mean: angle of the
-    cutter's circumference in material, rad, largest and mean over the way that cuts; depth: largest depth of cut along the axis, mm.
+    cutter's circumference in material, rad, largest and mean over the way that cuts; depth: largest depth of cut along the axis, a mean
+    over the width that is engaged, mm.
     rate, rate_mean: removal rate, cm3/min; power kW and torque Nm at the cutter, largest, and power_limit, what the spindle gives at its
     speed; chip: thickest chip, mm.
     """

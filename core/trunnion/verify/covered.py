@@ -10,15 +10,14 @@ import numpy as np
 from trunnion import tolerance
 from trunnion.findings import Finding, error, face_tags, info, warning
 from trunnion.geometry.arrays import Bools, Floats, Ints
-from trunnion.geometry.frame import Frame
 from trunnion.model.blank import Blank
 from trunnion.model.tool import Tool
 from trunnion.model.verdict import Deviation, FaceProof
 from trunnion.progress import QUIET, Progress
-from trunnion.verify.contact import PartContact
 from trunnion.verify.coverage import Reach, Samples, depth_in_blank, on_blank
 from trunnion.verify.settings import ProofSettings
 from trunnion.verify.setups import SetupProof
+from trunnion.verify.sides import Side
 from trunnion.verify.stock import blank_box
 
 DECIMALS = 9
@@ -36,20 +35,12 @@ class Covered:
     findings: tuple[Finding, ...]
 
 
-@dataclass(frozen=True, slots=True, eq=False, kw_only=True)
-class Side:
-    """A side that the part is machined from: its frame and the part's contact in it."""
-
-    frame: Frame
-    contact: PartContact
-
-
 def covered(samples: Samples, tags: Ints, sides: Sequence[Side], blank: Blank, proofs: Sequence[SetupProof], tools: Sequence[Tool],
             settings: ProofSettings, planned: Collection[int], progress: Progress = QUIET) -> Covered:
     """Return what all setups together finish of the part.
 
     `samples` are in the frame of the first side; `tags` (f,) those of the face rows; `tools` the catalogue's, tried from every side where
-    something is not finished.
+    something is not finished, as if nothing held the part.
     """
     frame = sides[0].frame
     low, high = blank_box(blank, frame)
@@ -82,7 +73,7 @@ def _unreached(samples: Samples, rows: Ints, sides: Sequence[Side], tools: Seque
             face=samples.face, area=samples.area, point=side.frame.to_local(home.to_world(samples.point)),
             normal=side.frame.local_direction(home.world_direction(samples.normal)))
         share = progress.part(k / len(sides), (k + 1) / len(sides))
-        reached = Reach(side.contact, tools, settings.tolerance).reached(here, rows, share)
+        reached = Reach(side.part, tools, settings.tolerance).reached(here, rows, share)
         rows = rows[~reached]
     return rows
 

@@ -13,6 +13,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from trunnion import tolerance
 from trunnion.geometry.arrays import Floats, Ints
 from trunnion.model.tool import PLAIN_FORMS, Tool
 from trunnion.verify.cutter import outline_of
@@ -59,11 +60,13 @@ class Tally:
 @dataclass(frozen=True, slots=True, eq=False)
 class Engagement:
     """A row a move: largest (n,) and mean (n,) angle of the circumference in material, rad, 0 for rapids and in air; depth (n,) the
-    largest depth of the material along the axis, mm."""
+    largest depth of the material along the axis, mm; peak (n,) how many times as wide as on the mean of the way the cut is over the
+    diameter's length where it is widest, 1 in air."""
 
     largest: Floats
     mean: Floats
     depth: Floats
+    peak: Floats
 
 
 def probes_of(moves: Moves) -> Probes:
@@ -89,8 +92,22 @@ def engagement_of(probes: Probes, tally: Tally, moves: Moves) -> Engagement:
     largest, depth = np.zeros(n), np.zeros(n)
     np.maximum.at(largest, owner, angle)
     np.maximum.at(depth, owner, deep)
-    mean = np.bincount(owner, angle, n) / np.maximum(np.diff(probes.start), 1)
-    return Engagement(largest, mean, depth)
+    count = np.maximum(np.diff(probes.start), 1)
+    return Engagement(largest, np.bincount(owner, angle, n) / count, depth, _peaks(probes, moves, owner, angle))
+
+
+def _peaks(probes: Probes, moves: Moves, owner: Ints, angle: Floats) -> Floats:
+    """Return how many times as wide as on the mean of each move (n,) the cut is over a diameter's length where it is widest."""
+    n, count = len(moves), np.maximum(np.diff(probes.start), 1)
+    diameter = np.array([tool.diameter for tool in moves.tools])[moves.tool] if n else np.zeros(0)
+    several = np.clip(np.ceil(diameter * count / np.maximum(moves.length, 1e-9)), 1, count).astype(np.int64)
+    # A cutter engaged from its side over an angle cuts a width in proportion to 1 - cos.
+    width = np.concatenate([[0.0], np.cumsum(1.0 - np.cos(angle))])
+    last = np.maximum(np.arange(len(owner)) + 1, probes.start[owner] + several[owner])
+    around = (width[last] - width[last - several[owner]]) / several[owner]
+    widest, mean = np.zeros(n), (width[probes.start[1:]] - width[probes.start[:-1]]) / count
+    np.maximum.at(widest, owner, around)
+    return np.divide(widest, mean, out=np.ones(n), where=mean > tolerance.PARAMETRIC)
 
 
 def rings_of(tool: Tool) -> list[tuple[float, float]]:

@@ -13,6 +13,7 @@ from itertools import pairwise
 
 import numpy as np
 
+from trunnion import tolerance
 from trunnion.findings import Finding, error, remark, warning
 from trunnion.geometry.arrays import Bools, Floats, Ints
 from trunnion.model.material import Machine, Material
@@ -91,7 +92,7 @@ def _power(proof: SetupProof, section: ProgramSection, rows: Ints, machine: Mach
         return [], []
     limit = machine.power_at(section.spindle) * settings.power
     power = proof.load.power[rows]
-    over = power > limit
+    over = power > limit * (1.0 + tolerance.PARAMETRIC)
     if not over.any():
         return [], []
     worst = rows[int(np.argmax(power))]
@@ -106,7 +107,7 @@ def _power(proof: SetupProof, section: ProgramSection, rows: Ints, machine: Mach
 def _excess(proof: SetupProof, section: ProgramSection, rows: Ints, material: Material | None, settings: ProofSettings) -> Said:
     chosen, load = chosen_load(section, material), proof.load
     times = np.maximum(load.rate / (settings.removal * chosen.rate), load.chip / (settings.chip * chosen.chip))
-    over = times[rows] > 1.0
+    over = times[rows] > 1.0 + tolerance.PARAMETRIC
     if not over.any():
         return [], []
     worst = rows[int(np.argmax(times[rows]))]

@@ -1,4 +1,4 @@
-"""What is said of a setup's measurements: gouges, collisions and rapids in stock, each with its block, place, depth and face."""
+"""What is said of a setup: gouges, collisions with part, stock and fixtures, rapids in stock, each with its block, place and depth."""
 
 from __future__ import annotations
 
@@ -22,6 +22,7 @@ def setup_findings(proof: SetupProof, tags: Ints, settings: ProofSettings) -> li
         rows = np.flatnonzero(proof.moves.section == k)
         found += _gouges(proof, section, rows, tags, settings)
         found += _collisions(proof, section, rows, tags, settings)
+        found += _fixtures(proof, section, rows, settings)
         found += _rapids(proof, section, rows)
     return found
 
@@ -51,6 +52,18 @@ def _collisions(proof: SetupProof, section: ProgramSection, rows: Ints, tags: In
         found.append(error("verify.collision-stock", f"shank or holder of {section.tool.name} enters standing stock by {body.max():.3f} mm "
                            f"near {place_of(proof.moves.end[row])}", section.operation, block_of(proof, section, row),
                            remedy="clear the stock around first, or choose a longer tool"))
+    return found
+
+
+def _fixtures(proof: SetupProof, section: ProgramSection, rows: Ints, settings: ProofSettings) -> list[Finding]:
+    found = []
+    depth, touched = proof.contact.fixture_depth[rows], proof.contact.fixture[rows]
+    for fixture in _worst(touched, depth, settings.tolerance):
+        row = rows[np.argmax(np.where(touched == fixture, depth, -1.0))]
+        name = proof.program.setup.fixtures[fixture].name
+        found.append(error("verify.fixture", f"{section.tool.name} enters fixture {name} by {proof.contact.fixture_depth[row]:.3f} mm at "
+                           f"{place_of(proof.contact.fixture_place[row])}", section.operation, block_of(proof, section, row), name,
+                           remedy="move the fixture, or keep the tool off it"))
     return found
 
 

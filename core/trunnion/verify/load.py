@@ -1,4 +1,4 @@
-"""What cutting asks of cutter and spindle, move by move: removal rate, thickest chip, power and torque.
+"""What cutting asks of cutter and spindle, move by move: depth, removal rate, thickest chip, power and torque.
 
 The stock engine says what a move removes and over which angle the cutter is engaged. Both come in steps of the stock's cells, so volumes
 are taken over a stretch of the path around each move. Power follows Kienzle: k_c = k_c1.1 h^-m with the mean chip thickness h over the arc
@@ -19,9 +19,10 @@ from trunnion.model.material import Material
 from trunnion.model.program import ProgramSection
 from trunnion.units import MM_PER_METRE, SECONDS_PER_MINUTE, WATTS_PER_KILOWATT
 from trunnion.verify.motion import Moves
+from trunnion.verify.stock import StockRun
 
-STRETCH = 0.5
-"""Length of the stretch over the cutter's diameter: it turns more often than that before its load is felt."""
+STRETCH = 1.0
+"""Length of the stretch over the cutter's diameter: corners of a pocket's rings load a cutter for less, and it bears that."""
 CELLS = 4.0
 """Least length of the stretch in cells of the stock."""
 NEWTON_METRES = SECONDS_PER_MINUTE * WATTS_PER_KILOWATT / (2.0 * math.pi)
@@ -34,9 +35,11 @@ LEAST_CHIP = 1e-3
 class Load:
     """Load of moves n, 0 where nothing is cut.
 
-    rate (n,) cm3/min, chip (n,) mm the thickest, mean_chip (n,) mm over the arc of contact, power (n,) kW at the cutter, torque (n,) Nm.
+    depth (n,) mm along the axis, the mean over the width that is engaged; rate (n,) cm3/min; chip (n,) mm the thickest, mean_chip (n,) mm
+    over the arc of contact; power (n,) kW at the cutter; torque (n,) Nm.
     """
 
+    depth: Floats
     rate: Floats
     chip: Floats
     mean_chip: Floats
@@ -44,26 +47,31 @@ class Load:
     torque: Floats
 
 
-def load_of(moves: Moves, removed: Floats, engagement: Floats, speed: Floats, sections: Sequence[ProgramSection], cell: float,
+def load_of(moves: Moves, run: StockRun, speed: Floats, sections: Sequence[ProgramSection], cell: float,
             material: Material | None) -> Load:
     """Return the load of every move.
 
-    removed (n,) mm3; engagement (n,) rad; speed (n,) mm/s of the tip; `cell` mm of the stock. Without a material there is no power.
+    speed (n,) mm/s of the tip; `cell` mm of the stock. Without a material there is no power.
     """
     radius = np.array([t.radius for t in moves.tools])[moves.tool] if len(moves) else np.zeros(0)
     teeth = np.array([s.tool.teeth for s in sections])[moves.section] if len(moves) else np.zeros(0)
     spindle = np.array([s.spindle for s in sections])[moves.section] if len(moves) else np.zeros(0)
-    area = stretched(moves, removed, np.maximum(2.0 * STRETCH * radius, CELLS * cell))
+    angle = np.clip(run.engagement, 0.0, math.pi)
+    width = radius * (1.0 - np.cos(angle))
+    mean_area = stretched(moves, run.removed, np.maximum(2.0 * STRETCH * radius, CELLS * cell))
+    # A long block cuts, where it is widest, what its mean says times how much wider it is there, and no more than fits.
+    area = np.maximum(mean_area, np.minimum(mean_area * run.peak, width * run.depth_of_cut))
     cuts = (area > 0.0) & ~moves.rapid
     feed = np.where(cuts, speed * SECONDS_PER_MINUTE, 0.0)
     rate = np.where(cuts, area, 0.0) * feed / MM_PER_METRE
     per_tooth = np.divide(feed, teeth * spindle, out=np.zeros(len(moves)), where=spindle > 0.0)
-    angle = np.clip(engagement, 0.0, math.pi)
     chip = per_tooth * np.sin(np.minimum(angle, math.pi / 2.0))
     mean = per_tooth * mean_share(angle)
     power = np.zeros(len(moves)) if material is None else rate * specific_force(material, mean) / (SECONDS_PER_MINUTE * WATTS_PER_KILOWATT)
+    held = np.divide(area, width, out=np.zeros(len(moves)), where=cuts & (width > 0.0))
     torque = NEWTON_METRES * np.divide(power, spindle, out=np.zeros(len(moves)), where=spindle > 0.0)
-    return Load(rate=rate, chip=np.where(cuts, chip, 0.0), mean_chip=np.where(cuts, mean, 0.0), power=power, torque=torque)
+    return Load(depth=np.minimum(held, run.depth_of_cut), rate=rate, chip=np.where(cuts, chip, 0.0),
+                mean_chip=np.where(cuts, mean, 0.0), power=power, torque=torque)
 
 
 def mean_share(angle: Floats) -> Floats:

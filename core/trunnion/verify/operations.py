@@ -42,7 +42,7 @@ def operation_proofs(proof: SetupProof, tags: Ints, area: Floats, machine: Machi
             left_mean=float(np.average(left, weights=area[served == k])) if len(left) else 0.0,
             engaged=float(stock.engagement[feeds].max(initial=0.0)),
             engaged_mean=_share(float((stock.engagement * moves.length)[cuts].sum()), float(moves.length[cuts].sum())),
-            depth=float(stock.depth_of_cut[feeds].max(initial=0.0)), rate=float(load.rate[rows].max(initial=0.0)),
+            depth=float(load.depth[rows].max(initial=0.0)), rate=float(load.rate[rows].max(initial=0.0)),
             rate_mean=_share(removed / MM_PER_METRE * SECONDS_PER_MINUTE, float(proof.times.seconds[cuts].sum())),
             power=float(load.power[rows].max(initial=0.0)), power_limit=machine.power_at(section.spindle),
             torque=float(load.torque[rows].max(initial=0.0)), chip=float(load.chip[rows].max(initial=0.0))))
@@ -57,7 +57,7 @@ def block_proof(proof: SetupProof) -> BlockProof:
     return BlockProof(
         setup=proof.program.setup.name, section=proof.moves.section.astype(np.int32), time=small(proof.times.seconds),
         gouge=small(proof.contact.depth[:, 0]), collision=small(np.maximum(proof.contact.depth[:, 1], proof.stock.body_depth)),
-        removed=small(proof.stock.removed), engaged=small(proof.stock.engagement), depth=small(proof.stock.depth_of_cut),
+        removed=small(proof.stock.removed), engaged=small(proof.stock.engagement), depth=small(proof.load.depth),
         rate=small(proof.load.rate), power=small(proof.load.power))
 
 

@@ -27,7 +27,7 @@ from trunnion.verify.sweep import Sweep
 from trunnion.verify.times import Times, times_of
 
 NEAR = 2.0
-"""mm: material left beyond this is only known to be more, unless the blank's surface is nearer."""
+"""mm: material left up to this is measured to the last digit, more to a hundredth."""
 BUNDLES = {"z": ("z",), "xyz": ("x", "y", "z")}
 
 
@@ -47,8 +47,9 @@ class SetupProof:
     nearest: Ints
 
     def collides(self, allowed: float) -> Bools:
-        """Say for each move whether shank or holder enter part or stock deeper than allowed."""
-        return np.asarray((self.contact.depth[:, 1] > allowed) | (self.stock.body_depth > allowed))
+        """Say for each move whether shank or holder enter part or stock, or anything of the tool a fixture, deeper than allowed."""
+        return np.asarray((self.contact.depth[:, 1] > allowed) | (self.stock.body_depth > allowed)
+                          | (self.contact.fixture_depth > allowed))
 
 
 def prove_setup(program: Program, contact: PartContact, stock: Stock, machine: Machine, material: Material | None, settings: ProofSettings,
@@ -60,10 +61,10 @@ def prove_setup(program: Program, contact: PartContact, stock: Stock, machine: M
     touched = contact.along(moves, progress.part(0.0, 0.4), settings.threads)
     run = run_stock(stock, moves, frame, sweep, progress.part(0.4, 0.7), settings.threads)
     low, high = blank_box(stock.blank, frame)
-    left, nearest = sweep.left(points, np.minimum(depth_in_blank(points, low, high), NEAR), progress.part(0.7, 1.0))
+    left, nearest = sweep.left(points, depth_in_blank(points, low, high), progress.part(0.7, 1.0), settings.threads)
     stands = stands_of(moves, machine, foot_of(stock.blank, frame))
     times = times_of(moves, stands, machine)
-    load = load_of(moves, run.removed, run.engagement, times.speed, program.sections, settings.cell, material)
+    load = load_of(moves, run, times.speed, program.sections, settings.cell, material)
     return SetupProof(program=program, moves=moves, contact=touched, stock=run, stands=stands, times=times, load=load, left=left,
                       nearest=nearest)
 

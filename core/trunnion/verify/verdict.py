@@ -8,6 +8,8 @@ from __future__ import annotations
 
 from collections.abc import Collection, Sequence
 
+import numpy as np
+
 from trunnion.findings import Finding, Severity
 from trunnion.geometry.arrays import Floats
 from trunnion.geometry.frame import Frame
@@ -16,18 +18,20 @@ from trunnion.model.material import Machine, Material
 from trunnion.model.program import Program
 from trunnion.model.tool import Tool
 from trunnion.model.verdict import Offer, Outcome, Verdict
+from trunnion.part.facets import Facets, facets_of
 from trunnion.part.part import Part
 from trunnion.part.surfaces import Surfaces, surfaces_of
 from trunnion.progress import QUIET, Progress
-from trunnion.verify.contact import PartContact
 from trunnion.verify.coverage import Samples, samples_of
-from trunnion.verify.covered import Side, covered
+from trunnion.verify.covered import covered
 from trunnion.verify.excess import load_findings
 from trunnion.verify.findings import setup_findings
 from trunnion.verify.limits import limit_findings
+from trunnion.verify.motion import AXIS_LEAN
 from trunnion.verify.operations import block_proof, operation_proofs
 from trunnion.verify.settings import ProofSettings
 from trunnion.verify.setups import bundles_of, prove_setup
+from trunnion.verify.sides import sides_of
 from trunnion.verify.stock import Stock
 
 
@@ -40,16 +44,32 @@ def prove(programs: Sequence[Program], part: Part, blank: Blank, tools: Sequence
     """
     frames = [p.setup.frame for p in programs] or [blank.frame]
     surfaces = [surfaces_of(part, f, progress.part(0.0, 0.05)) for f in frames]
-    return prove_surfaces(programs, surfaces, blank, tools, machine, settings, progress.part(0.05, 1.0), planned_faces, material)
+    facets = _facets(programs, part, frames, surfaces, progress.part(0.05, 0.1))
+    return prove_surfaces(programs, surfaces, blank, tools, machine, settings, progress.part(0.1, 1.0), planned_faces, material, facets)
+
+
+def _facets(programs: Sequence[Program], part: Part, frames: Sequence[Frame], surfaces: Sequence[Surfaces],
+            progress: Progress) -> list[Facets]:
+    """Return the part's faces as triangles in each frame: all for a tool that leans, else those without closed form; none when none is."""
+    leans = any((np.abs(s.path.axis - [0.0, 0.0, 1.0]) > AXIS_LEAN).any() for p in programs for s in p.sections)
+    free = {int(s.tag[row]) for s in surfaces for row in s.free}
+    if not leans and not free:
+        return []
+    found = facets_of(part, frames[0], progress=progress, only=None if leans else free)
+    return [found.moved(frames[0], frame) for frame in frames]
 
 
 def prove_surfaces(programs: Sequence[Program], surfaces: Sequence[Surfaces], blank: Blank, tools: Sequence[Tool], machine: Machine,
                    settings: ProofSettings, progress: Progress = QUIET, planned_faces: Collection[int] = (),
-                   material: Material | None = None) -> Verdict:
-    """Return the verdict as `prove` does, on faces given in each setup's frame (without a program: in the blank's)."""
+                   material: Material | None = None, facets: Sequence[Facets] = ()) -> Verdict:
+    """Return the verdict as `prove` does, on faces given in each setup's frame (without a program: in the blank's).
+
+    `facets` are the same faces as triangles, one each: without them no tool may lean.
+    """
     frames = [p.setup.frame for p in programs] or [blank.frame]
-    sides = [Side(frame=f, contact=PartContact(s)) for f, s in zip(frames, surfaces, strict=True)]
-    samples = samples_of(surfaces[0], settings.spacing, progress.part(0.0, 0.05))
+    held = [p.setup.fixtures for p in programs] or [()]
+    sides = sides_of(frames, surfaces, facets or [None] * len(frames), held)
+    samples = samples_of(surfaces[0], settings.spacing, progress.part(0.0, 0.05), facets[0] if facets else None)
     stock = Stock.of(blank, settings.cell, bundles_of(programs, blank, settings))
     proofs = []
     for k, (program, side) in enumerate(zip(programs, sides, strict=False)):

@@ -24,7 +24,8 @@ class StockRun:
 
     removed (n,) mm3; rapid_depth (n,) how deep a rapid goes into stock, 0 when clear; rapid_place (n, 3) in the setup frame, NaN when
     clear; body_depth (n,) how deep shank or holder enter stock; engagement (n,) rad, the largest angle of the cutter's circumference in
-    material along a feed move, and depth_of_cut (n,) mm along the axis, both 0 for rapids.
+    material along a feed move, and depth_of_cut (n,) mm along the axis, both 0 for rapids; peak (n,) how many times as wide as on the mean
+    of the way the cut is over the diameter's length where it is widest.
     """
 
     removed: Floats
@@ -33,6 +34,7 @@ class StockRun:
     body_depth: Floats
     engagement: Floats
     depth_of_cut: Floats
+    peak: Floats
 
 
 def run_stock(stock: Stock, moves: Moves, frame: Frame, sweep: Sweep | None = None, progress: Progress = QUIET,
@@ -58,4 +60,4 @@ def run_stock(stock: Stock, moves: Moves, frame: Frame, sweep: Sweep | None = No
     place = np.where(rapid_depth[:, None] > 0.0, found.place, np.nan)
     engaged = engagement_of(probes, found.tally, moves)
     return StockRun(removed=found.removed, rapid_depth=rapid_depth, rapid_place=frame.to_local(stock.frame.to_world(place)),
-                    body_depth=found.body, engagement=engaged.largest, depth_of_cut=engaged.depth)
+                    body_depth=found.body, engagement=engaged.largest, depth_of_cut=engaged.depth, peak=engaged.peak)

@@ -1,0 +1,44 @@
+"""The sides that a part is machined from: its faces and fixtures in the frame of each setup, ready for contact."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+
+from trunnion.geometry.frame import Frame
+from trunnion.model.fixture import Fixture
+from trunnion.part.facets import Facets
+from trunnion.part.surfaces import Surfaces
+from trunnion.verify.contact import PartContact
+
+FIXTURE_BOUND = 0.02
+"""mm: how far a fixture's triangles may be from its faces."""
+
+
+@dataclass(frozen=True, slots=True, eq=False, kw_only=True)
+class Side:
+    """A side: its frame, the part's contact in it, with fixtures and without."""
+
+    frame: Frame
+    contact: PartContact
+    part: PartContact
+
+
+def sides_of(frames: Sequence[Frame], surfaces: Sequence[Surfaces], facets: Sequence[Facets | None],
+             fixtures: Sequence[Sequence[Fixture]]) -> list[Side]:
+    """Return the side of every frame, from the part's faces in it and what holds it there."""
+    sides = []
+    for frame, faces, triangles, held in zip(frames, surfaces, facets, fixtures, strict=True):
+        part = PartContact(faces, triangles)
+        meshes = [fixture_facets(f, frame) for f in held]
+        sides.append(Side(frame=frame, part=part, contact=PartContact(faces, triangles, meshes) if meshes else part))
+    return sides
+
+
+def fixture_facets(fixture: Fixture, frame: Frame) -> Facets:
+    """Return a fixture's triangles in a frame."""
+    mesh = fixture.mesh
+    return Facets.of_mesh(frame.to_local(mesh.points), mesh.triangles, np.zeros(len(mesh.triangles), np.int64), np.zeros(1, np.int64),
+                          FIXTURE_BOUND)
