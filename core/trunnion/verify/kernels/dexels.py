@@ -47,7 +47,10 @@ def _depth(arcs: Floats, first: int, last: int, limit: float, ray: Floats, w: fl
 
 @njit(cache=True, nogil=True)
 def _over_time(arcs: Floats, first: int, last: int, limit: float, ray: Floats, w: float) -> tuple[float, float]:
-    """Return the largest depth of a ray's point over a span (from above, within `NOISE` or a share of it outside) and its slope."""
+    """Return the largest depth of a ray's point over a span, and a slope with which it bounds the depth along the ray from above.
+
+    The depth is from above itself, within `NOISE`, or a share of it where the point is outside.
+    """
     f0, slope0, s0 = _depth(arcs, first, last, limit, ray, w, 0.0)
     if s0 <= 0.0:
         return f0, slope0
@@ -55,23 +58,26 @@ def _over_time(arcs: Floats, first: int, last: int, limit: float, ray: Floats, w
     if s1 >= 0.0:
         return f1, slope1
     t0, t1 = 0.0, 1.0
-    best, slope = (f0, slope0) if f0 >= f1 else (f1, slope1)
+    most, slope = f0, slope0
     for step in range(60):
+        # Two tangent planes, one rising over time and one falling: where they meet bounds all times.
+        share = s0 / (s0 - s1)
         t = (f1 - f0 + s0 * t0 - s1 * t1) / (s0 - s1)
-        most = f0 + s0 * (t - t0)
-        if most - best <= NOISE or (most < 0.0 and most - best <= -0.05 * most):
-            return max(most, best), slope
+        most, slope = f0 + s0 * (t - t0), slope0 + share * (slope1 - slope0)
+        gap = most - max(f0, f1)
+        if gap <= NOISE or (most < 0.0 and gap <= -0.05 * most):
+            break
         if step % 2:
-            t = t0 + (t1 - t0) * s0 / (s0 - s1)
+            t = t0 + (t1 - t0) * share
         t = min(max(t, t0 + 1e-3 * (t1 - t0)), t1 - 1e-3 * (t1 - t0))
         f, along, s = _depth(arcs, first, last, limit, ray, w, t)
-        if f >= best:
-            best, slope = f, along
         if s > 0.0:
-            t0, f0, s0 = t, f, s
+            t0, f0, slope0, s0 = t, f, along, s
+        elif s < 0.0:
+            t1, f1, slope1, s1 = t, f, along, s
         else:
-            t1, f1, s1 = t, f, s
-    return best, slope
+            return f, along
+    return most, slope
 
 
 @njit(cache=True, nogil=True)
@@ -202,8 +208,8 @@ def take_away(count: Ints, low: Floats, high: Floats, cell: int, k: int, a: floa
 
 @njit(cache=True, nogil=True)
 def _cut_ray(arcs: Floats, first: int, last: int, limit: float, ray: Floats, count: Ints, low: Floats, high: Floats, cell: int,
-             w_low: float, w_high: float) -> float:
-    """Cut a ray by a piece within a span; return the length that is gone."""
+             w_low: float, w_high: float) -> tuple[float, bool]:
+    """Cut a ray by a piece within a span; return the length that is gone, and whether the ray had room for all that is left."""
     gone = 0.0
     middle = 0.5 * (w_low + w_high)
     k = 0
@@ -238,6 +244,8 @@ def _cut_ray(arcs: Floats, first: int, last: int, limit: float, ray: Floats, cou
                     gap = w
                     break
         before = count[cell]
+        if before + 2 > low.shape[1]:
+            return gone, False
         if math.isnan(gap):
             gone += take_away(count, low, high, cell, k, from_a, from_b)
         else:
@@ -245,7 +253,7 @@ def _cut_ray(arcs: Floats, first: int, last: int, limit: float, ray: Floats, cou
             gone += take_away(count, low, high, cell, k, _bisected(arcs, first, last, limit, ray, gap, from_b), from_b)
             gone += take_away(count, low, high, cell, k, from_a, _bisected(arcs, first, last, limit, ray, gap, from_a))
         k += 1 + count[cell] - before
-    return gone
+    return gone, True
 
 
 @njit(cache=True, nogil=True)
@@ -272,7 +280,6 @@ def cut_tile(last: int, span: Floats, span_start: Ints, arcs: Floats, piece: Flo
     counted and seen: see `kernels/engagement.py`; without probes nothing is looked at.
     Returns whether all is done: when rays have no room for one more interval, `resume` says where to go on.
     """
-    room = low.shape[1] - 2
     ray, box, corner = np.zeros(13), np.empty(6), np.empty(2)
     bottom, top = np.inf, -np.inf
     for cell in range(row * columns, end_row * columns):
@@ -313,11 +320,12 @@ def cut_tile(last: int, span: Floats, span_start: Ints, arcs: Floats, piece: Flo
                             c = count[cell]
                             if c == 0 or low[cell, 0] >= box[5] or high[cell, c - 1] <= box[2]:
                                 continue
-                            if c > room:
+                            _aim(ray, span[s], origin[0] + (i + 0.5) * pitch, v)
+                            gone, whole = _cut_ray(arcs, first, end, limit, ray, count, low, high, cell, box[2], box[5])
+                            removed[n] += gone
+                            if not whole:
                                 resume[0], resume[1], resume[2], resume[3], resume[4], resume[5] = n, s, p, j, i, 1
                                 return False
-                            _aim(ray, span[s], origin[0] + (i + 0.5) * pitch, v)
-                            removed[n] += _cut_ray(arcs, first, end, limit, ray, count, low, high, cell, box[2], box[5])
         if leaves[n]:
             continue
         for s in range(span_start[n], span_start[n + 1]):
