@@ -35,7 +35,8 @@ def operation_dict(p: OperationProof) -> dict[str, Any]:
     """Return what was measured on one operation as JSON data."""
     gouges = [{"face": f"face {tag}", "depth_mm": depth} for tag, depth in p.gouges]
     return {"verdict": str(p.outcome), "gouge_mm": p.gouge, "gouges": gouges, "collisions": p.collisions,
-            "rapids_in_stock": p.rapids_in_stock, "time_s": p.time_s, "removed_mm3": p.removed, "air_share": p.air_share, "left_mm": {"min": p.left_min, "mean": p.left_mean, "max": p.left_max},
+            "rapids_in_stock": p.rapids_in_stock, "time_s": p.time_s, "removed_mm3": p.removed, "air_share": p.air_share,
+            "left_mm": {"min": p.left_min, "mean": p.left_mean, "max": p.left_max},
             "engaged_deg": {"mean": math.degrees(p.engaged_mean), "max": math.degrees(p.engaged)}, "depth_of_cut_mm": p.depth,
             "removal_cm3_min": {"mean": p.rate_mean, "max": p.rate}, "chip_mm": p.chip, "power_kw": p.power,
             "power_limit_kw": p.power_limit, "torque_nm": p.torque}
