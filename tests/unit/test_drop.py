@@ -1,0 +1,105 @@
+"""Dropping cutters on triangles: closed forms, and the compiled loops beside the plain ones."""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+
+from trunnion.geometry.dropping import DropSurface
+from trunnion.geometry.kernels.drop import drop, height_at
+from trunnion.geometry.lattice import lattice_of
+
+FLAT = np.array([[0.0, 8.0, 0.0, 0.0, 0.0, 0.0]])
+BALL = np.array([[0.0, 3.0, 1.0, 0.0, 3.0, 3.0]])
+BULL = np.array([[0.0, 5.0, 0.0, 0.0, 0.0, 0.0], [5.0, 8.0, 1.0, 5.0, 3.0, 3.0]])
+CONE = np.array([[0.0, 6.0, 0.0, 0.0, 0.5, 0.0]])
+LEAN = math.radians(10.0)
+TAPER = np.array([[0.0, math.cos(LEAN), 1.0, 0.0, 1.0, 1.0], [math.cos(LEAN), 4.0, 0.0, 1.0 - math.sin(LEAN), 1.0 / math.tan(LEAN), 0.0]])
+BARREL = np.array([[0.0, 2.0, 1.0, 0.0, 3.0, 3.0], [2.0, 5.0, 1.0, -45.0, 40.0, 50.0]])
+BARREL[1, 4] = height_at(BARREL[:1], np.array([2.0]))[0] + math.sqrt(50.0**2 - 47.0**2)
+CUTTERS = {"flat": FLAT, "ball": BALL, "bull": BULL, "cone": CONE, "taper": TAPER, "barrel": BARREL}
+LOWEST = -100.0
+
+
+def wavy(n: int, size: float = 60.0):
+    along = np.linspace(0.0, size, n + 1)
+    x, y = np.meshgrid(along, along, indexing="ij")
+    points = np.column_stack([x.ravel(), y.ravel(), (8.0 * np.sin(x / 9.0) * np.cos(y / 12.0) + 0.1 * x).ravel()])
+    a = np.arange(n * (n + 1)).reshape(n, n + 1)[:, :-1].ravel()
+    return points, np.vstack([np.column_stack([a, a + n + 1, a + n + 2]), np.column_stack([a, a + n + 2, a + 1])])
+
+
+def dropped(points, triangles, at, cutter):
+    return DropSurface.of(np.array(points, dtype=float), np.array(triangles)).drop(np.atleast_2d(np.array(at, dtype=float)), cutter, LOWEST)
+
+
+def test_a_ball_stands_on_a_slope_where_its_side_is_as_steep() -> None:
+    slope = math.tan(math.radians(30.0))
+    points = [[-50, -50, -50 * slope], [50, -50, 50 * slope], [50, 50, 50 * slope], [-50, 50, -50 * slope]]
+    found = dropped(points, [[0, 1, 2], [0, 2, 3]], (4.0, 0.0), BALL)
+    assert found == pytest.approx([4.0 * slope + 3.0 / math.cos(math.radians(30.0)) - 3.0])
+
+
+def test_a_flat_end_stands_on_the_highest_corner_under_it() -> None:
+    assert dropped([[0, 0, 0], [7, 0, 5], [0, 7, 2]], [[0, 1, 2]], (0.0, 0.0), FLAT) == pytest.approx([5.0])
+
+
+def test_a_bull_end_stands_on_an_edge_beside_it() -> None:
+    # A level edge 6.5 mm beside the axis: 1.5 mm out on a corner of 3 mm.
+    found = dropped([[6.5, -40, 1], [6.5, 40, 1], [60, 0, -90]], [[0, 1, 2]], (0.0, 0.0), BULL)
+    assert found == pytest.approx([1.0 - (3.0 - math.sqrt(9.0 - 1.5**2))])
+
+
+def test_where_nothing_is_under_the_cutter_it_goes_to_the_lowest_height() -> None:
+    assert dropped([[0, 0, 0], [1, 0, 0], [0, 1, 0]], [[0, 1, 2]], (30.0, 30.0), BALL).tolist() == [LOWEST]
+
+
+def test_an_upright_triangle_is_met_on_its_upper_edge() -> None:
+    assert dropped([[0, -9, 0], [0, 9, 0], [0, 0, 6]], [[0, 1, 2]], (0.0, 0.0), BALL) == pytest.approx([6.0])
+
+
+@pytest.mark.parametrize("name", CUTTERS)
+def test_the_compiled_loops_find_what_every_triangle_for_every_point_finds(name: str) -> None:
+    points, triangles = wavy(14)
+    at = np.vstack([np.random.default_rng(3).uniform(-6.0, 66.0, (120, 2)), points[::9, :2]])
+    found = DropSurface.of(points, triangles).drop(at, CUTTERS[name], LOWEST)
+    assert np.abs(found - drop(at, points[triangles], CUTTERS[name], LOWEST)).max() < 1e-9
+
+
+@settings(deadline=None, max_examples=30)
+@given(st.integers(0, 10_000), st.sampled_from(sorted(CUTTERS)))
+def test_loose_triangles_of_any_kind(seed: int, name: str) -> None:
+    rng = np.random.default_rng(seed)
+    corners = rng.uniform(-12.0, 12.0, (8, 3, 3)) * rng.choice([0.02, 1.0], (8, 1, 3))
+    at = rng.uniform(-10.0, 10.0, (6, 2))
+    found = DropSurface.of(corners.reshape(-1, 3), np.arange(24).reshape(-1, 3)).drop(at, CUTTERS[name], LOWEST)
+    assert np.abs(found - drop(at, corners, CUTTERS[name], LOWEST)).max() < 1e-9
+
+
+def test_a_lattice_lists_every_box_in_each_cell_it_touches() -> None:
+    g = lattice_of(np.array([[0.0, 0.0], [2.5, 0.5], [0.0, 2.2]]), np.array([[1.0, 0.5], [3.5, 1.5], [3.5, 2.8]]), 1.0)
+    cells = [g.rows[a:b].tolist() for a, b in zip(g.start[:-1], g.start[1:], strict=True)]
+    assert (g.shape.tolist(), cells) == ([4, 3], [[0], [0], [1], [1], [], [], [1], [1], [2], [2], [2], [2]])
+
+
+def test_heights_agree_with_opencamlib() -> None:
+    ocl = pytest.importorskip("opencamlib")
+    points, triangles = wavy(14)
+    surface = ocl.STLSurf()
+    corners = [[ocl.Point(*map(float, points[k])) for k in t] for t in triangles]
+    for c in corners:
+        surface.addTriangle(ocl.Triangle(*c))
+    at = np.random.default_rng(5).uniform(8.0, 52.0, (60, 2))
+    for cutter, theirs in ((FLAT, ocl.CylCutter(16.0, 60.0)), (BALL, ocl.BallCutter(6.0, 60.0)), (BULL, ocl.BullCutter(16.0, 3.0, 60.0))):
+        batch = ocl.BatchDropCutter()
+        batch.setSTL(surface)
+        batch.setCutter(theirs)
+        for x, y in at:
+            batch.appendPoint(ocl.CLPoint(float(x), float(y), LOWEST))
+        batch.run()
+        z = np.array([p.z for p in batch.getCLPoints()])
+        assert np.abs(DropSurface.of(points, triangles).drop(at, cutter, LOWEST) - z).max() < 1e-4
