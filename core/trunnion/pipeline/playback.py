@@ -9,13 +9,11 @@ from __future__ import annotations
 
 import time
 from dataclasses import replace
-from typing import Any
 
 import numpy as np
 
-from trunnion.findings import BadCall, Refused
+from trunnion.findings import BadCall, Cancelled, Refused, TrunnionError
 from trunnion.geometry.arrays import Bools, Floats, Ints
-from trunnion.geometry.frame import Frame
 from trunnion.model.blank import Blank
 from trunnion.model.material import Machine
 from trunnion.model.playback import Moment, Passage, Timeline
@@ -26,10 +24,13 @@ from trunnion.pipeline.bench import Bench
 from trunnion.pipeline.proving import programs_of, read_back
 from trunnion.post.release import release
 from trunnion.progress import QUIET, Progress
-from trunnion.settings import digest
+from trunnion.settings import checked, choose, digest
 from trunnion.verify.motion import Moves, moves_of
-from trunnion.verify.stock import Stock, blank_box, run_stock
-from trunnion.verify.stock.field import Field
+from trunnion.verify.settings import ProofSettings
+from trunnion.verify.setups import bundles_of
+from trunnion.verify.stock import Stock, run_stock
+from trunnion.verify.stock.mesh import mesh_of
+from trunnion.verify.stock.stock import Snapshot
 from trunnion.verify.times import seconds_of
 
 FINENESS = 400
@@ -66,9 +67,9 @@ class Playback:
         self._starts = np.cumsum([0, *(len(m) for m in self._moves)])
         self._every = max(1, -(-len(self.timeline) // SNAPSHOTS))
         self._chunk = _FIRST_CHUNK
-        self._stock = Piece(self.blank, self.cell)
+        self._stock = Stock.of(self.blank, self.cell, bundles_of(programs, self.blank, checked(choose(ProofSettings, session.choices))))
         self._position, self._removed = 0.0, 0.0
-        self._kept: dict[int, tuple[Any, float]] = {0: (self._stock.snapshot(), 0.0)}
+        self._kept: dict[int, tuple[Snapshot, float]] = {0: (self._stock.snapshot(), 0.0)}
 
     @property
     def n_blocks(self) -> int:
@@ -86,8 +87,9 @@ class Playback:
             self._go_back(wanted)
         began, start, end = self._position, time.perf_counter(), time.perf_counter() + seconds
         while self._position < wanted:
-            progress.at((self._position - began) / max(wanted - began, 1.0), "cutting the stock")
-            self._step(wanted, progress)
+            done = (self._position - began) / max(wanted - began, 1.0)
+            progress.at(done, "cutting the stock")
+            self._step(wanted, progress.part(done, done))
             now = time.perf_counter()
             # A block may take a thousand times as long as another: the chunk at most doubles.
             self._chunk = int(np.clip(self._chunk * _TOGETHER_S / max(now - start, 1e-6), 16, min(2 * self._chunk, _MOST_TOGETHER)))
@@ -107,9 +109,14 @@ class Playback:
         pieces = [taken(own, rows[~own.rapid[rows]])]
         if stop > last:
             pieces.append(self._part(program, last, stop - last))
-        for moves in pieces:
-            if len(moves):
-                self._removed += self._stock.cut(moves, self._programs[program].setup.frame, progress)
+        try:
+            for moves in pieces:
+                if len(moves):
+                    run = run_stock(self._stock, moves, self._programs[program].setup.frame, progress=progress)
+                    self._removed += float(run.removed.sum())
+        except (TrunnionError, Cancelled):
+            self._go_back(self._position)  # a stock that was not cut whole is of no use
+            raise
         self._position = float(stop)
         if stop == last and last % self._every == 0 and last not in self._kept:
             self._kept[last] = (self._stock.snapshot(), self._removed)
@@ -137,7 +144,8 @@ class Playback:
 
     def _moment(self) -> Moment:
         line = self.timeline
-        points, triangles = self._stock.mesh()
+        mesh = mesh_of(self._stock)
+        points, triangles = mesh.points, mesh.triangles
         tip, axis = line.pose(self._position)
         return Moment(position=self._position, points=self.blank.frame.to_world(points).astype(np.float32),
                       triangles=triangles.astype(np.int32), fresh=fresh_of(points, triangles, self.blank, 1e-4 * self.cell), tip=tip,
@@ -196,60 +204,3 @@ def fresh_of(points: Floats, triangles: Ints, blank: Blank, near: float) -> Bool
         sides |= (np.abs(points[:, n] - blank.high[n]) <= near).astype(np.uint8) << (2 * n + 1)
     a, b, c = (sides[triangles[:, k]] for k in range(3))
     return np.asarray(a & b & c == 0)
-
-
-class Piece:
-    """The stock of a playback, in the blank's frame."""
-
-    def __init__(self, blank: Blank, cell: float) -> None:
-        self._blank, self._cell = blank, cell
-        self._stock = self._whole(blank.frame)
-
-    def cut(self, moves: Moves, frame: Frame, progress: Progress) -> float:
-        """Cut feed moves given in a setup's frame; return the removed volume in mm3."""
-        if frame is not self._stock.frame:
-            self._stock = self._whole(frame)
-        return float(run_stock(self._stock, moves, frame, progress=progress).removed.sum())
-
-    def _whole(self, frame: Frame) -> Stock:
-        low, high = blank_box(self._blank, frame)
-        return Stock.of(replace(self._blank, frame=frame, low=low, high=high), self._cell)
-
-    def snapshot(self) -> Any:
-        """Return what `restore` goes back to."""
-        return self._stock.frame, self._stock.snapshot()
-
-    def restore(self, snapshot: Any) -> None:
-        """Go back to a snapshot."""
-        frame, kept = snapshot
-        if frame is not self._stock.frame:
-            self._stock = self._whole(frame)
-        self._stock.restore(kept)
-
-    def mesh(self) -> tuple[Floats, Ints]:
-        """Return points (v, 3) in the blank's frame and triangles (t, 3), closed and outward."""
-        points, triangles = mesh_of(self._stock.field)
-        return self._blank.frame.to_local(self._stock.frame.to_world(points)), triangles
-
-
-def mesh_of(field: Field) -> tuple[Floats, Ints]:
-    """Return a height field as a closed surface: a roof through the tops of the columns, walls at the blank's sides, a bottom.
-
-    Where a column is cut down to the bottom, the roof meets it, and triangles that lie in both are left out of both.
-    """
-    rows, columns = field.top.shape
-    x, y = (np.concatenate([[low], low + (np.arange(n) + 0.5) * field.pitch, [high]]).clip(low, high)
-            for low, n, high in ((field.low[0], columns, field.high[0]), (field.low[1], rows, field.high[1])))
-    roof = np.pad(field.top, 1, mode="edge")
-    grid = np.stack([*np.meshgrid(x, y), roof], axis=-1).reshape(-1, 3)
-    n = len(grid)
-    bottom = grid.copy()
-    bottom[:, 2] = field.low[2]
-    at = np.arange(n).reshape(roof.shape)
-    a, b, c, d = at[:-1, :-1].ravel(), at[:-1, 1:].ravel(), at[1:, 1:].ravel(), at[1:, :-1].ravel()
-    upper = np.concatenate([np.column_stack([a, b, c]), np.column_stack([a, c, d])])
-    upper = upper[(grid[upper, 2] > field.low[2]).any(axis=1)]
-    around = np.concatenate([at[0], at[1:, -1], at[-1, -2::-1], at[-2:0:-1, 0]])
-    p, q = around, np.roll(around, -1)
-    walls = np.concatenate([np.column_stack([p + n, q + n, q]), np.column_stack([p + n, q, p])])
-    return np.vstack([grid, bottom]), np.concatenate([upper, upper[:, ::-1] + n, walls])
