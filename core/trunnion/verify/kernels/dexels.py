@@ -290,7 +290,8 @@ def cut_tile(last: int, span: Floats, span_start: Ints, arcs: Floats, piece: Flo
         going_on = n == resume[0]
         p0, p1 = piece_start[tool[n]], piece_start[tool[n] + 1]
         if not rapid[n]:
-            if probe_start[n + 1] > probe_start[n] and not (going_on and resume[5] != 0):
+            if probe_start[n + 1] > probe_start[n] and not (going_on and resume[5] != 0) and _near(
+                    span, span_start[n], span_start[n + 1], v_low - pitch, v_high + pitch):
                 a, b = row * columns, end_row * columns
                 corner[0], corner[1] = origin[0], v_low
                 look_in_intervals(count[a:b], low[a:b], high[a:b], corner, pitch, end_row - row, columns, way[n, 0:3], way[n, 3:6],
@@ -363,6 +364,15 @@ def cut_tile(last: int, span: Floats, span_start: Ints, arcs: Floats, piece: Flo
                             elif deepest > best:
                                 body[n] = deepest
     return True
+
+
+@njit(cache=True, nogil=True)
+def _near(span: Floats, first: int, last: int, v_low: float, v_high: float) -> bool:
+    """Say whether what cuts comes between two coordinates v in some spans."""
+    for s in range(first, last):
+        if span[s, CUT_BOX + 1] <= v_high and span[s, CUT_BOX + 4] >= v_low:
+            return True
+    return False
 
 
 @njit(cache=True, nogil=True)
