@@ -14,8 +14,8 @@ MOST_CELLS = 4_000_000
 
 @dataclass(frozen=True, slots=True, eq=False, kw_only=True)
 class Lattice:
-    """low (2,) corner and pitch in mm, shape (2,) cells along x and y; rows[start[c]:start[c + 1]] are the boxes that touch cell c = j * nx + i,
-    ascending."""
+    """low (2,) corner and pitch in mm, shape (2,) cells along x and y; rows[start[c]:start[c + 1]] are the boxes, ascending, that touch
+    cell c = j * shape[0] + i."""
 
     low: Floats
     pitch: float
