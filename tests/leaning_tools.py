@@ -1,4 +1,4 @@
-"""Tools of every form and paths with leaning and turning axes, and a plain search for how near they come, that tests of the proof share."""
+"""Tools of every form, paths with leaning and turning axes, boxes to touch, and a plain search for how near a cutter comes."""
 
 from __future__ import annotations
 
@@ -10,6 +10,9 @@ import shapely
 from trunnion.model.program import ProgramSection
 from trunnion.model.tool import Tool
 from trunnion.model.toolpath import Motion, Toolpath
+from trunnion.part.facets import Facets
+from trunnion.part.surfaces import STRIP_COLUMNS, Face, surfaces_from
+from trunnion.verify.contact import PartContact
 from trunnion.verify.cutter import outline_of
 from verify_tools import HOLDER
 
@@ -43,6 +46,20 @@ def leaning_section(tool, tips, axes, centre=None, motion=Motion.LINE, operation
     path = Toolpath(position=tips, axis=axes, motion=[Motion.RAPID] + [motion] * (n - 1), centre=centres,
                     feed=[0.0] + [1000.0] * (n - 1), mark=[0] * n)
     return ProgramSection(operation=operation, tool=tool, spindle=10000.0, path=path)
+
+
+def contact_of(*boxes):
+    """Return contact with boxes, each a low and a high corner."""
+    corners = []
+    for low, high in boxes:
+        c = np.array([[x, y, z] for x in (low[0], high[0]) for y in (low[1], high[1]) for z in (low[2], high[2])], dtype=np.float64)
+        for a, b, d, e in ((0, 1, 3, 2), (4, 6, 7, 5), (0, 4, 5, 1), (2, 3, 7, 6), (0, 2, 6, 4), (1, 5, 7, 3)):
+            corners += [c[[a, b, d]], c[[a, d, e]]]
+    triangles, empty = np.array(corners), np.zeros((0, STRIP_COLUMNS))
+    joined = Face(1, empty, empty, np.zeros((0, 4)), is_free=True)
+    rows = np.arange(3 * len(triangles)).reshape(-1, 3)
+    facets = Facets.of_mesh(triangles.reshape(-1, 3), rows, np.zeros(len(rows), np.int64), np.array([1]))
+    return PartContact(surfaces_from([joined]), facets)
 
 
 class PlainCutter:

@@ -8,12 +8,10 @@ import numpy as np
 import pytest
 from pytest import approx
 
+from leaning_tools import contact_of
 from trunnion.findings import Cancelled
 from trunnion.model.tool import Holder, Tool
-from trunnion.part.facets import Facets
-from trunnion.part.surfaces import STRIP_COLUMNS, Face, surfaces_from
 from trunnion.progress import Progress
-from trunnion.verify.contact import PartContact
 from trunnion.verify.query import STICKOUT_STEP, room
 
 UP = np.array([[0.0, 0.0, 1.0]])
@@ -27,20 +25,6 @@ def tool(diameter=10.0, stickout=60.0, holder=20.0):
     return Tool(number=1, name="flat", form="flat", diameter=diameter, corner_radius=0.0, flute_length=20.0, neck_diameter=diameter,
                 neck_length=20.0, shank_diameter=diameter, stickout=stickout, gauge_length=stickout + 40.0, teeth=3, centre_cutting=True,
                 helix_angle=30.0, holder=Holder(name="straight", rows=((0.0, holder, 40.0, holder),)))
-
-
-def contact_of(*boxes):
-    """Return contact with boxes, each a low and a high corner."""
-    corners = []
-    for low, high in boxes:
-        c = np.array([[x, y, z] for x in (low[0], high[0]) for y in (low[1], high[1]) for z in (low[2], high[2])], dtype=np.float64)
-        for a, b, d, e in ((0, 1, 3, 2), (4, 6, 7, 5), (0, 4, 5, 1), (2, 3, 7, 6), (0, 2, 6, 4), (1, 5, 7, 3)):
-            corners += [c[[a, b, d]], c[[a, d, e]]]
-    triangles, empty = np.array(corners), np.zeros((0, STRIP_COLUMNS))
-    joined = Face(1, empty, empty, np.zeros((0, 4)), is_free=True)
-    rows = np.arange(3 * len(triangles)).reshape(-1, 3)
-    facets = Facets.of_mesh(triangles.reshape(-1, 3), rows, np.zeros(len(rows), np.int64), np.array([1]))
-    return PartContact(surfaces_from([joined]), facets)
 
 
 WALL = ((8.0, -200.0, 0.0), (60.0, 200.0, 30.0))

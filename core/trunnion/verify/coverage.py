@@ -6,25 +6,31 @@ sample is finished when that is within tolerance and allowance. A face that lies
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
+from functools import partial
 
 import numpy as np
 from scipy.spatial import cKDTree
 
 from trunnion import tolerance
 from trunnion.geometry.arrays import Bools, Floats, Ints
-from trunnion.model.tool import Tool
+from trunnion.model.material import Machine
+from trunnion.model.tool import PLAIN_FORMS, Tool
 from trunnion.part.facets import Facets, facet_samples
 from trunnion.part.surfaces import DX, DY, GUIDE, L_KIND, PROFILE, PW0, PW1, PZ0, PZ1, R_KIND, SIDE, U0, U1, Surfaces
 from trunnion.progress import QUIET, Progress
 from trunnion.verify.contact import PartContact, guide_points
+from trunnion.verify.kinematics import can_hold
+from trunnion.verify.leaning import leaning_axes, touching_tips
 from trunnion.verify.motion import poses_of
 
 POSES = 2048
 """Poses tried between two looks at cancel."""
 MOST_TRIED = 3000
 """Samples that every cutter is tried on, about half a minute where none reaches."""
+MOST_LEANING = 200
+"""The same for leaning cutters, which are tried in many more poses."""
 
 
 @dataclass(frozen=True, slots=True, eq=False, kw_only=True)
@@ -118,25 +124,26 @@ def depth_in_blank(points: Floats, low: Floats, high: Floats) -> Floats:
 
 
 class Reach:
-    """Finds collision-free upright poses of catalogue cutters that touch a point of the part from above."""
+    """Finds collision-free poses of catalogue cutters that touch a point of the part: upright ones from above, and leaning ones where the
+    machine has rotary axes (contact then needs facets)."""
 
-    def __init__(self, contact: PartContact, tools: Sequence[Tool], allowed: float) -> None:
-        self._contact, self._allowed = contact, allowed
-        # Slender cutters reach what any reach; the order is only for speed.
-        self._tools = sorted(reaching_furthest(tools), key=lambda t: (t.radius, -t.reach, t.number))
+    def __init__(self, contact: PartContact, tools: Sequence[Tool], allowed: float, machine: Machine | None = None) -> None:
+        self._contact, self._allowed, self._machine = contact, allowed, machine
+        # Upright and from above, no other form goes where none of these fits. Slender cutters reach what any reach: the order is for speed.
+        plain = [t for t in tools if t.form in PLAIN_FORMS]
+        self._tools = sorted(reaching_furthest(plain), key=lambda t: (t.radius, -t.reach, t.number))
 
     def reached(self, samples: Samples, rows: Ints, progress: Progress = QUIET) -> Bools:
         """Say for each of the samples' rows whether some cutter reaches it.
 
         Of very many rows, evenly chosen ones of every face are tried, and the others share the answer of the nearest on their face.
         """
-        tried = _tried(samples.face[rows])
-        answer = self._try(samples, rows[tried], progress)
-        if len(tried) == len(rows):
-            return answer
-        # Faces are told apart by a fourth coordinate longer than any part.
-        place = np.column_stack([samples.point[rows], samples.face[rows] * 4.0 * np.ptp(samples.point)])
-        return answer[cKDTree(place[tried]).query(place)[1]]
+        machine = self._machine
+        if machine is None or not machine.rotary:
+            return _shared(self._try, samples, rows, MOST_TRIED, progress)
+        found = _shared(self._try, samples, rows, MOST_TRIED, progress.part(0.0, 0.3))
+        found[~found] = _shared(partial(self._try_leaning, machine), samples, rows[~found], MOST_LEANING, progress.part(0.3, 1.0))
+        return found
 
     def _try(self, samples: Samples, rows: Ints, progress: Progress) -> Bools:
         found = np.zeros(len(rows), bool)
@@ -154,6 +161,31 @@ class Reach:
                 break
         return found
 
+    def _try_leaning(self, machine: Machine, samples: Samples, rows: Ints, progress: Progress) -> Bools:
+        found = np.zeros(len(rows), bool)
+        axes = [(axis, can_hold(axis, machine)) for axis in leaning_axes(samples.normal[rows])]
+        for k, tool in enumerate(self._tools):
+            for axis, holds in axes:
+                progress.at(k / len(self._tools), "Looking for leaning cutters that reach what is left")
+                some = np.flatnonzero(~found & holds)
+                tips, possible = touching_tips(tool, samples.point[rows[some]], samples.normal[rows[some]], axis[some])
+                if possible.any():
+                    found[some[possible]] = self._contact.clear(poses_of(tool, tips[possible], axis[some[possible]]), self._allowed)
+            if found.all():
+                break
+        return found
+
+
+def _shared(ask: Callable[[Samples, Ints, Progress], Bools], samples: Samples, rows: Ints, most: int, progress: Progress) -> Bools:
+    """Return what is answered for rows, of very many only for evenly chosen ones: the others share the nearest answer on their face."""
+    tried = _tried(samples.face[rows], most)
+    answer = ask(samples, rows[tried], progress)
+    if len(tried) == len(rows):
+        return answer
+    # Faces are told apart by a fourth coordinate longer than any part.
+    place = np.column_stack([samples.point[rows], samples.face[rows] * 4.0 * np.ptp(samples.point)])
+    return np.asarray(answer[cKDTree(place[tried]).query(place)[1]])
+
 
 def reaching_furthest(tools: Sequence[Tool]) -> list[Tool]:
     """Return the tools without those that another one of the same form outreaches: as long flutes, as far to anything thicker, as far to
@@ -170,9 +202,9 @@ def _outreaches(one: Tool, other: Tool) -> bool:
     return one.flute_length >= other.flute_length and one.reach >= other.reach and one.stickout >= other.stickout
 
 
-def _tried(face: Ints) -> Ints:
-    """Return which rows are tried: all, or evenly chosen ones of every face when there are more than `MOST_TRIED`."""
-    step = -(-len(face) // MOST_TRIED)
+def _tried(face: Ints, most: int) -> Ints:
+    """Return which rows are tried: all, or evenly chosen ones of every face when there are more than `most`."""
+    step = -(-len(face) // most)
     order = np.argsort(face, kind="stable")
     first = np.flatnonzero(np.diff(face[order], prepend=-1))
     within = np.arange(len(face)) - np.repeat(first, np.diff(first, append=len(face)))

@@ -99,6 +99,19 @@ def rotary_angles(axis: Floats, machine: Machine) -> tuple[Floats, Bools]:
     return min(tried, key=lambda t: t[:3])[3], good
 
 
+def can_hold(axis: Floats, machine: Machine) -> Bools:
+    """Say which tool axes (k, 3) a machine can hold within the limits of its rotary axes, each by itself."""
+    rotary = machine.rotary
+    if not rotary:
+        return np.asarray(np.linalg.norm(axis - UP, axis=1) < STANDS)
+    angles, free, good = _both_ways(axis, rotary)
+    low, high = (np.radians([getattr(a, end) for a in rotary]) for end in ("low", "high"))
+    # The least of an angle's full turns that is not below the limit.
+    least = low + np.mod(angles - low + SLACK, 2.0 * np.pi) - SLACK
+    within = np.asarray(free | (least <= high + SLACK))
+    return np.asarray(good & (within[:, 0].all(axis=1) | within[:, 1].all(axis=1)))
+
+
 def linear_positions(tip: Floats, gauge: Floats, rotary: Floats, machine: Machine) -> Floats:
     """Return the positions (k, 3) of X, Y, Z that put the tips (k, 3), from the middle of the table, where they belong.
 
