@@ -8,6 +8,7 @@ beyond 1 mm are only known to be at least that.
 from __future__ import annotations
 
 from dataclasses import dataclass
+from functools import cached_property
 from threading import Lock
 
 import numpy as np
@@ -61,7 +62,11 @@ class FacetContact:
 
     def __init__(self, facets: Facets) -> None:
         self.facets = facets
-        self._tree = tree_of(facets.points, facets.triangles, facets.face)
+
+    @cached_property
+    def tree(self) -> Tree:
+        """The tree over the triangles, built when first asked for."""
+        return tree_of(self.facets.points, self.facets.triangles, self.facets.face)
 
     def along(self, moves: Moves, rows: Ints, progress: Progress = QUIET, threads: int = 0) -> Touch:
         """Return how deep the moves of some rows (k,) enter the faces, whichever way the tool stands."""
@@ -72,7 +77,7 @@ class FacetContact:
         return np.asarray((self._measure(moves, rows, QUIET, 1, allowed).depth <= allowed).all(axis=1))
 
     def _measure(self, moves: Moves, rows: Ints, progress: Progress, threads: int, settle: float = np.inf) -> Touch:
-        tree, bodies, k, f = self._tree, moves.bodies, len(rows), len(self.facets.tag)
+        tree, bodies, k, f = self.tree, moves.bodies, len(rows), len(self.facets.tag)
         bound = np.where(moves.turning[rows], tolerance.TURNING_BOUND, tolerance.CONTACT_BOUND)
         enough = np.full(k, settle) if np.isfinite(settle) else bound
         touch = Touch(depth=np.full((k, 2), -np.inf), face=np.full((k, 2), -1), place=np.full((k, 2, 3), np.nan),

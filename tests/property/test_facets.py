@@ -1,0 +1,157 @@
+"""Random tools, triangles and moves: the engine on triangles against a far finer search that samples, looks closer and samples again."""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+from hypothesis import Phase, given, settings
+from hypothesis import strategies as st
+
+from samples import block_with_pocket_shape, read
+from trunnion import tolerance
+from trunnion.geometry.frame import WORLD
+from trunnion.model.program import ProgramSection
+from trunnion.model.toolpath import Motion, Toolpath
+from trunnion.part.facets import Facets, facets_of
+from trunnion.part.surfaces import surfaces_of
+from trunnion.verify.contact import PartContact
+from trunnion.verify.contact.facets import FacetContact
+from trunnion.verify.motion import moves_of
+from verify_tools import FORMS, bull, flat, plain_depth, program_section, supports_of
+
+DEEP = 1.0
+"""mm: what the engine need not tell apart."""
+
+
+def poses(move, share):
+    """Return tips and axes (k, 3) at shares (k,) of a move (start, end, axis, end axis, centre or None, turn), written anew."""
+    start, end, axis, end_axis, centre, turn = move
+    share = share[:, None]
+    if turn:
+        across = start - centre - ((start - centre) @ axis) * axis
+        climb = ((end - start) @ axis) * axis
+        tips = start - across + np.cos(turn * share) * across + np.sin(turn * share) * np.cross(axis, across) + share * climb
+        return tips, np.broadcast_to(axis, tips.shape)
+    angle = math.atan2(np.linalg.norm(np.cross(axis, end_axis)), axis @ end_axis)
+    if angle < 1e-12:
+        return start + share * (end - start), np.broadcast_to(axis, (len(share), 3))
+    return (start + share * (end - start),
+            (np.sin((1 - share) * angle) * axis + np.sin(share * angle) * end_axis) / math.sin(angle))
+
+
+def depths(part, move, share, points):
+    """Return how deep points (k, 3) are in a part of a tool at shares (k,) of a move."""
+    tips, axes = poses(move, share)
+    seen = points - tips
+    h = (seen * axes).sum(axis=1)
+    return plain_depth(part, np.linalg.norm(seen - h[:, None] * axes, axis=1), h)
+
+
+def sampled_depth(part, move, corners, rounds=9, grid=(11, 7, 7), kept=5):
+    """Return the deepest that a part of a tool enters a triangle (3, 3), by samples that close in on the best few places."""
+    shares = np.stack(np.meshgrid(*(np.linspace(0.0, 1.0, n) for n in grid), indexing="ij"), axis=-1).reshape(-1, 3)
+    best, boxes, size = -np.inf, [np.array([[0.0, 1.0]] * 3)], 1.0
+    for _ in range(rounds):
+        places = np.vstack([box[:, 0] + shares * (box[:, 1] - box[:, 0]) for box in boxes])
+        t, root, v = places[:, 0], np.sqrt(places[:, 1])[:, None], places[:, 2][:, None]
+        depth = depths(part, move, t, (1 - root) * corners[0] + root * (1 - v) * corners[1] + root * v * corners[2])
+        best = max(best, float(depth.max()))
+        size, boxes = size * 0.4, []
+        for k in np.argsort(-depth)[:200]:
+            if all((np.abs(places[k] - box.mean(axis=1)) > size / 2).any() for box in boxes):
+                boxes.append(np.clip(np.column_stack([places[k] - size / 2, places[k] + size / 2]), 0.0, 1.0))
+            if len(boxes) == kept:
+                break
+    return best
+
+
+def attained(part, move, place):
+    """Return the deepest that a place (3,) is in a part of a tool along a move."""
+    low, high, best = 0.0, 1.0, -np.inf
+    for _ in range(12):
+        share = np.linspace(low, high, 101)
+        depth = depths(part, move, share, np.broadcast_to(place, (101, 3)))
+        k = int(np.argmax(depth))
+        best, low, high = max(best, float(depth[k])), share[max(k - 2, 0)], share[min(k + 2, 100)]
+    return best
+
+
+def moves_for(tool, move):
+    start, end, axis, end_axis, centre, turn = move
+    motion = Motion.LINE if not turn else Motion.ARC_CCW if turn > 0 else Motion.ARC_CW
+    path = Toolpath(position=[start, end], axis=[axis, end_axis], motion=[Motion.RAPID, motion],
+                    centre=[[np.nan] * 3, [np.nan] * 3 if centre is None else centre], feed=[0.0, 1000.0], mark=[0, 0])
+    return moves_of([ProgramSection(operation="op", tool=tool, spindle=10000.0, path=path)])
+
+
+def facets(triangles):
+    return Facets.of_mesh(np.reshape(triangles, (-1, 3)), np.arange(3 * len(triangles)).reshape(-1, 3), np.arange(len(triangles)),
+                          np.arange(1, len(triangles) + 1))
+
+
+NEAR = st.tuples(*[st.integers(-300, 300).map(lambda n: n / 50)] * 3).map(np.array)
+SMALL = st.tuples(*[st.integers(-100, 100).map(lambda n: n / 100)] * 3).map(np.array)
+
+
+def unit(vector):
+    return vector / np.linalg.norm(vector)
+
+
+@st.composite
+def ways(draw):
+    """A move near the origin: a pose, a plunge, a line, a line on which the axis turns a little or much, an arc or a helix."""
+    kind = draw(st.sampled_from(["pose", "plunge", "line", "turning", "turning far", "arc", "helix"]))
+    start, axis = draw(NEAR), unit(np.array([0.0, 0.0, 1.0]) + 0.6 * draw(SMALL) + [0.0, 0.0, 0.01])
+    if kind in ("arc", "helix"):
+        across = np.cross(axis, unit(draw(SMALL) + [1.5, 0.0, 0.0])) * draw(st.floats(0.5, 8.0))
+        turn = draw(st.floats(0.1, 6.0)) * draw(st.sampled_from([-1.0, 1.0]))
+        end = start - across + math.cos(turn) * across + math.sin(turn) * np.cross(axis, across)
+        return start, end + axis * (draw(st.floats(-3.0, 3.0)) if kind == "helix" else 0.0), axis, axis, start - across, turn
+    way = {"pose": 0.0 * axis, "plunge": -draw(st.floats(0.1, 6.0)) * axis}.get(kind, draw(st.sampled_from([0.3, 3.0])) * draw(SMALL))
+    turned = {"turning": 0.05, "turning far": 1.0}.get(kind, 0.0) * draw(SMALL)
+    return start, start + way, axis, unit(axis + turned) if turned.any() else axis, None, 0.0
+
+
+TRIANGLES = st.lists(st.tuples(NEAR, SMALL, SMALL, SMALL, st.sampled_from([0.5, 5.0, 30.0])), min_size=1, max_size=3).map(
+    lambda rows: np.array([[1.5 * at + size * corner for corner in corners] for at, *corners, size in rows]))
+
+
+@settings(deadline=None, max_examples=40, phases=[Phase.explicit, Phase.generate])
+@given(form=st.sampled_from(sorted(FORMS)), move=ways(), triangles=TRIANGLES)
+def test_the_deepest_of_a_random_move_is_within_the_bound_of_a_far_finer_search(form, move, triangles):
+    tool, moves = FORMS[form], moves_for(FORMS[form], move)
+    parts = supports_of(tool)
+    touch = FacetContact(facets(triangles)).along(moves, np.array([1]), threads=1)
+    bound = tolerance.TURNING_BOUND if moves.turning[1] else tolerance.CONTACT_BOUND
+    for kind in (0, 1):
+        deepest, measured = (max(sampled_depth(p, move, t) for p in parts if p[3] == kind for t in triangles), touch.depth[0, kind])
+        assert min(deepest, DEEP) <= max(measured, 0.0) + bound
+        if measured > -np.inf:
+            # A closed body reaches a little into the next one, so the place may be in that.
+            assert min(measured, DEEP) <= max(attained(p, move, touch.place[0, kind]) for p in parts) + 1e-5
+
+
+@settings(deadline=None, max_examples=25, phases=[Phase.explicit, Phase.generate])
+@given(form=st.sampled_from(sorted(FORMS)), move=ways(), triangles=TRIANGLES, allowed=st.sampled_from([0.005, 0.02, 0.5]))
+def test_a_move_is_clear_when_it_is_measured_no_deeper(form, move, triangles, allowed):
+    engine, moves = FacetContact(facets(triangles)), moves_for(FORMS[form], move)
+    depth = float(engine.along(moves, np.array([1]), threads=1).depth.max())
+    if abs(depth - allowed) > tolerance.TURNING_BOUND:
+        assert engine.clear(moves, np.array([1]), allowed)[0] == (depth <= allowed)
+
+
+POCKET = read(block_with_pocket_shape())
+BOTH = PartContact(surfaces_of(POCKET, WORLD)), FacetContact(facets_of(POCKET, WORLD))
+
+
+@settings(deadline=None, max_examples=25, phases=[Phase.explicit, Phase.generate])
+@given(start=st.tuples(st.floats(12.0, 48.0), st.floats(8.0, 28.0), st.floats(7.9, 9.5)), way=SMALL,
+       tool=st.sampled_from([flat(6.0)(), bull(6.0, 1.0)(), bull(6.0, 3.0)(flute=4.0)]))
+def test_an_upright_tool_is_as_deep_in_triangles_as_in_closed_forms(start, way, tool):
+    end = np.array(start) + 8.0 * way * [1.0, 1.0, 0.05] + [0.01, 0.0, 0.0]
+    moves = moves_of([program_section(tool, [start, end])])
+    strips, triangles = BOTH
+    exact, found = strips.along(moves).depth[1], np.maximum(triangles.along(moves, np.array([1]), threads=1).depth[0], 0.0)
+    bound = 2 * tolerance.CONTACT_BOUND + triangles.facets.bound
+    assert np.abs(np.minimum(exact, DEEP) - np.minimum(found, DEEP)).max() <= bound
