@@ -33,8 +33,10 @@ from trunnion.verify.stock.mesh import mesh_of
 from trunnion.verify.stock.stock import Snapshot
 from trunnion.verify.times import seconds_of
 
-FINENESS = 400
-"""Cells along the longest side of the blank when nobody chooses: finer than a picture shows, coarse enough to be cut at once."""
+FINENESS = {("z",): 900}
+"""Cells along the longest side of the blank when nobody chooses, for heights: as fine as a picture shows, and still cut at once."""
+COARSER = 400
+"""The same for several bundles."""
 SNAPSHOTS = 32
 """Places of the plan that the stock is remembered at."""
 _LEAST = 1e-3
@@ -52,14 +54,15 @@ class Playback:
     """A plan that can be looked at from its first block to its last. Not for several threads at a time."""
 
     def __init__(self, session: Session, bench: Bench, cell: float = 0.0) -> None:
-        """`cell` mm is the fineness of the stock; 0: the blank's length over `FINENESS`. Raises `BadCall` where nothing can be played."""
+        """`cell` mm is the fineness of the stock; 0: as fine as a picture shows. Raises `BadCall` where nothing can be played."""
         if session.process is None or session.blank is None:
             raise BadCall("no toolpaths yet: generate them first")
         programs, files = played(session)
         if not any(p.sections for p in programs):
             raise BadCall("no toolpaths yet: generate them first")
         self.blank = session.blank
-        self.cell = cell or float(np.max(self.blank.size)) / FINENESS
+        bundles = bundles_of(programs, self.blank, checked(choose(ProofSettings, session.choices)))
+        self.cell = cell or float(np.max(self.blank.size)) / FINENESS.get(bundles, COARSER)
         self._programs = programs
         self._moves = [moves_of(p.sections) for p in programs]
         machine = bench.shop.machines[programs[0].setup.machine]
@@ -67,7 +70,7 @@ class Playback:
         self._starts = np.cumsum([0, *(len(m) for m in self._moves)])
         self._every = max(1, -(-len(self.timeline) // SNAPSHOTS))
         self._chunk = _FIRST_CHUNK
-        self._stock = Stock.of(self.blank, self.cell, bundles_of(programs, self.blank, checked(choose(ProofSettings, session.choices))))
+        self._stock = Stock.of(self.blank, self.cell, bundles)
         self._position, self._removed = 0.0, 0.0
         self._kept: dict[int, tuple[Snapshot, float]] = {0: (self._stock.snapshot(), 0.0)}
 
