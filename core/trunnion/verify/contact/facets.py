@@ -23,7 +23,9 @@ from trunnion.verify.motion import Moves
 from trunnion.verify.threads import in_parallel
 
 CHUNK = 100
-"""Moves between two looks at cancel."""
+"""Moves between two looks at cancel, fewer when they are long."""
+SHORT = 10.0
+"""mm: a move so much longer than this counts as several."""
 LEAF = 4
 """Most triangles of a leaf."""
 
@@ -84,14 +86,22 @@ class FacetContact:
                       face_depth=np.full((f, 2), -np.inf), face_move=np.full((f, 2), -1))
         merging = Lock()
 
+        starts = _starts(1.0 + moves.length[rows] / SHORT)
+
         def work(first: int, last: int) -> None:
             face_depth, face_move = np.full((f, 2), -np.inf), np.full((f, 2), -1)
-            kernel.contact_loop(first, last, rows, moves.start, moves.end, moves.start_axis, moves.end_axis, moves.centre, moves.sweep,
+            kernel.contact_loop(int(starts[first]), int(starts[last]), rows, moves.start, moves.end, moves.start_axis, moves.end_axis, moves.centre, moves.sweep,
                                 moves.tool, bodies.arc, bodies.piece, bodies.start, tree.boxes, tree.skip, tree.leaves, tree.node_face,
                                 tree.corners, tree.normals, tree.face, f, bound, enough, settle, touch.depth, touch.face, touch.place,
                                 face_depth, face_move)
             with merging:
                 deepen(touch.face_depth, touch.face_move, face_depth, face_move)
 
-        in_parallel(work, k, CHUNK, progress, "Measuring gouges and collisions of leaning tools", threads)
+        in_parallel(work, len(starts) - 1, 1, progress, "Measuring gouges and collisions of leaning tools", threads)
         return touch
+
+
+def _starts(cost: Floats) -> Ints:
+    """Return where chunks of moves (k,) begin, and their end, so that each costs about `CHUNK`; none is longer than that many moves."""
+    chunk = (np.cumsum(cost) - cost) // CHUNK
+    return np.append(np.flatnonzero(np.diff(chunk, prepend=-1.0)), len(cost))
