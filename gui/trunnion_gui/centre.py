@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable
 
 import numpy as np
-from PySide6.QtCore import QPointF, Qt, Signal
+from PySide6.QtCore import QPointF, QRectF, Qt, Signal
 from PySide6.QtGui import QResizeEvent
 from PySide6.QtWidgets import QHBoxLayout, QLabel, QSlider, QVBoxLayout, QWidget
 
@@ -28,7 +28,7 @@ from trunnion_gui.words import amount, fine_amount, kind_words, sentence
 
 _EDGE = 14
 _TIP_AWAY = 16
-_CLOSE_LOOK = 12.0
+_CLOSE_LOOK = 30.0
 """mm above and below a worst place that a click on it shows."""
 
 
@@ -137,6 +137,8 @@ class Centre(QWidget):
     def _place(self) -> None:
         self.legend.move(_EDGE, _EDGE)
         self.scale.move(_EDGE, _EDGE)
+        card = next((c for c in (self.scale, self.legend) if c.isVisible()), None)
+        self.scene.keep_clear(QRectF(card.geometry()).adjusted(-_EDGE, -_EDGE, _EDGE, _EDGE) if card is not None else QRectF())
         self.welcome.move((self.scene.width() - self.welcome.width()) // 2, max((self.scene.height() - self.welcome.height()) // 2 - 20, 8))
 
     def _show_mesh(self) -> None:
@@ -255,7 +257,7 @@ class Centre(QWidget):
 
     def look_at_place(self, place: WorstPlace) -> None:
         """Go to a worst place of the map."""
-        self.scene.look_at(place.point, _CLOSE_LOOK)
+        self.scene.look_at(place.point, place.face, _CLOSE_LOOK)
         self.scene.show_label(fine_amount(place.deviation), place.point)
 
     def _point(self, found: tuple[int, float, tuple[float, float, float]] | None, at: QPointF) -> None:

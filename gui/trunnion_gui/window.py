@@ -231,7 +231,7 @@ class Window(QMainWindow):
 
     def showEvent(self, event: QShowEvent) -> None:
         super().showEvent(event)
-        QTimer.singleShot(0, self._hide_old_tabs)
+        QTimer.singleShot(0, self._settle)
 
     def closeEvent(self, event: QCloseEvent) -> None:
         if self.confirms_closing and self.document.has_part and self.document.history.is_dirty and not self._may_close():
@@ -380,10 +380,10 @@ class Window(QMainWindow):
         self.places = DeviationDock(self.document)
         self.playback = PlaybackBar(self.player, self.registry, self.theme)
         self.centre.add_bar(self.playback)
-        steps = self._dock("steps", tr("Steps"), self._steps(), _LEFT)
+        self._dock("steps", tr("Steps"), self._steps(), _LEFT)
         features = self._dock("features", tr("Features"), self.features, _RIGHT)
         process = self._dock("process", tr("Process tree"), self.process, _RIGHT)
-        properties = self._dock("properties", tr("Properties"), self.properties, _RIGHT)
+        self._dock("properties", tr("Properties"), self.properties, _RIGHT)
         self.messages_dock = self._dock("messages", tr("Messages"), self.messages, _BELOW)
         code = self._dock("code", tr("G-code"), self.code, _BELOW)
         listing = self._dock("listing", tr("Listing"), self.listing, _BELOW)
@@ -396,9 +396,21 @@ class Window(QMainWindow):
             dock.setTitleBarWidget(QWidget())  # the tab is title enough, and can be dragged
         features.raise_()
         self.messages_dock.raise_()
-        self.resizeDocks([steps, features], [_LEFT_WIDTH, _RIGHT_WIDTH], Qt.Orientation.Horizontal)
-        self.resizeDocks([features, properties], [420, 300], Qt.Orientation.Vertical)
-        self.resizeDocks([self.messages_dock], [170], Qt.Orientation.Vertical)
+        self._size_docks()
+
+    def _size_docks(self) -> None:
+        def dock(name: str) -> QDockWidget:
+            return self.findChild(QDockWidget, name)  # type: ignore[return-value]
+
+        self.resizeDocks([dock("steps"), dock("features")], [_LEFT_WIDTH, _RIGHT_WIDTH], Qt.Orientation.Horizontal)
+        self.resizeDocks([dock("features"), dock("properties")], [420, 300], Qt.Orientation.Vertical)
+        self.resizeDocks([dock("messages")], [170], Qt.Orientation.Vertical)
+
+    def _settle(self) -> None:
+        """Put the docks right once the window is there: Qt forgets some sizes that were asked for before."""
+        self._hide_old_tabs()
+        if remembered.arrangement("state") is None:
+            self._size_docks()
 
     def _hide_old_tabs(self) -> None:
         """Hide the tab bars that Qt made while docks were put together and has no use for: they would show where docks move away."""

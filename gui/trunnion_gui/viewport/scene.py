@@ -6,8 +6,8 @@ from collections.abc import Iterable, Mapping, Sequence
 from typing import Any
 
 import numpy as np
-from PySide6.QtCore import QEvent, QObject, QPointF, Qt, Signal
-from PySide6.QtGui import QMouseEvent
+from PySide6.QtCore import QEvent, QObject, QPointF, QRectF, Qt, Signal
+from PySide6.QtGui import QMouseEvent, QPolygonF, QResizeEvent
 from PySide6.QtWidgets import QVBoxLayout, QWidget
 
 from trunnion.geometry.frame import WORLD, Frame
@@ -44,10 +44,44 @@ VIEWS: dict[str, tuple[tuple[float, float, float], tuple[float, float, float]]] 
 
 _ROOM = 1.12
 """How much more than the part a fitted picture shows."""
+_LEAST_ROOM = 120.0
+"""Pixels: a narrower or lower strip beside a legend is no place for a part."""
+_DIRECTIONS = 24
+_ASIDE = 0.45
+"""How far from straight above a worst place the eye goes."""
 _CLICK = 4
 """A press and a release this many pixels apart are a click; further apart they turn the part."""
 _FADED = 0.8
 """How far the kinds' colours fade towards the part's own while toolpaths are to be seen on it."""
+
+
+def best_fit(plan: np.ndarray, width: float, height: float, covered: QRectF) -> tuple[float, tuple[float, float]]:
+    """Return mm a pixel, and what should be in the middle of a picture, for points (v, 2) in mm (right, up) to fill it.
+
+    When they would lie under the rectangle that is covered, they go beside or below it, whichever shows them larger.
+    """
+    low, high = plan.min(axis=0), plan.max(axis=0)
+
+    def fitted(free: QRectF) -> tuple[float, tuple[float, float]]:
+        scale = float(max((high[0] - low[0]) / free.width(), (high[1] - low[1]) / free.height(), 1e-9) * _ROOM)
+        away = free.center() - QPointF(width / 2, height / 2)
+        middle = (low + high) / 2
+        return scale, (float(middle[0] - away.x() * scale), float(middle[1] + away.y() * scale))
+
+    whole = QRectF(0, 0, width, height)
+    best = fitted(whole)
+    x, y = width / 2 + (plan[:, 0] - best[1][0]) / best[0], height / 2 - (plan[:, 1] - best[1][1]) / best[0]
+    if covered.isEmpty() or not outline(x, y).intersects(QPolygonF(covered)):
+        return best
+    beside, below = whole.adjusted(covered.right(), 0, 0, 0), whole.adjusted(0, covered.bottom(), 0, 0)
+    return min((fitted(free) for free in (beside, below) if free.width() > _LEAST_ROOM and free.height() > _LEAST_ROOM), default=best)
+
+
+def outline(x: np.ndarray, y: np.ndarray) -> QPolygonF:
+    """Return the points that are farthest in each of some directions, as a polygon around all."""
+    angle = np.linspace(0.0, 2 * np.pi, _DIRECTIONS, endpoint=False)
+    rows = [int(np.argmax(x * c + y * s)) for c, s in zip(np.cos(angle), np.sin(angle))]
+    return QPolygonF([QPointF(float(x[r]), float(y[r])) for r in rows])
 
 
 class Scene(QWidget):
@@ -81,7 +115,8 @@ class Scene(QWidget):
         self._section: float | None = None
         self._map: DeviationLayer | None = None
         self._is_playing = False
-        self._room = (0.0, 0.0)
+        self._covered = QRectF()
+        self._fitted: tuple[float, ...] = ()
         self.view.enable_parallel_projection()
         self.use_theme(theme)
         self.view.installEventFilter(self)
@@ -172,15 +207,25 @@ class Scene(QWidget):
         """Show the way of the tip: points (k + 1, 3), and whether each chord (k,) was a rapid."""
         draw_trail(self.view, points, rapid)
 
-    def look_at(self, place: Sequence[float], half_height: float) -> None:
-        """Bring a place into the middle of the picture, from the same side, showing so many mm above and below it."""
+    def look_at(self, place: Sequence[float], face: int, half_height: float) -> None:
+        """Bring a place on a face into the middle of the picture, from above its face, showing so many mm above and below it."""
         camera = self.view.camera
-        away = np.subtract(camera.position, camera.focal_point)
-        camera.focal_point = tuple(place)
-        camera.position = tuple(np.add(place, away))
+        normal = self._normal(face, np.asarray(place))
+        away = normal + self._frame.z if normal @ self._frame.z > -0.5 else normal
+        away = away + _ASIDE * self._frame.world_direction(np.array([-0.6, -0.8, 0.0]))
+        away = away / np.linalg.norm(away) * np.linalg.norm(np.subtract(camera.position, camera.focal_point))
+        camera.focal_point, camera.position, camera.up = tuple(place), tuple(np.add(place, away)), tuple(self._frame.z)
         camera.parallel_scale = half_height
         self.view.renderer.ResetCameraClippingRange()
         self.view.render()
+
+    def _normal(self, face: int, place: np.ndarray) -> np.ndarray:
+        """Return the direction that a face looks in at a place."""
+        rows = np.flatnonzero(self._mesh.face == face) if self._mesh is not None else np.zeros(0, int)
+        if self._mesh is None or not len(rows):
+            return np.asarray(self._frame.z)
+        nearest = np.argmin(np.linalg.norm(self._mesh.corners()[rows].mean(axis=1) - place, axis=1))
+        return self._mesh.normals()[rows[nearest]]
 
     def show_label(self, text: str, at: tuple[float, ...] = ()) -> None:
         """Write a size at a point of the part."""
@@ -198,12 +243,19 @@ class Scene(QWidget):
         self.fit()
 
     def fit(self) -> None:
-        """Fit everything into the picture."""
+        """Fit everything into the picture, beside or below what lies over it."""
         bounds = self._bounds()
         self.view.reset_camera(bounds=bounds)
         if bounds is not None:
-            self.view.camera.parallel_scale = self._tight_scale(bounds)
+            self._fit_tightly()
+        self._fitted = self._camera()
         self.view.render()
+
+    def keep_clear(self, covered: QRectF) -> None:
+        """Say which part of the picture something lies over; a picture that nobody has turned since it was fitted is fitted anew."""
+        if covered != self._covered:
+            self._covered = covered
+            self._fit_again()
 
     def section(self, share: float | None) -> None:
         """Cut the part open across the frame's z at a share of its height; None shows it whole."""
@@ -299,17 +351,35 @@ class Scene(QWidget):
                 colours[tag] = rgb(mixed(own, theme.selection, 0.85 if self._is_filled else 0.0))
         return colours
 
-    def _tight_scale(self, bounds: tuple[float, ...]) -> float:
-        """Return half the height of the picture in mm that shows a box with a little room around it."""
+    def resizeEvent(self, event: QResizeEvent) -> None:
+        super().resizeEvent(event)
+        self._fit_again()
+
+    def _fit_again(self) -> None:
+        if self._fitted and self._fitted == self._camera():
+            self.fit()
+
+    def _camera(self) -> tuple[float, ...]:
+        camera = self.view.camera
+        return (*camera.position, *camera.focal_point, *camera.up, camera.parallel_scale)
+
+    def _fit_tightly(self) -> None:
+        """Choose scale and middle of the picture so that the part is as large as it can be without lying under what covers it."""
+        assert self._mesh is not None
         camera = self.view.camera
         forward = np.subtract(camera.focal_point, camera.position)
         forward = forward / np.linalg.norm(forward)
         right = np.cross(forward, camera.up)
         right = right / np.linalg.norm(right)
-        corners = np.array([[bounds[i], bounds[2 + j], bounds[4 + k]] for i in (0, 1) for j in (0, 1) for k in (0, 1)])
-        away = corners - camera.focal_point
-        wide, high = np.abs(away @ right).max(), np.abs(away @ np.cross(right, forward)).max()
-        return float(max(high, wide * self.view.height() / max(self.view.width(), 1)) * _ROOM)
+        up = np.cross(right, forward)
+        plan = np.asarray(self._mesh.points - np.asarray(camera.focal_point)) @ np.column_stack([right, up])
+        width, height = max(self.view.width(), 1), max(self.view.height(), 1)
+        scale, (x, y) = best_fit(plan, width, height, self._covered)
+        shift = x * right + y * up
+        camera.focal_point = tuple(np.add(camera.focal_point, shift))
+        camera.position = tuple(np.add(camera.position, shift))
+        camera.parallel_scale = scale * height / 2
+        self.view.renderer.ResetCameraClippingRange()
 
     def _bounds(self) -> tuple[float, ...] | None:
         if self._mesh is None:

@@ -27,7 +27,7 @@ class DeviationLayer:
         painted.SetName("rgb")
         surface.GetPointData().SetScalars(painted)
         surface.GetPointData().SetNormals(numpy_to_vtk(normals_of(Mesh(shown.points, shown.triangles, shown.face)), deep=True))
-        self.actor = view.add_mesh(surface, scalars="rgb", rgb=True, name="deviation", pickable=False, reset_camera=False,
+        self.actor = view.add_mesh(surface, scalars="rgb", rgb=True, name="deviation", reset_camera=False,
                                    show_scalar_bar=False, ambient=0.42, diffuse=0.62, specular=0.05, copy_mesh=False)
         self.actor.prop.interpolation = "Phong"
         self._picker: FacePicker | None = None
