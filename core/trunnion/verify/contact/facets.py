@@ -90,10 +90,10 @@ class FacetContact:
 
         def work(first: int, last: int) -> None:
             face_depth, face_move = np.full((f, 2), -np.inf), np.full((f, 2), -1)
-            kernel.contact_loop(int(starts[first]), int(starts[last]), rows, moves.start, moves.end, moves.start_axis, moves.end_axis, moves.centre, moves.sweep,
-                                moves.tool, bodies.arc, bodies.piece, bodies.start, tree.boxes, tree.skip, tree.leaves, tree.node_face,
-                                tree.corners, tree.normals, tree.face, f, bound, enough, settle, touch.depth, touch.face, touch.place,
-                                face_depth, face_move)
+            kernel.contact_loop(int(starts[first]), int(starts[last]), rows, moves.start, moves.end, moves.start_axis, moves.end_axis,
+                                moves.centre, moves.sweep, moves.tool, bodies.arc, bodies.piece, bodies.start, tree.boxes, tree.skip,
+                                tree.leaves, tree.node_face, tree.corners, tree.normals, tree.face, f, bound, enough, settle,
+                                touch.depth, touch.face, touch.place, face_depth, face_move)
             with merging:
                 deepen(touch.face_depth, touch.face_move, face_depth, face_move)
 
