@@ -1,0 +1,1 @@
+"""Plans for complex curved surfaces: variable parameters for local features and the rest."""

@@ -1,0 +1,58 @@
+"""Scallops, stepovers, and the paper's efficiency figures by the same arithmetic."""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+import pytest
+
+from trunnion.plan.surface.efficiency import AreaRate, gain, mixed_time, saving
+from trunnion.toolpath.surface.scallop import (
+    height_of,
+    radius_across,
+    roughness,
+    scallop_on_plane,
+    stepover_on_curve,
+    stepover_on_plane,
+)
+
+LARGE = AreaRate(area=1440.73, time=2 * 3600 + 16 * 60 + 2)
+SMALL = AreaRate(area=1440.73, time=2 * 3600 + 54 * 60 + 22)
+
+
+@pytest.mark.parametrize(("large", "small", "gained", "saved"), [
+    ((1440.73,), (), 28.18, 21.98), ((3391.81, 5432.81), (2746.51,), 20.14, 16.77), ((735.836,), (737.478,), 12.33, 10.98)])
+def test_the_three_gains_of_the_paper(large, small, gained, saved) -> None:
+    old, new = mixed_time((), (*large, *small), LARGE, SMALL), mixed_time(large, small, LARGE, SMALL)
+    assert (round(100 * gain(old, new), 2), round(100 * saving(old, new), 2)) == (gained, saved)
+
+
+def test_a_stepover_leaves_the_scallop_it_was_chosen_for() -> None:
+    assert scallop_on_plane(4.0, stepover_on_plane(4.0, 0.004)) == pytest.approx(0.004)
+
+
+def test_equal_scallops_of_a_wider_cutter_gain_the_root_of_the_radii() -> None:
+    assert stepover_on_plane(4.0, 0.004) / stepover_on_plane(3.0, 0.004) == pytest.approx(math.sqrt(8 / 6), rel=1e-3)
+
+
+def test_hollows_allow_wider_steps_than_bosses() -> None:
+    boss, plane, hollow, fit = stepover_on_curve(5.0, 0.01, np.array([0.1, 0.0, -0.1, -0.2]))
+    assert (boss, plane, hollow, fit) == pytest.approx((math.sqrt(0.4 / 1.5), math.sqrt(0.4), math.sqrt(0.8), math.inf))
+
+
+def test_roughness_of_parabolic_grooves_by_integration() -> None:
+    u = np.linspace(-1.0, 1.0, 200_001)
+    z = 4.0 * u * u
+    assert roughness(0.004) == pytest.approx(np.abs(z - z.mean()).mean(), rel=1e-4)
+
+
+def test_the_papers_scallop_for_its_roughness() -> None:
+    assert height_of(1.6) == pytest.approx(0.004)
+
+
+def test_a_leaned_flat_end_is_as_round_as_its_ellipse() -> None:
+    # The rim x = 5 cos a, z = 5 sin(lead) (1 - sin a): near the lowest point z is x^2 sin(lead) / 10.
+    lead = math.radians(10.0)
+    assert radius_across(5.0, 0.0, lead) == pytest.approx(5.0 / math.sin(lead))
+    assert (radius_across(5.0, 5.0, lead), radius_across(5.0, 1.0, 0.0)) == (5.0, math.inf)
