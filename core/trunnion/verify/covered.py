@@ -11,6 +11,7 @@ from trunnion import tolerance
 from trunnion.findings import Finding, error, face_tags, info, warning
 from trunnion.geometry.arrays import Bools, Floats, Ints
 from trunnion.model.blank import Blank
+from trunnion.model.material import Machine
 from trunnion.model.tool import Tool
 from trunnion.model.verdict import Deviation, FaceProof
 from trunnion.progress import QUIET, Progress
@@ -36,11 +37,11 @@ class Covered:
 
 
 def covered(samples: Samples, tags: Ints, sides: Sequence[Side], blank: Blank, proofs: Sequence[SetupProof], tools: Sequence[Tool],
-            settings: ProofSettings, planned: Collection[int], progress: Progress = QUIET) -> Covered:
+            settings: ProofSettings, planned: Collection[int], progress: Progress = QUIET, machine: Machine | None = None) -> Covered:
     """Return what all setups together finish of the part.
 
     `samples` are in the frame of the first side; `tags` (f,) those of the face rows; `tools` the catalogue's, tried from every side where
-    something is not finished, as if nothing held the part.
+    something is not finished, as if nothing held the part. They lean where `machine` does, which needs facets of all faces.
     """
     frame = sides[0].frame
     low, high = blank_box(blank, frame)
@@ -52,7 +53,7 @@ def covered(samples: Samples, tags: Ints, sides: Sequence[Side], blank: Blank, p
     finished = (np.abs(left) <= settings.tolerance + settings.allowance) & ~blank_face[samples.face]
     open_rows = np.flatnonzero(~finished & ~blank_face[samples.face] & (left > 0.0))
     lost = np.zeros(len(samples), bool)
-    lost[_unreached(samples, open_rows, sides, tools, settings, progress)] = True
+    lost[_unreached(samples, open_rows, sides, tools, settings, progress, machine)] = True
     area, done, away = (_by_face(samples, samples.area * share, n) for share in (1.0, finished, lost))
     wanted = float(area[~blank_face].sum())
     reachable_area = wanted - float(away.sum())
@@ -65,7 +66,7 @@ def covered(samples: Samples, tags: Ints, sides: Sequence[Side], blank: Blank, p
 
 
 def _unreached(samples: Samples, rows: Ints, sides: Sequence[Side], tools: Sequence[Tool], settings: ProofSettings,
-               progress: Progress) -> Ints:
+               progress: Progress, machine: Machine | None) -> Ints:
     """Return the rows of samples that no cutter reaches from any side."""
     home = sides[0].frame
     for k, side in enumerate(sides):
@@ -73,7 +74,7 @@ def _unreached(samples: Samples, rows: Ints, sides: Sequence[Side], tools: Seque
             face=samples.face, area=samples.area, point=side.frame.to_local(home.to_world(samples.point)),
             normal=side.frame.local_direction(home.world_direction(samples.normal)))
         share = progress.part(k / len(sides), (k + 1) / len(sides))
-        reached = Reach(side.part, tools, settings.tolerance).reached(here, rows, share)
+        reached = Reach(side.part, tools, settings.tolerance, machine).reached(here, rows, share)
         rows = rows[~reached]
     return rows
 

@@ -44,14 +44,15 @@ def prove(programs: Sequence[Program], part: Part, blank: Blank, tools: Sequence
     """
     frames = [p.setup.frame for p in programs] or [blank.frame]
     surfaces = [surfaces_of(part, f, progress.part(0.0, 0.05)) for f in frames]
-    facets = _facets(programs, part, frames, surfaces, progress.part(0.05, 0.1))
+    facets = _facets(programs, part, frames, surfaces, machine, progress.part(0.05, 0.1))
     return prove_surfaces(programs, surfaces, blank, tools, machine, settings, progress.part(0.1, 1.0), planned_faces, material, facets)
 
 
-def _facets(programs: Sequence[Program], part: Part, frames: Sequence[Frame], surfaces: Sequence[Surfaces],
+def _facets(programs: Sequence[Program], part: Part, frames: Sequence[Frame], surfaces: Sequence[Surfaces], machine: Machine,
             progress: Progress) -> list[Facets]:
-    """Return the part's faces as triangles in each frame: all for a tool that leans, else those without closed form; none when none is."""
-    leans = any((np.abs(s.path.axis - [0.0, 0.0, 1.0]) > AXIS_LEAN).any() for p in programs for s in p.sections)
+    """Return the part's faces as triangles in each frame: all for a tool that leans, or a machine on which one may be asked to, else those
+    without closed form; none when none is."""
+    leans = bool(machine.rotary) or any((np.abs(s.path.axis - [0.0, 0.0, 1.0]) > AXIS_LEAN).any() for p in programs for s in p.sections)
     free = {int(s.tag[row]) for s in surfaces for row in s.free}
     if not leans and not free:
         return []
@@ -83,7 +84,8 @@ def prove_surfaces(programs: Sequence[Program], surfaces: Sequence[Surfaces], bl
         said, offered = load_findings(p, machine, material, settings)
         findings, offers = findings + said, offers + offered
         findings += limit_findings(p.program.setup.name, p.program.sections, p.moves, p.stands, machine)
-    whole = covered(samples, surfaces[0].tag, sides, blank, proofs, tools, settings, planned_faces, progress.part(0.8, 1.0))
+    whole = covered(samples, surfaces[0].tag, sides, blank, proofs, tools, settings, planned_faces, progress.part(0.8, 1.0),
+                    machine if facets else None)
     findings += whole.findings
     operations = tuple(o for p in proofs for o in operation_proofs(p, surfaces[0].tag, samples.area, machine, settings))
     return Verdict(
