@@ -3,8 +3,9 @@
 At some positions along a move (probes) circles around the cutter at some heights (rings) are looked up in the stock as it is. Of a circle
 only the front counts: where the velocity points out of the cutter. Of a move straight along the axis it is the whole circle.
 
-The lookups see columns, not points: a column within half a cell's diagonal may stand for its neighbour. So the front is moved ahead by as
-much, where nothing was cut by the move before, and keeps as much inside the cutter's width, where a wall beside it is not touched.
+The lookups see columns, not points: a column within half a cell's diagonal (the margin) may stand for its neighbour. So the front keeps as
+much inside the cutter's width, where a wall beside it is not touched; and right behind the end of the move before it is moved ahead by as
+much, to where that has cut nothing.
 """
 
 from __future__ import annotations
@@ -23,6 +24,8 @@ ABOVE = 1e-6
 """mm; a column higher than a floor by less is the floor."""
 STEEP = 1.0
 """A move that goes down by more than this for each mm in plan cuts with its whole circle, as a plunge does."""
+CLEAR = 6.0
+"""Margins from the start of a move at which the front is clear of what the move before has cut."""
 STILL = 1e-9
 LOW, HIGH = range(2)
 FLUTE_STEPS = 64
@@ -67,9 +70,10 @@ def look_in_field(top: Floats, origin: Floats, pitch: float, floor: float, move:
     if length <= STILL and not whole:
         return
     sides = 2 if whole else 1
-    ahead = 0.0 if whole else margin
     for probe in range(first, last):
-        x, y, z, ux, uy = _place(move, (probe - first + 1) / (last - first))
+        share = (probe - first + 1) / (last - first)
+        x, y, z, ux, uy = _place(move, share)
+        ahead = min(max(CLEAR * margin - share * length, 0.0), margin)
         if whole and length <= STILL:
             ux = 1.0
         ox, oy = (x - origin[0]) * cell, (y - origin[1]) * cell
@@ -164,7 +168,8 @@ def look_in_intervals(count: Ints, low: Floats, high: Floats, origin: Floats, pi
     margin, cell = 0.70711 * pitch, 1.0 / pitch
     tip, axis, speed, turning, forward, across = np.empty(3), np.empty(3), np.empty(3), np.empty(3), np.empty(3), np.empty(3)
     for probe in range(first, last):
-        _pose(start, end, start_axis, end_axis, centre, sweep, (probe - first + 1) / (last - first), tip, axis, speed, turning)
+        share = (probe - first + 1) / (last - first)
+        _pose(start, end, start_axis, end_axis, centre, sweep, share, tip, axis, speed, turning)
         bottom, most = np.inf, -np.inf
         for k in range(-len(flute), RINGS):
             # First the heights along the flutes on a few meridians, for the depth; then the rings, for the angle.
@@ -191,10 +196,11 @@ def look_in_intervals(count: Ints, low: Floats, high: Floats, origin: Floats, pi
             for c in range(3):
                 across[c] = axis[(c + 1) % 3] * forward[(c + 2) % 3] - axis[(c + 2) % 3] * forward[(c + 1) % 3]
             reach, hits = max(radius - margin, 0.0), 0
+            ahead = min(max(CLEAR * margin - share * size, 0.0), margin)
             step = 1 if k >= 0 else max(len(circle) // MERIDIANS, 1)
             for side in range(2 if whole else 1):
                 for m in range(0, len(circle), step):
-                    f = (1.0 - 2.0 * side) * reach * circle[m, 0] if whole else radius * circle[m, 0] + margin
+                    f = (1.0 - 2.0 * side) * reach * circle[m, 0] if whole else radius * circle[m, 0] + ahead
                     g = min(max(radius * circle[m, 1], -reach), reach)
                     x = tip[0] + f * forward[0] + g * across[0] + height * axis[0]
                     y = tip[1] + f * forward[1] + g * across[1] + height * axis[1]
