@@ -31,7 +31,8 @@ BUCKET = 4
 """Spans in a node without children: as many as cost about what two nodes do."""
 _LEVEL = 1e-9
 _ROUNDS = 60
-_NO_END = 2**62
+NO_END = 2**62
+"""A row that no move has: all count."""
 
 _depth = njit(nogil=True, inline="always")(depth_in_body.py_func)
 """Written into its callers: the call would cost ten times its arithmetic (measured)."""
@@ -169,8 +170,8 @@ def least_on_chord(arcs: Floats, first: int, last: int, x0: float, y0: float, z0
 
 
 @njit(cache=True, nogil=True)
-def _level_rho(w: Floats, x: float, y: float, z: float, t0: float, t1: float) -> tuple[float, float]:
-    """Return the smallest distance of a point from the axis along a way across the axis, and its height above the tip."""
+def _level_rho(w: Floats, x: float, y: float, z: float, t0: float, t1: float) -> tuple[float, float, float]:
+    """Return the smallest distance of a point from the axis along a way across the axis, its height above the tip, and where."""
     ax, ay, h = in_tool(w, x, y, z, t0)
     bx, by, _h = in_tool(w, x, y, z, t1)
     if w[RADIUS] > 0.0:
@@ -180,13 +181,14 @@ def _level_rho(w: Floats, x: float, y: float, z: float, t0: float, t1: float) ->
         off = math.atan2(py, px) - (w[PHASE] + 0.5 * (t0 + t1) * w[SWEEP])
         off -= 2.0 * math.pi * math.floor(off / (2.0 * math.pi) + 0.5)
         if abs(off) <= 0.5 * abs(w[SWEEP]) * (t1 - t0):
-            return abs(math.sqrt(px * px + py * py) - w[RADIUS]), h
-        return math.sqrt(min(ax * ax + ay * ay, bx * bx + by * by)), h
+            return abs(math.sqrt(px * px + py * py) - w[RADIUS]), h, 0.5 * (t0 + t1) + off / w[SWEEP]
+        square, other = ax * ax + ay * ay, bx * bx + by * by
+        return math.sqrt(min(square, other)), h, (t0 if square <= other else t1)
     dx, dy = bx - ax, by - ay
     square = dx * dx + dy * dy
     t = min(max(-(ax * dx + ay * dy) / square, 0.0), 1.0) if square > 0.0 else 0.0
     px, py = ax + t * dx, ay + t * dy
-    return math.sqrt(px * px + py * py), h
+    return math.sqrt(px * px + py * py), h, t0 + t * (t1 - t0)
 
 
 @njit(cache=True, nogil=True)
@@ -203,16 +205,16 @@ def _sag(w: Floats, span: float, far: float) -> float:
 
 @njit(cache=True, nogil=True)
 def left_along(w: Floats, flutes: Flutes, tool: int, x: float, y: float, z: float, t0: float, t1: float, best: float, bound: float,
-               endless: bool, spans: Floats) -> float:
-    """Return the smaller of `best` and the signed distance of a point to what cuts of a tool along a way between two shares.
+               endless: bool, spans: Floats) -> tuple[float, float]:
+    """Return the smaller of `best` and the signed distance of a point to what cuts of a tool along a way between two shares, and where.
 
     What is returned is attained; the true one is at most `bound` smaller. `spans` (k, 2) is room to work in.
     """
     if w[TURN] == 0.0 and abs(w[DX] * w[AX] + w[DY] * w[AY] + w[DZ] * w[AZ]) <= _LEVEL:
-        rho, h = _level_rho(w, x, y, z, t0, t1)
-        return min(best, flute_distance(flutes, tool, rho, h, endless))
+        rho, h, at = _level_rho(w, x, y, z, t0, t1)
+        return min(best, flute_distance(flutes, tool, rho, h, endless)), at
     spans[0, 0], spans[0, 1] = t0, t1
-    top = 1
+    top, at = 1, t0
     while top > 0:
         top -= 1
         a, b = spans[top, 0], spans[top, 1]
@@ -229,14 +231,16 @@ def left_along(w: Floats, flutes: Flutes, tool: int, x: float, y: float, z: floa
             continue
         t = a + share * (b - a)
         xt, yt, zt = in_tool(w, x, y, z, t)
-        best = min(best, flute_distance(flutes, tool, math.sqrt(xt * xt + yt * yt), zt, endless))
+        value = flute_distance(flutes, tool, math.sqrt(xt * xt + yt * yt), zt, endless)
+        if value < best:
+            best, at = value, t
         if least - sag >= best - bound or top + 2 > len(spans):
             continue
         middle = t if 0.1 <= share <= 0.9 else 0.5 * (a + b)
         spans[top, 0], spans[top, 1] = a, middle
         spans[top + 1, 0], spans[top + 1, 1] = middle, b
         top += 2
-    return best
+    return best, at
 
 
 @njit(cache=True, nogil=True)
@@ -252,13 +256,14 @@ def _node_least(tree: Tree, flutes: Flutes, n: int, x: float, y: float, z: float
 
 @njit(cache=True, nogil=True)
 def nearest_span(x: float, y: float, z: float, tree: Tree, flutes: Flutes, best: float, by: int, bound: float, before: int, above: bool,
-                 enough: float, nodes: Ints, least: Floats, spans: Floats) -> tuple[float, int]:
-    """Return the smaller of `best` and the signed distance of a point to what cuts along the spans of a tree, and the move (else `by`).
+                 enough: float, nodes: Ints, least: Floats, spans: Floats) -> tuple[float, int, int, float]:
+    """Return the smaller of `best` and the signed distance of a point to what cuts along the spans of a tree, the move (else `by`), the
+    row of its way (else -1), and the share of it where.
 
     Moves from row `before` on don't count. `above`: an upright plain cutter has also removed what is above it. The search ends at the first
     value not above `enough`. nodes and least (k,), spans (k, 2) are room to work in.
     """
-    top = 0
+    top, row_at, share_at = 0, -1, 0.0
     for r in range(len(tree.root)):
         nodes[top], least[top] = tree.root[r], _node_least(tree, flutes, tree.root[r], x, y, z, above)
         top += 1
@@ -287,10 +292,10 @@ def nearest_span(x: float, y: float, z: float, tree: Tree, flutes: Flutes, best:
             most = tree.reach[k] + 0.5 * turn * math.sqrt(mx * mx + my * my + mz * mz)
             if flute_distance(flutes, tool, math.sqrt(mx * mx + my * my), mz, endless) - most >= best - bound:
                 continue
-            value = left_along(w, flutes, tool, x, y, z, tree.low[k], tree.high[k], best, bound, endless, spans)
+            value, at = left_along(w, flutes, tool, x, y, z, tree.low[k], tree.high[k], best, bound, endless, spans)
             if value < best:
-                best, by = value, tree.move[row]
-    return best, by
+                best, by, row_at, share_at = value, tree.move[row], row, at
+    return best, by, row_at, share_at
 
 
 @njit(cache=True, nogil=True)
@@ -404,8 +409,8 @@ def left_loop(first: int, last: int, points: Floats, order: Ints, moves: Floats,
                 d = left_by_move(x, y, z, moves[m], cutter[m, 0], cutter[m, 1], cutter[m, 2], best)
                 if d < best:
                     best, by = d, m
-        left[n], nearest[n] = nearest_span(x, y, z, tree, flutes, best, by, bound, _NO_END, False, -np.inf, nodes, least,
-                                           spans)
+        left[n], nearest[n], _row, _share = nearest_span(x, y, z, tree, flutes, best, by, bound, NO_END, False, -np.inf, nodes, least,
+                                                         spans)
 
 
 @njit(cache=True, nogil=True)
@@ -415,8 +420,8 @@ def far_loop(first: int, last: int, points: Floats, order: Ints, tree: Tree, flu
     nodes, least, spans = np.zeros(len(tree.root) + 128, np.int64), np.zeros(len(tree.root) + 128), np.zeros((96, 2))
     for k in range(first, last):
         n = order[k]
-        left[n], nearest[n] = nearest_span(points[n, 0], points[n, 1], points[n, 2], tree, flutes, left[n], nearest[n], bound, _NO_END,
-                                           False, -np.inf, nodes, least, spans)
+        left[n], nearest[n], _row, _share = nearest_span(points[n, 0], points[n, 1], points[n, 2], tree, flutes, left[n], nearest[n], bound,
+                                                         NO_END, False, -np.inf, nodes, least, spans)
 
 
 @njit(cache=True, nogil=True)
