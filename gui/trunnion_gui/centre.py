@@ -11,12 +11,13 @@ from PySide6.QtWidgets import QHBoxLayout, QLabel, QSlider, QVBoxLayout, QWidget
 
 from trunnion.model.playback import Moment
 from trunnion.model.session import Session, SizeEntry
-from trunnion.report.deviation import DeviationMap, WorstPlace
+from trunnion.report.deviation import WorstPlace
 from trunnion.report.palette import load_palette
 from trunnion_gui.actions import Registry
 from trunnion_gui.colours import Theme, kind_colour, motions, stock_colours, tool_colours
 from trunnion_gui.deviation import DeviationSource
 from trunnion_gui.document import Document, Selection
+from trunnion_gui.drawing import DrawnMap
 from trunnion_gui.i18n import tr
 from trunnion_gui.player import Player
 from trunnion_gui.viewport.scene import Scene
@@ -45,14 +46,13 @@ class Centre(QWidget):
         self._theme = theme
         self._tool: object = None
         self._run: tuple[int, np.ndarray, np.ndarray] = (-1, np.zeros((0, 3)), np.zeros(0))
-        self._deviation_colours = load_palette().deviation
         self._drawn: dict[str, object] = {}
         self.shows = {"colours": True, "blank": True, "paths": True, "isolate": False}
         self.motions: tuple[str, ...] = tuple(motions())
         self.notice = Notice()
         self.scene = Scene(theme)
         self.legend = Legend(self.scene)
-        self.scale = Scale(self.scene, theme, self._deviation_colours)
+        self.scale = Scale(self.scene, theme, load_palette().deviation)
         self.tip = self._make_tip()
         self.welcome = Welcome(document, registry, self.scene)
         self.section_bar, self.section_slider = self._make_section_bar()
@@ -144,7 +144,7 @@ class Centre(QWidget):
     def _show_mesh(self) -> None:
         self._drawn = {}
         self.scene.show_label("")
-        self.scene.show_mesh(self._document.mesh)
+        self.scene.show_mesh(self._document.drawing)
 
     def _use_frame(self, session: Session) -> None:
         if session.recognition is not None:
@@ -249,9 +249,9 @@ class Centre(QWidget):
 
     # deviation map
 
-    def _show_map(self, shown: DeviationMap | None) -> None:
-        self.scene.show_map(shown, self._deviation_colours)
-        self.scale.show_map(shown)
+    def _show_map(self, shown: DrawnMap | None) -> None:
+        self.scene.show_map(shown)
+        self.scale.show_map(shown.map if shown is not None else None)
         self._point(None, QPointF())
         self.refresh()
 

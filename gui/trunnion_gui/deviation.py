@@ -4,8 +4,8 @@ from __future__ import annotations
 
 from PySide6.QtCore import QObject, Signal
 
-from trunnion.report.deviation import DeviationMap
 from trunnion_gui.document import Document
+from trunnion_gui.drawing import DrawnMap
 from trunnion_gui.worker import Reply
 
 
@@ -13,13 +13,13 @@ class DeviationSource(QObject):
     """Keeps the map in step with the session while it is switched on."""
 
     arrived = Signal(object)
-    """Another `DeviationMap`, or None."""
+    """Another `DrawnMap`, or None."""
 
     def __init__(self, document: Document, parent: QObject | None = None) -> None:
         super().__init__(parent)
         self._document = document
         self.is_on = False
-        self.shown: DeviationMap | None = None
+        self.shown: DrawnMap | None = None
         self._verdict: object = None
         self._asked = 0
         document.worker.replied.connect(self._receive)

@@ -23,6 +23,7 @@ from trunnion.model.session import Session
 from trunnion.settings import Value
 from trunnion_gui import commands
 from trunnion_gui.commands import Edit, History
+from trunnion_gui.drawing import Drawing
 from trunnion_gui.i18n import tr
 from trunnion_gui.steps import until
 from trunnion_gui.worker import ENGINE, Group, Opened, Reply, State, Worker
@@ -75,7 +76,7 @@ class Document(QObject):
         self.shown = self.history.session
         self.states: dict[str, str] = {}
         self.groups: Mapping[str, tuple[Group, ...]] = {}
-        self.mesh: Mesh | None = None
+        self.drawing: Drawing | None = None
         self.path = ""
         self.project = ""
         self.selection = NOTHING
@@ -94,6 +95,11 @@ class Document(QObject):
     def session(self) -> Session:
         """The session as the history has it."""
         return self.history.session
+
+    @property
+    def mesh(self) -> Mesh | None:
+        """The part's triangles."""
+        return self.drawing.mesh if self.drawing is not None else None
 
     @property
     def is_busy(self) -> bool:
@@ -368,7 +374,7 @@ class Document(QObject):
         self.history = History(opened.state.session)
         if job.is_recovery:
             self.history.mark_saved(None)
-        self.mesh, self._kept = opened.mesh, opened.kept
+        self.drawing, self._kept = opened.drawing, opened.kept
         self.selection = NOTHING
         self.shown, self.states = opened.state.session, opened.state.steps
         self.mesh_changed.emit()

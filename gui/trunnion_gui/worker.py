@@ -27,6 +27,7 @@ from trunnion.findings import Cancelled, TrunnionError
 from trunnion.model.session import Session
 from trunnion.progress import Progress
 from trunnion.settings import Declared, declared
+from trunnion_gui.drawing import Drawing, drawing_of, drawn_map
 from trunnion_gui.parcel import packed, unpacked
 from trunnion_gui.steps import share, until
 
@@ -77,7 +78,7 @@ class Opened:
     """A session as opened, with what the window draws, and the part file's bytes and suffix for a worker that must take over."""
 
     state: State
-    mesh: Any
+    drawing: Drawing
     kept: tuple[bytes, str]
 
 
@@ -96,7 +97,7 @@ Tell = Callable[[str, Any], None]
 def _open(engine: Any, progress: Progress, tell: Tell, path: str, solid: int | None) -> Opened:
     session = engine.open(path, solid=solid, progress=progress.part(0.0, 0.8))
     tell("progress", (0.85, "preparing the picture"))
-    return Opened(State(session, engine.states(session)), engine.mesh(session), engine.keep())
+    return Opened(State(session, engine.states(session)), drawing_of(engine.mesh(session)), engine.keep())
 
 
 def _run(engine: Any, progress: Progress, tell: Tell, session: Session, last: str) -> State:
@@ -151,7 +152,7 @@ def _moment(engine: Any, progress: Progress, _tell: Tell, key: str, position: fl
 
 
 def _deviation(engine: Any, _progress: Progress, _tell: Tell, session: Session) -> Any:
-    return engine.deviation_map(session)
+    return drawn_map(engine.deviation_map(session))
 
 
 def _settings(engine: Any, _progress: Progress, _tell: Tell) -> dict[str, tuple[Group, ...]]:

@@ -11,7 +11,7 @@ from PySide6.QtTest import QTest
 from trunnion.geometry.frame import WORLD
 from trunnion.model.toolpath import Motion
 from trunnion_gui.colours import MOTIONS, kind_colour, motions, rgb
-from trunnion_gui.viewport.layers.part import border_edges
+from trunnion_gui.drawing import border_edges
 from trunnion_gui.viewport.layers.paths import opened_arcs
 
 LEFT = Qt.MouseButton.LeftButton

@@ -5,10 +5,11 @@ from __future__ import annotations
 from PySide6.QtCore import Signal
 from PySide6.QtWidgets import QTableWidget, QVBoxLayout, QWidget
 
-from trunnion.report.deviation import DeviationMap, WorstPlace
+from trunnion.report.deviation import WorstPlace
 from trunnion_gui import icons
 from trunnion_gui.colours import Theme
 from trunnion_gui.document import Document
+from trunnion_gui.drawing import DrawnMap
 from trunnion_gui.i18n import tr
 from trunnion_gui.widgets import table as tables
 from trunnion_gui.words import fine_amount
@@ -24,7 +25,7 @@ class DeviationDock(QWidget):
         super().__init__()
         self._document = document
         self._theme: Theme | None = None
-        self.shown: DeviationMap | None = None
+        self.shown: DrawnMap | None = None
         self.places: tuple[WorstPlace, ...] = ()
         self.table: QTableWidget = tables.table(["", tr("Deviation"), tr("Face"), tr("Feature"), "x", "y", "z"], stretched=(0, 3))
         column = QVBoxLayout(self)
@@ -37,10 +38,10 @@ class DeviationDock(QWidget):
         self._theme = theme
         self.show_map(self.shown)
 
-    def show_map(self, shown: DeviationMap | None) -> None:
+    def show_map(self, shown: DrawnMap | None) -> None:
         """List the worst places of a map."""
         self.shown = shown
-        self.places = shown.worst if shown is not None else ()
+        self.places = shown.map.worst if shown is not None else ()
         rows, drawn = [], []
         for place in self.places:
             is_gouge = place.deviation < 0.0

@@ -17,9 +17,8 @@ from trunnion.model.playback import Moment
 from trunnion.model.setup import Setup
 from trunnion.model.tool import Tool
 from trunnion.model.toolpath import Toolpath
-from trunnion.report.deviation import DeviationMap
-from trunnion.report.palette import DeviationColours
 from trunnion_gui.colours import MOTIONS, Theme, mixed, rgb
+from trunnion_gui.drawing import Drawing, DrawnMap
 from trunnion_gui.viewport.layers.blank import draw_blank
 from trunnion_gui.viewport.layers.deviation import DeviationLayer
 from trunnion_gui.viewport.layers.label import draw_label
@@ -102,6 +101,7 @@ class Scene(QWidget):
         column.addWidget(self.view)
         self._theme = theme
         self._part: PartLayer | None = None
+        self._drawing: Drawing | None = None
         self._mesh: Mesh | None = None
         self._picker: FacePicker | None = None
         self._frame = WORLD
@@ -126,17 +126,19 @@ class Scene(QWidget):
         self._theme = theme
         self.view.add_axes(line_width=2, color=theme.text)
         self.view.set_background(theme.view_bottom, top=theme.view_top)
-        if self._mesh is not None:
-            self.show_mesh(self._mesh, keep_camera=True)
+        if self._drawing is not None:
+            self.show_mesh(self._drawing, keep_camera=True)
+        self.view.render()
 
-    def show_mesh(self, mesh: Mesh | None, keep_camera: bool = False) -> None:
+    def show_mesh(self, drawing: Drawing | None, keep_camera: bool = False) -> None:
         """Show a part, or nothing."""
-        self._mesh = mesh
+        mesh = drawing.mesh if drawing is not None else None
+        self._drawing, self._mesh = drawing, mesh
         for name in ("part", "edges", "chosen", "hover"):
             self.view.remove_actor(name, render=False)
         self._part = self._picker = None
-        if mesh is not None and len(mesh.triangles):
-            self._part = PartLayer(self.view, mesh, self._theme)
+        if drawing is not None and mesh is not None and len(mesh.triangles):
+            self._part = PartLayer(self.view, drawing, self._theme)
             self._picker = FacePicker(self._part.actor, mesh.face)
             if not keep_camera:
                 self._frame = WORLD
@@ -176,10 +178,10 @@ class Scene(QWidget):
         draw_paths(self.view, paths, motions)
         self.view.render()
 
-    def show_map(self, shown: DeviationMap | None, colours: DeviationColours | None = None) -> None:
+    def show_map(self, shown: DrawnMap | None) -> None:
         """Show a deviation map instead of the part's colours, or those again."""
         self.view.remove_actor("deviation", render=False)
-        self._map = DeviationLayer(self.view, shown, colours) if shown is not None and colours is not None else None
+        self._map = DeviationLayer(self.view, shown) if shown is not None else None
         self._apply_section()
         self._hide()
         self.view.render()
@@ -281,6 +283,7 @@ class Scene(QWidget):
     def smooth(self) -> None:
         """Draw with smoothed edges from now on: for pictures to keep, slow without a graphics card."""
         self.view.enable_anti_aliasing("ssaa")
+        self.view.render()
 
     def save_picture(self, path: str) -> bool:
         """Write what the viewport shows as PNG."""

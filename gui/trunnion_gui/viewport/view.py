@@ -42,6 +42,8 @@ class PaintedView(QWidget):
         from pyvista.plotting.render_window_interactor import RenderWindowInteractor
         from vtkmodules.vtkRenderingUI import vtkGenericRenderWindowInteractor
 
+        self._is_stale = True
+        self._picture: QImage | None = None
         self.setMouseTracking(True)
         self.setFocusPolicy(Qt.FocusPolicy.WheelFocus)
         self._plotter = pv.Plotter(off_screen=True)
@@ -64,14 +66,24 @@ class PaintedView(QWidget):
 
     def render(self, *_: Any) -> None:
         """Draw soon; hides `QWidget.render`, as pyvistaqt's view does."""
+        self._is_stale = True
         self.update()
 
     def resizeEvent(self, event: QResizeEvent) -> None:
         width, height = self._pixels()
         self._plotter.render_window.SetSize(width, height)
         self._interactor.UpdateSize(width, height)
+        self._is_stale = True
 
     def paintEvent(self, event: QPaintEvent) -> None:
+        if self._is_stale or self._picture is None:
+            self._is_stale, self._picture = False, self._drawn()
+        painter = QPainter(self)
+        painter.drawImage(self.rect(), self._picture)
+        painter.end()
+
+    def _drawn(self) -> QImage:
+        """Return VTK's picture; drawn only when something in it changed, not when a label above it did."""
         from vtkmodules.util.numpy_support import vtk_to_numpy
         from vtkmodules.vtkCommonCore import vtkUnsignedCharArray
 
@@ -81,9 +93,7 @@ class PaintedView(QWidget):
         pixels = vtkUnsignedCharArray()
         window.GetPixelData(0, 0, width - 1, height - 1, 1, pixels, 0)
         image = np.ascontiguousarray(vtk_to_numpy(pixels).reshape(height, width, 3)[::-1])
-        painter = QPainter(self)
-        painter.drawImage(self.rect(), QImage(image.data, width, height, 3 * width, QImage.Format.Format_RGB888))
-        painter.end()
+        return QImage(image.data, width, height, 3 * width, QImage.Format.Format_RGB888).copy()
 
     def mousePressEvent(self, event: QMouseEvent) -> None:
         self._tell(event)
@@ -99,12 +109,12 @@ class PaintedView(QWidget):
         self._tell(event)
         if event.buttons() != Qt.MouseButton.NoButton:
             self._interactor.MouseMoveEvent()
-            self.update()
+            self.render()
 
     def wheelEvent(self, event: QWheelEvent) -> None:
         self._tell(event)
         (self._interactor.MouseWheelForwardEvent if event.angleDelta().y() > 0 else self._interactor.MouseWheelBackwardEvent)()
-        self.update()
+        self.render()
 
     def close(self) -> bool:
         self._plotter.close()

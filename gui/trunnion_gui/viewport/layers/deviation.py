@@ -7,10 +7,7 @@ from typing import Any
 import numpy as np
 from vtkmodules.util.numpy_support import numpy_to_vtk
 
-from trunnion.geometry.mesh import Mesh
-from trunnion.report.deviation import DeviationMap
-from trunnion.report.palette import DeviationColours
-from trunnion_gui.viewport.layers.part import normals_of
+from trunnion_gui.drawing import DrawnMap
 from trunnion_gui.viewport.layers.stock import surface_of
 from trunnion_gui.viewport.pick import FacePicker
 
@@ -18,15 +15,14 @@ from trunnion_gui.viewport.pick import FacePicker
 class DeviationLayer:
     """Draws one map and answers what it says at a pixel."""
 
-    def __init__(self, view: Any, shown: DeviationMap, colours: DeviationColours) -> None:
-        self._map = shown
-        rgb = colours.at(shown.value, shown.low, shown.high, shown.limit)
+    def __init__(self, view: Any, drawn: DrawnMap) -> None:
+        self._map = shown = drawn.map
         surface = surface_of(shown.points, shown.triangles, np.zeros((len(shown.triangles), 3), np.uint8))
         surface.GetCellData().Initialize()
-        painted = numpy_to_vtk(rgb, deep=True)
+        painted = numpy_to_vtk(drawn.colours, deep=True)
         painted.SetName("rgb")
         surface.GetPointData().SetScalars(painted)
-        surface.GetPointData().SetNormals(numpy_to_vtk(normals_of(Mesh(shown.points, shown.triangles, shown.face)), deep=True))
+        surface.GetPointData().SetNormals(numpy_to_vtk(drawn.normals, deep=True))
         self.actor = view.add_mesh(surface, scalars="rgb", rgb=True, name="deviation", reset_camera=False,
                                    show_scalar_bar=False, ambient=0.42, diffuse=0.62, specular=0.05, copy_mesh=False)
         self.actor.prop.interpolation = "Phong"

@@ -8,22 +8,23 @@ from typing import Any
 import numpy as np
 import pyvista as pv
 
-from trunnion.geometry.mesh import Mesh
 from trunnion_gui.colours import Theme, rgb
+from trunnion_gui.drawing import Drawing
 
 
 class PartLayer:
     """Draws one mesh; `paint` and `outline` change colours without making anything anew."""
 
-    def __init__(self, view: Any, mesh: Mesh, theme: Theme) -> None:
+    def __init__(self, view: Any, drawing: Drawing, theme: Theme) -> None:
+        mesh = drawing.mesh
         self._view = view
         self._mesh = mesh
-        self._surface = _surface(mesh)
+        self._surface = _surface(drawing)
         self._surface.cell_data["rgb"] = np.tile(np.array(rgb(theme.part), np.uint8), (len(mesh.triangles), 1))
         self.actor = view.add_mesh(self._surface, scalars="rgb", rgb=True, name="part", smooth_shading=False, ambient=0.38, diffuse=0.68,
                                    specular=0.12, specular_power=12, show_scalar_bar=False, reset_camera=False)
         self.actor.prop.interpolation = "Phong"
-        self._ends, self._edge_faces = border_edges(mesh)
+        self._ends, self._edge_faces = drawing.borders, drawing.owners
         self._edges = view.add_mesh(_lines(mesh.points, self._ends), color=theme.edge, line_width=1.2, opacity=0.55, name="edges",
                                     pickable=False, reset_camera=False, lighting=False, show_scalar_bar=False)
         _pull_forward(self._edges)
@@ -45,35 +46,13 @@ class PartLayer:
         _pull_forward(actor, 6.0)
 
 
-def border_edges(mesh: Mesh) -> tuple[np.ndarray, np.ndarray]:
-    """Return the edges around the faces (e, 2) as rows of points, and the tag of the face each belongs to (e,).
-
-    Points are shared inside a face and not across faces, so an edge of one triangle only is a face's border.
-    """
-    pairs = np.concatenate([mesh.triangles[:, [0, 1]], mesh.triangles[:, [1, 2]], mesh.triangles[:, [2, 0]]])
-    owner = np.tile(mesh.face, 3)
-    ordered = np.sort(pairs, axis=1)
-    _, first, count = np.unique(ordered[:, 0] * len(mesh.points) + ordered[:, 1], return_index=True, return_counts=True)
-    rows = first[count == 1]
-    return pairs[rows], owner[rows]
-
-
-def _surface(mesh: Mesh) -> pv.PolyData:
+def _surface(drawing: Drawing) -> pv.PolyData:
+    mesh = drawing.mesh
     cells = np.hstack([np.full((len(mesh.triangles), 1), 3), mesh.triangles])
     surface = pv.PolyData(np.asarray(mesh.points, dtype=np.float32), cells.ravel())
-    surface.point_data["Normals"] = normals_of(mesh)
+    surface.point_data["Normals"] = drawing.normals
     surface.GetPointData().SetActiveNormals("Normals")
     return surface
-
-
-def normals_of(mesh: Mesh) -> np.ndarray:
-    """Return the normal at every point (v, 3), smooth inside a face and sharp across its border."""
-    a, b, c = np.moveaxis(mesh.corners(), 1, 0)
-    across = np.cross(b - a, c - a)
-    n, rows = len(mesh.points), mesh.triangles.T.ravel()
-    total = np.stack([np.bincount(rows, weights=np.tile(across[:, k], 3), minlength=n) for k in range(3)], axis=1)
-    length = np.linalg.norm(total, axis=1, keepdims=True)
-    return np.divide(total, length, out=np.zeros_like(total), where=length > 0).astype(np.float32)
 
 
 def _lines(points: np.ndarray, ends: np.ndarray) -> pv.PolyData:

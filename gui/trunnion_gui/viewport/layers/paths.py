@@ -17,14 +17,14 @@ _TURN = np.radians(6.0)
 
 
 def draw_paths(view: Any, paths: Iterable[tuple[Toolpath, Frame]], shown: Iterable[str] = MOTIONS) -> None:
-    """Show toolpaths (each with its setup's frame) as polylines: thin ones for rapids, strong ones for feed moves."""
+    """Show toolpaths (each with its setup's frame) as lines: thin ones for rapids, strong ones for feed moves."""
     for name in ("feed moves", "rapids"):
         view.remove_actor(name, render=False)
     wanted = np.isin(MOTIONS, list(shown))
     opened = [(opened_arcs(path), frame) for path, frame in paths if len(path) > 1]
     for name, is_rapid, width, opacity in (("rapids", True, 1.3, 0.6), ("feed moves", False, 2.2, 1.0)):
         kept = wanted & (np.array([m == "rapid" for m in MOTIONS]) == is_rapid)
-        lines = _polylines(opened, kept)
+        lines = _chords(opened, kept)
         if lines is not None:
             view.add_mesh(lines, scalars="rgb", rgb=True, line_width=width, opacity=opacity, name=name, pickable=False,
                           reset_camera=False, lighting=False, show_scalar_bar=False)
@@ -50,20 +50,18 @@ def opened_arcs(path: Toolpath) -> tuple[np.ndarray, np.ndarray]:
     return np.vstack([path.position[:1], points]), kind[row]
 
 
-def _polylines(paths: list[tuple[tuple[np.ndarray, np.ndarray], Frame]], kept: np.ndarray) -> pv.PolyData | None:
-    """Return one mesh of polylines, one for every run of chords of the same kind."""
-    points, cells, kinds, base = [], [], [], 0
+def _chords(paths: list[tuple[tuple[np.ndarray, np.ndarray], Frame]], kept: np.ndarray) -> pv.PolyData | None:
+    """Return one mesh of the chords whose kinds are wanted, each with its colour."""
+    points, ends, kinds, base = [], [], [], 0
     for (own, kind), frame in paths:
+        rows = np.flatnonzero(kept[kind])
         points.append(frame.to_world(own))
-        breaks = np.flatnonzero(np.diff(kind)) + 1
-        for a, b in zip(np.concatenate([[0], breaks]), np.concatenate([breaks, [len(kind)]])):
-            if kept[kind[a]]:
-                cells.append(np.concatenate([[b - a + 1], np.arange(base + a, base + b + 1)]))
-                kinds.append(kind[a])
+        ends.append(np.column_stack([np.full(len(rows), 2), base + rows, base + rows + 1]))
+        kinds.append(kind[rows])
         base += len(own)
-    if not cells:
+    if not sum(len(k) for k in kinds):
         return None
-    mesh = pv.PolyData(np.vstack(points).astype(np.float32), lines=np.concatenate(cells))
+    mesh = pv.PolyData(np.vstack(points).astype(np.float32), lines=np.concatenate(ends).ravel())
     palette = np.array([rgb(motions()[m]) for m in MOTIONS], np.uint8)
-    mesh.cell_data["rgb"] = palette[np.array(kinds)]
+    mesh.cell_data["rgb"] = palette[np.concatenate(kinds)]
     return mesh

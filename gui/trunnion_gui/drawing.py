@@ -1,0 +1,65 @@
+"""What the window needs to draw a mesh, worked out in the worker so that opening a part does not hold the window up. No Qt, no VTK."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from trunnion.geometry.mesh import Mesh
+from trunnion.report.deviation import DeviationMap
+from trunnion.report.palette import load_palette
+
+
+@dataclass(frozen=True, slots=True, eq=False, kw_only=True)
+class Drawing:
+    """A mesh with the normal at every point (v, 3) float32, its faces' borders as rows of points (e, 2), and whose border each is (e,)."""
+
+    mesh: Mesh
+    normals: np.ndarray
+    borders: np.ndarray
+    owners: np.ndarray
+
+
+@dataclass(frozen=True, slots=True, eq=False, kw_only=True)
+class DrawnMap:
+    """A deviation map with the normal (v, 3) float32 and the colour (v, 3) uint8 at every point."""
+
+    map: DeviationMap
+    normals: np.ndarray
+    colours: np.ndarray
+
+
+def drawn_map(shown: DeviationMap) -> DrawnMap:
+    """Return a map ready to be drawn."""
+    return DrawnMap(map=shown, normals=normals_of(shown.points, shown.triangles),
+                    colours=load_palette().deviation.at(shown.value, shown.low, shown.high, shown.limit))
+
+
+def drawing_of(mesh: Mesh) -> Drawing:
+    """Return a mesh ready to be drawn."""
+    borders, owners = border_edges(mesh)
+    return Drawing(mesh=mesh, normals=normals_of(mesh.points, mesh.triangles), borders=borders, owners=owners)
+
+
+def border_edges(mesh: Mesh) -> tuple[np.ndarray, np.ndarray]:
+    """Return the edges around the faces (e, 2) as rows of points, and the tag of the face each belongs to (e,).
+
+    Points are shared inside a face and not across faces, so an edge of one triangle only is a face's border.
+    """
+    pairs = np.concatenate([mesh.triangles[:, [0, 1]], mesh.triangles[:, [1, 2]], mesh.triangles[:, [2, 0]]])
+    owner = np.tile(mesh.face, 3)
+    ordered = np.sort(pairs, axis=1)
+    _, first, count = np.unique(ordered[:, 0] * len(mesh.points) + ordered[:, 1], return_index=True, return_counts=True)
+    rows = first[count == 1]
+    return pairs[rows], owner[rows]
+
+
+def normals_of(points: np.ndarray, triangles: np.ndarray) -> np.ndarray:
+    """Return the normal at every point (v, 3), smooth inside a face and sharp across its border."""
+    a, b, c = (points[triangles[:, k]] for k in range(3))
+    across = np.cross(b - a, c - a)
+    n, rows = len(points), triangles.T.ravel()
+    total = np.stack([np.bincount(rows, weights=np.tile(across[:, k], 3), minlength=n) for k in range(3)], axis=1)
+    length = np.linalg.norm(total, axis=1, keepdims=True)
+    return np.divide(total, length, out=np.zeros_like(total), where=length > 0).astype(np.float32)
