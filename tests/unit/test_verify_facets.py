@@ -21,7 +21,7 @@ from trunnion.part.facets import Facets, facets_of
 from trunnion.part.surfaces import surfaces_of
 from trunnion.progress import Progress
 from trunnion.verify.contact.facets import FacetContact
-from trunnion.verify.kernels import facets as kernel
+from trunnion.verify.kernels import way as kernel
 from trunnion.verify.motion import moves_of, poses_of
 from verify_tools import FORMS, bull, flat, tool_of
 

@@ -19,6 +19,7 @@ from trunnion.part.facets import Facets
 from trunnion.progress import QUIET, Progress
 from trunnion.verify.contact.touch import Touch, deepen
 from trunnion.verify.kernels import facets as kernel
+from trunnion.verify.kernels.tree import build_tree
 from trunnion.verify.motion import Moves
 from trunnion.verify.threads import in_parallel
 
@@ -32,7 +33,7 @@ LEAF = 4
 
 @dataclass(frozen=True, slots=True, eq=False, kw_only=True)
 class Tree:
-    """Triangles in the order of the leaves of a tree of boxes, in preorder; `kernels/facets.py` names the columns."""
+    """Triangles in the order of the leaves of a tree of boxes, in preorder; `kernels/tree.py` names the columns."""
 
     boxes: Floats
     skip: Ints
@@ -49,7 +50,7 @@ def tree_of(points: Floats, triangles: Ints, face: Ints) -> Tree:
     t = len(corners)
     order, boxes = np.zeros(t, np.int64), np.zeros((2 * t, 6))
     skip, leaves, node_face = np.zeros(2 * t, np.int64), np.zeros((2 * t, 2), np.int64), np.zeros(2 * t, np.int64)
-    count = kernel.tree_of(corners.min(axis=1), corners.max(axis=1), face, LEAF, order, boxes, skip, leaves, node_face) if t else 0
+    count = build_tree(corners.min(axis=1), corners.max(axis=1), face, LEAF, order, boxes, skip, leaves, node_face) if t else 0
     corners = corners[order]
     across = np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0])
     size = np.linalg.norm(across, axis=1, keepdims=True)

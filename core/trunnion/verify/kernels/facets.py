@@ -21,133 +21,32 @@ from numba import njit
 
 from trunnion.geometry.arrays import Floats, Ints
 from trunnion.verify.kernels.body import A0R, A0Z, A1R, A1Z, CLOSED_FIRST, CLOSED_LAST, CR, CZ, KIND, R_MAX, R, depth_in_body, support
-
-# A way: how the tool goes along one move.
-START, VECTOR, AXIS, PIVOT, ANGLE, CENTRE, ACROSS, ALONG = 0, 3, 6, 9, 12, 13, 16, 19
-R_START, R_END, SWEEP, CLIMB, LENGTH = range(22, 27)
-WAY_COLUMNS = 27
-"""START and VECTOR of the tip; AXIS at the start turns about PIVOT by ANGLE. An arc (SWEEP not 0) is about CENTRE, from ACROSS towards
-ALONG."""
-
-# A span of a way: for each end the matrix (9) that turns what is relative to the tip into the frame of the middle, and the tip (3).
-TIP, END_COLUMNS = 9, 12
-S_AXIS, S_ANGLE, S_LENGTH, S_BULGE, S_FROM, S_TO = 0, 3, 4, 5, 6, 7
-SPAN_COLUMNS = 8
+from trunnion.verify.kernels.way import (
+    END_COLUMNS,
+    FLAT,
+    S_ANGLE,
+    S_AXIS,
+    S_FROM,
+    S_TO,
+    SPAN_COLUMNS,
+    WAY_COLUMNS,
+    axis_at,
+    fill_span,
+    fill_way,
+    sag_of,
+    seen,
+    spans_of,
+    tip_at,
+)
 
 # A piece of a triangle in a piece of time, waiting to be looked at.
 CORNERS, T_FROM, T_TO, UPPER, HALVE = 0, 9, 10, 11, 12
 TASK_COLUMNS = 13
 TASKS = 160
+"""More than are ever waiting: each halving adds one, and some sixty bring the largest part below the bound."""
 
-MOST_TURN, MOST_SWEEP = 0.1, 0.25
-"""rad: how far the axis turns, or an arc goes, in one span: their sags stay far below the size of a tool."""
 DEEP = 1.0
 """mm: depths beyond this need not be known."""
-_FLAT = 1e-12
-_SMALLEST = 1e-7
-
-
-@njit(cache=True, nogil=True)
-def fill_way(start: Floats, end: Floats, axis: Floats, end_axis: Floats, centre: Floats, sweep: float, way: Floats) -> None:
-    """Fill `way` (27,) from a move's ends (3,), its axes at both, and an arc's centre and angle (0: a line)."""
-    way[:] = 0.0
-    square = 0.0
-    for k in range(3):
-        way[START + k], way[VECTOR + k], way[AXIS + k] = start[k], end[k] - start[k], axis[k]
-        square += way[VECTOR + k] * way[VECTOR + k]
-    way[LENGTH] = math.sqrt(square)
-    if sweep != 0.0:
-        _fill_arc(start, end, axis, centre, sweep, way)
-        return
-    wx, wy, wz = (axis[1] * end_axis[2] - axis[2] * end_axis[1], axis[2] * end_axis[0] - axis[0] * end_axis[2],
-                  axis[0] * end_axis[1] - axis[1] * end_axis[0])
-    sine, cosine = math.sqrt(wx * wx + wy * wy + wz * wz), axis[0] * end_axis[0] + axis[1] * end_axis[1] + axis[2] * end_axis[2]
-    if sine < _FLAT:
-        if cosine > 0.0:
-            return
-        # Turned right over: no plane is given, so any will do, the same one each time.
-        if abs(axis[0]) < 0.9:
-            wx, wy, wz = 0.0, axis[2], -axis[1]
-        else:
-            wx, wy, wz = -axis[2], 0.0, axis[0]
-    size = math.sqrt(wx * wx + wy * wy + wz * wz)
-    way[PIVOT], way[PIVOT + 1], way[PIVOT + 2], way[ANGLE] = wx / size, wy / size, wz / size, math.atan2(sine, cosine)
-
-
-@njit(cache=True, nogil=True)
-def _fill_arc(start: Floats, end: Floats, axis: Floats, centre: Floats, sweep: float, way: Floats) -> None:
-    up = climb = 0.0
-    for k in range(3):
-        up += (start[k] - centre[k]) * axis[k]
-        climb += (end[k] - start[k]) * axis[k]
-    square = last = 0.0
-    for k in range(3):
-        way[CENTRE + k] = centre[k] + up * axis[k]
-        way[ACROSS + k] = start[k] - way[CENTRE + k]
-        square += way[ACROSS + k] ** 2
-        last += (end[k] - climb * axis[k] - way[CENTRE + k]) ** 2
-    radius = math.sqrt(square)
-    for k in range(3):
-        way[ACROSS + k] /= max(radius, _FLAT)
-    for k in range(3):
-        i, j = (k + 1) % 3, (k + 2) % 3
-        way[ALONG + k] = axis[i] * way[ACROSS + j] - axis[j] * way[ACROSS + i]
-    way[R_START], way[R_END], way[SWEEP], way[CLIMB] = radius, math.sqrt(last), sweep, climb
-    way[LENGTH] = math.hypot(max(radius, way[R_END]) * abs(sweep), climb)
-
-
-@njit(cache=True, nogil=True)
-def tip_at(way: Floats, t: float) -> tuple[float, float, float]:
-    """Return the tip at a share of the way."""
-    if way[SWEEP] == 0.0:
-        return way[START] + t * way[VECTOR], way[START + 1] + t * way[VECTOR + 1], way[START + 2] + t * way[VECTOR + 2]
-    radius = way[R_START] + t * (way[R_END] - way[R_START])
-    a, b, c = radius * math.cos(t * way[SWEEP]), radius * math.sin(t * way[SWEEP]), t * way[CLIMB]
-    return (way[CENTRE] + a * way[ACROSS] + b * way[ALONG] + c * way[AXIS],
-            way[CENTRE + 1] + a * way[ACROSS + 1] + b * way[ALONG + 1] + c * way[AXIS + 1],
-            way[CENTRE + 2] + a * way[ACROSS + 2] + b * way[ALONG + 2] + c * way[AXIS + 2])
-
-
-@njit(cache=True, nogil=True)
-def axis_at(way: Floats, t: float) -> tuple[float, float, float]:
-    """Return the tool axis at a share of the way; the pivot is across it."""
-    ax, ay, az = way[AXIS], way[AXIS + 1], way[AXIS + 2]
-    if way[ANGLE] == 0.0:
-        return ax, ay, az
-    wx, wy, wz = way[PIVOT], way[PIVOT + 1], way[PIVOT + 2]
-    c, s = math.cos(t * way[ANGLE]), math.sin(t * way[ANGLE])
-    return c * ax + s * (wy * az - wz * ay), c * ay + s * (wz * ax - wx * az), c * az + s * (wx * ay - wy * ax)
-
-
-@njit(cache=True, nogil=True)
-def fill_span(way: Floats, t0: float, t1: float, ends: Floats, span: Floats) -> None:
-    """Fill `ends` (2, 12) and `span` (8,) for the way between two shares of it."""
-    middle = 0.5 * (t0 + t1)
-    span[S_AXIS], span[S_AXIS + 1], span[S_AXIS + 2] = axis_at(way, middle)
-    share = t1 - t0
-    span[S_ANGLE], span[S_LENGTH], span[S_BULGE] = share * way[ANGLE], share * way[LENGTH], 0.0
-    span[S_FROM], span[S_TO] = t0, t1
-    if way[SWEEP] != 0.0:
-        turn = min(share * abs(way[SWEEP]), math.pi)
-        drift = share * abs(way[R_END] - way[R_START])
-        span[S_BULGE] = max(way[R_START], way[R_END]) * (1.0 - math.cos(0.5 * turn)) + 0.25 * drift * turn
-    for e in range(2):
-        ends[e, TIP], ends[e, TIP + 1], ends[e, TIP + 2] = tip_at(way, t0 if e == 0 else t1)
-        half = 0.5 * span[S_ANGLE] if e == 0 else -0.5 * span[S_ANGLE]
-        c, s = math.cos(half), math.sin(half)
-        wx, wy, wz = way[PIVOT], way[PIVOT + 1], way[PIVOT + 2]
-        v = 1.0 - c
-        ends[e, 0], ends[e, 1], ends[e, 2] = c + v * wx * wx, v * wx * wy - s * wz, v * wx * wz + s * wy
-        ends[e, 3], ends[e, 4], ends[e, 5] = v * wx * wy + s * wz, c + v * wy * wy, v * wy * wz - s * wx
-        ends[e, 6], ends[e, 7], ends[e, 8] = v * wx * wz - s * wy, v * wy * wz + s * wx, c + v * wz * wz
-
-
-@njit(cache=True, nogil=True, inline="always")
-def _seen(ends: Floats, e: int, px: float, py: float, pz: float) -> tuple[float, float, float]:
-    """Return a point of space as the tool sees it at one end of a span, in the frame of its middle."""
-    x, y, z = px - ends[e, TIP], py - ends[e, TIP + 1], pz - ends[e, TIP + 2]
-    return (ends[e, 0] * x + ends[e, 1] * y + ends[e, 2] * z, ends[e, 3] * x + ends[e, 4] * y + ends[e, 5] * z,
-            ends[e, 6] * x + ends[e, 7] * y + ends[e, 8] * z)
 
 
 @njit(cache=True, nogil=True)
@@ -158,7 +57,7 @@ def _tangent(arcs: Floats, first: int, last: int, ax: float, ay: float, az: floa
     ex, ey, ez = x - h * ax, y - h * ay, z - h * az
     rho = math.sqrt(ex * ex + ey * ey + ez * ez)
     depth, nr, nh = depth_in_body(arcs, first, last, rho, h)
-    share = nr / rho if rho > _FLAT else 0.0
+    share = nr / rho if rho > FLAT else 0.0
     return depth, share * ex + nh * ax, share * ey + nh * ay, share * ez + nh * az
 
 
@@ -231,20 +130,21 @@ def _nearest_of_triangle(p: Floats, x: float, y: float, z: float) -> tuple[float
     if d3 >= 0.0 and d4 <= d3:
         return 1.0, 0.0
     vc = d1 * d4 - d3 * d2
-    if vc <= 0.0 and d1 >= 0.0 and d3 <= 0.0:
+    if vc <= 0.0 and d1 >= 0.0 and d3 <= 0.0 and d1 > d3:
         return d1 / (d1 - d3), 0.0
     d5, d6 = d1 - bc, d2 - cc
     if d6 >= 0.0 and d5 <= d6:
         return 0.0, 1.0
     vb = d5 * d2 - d1 * d6
-    if vb <= 0.0 and d2 >= 0.0 and d6 <= 0.0:
+    if vb <= 0.0 and d2 >= 0.0 and d6 <= 0.0 and d2 > d6:
         return 0.0, d2 / (d2 - d6)
     va = d3 * d6 - d5 * d4
-    if va <= 0.0 and d4 - d3 >= 0.0 and d5 - d6 >= 0.0:
+    if va <= 0.0 and d4 - d3 >= 0.0 and d5 - d6 >= 0.0 and d4 - d3 + d5 - d6 > 0.0:
         w = (d4 - d3) / ((d4 - d3) + (d5 - d6))
         return 1.0 - w, w
+    # A triangle without area may get here by rounding: any of its points is as good.
     total = va + vb + vc
-    return vb / total, vc / total
+    return (vb / total, vc / total) if total != 0.0 else (0.0, 0.0)
 
 
 @njit(cache=True, nogil=True)
@@ -267,10 +167,10 @@ def _look(task: Floats, normal: Floats, way: Floats, arcs: Floats, first: int, l
     far = 0.0
     for i in range(6):
         c = CORNERS + 3 * (i % 3)
-        x, y, z = _seen(ends, i // 3, task[c], task[c + 1], task[c + 2])
+        x, y, z = seen(ends, i // 3, task[c], task[c + 1], task[c + 2])
         six[i, 0], six[i, 1], six[i, 2] = x, y, z
         far = max(far, x * x + y * y + z * z)
-    drift = span[S_ANGLE] * (0.125 * span[S_ANGLE] * math.sqrt(far) + 0.25 * span[S_LENGTH]) + span[S_BULGE]
+    drift = sag_of(span, math.sqrt(far))
     settled = max(enough, found[0] + bound) - drift
 
     nx, ny, nz = -normal[0], -normal[1], -normal[2]
@@ -298,7 +198,7 @@ def _look(task: Floats, normal: Floats, way: Floats, arcs: Floats, first: int, l
     ex, ey, ez = x - h * ax, y - h * ay, z - h * az
     rho = math.sqrt(ex * ex + ey * ey + ez * ez)
     cr, ch = _core(arcs, first, last, rho, h)
-    share = cr / rho if rho > _FLAT else 0.0
+    share = cr / rho if rho > FLAT else 0.0
     cx, cy, cz = share * ex + ch * ax, share * ey + ch * ay, share * ez + ch * az
     s = 0.5
     v = w = 0.0
@@ -313,7 +213,7 @@ def _look(task: Floats, normal: Floats, way: Floats, arcs: Floats, first: int, l
             other = six[3, k] + v * (six[4, k] - six[3, k]) + w * (six[5, k] - six[3, k])
             gap = (cx if k == 0 else cy if k == 1 else cz) - one
             dot, square = dot + gap * (other - one), square + (other - one) * (other - one)
-        if square <= _FLAT:
+        if square <= FLAT:
             break
         s = min(max(dot / square, 0.0), 1.0)
     u = 1.0 - v - w
@@ -416,12 +316,12 @@ def enter_triangle(corners: Floats, normal: Floats, way: Floats, t0: float, t1: 
 def _box_depth(box: Floats, ends: Floats, span: Floats, arcs: Floats, first: int, last: int) -> float:
     """Return a bound on how deep any point of a box (centre (3,), half sides (3,)) gets into a body during a span."""
     ax, ay, az = span[S_AXIS], span[S_AXIS + 1], span[S_AXIS + 2]
-    x0, y0, z0 = _seen(ends, 0, box[0], box[1], box[2])
-    x1, y1, z1 = _seen(ends, 1, box[0], box[1], box[2])
+    x0, y0, z0 = seen(ends, 0, box[0], box[1], box[2])
+    x1, y1, z1 = seen(ends, 1, box[0], box[1], box[2])
     depth, nx, ny, nz = _tangent(arcs, first, last, ax, ay, az, 0.5 * (x0 + x1), 0.5 * (y0 + y1), 0.5 * (z0 + z1))
-    depth += 0.5 * abs(nx * (x1 - x0) + ny * (y1 - y0) + nz * (z1 - z0)) + span[S_BULGE]
+    depth += 0.5 * abs(nx * (x1 - x0) + ny * (y1 - y0) + nz * (z1 - z0))
     if span[S_ANGLE] == 0.0:
-        return depth + abs(nx) * box[3] + abs(ny) * box[4] + abs(nz) * box[5]
+        return depth + abs(nx) * box[3] + abs(ny) * box[4] + abs(nz) * box[5] + sag_of(span, 0.0)
     most = 0.0
     for e in range(2):
         m = ends[e]
@@ -429,14 +329,7 @@ def _box_depth(box: Floats, ends: Floats, span: Floats, arcs: Floats, first: int
                    + abs(m[2] * nx + m[5] * ny + m[8] * nz) * box[5])
     half = math.sqrt(box[3] * box[3] + box[4] * box[4] + box[5] * box[5])
     far = math.sqrt(max(x0 * x0 + y0 * y0 + z0 * z0, x1 * x1 + y1 * y1 + z1 * z1)) + half
-    return depth + most + span[S_ANGLE] * (0.125 * span[S_ANGLE] * far + 0.25 * span[S_LENGTH])
-
-
-@njit(cache=True, nogil=True)
-def spans_of(way: Floats, radius: float) -> int:
-    """Return into how many equal spans a way is cut for a body of a radius: none goes further than the body is wide."""
-    most = max(way[LENGTH] / (2.0 * max(radius, DEEP)), way[ANGLE] / MOST_TURN, abs(way[SWEEP]) / MOST_SWEEP)
-    return max(1, int(math.ceil(most)))
+    return depth + most + sag_of(span, far)
 
 
 @njit(cache=True, nogil=True)
@@ -446,8 +339,8 @@ def contact_loop(first: int, last: int, rows: Ints, start: Floats, end: Floats, 
                  settle: float, depth: Floats, which: Ints, place: Floats, face_depth: Floats, face_move: Ints) -> None:
     """Measure the moves of `rows[first:last]` against all triangles.
 
-    The tree is in preorder: boxes (m, 6) centre and half sides, skip (m,) the node after a subtree, leaves (m, 2) first triangle and count
-    (0: not a leaf), node_face (m,) the face of all its triangles or -1. corners (t, 9), normals (t, 3), face (t,). bound and enough (k,).
+    boxes (m, 6), skip (m,), leaves (m, 2), node_face (m,): the tree, as `tree.py` has it, over triangles in its order: corners (t, 9),
+    normals (t, 3), face (t,). bound (k,): how far a depth may be from the truth; enough (k,): below it only that is known.
     Fills depth (k, 2), which (k, 2) faces, place (k, 2, 3), and face_depth, face_move (f, 2). A move deeper than `settle` may stop there.
     """
     way, ends, span = np.zeros(WAY_COLUMNS), np.zeros((2, END_COLUMNS)), np.zeros(SPAN_COLUMNS)
@@ -504,105 +397,3 @@ def contact_loop(first: int, last: int, rows: Ints, start: Floats, end: Floats, 
                     place[k, column] = best_place[f, column]
                 if d > face_depth[f, column]:
                     face_depth[f, column], face_move[f, column] = d, n
-
-
-@njit(cache=True, nogil=True)
-def tree_of(low: Floats, high: Floats, face: Ints, leaf: int, order: Ints, boxes: Floats, skip: Ints, leaves: Ints, node_face: Ints) -> int:
-    """Build the tree over boxes low, high (t, 3) top down, halved where the boxes' surfaces weigh least; return how many nodes it has.
-
-    order (t,) gets the rows in the order of the leaves; the arrays of nodes hold at least 2 t rows. See `contact_loop` for them.
-    """
-    t = len(low)
-    middle = 0.5 * (low + high)
-    for i in range(t):
-        order[i] = i
-    stack = np.zeros((128, 2), np.int64)
-    stack[0, 1] = t
-    top, count = 1, 0
-    bins = 16
-    bin_low, bin_high, bin_count = np.zeros((bins, 3)), np.zeros((bins, 3)), np.zeros(bins, np.int64)
-    right_weight = np.zeros(bins)
-    keep = np.zeros(t, np.int64)
-    while top > 0:
-        top -= 1
-        a, b = stack[top, 0], stack[top, 1]
-        node = count
-        count += 1
-        same = face[order[a]]
-        box_low, box_high = low[order[a]].copy(), high[order[a]].copy()
-        mid_low, mid_high = middle[order[a]].copy(), middle[order[a]].copy()
-        for i in range(a + 1, b):
-            r = order[i]
-            if face[r] != same:
-                same = -1
-            for k in range(3):
-                box_low[k], box_high[k] = min(box_low[k], low[r, k]), max(box_high[k], high[r, k])
-                mid_low[k], mid_high[k] = min(mid_low[k], middle[r, k]), max(mid_high[k], middle[r, k])
-        for k in range(3):
-            boxes[node, k], boxes[node, k + 3] = 0.5 * (box_low[k] + box_high[k]), 0.5 * (box_high[k] - box_low[k])
-        node_face[node] = same
-        leaves[node, 0], leaves[node, 1] = a, 0
-        if b - a <= leaf:
-            leaves[node, 1] = b - a
-            continue
-        cost, along, at = np.inf, -1, 0
-        for k in range(3):
-            size = mid_high[k] - mid_low[k]
-            if size <= 0.0:
-                continue
-            bin_count[:] = 0
-            bin_low[:, :] = np.inf
-            bin_high[:, :] = -np.inf
-            for i in range(a, b):
-                r = order[i]
-                c = min(int(bins * (middle[r, k] - mid_low[k]) / size), bins - 1)
-                bin_count[c] += 1
-                for j in range(3):
-                    bin_low[c, j], bin_high[c, j] = min(bin_low[c, j], low[r, j]), max(bin_high[c, j], high[r, j])
-            box_low[:], box_high[:], number = np.inf, -np.inf, 0
-            for c in range(bins - 1, 0, -1):
-                number += bin_count[c]
-                for j in range(3):
-                    box_low[j], box_high[j] = min(box_low[j], bin_low[c, j]), max(box_high[j], bin_high[c, j])
-                right_weight[c] = number * _skin(box_low, box_high) if number else 0.0
-            box_low[:], box_high[:], number = np.inf, -np.inf, 0
-            for c in range(bins - 1):
-                number += bin_count[c]
-                for j in range(3):
-                    box_low[j], box_high[j] = min(box_low[j], bin_low[c, j]), max(box_high[j], bin_high[c, j])
-                if 0 < number < b - a:
-                    weight = number * _skin(box_low, box_high) + right_weight[c + 1]
-                    if weight < cost:
-                        cost, along, at = weight, k, c + 1
-        # Boxes all about one place are halved by count.
-        cut, rest = a, 0
-        if along >= 0:
-            size = mid_high[along] - mid_low[along]
-            for i in range(a, b):
-                r = order[i]
-                if min(int(bins * (middle[r, along] - mid_low[along]) / size), bins - 1) < at:
-                    order[cut] = r
-                    cut += 1
-                else:
-                    keep[rest] = r
-                    rest += 1
-            for i in range(rest):
-                order[cut + i] = keep[i]
-        else:
-            cut = (a + b) // 2
-        if top + 2 > len(stack):
-            # A chain so deep is left as one leaf.
-            leaves[node, 1] = b - a
-            continue
-        stack[top, 0], stack[top, 1] = cut, b
-        stack[top + 1, 0], stack[top + 1, 1] = a, cut
-        top += 2
-    for node in range(count - 1, -1, -1):
-        skip[node] = node + 1 if leaves[node, 1] > 0 else skip[skip[node + 1]]
-    return count
-
-
-@njit(cache=True, nogil=True)
-def _skin(low: Floats, high: Floats) -> float:
-    a, b, c = high[0] - low[0], high[1] - low[1], high[2] - low[2]
-    return a * b + b * c + c * a

@@ -1,0 +1,129 @@
+"""Compiled trees of boxes, built top down, halved where the surfaces of both halves weigh least (Goldsmith and Salmon, 1987)."""
+
+from __future__ import annotations
+
+import numpy as np
+from numba import njit
+
+from trunnion.geometry.arrays import Floats, Ints
+
+BINS = 16
+"""Places along each side where a cut is tried."""
+DEEPEST = 128
+
+
+@njit(cache=True, nogil=True)
+def build_tree(low: Floats, high: Floats, face: Ints, leaf: int, order: Ints, boxes: Floats, skip: Ints, leaves: Ints,
+               node_face: Ints) -> int:
+    """Build the tree over boxes low, high (t, 3), at most `leaf` of them together, and return how many nodes it has.
+
+    Nodes stand in preorder, in arrays of at least 2 t rows: boxes (m, 6) centre and half sides, skip (m,) the node after a subtree,
+    leaves (m, 2) first place in `order` and count (0: not a leaf), node_face (m,) the face (t,) of all below it or -1. order (t,) gets the
+    rows in the order of the leaves.
+    """
+    order[:] = np.arange(len(low))
+    middle, keep = 0.5 * (low + high), np.zeros(len(low), np.int64)
+    stack = np.zeros((DEEPEST, 2), np.int64)
+    stack[0, 1] = len(low)
+    top, count = 1, 0
+    while top > 0:
+        top -= 1
+        a, b = stack[top, 0], stack[top, 1]
+        node, count = count, count + 1
+        node_face[node] = _fill_box(order[a:b], low, high, face, boxes[node])
+        # A chain deeper than any sensible tree ends in one large leaf.
+        if b - a <= leaf or top + 2 > DEEPEST:
+            leaves[node, 0], leaves[node, 1] = a, b - a
+            continue
+        leaves[node, 0], leaves[node, 1] = a, 0
+        cut = a + _parted(order[a:b], low, high, middle, keep)
+        stack[top, 0], stack[top, 1] = cut, b
+        stack[top + 1, 0], stack[top + 1, 1] = a, cut
+        top += 2
+    for node in range(count - 1, -1, -1):
+        skip[node] = node + 1 if leaves[node, 1] > 0 else skip[skip[node + 1]]
+    return count
+
+
+@njit(cache=True, nogil=True)
+def _fill_box(rows: Ints, low: Floats, high: Floats, face: Ints, box: Floats) -> int:
+    """Fill a node's box (6,) about the boxes of some rows, and return their face, -1 when there are several."""
+    same = face[rows[0]]
+    for r in rows:
+        if face[r] != same:
+            same = -1
+    for k in range(3):
+        least, most = np.inf, -np.inf
+        for r in rows:
+            least, most = min(least, low[r, k]), max(most, high[r, k])
+        box[k], box[k + 3] = 0.5 * (least + most), 0.5 * (most - least)
+    return same
+
+
+@njit(cache=True, nogil=True)
+def _parted(rows: Ints, low: Floats, high: Floats, middle: Floats, keep: Ints) -> int:
+    """Put the rows of one half before those of the other, each in the order they had, and return how many are in the first."""
+    cost, along, at, least, size = np.inf, -1, 0, 0.0, 0.0
+    for k in range(3):
+        first, last = np.inf, -np.inf
+        for r in rows:
+            first, last = min(first, middle[r, k]), max(last, middle[r, k])
+        if last > first:
+            weight, place = _cheapest(rows, low, high, middle[:, k], first, last - first)
+            if weight < cost:
+                cost, along, at, least, size = weight, k, place, first, last - first
+    if along < 0:
+        # All are about one place: halved by count.
+        return len(rows) // 2
+    cut = rest = 0
+    for r in rows:
+        if _bin(middle[r, along], least, size) < at:
+            rows[cut] = r
+            cut += 1
+        else:
+            keep[rest] = r
+            rest += 1
+    rows[cut:] = keep[:rest]
+    return cut
+
+
+@njit(cache=True, nogil=True)
+def _cheapest(rows: Ints, low: Floats, high: Floats, middle: Floats, least: float, size: float) -> tuple[float, int]:
+    """Return what the best cut across one side weighs, and the bin it is below."""
+    bin_low, bin_high, number = np.full((BINS, 3), np.inf), np.full((BINS, 3), -np.inf), np.zeros(BINS, np.int64)
+    for r in rows:
+        c = _bin(middle[r], least, size)
+        number[c] += 1
+        for j in range(3):
+            bin_low[c, j], bin_high[c, j] = min(bin_low[c, j], low[r, j]), max(bin_high[c, j], high[r, j])
+    above = np.full(BINS, np.inf)
+    box, count = np.array([np.inf, np.inf, np.inf, -np.inf, -np.inf, -np.inf]), 0
+    for c in range(BINS - 1, 0, -1):
+        count += _joined(box, bin_low[c], bin_high[c], number[c])
+        if count:
+            above[c] = count * _skin(box)
+    box[:3], box[3:], count = np.inf, -np.inf, 0
+    cost, at = np.inf, 0
+    for c in range(BINS - 1):
+        count += _joined(box, bin_low[c], bin_high[c], number[c])
+        if count and count * _skin(box) + above[c + 1] < cost:
+            cost, at = count * _skin(box) + above[c + 1], c + 1
+    return cost, at
+
+
+@njit(cache=True, nogil=True, inline="always")
+def _bin(middle: float, least: float, size: float) -> int:
+    return min(int(BINS * ((middle - least) / size)), BINS - 1)
+
+
+@njit(cache=True, nogil=True)
+def _joined(box: Floats, low: Floats, high: Floats, number: int) -> int:
+    for j in range(3):
+        box[j], box[j + 3] = min(box[j], low[j]), max(box[j + 3], high[j])
+    return number
+
+
+@njit(cache=True, nogil=True)
+def _skin(box: Floats) -> float:
+    a, b, c = box[3] - box[0], box[4] - box[1], box[5] - box[2]
+    return a * b + b * c + c * a

@@ -1,0 +1,147 @@
+"""Compiled ways of a tool along its moves: straight with the tip while the axis turns in one plane, or an arc about the axis.
+
+A way is cut into spans. What a point of space does relative to the tool during a span is seen in the frame that the tool has in the middle
+of it: nearly a straight line between two places, and how nearly is known.
+"""
+
+from __future__ import annotations
+
+import math
+
+from numba import njit
+
+from trunnion.geometry.arrays import Floats
+
+# A way: how the tool goes along one move.
+START, VECTOR, AXIS, PIVOT, ANGLE, CENTRE, ACROSS, ALONG = 0, 3, 6, 9, 12, 13, 16, 19
+R_START, R_END, SWEEP, CLIMB, LENGTH = range(22, 27)
+WAY_COLUMNS = 27
+"""START and VECTOR of the tip; AXIS at the start turns about PIVOT by ANGLE. An arc (SWEEP not 0) is about CENTRE, from ACROSS towards
+ALONG."""
+
+# A span of a way: for each end the matrix (9) that turns what is relative to the tip into the frame of the middle, and the tip (3).
+TIP, END_COLUMNS = 9, 12
+S_AXIS, S_ANGLE, S_LENGTH, S_BULGE, S_FROM, S_TO = 0, 3, 4, 5, 6, 7
+SPAN_COLUMNS = 8
+
+MOST_TURN, MOST_SWEEP = 0.1, 0.25
+"""rad: how far the axis turns, or an arc goes, in one span: their sags stay far below the size of a tool."""
+NARROW = 1.0
+"""mm: a body of a smaller radius gets no shorter spans."""
+FLAT = 1e-12
+
+
+@njit(cache=True, nogil=True)
+def fill_way(start: Floats, end: Floats, axis: Floats, end_axis: Floats, centre: Floats, sweep: float, way: Floats) -> None:
+    """Fill `way` (27,) from a move's ends (3,), its axes at both, and an arc's centre and angle (0: a line)."""
+    way[:] = 0.0
+    square = 0.0
+    for k in range(3):
+        way[START + k], way[VECTOR + k], way[AXIS + k] = start[k], end[k] - start[k], axis[k]
+        square += way[VECTOR + k] * way[VECTOR + k]
+    way[LENGTH] = math.sqrt(square)
+    if sweep != 0.0:
+        _fill_arc(start, end, axis, centre, sweep, way)
+        return
+    wx, wy, wz = (axis[1] * end_axis[2] - axis[2] * end_axis[1], axis[2] * end_axis[0] - axis[0] * end_axis[2],
+                  axis[0] * end_axis[1] - axis[1] * end_axis[0])
+    sine, cosine = math.sqrt(wx * wx + wy * wy + wz * wz), axis[0] * end_axis[0] + axis[1] * end_axis[1] + axis[2] * end_axis[2]
+    if sine < FLAT:
+        if cosine > 0.0:
+            return
+        # Turned right over: no plane is given, so any will do, the same one each time.
+        if abs(axis[0]) < 0.9:
+            wx, wy, wz = 0.0, axis[2], -axis[1]
+        else:
+            wx, wy, wz = -axis[2], 0.0, axis[0]
+    size = math.sqrt(wx * wx + wy * wy + wz * wz)
+    way[PIVOT], way[PIVOT + 1], way[PIVOT + 2], way[ANGLE] = wx / size, wy / size, wz / size, math.atan2(sine, cosine)
+
+
+@njit(cache=True, nogil=True)
+def _fill_arc(start: Floats, end: Floats, axis: Floats, centre: Floats, sweep: float, way: Floats) -> None:
+    up = climb = 0.0
+    for k in range(3):
+        up += (start[k] - centre[k]) * axis[k]
+        climb += (end[k] - start[k]) * axis[k]
+    square = last = 0.0
+    for k in range(3):
+        way[CENTRE + k] = centre[k] + up * axis[k]
+        way[ACROSS + k] = start[k] - way[CENTRE + k]
+        square += way[ACROSS + k] ** 2
+        last += (end[k] - climb * axis[k] - way[CENTRE + k]) ** 2
+    radius = math.sqrt(square)
+    for k in range(3):
+        way[ACROSS + k] /= max(radius, FLAT)
+    for k in range(3):
+        i, j = (k + 1) % 3, (k + 2) % 3
+        way[ALONG + k] = axis[i] * way[ACROSS + j] - axis[j] * way[ACROSS + i]
+    way[R_START], way[R_END], way[SWEEP], way[CLIMB] = radius, math.sqrt(last), sweep, climb
+    way[LENGTH] = math.hypot(max(radius, way[R_END]) * abs(sweep), climb)
+
+
+@njit(cache=True, nogil=True)
+def tip_at(way: Floats, t: float) -> tuple[float, float, float]:
+    """Return the tip at a share of the way."""
+    if way[SWEEP] == 0.0:
+        return way[START] + t * way[VECTOR], way[START + 1] + t * way[VECTOR + 1], way[START + 2] + t * way[VECTOR + 2]
+    radius = way[R_START] + t * (way[R_END] - way[R_START])
+    a, b, c = radius * math.cos(t * way[SWEEP]), radius * math.sin(t * way[SWEEP]), t * way[CLIMB]
+    return (way[CENTRE] + a * way[ACROSS] + b * way[ALONG] + c * way[AXIS],
+            way[CENTRE + 1] + a * way[ACROSS + 1] + b * way[ALONG + 1] + c * way[AXIS + 1],
+            way[CENTRE + 2] + a * way[ACROSS + 2] + b * way[ALONG + 2] + c * way[AXIS + 2])
+
+
+@njit(cache=True, nogil=True)
+def axis_at(way: Floats, t: float) -> tuple[float, float, float]:
+    """Return the tool axis at a share of the way; the pivot is across it."""
+    ax, ay, az = way[AXIS], way[AXIS + 1], way[AXIS + 2]
+    if way[ANGLE] == 0.0:
+        return ax, ay, az
+    wx, wy, wz = way[PIVOT], way[PIVOT + 1], way[PIVOT + 2]
+    c, s = math.cos(t * way[ANGLE]), math.sin(t * way[ANGLE])
+    return c * ax + s * (wy * az - wz * ay), c * ay + s * (wz * ax - wx * az), c * az + s * (wx * ay - wy * ax)
+
+
+@njit(cache=True, nogil=True)
+def fill_span(way: Floats, t0: float, t1: float, ends: Floats, span: Floats) -> None:
+    """Fill `ends` (2, 12) and `span` (8,) for the way between two shares of it."""
+    middle = 0.5 * (t0 + t1)
+    span[S_AXIS], span[S_AXIS + 1], span[S_AXIS + 2] = axis_at(way, middle)
+    share = t1 - t0
+    span[S_ANGLE], span[S_LENGTH], span[S_BULGE] = share * way[ANGLE], share * way[LENGTH], 0.0
+    span[S_FROM], span[S_TO] = t0, t1
+    if way[SWEEP] != 0.0:
+        turn = min(share * abs(way[SWEEP]), math.pi)
+        drift = share * abs(way[R_END] - way[R_START])
+        span[S_BULGE] = max(way[R_START], way[R_END]) * (1.0 - math.cos(0.5 * turn)) + 0.25 * drift * turn
+    for e in range(2):
+        ends[e, TIP], ends[e, TIP + 1], ends[e, TIP + 2] = tip_at(way, t0 if e == 0 else t1)
+        half = 0.5 * span[S_ANGLE] if e == 0 else -0.5 * span[S_ANGLE]
+        c, s = math.cos(half), math.sin(half)
+        wx, wy, wz = way[PIVOT], way[PIVOT + 1], way[PIVOT + 2]
+        v = 1.0 - c
+        ends[e, 0], ends[e, 1], ends[e, 2] = c + v * wx * wx, v * wx * wy - s * wz, v * wx * wz + s * wy
+        ends[e, 3], ends[e, 4], ends[e, 5] = v * wx * wy + s * wz, c + v * wy * wy, v * wy * wz - s * wx
+        ends[e, 6], ends[e, 7], ends[e, 8] = v * wx * wz - s * wy, v * wy * wz + s * wx, c + v * wz * wz
+
+
+@njit(cache=True, nogil=True, inline="always")
+def seen(ends: Floats, e: int, px: float, py: float, pz: float) -> tuple[float, float, float]:
+    """Return a point of space as the tool sees it at one end of a span, in the frame of its middle."""
+    x, y, z = px - ends[e, TIP], py - ends[e, TIP + 1], pz - ends[e, TIP + 2]
+    return (ends[e, 0] * x + ends[e, 1] * y + ends[e, 2] * z, ends[e, 3] * x + ends[e, 4] * y + ends[e, 5] * z,
+            ends[e, 6] * x + ends[e, 7] * y + ends[e, 8] * z)
+
+
+@njit(cache=True, nogil=True)
+def spans_of(way: Floats, radius: float) -> int:
+    """Return into how many equal spans a way is cut for a body of a radius: none goes further than the body is wide."""
+    most = max(way[LENGTH] / (2.0 * max(radius, NARROW)), way[ANGLE] / MOST_TURN, abs(way[SWEEP]) / MOST_SWEEP)
+    return max(1, int(math.ceil(most)))
+
+
+@njit(cache=True, nogil=True, inline="always")
+def sag_of(span: Floats, far: float) -> float:
+    """Return how far a point that is never further than `far` from the tip may be off the straight line between its places at both ends."""
+    return span[S_ANGLE] * (0.125 * span[S_ANGLE] * far + 0.25 * span[S_LENGTH]) + span[S_BULGE]
