@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from itertools import pairwise
 
 import manifold3d as m3
 import numpy as np
@@ -46,5 +47,5 @@ def stood(solid, tip, axis):
 def swept(solid, tips, axes):
     """Return a convex solid swept from pose to pose: the hulls of neighbours, exact where the axis keeps still."""
     poses = [stood(solid, t, a) for t, a in zip(tips, axes, strict=True)]
-    hulls = [m3.Manifold.batch_hull([a, b]) for a, b in zip(poses[:-1], poses[1:], strict=True)] or poses
+    hulls = [m3.Manifold.batch_hull([a, b]) for a, b in pairwise(poses)] or poses
     return m3.Manifold.batch_boolean(hulls, m3.OpType.Add)

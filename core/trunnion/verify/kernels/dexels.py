@@ -21,8 +21,14 @@ from trunnion.verify.kernels.engagement import look_in_intervals
 # Columns of a span: tip and tool frame (its rows: two axes across, the tool axis) at both ends, then the boxes of what cuts and of all.
 TIP0, FRAME0, TIP1, FRAME1, CUT_BOX, ALL_BOX = 0, 3, 12, 15, 24, 30
 SPAN_COLUMNS = 36
+# A ray as a span's tool frames see it: foot (3) and direction (3) at the start, what both gain until the end (3, 3), by how much the
+# direction turns, and how much smaller the body is taken.
+TWIST, SMALLER = 12, 13
+RAY_COLUMNS = 14
 SHRINK = 1e-6
 """mm that bodies are made smaller by: a surface that was just cut to is not cut again by what only touches it."""
+MOST_GRAZED = 64
+"""Places that a rapid may be suspected at."""
 NOISE = 1e-7
 """mm: depths less apart are the same."""
 THIN = 1e-6
@@ -42,7 +48,7 @@ def _depth(arcs: Floats, first: int, last: int, limit: float, ray: Floats, w: fl
     if rho > 0.0:
         nx, ny = nr * x / rho, nr * y / rho
     along = -(nx * (ray[3] + t * ray[9]) + ny * (ray[4] + t * ray[10]) + nz * (ray[5] + t * ray[11]))
-    return depth - SHRINK, along, -(nx * gx + ny * gy + nz * gz)
+    return depth - ray[SMALLER], along, -(nx * gx + ny * gy + nz * gz)
 
 
 @njit(cache=True, nogil=True)
@@ -118,7 +124,7 @@ def _entered(arcs: Floats, first: int, last: int, limit: float, ray: Floats, w: 
 def _bound(arcs: Floats, first: int, last: int, limit: float, ray: Floats, w: float, end: float) -> float:
     """Return a bound from above for the depth between two places over a span, from one look at w."""
     f, slope, s = _depth(arcs, first, last, limit, ray, w, 0.0)
-    return f + max(slope * (end - w), 0.0) + max(s, 0.0) + ray[12] * abs(end - w)
+    return f + max(slope * (end - w), 0.0) + max(s, 0.0) + ray[TWIST] * abs(end - w)
 
 
 @njit(cache=True, nogil=True)
@@ -222,7 +228,7 @@ def _cut_ray(arcs: Floats, first: int, last: int, limit: float, ray: Floats, cou
         if _bound(arcs, first, last, limit, ray, near, far) <= NOISE:
             k += 1
             continue
-        turns = ray[12] > 0.0
+        turns = ray[TWIST] > 0.0
         from_near = _entered(arcs, first, last, limit, ray, near, far)
         from_far = np.nan if math.isnan(from_near) and not turns else _entered(arcs, first, last, limit, ray, far, near)
         if math.isnan(from_near) and math.isnan(from_far):
@@ -257,6 +263,77 @@ def _cut_ray(arcs: Floats, first: int, last: int, limit: float, ray: Floats, cou
 
 
 @njit(cache=True, nogil=True)
+def _beside(count: Ints, low: Floats, high: Floats, columns: int, row: int, end_row: int, i: int, j: int, a: float, b: float) -> float:
+    """Return a place between a and b where a ray of a cell, or of one beside it in the tile, has material; NaN when none has."""
+    for y in range(max(j - 1, row), min(j + 2, end_row)):
+        for x in range(max(i - 1, 0), min(i + 2, columns)):
+            cell = y * columns + x
+            for k in range(count[cell]):
+                c, d = max(a, low[cell, k]), min(b, high[cell, k])
+                if d - c > NOISE:
+                    return 0.5 * (c + d)
+    return np.nan
+
+
+@njit(cache=True, nogil=True)
+def _may_hide(arcs: Floats, first: int, last: int, ray: Floats, count: Ints, low: Floats, high: Floats, columns: int, row: int,
+              end_row: int, i: int, j: int, pitch: float, box: Floats) -> bool:
+    """Say whether somewhere in a cell a body may be in material that is as the rays around have it; `ray` is the cell's middle."""
+    for y in range(max(j - 1, row), min(j + 2, end_row)):
+        for x in range(max(i - 1, 0), min(i + 2, columns)):
+            cell = y * columns + x
+            for k in range(count[cell]):
+                a, b = max(box[2], low[cell, k]), min(box[5], high[cell, k])
+                if b <= a:
+                    continue
+                deepest, w = _highest(arcs, first, last, np.inf, ray, a, b)
+                if deepest > -0.7072 * pitch:
+                    # Across rays the depth grows by what its slope along them leaves, up to half a diagonal.
+                    slope = _over_time(arcs, first, last, np.inf, ray, w)[1]
+                    if deepest + 0.7072 * pitch * math.sqrt(max(1.0 - slope * slope, 0.0)) > 0.0:
+                        return True
+    return False
+
+
+@njit(cache=True, nogil=True)
+def _graze(arcs: Floats, first: int, last: int, span: Floats, ray: Floats, count: Ints, low: Floats, high: Floats, columns: int, row: int,
+           end_row: int, origin: Floats, pitch: float, box: Floats, fine: int, places: Floats) -> None:
+    """List places between rays where a body may be in material, going by the material of the rays around."""
+    i0, i1 = _cells(box[0] - 0.5 * pitch, box[3] + 0.5 * pitch, origin[0], pitch, 0, columns)
+    j0, j1 = _cells(box[1] - 0.5 * pitch, box[4] + 0.5 * pitch, origin[1], pitch, row, end_row)
+    listed = 0
+    while listed < len(places) and places[listed, 3] > 0.0:
+        listed += 1
+    best = np.zeros((4, 4))
+    for j in range(j0, j1):
+        for i in range(i0, i1):
+            _aim(ray, span, origin[0] + (i + 0.5) * pitch, origin[1] + (j + 0.5) * pitch)
+            if not _may_hide(arcs, first, last, ray, count, low, high, columns, row, end_row, i, j, pitch, box):
+                continue
+            best[:, 3] = 0.0
+            for m in range(fine * fine):
+                x, y = m % fine, m // fine
+                u, v = origin[0] + (i + (x + 0.5) / fine) * pitch, origin[1] + (j + (y + 0.5) / fine) * pitch
+                _aim(ray, span, u, v)
+                a = _entered(arcs, first, last, np.inf, ray, box[2], box[5])
+                if math.isnan(a):
+                    continue
+                b = _entered(arcs, first, last, np.inf, ray, box[5], box[2])
+                if math.isnan(b) or b <= a:
+                    continue
+                w = _beside(count, low, high, columns, row, end_row, i, j, a, b)
+                if not math.isnan(w):
+                    deep = _over_time(arcs, first, last, np.inf, ray, w)[0] + ray[SMALLER]
+                    quarter = 2 * (2 * y // fine) + 2 * x // fine
+                    if deep > best[quarter, 3]:
+                        best[quarter, 0], best[quarter, 1], best[quarter, 2], best[quarter, 3] = u, v, w, deep
+            for m in range(4):
+                if best[m, 3] > 0.0 and listed < len(places):
+                    places[listed] = best[m]
+                    listed += 1
+
+
+@njit(cache=True, nogil=True)
 def _limit(piece: Floats, p: int, last: int) -> float:
     """Return the height where a tool's flutes end, for the last piece that cuts: its closed body reaches beyond."""
     if piece[p, KIND] == 0.0 and p + 1 < last and piece[p + 1, KIND] != 0.0:
@@ -268,7 +345,7 @@ def _limit(piece: Floats, p: int, last: int) -> float:
 def cut_tile(last: int, span: Floats, span_start: Ints, arcs: Floats, piece: Floats, piece_start: Ints, tool: Ints, rapid: Bools,
              leaves: Bools, count: Ints, low: Floats, high: Floats, columns: int, row: int, end_row: int, origin: Floats, pitch: float,
              resume: Ints, removed: Floats, depth: Floats, place: Floats, body: Floats, way: Floats, rings: Floats, flute: Floats,
-             circle: Floats, probe_start: Ints, counted: Ints, seen: Floats) -> bool:
+             circle: Floats, probe_start: Ints, counted: Ints, seen: Floats, fine: int, allowed: float, grazed: Floats) -> bool:
     """Run moves up to `last` through a tile of a bundle: cut with feed moves, and judge rapids and what doesn't cut against what stands.
 
     span (s, `SPAN_COLUMNS`) in the bundle's coordinates, span_start (n + 1,); arcs, piece, piece_start, tool (n,) as `Bodies` has them;
@@ -277,16 +354,23 @@ def cut_tile(last: int, span: Floats, span_start: Ints, arcs: Floats, piece: Flo
     resume (6,): move, span, piece, row and column to begin with, and whether that move has been looked at; changed. removed (n,) gets the
     length that is gone, depth (n,) and place (n, 3) how deep a rapid's cutter is in material and where (u, v, w), body (n,) how deep what
     doesn't cut is. way (n, 16): start, end, both axes, centre and sweep as `Moves` has them; rings, flute, circle, probe_start (n + 1,),
-    counted and seen: see `kernels/engagement.py`; without probes nothing is looked at.
+    counted and seen: see `kernels/engagement.py`; without probes nothing is looked at. fine: rays along each side of a cell where a rapid
+    may go deeper than `allowed` in between, 0 for none; grazed (r, 4) gets such places (u, v, w) and depths, `MOST_GRAZED` rows for each
+    rapid in turn, depth 0 where there is none.
     Returns whether all is done: when rays have no room for one more interval, `resume` says where to go on.
     """
-    ray, box, corner = np.zeros(13), np.empty(6), np.empty(2)
+    ray, box, corner = np.zeros(RAY_COLUMNS), np.empty(6), np.empty(2)
+    ray[SMALLER] = SHRINK
     bottom, top = np.inf, -np.inf
     for cell in range(row * columns, end_row * columns):
         if count[cell] > 0:
             bottom, top = min(bottom, low[cell, 0]), max(top, high[cell, count[cell] - 1])
     v_low, v_high = origin[1] + row * pitch, origin[1] + end_row * pitch
+    rapids = 0
+    for n in range(resume[0]):
+        rapids += rapid[n]
     for n in range(resume[0], last):
+        rapids += rapid[n]
         going_on = n == resume[0]
         p0, p1 = piece_start[tool[n]], piece_start[tool[n] + 1]
         if not rapid[n]:
@@ -302,7 +386,7 @@ def cut_tile(last: int, span: Floats, span_start: Ints, arcs: Floats, piece: Flo
                 if span[s, CUT_BOX + 1] > v_high or span[s, CUT_BOX + 4] < v_low or span[s, CUT_BOX + 2] > top or \
                         span[s, CUT_BOX + 5] < bottom:
                     continue
-                ray[12] = _motion(span[s])
+                ray[TWIST] = _motion(span[s])
                 for p in range(max(resume[2], p0) if going_on else p0, p1):
                     going_on = going_on and p == resume[2]
                     if piece[p, KIND] != 0.0:
@@ -333,7 +417,7 @@ def cut_tile(last: int, span: Floats, span_start: Ints, arcs: Floats, piece: Flo
             if span[s, ALL_BOX + 1] > v_high or span[s, ALL_BOX + 4] < v_low or span[s, ALL_BOX + 2] > top or \
                     span[s, ALL_BOX + 5] < bottom:
                 continue
-            ray[12] = _motion(span[s])
+            ray[TWIST] = _motion(span[s])
             for p in range(p0, p1):
                 cuts = piece[p, KIND] == 0.0
                 if cuts and not rapid[n]:
@@ -363,16 +447,21 @@ def cut_tile(last: int, span: Floats, span_start: Ints, arcs: Floats, piece: Flo
                                 depth[n], place[n, 0], place[n, 1], place[n, 2] = deepest, u, v, w
                             elif deepest > best:
                                 body[n] = deepest
+                if cuts and fine > 0 and depth[n] <= allowed:
+                    ray[SMALLER] = allowed
+                    _graze(arcs, first, end, span[s], ray, count, low, high, columns, row, end_row, origin, pitch, box, fine,
+                           grazed[(rapids - 1) * MOST_GRAZED:rapids * MOST_GRAZED])
+                    ray[SMALLER] = SHRINK
     return True
 
 
 @njit(cache=True, nogil=True)
 def _near(span: Floats, first: int, last: int, v_low: float, v_high: float) -> bool:
     """Say whether what cuts comes between two coordinates v in some spans."""
+    near = False
     for s in range(first, last):
-        if span[s, CUT_BOX + 1] <= v_high and span[s, CUT_BOX + 4] >= v_low:
-            return True
-    return False
+        near = near or (span[s, CUT_BOX + 1] <= v_high and span[s, CUT_BOX + 4] >= v_low)
+    return near
 
 
 @njit(cache=True, nogil=True)

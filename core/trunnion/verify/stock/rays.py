@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 
 import numpy as np
 
@@ -29,13 +29,15 @@ LOOKS = 8_000_000
 @dataclass(frozen=True, slots=True, eq=False)
 class Passed:
     """What moves (n,) did: removed mm3 (the mean of the bundles), depth and place (n, 3) in the blank's frame of rapids, how deep what
-    doesn't cut went, and what the probes saw."""
+    doesn't cut went, and what the probes saw. grazed: moves (k,), and places with depths (k, 4), where rapids may be in material between
+    rays."""
 
     removed: Floats
     depth: Floats
     place: Floats
     body: Floats
     tally: Tally
+    grazed: list[tuple[Ints, Floats]] = field(default_factory=list)
 
     @staticmethod
     def empty(n: int, probes: Probes) -> Passed:
@@ -66,13 +68,15 @@ class _Batch:
     way: Floats
     probes: Probes
     probe_start: Ints
+    fine: int
 
 
-def run_rays(going: Sequence[Going], moves: Moves, blank: Blank, probes: Probes, found: Passed, share: float, most_bytes: int,
-             progress: Progress, threads: int) -> None:
+def run_rays(going: Sequence[Going], moves: Moves, blank: Blank, probes: Probes, found: Passed, share: float, fine: int,
+             most_bytes: int, progress: Progress, threads: int) -> None:
     """Run moves given in the blank's frame through bundles (changed in place) and add to what was found.
 
-    `share` is what the volume that one bundle loses counts. Raises `OutOfMemory` when rays are cut in so many pieces that the bundles would
+    `share` is what the volume that one bundle loses counts; cells that a rapid grazes are looked at in `fine` rays along each side, 0 for
+    not at all. Raises `OutOfMemory` when rays are cut in so many pieces that the bundles would
     take more than `most_bytes`.
     """
     n = len(moves)
@@ -86,7 +90,7 @@ def run_rays(going: Sequence[Going], moves: Moves, blank: Blank, probes: Probes,
         rows = np.arange(row, max(row + 1, int(np.searchsorted(ends, begun + SPANS, side="right"))))
         spans = spans_of(moves, rows, each[rows])
         batch = _Batch(spans.start, [spans.along(axis) for axis in range(3)], moves.bodies, moves.tool[rows], moves.rapid[rows],
-                       leaves[rows], way[rows], probes, probes.start[row:rows[-1] + 2])
+                       leaves[rows], way[rows], probes, probes.start[row:rows[-1] + 2], fine)
         looks = np.cumsum(_looks(spans, blank, bundles))
         first = 0
         while first < len(rows):
@@ -129,6 +133,8 @@ class _Job:
         self.removed, self.depth, self.place, self.body = np.zeros(n), np.zeros(n), np.full((n, 3), np.nan), np.zeros(n)
         self.probe = batch.probe_start[first:last + 1] if self.bundle.axis == UP else np.zeros(n + 1, np.int64)
         self.tally = Tally.empty(int(self.probe[-1] - self.probe[0]))
+        fine = batch.fine if self.bundle.axis == UP else 0
+        self.fine, self.grazed = fine, np.zeros(((fine > 0) * int(batch.rapid[first:last].sum()) * kernel.MOST_GRAZED, 4))
 
     def run(self) -> None:
         """Go on until all moves are done or a ray has no room."""
@@ -137,7 +143,7 @@ class _Job:
             self.last - self.first, m.spans[b.axis], m.start[self.first:self.last + 1], m.bodies.arc, m.bodies.piece, m.bodies.start,
             m.tool[own], m.rapid[own], m.leaves[own], b.count, b.low, b.high, b.columns, *self.tile, b.origin, b.pitch, self.resume,
             self.removed, self.depth, self.place, self.body, m.way[own], m.probes.rings, m.probes.flute, m.probes.circle,
-            self.probe - self.probe[0], self.tally.counted, self.tally.spans)
+            self.probe - self.probe[0], self.tally.counted, self.tally.spans, self.fine, tolerance.RAPID_DEPTH, self.grazed)
 
     def note(self, found: Passed, row: int, share: float) -> None:
         """Add what happened to what was found in other tiles; the batch's moves count from `row`."""
@@ -150,6 +156,10 @@ class _Job:
         seen = slice(self.probe[0], self.probe[-1])
         found.tally.counted[seen] += self.tally.counted
         found.tally.spans[seen] = Tally(found.tally.counted[seen], found.tally.spans[seen]).plus(self.tally).spans
+        listed = np.flatnonzero(self.grazed[:, 3] > 0.0)
+        if len(listed):
+            rapids = row + self.first + np.flatnonzero(self.batch.rapid[self.first:self.last])
+            found.grazed.append((rapids[listed // kernel.MOST_GRAZED], self.grazed[listed]))
 
 
 def _leaves(moves: Moves) -> Bools:

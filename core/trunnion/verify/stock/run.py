@@ -12,6 +12,7 @@ from trunnion.geometry.frame import Frame
 from trunnion.progress import QUIET, Progress
 from trunnion.verify.engagement import engagement_of, probes_of
 from trunnion.verify.motion import Moves, seen_from
+from trunnion.verify.stock.closer import confirm_grazed, rays_in_cell
 from trunnion.verify.stock.heights import run_heights
 from trunnion.verify.stock.rays import Going, Passed, run_rays
 from trunnion.verify.stock.stock import MOST_BYTES, Stock
@@ -53,8 +54,10 @@ def run_stock(stock: Stock, moves: Moves, frame: Frame, sweep: Sweep | None = No
         stock.open_field()
     going = [Going(b) if name != "z" else Going(b, row, looked) for name, b in stock.rays.items()]
     if going:
-        run_rays(going, local, stock.blank, probes, found, share, MOST_BYTES, progress.part(0.3, 1.0), threads)
+        fine = rays_in_cell(stock.pitch) if sweep is not None else 0
+        run_rays(going, local, stock.blank, probes, found, share, fine, MOST_BYTES, progress.part(0.3, 1.0), threads)
     if sweep is not None:
+        confirm_grazed(stock, found, frame, sweep, progress)
         stock.cut_by.append((sweep, frame))
     rapid_depth = np.where(found.depth > tolerance.RAPID_DEPTH, found.depth, 0.0)
     place = np.where(rapid_depth[:, None] > 0.0, found.place, np.nan)
