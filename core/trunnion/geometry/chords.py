@@ -17,6 +17,9 @@ from trunnion.geometry.arrays import Bools, Floats, Ints
 from trunnion.geometry.curve import FULL, Segments, chord_counts
 from trunnion.geometry.meeting import CLOSE, crossings, meeting_boxes
 
+GRIDS = np.array([(0.0, 0.0), (0.5, 0.0), (0.0, 0.5), (0.5, 0.5)])
+"""How far four grids are shifted, in cells: two points nearer than half a cell share a cell of at least one of them."""
+
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Chords:
@@ -80,14 +83,14 @@ def pulled_together(points: Floats) -> Floats:
 def _crowded(points: Floats) -> Ints:
     """Return the rows of points that may have another one within the coincidence tolerance: they share a cell of one of four grids."""
     cell = (points - points.min(axis=0)) / (4.0 * CLOSE)
+    x, y = np.floor(cell + GRIDS[:, None]).astype(np.int64).transpose(2, 0, 1)
+    # Two cells may share a number; that only costs a look.
+    number = x * 1000003 + y
+    order = np.argsort(number, axis=1)
+    number = np.take_along_axis(number, order, axis=1)
+    grid, same = np.nonzero(number[:, 1:] == number[:, :-1])
     crowded = np.zeros(len(points), dtype=bool)
-    for shift in ((0.0, 0.0), (0.5, 0.0), (0.0, 0.5), (0.5, 0.5)):
-        x, y = np.floor(cell + shift).astype(np.int64).T
-        # Two cells may share a number; that only costs a look.
-        number = x * 1000003 + y
-        order = np.argsort(number)
-        same = np.flatnonzero(number[order[1:]] == number[order[:-1]])
-        crowded[order[same]] = crowded[order[same + 1]] = True
+    crowded[order[grid, same]] = crowded[order[grid, same + 1]] = True
     return np.flatnonzero(crowded)
 
 

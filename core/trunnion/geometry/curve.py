@@ -22,7 +22,10 @@ from trunnion.geometry.kernels import distance as distance_kernels
 FULL = 2.0 * math.pi
 
 COMPILED_FROM = 1 << 21
-"""Points times segments above which compiled loops pay: the plain ones take about 0.2 s then, as long as loading the compiler."""
+"""Work, in points times segments, after which the compiled loops are loaded: the plain ones have taken 0.2 s then, as loading does."""
+
+QUESTION = 1 << 10
+"""What every question to the plain loops costs besides, in the same measure."""
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -111,6 +114,7 @@ class Curve:
     closed: bool = False
     _segments: list[Segments] = field(init=False, repr=False, default_factory=list)
     _area: list[float] = field(init=False, repr=False, default_factory=list)
+    _box: list[tuple[Floats, Floats]] = field(init=False, repr=False, default_factory=list)
 
     def __post_init__(self) -> None:
         points = floats(self.points, (None, 2), "curve points")
@@ -196,8 +200,10 @@ class Curve:
 
     def box(self) -> tuple[Floats, Floats]:
         """Return the lowest and highest corner of the box around the curve."""
-        low, high = segment_boxes(self.segments())
-        return low.min(axis=0), high.max(axis=0)
+        if not self._box:
+            low, high = segment_boxes(self.segments())
+            self._box.append((low.min(axis=0), high.max(axis=0)))
+        return self._box[0]
 
     def reversed(self) -> Curve:
         """Return the same curve in the other direction; a closed one still starts at its first point."""
@@ -284,7 +290,7 @@ class Curve:
         """Return the arc length of the place on the curve that is nearest to a point (2,)."""
         p = np.asarray(point, dtype=np.float64)
         seg = self.segments()
-        row = int(distance_kernels.nearest_segment(p[None, :], *_rows(seg))[1][0])
+        row = int(_loops(seg, p[None, :]).nearest_segment(p[None, :], *_rows(seg))[1][0])
         before = float(seg.length[:row].sum())
         start, sweep, length = seg.start[row], float(seg.sweep[row]), float(seg.length[row])
         if sweep == 0.0:
@@ -356,9 +362,15 @@ def winding(segments: Segments, points: Floats) -> Ints:
     return _loops(segments, points).winding_numbers(points, *_rows(segments))
 
 
+_work = 0
+
+
 def _loops(segments: Segments, points: Floats) -> ModuleType:
-    """Return the compiled loops where they save more than loading them costs, else the plain ones."""
-    if len(segments) * len(points) < COMPILED_FROM:
+    """Return the plain loops until loading the compiled ones pays, then those; both give the very same numbers."""
+    global _work
+    if _work < COMPILED_FROM:
+        _work += QUESTION + len(segments) * len(points)
+    if _work < COMPILED_FROM:
         return distance_kernels
     from trunnion.geometry.kernels import distance_compiled
 

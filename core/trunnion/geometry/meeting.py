@@ -22,23 +22,26 @@ def crossings(s: Segments, pairs: tuple[Ints, Ints] | None = None) -> tuple[Ints
     """
     i, j = meeting_boxes(s) if pairs is None else pairs
     line = s.sweep == 0.0
-    rows, keys, points = [], [], []
+    rows, points = [], []
     for kind, solve in ((line[i] & line[j], _lines_meet), (line[i] & ~line[j], _line_meets_circle),
                         (~line[i] & line[j], _circle_meets_line), (~line[i] & ~line[j], _circles_meet)):
         a, b = i[kind], j[kind]
         for point in solve(s, a, b) if len(a) else ():
-            on_a, on_b = place_on(s, a, point), place_on(s, b, point)
-            real = ~np.isnan(on_a) & ~np.isnan(on_b)
-            rows += [a[real], b[real]]
-            keys += [on_a[real], on_b[real]]
-            points += [point[real], point[real]]
+            rows += [a, b]
+            points += [point, point]
     # Ends that lie on another segment cut it too, which also covers segments that lie on each other.
     row, point = np.concatenate([i, i, j, j]), np.concatenate([s.start[j], s.end[j], s.start[i], s.end[i]])
     touches = _off_carrier(s, row, point) <= CLOSE
-    row, point = row[touches], point[touches]
+    row, point = np.concatenate([*rows, row[touches]]), np.concatenate([*points, point[touches]])
     key = place_on(s, row, point)
-    inside = ~np.isnan(key)
-    return np.concatenate([*rows, row[inside]]), np.concatenate([*keys, key[inside]]), np.concatenate([*points, point[inside]])
+    real = ~np.isnan(key)
+    # A meeting is one only when it lies inside both.
+    begin = 0
+    for a in rows[::2]:
+        first, second = slice(begin, begin + len(a)), slice(begin + len(a), begin + 2 * len(a))
+        real[first] = real[second] = real[first] & real[second]
+        begin += 2 * len(a)
+    return row[real], key[real], point[real]
 
 
 def meeting_boxes(s: Segments) -> tuple[Ints, Ints]:

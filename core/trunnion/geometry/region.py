@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import hashlib
 from collections.abc import Callable, Iterable, Sequence
 from dataclasses import dataclass, field
 
@@ -14,6 +15,10 @@ from trunnion.geometry import fit
 from trunnion.geometry.arrays import Bools, Floats, Ints
 from trunnion.geometry.chords import Chords, chorded, polygons_of
 from trunnion.geometry.curve import Curve, Segments, distance_to, join_segments, winding
+from trunnion.geometry.memo import Memo
+
+KEPT_ANSWERS = 4096
+"""Answers of offsets and of overlays that are kept, of some kB each: a large panel asks less than this in one step."""
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -48,6 +53,7 @@ class Region:
 
     pieces: tuple[Piece, ...] = ()
     _segments: list[Segments] = field(init=False, repr=False, default_factory=list)
+    _digest: list[bytes] = field(init=False, repr=False, default_factory=list)
 
     def __post_init__(self) -> None:
         object.__setattr__(self, "pieces", tuple(self.pieces))
@@ -100,6 +106,19 @@ class Region:
         curves = self.curves()
         return np.repeat(np.arange(len(curves)), [c.n_segments for c in curves])
 
+    def digest(self) -> bytes:
+        """Return a short digest of all loops: equal for regions of the same loops, and only for them."""
+        if not self._digest:
+            made = hashlib.blake2b(digest_size=16)
+            for piece in self.pieces:
+                made.update(len(piece.holes).to_bytes(4, "little"))
+                for curve in (piece.outer, *piece.holes):
+                    made.update(len(curve.points).to_bytes(4, "little"))
+                    made.update(curve.points.tobytes())
+                    made.update(curve.bulges.tobytes())
+            self._digest.append(made.digest())
+        return self._digest[0]
+
     def contains(self, points: ArrayLike, margin: float = 0.0) -> Bools:
         """Say of each point (k, 2) whether it is inside by at least `margin` mm (negative: at most so far outside)."""
         p = np.atleast_2d(np.asarray(points, dtype=np.float64))
@@ -119,7 +138,9 @@ class Region:
         """Return the region grown (positive, with round joins) or shrunk (negative) by a distance in mm."""
         from trunnion.geometry.offset import offset_region
 
-        return offset_region(self, distance)
+        if not self or abs(distance) <= tolerance.PARAMETRIC:
+            return self
+        return _OFFSETS.answer((self.digest(), distance), lambda: offset_region(self, distance))
 
     def opened(self, radius: float) -> Region:
         """Return what a disc of this radius covers when it rolls inside the region: no neck narrower than it is left."""
@@ -137,11 +158,17 @@ class Region:
 
     def minus(self, other: Region) -> Region:
         """Return the area of this region that isn't of the other one."""
-        return overlay(self, other, shapely.difference) if self and other and _boxes_meet(self, other) else self
+        if not self or not other:
+            return self
+        taken = _beside(other, *self.box())
+        return overlay(self, taken, shapely.difference) if taken else self
 
     def intersect(self, other: Region) -> Region:
         """Return the area of both regions."""
-        return overlay(self, other, shapely.intersection) if self and other and _boxes_meet(self, other) else EMPTY_REGION
+        if not self or not other:
+            return EMPTY_REGION
+        one, two = _beside(self, *other.box()), _beside(other, *self.box())
+        return overlay(one, two, shapely.intersection) if one and two else EMPTY_REGION
 
     def holes_filled(self) -> Region:
         """Return the region with its islands filled, and pieces inside them swallowed."""
@@ -184,6 +211,9 @@ class Region:
 EMPTY_REGION = Region()
 """The region without any area."""
 
+_OFFSETS: Memo[Region] = Memo(KEPT_ANSWERS)
+_OVERLAYS: Memo[Region] = Memo(KEPT_ANSWERS)
+
 
 def union_all(regions: Sequence[Region]) -> Region:
     """Return the area of any of the regions."""
@@ -196,8 +226,11 @@ def union_all(regions: Sequence[Region]) -> Region:
 
 def overlay(a: Region, b: Region, operation: Callable[..., shapely.Geometry]) -> Region:
     """Return what a set operation of shapely makes of two regions, with exact lines and arcs."""
-    chords, (first, second) = _opened_into_chords([a, b])
-    return restored_region(operation(first, second), chords)
+    def work_out() -> Region:
+        chords, (first, second) = _opened_into_chords([a, b])
+        return restored_region(operation(first, second), chords)
+
+    return _OVERLAYS.answer((a.digest(), b.digest(), operation.__name__), work_out)
 
 
 def restored_region(geometry: shapely.Geometry, chords: Chords) -> Region:
@@ -231,9 +264,16 @@ def _opened_into_chords(regions: Sequence[Region]) -> tuple[Chords, list[shapely
     return chords, areas
 
 
-def _boxes_meet(a: Region, b: Region) -> bool:
-    (low_a, high_a), (low_b, high_b) = a.box(), b.box()
-    return bool((low_a <= high_b).all() and (low_b <= high_a).all())
+def _beside(region: Region, low: Floats, high: Floats) -> Region:
+    """Return a region without the pieces and islands that lie wholly outside a box: what is asked there doesn't hang on them."""
+    def near(curve: Curve) -> bool:
+        first, last = curve.box()
+        return bool((first <= high).all() and (last >= low).all())
+
+    pieces = [p for p in region.pieces if near(p.outer)]
+    if len(pieces) == len(region.pieces) and all(near(h) for p in pieces for h in p.holes):
+        return region
+    return Region(tuple(Piece(p.outer, tuple(h for h in p.holes if near(h))) for p in pieces))
 
 
 def _nested(curves: list[Curve]) -> Region:

@@ -63,14 +63,14 @@ def from_xml(element: etree._Element, hint: Any, members: Members) -> Any:
 
 
 def hints_of(cls: Any) -> dict[str, Any]:
-    """Return the type hints of a dataclass's fields, resolved."""
+    """Return the type hints of a dataclass's fields, resolved; a field that is not given at construction follows from the others."""
     return _hints(cls)
 
 
 @cache
 def _hints(cls: Any) -> dict[str, Any]:
     hints = get_type_hints(cls)
-    return {f.name: hints[f.name] for f in dataclasses.fields(cls)}
+    return {f.name: hints[f.name] for f in dataclasses.fields(cls) if f.init}
 
 
 def _choices(hint: Any) -> tuple[Any, ...]:

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import dataclasses
 import re
 from collections.abc import Iterable, Iterator, Mapping
 from typing import Any, TypeVar
@@ -43,7 +42,7 @@ def attributes(data: Any) -> dict[str, str]:
 def made(cls: type[T], element: Any, **others: Any) -> T:
     """Return a dataclass from the attributes of an element (absent: the default) and the fields that are not scalars."""
     hints = hints_of(cls)
-    names = [f.name for f in dataclasses.fields(cls) if f.name not in others and hints[f.name] in _SCALARS]  # type: ignore[arg-type]
+    names = [name for name, hint in hints.items() if name not in others and hint in _SCALARS]
     values = {n: value_of(element.get(n.replace("_", "-")), hints[n]) for n in names if element.get(n.replace("_", "-")) is not None}
     return cls(**values, **others)
 

@@ -1,13 +1,18 @@
-"""The loops of `kernels.distance` compiled, for many points at once; same names, arguments and answers."""
+"""The loops of `kernels.distance` compiled; same names, arguments and, to the last digit, answers."""
 
 from __future__ import annotations
 
 import math
 
 import numpy as np
-from numba import njit
+from numba import int64, njit, types
 
 from trunnion.geometry.arrays import Floats, Ints
+
+# Any layout, read-only or not: without it every mixture of them that comes along is compiled anew, for a second each.
+_PAIRS = types.Array(types.float64, 2, "A", readonly=True)
+_NUMBERS = types.Array(types.float64, 1, "A", readonly=True)
+_ASKED = (_PAIRS, _PAIRS, _PAIRS, _PAIRS, _NUMBERS, _NUMBERS)
 
 
 @njit(cache=True, nogil=True)
@@ -16,7 +21,7 @@ def _size(x: float, y: float) -> float:
     return math.sqrt(x * x + y * y)
 
 
-@njit(cache=True, nogil=True)
+@njit(types.Tuple((types.float64[::1], int64[::1]))(*_ASKED), cache=True, nogil=True)
 def nearest_segment(points: Floats, start: Floats, end: Floats, centre: Floats, radius: Floats, sweep: Floats) -> tuple[Floats, Ints]:
     """Return the distance (k,) from each point (k, 2) to the nearest segment, and its row (k,)."""
     best = np.empty(len(points))
@@ -49,7 +54,7 @@ def nearest_segment(points: Floats, start: Floats, end: Floats, centre: Floats, 
     return best, row
 
 
-@njit(cache=True, nogil=True)
+@njit(int64[::1](*_ASKED), cache=True, nogil=True)
 def winding_numbers(points: Floats, start: Floats, end: Floats, centre: Floats, radius: Floats, sweep: Floats) -> Ints:
     """Return how often the loops made of all the segments go round each point (k,), anticlockwise counted positive."""
     total = np.zeros(len(points), dtype=np.int64)
