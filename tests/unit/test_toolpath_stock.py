@@ -54,7 +54,7 @@ def test_rapids_remove_nothing() -> None:
     builder = PathBuilder(mill(10), cutting(4, 4), stock, SETUP, 2.0)
     builder.rapid((30, 20, 50))
     builder.rapid((30, 20, -5))
-    assert stock.after(builder.finished(), mill(10)).digest() == stock.digest()
+    assert stock.after(builder.finished(), mill(10)).digest == stock.digest
 
 
 def test_places_that_are_higher_are_found_in_an_area_only() -> None:

@@ -13,12 +13,10 @@ from trunnion import tolerance
 from trunnion.findings import Refused
 from trunnion.geometry.curve import Curve
 from trunnion.geometry.region import Region
-from trunnion.model.blank import Blank
-from trunnion.model.feature import Feature, Recognition
+from trunnion.model.feature import Feature
 from trunnion.model.operation import Operation
 from trunnion.model.process import ProcessTree
-from trunnion.model.setup import Setup
-from trunnion.plan.regions import Band, Sections, Space, floor_fillet, on_rim, parent_of, runs, same_curve, touching
+from trunnion.plan.regions import Band, Space, floor_fillet, on_rim, parent_of, runs, same_curve, touching
 
 
 @dataclass(frozen=True, slots=True, eq=False, kw_only=True)
@@ -123,28 +121,26 @@ OF_POCKETS = ("rough", "corner", "corner_finish", "floor", "wall")
 """Kinds of operation that a pocket's drive serves."""
 
 
-def drive_of(operation: Operation, process: ProcessTree, recognition: Recognition, part: Sections, blank: Blank,
-             setup: Setup) -> PlaneDrive:
-    """Return the drive geometry of an operation in the setup frame, from tags and sections alone.
+def drive_of(operation: Operation, process: ProcessTree, space: Space) -> PlaneDrive:
+    """Return the drive geometry of an operation in the frame of the space's setup, from tags and sections alone.
 
     Raises `Refused` when the part's sections do not bear the feature out.
     """
-    space = Space.of(part, recognition, blank, setup)
     if operation.kind == "face":
-        return _face(operation, space, recognition)
-    feature = recognition.feature(operation.feature)
+        return _face(operation, space)
+    feature = space.recognition.feature(operation.feature)
     if operation.kind in OF_POCKETS:
         return _pocket(operation, process, feature, space)
     if operation.kind == "rib_top":
         return _rib_top(operation, feature, space)
     if operation.kind == "island_top":
-        return _island_top(operation, feature, space, recognition)
+        return _island_top(operation, feature, space)
     if operation.kind in ("profile_rough", "profile_finish"):
         return _profile(operation, feature, space)
     raise Refused(f"{operation.id}: no drive geometry is known for operations of kind {operation.kind}")
 
 
-def _face(operation: Operation, space: Space, recognition: Recognition) -> PlaneDrive:
+def _face(operation: Operation, space: Space) -> PlaneDrive:
     area, top = space.blank_area(), float(space.blank_high[2])
     tags = operation.faces
     level = DriveLevel(top=top, bottom=space.top, wanted=area, boundary=space.around())
@@ -240,8 +236,8 @@ def _rib_top(operation: Operation, feature: Feature, space: Space) -> PlaneDrive
     return _top(operation, feature, space, z, wanted, boundary, walls)
 
 
-def _island_top(operation: Operation, feature: Feature, space: Space, recognition: Recognition) -> PlaneDrive:
-    tags, pocket = feature.with_role("top"), parent_of(feature, recognition)
+def _island_top(operation: Operation, feature: Feature, space: Space) -> PlaneDrive:
+    tags, pocket = feature.with_role("top"), parent_of(feature, space.recognition)
     if not tags or pocket is None:
         raise Refused(f"{feature.id}: it has no top face or stands in no pocket; give it both or suppress {operation.id}")
     z = float(space.centre(tags[0])[2])

@@ -8,7 +8,7 @@ the ribs into the neighbours; there the region stays the one below the rim: the 
 from __future__ import annotations
 
 from collections.abc import Iterable
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from itertools import pairwise
 from typing import Protocol
 
@@ -57,8 +57,21 @@ class Band:
 
 
 @dataclass(frozen=True, slots=True, eq=False)
+class _Ceiling:
+    """A face that looks down somewhere: the highest place where it does, its highest place at all, and its box in plan."""
+
+    hangs: float
+    top: float
+    low: Floats
+    high: Floats
+
+
+@dataclass(frozen=True, slots=True, eq=False)
 class Space:
-    """A part in its blank as a setup sees it; every height and region is in the setup's frame."""
+    """A part in its blank as a setup sees it; every height and region is in the setup's frame.
+
+    What is asked of it again for each operation, the bands of a pocket and what hangs over, is worked out once.
+    """
 
     part: Sections
     recognition: Recognition
@@ -67,6 +80,8 @@ class Space:
     blank_high: Floats
     bottom: float
     top: float
+    _bands: dict[str, tuple[Band, ...]] = field(init=False, repr=False, default_factory=dict)
+    _ceilings: list[_Ceiling] = field(init=False, repr=False, default_factory=list)
 
     @staticmethod
     def of(part: Sections, recognition: Recognition, blank: Blank, setup: Setup) -> Space:
@@ -106,20 +121,22 @@ class Space:
         if not near:
             return material
         low, high = near.box()
-        graph = self.part.graph()
-        points, normals = self.setup.frame.to_local(graph.sample_point), self.setup.frame.local_direction(graph.sample_normal)
-        hanging = (normals[:, 2] < -np.sin(tolerance.TANGENT)) & (points[:, 2] > z)
-        over = [k for k in dict.fromkeys(graph.sample_face[hanging].tolist()) if self._beside(k, low, high)]
-        ceilings = _distinct(float(points[graph.sample_face == k, 2].max()) for k in over)
-        above = [self.section(c + tolerance.BESIDE_PLANE) for c in ceilings if c + tolerance.BESIDE_PLANE < self.top]
+        over = [c.top for c in self._hanging() if c.hangs > z and (c.low <= high).all() and (c.high >= low).all()]
+        above = [self.section(c + tolerance.BESIDE_PLANE) for c in _distinct(over) if c + tolerance.BESIDE_PLANE < self.top]
         return union_all([material, *above]) if above else material
 
-    def _beside(self, row: int, low: Floats, high: Floats) -> bool:
-        graph = self.part.graph()
-        edges = list(graph.edges_of[row])
-        points = np.vstack([graph.start[edges], graph.middle[edges], graph.end[edges], graph.centre[[row]]])
-        plan = self.setup.frame.to_local(points)[:, :2]
-        return bool((plan.min(axis=0) <= high).all() and (plan.max(axis=0) >= low).all())
+    def _hanging(self) -> list[_Ceiling]:
+        """Return the faces that look down somewhere."""
+        graph, frame = self.part.graph(), self.setup.frame
+        if not self._ceilings:
+            z = frame.to_local(graph.sample_point)[:, 2]
+            down = frame.local_direction(graph.sample_normal)[:, 2] < -np.sin(tolerance.TANGENT)
+            for row in dict.fromkeys(graph.sample_face[down].tolist()):
+                own, edges = graph.sample_face == row, list(graph.edges_of[row])
+                rim = np.vstack([graph.start[edges], graph.middle[edges], graph.end[edges], graph.centre[[row]]])
+                plan = frame.to_local(rim)[:, :2]
+                self._ceilings.append(_Ceiling(float(z[own & down].max()), float(z[own].max()), plan.min(axis=0), plan.max(axis=0)))
+        return self._ceilings
 
     def free_near(self, z: float, region: Region) -> Region:
         """Return where nothing of the part stands at a height or hangs over it, around a region by plenty for a cutter over it."""
@@ -156,6 +173,11 @@ class Space:
 
     def bands_of(self, feature: Feature) -> tuple[Band, ...]:
         """Return the bands of a pocket from the top down; raise `Refused` when no free space is found over a floor."""
+        if feature.id not in self._bands:
+            self._bands[feature.id] = self._found_bands(feature)
+        return self._bands[feature.id]
+
+    def _found_bands(self, feature: Feature) -> tuple[Band, ...]:
         floors, islands = self.floors_of(feature), self.islands_of(feature)
         points = {z: self.centre(tag)[:2] for tag, z in floors.items()}
         if not floors:

@@ -101,20 +101,16 @@ def _before(draft: Draft, wish: Wish, wishes: Sequence[Wish]) -> frozenset[str]:
     """Return the ids that come before a wish: earlier stages on and beside its feature, larger cutters, the pocket it is sunk in."""
     kinds = {f.id: f.kind for f in draft.recognition}
     near = {i for i in draft.beside.get(wish.feature, ()) if kinds[i] != kinds[wish.feature]} | {wish.feature, "blank"}
+    own = next((f for f in draft.recognition if f.id == wish.feature), None)
+    parent = parent_of(own, draft.recognition) if own else None
     found: set[str] = set()
     for other in wishes:
         if other.stage.name in wish.stage.after_all or (other.stage.name in wish.stage.after and other.feature in near):
             found.add(other.id)
-        if other.stage.name == wish.stage.name and _is_parent(draft, other.feature, wish.feature):
+        if parent is not None and other.stage.name == wish.stage.name and other.feature == parent.id:
             found.add(other.id)
     steps = [w.id for w in wishes if w.feature == wish.feature and w.stage.name == wish.stage.name]
     return frozenset(found | set(steps[:steps.index(wish.id)]))
-
-
-def _is_parent(draft: Draft, parent: str, child: str) -> bool:
-    feature = next((f for f in draft.recognition if f.id == child), None)
-    found = parent_of(feature, draft.recognition) if feature else None
-    return found is not None and found.id == parent
 
 
 def _operation(draft: Draft, wish: Wish, after: frozenset[str]) -> Operation:

@@ -5,7 +5,6 @@ The field errs on the side of material everywhere: it begins as the blank's top 
 
 from __future__ import annotations
 
-import hashlib
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -21,6 +20,7 @@ from trunnion.model.blank import Blank
 from trunnion.model.setup import Setup
 from trunnion.model.tool import Tool
 from trunnion.model.toolpath import Motion, Toolpath
+from trunnion.settings import digest
 
 CELL = 0.5
 """Side of a cell in mm where the blank is small; a larger blank has larger cells."""
@@ -34,11 +34,15 @@ LARGEST_CELL = 10.0
 
 @dataclass(frozen=True, slots=True, eq=False, kw_only=True)
 class PlanningStock:
-    """Heights (nx, ny) mm in the setup frame of square cells of side `cell`; cell (0, 0) begins at `corner` (2,)."""
+    """Heights (nx, ny) mm in the setup frame of square cells of side `cell`; cell (0, 0) begins at `corner` (2,).
+
+    `digest` is a short stable digest of the uncut field and everything that was cut from it.
+    """
 
     heights: Floats
     corner: Floats
     cell: float
+    digest: str
 
     @staticmethod
     def of(blank: Blank, setup: Setup, cell: float = CELL) -> PlanningStock:
@@ -54,16 +58,20 @@ class PlanningStock:
         # Whole cells that stand out past the blank's edge by a part of one, the same at both edges.
         count = np.maximum(np.ceil(size / cell - tolerance.COINCIDENT), 1).astype(int)
         corner = _fixed(low[:2] - 0.5 * (count * cell - size))
-        return PlanningStock(heights=_fixed(np.full(tuple(count), high[2])), corner=corner, cell=cell)
+        return PlanningStock(heights=_fixed(np.full(tuple(count), high[2])), corner=corner, cell=cell,
+                             digest=digest(tuple(count.tolist()), high[2].item(), corner, cell))
 
     def after(self, path: Toolpath, tool: Tool) -> PlanningStock:
         """Return the stock after the feed moves of a path."""
+        if (path.motion == Motion.RAPID).all():
+            return self
         made = self.working()
         made.lower(path, tool)
-        return replace(made, heights=_fixed(made.heights))
+        cut = digest(self.digest, path.position, path.motion, path.centre, tool.radius, tool.corner_radius)
+        return replace(made, heights=_fixed(made.heights), digest=cut)
 
     def working(self) -> PlanningStock:
-        """Return a copy that `lower` may change."""
+        """Return a copy that `lower` may change; its digest stays that of the stock it was taken from."""
         return replace(self, heights=self.heights.copy())
 
     def lower(self, path: Toolpath, tool: Tool) -> None:
@@ -105,11 +113,6 @@ class PlanningStock:
     def box(self) -> tuple[Floats, Floats]:
         """Return the lowest and highest corner (2,) of the field."""
         return self.corner, self.corner + self.cell * np.array(self.heights.shape)
-
-    def digest(self) -> str:
-        """Return a short stable digest of the field."""
-        parts = (self.heights.tobytes(), self.corner.tobytes(), repr(self.cell).encode())
-        return hashlib.sha256(b"".join(parts)).hexdigest()[:16]
 
 
 ARC_CHORD = 0.02

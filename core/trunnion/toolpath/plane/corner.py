@@ -73,17 +73,17 @@ def corner(drive: PlaneDrive, tool: Tool, data: CuttingData, stock: PlanningStoc
         heights = _heights(drive, n, above, tool, data, settings.scallop)
         above = heights[-1].z if heights else above
         rests = _rests(drive, level).split()
+        near = _reaching(rests, tool)
         rooms: dict[float, tuple[Room, tuple[Curve, ...]]] = {}
         for rest in nearest_first(rests, lambda: builder.here, lambda r, p: abs(float(r.signed_distance(p)[0]))):
-            clip, touched = rest.offset(tool.radius + OVERRUN), rest.offset(tool.radius - TOUCH)
             beside: dict[float, list[Curve]] = {}
             for height in heights:
                 progress.check()
                 if height.distance not in rooms:
-                    rooms[height.distance] = _passes(level, height.distance, step, _reaching(rests, tool), mitred=drive.fillet > 0.0)
+                    rooms[height.distance] = _passes(level, height.distance, step, near, mitred=drive.fillet > 0.0)
                 room, rims = rooms[height.distance]
                 if height.distance not in beside:
-                    beside[height.distance] = list(_beside(rims, clip, touched))
+                    beside[height.distance] = list(_beside(rims, rest, tool))
                 for part in beside[height.distance]:
                     if part.closed:
                         cut_parts(builder, [part], height.z, room, approach)
@@ -136,15 +136,16 @@ def _passes(level: DriveLevel, distance: float, step: float, near: Region, *, mi
     return room, tuple(c for ring in depth_first(ring_tree(room.region, step, near)) for c in ring.curves())
 
 
-def _beside(rims: tuple[Curve, ...], clip: Region, touched: Region) -> Iterator[Curve]:
+def _beside(rims: tuple[Curve, ...], rest: Region, tool: Tool) -> Iterator[Curve]:
     """Yield the parts of the passes beside one rest that cut into it."""
-    low, high = clip.box()
+    around, inside = tool.radius + OVERRUN, tool.radius - TOUCH
+    low, high = rest.box()
     for rim in rims:
         first, last = rim.box()
-        if (first > high).any() or (last < low).any():
+        if (first > high + around).any() or (last < low - around).any():
             continue
-        for part in parts_where(rim, clip.signed_distance):
-            if parts_where(part, touched.signed_distance):
+        for part in parts_where(rim, lambda p: rest.signed_distance(p) + around):
+            if parts_where(part, lambda p: rest.signed_distance(p) + inside):
                 yield part
 
 
