@@ -116,6 +116,12 @@ def _together(one: Floats, other: Floats) -> float:
     return value
 
 
+@njit(cache=True, nogil=True, inline="always")
+def _share(part: float, whole: float) -> float:
+    """Return a part of a whole; triangles without area, or with an edge of no length, have none."""
+    return part / whole if whole > 0.0 else 0.0
+
+
 @njit(cache=True, nogil=True)
 def _nearest_of_triangle(p: Floats, x: float, y: float, z: float) -> tuple[float, float]:
     """Return the place (v, w) of the point a + v (b - a) + w (c - a) of a triangle (3, 3) that is nearest to a point."""
@@ -131,16 +137,16 @@ def _nearest_of_triangle(p: Floats, x: float, y: float, z: float) -> tuple[float
         return 1.0, 0.0
     vc = d1 * d4 - d3 * d2
     if vc <= 0.0 and d1 >= 0.0 and d3 <= 0.0 and d1 > d3:
-        return d1 / (d1 - d3), 0.0
+        return _share(d1, d1 - d3), 0.0
     d5, d6 = d1 - bc, d2 - cc
     if d6 >= 0.0 and d5 <= d6:
         return 0.0, 1.0
     vb = d5 * d2 - d1 * d6
     if vb <= 0.0 and d2 >= 0.0 and d6 <= 0.0 and d2 > d6:
-        return 0.0, d2 / (d2 - d6)
+        return 0.0, _share(d2, d2 - d6)
     va = d3 * d6 - d5 * d4
     if va <= 0.0 and d4 - d3 >= 0.0 and d5 - d6 >= 0.0 and d4 - d3 + d5 - d6 > 0.0:
-        w = (d4 - d3) / ((d4 - d3) + (d5 - d6))
+        w = _share(d4 - d3, (d4 - d3) + (d5 - d6))
         return 1.0 - w, w
     # A triangle without area may get here by rounding: any of its points is as good.
     total = va + vb + vc
