@@ -42,8 +42,6 @@ class Palette:
 
     kinds: dict[str, Colour]
     motions: dict[str, Colour]
-    deviation_map: str
-    deviation_limit: float
     deviation: DeviationColours
 
     def kind(self, name: str) -> Colour:
@@ -59,8 +57,7 @@ def load_palette() -> Palette:
     """Return the palette that is shipped; raise `BadInput` when a colour is not written as `#rrggbb`."""
     data = tomllib.loads((folder("palette") / "palette.toml").read_text(encoding="utf-8"))
     kinds, motions = ({k: _colour(k, v) for k, v in data[table].items()} for table in ("kinds", "motions"))
-    return Palette(kinds=kinds, motions=motions, deviation_map=data["deviation"]["map"], deviation_limit=float(data["deviation"]["limit"]),
-                   deviation=_deviation(data["deviation"]))
+    return Palette(kinds=kinds, motions=motions, deviation=_deviation(data["deviation"]))
 
 
 def _deviation(data: dict[str, Any]) -> DeviationColours:

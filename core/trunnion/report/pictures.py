@@ -14,12 +14,15 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from trunnion.geometry.arrays import Floats
+from trunnion.geometry.arrays import Floats, Ints
 from trunnion.geometry.mesh import Mesh
 from trunnion.model.session import Session
 from trunnion.model.setup import Setup
 from trunnion.model.toolpath import Mark, Motion, Toolpath
+from trunnion.report.deviation import DeviationMap, deviation_map
 from trunnion.report.palette import Colour, Palette
+from trunnion.settings import checked, choose
+from trunnion.verify.settings import ProofSettings
 
 if TYPE_CHECKING:
     from pyvista import Plotter
@@ -27,6 +30,8 @@ if TYPE_CHECKING:
 SIZE = (1600, 1000)
 ARC_STEP = np.radians(6.0)
 """Angle of one chord when an arc is drawn."""
+_NAMED_PLACES = 5
+"""Worst places whose figure is written on the deviation's picture."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -48,7 +53,7 @@ def write_pictures(session: Session, mesh: Mesh, folder: Path, name: str, palett
         made.append(Picture(file=f"{name}.toolpaths.png", caption="Toolpaths by kind of motion"))
     if session.verdict is not None and len(session.verdict.deviation.face):
         _shoot(_deviation(session, mesh, palette), folder / f"{name}.deviation.png")
-        made.append(Picture(file=f"{name}.deviation.png", caption="Deviation of the finished part, mm: + is material left, - is gouge"))
+        made.append(Picture(file=f"{name}.deviation.png", caption="Deviation of the finished part: + is material left, - is gouge"))
     return tuple(made)
 
 
@@ -99,10 +104,10 @@ def _shoot(plotter: Plotter, file: Path) -> None:
     plotter.close()
 
 
-def _surface(mesh: Mesh) -> Any:
+def _surface(points: Floats, triangles: Ints) -> Any:
     import pyvista
-    cells = np.column_stack([np.full(len(mesh.triangles), 3), mesh.triangles]).ravel()
-    return pyvista.PolyData(np.asarray(mesh.points), cells)
+    cells = np.column_stack([np.full(len(triangles), 3), triangles]).ravel()
+    return pyvista.PolyData(np.asarray(points), cells)
 
 
 def _look(plotter: Plotter, session: Session) -> Plotter:
@@ -133,7 +138,7 @@ def _colours(mesh: Mesh, by_face: Mapping[int, Colour], rest: Colour) -> Any:
 
 
 def _features(session: Session, mesh: Mesh, palette: Palette) -> Plotter:
-    plotter, surface = _plotter(), _surface(mesh)
+    plotter, surface = _plotter(), _surface(mesh.points, mesh.triangles)
     recognition = session.recognition
     assert recognition is not None
     by_face = {tag: palette.kind(f.kind) for f in reversed(recognition.features) for tag in f.tags}
@@ -152,7 +157,7 @@ def _outline(plotter: Plotter, surface: Any) -> None:
 
 
 def _toolpaths(session: Session, mesh: Mesh, palette: Palette) -> Plotter:
-    plotter, surface = _plotter(), _surface(mesh)
+    plotter, surface = _plotter(), _surface(mesh.points, mesh.triangles)
     plotter.add_mesh(surface, color=palette.motion("part"), ambient=0.3)
     setups = {s.name: s for s in session.setups}
     operations = {o.id: o for o in session.process.operations} if session.process else {}
@@ -183,14 +188,39 @@ def _segments(pieces: Iterable[Floats]) -> Any:
 
 
 def _deviation(session: Session, mesh: Mesh, palette: Palette) -> Plotter:
-    plotter, surface = _plotter(), _surface(mesh)
     assert session.verdict is not None
-    shown = session.verdict.deviation
-    plotter.add_mesh(surface, color=palette.motion("part"), ambient=0.3)
-    import pyvista
-    cloud = pyvista.PolyData(np.asarray(shown.point))
-    cloud["deviation mm"] = np.asarray(shown.deviation)
-    limit = palette.deviation_limit
-    plotter.add_mesh(cloud, scalars="deviation mm", cmap=palette.deviation_map, clim=(-limit, limit), point_size=6.0, lighting=False,
-                     scalar_bar_args={"vertical": True, "position_x": 0.03, "position_y": 0.3, "height": 0.5, "color": "black"})
+    chosen = checked(choose(ProofSettings, session.choices))
+    shown = deviation_map(mesh, session.verdict.deviation, chosen.tolerance, chosen.allowance)
+    plotter = _plotter()
+    surface = _surface(shown.points, shown.triangles)
+    surface.point_data["colour"] = palette.deviation.at(shown.value, shown.low, shown.high, shown.limit)
+    plotter.add_mesh(surface, scalars="colour", rgb=True, ambient=0.35, diffuse=0.7)
+    _outline(plotter, _surface(mesh.points, mesh.triangles))
+    _legend(plotter, deviation_legend(shown, palette))
+    worst = shown.worst[:_NAMED_PLACES]
+    if worst:
+        plotter.add_point_labels(np.array([w.point for w in worst]), [fine_length(w.deviation) for w in worst], font_size=15,
+                                 text_color="black", shape_color="white", shape_opacity=0.85, point_color="black", point_size=8,
+                                 always_visible=True, shape="rounded_rect", margin=4)
     return _look(plotter, session)
+
+
+def deviation_legend(shown: DeviationMap, palette: Palette) -> dict[str, Colour]:
+    """Return what the colours of a map mean: the ends of both families, their beginnings and middles, and what is finished."""
+    above = (shown.limit, 0.5 * (shown.limit + shown.high), np.nextafter(shown.high, np.inf))
+    below = (np.nextafter(shown.low, -np.inf), 0.5 * (shown.low - shown.limit), -shown.limit)
+    values = np.array([*above, 0.0, *below])
+    words = [f"{fine_length(v)}{more}" for v, more in zip(above, (" or more left", "", " left"), strict=True)]
+    words += ["finished", *(f"{fine_length(v)}{more}" for v, more in zip(below, (" gouge", "", " or deeper"), strict=True))]
+    colours = palette.deviation.at(values, shown.low, shown.high, shown.limit)
+    return {word: (int(r), int(g), int(b)) for word, (r, g, b) in zip(words, colours, strict=True)}
+
+
+def fine_length(millimetres: float) -> str:
+    """Return a small length with its sign in words: µm below a millimetre.
+
+    >>> fine_length(-0.05), fine_length(1.5)
+    ('-50 µm', '+1.50 mm')
+    """
+    microns = 1000.0 * millimetres
+    return f"{microns:+.0f} µm" if abs(microns) < 999.5 else f"{millimetres:+.2f} mm"
