@@ -2,21 +2,17 @@
 
 from __future__ import annotations
 
-import math
 from collections.abc import Callable, Iterator
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 
-from trunnion.model.program import ProgramSection
 from trunnion.model.session import Session
-from trunnion.model.toolpath import Mark, Motion, Toolpath
 from trunnion.pipeline import Engine
 from trunnion.progress import QUIET
 
 Compare = Callable[..., Any]
-UP, NOWHERE = (0.0, 0.0, 1.0), (math.nan,) * 3
 
 
 def _programmed(path: Path, until: str) -> tuple[Engine, Session]:
@@ -65,6 +61,7 @@ def roughing(path: Path, folder: Path, compared: Compare) -> Iterator[Any]:
     """Roughing paths of every pocket, beside the same offsets by shapely alone (chords, no arcs, no entries, no links)."""
     from trunnion import registry
     from trunnion.plan.drive import drive_of
+    from trunnion.plan.regions import Space
     from trunnion.settings import choose
     from trunnion.toolpath.stock import PlanningStock
     engine, session = _programmed(path, "optimize")
@@ -72,8 +69,8 @@ def roughing(path: Path, folder: Path, compared: Compare) -> Iterator[Any]:
     assert process is not None and session.recognition is not None and session.blank is not None
     rough = registry.get("strategies", "plane.rough")
     stock = PlanningStock.of(session.blank, setup)
-    jobs = [(o, drive_of(o, process, session.recognition, engine.bench.part, session.blank, setup))
-            for o in process.operations if o.strategy == "plane.rough"]
+    space = Space.of(engine.bench.part, session.recognition, session.blank, setup)
+    jobs = [(o, drive_of(o, process, space)) for o in process.operations if o.strategy == "plane.rough"]
 
     def ours() -> list[Any]:
         return [rough(drive, o.tool, o.data, stock, setup, choose(rough.settings, dict(o.choices)), QUIET) for o, drive in jobs]
@@ -120,36 +117,6 @@ def contact(path: Path, folder: Path, compared: Compare) -> Iterator[Any]:
                    f"the mesh's {len(points)} points against every hundredth block", "< 1")
 
 
-def stock(path: Path, folder: Path, compared: Compare) -> Iterator[Any]:
-    """Swept moves of a 16 mm cutter, 1.1 mm each, in a field of 0.5 mm cells, beside a plain numpy field with a hundredth of the moves."""
-    from trunnion.geometry.frame import WORLD
-    from trunnion.model.blank import Blank
-    from trunnion.verify.motion import moves_of
-    from trunnion.verify.stock import Stock, run_stock
-    from trunnion.verify.sweep import Sweep
-    blank = Blank(frame=WORLD, low=np.zeros(3), high=np.array([300.0, 300.0, 20.0]), material="x", density=1.0)
-    tip = _spiral(50_000)
-    moves = moves_of((ProgramSection(operation="x", tool=_flat_16(), spindle=1.0, path=tip),))
-    sweep = Sweep.of(moves, 1.0)
-
-    def plain() -> float:
-        heights = np.full((600, 600), 20.0)
-        centres = (np.arange(600) + 0.5) * 0.5
-        for a, b in zip(tip.position[:500], tip.position[1:501], strict=True):
-            x0, x1 = (np.searchsorted(centres, v) for v in (min(a[0], b[0]) - 8.0, max(a[0], b[0]) + 8.0))
-            y0, y1 = (np.searchsorted(centres, v) for v in (min(a[1], b[1]) - 8.0, max(a[1], b[1]) + 8.0))
-            gx, gy = np.meshgrid(centres[x0:x1], centres[y0:y1])
-            along = (b - a)[:2]
-            share = np.clip(((gx - a[0]) * along[0] + (gy - a[1]) * along[1]) / (along @ along), 0.0, 1.0)
-            inside = (gx - a[0] - share * along[0]) ** 2 + (gy - a[1] - share * along[1]) ** 2 <= 64.0
-            piece = heights[y0:y1, x0:x1]
-            piece[inside] = np.minimum(piece[inside], a[2])
-        return float(heights.sum())
-
-    yield compared("stock, 50,000 moves", "block", lambda: run_stock(Stock.of(blank, 0.5), moves, WORLD, sweep), plain,
-                   "500 moves in a plain numpy field", "< 3")
-
-
 def whole_line(path: Path, folder: Path, compared: Compare) -> Iterator[Any]:
     """From the file to everything written, beside the bare reading of the file."""
     from run import bare_reader
@@ -159,22 +126,3 @@ def whole_line(path: Path, folder: Path, compared: Compare) -> Iterator[Any]:
         return engine.write(session, folder / "out")
 
     yield compared("whole line", "B1", ours, bare_reader(path), "the CAD kernel's own reader", "< 200")
-
-
-def _flat_16() -> Any:
-    from trunnion.shop import load_shop
-    return next(t for t in load_shop().tools if t.diameter == 16.0 and t.corner_radius == 0.0)
-
-
-def _spiral(n: int) -> Toolpath:
-    turn = np.sqrt(np.arange(n) * 1.1 * 2 * 4.0 / math.pi / 4.0)
-    position = np.column_stack([150.0 + 0.636 * turn * np.cos(turn), 150.0 + 0.636 * turn * np.sin(turn), np.full(n, 10.0)])
-    steps = np.linalg.norm(np.diff(position, axis=0), axis=1)
-    position[:, :2] = 150.0 + (position[:, :2] - 150.0) * (1.1 / np.median(steps))
-    motion = np.full(n, int(Motion.LINE))
-    motion[0] = int(Motion.RAPID)
-    feed = np.where(motion == Motion.RAPID, 0.0, 1000.0)
-    return Toolpath(position=position, axis=np.tile(UP, (n, 1)), motion=motion, centre=np.tile(NOWHERE, (n, 1)), feed=feed,
-                    mark=np.full(n, int(Mark.CUT)))
-
-

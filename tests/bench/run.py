@@ -1,6 +1,7 @@
 """`make bench`: how fast the program is, each figure beside a reference measured in the same run, written to bench.json.
 
-A single absolute time says little on a shared machine; the ratio to a reference that ran just before does.
+A single absolute time says little on a shared machine; the ratio to a reference that ran just before does. Figures of one core are CPU
+seconds. `--only CASE` runs one case alone, `--quick` smaller sizes.
 """
 
 from __future__ import annotations
@@ -11,8 +12,9 @@ import statistics
 import sys
 import tempfile
 import time
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
 from dataclasses import asdict, dataclass
+from functools import partial
 from pathlib import Path
 from typing import Any
 
@@ -46,13 +48,18 @@ def median_seconds(work: Callable[[], Any], rounds: int = ROUNDS) -> float:
     return statistics.median(taken)
 
 
+def noted(name: str, seconds: float, ratio_to: str, ratio: float, goal: str, part: str = "block") -> Figure:
+    """Return a figure, and show it."""
+    figure = Figure(name=name, part=part, seconds=round(seconds, 4), ratio_to=ratio_to, ratio=float(f"{ratio:.4g}"), goal=goal)
+    print(f"{name:28s} {seconds:9.4f} s   {figure.ratio:9.4g} x {ratio_to}   goal {goal}", flush=True)
+    return figure
+
+
 def compared(name: str, part: str, work: Callable[[], Any], reference: Callable[[], Any], ratio_to: str, goal: str) -> Figure:
     """Return the figure of some work beside a reference."""
     base = median_seconds(reference)
     seconds = median_seconds(work)
-    figure = Figure(name=name, part=part, seconds=round(seconds, 4), ratio_to=ratio_to, ratio=round(seconds / base, 3), goal=goal)
-    print(f"{name:28s} {seconds:9.4f} s   {figure.ratio:9.3f} x {ratio_to}   goal {goal}", flush=True)
-    return figure
+    return noted(name, seconds, ratio_to, seconds / base, goal, part)
 
 
 def bare_reader(path: Path) -> Callable[[], Any]:
@@ -78,26 +85,50 @@ def unpacked(folder: Path) -> Path:
     return path
 
 
-def figures(folder: Path) -> list[Figure]:
-    """Return all figures on the sample panel."""
-    from cases import contact, graph, recognition, roughing, stock, whole_line
-    path = unpacked(folder)
+def reading(path: Path, folder: Path, compared: Callable[..., Figure]) -> Iterator[Figure]:
+    """Reading the file with all checks, beside the CAD kernel's own reader."""
     from trunnion.part.read import read_part
-    read = bare_reader(path)
-    found = [compared("import", "B1", lambda: read_part(path), read, "the CAD kernel's own reader, no checks, no second process", "< 12")]
-    for case in (graph, recognition, roughing, contact, stock, whole_line):
-        found.extend(case(path, folder, compared))
-    return found
+    yield compared("import", "B1", lambda: read_part(path), bare_reader(path),
+                   "the CAD kernel's own reader, no checks, no second process", "< 12")
+
+
+def figures(folder: Path, only: str, quick: bool) -> Iterator[Figure]:
+    """Yield the figures of the case asked for, or of all."""
+    for name, case in cases(folder, quick).items():
+        if only in ("", name):
+            yield from case()
+
+
+def cases(folder: Path, quick: bool) -> dict[str, Callable[[], Iterator[Figure]]]:
+    """Return what can be measured, by name."""
+    from cases import contact, graph, recognition, roughing, whole_line
+    from proof import PROOF
+
+    path = unpacked(folder)
+    panel = {"import": reading, "graph": graph, "recognition": recognition, "roughing": roughing, "contact": contact,
+             "whole-line": whole_line}
+    return {**{name: partial(case, path, folder, compared) for name, case in panel.items()},
+            **{name: partial(_rows, case, quick) for name, case in PROOF.items()}}
+
+
+def _rows(case: Callable[[bool], Iterator[dict[str, Any]]], quick: bool) -> Iterator[Figure]:
+    for row in case(quick):
+        yield noted(**row)
 
 
 def main() -> int:
-    """Measure everything and write the figures."""
+    """Measure everything, or what was asked for, and write the figures."""
     wanted = argparse.ArgumentParser(description=__doc__)
     wanted.add_argument("--output", type=Path, default=Path("bench.json"))
+    wanted.add_argument("--only", default="", help="one case alone, by its name")
+    wanted.add_argument("--quick", action="store_true", help="smaller sizes")
     chosen = wanted.parse_args()
     np.seterr(all="raise", under="ignore")
     with tempfile.TemporaryDirectory() as folder:
-        found = figures(Path(folder))
+        names = cases(Path(folder), chosen.quick)
+        if chosen.only and chosen.only not in names:
+            wanted.error(f"--only knows {', '.join(names)}")
+        found = list(figures(Path(folder), chosen.only, chosen.quick))
     chosen.output.write_text(json.dumps([asdict(f) for f in found], indent=1) + "\n", encoding="utf-8")
     print(f"{len(found)} figures in {chosen.output}")
     return 0
