@@ -140,8 +140,9 @@ def _slope(arcs: Floats, first: int, last: int, x: float, y: float, z: float, dx
 
 @njit(cache=True, nogil=True)
 def least_on_chord(arcs: Floats, first: int, last: int, x0: float, y0: float, z0: float, x1: float, y1: float, z1: float, stop: float,
-                   close: float) -> tuple[float, float]:
-    """Return a bound from below of the signed distance to a convex body along a chord, and the share where it is nearly so small.
+                   close: float) -> tuple[float, float, float, float]:
+    """Return a bound from below of the signed distance to a convex body along a chord, the share where it is nearly so small, and the two
+    shares between which it is smallest.
 
     The bound is at most `close` below what the share attains, or it is above `stop`.
     """
@@ -149,10 +150,10 @@ def least_on_chord(arcs: Floats, first: int, last: int, x0: float, y0: float, z0
     a, b = 0.0, 1.0
     fa, ma = _slope(arcs, first, last, x0, y0, z0, dx, dy, dz)
     if ma >= 0.0:
-        return fa, 0.0
+        return fa, 0.0, 0.0, 0.0
     fb, mb = _slope(arcs, first, last, x1, y1, z1, dx, dy, dz)
     if mb <= 0.0:
-        return fb, 1.0
+        return fb, 1.0, 1.0, 1.0
     lower = -np.inf
     for _round in range(_ROUNDS):
         t = min(max((fb - fa + ma * a - mb * b) / (ma - mb), a), b)
@@ -160,13 +161,15 @@ def least_on_chord(arcs: Floats, first: int, last: int, x0: float, y0: float, z0
         if lower >= stop or min(fa, fb) - lower <= close:
             break
         f, m = _slope(arcs, first, last, x0 + t * dx, y0 + t * dy, z0 + t * dz, dx, dy, dz)
-        if f - lower <= close or m == 0.0:
-            return (f if m == 0.0 else lower), t
+        if m == 0.0:
+            return f, t, t, t
+        if f - lower <= close:
+            return lower, t, a, b
         if m > 0.0:
             b, fb, mb = t, f, m
         else:
             a, fa, ma = t, f, m
-    return lower, (a if fa <= fb else b)
+    return lower, (a if fa <= fb else b), a, b
 
 
 @njit(cache=True, nogil=True)
@@ -223,8 +226,8 @@ def left_along(w: Floats, flutes: Flutes, tool: int, x: float, y: float, z: floa
         sag = _sag(w, b - a, math.sqrt(max(x0 * x0 + y0 * y0 + z0 * z0, x1 * x1 + y1 * y1 + z1 * z1)))
         least, share = np.inf, 0.0
         for k in range(flutes.start[tool], flutes.start[tool + 1]):
-            lower, s = least_on_chord(flutes.arc, flutes.first[k], flutes.endless[k] if endless else flutes.last[k], x0, y0, z0, x1, y1, z1,
-                                      min(best, least + sag) - bound + sag, 0.25 * bound)
+            lower, s, _a, _b = least_on_chord(flutes.arc, flutes.first[k], flutes.endless[k] if endless else flutes.last[k], x0, y0, z0, x1,
+                                              y1, z1, min(best, least + sag) - bound + sag, 0.25 * bound)
             if lower < least:
                 least, share = lower, s
         if least - sag >= best - bound:
@@ -244,7 +247,7 @@ def left_along(w: Floats, flutes: Flutes, tool: int, x: float, y: float, z: floa
 
 
 @njit(cache=True, nogil=True)
-def _node_least(tree: Tree, flutes: Flutes, n: int, x: float, y: float, z: float, above: bool) -> float:
+def node_least(tree: Tree, flutes: Flutes, n: int, x: float, y: float, z: float, above: bool) -> float:
     """Return the least signed distance that any pose below a node can give."""
     pose, tool = tree.pose, tree.link[n, 4]
     vx, vy, vz = x - pose[n, 0], y - pose[n, 1], z - pose[n, 2]
@@ -265,7 +268,7 @@ def nearest_span(x: float, y: float, z: float, tree: Tree, flutes: Flutes, best:
     """
     top, row_at, share_at = 0, -1, 0.0
     for r in range(len(tree.root)):
-        nodes[top], least[top] = tree.root[r], _node_least(tree, flutes, tree.root[r], x, y, z, above)
+        nodes[top], least[top] = tree.root[r], node_least(tree, flutes, tree.root[r], x, y, z, above)
         top += 1
     while top > 0 and best > enough:
         top -= 1
@@ -274,7 +277,7 @@ def nearest_span(x: float, y: float, z: float, tree: Tree, flutes: Flutes, best:
             continue
         left, right = tree.link[n, 0], tree.link[n, 1]
         if left >= 0:
-            a, b = _node_least(tree, flutes, left, x, y, z, above), _node_least(tree, flutes, right, x, y, z, above)
+            a, b = node_least(tree, flutes, left, x, y, z, above), node_least(tree, flutes, right, x, y, z, above)
             if a < b:
                 left, right, a, b = right, left, b, a
             nodes[top], least[top], nodes[top + 1], least[top + 1] = left, a, right, b

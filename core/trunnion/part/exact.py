@@ -1,0 +1,78 @@
+"""A face as its CAD surface has it: exact points, normals and bends at places of its own two parameters, and what its trim holds."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from trunnion.findings import BadInput
+from trunnion.geometry.arrays import Bools, Floats
+from trunnion.geometry.frame import Frame
+
+if TYPE_CHECKING:
+    from trunnion.part.part import Part
+
+FREE_FORM = 2.0
+"""What second derivatives of a free-form surface may grow to inside a cell, over those at its middle."""
+ROUND = 1.1
+"""The same for cones and tori; planes have none, and those of cylinders and spheres are the same everywhere."""
+
+
+@dataclass(frozen=True, slots=True, eq=False, kw_only=True)
+class ExactPoints:
+    """Points of a face at k places: point, outward unit normal (k, 3), derivatives by its parameters du, dv (k, 3), and the lengths of the
+    second ones (k, 3): by u twice, by both, by v twice; those with what they may grow to nearby."""
+
+    point: Floats
+    normal: Floats
+    du: Floats
+    dv: Floats
+    bend: Floats
+
+
+class ExactFace:
+    """One trimmed face of a part, asked in a frame."""
+
+    def __init__(self, part: Part, tag: int, frame: Frame) -> None:
+        from OCP.GeomAbs import GeomAbs_SurfaceType as Kind
+
+        from trunnion.part.faces import FaceView
+
+        shape = part.face_shape(tag)
+        if shape is None:
+            raise BadInput(f"face {tag} is not a face of the chosen solid of {part.name}")
+        self.tag, self._frame, self._view = tag, frame, FaceView(shape, tag - 1)
+        kind = self._view.adaptor.GetType()
+        known = (Kind.GeomAbs_Plane, Kind.GeomAbs_Cylinder, Kind.GeomAbs_Sphere, Kind.GeomAbs_Cone, Kind.GeomAbs_Torus)
+        self._growth = ROUND if kind in known else FREE_FORM
+
+    def bounds(self) -> tuple[float, float, float, float]:
+        """Return the least and greatest u and v of the trimmed area."""
+        return self._view.bounds()
+
+    def inside(self, places: Floats) -> Bools:
+        """Say which places (k, 2) lie inside the trim."""
+        return np.array([self._view.holds(float(u), float(v)) for u, v in places], dtype=bool)
+
+    def at(self, places: Floats) -> ExactPoints:
+        """Return the surface at places (k, 2)."""
+        from OCP.gp import gp_Pnt, gp_Vec
+
+        point, du, dv, duu, dvv, duv = gp_Pnt(), gp_Vec(), gp_Vec(), gp_Vec(), gp_Vec(), gp_Vec()
+        rows = np.empty((len(places), 9))
+        bend = np.empty((len(places), 3))
+        for k, (u, v) in enumerate(places.tolist()):
+            self._view.adaptor.D2(u, v, point, du, dv, duu, dvv, duv)
+            rows[k] = *point.Coord(), *du.Coord(), *dv.Coord()
+            bend[k] = duu.Magnitude(), duv.Magnitude(), dvv.Magnitude()
+        along, across = (self._frame.local_direction(rows[:, c:c + 3]) for c in (3, 6))
+        normal = self._view.side * np.cross(along, across)
+        size = np.linalg.norm(normal, axis=1, keepdims=True)
+        poles = np.flatnonzero(size[:, 0] <= 0.0).tolist()
+        normal = np.divide(normal, size, out=np.zeros_like(normal), where=size > 0.0)
+        for row in poles:
+            normal[row] = self._frame.local_direction(self._view.at(*places[row])[1])
+        # Frames keep hands, so the normal's side is the same in all of them.
+        return ExactPoints(point=self._frame.to_local(rows[:, :3]), normal=normal, du=along, dv=across, bend=self._growth * bend)
