@@ -15,7 +15,7 @@ import numpy as np
 from numba import njit
 
 from trunnion.geometry.arrays import Bools, Floats, Ints
-from trunnion.verify.kernels.body import CLOSED_FIRST, CLOSED_LAST, KIND, R_MAX, Z_HIGH, Z_LOW, depth_in_body
+from trunnion.verify.kernels.body import CLOSED_FIRST, CLOSED_LAST, KIND, R_MAX, Z_HIGH, Z_LOW, depth_in_body, radius_at
 from trunnion.verify.kernels.engagement import look_in_intervals
 
 # Columns of a span: tip and tool frame (its rows: two axes across, the tool axis) at both ends, then the boxes of what cuts and of all.
@@ -31,6 +31,10 @@ MOST_GRAZED = 64
 """Places that a rapid may be suspected at."""
 NOISE = 1e-7
 """mm: depths less apart are the same."""
+BENT = 0.01
+"""mm that boxes are wider by where a tool turns: its points leave the straight ways between both ends by a few micrometres."""
+LEVEL = 1e-9
+"""An axis this close (its sine) lies along rays or across them, and a move this close (mm) is level."""
 THIN = 1e-6
 """mm: material thinner than this is nothing."""
 
@@ -161,21 +165,33 @@ def _aim(ray: Floats, span: Floats, u: float, v: float) -> None:
         after = span[b] * (u - span[TIP1]) + span[b + 1] * (v - span[TIP1 + 1]) - span[b + 2] * span[TIP1 + 2]
         ray[m], ray[3 + m] = foot, span[a + 2]
         ray[6 + m], ray[9 + m] = after - foot, span[b + 2] - span[a + 2]
+    if abs(ray[3]) + abs(ray[4]) + abs(ray[8]) + ray[TWIST] < LEVEL:
+        # Along the axis of a tool that moves level, all of a ray is deepest when the axis comes nearest.
+        square = ray[6] * ray[6] + ray[7] * ray[7]
+        t = min(max(-(ray[0] * ray[6] + ray[1] * ray[7]) / square, 0.0), 1.0) if square > 0.0 else 0.0
+        ray[0], ray[1], ray[6], ray[7] = ray[0] + t * ray[6], ray[1] + t * ray[7], 0.0, 0.0
 
 
 @njit(cache=True, nogil=True)
-def _box(box: Floats, span: Floats, piece: Floats) -> None:
-    """Write the box of what a piece sweeps in a span: low and high of u, v, w. A closed body may reach a millimetre beyond its ends."""
-    r = piece[R_MAX] + 1e-2
+def _box(box: Floats, span: Floats, piece: Floats, turns: bool) -> None:
+    """Write the box of what a piece sweeps in a span: low and high of u, v, w."""
+    r, more = piece[R_MAX], BENT if turns else 0.0
     for m in range(3):
         low, high = np.inf, -np.inf
         for end in range(2):
             tip = span[TIP0 + m] if end == 0 else span[TIP1 + m]
             a = span[FRAME0 + 6 + m] if end == 0 else span[FRAME1 + 6 + m]
-            across = r * math.sqrt(max(1.0 - a * a, 0.0)) + 1e-2
+            across = r * math.sqrt(max(1.0 - a * a, 0.0)) + more
             p, q = tip + a * piece[Z_LOW], tip + a * piece[Z_HIGH]
             low, high = min(low, min(p, q) - across), max(high, max(p, q) + across)
         box[m], box[3 + m] = low, high
+
+
+@njit(cache=True, nogil=True)
+def _misses(count: Ints, low: Floats, high: Floats, cell: int, box: Floats) -> bool:
+    """Say whether all of a ray's material is beyond a box, or no deeper in it than what a cut leaves."""
+    c = count[cell]
+    return c == 0 or low[cell, 0] >= box[5] - 2.0 * SHRINK or high[cell, c - 1] <= box[2] + 2.0 * SHRINK
 
 
 @njit(cache=True, nogil=True)
@@ -213,9 +229,59 @@ def take_away(count: Ints, low: Floats, high: Floats, cell: int, k: int, a: floa
 
 
 @njit(cache=True, nogil=True)
+def _across(arcs: Floats, first: int, last: int, limit: float, ray: Floats) -> tuple[float, float]:
+    """Return from where to where a ray across the axis is in a body that moves level: in a disc swept along a line."""
+    if ray[2] > limit - SHRINK:
+        return 1.0, 0.0
+    r = radius_at(arcs, first, last, ray[2]) - SHRINK
+    if r <= 0.0 or depth_in_body(arcs, first, last, 0.0, ray[2])[0] <= SHRINK:
+        return 1.0, 0.0
+    # The disc's middle in the plane of ray and motion: along the ray from w0 on by dw, beside it from c0 on by dc.
+    w0, c0 = -(ray[0] * ray[3] + ray[1] * ray[4]), ray[0] * ray[4] - ray[1] * ray[3]
+    dw, dc = -(ray[6] * ray[3] + ray[7] * ray[4]), ray[6] * ray[4] - ray[7] * ray[3]
+    low, high = np.inf, -np.inf
+    for end in range(2):
+        w, c = w0 + end * dw, c0 + end * dc
+        if abs(c) < r:
+            half = math.sqrt(r * r - c * c)
+            low, high = min(low, w - half), max(high, w + half)
+    length = math.sqrt(dw * dw + dc * dc)
+    if abs(dc) > LEVEL and length > LEVEL:
+        # Between the ends: within r of the line, and beside it.
+        a, b = w0 - (c0 * dw + r * length) / dc, w0 - (c0 * dw - r * length) / dc
+        a, b = min(a, b), max(a, b)
+        if abs(dw) > LEVEL:
+            p, q = w0 + c0 * dc / dw, w0 + (length * length + c0 * dc) / dw
+            a, b = max(a, min(p, q)), min(b, max(p, q))
+        elif not 0.0 <= -c0 * dc <= length * length:
+            return low, high
+        if a < b:
+            low, high = min(low, a), max(high, b)
+    return low, high
+
+
+@njit(cache=True, nogil=True)
+def _take_all(count: Ints, low: Floats, high: Floats, cell: int, a: float, b: float) -> tuple[float, bool]:
+    """Take what lies between a and b off a ray; return the length that is gone, and whether the ray had room for all that is left."""
+    gone, k = 0.0, 0
+    while k < count[cell]:
+        c, d = max(a, low[cell, k]), min(b, high[cell, k])
+        before = count[cell]
+        if d - c > NOISE:
+            if before + 1 > low.shape[1]:
+                return gone, False
+            gone += take_away(count, low, high, cell, k, c, d)
+        k += 1 + count[cell] - before
+    return gone, True
+
+
+@njit(cache=True, nogil=True)
 def _cut_ray(arcs: Floats, first: int, last: int, limit: float, ray: Floats, count: Ints, low: Floats, high: Floats, cell: int,
              w_low: float, w_high: float) -> tuple[float, bool]:
     """Cut a ray by a piece within a span; return the length that is gone, and whether the ray had room for all that is left."""
+    if abs(ray[5]) + abs(ray[8]) + ray[TWIST] < LEVEL:
+        a, b = _across(arcs, first, last, limit, ray)
+        return _take_all(count, low, high, cell, max(a, w_low), min(b, w_high))
     gone = 0.0
     middle = 0.5 * (w_low + w_high)
     k = 0
@@ -391,7 +457,7 @@ def cut_tile(last: int, span: Floats, span_start: Ints, arcs: Floats, piece: Flo
                     going_on = going_on and p == resume[2]
                     if piece[p, KIND] != 0.0:
                         break
-                    _box(box, span[s], piece[p])
+                    _box(box, span[s], piece[p], ray[TWIST] > 0.0)
                     if box[2] > top or box[5] < bottom:
                         continue
                     first, end = int(piece[p, CLOSED_FIRST]), int(piece[p, CLOSED_LAST])
@@ -402,8 +468,7 @@ def cut_tile(last: int, span: Floats, span_start: Ints, arcs: Floats, piece: Flo
                         v = origin[1] + (j + 0.5) * pitch
                         for i in range(max(i0, resume[4]) if going_on and j == resume[3] else i0, i1):
                             cell = j * columns + i
-                            c = count[cell]
-                            if c == 0 or low[cell, 0] >= box[5] or high[cell, c - 1] <= box[2]:
+                            if _misses(count, low, high, cell, box):
                                 continue
                             _aim(ray, span[s], origin[0] + (i + 0.5) * pitch, v)
                             gone, whole = _cut_ray(arcs, first, end, limit, ray, count, low, high, cell, box[2], box[5])
@@ -422,7 +487,7 @@ def cut_tile(last: int, span: Floats, span_start: Ints, arcs: Floats, piece: Flo
                 cuts = piece[p, KIND] == 0.0
                 if cuts and not rapid[n]:
                     continue
-                _box(box, span[s], piece[p])
+                _box(box, span[s], piece[p], ray[TWIST] > 0.0)
                 if box[2] > top or box[5] < bottom:
                     continue
                 first, end = int(piece[p, CLOSED_FIRST]), int(piece[p, CLOSED_LAST])
@@ -432,12 +497,11 @@ def cut_tile(last: int, span: Floats, span_start: Ints, arcs: Floats, piece: Flo
                     v = origin[1] + (j + 0.5) * pitch
                     for i in range(i0, i1):
                         cell = j * columns + i
-                        c = count[cell]
-                        if c == 0 or low[cell, 0] >= box[5] or high[cell, c - 1] <= box[2]:
+                        if _misses(count, low, high, cell, box):
                             continue
                         u = origin[0] + (i + 0.5) * pitch
                         _aim(ray, span[s], u, v)
-                        for k in range(c):
+                        for k in range(count[cell]):
                             a, b = max(low[cell, k], box[2]), min(high[cell, k], box[5])
                             best = depth[n] if cuts else body[n]
                             if b <= a or _bound(arcs, first, end, np.inf, ray, a, b) <= best:
