@@ -21,7 +21,7 @@ from trunnion.verify.kernels import strips as kernel
 from trunnion.verify.motion import Moves
 from trunnion.verify.threads import in_parallel
 
-CHUNK = 2000
+CHUNK = 500
 """Moves between two looks at cancel; a chunk stays far below 0.2 s."""
 GRID_PITCH = 10.0
 """mm, pitch of the grid that finds the faces near a move: about a cutter's radius."""
