@@ -13,14 +13,13 @@ from trunnion.geometry.arrays import Floats, floats, unit
 class Frame:
     """A right-handed frame given in the part's coordinates.
 
-    `origin` (3,) mm; `x` and `z` (3,) unit and perpendicular (x is made so from what is given); `axes` (3, 3) has the three axes as rows:
-    local = axes @ (world - origin).
+    `origin` (3,) mm; `x` and `z` (3,) unit and perpendicular (x is made so from what is given).
     """
 
     origin: Floats
     x: Floats
     z: Floats
-    axes: Floats = field(init=False, repr=False)
+    _axes: list[Floats] = field(init=False, repr=False, default_factory=list)
 
     def __post_init__(self) -> None:
         z = unit(floats(self.z, (3,), "frame z"), "frame z")
@@ -29,12 +28,18 @@ class Frame:
         object.__setattr__(self, "origin", floats(self.origin, (3,), "frame origin"))
         object.__setattr__(self, "x", floats(x, (3,), "frame x"))
         object.__setattr__(self, "z", floats(z, (3,), "frame z"))
-        object.__setattr__(self, "axes", floats(np.stack([self.x, np.cross(self.z, self.x), self.z]), (3, 3), "frame axes"))
 
     @property
     def y(self) -> Floats:
         """The second axis (3,)."""
         return self.axes[1]
+
+    @property
+    def axes(self) -> Floats:
+        """The three axes as rows (3, 3): local = axes @ (world - origin)."""
+        if not self._axes:
+            self._axes.append(floats(np.stack([self.x, np.cross(self.z, self.x), self.z]), (3, 3), "frame axes"))
+        return self._axes[0]
 
     def to_local(self, points: Floats) -> Floats:
         """Return points (…, 3) of the part's coordinates in this frame."""
