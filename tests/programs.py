@@ -93,6 +93,7 @@ def recognition() -> Recognition:
     rib = Feature(id="rib-01", kind="rib", faces=(FaceRole(role="top", face=12),), sizes={"thickness": 4.0})
     frame = Frame(np.array([1.0, 2.0, 3.0]), np.array([0.6, 0.8, 1e-9]), np.array([0.1, -0.2, 0.97]))
     return Recognition(family="panel", frame=frame, features=(pocket, step, island, rib), unexplained=(40, 41), unexplained_share=0.0123,
+                       removed=((40,), (41, 7)),
                        findings=(warning("panel.leaning-wall", "a wall leans by 5.5°", "face 9", remedy="choose a 5-axis plan"),))
 
 
@@ -108,7 +109,7 @@ def process_tree() -> ProcessTree:
     last = replace(wall, id="wall-02", tool=BULL_10, group="finishing", suppressed=True)
     back = replace(rough, id="face-02", setup="S2", choices={})
     return ProcessTree(plan="panel-aluminium", material="al-7075", setups=(S1, S2), operations=(rough, wall, last, back),
-                       findings=(remark("route.air", "much air"),))
+                       findings=(remark("route.air", "much air"),), removed=("rib_top-rib-01",))
 
 
 def verdict(outcome: Outcome = Outcome.PASSED) -> Verdict:

@@ -102,15 +102,10 @@ def without_choices(*keys: str) -> Edit:
 
 
 def without_feature(id: str) -> Edit:
-    """Return the edit that deletes a feature; faces that no other feature has become unexplained."""
+    """Return the edit that deletes a feature, also for when its step runs again."""
 
     def edit(session: Session) -> Session:
-        found = _recognition(session)
-        gone = found.feature(id)
-        kept = tuple(f for f in found.features if f.id != id)
-        explained = {tag for f in kept for tag in f.tags}
-        loose = {tag for tag in gone.tags if tag not in explained} | set(found.unexplained)
-        return replace(session, recognition=replace(found, features=kept, unexplained=tuple(sorted(loose))))
+        return replace(session, recognition=_recognition(session).without(id))
 
     return edit
 
@@ -129,13 +124,11 @@ def with_kind(id: str, kind: str) -> Edit:
 
 
 def without_operation(id: str) -> Edit:
-    """Return the edit that deletes an operation; what had to come after it need not any more."""
+    """Return the edit that deletes an operation, also for when its step runs again."""
 
     def edit(session: Session) -> Session:
         tree = _process(session)
-        tree.operation(id)
-        kept = tuple(replace(o, after=tuple(a for a in o.after if a != id)) if id in o.after else o for o in tree.operations if o.id != id)
-        return replace(session, process=replace(tree, operations=kept))
+        return replace(session, process=tree.without(tree.operation(id).id))
 
     return edit
 

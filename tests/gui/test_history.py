@@ -67,6 +67,7 @@ def test_faces_of_a_deleted_feature_become_unexplained(programmed):
     after = commands.without_feature("rib-01")(programmed)
     assert set(gone.tags) <= set(after.recognition.unexplained)
     assert all(f.id != "rib-01" for f in after.recognition)
+    assert after.recognition.removed == (gone.tags,)
 
 
 def test_a_changed_kind_is_marked_as_a_persons(programmed):
@@ -77,6 +78,15 @@ def test_a_changed_kind_is_marked_as_a_persons(programmed):
 def test_a_deleted_operation_holds_nothing_up_any_more(programmed):
     after = commands.without_operation("op-01")(programmed)
     assert all("op-01" not in o.after for o in after.process.operations)
+    assert after.process.removed == ("op-01",)
+
+
+def test_a_deletion_is_undone_as_if_it_had_never_been(programmed):
+    history = History(programmed)
+    history.push("delete", commands.without_feature("rib-01")(programmed))
+    history.push("delete", commands.without_operation("op-01")(history.session))
+    assert history.undo().process.removed == ()
+    assert history.undo() is programmed
 
 
 def test_an_operation_moves_in_front_of_another_and_is_marked(programmed):

@@ -76,7 +76,7 @@ def test_features_name_faces_by_tag_and_copy_no_geometry():
     root = etree.fromstring(features_xml(programs.recognition(), programs.part_info()))
     assert {e.tag for e in root.iter()} == {"features", "part", "frame", "origin", "x", "z", "feature", "face", "size", "attribute",
                                             "generalized-pocket", "centre", "top", "bottom", "guide-profile", "guide-line", "island",
-                                            "auxiliary", "unexplained", "finding", "text", "where", "remedy"}
+                                            "auxiliary", "unexplained", "removed", "finding", "text", "where", "remedy"}
 
 
 def test_a_name_that_xml_cannot_hold_is_written_with_a_mark():

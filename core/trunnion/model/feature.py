@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from typing import Any
 
 from trunnion.findings import Finding
@@ -53,7 +53,10 @@ class Feature:
 
 @dataclass(frozen=True, kw_only=True)
 class Recognition:
-    """What a family found on a part: the frame it chose, features, and the faces that nothing explains (tags)."""
+    """What a family found on a part: the frame it chose, features, and the faces that nothing explains (tags).
+
+    `removed` has the faces of each feature that a person deleted: a re-run does not take up again what claims most of them.
+    """
 
     family: str
     frame: Frame = WORLD
@@ -61,6 +64,7 @@ class Recognition:
     unexplained: tuple[int, ...] = ()
     unexplained_share: float = 0.0
     findings: tuple[Finding, ...] = ()
+    removed: tuple[tuple[int, ...], ...] = ()
 
     def of_kind(self, *kinds: str) -> tuple[Feature, ...]:
         """Return the features of some kinds, in order."""
@@ -75,6 +79,13 @@ class Recognition:
             if f.id == id:
                 return f
         raise KeyError(id)
+
+    def without(self, id: str) -> Recognition:
+        """Return the recognition after a person deleted a feature; faces that no other feature has become unexplained."""
+        gone = self.feature(id)
+        kept = tuple(f for f in self.features if f.id != id)
+        loose = {*self.unexplained, *gone.tags} - {tag for f in kept for tag in f.tags}
+        return replace(self, features=kept, unexplained=tuple(sorted(loose)), removed=(*self.removed, gone.tags))
 
     def counts(self) -> dict[str, int]:
         """Return the number of features of each kind, in order of appearance."""

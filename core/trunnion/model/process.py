@@ -12,13 +12,17 @@ from trunnion.model.tool import Tool
 
 @dataclass(frozen=True, kw_only=True)
 class ProcessTree:
-    """Setups and their operations in the order they are cut; `plan` names the typical plan they come from."""
+    """Setups and their operations in the order they are cut; `plan` names the typical plan they come from.
+
+    `removed` has the ids of operations that a person deleted: a re-run does not make them again.
+    """
 
     plan: str
     material: str
     setups: tuple[Setup, ...] = ()
     operations: tuple[Operation, ...] = ()
     findings: tuple[Finding, ...] = ()
+    removed: tuple[str, ...] = ()
 
     def of_setup(self, name: str) -> tuple[Operation, ...]:
         """Return the operations of a setup that are not suppressed, in order."""
@@ -45,3 +49,8 @@ class ProcessTree:
     def with_operation(self, changed: Operation) -> ProcessTree:
         """Return the tree with the operation of the same id replaced."""
         return replace(self, operations=tuple(changed if o.id == changed.id else o for o in self.operations))
+
+    def without(self, *ids: str) -> ProcessTree:
+        """Return the tree after a person deleted operations; what had to come after them need not any more."""
+        kept = tuple(replace(o, after=tuple(a for a in o.after if a not in ids)) for o in self.operations if o.id not in ids)
+        return replace(self, operations=kept, removed=tuple(dict.fromkeys((*self.removed, *ids))))

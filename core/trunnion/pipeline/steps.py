@@ -15,6 +15,7 @@ from trunnion.findings import BadCall, BadInput, Finding
 from trunnion.model.feature import Recognition
 from trunnion.model.session import Session
 from trunnion.pipeline.bench import Bench
+from trunnion.pipeline.hand import with_features_by_hand, with_operations_by_hand
 from trunnion.pipeline.making import make_paths, strategy_settings
 from trunnion.pipeline.proving import prove_session
 from trunnion.plan.blank import BlankSettings, make_blank
@@ -87,21 +88,8 @@ def _recognize(session: Session, bench: Bench, progress: Progress) -> Result:
     family = family_of(session, bench)
     chosen = checked(choose(family.settings, session.choices))
     found: Recognition = family.recognize(bench.part.graph(), bench.part, chosen, progress)
-    kept = keep_hand_work(session.recognition, found)
+    kept = with_features_by_hand(session.recognition, found)
     return Result(session=replace(session, recognition=kept), findings=kept.findings)
-
-
-def keep_hand_work(before: Recognition | None, found: Recognition) -> Recognition:
-    """Return what was found with the features a person made or changed before in place of those that claim most of their faces."""
-    if before is None:
-        return found
-    by_hand = [f for f in before.features if f.by_hand]
-    taken = [set(f.tags) for f in by_hand]
-    rest = [f for f in found.features if not any(2 * len(tags & set(f.tags)) > len(f.tags) for tags in taken)]
-    names = {f.id for f in by_hand}
-    explained = {tag for tags in taken for tag in tags}
-    return replace(found, features=(*(f for f in rest if f.id not in names), *by_hand),
-                   unexplained=tuple(tag for tag in found.unexplained if tag not in explained))
 
 
 def _recognition(session: Session) -> Recognition:
@@ -138,9 +126,7 @@ def _route(session: Session, bench: Bench, progress: Progress) -> Result:
     setups = make_setups(recognition, session.blank, bench.shop.machines[setup.machine], setup)
     chosen = checked(choose(RouteSettings, session.choices))
     process = make_route(recognition, session.sizes, session.blank, setups, bench.shop, bench.part, chosen, progress)
-    before = {o.id: o for o in session.process.operations if o.by_hand} if session.process else {}
-    if before:
-        process = replace(process, operations=tuple(before.get(o.id, o) for o in process.operations))
+    process = with_operations_by_hand(session.process, process)
     return Result(session=replace(session, setups=setups, process=process), findings=process.findings)
 
 

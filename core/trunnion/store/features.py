@@ -40,6 +40,10 @@ def features_xml(recognition: Recognition, part: PartInfo) -> bytes:
     unexplained = add(root, "unexplained", area_share=text_of(float(recognition.unexplained_share)))
     for tag in recognition.unexplained:
         add(unexplained, "face", tag=str(tag))
+    for tags in recognition.removed:
+        removed = add(root, "removed")
+        for tag in tags:
+            add(removed, "face", tag=str(tag))
     add_findings(root, recognition.findings)
     return xml.written(xml.validated(root, "features", "features"))
 
@@ -55,7 +59,8 @@ def read_features(path: str | Path) -> Recognition:
     try:
         return Recognition(family=root.get("family"), frame=frame_of(root), features=tuple(_feature(e) for e in root.findall("feature")),
                            unexplained=tuple(int(e.get("tag")) for e in root.findall("unexplained/face")),
-                           unexplained_share=float(root.find("unexplained").get("area-share")), findings=tuple(findings_of(root)))
+                           unexplained_share=float(root.find("unexplained").get("area-share")), findings=tuple(findings_of(root)),
+                           removed=tuple(tuple(int(f.get("tag")) for f in e.findall("face")) for e in root.findall("removed")))
     except ValueError as reason:
         raise BadInput(f"{path}: can't be used: {reason}") from None
 

@@ -38,6 +38,8 @@ def process_xml(process: ProcessTree, part: PartInfo) -> bytes:
         _add_tool(root, tool)
     for operation in process.operations:
         _add_operation(root, operation)
+    for id in process.removed:
+        add(root, "removed", operation=id)
     add_findings(root, process.findings)
     return xml.written(xml.validated(root, "process", "process tree"))
 
@@ -54,7 +56,8 @@ def read_process(path: str | Path) -> ProcessTree:
         tools = {int(e.get("number")): _tool(e) for e in root.findall("tool")}
         return ProcessTree(plan=root.get("plan"), material=root.get("material"), findings=tuple(findings_of(root)),
                            setups=tuple(made(Setup, e, frame=frame_of(e)) for e in root.findall("setup")),
-                           operations=tuple(_operation(e, tools) for e in root.findall("operation")))
+                           operations=tuple(_operation(e, tools) for e in root.findall("operation")),
+                           removed=tuple(e.get("operation") for e in root.findall("removed")))
     except ValueError as reason:
         raise BadInput(f"{path}: can't be used: {reason}") from None
 
