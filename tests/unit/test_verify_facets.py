@@ -265,3 +265,9 @@ def test_more_triangles_than_fit_are_refused_with_what_to_do(monkeypatch):
     monkeypatch.setattr(part_facets, "MOST_TRIANGLES", 20)
     with pytest.raises(OutOfMemory, match="allow a larger one"):
         facets_of(read(drilled_block_shape()), WORLD)
+
+
+def test_triangles_without_area_count_as_the_line_or_point_they_are():
+    line, point = np.array([[[0, -9, 0], [0, -9, 0], [0, 9, 0]]], dtype=float), np.zeros((1, 3, 3))
+    for thin in (line, line[:, ::-1], line[:, [0, 2, 1]], point):
+        assert depth(thin, flat(10.0)(), ((-20, 0, -0.3), leaning(0)), ((20, 3, -0.3), leaning(0))) == approx(0.3, abs=FIXED)
