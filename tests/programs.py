@@ -9,8 +9,10 @@ import numpy as np
 
 from trunnion.findings import info, remark, warning
 from trunnion.geometry.frame import WORLD, Frame
+from trunnion.geometry.mesh import Mesh
 from trunnion.model.blank import Blank
 from trunnion.model.feature import FaceRole, Feature, Recognition
+from trunnion.model.fixture import Fixture
 from trunnion.model.operation import CuttingData, Operation, OperationPath
 from trunnion.model.process import ProcessTree
 from trunnion.model.program import Program, ProgramSection
@@ -18,7 +20,7 @@ from trunnion.model.session import PartInfo, PostedFile, Session, SizeEntry, Ste
 from trunnion.model.setup import Setup
 from trunnion.model.tool import Holder, Tool
 from trunnion.model.toolpath import Mark, Motion, Toolpath
-from trunnion.model.verdict import Deviation, FaceProof, OperationProof, Outcome, Verdict
+from trunnion.model.verdict import BlockProof, Deviation, FaceProof, Offer, OperationProof, Outcome, Verdict
 
 HOLDER = Holder(name="HSK63-ER32", rows=((0.0, 20.0, 10.0, 25.0), (10.0, 25.0, 60.0, 31.5)))
 FLAT_16 = Tool(number=1, name="flat 16", form="flat", diameter=16.0, corner_radius=0.0, flute_length=32.0, neck_diameter=15.5,
@@ -116,11 +118,16 @@ def verdict(outcome: Outcome = Outcome.PASSED) -> Verdict:
     """Return a verdict with proofs, findings and a deviation map."""
     face = FaceProof(face=4, area=100.0, finished=99.5, gouge=0.0, left_min=-0.001, left_mean=0.002, left_max=0.01, planned=True)
     proof = OperationProof(operation="wall-01", setup="S1", outcome=outcome, gouge=0.001, collisions=0, rapids_in_stock=0, time_s=61.5,
-                           removed=1234.0, air_share=0.25)
+                           removed=1234.0, air_share=0.25, gouges=((4, 0.001),), left_min=-0.001, left_max=0.01, engaged=1.5, depth=2.0,
+                           rate=12.5, power=1.25, power_limit=20.0)
     rng = np.random.default_rng(3)
     deviation = Deviation(face=np.arange(40), point=rng.normal(size=(40, 3)), deviation=rng.normal(size=40))
-    return Verdict(outcome=outcome, coverage=0.9951, reachable=0.999, gouge=0.0012, collisions=0, rapids_in_stock=0,
-                   machining_time_s=600.5, operations=(proof,), faces=(face,), deviation=deviation,
+    small = np.linspace(0.0, 1.0, 40, dtype=np.float32)
+    blocks = BlockProof(setup="S1", section=np.arange(40, dtype=np.int32), time=small, gouge=small, collision=small, removed=small,
+                        engaged=small, depth=small, rate=small, power=small)
+    offer = Offer(kind="feed", operation="wall-01", setup="S1", reason="verify.load", first=3, last=5, feed=1200.0)
+    return Verdict(outcome=outcome, blocks=(blocks,), offers=(offer,), coverage=0.9951, reachable=0.999, gouge=0.0012,
+                   collisions=0, rapids_in_stock=0, machining_time_s=600.5, operations=(proof,), faces=(face,), deviation=deviation,
                    findings=(remark("verify.air", "a quarter is air", "wall-01"),))
 
 
@@ -133,7 +140,10 @@ def session() -> Session:
     posted = (PostedFile(suffix="S1.nc", dialect="linuxcnc", setup="S1", text="(A)\nN10 G0 X0\n" * 300),)
     records = {"recognize": StepRecord(key="r1", seconds=0.5), "verify": StepRecord(key="v1", seconds=2.0, findings=verdict().findings)}
     choices = {"blank.side": 5, "route.plan": "panel-aluminium", "verify.limit": 0.02, "blank.box": True}
-    return Session(part=part_info(), choices=choices, recognition=recognition(), sizes=sizes, blank=blank, setups=(S1, S2),
+    clamp = Mesh([(0.0, 0.0, 0.0), (1.0, 0.0, 0.0), (0.0, 1.0, 0.0), (0.0, 0.0, 1.0)], [(0, 2, 1), (0, 1, 3), (1, 2, 3), (0, 3, 2)],
+                 np.ones(4, int))
+    return Session(part=part_info(), fixtures=(Fixture(name="clamp", mesh=clamp, setup="S2"),), choices=choices,
+                   recognition=recognition(), sizes=sizes, blank=blank, setups=(S1, S2),
                    process=process_tree(), paths=paths, posted=posted, verdict=verdict(), records=records)
 
 

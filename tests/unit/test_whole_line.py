@@ -13,7 +13,7 @@ from PIL import Image
 
 import rs274
 from trunnion.cli.main import main
-from trunnion.findings import BadCall, Cancelled
+from trunnion.findings import BadCall, BadInput, Cancelled
 from trunnion.model.verdict import Outcome
 from trunnion.pipeline import STEPS, Engine
 from trunnion.pipeline.checking import verify_texts
@@ -151,6 +151,22 @@ def test_a_program_edited_by_hand_is_judged_by_what_it_says(line, tmp_path):
     assert judged.verdict.gouge == pytest.approx(0.05, abs=0.002)
 
 
+def test_a_clamp_in_the_way_fails_the_proof_and_leaves_the_plan_as_it_is(line, tmp_path):
+    engine, session, _ = line
+    low = session.part.low
+    corners = [low + [x, y, z] for z in (0.0, 60.0) for y in (60.0, 100.0) for x in (-30.0, 5.0)]
+    quads = [(0, 2, 3, 1), (4, 5, 7, 6), (0, 1, 5, 4), (2, 6, 7, 3), (0, 4, 6, 2), (1, 3, 7, 5)]
+    rows = [f"vertex {x} {y} {z}" for a, b, c, d in quads for n in (a, b, c, a, c, d) for x, y, z in [corners[n]]]
+    (tmp_path / "clamp.stl").write_text("solid clamp\n" + "\n".join(rows))
+    clamped = engine.with_fixtures(session, [str(tmp_path / "clamp.stl")])
+    assert [name for name, state in engine.states(clamped).items() if state != "done"] == ["verify"]
+    failed = engine.run(clamped)
+    assert failed.verdict.outcome is Outcome.FAILED
+    assert {"verify.fixture"} == {f.code for f in failed.verdict.findings if f.severity == "error"}
+    with pytest.raises(BadInput, match="clamp is for setup S7; the part has S1"):
+        engine.run(engine.with_fixtures(session, [f"S7={tmp_path / 'clamp.stl'}"]))
+
+
 def test_a_program_that_fails_is_written_as_rejected_and_the_released_one_goes(line, tmp_path):
     engine, session, folder = line
     shutil.copytree(folder, tmp_path / "out")
@@ -169,9 +185,10 @@ def test_the_command_line_prints_the_documented_keys(tmp_path, capsys, sample_pa
     said = json.loads(capsys.readouterr().out)
     assert code == (0 if said["verdict"].startswith("passed") else 1)
     assert {"verdict", "coverage", "reachable", "gouge_mm", "collisions", "rapids_in_stock", "machining_time_s", "seconds", "setups",
-            "operations", "files", "findings"} <= said.keys()
+            "operations", "offers", "files", "findings"} <= said.keys()
     assert {"name", "nc", "frame", "blank"} <= said["setups"][0].keys()
-    assert {"id", "kind", "feature", "tool", "verdict"} <= said["operations"][0].keys()
+    assert {"id", "kind", "feature", "tool", "verdict", "gouges", "left_mm", "engaged_deg", "depth_of_cut_mm", "removal_cm3_min", "chip_mm",
+            "power_kw", "power_limit_kw", "torque_nm", "air_share"} <= said["operations"][0].keys()
     assert sorted(said["files"]) == sorted(path.name for path in tmp_path.iterdir())
 
 

@@ -180,7 +180,7 @@ STEP_TABLE: tuple[Step, ...] = (
     Step(name="verify", title="Verify and post", after=("toolpath",), settings=lambda: (PostSettings, ProofSettings), work=_verify,
          reads=lambda s, b: (b.part.digest, s.blank, s.setups, s.process, tuple(p.key for p in s.paths),
                              s.fixtures),
-         done=lambda s: s.verdict is not None),
+         done=lambda s: s.verdict is not None, version=2),
 )
 
 STEPS: tuple[str, ...] = tuple(step.name for step in STEP_TABLE)
