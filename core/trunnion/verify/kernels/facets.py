@@ -70,23 +70,28 @@ def depth_at(way: Floats, t: float, arcs: Floats, first: int, last: int, px: flo
 
 
 @njit(cache=True, nogil=True)
-def _core(arcs: Floats, first: int, last: int, rho: float, h: float) -> tuple[float, float]:
-    """Return the place (rho, h) in a body that its nearest side is round about: an arc's centre, or the axis beside a straight flank."""
+def _core(arcs: Floats, first: int, last: int, ax: float, ay: float, az: float, x: float, y: float,
+          z: float) -> tuple[float, float, float]:
+    """Return the point that a body's side nearest to a point is round about: an arc's centre, or the axis beside a straight flank."""
+    h = x * ax + y * ay + z * az
+    ex, ey, ez = x - h * ax, y - h * ay, z - h * az
+    rho = math.sqrt(ex * ex + ey * ey + ez * ez)
     best, cr, ch = np.inf, rho, h
     for k in range(first, last):
         dr, dz = rho - arcs[k, CR], h - arcs[k, CZ]
         c0 = arcs[k, A0R] * dz - arcs[k, A0Z] * dr
         c1 = dr * arcs[k, A1Z] - dz * arcs[k, A1R]
         if c0 >= 0.0 and c1 >= 0.0 and (dr * (arcs[k, A0R] + arcs[k, A1R]) + dz * (arcs[k, A0Z] + arcs[k, A1Z])) > 0.0:
-            depth, r, z = arcs[k, R] - math.sqrt(dr * dr + dz * dz), arcs[k, CR], arcs[k, CZ]
+            depth, r, up = arcs[k, R] - math.sqrt(dr * dr + dz * dz), arcs[k, CR], arcs[k, CZ]
         else:
             d0, d1 = dr * arcs[k, A0R] + dz * arcs[k, A0Z], dr * arcs[k, A1R] + dz * arcs[k, A1Z]
             nr, nz = (arcs[k, A0R], arcs[k, A0Z]) if d0 >= d1 else (arcs[k, A1R], arcs[k, A1Z])
             depth = arcs[k, R] - max(d0, d1)
-            r, z = (0.0, h - rho * nz / nr) if nr > 0.5 else (rho, h - nz)
+            r, up = (0.0, h - rho * nz / nr) if nr > 0.5 else (rho, h - nz)
         if depth < best:
-            best, cr, ch = depth, r, z
-    return cr, ch
+            best, cr, ch = depth, r, up
+    share = cr / rho if rho > FLAT else 0.0
+    return share * ex + ch * ax, share * ey + ch * ay, share * ez + ch * az
 
 
 @njit(cache=True, nogil=True)
@@ -165,30 +170,16 @@ def _look(task: Floats, normal: Floats, way: Floats, arcs: Floats, first: int, l
           ends: Floats, span: Floats, six: Floats, cuts: Floats, flat: Floats) -> float:
     """Return a bound on the depth of a task (13,), -inf when it settles below what is asked; say in it how to halve it.
 
-    Raises `found` (depth, place (3,)) to what is attained at the places looked at.
+    Raises `found` (depth, place (3,)) to what is attained at the place looked at. cuts (3, 6) get the bounds at the six points.
     """
     if span[S_FROM] != task[T_FROM] or span[S_TO] != task[T_TO]:
         fill_span(way, task[T_FROM], task[T_TO], ends, span)
     ax, ay, az = span[S_AXIS], span[S_AXIS + 1], span[S_AXIS + 2]
-    far = 0.0
-    for i in range(6):
-        c = CORNERS + 3 * (i % 3)
-        x, y, z = seen(ends, i // 3, task[c], task[c + 1], task[c + 2])
-        six[i, 0], six[i, 1], six[i, 2] = x, y, z
-        far = max(far, x * x + y * y + z * z)
-    drift = sag_of(span, math.sqrt(far))
+    drift = _see(task, ends, span, six)
     settled = max(enough, found[0] + bound) - drift
-
-    nx, ny, nz = -normal[0], -normal[1], -normal[2]
-    nh = nx * ax + ny * ay + nz * az
-    reach = support(arcs, first, last, math.sqrt(max(1.0 - nh * nh, 0.0)), nh)
-    upper = -np.inf
-    for i in range(6):
-        cuts[0, i] = reach - nx * six[i, 0] - ny * six[i, 1] - nz * six[i, 2]
-        upper = max(upper, cuts[0, i])
+    upper = _half_space(arcs, first, last, ax, ay, az, normal, six, cuts[0])
     if upper <= settled:
         return -np.inf
-
     x = y = z = 0.0
     for i in range(6):
         x, y, z = x + six[i, 0] / 6.0, y + six[i, 1] / 6.0, z + six[i, 2] / 6.0
@@ -198,14 +189,53 @@ def _look(task: Floats, normal: Floats, way: Floats, arcs: Floats, first: int, l
     upper = min(upper, least, _together(cuts[0], cuts[1]))
     if upper <= settled:
         return -np.inf
+    cx, cy, cz = _core(arcs, first, last, ax, ay, az, x, y, z)
+    v, w, s = _nearest_place(six, cx, cy, cz, flat)
+    u, r = 1.0 - v - w, 1.0 - s
+    x = r * (u * six[0, 0] + v * six[1, 0] + w * six[2, 0]) + s * (u * six[3, 0] + v * six[4, 0] + w * six[5, 0])
+    y = r * (u * six[0, 1] + v * six[1, 1] + w * six[2, 1]) + s * (u * six[3, 1] + v * six[4, 1] + w * six[5, 1])
+    z = r * (u * six[0, 2] + v * six[1, 2] + w * six[2, 2]) + s * (u * six[3, 2] + v * six[4, 2] + w * six[5, 2])
+    least = _cut(arcs, first, last, ax, ay, az, x, y, z, six, cuts[2])
+    a, b, c = CORNERS, CORNERS + 3, CORNERS + 6
+    _attain(way, task[T_FROM] + s * (task[T_TO] - task[T_FROM]), arcs, first, last, u * task[a] + v * task[b] + w * task[c],
+            u * task[a + 1] + v * task[b + 1] + w * task[c + 1], u * task[a + 2] + v * task[b + 2] + w * task[c + 2], found)
+    settled = max(enough, found[0] + bound) - drift
+    upper = min(upper, least, _together(cuts[0], cuts[2]), _together(cuts[1], cuts[2]))
+    if upper <= settled:
+        return -np.inf
+    task[HALVE] = _halving(task, six, drift > 0.5 * (upper - settled))
+    task[UPPER] = upper + drift
+    return upper + drift
 
-    # The place in the triangle and the time at which it is nearest to what the body is round about, one after the other.
-    h = x * ax + y * ay + z * az
-    ex, ey, ez = x - h * ax, y - h * ay, z - h * az
-    rho = math.sqrt(ex * ex + ey * ey + ez * ez)
-    cr, ch = _core(arcs, first, last, rho, h)
-    share = cr / rho if rho > FLAT else 0.0
-    cx, cy, cz = share * ex + ch * ax, share * ey + ch * ay, share * ez + ch * az
+
+@njit(cache=True, nogil=True)
+def _see(task: Floats, ends: Floats, span: Floats, six: Floats) -> float:
+    """Fill the six points (6, 3) that the tool sees of a task, and return how far from their hull it may go on the way."""
+    far = 0.0
+    for i in range(6):
+        c = CORNERS + 3 * (i % 3)
+        x, y, z = seen(ends, i // 3, task[c], task[c + 1], task[c + 2])
+        six[i, 0], six[i, 1], six[i, 2] = x, y, z
+        far = max(far, x * x + y * y + z * z)
+    return sag_of(span, math.sqrt(far))
+
+
+@njit(cache=True, nogil=True)
+def _half_space(arcs: Floats, first: int, last: int, ax: float, ay: float, az: float, normal: Floats, six: Floats, out: Floats) -> float:
+    """Fill `out` (6,) with the depth of six points in the half-space that holds a body against a normal; return the greatest."""
+    nx, ny, nz = -normal[0], -normal[1], -normal[2]
+    nh = nx * ax + ny * ay + nz * az
+    reach = support(arcs, first, last, math.sqrt(max(1.0 - nh * nh, 0.0)), nh)
+    most = -np.inf
+    for i in range(6):
+        out[i] = reach - nx * six[i, 0] - ny * six[i, 1] - nz * six[i, 2]
+        most = max(most, out[i])
+    return most
+
+
+@njit(cache=True, nogil=True)
+def _nearest_place(six: Floats, cx: float, cy: float, cz: float, flat: Floats) -> tuple[float, float, float]:
+    """Return the place (v, w) in the triangle and the share of time at which it is nearest to a point, found one after the other."""
     s = 0.5
     v = w = 0.0
     for _ in range(2):
@@ -222,23 +252,7 @@ def _look(task: Floats, normal: Floats, way: Floats, arcs: Floats, first: int, l
         if square <= FLAT:
             break
         s = min(max(dot / square, 0.0), 1.0)
-    u = 1.0 - v - w
-    p = 1.0 - s
-    x = p * (u * six[0, 0] + v * six[1, 0] + w * six[2, 0]) + s * (u * six[3, 0] + v * six[4, 0] + w * six[5, 0])
-    y = p * (u * six[0, 1] + v * six[1, 1] + w * six[2, 1]) + s * (u * six[3, 1] + v * six[4, 1] + w * six[5, 1])
-    z = p * (u * six[0, 2] + v * six[1, 2] + w * six[2, 2]) + s * (u * six[3, 2] + v * six[4, 2] + w * six[5, 2])
-    least = _cut(arcs, first, last, ax, ay, az, x, y, z, six, cuts[2])
-    a, b, c = CORNERS, CORNERS + 3, CORNERS + 6
-    t = task[T_FROM] + s * (task[T_TO] - task[T_FROM])
-    _attain(way, t, arcs, first, last, u * task[a] + v * task[b] + w * task[c], u * task[a + 1] + v * task[b + 1] + w * task[c + 1],
-            u * task[a + 2] + v * task[b + 2] + w * task[c + 2], found)
-    settled = max(enough, found[0] + bound) - drift
-    upper = min(upper, least, _together(cuts[0], cuts[2]), _together(cuts[1], cuts[2]))
-    if upper <= settled:
-        return -np.inf
-    task[HALVE] = _halving(task, six, drift > 0.5 * (upper - settled))
-    task[UPPER] = upper + drift
-    return upper + drift
+    return v, w, s
 
 
 @njit(cache=True, nogil=True)
