@@ -15,6 +15,7 @@ from trunnion import tolerance
 from trunnion.findings import BadInput, Cancelled, OutOfMemory
 from trunnion.geometry.frame import WORLD, Frame
 from trunnion.model.blank import Blank
+from trunnion.model.toolpath import Motion
 from trunnion.progress import QUIET, Progress
 from trunnion.verify.motion import moves_of
 from trunnion.verify.stock import Stock, run_stock
@@ -101,6 +102,20 @@ def test_a_ramp_leaves_a_slope_under_a_flat_end_as_it_comes_along():
 def test_an_arc_takes_off_a_bent_slot_in_every_bundle():
     stock, _ = cut(program_section(flat(8.0)(), [(30, 16, 25), (30, 16, 15), ((10, 16, 15), (20, 16))]), cell=0.125)
     assert gone(stock) == approx([(math.pi * 16 + math.pi * 10 * 8) * 5] * 3, rel=2e-3)
+
+
+@pytest.mark.parametrize("axis", [0, 1, 2])
+def test_arcs_about_every_axis_of_the_blank_are_as_their_chords(axis):
+    unit = np.roll(np.eye(3), axis, axis=0)
+    centre, tip = np.array([20.0, 16.0, 10.0]), np.array([20.0, 16.0, 10.0]) + 3.0 * unit[0] + 4.0 * unit[1] - 4.0 * unit[2]
+    angles = np.linspace(0.0, 4.0, 400)
+    arm = tip - centre
+    ways = [centre + math.cos(a) * (arm + 4.0 * unit[2]) + math.sin(a) * np.cross(unit[2], arm) - 4.0 * unit[2] for a in angles]
+    bent, _ = cut(leaning_section(bull(8.0, 2.0)(flute=6.0), [ways[0], ways[-1]], [unit[2]] * 2, centre=centre, motion=Motion.ARC_CCW), 0.5)
+    chords, _ = cut(leaning_section(bull(8.0, 2.0)(flute=6.0), ways, [unit[2]] * 400), 0.5)
+    assert gone(bent) == approx(gone(chords), rel=2e-4)
+    for one, other in zip(bent.rays.values(), chords.rays.values(), strict=True):
+        assert one.count.tolist() == other.count.tolist()
 
 
 def test_a_helix_leaves_its_lowest_turn():
@@ -278,7 +293,7 @@ def test_memory_is_known_before_and_refused_with_a_remedy():
 
 
 def test_stock_that_grows_too_ragged_is_refused_with_a_remedy(monkeypatch):
-    monkeypatch.setattr("trunnion.verify.stock.run.MOST_BYTES", Stock.need(BOX, 0.5, XYZ) + 1)
+    monkeypatch.setattr("trunnion.verify.stock.rays.MOST_BYTES", Stock.need(BOX, 0.5, XYZ) + 1)
     tips = [p for x in range(2, 40, 4) for p in ((x, -20, 10), (x, 60, 10), (x + 2, 60, 30), (x + 4, -20, 30))]
     with pytest.raises(OutOfMemory, match="coarser"):
         cut(leaning_section(flat(2.0)(), tips, [UP] * len(tips)), cell=0.5)

@@ -18,9 +18,11 @@ from trunnion.geometry.arrays import Bools, Floats, Ints
 from trunnion.verify.kernels.body import CLOSED_FIRST, CLOSED_LAST, KIND, R_MAX, Z_HIGH, Z_LOW, depth_in_body, radius_at
 from trunnion.verify.kernels.engagement import look_in_intervals
 
-# Columns of a span: tip and tool frame (its rows: two axes across, the tool axis) at both ends, then the boxes of what cuts and of all.
-TIP0, FRAME0, TIP1, FRAME1, CUT_BOX, ALL_BOX = 0, 3, 12, 15, 24, 30
-SPAN_COLUMNS = 36
+# Columns of a span: tip and tool frame (its rows: two axes across, the tool axis) at both ends, then the boxes of what cuts, of all and of
+# the tip's way. Of an arc that goes level about an axis of the blank, the whole is one span: centre, radius and signed angle (each three
+# times, so that turning coordinates changes nothing); the angle is 0 for all others.
+TIP0, FRAME0, TIP1, FRAME1, CUT_BOX, ALL_BOX, WAY_BOX, CENTRE, ARC_RADIUS, SWEEP = 0, 3, 12, 15, 24, 30, 36, 42, 45, 48
+SPAN_COLUMNS = 51
 # A ray as a span's tool frames see it: foot (3) and direction (3) at the start, what both gain until the end (3, 3), by how much the
 # direction turns, and how much smaller the body is taken.
 TWIST, SMALLER = 12, 13
@@ -165,17 +167,50 @@ def _aim(ray: Floats, span: Floats, u: float, v: float) -> None:
         after = span[b] * (u - span[TIP1]) + span[b + 1] * (v - span[TIP1 + 1]) - span[b + 2] * span[TIP1 + 2]
         ray[m], ray[3 + m] = foot, span[a + 2]
         ray[6 + m], ray[9 + m] = after - foot, span[b + 2] - span[a + 2]
-    if abs(ray[3]) + abs(ray[4]) + abs(ray[8]) + ray[TWIST] < LEVEL:
-        # Along the axis of a tool that moves level, all of a ray is deepest when the axis comes nearest.
+    if abs(ray[3]) + abs(ray[4]) + abs(ray[8]) + ray[TWIST] >= LEVEL:
+        return
+    # Along the axis of a tool that moves level, all of a ray is deepest when the axis comes nearest.
+    if span[SWEEP] != 0.0:
+        ray[0], ray[1] = _from_arc(span, u, v, span[CENTRE + 2]), 0.0
+    else:
         square = ray[6] * ray[6] + ray[7] * ray[7]
         t = min(max(-(ray[0] * ray[6] + ray[1] * ray[7]) / square, 0.0), 1.0) if square > 0.0 else 0.0
-        ray[0], ray[1], ray[6], ray[7] = ray[0] + t * ray[6], ray[1] + t * ray[7], 0.0, 0.0
+        ray[0], ray[1] = ray[0] + t * ray[6], ray[1] + t * ray[7]
+    ray[6], ray[7] = 0.0, 0.0
+
+
+@njit(cache=True, nogil=True)
+def _from_arc(span: Floats, u: float, v: float, w: float) -> float:
+    """Return how far a point is from the axis that goes along an arc, across the axis."""
+    x, y, z = u - span[CENTRE], v - span[CENTRE + 1], w - span[CENTRE + 2]
+    # Beside the axis from the centre, in the tool's frame at the start and at the end.
+    p = span[FRAME0] * x + span[FRAME0 + 1] * y + span[FRAME0 + 2] * z
+    q = span[FRAME0 + 3] * x + span[FRAME0 + 4] * y + span[FRAME0 + 5] * z
+    x0, y0, z0 = span[TIP0] - span[CENTRE], span[TIP0 + 1] - span[CENTRE + 1], span[TIP0 + 2] - span[CENTRE + 2]
+    p0 = span[FRAME0] * x0 + span[FRAME0 + 1] * y0 + span[FRAME0 + 2] * z0
+    q0 = span[FRAME0 + 3] * x0 + span[FRAME0 + 4] * y0 + span[FRAME0 + 5] * z0
+    sweep = span[SWEEP]
+    side = 1.0 if sweep > 0.0 else -1.0
+    angle = math.atan2(side * (p0 * q - q0 * p), p0 * p + q0 * q)
+    if angle < 0.0:
+        angle += 2.0 * math.pi
+    if angle <= abs(sweep):
+        return abs(math.sqrt(p * p + q * q) - span[ARC_RADIUS])
+    c, s = math.cos(sweep), math.sin(sweep)
+    p1, q1 = c * p0 - s * q0, s * p0 + c * q0
+    return math.sqrt(min((p - p0) ** 2 + (q - q0) ** 2, (p - p1) ** 2 + (q - q1) ** 2))
 
 
 @njit(cache=True, nogil=True)
 def _box(box: Floats, span: Floats, piece: Floats, turns: bool) -> None:
     """Write the box of what a piece sweeps in a span: low and high of u, v, w."""
     r, more = piece[R_MAX], BENT if turns else 0.0
+    if span[SWEEP] != 0.0:
+        for m in range(3):
+            a = span[FRAME0 + 6 + m]
+            across, p, q = r * math.sqrt(max(1.0 - a * a, 0.0)), a * piece[Z_LOW], a * piece[Z_HIGH]
+            box[m], box[3 + m] = span[WAY_BOX + m] + min(p, q) - across, span[WAY_BOX + 3 + m] + max(p, q) + across
+        return
     for m in range(3):
         low, high = np.inf, -np.inf
         for end in range(2):
@@ -229,12 +264,18 @@ def take_away(count: Ints, low: Floats, high: Floats, cell: int, k: int, a: floa
 
 
 @njit(cache=True, nogil=True)
+def _disc(arcs: Floats, first: int, last: int, limit: float, h: float) -> float:
+    """Return the radius of what a body cuts at a height; 0 where it cuts nothing."""
+    if h > limit - SHRINK or depth_in_body(arcs, first, last, 0.0, h)[0] <= SHRINK:
+        return 0.0
+    return radius_at(arcs, first, last, h) - SHRINK
+
+
+@njit(cache=True, nogil=True)
 def _across(arcs: Floats, first: int, last: int, limit: float, ray: Floats) -> tuple[float, float]:
     """Return from where to where a ray across the axis is in a body that moves level: in a disc swept along a line."""
-    if ray[2] > limit - SHRINK:
-        return 1.0, 0.0
-    r = radius_at(arcs, first, last, ray[2]) - SHRINK
-    if r <= 0.0 or depth_in_body(arcs, first, last, 0.0, ray[2])[0] <= SHRINK:
+    r = _disc(arcs, first, last, limit, ray[2])
+    if r <= 0.0:
         return 1.0, 0.0
     # The disc's middle in the plane of ray and motion: along the ray from w0 on by dw, beside it from c0 on by dc.
     w0, c0 = -(ray[0] * ray[3] + ray[1] * ray[4]), ray[0] * ray[4] - ray[1] * ray[3]
@@ -261,6 +302,44 @@ def _across(arcs: Floats, first: int, last: int, limit: float, ray: Floats) -> t
 
 
 @njit(cache=True, nogil=True)
+def _across_arc(arcs: Floats, first: int, last: int, limit: float, ray: Floats, span: Floats, u: float, v: float, low: Floats,
+                high: Floats) -> int:
+    """Write where a ray across the axis is in a body that goes level along an arc: in a disc swept; return in how many intervals."""
+    r, radius = _disc(arcs, first, last, limit, ray[2]), span[ARC_RADIUS]
+    if r <= 0.0:
+        return 0
+    # In the plane across the axis, the ray's place nearest to the centre, and how far beside it the ray passes.
+    x, y = span[CENTRE] - u, span[CENTRE + 1] - v
+    along = span[FRAME0 + 6] * x + span[FRAME0 + 7] * y
+    beside, middle = math.sqrt(max(x * x + y * y - along * along, 0.0)), span[CENTRE + 2]
+    marks, n = np.empty(8), 0
+    for circle in (radius + r, radius - r):
+        if circle > beside:
+            half = math.sqrt(circle * circle - beside * beside)
+            marks[n], marks[n + 1] = middle - half, middle + half
+            n += 2
+    for end in range(2):
+        x, y, w = (span[TIP0], span[TIP0 + 1], span[TIP0 + 2]) if end == 0 else (span[TIP1], span[TIP1 + 1], span[TIP1 + 2])
+        x, y = x - u, y - v
+        along = span[FRAME0 + 6] * x + span[FRAME0 + 7] * y
+        square = r * r - (x * x + y * y - along * along)
+        if square > 0.0:
+            half = math.sqrt(square)
+            marks[n], marks[n + 1] = w - half, w + half
+            n += 2
+    marks[:n].sort()
+    found, open_at = 0, np.nan
+    for k in range(n):
+        inside = k + 1 < n and _from_arc(span, u, v, 0.5 * (marks[k] + marks[k + 1])) < r
+        if inside and math.isnan(open_at):
+            open_at = marks[k]
+        elif not inside and not math.isnan(open_at):
+            low[found], high[found] = open_at, marks[k]
+            found, open_at = found + 1, np.nan
+    return found
+
+
+@njit(cache=True, nogil=True)
 def _take_all(count: Ints, low: Floats, high: Floats, cell: int, a: float, b: float) -> tuple[float, bool]:
     """Take what lies between a and b off a ray; return the length that is gone, and whether the ray had room for all that is left."""
     gone, k = 0.0, 0
@@ -276,12 +355,20 @@ def _take_all(count: Ints, low: Floats, high: Floats, cell: int, a: float, b: fl
 
 
 @njit(cache=True, nogil=True)
-def _cut_ray(arcs: Floats, first: int, last: int, limit: float, ray: Floats, count: Ints, low: Floats, high: Floats, cell: int,
-             w_low: float, w_high: float) -> tuple[float, bool]:
+def _cut_ray(arcs: Floats, first: int, last: int, limit: float, ray: Floats, span: Floats, u: float, v: float, count: Ints, low: Floats,
+             high: Floats, cell: int, w_low: float, w_high: float) -> tuple[float, bool]:
     """Cut a ray by a piece within a span; return the length that is gone, and whether the ray had room for all that is left."""
     if abs(ray[5]) + abs(ray[8]) + ray[TWIST] < LEVEL:
-        a, b = _across(arcs, first, last, limit, ray)
-        return _take_all(count, low, high, cell, max(a, w_low), min(b, w_high))
+        if span[SWEEP] == 0.0:
+            a, b = _across(arcs, first, last, limit, ray)
+            return _take_all(count, low, high, cell, max(a, w_low), min(b, w_high))
+        gone, from_, to = 0.0, np.empty(4), np.empty(4)
+        for k in range(_across_arc(arcs, first, last, limit, ray, span, u, v, from_, to)):
+            more, whole = _take_all(count, low, high, cell, max(from_[k], w_low), min(to[k], w_high))
+            gone += more
+            if not whole:
+                return gone, False
+        return gone, True
     gone = 0.0
     middle = 0.5 * (w_low + w_high)
     k = 0
@@ -470,8 +557,9 @@ def cut_tile(last: int, span: Floats, span_start: Ints, arcs: Floats, piece: Flo
                             cell = j * columns + i
                             if _misses(count, low, high, cell, box):
                                 continue
-                            _aim(ray, span[s], origin[0] + (i + 0.5) * pitch, v)
-                            gone, whole = _cut_ray(arcs, first, end, limit, ray, count, low, high, cell, box[2], box[5])
+                            u = origin[0] + (i + 0.5) * pitch
+                            _aim(ray, span[s], u, v)
+                            gone, whole = _cut_ray(arcs, first, end, limit, ray, span[s], u, v, count, low, high, cell, box[2], box[5])
                             removed[n] += gone
                             if not whole:
                                 resume[0], resume[1], resume[2], resume[3], resume[4], resume[5] = n, s, p, j, i, 1
@@ -483,6 +571,9 @@ def cut_tile(last: int, span: Floats, span_start: Ints, arcs: Floats, piece: Flo
                     span[s, ALL_BOX + 5] < bottom:
                 continue
             ray[TWIST] = _motion(span[s])
+            if span[s, SWEEP] != 0.0 and abs(span[s, FRAME0 + 8]) < 0.5:
+                # Of an arc that is one span, the rays along the axis tell how deep it is.
+                continue
             for p in range(p0, p1):
                 cuts = piece[p, KIND] == 0.0
                 if cuts and not rapid[n]:

@@ -25,7 +25,7 @@ RIMS = 200_000
 _RIMS_FULL, _STANDING = 1, 2
 
 
-def run_heights(stock: Stock, moves: Moves, frame: Frame, sweep: Sweep | None, probes: Probes, found: Passed, share: float,
+def run_heights(stock: Stock, moves: Moves, frame: Frame, sweep: Sweep | None, probes: Probes, found: Passed,
                 progress: Progress) -> tuple[int, bool]:
     """Run moves given in the blank's frame through the stock's height field, up to the first that it can't follow, and note what happens.
 
@@ -58,7 +58,7 @@ def run_heights(stock: Stock, moves: Moves, frame: Frame, sweep: Sweep | None, p
     for row in map(int, np.flatnonzero((depth > tolerance.RAPID_DEPTH) & (cell >= 0) & np.isnan(found.place[:n, 0]))):
         at = field.centre(int(cell[row]))
         found.place[row] = *at, moves.row[row, [columns.Z_START, columns.Z_END]].min()
-    found.removed[:n] += removed * (field.pitch**2 * share)
+    found.removed[:n] += removed * (field.pitch**2 / len(stock.bundles))
     found.depth[:n], found.body[:n] = np.maximum(depth, 0.0), np.maximum(body, 0.0)
     return first, why == _STANDING
 

@@ -16,8 +16,9 @@ from trunnion.verify.cutter import Bodies
 from trunnion.verify.engagement import Probes, Tally
 from trunnion.verify.kernels import dexels as kernel
 from trunnion.verify.motion import Moves
-from trunnion.verify.stock.bundles import UP, Bundle, cycle
-from trunnion.verify.stock.spans import Spans, spans_each, spans_of
+from trunnion.verify.stock.bundles import AXES, UP, Bundle, cycle
+from trunnion.verify.stock.spans import Spans, spans_each, spans_of, whole_arcs
+from trunnion.verify.stock.stock import MOST_BYTES, Stock
 from trunnion.verify.threads import in_parallel
 
 SPANS = 20_000
@@ -71,16 +72,17 @@ class _Batch:
     fine: int
 
 
-def run_rays(going: Sequence[Going], moves: Moves, blank: Blank, probes: Probes, found: Passed, share: float, fine: int,
-             most_bytes: int, progress: Progress, threads: int) -> None:
-    """Run moves given in the blank's frame through bundles (changed in place) and add to what was found.
+def run_rays(stock: Stock, going: Sequence[Going], moves: Moves, probes: Probes, found: Passed, fine: int, progress: Progress,
+             threads: int) -> None:
+    """Run moves given in the blank's frame through some bundles of a stock and add to what was found.
 
-    `share` is what the volume that one bundle loses counts; cells that a rapid grazes are looked at in `fine` rays along each side, 0 for
-    not at all. Raises `OutOfMemory` when rays are cut in so many pieces that the bundles would
-    take more than `most_bytes`.
+    Cells that a rapid grazes are looked at in `fine` rays along each side, 0 for not at all. Raises `OutOfMemory` when rays are cut in too
+    many pieces.
     """
     n = len(moves)
-    each, leaves = spans_each(moves), _leaves(moves)
+    share = 1.0 / len(stock.bundles)
+    whole, leaves = whole_arcs(moves, [AXES.index(name) for name in stock.bundles]), _leaves(moves)
+    each = spans_each(moves, whole)
     ends = np.cumsum(each)
     row = min((g.first for g in going), default=n)
     bundles = [g.bundle for g in going]
@@ -88,10 +90,10 @@ def run_rays(going: Sequence[Going], moves: Moves, blank: Blank, probes: Probes,
     while row < n:
         begun = ends[row] - each[row]
         rows = np.arange(row, max(row + 1, int(np.searchsorted(ends, begun + SPANS, side="right"))))
-        spans = spans_of(moves, rows, each[rows])
+        spans = spans_of(moves, rows, each[rows], whole[rows])
         batch = _Batch(spans.start, [spans.along(axis) for axis in range(3)], moves.bodies, moves.tool[rows], moves.rapid[rows],
                        leaves[rows], way[rows], probes, probes.start[row:rows[-1] + 2], fine)
-        looks = np.cumsum(_looks(spans, blank, bundles))
+        looks = np.cumsum(_looks(spans, stock.blank, bundles))
         first = 0
         while first < len(rows):
             before = looks[first - 1] if first else 0.0
@@ -99,14 +101,14 @@ def run_rays(going: Sequence[Going], moves: Moves, blank: Blank, probes: Probes,
             jobs = [_Job(g, tile, batch, max(first, g.first - row), last, g.looked and g.first >= row + first)
                     for g in going if g.first < row + last for tile in g.bundle.tiles()]
             part = progress.part(float(begun + spans.start[first]) / ends[-1], float(begun + spans.start[last]) / ends[-1])
-            _run(jobs, bundles, most_bytes, part, threads)
+            _run(jobs, bundles, part, threads)
             for job in jobs:
                 job.note(found, row, share)
             first = last
         row = int(rows[-1]) + 1
 
 
-def _run(jobs: list[_Job], bundles: Sequence[Bundle], most_bytes: int, progress: Progress, threads: int) -> None:
+def _run(jobs: list[_Job], bundles: Sequence[Bundle], progress: Progress, threads: int) -> None:
     """Run jobs until all are done, giving rays more room where they need it."""
     waiting = jobs
     while waiting:
@@ -117,9 +119,9 @@ def _run(jobs: list[_Job], bundles: Sequence[Bundle], most_bytes: int, progress:
         in_parallel(work, len(waiting), 1, progress, "Cutting the stock", threads)
         waiting = [job for job in waiting if not job.done]
         for bundle in {job.bundle.axis: job.bundle for job in waiting}.values():
-            if sum(b.nbytes for b in bundles) + bundle.nbytes > most_bytes:
+            if sum(b.nbytes for b in bundles) + bundle.nbytes > MOST_BYTES:
                 raise OutOfMemory(f"stock at cells of {bundle.pitch:g} mm has become so ragged that it would need more than "
-                                  f"{most_bytes / 1e6:.0f} MB: choose a coarser verify.cell")
+                                  f"{MOST_BYTES / 1e6:.0f} MB: choose a coarser verify.cell")
             bundle.grow()
 
 

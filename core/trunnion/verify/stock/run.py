@@ -15,7 +15,7 @@ from trunnion.verify.motion import Moves, seen_from
 from trunnion.verify.stock.closer import confirm_grazed, rays_in_cell
 from trunnion.verify.stock.heights import run_heights
 from trunnion.verify.stock.rays import Going, Passed, run_rays
-from trunnion.verify.stock.stock import MOST_BYTES, Stock
+from trunnion.verify.stock.stock import Stock
 from trunnion.verify.sweep import Sweep
 
 
@@ -46,16 +46,16 @@ def run_stock(stock: Stock, moves: Moves, frame: Frame, sweep: Sweep | None = No
     `threads` 0: one a core; the result is the same for any number. Cancelled or out of memory half-way, the stock is of no use any more:
     go back to a snapshot. Raises `OutOfMemory` when rays are cut in too many pieces.
     """
-    local, probes, share = seen_from(moves, frame, stock.frame), probes_of(moves), 1.0 / len(stock.bundles)
+    local, probes = seen_from(moves, frame, stock.frame), probes_of(moves)
     found = Passed.empty(len(moves), probes)
     heights = progress.part(0.0, 1.0 if stock.bundles == ("z",) else 0.3)
-    row, looked = run_heights(stock, local, frame, sweep, probes, found, share, heights)
+    row, looked = run_heights(stock, local, frame, sweep, probes, found, heights)
     if row < len(moves):
         stock.open_field()
     going = [Going(b) if name != "z" else Going(b, row, looked) for name, b in stock.rays.items()]
     if going:
         fine = rays_in_cell(stock.pitch) if sweep is not None else 0
-        run_rays(going, local, stock.blank, probes, found, share, fine, MOST_BYTES, progress.part(0.3, 1.0), threads)
+        run_rays(stock, going, local, probes, found, fine, progress.part(0.3, 1.0), threads)
     if sweep is not None:
         confirm_grazed(stock, found, frame, sweep, progress)
         stock.cut_by.append((sweep, frame))

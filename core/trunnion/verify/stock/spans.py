@@ -2,18 +2,21 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
 
 from trunnion import tolerance
-from trunnion.geometry.arrays import Floats, Ints
+from trunnion.geometry.arrays import Bools, Floats, Ints
 from trunnion.verify.kernels import body as body_kernel
 from trunnion.verify.kernels import dexels as kernel
 from trunnion.verify.motion import AXIS_LEAN, Moves
 from trunnion.verify.stock.bundles import cycle
 
 VECTORS = kernel.SPAN_COLUMNS // 3
+WAYPOINTS = 33
+"""Places along a whole arc that its box is taken from."""
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -29,8 +32,16 @@ class Spans:
         return np.ascontiguousarray(turned.reshape(-1, kernel.SPAN_COLUMNS))
 
 
-def spans_each(moves: Moves) -> Ints:
-    """Return into how many spans each move (n,) is cut."""
+def whole_arcs(moves: Moves, along: Sequence[int]) -> Bools:
+    """Say which moves (n,) are arcs that go level about one of the blank's axes `along`: each is one span."""
+    climb = np.abs(((moves.end - moves.start) * moves.start_axis).sum(axis=1))
+    axis = np.abs(moves.start_axis)
+    straight = np.isin(axis.argmax(axis=1), along) & (np.sort(axis, axis=1)[:, :2].max(axis=1, initial=0.0) < kernel.LEVEL / 10.0)
+    return np.asarray((moves.sweep != 0.0) & straight & (climb < kernel.LEVEL / 10.0) & ~moves.turning)
+
+
+def spans_each(moves: Moves, whole: Bools) -> Ints:
+    """Return into how many spans each move (n,) is cut; `whole` arcs are one."""
     size = _sizes(moves)[moves.tool]
     theta = _turns(moves)
     run = np.linalg.norm(moves.end - moves.start, axis=1)
@@ -40,11 +51,11 @@ def spans_each(moves: Moves) -> Ints:
     away -= (away * moves.start_axis).sum(axis=1, keepdims=True) * moves.start_axis
     radius = np.linalg.norm(away, axis=1)
     arcs = np.abs(moves.sweep) * np.sqrt(radius / (8.0 * tolerance.STOCK_CHORD))
-    return np.maximum(1, np.ceil(np.maximum(turning, arcs) - tolerance.PARAMETRIC)).astype(np.int64)
+    return np.where(whole, 1, np.maximum(1, np.ceil(np.maximum(turning, arcs) - tolerance.PARAMETRIC))).astype(np.int64)
 
 
-def spans_of(moves: Moves, rows: Ints, each: Ints) -> Spans:
-    """Return the spans of some moves given in the blank's frame; each (r,) how many of every one."""
+def spans_of(moves: Moves, rows: Ints, each: Ints, whole: Bools) -> Spans:
+    """Return the spans of some moves given in the blank's frame; each (r,) how many of every one, and whether it is a whole arc."""
     start = np.concatenate([[0], np.cumsum(each)])
     move = np.repeat(rows, each)
     step, steps = np.arange(start[-1]) - np.repeat(start[:-1], each), np.repeat(each, each)
@@ -52,6 +63,11 @@ def spans_of(moves: Moves, rows: Ints, each: Ints) -> Spans:
     poses = _Poses(moves, move)
     for k, share in enumerate((step / steps, (step + 1) / steps)):
         row[:, 4 * k], row[:, 4 * k + 1:4 * k + 4] = poses.at(share)
+    row[:, 12], row[:, 13] = np.minimum(row[:, 0], row[:, 4]), np.maximum(row[:, 0], row[:, 4])
+    bent = np.repeat(whole, each)
+    row[:, 14:] = 0.0
+    row[bent, 14:] = poses.arcs()[bent]
+    row[bent, 12:14] = poses.way_boxes(bent)
     size = _sizes(moves)[moves.tool[move]]
     row[:, 8:10] = _boxes(row, size[:, 0], size[:, 2])
     row[:, 10:12] = _boxes(row, size[:, 1], size[:, 3])
@@ -92,6 +108,19 @@ class _Poses:
         return tip, np.stack([ahead, self.beside, axis], axis=1)
 
 
+    def arcs(self) -> Floats:
+        """Return centre, radius and angle of arcs (s, 3, 3), the last two three times."""
+        radius = np.linalg.norm(self.away, axis=1)
+        three = np.ones((1, 3))
+        return np.stack([self.start - self.away, radius[:, None] * three, self.sweep[:, None] * three], axis=1)
+
+    def way_boxes(self, rows: Bools) -> Floats:
+        """Return boxes (k, 2, 3) of the tips' ways along some arcs."""
+        tips = np.stack([self.at(np.full(len(self.sweep), share))[0][rows] for share in np.linspace(0.0, 1.0, WAYPOINTS)])
+        sag = np.linalg.norm(self.away[rows], axis=1, keepdims=True) * (self.sweep[rows, None] / (WAYPOINTS - 1)) ** 2 / 8.0
+        return np.stack([tips.min(axis=0) - sag, tips.max(axis=0) + sag], axis=1)
+
+
 def _turns(moves: Moves) -> Floats:
     """Return the angle that the axis of each move turns by (n,), 0 where it keeps still."""
     across = np.linalg.norm(np.cross(moves.start_axis, moves.end_axis), axis=1)
@@ -112,7 +141,7 @@ def _sizes(moves: Moves) -> Floats:
 def _boxes(row: Floats, height: Floats, radius: Floats) -> Floats:
     """Return the boxes (s, 2, 3) of tools of some height and radius in spans."""
     low, high = np.full((len(row), 3), np.inf), np.full((len(row), 3), -np.inf)
-    for tip, axis in ((row[:, 0], row[:, 3]), (row[:, 4], row[:, 7])):
+    for tip, axis in ((row[:, 12], row[:, 3]), (row[:, 13], row[:, 3]), (row[:, 0], row[:, 3]), (row[:, 4], row[:, 7])):
         across = radius[:, None] * np.sqrt(np.clip(1.0 - axis**2, 0.0, None)) + 0.05
         top = tip + height[:, None] * axis
         low, high = np.minimum(low, np.minimum(tip, top) - across), np.maximum(high, np.maximum(tip, top) + across)
