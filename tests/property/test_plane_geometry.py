@@ -10,6 +10,7 @@ from hypothesis import assume, given, settings
 from hypothesis import strategies as st
 
 from trunnion.geometry.curve import Curve
+from trunnion.geometry.offset import parallel_curves
 from trunnion.geometry.region import Region
 
 few = settings(deadline=None, max_examples=25)
@@ -150,5 +151,5 @@ def test_a_curve_cut_in_two_keeps_its_length(region, start, share):
 @given(outers, st.sampled_from([-4.0, -1.0, 1.0, 3.0]))
 def test_parallels_of_an_open_curve_keep_their_distance(outer, distance):
     open_curve = outer.split(0.0, 0.8 * outer.length)
-    for beside in open_curve.parallel(distance):
+    for beside in parallel_curves(open_curve, distance):
         assert open_curve.distance(beside.sampled(0.01)).min() > abs(distance) - 1e-5

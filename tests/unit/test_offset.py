@@ -9,6 +9,7 @@ import pytest
 from pytest import approx
 
 from trunnion.geometry.curve import Curve
+from trunnion.geometry.offset import parallel_curves
 from trunnion.geometry.region import Region
 
 QUARTER = math.tan(math.pi / 8.0)
@@ -167,13 +168,13 @@ def test_walls_that_are_tangent_only_to_a_thousandth_are_followed():
 
 
 def test_a_straight_parallel_lies_to_the_left():
-    (beside,) = Curve.polyline([[0.0, 0.0], [10.0, 0.0]]).parallel(2.0)
+    (beside,) = parallel_curves(Curve.polyline([[0.0, 0.0], [10.0, 0.0]]), 2.0)
     assert beside.points == approx(np.array([[0.0, 2.0], [10.0, 2.0]]))
 
 
 def test_a_parallel_is_trimmed_inside_a_corner_and_rounded_outside():
     corner = Curve.polyline([[0.0, 0.0], [10.0, 0.0], [10.0, 10.0]])
-    (inside,), (outside,) = corner.parallel(3.0), corner.parallel(-3.0)
+    (inside,), (outside,) = parallel_curves(corner, 3.0), parallel_curves(corner, -3.0)
     assert inside.points == approx(np.array([[0.0, 3.0], [7.0, 3.0], [7.0, 10.0]]))
     assert outside.length == approx(20.0 + 1.5 * math.pi)
     assert outside.segments().radius[1] == approx(3.0)
@@ -181,29 +182,29 @@ def test_a_parallel_is_trimmed_inside_a_corner_and_rounded_outside():
 
 def test_parallels_of_an_arc_keep_its_centre():
     arc = Curve(np.array([[5.0, 0.0], [0.0, 5.0]]), np.array([QUARTER, 0.0]), False)
-    (inside,), (outside,) = arc.parallel(2.0), arc.parallel(-2.0)
+    (inside,), (outside,) = parallel_curves(arc, 2.0), parallel_curves(arc, -2.0)
     assert inside.segments().radius == approx([3.0], abs=1e-12)
     assert outside.segments().radius == approx([7.0], abs=1e-12)
-    assert not arc.parallel(5.0)
+    assert not parallel_curves(arc, 5.0)
 
 
 def test_a_closed_parallel_is_closed():
-    (inside,) = Curve.rectangle(0.0, 0.0, 10.0, 10.0).parallel(2.0)
+    (inside,) = parallel_curves(Curve.rectangle(0.0, 0.0, 10.0, 10.0), 2.0)
     assert inside.closed
     assert inside.area == approx(36.0)
-    assert Curve.rectangle(0.0, 0.0, 10.0, 10.0).parallel(-2.0)[0].area == approx(100.0 + 80.0 + 4.0 * math.pi)
+    assert parallel_curves(Curve.rectangle(0.0, 0.0, 10.0, 10.0), -2.0)[0].area == approx(100.0 + 80.0 + 4.0 * math.pi)
 
 
 def test_a_parallel_into_a_narrow_groove_leaves_the_groove_out():
     groove = Curve.polyline([[0.0, 0.0], [10.0, 0.0], [10.0, -8.0], [13.0, -8.0], [13.0, 0.0], [23.0, 0.0]])
-    (beside,) = groove.parallel(2.0)
+    (beside,) = parallel_curves(groove, 2.0)
     assert beside.box()[0][1] > 1.0
     assert groove.distance(beside.sampled(0.01)).min() > 2.0 - 1e-6
 
 
 def test_a_closed_parallel_of_a_dumbbell_falls_into_two():
     points = [[0, 0], [20, 0], [20, 8], [40, 8], [40, 0], [60, 0], [60, 20], [40, 20], [40, 12], [20, 12], [20, 20], [0, 20]]
-    halves = Curve.polygon(points).parallel(3.0)
+    halves = parallel_curves(Curve.polygon(points), 3.0)
     assert [c.closed for c in halves] == [True, True]
     into_the_neck = 2.0 * (3.0 * 2.0 - (math.sqrt(5.0) + 4.5 * math.asin(2.0 / 3.0)))
     assert [c.area for c in halves] == approx([196.0 + into_the_neck] * 2)

@@ -302,16 +302,6 @@ class Curve:
             return before + (length if np.hypot(*(p - seg.end[row])) < np.hypot(*(p - start)) else 0.0)
         return before + angle * float(seg.radius[row])
 
-    def parallel(self, distance: float) -> list[Curve]:
-        """Return the curves that run beside this one at a distance to its left (negative: to its right).
-
-        Convex corners get round joins about the corner, concave ones are trimmed; what would come nearer to the curve than the
-        distance is left out, so the answer may be empty or in several pieces. Arcs stay arcs.
-        """
-        from trunnion.geometry.offset import parallel_curves
-
-        return parallel_curves(self, distance)
-
     def _locate(self, s: float) -> tuple[int, float]:
         length = self.segments().length
         ends = np.cumsum(length)
@@ -360,6 +350,11 @@ def distance_to(segments: Segments, points: Floats) -> Floats:
 def winding(segments: Segments, points: Floats) -> Ints:
     """Return how often closed loops, given by all their segments, go round points (k, 2), anticlockwise counted positive."""
     return _loops(segments, points).winding_numbers(points, *_rows(segments))
+
+
+def signed_distance(segments: Segments, points: Floats) -> Floats:
+    """Return the distances (k,) of points (k, 2) from closed loops, given by all their segments, positive on the left of them."""
+    return np.where(winding(segments, points) > 0, 1.0, -1.0) * distance_to(segments, points)
 
 
 _work = 0

@@ -2,7 +2,7 @@
 
 Every segment moves to its side and neighbours are connected: by an arc about a convex corner, by a bridge over a concave one.
 The boundary of the answer is a part of these raw curves. They cut the plane into faces, each wholly nearer to the source than
-the distance or wholly farther, so one exact distance a face decides (`offset_region`); an open curve is cut at the crossings
+the distance or wholly farther, so one exact distance a face decides (`grown`); an open curve is cut at the crossings
 themselves (`parallel_curves`).
 """
 
@@ -16,10 +16,9 @@ from numpy.typing import NDArray
 
 from trunnion import tolerance
 from trunnion.geometry.arrays import Bools, Floats, Ints
-from trunnion.geometry.chords import chorded
-from trunnion.geometry.curve import Curve, Segments, distance_to, join_segments
+from trunnion.geometry.chords import Chords, chorded
+from trunnion.geometry.curve import Curve, Segments, distance_to, join_segments, signed_distance
 from trunnion.geometry.meeting import CLOSE, crossings
-from trunnion.geometry.region import EMPTY_REGION, Region, restored_region
 
 MEETS = 4.0 * CLOSE
 """Pieces of a parallel that were cut at one crossing meet within this: each may have moved by the tolerance on two sides."""
@@ -33,14 +32,12 @@ class RawCurve:
     is_bridge: Bools
 
 
-def offset_region(region: Region, distance: float) -> Region:
-    """Return a region grown (positive) or shrunk (negative) by a distance in mm; pieces narrower than a sliver are dropped."""
-    if not region or abs(distance) <= tolerance.PARAMETRIC:
-        return region
-    low, high = region.box()
-    if distance < 0.0 and 2.0 * -distance >= (high - low).min():
-        return EMPTY_REGION
-    raw = raw_parallel(region.segments(), region.loops(), -distance)
+def grown(boundary: Segments, loops: Ints, distance: float) -> tuple[shapely.Geometry, Chords]:
+    """Return the area left of closed loops grown (positive) or shrunk (negative) by a distance in mm, and the chords it consists of.
+
+    `boundary` (m,) are the segments of all loops, one loop after another, and `loops` (m,) says of each which one it belongs to.
+    """
+    raw = raw_parallel(boundary, loops, -distance)
     chords = chorded(raw.segments, raw.is_bridge)
     count = np.diff(chords.first)
     owner = np.repeat(np.arange(len(count)), count)
@@ -49,19 +46,18 @@ def offset_region(region: Region, distance: float) -> Region:
     lines = np.asarray(shapely.linestrings(chords.points[real], indices=line))
     faces = shapely.get_parts(shapely.polygonize(np.asarray([shapely.node(shapely.multilinestrings(lines))])))
     if len(faces) == 0:
-        return EMPTY_REGION
-    kept = faces[_margin(region, distance, faces) > 0.0]
-    return restored_region(shapely.union_all(kept), chords)
+        return shapely.MultiPolygon(), chords
+    return shapely.union_all(faces[_margin(boundary, distance, faces) > 0.0]), chords
 
 
-def _margin(region: Region, distance: float, faces: NDArray[np.object_]) -> Floats:
+def _margin(boundary: Segments, distance: float, faces: NDArray[np.object_]) -> Floats:
     """Return how much deeper than asked a point inside each face lies, the most telling of several points where one says little."""
-    margin = region.signed_distance(shapely.get_coordinates(shapely.point_on_surface(faces))) + distance
+    margin = signed_distance(boundary, shapely.get_coordinates(shapely.point_on_surface(faces))) + distance
     # A point may lie on the ridge of the distances, such as the middle of a groove, where a whole face seems to be an edge.
     for n in np.flatnonzero((np.abs(margin) < tolerance.SLIVER) & (shapely.area(faces) > tolerance.AREA)):
         triangles = shapely.get_parts(shapely.constrained_delaunay_triangles(faces[n]))
         probes = shapely.get_coordinates(shapely.centroid(triangles))
-        found = region.signed_distance(probes) + distance
+        found = signed_distance(boundary, probes) + distance
         margin[n] = found[np.argmax(np.abs(found))]
     return margin
 
@@ -129,7 +125,11 @@ def _end_tangents(s: Segments) -> tuple[Floats, Floats]:
 
 
 def parallel_curves(curve: Curve, distance: float) -> list[Curve]:
-    """Return the trimmed parallels of a curve to its left (negative: right), in the order of the curve."""
+    """Return the curves that run beside a curve at a distance to its left (negative: to its right), in the order of the curve.
+
+    Convex corners get round joins about the corner, concave ones are trimmed; what would come nearer to the curve than the
+    distance is left out, so the answer may be empty or in several pieces. Arcs stay arcs.
+    """
     if abs(distance) <= tolerance.PARAMETRIC:
         return [curve]
     raw = raw_parallel(curve.segments(), np.zeros(curve.n_segments, dtype=np.int64), distance, curve.closed)

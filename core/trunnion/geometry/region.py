@@ -14,8 +14,9 @@ from trunnion import tolerance
 from trunnion.geometry import fit
 from trunnion.geometry.arrays import Bools, Floats, Ints
 from trunnion.geometry.chords import Chords, chorded, polygons_of
-from trunnion.geometry.curve import Curve, Segments, distance_to, join_segments, winding
+from trunnion.geometry.curve import Curve, Segments, distance_to, join_segments, signed_distance, winding
 from trunnion.geometry.memo import Memo
+from trunnion.geometry.offset import grown
 
 KEPT_ANSWERS = 4096
 """Answers of offsets and of overlays that are kept, of some kB each: a large panel asks less than this in one step."""
@@ -131,16 +132,19 @@ class Region:
         p = np.atleast_2d(np.asarray(points, dtype=np.float64))
         if not self:
             return np.full(len(p), -np.inf)
-        inside = winding(self.segments(), p) > 0
-        return np.where(inside, 1.0, -1.0) * distance_to(self.segments(), p)
+        return signed_distance(self.segments(), p)
 
     def offset(self, distance: float) -> Region:
-        """Return the region grown (positive, with round joins) or shrunk (negative) by a distance in mm."""
-        from trunnion.geometry.offset import offset_region
+        """Return the region grown (positive, with round joins) or shrunk (negative) by a distance in mm.
 
+        Pieces narrower than a sliver are dropped.
+        """
         if not self or abs(distance) <= tolerance.PARAMETRIC:
             return self
-        return _OFFSETS.answer((self.digest(), distance), lambda: offset_region(self, distance))
+        low, high = self.box()
+        if distance < 0.0 and 2.0 * -distance >= (high - low).min():
+            return EMPTY_REGION
+        return _OFFSETS.answer((self.digest(), distance), lambda: restored_region(*grown(self.segments(), self.loops(), distance)))
 
     def opened(self, radius: float) -> Region:
         """Return what a disc of this radius covers when it rolls inside the region: no neck narrower than it is left."""
