@@ -9,9 +9,12 @@ import pytest
 from pytest import approx
 
 from leaning_tools import EVERY_FORM, leaning_section
-from trunnion.findings import BadInput, Cancelled
+from samples import ball_shape, box_shape, oblique_cylinder_shape, read
+from trunnion.findings import BadCall, BadInput, Cancelled
+from trunnion.geometry.frame import WORLD, Frame
 from trunnion.model.toolpath import Motion
-from trunnion.part.exact import ExactPoints
+from trunnion.part.exact import ExactFace, ExactPoints
+from trunnion.pipeline.fine import FineFigures, faces_named, fine_dict, fine_text
 from trunnion.progress import Progress
 from trunnion.verify.fine import FINE_BOUND, fine_measure
 from trunnion.verify.motion import moves_of
@@ -189,3 +192,49 @@ def test_any_number_of_threads_measures_the_same_and_it_stops_when_asked():
     assert one.left.tobytes() == three.left.tobytes() and one.scallop.value == three.scallop.value
     with pytest.raises(Cancelled):
         fine_measure([Plane()], moves, 0.05, progress=Progress(cancelled=lambda: True))
+
+
+def test_an_exact_face_knows_its_surface_in_any_frame():
+    part, axis = read(oblique_cylinder_shape()), np.array([0.5, 0.0, math.cos(math.radians(30.0))])
+    frame = Frame(np.array([3.0, 4.0, 5.0]), np.array([0.0, 1.0, 0.0]), np.array([1.0, 0.0, 0.0]))
+    faces = [ExactFace(part, tag, frame) for tag in part.tags]
+    side = max(faces, key=lambda f: f.at(np.array([[f.bounds()[0], f.bounds()[2]]])).bend.max())
+    u0, u1, v0, v1 = side.bounds()
+    at = side.at(np.random.default_rng(0).uniform([u0, v0], [u1, v1], (50, 2)))
+    points, normals = frame.to_world(at.point), frame.world_direction(at.normal)
+    out = points - (points @ axis)[:, None] * axis
+    assert np.linalg.norm(out, axis=1) == approx(np.full(50, 10.0)) and normals == approx(out / 10.0)
+    assert at.bend.max(axis=1) == approx(np.full(50, 11.0))
+    assert side.inside(np.array([[u0 + 0.1, v0 + 1.0], [u0 + 0.1, v1 + 1.0]])).tolist() == [True, False]
+
+
+def test_a_pole_has_the_normal_beside_it():
+    part = read(ball_shape())
+    for tag in part.tags:
+        face = ExactFace(part, tag, WORLD)
+        u0, _, v0, v1 = face.bounds()
+        at = face.at(np.array([[u0, v0], [u0, v1]]))
+        assert np.linalg.norm(at.normal, axis=1) == approx([1.0, 1.0])
+
+
+def test_the_top_of_a_block_is_measured_on_its_own_face():
+    part = read(box_shape())
+    top = next(tag for tag in part.tags if part.graph().box_low[tag - 1][2] > 19.0 or part.graph().box_low[tag - 1][2] == part.high[2])
+    z, pitch = float(part.high[2]), 0.8
+    middle = 0.5 * (part.low + part.high)
+    moves = moves_of([passes(EVERY_FORM["ball"], np.arange(part.low[1] - 1.0, part.high[1] + 2.0, pitch), z=z, x=(-60.0, 60.0))])
+    found = fine_measure([ExactFace(part, top, WORLD)], moves, 0.2, low=middle - [1.0, 1.0, 50.0], high=middle + [1.0, 1.0, 50.0])
+    assert found.scallop.value == approx(scallop(5.0, pitch), abs=FINE_BOUND) and set(found.face) == {top}
+    with pytest.raises(BadInput, match="face 99"):
+        ExactFace(part, 99, WORLD)
+
+
+def test_faces_are_named_by_their_tags_and_figures_told_with_their_places():
+    assert faces_named("face 12, face 13") == (12, 13) == faces_named("12 13 12")
+    with pytest.raises(BadCall, match="name faces by their tags"):
+        faces_named("the floor")
+    nowhere = np.full(3, np.nan)
+    figures = FineFigures(faces=(12,), scallop=0.0123, scallop_at=np.array([1.0, 2.0, 3.0]), gouge=0.0, gouge_at=nowhere, step=0.005,
+                          step_at=np.zeros(3), lower="floor-1", bound=0.0002)
+    assert fine_dict(figures)["gouge_at"] is None and fine_dict(figures)["scallop_at"] == [1.0, 2.0, 3.0]
+    assert "highest scallop  0.0123 mm at x 1.000 y 2.000 z 3.000" in fine_text(figures)
