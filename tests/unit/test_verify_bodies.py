@@ -146,6 +146,34 @@ def _along(nr, nz, reach, piece):
     return points[points[:, 0] >= 0.0]
 
 
+def radius_of(bodies, h):
+    """Return the largest radius of a whole tool at a height."""
+    beside = [p for p in bodies.piece if p[kernel.Z_LOW] - 1e-9 <= h <= p[kernel.Z_HIGH] + 1e-9]
+    return max((kernel.radius_at(bodies.arc, int(p[kernel.FIRST]), int(p[kernel.LAST]), h) for p in beside), default=-1.0)
+
+
+@EVERY_FORM
+def test_a_closed_body_stays_inside_the_tool(tool):
+    bodies, random = bodies_of([tool]), np.random.default_rng(13)
+    for p in bodies.piece:
+        first, last = int(p[kernel.CLOSED_FIRST]), int(p[kernel.CLOSED_LAST])
+        heights = np.concatenate([end + OVERLAP * random.uniform(-1.2, 1.2, 300) for end in (p[kernel.Z_LOW], p[kernel.Z_HIGH])])
+        points = np.column_stack([random.uniform(0.0, 1.2 * p[kernel.R_MAX], 600), heights])
+        inside = points[depths(bodies.arc, first, last, points) > 1e-9]
+        assert all(r <= radius_of(bodies, h) for r, h in inside)
+
+
+@EVERY_FORM
+def test_a_closed_body_holds_all_of_its_open_one(tool):
+    bodies, random = bodies_of([tool]), np.random.default_rng(17)
+    for p in bodies.piece:
+        points = np.column_stack([random.uniform(0.0, 1.1 * p[kernel.R_MAX], 300),
+                                  random.uniform(p[kernel.Z_LOW], p[kernel.Z_HIGH], 300)])
+        opened = depths(bodies.arc, p[kernel.FIRST], p[kernel.LAST], points)
+        closed = depths(bodies.arc, p[kernel.CLOSED_FIRST], p[kernel.CLOSED_LAST], points)
+        assert ((opened > 1e-9) == (closed > 1e-9)).all()
+
+
 def test_pieces_above_the_flutes_are_free_where_their_neighbour_is_thinner():
     # Neck 4.5, shank 5, holder from 12 to 20, then 20: free ends are the flutes' top, the shank's and the holder's nose, the holder's top.
     bodies = bodies_of([flat(10.0)(flute=5.0)])

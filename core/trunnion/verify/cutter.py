@@ -25,6 +25,8 @@ from trunnion.verify.kernels import body as kernel
 OVERLAP = 1.0
 """mm that a closed body reaches into the one that goes on from it, so that a depth near their joint is not cut short."""
 
+Point = tuple[float, float]
+"""r, z."""
 Span = tuple[float, float, float, float, float, float, float]
 """A part of an outline: r, z of its ends, r, z of its centre, and its radius: 0 straight, above 0 rounded outwards, below 0 inwards."""
 
@@ -57,8 +59,9 @@ def bodies_of(tools: Sequence[Tool]) -> Bodies:
     arcs: list[Floats] = []
     pieces, start = [], [0]
     for tool in tools:
-        for spans, kind, low_free, high_free in _stacked(tool):
-            opened, closed = _arcs(spans, low_free, high_free, 0.0), _arcs(spans, low_free, high_free, OVERLAP)
+        for spans, kind, under, over in _stacked(tool):
+            opened = _arcs(spans, spans[0][:2] if under is None else None, spans[-1][2:4] if over is None else None)
+            closed = _arcs(spans, _gone_on(spans, under, -OVERLAP), _gone_on(spans, over, OVERLAP))
             first = sum(map(len, arcs))
             arcs += [opened, closed]
             pieces.append((first, first + len(opened), spans[0][1], spans[-1][3], _widest(spans), kind, first + len(opened),
@@ -133,16 +136,19 @@ def _from_rows(rows: Sequence[tuple[float, float, float]]) -> list[Span]:
     return spans
 
 
-def _stacked(tool: Tool) -> list[tuple[list[Span], float, bool, bool]]:
-    """Return the convex runs of a tool's outline: spans, kind, and whether its lower and upper end are free faces."""
+def _stacked(tool: Tool) -> list[tuple[list[Span], float, list[Span] | None, list[Span] | None]]:
+    """Return the convex runs of a tool's outline: spans, kind, and the runs under and over it, None where that is thinner: a free face."""
     cutting = _convex_runs(outline_of(tool))
     runs = [(spans, 0.0) for spans in cutting] + [([_line(r0, z0, r1, z1)], 1.0) for z0, r0, z1, r1 in tool.profile()
                                                    if z1 - z0 > tolerance.PARAMETRIC]
     found = []
     for k, (spans, kind) in enumerate(runs):
-        under = runs[k - 1][0][-1][2] if k else 0.0
-        over = runs[k + 1][0][0][0] if k + 1 < len(runs) else 0.0
-        found.append((spans, kind, not k or spans[0][0] > under + tolerance.PARAMETRIC, spans[-1][2] > over + tolerance.PARAMETRIC))
+        under, over = runs[k - 1][0] if k else None, runs[k + 1][0] if k + 1 < len(runs) else None
+        if under is not None and spans[0][0] > under[-1][2] + tolerance.PARAMETRIC:
+            under = None
+        if over is not None and spans[-1][2] > over[0][0] + tolerance.PARAMETRIC:
+            over = None
+        found.append((spans, kind, under, over))
     return found
 
 
@@ -185,34 +191,51 @@ def _normals(span: Span) -> tuple[tuple[float, float], tuple[float, float]]:
     return normal, normal
 
 
-def _arcs(spans: list[Span], low_free: bool, high_free: bool, overlap: float) -> Floats:
-    """Return the arcs of a convex run: a free end has its corner; another one is left open (overlap 0) or closed `overlap` further on."""
+def _arcs(spans: list[Span], low: Point | None, high: Point | None) -> Floats:
+    """Return the arcs of a convex run. It is closed by level faces at the points `low` and `high`, its own ends or further on; without them
+    it is left open."""
     rows: list[tuple[float, ...]] = []
-    corners = [(s, _normals(s)) for s in spans]
-    (r, z), first = spans[0][:2], corners[0][1][0]
-    if low_free or overlap:
-        rows += _corner(*_end_point(r, z, first, -overlap if not low_free else 0.0), (0.0, -1.0), first)
-    for k, (span, (n0, n1)) in enumerate(corners):
+    if low is not None and low != spans[0][:2]:
+        spans = [_line(*low, *spans[0][:2]), *spans]
+    if high is not None and high != spans[-1][2:4]:
+        spans = [*spans, _line(*spans[-1][2:4], *high)]
+    normals = [_normals(span) for span in spans]
+    if low is not None:
+        rows += _corner(*low, (0.0, -1.0), normals[0][0])
+    for k, (span, (n0, n1)) in enumerate(zip(spans, normals, strict=True)):
         if span[6] > 0.0:
             rows += _halves(span[4], span[5], span[6], n0, n1)
-        if k + 1 < len(corners):
-            rows += _corner(span[2], span[3], n1, corners[k + 1][1][0])
-    (r, z), last = spans[-1][2:4], corners[-1][1][1]
-    if high_free or overlap:
-        rows += _corner(*_end_point(r, z, last, overlap if not high_free else 0.0), last, (0.0, 1.0))
+        if k + 1 < len(spans):
+            rows += _corner(span[2], span[3], n1, normals[k + 1][0])
+    if high is not None:
+        rows += _corner(*high, normals[-1][1], (0.0, 1.0))
     if not rows:
-        rows.append((r, z, 0.0, *last, *last))
+        rows.append((*spans[0][:2], 0.0, *normals[0][0], *normals[0][0]))
     return np.array(rows)
 
 
-def _end_point(r: float, z: float, normal: tuple[float, float], by: float) -> tuple[float, float]:
-    """Return the point of the tangent at an end, `by` higher, or where it meets the axis before."""
-    if by == 0.0 or normal[0] <= tolerance.COINCIDENT:
+def _gone_on(spans: list[Span], other: list[Span] | None, by: float) -> Point:
+    """Return where a closed run ends that goes on by `by` (below 0: down) inside the run beside it: on its own tangent, or where that one
+    is thinner on its outline. Without a neighbour it ends where it is."""
+    r, z = spans[-1][2:4] if by > 0.0 else spans[0][:2]
+    if other is None:
         return r, z
-    slope = -normal[1] / normal[0]
-    if r + slope * by < 0.0:
-        by = -r / slope
-    return r + slope * by, z + by
+    normal = _normals(spans[-1])[1] if by > 0.0 else _normals(spans[0])[0]
+    far = min(abs(by), other[-1][3] - other[0][1])
+    slope = -math.copysign(1.0, by) * normal[1] / max(normal[0], tolerance.PARAMETRIC)
+    if r + slope * far < 0.0:
+        far = r / -slope
+    at = z + math.copysign(far, by)
+    return max(min(r + slope * far, _radius_at(other, at)), 0.0), at
+
+
+def _radius_at(spans: list[Span], z: float) -> float:
+    """Return the radius of a convex run at a height within its ends."""
+    span = next(s for s in spans if s is spans[-1] or z <= s[3])
+    r0, z0, r1, z1, cr, cz, radius = span
+    if radius > 0.0:
+        return cr + math.sqrt(max(radius**2 - (z - cz) ** 2, 0.0))
+    return max(r0, r1) if z1 == z0 else r0 + (r1 - r0) * (z - z0) / (z1 - z0)
 
 
 def _corner(r: float, z: float, n0: tuple[float, float], n1: tuple[float, float]) -> list[tuple[float, ...]]:
