@@ -37,7 +37,8 @@ class Plane:
     def at(self, places):
         flat, ones = np.zeros((len(places), 1)), np.ones((len(places), 1))
         return ExactPoints(point=np.hstack([places, flat + self.height]), normal=np.hstack([flat, flat, ones]),
-                           du=np.hstack([ones, flat, flat]), dv=np.hstack([flat, ones, flat]), bend=np.zeros((len(places), 3)))
+                           du=np.hstack([ones, flat, flat]), dv=np.hstack([flat, ones, flat]), normal_du=np.zeros((len(places), 3)),
+                           normal_dv=np.zeros((len(places), 3)), bend=np.zeros((len(places), 3)))
 
 
 class Cylinder:
@@ -55,9 +56,9 @@ class Cylinder:
     def at(self, places):
         x, angle = places.T
         flat, ones = np.zeros_like(x), np.ones_like(x)
-        normal = np.column_stack([flat, np.sin(angle), np.cos(angle)])
+        normal, along = np.column_stack([flat, np.sin(angle), np.cos(angle)]), np.column_stack([flat, np.cos(angle), -np.sin(angle)])
         return ExactPoints(point=np.column_stack([x, flat, flat]) + self.radius * normal, normal=normal,
-                           du=np.column_stack([ones, flat, flat]), dv=self.radius * np.column_stack([flat, np.cos(angle), -np.sin(angle)]),
+                           du=np.column_stack([ones, flat, flat]), dv=self.radius * along, normal_du=np.zeros((len(x), 3)), normal_dv=along,
                            bend=np.column_stack([flat, flat, self.radius * ones]))
 
 
@@ -205,6 +206,8 @@ def test_an_exact_face_knows_its_surface_in_any_frame():
     out = points - (points @ axis)[:, None] * axis
     assert np.linalg.norm(out, axis=1) == approx(np.full(50, 10.0)) and normals == approx(out / 10.0)
     assert at.bend.max(axis=1) == approx(np.full(50, 11.0))
+    # On a cylinder of radius 10 the normal turns by a tenth of what the point moves about the axis.
+    assert at.normal_du == approx(at.du / 10.0) and at.normal_dv == approx(np.zeros((50, 3)))
     assert side.inside(np.array([[u0 + 0.1, v0 + 1.0], [u0 + 0.1, v1 + 1.0]])).tolist() == [True, False]
 
 

@@ -22,13 +22,16 @@ ROUND = 1.1
 
 @dataclass(frozen=True, slots=True, eq=False, kw_only=True)
 class ExactPoints:
-    """Points of a face at k places: point, outward unit normal (k, 3), derivatives by its parameters du, dv (k, 3), and the lengths of the
-    second ones (k, 3): by u twice, by both, by v twice; those with what they may grow to nearby."""
+    """Points of a face at k places: point, outward unit normal (k, 3), their derivatives by the face's parameters du, dv and normal_du,
+    normal_dv (k, 3), and the lengths of the point's second derivatives bend (k, 3): by u twice, by both, by v twice; those with what they
+    may grow to nearby."""
 
     point: Floats
     normal: Floats
     du: Floats
     dv: Floats
+    normal_du: Floats
+    normal_dv: Floats
     bend: Floats
 
 
@@ -61,18 +64,26 @@ class ExactFace:
         from OCP.gp import gp_Pnt, gp_Vec
 
         point, du, dv, duu, dvv, duv = gp_Pnt(), gp_Vec(), gp_Vec(), gp_Vec(), gp_Vec(), gp_Vec()
-        rows = np.empty((len(places), 9))
-        bend = np.empty((len(places), 3))
+        rows = np.empty((len(places), 18))
         for k, (u, v) in enumerate(places.tolist()):
             self._view.adaptor.D2(u, v, point, du, dv, duu, dvv, duv)
-            rows[k] = *point.Coord(), *du.Coord(), *dv.Coord()
-            bend[k] = duu.Magnitude(), duv.Magnitude(), dvv.Magnitude()
-        along, across = (self._frame.local_direction(rows[:, c:c + 3]) for c in (3, 6))
-        normal = self._view.side * np.cross(along, across)
-        size = np.linalg.norm(normal, axis=1, keepdims=True)
-        poles = np.flatnonzero(size[:, 0] <= 0.0).tolist()
-        normal = np.divide(normal, size, out=np.zeros_like(normal), where=size > 0.0)
-        for row in poles:
-            normal[row] = self._frame.local_direction(self._view.at(*places[row])[1])
+            rows[k] = *point.Coord(), *du.Coord(), *dv.Coord(), *duu.Coord(), *duv.Coord(), *dvv.Coord()
+        along, across, twice_u, both, twice_v = (self._frame.local_direction(rows[:, c:c + 3]) for c in range(3, 18, 3))
         # Frames keep hands, so the normal's side is the same in all of them.
-        return ExactPoints(point=self._frame.to_local(rows[:, :3]), normal=normal, du=along, dv=across, bend=self._growth * bend)
+        normal, size = _scaled(self._view.side * np.cross(along, across))
+        for row in np.flatnonzero(size[:, 0] <= 0.0).tolist():
+            normal[row] = self._frame.local_direction(self._view.at(*places[row])[1])
+        turns = (np.cross(twice_u, across) + np.cross(along, both), np.cross(both, across) + np.cross(along, twice_v))
+        turned = [_over(self._view.side * (t - (t * normal).sum(axis=1, keepdims=True) * normal), size) for t in turns]
+        bend = np.column_stack([np.linalg.norm(d, axis=1) for d in (twice_u, both, twice_v)])
+        return ExactPoints(point=self._frame.to_local(rows[:, :3]), normal=normal, du=along, dv=across, normal_du=turned[0],
+                           normal_dv=turned[1], bend=self._growth * bend)
+
+
+def _scaled(vectors: Floats) -> tuple[Floats, Floats]:
+    size = np.linalg.norm(vectors, axis=1, keepdims=True)
+    return _over(vectors, size), size
+
+
+def _over(vectors: Floats, size: Floats) -> Floats:
+    return np.divide(vectors, size, out=np.zeros_like(vectors), where=size > 0.0)

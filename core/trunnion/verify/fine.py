@@ -35,6 +35,8 @@ MOST_CELLS = 1_000_000
 CHUNK = 50
 """Cells between two looks at cancel."""
 ROUNDS = 40
+"""Times that cells are quartered at most: to nothing."""
+ARRAYS = tuple(ExactPoints.__slots__)
 LIFTS = 3
 """Times a surface is lifted to the height of its ridges: the second one changes nothing but the bound."""
 
@@ -209,7 +211,7 @@ class _Patch:
             parts.append(mine.some(touches))
             points.append(_some(at, touches))
             holds.append((within[:, 0] & self._in_box(at.point, np.zeros((len(mine), 3))))[touches])
-        joined = ExactPoints(**{n: np.concatenate([getattr(p, n) for p in points]) for n in ("point", "normal", "du", "dv", "bend")})
+        joined = ExactPoints(**{name: np.concatenate([getattr(p, name) for p in points]) for name in ARRAYS})
         whole = _Cells(*(np.concatenate([getattr(m, name) for m in parts]) for name in ("face", "uv", "half")))
         return _Placed(whole, joined, np.concatenate(holds))
 
@@ -221,13 +223,13 @@ class _Patch:
     def look(self, placed: _Placed, lift: float, progress: Progress, least: float = -np.inf) -> _Looked:
         """Return what is left over cells of the surface, lifted along its normals; by how much a cell falls below `least` is not told."""
         n, at, (u, v) = len(placed.cells), placed.at, placed.cells.half.T
-        a, b = u[:, None] * at.du, v[:, None] * at.dv
-        turn = (np.column_stack([u, v]) * at.bend[:, :2]).sum(axis=1), (np.column_stack([u, v]) * at.bend[:, 1:]).sum(axis=1)
-        slack = 0.5 * (turn[0] * u + turn[1] * v)
+        a, b = u[:, None] * (at.du + lift * at.normal_du), v[:, None] * (at.dv + lift * at.normal_dv)
+        slack = 0.5 * (at.bend[:, 0] * u * u + 2.0 * at.bend[:, 1] * u * v + at.bend[:, 2] * v * v)
         if lift:
-            # A normal turns within a cell by no more than both tangents do.
-            slack += lift * sum(np.divide(t, s, out=np.zeros(n), where=s > 0.0)
-                                for t, s in zip(turn, (np.linalg.norm(d, axis=1) for d in (at.du, at.dv)), strict=True))
+            # A lifted surface bends more by what its normals turn, and half as much again for what that changes over a cell.
+            slack *= 1.0 + 1.5 * lift * sum(np.divide(np.linalg.norm(t, axis=1), np.linalg.norm(d, axis=1), out=np.zeros(n),
+                                                      where=(d != 0.0).any(axis=1))
+                                            for t, d in ((at.normal_du, at.du), (at.normal_dv, at.dv)))
         left, nearest, upper, lower = np.full(n, FAR), np.full(n, -1), np.full(n, FAR), np.full(n, -np.inf)
         points = at.point + lift * at.normal
 
@@ -274,7 +276,7 @@ class _Patch:
 
 
 def _some(at: ExactPoints, rows: Bools) -> ExactPoints:
-    return ExactPoints(point=at.point[rows], normal=at.normal[rows], du=at.du[rows], dv=at.dv[rows], bend=at.bend[rows])
+    return ExactPoints(**{name: getattr(at, name)[rows] for name in ARRAYS})
 
 
 class _Best:
