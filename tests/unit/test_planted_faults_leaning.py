@@ -21,7 +21,7 @@ LEAN = lean(15.0)
 
 
 def judged(*sections, **choices):
-    return proof(*sections, machine=FIVE_AXES, facets=FACETS, bundles="z", **choices)
+    return proof(*sections, **{"machine": FIVE_AXES, "facets": FACETS, "bundles": "z", **choices})
 
 
 def codes(verdict):
@@ -113,3 +113,11 @@ def test_what_a_t_slot_cutter_leaves_over_its_slot_still_stands_for_a_rapid(heig
     verdict = proof(program_section(cutter, under, operation="under", rapid_to=1),
                     program_section(disc, fast, operation="again", rapid_to=3), coverage=0.0, tolerance=1.0, cell=1.0)
     assert len([f for f in verdict.findings if f.code == "verify.rapid-in-stock"]) == seen
+
+
+def test_the_verdict_is_the_same_for_any_number_of_threads():
+    sections = (*clean_plan(), section_through(BULL, "finish", [along_wall(BULL, LEAN)[0], (along_wall(BULL, LEAN)[1][0], lean(12.0))]))
+    one, three = (judged(*sections, bundles="xyz", cell=1.0, threads=n) for n in (1, 3))
+    assert one.operations == three.operations and one.findings == three.findings
+    assert one.deviation.deviation.tobytes() == three.deviation.deviation.tobytes()
+    assert [b.rate.tobytes() for b in one.blocks] == [b.rate.tobytes() for b in three.blocks]

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 from dataclasses import replace
+from itertools import pairwise
 
 import numpy as np
 import pytest
@@ -13,6 +14,8 @@ from trunnion.model.material import Axis
 from trunnion.model.program import ProgramSection
 from trunnion.model.toolpath import Motion, Toolpath
 from trunnion.shop import load_shop
+from trunnion.verify.kernels.rotary import follow
+from trunnion.verify.kernels.timing import block_times
 from trunnion.verify.kinematics import UP, linear_positions, poses_of, rotary_angles, stands_of, turned, turned_axes
 from trunnion.verify.limits import limit_findings
 from trunnion.verify.motion import moves_of
@@ -161,3 +164,41 @@ def test_leaning_a_high_tip_takes_travel_that_the_same_path_upright_does_not():
     # 550 above the pivot the tip swings 550 (1 - cos 110) = 738 mm in Z.
     (finding,) = said(path(lean(110.0, 90.0)), TABLE)
     assert finding.code == "verify.travel" and "needs 738 mm of Z" in finding.text
+
+
+def test_each_pose_takes_the_nearer_of_both_ways_as_a_plain_search_does():
+    rng = np.random.default_rng(5)
+    angles, free = rng.uniform(-math.pi, math.pi, (60, 2, 2)), rng.random((60, 2, 2)) < 0.1
+    low, high, chosen = np.array([-2.0, -20.0]), np.array([2.0, 20.0]), np.zeros((60, 2))
+    turned_by, outside = follow(angles, free, low, high, 1, 1e-9, chosen)
+    before, turned_plain, outside_plain = np.zeros(2), 0.0, 0
+    for k in range(60):
+        tried = []
+        for way in (0, 1) if k else (1,):
+            turns = [[before[a]] if free[k, way, a] else angles[k, way, a] + 2 * math.pi * np.arange(-9, 10) for a in (0, 1)]
+            best = [min(t, key=lambda v, a=a: (max(low[a] - v, v - high[a], 0.0) > 1e-9, abs(v - before[a]))) for a, t in enumerate(turns)]
+            out = sum(not low[a] - 1e-9 <= best[a] <= high[a] + 1e-9 for a in (0, 1))
+            tried.append((out, sum(abs(b - p) for b, p in zip(best, before, strict=True)), best))
+        out, cost, best = min(tried, key=lambda t: t[:2])
+        assert out or chosen[k] == approx(best)
+        before, turned_plain, outside_plain = chosen[k].copy(), turned_plain + cost, outside_plain + (out > 0)
+    assert outside == outside_plain
+    assert outside or turned_by == approx(turned_plain)
+
+
+def test_block_times_are_those_of_a_plain_look_ahead_on_a_fine_way():
+    rng = np.random.default_rng(2)
+    length, speed = rng.uniform(0.5, 20.0, 12), rng.uniform(5.0, 200.0, 12)
+    times, top, push = np.zeros(12), np.zeros(12), 1500.0
+    block_times(length, speed, np.concatenate([[0.0], np.ones(11)]), push, times, top)
+    edges, step = np.concatenate([[0.0], np.cumsum(length)]), 2e-4
+    at = np.arange(0.0, edges[-1], step)
+    square = speed[np.searchsorted(edges, at, side="right") - 1] ** 2
+    square[[0, -1]] = 0.0
+    for k in range(1, len(at)):
+        square[k] = min(square[k], square[k - 1] + 2 * push * step)
+    for k in range(len(at) - 2, -1, -1):
+        square[k] = min(square[k], square[k + 1] + 2 * push * step)
+    way = np.sqrt(square)
+    assert times.sum() == approx((2 * step / (way[1:] + way[:-1])).sum(), rel=1e-3)
+    assert top == approx([way[(at >= a) & (at < b)].max() for a, b in pairwise(edges)], rel=1e-2)
