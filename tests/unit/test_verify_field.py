@@ -122,6 +122,30 @@ def test_slopes_up_and_down_leave_what_a_search_finds(form):
     assert heights == approx(np.minimum(plain(tool, stops), TOP), abs=1e-7)
 
 
+@pytest.mark.parametrize("clockwise", [False, True])
+@pytest.mark.parametrize("rise", [-6.0, 4.0])
+@pytest.mark.parametrize("sweep", [1.0, 4.0, math.tau])
+def test_a_helix_of_a_flat_cutter_is_exact(sweep, rise, clockwise):
+    turn = -sweep if clockwise else sweep
+    moves = moves_of([program_section(PLAIN["flat"], [(25, 15, 16), ((25, 15, 14), (20, 15))])])
+    row = moves.row[1].copy()
+    row[[kernel.START_ANGLE, kernel.SWEEP, kernel.Z_START, kernel.Z_END]] = 0.3, turn, 14.0, 14.0 + rise
+    row[[kernel.MX, kernel.MY, kernel.COS_HALF]] = math.cos(0.3 + turn / 2), math.sin(0.3 + turn / 2), math.cos(min(sweep / 2, math.pi))
+    row[[kernel.X0, kernel.Y0]] = 20 + 5 * math.cos(0.3), 15 + 5 * math.sin(0.3)
+    row[[kernel.X1, kernel.Y1]] = 20 + 5 * math.cos(0.3 + turn), 15 + 5 * math.sin(0.3 + turn)
+    heights = np.full((60, 80), TOP)
+    took, _ = kernel.cut_move(heights, np.zeros(2), PITCH, 0.0, row, False, profiles_of(moves.tools, moves.bodies)[0], moves.bodies.arc,
+                              moves.bodies.piece, CHORD)
+    y, x = (np.indices(heights.shape) + 0.5) * PITCH
+    finest = np.full(heights.shape, TOP)
+    for t in np.linspace(0.0, 1.0, 4001):
+        inside = np.hypot(x - 20 - 5 * math.cos(0.3 + t * turn), y - 15 - 5 * math.sin(0.3 + t * turn)) < 5.0
+        finest = np.where(inside, np.minimum(finest, 14.0 + t * rise), finest)
+    # Between two moments that were looked at a column may be covered a little longer, or for the first time.
+    assert (heights <= finest + 1e-9).all() and took == approx((TOP - heights).sum())
+    assert np.quantile(np.abs(heights - finest), 0.998) < abs(rise) / 4000 + 1e-9
+
+
 def test_a_helix_is_cut_by_chords_that_stay_within_their_error():
     tool, turn = PLAIN["ball"], np.linspace(0.0, math.tau, 4001)
     heights, _, _ = cut(tool, [(25, 15, 19), ((15, 15, 16), (20, 15)), ((25, 15, 13), (20, 15))])

@@ -461,12 +461,54 @@ def _cut_slope(top: Floats, origin: Floats, pitch: float, floor: float, x0: floa
 
 
 @njit(cache=True, nogil=True)
+def _cut_helix(top: Floats, origin: Floats, pitch: float, floor: float, move: Floats, radius: float, opening: float) -> tuple[float, int]:
+    """Cut a helix by a level end of a radius, exactly: a column keeps the height at which it was covered lowest.
+
+    A column is covered while the tip is less than an angle away from its own about the centre; on the way down the last moment counts.
+    """
+    x0, y0, x1, y1 = _box(move, radius)
+    arm, sweep, z0, z1 = move[ARC_RADIUS], abs(move[SWEEP]), move[Z_START], move[Z_END]
+    turn = 1.0 if move[SWEEP] > 0.0 else -1.0
+    lowest, removed, stands = max(min(z0, z1), floor), 0.0, 0
+    i0, i1 = first_cell(x0, origin[0], pitch), last_cell(x1, origin[0], pitch, top.shape[1])
+    for j in range(first_cell(y0, origin[1], pitch), last_cell(y1, origin[1], pitch, top.shape[0]) + 1):
+        y = origin[1] + (j + 0.5) * pitch - move[CY]
+        for i in range(i0, i1 + 1):
+            h = top[j, i]
+            if h <= lowest:
+                continue
+            x = origin[0] + (i + 0.5) * pitch - move[CX]
+            rho = math.sqrt(x * x + y * y)
+            if abs(rho - arm) >= radius:
+                continue
+            z = np.inf
+            if rho + arm < radius:
+                z = min(z0, z1)
+            else:
+                half = math.acos(min(max((rho * rho + arm * arm - radius * radius) / (2.0 * rho * arm), -1.0), 1.0))
+                nearest = (turn * (math.atan2(y, x) - move[START_ANGLE])) % math.tau
+                for round_ in range(-1, 2):
+                    a = max(nearest + round_ * math.tau - half, 0.0)
+                    b = min(nearest + round_ * math.tau + half, sweep)
+                    if a < b:
+                        z = min(z, z0 + (b if z1 < z0 else a) / sweep * (z1 - z0))
+            cut = max(z, floor)
+            if cut < h:
+                if h > z + opening:
+                    stands += 1
+                else:
+                    removed += h - cut
+                    top[j, i] = cut
+    return removed, stands
+
+
+@njit(cache=True, nogil=True)
 def cut_move(top: Floats, origin: Floats, pitch: float, floor: float, move: Floats, joined: bool, profile: Floats, arcs: Floats,
              pieces: Floats, chord: float) -> tuple[float, int]:
     """Cut one upright feed move into the field; return the removed height summed over columns, and how many columns were left standing.
 
     top (rows, columns) heights, changed; origin (2,) the field's corner; floor its lowest height; joined as `joins` says; a helix is cut as
-    slopes within a chord error.
+    slopes within a chord error, by a level end exactly.
     """
     z0, z1 = move[Z_START], move[Z_END]
     lowest = min(z0, z1)
@@ -482,9 +524,15 @@ def cut_move(top: Floats, origin: Floats, pitch: float, floor: float, move: Floa
                                joined and not still, profile, arcs, pieces)
     if line:
         return _cut_slope(top, origin, pitch, floor, move[X0], move[Y0], z0, move[X1], move[Y1], z1, upper, joined, profile, arcs, pieces)
+    removed, stands, level = 0.0, 0, profile[RADIUS] - profile[CORNER]
+    if profile[PLAIN] != 0.0 and level > 0.0 and move[ARC_RADIUS] > STILL:
+        # The rounded rim then finds little left to do under the level part.
+        removed, stands = _cut_helix(top, origin, pitch, floor, move, level, profile[OPEN])
+        if profile[CORNER] == 0.0:
+            return removed, stands
     step = math.sqrt(8.0 * chord / max(move[ARC_RADIUS], chord))
     count = max(1, int(math.ceil(abs(move[SWEEP]) / step)))
-    removed, stands, px, py, pz = 0.0, 0, move[X0], move[Y0], z0
+    px, py, pz = move[X0], move[Y0], z0
     for k in range(1, count + 1):
         t = k / count
         angle = move[START_ANGLE] + t * move[SWEEP]
