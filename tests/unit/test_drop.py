@@ -11,6 +11,8 @@ from hypothesis import strategies as st
 
 from trunnion.geometry.dropping import DropSurface
 from trunnion.geometry.kernels.drop import drop, height_at
+from trunnion.geometry.kernels.push import push
+from trunnion.geometry.kernels.push_compiled import blocked
 from trunnion.geometry.lattice import lattice_of
 
 FLAT = np.array([[0.0, 8.0, 0.0, 0.0, 0.0, 0.0]])
@@ -78,6 +80,24 @@ def test_loose_triangles_of_any_kind(seed: int, name: str) -> None:
     at = rng.uniform(-10.0, 10.0, (6, 2))
     found = DropSurface.of(corners.reshape(-1, 3), np.arange(24).reshape(-1, 3)).drop(at, CUTTERS[name], LOWEST)
     assert np.abs(found - drop(at, corners, CUTTERS[name], LOWEST)).max() < 1e-9
+
+
+@pytest.mark.parametrize("name", CUTTERS)
+def test_pushing_is_blocked_just_where_dropping_would_lift_the_tip(name: str) -> None:
+    corners = np.array([[[-6.0, -3.0, -1.0], [7.0, 1.0, 4.0], [1.0, 6.0, 1.5]], [[-2.0, 1.0, -3.0], [2.5, 2.0, 2.0], [-1.0, -1.5, 6.0]]])
+    lines = np.array([[0.5, 0.3]])
+    plain = push(lines, corners, CUTTERS[name])
+    found = [[[way * blocked(CUTTERS[name], t.ravel(), *lines[0], way) for way in (-1.0, 1.0)] for t in corners]]
+    assert np.array(found) == pytest.approx(plain, abs=1e-9)
+
+
+def test_spans_that_meet_are_one() -> None:
+    points, triangles = [[0, -1, 5], [4, -1, 5], [2, 3, 5], [30, -1, 5], [34, -1, 5], [32, 3, 5]], [[0, 1, 2], [3, 4, 5]]
+    surface = DropSurface.of(np.array(points, dtype=float), np.array(triangles))
+    start, spans = surface.push(np.array([[0.0, 1.0], [0.0, 9.0]]), FLAT)
+    # The ends that stand a millimetre beside the line block a disc of 8 mm by the root of 63.
+    assert start.tolist() == [0, 2, 2]
+    assert spans == pytest.approx(np.array([[-math.sqrt(63.0), 4.0 + math.sqrt(63.0)], [30.0 - math.sqrt(63.0), 34.0 + math.sqrt(63.0)]]))
 
 
 def test_a_lattice_lists_every_box_in_each_cell_it_touches() -> None:

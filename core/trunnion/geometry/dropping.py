@@ -1,4 +1,4 @@
-"""A surface made ready for dropping cutters on it."""
+"""A surface made ready for dropping cutters on it and for pushing them against it."""
 
 from __future__ import annotations
 
@@ -9,11 +9,14 @@ import numpy as np
 from trunnion import tolerance
 from trunnion.geometry.arrays import Floats, Ints
 from trunnion.geometry.kernels import drop_compiled as kernel
+from trunnion.geometry.kernels.push_compiled import push_loop
 from trunnion.geometry.lattice import Lattice, lattice_of
 from trunnion.progress import QUIET, Progress
 
 CHUNK = 2000
 """Points between two looks at cancel."""
+LINES, FIRST_ROOM = 20, 256
+"""Lines between two looks at cancel, and spans that each has room for at first."""
 FACETS_A_CELL = 2.0
 """How many facets a cell of the lattice holds on an even mesh."""
 
@@ -59,6 +62,33 @@ class DropSurface:
             kernel.drop_loop(first, min(first + CHUNK, len(points)), points, self.facets, g.low, g.pitch, g.shape, g.start, g.rows,
                              self.summit, pieces, lowest, out)
         return out
+
+    def push(self, lines: Floats, pieces: Floats, progress: Progress = QUIET) -> tuple[Ints, Floats]:
+        """Return where the tip is blocked along lines (n, 2), each along x at a y and a z: start (n + 1,) into spans (k, 2) from x to x.
+
+        The spans of a line are apart from each other and ascend. `pieces` as for `drop`.
+        """
+        found, g, room = [], self.lattice, FIRST_ROOM
+        lines = np.ascontiguousarray(lines, dtype=np.float64)
+        for first in range(0, len(lines), LINES):
+            progress.at(first / len(lines), "Pushing the cutter")
+            last = min(first + LINES, len(lines))
+            count = np.zeros(len(lines), np.int64)
+            spans = np.empty((last - first, room, 2))
+            while not push_loop(first, last, lines, self.facets, g.low, g.pitch, g.shape, g.start, g.rows, pieces, count, spans):
+                room *= 2
+                spans = np.empty((last - first, room, 2))
+            found += [_merged(spans[k, :count[first + k]]) for k in range(last - first)]
+        return np.cumsum([0, *(len(f) for f in found)]), np.vstack([np.zeros((0, 2)), *found])
+
+
+def _merged(spans: Floats) -> Floats:
+    """Return spans (k, 2) in ascending order, those that meet as one."""
+    spans = spans[np.argsort(spans[:, 0], kind="stable")]
+    end = np.maximum.accumulate(spans[:, 1])
+    begins = np.concatenate([[True], spans[1:, 0] > end[:-1]]) if len(spans) else np.zeros(0, bool)
+    lasts = np.concatenate([begins[1:], [True]]) if len(spans) else begins
+    return np.column_stack([spans[begins, 0], end[lasts]])
 
 
 def _owned(triangles: Ints, n_points: int) -> Ints:

@@ -13,7 +13,7 @@ from trunnion.geometry.arrays import Bools, Floats
 
 RHO0, RHO1, ROUND, A, B, C = range(6)
 PIECE_COLUMNS = 6
-HALVINGS = 200
+HALVINGS = 60
 """Steps of a bisection that ends at the last digit."""
 
 
@@ -96,7 +96,8 @@ def _on_edges(point: Floats, corners: Floats, pieces: Floats) -> float:
     for _ in range(HALVINGS):
         u = 0.5 * (low + high)
         rho = np.hypot(beside, u)
-        slope = np.where(rho > 0.0, slope_at(pieces, rho) * np.divide(u, rho, out=np.zeros_like(u), where=rho > 0.0), 0.0)
+        share = np.divide(u, rho, out=np.zeros_like(u), where=rho > 0.0)
+        slope = np.multiply(slope_at(pieces, rho), share, out=np.zeros_like(u), where=share != 0.0)
         low, high = np.where(slope < rise, u, low), np.where(slope < rise, high, u)
     best = np.full(len(start), -np.inf)
     for u in (low, high):
