@@ -71,6 +71,11 @@ class Player(QObject):
         return self._timer.isActive()
 
     @property
+    def is_settled(self) -> bool:
+        """Whether the shown stock is where the tool is."""
+        return self._stock_at == self.position
+
+    @property
     def can_play(self) -> bool:
         """Whether the session has toolpaths, and the worker is free."""
         session = self._document.session

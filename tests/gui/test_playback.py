@@ -68,7 +68,7 @@ def until(is_so, seconds=60.0) -> None:
 
 def settled(window, qtbot) -> None:
     """Wait until the stock is where the tool is."""
-    qtbot.waitUntil(lambda: window.player._stock_at == window.player.position, timeout=60000)
+    qtbot.waitUntil(lambda: window.player.is_settled, timeout=60000)
     qtbot.wait(90)
 
 

@@ -7,7 +7,7 @@ from importlib.resources import as_file
 
 import numpy as np
 import pytest
-from PySide6.QtCore import Qt
+from PySide6.QtCore import QPoint, Qt, QTimer
 from PySide6.QtTest import QTest
 
 import trunnion_resources
@@ -17,11 +17,21 @@ LEFT = Qt.MouseButton.LeftButton
 
 
 class Person:
-    """Somebody who uses the window: counts the clicks he makes and the files he chooses."""
+    """Somebody who uses the window: counts his clicks and the files he chooses, and how long the window's thread works at a stretch."""
 
     def __init__(self, window):
         self.window = window
         self.interactions = 0
+        self.stretches = []
+        self._beat = QTimer(window)
+        self._beat.timeout.connect(self.looks)
+        self._worked = time.thread_time()
+        self._beat.start(5)
+
+    def looks(self):
+        now = time.thread_time()
+        self.stretches.append(now - self._worked)
+        self._worked = now
 
     def chooses(self, path):
         def choose():
@@ -59,6 +69,7 @@ def programmed(tmp_path_factory, qapp):
         wait_for_job(window, 120.0)
         person.clicks(window.toolbar.widgetForAction(window.registry.action("run.program")))
         wait_for_job(window, 280.0)
+        person._beat.stop()
         yield person
         window.close()
 
@@ -66,6 +77,51 @@ def programmed(tmp_path_factory, qapp):
 def test_the_part_is_programmed_in_at_most_five_interactions(programmed):
     assert programmed.interactions <= 5
     assert programmed.window.status.verdict.text().startswith("verdict: passed")
+
+
+def test_the_window_never_works_long_at_a_stretch(programmed):
+    # Time of the window's own thread: what other processes take of a shared machine is not counted. The longest opens the part and
+    # draws its first frame; others draw a frame, which takes a machine without a graphics card some tens of milliseconds.
+    assert max(programmed.stretches) < 0.4
+    assert sorted(programmed.stretches)[-5] < 0.15
+
+
+def test_the_program_is_played_to_its_end(programmed, qtbot):
+    window = programmed.window
+    programmed.clicks(window.toolbar.widgetForAction(window.registry.action("play.show")))
+    qtbot.waitUntil(lambda: window.player.timeline is not None, timeout=60000)
+    line, removed = window.player.timeline, []
+    window.player.cut.connect(lambda moment: removed.append(moment.removed))
+    for share in (0.25, 0.5, 1.0):
+        position = float(round(share * len(line)))
+        QTest.mouseClick(window.playback.track, LEFT, pos=QPoint(round(window.playback.track.x_of(position)), 10))
+        qtbot.waitUntil(lambda: window.player.is_settled, timeout=60000)
+    assert removed == sorted(removed)
+    session = window.document.session
+    outside = (session.blank.volume - session.part.volume)
+    assert 0.6 * outside < removed[-1] < outside
+
+
+def test_the_marked_line_is_the_tools_block(programmed, qtbot):
+    window, line = programmed.window, programmed.window.player.timeline
+    block = int(np.flatnonzero(~line.rapid & (line.sweep == 0.0))[500])
+    window.player.go(float(block + 1))
+    qtbot.waitUntil(lambda: window.code.text.marked == line.line[block], timeout=5000)
+    text = window.code.text.document().findBlockByNumber(int(line.line[block]) - 1).text()
+    tip = window.document.session.setups[0].frame.to_local(line.tip[block])
+    words = {w[0]: float(w[1:]) for w in text.split() if w[0] in "XYZ"}
+    assert words and all(tip["XYZ".index(axis)] == pytest.approx(value, abs=1e-3) for axis, value in words.items())
+    assert window.process.item(line.passage(float(block + 1)).operation).font(0).bold()
+
+
+def test_all_of_the_sample_is_finished_on_the_map(programmed, qtbot):
+    window = programmed.window
+    programmed.clicks(window.toolbar.widgetForAction(window.registry.action("view.deviation")))
+    qtbot.waitUntil(lambda: window.deviation.shown is not None, timeout=60000)
+    shown = window.deviation.shown.map
+    assert np.mean((shown.value >= shown.low) & (shown.value <= shown.high)) > 0.99
+    assert not window.player.is_on
+    window.registry.run("view.deviation")
 
 
 def test_the_verdict_is_what_the_demo_promises(programmed):

@@ -33,7 +33,7 @@ from trunnion.verify.stock.mesh import mesh_of
 from trunnion.verify.stock.stock import Snapshot
 from trunnion.verify.times import seconds_of
 
-FINENESS = {("z",): 900}
+FINENESS = 900
 """Cells along the longest side of the blank when nobody chooses, for heights: as fine as a picture shows, and still cut at once."""
 COARSER = 400
 """The same for several bundles."""
@@ -62,7 +62,7 @@ class Playback:
             raise BadCall("no toolpaths yet: generate them first")
         self.blank = session.blank
         bundles = bundles_of(programs, self.blank, checked(choose(ProofSettings, session.choices)))
-        self.cell = cell or float(np.max(self.blank.size)) / FINENESS.get(bundles, COARSER)
+        self.cell = cell or float(np.max(self.blank.size)) / (FINENESS if bundles == ("z",) else COARSER)
         self._programs = programs
         self._moves = [moves_of(p.sections) for p in programs]
         machine = bench.shop.machines[programs[0].setup.machine]

@@ -106,10 +106,10 @@ class ProcessDock(QWidget):
     def _stress(self, item: QTreeWidgetItem, is_played: bool) -> None:
         font = QFont(item.font(0))
         font.setBold(is_played)
-        ground = QBrush(QColor(self._theme.accent_soft)) if is_played and self._theme is not None else QBrush()
+        colour = QBrush(QColor(self._theme.accent)) if is_played and self._theme is not None else QBrush()
         for column in range(self.tree.columnCount()):
             item.setFont(column, font)
-            item.setBackground(column, ground)
+            item.setForeground(column, colour)
 
     def item(self, id: str) -> QTreeWidgetItem:
         """Return the row of an operation."""

@@ -15,10 +15,9 @@ class FacePicker:
     def __init__(self, actor: Any, faces: np.ndarray) -> None:
         """`actor` draws the part's triangles, `faces` (t,) are their tags."""
         self._faces = faces
-        self._locator = vtkStaticCellLocator()
+        self._locator = vtkStaticCellLocator()  # built at the first question: nobody points while a part is being opened
         actor.mapper.Update()
         self._locator.SetDataSet(actor.mapper.GetInput())
-        self._locator.BuildLocator()
         self._picker = vtkCellPicker()
         self._picker.AddLocator(self._locator)
         self._picker.SetTolerance(0.0)
