@@ -151,7 +151,7 @@ def test_a_sharp_inner_corner_is_cut_as_far_as_cutters_go_and_told():
     tree = route(with_sizes(panel(), "pocket-01", corner_radius=0.0))
     assert [f.code for f in tree.findings] == ["route.sharp-corner"]
     assert any(o.id == "wall-pocket-01" for o in tree.operations)
-    fillets = [t.diameter for t in SHOP.tools if t.corner_radius == 3.0 and t.neck_length >= 26.0]
+    fillets = [t.diameter for t in SHOP.tools_for("N", "finish") if t.corner_radius == 3.0 and t.neck_length >= 26.0]
     assert tree.operation("corner_finish-pocket-01").tool.diameter == min(fillets)
 
 
