@@ -21,6 +21,7 @@ from trunnion.geometry.arrays import Bools, Floats, Ints
 from trunnion.part.exact import ExactPoints
 from trunnion.progress import QUIET, Progress
 from trunnion.verify.kernels import fine as kernel
+from trunnion.verify.kernels import left as left_kernel
 from trunnion.verify.kernels.left import Flutes, Tree
 from trunnion.verify.motion import Moves
 from trunnion.verify.sweep import flutes_of, tree_of
@@ -37,6 +38,8 @@ CHUNK = 50
 ROUNDS = 40
 """Times that cells are quartered at most: to nothing."""
 ARRAYS = tuple(ExactPoints.__slots__)
+CLIMB, CLIMBS = 7, 12
+"""Places along each side of a grid that closes in on a ridge, and how often: a cell's side is then known to a hundred-thousandth."""
 LIFTS = 3
 """Times a surface is lifted to the height of its ridges: the second one changes nothing but the bound."""
 
@@ -245,7 +248,8 @@ class _Patch:
         for k in range(ROUNDS):
             open_rows = np.zeros(len(placed.cells), bool)
             for best in wanted:
-                best.raised(placed, looked)
+                if best.raised(placed, looked):
+                    self.climb(best, lift)
                 lowest = best.value if best.sign < 0.0 else lowest
             for best in wanted:
                 limit = best.value + best.sign * self.bound
@@ -255,6 +259,24 @@ class _Patch:
             share = progress.part(1.0 - 0.8**k, 1.0 - 0.8 ** (k + 1))
             placed = self.inside(placed.cells.some(open_rows).quartered())
             looked = self.look(placed, lift, share, lowest if lowest > -np.inf else np.inf)
+
+    def climb(self, best: _Best, lift: float) -> None:
+        """Raise what was found last to the ridge or dip beside it: no middle of a cell lies on one, and what is found decides which cells
+        have to be quartered."""
+        face, half = self.faces[best.face], best.half
+        share = np.linspace(-1.0, 1.0, CLIMB)
+        grid = np.stack(np.meshgrid(share, share), axis=-1).reshape(-1, 2)
+        for _ in range(CLIMBS):
+            places = best.uv + grid * half
+            places = places[face.inside(places)]
+            at = face.at(places)
+            inside = self._in_box(at.point, np.zeros((len(places), 3)))
+            points = (at.point + lift * at.normal)[inside]
+            left, nearest = np.full(len(points), FAR), np.full(len(points), -1)
+            left_kernel.far_loop(0, len(points), points, np.arange(len(points)), self.tree, self.flutes, kernel.CLOSE * self.bound, left,
+                                 nearest)
+            best.take(left, nearest, places[inside], at.point[inside])
+            half = 0.4 * half
 
     def ridge(self, placed: _Placed, most: _Best, progress: Progress) -> Extreme:
         """Return how high the highest ridge stands along the normals: where the lifted surface just leaves all material behind.
@@ -280,19 +302,30 @@ def _some(at: ExactPoints, rows: Bools) -> ExactPoints:
 
 
 class _Best:
-    """The most (sign 1) or least (sign -1) found, with its place."""
+    """The most (sign 1) or least (sign -1) found, with its place on its face, and the half sides of its cell."""
 
     def __init__(self, sign: float) -> None:
         self.value, self.place, self.move, self.sign = -sign * np.inf, np.full(3, np.nan), -1, sign
+        self.face, self.uv, self.half = -1, np.full(2, np.nan), np.zeros(2)
 
-    def raised(self, placed: _Placed, looked: _Looked) -> None:
-        """Take what is left at the cells' middles into account."""
+    def raised(self, placed: _Placed, looked: _Looked) -> bool:
+        """Take what is left at the cells' middles into account; say whether that changed anything."""
         rows = np.flatnonzero(placed.holds)
-        if not len(rows):
-            return
+        if not len(rows) or not self.take(looked.left[rows], looked.nearest[rows], placed.cells.uv[rows], placed.at.point[rows]):
+            return False
         row = rows[np.argmax(self.sign * looked.left[rows])]
-        if self.sign * looked.left[row] > self.sign * self.value:
-            self.value, self.place, self.move = float(looked.left[row]), placed.at.point[row], int(looked.nearest[row])
+        self.face, self.half = int(placed.cells.face[row]), placed.cells.half[row]
+        return True
+
+    def take(self, left: Floats, nearest: Ints, uv: Floats, point: Floats) -> bool:
+        """Take what is left (k,) at places uv (k, 2) of one face into account."""
+        if not len(left):
+            return False
+        row = int(np.argmax(self.sign * left))
+        if self.sign * left[row] <= self.sign * self.value:
+            return False
+        self.value, self.place, self.move, self.uv = float(left[row]), point[row], int(nearest[row]), uv[row]
+        return True
 
     def extreme(self) -> Extreme:
         """Return it as a figure."""
