@@ -5,6 +5,7 @@ from __future__ import annotations
 import contextlib
 import os
 import sys
+import tempfile
 import time
 from collections.abc import Callable, Iterator
 from dataclasses import replace
@@ -13,6 +14,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from trunnion.findings import BadCall
 from trunnion.model.session import Session
 
 if TYPE_CHECKING:
@@ -35,8 +37,10 @@ def shoot(part: str | Path, picture: str | Path, *, prepare: Prepare | None = No
 @contextlib.contextmanager
 def opened(part: str | Path, *, size: tuple[int, int] = (1600, 1000), factory: str = "", until: str = "verify", theme: str = "light",
            timeout_s: float = 300.0) -> Iterator[Window]:
-    """Give a window in which a part has been worked on up to a step."""
+    """Give a window as at a first start, in which a part has been worked on up to a step; raise `BadCall` when that failed."""
     os.environ.setdefault("QT_QPA_PLATFORM", "offscreen")
+    settings = tempfile.TemporaryDirectory()
+    os.environ["TRUNNION_SETTINGS"] = settings.name
     from PySide6.QtWidgets import QApplication
 
     from trunnion_gui import colours
@@ -56,10 +60,13 @@ def opened(part: str | Path, *, size: tuple[int, int] = (1600, 1000), factory: s
         if until:
             window.document.run(until, "Program")
             wait(lambda: not window.document.is_busy, timeout_s)
+            if window.document.states.get(until) not in ("done", "problem"):
+                raise BadCall(f"no picture: {window.centre.notice.text or 'the part could not be worked on'}")
         yield window
     finally:
         window.close()
         app.processEvents()
+        settings.cleanup()
 
 
 def take(window: Window, picture: str | Path, prepare: Prepare | None = None) -> None:
