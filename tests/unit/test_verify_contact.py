@@ -24,6 +24,7 @@ from trunnion.part.surfaces import (
     surfaces_from,
 )
 from trunnion.verify.contact import PartContact, guide_points
+from trunnion.verify.contact import facets as facets_module
 from trunnion.verify.contact import strips as strips_module
 from trunnion.verify.kernels import strips as kernel
 from trunnion.verify.motion import moves_of, poses_of
@@ -288,12 +289,14 @@ def test_places_lie_on_the_guide_where_it_is_nearest_to_the_path():
 
 def test_any_number_of_threads_measures_the_same(monkeypatch):
     monkeypatch.setattr(strips_module, "CHUNK", 3)
+    monkeypatch.setattr(facets_module, "CHUNK", 3)
     # The pocket's floor is entered equally deep by many blocks: the first of them counts.
     stops = [(0.0, 0.0, 30.0), (0.0, 0.0, 7.95), *[(x, y, 7.95) for x in (-9.0, 19.0) for y in np.linspace(-6.0, 6.0, 20)]]
     moves = moves_of([program_section(bull(6.0, 2.0)(), stops)])
-    contact = PartContact(block_with_pocket())
+    contact = PartContact(block_with_pocket(), fixtures=[box_mesh((-30, -18, 18), (-8, 18, 30)), box_mesh((21, -18, 18), (30, 18, 30))])
     alone, *others = [contact.along(moves, threads=count) for count in (1, 2, 5)]
     assert alone.face_move[1, 0] == 1 and alone.face_depth[1, 0] == approx(0.05)
+    assert set(alone.fixture) == {-1, 0, 1}
     for name in alone.__slots__:
         assert all(np.array_equal(getattr(alone, name), getattr(other, name), equal_nan=True) for other in others)
 

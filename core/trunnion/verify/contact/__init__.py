@@ -85,11 +85,10 @@ class PartContact:
     def clear(self, moves: Moves, allowed: float) -> Bools:
         """Say for each move or pose (n,) whether nothing of its tool enters part or fixtures deeper than allowed."""
         clear = np.ones(len(moves), bool)
-        for engine, rows in self._engines(moves):
-            clear[rows] &= engine.clear(moves, rows, allowed)
-        if self._fixtures:
-            rows = np.flatnonzero(clear)
-            clear[rows] = self._fixtures.clear(moves, rows, allowed)
+        engines = self._engines(moves) + ([(self._fixtures, np.arange(len(moves)))] if self._fixtures else [])
+        for engine, rows in engines:
+            still = rows[clear[rows]]
+            clear[still] = engine.clear(moves, still, allowed)
         return clear
 
     def _engines(self, moves: Moves) -> list[tuple[StripContact | FacetContact, Ints]]:
