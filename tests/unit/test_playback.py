@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from itertools import pairwise
 from types import SimpleNamespace
 
@@ -215,3 +216,48 @@ def test_the_way_is_opened_into_chords_on_the_arc(line):
     assert arc.sum() == 30
     assert points[-1] == pytest.approx([10, 10, 2])
     assert (np.diff(reached) > 0).all()
+
+
+# leaning axes and the engine's door
+
+
+@pytest.fixture
+def leaning(session):
+    """The same block with one straight cut by a tool that leans 30 degrees, and turns upright on the way."""
+    lean = np.array([0.5, 0.0, np.sqrt(0.75)])
+    made = Toolpath(position=np.array([[5.0, 25, 20], [5, 25, -3], [45, 25, -3], [45, 25, 20]]), axis=np.array([lean, lean, UP, UP]),
+                    motion=np.array([Motion.RAPID, Motion.LINE, Motion.LINE, Motion.LINE]), centre=np.full((4, 3), np.nan),
+                    feed=np.array([0.0, 400, 1200, 1200]), mark=np.zeros(4, int))
+    return replace(session, paths=(OperationPath(operation="a", path=made, key="3"),))
+
+
+def test_a_turning_tool_cuts_on_its_way(leaning):
+    playback = Playback(leaning, SimpleNamespace(shop=load_shop()), cell=1.0)
+    assert playback.at(2.5).axis == pytest.approx([np.sin(np.radians(15)), 0.0, np.cos(np.radians(15))])
+    removed = [playback.at(p).removed for p in (0.0, 1.0, 2.0, 2.25, 2.5, 2.75, 3.0, 4.0)]
+    assert removed == sorted(removed) and len(set(removed)) >= 6
+    end = playback.at(4.0)
+    assert volume(end) == pytest.approx(60 * 50 * 10 - end.removed, rel=0.02)
+
+
+def test_a_leaning_stock_is_the_same_there_and_back(leaning):
+    playback = Playback(leaning, SimpleNamespace(shop=load_shop()), cell=1.0)
+    there = playback.at(2.0)
+    playback.at(4.0)
+    back = playback.at(2.0)
+    assert np.array_equal(there.points, back.points) and there.removed == back.removed
+
+
+def test_the_engine_refuses_a_plan_that_is_not_played(session, monkeypatch):
+    from trunnion.pipeline import Engine
+
+    monkeypatch.setattr(Engine, "bench", SimpleNamespace(shop=load_shop()))
+    engine = Engine()
+    with pytest.raises(BadCall, match="not played any more"):
+        engine.moment("nothing", 0.0)
+    line = engine.playback(session)
+    assert engine.moment(line.key, 3.0).position == 3.0
+    changed = engine.playback(replace(session, paths=session.paths[:1]))
+    assert changed.key != line.key
+    with pytest.raises(BadCall, match="start the playback again"):
+        engine.moment(line.key, 3.0)
