@@ -93,7 +93,7 @@ def test_the_same_part_gives_the_same_bytes(line, tmp_path):
     engine = Engine()
     session = engine.run(engine.open(Path(str(sample("B1")))))
     engine.write(session, tmp_path, name="B1")
-    for name in ("B1.S1.nc", "B1.cl", "B1.tools.json", "B1.features.xml", "B1.process.xml"):
+    for name in ("B1.S1.nc", "B1.cl", "B1.tools.json", "B1.features.xml", "B1.process.xml", "B1.deviation.png", "B1.report.html"):
         assert (tmp_path / name).read_bytes() == (line[2] / name).read_bytes(), name
 
 

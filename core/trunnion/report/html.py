@@ -17,15 +17,14 @@ ROUNDING = 1e-6
 
 
 def report_html(session: Session, name: str, pictures: Sequence[Picture], folder: Path, date: str = "") -> str:
-    """Return the report of a session; the pictures are read from the folder and stand inside the text."""
+    """Return the report of a session, the same bytes for the same session; the pictures are read from the folder and stand in the text."""
     from jinja2 import Environment, StrictUndefined
     template = (resource_folder("report") / "report.html").read_text(encoding="utf-8")
     page = Environment(autoescape=True, undefined=StrictUndefined, trim_blocks=True, lstrip_blocks=True).from_string(template)
     shown = [(p.caption, base64.b64encode((folder / p.file).read_bytes()).decode("ascii")) for p in pictures]
     proofs = {p.operation: p for p in session.verdict.operations} if session.verdict else {}
     return page.render(name=name, date=date, session=session, pictures=shown, proofs=proofs, duration=duration, share=share,
-                       degrees=degrees,
-                       left_faces=left_faces(session), seconds=[(step, r.seconds) for step, r in session.records.items()])
+                       degrees=degrees, left_faces=left_faces(session))
 
 
 def duration(seconds: float) -> str:
