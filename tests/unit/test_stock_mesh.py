@@ -9,13 +9,16 @@ import numpy as np
 import pytest
 from pytest import approx
 
+from leaning_tools import leaning_section
 from trunnion.findings import BadInput
 from trunnion.geometry.frame import WORLD
 from trunnion.model.blank import Blank
 from trunnion.verify.kernels.meshing import mesh_heights
-from trunnion.verify.stock import Stock
+from trunnion.verify.motion import moves_of
+from trunnion.verify.stock import Stock, run_stock
 from trunnion.verify.stock.bundles import cycle
 from trunnion.verify.stock.mesh import mesh_of
+from verify_tools import bull
 
 PITCH = 0.5
 LEAN = np.array([[0.8, -0.6, 0.0], [0.48, 0.64, -0.6], [0.36, 0.48, 0.8]])
@@ -172,6 +175,18 @@ def test_three_bundles_are_seen_coarser_when_they_would_make_too_many_triangles(
     stock = of_solid(leaning_box)
     few = mesh_of(stock, most=1500)
     assert len(few.triangles) <= 1500 and is_closed(few) and volume(few) == approx(stock.volume, rel=0.02)
+
+
+def test_what_moves_have_cut_is_meshed_at_any_moment():
+    ball = bull(10.0, 5.0)()
+    stock, before = Stock.of(blank(60.0, 40.0, 20.0), 1.0, ("x", "y", "z")), math.inf
+    for lean in (0.0, 0.4, -0.7):
+        axes = [(0.0, lean, 1.0)] * 3
+        run_stock(stock, moves_of([leaning_section(ball, [(10, 20, 30), (10, 20, 12), (50, 22, 10)], axes)]), WORLD)
+        mesh = mesh_of(stock)
+        assert is_closed(mesh) and volume(mesh) == approx(stock.volume, rel=5e-3)
+        assert volume(mesh) < before
+        before = volume(mesh)
 
 
 def test_rays_along_z_alone_make_a_closed_mesh_too():
