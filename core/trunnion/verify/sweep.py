@@ -25,7 +25,7 @@ from trunnion.verify.threads import in_parallel
 
 CELL = 4.0
 """mm, pitch of the cells: a few samples each, and few enough cells a move."""
-CHUNK = 1000
+CHUNK = 400
 """Samples between two looks at cancel."""
 SPAN = 8.0
 """mm that a point of the cutter moves in one span of the tree: longer ones are met by too many points that they don't touch."""
