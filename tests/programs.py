@@ -124,7 +124,7 @@ def verdict(outcome: Outcome = Outcome.PASSED) -> Verdict:
     deviation = Deviation(face=np.arange(40), point=rng.normal(size=(40, 3)), deviation=rng.normal(size=40))
     small = np.linspace(0.0, 1.0, 40, dtype=np.float32)
     blocks = BlockProof(setup="S1", section=np.arange(40, dtype=np.int32), time=small, gouge=small, collision=small, removed=small,
-                        engaged=small, depth=small, rate=small, power=small)
+                        engaged=small, depth=small, rate=small, power=small, left_min=small, left_mean=small, left_max=small)
     offer = Offer(kind="feed", operation="wall-01", setup="S1", reason="verify.load", first=3, last=5, feed=1200.0)
     return Verdict(outcome=outcome, blocks=(blocks,), offers=(offer,), coverage=0.9951, reachable=0.999, gouge=0.0012,
                    collisions=0, rapids_in_stock=0, machining_time_s=600.5, operations=(proof,), faces=(face,), deviation=deviation,

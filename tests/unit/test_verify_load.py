@@ -152,4 +152,5 @@ def test_blocks_keep_what_was_measured_of_them():
     verdict = judged(slot())
     (blocks,) = verdict.blocks
     assert len(blocks.time) == len(SLOT) and blocks.rate.dtype == np.float32
+    assert np.isnan(blocks.left_min[0]) and blocks.left_min[2] == approx(0.0, abs=1e-3) and blocks.left_max[2] >= blocks.left_mean[2]
     assert float(blocks.removed.sum()) == approx(verdict.operations[0].removed, rel=1e-5)

@@ -96,7 +96,8 @@ class BlockProof:
     """What was measured block by block in one setup, for charts and playback, n blocks in the program's order.
 
     section (n,) the operation's place in the setup; time (n,) s; gouge (n,) mm, collision (n,) mm of shank or holder; removed (n,) mm3;
-    engaged (n,) rad; depth (n,) mm; rate (n,) cm3/min; power (n,) kW. 32-bit floats.
+    engaged (n,) rad; depth (n,) mm; rate (n,) cm3/min; power (n,) kW; left_min, left_mean, left_max (n,) mm of material on the samples that
+    the block came nearest to, NaN where there is none. 32-bit floats.
     """
 
     setup: str
@@ -109,6 +110,9 @@ class BlockProof:
     depth: Smalls
     rate: Smalls
     power: Smalls
+    left_min: Smalls
+    left_mean: Smalls
+    left_max: Smalls
 
 
 @dataclass(frozen=True, slots=True, eq=False, kw_only=True)

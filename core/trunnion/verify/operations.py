@@ -11,6 +11,7 @@ from trunnion.model.verdict import BlockProof, OperationProof, Outcome
 from trunnion.units import MM_PER_METRE, SECONDS_PER_MINUTE
 from trunnion.verify.settings import ProofSettings
 from trunnion.verify.setups import SetupProof
+from trunnion.verify.sweep import left_by_block
 
 
 def operation_proofs(proof: SetupProof, tags: Ints, area: Floats, machine: Machine, settings: ProofSettings) -> list[OperationProof]:
@@ -49,8 +50,10 @@ def operation_proofs(proof: SetupProof, tags: Ints, area: Floats, machine: Machi
     return found
 
 
-def block_proof(proof: SetupProof) -> BlockProof:
-    """Return what was measured block by block."""
+def block_proof(proof: SetupProof, area: Floats) -> BlockProof:
+    """Return what was measured block by block; area (s,) mm2 that each sample stands for."""
+    left = left_by_block(proof.left, proof.nearest, len(proof.moves), area)
+
     def small(values: Floats) -> np.ndarray:
         return values.astype(np.float32)
 
@@ -58,7 +61,8 @@ def block_proof(proof: SetupProof) -> BlockProof:
         setup=proof.program.setup.name, section=proof.moves.section.astype(np.int32), time=small(proof.times.seconds),
         gouge=small(proof.contact.depth[:, 0]), collision=small(np.maximum(proof.contact.depth[:, 1], proof.stock.body_depth)),
         removed=small(proof.stock.removed), engaged=small(proof.stock.engagement), depth=small(proof.load.depth),
-        rate=small(proof.load.rate), power=small(proof.load.power))
+        rate=small(proof.load.rate), power=small(proof.load.power), left_min=small(left.least), left_mean=small(left.mean),
+        left_max=small(left.most))
 
 
 def _gouges(proof: SetupProof, rows: np.ndarray, tags: Ints) -> tuple[tuple[int, float], ...]:

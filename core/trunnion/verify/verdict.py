@@ -93,7 +93,7 @@ def prove_surfaces(programs: Sequence[Program], surfaces: Sequence[Surfaces], bl
         gouge=max((o.gouge for o in operations), default=0.0), collisions=sum(o.collisions for o in operations),
         rapids_in_stock=sum(o.rapids_in_stock for o in operations), machining_time_s=sum(o.time_s for o in operations),
         operations=operations, faces=whole.faces, findings=tuple(findings), deviation=whole.deviation,
-        blocks=tuple(block_proof(p) for p in proofs), offers=tuple(offers))
+        blocks=tuple(block_proof(p, samples.area) for p in proofs), offers=tuple(offers))
 
 
 def outcome_of(findings: Sequence[Finding]) -> Outcome:
