@@ -11,9 +11,11 @@ import math
 import time
 from typing import Any
 
+import numpy as np
 from PySide6.QtCore import QObject, Qt, QTimer, Signal
 
 from trunnion.model.playback import Moment, Timeline
+from trunnion.tolerance import GOUGE
 from trunnion_gui.document import Document
 from trunnion_gui.worker import Reply
 
@@ -162,6 +164,18 @@ class Player(QObject):
         """Play a block at a time, each as long as the others, or at the machine's time."""
         self.by_block = on
         self.changed.emit()
+
+    def load(self) -> tuple[np.ndarray, np.ndarray]:
+        """Return the removal rate of every block (n,) in cm3/min and which blocks (n,) the proof found at fault; both empty when it did not
+        look at these blocks."""
+        verdict, line = self._document.session.verdict, self.timeline
+        blocks = verdict.blocks if verdict is not None and line is not None and line.passages[0].file else ()
+        rate = np.concatenate([np.zeros(0), *(np.asarray(b.rate, dtype=float) for b in blocks)])
+        if line is None or len(rate) != len(line):
+            return np.zeros(0), np.zeros(0, bool)
+        allowed = float(self._document.session.choices.get("verify.tolerance", GOUGE))
+        bad = np.concatenate([np.maximum(b.gouge, b.collision) > allowed for b in blocks])
+        return rate, bad
 
     # inside
 

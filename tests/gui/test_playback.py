@@ -217,6 +217,29 @@ def test_the_slider_knows_the_operations(played):
     assert line.passages[1].operation in track.words_at(track.x_of(middle))
 
 
+def test_load_and_blocks_at_fault_stand_below_the_operations(played, qtbot):
+    track, n = played.playback.track, int(played.player.end)
+    load, bad = np.full(n, 50.0), np.zeros(n, bool)
+    load[: n // 2], bad[3 * n // 4] = 100.0, True
+    low = track.height()
+    track.show_load(load, bad)
+    qtbot.wait(60)
+    assert track.height() > low
+    picture = track.grab().toImage()
+    ratio = picture.height() / track.height()
+
+    def colour(value, below):
+        at = (track.x_of(value) + 1) * ratio, (track.height() - below) * ratio
+        return np.array(picture.pixelColor(round(at[0]), round(at[1])).toTuple()[:3], dtype=float)
+
+    assert hue(colour(3 * n // 4, 6)) @ hue(rgb(played.theme.bad)) > 0.9
+    high, half = (colour(share * n, 16) for share in (0.3, 0.6))
+    assert hue(high) @ hue(rgb(played.theme.accent)) > 0.9
+    assert np.ptp(half) < np.ptp(high)
+    track.show_load(np.zeros(0), np.zeros(0, bool))
+    assert track.height() == low
+
+
 def test_the_words_say_block_line_and_operation(played, qtbot):
     go(played, qtbot, 60.0)
     passage = played.player.timeline.passage(60.0)

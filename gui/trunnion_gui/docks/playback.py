@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import numpy as np
 from PySide6.QtCore import QSize, Qt, QTimer
 from PySide6.QtWidgets import QComboBox, QHBoxLayout, QLabel, QSizePolicy, QToolButton, QVBoxLayout, QWidget
 
@@ -12,7 +13,7 @@ from trunnion_gui.colours import Theme, tool_cycle
 from trunnion_gui.i18n import tr
 from trunnion_gui.player import SPEEDS, Player
 from trunnion_gui.widgets.track import Track
-from trunnion_gui.words import clock, grouped
+from trunnion_gui.words import amount, clock, grouped
 
 BUTTONS = ("play.begin", "play.previous", "play.back", "play.run", "play.forward", "play.next", "play.end")
 _WORDS_MS = 66
@@ -27,6 +28,7 @@ class PlaybackBar(QWidget):
         self._player = player
         self._registry = registry
         self._removed = 0.0
+        self._load = np.zeros(0)
         self.track = Track(theme)
         self.speed, self.mode = QComboBox(), QComboBox()
         self.place, self.clock, self.amount = QLabel(), QLabel(), QLabel()
@@ -113,6 +115,8 @@ class PlaybackBar(QWidget):
         line = self._player.timeline
         if line is None:
             self.track.show_marks(0.0, (), (), ())
+            self._load = np.zeros(0)
+            self.track.show_load(self._load, np.zeros(0, bool))
             self.place.setText("")
             self.amount.setText("")
             self.clock.setText("")
@@ -120,6 +124,8 @@ class PlaybackBar(QWidget):
         words = [f"{p.operation} · T{p.tool.number} {p.tool.name}" for p in line.passages]
         colours = tool_cycle([p.tool.number for p in line.passages])
         self.track.show_marks(self._player.end, [float(f) for f in line.first[:-1]], words, colours)
+        self._load, bad = self._player.load()
+        self.track.show_load(self._load, bad)
         self.clock.setFixedWidth(self.clock.fontMetrics().horizontalAdvance(f"{clock(line.seconds)} / {clock(line.seconds)}") + 8)
         self._say()
 
@@ -141,7 +147,8 @@ class PlaybackBar(QWidget):
         passage, block = line.passage(position), line.block(position)
         number = tr("block {n} of {all}").format(n=grouped(block + 1 if position > 0 else 0), all=grouped(len(line)))
         text = tr("line {n}").format(n=grouped(int(line.line[block]))) if line.line[block] else ""
-        self.place.setText(" · ".join(w for w in (number, text, passage.operation) if w))
+        rate = f"{amount(self._load[block], 0)} cm³/min" if len(self._load) and self._load[block] > 0.5 else ""
+        self.place.setText(" · ".join(w for w in (number, text, passage.operation, rate) if w))
         self.place.setToolTip(f"{passage.operation} · {passage.setup} · T{passage.tool.number} {passage.tool.name}")
         self.amount.setText(tr("{n} cm³ removed").format(n=grouped(round(self._removed / 1000.0))))
         self.clock.setText(f"{clock(line.seconds_at(position))} / {clock(line.seconds)}")

@@ -1,9 +1,10 @@
-"""The slider over all blocks: the operations as segments below it, what is done in the accent colour."""
+"""The slider over all blocks: the operations as segments below it, and the load on the way; what is done in the accent colour."""
 
 from __future__ import annotations
 
 from collections.abc import Sequence
 
+import numpy as np
 from PySide6.QtCore import QEvent, QPointF, QRectF, QSize, Qt, Signal
 from PySide6.QtGui import QColor, QHelpEvent, QKeyEvent, QMouseEvent, QPainter, QPaintEvent, QWheelEvent
 from PySide6.QtWidgets import QSizePolicy, QToolTip, QWidget
@@ -13,6 +14,8 @@ from trunnion_gui.colours import Theme, mixed
 _EDGE = 9
 _GROOVE, _MARKS, _KNOB = 5, 6, 7
 _HEIGHT = 27
+_LOAD = 20
+"""Height of the load's picture, when it is known."""
 
 
 class Track(QWidget):
@@ -29,6 +32,7 @@ class Track(QWidget):
         self._firsts: tuple[float, ...] = ()
         self._words: tuple[str, ...] = ()
         self._colours: tuple[str, ...] = ()
+        self._load, self._bad = np.zeros(0), np.zeros(0, bool)
         self.setFocusPolicy(Qt.FocusPolicy.StrongFocus)
         self.setSizePolicy(QSizePolicy.Policy.Expanding, QSizePolicy.Policy.Fixed)
         self.setFixedHeight(_HEIGHT)
@@ -46,6 +50,12 @@ class Track(QWidget):
         """Show segments that begin at `firsts`, each with words and a colour."""
         self._end, self._firsts, self._words, self._colours = end, tuple(firsts), tuple(words), tuple(colours)
         self.setEnabled(end > 0.0)
+        self.update()
+
+    def show_load(self, load: np.ndarray, bad: np.ndarray) -> None:
+        """Show the load of every block (n,), as a share of the highest, and which blocks (n,) the proof found at fault; empty: neither."""
+        self._load, self._bad = load, bad
+        self.setFixedHeight(_HEIGHT + (_LOAD if len(load) else 0))
         self.update()
 
     def show_value(self, value: float) -> None:
@@ -83,6 +93,7 @@ class Track(QWidget):
             painter.setBrush(QColor(theme.accent))
             painter.drawRoundedRect(QRectF(left, middle - _GROOVE / 2, at - left, _GROOVE), _GROOVE / 2, _GROOVE / 2)
         self._paint_marks(painter, middle + 9.0)
+        self._paint_load(painter, middle + 9.0 + _MARKS + 3.0)
         if self._end:
             painter.setPen(QColor(theme.accent))
             painter.setBrush(QColor(theme.panel))
@@ -130,3 +141,20 @@ class Track(QWidget):
             is_here = first <= self._value < last or (self._value == last == self._end)
             painter.setBrush(QColor(colour if is_here else mixed(colour, self._theme.panel, 0.45)))
             painter.drawRoundedRect(QRectF(x0, y, max(x1 - x0 - 1.5, 1.0), _MARKS), 2, 2)
+
+    def _paint_load(self, painter: QPainter, y: float) -> None:
+        """Draw the highest load of the blocks at each pixel as a bar, and a red tick where one of them is at fault."""
+        n, high = len(self._load), float(self._load.max(initial=0.0))
+        if not n or not high or n != round(self._end):
+            return
+        left, width = round(self.x_of(0.0)), max(round(self.x_of(self._end) - self.x_of(0.0)), 1)
+        first = np.minimum((np.arange(width) * n) // width, n - 1)
+        tops = np.maximum.reduceat(self._load, first) / high
+        bad = np.logical_or.reduceat(self._bad, first)
+        done = self.x_of(self._value) - left
+        pale, full, red = (QColor(c) for c in (mixed(self._theme.accent, self._theme.panel, 0.6), self._theme.accent, self._theme.bad))
+        for x in range(width):
+            height = float(tops[x]) * (_LOAD - 4)
+            painter.fillRect(QRectF(left + x, y + _LOAD - 4 - height, 1.0, height), full if x < done else pale)
+            if bad[x]:
+                painter.fillRect(QRectF(left + x - 1, y - 1, 2.5, _LOAD - 3), red)
