@@ -152,11 +152,11 @@ def _cut_row_formed(row: Floats, px: float, py: float, pitch: float, dx: float, 
     return removed, stands
 
 
-@njit(cache=True, nogil=True, fastmath={"reassoc", "nsz", "contract"})
+@njit(cache=True, nogil=True, fastmath={"reassoc", "nsz", "contract", "nnan"})
 def _cut_row_ball(row: Floats, px: float, py: float, pitch: float, dx: float, dy: float, inverse: float, z: float, floor: float,
                   upper: float, radius: float) -> tuple[float, int]:
     """Cut cells of a row by a ball. Without branches: most cells before a ball get lower at every move, so computing all together wins."""
-    removed, stands = 0.0, 0
+    removed, stands = 0.0, 0.0
     limit = radius * radius
     for i in range(len(row)):
         h = row[i]
@@ -169,12 +169,12 @@ def _cut_row_ball(row: Floats, px: float, py: float, pitch: float, dx: float, dy
         cut = z + (radius - math.sqrt(gap if gap > 0.0 else 0.0))
         cut = cut if cut > floor else floor
         inside = (gap > 0.0) & (cut < h)
-        tall = inside & (h > upper)
         new = cut if inside & (h <= upper) else h
-        stands += 1 if tall else 0
+        # Counted in floats: a whole number beside them would keep the loop from being done several cells at a time.
+        stands += 1.0 if inside & (h > upper) else 0.0
         removed += h - new
         row[i] = new
-    return removed, stands
+    return removed, int(stands)
 
 
 @njit(cache=True, nogil=True, inline="always")
