@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 from pytest import approx
 
-from leaning import FIVE_AXES, block_facets, lean, section_through
+from leaning import FIVE_AXES, SMALL, block_facets, lean, section_through
 from trunnion.findings import BadInput
 from trunnion.geometry.frame import Frame
 from trunnion.geometry.mesh import Mesh
@@ -18,6 +18,7 @@ from trunnion.model.verdict import Outcome
 from trunnion.part.fixture import read_fixture, stl_mesh
 from trunnion.part.surfaces import surfaces_from
 from trunnion.verify.settings import ProofSettings
+from trunnion.verify.setups import bundles_of
 from trunnion.verify.verdict import prove_surfaces
 from verify_tools import BLANK, FACING, MACHINE, SETUP, TOP, clean_plan, flat, program_section, proof
 
@@ -151,3 +152,15 @@ def test_a_rotary_axis_beyond_its_limit_fails():
     facets = (block_facets(),)
     assert codes(proof(*clean_plan(), high, facets=facets, bundles="z", machine=narrow)) == {"verify.rotary"}
     assert codes(proof(*clean_plan(), high, facets=facets, bundles="z", machine=FIVE_AXES)) == set()
+
+
+def test_one_bundle_serves_while_every_cut_comes_straight_from_above():
+    above = Program(name="above", setup=SETUP, sections=clean_plan())
+    below = replace(above, setup=replace(SETUP, frame=UNDER))
+    under = replace(above, sections=(program_section(SMALL["t-slot"], [(0.0, 0.0, 30.0), (1.0, 0.0, 30.0)]),))
+    leaning = replace(above, sections=(section_through(FACING, "lean", [((0.0, 0.0, 60.0), lean(5.0))] * 2),))
+    auto = ProofSettings()
+    assert bundles_of((above,), BLANK, auto) == ("z",)
+    assert bundles_of((above, below), BLANK, auto) == bundles_of((under,), BLANK, auto) == ("x", "y", "z")
+    assert bundles_of((leaning,), BLANK, auto) == ("x", "y", "z")
+    assert bundles_of((leaning,), BLANK, replace(auto, bundles="z")) == ("z",)
