@@ -3,6 +3,8 @@
 from __future__ import annotations
 
 import math
+from dataclasses import replace
+from types import SimpleNamespace
 
 import numpy as np
 import pytest
@@ -10,14 +12,18 @@ from pytest import approx
 
 from leaning_tools import EVERY_FORM, leaning_section
 from samples import ball_shape, box_shape, oblique_cylinder_shape, read
+from trunnion.cli.main import BAD, main
 from trunnion.findings import BadCall, BadInput, Cancelled
 from trunnion.geometry.frame import WORLD, Frame
+from trunnion.model.program import Program
 from trunnion.model.toolpath import Motion
 from trunnion.part.exact import ExactFace, ExactPoints
-from trunnion.pipeline.fine import FineFigures, faces_named, fine_dict, fine_text
+from trunnion.pipeline import fine
+from trunnion.pipeline.fine import FineFigures, faces_named, fine_dict, fine_text, measure_fine
 from trunnion.progress import Progress
 from trunnion.verify.fine import FINE_BOUND, fine_measure
 from trunnion.verify.motion import moves_of
+from verify_tools import SETUP
 
 UP = (0.0, 0.0, 1.0)
 
@@ -241,3 +247,29 @@ def test_faces_are_named_by_their_tags_and_figures_told_with_their_places():
                           step_at=np.zeros(3), lower="floor-1", bound=0.0002)
     assert fine_dict(figures)["gouge_at"] is None and fine_dict(figures)["scallop_at"] == [1.0, 2.0, 3.0]
     assert "highest scallop  0.0123 mm at x 1.000 y 2.000 z 3.000" in fine_text(figures)
+
+
+def test_both_sides_of_a_block_are_measured_with_the_programs_of_both_setups(monkeypatch):
+    part, pitch = read(box_shape(4.0, 3.0, 2.0)), 0.8
+    middle = 0.5 * (part.low + part.high)
+    frames = [Frame(np.array([*middle[:2], part.high[2]]), np.array([1.0, 0.0, 0.0]), np.array([0.0, 0.0, 1.0])),
+              Frame(np.array([*middle[:2], part.low[2]]), np.array([1.0, 0.0, 0.0]), np.array([0.0, 0.0, -1.0]))]
+    programs = tuple(Program(name=f"S{k}", setup=replace(SETUP, name=f"S{k}", frame=frame), sections=(
+        passes(EVERY_FORM["ball"], np.arange(-3.0, 3.5, pitch), z=-0.003 * k, x=(-9.0, 9.0), operation=f"face-{k}"),))
+        for k, frame in enumerate(frames))
+    monkeypatch.setattr(fine, "read_back", lambda session, posted: programs)
+    bench, session = SimpleNamespace(bench=SimpleNamespace(part=part)), SimpleNamespace(posted=("a program",))
+    level = [tag for tag in part.tags if part.graph().box_low[tag - 1][2] == approx(part.graph().box_high[tag - 1][2], abs=1e-3)]
+    for tag in level:
+        found = measure_fine(bench, session, [tag], 0.5)
+        below = bool(found.scallop_at[2] == approx(part.low[2]))
+        assert found.scallop == approx(scallop(5.0, pitch) - 0.003 * below, abs=2 * FINE_BOUND)
+        assert found.gouge == approx(0.003 * below, abs=2 * FINE_BOUND)
+    with pytest.raises(BadCall, match="no programs yet"):
+        measure_fine(bench, SimpleNamespace(posted=()), level, 2.0)
+
+
+def test_a_call_for_faces_without_tags_is_one_line_and_exit_2(capsys):
+    assert main(["verify", "x.step", "--fine", "the floor"]) == BAD
+    assert main(["verify", "x.step", "--fine", "12", "--fine-spacing", "0"]) == BAD
+    assert len(capsys.readouterr().err.strip().splitlines()) == 2
