@@ -19,14 +19,14 @@ from trunnion.verify.kernels.body import CLOSED_FIRST, CLOSED_LAST, KIND, R_MAX,
 from trunnion.verify.kernels.engagement import look_in_intervals
 
 # Columns of a span: tip and tool frame (its rows: two axes across, the tool axis) at both ends, then the boxes of what cuts, of all and of
-# the tip's way. Of an arc that goes level about an axis of the blank, the whole is one span: centre, radius and signed angle (each three
-# times, so that turning coordinates changes nothing); the angle is 0 for all others.
-TIP0, FRAME0, TIP1, FRAME1, CUT_BOX, ALL_BOX, WAY_BOX, CENTRE, ARC_RADIUS, SWEEP = 0, 3, 12, 15, 24, 30, 36, 42, 45, 48
-SPAN_COLUMNS = 51
+# the tip's way. Of an arc that goes level about an axis of the blank, the whole is one span: centre, direction of its middle, then radius
+# and cosine of half its angle (each three times, so that turning coordinates changes nothing); the radius is 0 for all others.
+TIP0, FRAME0, TIP1, FRAME1, CUT_BOX, ALL_BOX, WAY_BOX, CENTRE, MIDDLE, ARC_RADIUS, COS_HALF = 0, 3, 12, 15, 24, 30, 36, 42, 45, 48, 51
+SPAN_COLUMNS = 54
 # A ray as a span's tool frames see it: foot (3) and direction (3) at the start, what both gain until the end (3, 3), by how much the
-# direction turns, and how much smaller the body is taken.
-TWIST, SMALLER = 12, 13
-RAY_COLUMNS = 14
+# direction turns, how much smaller the body is taken, and room to sort places on it.
+TWIST, SMALLER, MARKS = 12, 13, 14
+RAY_COLUMNS = 22
 SHRINK = 1e-6
 """mm that bodies are made smaller by: a surface that was just cut to is not cut again by what only touches it."""
 MOST_GRAZED = 64
@@ -114,7 +114,8 @@ def _entered(arcs: Floats, first: int, last: int, limit: float, ray: Floats, w: 
         if f > 1e-5 and step > 0:
             # Only where the body turns is the depth not quite concave, and a step too long.
             return _bisected(arcs, first, last, limit, ray, before, w)
-        if f >= -NOISE:
+        # What is only touched to begin with, and left behind, was cut before.
+        if f > NOISE or (f >= -NOISE and step > 0):
             return w
         slope *= way
         if slope <= 1e-12:
@@ -170,7 +171,7 @@ def _aim(ray: Floats, span: Floats, u: float, v: float) -> None:
     if abs(ray[3]) + abs(ray[4]) + abs(ray[8]) + ray[TWIST] >= LEVEL:
         return
     # Along the axis of a tool that moves level, all of a ray is deepest when the axis comes nearest.
-    if span[SWEEP] != 0.0:
+    if span[ARC_RADIUS] != 0.0:
         ray[0], ray[1] = _from_arc(span, u, v, span[CENTRE + 2]), 0.0
     else:
         square = ray[6] * ray[6] + ray[7] * ray[7]
@@ -182,30 +183,26 @@ def _aim(ray: Floats, span: Floats, u: float, v: float) -> None:
 @njit(cache=True, nogil=True)
 def _from_arc(span: Floats, u: float, v: float, w: float) -> float:
     """Return how far a point is from the axis that goes along an arc, across the axis."""
+    a, b, c = span[FRAME0 + 6], span[FRAME0 + 7], span[FRAME0 + 8]
     x, y, z = u - span[CENTRE], v - span[CENTRE + 1], w - span[CENTRE + 2]
-    # Beside the axis from the centre, in the tool's frame at the start and at the end.
-    p = span[FRAME0] * x + span[FRAME0 + 1] * y + span[FRAME0 + 2] * z
-    q = span[FRAME0 + 3] * x + span[FRAME0 + 4] * y + span[FRAME0 + 5] * z
-    x0, y0, z0 = span[TIP0] - span[CENTRE], span[TIP0 + 1] - span[CENTRE + 1], span[TIP0 + 2] - span[CENTRE + 2]
-    p0 = span[FRAME0] * x0 + span[FRAME0 + 1] * y0 + span[FRAME0 + 2] * z0
-    q0 = span[FRAME0 + 3] * x0 + span[FRAME0 + 4] * y0 + span[FRAME0 + 5] * z0
-    sweep = span[SWEEP]
-    side = 1.0 if sweep > 0.0 else -1.0
-    angle = math.atan2(side * (p0 * q - q0 * p), p0 * p + q0 * q)
-    if angle < 0.0:
-        angle += 2.0 * math.pi
-    if angle <= abs(sweep):
-        return abs(math.sqrt(p * p + q * q) - span[ARC_RADIUS])
-    c, s = math.cos(sweep), math.sin(sweep)
-    p1, q1 = c * p0 - s * q0, s * p0 + c * q0
-    return math.sqrt(min((p - p0) ** 2 + (q - q0) ** 2, (p - p1) ** 2 + (q - q1) ** 2))
+    along = a * x + b * y + c * z
+    away = math.sqrt(max(x * x + y * y + z * z - along * along, 0.0))
+    if x * span[MIDDLE] + y * span[MIDDLE + 1] + z * span[MIDDLE + 2] >= away * span[COS_HALF]:
+        return abs(away - span[ARC_RADIUS])
+    nearest = np.inf
+    for end in range(2):
+        tip = TIP0 if end == 0 else TIP1
+        x, y, z = u - span[tip], v - span[tip + 1], w - span[tip + 2]
+        along = a * x + b * y + c * z
+        nearest = min(nearest, x * x + y * y + z * z - along * along)
+    return math.sqrt(max(nearest, 0.0))
 
 
 @njit(cache=True, nogil=True)
 def _box(box: Floats, span: Floats, piece: Floats, turns: bool) -> None:
     """Write the box of what a piece sweeps in a span: low and high of u, v, w."""
     r, more = piece[R_MAX], BENT if turns else 0.0
-    if span[SWEEP] != 0.0:
+    if span[ARC_RADIUS] != 0.0:
         for m in range(3):
             a = span[FRAME0 + 6 + m]
             across, p, q = r * math.sqrt(max(1.0 - a * a, 0.0)), a * piece[Z_LOW], a * piece[Z_HIGH]
@@ -223,10 +220,12 @@ def _box(box: Floats, span: Floats, piece: Floats, turns: bool) -> None:
 
 
 @njit(cache=True, nogil=True)
-def _misses(count: Ints, low: Floats, high: Floats, cell: int, box: Floats) -> bool:
-    """Say whether all of a ray's material is beyond a box, or no deeper in it than what a cut leaves."""
-    c = count[cell]
-    return c == 0 or low[cell, 0] >= box[5] - 2.0 * SHRINK or high[cell, c - 1] <= box[2] + 2.0 * SHRINK
+def _misses(count: Ints, low: Floats, high: Floats, cell: int, bottom: float, top: float) -> bool:
+    """Say whether a ray has no material between two places, or no more than what a cut leaves."""
+    for k in range(count[cell]):
+        if high[cell, k] > bottom + 2.0 * SHRINK:
+            return low[cell, k] >= top - 2.0 * SHRINK
+    return True
 
 
 @njit(cache=True, nogil=True)
@@ -302,22 +301,37 @@ def _across(arcs: Floats, first: int, last: int, limit: float, ray: Floats) -> t
 
 
 @njit(cache=True, nogil=True)
-def _across_arc(arcs: Floats, first: int, last: int, limit: float, ray: Floats, span: Floats, u: float, v: float, low: Floats,
-                high: Floats) -> int:
-    """Write where a ray across the axis is in a body that goes level along an arc: in a disc swept; return in how many intervals."""
+def _marked(ray: Floats, n: int, w: float) -> int:
+    """Put one more place among those marked on a ray, in order; return how many there are."""
+    k = MARKS + n
+    while k > MARKS and ray[k - 1] > w:
+        ray[k] = ray[k - 1]
+        k -= 1
+    ray[k] = w
+    return n + 1
+
+
+@njit(cache=True, nogil=True)
+def _cut_across_arc(arcs: Floats, first: int, last: int, limit: float, ray: Floats, span: Floats, u: float, v: float, count: Ints,
+                    low: Floats, high: Floats, cell: int, bottom: float, top: float) -> tuple[float, bool]:
+    """Cut a ray across the axis by a body that goes level along an arc: by a disc swept; return as `_cut_ray` does."""
     r, radius = _disc(arcs, first, last, limit, ray[2]), span[ARC_RADIUS]
     if r <= 0.0:
-        return 0
+        return 0.0, True
     # In the plane across the axis, the ray's place nearest to the centre, and how far beside it the ray passes.
     x, y = span[CENTRE] - u, span[CENTRE + 1] - v
     along = span[FRAME0 + 6] * x + span[FRAME0 + 7] * y
     beside, middle = math.sqrt(max(x * x + y * y - along * along, 0.0)), span[CENTRE + 2]
-    marks, n = np.empty(8), 0
+    if beside >= radius + r:
+        return 0.0, True
+    half = math.sqrt((radius + r) ** 2 - beside * beside)
+    if _misses(count, low, high, cell, max(bottom, middle - half), min(top, middle + half)):
+        return 0.0, True
+    n = 0
     for circle in (radius + r, radius - r):
         if circle > beside:
             half = math.sqrt(circle * circle - beside * beside)
-            marks[n], marks[n + 1] = middle - half, middle + half
-            n += 2
+            n = _marked(ray, _marked(ray, n, middle - half), middle + half)
     for end in range(2):
         x, y, w = (span[TIP0], span[TIP0 + 1], span[TIP0 + 2]) if end == 0 else (span[TIP1], span[TIP1 + 1], span[TIP1 + 2])
         x, y = x - u, y - v
@@ -325,18 +339,18 @@ def _across_arc(arcs: Floats, first: int, last: int, limit: float, ray: Floats, 
         square = r * r - (x * x + y * y - along * along)
         if square > 0.0:
             half = math.sqrt(square)
-            marks[n], marks[n + 1] = w - half, w + half
-            n += 2
-    marks[:n].sort()
-    found, open_at = 0, np.nan
+            n = _marked(ray, _marked(ray, n, w - half), w + half)
+    gone, open_at = 0.0, np.nan
     for k in range(n):
-        inside = k + 1 < n and _from_arc(span, u, v, 0.5 * (marks[k] + marks[k + 1])) < r
+        inside = k + 1 < n and _from_arc(span, u, v, 0.5 * (ray[MARKS + k] + ray[MARKS + k + 1])) < r
         if inside and math.isnan(open_at):
-            open_at = marks[k]
+            open_at = ray[MARKS + k]
         elif not inside and not math.isnan(open_at):
-            low[found], high[found] = open_at, marks[k]
-            found, open_at = found + 1, np.nan
-    return found
+            more, whole = _take_all(count, low, high, cell, max(open_at, bottom), min(ray[MARKS + k], top))
+            gone, open_at = gone + more, np.nan
+            if not whole:
+                return gone, False
+    return gone, True
 
 
 @njit(cache=True, nogil=True)
@@ -356,19 +370,14 @@ def _take_all(count: Ints, low: Floats, high: Floats, cell: int, a: float, b: fl
 
 @njit(cache=True, nogil=True)
 def _cut_ray(arcs: Floats, first: int, last: int, limit: float, ray: Floats, span: Floats, u: float, v: float, count: Ints, low: Floats,
-             high: Floats, cell: int, w_low: float, w_high: float) -> tuple[float, bool]:
+             high: Floats, cell: int, box: Floats) -> tuple[float, bool]:
     """Cut a ray by a piece within a span; return the length that is gone, and whether the ray had room for all that is left."""
+    w_low, w_high = box[2], box[5]
     if abs(ray[5]) + abs(ray[8]) + ray[TWIST] < LEVEL:
-        if span[SWEEP] == 0.0:
+        if span[ARC_RADIUS] == 0.0:
             a, b = _across(arcs, first, last, limit, ray)
             return _take_all(count, low, high, cell, max(a, w_low), min(b, w_high))
-        gone, from_, to = 0.0, np.empty(4), np.empty(4)
-        for k in range(_across_arc(arcs, first, last, limit, ray, span, u, v, from_, to)):
-            more, whole = _take_all(count, low, high, cell, max(from_[k], w_low), min(to[k], w_high))
-            gone += more
-            if not whole:
-                return gone, False
-        return gone, True
+        return _cut_across_arc(arcs, first, last, limit, ray, span, u, v, count, low, high, cell, w_low, w_high)
     gone = 0.0
     middle = 0.5 * (w_low + w_high)
     k = 0
@@ -555,11 +564,11 @@ def cut_tile(last: int, span: Floats, span_start: Ints, arcs: Floats, piece: Flo
                         v = origin[1] + (j + 0.5) * pitch
                         for i in range(max(i0, resume[4]) if going_on and j == resume[3] else i0, i1):
                             cell = j * columns + i
-                            if _misses(count, low, high, cell, box):
+                            if _misses(count, low, high, cell, box[2], box[5]):
                                 continue
                             u = origin[0] + (i + 0.5) * pitch
                             _aim(ray, span[s], u, v)
-                            gone, whole = _cut_ray(arcs, first, end, limit, ray, span[s], u, v, count, low, high, cell, box[2], box[5])
+                            gone, whole = _cut_ray(arcs, first, end, limit, ray, span[s], u, v, count, low, high, cell, box)
                             removed[n] += gone
                             if not whole:
                                 resume[0], resume[1], resume[2], resume[3], resume[4], resume[5] = n, s, p, j, i, 1
@@ -571,7 +580,7 @@ def cut_tile(last: int, span: Floats, span_start: Ints, arcs: Floats, piece: Flo
                     span[s, ALL_BOX + 5] < bottom:
                 continue
             ray[TWIST] = _motion(span[s])
-            if span[s, SWEEP] != 0.0 and abs(span[s, FRAME0 + 8]) < 0.5:
+            if span[s, ARC_RADIUS] != 0.0 and abs(span[s, FRAME0 + 8]) < 0.5:
                 # Of an arc that is one span, the rays along the axis tell how deep it is.
                 continue
             for p in range(p0, p1):
@@ -588,7 +597,7 @@ def cut_tile(last: int, span: Floats, span_start: Ints, arcs: Floats, piece: Flo
                     v = origin[1] + (j + 0.5) * pitch
                     for i in range(i0, i1):
                         cell = j * columns + i
-                        if _misses(count, low, high, cell, box):
+                        if _misses(count, low, high, cell, box[2], box[5]):
                             continue
                         u = origin[0] + (i + 0.5) * pitch
                         _aim(ray, span[s], u, v)

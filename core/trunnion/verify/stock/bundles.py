@@ -7,6 +7,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from trunnion import tolerance
 from trunnion.geometry.arrays import Bools, Floats, Ints
 from trunnion.model.blank import Blank
 from trunnion.verify.stock.field import Field, Part, cells_along, tiles_of
@@ -44,7 +45,8 @@ class Bundle:
         columns, rows = cells_along(blank.size[turned[:2]], pitch)
         low, high = np.zeros((rows * columns, ROOM)), np.zeros((rows * columns, ROOM))
         low[:, 0], high[:, 0] = blank.low[axis], blank.high[axis]
-        return Bundle(axis, pitch, rows, columns, blank.low[turned[:2]].copy(), np.ones(rows * columns, np.int64), low, high)
+        count = _in_blank(rows, columns, pitch, blank.size[turned[:2]])
+        return Bundle(axis, pitch, rows, columns, blank.low[turned[:2]].copy(), count, low, high)
 
     @staticmethod
     def of_field(field: Field) -> Bundle:
@@ -52,7 +54,8 @@ class Bundle:
         rows, columns = field.top.shape
         low, high = np.zeros((rows * columns, ROOM)), np.zeros((rows * columns, ROOM))
         low[:, 0], high[:, 0] = field.low[2], field.top.ravel()
-        return Bundle(2, field.pitch, rows, columns, field.low[:2].copy(), (high[:, 0] > field.low[2]).astype(np.int64), low, high)
+        count = _in_blank(rows, columns, field.pitch, (field.high - field.low)[:2]) * (high[:, 0] > field.low[2])
+        return Bundle(2, field.pitch, rows, columns, field.low[:2].copy(), count, low, high)
 
     @property
     def room(self) -> int:
@@ -103,6 +106,12 @@ class Bundle:
         cell = row * self.columns + column
         there = np.arange(self.room) < self.count[cell][:, None]
         return np.asarray((there & (self.low[cell] <= w[:, None]) & (w[:, None] <= self.high[cell])).any(axis=1))
+
+
+def _in_blank(rows: int, columns: int, pitch: float, size: Floats) -> Ints:
+    """Return 1 for each ray that goes through a blank, 0 for those of the last row or column that pass it."""
+    across, along = ((np.arange(n) + 0.5) * pitch <= s + tolerance.PARAMETRIC for n, s in zip((columns, rows), size, strict=True))
+    return np.asarray((along[:, None] & across).astype(np.int64).ravel())
 
 
 def cycle(axis: int) -> list[int]:

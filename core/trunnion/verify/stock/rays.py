@@ -86,13 +86,13 @@ def run_rays(stock: Stock, going: Sequence[Going], moves: Moves, probes: Probes,
     ends = np.cumsum(each)
     row = min((g.first for g in going), default=n)
     bundles = [g.bundle for g in going]
-    way = np.column_stack([moves.start, moves.end, moves.start_axis, moves.end_axis, moves.centre, moves.sweep])
     while row < n:
         begun = ends[row] - each[row]
         rows = np.arange(row, max(row + 1, int(np.searchsorted(ends, begun + SPANS, side="right"))))
         spans = spans_of(moves, rows, each[rows], whole[rows])
+        way = np.column_stack([a[rows] for a in (moves.start, moves.end, moves.start_axis, moves.end_axis, moves.centre, moves.sweep)])
         batch = _Batch(spans.start, [spans.along(axis) for axis in range(3)], moves.bodies, moves.tool[rows], moves.rapid[rows],
-                       leaves[rows], way[rows], probes, probes.start[row:rows[-1] + 2], fine)
+                       leaves[rows], way, probes, probes.start[row:rows[-1] + 2], fine)
         looks = np.cumsum(_looks(spans, stock.blank, bundles))
         first = 0
         while first < len(rows):

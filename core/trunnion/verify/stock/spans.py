@@ -109,10 +109,11 @@ class _Poses:
 
 
     def arcs(self) -> Floats:
-        """Return centre, radius and angle of arcs (s, 3, 3), the last two three times."""
-        radius = np.linalg.norm(self.away, axis=1)
+        """Return centre, direction of the middle, radius and cosine of half the angle of arcs (s, 4, 3), the last two three times."""
+        radius, half = np.linalg.norm(self.away, axis=1, keepdims=True), 0.5 * self.sweep[:, None]
+        middle = (np.cos(half) * self.away + np.sin(half) * self.over) / np.maximum(radius, tolerance.PARAMETRIC)
         three = np.ones((1, 3))
-        return np.stack([self.start - self.away, radius[:, None] * three, self.sweep[:, None] * three], axis=1)
+        return np.stack([self.start - self.away, middle, radius * three, np.cos(half) * three], axis=1)
 
     def way_boxes(self, rows: Bools) -> Floats:
         """Return boxes (k, 2, 3) of the tips' ways along some arcs."""
