@@ -15,8 +15,6 @@ from trunnion.verify.motion import AXIS_LEAN, Moves
 from trunnion.verify.stock.bundles import cycle
 
 VECTORS = kernel.SPAN_COLUMNS // 3
-WAYPOINTS = 33
-"""Places along a whole arc that its box is taken from."""
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -117,9 +115,14 @@ class _Poses:
 
     def way_boxes(self, rows: Bools) -> Floats:
         """Return boxes (k, 2, 3) of the tips' ways along some arcs."""
-        tips = np.stack([self.at(np.full(len(self.sweep), share))[0][rows] for share in np.linspace(0.0, 1.0, WAYPOINTS)])
-        sag = np.linalg.norm(self.away[rows], axis=1, keepdims=True) * (self.sweep[rows, None] / (WAYPOINTS - 1)) ** 2 / 8.0
-        return np.stack([tips.min(axis=0) - sag, tips.max(axis=0) + sag], axis=1)
+        away, over, sweep = self.away[rows], self.over[rows], self.sweep[rows, None]
+        centre, reach, angle = self.start[rows] - away, np.hypot(away, over), np.arctan2(over, away)
+        end = centre + np.cos(sweep) * away + np.sin(sweep) * over
+        low, high = np.minimum(centre + away, end), np.maximum(centre + away, end)
+        # Each coordinate goes up and down over a turn: is its top, or its bottom, on the way?
+        side = np.sign(sweep)
+        top, bottom = (np.mod(side * (angle + half), 2.0 * np.pi) <= np.abs(sweep) for half in (0.0, np.pi))
+        return np.stack([np.where(bottom, centre - reach, low), np.where(top, centre + reach, high)], axis=1)
 
 
 def _turns(moves: Moves) -> Floats:
