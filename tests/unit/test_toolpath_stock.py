@@ -70,9 +70,10 @@ def test_the_compiled_field_is_lowered_as_its_plain_form(corner: float) -> None:
     starts = random.uniform((-5, -5, -9), (45, 35, 0), (20, 3))
     ends = np.where(random.random((20, 1)) < 0.3, starts, random.uniform((-5, -5, -9), (45, 35, 0), (20, 3)))
     fast, plain = np.zeros((80, 60)), np.zeros((80, 60))
-    heightfield.lower(fast, 0.0, 0.0, 0.5, starts, ends, 6.0, corner)
-    heightfield.lower_reference(plain, 0.0, 0.0, 0.5, starts, ends, 6.0, corner)
-    assert np.abs(fast - plain).max() < 1e-9
+    gone, plainly_gone = np.zeros(20), np.zeros(20)
+    heightfield.lower(fast, 0.0, 0.0, 0.5, starts, ends, 6.0, corner, gone)
+    heightfield.lower_reference(plain, 0.0, 0.0, 0.5, starts, ends, 6.0, corner, plainly_gone)
+    assert max(np.abs(fast - plain).max(), np.abs(gone - plainly_gone).max()) < 1e-9
 
 
 def test_the_compiled_greatest_height_is_that_of_its_plain_form() -> None:
@@ -85,5 +86,6 @@ def test_the_compiled_greatest_height_is_that_of_its_plain_form() -> None:
 
 def test_a_cutter_smaller_than_a_cell_removes_nothing_for_certain() -> None:
     heights = np.zeros((10, 10))
-    heightfield.lower(heights, 0.0, 0.0, 1.0, np.array([[5.0, 5.0, -1.0]]), np.array([[6.0, 5.0, -1.0]]), 0.4, 0.0)
+    heightfield.lower(heights, 0.0, 0.0, 1.0, np.array([[5.0, 5.0, -1.0]]), np.array([[6.0, 5.0, -1.0]]), 0.4, 0.0,
+                      np.zeros(1))
     assert not heights.any()

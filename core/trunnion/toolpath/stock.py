@@ -12,7 +12,7 @@ from numpy.typing import ArrayLike
 
 from trunnion import tolerance
 from trunnion.findings import OutOfMemory
-from trunnion.geometry.arrays import Floats
+from trunnion.geometry.arrays import Floats, Ints
 from trunnion.geometry.curve import turn
 from trunnion.geometry.kernels import heightfield
 from trunnion.geometry.region import Region
@@ -74,11 +74,15 @@ class PlanningStock:
         """Return a copy that `lower` may change; its digest stays that of the stock it was taken from."""
         return replace(self, heights=self.heights.copy())
 
-    def lower(self, path: Toolpath, tool: Tool) -> None:
-        """Take the feed moves of a path off this very field, which must be a `working` copy."""
-        starts, ends, error = chords(path)
-        radius = tool.radius - error
-        heightfield.lower(self.heights, self.corner[0], self.corner[1], self.cell, starts, ends, radius, min(tool.corner_radius, radius))
+    def lower(self, path: Toolpath, tool: Tool) -> Floats:
+        """Take the feed moves of a path off this very field, which must be a `working` copy; return the volume (n,) in mm3 that each
+        block takes off."""
+        starts, ends, rows, error = chords(path)
+        radius, gone = tool.radius - error, np.empty(len(starts))
+        heightfield.lower(self.heights, self.corner[0], self.corner[1], self.cell, starts, ends, radius, min(tool.corner_radius, radius),
+                          gone)
+        volume: Floats = np.bincount(rows, gone, len(path)).astype(np.float64) * self.cell**2
+        return volume
 
     def height(self, start: ArrayLike, end: ArrayLike, radius: float) -> float:
         """Return the greatest height that a disc may touch on its way from `start` to `end` (2,), or -inf over nothing."""
@@ -119,8 +123,9 @@ ARC_CHORD = 0.02
 """mm: chord error at which arcs are opened before they lower a field; the cutter is taken smaller by as much."""
 
 
-def chords(path: Toolpath) -> tuple[Floats, Floats, float]:
-    """Return starts and ends (m, 3) of the straight pieces of a path's feed moves, and how far an arc may be from its chords in mm."""
+def chords(path: Toolpath) -> tuple[Floats, Floats, Ints, float]:
+    """Return starts and ends (m, 3) of the straight pieces of a path's feed moves, the block (m,) each is of, and how far an arc may be
+    from its chords in mm."""
     start, sweep = path.starts(), path.sweeps()
     arcs = path.motion >= Motion.ARC_CW
     radius = np.where(arcs, np.linalg.norm(start[:, :2] - path.centre[:, :2], axis=1), 0.0)
@@ -132,11 +137,16 @@ def chords(path: Toolpath) -> tuple[Floats, Floats, float]:
     rows = np.repeat(np.arange(len(path)), count)
     place = np.arange(len(rows)) - np.repeat(np.cumsum(count) - count, count)
     share = np.stack([place, place + 1], axis=1) / count[rows][:, None]
-    ends = [_on(path, start, sweep, rows, share[:, k]) for k in (0, 1)]
-    return ends[0], ends[1], ARC_CHORD if arcs.any() else 0.0
+    ends = [_places(path, start, sweep, rows, share[:, k]) for k in (0, 1)]
+    return ends[0], ends[1], rows, ARC_CHORD if arcs.any() else 0.0
 
 
-def _on(path: Toolpath, start: Floats, sweep: Floats, rows: np.ndarray, share: Floats) -> Floats:
+def places_on(path: Toolpath, rows: Ints, share: Floats) -> Floats:
+    """Return places (m, 3) on blocks (m,) of a path, at shares (m,) of their way."""
+    return _places(path, path.starts(), path.sweeps(), rows, share)
+
+
+def _places(path: Toolpath, start: Floats, sweep: Floats, rows: Ints, share: Floats) -> Floats:
     points = start[rows] + share[:, None] * (path.position[rows] - start[rows])
     arcs = np.flatnonzero(path.motion[rows] >= Motion.ARC_CW)
     at = rows[arcs]

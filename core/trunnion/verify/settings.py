@@ -27,7 +27,7 @@ class ProofSettings:
                            "result is the same.")
     power: float = setting(1.0, unit="of the spindle's", low=0.05, high=2.0, label="Power",
                            help="Share of the spindle's power at its speed that cutting may take; more is an error.")
-    removal: float = setting(4.0, unit="times the chosen", low=1.0, high=20.0, label="Removal rate",
+    removal: float = setting(3.0, unit="times the chosen", low=1.0, high=20.0, label="Removal rate",
                              help="How far the removal rate may pass what an operation's feed is chosen for, or what the material's tables "
                                   "allow its cutter when that is more. Full width at the feed for a quarter of it comes to 4.")
     chip: float = setting(1.5, unit="times the chosen", low=1.0, high=5.0, label="Chip thickness",

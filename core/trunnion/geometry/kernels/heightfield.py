@@ -17,11 +17,16 @@ HALF_DIAGONAL = math.sqrt(0.5)
 
 
 @njit(cache=True)
-def lower(heights: Floats, x0: float, y0: float, cell: float, starts: Floats, ends: Floats, radius: float, corner: float) -> None:
-    """Lower a field in place under straight moves of the tip from `starts` to `ends` (n, 3) of a flat or bull cutter."""
+def lower(heights: Floats, x0: float, y0: float, cell: float, starts: Floats, ends: Floats, radius: float, corner: float,
+          gone: Floats) -> None:
+    """Lower a field in place under straight moves of the tip from `starts` to `ends` (n, 3) of a flat or bull cutter.
+
+    gone (n,) gets the heights that each move takes off, summed over cells.
+    """
     nx, ny = heights.shape
     slack = cell * HALF_DIAGONAL
     reach = radius - slack
+    gone[:] = 0.0
     if reach <= 0.0:
         return
     for n in range(len(starts)):
@@ -50,6 +55,7 @@ def lower(heights: Floats, x0: float, y0: float, cell: float, starts: Floats, en
                 if inner > 0.0:
                     lift = z + corner - math.sqrt(max(corner * corner - inner * inner, 0.0))
                 if lift < heights[i, j]:
+                    gone[n] += heights[i, j] - lift
                     heights[i, j] = lift
 
 
@@ -81,14 +87,16 @@ def highest(heights: Floats, x0: float, y0: float, cell: float, start: Floats, e
 
 
 def lower_reference(heights: Floats, x0: float, y0: float, cell: float, starts: Floats, ends: Floats, radius: float,
-                    corner: float) -> None:
+                    corner: float, gone: Floats) -> None:
     """The plain form of `lower`."""
     centres = _centres(heights, x0, y0, cell)
-    for a, b in zip(starts, ends, strict=True):
+    for n, (a, b) in enumerate(zip(starts, ends, strict=True)):
+        before = heights.sum()
         far = _distance(centres, a[:2], b[:2]) + cell * HALF_DIAGONAL
         inner = np.maximum(far - (radius - corner), 0.0)
         lift = max(a[2], b[2]) + corner - np.sqrt(np.maximum(corner**2 - inner**2, 0.0))
         heights[...] = np.where(far <= radius, np.minimum(heights, lift), heights)
+        gone[n] = before - heights.sum()
 
 
 def highest_reference(heights: Floats, x0: float, y0: float, cell: float, start: Floats, end: Floats, radius: float) -> float:

@@ -19,6 +19,7 @@ from trunnion.settings import setting, settings
 from trunnion.toolpath.builder import PathBuilder
 from trunnion.toolpath.contour import Approach, cut_open, cut_parts
 from trunnion.toolpath.contract import Planned, strategy
+from trunnion.toolpath.easing import eased_finish
 from trunnion.toolpath.levels import fillet_steps, steps_down
 from trunnion.toolpath.order import nearest_first
 from trunnion.toolpath.reach import Room, is_closed, parts_where
@@ -90,7 +91,7 @@ def corner(drive: PlaneDrive, tool: Tool, data: CuttingData, stock: PlanningStoc
                     else:
                         cut_open(builder, part, height.z, room, approach, past=False)
         findings += _left(drive, level, tool, rests)
-    return Planned(path=builder.finished(), findings=tuple(findings))
+    return Planned(path=eased_finish(builder.finished(), tool, data, stock), findings=tuple(findings))
 
 
 def _rests(drive: PlaneDrive, level: DriveLevel) -> Region:

@@ -18,6 +18,7 @@ from trunnion.settings import setting, settings
 from trunnion.toolpath.builder import PathBuilder
 from trunnion.toolpath.clear import Layer, Manner, clear
 from trunnion.toolpath.contract import Planned, strategy
+from trunnion.toolpath.easing import eased_finish
 from trunnion.toolpath.passes import passes_over
 from trunnion.toolpath.reach import level_at
 from trunnion.toolpath.rings import safe_step
@@ -64,4 +65,4 @@ def floor(drive: PlaneDrive, tool: Tool, data: CuttingData, stock: PlanningStock
                                  drive.feature, f"face {each.face}", remedy="finish them with the corners, by a smaller cutter"))
     if not floors:
         findings.append(error("floor.none", f"{drive.feature} has no floor to finish", drive.feature, remedy="suppress the operation"))
-    return Planned(path=builder.finished(), findings=tuple(findings))
+    return Planned(path=eased_finish(builder.finished(), tool, data, stock), findings=tuple(findings))

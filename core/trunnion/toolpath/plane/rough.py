@@ -16,6 +16,7 @@ from trunnion.settings import setting, settings
 from trunnion.toolpath.builder import PathBuilder
 from trunnion.toolpath.clear import Layer, Manner, clear
 from trunnion.toolpath.contract import Planned, strategy
+from trunnion.toolpath.easing import eased
 from trunnion.toolpath.levels import layers
 from trunnion.toolpath.passes import Passes, passes_over
 from trunnion.toolpath.rings import safe_step
@@ -66,7 +67,7 @@ def rough(drive: PlaneDrive, tool: Tool, data: CuttingData, stock: PlanningStock
                 clear(builder, Layer(z=z, rings=passes.rings, room=passes.room, clip=passes.clip, top=known), manner, progress)
             above, first = z, False
         findings += _left(drive, level, tool, made)
-    return Planned(path=builder.finished(), findings=tuple(findings))
+    return Planned(path=eased(builder.finished(), tool, data, stock, settings.slot_feed), findings=tuple(findings))
 
 
 def _horizontals(drive: PlaneDrive, row: int) -> list[float]:

@@ -20,6 +20,7 @@ from trunnion.toolpath.builder import PathBuilder
 from trunnion.toolpath.clear import Layer, Manner, clear
 from trunnion.toolpath.contour import Approach, contour_parts, cut_parts, length_out_of_reach
 from trunnion.toolpath.contract import Planned, strategy
+from trunnion.toolpath.easing import eased_finish
 from trunnion.toolpath.levels import fillet_steps, steps_down
 from trunnion.toolpath.reach import Room, is_closed, level_at
 from trunnion.toolpath.rings import ring_tree, safe_step
@@ -78,7 +79,7 @@ def wall(drive: PlaneDrive, tool: Tool, data: CuttingData, stock: PlanningStock,
             _cut_floor_rest(builder, drive, each, tool, approach, progress)
     if not drive.walls:
         findings.append(error("wall.none", f"{drive.feature} has no wall to finish", drive.feature, remedy="suppress the operation"))
-    return Planned(path=builder.finished(), findings=tuple(findings))
+    return Planned(path=eased_finish(builder.finished(), tool, data, stock), findings=tuple(findings))
 
 
 def _cut_floor_rest(builder: PathBuilder, drive: PlaneDrive, each: Floor, tool: Tool, approach: Approach,
