@@ -1,0 +1,135 @@
+"""Random moves through the three bundles, beside a far finer plain reference and beside solids of manifold3d."""
+
+from __future__ import annotations
+
+import numpy as np
+from hypothesis import given, settings
+from hypothesis import strategies as st
+
+from leaning_tools import EVERY_FORM, leaning_section
+from solids import box_solid, cutter_solid, swept
+from trunnion.geometry.frame import WORLD
+from trunnion.model.blank import Blank
+from trunnion.model.toolpath import Motion
+from trunnion.verify.motion import moves_of
+from trunnion.verify.stock import Stock, run_stock
+from trunnion.verify.stock.bundles import cycle
+from verify_tools import FORMS, plain_depth, supports_of
+
+LOW, HIGH = np.zeros(3), np.array([24.0, 20.0, 16.0])
+BLANK = Blank(frame=WORLD, low=LOW, high=HIGH, material="test", density=1.0)
+TOOLS = st.sampled_from(sorted(FORMS))
+BOUND = 0.01
+"""mm, of the reference: its steps over time, and the chords of spans."""
+seeds = st.integers(0, 2**20)
+
+
+def cut(sections, pitch):
+    stock = Stock.of(BLANK, pitch, ("x", "y", "z"))
+    moves = moves_of(sections)
+    return stock, run_stock(stock, moves, WORLD, threads=1), moves
+
+
+def bundles_of(stock):
+    stock.open_field()
+    return stock.rays
+
+
+def poses(moves, steps):
+    """Return tips and axes of the last move at many times, worked out anew."""
+    a, b = moves.start_axis[-1], moves.end_axis[-1]
+    t = np.linspace(0.0, 1.0, steps)[:, None]
+    theta = np.arccos(np.clip(a @ b, -1.0, 1.0))
+    axes = np.tile(a, (steps, 1)) if theta < 1e-9 else (np.sin((1 - t) * theta) * a + np.sin(t * theta) * b) / np.sin(theta)
+    tips = moves.start[-1] + t * (moves.end[-1] - moves.start[-1])
+    if moves.sweep[-1]:
+        arm = moves.start[-1] - moves.centre[-1]
+        along = arm @ a
+        arm, angle = arm - along * a, t * moves.sweep[-1]
+        climb = (moves.end[-1] - moves.start[-1]) @ a
+        tips = moves.centre[-1] + np.cos(angle) * arm + np.sin(angle) * np.cross(a, arm) + (along + t * climb) * a
+    return tips, axes
+
+
+def deepest(tool, moves, points, steps=1500):
+    """Return how deep points are in the cutter at any of many times."""
+    best = np.full(len(points), -np.inf)
+    for tip, axis in zip(*poses(moves, steps), strict=True):
+        away = points - tip
+        h = away @ axis
+        rho = np.linalg.norm(away - h[:, None] * axis, axis=1)
+        best = np.maximum(best, plain_depth(supports_of(tool)[0], rho, h))
+    return best
+
+
+def random_ends(seed, lean, aligned=True):
+    """Return tips and axes of one move that starts anywhere in the block and turns by some of `lean`; every fourth along x, y or z."""
+    rng = np.random.default_rng(seed)
+    axis = rng.normal(size=3)
+    axis /= np.linalg.norm(axis)
+    if aligned and seed % 4 == 0:
+        axis = np.eye(3)[rng.integers(3)] * rng.choice([-1.0, 1.0])
+    middle, way = rng.uniform(LOW + 4.0, HIGH - 4.0), rng.normal(size=3) * 3.0
+    return np.array([middle - way / 2, middle + way / 2]), np.array([axis, axis + lean * rng.normal(size=3)]), rng
+
+
+@given(TOOLS, seeds, st.sampled_from([0.0, 0.02, 0.4]))
+@settings(max_examples=8, deadline=None)
+def test_points_on_rays_are_gone_where_the_cutter_was_at_any_time(form, seed, lean):
+    tips, axes, rng = random_ends(seed, lean)
+    check_rays(FORMS[form], leaning_section(FORMS[form], tips, axes), rng)
+
+
+@given(st.sampled_from(["flat", "bull", "t-slot"]), seeds)
+@settings(max_examples=4, deadline=None)
+def test_arcs_and_helices_about_any_axis_cut_what_they_pass(form, seed):
+    (start, _), (axis, _), rng = random_ends(seed, 0.0)
+    arm = np.cross(axis, rng.normal(size=3))
+    arm *= rng.uniform(1.0, 5.0) / np.linalg.norm(arm)
+    turn = rng.uniform(0.3, 6.0)
+    end = start - arm + np.cos(turn) * arm + np.sin(turn) * np.cross(axis, arm) + rng.choice([0.0, 2.0]) * axis
+    section = leaning_section(FORMS[form], [start, end], [axis, axis], centre=start - arm, motion=Motion.ARC_CCW)
+    check_rays(FORMS[form], section, rng)
+
+
+def check_rays(tool, section, rng):
+    stock, _, moves = cut([section], 1.0)
+    points, said = [], []
+    for name, bundle in bundles_of(stock).items():
+        axis = "xyz".index(name)
+        cell = rng.integers(0, len(bundle.count), 400)
+        local = np.column_stack([*(bundle.origin + (np.column_stack([cell % bundle.columns, cell // bundle.columns]) + 0.5)).T,
+                                 rng.uniform(LOW[axis], HIGH[axis], len(cell))])
+        own = np.empty_like(local)
+        own[:, cycle(axis)] = local
+        points.append(own)
+        said.append(bundle.contains(own))
+    points, said = np.vstack(points), np.concatenate(said)
+    depth = deepest(tool, moves, points)
+    # The rapid before the move cuts nothing; at its first pose the move begins.
+    sure = np.abs(depth) > BOUND
+    assert (said == (depth < 0.0))[sure].all()
+
+
+@given(TOOLS, seeds)
+@settings(max_examples=6, deadline=None)
+def test_straight_sweeps_take_off_the_volume_of_solids(form, seed):
+    # A face along two axes of the blank is only known to half a cell by the rays in it: none here.
+    tips, axes, _ = random_ends(seed, 0.0, aligned=False)
+    gone = (box_solid(LOW, HIGH) ^ swept(cutter_solid(FORMS[form]), tips, axes)).volume()
+    stock, run, _ = cut([leaning_section(FORMS[form], tips, axes)], 0.2)
+    for bundle in bundles_of(stock).values():
+        assert abs(BLANK.volume - bundle.volume - gone) < 5e-3 * max(gone, 100.0)
+    assert abs(run.removed.sum() - gone) < 5e-3 * max(gone, 100.0)
+
+
+@given(st.sampled_from(["ball", "t-slot", "form"]), seeds)
+@settings(max_examples=3, deadline=None)
+def test_cutters_of_several_bodies_and_chains_of_moves_leave_the_same_for_every_bundle(form, seed):
+    rng = np.random.default_rng(seed)
+    tips = rng.uniform(LOW + 3.0, HIGH - 3.0, (8, 3))
+    axes = rng.normal(size=3) + 0.3 * rng.normal(size=(8, 3))
+    stock, run, _ = cut([leaning_section(EVERY_FORM[form], tips, axes)], 0.25)
+    volumes = [b.volume for b in bundles_of(stock).values()]
+    assert np.ptp(volumes) < 5e-3 * BLANK.volume
+    assert abs(BLANK.volume - np.mean(volumes) - run.removed.sum()) < 1e-6 * BLANK.volume
