@@ -41,7 +41,7 @@ def lowered(path: Toolpath) -> np.ndarray:
     """Return the places (k, 2) on feed moves below the blank's top, arcs included."""
     from trunnion.toolpath.stock import chords
 
-    starts, ends, _ = chords(path)
+    starts, ends, _, _ = chords(path)
     below = np.minimum(starts[:, 2], ends[:, 2]) < -1e-6
     return np.vstack([starts[below, :2], ends[below, :2]])
 

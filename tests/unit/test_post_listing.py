@@ -31,7 +31,7 @@ def test_marks_may_be_left_out():
 
 
 def test_a_tilted_axis_is_said():
-    tilted = replace(PATH, axis=np.array([[0.0, 0.0, 1.0], [0.6, 0.0, 0.8], [0.0, 0.0, 1.0]]))
+    tilted = replace(PATH, axis=np.array([[0.0, 0.0, 1.0], [0.6, 0.0, 0.8], [0.6, 0.0, 0.8]]))
     assert listing(one(tilted)).splitlines()[3] == "line    x 1.0000 y 2.0000 z 0.0000 i 0.6000 j 0.0000 k 0.8000 feed 100.0 cut"
 
 

@@ -21,7 +21,7 @@ class SurfaceSettings:
                                help="A patch whose size is within this of the one before it, sorted by size, is of the same group.")
     relative: bool = setting(False, label="Relative similarity", help="The similarity is a share of the size instead of mm.")
     subdivide: bool = setting(False, label="Subdivide", help="Divide groups of equal diagonal by the sides of their boxes (aligned only).")
-    local_ratio: float = setting(0.3, low=0.0, high=1.0, label="Local feature below",
+    local_ratio: float = setting(0.3, unit="of the largest", low=0.0, high=1.0, label="Local feature below",
                                  help="A group is a local feature when its size over the largest patch's is below this.")
     sliver_width: float = setting(0.05, unit="mm", low=0.0, high=10.0, label="Sliver",
                                   help="A patch narrower than this on average (twice its area over its boundary) joins no group.")
