@@ -25,8 +25,8 @@ from trunnion.part.surfaces import (
     surfaces_from,
 )
 from trunnion.progress import QUIET
+from trunnion.verify.judge.verdict import prove_surfaces
 from trunnion.verify.settings import ProofSettings
-from trunnion.verify.verdict import prove_surfaces
 
 HOLDER = Holder(name="test holder", rows=((0.0, 12.0, 10.0, 20.0), (10.0, 20.0, 40.0, 20.0)))
 

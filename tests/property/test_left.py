@@ -10,8 +10,8 @@ from hypothesis import strategies as st
 
 from leaning_tools import EVERY_FORM, PlainCutter, leaning_section
 from trunnion.model.toolpath import Motion
+from trunnion.verify.finish.sweep import Sweep
 from trunnion.verify.motion import moves_of
-from trunnion.verify.sweep import Sweep
 
 FIXED, TURNING = 2e-3, 5e-3
 QUICK = settings(deadline=None, max_examples=25, phases=[Phase.explicit, Phase.generate])

@@ -17,9 +17,9 @@ from trunnion.model.program import Program
 from trunnion.model.verdict import Outcome
 from trunnion.part.fixture import read_fixture, stl_mesh
 from trunnion.part.surfaces import surfaces_from
+from trunnion.verify.judge.setups import bundles_of
+from trunnion.verify.judge.verdict import prove_surfaces
 from trunnion.verify.settings import ProofSettings
-from trunnion.verify.setups import bundles_of
-from trunnion.verify.verdict import prove_surfaces
 from verify_tools import BLANK, FACING, MACHINE, SETUP, TOP, clean_plan, flat, program_section, proof
 
 UNDER = Frame(np.array([0.0, 0.0, 20.0]), np.array([1.0, 0.0, 0.0]), np.array([0.0, 0.0, -1.0]))

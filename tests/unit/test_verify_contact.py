@@ -26,9 +26,9 @@ from trunnion.part.surfaces import (
 from trunnion.verify.contact import PartContact, guide_points
 from trunnion.verify.contact import facets as facets_module
 from trunnion.verify.contact import strips as strips_module
+from trunnion.verify.finish.sweep import Sweep
 from trunnion.verify.kernels import strips as kernel
 from trunnion.verify.motion import moves_of, poses_of
-from trunnion.verify.sweep import Sweep
 from verify_tools import FORMS, block_with_pocket, bull, flat, program_section
 
 NO_CHORDS, NO_LEVEL = np.zeros((0, 4)), np.zeros((0, STRIP_COLUMNS))

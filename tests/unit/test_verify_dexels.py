@@ -17,9 +17,9 @@ from trunnion.geometry.frame import WORLD, Frame
 from trunnion.model.blank import Blank
 from trunnion.model.toolpath import Motion
 from trunnion.progress import QUIET, Progress
+from trunnion.verify.finish.sweep import Sweep
 from trunnion.verify.motion import moves_of
 from trunnion.verify.stock import Stock, run_stock
-from trunnion.verify.sweep import Sweep
 from verify_tools import FORMS, bull, flat, program_section, tool_of
 
 BOX = Blank(frame=WORLD, low=(0.0, 0.0, 0.0), high=(40.0, 32.0, 20.0), material="test", density=2.8)

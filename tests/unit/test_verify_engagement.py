@@ -11,10 +11,10 @@ from pytest import approx
 
 from trunnion.geometry.frame import WORLD
 from trunnion.model.blank import Blank
-from trunnion.verify.engagement import MOST_PROBES, Tally, engagement_of, flute_of, probes_of, rings_of
 from trunnion.verify.kernels.engagement import look_in_field
 from trunnion.verify.motion import moves_of
 from trunnion.verify.stock import Stock, run_stock
+from trunnion.verify.stock.engagement import MOST_PROBES, Tally, engagement_of, flute_of, probes_of, rings_of
 from verify_tools import FORMS, bull, flat, program_section
 
 PITCH = 0.25

@@ -21,7 +21,7 @@ from trunnion.part.exact import ExactFace, ExactPoints
 from trunnion.pipeline import fine
 from trunnion.pipeline.fine import FineFigures, faces_named, fine_dict, fine_text, measure_fine
 from trunnion.progress import Progress
-from trunnion.verify.fine import FINE_BOUND, fine_measure
+from trunnion.verify.finish.fine import FINE_BOUND, fine_measure
 from trunnion.verify.motion import moves_of
 from verify_tools import SETUP
 

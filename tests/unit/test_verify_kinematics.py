@@ -16,10 +16,10 @@ from trunnion.model.toolpath import Motion, Toolpath
 from trunnion.shop import load_shop
 from trunnion.verify.kernels.rotary import follow
 from trunnion.verify.kernels.timing import block_times
-from trunnion.verify.kinematics import UP, linear_positions, poses_of, rotary_angles, stands_of, turned, turned_axes
-from trunnion.verify.limits import limit_findings
+from trunnion.verify.machine.kinematics import UP, linear_positions, poses_of, rotary_angles, stands_of, turned, turned_axes
+from trunnion.verify.machine.limits import limit_findings
+from trunnion.verify.machine.times import times_of
 from trunnion.verify.motion import moves_of
-from trunnion.verify.times import times_of
 from verify_tools import MACHINE, flat
 
 SHOP = load_shop()

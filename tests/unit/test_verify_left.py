@@ -13,9 +13,9 @@ from leaning_tools import EVERY_FORM, PlainCutter, cutter, leaning_section
 from trunnion.findings import Cancelled
 from trunnion.model.toolpath import Motion
 from trunnion.progress import Progress
+from trunnion.verify.finish.sweep import LEFT_BOUND, Sweep, flutes_of, left_by_block
 from trunnion.verify.kernels import left as kernel
 from trunnion.verify.motion import moves_of
-from trunnion.verify.sweep import LEFT_BOUND, Sweep, flutes_of, left_by_block
 from verify_tools import bull, flat, program_section
 
 UP, LEVEL = (0.0, 0.0, 1.0), (1.0, 0.0, 0.0)

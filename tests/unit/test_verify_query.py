@@ -12,7 +12,7 @@ from leaning_tools import contact_of
 from trunnion.findings import Cancelled
 from trunnion.model.tool import Holder, Tool
 from trunnion.progress import Progress
-from trunnion.verify.query import STICKOUT_STEP, room
+from trunnion.verify.contact.query import STICKOUT_STEP, room
 
 UP = np.array([[0.0, 0.0, 1.0]])
 ALLOWED = 0.001

@@ -10,9 +10,9 @@ from pytest import approx
 
 from leaning_tools import EVERY_FORM, contact_of
 from trunnion.shop.machines import load_machines
-from trunnion.verify.coverage import Reach, Samples
-from trunnion.verify.kinematics import can_hold
-from trunnion.verify.leaning import leaning_axes, touching_tips
+from trunnion.verify.finish.coverage import Reach, Samples
+from trunnion.verify.finish.leaning import leaning_axes, touching_tips
+from trunnion.verify.machine.kinematics import can_hold
 from verify_tools import MACHINE
 
 TRUNNION = load_machines(None)["Trunnion 650"]

@@ -13,9 +13,9 @@ from trunnion.findings import OutOfMemory
 from trunnion.geometry.frame import WORLD, Frame
 from trunnion.model.blank import Blank
 from trunnion.verify.cutter import lowest_height
+from trunnion.verify.finish.sweep import Sweep
 from trunnion.verify.motion import moves_of
 from trunnion.verify.stock import Stock, blank_box, run_stock
-from trunnion.verify.sweep import Sweep
 from verify_tools import bull, flat, program_section
 
 BOX = Blank(frame=WORLD, low=(0.0, 0.0, 0.0), high=(100.0, 60.0, 20.0), material="test", density=2.8)

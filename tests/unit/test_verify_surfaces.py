@@ -12,7 +12,7 @@ from trunnion.geometry.frame import WORLD, Frame
 from trunnion.part.facets import facets_of
 from trunnion.part.surfaces import level_face, line_edges, surfaces_of
 from trunnion.verify.contact import PartContact
-from trunnion.verify.coverage import samples_of
+from trunnion.verify.finish.coverage import samples_of
 
 SHAPES = {"pocket": block_with_pocket_shape, "hole": drilled_block_shape, "panel": two_pockets_and_a_rib_shape}
 

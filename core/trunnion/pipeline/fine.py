@@ -48,7 +48,7 @@ def faces_named(text: str) -> tuple[int, ...]:
 def measure_fine(engine: Engine, session: Session, faces: Sequence[int], spacing: float, progress: Progress = QUIET) -> FineFigures:
     """Return what the posted programs of a session leave on faces; `spacing` mm is how far apart it begins to look."""
     from trunnion.part.exact import ExactFace
-    from trunnion.verify.fine import fine_measure
+    from trunnion.verify.finish.fine import fine_measure
     from trunnion.verify.motion import moves_of
 
     if not session.posted:

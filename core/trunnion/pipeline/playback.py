@@ -25,13 +25,13 @@ from trunnion.pipeline.proving import programs_of, read_back
 from trunnion.post.release import release
 from trunnion.progress import QUIET, Progress
 from trunnion.settings import checked, choose, digest
+from trunnion.verify.judge.setups import bundles_of
+from trunnion.verify.machine.times import seconds_of
 from trunnion.verify.motion import Moves, moves_of
 from trunnion.verify.settings import ProofSettings
-from trunnion.verify.setups import bundles_of
 from trunnion.verify.stock import Stock, run_stock
 from trunnion.verify.stock.mesh import mesh_of
 from trunnion.verify.stock.stock import Snapshot
-from trunnion.verify.times import seconds_of
 
 FINENESS = 900
 """Cells along the longest side of the blank when nobody chooses, for heights: as fine as a picture shows, and still cut at once."""

@@ -106,7 +106,7 @@ def prove_programs(session: Session, bench: Bench, programs: tuple[Program, ...]
     """Return the verdict on programs, wherever their motions come from."""
     if session.process is None or session.blank is None:
         raise BadCall("no blank or operations: nothing to prove against")
-    from trunnion.verify.verdict import prove
+    from trunnion.verify.judge.verdict import prove
     names = [s.name for s in session.process.setups]
     strange = next((f for f in session.fixtures if f.setup and f.setup not in names), None)
     if strange is not None:

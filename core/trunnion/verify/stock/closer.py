@@ -13,12 +13,12 @@ from trunnion.geometry.arrays import Bools, Floats, Ints
 from trunnion.geometry.frame import Frame
 from trunnion.progress import Progress
 from trunnion.verify.cutter import lowest_height
+from trunnion.verify.finish.sweep import Sweep
 from trunnion.verify.kernels import strips as columns
 from trunnion.verify.motion import Moves
 from trunnion.verify.stock.field import Field
 from trunnion.verify.stock.rays import Passed
 from trunnion.verify.stock.stock import Stock
-from trunnion.verify.sweep import Sweep
 
 FINE = 0.05
 """mm, distance of the rays in a cell that a rapid grazes."""

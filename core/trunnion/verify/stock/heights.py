@@ -8,15 +8,15 @@ from trunnion import tolerance
 from trunnion.geometry.arrays import Floats
 from trunnion.geometry.frame import Frame
 from trunnion.progress import Progress
-from trunnion.verify.engagement import Probes
+from trunnion.verify.finish.sweep import Sweep
 from trunnion.verify.kernels import field as kernel
 from trunnion.verify.kernels import strips as columns
 from trunnion.verify.motion import Moves
 from trunnion.verify.profile import cones_of, profiles_of
 from trunnion.verify.stock.closer import look_closer
+from trunnion.verify.stock.engagement import Probes
 from trunnion.verify.stock.rays import Passed
 from trunnion.verify.stock.stock import Stock
-from trunnion.verify.sweep import Sweep
 
 CHUNK_CELLS = 10_000_000
 """Columns touched between two looks at cancel, about 0.1 s."""

@@ -13,10 +13,10 @@ from trunnion.geometry.arrays import Bools, Floats, Ints
 from trunnion.model.blank import Blank
 from trunnion.progress import Progress
 from trunnion.verify.cutter import Bodies
-from trunnion.verify.engagement import Probes, Tally
 from trunnion.verify.kernels import dexels as kernel
 from trunnion.verify.motion import Moves
 from trunnion.verify.stock.bundles import AXES, UP, Bundle, cycle
+from trunnion.verify.stock.engagement import Probes, Tally
 from trunnion.verify.stock.spans import Spans, spans_each, spans_of, whole_arcs
 from trunnion.verify.stock.stock import MOST_BYTES, Stock
 from trunnion.verify.threads import in_parallel

@@ -13,9 +13,9 @@ from trunnion.findings import BadInput, OutOfMemory
 from trunnion.geometry.arrays import Bools, Floats
 from trunnion.geometry.frame import Frame
 from trunnion.model.blank import Blank
+from trunnion.verify.finish.sweep import Sweep
 from trunnion.verify.stock.bundles import AXES, ROOM, Bundle
 from trunnion.verify.stock.field import Field, Part, cells_along
-from trunnion.verify.sweep import Sweep
 
 MOST_BYTES = 2_000_000_000
 """Most memory that the stock may take."""

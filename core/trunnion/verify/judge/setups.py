@@ -17,14 +17,14 @@ from trunnion.model.program import Program
 from trunnion.model.tool import Tool
 from trunnion.progress import QUIET, Progress
 from trunnion.verify.contact import Contact, PartContact
-from trunnion.verify.coverage import depth_in_blank
-from trunnion.verify.kinematics import Stands, stands_of
-from trunnion.verify.load import Load, load_of
+from trunnion.verify.finish.coverage import depth_in_blank
+from trunnion.verify.finish.sweep import Sweep
+from trunnion.verify.judge.load import Load, load_of
+from trunnion.verify.machine.kinematics import Stands, stands_of
+from trunnion.verify.machine.times import Times, times_of
 from trunnion.verify.motion import Moves, moves_of
 from trunnion.verify.settings import ProofSettings
 from trunnion.verify.stock import Stock, StockRun, blank_box, run_stock
-from trunnion.verify.sweep import Sweep
-from trunnion.verify.times import Times, times_of
 
 NEAR = 2.0
 """mm: material left up to this is measured to the last digit, more to a hundredth."""

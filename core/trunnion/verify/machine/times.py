@@ -14,7 +14,7 @@ from trunnion.geometry.arrays import Bools, Floats, Ints
 from trunnion.model.material import Machine
 from trunnion.units import SECONDS_PER_MINUTE
 from trunnion.verify.kernels.timing import block_times
-from trunnion.verify.kinematics import Stands, stands_of
+from trunnion.verify.machine.kinematics import Stands, stands_of
 from trunnion.verify.motion import Moves
 
 LINEAR = ("X", "Y", "Z")

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from trunnion.geometry.arrays import Floats
 from trunnion.model.program import ProgramSection
-from trunnion.verify.setups import SetupProof
+from trunnion.verify.judge.setups import SetupProof
 
 
 def block_of(proof: SetupProof, section: ProgramSection, row: int) -> str:

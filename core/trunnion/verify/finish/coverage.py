@@ -21,8 +21,8 @@ from trunnion.part.facets import Facets, facet_samples
 from trunnion.part.surfaces import DX, DY, GUIDE, L_KIND, PROFILE, PW0, PW1, PZ0, PZ1, R_KIND, SIDE, U0, U1, Surfaces
 from trunnion.progress import QUIET, Progress
 from trunnion.verify.contact import PartContact, guide_points
-from trunnion.verify.kinematics import can_hold
-from trunnion.verify.leaning import leaning_axes, touching_tips
+from trunnion.verify.finish.leaning import leaning_axes, touching_tips
+from trunnion.verify.machine.kinematics import can_hold
 from trunnion.verify.motion import poses_of
 
 POSES = 2048

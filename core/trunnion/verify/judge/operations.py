@@ -9,9 +9,9 @@ from trunnion.geometry.arrays import Floats, Ints
 from trunnion.model.material import Machine
 from trunnion.model.verdict import BlockProof, OperationProof, Outcome
 from trunnion.units import MM_PER_METRE, SECONDS_PER_MINUTE
+from trunnion.verify.finish.sweep import left_by_block
+from trunnion.verify.judge.setups import SetupProof
 from trunnion.verify.settings import ProofSettings
-from trunnion.verify.setups import SetupProof
-from trunnion.verify.sweep import left_by_block
 
 
 def operation_proofs(proof: SetupProof, tags: Ints, area: Floats, machine: Machine, settings: ProofSettings) -> list[OperationProof]:

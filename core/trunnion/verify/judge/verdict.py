@@ -22,16 +22,16 @@ from trunnion.part.facets import Facets, facets_of
 from trunnion.part.part import Part
 from trunnion.part.surfaces import Surfaces, surfaces_of
 from trunnion.progress import QUIET, Progress
-from trunnion.verify.coverage import Samples, samples_of
-from trunnion.verify.covered import covered
-from trunnion.verify.excess import load_findings
-from trunnion.verify.findings import setup_findings
-from trunnion.verify.limits import limit_findings
+from trunnion.verify.finish.coverage import Samples, samples_of
+from trunnion.verify.judge.covered import covered
+from trunnion.verify.judge.excess import load_findings
+from trunnion.verify.judge.findings import setup_findings
+from trunnion.verify.judge.operations import block_proof, operation_proofs
+from trunnion.verify.judge.setups import bundles_of, prove_setup
+from trunnion.verify.judge.sides import sides_of
+from trunnion.verify.machine.limits import limit_findings
 from trunnion.verify.motion import AXIS_LEAN
-from trunnion.verify.operations import block_proof, operation_proofs
 from trunnion.verify.settings import ProofSettings
-from trunnion.verify.setups import bundles_of, prove_setup
-from trunnion.verify.sides import sides_of
 from trunnion.verify.stock import Stock
 
 

@@ -20,10 +20,10 @@ from trunnion.model.material import Machine, Material
 from trunnion.model.program import ProgramSection
 from trunnion.model.verdict import Offer
 from trunnion.units import MM_PER_METRE, SECONDS_PER_MINUTE
-from trunnion.verify.load import NEWTON_METRES
-from trunnion.verify.places import block_of
+from trunnion.verify.judge.load import NEWTON_METRES
+from trunnion.verify.judge.places import block_of
+from trunnion.verify.judge.setups import SetupProof
 from trunnion.verify.settings import ProofSettings
-from trunnion.verify.setups import SetupProof
 
 MOST_OFFERS = 5
 """Runs of blocks that one operation is offered another feed for; the worst come first."""

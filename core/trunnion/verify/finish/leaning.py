@@ -9,7 +9,7 @@ import numpy as np
 from trunnion import tolerance
 from trunnion.geometry.arrays import Bools, Floats
 from trunnion.model.tool import Tool
-from trunnion.verify.kinematics import UP
+from trunnion.verify.machine.kinematics import UP
 
 LEANS = np.radians([15.0, 30.0, 60.0, 90.0])
 AROUND = 8

@@ -11,9 +11,9 @@ from trunnion import tolerance
 from trunnion.findings import Finding, error
 from trunnion.model.material import Axis, Machine
 from trunnion.model.program import ProgramSection
-from trunnion.verify.kinematics import SLACK, UP, Stands, angle_between
+from trunnion.verify.machine.kinematics import SLACK, UP, Stands, angle_between
+from trunnion.verify.machine.times import LINEAR
 from trunnion.verify.motion import Moves
-from trunnion.verify.times import LINEAR
 
 
 def limit_findings(setup: str, sections: Sequence[ProgramSection], moves: Moves, stands: Stands, machine: Machine) -> list[Finding]:

@@ -7,9 +7,9 @@ import numpy as np
 from trunnion.findings import Finding, error
 from trunnion.geometry.arrays import Floats, Ints
 from trunnion.model.program import ProgramSection
-from trunnion.verify.places import block_of, place_of
+from trunnion.verify.judge.places import block_of, place_of
+from trunnion.verify.judge.setups import SetupProof
 from trunnion.verify.settings import ProofSettings
-from trunnion.verify.setups import SetupProof
 
 MOST_FINDINGS = 5
 """Places that one operation's finding list names of each kind; the worst come first."""

@@ -1,0 +1,1 @@
+"""From what was measured to what is said: proofs of setups and operations, findings, the verdict."""
