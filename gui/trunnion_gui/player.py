@@ -84,6 +84,11 @@ class Player(QObject):
         return not self._document.is_busy and session.blank is not None and any(len(p.path) for p in session.paths)
 
     @property
+    def is_ready(self) -> bool:
+        """Whether the stock can follow the tool: there is a timeline, and no job keeps the worker."""
+        return self.timeline is not None and not self._document.is_busy
+
+    @property
     def end(self) -> float:
         """The last position."""
         return float(len(self.timeline)) if self.timeline is not None else 0.0
@@ -104,8 +109,8 @@ class Player(QObject):
         self.opened.emit()
 
     def play(self) -> None:
-        """Run on from where the tool is; from the beginning when it is at the end."""
-        if self.timeline is None or self.is_playing:
+        """Run on from where the tool is; from the beginning when it is at the end. Not while a job runs: no stock would follow."""
+        if not self.is_ready or self.is_playing:
             return
         if self.position >= self.end:
             self.go(0.0)
@@ -193,6 +198,7 @@ class Player(QObject):
         session = self._document.session
         source = (session.paths, session.posted, session.process, session.blank)
         if len(source) == len(self._source) and all(a is b for a, b in zip(source, self._source)):
+            self._ask()
             return
         if not self.can_play:
             self.forget()

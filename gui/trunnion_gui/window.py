@@ -317,7 +317,7 @@ class Window(QMainWindow):
         player = self.player
 
         def is_open() -> bool:
-            return player.timeline is not None
+            return player.is_ready
 
         def command(id: str, text: str, run: Callable[[], object], icon: str, keys: str, help: str = "") -> None:
             self.registry.add(Command(id=id, text=text, run=run, icon=icon, keys=keys, help=help, menu="Playback", enabled=is_open))

@@ -137,6 +137,20 @@ def test_the_tool_stands_where_it_cuts(played, qtbot):
     assert hue(seen) @ hue(rgb(tool_colours()["cutter"])) > 0.9
 
 
+def test_while_a_job_runs_nothing_plays_and_the_stock_follows_afterwards(played, qtbot, tmp_path):
+    go(played, qtbot, 20.0)
+    played.document.save(tmp_path / "tray.trunnion")
+    assert played.document.is_busy
+    assert not played.playback.buttons["play.run"].isEnabled()
+    played.player.play()
+    assert not played.player.is_playing
+    QTest.mouseClick(played.playback.track, LEFT, pos=QPoint(round(played.playback.track.x_of(60.0)), 10))
+    qtbot.waitUntil(lambda: not played.document.is_busy, timeout=30000)
+    settled(played, qtbot)
+    assert played.player.position == pytest.approx(60.0, abs=1.0)
+    assert played.playback.buttons["play.run"].isEnabled()
+
+
 def test_each_operation_has_its_tool(played, qtbot):
     widths = []
     for row in (0, 1):
