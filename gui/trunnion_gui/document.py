@@ -2,7 +2,7 @@
 
 A slot builds an edit and hands it over (`edit`), or asks for a job (`open`, `run`, `save`, `write`); the worker computes and the
 signals tell. While a run goes on, `shown` holds what is done so far; `session` stays as it was until the run ends, so that a
-cancelled or crashed job leaves nothing behind.
+cancelled or crashed job leaves nothing behind. What was done before a step refused (no plan for this family) is kept.
 """
 
 from __future__ import annotations
@@ -359,6 +359,8 @@ class Document(QObject):
         elif job.verb == "run":
             self.history.push(job.label, reply.value.session)
             self._show(reply.value.session, reply.value.steps)
+            if reply.value.refusal:
+                self.notice(reply.value.refusal)
         elif job.verb == "save":
             self.project = job.path
             self.history.mark_saved(self.session)

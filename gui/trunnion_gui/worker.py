@@ -67,10 +67,11 @@ class Reply:
 
 @dataclass(frozen=True, slots=True)
 class State:
-    """A session and the state of each step."""
+    """A session, the state of each step, and the line of the step that refused after others were done."""
 
     session: Session
     steps: dict[str, str]
+    refusal: str = ""
 
 
 @dataclass(frozen=True, slots=True)
@@ -105,7 +106,12 @@ def _run(engine: Any, progress: Progress, tell: Tell, session: Session, last: st
     steps = [s for s in until(last) if before[s] in ("empty", "stale")] or [last]
     for step in steps:
         tell("stage", (step, None))
-        session = engine.run(session, until=step, progress=_own_share(progress.part(*share(step, steps)), step))
+        try:
+            session = engine.run(session, until=step, progress=_own_share(progress.part(*share(step, steps)), step))
+        except TrunnionError as reason:
+            if step == steps[0]:
+                raise
+            return State(session, engine.states(session), str(reason))
         if step != steps[-1]:
             tell("stage", (step, State(session, engine.states(session))))
     return State(session, engine.states(session))

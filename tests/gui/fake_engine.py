@@ -335,3 +335,10 @@ class FaultyEngine(FakeEngine):
 
     def _route(self, session: Session) -> Session:
         raise ZeroDivisionError("division by zero")
+
+
+class RefusingEngine(FakeEngine):
+    """Recognises a part, but has no plan for its family."""
+
+    def _route(self, session: Session) -> Session:
+        raise BadInput("tray.step: parts of this family are not planned yet")

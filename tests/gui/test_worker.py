@@ -93,6 +93,26 @@ def test_a_fault_of_the_program_is_one_line_and_the_session_stays(make_window, p
     assert window.document.session is before
 
 
+def test_what_was_done_before_a_step_refused_is_kept(make_window, part_file, idle):
+    window = opened(make_window, "RefusingEngine", part_file, idle)
+    before = window.document.session
+    window.document.program()
+    idle(window)
+    assert "not planned yet" in window.centre.notice.text
+    assert window.document.session.recognition is not None
+    assert window.panels["recognize"].state == window.panels["blank"].state == "done"
+    assert window.panels["route"].state == "empty"
+    window.document.undo()
+    idle(window)
+    assert window.document.session is before
+    window.document.run("route", "Generate route")
+    idle(window)
+    assert window.panels["recognize"].state == "done"
+    window.document.run("route", "Generate route")
+    idle(window)
+    assert "not planned yet" in window.centre.notice.text
+
+
 def test_an_edit_while_a_job_runs_is_refused_in_words(make_window, part_file, idle, qtbot):
     window = opened(make_window, "SlowEngine", part_file, idle)
     window.document.program()
