@@ -39,6 +39,19 @@ def test_a_missing_file_is_one_line_and_exit_2(tmp_path: Path, capsys: pytest.Ca
     assert said.out == "" and "none.step" in said.err and len(said.err.strip().splitlines()) == 1
 
 
+@pytest.mark.parametrize("content", [None, b"\xff\xfe\x00G1"])
+def test_an_nc_file_that_can_not_be_read_is_told_before_anything_is_computed(tmp_path: Path, content: bytes | None, sample_part: Path,
+                                                                             capsys: pytest.CaptureFixture[str],
+                                                                             monkeypatch: pytest.MonkeyPatch) -> None:
+    file = tmp_path / "edited.nc"
+    if content is not None:
+        file.write_bytes(content)
+    monkeypatch.setattr("trunnion.pipeline.Engine.open", lambda *_, **__: pytest.fail("the part was opened first"))
+    assert main(["verify", str(sample_part), "--nc", str(file)]) == BAD
+    said = capsys.readouterr().err.strip()
+    assert len(said.splitlines()) == 1 and said.count("edited.nc") == 1 and "Errno" not in said
+
+
 def test_a_setting_without_a_value_is_refused(capsys: pytest.CaptureFixture[str], sample_part: Path) -> None:
     assert main(["recognize", str(sample_part), "--set", "plane.rough.slot_feed"]) == BAD
     assert "--set wants KEY=VALUE" in capsys.readouterr().err

@@ -28,6 +28,10 @@ def run(chosen: argparse.Namespace) -> int:
     faces = fine.faces_named(chosen.fine) if chosen.fine else ()
     if not 0.001 <= chosen.fine_spacing <= 10.0:
         raise BadCall(f"--fine-spacing {chosen.fine_spacing:g}: it must be from 0.001 to 10 mm")
+    if chosen.nc:
+        from trunnion.pipeline.checking import text_of
+        for file in chosen.nc:
+            text_of(file)
     engine, session = open_session(chosen, "toolpath" if chosen.nc else "verify")
     if chosen.nc:
         from trunnion.pipeline.checking import verify_texts

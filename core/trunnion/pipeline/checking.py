@@ -22,14 +22,19 @@ def verify_texts(engine: Engine, session: Session, files: Sequence[Path], progre
     if len(files) > len(session.process.setups):
         raise BadCall(f"{len(files)} programs given, but the part has {len(session.process.setups)} setups")
     dialect = checked(choose(PostSettings, session.choices)).dialect
-    posted = []
-    for file, setup in zip(files, session.process.setups, strict=False):
-        try:
-            text = file.read_text(encoding="utf-8")
-        except (OSError, UnicodeDecodeError) as reason:
-            raise BadInput(f"{file}: can't be read as text: {reason}") from None
-        posted.append(PostedFile(suffix=file.name, dialect=dialect, setup=setup.name, text=text))
+    posted = [PostedFile(suffix=file.name, dialect=dialect, setup=setup.name, text=text_of(file))
+              for file, setup in zip(files, session.process.setups, strict=False)]
     programs = read_back(session, tuple(posted))
     verdict = prove_programs(session, engine.bench, programs, progress)
     record = StepRecord(key="texts from outside", seconds=0.0, findings=verdict.findings)
     return replace(session, verdict=verdict, posted=tuple(posted), records={**session.records, "verify": record})
+
+
+def text_of(file: Path) -> str:
+    """Return the NC text of a file; raise `BadInput` when there is none to read."""
+    try:
+        return file.read_text(encoding="utf-8")
+    except OSError as reason:
+        raise BadInput(f"{file}: can't be read: {(reason.strerror or 'the system refuses').lower()}; give the NC file to be proven") from None
+    except UnicodeDecodeError:
+        raise BadInput(f"{file}: is not a text; give the NC file to be proven") from None
