@@ -12,6 +12,8 @@ from importlib.resources import files
 Rgb = tuple[int, int, int]
 MOTIONS = ("cut", "entry", "lead", "link", "retract", "rapid")
 """Kinds of motion, in the order of the legend."""
+READABLE = 4.5
+"""Contrast that small words need (WCAG 2, AA)."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -104,3 +106,27 @@ def mixed(colour: str, other: str, share: float) -> str:
     '#808080'
     """
     return "#" + "".join(f"{round(a + (b - a) * share):02x}" for a, b in zip(rgb(colour), rgb(other)))
+
+
+def contrast(colour: str, ground: str) -> float:
+    """Return how well a colour can be read on another, from 1 (not at all) to 21, as WCAG 2 counts it.
+
+    >>> round(contrast("#000000", "#ffffff")), round(contrast("#777777", "#777777"))
+    (21, 1)
+    """
+    def light(of: str) -> float:
+        shares = [c / 255.0 for c in rgb(of)]
+        linear = [c / 12.92 if c <= 0.04045 else ((c + 0.055) / 1.055) ** 2.4 for c in shares]
+        return 0.2126 * linear[0] + 0.7152 * linear[1] + 0.0722 * linear[2]
+
+    dark, bright = sorted((light(colour), light(ground)))
+    return (bright + 0.05) / (dark + 0.05)
+
+
+def readable(colour: str, ground: str, text: str) -> str:
+    """Return a colour for words on a ground: itself, or with as much of the text's colour as it takes to be read.
+
+    >>> readable("#1660a8", "#ffffff", "#1d2733")
+    '#1660a8'
+    """
+    return next((c for c in (mixed(colour, text, n / 10.0) for n in range(10)) if contrast(c, ground) >= READABLE), text)

@@ -24,13 +24,13 @@ def sentence(words: str) -> str:
 
 
 def counted(number: int, kind: str) -> str:
-    """Return a number of things in words.
+    """Return a number of things in words; only English ones have an s when there are several.
 
-    >>> counted(13, "pocket"), counted(1, "open_pocket")
-    ('13 pockets', '1 open pocket')
+    >>> counted(13, "pocket"), counted(1, "open_pocket"), counted(13, "型腔")
+    ('13 pockets', '1 open pocket', '13 型腔')
     """
     words = kind_words(kind)
-    return f"{number} {words}" if number == 1 else f"{number} {words}s"
+    return f"{number} {words}" if number == 1 or not words.isascii() else f"{number} {words}s"
 
 
 def duration(seconds: float) -> str:
@@ -58,9 +58,15 @@ def amount(value: Size, decimals: int = 3) -> str:
 
 
 def size_unit(name: str, value: Size) -> str:
-    """Return the unit of a feature's size by its name."""
-    if isinstance(value, (bool, str)) or name.startswith(_PLAIN) or name.endswith("count"):
+    """Return the unit of a feature's size by its name.
+
+    >>> size_unit("depth", 30.0), size_unit("lean", 3.0), size_unit("area", 1800.0), size_unit("size_ratio", 0.9), size_unit("count", 4)
+    ('mm', '°', 'mm²', '', '')
+    """
+    if isinstance(value, (bool, str)) or name.startswith(_PLAIN) or name.endswith(("count", "ratio")):
         return ""
+    if name.endswith("area"):
+        return "mm²"
     return "°" if any(word in name for word in _ANGLES) else "mm"
 
 

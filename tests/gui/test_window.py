@@ -294,3 +294,13 @@ def test_a_header_opens_and_folds_its_panel(window):
     assert panel.body.isVisible()
     QTest.mouseClick(panel.header, LEFT, pos=QPoint(40, 12))
     assert not panel.body.isVisible()
+
+
+@pytest.mark.parametrize("name", ["light", "dark"])
+def test_words_of_a_program_can_be_read_in_both_themes(window, name):
+    from trunnion_gui.colours import READABLE, contrast, theme
+
+    window.use_theme(theme(name))
+    looks = window.code.text._looks
+    assert {k: round(contrast(looks[k].foreground().color().name(), theme(name).panel), 1) for k in ("rapid", "cut")
+            if contrast(looks[k].foreground().color().name(), theme(name).panel) < READABLE} == {}
