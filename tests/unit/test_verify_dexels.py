@@ -338,3 +338,30 @@ def test_engagement_of_a_leaning_slot_is_half_its_circumference():
     _, run = cut(leaning_section(flat(10.0)(), [(0, 16, 12), (20, 16, 12), (30, 16, 12)], [axis] * 3))
     assert run.engagement[2] == approx(math.pi, abs=0.2)
     assert run.depth_of_cut[2] == approx(8.0 / math.cos(0.2), abs=1.5)
+
+
+@pytest.mark.parametrize("name", [("z",), XYZ])
+def test_a_rapid_straight_up_is_seen_in_what_a_t_slot_cutter_has_left_over_its_slot(name):
+    tool = tool_of("t-slot", diameter=20.0, corner_radius=0.5, flute_length=6.0, neck_diameter=8.0, neck_length=26.0, shank_diameter=8.0,
+                   stickout=30.0)
+    section = _rapid_at_the_end(program_section(tool, [(-15.0, 16.0, 30.0), (-15.0, 16.0, 8.0), (-6.0, 16.0, 8.0), (-6.0, 16.0, 30.0)],
+                                                rapid_to=1))
+    moves = moves_of([section])
+    run = run_stock(Stock.of(BOX, 0.5, name), moves, WORLD, Sweep.of(moves, 2.0))
+    assert run.rapid_depth[:3].max() == 0.0 and run.rapid_depth[3] > 1.0
+
+
+@pytest.mark.parametrize("form", sorted(set(FORMS) - {"t-slot"}))
+def test_a_rapid_straight_up_out_of_what_was_just_plunged_is_clear(form):
+    section = _rapid_at_the_end(program_section(FORMS[form], [(20.1, 16.2, 60.0), (20.1, 16.2, 13.0), (20.1, 16.2, 60.0)]))
+    moves = moves_of([section])
+    run = run_stock(whole(0.5), moves, WORLD, Sweep.of(moves, 2.0))
+    assert run.rapid_depth.max() == 0.0 and run.body_depth.max() <= tolerance.CONTACT_BOUND
+
+
+def _rapid_at_the_end(section):
+    """Return a section whose last block is a rapid."""
+    path = section.path
+    motion, feed = path.motion.copy(), path.feed.copy()
+    motion[-1], feed[-1] = Motion.RAPID, 0.0
+    return replace(section, path=replace(path, motion=motion, feed=feed))

@@ -509,13 +509,13 @@ def _limit(piece: Floats, p: int, last: int) -> float:
 
 @njit(cache=True, nogil=True)
 def cut_tile(last: int, span: Floats, span_start: Ints, arcs: Floats, piece: Floats, piece_start: Ints, tool: Ints, rapid: Bools,
-             leaves: Bools, count: Ints, low: Floats, high: Floats, columns: int, row: int, end_row: int, origin: Floats, pitch: float,
+             count: Ints, low: Floats, high: Floats, columns: int, row: int, end_row: int, origin: Floats, pitch: float,
              resume: Ints, removed: Floats, depth: Floats, place: Floats, body: Floats, way: Floats, rings: Floats, flute: Floats,
              circle: Floats, probe_start: Ints, counted: Ints, seen: Floats, fine: int, allowed: float, grazed: Floats) -> bool:
     """Run moves up to `last` through a tile of a bundle: cut with feed moves, and judge rapids and what doesn't cut against what stands.
 
     span (s, `SPAN_COLUMNS`) in the bundle's coordinates, span_start (n + 1,); arcs, piece, piece_start, tool (n,) as `Bodies` has them;
-    leaves (n,): the move goes straight out along its axis. count (c,), low and high (c, k) the bundle's intervals, the tile's rows from
+    count (c,), low and high (c, k) the bundle's intervals, the tile's rows from
     `row` to `end_row`, `columns` cells each; origin (2,) of the cells.
     resume (6,): move, span, piece, row and column to begin with, and whether that move has been looked at; changed. removed (n,) gets the
     length that is gone, depth (n,) and place (n, 3) how deep a rapid's cutter is in material and where (u, v, w), body (n,) how deep what
@@ -577,8 +577,6 @@ def cut_tile(last: int, span: Floats, span_start: Ints, arcs: Floats, piece: Flo
                             if not whole:
                                 resume[0], resume[1], resume[2], resume[3], resume[4], resume[5] = n, s, p, j, i, 1
                                 return False
-        if leaves[n]:
-            continue
         for s in range(span_start[n], span_start[n + 1]):
             if span[s, ALL_BOX + 1] > v_high or span[s, ALL_BOX + 4] < v_low or span[s, ALL_BOX + 2] > top or \
                     span[s, ALL_BOX + 5] < bottom:

@@ -57,15 +57,14 @@ class Going:
 
 @dataclass(frozen=True, slots=True, eq=False)
 class _Batch:
-    """Moves made ready together: where each one's spans start and the spans in each bundle's coordinates, tool, whether rapid and whether
-    straight out, its way, and its probes."""
+    """Moves made ready together: where each one's spans start and the spans in each bundle's coordinates, tool, whether rapid, its way,
+    and its probes."""
 
     start: Ints
     spans: list[Floats]
     bodies: Bodies
     tool: Ints
     rapid: Bools
-    leaves: Bools
     way: Floats
     probes: Probes
     probe_start: Ints
@@ -81,7 +80,7 @@ def run_rays(stock: Stock, going: Sequence[Going], moves: Moves, probes: Probes,
     """
     n = len(moves)
     share = 1.0 / len(stock.bundles)
-    whole, leaves = whole_arcs(moves, [AXES.index(name) for name in stock.bundles]), _leaves(moves)
+    whole = whole_arcs(moves, [AXES.index(name) for name in stock.bundles])
     each = spans_each(moves, whole)
     ends = np.cumsum(each)
     row = min((g.first for g in going), default=n)
@@ -92,7 +91,7 @@ def run_rays(stock: Stock, going: Sequence[Going], moves: Moves, probes: Probes,
         spans = spans_of(moves, rows, each[rows], whole[rows])
         way = np.column_stack([a[rows] for a in (moves.start, moves.end, moves.start_axis, moves.end_axis, moves.centre, moves.sweep)])
         batch = _Batch(spans.start, [spans.along(axis) for axis in range(3)], moves.bodies, moves.tool[rows], moves.rapid[rows],
-                       leaves[rows], way, probes, probes.start[row:rows[-1] + 2], fine)
+                       way, probes, probes.start[row:rows[-1] + 2], fine)
         looks = np.cumsum(_looks(spans, stock.blank, bundles))
         first = 0
         while first < len(rows):
@@ -143,7 +142,7 @@ class _Job:
         own, b, m = slice(self.first, self.last), self.bundle, self.batch
         self.done = kernel.cut_tile(
             self.last - self.first, m.spans[b.axis], m.start[self.first:self.last + 1], m.bodies.arc, m.bodies.piece, m.bodies.start,
-            m.tool[own], m.rapid[own], m.leaves[own], b.count, b.low, b.high, b.columns, *self.tile, b.origin, b.pitch, self.resume,
+            m.tool[own], m.rapid[own], b.count, b.low, b.high, b.columns, *self.tile, b.origin, b.pitch, self.resume,
             self.removed, self.depth, self.place, self.body, m.way[own], m.probes.rings, m.probes.flute, m.probes.circle,
             self.probe - self.probe[0], self.tally.counted, self.tally.spans, self.fine, tolerance.RAPID_DEPTH, self.grazed)
 
@@ -162,14 +161,6 @@ class _Job:
         if len(listed):
             rapids = row + self.first + np.flatnonzero(self.batch.rapid[self.first:self.last])
             found.grazed.append((rapids[listed // kernel.MOST_GRAZED], self.grazed[listed]))
-
-
-def _leaves(moves: Moves) -> Bools:
-    """Say for each move (n,) whether the tool goes straight out along its axis: through what its own cut has opened."""
-    way = moves.end - moves.start
-    along = (way * moves.start_axis).sum(axis=1)
-    beside = np.linalg.norm(way - along[:, None] * moves.start_axis, axis=1)
-    return np.asarray((along > 0.0) & (beside <= tolerance.COINCIDENT) & (moves.sweep == 0.0) & ~moves.turning)
 
 
 def _looks(spans: Spans, blank: Blank, bundles: Sequence[Bundle]) -> Floats:
