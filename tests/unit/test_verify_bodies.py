@@ -201,3 +201,24 @@ def test_a_hollow_outline_is_cut_into_bodies_that_are_at_most_a_quarter_of_the_b
         deepest = max(kernel.depth_in_body(arcs, int(p[kernel.FIRST]), int(p[kernel.LAST]), r, h)[0] for p in pieces
                       if p[kernel.Z_LOW] <= h <= p[kernel.Z_HIGH])
         assert -1e-9 <= deepest <= tolerance.CONTACT_BOUND / 4
+
+
+@pytest.mark.parametrize("form", ["ball", "bull", "t-slot"])
+def test_flutes_as_long_as_the_corner_is_high_have_no_flank(form):
+    corner = {"ball": 5.0, "bull": 2.0, "t-slot": 2.0}[form]
+    tool = tool_of(form, corner_radius=corner, flute_length=4.0 if form == "t-slot" else corner)
+    bodies = bodies_of([tool])
+    assert np.isfinite(bodies.arc).all()
+    for rho in (0.0, 2.9, 4.0, 4.99):
+        under = corner - math.sqrt(max(corner**2 - max(rho - 5.0 + corner, 0.0) ** 2, 0.0))
+        depth, _, _ = kernel.depth_in_body(bodies.arc, int(bodies.piece[0, kernel.FIRST]), int(bodies.piece[0, kernel.LAST]), rho, under)
+        assert depth == approx(0.0, abs=1e-9)
+
+
+@pytest.mark.parametrize(("form", "fields"), [
+    ("ball", {"corner_radius": 5.0, "flute_length": 3.0}), ("bull", {"corner_radius": 2.0, "flute_length": 1.9}),
+    ("taper", {"corner_radius": 4.0, "taper_angle": 10.0, "flute_length": 3.0}),
+    ("barrel", {"corner_radius": 1.0, "barrel_radius": 10.0, "flute_length": 30.0})])
+def test_flutes_that_end_inside_the_corner_or_beyond_a_barrel_are_refused(form, fields):
+    with pytest.raises(ValueError, match="flutes"):
+        tool_of(form, **fields)

@@ -86,13 +86,19 @@ class Tool:
         c, r = self.corner_radius, self.radius
         if self.form == "flat" and c != 0.0:
             return "a flat end has no corner radius; the form is bull"
+        if self.form in PLAIN_FORMS and self.flute_length < c:
+            return f"its flutes must reach up to where the corner ends, {c:.3f} mm"
         if self.form == "taper" and not 0.0 < self.taper_angle < 90.0:
             return "a taper needs a taper angle between 0 and 90 degrees"
+        if self.form == "taper" and self.flute_length < c * (1.0 - math.sin(math.radians(self.taper_angle))):
+            return "a taper's flutes must reach up to its flank"
         if self.form == "barrel":
             if not 0.0 < c < r < self.barrel_radius:
                 return "a barrel's tip radius, radius and barrel radius must grow in this order"
             if self.flute_length <= self.widest_height:
                 return f"a barrel's flutes must reach above its widest circle, {self.widest_height:.3f} mm"
+            if self.flute_length >= self.widest_height + math.sqrt(self.barrel_radius**2 - (self.barrel_radius - r) ** 2):
+                return "a barrel's flutes must end before its flank comes to the axis"
         if self.form == "t-slot" and 2 * c > self.flute_length:
             return "a T-slot cutter must be thicker than both its corner radii"
         if self.form == "drill":

@@ -72,7 +72,11 @@ def bodies_of(tools: Sequence[Tool]) -> Bodies:
 
 
 def outline_of(tool: Tool) -> list[Span]:
-    """Return the outline of what cuts, from the axis (or a level end face) up to the top of the flutes."""
+    """Return the outline of what cuts, from the axis (or a level end face) up to the top of the flutes; no span is without a length."""
+    return [span for span in _spans_of(tool) if math.hypot(span[2] - span[0], span[3] - span[1]) > tolerance.PARAMETRIC]
+
+
+def _spans_of(tool: Tool) -> list[Span]:
     r, c, top = tool.radius, tool.corner_radius, tool.flute_length
     if tool.form == "taper":
         lean = math.radians(tool.taper_angle)
