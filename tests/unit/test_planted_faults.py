@@ -123,6 +123,31 @@ def test_a_rapid_along_a_wall_is_seen_when_it_enters_it_between_two_columns(into
     assert min(proof(*clean_plan(), section).rapids_in_stock, 1) == seen
 
 
+@pytest.mark.parametrize(("thick", "height", "seen"), [(0.3, 12.0, 1), (0.3, TOP + 0.1, 0), (-0.3, 12.0, 0)])
+def test_a_rapid_through_a_fin_that_stands_between_two_columns_is_seen(thick, height, seen):
+    # Two passes with a fin about x = 0 between them, where the columns stand at -0.25 and 0.25; below 0 the passes overlap.
+    tool, away = flat(6.0)(flute=20.0, number=4), 3.0 + thick / 2
+    slots = [stop for x in (-away, away) for stop in ((x, -30.0, 30.0), (x, -30.0, 11.0), (x, 30.0, 11.0), (x, 30.0, 30.0))]
+    across = program_section(tool, [(-away, 0.0, 30.0), (-away, 0.0, height), (away, 0.0, height), (away, 0.0, 30.0)], rapid_to=3)
+    assert proof(program_section(FACING, facing(), rapid_to=1), program_section(tool, slots), across).rapids_in_stock == seen
+
+
+def test_a_rapid_down_a_slope_is_seen_where_it_is_lowest_over_a_fin():
+    tool = flat(6.0)(flute=20.0, number=4)
+    slots = [stop for x in (-3.15, 3.15) for stop in ((x, -30.0, 30.0), (x, -30.0, 11.0), (x, 30.0, 11.0), (x, 30.0, 30.0))]
+    # Where its axis passes the fin the tip is 2 mm above the top, and when it leaves the fin 1 mm below.
+    down = program_section(tool, [(-6.0, 0.0, 26.0), (3.15, 0.0, 16.85), (3.15, 0.0, 30.0)], rapid_to=2)
+    assert proof(program_section(FACING, facing(), rapid_to=1), program_section(tool, slots), down).rapids_in_stock == 1
+
+
+@pytest.mark.parametrize(("number", "seen"), [(1, 1), (5, 0)])
+def test_a_rapid_from_where_the_section_before_has_left_the_same_tool_is_judged_all_the_way(number, seen):
+    # From one side of the block to the other at half its height; another tool comes from its change.
+    left = program_section(FACING, [*facing(), (-45.0, 0.0, 30.0), (-45.0, 0.0, 9.0)], rapid_to=1)
+    right = program_section(flat(16.0)(number=number), [(45.0, 0.0, 9.0), (45.0, 0.0, 30.0)], operation="next", rapid_to=1)
+    assert proof(left, right).rapids_in_stock == seen
+
+
 def test_a_missing_pass_is_seen_by_coverage():
     verdict = proof(*clean_plan(pocket=pocketing(skip_walls=True)))
     assert codes(verdict) == {"verify.coverage"}

@@ -87,7 +87,8 @@ class Moves:
 def moves_of(sections: Sequence[ProgramSection]) -> Moves:
     """Return the moves of a setup's sections in order.
 
-    A section's first block starts where it ends: the tool comes from its change.
+    A section's first block starts where it ends, when the tool comes from its change; where the same tool goes on, it starts where the
+    section before has left it.
     """
     starts: list[Floats] = []
     ends: list[Floats] = []
@@ -101,9 +102,14 @@ def moves_of(sections: Sequence[ProgramSection]) -> Moves:
         path = section.path
         n = len(path)
         start, sweep = path.starts(), path.sweeps()
+        start_axis, length = np.vstack([path.axis[:1], path.axis[:-1]]), path.lengths()
+        before = sections[index - 1] if index else section
+        if n and index and before.tool == section.tool and len(before.path):
+            start[0], start_axis[0] = before.path.position[-1], before.path.axis[-1]
+            length[0] = np.linalg.norm(path.position[0] - start[0])
         starts.append(start)
         ends.append(path.position)
-        start_axes.append(np.vstack([path.axis[:1], path.axis[:-1]]))
+        start_axes.append(start_axis)
         end_axes.append(path.axis)
         centres.append(path.centre)
         sweeps.append(sweep)
@@ -112,7 +118,7 @@ def moves_of(sections: Sequence[ProgramSection]) -> Moves:
         blocks.append(np.arange(n))
         rapid.append(path.motion == Motion.RAPID)
         feeds.append(path.feed)
-        lengths.append(path.lengths())
+        lengths.append(length)
         tool_row.append(np.full(n, tools.setdefault(section.tool, len(tools))))
     first, last = _points(start_axes), _points(end_axes)
     return Moves(start=_points(starts), end=_points(ends), start_axis=first, end_axis=last, centre=_points(centres),

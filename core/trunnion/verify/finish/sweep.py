@@ -120,6 +120,15 @@ class Sweep:
         in_parallel(some, len(points), CHUNK, QUIET, "", threads)
         return out
 
+    def cut_around(self, points: Floats, margin: float, move: int) -> Bools:
+        """Say for each point (s, 3) whether one move before a row, of those with a closed form in plan, has removed all within a margin in
+        plan of it and all above. That others have is not asked."""
+        out, g = np.zeros(len(points), bool), self.grid
+        points = np.ascontiguousarray(points, dtype=np.float64)
+        kernel.around_loop(0, len(points), points, margin, move, self.moves.row, self.cutter, self.low, g.start, g.rows, g.frame, g.shape,
+                           out)
+        return out
+
 
 def left_by_block(left: Floats, nearest: Ints, n_moves: int, area: Floats | None = None) -> BlockLeft:
     """Return the material left (s,) on samples, gathered by the move (s,) that came nearest to each (-1: none).

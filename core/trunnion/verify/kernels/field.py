@@ -608,7 +608,7 @@ def _deepest(top: Floats, origin: Floats, pitch: float, x0: float, y0: float, x1
 @njit(cache=True, nogil=True)
 def _rims(top: Floats, origin: Floats, pitch: float, x0: float, y0: float, x1: float, y1: float, z: float, radius: float, rims: Ints,
           count: int) -> int:
-    """List the cells that a level sweep touches and on or beside which material stands above z."""
+    """List the cells that a level sweep touches: those on or beside which material stands above z, and the others as -1 - cell."""
     reach = radius + pitch * 0.7072
     i0, i1 = first_cell(min(x0, x1) - reach, origin[0], pitch), last_cell(max(x0, x1) + reach, origin[0], pitch, top.shape[1])
     j0, j1 = first_cell(min(y0, y1) - reach, origin[1], pitch), last_cell(max(y0, y1) + reach, origin[1], pitch, top.shape[0])
@@ -624,8 +624,9 @@ def _rims(top: Floats, origin: Floats, pitch: float, x0: float, y0: float, x1: f
             for b in range(max(j - 1, 0), min(j + 1, top.shape[0] - 1) + 1):
                 for a in range(max(i - 1, 0), min(i + 1, top.shape[1] - 1) + 1):
                     stands = stands or top[b, a] > z
-            if stands and count < len(rims):
-                rims[count] = j * top.shape[1] + i
+            if count < len(rims):
+                cell = j * top.shape[1] + i
+                rims[count] = cell if stands else -1 - cell
                 count += 1
     return count
 
@@ -722,8 +723,8 @@ def stock_loop(first: int, last: int, top: Floats, origin: Floats, pitch: float,
     top (rows, columns) heights of columns, changed; origin (2,) of the field's corner, `highest` its height at the start. tool (n,) rows of
     profiles (t, 6), see `verify/profile.py`; arcs, pieces of the bodies of all tools; cones (k, 5) above the flutes, cone_start (t + 1,).
     removed (n,) gets the summed height that a move takes off; depth (n,) and cell (n,) how deep a rapid goes and where; body_depth
-    (n,) how deep what is above the flutes goes into stock; rims gets the cells that a low rapid grazes, rim_start (n + 1,) their
-    beginnings. probe_start (n + 1,), circle, rings, counted and spans: see `kernels/engagement.py`.
+    (n,) how deep what is above the flutes goes into stock; rims gets the cells that a low rapid grazes as `_rims` lists them,
+    rim_start (n + 1,) their beginnings. probe_start (n + 1,), circle, rings, counted and spans: see `kernels/engagement.py`.
     Returns the row after the last one done and why it ended early: 1 when `rims` is full, 2 when that row's move has to leave columns
     standing that a field can't show: removed has what it took off, the rest is for the bundles with intervals.
     """

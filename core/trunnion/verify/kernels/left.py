@@ -447,3 +447,24 @@ def cut_loop(first: int, last: int, points: Floats, before: int, moves: Floats, 
                     break
         if not out[n]:
             out[n] = nearest_span(x, y, z, tree, flutes, 2.0 * bound, -1, bound, before, True, bound, nodes, least, spans)[1] >= 0
+
+
+@njit(cache=True, nogil=True)
+def around_loop(first: int, last: int, points: Floats, margin: float, before: int, moves: Floats, cutter: Floats, low: Floats,
+                cell_start: Ints, cell_move: Ints, grid: Floats, shape: Ints, out: Bools) -> None:
+    """Say for each point (s, 3) whether one of the listed moves with a row below `before` has removed all within a margin in plan of it,
+    and all above that."""
+    for n in range(first, last):
+        x, y, z = points[n, 0], points[n, 1], points[n, 2]
+        out[n] = False
+        i, j = int(math.floor((x - grid[0]) / grid[2])), int(math.floor((y - grid[1]) / grid[2]))
+        if 0 <= i < shape[0] and 0 <= j < shape[1]:
+            cell = j * shape[0] + i
+            for c in range(cell_start[cell], cell_start[cell + 1]):
+                m = cell_move[c]
+                if low[m] > z:
+                    break
+                # A cutter thinner by the margin that holds the middle: the cutter itself holds all around.
+                if m < before and left_by_move(x, y, z, moves[m], cutter[m, 0] - margin, cutter[m, 1], np.inf, 1.0) <= 0.0:
+                    out[n] = True
+                    break

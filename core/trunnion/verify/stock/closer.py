@@ -24,6 +24,8 @@ FINE = 0.05
 """mm, distance of the rays in a cell that a rapid grazes."""
 MOST_FINE = 10
 """Most of them along a side of a cell."""
+SHARES = 17
+"""Places of a sloped rapid at which it is held against a column."""
 
 
 def rays_in_cell(pitch: float) -> int:
@@ -58,28 +60,64 @@ def _standing(stock: Stock, places: Floats, frame: Frame, sweep: Sweep, row: int
 
 def look_closer(stock: Stock, field: Field, moves: Moves, frame: Frame, sweep: Sweep, row: int, cells: Ints, depth: Floats,
                 place: Floats) -> None:
-    """Judge the cells of a height field that an upright rapid grazes by fine columns."""
-    allowed, move, tool = tolerance.RAPID_DEPTH, moves.row[row], moves.tools[moves.tool[row]]
-    radius = tool.radius
+    """Judge the cells of a height field that an upright rapid grazes by fine columns; those below zero stand for -1 - cell, where the
+    columns around are gone too and only a fin between them can stand."""
+    fins = cells < 0
+    cells = np.where(fins, -1 - cells, cells)
+    down, across = np.divmod(cells, field.top.shape[1])
+    middle = field.low[:2] + (np.column_stack([across, down]) + 0.5) * field.pitch
+    half = field.pitch * np.sqrt(0.5)
+    low = _places(moves, row, middle, half)[0]
+    open_ = _cut_around(stock, low, half, frame, sweep, row)
     count = rays_in_cell(field.pitch)
     offsets = ((np.arange(count) + 0.5) / count - 0.5) * field.pitch
     grid = np.stack(np.meshgrid(offsets, offsets), axis=-1).reshape(-1, 2)
-    down, across = np.divmod(cells, field.top.shape[1])
-    points = (field.low[:2] + (np.column_stack([across, down]) + 0.5) * field.pitch)[:, None] + grid
-    points = points.reshape(-1, 2)
-    start, end = (move[[getattr(columns, name) for name in names]] for names in (("X0", "Y0", "Z_START"), ("X1", "Y1", "Z_END")))
-    along = end[:2] - start[:2]
-    share = np.clip((points - start[:2]) @ along / max(along @ along, tolerance.PARAMETRIC), 0.0, 1.0)
-    rho = np.linalg.norm(points - start[:2] - share[:, None] * along, axis=1)
-    inside = rho < radius - allowed
+    # A fin that goes through a cell crosses one of its middle lines, or one of its neighbour's.
+    cross = np.vstack([np.column_stack([offsets, 0.0 * offsets]), np.column_stack([0.0 * offsets, offsets])])
+    points = np.vstack([(middle[~open_ & ~fins][:, None] + grid).reshape(-1, 2), (middle[~open_ & fins][:, None] + cross).reshape(-1, 2)])
+    places, rho = _places(moves, row, points, 0.0)
+    inside = np.isfinite(places[:, 2])
     if not inside.any():
         return
-    points, rho, share = points[inside], rho[inside], share[inside]
-    tip = np.minimum(start[2], end[2]) if not along.any() else start[2] + share * (end[2] - start[2])
-    # The cutter made smaller by what is allowed: what it still meets, the rapid enters deeper than that.
-    places = np.column_stack([points, tip + lowest_height(tool, rho + allowed) + allowed])
+    places, rho = places[inside], rho[inside]
     standing = _standing(stock, places, frame, sweep, row)
     if standing.any():
         k = int(np.flatnonzero(standing)[np.argmin(rho[standing])])
-        depth[row] = max(depth[row], float(radius - rho[k]))
+        depth[row] = max(depth[row], float(moves.tools[moves.tool[row]].radius - rho[k]))
         place[row] = places[k]
+
+
+def _places(moves: Moves, row: int, points: Floats, around: float) -> tuple[Floats, Floats]:
+    """Return the lowest place over each plan point (k, 2) that an upright rapid enters by more than is allowed, or at most as high as any
+    such place within `around` mm of it, and the point's distance from its way; infinite where it enters nothing."""
+    allowed, move, tool = tolerance.RAPID_DEPTH, moves.row[row], moves.tools[moves.tool[row]]
+    start, end = (move[[getattr(columns, name) for name in names]] for names in (("X0", "Y0", "Z_START"), ("X1", "Y1", "Z_END")))
+    along = end[:2] - start[:2]
+    length = float(np.linalg.norm(along))
+    nearest = np.clip((points - start[:2]) @ along / max(length**2, tolerance.PARAMETRIC), 0.0, 1.0)
+    least = np.linalg.norm(points - start[:2] - nearest[:, None] * along, axis=1)
+    lowest = np.full(len(points), np.inf)
+    sloped = length > 0.0 and start[2] != end[2]
+    # On a slope the point is met all the while it is under the cutter, lowest nearly at the end of that.
+    reach = np.sqrt(np.maximum((tool.radius + around) ** 2 - least**2, 0.0)) / max(length, tolerance.PARAMETRIC)
+    for step in np.linspace(-1.0, 1.0, SHARES) if sloped else [0.0]:
+        share = np.clip(nearest + step * reach, 0.0, 1.0)
+        rho = np.maximum(np.linalg.norm(points - start[:2] - share[:, None] * along, axis=1) - around, 0.0)
+        tip = start[2] + share * (end[2] - start[2]) if length > 0.0 else min(start[2], end[2])
+        # The cutter made smaller by what is allowed: what it still meets, the rapid enters deeper than that.
+        height = tip + lowest_height(tool, rho + allowed) + allowed
+        lowest = np.minimum(lowest, np.where(rho < tool.radius - allowed, height, np.inf))
+    if sloped and around > 0.0:
+        lowest = lowest - abs(end[2] - start[2]) * np.minimum((around + tool.radius / (SHARES - 1)) / length, 1.0)
+    return np.column_stack([points, lowest]), least
+
+
+def _cut_around(stock: Stock, places: Floats, margin: float, frame: Frame, sweep: Sweep, row: int) -> Bools:
+    """Say around which places (k, 3) in the blank's frame all within a margin in plan is gone, as far as single moves show that."""
+    gone = ~np.isfinite(places[:, 2])
+    for before, own, last in [(sweep, frame, row), *((s, f, len(s.moves)) for s, f in stock.cut_by)]:
+        # What a setup calls plan must be the blank's.
+        if own.z @ stock.frame.z > 1.0 - tolerance.PARAMETRIC:
+            ask = np.flatnonzero(~gone)
+            gone[ask] = before.cut_around(own.to_local(stock.frame.to_world(places[ask])), margin, last)
+    return gone
