@@ -151,6 +151,18 @@ def test_while_a_job_runs_nothing_plays_and_the_stock_follows_afterwards(played,
     assert played.playback.buttons["play.run"].isEnabled()
 
 
+def test_words_that_do_not_fit_end_in_dots(played, qtbot):
+    go(played, qtbot, 20.0)
+    full = played.playback.place.text()
+    assert not full.endswith("…")
+    played.playback.place.setFixedWidth(120)
+    qtbot.wait(20)
+    go(played, qtbot, 22.0)
+    assert played.playback.place.text().endswith("…")
+    played.playback.place.setMinimumWidth(0)
+    played.playback.place.setMaximumWidth(16777215)
+
+
 def test_each_operation_has_its_tool(played, qtbot):
     widths = []
     for row in (0, 1):

@@ -304,3 +304,12 @@ def test_words_of_a_program_can_be_read_in_both_themes(window, name):
     looks = window.code.text._looks
     assert {k: round(contrast(looks[k].foreground().color().name(), theme(name).panel), 1) for k in ("rapid", "cut")
             if contrast(looks[k].foreground().color().name(), theme(name).panel) < READABLE} == {}
+
+
+def test_a_message_has_the_room_that_the_columns_beside_it_do_not_need(window, qtbot):
+    window.resize(1280, 800)
+    window.show_dock("messages")
+    window.document.notice("a message that is long enough to be cut off where every other column takes its full width " * 2)
+    qtbot.wait(20)
+    table = window.messages.table
+    assert table.columnWidth(1) > 0.5 * table.viewport().width()

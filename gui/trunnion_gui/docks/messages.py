@@ -3,7 +3,8 @@
 from __future__ import annotations
 
 from PySide6.QtCore import Signal
-from PySide6.QtWidgets import QTableWidget, QVBoxLayout, QWidget
+from PySide6.QtGui import QResizeEvent, QShowEvent
+from PySide6.QtWidgets import QHeaderView, QTableWidget, QVBoxLayout, QWidget
 
 from trunnion.findings import Finding, Severity
 from trunnion_gui import icons
@@ -14,6 +15,9 @@ from trunnion_gui.widgets import table as tables
 
 _ORDER = (Severity.ERROR, Severity.WARNING, Severity.REMARK, Severity.INFO)
 _MOST_NOTICES = 20
+_WHERE, _REMEDY, _CODE = 2, 3, 4
+_MOST_SHARES = {_WHERE: 0.16, _REMEDY: 0.3, _CODE: 0.13}
+"""How much of the width these columns take at most; what they don't need is the message's."""
 
 
 class MessagesDock(QWidget):
@@ -27,7 +31,9 @@ class MessagesDock(QWidget):
         self._theme: Theme | None = None
         self._notices: list[Finding] = []
         self.findings: tuple[Finding, ...] = ()
-        self.table: QTableWidget = tables.table(["", tr("Message"), tr("Where"), tr("What to do"), tr("Code")], stretched=(1, 3))
+        self.table: QTableWidget = tables.table(["", tr("Message"), tr("Where"), tr("What to do"), tr("Code")], stretched=(1,))
+        for shared in _MOST_SHARES:
+            self.table.horizontalHeader().setSectionResizeMode(shared, QHeaderView.ResizeMode.Interactive)
         column = QVBoxLayout(self)
         column.setContentsMargins(0, 0, 0, 0)
         column.addWidget(self.table)
@@ -54,7 +60,23 @@ class MessagesDock(QWidget):
         self.findings = listed
         tables.fill(self.table, [("", f.text, ", ".join(f.where), f.remedy, f.code) for f in listed],
                     icons=[icons.icon(f.severity.value, self._colour(f.severity)) for f in listed])
+        self._share_width()
         self.counted.emit(len(listed))
+
+    def resizeEvent(self, event: QResizeEvent) -> None:
+        super().resizeEvent(event)
+        self._share_width()
+
+    def showEvent(self, event: QShowEvent) -> None:
+        super().showEvent(event)
+        self._share_width()
+
+    def _share_width(self) -> None:
+        """Give the columns beside the message what they need, up to their share."""
+        header, width = self.table.horizontalHeader(), self.table.viewport().width()
+        for column, most in _MOST_SHARES.items():
+            needed = max(self.table.sizeHintForColumn(column), header.sectionSizeHint(column))
+            header.resizeSection(column, min(needed, int(most * width)))
 
     def _note(self, finding: Finding) -> None:
         self._notices = [finding, *self._notices][:_MOST_NOTICES]

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 from PySide6.QtCore import QSize, Qt, QTimer
+from PySide6.QtGui import QResizeEvent
 from PySide6.QtWidgets import QComboBox, QHBoxLayout, QLabel, QSizePolicy, QToolButton, QVBoxLayout, QWidget
 
 from trunnion.model.playback import Moment
@@ -53,6 +54,10 @@ class PlaybackBar(QWidget):
         self.refresh()
         self._open()
         self.hide()
+
+    def resizeEvent(self, event: QResizeEvent) -> None:
+        super().resizeEvent(event)
+        self._soon.start()
 
     def use_theme(self, theme: Theme) -> None:
         """Draw in the colours of a theme."""
@@ -148,7 +153,8 @@ class PlaybackBar(QWidget):
         number = tr("block {n} of {all}").format(n=grouped(block + 1 if position > 0 else 0), all=grouped(len(line)))
         text = tr("line {n}").format(n=grouped(int(line.line[block]))) if line.line[block] else ""
         rate = f"{amount(self._load[block], 0)} cm³/min" if len(self._load) and self._load[block] > 0.5 else ""
-        self.place.setText(" · ".join(w for w in (number, text, passage.operation, rate) if w))
+        words = " · ".join(w for w in (number, text, passage.operation, rate) if w)
+        self.place.setText(self.place.fontMetrics().elidedText(words, Qt.TextElideMode.ElideRight, self.place.width()))
         self.place.setToolTip(f"{passage.operation} · {passage.setup} · T{passage.tool.number} {passage.tool.name}")
         self.amount.setText(tr("{n} cm³ removed").format(n=grouped(round(self._removed / 1000.0))))
         self.clock.setText(f"{clock(line.seconds_at(position))} / {clock(line.seconds)}")
