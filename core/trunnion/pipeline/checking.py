@@ -35,6 +35,7 @@ def text_of(file: Path) -> str:
     try:
         return file.read_text(encoding="utf-8")
     except OSError as reason:
-        raise BadInput(f"{file}: can't be read: {(reason.strerror or 'the system refuses').lower()}; give the NC file to be proven") from None
+        why = (reason.strerror or "the system refuses").lower()
+        raise BadInput(f"{file}: can't be read: {why}; give the NC file to be proven") from None
     except UnicodeDecodeError:
         raise BadInput(f"{file}: is not a text; give the NC file to be proven") from None
