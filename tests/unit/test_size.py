@@ -5,6 +5,7 @@ from __future__ import annotations
 import pytest
 
 from blockparts import terrace
+from trunnion.model.feature import FaceRole, Feature, Recognition
 from trunnion.model.session import SizeEntry
 from trunnion.plan.size import size_table
 from trunnion.progress import QUIET
@@ -50,3 +51,10 @@ def test_leans_are_degrees_one_entry_each(table: tuple[SizeEntry, ...]) -> None:
 
 def test_every_size_is_of_a_feature_or_of_the_part(table: tuple[SizeEntry, ...]) -> None:
     assert {e.feature for e in table} == {"part", "pocket-01", "pocket-02", "rib-01", "profile-01", "datum-01"}
+
+
+@pytest.mark.parametrize(("name", "unit"), [("area", "mm2"), ("size_ratio", ""), ("lean", "degrees"), ("boundary_length", "mm")])
+def test_a_size_is_in_the_unit_that_its_name_says(name: str, unit: str) -> None:
+    graph = PART.graph()
+    feature = Feature(id="group-01", kind="group", faces=(FaceRole(role="face", face=1),), sizes={name: 0.5})
+    assert one(size_table(Recognition(family="surface", features=(feature,)), graph), "group-01", name).unit == unit

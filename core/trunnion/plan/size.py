@@ -26,6 +26,8 @@ ROLES = {
 SINGULAR = {"floors_z": "floor_z", "leans": "lean"}
 """What one value of a size with several is called."""
 DECIMALS = 4
+UNITS = (("lean", "degrees"), ("angle", "degrees"), ("area", "mm2"), ("ratio", ""))
+"""Units of sizes whose names end so; all others are lengths."""
 
 
 def size_table(recognition: Recognition, graph: FaceGraph) -> tuple[SizeEntry, ...]:
@@ -74,7 +76,7 @@ def _part_sizes(recognition: Recognition, graph: FaceGraph) -> Iterable[SizeEntr
 
 def _entry(name: str, value: float, feature: str, faces: Sequence[int], graph: FaceGraph) -> SizeEntry:
     at = tuple(np.round(graph.centre[faces[0] - 1], DECIMALS).tolist()) if faces else ()
-    unit = "degrees" if name in ("lean", "angle") else "mm"
+    unit = next((u for end, u in UNITS if name.endswith(end)), "mm")
     return SizeEntry(name=name, value=round(float(value), DECIMALS) + 0.0, unit=unit, feature=feature, faces=tuple(faces), at=at)
 
 
