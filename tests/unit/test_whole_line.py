@@ -200,6 +200,17 @@ def test_a_plan_with_errors_is_not_released_however_well_the_rest_is_cut(line):
     assert verdict.findings[0].code == "verify.errors-before" and "no tool is small enough" in verdict.findings[0].text
 
 
+def test_a_text_from_outside_is_held_back_by_errors_of_the_part_but_not_of_the_plan(line):
+    from trunnion.findings import error
+    from trunnion.model.session import StepRecord
+    from trunnion.pipeline.proving import errors_before, errors_of_part
+    told = error("part.open", "the part is not closed", remedy="sew it")
+    planned = StepRecord(key="x", seconds=0.0, findings=(error("route.no-cutter", "no tool is small enough", remedy="choose another"),))
+    session = replace(line[1], part=replace(line[1].part, findings=(told,)), records={"route": planned})
+    assert errors_of_part(session) == (told,)
+    assert [f.code for f in errors_before(session)] == ["part.open", "route.no-cutter"]
+
+
 def test_the_window_without_a_screen_is_one_line_and_exit_2():
     import os
     import subprocess

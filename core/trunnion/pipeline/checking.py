@@ -9,14 +9,17 @@ from pathlib import Path
 from trunnion.findings import BadCall, BadInput
 from trunnion.model.session import PostedFile, Session, StepRecord
 from trunnion.pipeline.engine import Engine
-from trunnion.pipeline.proving import prove_programs, read_back
+from trunnion.pipeline.proving import errors_of_part, held_back, prove_programs, read_back
 from trunnion.post.settings import PostSettings
 from trunnion.progress import Progress
 from trunnion.settings import checked, choose
 
 
 def verify_texts(engine: Engine, session: Session, files: Sequence[Path], progress: Progress) -> Session:
-    """Return the session with the verdict on the texts of the files, one for each setup in order."""
+    """Return the session with the verdict on the texts of the files, one for each setup in order.
+
+    What the plan could not make is no matter here, a part that is not closed is.
+    """
     if session.process is None:
         raise BadCall("no operations yet: generate the route first")
     if len(files) > len(session.process.setups):
@@ -25,7 +28,7 @@ def verify_texts(engine: Engine, session: Session, files: Sequence[Path], progre
     posted = [PostedFile(suffix=file.name, dialect=dialect, setup=setup.name, text=text_of(file))
               for file, setup in zip(files, session.process.setups, strict=False)]
     programs = read_back(session, tuple(posted))
-    verdict = prove_programs(session, engine.bench, programs, progress)
+    verdict = held_back(prove_programs(session, engine.bench, programs, progress), errors_of_part(session))
     record = StepRecord(key="texts from outside", seconds=0.0, findings=verdict.findings)
     return replace(session, verdict=verdict, posted=tuple(posted), records={**session.records, "verify": record})
 

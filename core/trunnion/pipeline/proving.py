@@ -85,11 +85,15 @@ def prove_session(session: Session, bench: Bench, progress: Progress) -> tuple[V
     return held_back(verdict, errors_before(session)), posted
 
 
+def errors_of_part(session: Session) -> tuple[Finding, ...]:
+    """Return the errors of the part itself: what they name can't be proven against."""
+    return tuple(f for f in (session.part.findings if session.part else ()) if f.severity is Severity.ERROR)
+
+
 def errors_before(session: Session) -> tuple[Finding, ...]:
     """Return the errors that the part and the steps before the proof have told."""
-    told = (session.part.findings if session.part else ()) + tuple(f for step, r in session.records.items() if step != "verify"
-                                                                   for f in r.findings)
-    return tuple(f for f in told if f.severity is Severity.ERROR)
+    told = (f for step, record in session.records.items() if step != "verify" for f in record.findings)
+    return errors_of_part(session) + tuple(f for f in told if f.severity is Severity.ERROR)
 
 
 def held_back(verdict: Verdict, errors: Sequence[Finding]) -> Verdict:
