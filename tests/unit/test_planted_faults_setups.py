@@ -130,7 +130,7 @@ def test_an_stl_file_that_is_none_is_refused_in_one_line(data, says):
 
 
 def test_a_fixture_is_read_from_step_as_parts_are(tmp_path):
-    cadquery = pytest.importorskip("cadquery")
+    import cadquery
     solid = cadquery.Workplane().box(10.0, 20.0, 30.0).add(cadquery.Workplane().center(50.0, 0.0).box(10.0, 10.0, 10.0))
     cadquery.exporters.export(cadquery.Workplane(cadquery.Compound.makeCompound(solid.vals())), str(tmp_path / "vice.step"))
     low, high = read_fixture(tmp_path / "vice.step").box()

@@ -428,23 +428,31 @@ def far_loop(first: int, last: int, points: Floats, order: Ints, tree: Tree, flu
 
 
 @njit(cache=True, nogil=True)
+def _cut_from_above(x: float, y: float, z: float, before: int, thinner: float, most: float, moves: Floats, cutter: Floats, low: Floats,
+                    cell_start: Ints, cell_move: Ints, grid: Floats, shape: Ints) -> bool:
+    """Say whether a listed move with a row below `before`, of a cutter `thinner` by some mm of radius, comes as near to a point or above it
+    as `most`."""
+    i, j = int(math.floor((x - grid[0]) / grid[2])), int(math.floor((y - grid[1]) / grid[2]))
+    if i < 0 or j < 0 or i >= shape[0] or j >= shape[1]:
+        return False
+    cell = j * shape[0] + i
+    for c in range(cell_start[cell], cell_start[cell + 1]):
+        m = cell_move[c]
+        if low[m] > z:
+            return False
+        if m < before and left_by_move(x, y, z, moves[m], cutter[m, 0] - thinner, cutter[m, 1], np.inf, 1.0) <= most:
+            return True
+    return False
+
+
+@njit(cache=True, nogil=True)
 def cut_loop(first: int, last: int, points: Floats, before: int, moves: Floats, cutter: Floats, low: Floats, cell_start: Ints,
              cell_move: Ints, grid: Floats, shape: Ints, tree: Tree, flutes: Flutes, bound: float, out: Bools) -> None:
     """Say for each point (s, 3) whether one of the moves with a row below `before` has removed it; upright plain ones also all above."""
     nodes, least, spans = np.zeros(len(tree.root) + 128, np.int64), np.zeros(len(tree.root) + 128), np.zeros((96, 2))
     for n in range(first, last):
         x, y, z = points[n, 0], points[n, 1], points[n, 2]
-        out[n] = False
-        i, j = int(math.floor((x - grid[0]) / grid[2])), int(math.floor((y - grid[1]) / grid[2]))
-        if 0 <= i < shape[0] and 0 <= j < shape[1]:
-            cell = j * shape[0] + i
-            for c in range(cell_start[cell], cell_start[cell + 1]):
-                m = cell_move[c]
-                if low[m] > z:
-                    break
-                if m < before and left_by_move(x, y, z, moves[m], cutter[m, 0], cutter[m, 1], np.inf, 1.0) <= bound:
-                    out[n] = True
-                    break
+        out[n] = _cut_from_above(x, y, z, before, 0.0, bound, moves, cutter, low, cell_start, cell_move, grid, shape)
         if not out[n]:
             out[n] = nearest_span(x, y, z, tree, flutes, 2.0 * bound, -1, bound, before, True, bound, nodes, least, spans)[1] >= 0
 
@@ -455,16 +463,6 @@ def around_loop(first: int, last: int, points: Floats, margin: float, before: in
     """Say for each point (s, 3) whether one of the listed moves with a row below `before` has removed all within a margin in plan of it,
     and all above that."""
     for n in range(first, last):
-        x, y, z = points[n, 0], points[n, 1], points[n, 2]
-        out[n] = False
-        i, j = int(math.floor((x - grid[0]) / grid[2])), int(math.floor((y - grid[1]) / grid[2]))
-        if 0 <= i < shape[0] and 0 <= j < shape[1]:
-            cell = j * shape[0] + i
-            for c in range(cell_start[cell], cell_start[cell + 1]):
-                m = cell_move[c]
-                if low[m] > z:
-                    break
-                # A cutter thinner by the margin that holds the middle: the cutter itself holds all around.
-                if m < before and left_by_move(x, y, z, moves[m], cutter[m, 0] - margin, cutter[m, 1], np.inf, 1.0) <= 0.0:
-                    out[n] = True
-                    break
+        # A cutter thinner by the margin that holds the middle: the cutter itself holds all around.
+        out[n] = _cut_from_above(points[n, 0], points[n, 1], points[n, 2], before, margin, 0.0, moves, cutter, low, cell_start, cell_move,
+                                 grid, shape)
