@@ -20,6 +20,7 @@ def main(arguments: Sequence[str] | None = None) -> int:
     from PySide6.QtWidgets import QApplication
 
     from trunnion_gui import i18n, remembered
+    from trunnion_gui.tidying import Tidy
     from trunnion_gui.window import Window
 
     words = list(sys.argv[1:] if arguments is None else arguments)
@@ -28,11 +29,15 @@ def main(arguments: Sequence[str] | None = None) -> int:
     app.setApplicationName("Trunnion")
     app.setOrganizationName("Trunnion")
     i18n.use(remembered.language())
+    tidy = Tidy()
     window = Window()
     window.show()
     if words:
         window.document.open(words[0])
-    return QApplication.exec()
+    try:
+        return QApplication.exec()
+    finally:
+        tidy.stop()
 
 
 def check_display() -> None:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import gc
 import os
 import sys
 from pathlib import Path
@@ -16,6 +17,17 @@ os.environ.setdefault("QT_QPA_PLATFORM", "offscreen")
 def settings_of_their_own(tmp_path, monkeypatch):
     """Keep a test's remembered settings, recent files and autosaves away from the person's own."""
     monkeypatch.setenv("TRUNNION_SETTINGS", str(tmp_path / "settings"))
+
+
+@pytest.fixture(autouse=True)
+def tidy(qapp):
+    """Collect garbage in the window's thread only, as the program does, and all of a test's at its end."""
+    from trunnion_gui.tidying import Tidy
+
+    made = Tidy()
+    yield made
+    gc.collect()
+    made.stop()
 
 
 @pytest.fixture
