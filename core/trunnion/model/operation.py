@@ -39,7 +39,8 @@ class Operation:
 
     `strategy` is a registered name; `feature` the id of the feature it machines; `faces` the tags it finishes (empty for roughing);
     `choices` the values of the strategy's settings by full key; `rules` why this operation, tool and order; `after` the ids of operations
-    that must come before it; `by_hand` marks a person's change; `suppressed` keeps it in the tree without cutting.
+    that must come before it; `direction`, in the setup's frame, where the tool comes from (3 + 2 axes where that is not z); `by_hand` marks
+    a person's change; `suppressed` keeps it in the tree without cutting.
     """
 
     id: str
@@ -56,6 +57,7 @@ class Operation:
     by_hand: bool = False
     suppressed: bool = False
     group: str = ""
+    direction: tuple[float, float, float] = (0.0, 0.0, 1.0)
 
 
 @dataclass(frozen=True, slots=True, eq=False, kw_only=True)

@@ -1,0 +1,56 @@
+"""The skin of a part for surface strategies: fine triangles with the surfaces' own normals, the tag of each one's face, ready for drops."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field, replace
+
+import numpy as np
+
+from trunnion.geometry.arrays import Bools, Floats, Ints, floats, ints
+from trunnion.geometry.dropping import DropSurface
+from trunnion.geometry.frame import Frame
+
+
+@dataclass(frozen=True, slots=True, eq=False, kw_only=True)
+class Skin:
+    """Triangles of a part's faces in a frame.
+
+    points (v, 3) mm on the faces; normals (v, 3) the faces' own outward unit normals there; triangles (t, 3) rows of points, anticlockwise
+    seen from outside; face (t,) 1-based tags. Points are shared inside a face, not across faces; where faces meet, their points coincide.
+    bound: how far the triangles may be from the faces, mm.
+    """
+
+    points: Floats
+    normals: Floats
+    triangles: Ints
+    face: Ints
+    bound: float
+    _drop: list[DropSurface] = field(init=False, repr=False, default_factory=list)
+
+    def __post_init__(self) -> None:
+        object.__setattr__(self, "points", floats(self.points, (None, 3), "skin points"))
+        object.__setattr__(self, "normals", floats(self.normals, (len(self.points), 3), "skin normals"))
+        object.__setattr__(self, "triangles", ints(self.triangles, (None, 3), "skin triangles"))
+        object.__setattr__(self, "face", ints(self.face, (len(self.triangles),), "skin face"))
+
+    @property
+    def drop(self) -> DropSurface:
+        """The whole skin ready for dropping cutters along -z; made when first asked for."""
+        if not self._drop:
+            self._drop.append(DropSurface.of(self.points, self.triangles))
+        return self._drop[0]
+
+    def of(self, tags: tuple[int, ...]) -> Bools:
+        """Say which triangles (t,) lie on faces of some tags."""
+        return np.isin(self.face, tags)
+
+    def moved(self, frame: Frame, other: Frame) -> Skin:
+        """Return the same skin, given in one frame, in another one."""
+        if frame is other:
+            return self
+        return replace(self, points=other.to_local(frame.to_world(self.points)),
+                       normals=other.local_direction(frame.world_direction(self.normals)))
+
+    def box(self) -> tuple[Floats, Floats]:
+        """Return the lowest and highest corner (3,)."""
+        return self.points.min(axis=0), self.points.max(axis=0)

@@ -1,0 +1,71 @@
+"""What a surface strategy is driven by: the faces to finish, the skin of the whole part, and the direction the tool comes from.
+
+Everything here lies in the CUTTING FRAME: its z is the direction that the tool comes from. For most operations that is the setup's own
+frame; an indexed one (3 + 2 axes) has a frame that stands tilted in the setup's. Strategies never know the difference: their paths are
+turned into the setup's frame afterwards (`pipeline.making`).
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Protocol
+
+from trunnion.geometry.arrays import Bools, Floats
+from trunnion.geometry.frame import Frame
+from trunnion.geometry.skin import Skin
+
+
+class ExactFace(Protocol):
+    """One trimmed face with its exact surface (`part.exact.ExactFace`), in the cutting frame."""
+
+    tag: int
+
+    def bounds(self) -> tuple[float, float, float, float]:
+        """Return the least and greatest u and v."""
+
+    def inside(self, places: Floats) -> Bools:
+        """Say which places (k, 2) lie inside the trim."""
+
+    def at(self, places: Floats) -> ExactPlaces:
+        """Return the surface at places (k, 2)."""
+
+
+class ExactPlaces(Protocol):
+    """Points of a face: point, outward unit normal, their derivatives by u and v, each (k, 3)."""
+
+    point: Floats
+    normal: Floats
+    du: Floats
+    dv: Floats
+    normal_du: Floats
+    normal_dv: Floats
+
+
+class Asker(Protocol):
+    """Asks whether a tool is clear of part and fixtures; poses are in the cutting frame."""
+
+    def __call__(self, tip: Floats, axis: Floats, *, start_tip: Floats | None = None, start_axis: Floats | None = None) -> Bools:
+        """Say for tips (k, 3) with unit axes (k, 3) which poses (or moves from a start) enter nothing deeper than the tolerance."""
+
+
+@dataclass(frozen=True, slots=True, eq=False, kw_only=True)
+class SurfaceDrive:
+    """All that a surface strategy needs to know of the geometry, in the cutting frame.
+
+    `faces`: tags to be finished; `exact` their exact surfaces in the same order; `skin`: the whole part. `low`, `high` (3,): the box of the
+    blank. `frame`: the cutting frame in the part's coordinates. `allowance`: mm left on the faces on purpose; `height`: the scallop height
+    in mm that is wanted. `clearance`: the height in the cutting frame above everything. `digest` tells all of this apart.
+    """
+
+    feature: str
+    kind: str
+    faces: tuple[int, ...]
+    exact: tuple[ExactFace, ...]
+    skin: Skin
+    frame: Frame
+    low: Floats
+    high: Floats
+    clearance: float
+    allowance: float
+    height: float
+    digest: str
