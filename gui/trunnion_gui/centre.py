@@ -12,9 +12,10 @@ from PySide6.QtWidgets import QHBoxLayout, QLabel, QSlider, QVBoxLayout, QWidget
 from trunnion.model.playback import Moment
 from trunnion.model.session import Session, SizeEntry
 from trunnion.report.deviation import WorstPlace
+from trunnion.report.lines import leans
 from trunnion.report.palette import load_palette
 from trunnion_gui.actions import Registry
-from trunnion_gui.colours import Theme, kind_colour, motions, stock_colours, tool_colours
+from trunnion_gui.colours import Theme, axis_colour, kind_colour, motions, stock_colours, tool_colours
 from trunnion_gui.deviation import DeviationSource
 from trunnion_gui.document import Document, Selection
 from trunnion_gui.drawing import DrawnMap
@@ -200,6 +201,8 @@ class Centre(QWidget):
                 rows.append((kind_colour("unexplained"), tr("Unexplained"), str(len(found.unexplained))))
         if self._shows_paths(session):
             rows += [("", "", ""), *((motions()[m], sentence(tr(m)), "") for m in self.motions)]
+            if "cut" in self.motions and any(leans(p.path) for p in session.paths):
+                rows.append((axis_colour(), tr("Tool axis"), ""))
         return rows
 
     def _choose(self, selection: Selection) -> None:

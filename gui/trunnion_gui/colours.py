@@ -9,9 +9,9 @@ from dataclasses import dataclass
 from functools import cache
 from importlib.resources import files
 
+from trunnion.report.lines import AXIS, MOTIONS
+
 Rgb = tuple[int, int, int]
-MOTIONS = ("cut", "entry", "lead", "link", "retract", "rapid")
-"""Kinds of motion, in the order of the legend."""
 READABLE = 4.5
 """Contrast that small words need (WCAG 2, AA)."""
 
@@ -64,6 +64,11 @@ def kinds() -> dict[str, str]:
 def motions() -> dict[str, str]:
     """Return the colour of every kind of motion."""
     return {name: colour for name, colour in _palette()["motions"].items() if name in MOTIONS}
+
+
+def axis_colour() -> str:
+    """Return the colour of the strokes that show how a leaning tool stands."""
+    return _palette()["motions"][AXIS]
 
 
 def tool_colours() -> dict[str, str]:

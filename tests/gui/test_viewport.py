@@ -4,15 +4,13 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
-from fake_engine import FLOOR, HEIGHT, LENGTH, WIDTH, box_mesh, zigzag
+from fake_engine import FLOOR, HEIGHT, LENGTH, WIDTH, box_mesh
 from PySide6.QtCore import QPoint, Qt
 from PySide6.QtTest import QTest
 
 from trunnion.geometry.frame import WORLD
-from trunnion.model.toolpath import Motion
-from trunnion_gui.colours import MOTIONS, kind_colour, motions, rgb
+from trunnion_gui.colours import kind_colour, motions, rgb
 from trunnion_gui.drawing import border_edges
-from trunnion_gui.viewport.layers.paths import opened_arcs
 
 LEFT = Qt.MouseButton.LeftButton
 IN_POCKET = {"pocket-01": (60.0, 70.0, FLOOR), "pocket-02": (175.0, 37.0, FLOOR), "pocket-03": (175.0, 103.0, FLOOR)}
@@ -153,17 +151,6 @@ def test_a_size_is_written_where_it_is(recognized, idle, qtbot):
     QTest.mouseClick(table.viewport(), LEFT, pos=table.visualItemRect(table.item(1, 0)).center())
     assert recognized.document.selection.faces == recognized.document.feature("pocket-02").with_role("floor")
     assert any(name.startswith("size") for name in recognized.centre.scene.view.actors)
-
-
-def test_opened_arcs_end_where_the_blocks_end():
-    path = zigzag((0.0, 0.0, 100.0, 60.0), -20.0, 8.0)
-    points, kinds = opened_arcs(path)
-    assert len(points) == len(kinds) + 1
-    assert points[-1] == pytest.approx(path.position[-1])
-    turn = np.flatnonzero(path.motion == Motion.ARC_CCW)[0]
-    radius = np.linalg.norm(path.position[turn, :2] - path.centre[turn, :2])
-    helix = points[1:][kinds == MOTIONS.index("entry")]
-    assert np.linalg.norm(helix[:, :2] - path.centre[turn, :2], axis=1) == pytest.approx(radius)
 
 
 def test_borders_of_faces_are_the_edges_of_one_triangle():

@@ -18,8 +18,9 @@ from trunnion.geometry.arrays import Floats, Ints
 from trunnion.geometry.mesh import Mesh
 from trunnion.model.session import Session
 from trunnion.model.setup import Setup
-from trunnion.model.toolpath import Mark, Motion, Toolpath
+from trunnion.model.toolpath import Toolpath
 from trunnion.report.deviation import DeviationMap, deviation_map
+from trunnion.report.lines import AXIS, MOST_STROKES, MOTIONS, STROKE_EVERY, STROKE_LENGTH, kinds_of, opened, strokes
 from trunnion.report.palette import Colour, Palette
 from trunnion.settings import checked, choose
 from trunnion.verify.settings import ProofSettings
@@ -28,8 +29,6 @@ if TYPE_CHECKING:
     from pyvista import Plotter
 
 SIZE = (1600, 1000)
-ARC_STEP = np.radians(6.0)
-"""Angle of one chord when an arc is drawn."""
 _NAMED_PLACES = 5
 """Worst places whose figure is written on the deviation's picture."""
 
@@ -55,35 +54,6 @@ def write_pictures(session: Session, mesh: Mesh, folder: Path, name: str, palett
         _shoot(_deviation(session, mesh, palette), folder / f"{name}.deviation.png")
         made.append(Picture(file=f"{name}.deviation.png", caption="Deviation of the finished part: + is material left, - is gouge"))
     return tuple(made)
-
-
-def chords(path: Toolpath) -> tuple[Floats, Floats]:
-    """Return a toolpath as points (n, 3) with arcs opened into chords, and for each point the row of its block (n,)."""
-    starts, sweeps = path.starts(), path.sweeps()
-    points: list[Floats] = [path.position[:1]]
-    rows: list[Floats] = [np.zeros(1, dtype=np.float64)]
-    straight_from = 1
-    for row in np.flatnonzero(path.motion >= Motion.ARC_CW):
-        points.append(path.position[straight_from:row])
-        rows.append(np.arange(straight_from, row, dtype=np.float64))
-        steps = max(int(np.ceil(abs(sweeps[row]) / ARC_STEP)), 1)
-        share = np.arange(1, steps + 1) / steps
-        radius = starts[row, :2] - path.centre[row, :2]
-        cos, sin = np.cos(share * sweeps[row]), np.sin(share * sweeps[row])
-        around = np.stack([cos * radius[0] - sin * radius[1], sin * radius[0] + cos * radius[1]], axis=1) + path.centre[row, :2]
-        height = starts[row, 2] + share * (path.position[row, 2] - starts[row, 2])
-        points.append(np.column_stack([around, height]))
-        rows.append(np.full(steps, float(row)))
-        straight_from = int(row) + 1
-    points.append(path.position[straight_from:])
-    rows.append(np.arange(straight_from, len(path), dtype=np.float64))
-    return np.vstack(points), np.concatenate(rows)
-
-
-def motion_class(path: Toolpath) -> tuple[str, ...]:
-    """Return for each block the palette's word of its colour: rapid, entry, lead, link, retract or cut."""
-    words = {Mark.CUT: "cut", Mark.ENTRY: "entry", Mark.LEAD: "lead", Mark.LINK: "link", Mark.RETRACT: "retract"}
-    return tuple("rapid" if m == Motion.RAPID else words[Mark(k)] for m, k in zip(path.motion, path.mark, strict=True))
 
 
 def _plotter() -> Plotter:
@@ -162,22 +132,26 @@ def _toolpaths(session: Session, mesh: Mesh, palette: Palette) -> Plotter:
     setups = {s.name: s for s in session.setups}
     operations = {o.id: o for o in session.process.operations} if session.process else {}
     gathered: dict[str, list[Floats]] = {}
+    size = float(np.ptp(mesh.points, axis=0).max())
     for made in session.paths:
         if len(made.path) and made.operation in operations:
-            _gather(gathered, made.path, setups[operations[made.operation].setup])
+            _gather(gathered, made.path, setups[operations[made.operation].setup], size)
     for word, pieces in gathered.items():
         plotter.add_mesh(_segments(pieces), color=palette.motion(word), line_width=1.0, lighting=False)
-    _legend(plotter, {word: palette.motion(word) for word in gathered})
+    _legend(plotter, {word.replace("_", " "): palette.motion(word) for word in gathered})
     return _look(plotter, session)
 
 
-def _gather(gathered: dict[str, list[Floats]], path: Toolpath, setup: Setup) -> None:
-    points, rows = chords(path)
-    words = np.array(motion_class(path))[rows.astype(int)]
+def _gather(gathered: dict[str, list[Floats]], path: Toolpath, setup: Setup, size: float) -> None:
+    points, block = opened(path)
+    kind = kinds_of(path)[block]
     world = setup.frame.to_world(points)
-    for word in dict.fromkeys(words.tolist()):
-        ends = np.flatnonzero(words[1:] == word) + 1
-        gathered.setdefault(word, []).append(np.stack([world[ends - 1], world[ends]], axis=1))
+    ends = np.stack([world[:-1], world[1:]], axis=1)
+    for row in dict.fromkeys(kind.tolist()):
+        gathered.setdefault(MOTIONS[row], []).append(ends[kind == row])
+    standing = strokes(path, STROKE_EVERY * size, STROKE_LENGTH * size, MOST_STROKES)
+    if len(standing):
+        gathered.setdefault(AXIS, []).append(setup.frame.to_world(standing.reshape(-1, 3)).reshape(-1, 2, 3))
 
 
 def _segments(pieces: Iterable[Floats]) -> Any:

@@ -169,13 +169,12 @@ class Scene(QWidget):
 
     def show_setups(self, setups: Sequence[Setup]) -> None:
         """Show the zero of every setup."""
-        length = float(np.ptp(self._mesh.points, axis=0).max()) * 0.07 if self._mesh is not None else 1.0
-        draw_setups(self.view, setups, length)
+        draw_setups(self.view, setups, 0.07 * self._size())
         self.view.render()
 
     def show_paths(self, paths: Iterable[tuple[Toolpath, Frame]], motions: Iterable[str] = MOTIONS) -> None:
         """Show toolpaths with the frames of their setups."""
-        draw_paths(self.view, paths, motions)
+        draw_paths(self.view, paths, motions, self._size())
         self.view.render()
 
     def show_map(self, shown: DrawnMap | None) -> None:
@@ -383,6 +382,10 @@ class Scene(QWidget):
         camera.position = tuple(np.add(camera.position, shift))
         camera.parallel_scale = scale * height / 2
         self.view.renderer.ResetCameraClippingRange()
+
+    def _size(self) -> float:
+        """Return the part's longest side, mm."""
+        return float(np.ptp(self._mesh.points, axis=0).max()) if self._mesh is not None else 1.0
 
     def _bounds(self) -> tuple[float, ...] | None:
         if self._mesh is None:

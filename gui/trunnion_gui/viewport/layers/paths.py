@@ -1,4 +1,4 @@
-"""Toolpaths, coloured by kind of motion."""
+"""Toolpaths, coloured by kind of motion, with short strokes along the tool where it leans."""
 
 from __future__ import annotations
 
@@ -9,55 +9,50 @@ import numpy as np
 import pyvista as pv
 
 from trunnion.geometry.frame import Frame
-from trunnion.model.toolpath import Mark, Motion, Toolpath
-from trunnion_gui.colours import MOTIONS, motions, rgb
+from trunnion.model.toolpath import Toolpath
+from trunnion.report.lines import MOST_STROKES, STROKE_EVERY, STROKE_LENGTH, kinds_of, opened, strokes
+from trunnion_gui.colours import MOTIONS, axis_colour, motions, rgb
 
-_TURN = np.radians(6.0)
-"""One chord of an opened arc turns this much at most."""
+AXES = "tool axes"
 
 
-def draw_paths(view: Any, paths: Iterable[tuple[Toolpath, Frame]], shown: Iterable[str] = MOTIONS) -> None:
-    """Show toolpaths (each with its setup's frame) as lines: thin ones for rapids, strong ones for feed moves."""
-    for name in ("feed moves", "rapids"):
+def draw_paths(view: Any, paths: Iterable[tuple[Toolpath, Frame]], shown: Iterable[str], size: float) -> None:
+    """Show toolpaths (each with its setup's frame) as lines: thin ones for rapids, strong ones for feed moves.
+
+    `size` mm is the part's, which the strokes of leaning tools are in proportion to.
+    """
+    for name in ("feed moves", "rapids", AXES):
         view.remove_actor(name, render=False)
     wanted = np.isin(MOTIONS, list(shown))
-    opened = [(opened_arcs(path), frame) for path, frame in paths if len(path) > 1]
+    listed = [(path, frame) for path, frame in paths if len(path) > 1]
+    drawn = [(opened(path), kinds_of(path), frame) for path, frame in listed]
     for name, is_rapid, width, opacity in (("rapids", True, 1.3, 0.6), ("feed moves", False, 2.2, 1.0)):
         kept = wanted & (np.array([m == "rapid" for m in MOTIONS]) == is_rapid)
-        lines = _chords(opened, kept)
+        lines = _chords(drawn, kept)
         if lines is not None:
             view.add_mesh(lines, scalars="rgb", rgb=True, line_width=width, opacity=opacity, name=name, pickable=False,
                           reset_camera=False, lighting=False, show_scalar_bar=False)
+    standing = _standing(listed, size)
+    if len(standing) and wanted[0]:
+        lines = np.column_stack([np.full(len(standing), 2), np.arange(2 * len(standing)).reshape(-1, 2)]).ravel()
+        view.add_mesh(pv.PolyData(standing.reshape(-1, 3).astype(np.float32), lines=lines), color=axis_colour(), line_width=1.4,
+                      opacity=0.85, name=AXES, pickable=False, reset_camera=False, lighting=False, show_scalar_bar=False)
 
 
-def opened_arcs(path: Toolpath) -> tuple[np.ndarray, np.ndarray]:
-    """Return the points of a path with its arcs opened into chords (k + 1, 3), and the row in `MOTIONS` of each chord (k,)."""
-    kind = np.where(path.motion == Motion.RAPID, MOTIONS.index("rapid"), path.mark)
-    kind = np.where((path.motion != Motion.RAPID) & (path.mark == Mark.RETRACT), MOTIONS.index("retract"), kind)
-    start, sweep = path.starts(), path.sweeps()
-    pieces = np.maximum(1, np.ceil(np.abs(sweep) / _TURN)).astype(int)
-    pieces[0] = 0
-    row = np.repeat(np.arange(len(path)), pieces)
-    step = np.arange(len(row)) - np.repeat(np.cumsum(pieces) - pieces, pieces) + 1
-    part = step / pieces[row]
-    points = start[row] + (path.position[row] - start[row]) * part[:, None]
-    turned = sweep[row] != 0.0
-    rows, angle = row[turned], (sweep[row] * part)[turned]
-    arm = start[rows, :2] - path.centre[rows, :2]
-    cos, sin = np.cos(angle), np.sin(angle)
-    points[turned, 0] = path.centre[rows, 0] + cos * arm[:, 0] - sin * arm[:, 1]
-    points[turned, 1] = path.centre[rows, 1] + sin * arm[:, 0] + cos * arm[:, 1]
-    return np.vstack([path.position[:1], points]), kind[row]
+def _standing(paths: list[tuple[Toolpath, Frame]], size: float) -> np.ndarray:
+    """Return the strokes (k, 2, 3) of the paths on which the tool leans, in the part's coordinates."""
+    made = [frame.to_world(strokes(path, STROKE_EVERY * size, STROKE_LENGTH * size, MOST_STROKES).reshape(-1, 3)) for path, frame in paths]
+    return np.vstack([np.zeros((0, 3)), *made]).reshape(-1, 2, 3)
 
 
-def _chords(paths: list[tuple[tuple[np.ndarray, np.ndarray], Frame]], kept: np.ndarray) -> pv.PolyData | None:
+def _chords(paths: list[tuple[tuple[np.ndarray, np.ndarray], np.ndarray, Frame]], kept: np.ndarray) -> pv.PolyData | None:
     """Return one mesh of the chords whose kinds are wanted, each with its colour."""
     points, ends, kinds, base = [], [], [], 0
-    for (own, kind), frame in paths:
-        rows = np.flatnonzero(kept[kind])
+    for (own, block), kind, frame in paths:
+        rows = np.flatnonzero(kept[kind[block]])
         points.append(frame.to_world(own))
         ends.append(np.column_stack([np.full(len(rows), 2), base + rows, base + rows + 1]))
-        kinds.append(kind[rows])
+        kinds.append(kind[block[rows]])
         base += len(own)
     if not sum(len(k) for k in kinds):
         return None
