@@ -37,6 +37,12 @@ SECTION_STEP = 1e-5
 GOUGE = 0.02
 """Default limit of the verdict: how deep anything may enter the finished part."""
 
+FINISH_GOUGE = 6e-3
+"""How deep a planned finishing move may be found in the part it touches: chords of path and facets and the turning bound together."""
+
+HOLDER_ROOM = 0.2
+"""How far neck, shank and holder of a leaning tool are kept from part and fixtures: what a machine's five axes may add up to."""
+
 CONTACT_BOUND = 2e-3
 """How far the contact engine's figure may be from the truth with a fixed tool axis."""
 

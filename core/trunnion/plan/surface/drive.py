@@ -7,12 +7,14 @@ turned into the setup's frame afterwards (`pipeline.making`).
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import dataclass
 from typing import Protocol
 
 from trunnion.geometry.arrays import Bools, Floats
 from trunnion.geometry.frame import Frame
 from trunnion.geometry.skin import Skin
+from trunnion.model.tool import Tool
 
 
 class ExactFace(Protocol):
@@ -54,7 +56,9 @@ class SurfaceDrive:
 
     `faces`: tags to be finished; `exact` their exact surfaces in the same order; `skin`: the whole part. `low`, `high` (3,): the box of the
     blank. `frame`: the cutting frame in the part's coordinates. `allowance`: mm left on the faces on purpose; `height`: the scallop height
-    in mm that is wanted. `clearance`: the height in the cutting frame above everything. `digest` tells all of this apart.
+    in mm that is wanted. `clearance`: the height in the cutting frame above everything. `digest` tells all of this apart. `ask`: who
+    says for a tool whether poses are clear of part and fixtures and within the machine's rotary limits (`pipeline.asking`); None where no
+    tool may lean.
     """
 
     feature: str
@@ -69,3 +73,5 @@ class SurfaceDrive:
     allowance: float
     height: float
     digest: str
+    earlier: Tool | None = None
+    ask: Callable[[Tool], Asker] | None = None

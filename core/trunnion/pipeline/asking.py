@@ -1,0 +1,117 @@
+"""Who answers a strategy whose tool leans: may the machine hold this axis, and is the tool clear of part and fixtures?
+
+Answered by the engine that proves programs (`verify.contact`), asked of poses and of moves before they are planned. Made when first asked:
+most operations never lean.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import replace
+from functools import cached_property
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from trunnion import tolerance
+from trunnion.geometry.arrays import Bools, Floats
+from trunnion.geometry.frame import Frame
+from trunnion.geometry.skin import Skin
+from trunnion.model.fixture import Fixture
+from trunnion.model.material import Machine
+from trunnion.model.tool import Holder, Tool
+from trunnion.part.facets import Facets
+from trunnion.progress import QUIET, Progress
+
+if TYPE_CHECKING:
+    from trunnion.part.part import Part
+    from trunnion.verify.contact import PartContact
+    from trunnion.verify.motion import Moves
+
+CHUNK = 256
+"""Moves that one thread asks before it looks for more."""
+
+
+class PartSurroundings:
+    """A part and its fixtures as they stand in a cutting frame that itself stands in a setup's frame.
+
+    `skin` is the part's in the cutting frame. What cuts may touch the part (`tolerance.FINISH_GOUGE`); neck, shank and holder are asked
+    for thicker by `tolerance.HOLDER_ROOM`.
+    """
+
+    def __init__(self, part: Part, skin: Skin, cutting: Frame, setup: Frame, machine: Machine, fixtures: Sequence[Fixture] = (),
+                 progress: Progress = QUIET) -> None:
+        self._part, self._skin, self._cutting, self._setup = part, skin, cutting, setup
+        self._machine, self._fixtures, self._progress = machine, tuple(fixtures), progress
+
+    def __call__(self, tool: Tool) -> PartAsker:
+        """Return who asks for a tool."""
+        return PartAsker(self, roomy(tool, tolerance.HOLDER_ROOM))
+
+    def holds(self, axis: Floats) -> Bools:
+        """Say which tool axes (k, 3), in the cutting frame, the machine can hold within the limits of its rotary axes."""
+        from trunnion.verify.machine.kinematics import can_hold
+
+        return can_hold(self._setup.local_direction(self._cutting.world_direction(axis)), self._machine)
+
+    def clear(self, moves: Moves) -> Bools:
+        """Say which moves (k,) enter nothing deeper than a finishing cutter may."""
+        from trunnion.verify.threads import in_parallel
+
+        clear, contact = np.zeros(len(moves), dtype=bool), self._contact
+
+        def work(first: int, last: int) -> None:
+            clear[first:last] = contact.clear(_rows(moves, slice(first, last)), tolerance.FINISH_GOUGE)
+
+        in_parallel(work, len(moves), CHUNK, self._progress, "Looking for room for a leaning tool")
+        return clear
+
+    @cached_property
+    def _contact(self) -> PartContact:
+        from trunnion.part.surfaces import surfaces_of
+        from trunnion.verify.contact import PartContact
+        from trunnion.verify.judge.sides import fixture_facets
+
+        surfaces = surfaces_of(self._part, self._cutting, self._progress)
+        skin = self._skin
+        facets = Facets(tag=surfaces.tag, points=skin.points, triangles=skin.triangles, face=np.searchsorted(surfaces.tag, skin.face),
+                        bound=skin.bound)
+        return PartContact(surfaces, facets, [fixture_facets(f, self._cutting) for f in self._fixtures])
+
+
+class PartAsker:
+    """Asks for one tool; a pose that the machine can't hold counts as one that isn't clear."""
+
+    def __init__(self, around: PartSurroundings, tool: Tool) -> None:
+        self._around, self._tool = around, tool
+
+    def __call__(self, tip: Floats, axis: Floats, *, start_tip: Floats | None = None, start_axis: Floats | None = None) -> Bools:
+        """Say for tips (k, 3) with unit axes (k, 3), or for moves that begin at others, which are clear."""
+        from trunnion.verify.kernels.strips import X0, Y0, Z_START
+        from trunnion.verify.motion import poses_of
+
+        tip, axis = (np.asarray(v, dtype=np.float64).reshape(-1, 3) for v in (tip, axis))
+        clear = self._around.holds(axis)
+        rows = np.flatnonzero(clear)
+        moves = poses_of(self._tool, tip[rows], axis[rows])
+        if start_tip is not None:
+            begin = poses_of(self._tool, start_tip[rows], (axis if start_axis is None else start_axis)[rows])
+            row = moves.row.copy()
+            row[:, [X0, Y0, Z_START]] = begin.start
+            moves = replace(moves, start=begin.start, start_axis=begin.start_axis, upright=moves.upright & begin.upright, row=row,
+                            length=np.linalg.norm(moves.end - begin.start, axis=1))
+        clear[rows] = self._around.clear(moves)
+        return clear
+
+
+def roomy(tool: Tool, room: float) -> Tool:
+    """Return a tool whose neck, shank and holder are thicker by a room in mm; its cutting part stays as it is."""
+    rows = tuple((z0, r0 + room, z1, r1 + room) for z0, r0, z1, r1 in tool.holder.rows)
+    return replace(tool, neck_diameter=tool.neck_diameter + 2.0 * room, shank_diameter=tool.shank_diameter + 2.0 * room,
+                   holder=Holder(name=tool.holder.name, rows=rows))
+
+
+def _rows(moves: Moves, rows: slice) -> Moves:
+    names = ("start", "end", "start_axis", "end_axis", "centre", "sweep", "upright", "row", "section", "block", "rapid", "feed", "length",
+             "tool")
+    return replace(moves, **{name: getattr(moves, name)[rows] for name in names})
