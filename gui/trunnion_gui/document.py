@@ -8,7 +8,7 @@ cancelled or crashed job leaves nothing behind. What was done before a step refu
 from __future__ import annotations
 
 import time
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Any
@@ -368,6 +368,14 @@ class Document(QObject):
             self.changed.emit()
         elif job.verb == "write":
             self.written.emit((job.path, reply.value))
+            self._warn_of_rejected(reply.value)
+
+    def _warn_of_rejected(self, files: Sequence[str]) -> None:
+        """Name the files that must not run, which a person may have expected under other names."""
+        rejected = [name for name in files if ".REJECTED." in name]
+        if rejected:
+            self.notice(tr("The proof failed, so the programs are {files}").format(files=", ".join(rejected)),
+                        tr("they must not run; see the messages for what the proof found"))
 
     def _install(self, job: Job, opened: Opened) -> None:
         part = opened.state.session.part

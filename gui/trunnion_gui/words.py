@@ -23,6 +23,17 @@ def sentence(words: str) -> str:
     return words[:1].upper() + words[1:]
 
 
+def told(words: str) -> str:
+    """Return a message with a capital first letter, unless it begins with the name of a file, a part, an operation or a setting.
+
+    >>> told("the part is open"), told("tray.step: no solid"), told("op-03 must wait"), told("blade: no faces")
+    ('The part is open', 'tray.step: no solid', 'op-03 must wait', 'blade: no faces')
+    """
+    first = words.partition(" ")[0]
+    is_name = first.endswith(":") or any(letter in "._/" or letter.isdigit() for letter in first)
+    return words if is_name else sentence(words)
+
+
 def counted(number: int, kind: str) -> str:
     """Return a number of things in words; only English ones have an s when there are several.
 

@@ -27,6 +27,8 @@ from trunnion.model.setup import Setup
 from trunnion.model.tool import Holder, Tool
 from trunnion.model.toolpath import Mark, Motion, Toolpath
 from trunnion.model.verdict import Deviation, OperationProof, Outcome, Verdict
+from trunnion.post.header import STAMP_LINES, plan_digest
+from trunnion.post.release import release
 from trunnion.progress import QUIET
 from trunnion.settings import choose, digest, setting, settings
 
@@ -328,6 +330,28 @@ class CrashingEngine(FakeEngine):
     def work(self, step: str, tick: int) -> None:
         if step == "toolpath" and tick == 5:
             os._exit(139)
+
+
+class FailingEngine(FakeEngine):
+    """Its proof finds a gouge; its programs carry the plan they belong to, so that they may be stamped."""
+
+    def _verify(self, session: Session) -> Session:
+        session = super()._verify(session)
+        text = "\n".join([*("(stamp)" for _ in range(STAMP_LINES)), f"(PLAN {plan_digest(session)})", *HEADER, "M30", "%", ""])
+        return replace(session, verdict=replace(session.verdict, outcome=Outcome.FAILED, gouge=0.05),
+                       posted=(PostedFile(suffix="S1.nc", dialect="linuxcnc", setup="S1", text=text),))
+
+    def write(self, session, folder, *, name="", date="", progress=QUIET) -> tuple[str, ...]:
+        return super().write(replace(session, posted=release(session)), folder)
+
+
+class SoundEngine(FakeEngine):
+    """Its proof measured nothing that is too low or too high."""
+
+    def _verify(self, session: Session) -> Session:
+        session = super()._verify(session)
+        measured = session.verdict.deviation
+        return replace(session, verdict=replace(session.verdict, deviation=replace(measured, deviation=np.zeros(len(measured.face)))))
 
 
 class FaultyEngine(FakeEngine):

@@ -86,6 +86,21 @@ def test_the_worst_places_are_listed_and_a_click_goes_there(mapped, qtbot):
     assert hue(pixel(mapped, inside)) @ hue(load_palette().deviation.gouge[-1]) > 0.9
 
 
+def test_an_empty_list_says_why(make_window, part_file, idle, qtbot):
+    window = make_window("fake_engine:SoundEngine")
+    window.document.open(part_file)
+    idle(window)
+    window.document.program()
+    idle(window)
+    window.show_dock("deviation")
+    qtbot.waitUntil(lambda: window.places.empty.isVisible())
+    assert "while the deviation map is shown" in window.places.empty.text()
+    window.registry.run("view.deviation")
+    qtbot.waitUntil(lambda: window.deviation.shown is not None, timeout=20000)
+    assert window.places.empty.isVisible() and not window.places.table.isVisible()
+    assert "lies between -20 µm and +20 µm" in window.places.empty.text()
+
+
 def test_the_map_goes_as_it_came(mapped, qtbot):
     mapped.registry.run("view.deviation")
     qtbot.wait(30)

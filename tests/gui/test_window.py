@@ -116,7 +116,7 @@ def test_a_wrong_order_is_refused_in_a_message(programmed, idle):
     before = programmed.document.session
     programmed.process.tree.dropped.emit("op-03", "op-02")
     assert programmed.document.session is before
-    assert "op-03 must come after op-02" in programmed.centre.notice.text.replace("Op-", "op-")
+    assert "op-03 must come after op-02" in programmed.centre.notice.text
 
 
 def test_an_operations_own_setting_is_an_edit_by_hand(programmed, idle):
@@ -168,6 +168,48 @@ def test_programs_are_written_into_a_folder(programmed, tmp_path, idle, monkeypa
     programmed.registry.run("file.write")
     idle(programmed)
     assert [p.name for p in (tmp_path / "out").iterdir()] == ["tray.S1.nc"]
+
+
+def test_a_failed_verdict_names_the_files_that_must_not_run(make_window, part_file, tmp_path, idle, monkeypatch):
+    window = make_window("fake_engine:FailingEngine")
+    window.document.open(part_file)
+    idle(window)
+    window.document.program()
+    idle(window)
+    window.panels["generate"].fold(False)
+    assert window.panels["generate"].rejected.isVisible()
+    assert "tray.S1.REJECTED.nc" in window.panels["generate"].rejected.text()
+    monkeypatch.setattr(window, "ask_folder", lambda: str(tmp_path / "out"))
+    window.registry.run("file.write")
+    idle(window)
+    assert [p.name for p in (tmp_path / "out").iterdir()] == ["tray.S1.REJECTED.nc"]
+    assert "tray.S1.REJECTED.nc" in window.centre.notice.text
+
+
+def test_a_passed_verdict_names_no_files(programmed):
+    programmed.panels["generate"].fold(False)
+    assert not programmed.panels["generate"].rejected.isVisible()
+
+
+def test_a_message_keeps_the_case_of_a_files_name(make_window, part_file, idle):
+    window = make_window("fake_engine:RefusingEngine")
+    window.document.open(part_file)
+    idle(window)
+    window.document.program()
+    idle(window)
+    assert window.centre.notice.text == "tray.step: parts of this family are not planned yet"
+
+
+def test_a_program_of_an_earlier_plan_is_marked_as_stale(programmed, idle):
+    programmed.show_dock("code")
+    assert not programmed.code.stale.isVisible()
+    programmed.document.select_operation("op-02")
+    programmed.registry.run("edit.suppress")
+    idle(programmed)
+    assert programmed.code.stale.isVisible()
+    programmed.registry.run("edit.undo")
+    idle(programmed)
+    assert not programmed.code.stale.isVisible()
 
 
 def test_the_palette_runs_what_was_typed(opened, qtbot, idle):

@@ -6,11 +6,11 @@ from PySide6.QtCore import Signal
 from PySide6.QtGui import QShowEvent
 from PySide6.QtWidgets import QComboBox, QHBoxLayout, QLabel, QVBoxLayout, QWidget
 
-from trunnion.findings import TrunnionError
-from trunnion.model.session import PostedFile, Session
+from trunnion.model.session import PostedFile
 from trunnion_gui.colours import Theme
 from trunnion_gui.document import Document
 from trunnion_gui.i18n import tr
+from trunnion_gui.leaving import as_they_leave
 from trunnion_gui.widgets.code import CodeView
 from trunnion_gui.words import grouped
 
@@ -32,12 +32,16 @@ class CodeDock(QWidget):
         self.choice.setMinimumContentsLength(18)
         self.lines = QLabel()
         self.lines.setObjectName("muted")
+        self.stale = QLabel(tr("stale: this is the program of the plan before its last change; verify to write it anew"))
+        self.stale.setProperty("verdict", "warning")
+        self.stale.hide()
         self.text = CodeView()
         self.text.setPlaceholderText(tr("The program appears here when it has been generated and verified."))
         top = QHBoxLayout()
         top.setContentsMargins(10, 6, 10, 0)
         top.addWidget(self.choice)
         top.addWidget(self.lines)
+        top.addWidget(self.stale)
         top.addStretch(1)
         column = QVBoxLayout(self)
         column.setContentsMargins(0, 0, 0, 0)
@@ -65,6 +69,7 @@ class CodeDock(QWidget):
     def refresh(self) -> None:
         """Show the programs of the shown session, if anybody looks."""
         session = self._document.shown
+        self.stale.setVisible(bool(session.posted) and self._document.states.get("verify") not in ("done", "problem"))
         if not self.isVisible() or (session.posted, session.verdict) == self._source:
             return
         self._source = (session.posted, session.verdict)
@@ -93,12 +98,3 @@ class CodeDock(QWidget):
         self.text.show_text(text)
         self.lines.setText(tr("{n} lines").format(n=grouped(text.count("\n"))) if text else "")
 
-
-def as_they_leave(session: Session) -> tuple[PostedFile, ...]:
-    """Return the programs with the stamp that they would be written with now; not proven, they keep the one that forbids running."""
-    from trunnion.post.release import release
-
-    try:
-        return release(session)
-    except TrunnionError:
-        return session.posted

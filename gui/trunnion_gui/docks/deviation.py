@@ -2,8 +2,8 @@
 
 from __future__ import annotations
 
-from PySide6.QtCore import Signal
-from PySide6.QtWidgets import QTableWidget, QVBoxLayout, QWidget
+from PySide6.QtCore import Qt, Signal
+from PySide6.QtWidgets import QLabel, QStackedLayout, QTableWidget, QWidget
 
 from trunnion.report.deviation import WorstPlace
 from trunnion_gui import icons
@@ -28,9 +28,13 @@ class DeviationDock(QWidget):
         self.shown: DrawnMap | None = None
         self.places: tuple[WorstPlace, ...] = ()
         self.table: QTableWidget = tables.table(["", tr("Deviation"), tr("Face"), tr("Feature"), "x", "y", "z"], stretched=(0, 3))
-        column = QVBoxLayout(self)
-        column.setContentsMargins(0, 0, 0, 0)
-        column.addWidget(self.table)
+        self.empty = QLabel()
+        self.empty.setObjectName("muted")
+        self.empty.setAlignment(Qt.AlignmentFlag.AlignCenter)
+        self.empty.setWordWrap(True)
+        self._stack = QStackedLayout(self)
+        self._stack.addWidget(self.table)
+        self._stack.addWidget(self.empty)
         self.table.cellClicked.connect(lambda row, _: self.chosen.emit(self.places[row]))
 
     def use_theme(self, theme: Theme) -> None:
@@ -49,6 +53,15 @@ class DeviationDock(QWidget):
                          self._feature(place.face), *(f"{v:.2f}" for v in place.point)))
             drawn.append(icons.icon("gouge" if is_gouge else "left_over", self._colour(is_gouge)))
         tables.fill(self.table, rows, right=(1, 2, 4, 5, 6), icons=drawn)
+        self.empty.setText(self._nothing())
+        self._stack.setCurrentWidget(self.table if rows else self.empty)
+
+    def _nothing(self) -> str:
+        """Return why the list is empty."""
+        if self.shown is None:
+            return tr("The worst places stand here while the deviation map is shown.")
+        low, high = fine_amount(self.shown.map.low), fine_amount(self.shown.map.high)
+        return tr("Nothing to list: every place that was measured lies between {low} and {high}.").format(low=low, high=high)
 
     def _colour(self, is_gouge: bool) -> str:
         return "" if self._theme is None else self._theme.bad if is_gouge else self._theme.accent

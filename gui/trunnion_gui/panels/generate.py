@@ -8,6 +8,7 @@ from PySide6.QtWidgets import QCheckBox, QGridLayout, QHBoxLayout, QLabel, QWidg
 from trunnion.model.verdict import Outcome
 from trunnion_gui.colours import motions
 from trunnion_gui.i18n import tr
+from trunnion_gui.leaving import rejected_names
 from trunnion_gui.widgets.layout import empty
 from trunnion_gui.widgets.panel import Panel, rule, swatch
 from trunnion_gui.words import amount, duration, share
@@ -23,10 +24,15 @@ class GeneratePanel(Panel):
     """Which kinds of motion are to be seen."""
 
     def build(self) -> None:
+        self._judged: tuple[object, object] = ((), None)
         self.content.addLayout(self._settings)
         self.content.addWidget(self.buttons("step.generate", "step.verify", primary="step.generate"))
         self.verdict = QLabel()
         self.content.addWidget(self.verdict)
+        self.rejected = QLabel()
+        self.rejected.setObjectName("muted")
+        self.rejected.setWordWrap(True)
+        self.content.addWidget(self.rejected)
         self._numbers = QGridLayout()
         self._numbers.setHorizontalSpacing(10)
         self._numbers.setVerticalSpacing(2)
@@ -40,6 +46,7 @@ class GeneratePanel(Panel):
         verdict = self.document.shown.verdict
         empty(self._numbers)
         self.verdict.setVisible(verdict is not None)
+        self._name_rejected()
         if verdict is None:
             return
         self.verdict.setText(tr("Verdict: {outcome}").format(outcome=tr(verdict.outcome.value)))
@@ -54,6 +61,15 @@ class GeneratePanel(Panel):
             label.setObjectName("muted")
             self._numbers.addWidget(label, n, 0)
             self._numbers.addWidget(number, n, 1, Qt.AlignmentFlag.AlignRight)
+
+    def _name_rejected(self) -> None:
+        """Say under which names the programs of a failed proof are written."""
+        session = self.document.shown
+        if (session.posted, session.verdict) != self._judged:
+            self._judged = (session.posted, session.verdict)
+            names = rejected_names(session)
+            self.rejected.setText(tr("Must not run, and is written as {files}").format(files=", ".join(names)) if names else "")
+            self.rejected.setVisible(bool(names))
 
     def shown_motions(self) -> tuple[str, ...]:
         """Return the kinds of motion that are ticked."""

@@ -17,7 +17,8 @@ from trunnion.model.playback import Moment
 from trunnion.model.setup import Setup
 from trunnion.model.tool import Tool
 from trunnion.model.toolpath import Toolpath
-from trunnion_gui.colours import MOTIONS, Theme, mixed, rgb
+from trunnion.report.lines import MOTIONS
+from trunnion_gui.colours import Theme, mixed, rgb
 from trunnion_gui.drawing import Drawing, DrawnMap
 from trunnion_gui.viewport.layers.blank import draw_blank
 from trunnion_gui.viewport.layers.deviation import DeviationLayer

@@ -10,6 +10,7 @@ from trunnion.findings import Finding, Severity
 from trunnion_gui import icons
 from trunnion_gui.i18n import tr
 from trunnion_gui.widgets.layout import empty
+from trunnion_gui.words import told
 
 _SIDES = {Severity.ERROR: "error", Severity.WARNING: "warning"}
 
@@ -51,8 +52,8 @@ class Notice(QFrame):
         self.style().unpolish(self)
         self.style().polish(self)
         self.close_button.setIcon(icons.icon("close"))
-        self._text.setText(_sentence(finding.text))
-        self._remedy.setText(_sentence(finding.remedy))
+        self._text.setText(told(finding.text))
+        self._remedy.setText(told(finding.remedy))
         self._remedy.setVisible(bool(finding.remedy))
         empty(self._answers)
         for words, answer in (answers or {}).items():
@@ -61,7 +62,3 @@ class Notice(QFrame):
             button.clicked.connect(lambda _=False, act=answer: act())
             self._answers.addWidget(button)
         self.show()
-
-
-def _sentence(words: str) -> str:
-    return words[:1].upper() + words[1:]

@@ -10,8 +10,8 @@ import pyvista as pv
 
 from trunnion.geometry.frame import Frame
 from trunnion.model.toolpath import Toolpath
-from trunnion.report.lines import MOST_STROKES, STROKE_EVERY, STROKE_LENGTH, kinds_of, opened, strokes
-from trunnion_gui.colours import MOTIONS, axis_colour, motions, rgb
+from trunnion.report.lines import MOST_STROKES, MOTIONS, STROKE_EVERY, STROKE_LENGTH, kinds_of, opened, strokes
+from trunnion_gui.colours import axis_colour, motions, rgb
 
 AXES = "tool axes"
 
