@@ -1,0 +1,116 @@
+"""From one direction of the tool to another: rapids that keep the whole tool clear of the work while it turns.
+
+Round everything that stands on the table lies a sphere. A tool whose tip is outside it and that points at its middle is outside with all of
+its body, however wide: it stands behind the plane that touches the sphere at the tip. So the tool goes out along its axis until it is
+behind such a plane, turns round the sphere, and comes in along its new axis.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from trunnion import tolerance
+from trunnion.geometry.arrays import Floats
+from trunnion.model.blank import Blank
+from trunnion.model.setup import Setup
+from trunnion.model.toolpath import Mark, Motion, Toolpath
+
+STEP = math.radians(5.0)
+"""Largest turn in one block: the straight ways of the tip between stay outside the sphere because it is taken a thousandth larger."""
+LEAST_SAFE = 1.0
+"""mm: how far outside of everything the sphere lies at least, whatever the clearance."""
+Pose = tuple[Floats, Floats]
+"""A tip (3,) and the tool's unit axis (3,)."""
+
+
+@dataclass(frozen=True, slots=True, eq=False, kw_only=True)
+class Swing:
+    """The sphere that a turning tool stays out of: `centre` (3,) and `radius` mm, in the setup frame."""
+
+    centre: Floats
+    radius: float
+
+    def above(self, tip: Floats, axis: Floats) -> Floats:
+        """Return where a tip (3,) comes to when it goes out along its axis (3,) until the tool is clear of the sphere."""
+        out = self.radius - float((tip - self.centre) @ axis)
+        return np.asarray(tip + max(out, 0.0) * axis)
+
+
+def swing_of(blank: Blank, setup: Setup) -> Swing:
+    """Return the sphere round the blank and the fixtures of a setup, as far from them as the clearance height is from the blank."""
+    corners = np.array([[x, y, z] for x in (0, 1) for y in (0, 1) for z in (0, 1)]) * blank.size + blank.low
+    boxed = setup.frame.to_local(blank.frame.to_world(corners))
+    safe = max(setup.clearance - float(boxed[:, 2].max()), LEAST_SAFE)
+    points = np.vstack([boxed, *(setup.frame.to_local(f.mesh.points) for f in setup.fixtures if f.setup in ("", setup.name))])
+    centre = 0.5 * (boxed.min(axis=0) + boxed.max(axis=0))
+    radius = float(np.linalg.norm(points - centre, axis=1).max()) + safe
+    return Swing(centre=centre, radius=radius / math.cos(0.5 * STEP))
+
+
+def moved_over(path: Toolpath, before: Pose | None, swing: Swing) -> Toolpath:
+    """Return a path with the rapids in front that bring the tool safely to its first pose.
+
+    `before` is the pose that the tool was left in, or None when it comes from its change: then it comes in along its axis from outside the
+    sphere. A path that begins in the direction that the tool has already, or upright from its change, is returned as it is.
+    """
+    if not len(path):
+        return path
+    tip, axis = path.position[0], path.axis[0]
+    upright = float(np.linalg.norm(axis - np.array([0.0, 0.0, 1.0]))) <= tolerance.PARAMETRIC
+    if before is None:
+        return path if upright else _led([(swing.above(tip, axis), axis)], path)
+    start, direction = np.asarray(before[0]), np.asarray(before[1])
+    if float(np.linalg.norm(axis - direction)) <= tolerance.PARAMETRIC:
+        return path
+    turned = turn(direction, axis)
+    around = [(swing.centre + swing.radius * a, a) for a in turned]
+    return _led([(swing.above(start, direction), direction), *around, (swing.above(tip, axis), axis)], path)
+
+
+def joined(paths: Sequence[Toolpath], changes: Sequence[bool], swing: Swing) -> tuple[Toolpath, ...]:
+    """Return paths that are cut one after the other, each led from where the one before has left the tool.
+
+    `changes` says which of them begin with a tool change.
+    """
+    led: list[Toolpath] = []
+    before: Pose | None = None
+    for path, change in zip(paths, changes, strict=True):
+        led.append(moved_over(path, None if change else before, swing))
+        if len(path):
+            before = (path.position[-1], path.axis[-1])
+    return tuple(led)
+
+
+def turn(first: Floats, last: Floats) -> Floats:
+    """Return unit directions (k, 3) from `first` to `last` on the shortest way, no two further apart than `STEP`, both ends included."""
+    across = last - (last @ first) * first
+    size = float(np.linalg.norm(across))
+    if size <= tolerance.PARAMETRIC:
+        # Straight back: any way round does; over the top where there is one.
+        seed = np.array([0.0, 0.0, 1.0]) if abs(first[2]) < 0.9 else np.array([1.0, 0.0, 0.0])
+        across, size = seed - (seed @ first) * first, float(np.linalg.norm(seed - (seed @ first) * first))
+    angle = math.atan2(float(np.linalg.norm(np.cross(first, last))), float(first @ last))
+    share = np.linspace(0.0, angle, max(1, math.ceil(angle / STEP)) + 1)[:, None]
+    way = np.cos(share) * first + np.sin(share) * (across / size)
+    way[-1] = last
+    return np.asarray(way)
+
+
+def _led(poses: Sequence[Pose], path: Toolpath) -> Toolpath:
+    """Return a path with rapids through poses in front; those that go nowhere are left out."""
+    rows = [poses[0]]
+    for tip, axis in poses[1:]:
+        if max(np.abs(tip - rows[-1][0]).max(), np.abs(axis - rows[-1][1]).max()) > tolerance.COINCIDENT:
+            rows.append((tip, axis))
+    if np.abs(rows[-1][0] - path.position[0]).max() <= tolerance.COINCIDENT:
+        rows.pop()
+    n = len(rows)
+    if not n:
+        return path
+    lead = replace(path, position=np.array([t for t, _ in rows]), axis=np.array([a for _, a in rows]), motion=np.full(n, Motion.RAPID),
+                   centre=np.full((n, 3), np.nan), feed=np.zeros(n), mark=np.full(n, Mark.RETRACT))
+    return Toolpath.join([lead, path])
