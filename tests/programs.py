@@ -8,6 +8,7 @@ from dataclasses import replace
 import numpy as np
 
 from trunnion.findings import info, remark, warning
+from trunnion.geometry.cut import plane_cut, way_cut
 from trunnion.geometry.frame import WORLD, Frame
 from trunnion.geometry.mesh import Mesh
 from trunnion.model.blank import Blank
@@ -31,6 +32,7 @@ BULL_10 = replace(FLAT_16, number=7, name="bull 10 R1", form="bull", diameter=10
 S1 = Setup(name="S1", frame=WORLD, work_offset="G54", clearance=50.0, machine="mill-3-axis")
 S2 = Setup(name="S2", frame=Frame(np.array([100.0, 0.0, 40.0]), np.array([-1.0, 0.0, 0.0]), np.array([0.0, 0.0, -1.0])),
            work_offset="G55", clearance=30.0, machine="mill-3-axis")
+CUTS = (plane_cut(3, (1.0, 2.0, 3.5), (0.0, 0.6, 0.8)), way_cut(41, ((0.0, 0.0, 0.1), (5.0, 0.0, 0.2), (5.0, 4.0, 0.1))))
 PART_BYTES = b"ISO-10303-21;\nHEADER;\nENDSEC;\nEND-ISO-10303-21;\n"
 
 RAPID, LINE, CW, CCW = Motion.RAPID, Motion.LINE, Motion.ARC_CW, Motion.ARC_CCW
@@ -142,7 +144,7 @@ def session() -> Session:
     choices = {"blank.side": 5, "route.plan": "panel-aluminium", "verify.limit": 0.02, "blank.box": True}
     clamp = Mesh([(0.0, 0.0, 0.0), (1.0, 0.0, 0.0), (0.0, 1.0, 0.0), (0.0, 0.0, 1.0)], [(0, 2, 1), (0, 1, 3), (1, 2, 3), (0, 3, 2)],
                  np.ones(4, int))
-    return Session(part=part_info(), fixtures=(Fixture(name="clamp", mesh=clamp, setup="S2"),), choices=choices,
+    return Session(part=part_info(), cuts=CUTS, fixtures=(Fixture(name="clamp", mesh=clamp, setup="S2"),), choices=choices,
                    recognition=recognition(), sizes=sizes, blank=blank, setups=(S1, S2),
                    process=process_tree(), paths=paths, posted=posted, verdict=verdict(), records=records)
 

@@ -7,6 +7,7 @@ from dataclasses import dataclass, field
 
 from trunnion.findings import Finding
 from trunnion.geometry.arrays import Floats
+from trunnion.geometry.cut import Cut
 from trunnion.model.blank import Blank
 from trunnion.model.feature import Recognition
 from trunnion.model.fixture import Fixture
@@ -76,9 +77,13 @@ class PostedFile:
 
 @dataclass(frozen=True, eq=False, kw_only=True)
 class Session:
-    """Everything known about one part's programming. What is `None` or empty has not been computed."""
+    """Everything known about one part's programming. What is `None` or empty has not been computed.
+
+    `cuts` divide faces of the part as read, in their order; `part` and every tag are those of the part after them.
+    """
 
     part: PartInfo | None = None
+    cuts: tuple[Cut, ...] = ()
     choices: Mapping[str, Value] = field(default_factory=dict)
     recognition: Recognition | None = None
     sizes: tuple[SizeEntry, ...] = ()

@@ -39,6 +39,13 @@ def solids_of(shape: Shape) -> list[Shape]:
     return [TopoDS.Solid_s(s) for s in _listed(shape, TopAbs_SOLID)]
 
 
+def edge_index(shape: Shape) -> Any:
+    """Return the kernel's indexed map of a shape's edges: `FindIndex(edge)` is the 1-based place, 0 when it is not there."""
+    found = TopTools_IndexedMapOfShape()
+    TopExp.MapShapes_s(shape, TopAbs_EDGE, found)
+    return found
+
+
 def face_index(shape: Shape) -> Any:
     """Return the kernel's indexed map of a shape's faces: `FindIndex(face)` is the 1-based place, 0 when it is not there."""
     found = TopTools_IndexedMapOfShape()

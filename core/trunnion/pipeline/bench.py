@@ -2,15 +2,19 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from functools import cached_property
 from typing import TYPE_CHECKING
 
 import numpy as np
 
+from trunnion import tolerance
 from trunnion.geometry.arrays import Floats
-from trunnion.geometry.frame import Frame
+from trunnion.geometry.cut import Cut
+from trunnion.geometry.frame import WORLD, Frame
+from trunnion.geometry.skin import Skin
 from trunnion.model.session import PartInfo
+from trunnion.progress import QUIET, Progress
 from trunnion.shop import Shop
 
 if TYPE_CHECKING:
@@ -27,6 +31,7 @@ class Bench:
 
     part: Part
     shop: Shop
+    _skins: list[Skin] = field(default_factory=list, init=False, repr=False, compare=False)
 
     @cached_property
     def facts(self) -> PartInfo:
@@ -34,6 +39,13 @@ class Bench:
         p = self.part
         return PartInfo(path=str(p.path), name=p.name, digest=p.digest, unit=p.unit, n_faces=p.n_faces, n_solids=p.n_solids, solid=p.solid,
                         area=p.area, volume=p.volume, low=p.low, high=p.high, findings=tuple(p.findings))
+
+    def skin(self, progress: Progress = QUIET) -> Skin:
+        """Return the part's skin in its own coordinates, as fine as finishing needs it; made when first asked for."""
+        if not self._skins:
+            from trunnion.part.skin import skin_of
+            self._skins.append(skin_of(self.part, WORLD, tolerance.SKIN_CHORD, progress))
+        return self._skins[0]
 
     def box(self, frame: Frame) -> tuple[Floats, Floats]:
         """Return the part's box (low, high) in a frame, from the exact faces' extreme points and the mesh's."""
@@ -44,3 +56,19 @@ class Bench:
         high = np.maximum(points.max(axis=0), graph.box_high[own].max(axis=0))
         # What is computed from a turned part carries noise far below any meaning; a programmer should not see it in a work offset.
         return np.round(low, DECIMALS), np.round(high, DECIMALS)
+
+
+class Benches:
+    """The benches of one part file: of the part as read, and of what is left of it after cuts, each made once."""
+
+    def __init__(self, part: Part, shop: Shop) -> None:
+        self._made: dict[tuple[Cut, ...], Bench] = {(): Bench(part, shop)}
+
+    def after(self, cuts: tuple[Cut, ...], progress: Progress = QUIET) -> Bench:
+        """Return the bench of the part after some cuts; raise `BadInput` when one of them can't be made."""
+        if cuts not in self._made:
+            before = self.after(cuts[:-1], progress)
+            progress.at(0.0, f"cutting face {cuts[-1].face}")
+            from trunnion.part.cut import divided
+            self._made[cuts] = Bench(divided(before.part, cuts[-1]), before.shop)
+        return self._made[cuts]

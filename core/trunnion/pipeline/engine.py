@@ -11,11 +11,12 @@ from typing import TYPE_CHECKING
 
 from trunnion import tolerance
 from trunnion.findings import BadCall, BadInput, Severity, TrunnionError, has_errors
+from trunnion.geometry.cut import Cut
 from trunnion.geometry.mesh import Mesh
 from trunnion.model.fixture import Fixture
 from trunnion.model.playback import Moment, Timeline
 from trunnion.model.session import Session, StepRecord
-from trunnion.pipeline.bench import Bench
+from trunnion.pipeline.bench import Bench, Benches
 from trunnion.pipeline.steps import STEP_TABLE, STEPS, Step, step_named
 from trunnion.progress import QUIET, Progress
 from trunnion.settings import Value, checked, choose, declared
@@ -39,7 +40,7 @@ class Engine:
 
     def __init__(self, user_folder: Path | None = None) -> None:
         self._shop = load_shop(user_folder)
-        self._bench: Bench | None = None
+        self._benches: Benches | None = None
         self._file: tuple[bytes, str] = (b"", "")
         self._playback: Playback | None = None
 
@@ -50,9 +51,9 @@ class Engine:
             return self._open_project(path, progress)
         from trunnion.part.read import read_part
         part = read_part(path, solid=solid, progress=progress)
-        self._bench = Bench(part, self._shop)
+        self._benches = Benches(part, self._shop)
         self._file = (path.read_bytes(), path.suffix)
-        return Session(part=self._bench.facts)
+        return Session(part=self.bench.facts)
 
     def _open_project(self, path: Path, progress: Progress) -> Session:
         from trunnion.store.project import load_project
@@ -67,8 +68,9 @@ class Engine:
         part = read_part_bytes(data, session.part.name, suffix, solid=session.part.solid, progress=progress)
         if part.digest != session.part.digest:
             raise BadInput(f"{session.part.name}: the part kept with the project is not the one its plan was made for; open the part anew")
-        self._bench = Bench(part, self._shop)
-        self._file = (data, suffix)
+        benches = Benches(part, self._shop)
+        benches.after(session.cuts, progress)
+        self._benches, self._file = benches, (data, suffix)
 
     def keep(self) -> tuple[bytes, str]:
         """Return the bytes and the suffix of the part file as it was read, so that another engine can take over with `attach`."""
@@ -87,14 +89,20 @@ class Engine:
 
     @property
     def bench(self) -> Bench:
-        """The part and the shop; raises `BadCall` while no part is open."""
-        if self._bench is None:
+        """The part as read and the shop; raises `BadCall` while no part is open."""
+        if self._benches is None:
             raise BadCall("no part is open: open a STEP or IGES file first")
-        return self._bench
+        return self._benches.after(())
+
+    def bench_of(self, session: Session, progress: Progress = QUIET) -> Bench:
+        """Return the part after the session's cuts, and the shop; raises `BadCall` while no part is open."""
+        if self._benches is None:
+            return self.bench
+        return self._benches.after(session.cuts, progress)
 
     def mesh(self, session: Session) -> Mesh:
         """Return the triangles of the part, with the tag of each one's face."""
-        return self.bench.part.mesh()
+        return self.bench_of(session).part.mesh()
 
     def settings(self) -> dict[str, tuple[type, ...]]:
         """Return the groups of settings that each step declares."""
@@ -116,6 +124,12 @@ class Engine:
                 key = near[0]
             chosen[key] = known[key].parse(value)
         return replace(session, choices={**session.choices, **chosen})
+
+    def with_cuts(self, session: Session, cuts: tuple[Cut, ...], progress: Progress = QUIET) -> Session:
+        """Return the session with its part's faces divided by cuts, in their order; raise `BadInput` when one of them can't be made."""
+        after = replace(session, cuts=cuts)
+        facts = self.bench_of(after, progress).facts
+        return replace(after, part=facts if session.part is None else replace(facts, path=session.part.path))
 
     def with_fixtures(self, session: Session, words: Sequence[str], progress: Progress = QUIET) -> Session:
         """Return the session with the fixtures of some files (`FILE`, or `SETUP=FILE` for one setup) in place of those it had.
@@ -143,7 +157,7 @@ class Engine:
         record = session.records.get(step.name)
         if record is None or not step.done(session):
             return "empty"
-        if self._bench is None or record.key != step.key(session, self.bench):
+        if self._benches is None or record.key != step.key(session, self.bench_of(session)):
             return "stale"
         return "problem" if has_errors(record.findings) else "done"
 
@@ -161,9 +175,10 @@ class Engine:
 
     def _run_one(self, session: Session, step: Step, progress: Progress) -> Session:
         began = time.perf_counter()
-        key = step.key(session, self.bench)
+        bench = self.bench_of(session, progress)
+        key = step.key(session, bench)
         try:
-            result = step.work(session, self.bench, progress)
+            result = step.work(session, bench, progress)
         except TrunnionError as reason:
             raise type(reason)(_whole_line(session, str(reason))) from None
         record = StepRecord(key=key, seconds=time.perf_counter() - began, findings=result.findings)
@@ -174,7 +189,7 @@ class Engine:
     def playback(self, session: Session, cell: float = 0.0) -> Timeline:
         """Take up a plan for playback and return its blocks over time; `moment` then shows its stock."""
         from trunnion.pipeline.playback import Playback
-        self._playback = Playback(session, self.bench, cell)
+        self._playback = Playback(session, self.bench_of(session), cell)
         return self._playback.timeline
 
     def moment(self, key: str, position: float, seconds: float = float("inf"), progress: Progress = QUIET) -> Moment:
@@ -202,7 +217,7 @@ class Engine:
         from trunnion.pipeline.writing import name_of, write_documents
         if self.states(session)["verify"] not in FRESH:
             raise BadCall("something changed since the proof: verify again before anything leaves")
-        mesh = self.bench.part.mesh(tolerance.PICTURE)
+        mesh = self.bench_of(session).part.mesh(tolerance.PICTURE)
         files = write_documents(session, mesh, Path(folder), name=name, date=date, progress=progress.part(0.0, 0.9))
         project = f"{name_of(session, name)}{PROJECT_SUFFIX}"
         progress.at(0.9, "saving the project")

@@ -59,7 +59,7 @@ def measure_fine(engine: Engine, session: Session, faces: Sequence[int], spacing
     home = programs[0].setup.frame
     sections = [s for p in programs for s in _seen_from(p, home)]
     moves = moves_of(sections)
-    found = fine_measure([ExactFace(engine.bench.part, tag, home) for tag in faces], moves, spacing, progress=progress)
+    found = fine_measure([ExactFace(engine.bench_of(session).part, tag, home) for tag in faces], moves, spacing, progress=progress)
     lower = sections[int(moves.section[found.step.move])].operation if found.step.move >= 0 else ""
     return FineFigures(faces=tuple(faces), scallop=found.scallop.value, scallop_at=home.to_world(found.scallop.place),
                        gouge=found.gouge.value, gouge_at=home.to_world(found.gouge.place), step=found.step.value,

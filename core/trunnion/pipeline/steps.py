@@ -25,6 +25,7 @@ from trunnion.plan.setups import SetupSettings, make_setups
 from trunnion.plan.size import size_table
 from trunnion.post.settings import PostSettings
 from trunnion.progress import Progress
+from trunnion.recognize.contract import Measuring
 from trunnion.settings import checked, choose, digest, setting, settings
 from trunnion.verify.settings import ProofSettings
 
@@ -66,7 +67,7 @@ class Step:
     def key(self, session: Session, bench: Bench) -> str:
         """Return the digest of everything the step would be given now."""
         chosen: tuple[Any, ...] = tuple(checked(choose(group, session.choices)) for group in self.settings())
-        return digest(self.name, self.version, chosen, self.reads(session, bench))
+        return digest(self.name, self.version, chosen, self.reads(session, bench), *session.cuts)
 
 
 def family_of(session: Session, bench: Bench) -> Any:
@@ -89,7 +90,18 @@ def _recognize(session: Session, bench: Bench, progress: Progress) -> Result:
     chosen = checked(choose(family.settings, session.choices))
     found: Recognition = family.recognize(bench.part.graph(), bench.part, chosen, progress)
     kept = with_features_by_hand(session.recognition, found)
-    return Result(session=replace(session, recognition=kept), findings=kept.findings)
+    after = replace(session, recognition=kept)
+    return Result(session=after if kept is found else measured_anew(after, bench), findings=kept.findings)
+
+
+def measured_anew(session: Session, bench: Bench) -> Session:
+    """Return the session with the sizes of features whose faces a person changed, where the family can measure them."""
+    found = _recognition(session)
+    family = registry.get("families", found.family)()
+    if not isinstance(family, Measuring):
+        return session
+    chosen: Any = checked(choose(family.settings, session.choices))
+    return replace(session, recognition=family.measured(found, bench.part.graph(), bench.part, chosen))
 
 
 def _recognition(session: Session) -> Recognition:

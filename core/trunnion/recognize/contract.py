@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable
-from typing import Any, Protocol
+from typing import Any, Protocol, runtime_checkable
 
 from trunnion.geometry.arrays import Floats, Ints
 from trunnion.geometry.boundary import Boundary
@@ -53,4 +53,15 @@ class Family(Protocol):
 
         Raises `Cancelled` when a person asked to stop.
         """
+        ...
+
+
+@runtime_checkable
+class Measuring(Protocol):
+    """A family whose features can be measured anew when a person has changed their faces."""
+
+    settings: type
+
+    def measured(self, found: Recognition, graph: FaceGraph, part: Any, settings: Any) -> Recognition:
+        """Return what was found with sizes and automatic attributes that fit the faces; what was set by hand stays."""
         ...

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 import numpy as np
 
 from trunnion.findings import Finding, face_tags, info
@@ -33,10 +35,9 @@ class SurfaceFamily:
     def recognize(self, graph: FaceGraph, bounded: Bounded, settings: SurfaceSettings, progress: Progress = QUIET) -> Recognition:
         """Return one feature a group of equal patches, largest first; local ones are marked. Raises `Cancelled` when asked to stop."""
         progress.at(0.0, "measuring patches")
-        present = np.flatnonzero(graph.area > 0.0)
-        sizes = patch_sizes(bounded, [int(r) + 1 for r in present], graph.area[present], exact=settings.boundary == EXACT)
+        sizes = _sizes(graph, bounded, settings)
         progress.at(0.8, "grouping patches")
-        size = sizes.diagonal if settings.grouping == ALIGNED else sizes.diameter
+        size = _size(sizes, settings)
         sliver = sizes.width < settings.sliver_width
         small = ~sliver & (size < settings.smallest)
         rows = np.flatnonzero(~sliver & ~small)
@@ -44,16 +45,35 @@ class SurfaceFamily:
             groups = aligned_groups(sizes, rows, settings.tolerance, relative=settings.relative, subdivide=settings.subdivide)
         else:
             groups = invariant_groups(sizes, rows, settings.tolerance, relative=settings.relative)
-        features = tuple(_feature(k, g, sizes, size, settings) for k, g in enumerate(groups, 1))
+        features = tuple(_feature(f"group-{k:02}", g, sizes, settings) for k, g in enumerate(groups, 1))
         apart = sliver | small
         return Recognition(family=self.name, features=features, unexplained=tuple(int(t) for t in sizes.tag[apart]),
                            unexplained_share=float(sizes.area[apart].sum() / sizes.area.sum()),
                            findings=_findings(sizes, sliver, small, settings))
 
+    def measured(self, found: Recognition, graph: FaceGraph, part: Bounded, settings: SurfaceSettings) -> Recognition:
+        """Return the groups with sizes that fit their faces; whether those made or changed by hand are local stays as a person said."""
+        sizes = _sizes(graph, part, settings)
+        anew = {f.id: _feature(f.id, np.flatnonzero(np.isin(sizes.tag, f.tags)), sizes, settings) for f in found.of_kind("group")}
+        features = tuple(f if f.kind != "group" else replace(f, sizes=anew[f.id].sizes) if f.by_hand else anew[f.id]
+                         for f in found.features)
+        apart = np.isin(sizes.tag, found.unexplained)
+        return replace(found, features=features, unexplained_share=float(sizes.area[apart].sum() / sizes.area.sum()))
 
-def _feature(number: int, rows: Ints, sizes: PatchSizes, size: Floats, settings: SurfaceSettings) -> Feature:
+
+def _sizes(graph: FaceGraph, bounded: Bounded, settings: SurfaceSettings) -> PatchSizes:
+    present = np.flatnonzero(graph.area > 0.0)
+    return patch_sizes(bounded, [int(r) + 1 for r in present], graph.area[present], exact=settings.boundary == EXACT)
+
+
+def _size(sizes: PatchSizes, settings: SurfaceSettings) -> Floats:
+    return sizes.diagonal if settings.grouping == ALIGNED else sizes.diameter
+
+
+def _feature(id: str, rows: Ints, sizes: PatchSizes, settings: SurfaceSettings) -> Feature:
+    size = _size(sizes, settings)
     ratio = float(size[rows].max() / size.max())
-    return Feature(id=f"group-{number:02}", kind="group", faces=tuple(FaceRole(role="face", face=int(t)) for t in np.sort(sizes.tag[rows])),
+    return Feature(id=id, kind="group", faces=tuple(FaceRole(role="face", face=int(t)) for t in np.sort(sizes.tag[rows])),
                    sizes={"feature_size": float(size[rows].mean()), "feature_size_min": float(size[rows].min()),
                           "feature_size_max": float(size[rows].max()), "size_ratio": ratio, "diagonal": float(sizes.diagonal[rows].mean()),
                           "diameter": float(sizes.diameter[rows].mean()), "boundary_length": float(sizes.length[rows].mean()),

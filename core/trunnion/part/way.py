@@ -1,0 +1,157 @@
+"""A way drawn on a face: places brought onto its surface, a smooth curve through them, its ends led out over the face's boundary."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+from OCP.BRep import BRep_Tool
+from OCP.BRepBuilderAPI import BRepBuilderAPI_MakeEdge
+from OCP.BRepLib import BRepLib
+from OCP.BRepTools import BRepTools
+from OCP.BRepTopAdaptor import BRepTopAdaptor_FClass2d
+from OCP.Geom2dAPI import Geom2dAPI_Interpolate
+from OCP.gp import gp_Pnt, gp_Pnt2d, gp_Vec2d
+from OCP.ShapeAnalysis import ShapeAnalysis_Surface
+from OCP.TColgp import TColgp_HArray1OfPnt2d
+from OCP.TColStd import TColStd_HArray1OfReal
+from OCP.TopAbs import TopAbs_IN, TopAbs_OUT, TopAbs_REVERSED
+
+from trunnion import tolerance
+from trunnion.findings import BadInput
+from trunnion.geometry.arrays import Floats
+from trunnion.part.identity import Shape
+
+_BEYOND = 0.02
+"""How far an end is led on outside the face, as a share of the face's parameters: clear of its boundary."""
+_STEP = 0.01
+"""Share of the face's parameters by which an end is led on until it is outside."""
+_BESIDE = 1e-4
+"""Share of the face's parameters beside the way at which pieces are asked for."""
+_ASKED = 64
+"""Places along the way beside which pieces are asked for."""
+
+
+class DrawnWay:
+    """The curve on the surface of one face that goes through given places (k, 3) in order; a way back to its start is closed.
+
+    Raises `BadInput` for a place that is farther than `reach` from the surface.
+    """
+
+    def __init__(self, face: Shape, places: Floats, reach: float, where: str) -> None:
+        self._face = face
+        self._surface = BRep_Tool.Surface_s(face)
+        self._turned = -1.0 if face.Orientation() == TopAbs_REVERSED else 1.0
+        u0, u1, v0, v1 = BRepTools.UVBounds_s(face)
+        self._low, self._size = np.array([u0, v0]), np.array([u1 - u0, v1 - v0])
+        at = self._brought(places, reach, where)
+        steps = np.linalg.norm(np.diff(places, axis=0), axis=1)
+        kept = np.concatenate([[True], steps > tolerance.COINCIDENT])
+        at, steps = at[kept], steps[kept[1:]]
+        if len(at) < 2:
+            raise BadInput(f"{where}: the places of a drawn cut fall together")
+        self.is_closed = bool(np.abs(at[-1] - at[0]).max() < tolerance.PARAMETRIC * self._size.max())
+        if not self.is_closed:
+            head, tail = self._led_out(at[0], at[0] - at[1]), self._led_out(at[-1], at[-1] - at[-2])
+            at = np.vstack([head, at, tail])
+            scale = steps / np.maximum(np.linalg.norm(np.diff(at[len(head):len(at) - len(tail)], axis=0) / self._size, axis=1),
+                                       tolerance.PARAMETRIC)
+            steps = np.concatenate([[_lead(head, at[len(head)], self._size) * scale[0]] * len(head), steps,
+                                    [_lead(tail, at[-len(tail) - 1], self._size) * scale[-1]] * len(tail)])
+        self._curve = _through(at, np.concatenate([[0.0], np.cumsum(steps)]), self.is_closed)
+        if self._curve is None:
+            raise BadInput(f"{where}: no smooth curve goes through the places of the drawn cut; draw it with fewer places")
+
+    def edge(self) -> Shape:
+        """Return the way as an edge on the face's surface."""
+        made = BRepBuilderAPI_MakeEdge(self._curve, self._surface)
+        if not made.IsDone():
+            raise BadInput("the drawn cut can't be laid on the face; draw it elsewhere")
+        edge = made.Edge()
+        BRepLib.BuildCurves3d_s(edge)
+        return edge
+
+    def is_left(self, piece: Shape) -> bool:
+        """Say whether a piece of the face lies left of the way, seen from outside."""
+        inside = BRepTopAdaptor_FClass2d(piece, tolerance.COINCIDENT)
+        votes = 0
+        for share in (np.arange(_ASKED) + 0.5) / _ASKED:
+            t = self._curve.FirstParameter() + share * (self._curve.LastParameter() - self._curve.FirstParameter())
+            point, along = gp_Pnt2d(), gp_Vec2d()
+            self._curve.D1(t, point, along)
+            left = self._turned * np.array([-along.Y() * self._size[0] / self._size[1], along.X() * self._size[1] / self._size[0]])
+            left *= _BESIDE / max(np.abs(left / self._size).max(), tolerance.PARAMETRIC)
+            votes += inside.Perform(gp_Pnt2d(point.X() + left[0], point.Y() + left[1])) == TopAbs_IN
+            votes -= inside.Perform(gp_Pnt2d(point.X() - left[0], point.Y() - left[1])) == TopAbs_IN
+        return votes > 0
+
+    def _brought(self, places: Floats, reach: float, where: str) -> Floats:
+        """Return the surface's parameters (k, 2) nearest to the places, without jumps on surfaces that close on themselves."""
+        nearest = ShapeAnalysis_Surface(self._surface)
+        at = np.empty((len(places), 2))
+        for k, place in enumerate(places.tolist()):
+            found = nearest.ValueOfUV(gp_Pnt(*place), tolerance.COINCIDENT)
+            if nearest.Gap() > reach:
+                raise BadInput(f"{where}: place {k + 1} of the drawn cut is {nearest.Gap():.3g} mm away from the face; "
+                               f"{reach:g} mm are allowed")
+            at[k] = found.X(), found.Y()
+        for column, period in enumerate(self._periods()):
+            if period:
+                jumps = np.round(np.diff(at[:, column]) / period)
+                at[1:, column] -= period * np.cumsum(jumps)
+                at[:, column] -= period * np.round((at[:, column].mean() - self._low[column] - 0.5 * self._size[column]) / period)
+        return at
+
+    def _periods(self) -> tuple[float, float]:
+        s = self._surface
+        return (s.UPeriod() if s.IsUPeriodic() else 0.0), (s.VPeriod() if s.IsVPeriodic() else 0.0)
+
+    def _led_out(self, end: Floats, way: Floats) -> Floats:
+        """Return the place (1, 2) straight on from an end of the way that lies outside the face; (0, 2) when the end is outside already."""
+        inside: Any = BRepTopAdaptor_FClass2d(self._face, tolerance.COINCIDENT)
+        limits = self._limits()
+        if inside.Perform(gp_Pnt2d(*end.tolist())) == TopAbs_OUT:
+            return np.empty((0, 2))
+        step = way / max(np.abs(way / self._size).max(), tolerance.PARAMETRIC) * _STEP
+        at, beyond = end, 0.0
+        while beyond < _BEYOND:
+            further = np.clip(at + step, *limits)
+            if np.abs((further - at) - step).max() > tolerance.PARAMETRIC * np.abs(step).max():
+                return np.array([_onto(at, step, limits)])
+            at = further
+            beyond += _STEP if inside.Perform(gp_Pnt2d(*at.tolist())) == TopAbs_OUT else 0.0
+        return np.array([at])
+
+    def _limits(self) -> tuple[Floats, Floats]:
+        """Return the least and greatest parameters at which there is a surface, but not far beyond the face."""
+        u0, u1, v0, v1 = self._surface.Bounds()
+        period = np.array(self._periods())
+        low = np.where(period > 0.0, -np.inf, [u0, v0])
+        high = np.where(period > 0.0, np.inf, [u1, v1])
+        return np.maximum(low, self._low - self._size), np.minimum(high, self._low + 2.0 * self._size)
+
+
+def _onto(at: Floats, step: Floats, limits: tuple[Floats, Floats]) -> Floats:
+    """Return where a step first meets the limits."""
+    ends = np.where(step > 0.0, limits[1], limits[0])
+    share = np.divide(ends - at, step, out=np.full(2, np.inf), where=step != 0.0)
+    return np.clip(at + max(float(share.min()), 0.0) * step, *limits)
+
+
+def _lead(lead: Floats, end: Floats, size: Floats) -> float:
+    return float(np.linalg.norm((lead[0] - end) / size)) if len(lead) else 0.0
+
+
+def _through(at: Floats, along: Floats, is_closed: bool) -> Any:
+    """Return the plane curve through places (k, 2) at the parameters (k,), or None."""
+    if is_closed:
+        at = at[:-1]
+    places = TColgp_HArray1OfPnt2d(1, len(at))
+    for n, (u, v) in enumerate(at.tolist(), 1):
+        places.SetValue(n, gp_Pnt2d(u, v))
+    parameters = TColStd_HArray1OfReal(1, len(along))
+    for n, t in enumerate(along.tolist(), 1):
+        parameters.SetValue(n, t)
+    made = Geom2dAPI_Interpolate(places, parameters, is_closed, tolerance.PARAMETRIC)
+    made.Perform()
+    return made.Curve() if made.IsDone() else None
