@@ -20,7 +20,7 @@ _AT_VECTOR = 1e-9
 
 
 def leaning(lead: float, tilt: float) -> AxisField:
-    """Return the field that leans from the normal: by `lead` towards the feed, then by `tilt` (rad) to the left of it, seen from outside."""
+    """Return the field that leans from the normal: by `lead` towards the feed, then by `tilt` (rad) to its left, seen from outside."""
 
     def field(point: Floats, normal: Floats, feed: Floats) -> Floats:
         forward = math.cos(lead) * normal + math.sin(lead) * feed
