@@ -40,6 +40,9 @@ GOUGE = 0.02
 FINISH_GOUGE = 6e-3
 """How deep a planned finishing move may be found in the part it touches: chords of path and facets and the turning bound together."""
 
+SKIN_CHORD = 2e-3
+"""Chord error of the triangles that finishing cutters are dropped on: with that of the path it is a quarter of the finest scallop asked for."""
+
 HOLDER_ROOM = 0.2
 """How far neck, shank and holder of a leaning tool are kept from part and fixtures: what a machine's five axes may add up to."""
 
@@ -63,6 +66,12 @@ ANGLE = math.radians(0.05)
 
 TANGENT = math.radians(0.5)
 """A dihedral angle closer than this to flat is smooth: rolling-ball fillets are approximated by their modellers."""
+
+SMOOTH_JOIN = math.radians(10.0)
+"""Faces whose normals differ by less where they meet run into each other: passes go on over such a join, and stop at a sharper one."""
+
+JOINED_POINTS = 1e-5
+"""Points of two faces' triangles on their common edge are one point: each face's own curve gives it to about a tenth of this."""
 
 PARAMETRIC = 1e-9
 """Two numbers that were computed the same way and differ by less are equal."""

@@ -1,0 +1,185 @@
+"""A sheet: triangles of some faces of a skin, joined across patches wherever these run smoothly into each other.
+
+Surface strategies lay fields over sheets (`geometry/marching.py`, `geometry/morph.py`) and cut along their lines. A sheet's triangles
+may be split until they are fine enough for a field; the new points are put where the faces' own normals want them, on the cubic curve
+through both ends of the edge (Vlachos, Curved PN Triangles), so that they leave the faces by the fourth power of an edge only.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass
+
+import numpy as np
+from scipy.sparse import coo_matrix
+from scipy.sparse.csgraph import connected_components
+from scipy.spatial import cKDTree
+
+from trunnion import tolerance
+from trunnion.findings import Refused
+from trunnion.geometry.arrays import Bools, Floats, Ints
+from trunnion.geometry.skin import Skin
+from trunnion.progress import QUIET, Progress
+
+SMOOTH = np.cos(tolerance.SMOOTH_JOIN)
+MOST_TRIANGLES = 2_000_000
+"""Triangles of a sheet at most: half a gigabyte of working room."""
+ROUNDS = 400
+"""Rounds of splitting at most; each one halves the longest edges of all triangles."""
+Measure = Callable[[Floats, Floats, Floats, Floats], Floats]
+"""The lengths (e,) of edges from points (e, 3) with normals (e, 3) to points (e, 3) with normals (e, 3)."""
+
+
+@dataclass(frozen=True, slots=True, eq=False, kw_only=True)
+class Sheet:
+    """Points (v, 3) mm and the faces' outward unit normals there (v, 3), triangles (t, 3) rows of points, anticlockwise from outside, and
+    the tag of each one's face (t,). Points are shared across smooth joins of faces, not across sharp ones."""
+
+    points: Floats
+    normals: Floats
+    triangles: Ints
+    face: Ints
+
+    def on_edges(self, ends: Ints, share: Floats) -> tuple[Floats, Floats]:
+        """Return points and normals (k, 3) on the curved edges between points `ends` (k, 2), at shares (k,) of their way."""
+        a, b = ends.T
+        return between(self.points[a], self.normals[a], self.points[b], self.normals[b], share)
+
+    def edges(self) -> tuple[Ints, Ints]:
+        """Return the edges (e, 2), lower row of points first, and which of them the sides (t, 3) of the triangles are.
+
+        Side k runs from a triangle's corner k to the next one.
+        """
+        return edges_of(self.triangles, len(self.points))
+
+    def rims(self) -> list[Ints]:
+        """Return the loops of points (k,) where the sheet ends, the sheet on their left; the longest one first."""
+        n = len(self.points)
+        start, end = self.triangles.ravel(), self.triangles[:, [1, 2, 0]].ravel()
+        free = ~np.isin(start * n + end, end * n + start)
+        start, end = start[free], end[free]
+        order = np.argsort(start, kind="stable")
+        start, end = start[order], end[order]
+        used, loops = np.zeros(len(start), bool), []
+        for first in range(len(start)):
+            loop, row = [], first
+            while not used[row]:
+                used[row] = True
+                loop.append(int(start[row]))
+                low, high = np.searchsorted(start, [end[row], end[row] + 1])
+                row = next((r for r in range(low, high) if not used[r]), first)
+            if len(loop) > 2:
+                loops.append(np.array(loop))
+        return sorted(loops, key=self._round, reverse=True)
+
+    def _round(self, loop: Ints) -> float:
+        return float(np.linalg.norm(np.diff(self.points[loop], axis=0, append=self.points[loop[:1]]), axis=1).sum())
+
+    def area(self) -> Floats:
+        """Return the area of each triangle (t,) in mm2."""
+        a, b, c = np.moveaxis(self.points[self.triangles], 1, 0)
+        return 0.5 * np.linalg.norm(np.cross(b - a, c - a), axis=1)
+
+    def components(self) -> list[Sheet]:
+        """Return the connected parts, those with the lowest face tags first."""
+        t = self.triangles
+        links = coo_matrix((np.ones(2 * len(t)), (t[:, [0, 1]].ravel(), t[:, [1, 2]].ravel())), shape=(len(self.points),) * 2)
+        label = connected_components(links, directed=False)[1][t[:, 0]]
+        parts = [self.of(label == part) for part in np.unique(label)]
+        return sorted(parts, key=lambda s: (int(s.face.min()), *s.points[0].tolist()))
+
+    def of(self, rows: Bools) -> Sheet:
+        """Return a part of the sheet: some triangles (t,) and the points they need."""
+        used, triangles = np.unique(self.triangles[rows], return_inverse=True)
+        return Sheet(points=self.points[used], normals=self.normals[used], triangles=triangles.reshape(-1, 3), face=self.face[rows])
+
+
+def sheet_of(skin: Skin, faces: tuple[int, ...]) -> Sheet:
+    """Return the sheet of faces (tags) of a skin; no triangle when the skin has none of them."""
+    rows = skin.of(faces)
+    used, triangles = np.unique(skin.triangles[rows], return_inverse=True)
+    triangles, points, normals = triangles.reshape(-1, 3), skin.points[used], skin.normals[used]
+    joined = _joined(points, normals)
+    firsts, label = np.unique(joined, return_index=True, return_inverse=True)[1:]
+    normal = np.zeros((len(firsts), 3))
+    np.add.at(normal, label, normals)
+    triangles = label[triangles]
+    real = (triangles != triangles[:, [1, 2, 0]]).all(axis=1)
+    return Sheet(points=points[firsts], normals=_unit(normal), triangles=triangles[real], face=skin.face[rows][real])
+
+
+def _joined(points: Floats, normals: Floats) -> Ints:
+    """Return for each point the lowest row of those that coincide with it and face the same way."""
+    n = len(points)
+    pairs = cKDTree(points).query_pairs(tolerance.JOINED_POINTS, output_type="ndarray") if n else np.zeros((0, 2), int)
+    pairs = pairs[(normals[pairs[:, 0]] * normals[pairs[:, 1]]).sum(axis=1) >= SMOOTH]
+    label = connected_components(coo_matrix((np.ones(len(pairs)), pairs.T), shape=(n, n)), directed=False)[1]
+    lowest = np.full(n, n)
+    np.minimum.at(lowest, label, np.arange(n))
+    return np.asarray(lowest[label])
+
+
+def edges_of(triangles: Ints, n_points: int) -> tuple[Ints, Ints]:
+    """Return the edges (e, 2) of triangles (t, 3), lower row of points first, and which of them the triangles' sides (t, 3) are."""
+    start, end = triangles.ravel(), triangles[:, [1, 2, 0]].ravel()
+    key, side = np.unique(np.minimum(start, end) * n_points + np.maximum(start, end), return_inverse=True)
+    return np.column_stack([key // n_points, key % n_points]), side.reshape(-1, 3)
+
+
+def between(a: Floats, a_normal: Floats, b: Floats, b_normal: Floats, share: Floats) -> tuple[Floats, Floats]:
+    """Return points and normals (k, 3) at shares (k,) of the cubic curves that run from a to b square to the normals of both."""
+    way, s = b - a, share[:, None]
+    out = way - (way * a_normal).sum(axis=1, keepdims=True) * a_normal
+    into = way - (way * b_normal).sum(axis=1, keepdims=True) * b_normal
+    point = a + s * way + s * (1.0 - s) * ((1.0 - s) * (out - way) - s * (into - way))
+    return point, _unit((1.0 - s) * a_normal + s * b_normal)
+
+
+def split_finely(sheet: Sheet, measure: Measure, longest: float, progress: Progress = QUIET) -> Sheet:
+    """Return the sheet with triangles split until no edge measures more than `longest`.
+
+    Edges are halved that are the longest of all their triangles, round after round (Rivara): no triangle gets much thinner than those
+    it was made of. Raises `Refused` when too many triangles would be needed.
+    """
+    points, normals, whole, tags = sheet.points, sheet.normals, [], []
+    triangles, face = sheet.triangles, sheet.face
+    for _ in range(ROUNDS):
+        progress.check()
+        ends, side = edges_of(triangles, len(points))
+        size = measure(points[ends[:, 0]], normals[ends[:, 0]], points[ends[:, 1]], normals[ends[:, 1]])
+        rank = np.empty(len(size), np.int64)
+        rank[np.lexsort((np.arange(len(size)), size))] = np.arange(len(size))
+        corner = np.argmax(rank[side], axis=1)
+        widest = side[np.arange(len(side)), corner]
+        done = size[widest] <= longest
+        whole.append(triangles[done])
+        tags.append(face[done])
+        triangles, face, corner, widest, side = triangles[~done], face[~done], corner[~done], widest[~done], side[~done]
+        if not len(triangles):
+            break
+        agreed = np.bincount(widest, minlength=len(ends)) == np.bincount(side.ravel(), minlength=len(ends))
+        halved = np.flatnonzero(agreed & (size > longest))
+        number = np.full(len(ends), -1)
+        number[halved] = len(points) + np.arange(len(halved))
+        a, b = ends[halved].T
+        more = between(points[a], normals[a], points[b], normals[b], np.full(len(halved), 0.5))
+        points, normals = np.vstack([points, more[0]]), np.vstack([normals, more[1]])
+        triangles, face = _halved(triangles, face, corner, number[widest])
+        if len(triangles) + sum(len(w) for w in whole) > MOST_TRIANGLES:
+            raise Refused(f"passes this narrow over so large an area need over {MOST_TRIANGLES} triangles: allow a higher scallop, or cut "
+                          "the area in pieces")
+    return Sheet(points=points, normals=normals, triangles=np.vstack([*whole, triangles]), face=np.concatenate([*tags, face]))
+
+
+def _halved(triangles: Ints, face: Ints, corner: Ints, middle: Ints) -> tuple[Ints, Ints]:
+    """Return triangles with those halved whose side that begins at `corner` (t,) gets a middle (t,), -1: none."""
+    rows = np.flatnonzero(middle >= 0)
+    a, b, c = (triangles[rows, (corner[rows] + k) % 3] for k in range(3))
+    kept = middle < 0
+    first, second = np.column_stack([a, middle[rows], c]), np.column_stack([middle[rows], b, c])
+    return np.vstack([triangles[kept], first, second]), np.concatenate([face[kept], face[rows], face[rows]])
+
+
+def _unit(vectors: Floats) -> Floats:
+    size = np.linalg.norm(vectors, axis=1, keepdims=True)
+    return np.divide(vectors, size, out=np.zeros_like(vectors), where=size > 0.0)

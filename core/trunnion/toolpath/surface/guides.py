@@ -1,0 +1,116 @@
+"""Guide curves: between which rims of an area the flow lines run.
+
+By default an area like a tube, or a ring, is guided by its two rims, and any other by the two longest of its sides that don't meet: a
+side is a run of the outer rim between corners. A person may name the faces beyond a rim instead.
+"""
+
+from __future__ import annotations
+
+import math
+import re
+from dataclasses import dataclass
+
+import numpy as np
+from scipy.spatial import cKDTree
+
+from trunnion import tolerance
+from trunnion.findings import BadInput
+from trunnion.geometry.arrays import Bools, Floats, Ints
+from trunnion.geometry.sheet import Sheet
+from trunnion.geometry.skin import Skin
+
+CORNER = math.radians(30.0)
+"""A rim that turns by more at a point has a corner there."""
+LIKE_A_RING = 0.4
+"""Two rims make a ring if the shorter one is at least this share of the longer one, or the longer one has no corners."""
+
+
+@dataclass(frozen=True, slots=True, eq=False, kw_only=True)
+class Guides:
+    """The points (k,) of a sheet on the first and on the second guide; `rings` when both are whole rims."""
+
+    first: Ints
+    second: Ints
+    rings: bool
+
+
+def tags_named(text: str) -> tuple[int, ...]:
+    """Return the face tags that a text names, as in `face 12, face 13` or `12 13`; raise `BadInput` for anything else."""
+    words = [w for w in re.split(r"[,;\s]+", text.strip()) if w not in ("", "face", "faces")]
+    if not all(w.isdigit() and int(w) > 0 for w in words):
+        raise BadInput(f"{text!r}: name faces by their tags, as in: face 12, face 13")
+    return tuple(int(w) for w in words)
+
+
+def guides_of(sheet: Sheet) -> Guides:
+    """Return the guides that a connected sheet suggests; raise `BadInput` for one without a rim."""
+    rims = sheet.rims()
+    if not rims:
+        raise BadInput("the area is closed all round: leave one of its faces out, or choose another strategy")
+    sides = _sides(sheet, rims[0])
+    if len(rims) == 2 and (len(sides) < 3 or _round(sheet, rims[1]) >= LIKE_A_RING * _round(sheet, rims[0])):
+        return Guides(first=rims[0], second=rims[1], rings=True)
+    lengths = np.array([_run(sheet, side) for side in sides])
+    if len(sides) < 4:
+        order = np.sort(np.argsort(-lengths, kind="stable")[:2])
+        return Guides(**_apart(sides[order[0]], sides[order[1]]), rings=False)
+    n = len(sides)
+    pairs = [(i, j) for i in range(n) for j in range(i + 2, n) if (j + 1) % n != i]
+    i, j = max(pairs, key=lambda p: min(lengths[p[0]], lengths[p[1]]) + lengths[p[0]] + lengths[p[1]])
+    return Guides(first=sides[i], second=sides[j], rings=False)
+
+
+def guides_beside(sheet: Sheet, skin: Skin, first: tuple[int, ...], second: tuple[int, ...]) -> Guides:
+    """Return the guides along which a sheet meets faces (tags) of the skin; raise `BadInput` where it does not."""
+    rims = sheet.rims()
+    found = []
+    for tags in (first, second):
+        points = skin.points[np.unique(skin.triangles[skin.of(tags)])]
+        beside = [rim[_beside(sheet.points[rim], points)] for rim in rims] if len(points) else []
+        rows = np.concatenate([np.zeros(0, np.int64), *beside])
+        if len(rows) < 2:
+            raise BadInput(f"no rim of the area lies along {', '.join(f'face {t}' for t in tags)}: name faces next to it as guides")
+        found.append(rows)
+    rings = len(rims) == 2 and all(any(set(rows) == set(rim) for rim in rims) for rows in found)
+    return Guides(**_apart(found[0], found[1]), rings=rings)
+
+
+def _beside(rim: Floats, points: Floats) -> Bools:
+    """Say which points (k,) of a rim lie on faces, given by points, or were put in between two that do."""
+    on = np.asarray(cKDTree(points).query(rim)[0] <= tolerance.JOINED_POINTS)
+    rows, n = np.flatnonzero(on), len(rim)
+    if len(rows) < 2:
+        return on
+    gap = np.mod(np.diff(rows, append=rows[:1] + n), n)
+    # Between neighbours of the faces' own mesh lie at most as many new points as splitting puts in: no gap is much wider than most.
+    narrow = gap <= 2 * np.median(gap)
+    for row, width in zip(rows[narrow].tolist(), gap[narrow].tolist(), strict=True):
+        on[np.arange(row, row + width) % n] = True
+    return on
+
+
+def _sides(sheet: Sheet, rim: Ints) -> list[Ints]:
+    """Return the sides of a rim, each with both of its ends; a rim with fewer than two corners is parted where it is widest."""
+    points, normals = sheet.points[rim], sheet.normals[rim]
+    before, after = points - np.roll(points, 1, axis=0), np.roll(points, -1, axis=0) - points
+    flat = [v - (v * normals).sum(axis=1, keepdims=True) * normals for v in (before, after)]
+    turn = np.arctan2(np.linalg.norm(np.cross(*flat), axis=1), (flat[0] * flat[1]).sum(axis=1))
+    corners = np.flatnonzero(np.abs(turn) > CORNER)
+    if len(corners) < 2:
+        far = int(np.argmax(np.linalg.norm(points - points.mean(axis=0), axis=1)))
+        corners = np.unique([far, int(np.argmax(np.linalg.norm(points - points[far], axis=1)))])
+    return [np.take(rim, np.arange(a, b + 1 if b > a else b + len(rim) + 1), mode="wrap")
+            for a, b in zip(corners.tolist(), np.roll(corners, -1).tolist(), strict=True)]
+
+
+def _apart(first: Ints, second: Ints) -> dict[str, Ints]:
+    """Return guides without the points that both have."""
+    return {"first": first[~np.isin(first, second)], "second": second[~np.isin(second, first)]}
+
+
+def _run(sheet: Sheet, side: Ints) -> float:
+    return float(np.linalg.norm(np.diff(sheet.points[side], axis=0), axis=1).sum())
+
+
+def _round(sheet: Sheet, rim: Ints) -> float:
+    return _run(sheet, np.append(rim, rim[0]))
