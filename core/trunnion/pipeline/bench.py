@@ -31,7 +31,7 @@ class Bench:
 
     part: Part
     shop: Shop
-    _skins: list[Skin] = field(default_factory=list, init=False, repr=False, compare=False)
+    _skins: dict[float, Skin] = field(default_factory=dict, init=False, repr=False, compare=False)
 
     @cached_property
     def facts(self) -> PartInfo:
@@ -40,12 +40,12 @@ class Bench:
         return PartInfo(path=str(p.path), name=p.name, digest=p.digest, unit=p.unit, n_faces=p.n_faces, n_solids=p.n_solids, solid=p.solid,
                         area=p.area, volume=p.volume, low=p.low, high=p.high, findings=tuple(p.findings))
 
-    def skin(self, progress: Progress = QUIET) -> Skin:
-        """Return the part's skin in its own coordinates, as fine as finishing needs it; made when first asked for."""
-        if not self._skins:
+    def skin(self, chord: float = tolerance.SKIN_CHORD, progress: Progress = QUIET) -> Skin:
+        """Return the part's skin in its own coordinates within a chord error (mm), as fine as finishing needs it unless said; kept."""
+        if chord not in self._skins:
             from trunnion.part.skin import skin_of
-            self._skins.append(skin_of(self.part, WORLD, tolerance.SKIN_CHORD, progress))
-        return self._skins[0]
+            self._skins[chord] = skin_of(self.part, WORLD, chord, progress)
+        return self._skins[chord]
 
     def box(self, frame: Frame) -> tuple[Floats, Floats]:
         """Return the part's box (low, high) in a frame, from the exact faces' extreme points and the mesh's."""

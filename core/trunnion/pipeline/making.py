@@ -1,22 +1,40 @@
 """Toolpaths of a whole process: each operation from its drive geometry, knowing the stock that those before it leave.
 
-An operation whose drive, tool, data, settings and stock have the same digest keeps its toolpath.
+Strategies work in the cutting frame, whose z is the direction that the operation's tool comes from; their paths are turned into the setup's
+frame here. An operation whose drive, tool, data, settings and stock have the same digest keeps its toolpath.
 """
 
 from __future__ import annotations
 
+from dataclasses import dataclass, field, replace
 from typing import Any
 
+import numpy as np
+
 from trunnion import registry
-from trunnion.findings import BadCall, Refused, error
+from trunnion.findings import BadCall, Refused, error, info
+from trunnion.geometry.frame import Frame
+from trunnion.model.blank import Blank
+from trunnion.model.feature import Recognition
 from trunnion.model.operation import Operation, OperationPath
 from trunnion.model.session import Session
+from trunnion.model.setup import Setup
+from trunnion.model.toolpath import Toolpath
+from trunnion.pipeline.asking import PartSurroundings
 from trunnion.pipeline.bench import Bench
-from trunnion.plan.drive import drive_of
+from trunnion.plan.drive import PlaneDrive, drive_of
 from trunnion.plan.regions import Space
+from trunnion.plan.surface.frames import Direction
+from trunnion.plan.surface.layers import plane_drive_of
+from trunnion.plan.surface.settings import EARLIER
+from trunnion.plan.surface.space import SurfaceSpace
 from trunnion.progress import Progress
 from trunnion.settings import checked, choose, digest
+from trunnion.toolpath.sides import Sides
 from trunnion.toolpath.stock import PlanningStock
+
+SURFACE_FAMILY = "surface"
+"""The family whose plane operations are driven by how high the part stands, not by its features."""
 
 
 def strategy_settings() -> tuple[type, ...]:
@@ -31,31 +49,94 @@ def make_paths(session: Session, bench: Bench, progress: Progress) -> tuple[Oper
     made: list[OperationPath] = []
     total = sum(len(session.process.of_setup(setup.name)) for setup in session.setups)
     for setup in session.setups:
-        stock = PlanningStock.of(session.blank, setup)
-        space = Space.of(bench.part, session.recognition, session.blank, setup)
+        room = Room(bench, session.recognition, session.blank, setup)
         for operation in session.process.of_setup(setup.name):
             progress.at(len(made) / max(total, 1), f"toolpath of {operation.id}")
             here = progress.part(len(made) / max(total, 1), (len(made) + 1) / max(total, 1))
-            done = _make_one(session, space, operation, stock, here)
-            made.append(done)
-            if len(done.path):
-                stock = stock.after(done.path, operation.tool)
+            made.append(_make_one(session, room, operation, here))
     return tuple(made)
 
 
-def _make_one(session: Session, space: Space, operation: Operation, stock: PlanningStock, progress: Progress) -> OperationPath:
+@dataclass(slots=True)
+class Room:
+    """What the operations of one setup are made in: the part as each direction sees it, and the stock that is left there."""
+
+    bench: Bench
+    recognition: Recognition
+    blank: Blank
+    setup: Setup
+    sides: Sides = field(init=False)
+    _plane: Space | None = None
+    _curved: dict[Direction, SurfaceSpace] = field(default_factory=dict)
+
+    def __post_init__(self) -> None:
+        self.sides = Sides(self.blank)
+
+    def plane(self) -> Space:
+        """Return the part's sections as the setup sees them."""
+        if self._plane is None:
+            self._plane = Space.of(self.bench.part, self.recognition, self.blank, self.setup)
+        return self._plane
+
+    def curved(self, direction: Direction, progress: Progress) -> SurfaceSpace:
+        """Return the part's skin as a tool from a direction sees it."""
+        if direction not in self._curved:
+            skin = self.bench.skin(progress=progress)
+            self._curved[direction] = SurfaceSpace.of(self.bench.part, skin, self.blank, self.setup, direction)
+        return self._curved[direction]
+
+
+def _make_one(session: Session, room: Room, operation: Operation, progress: Progress) -> OperationPath:
     if session.process is None:
         raise BadCall("no operations yet: generate the route first")
     strategy = registry.get("strategies", operation.strategy)
     chosen = checked(choose(strategy.settings, {**session.choices, **operation.choices}))
     try:
-        drive = drive_of(operation, session.process, space)
-        key = digest(operation.strategy, drive, operation.tool, operation.data, chosen, stock.digest, space.setup)
+        setup, stock, drive, told = _driven(session, room, operation, progress)
+        key = digest(operation.strategy, told, operation.tool, operation.data, chosen, stock.digest, setup)
         kept = session.path_of(operation.id)
-        if kept is not None and kept.key == key:
-            return kept
-        planned: Any = strategy(drive, operation.tool, operation.data, stock, space.setup, chosen, progress)
+        if isinstance(drive, PlaneDrive) and not any(level.wanted for level in drive.levels):
+            nothing = info("toolpath.nothing-left", f"{operation.id}: nothing stands there any more that it could cut", operation.id,
+                           remedy="suppress it")
+            kept = OperationPath(operation=operation.id, findings=(nothing,), key=key)
+        if kept is None or kept.key != key:
+            planned: Any = strategy(drive, operation.tool, operation.data, stock, setup, chosen, progress)
+            path = turned(planned.path, setup.frame, room.setup.frame)
+            kept = OperationPath(operation=operation.id, path=path, findings=tuple(planned.findings), key=key)
     except Refused as reason:
         left = error("toolpath.refused", str(reason), operation.id, operation.feature)
         return OperationPath(operation=operation.id, findings=(left,))
-    return OperationPath(operation=operation.id, path=planned.path, findings=tuple(planned.findings), key=key)
+    room.sides.cut(setup, turned(kept.path, room.setup.frame, setup.frame), operation.tool)
+    return kept
+
+
+def _driven(session: Session, room: Room, operation: Operation, progress: Progress) -> tuple[Setup, PlanningStock, Any, Any]:
+    """Return the setup, the stock and the drive of an operation in its cutting frame, and what tells the drive from others."""
+    if session.process is None:
+        raise BadCall("no operations yet: generate the route first")
+    plane = operation.strategy.startswith("plane.")
+    if plane and room.recognition.family != SURFACE_FAMILY:
+        flat = drive_of(operation, session.process, room.plane())
+        return room.setup, room.sides.seen(room.setup), flat, flat
+    space = room.curved(operation.direction, progress)
+    stock = room.sides.seen(space.setup)
+    if plane:
+        layers = plane_drive_of(operation, space, stock, progress)
+        return space.setup, stock, layers, layers
+    ask = PartSurroundings(room.bench.part, space.skin, space.frame, room.setup.frame, room.bench.shop.machine(room.setup.machine),
+                           session.fixtures_of(room.setup.name), progress)
+    name = operation.choices.get(EARLIER, "")
+    earlier = next((t for t in session.process.tools() if t.name == name), None)
+    drive = space.drive_of(operation, earlier, ask)
+    return space.setup, stock, drive, drive.digest
+
+
+def turned(path: Toolpath, frame: Frame, other: Frame) -> Toolpath:
+    """Return a path given in one frame in another one."""
+    if frame is other or not len(path):
+        return path
+    arcs = np.isfinite(path.centre).all(axis=1)
+    centre = path.centre.copy()
+    centre[arcs] = other.to_local(frame.to_world(path.centre[arcs]))
+    return replace(path, position=other.to_local(frame.to_world(path.position)), centre=centre,
+                   axis=other.local_direction(frame.world_direction(path.axis)))

@@ -10,7 +10,7 @@ from collections.abc import Callable
 from dataclasses import dataclass, replace
 from typing import Any
 
-from trunnion import registry
+from trunnion import registry, tolerance
 from trunnion.findings import BadCall, BadInput, Finding
 from trunnion.model.feature import Recognition
 from trunnion.model.session import Session
@@ -23,6 +23,9 @@ from trunnion.plan.cutting import CuttingSettings, balance
 from trunnion.plan.route import RouteSettings, make_route
 from trunnion.plan.setups import SetupSettings, make_setups
 from trunnion.plan.size import size_table
+from trunnion.plan.surface.route import make_surface_route
+from trunnion.plan.surface.settings import SurfaceRouteSettings
+from trunnion.plan.surface.space import SurfaceSpace
 from trunnion.post.settings import PostSettings
 from trunnion.progress import Progress
 from trunnion.recognize.contract import Measuring
@@ -30,7 +33,7 @@ from trunnion.settings import checked, choose, digest, setting, settings
 from trunnion.verify.settings import ProofSettings
 
 AUTOMATIC = "auto"
-PLANNED = ("panel",)
+PLANNED = ("panel", "surface")
 """Families that a process plan can be made for."""
 
 
@@ -137,7 +140,12 @@ def _route(session: Session, bench: Bench, progress: Progress) -> Result:
         raise BadInput(f"there is no machine {setup.machine} in the catalogue; known: {', '.join(sorted(bench.shop.machines))}")
     setups = make_setups(recognition, session.blank, bench.shop.machines[setup.machine], setup)
     chosen = checked(choose(RouteSettings, session.choices))
-    process = make_route(recognition, session.sizes, session.blank, setups, bench.shop, bench.part, chosen, progress)
+    if recognition.family == "surface":
+        curved = checked(choose(SurfaceRouteSettings, session.choices))
+        space = SurfaceSpace.of(bench.part, bench.skin(tolerance.CHORD, progress.part(0.0, 0.5)), session.blank, setups[0])
+        process = make_surface_route(recognition, session.blank, setups, bench.shop, space, chosen, curved, progress.part(0.5, 1.0))
+    else:
+        process = make_route(recognition, session.sizes, session.blank, setups, bench.shop, bench.part, chosen, progress)
     process = with_operations_by_hand(session.process, process)
     return Result(session=replace(session, setups=setups, process=process), findings=process.findings)
 
@@ -183,7 +191,8 @@ STEP_TABLE: tuple[Step, ...] = (
     Step(name="blank", title="Blank", after=("recognize",), settings=lambda: (BlankSettings,), work=_blank,
          reads=lambda s, b: (b.part.digest, s.recognition.frame if s.recognition else None, b.shop.digest),
          done=lambda s: s.blank is not None),
-    Step(name="route", title="Process route", after=("size", "blank"), settings=lambda: (SetupSettings, RouteSettings), work=_route,
+    Step(name="route", title="Process route", after=("size", "blank"), work=_route,
+         settings=lambda: (SetupSettings, RouteSettings, SurfaceRouteSettings),
          reads=lambda s, b: (b.part.digest, s.recognition, s.blank, b.shop.digest), done=lambda s: s.process is not None),
     Step(name="optimize", title="Optimize", after=("route",), settings=lambda: (CuttingSettings,), work=_optimize,
          reads=lambda s, b: (_record_key(s, "route"), _operations_without_data(s), b.shop.digest), done=lambda s: s.process is not None),

@@ -33,14 +33,31 @@ class ExactFace(Protocol):
 
 
 class ExactPlaces(Protocol):
-    """Points of a face: point, outward unit normal, their derivatives by u and v, each (k, 3)."""
+    """Points of a face."""
 
-    point: Floats
-    normal: Floats
-    du: Floats
-    dv: Floats
-    normal_du: Floats
-    normal_dv: Floats
+    @property
+    def point(self) -> Floats:
+        """Points (k, 3) mm."""
+
+    @property
+    def normal(self) -> Floats:
+        """Outward unit normals (k, 3)."""
+
+    @property
+    def du(self) -> Floats:
+        """Derivatives (k, 3) of the points by u."""
+
+    @property
+    def dv(self) -> Floats:
+        """Derivatives (k, 3) of the points by v."""
+
+    @property
+    def normal_du(self) -> Floats:
+        """Derivatives (k, 3) of the normals by u."""
+
+    @property
+    def normal_dv(self) -> Floats:
+        """Derivatives (k, 3) of the normals by v."""
 
 
 class Asker(Protocol):

@@ -1,0 +1,90 @@
+"""The areas that are finished with one cutter each: every local feature by itself, and what remains."""
+
+from __future__ import annotations
+
+from collections.abc import Collection
+from dataclasses import dataclass
+
+import numpy as np
+
+from trunnion import tolerance
+from trunnion.geometry.arrays import Floats
+from trunnion.geometry.facegraph import CONVEX, FaceGraph
+from trunnion.model.blank import Blank
+from trunnion.model.feature import Recognition
+from trunnion.part.part import Part
+from trunnion.plan.surface.reach import Places, level_disc
+from trunnion.plan.surface.space import SurfaceSpace
+
+LOCAL, REMAINING = "local", "remaining"
+END_MILL = 3.0
+"""mm: radius of a cutter that must have room down to the foot of an upright wall for it to stand free."""
+VERTICAL = np.sin(np.radians(0.5))
+"""Cosine of the angle from the tool's axis from which on a normal counts as level: the wall is upright then."""
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Area:
+    """Faces that are finished together: its name in operations, its tags, and whether it is a local feature."""
+
+    id: str
+    tags: tuple[int, ...]
+    local: bool
+
+
+def areas_of(recognition: Recognition, graph: FaceGraph, left_out: Collection[int] = ()) -> tuple[Area, ...]:
+    """Return each connected set of local faces as an area of its own, by its largest face's tag, and the remaining faces as one."""
+    groups = [f for f in recognition if f.kind == "group"]
+    local = {tag for f in groups if f.attributes.get("local") for tag in f.tags} - set(left_out)
+    remaining = sorted({tag for f in groups for tag in f.tags} - local - set(left_out))
+    sets = connected(local, graph)
+    found = [Area(id=f"{LOCAL}-{n:02}", tags=tags, local=True) for n, tags in enumerate(sets, 1)]
+    return (*([Area(id=REMAINING, tags=tuple(remaining), local=False)] if remaining else []), *found)
+
+
+def connected(tags: Collection[int], graph: FaceGraph) -> list[tuple[int, ...]]:
+    """Return faces in sets that hang together by edges, each in ascending order, the sets by their first tag."""
+    left, found = set(tags), []
+    while left:
+        mine, border = set(), [min(left)]
+        while border:
+            tag = border.pop()
+            if tag in left:
+                left.discard(tag)
+                mine.add(tag)
+                border += [graph.across(e, tag - 1) + 1 for e in graph.edges_of[tag - 1]]
+        found.append(tuple(sorted(mine)))
+    return found
+
+
+def blank_faces(part: Part, blank: Blank) -> tuple[int, ...]:
+    """Return the faces that lie in a side of the blank: nothing of it is there to be cut."""
+    graph = part.graph()
+    low, high = (blank.frame.to_local(box) for box in (graph.box_low, graph.box_high))
+    low, high = np.minimum(low, high), np.maximum(low, high)
+    near: Floats = np.stack([np.abs(np.maximum(high - side, side - low)) for side in (blank.low, blank.high)])
+    flat = np.array([kind == "plane" for kind in graph.surface])
+    return tuple(tag for tag in part.tags if flat[tag - 1] and (near[:, tag - 1] < tolerance.SLIVER).any())
+
+
+def walls_of(places: Places, tags: Collection[int]) -> tuple[int, ...]:
+    """Return the faces that stand upright all over."""
+    return tuple(sorted(t for t in tags if (own := places.face == t).any() and bool((np.abs(places.normal[own, 2]) < VERTICAL).all())))
+
+
+def on_outline(space: SurfaceSpace, places: Places, tags: Collection[int]) -> tuple[int, ...]:
+    """Return the upright faces that nothing of the part stands in front of at their height: an end mill beside them is out in the free.
+
+    A face that runs into another one at its foot, or meets one that comes out of it, doesn't stand free.
+    """
+    found, graph = [], space.part.graph()
+    for tag in sorted(tags):
+        edges = [e for e in graph.edges_of[tag - 1] if graph.across(e, tag - 1) + 1 not in tags]
+        if any(graph.convexity[e] != CONVEX for e in edges):
+            continue
+        own = places.of(places.face == tag)
+        beside = own.point[:, :2] + (END_MILL + tolerance.SEW) * own.normal[:, :2]
+        over = space.skin.drop.drop(beside, level_disc(END_MILL), float(space.low[2]) - 1.0)
+        if (over < own.point[:, 2].min() + tolerance.SEW).all():
+            found.append(tag)
+    return tuple(found)

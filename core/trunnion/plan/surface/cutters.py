@@ -1,0 +1,66 @@
+"""The cutter of an area: the largest of the catalogue that reaches enough of it, and the one for the rest."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+
+from trunnion.findings import BadInput
+from trunnion.geometry.arrays import Bools
+from trunnion.model.tool import Tool
+from trunnion.plan.choosing import depth_reached
+from trunnion.plan.surface.reach import Places, reached
+from trunnion.plan.surface.space import SurfaceSpace
+from trunnion.progress import Progress
+from trunnion.shop import Shop
+
+LEFT = 0.002
+"""Share of an area that is left to no further cutter when its own one misses it."""
+
+
+@dataclass(frozen=True, slots=True, eq=False, kw_only=True)
+class Chosen:
+    """The cutter of an area and the places (k,) it reaches, what any of the catalogue reaches, and the cutter for the `missed` ones."""
+
+    tool: Tool | None
+    reached: Bools
+    reachable: Bools
+    missed: Bools
+    rest: Tool | None
+
+
+def named(shop: Shop, name: str) -> Tool:
+    """Return a cutter of the catalogue by its name; raise `BadInput` when there is none."""
+    for tool in shop.tools:
+        if tool.name == name:
+            return tool
+    raise BadInput(f"there is no cutter {name} in the catalogue; `trunnion tools` lists them")
+
+
+def cutter_for(space: SurfaceSpace, places: Places, tools: Sequence[Tool], share: float, room: float, wanted: Tool | None,
+               progress: Progress) -> Chosen:
+    """Return the largest cutter that reaches at least a share of what any one reaches of places, the shortest of its size; or the one
+    that is `wanted`.
+
+    What it misses goes to the largest smaller one that reaches nearly all any does of that.
+    """
+    ranked = sorted(tools, key=lambda t: (-t.diameter, depth_reached(t), t.name))
+    reach: dict[str, Bools] = {}
+    for n, tool in enumerate([*ranked, *([wanted] if wanted else [])]):
+        if tool.name not in reach:
+            reach[tool.name] = reached(space, places, tool, room, 0.0, progress.part(n / (len(ranked) + 1), (n + 1) / (len(ranked) + 1)))
+    none = np.zeros(len(places), dtype=bool)
+    reachable = np.logical_or.reduce([none, *reach.values()])
+    if not reachable.any():
+        return Chosen(tool=None, reached=none, reachable=reachable, missed=none, rest=None)
+    total = int(reachable.sum())
+    tool = wanted or next((t for t in ranked if reach[t.name].sum() >= share * total),
+                          max(ranked, key=lambda t: int(reach[t.name].sum())))
+    missed = reachable & ~reach[tool.name]
+    if missed.sum() <= LEFT * total:
+        missed = none
+    smaller = [t for t in ranked if t.diameter < tool.diameter]
+    rest = next((t for t in smaller if (reach[t.name] & missed).sum() >= share * missed.sum()), None) if missed.any() else None
+    return Chosen(tool=tool, reached=reach[tool.name], reachable=reachable, missed=missed, rest=rest)

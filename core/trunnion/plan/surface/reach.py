@@ -1,0 +1,96 @@
+"""Which of a part's area a cutter reaches from a direction: touching it there, it enters nothing of the whole part."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+
+import numpy as np
+
+from trunnion import tolerance
+from trunnion.geometry.arrays import Bools, Floats, Ints
+from trunnion.geometry.kernels.drop import RHO1
+from trunnion.geometry.skin import Skin
+from trunnion.model.tool import Tool
+from trunnion.plan.surface.cutter import lower_side, tip_at
+from trunnion.plan.surface.space import SurfaceSpace
+from trunnion.progress import QUIET, Progress
+
+SAMPLES = 1500
+"""Places that an area is judged by; one of them stands for less than a thousandth of it."""
+LIFTED = 0.5 * tolerance.GOUGE
+"""mm: a cutter that other faces lift by no more than this still finishes a place."""
+FLAT = (0.5 * (math.sqrt(5.0) - 1.0), 0.5 * (math.sqrt(5.0) - 1.0) ** 2)
+"""Steps of an even spread over a square, by the golden ratio and its square."""
+
+
+@dataclass(frozen=True, slots=True, eq=False, kw_only=True)
+class Places:
+    """Places (k, 3) on faces with outward unit normals (k, 3) and tags (k,), each standing for the same area in mm2."""
+
+    point: Floats
+    normal: Floats
+    face: Ints
+    area: float
+
+    def __len__(self) -> int:
+        return len(self.face)
+
+    def of(self, rows: Bools) -> Places:
+        """Return some of the places."""
+        return Places(point=self.point[rows], normal=self.normal[rows], face=self.face[rows], area=self.area)
+
+
+def places_on(skin: Skin, tags: tuple[int, ...], count: int = SAMPLES) -> Places:
+    """Return places spread evenly over faces: a place stands for an equal share of their area, the same ones each time."""
+    rows = np.flatnonzero(skin.of(tags))
+    corners = skin.points[skin.triangles[rows]]
+    area = 0.5 * np.linalg.norm(np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0]), axis=1)
+    total = float(area.sum())
+    if total <= 0.0:
+        return Places(point=np.zeros((0, 3)), normal=np.zeros((0, 3)), face=np.zeros(0, np.int64), area=0.0)
+    at = np.minimum(np.searchsorted(np.cumsum(area), (np.arange(count) + 0.5) / count * total), len(rows) - 1)
+    u, v = (np.mod((np.arange(count) + 0.5) * step, 1.0) for step in FLAT)
+    over = u + v > 1.0
+    u, v = np.where(over, 1.0 - u, u), np.where(over, 1.0 - v, v)
+    weight = np.column_stack([1.0 - u - v, u, v])[:, :, None]
+    normal = (weight * skin.normals[skin.triangles[rows[at]]]).sum(axis=1)
+    return Places(point=(weight * corners[at]).sum(axis=1), normal=normal / np.linalg.norm(normal, axis=1, keepdims=True),
+                  face=skin.face[rows[at]], area=total / count)
+
+
+def leans(places: Places) -> Floats:
+    """Return how far the normals of places lean from the tool's axis (k,), rad."""
+    return np.asarray(np.arccos(np.clip(places.normal[:, 2], -1.0, 1.0)))
+
+
+def reached(space: SurfaceSpace, places: Places, tool: Tool, room: float, allowance: float = 0.0, progress: Progress = QUIET) -> Bools:
+    """Say which places (k,) an upright cutter touches without being lifted off by other faces, without its neck, shank or holder (kept
+    `room` mm from the part) coming to it, and without going lower than the blank.
+
+    With an allowance it is the faces thickened by so much that it touches.
+    """
+    steepest = math.pi / 2.0 + tolerance.ANGLE
+    found = leans(places) < steepest
+    rows = np.flatnonzero(found)
+    axis = np.tile([0.0, 0.0, 1.0], (len(rows), 1))
+    tip = tip_at(tool, places.point[rows] + allowance * places.normal[rows], places.normal[rows], axis)
+    plan, lowest = tip[:, :2], float(space.low[2]) - space.setup.clearance - tool.gauge_length
+    top = space.skin.drop.drop(plan, lower_side(tool, allowance), lowest, progress) + allowance
+    highest = float(space.skin.points[:, 2].max())
+    clear = (top - tip[:, 2] < LIFTED + 2.0 * space.skin.bound) & (tip[:, 2] > space.low[2] - tolerance.SEW)
+    for z0, r0, _, r1 in tool.profile():
+        wide = max(r0, r1) + room
+        if wide > tool.radius or z0 < tool.corner_radius:
+            some = np.flatnonzero(clear)[tip[clear, 2] + z0 < highest]
+            over = space.skin.drop.drop(plan[some], level_disc(wide), lowest, progress)
+            clear[some] = over < tip[some, 2] + z0
+    found[rows] = clear
+    return found
+
+
+def level_disc(radius: float) -> Floats:
+    """Return the lower side of a level disc, as kernels of drops know it."""
+    row = np.zeros((1, 6))
+    row[0, RHO1] = radius
+    return row

@@ -1,0 +1,283 @@
+"""The route of a part of curved surfaces: layers first, upright walls, then every area with the largest cutter that reaches it.
+
+Each area is semi-finished and finished with its own cutter; local features get their own, so that they don't bind what remains to a small
+one (quick segmentation: variable parameters). What a cutter doesn't reach of its area goes to a smaller one as an area of its own.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+from dataclasses import dataclass, field, replace
+
+import numpy as np
+
+from trunnion import registry
+from trunnion.findings import BadInput, Finding, error, face_tags, warning
+from trunnion.model.blank import Blank
+from trunnion.model.feature import Recognition
+from trunnion.model.material import Machine, Material
+from trunnion.model.operation import Operation
+from trunnion.model.process import ProcessTree
+from trunnion.model.setup import Setup
+from trunnion.model.tool import Tool
+from trunnion.plan.choosing import depth_reached
+from trunnion.plan.cutting import CuttingSettings, cutting_data, roughing_depth, roughing_width
+from trunnion.plan.left import too_large, too_many_tools
+from trunnion.plan.order import Job, ordered
+from trunnion.plan.surface.areas import Area, areas_of, blank_faces, connected, on_outline, walls_of
+from trunnion.plan.surface.cutters import Chosen, cutter_for, named
+from trunnion.plan.surface.reach import Places, leans, places_on
+from trunnion.plan.surface.scallop import stepover_on_plane
+from trunnion.plan.surface.settings import ALLOWANCE, BOTTOM, CELL, EARLIER, SCALLOP, SurfaceRouteSettings
+from trunnion.plan.surface.space import SurfaceSpace
+from trunnion.plan.wishes import RouteSettings
+from trunnion.progress import Progress
+from trunnion.settings import Value, choose
+from trunnion.shop import Shop, Stage
+from trunnion.units import trimmed
+
+ROUGH_SHARE = 0.4
+"""Largest roughing cutter over the blank's smaller side seen along the tool: it has to turn inside."""
+REST_SHARE = 0.5
+"""Largest cutter of rest roughing over the one before it."""
+LEAST_REST = 4.0
+"""mm: rest roughing with a smaller cutter than this costs more than it spares the finishing."""
+MISSED = 1.0
+"""mm2 that an area's cutter may leave without a further cutter for it."""
+WALL_STEP = 1.5
+"""Axial step of a wall over the cutter's diameter."""
+WALL_SHARE = 0.7
+"""Largest cutter of an outline over the largest roughing cutter: finishing wants it stiff, but not heavy."""
+
+
+@dataclass(slots=True)
+class Draft:
+    """What is known while one setup is planned."""
+
+    space: SurfaceSpace
+    recognition: Recognition
+    material: Material
+    machine: Machine
+    shop: Shop
+    route: RouteSettings
+    chosen: SurfaceRouteSettings
+    stages: dict[str, Stage]
+    operations: list[Operation] = field(default_factory=list)
+    findings: list[Finding] = field(default_factory=list)
+
+    def cutters(self, use: str) -> tuple[Tool, ...]:
+        """Return the catalogue's cutters for a use and the blank's material."""
+        return self.shop.tools_for(self.material.iso_group, use)
+
+
+def make_surface_route(recognition: Recognition, blank: Blank, setups: Sequence[Setup], shop: Shop, space: SurfaceSpace,
+                       route: RouteSettings, chosen: SurfaceRouteSettings, progress: Progress) -> ProcessTree:
+    """Return the process of a part of curved surfaces: operations in cutting order, tools numbered in the order of use.
+
+    Faces that no cutter reaches from the setup's directions become findings (`route.not-planned`) that name the remedy.
+    """
+    plan, material = shop.plan_for(recognition.family), shop.material(blank.material)
+    findings = too_large(blank, setups, shop)
+    if findings:
+        return ProcessTree(plan=plan.name, material=material.name, setups=tuple(setups), findings=tuple(findings))
+    draft = Draft(space=space, recognition=recognition, material=material, machine=shop.machine(setups[0].machine), shop=shop, route=route,
+                  chosen=chosen, stages={s.kind: s for s in plan.stages})
+    _plan(draft, progress)
+    operations = _numbered(_in_order(draft, plan.stages))
+    findings = [*draft.findings, *too_many_tools(operations, setups, shop)]
+    return ProcessTree(plan=plan.name, material=material.name, setups=tuple(setups), operations=tuple(operations), findings=tuple(findings))
+
+
+def _plan(draft: Draft, progress: Progress) -> None:
+    space, part = draft.space, draft.space.part
+    outside = blank_faces(part, space.blank)
+    mine = sorted({tag for f in draft.recognition for tag in f.tags} - set(outside))
+    progress.at(0.0, "looking at faces")
+    places = places_on(space.skin, tuple(mine))
+    upright = walls_of(places, mine)
+    walls = on_outline(space, places, upright)
+    _rough(draft, float(space.skin.points[:, 2].min()))
+    for tags in connected(walls, part.graph()):
+        _outline(draft, tags)
+    areas = areas_of(draft.recognition, part.graph(), {*outside, *walls})
+    for n, area in enumerate(areas):
+        share = progress.part(n / len(areas), (n + 1) / len(areas))
+        share.at(0.0, f"cutter for {area.id}")
+        _area(draft, area, share)
+
+
+def _rough(draft: Draft, bottom: float) -> None:
+    """Plan roughing by layers with a large cutter, and once more with a smaller one what that left."""
+    space = draft.space
+    size, deep = float((space.high - space.low)[:2].min()), float(space.high[2]) - bottom
+    most = min(draft.route.largest, ROUGH_SHARE * size)
+    tool = _rougher(draft, most, deep, draft.chosen.rough_cutter)
+    if tool is None:
+        draft.findings.append(error("route.no-cutter", f"no roughing cutter up to D {trimmed(most, 1)} reaches {trimmed(deep, 1)} mm deep",
+                                    draft.recognition.features[0].id, remedy="add a longer cutter to the tools folder"))
+        return
+    _add_rough(draft, "rough", tool, bottom)
+    rest = _rougher(draft, REST_SHARE * tool.diameter, deep, "")
+    if rest is not None and rest.diameter >= LEAST_REST:
+        _add_rough(draft, "rest", rest, bottom)
+
+
+def _rougher(draft: Draft, most: float, deep: float, name: str) -> Tool | None:
+    """Return the largest roughing cutter up to a diameter that reaches a depth, with the corner that leaves least of a slope."""
+    if name:
+        return named(draft.shop, name)
+    fits = [t for t in draft.cutters("rough") if t.form in ("flat", "bull") and t.diameter <= most
+            and depth_reached(t) >= deep + draft.route.reach_clearance]
+    return max(fits, key=lambda t: (t.diameter, -depth_reached(t), -abs(t.corner_radius - 0.1 * t.diameter), t.name), default=None)
+
+
+def _add_rough(draft: Draft, kind: str, tool: Tool, bottom: float) -> None:
+    stage, chosen, cutting = draft.stages[kind], draft.chosen, choose(CuttingSettings, {})
+    depth = min(chosen.layer, roughing_depth(tool, draft.material, cutting))
+    width = roughing_width(tool, draft.material, cutting)
+    rules = (stage.rule, f"{tool.name}: reaches {trimmed(depth_reached(tool), 1)} mm deep.",
+             f"It leaves {trimmed(chosen.rough_allowance, 2)} mm all round, in layers of {trimmed(depth, 2)} mm.")
+    choices: dict[str, Value] = {ALLOWANCE: chosen.rough_allowance, BOTTOM: bottom, CELL: chosen.cell}
+    _add(draft, kind, "part", _first_feature(draft), tool, (), depth, width, choices, rules, operation_kind="rough")
+
+
+def _outline(draft: Draft, tags: tuple[int, ...]) -> None:
+    """Plan upright walls that stand free, along the part's outline."""
+    stage, space = draft.stages["profile_finish"], draft.space
+    z = space.skin.points[space.skin.triangles[space.skin.of(tags)], 2]
+    top, height = float(z.max()), float(z.max() - z.min())
+    most = WALL_SHARE * draft.route.largest
+    fits = [t for t in draft.cutters("finish") if t.form == "flat" and t.diameter <= most
+            and depth_reached(t) >= min(float(space.high[2]), top) - float(z.min()) + draft.route.reach_clearance]
+    if not fits:
+        draft.findings.append(error("route.no-cutter", f"no end mill up to D {trimmed(most, 1)} reaches {trimmed(height, 1)} mm "
+                                    "down a wall", *face_tags(tags), remedy="add a longer cutter to the tools folder"))
+        return
+    tool = max(fits, key=lambda t: (t.diameter, -depth_reached(t), t.name))
+    steps = max(1, math.ceil(height / min(tool.flute_length, WALL_STEP * tool.diameter)))
+    rules = (stage.rule, f"{tool.name}: the stiffest end mill up to D {trimmed(most, 1)} that reaches {trimmed(height, 1)} mm.")
+    _add(draft, "profile_finish", _name(tags), _feature_of(draft, tags), tool, tags, height / steps, max(draft.chosen.rough_allowance, 0.1),
+         {}, rules)
+
+
+def _area(draft: Draft, area: Area, progress: Progress) -> None:
+    """Plan semi-finishing and finishing of an area with its own cutter, and of what that cutter leaves with a smaller one."""
+    chosen = draft.chosen
+    places = places_on(draft.space.skin, area.tags)
+    wanted = chosen.local_cutter if area.local else chosen.cutter
+    found = cutter_for(draft.space, places, _finishers(draft), chosen.share, draft.route.reach_clearance,
+                       named(draft.shop, wanted) if wanted else None, progress)
+    _tell_unreached(draft, area, places, found)
+    if found.tool is None:
+        return
+    lean = leans(places)
+    tags = tuple(t for t in area.tags if found.reached[places.face == t].any())
+    steep = tuple(t for t in tags if float(lean[places.face == t].mean()) > math.radians(chosen.steep))
+    shallow = tuple(t for t in tags if t not in steep)
+    for name, mine, strategy in _by_slope(area, shallow, steep):
+        if chosen.semi_allowance > 0.0:
+            _add_finish(draft, "semi", name, mine, found.tool, strategy, places)
+        _add_finish(draft, "finish", name, mine, found.tool, strategy, places)
+    if found.rest is not None:
+        left = tuple(t for t in tags if (found.missed & (places.face == t)).any())
+        _add_finish(draft, "rest_finish", area.id, left, found.rest, "surface.pencil", places, earlier=found.tool)
+
+
+def _by_slope(area: Area, shallow: tuple[int, ...], steep: tuple[int, ...]) -> list[tuple[str, tuple[int, ...], str]]:
+    """Return the operations of an area: name, faces, strategy. A local feature that is both shallow and steep is cut as one where a
+    strategy keeps the scallop on any slope."""
+    known = registry.names("strategies")
+    if area.local and "surface.constant" in known:
+        return [(area.id, tuple(sorted((*shallow, *steep))), "surface.constant")]
+    found = [(area.id, shallow, "surface.parallel")] if shallow else []
+    strategy = "surface.waterline" if "surface.waterline" in known else "surface.parallel"
+    return [*found, (f"{area.id}-steep", steep, strategy)] if steep else found
+
+
+def _add_finish(draft: Draft, kind: str, name: str, tags: tuple[int, ...], tool: Tool, strategy: str, places: Places,
+                earlier: Tool | None = None) -> None:
+    stage, chosen = draft.stages[kind], draft.chosen
+    if strategy not in registry.names("strategies"):
+        draft.findings.append(warning("route.no-strategy", f"{name}: no strategy {strategy} is there; {kind} is left out",
+                                      *face_tags(tags), remedy="install a package that has it"))
+        return
+    semi = kind == "semi"
+    allowance = chosen.semi_allowance if semi else 0.0
+    height = chosen.semi_scallop if semi else chosen.height()
+    after_rough = semi or chosen.semi_allowance <= 0.0
+    depth = chosen.rough_allowance + 0.5 * chosen.layer if after_rough else chosen.semi_allowance
+    width = stepover_on_plane(tool.corner_radius or 0.5 * tool.radius, height)
+    area = places.area * float(np.isin(places.face, tags).sum())
+    rules = (stage.rule, f"{tool.name} over {trimmed(area, 0)} mm2: scallops of {trimmed(1000.0 * height, 1)} um, "
+             f"{trimmed(width, 3)} mm between passes on a plane.", f"It leaves {trimmed(allowance, 2)} mm.")
+    choices: dict[str, Value] = {SCALLOP: height, ALLOWANCE: allowance}
+    if earlier is not None:
+        choices[EARLIER] = earlier.name
+    _add(draft, kind, name, _feature_of(draft, tags), tool, tags, depth, width, choices, rules, strategy=strategy)
+
+
+def _finishers(draft: Draft) -> tuple[Tool, ...]:
+    return tuple(t for t in draft.cutters("surface") if t.form == "ball" and t.diameter <= draft.route.largest)
+
+
+def _tell_unreached(draft: Draft, area: Area, places: Places, found: Chosen) -> None:
+    """Say which faces no cutter reaches, or not the one that was asked for."""
+    lost = [t for t in area.tags if not found.reachable[places.face == t].any()]
+    if lost:
+        size = places.area * float(np.isin(places.face, lost).sum())
+        remedy = ("turn the part in another setup" if draft.machine.rotary else
+                  "machine them on a machine with rotary axes (setup.machine), or turn the part in another setup")
+        draft.findings.append(warning("route.not-planned", f"{area.id}: no cutter reaches {len(lost)} faces with {trimmed(size, 0)} mm2 "
+                                      "from the tool's direction", *face_tags(lost, most=len(lost)), remedy=remedy))
+
+
+def _add(draft: Draft, kind: str, name: str, feature: str, tool: Tool, tags: tuple[int, ...], depth: float, width: float,
+         choices: dict[str, Value], rules: tuple[str, ...], *, strategy: str = "", operation_kind: str = "") -> None:
+    stage = draft.stages[kind]
+    data = cutting_data(tool, draft.material, draft.machine, operation_kind or kind, choose(CuttingSettings, {}), depth, width)
+    draft.operations.append(Operation(
+        id=f"{kind.replace('_', '-')}-{name}", kind=operation_kind or kind, strategy=strategy or stage.strategy, feature=feature,
+        setup="S1", tool=tool, data=data, faces=tags, choices=choices, rules=rules, group=stage.name,
+        direction=draft.space.direction))
+
+
+def _in_order(draft: Draft, stages: Sequence[Stage]) -> list[Operation]:
+    """Return the operations in the order of the plan's stages, with as few tool changes as that allows."""
+    rank = {stage.name: n for n, stage in enumerate(stages)}
+    by_stage = {stage.name: stage for stage in stages}
+    jobs, done = [], {}
+    for o in draft.operations:
+        stage = by_stage[o.group]
+        before = {other.id for other in draft.operations if other.group in stage.after_all
+                  or (other.group in stage.after and set(other.faces or o.faces) & set(o.faces))}
+        done[o.id] = replace(o, after=tuple(sorted(before)))
+        jobs.append(Job(id=o.id, tool=o.tool.name, stage=rank[o.group], place=_place(draft, o.faces), after=frozenset(before)))
+    return [done[id] for id in ordered(jobs)]
+
+
+def _place(draft: Draft, tags: tuple[int, ...]) -> tuple[float, float]:
+    if not tags:
+        return 0.0, 0.0
+    at = draft.space.frame.to_local(draft.space.part.graph().centre[tags[0] - 1])
+    return float(at[0]), float(at[1])
+
+
+def _numbered(operations: Sequence[Operation]) -> list[Operation]:
+    numbers: dict[str, int] = {}
+    return [replace(o, tool=replace(o.tool, number=numbers.setdefault(o.tool.name, len(numbers) + 1))) for o in operations]
+
+
+def _name(tags: tuple[int, ...]) -> str:
+    return f"face-{tags[0]}"
+
+
+def _first_feature(draft: Draft) -> str:
+    if not draft.recognition.features:
+        raise BadInput("nothing was recognised on this part: there is nothing to plan")
+    return draft.recognition.features[0].id
+
+
+def _feature_of(draft: Draft, tags: Sequence[int]) -> str:
+    """Return the feature that has most of some faces."""
+    return max(draft.recognition, key=lambda f: len(set(f.tags) & set(tags))).id

@@ -1,0 +1,51 @@
+"""What a person may choose about the plan of a part of curved surfaces."""
+
+from __future__ import annotations
+
+from trunnion.model.operation import Operation
+from trunnion.plan.surface.scallop import height_of
+from trunnion.settings import setting, settings
+
+SCALLOP, ALLOWANCE, BOTTOM, CELL = "surface.scallop", "surface.allowance", "surface.bottom", "surface.cell"
+"""Keys of an operation's choices, mm: the scallop height it is wanted with, what it leaves on purpose, the height in the cutting frame that
+it goes down to, and the distance of the places at which the part's height is measured."""
+EARLIER = "surface.earlier"
+"""Key of an operation's choices: the name of the cutter that finished its faces before."""
+
+
+def number(operation: Operation, key: str) -> float:
+    """Return a choice of an operation that is a number; 0 where there is none."""
+    value = operation.choices.get(key, 0.0)
+    return float(value) if isinstance(value, (int, float)) else 0.0
+
+
+@settings("surface")
+class SurfaceRouteSettings:
+    """Which cutters finish curved faces, how fine, and what is left for them."""
+
+    scallop: float = setting(0.004, unit="mm", low=0.0002, high=1.0, label="Scallop height",
+                             help="Height of the ridges between passes that finishing leaves.")
+    ra: float = setting(0.0, unit="um", low=0.0, high=100.0, label="Wanted Ra",
+                        help="Roughness that the scallop height is chosen for, 2.5 um of height for each um; 0: as said by the height.")
+    share: float = setting(0.97, unit="of the area", low=0.5, high=1.0, label="Reach",
+                           help="Share of an area that its cutter must reach without gouging; the largest that does is taken.")
+    cutter: str = setting("", label="Cutter", help="Name of the cutter that finishes all areas but local features; empty: the largest "
+                                                   "that reaches.")
+    local_cutter: str = setting("", label="Local cutter", help="Name of the cutter that finishes local features; empty: the largest that "
+                                                               "reaches.")
+    rough_cutter: str = setting("", label="Roughing cutter", help="Name of the cutter that roughs; empty: the largest that leaves little.")
+    layer: float = setting(1.5, unit="mm", low=0.05, high=50.0, label="Roughing layer",
+                           help="Height of the layers that roughing goes down by: the steps it leaves are as high.")
+    rough_allowance: float = setting(0.3, unit="mm", low=0.0, high=20.0, label="Roughing allowance", help="What roughing leaves all round.")
+    semi_allowance: float = setting(0.1, unit="mm", low=0.0, high=20.0, label="Semi-finishing allowance",
+                                    help="What semi-finishing leaves for the last cut; 0: nothing is semi-finished.")
+    semi_scallop: float = setting(0.05, unit="mm", low=0.001, high=2.0, label="Semi-finishing scallop",
+                                  help="Height of the ridges that semi-finishing leaves on its allowance.")
+    steep: float = setting(60.0, unit="deg", low=10.0, high=89.0, label="Steep from",
+                           help="Faces that lean from the plane across the tool by more are cut level by level.")
+    cell: float = setting(0.25, unit="mm", low=0.05, high=5.0, label="Map cell",
+                          help="Distance of the places at which roughing measures how high the part stands.")
+
+    def height(self) -> float:
+        """Return the scallop height in mm that is wanted."""
+        return height_of(self.ra) if self.ra > 0.0 else self.scallop

@@ -1,0 +1,67 @@
+"""The space of a part of curved surfaces as a tool from one direction sees it: its skin, its exact faces, and the blank around it."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass, replace
+
+from trunnion.geometry.arrays import Floats
+from trunnion.geometry.frame import WORLD, Frame
+from trunnion.geometry.skin import Skin
+from trunnion.model.blank import Blank
+from trunnion.model.operation import Operation
+from trunnion.model.setup import Setup
+from trunnion.model.tool import Tool
+from trunnion.part.exact import ExactFace
+from trunnion.part.part import Part
+from trunnion.plan.surface.drive import Asker, SurfaceDrive
+from trunnion.plan.surface.frames import UPRIGHT, Direction, corners_in, cutting_setup
+from trunnion.plan.surface.settings import ALLOWANCE, SCALLOP, number
+from trunnion.settings import digest
+
+
+@dataclass(frozen=True, slots=True, eq=False, kw_only=True)
+class SurfaceSpace:
+    """A part in its blank, seen from the tool's direction; everything is in the cutting frame.
+
+    `setup` is the machine's setup turned into that frame, `skin` the whole part's, `low` and `high` (3,) the box around the blank.
+    """
+
+    part: Part
+    blank: Blank
+    setup: Setup
+    direction: Direction
+    skin: Skin
+    low: Floats
+    high: Floats
+
+    @staticmethod
+    def of(part: Part, skin: Skin, blank: Blank, setup: Setup, direction: Direction = UPRIGHT) -> SurfaceSpace:
+        """Return the space of a direction given in the setup's frame; `skin` is in the part's coordinates."""
+        turned = cutting_setup(setup, direction, blank)
+        corners = corners_in(turned.frame, blank)
+        return SurfaceSpace(part=part, blank=blank, setup=turned, direction=direction, skin=skin.moved(WORLD, turned.frame),
+                            low=corners.min(axis=0), high=corners.max(axis=0))
+
+    @property
+    def frame(self) -> Frame:
+        """The cutting frame."""
+        return self.setup.frame
+
+    def seen_from(self, setup: Setup, direction: Direction) -> SurfaceSpace:
+        """Return the same part seen from another direction given in the frame of the machine's setup."""
+        turned = cutting_setup(setup, direction, self.blank)
+        corners = corners_in(turned.frame, self.blank)
+        return replace(self, setup=turned, direction=direction, skin=self.skin.moved(self.frame, turned.frame),
+                       low=corners.min(axis=0), high=corners.max(axis=0))
+
+    def drive_of(self, operation: Operation, earlier: Tool | None = None, ask: Callable[[Tool], Asker] | None = None) -> SurfaceDrive:
+        """Return what an operation on curved faces is driven by; `earlier` is the cutter that finished them before, `ask` makes askers."""
+        height, allowance = (number(operation, key) for key in (SCALLOP, ALLOWANCE))
+        told = digest(self.part.digest, self.part.solid, operation.feature, operation.kind, operation.faces, self.frame, self.blank,
+                      self.setup.clearance, self.skin.bound, len(self.skin.triangles), height, allowance, earlier)
+        return SurfaceDrive(feature=operation.feature, kind=operation.kind, faces=operation.faces, skin=self.skin, frame=self.frame,
+                            exact=tuple(ExactFace(self.part, tag, self.frame) for tag in operation.faces), low=self.low, high=self.high,
+                            clearance=self.setup.clearance, allowance=allowance, height=height, digest=told,
+                            earlier=earlier, ask=ask)
+
