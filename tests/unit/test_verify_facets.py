@@ -16,7 +16,7 @@ from trunnion.findings import Cancelled, OutOfMemory
 from trunnion.geometry.frame import WORLD, Frame
 from trunnion.model.program import ProgramSection
 from trunnion.model.toolpath import Motion, Toolpath
-from trunnion.part import facets as part_facets
+from trunnion.part import opening as part_opening
 from trunnion.part.facets import Facets, facets_of
 from trunnion.part.surfaces import surfaces_of
 from trunnion.progress import Progress
@@ -262,7 +262,7 @@ def test_facets_of_some_faces_leave_the_others_empty_and_move_with_their_frame()
 
 
 def test_more_triangles_than_fit_are_refused_with_what_to_do(monkeypatch):
-    monkeypatch.setattr(part_facets, "MOST_TRIANGLES", 20)
+    monkeypatch.setattr(part_opening, "MOST_TRIANGLES", 20)
     with pytest.raises(OutOfMemory, match="allow a larger one"):
         facets_of(read(drilled_block_shape()), WORLD)
 

@@ -17,7 +17,7 @@ class Skin:
 
     points (v, 3) mm on the faces; normals (v, 3) the faces' own outward unit normals there; triangles (t, 3) rows of points, anticlockwise
     seen from outside; face (t,) 1-based tags. Points are shared inside a face, not across faces; where faces meet, their points coincide.
-    bound: how far the triangles may be from the faces, mm.
+    bound: how far the triangles may be from the faces that were wanted fine, mm; others are within `tolerance.CHORD`.
     """
 
     points: Floats

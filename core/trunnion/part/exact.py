@@ -41,12 +41,14 @@ class ExactFace:
     def __init__(self, part: Part, tag: int, frame: Frame) -> None:
         from OCP.GeomAbs import GeomAbs_SurfaceType as Kind
 
+        from trunnion.part.evaluate import evaluator_of
         from trunnion.part.faces import FaceView
 
         shape = part.face_shape(tag)
         if shape is None:
             raise BadInput(f"face {tag} is not a face of the chosen solid of {part.name}")
         self.tag, self._frame, self._view = tag, frame, FaceView(shape, tag - 1)
+        self._evaluate = evaluator_of(self._view.adaptor)
         kind = self._view.adaptor.GetType()
         known = (Kind.GeomAbs_Plane, Kind.GeomAbs_Cylinder, Kind.GeomAbs_Sphere, Kind.GeomAbs_Cone, Kind.GeomAbs_Torus)
         self._growth = ROUND if kind in known else FREE_FORM
@@ -61,13 +63,7 @@ class ExactFace:
 
     def at(self, places: Floats) -> ExactPoints:
         """Return the surface at places (k, 2)."""
-        from OCP.gp import gp_Pnt, gp_Vec
-
-        point, du, dv, duu, dvv, duv = gp_Pnt(), gp_Vec(), gp_Vec(), gp_Vec(), gp_Vec(), gp_Vec()
-        rows = np.empty((len(places), 18))
-        for k, (u, v) in enumerate(places.tolist()):
-            self._view.adaptor.D2(u, v, point, du, dv, duu, dvv, duv)
-            rows[k] = *point.Coord(), *du.Coord(), *dv.Coord(), *duu.Coord(), *duv.Coord(), *dvv.Coord()
+        rows = self._evaluate(np.asarray(places, dtype=np.float64)).reshape(-1, 18)
         along, across, twice_u, both, twice_v = (self._frame.local_direction(rows[:, c:c + 3]) for c in range(3, 18, 3))
         # Frames keep hands, so the normal's side is the same in all of them.
         normal, size = _scaled(self._view.side * np.cross(along, across))

@@ -7,9 +7,10 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from trunnion import tolerance
 from trunnion.geometry.frame import Frame
 from trunnion.geometry.skin import Skin
-from trunnion.part.facets import facets_of
+from trunnion.part.opening import opened
 from trunnion.progress import QUIET, Progress
 
 if TYPE_CHECKING:
@@ -17,12 +18,12 @@ if TYPE_CHECKING:
 
 
 def skin_of(part: Part, frame: Frame, chord: float, progress: Progress = QUIET, fine: Collection[int] | None = None) -> Skin:
-    """Return the skin of a whole part in a frame, within a chord error (mm) on the faces of the tags in `fine` (all when not given)."""
-    facets = facets_of(part, frame, chord, progress)
-    a, b, c = np.moveaxis(facets.points[facets.triangles], 1, 0)
-    normals = np.zeros_like(facets.points)
-    for k in range(3):
-        np.add.at(normals, facets.triangles[:, k], np.cross(b - a, c - a))
-    size = np.linalg.norm(normals, axis=1, keepdims=True)
-    normals = np.divide(normals, size, out=np.zeros_like(normals), where=size > 0.0)
-    return Skin(points=facets.points, normals=normals, triangles=facets.triangles, face=facets.tag[facets.face], bound=facets.bound)
+    """Return the skin of a whole part in a frame, within a chord error (mm) on the faces of the tags in `fine` (all when not given).
+
+    Other faces are within `tolerance.CHORD`, or `chord` where that is more. `Skin.bound` is what was measured on the fine ones.
+    """
+    chords = {tag: chord if fine is None or tag in fine else max(chord, tolerance.CHORD) for tag in part.tags}
+    made = opened(part, chords, progress)
+    wanted = np.isin(made.tag, [tag for tag in made.tag.tolist() if fine is None or tag in fine])
+    return Skin(points=frame.to_local(made.points), normals=frame.local_direction(made.normals), triangles=made.triangles,
+                face=made.tag[made.face], bound=float(made.bound[wanted].max(initial=0.0)))

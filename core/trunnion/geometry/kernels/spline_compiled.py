@@ -1,0 +1,88 @@
+"""The loop of `kernels.spline` compiled: only the base functions that count at a place, built up degree by degree (de Boor)."""
+
+from __future__ import annotations
+
+import numpy as np
+from numba import njit
+
+from trunnion.geometry.arrays import Floats
+
+
+@njit(cache=True, nogil=True)
+def _span(knots: Floats, degree: int, t: float) -> int:
+    low, high = degree, len(knots) - degree - 1
+    if t >= knots[high]:
+        low = high - 1
+    else:
+        while high - low > 1:
+            middle = (low + high) // 2
+            if t < knots[middle]:
+                high = middle
+            else:
+                low = middle
+    while knots[low] == knots[low + 1]:
+        low -= 1
+    return low
+
+
+@njit(cache=True, nogil=True)
+def _bases(knots: Floats, degree: int, t: float, span: int, low: Floats, out: Floats) -> None:
+    """Fill out (3, degree + 1) with the base functions that count on a piece and their first two derivatives; low is room for as many."""
+    for order in range(3):
+        for k in range(degree + 1):
+            out[order, k] = 0.0
+            low[order, k] = 0.0
+    out[0, 0] = 1.0
+    for d in range(1, degree + 1):
+        for order in range(3):
+            for k in range(d):
+                low[order, k] = out[order, k]
+                out[order, k] = 0.0
+            out[order, d] = 0.0
+        for k in range(d):
+            right, left = knots[span + 1 + k], knots[span + 1 + k - d]
+            each = 1.0 / (right - left)
+            # A base of degree d - 1 is shared by two of degree d: rising towards the right one, falling towards the left one.
+            rising, falling = (t - left) * each, (right - t) * each
+            out[0, k + 1] += rising * low[0, k]
+            out[0, k] += falling * low[0, k]
+            for order in range(1, 3):
+                out[order, k + 1] += rising * low[order, k] + order * each * low[order - 1, k]
+                out[order, k] += falling * low[order, k] - order * each * low[order - 1, k]
+
+
+@njit(cache=True, nogil=True)
+def surface_loop(first: int, last: int, places: Floats, knots_u: Floats, knots_v: Floats, degree_u: int, degree_v: int, poles: Floats,
+                 out: Floats) -> None:
+    """Fill out[first:last] (k, 6, 3) with points and derivatives at places (k, 2)."""
+    along, across = np.zeros((3, degree_u + 1)), np.zeros((3, degree_v + 1))
+    room = np.zeros((3, max(degree_u, degree_v) + 1))
+    p = np.zeros((6, 4))
+    for n in range(first, last):
+        u, v = places[n, 0], places[n, 1]
+        su, sv = _span(knots_u, degree_u, u), _span(knots_v, degree_v, v)
+        _bases(knots_u, degree_u, u, su, room, along)
+        _bases(knots_v, degree_v, v, sv, room, across)
+        p[:] = 0.0
+        for i in range(degree_u + 1):
+            for c in range(4):
+                row0, row1, row2 = 0.0, 0.0, 0.0
+                for j in range(degree_v + 1):
+                    pole = poles[su - degree_u + i, sv - degree_v + j, c]
+                    row0 += across[0, j] * pole
+                    row1 += across[1, j] * pole
+                    row2 += across[2, j] * pole
+                p[0, c] += along[0, i] * row0
+                p[1, c] += along[1, i] * row0
+                p[2, c] += along[0, i] * row1
+                p[3, c] += along[2, i] * row0
+                p[4, c] += along[1, i] * row1
+                p[5, c] += along[0, i] * row2
+        w = p[0, 3]
+        for c in range(3):
+            s = p[0, c] / w
+            du, dv = (p[1, c] - p[1, 3] * s) / w, (p[2, c] - p[2, 3] * s) / w
+            out[n, 0, c], out[n, 1, c], out[n, 2, c] = s, du, dv
+            out[n, 3, c] = (p[3, c] - 2.0 * p[1, 3] * du - p[3, 3] * s) / w
+            out[n, 4, c] = (p[4, c] - p[1, 3] * dv - p[2, 3] * du - p[4, 3] * s) / w
+            out[n, 5, c] = (p[5, c] - 2.0 * p[2, 3] * dv - p[5, 3] * s) / w
