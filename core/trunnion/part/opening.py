@@ -131,6 +131,18 @@ class _Net:
     fixed: Bools
     bound: Floats
 
+    def join_poles(self) -> None:
+        """Make one point of all that lie in the same pole, and leave out the triangles between them, which have no area."""
+        poles = np.flatnonzero(~self.fixed.all(axis=1))
+        where = np.column_stack([self.owner[poles], np.round(self.points[poles] / tolerance.COINCIDENT)])
+        _, first, back = np.unique(where, axis=0, return_index=True, return_inverse=True)
+        one = np.arange(len(self.points))
+        one[poles] = poles[first[back.ravel()]]
+        self.triangles, self.border.nodes = one[self.triangles], one[self.border.nodes]
+        a, b, c = self.triangles.T
+        some = (a != b) & (b != c) & (c != a)
+        self.triangles, self.face = self.triangles[some], self.face[some]
+
     def on(self, owner: Ints, places: Floats) -> Floats:
         """Return points and derivatives (k, 6, 3) of faces, by row (k,), at places (k, 2)."""
         out = np.empty((len(places), 6, 3))
@@ -141,10 +153,12 @@ class _Net:
 
     def between(self, nodes: Ints, share: Floats) -> Floats:
         """Return places (k, 2) at shares (n,) between nodes (k, n); what means nothing at a pole doesn't count."""
-        counts = self.fixed[nodes] * share[:, None]
-        total = counts.sum(axis=1, keepdims=True)
-        counts = np.where(total > 0.0, counts, share[:, None])
-        return np.asarray((self.place[nodes] * counts).sum(axis=1) / counts.sum(axis=1))
+        places = sum(s * self.place[n] for s, n in zip(share, nodes.T, strict=True))
+        beside = np.flatnonzero(~self.fixed.all(axis=1)[nodes].all(axis=1))
+        counts = self.fixed[nodes[beside]] * share[:, None]
+        counts = np.where(counts.sum(axis=1, keepdims=True) > 0.0, counts, share[:, None])
+        places[beside] = (self.place[nodes[beside]] * counts).sum(axis=1) / counts.sum(axis=1)
+        return np.asarray(places)
 
     def off(self, nodes: Ints, shares: Floats) -> Floats:
         """Return how far (k,) the surface is at most from edges or triangles (k, n) of nodes, at shares (s, n) between those, along its
@@ -358,6 +372,7 @@ def _coarse(part: Part, tags: list[int], limits: Floats, progress: Progress) -> 
     at = net.on(net.owner, net.place)
     net.surface, lengths = at[:, 0], np.linalg.norm(at[:, 1:3], axis=2)
     net.fixed = lengths > tolerance.PARAMETRIC * np.maximum(lengths.max(axis=1, keepdims=True), tolerance.COINCIDENT)
+    net.join_poles()
     return net
 
 
