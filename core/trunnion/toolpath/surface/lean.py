@@ -31,7 +31,7 @@ FINE, COARSE = 3, 2
 """Halvings of the directions that a course is chosen from, 9 degrees apart, and of those that are asked, 18 degrees apart."""
 STEP = math.radians(10.5)
 """Turn from one place of a course to the next: just to the next direction."""
-STIFFNESS = 3.0
+STIFFNESS = 1.5
 """mm: what the wanted axis does within this is evened out."""
 EASING = 2.0
 """Places over which a course is eased."""
@@ -39,7 +39,7 @@ RIM = 0.1
 """What a direction costs whose neighbours are all taken, as a deviation from the wanted axis (rad squared)."""
 LEAP = 50.0
 """What it costs to lift the tool and set it down with another axis: 20 mm with an axis that is 90 degrees off."""
-ROUNDS = 6
+ROUNDS = 12
 """Times that a course is chosen again after something was met."""
 AHEAD = 4
 """Places before and behind one that met something which are asked with it."""
@@ -72,9 +72,15 @@ class Course:
     def runs(self) -> list[Course]:
         """Return the pieces that are cut without lifting the tool, those of two places and more."""
         ends = np.flatnonzero(self.leap | ~self.free | ~np.concatenate([[False], self.free[:-1]]))
-        found = [slice(a, b) for a, b in pairwise([*ends.tolist(), len(self.place)])]
-        return [Course(place=self.place[s], axis=self.axis[s], free=self.free[s], leap=self.leap[s]) for s in found
-                if self.free[s.start] and s.stop - s.start > 1]
+        found = []
+        for a, b in pairwise([*ends.tolist(), len(self.place)]):
+            # After a leap the way that leads up to it is cut again, with the new axis.
+            rows = np.arange(a, b) if not self.leap[a] else np.concatenate([[a], np.arange(a, b)])
+            place = self.place[rows]
+            place[0] = self.place[a - 1] if self.leap[a] else place[0]
+            if self.free[a] and len(rows) > 1:
+                found.append(Course(place=place, axis=self.axis[rows], free=self.free[rows], leap=self.leap[rows]))
+        return found
 
     def at(self, place: Floats) -> Floats:
         """Return the axes (m, 3) at places (m,) of the pass."""
@@ -88,12 +94,7 @@ def free_axes(passes: Sequence[Contacts], field: AxisField, tool: Tool, ask: Ask
 
     `ask` says what is free; without it only the limits count. `allowance`: mm that the cutter keeps from the contacts.
     """
-    search = _Search(_Places.of(passes, field, tool, limits, allowance), tool, ask, limits)
-    for n in range(ROUNDS):
-        progress.at(n / ROUNDS, "Leaning the tool clear")
-        if not search.improved():
-            break
-    return search.courses()
+    return AxisSearch(passes, field, tool, ask, limits, allowance).courses(progress)
 
 
 def leaned(passes: Sequence[Pass], tool: Tool, field: AxisField, ask: Asker | None, limits: LeanLimits, chord: float,
@@ -164,20 +165,27 @@ class _Places:
                        wanted=np.vstack([empty, *wanted]), start=np.cumsum([0, *(len(p) for p in places)]), pitch=np.array(pitches))
 
 
-class _Search:
-    """Knows what was asked so far: a table of what is free, a row of it for each place."""
+class AxisSearch:
+    """Free axes of contact passes, found as `free_axes` says; knows what was asked so far: a table of what is free, a row for each place.
 
-    def __init__(self, places: _Places, tool: Tool, ask: Asker | None, limits: LeanLimits) -> None:
-        self.places, self.tool, self.ask, self.limits = places, tool, ask, limits
+    Whoever finds that a move between two places touches something says so (`met`) and asks for the courses again.
+    """
+
+    def __init__(self, passes: Sequence[Contacts], field: AxisField, tool: Tool, ask: Asker | None, limits: LeanLimits,
+                 allowance: float = 0.0) -> None:
+        self.places = places = _Places.of(passes, field, tool, limits, allowance)
+        self.tool, self.ask, self.limits = tool, ask, limits
         k = len(places.place)
         self.axis, self.free, self.leap = np.zeros((k, 3)), np.zeros(k, bool), np.zeros(k, bool)
+        self.clear, self.chosen = np.zeros(k, bool), np.zeros(k, dtype=np.int64)
+        # Whether a place has an answer of its own, and whether it takes a direction as asked, not eased.
+        self.own, self.raw = np.zeros(k, bool), np.zeros(k, bool)
         self.dirty = np.ones(max(len(places.start) - 1, 0), bool)
         # Row 0: nothing is known, all that the machine can hold is free.
         self.table = self._held()[None]
         self.row = np.zeros(k, dtype=np.int64)
         alike = np.column_stack([np.floor(places.point / CLOSE), np.floor(places.normal / ALIKE)]).astype(np.int64)
         self.first, self.node = np.unique(alike, axis=0, return_index=True, return_inverse=True)[1:] if k else (self.row, self.row)
-        self.known = np.zeros(k, bool)
 
     def _held(self) -> Bools:
         point = _sphere()[0]
@@ -185,23 +193,36 @@ class _Search:
             return np.ones(len(point), bool)
         return self.ask(self.places.point.mean(axis=0) + AWAY * point, point)
 
-    def improved(self) -> bool:
+    def courses(self, progress: Progress = QUIET) -> list[Course]:
+        """Return the courses of all passes."""
+        for n in range(ROUNDS):
+            progress.at(n / ROUNDS, "Leaning the tool clear")
+            if not self._improved():
+                break
+        at = [slice(a, b) for a, b in pairwise(self.places.start.tolist())]
+        return [Course(place=self.places.place[s], axis=self.axis[s], free=self.free[s], leap=self.leap[s]) for s in at]
+
+    def met(self, number: int, places: Floats) -> None:
+        """Take in that on the pass of a number something was met at places (k,): the axes to both sides of them won't do."""
+        start, end = self.places.start[number : number + 2]
+        after = np.searchsorted(self.places.place[start:end], places)
+        rows = start + np.unique(np.clip(np.concatenate([after - 1, after]), 0, end - start - 1))
+        rows = rows[self.free[rows]]
+        self.clear[rows] = self.free[rows] = False
+        self._learn(rows)
+
+    def _improved(self) -> bool:
         """Choose the courses of passes about which something new is known; say whether what they met is worth another try."""
         for n in np.flatnonzero(self.dirty).tolist():
             self._choose(slice(int(self.places.start[n]), int(self.places.start[n + 1])), float(self.places.pitch[n]))
-        rows = np.flatnonzero(np.repeat(self.dirty, np.diff(self.places.start)) & self.free)
         self.dirty[:] = False
-        met = self._met(rows)
-        if not len(met):
-            return False
-        self._learn(met)
-        self.free[met] = False
-        return True
-
-    def courses(self) -> list[Course]:
-        """Return what was found."""
-        at = [slice(a, b) for a, b in pairwise(self.places.start.tolist())]
-        return [Course(place=self.places.place[s], axis=self.axis[s], free=self.free[s], leap=self.leap[s]) for s in at]
+        rows = np.flatnonzero(self.free & ~self.clear)
+        met = self._touching(rows)
+        self.clear[rows], self.clear[met] = True, False
+        if len(met):
+            self._learn(met)
+            self.free[met] = False
+        return len(met) > 0
 
     def _choose(self, rows: slice, pitch: float) -> None:
         """Choose the course of the places of one pass."""
@@ -217,7 +238,12 @@ class _Search:
         cost = np.where(allowed, (off * off + RIM * taken) * pitch, np.inf)
         chosen, leap = course(cost, near, STIFFNESS**2 * turn**2 / pitch, LEAP)
         self.free[rows], self.leap[rows] = chosen >= 0, leap
-        self.axis[rows] = self._eased(rows, point[chosen], chosen >= 0, leap)
+        # The direction next to the wanted axis stands for it.
+        near_wanted = off[np.arange(len(chosen)), chosen] < STEP
+        axis = np.where((near_wanted & ~self.raw[rows])[:, None], self.places.wanted[rows], point[chosen])
+        axis = self._eased(rows, axis, chosen >= 0, leap)
+        self.clear[rows] &= (axis == self.axis[rows]).all(axis=1)
+        self.axis[rows], self.chosen[rows] = axis, chosen
 
     def _eased(self, rows: slice, axis: Floats, free: Bools, leap: Bools) -> Floats:
         """Return a course's axes eased, run by run, as far as they stay within the steepest lean."""
@@ -225,9 +251,12 @@ class _Search:
         for a, b in pairwise([*ends.tolist(), len(axis)]):
             out[a:b] = eased(axis[a:b], EASING) if free[a] else axis[a:b]
         steep = (out * self.places.normal[rows]).sum(axis=1) < math.cos(self.limits.steepest)
-        return np.where(steep[:, None], axis, out)
+        raw = (self.raw[rows] | steep) & free
+        beside = (np.append(raw[1:], False) | np.append(False, raw[:-1])) & ~raw
+        out[beside] = slerp(out[beside], axis[beside], np.full(int(beside.sum()), 0.5))
+        return np.where(raw[:, None], axis, out)
 
-    def _met(self, rows: Ints) -> Ints:
+    def _touching(self, rows: Ints) -> Ints:
         """Return those of some rows whose axes touch something."""
         if self.ask is None:
             return rows[:0]
@@ -235,21 +264,24 @@ class _Search:
         return rows[~self.ask(tip_at(self.tool, p.point[rows], p.normal[rows], self.axis[rows]), self.axis[rows])]
 
     def _learn(self, met: Ints) -> None:
-        """Ask what is free where something was met: once for contacts that are alike, and for the contact itself if that was not enough."""
+        """Ask what is free where something was met: once for contacts that are alike, then for the contact itself; a contact that has been
+        asked takes its directions as they are, and strikes out the one that failed."""
         k, owner = len(self.row), np.repeat(np.arange(len(self.dirty)), np.diff(self.places.start))
-        # Which answer a place has: 0 none, else one shared with those alike, or its own.
-        own = np.unique(met[self.row[met] > 0])
+        struck = met[self.own[met]]
+        self.table[self.row[struck[self.raw[struck]]], self.chosen[struck[self.raw[struck]]]] = False
+        self.raw[struck] = True
+        own = met[(self.row[met] > 0) & ~self.own[met]]
         around = np.unique(np.clip(met[:, None] + np.arange(-AHEAD, AHEAD + 1), 0, k - 1))
         shared = np.unique(self.node[around[self.row[around] == 0]])
-        asked = np.concatenate([self.first[shared], own])
         base = len(self.table)
-        self.table = np.vstack([self.table, self._asked(asked)])
+        self.table = np.vstack([self.table, self._asked(np.concatenate([self.first[shared], own]))])
         of_node = np.full(int(self.node.max(initial=-1)) + 1, -1, dtype=np.int64)
         of_node[shared] = base + np.arange(len(shared))
         new = (of_node[self.node] >= 0) & (self.row == 0)
         self.row[new] = of_node[self.node[new]]
         self.row[own] = base + len(shared) + np.arange(len(own))
-        new[own] = True
+        self.own[own] = True
+        new[own] = new[struck] = True
         self.dirty[np.unique(owner[new])] = True
 
     def _asked(self, rows: Ints) -> Bools:

@@ -1,0 +1,206 @@
+"""Point milling: a cutter led along flow lines of the faces, its axis leaning to a field and out of the way of everything.
+
+Contacts come from the flow lines, axes from `lean`; where the cutter stands follows from its form. Blocks are as long as the cutter,
+carried straight from tip to tip while its axis turns evenly, stays within the chord error of the faces, on either side of them.
+"""
+
+from __future__ import annotations
+
+import math
+import re
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+
+from trunnion import tolerance
+from trunnion.findings import BadInput, Finding, Refused, warning
+from trunnion.geometry.arrays import Bools, Floats
+from trunnion.geometry.frame import Frame
+from trunnion.model.operation import CuttingData
+from trunnion.model.setup import Setup
+from trunnion.model.tool import Tool
+from trunnion.plan.surface.drive import Asker, SurfaceDrive
+from trunnion.progress import QUIET, Progress
+from trunnion.settings import choose, setting, settings
+from trunnion.toolpath.contract import Planned, strategy
+from trunnion.toolpath.stock import PlanningStock
+from trunnion.toolpath.surface.axis import AxisField, fixed, from_point, interpolated, leaning
+from trunnion.toolpath.surface.contacts import Contacts, between, slerp
+from trunnion.toolpath.surface.cutter import lower_side, tip_at
+from trunnion.toolpath.surface.lean import AxisSearch, Course, LeanLimits
+from trunnion.toolpath.surface.linking import Manner, linked
+from trunnion.toolpath.surface.passes import Pass
+from trunnion.toolpath.surface.scallop import stepover_on_plane
+from trunnion.toolpath.surface.streamline import StreamlineSettings, streamlines
+
+SHARES = (0.25, 0.5, 0.75)
+"""Where on a block its chord error is looked at, beside the contacts on its way."""
+HALVINGS = 12
+TRIES = 4
+"""Times that axes are chosen again where a move between two clear ones touched something."""
+SMALLEST_LEFTOVER = 0.5
+"""mm2: less than this is the rim of an area."""
+
+
+@settings("surface.point")
+class PointSettings:
+    """How the tool leans, how its axis may turn, and how finely the way is cut."""
+
+    axis: str = setting("normal", label="Tool axis", help="What the axis keeps to: the face's normal with lead and tilt, a fixed "
+                        "direction, away from a place, towards a place, or between given vectors. It leaves that where it must.",
+                        choices=("normal", "fixed", "away", "towards", "vectors"))
+    lead: float = setting(10.0, unit="deg", low=-60.0, high=60.0, label="Lead angle", help="Lean from the normal towards the feed.")
+    tilt: float = setting(0.0, unit="deg", low=-60.0, high=60.0, label="Tilt angle", help="Lean from the normal to the left of the feed.")
+    axis_from: str = setting("", label="Axis from", help="In the part's coordinates: a direction x y z, a place x y z, or vectors as "
+                             "x y z > i j k; x y z > i j k.")
+    turn: float = setting(10.0, unit="deg/mm", low=0.5, high=60.0, label="Axis turn", help="How far the axis may turn on a mm of the "
+                          "cutter's way.")
+    steepest: float = setting(75.0, unit="deg", low=10.0, high=85.0, label="Steepest lean", help="Largest angle of axis and normal.")
+    first_guide: str = setting("", label="First guide", help="Faces beyond the rim where the flow lines begin, as in: face 12, face 13.")
+    second_guide: str = setting("", label="Second guide", help="Faces beyond the rim where the flow lines end.")
+    spiral: bool = setting(True, label="Spiral", help="Cut a tube or ring in one continuous spiral instead of closed passes.")
+    chord: float = setting(0.0005, unit="mm", low=0.0001, high=0.1, label="Chord error",
+                           help="How far a block may leave the faces, on either side.")
+    lead_radius: float = setting(0.5, unit="mm", low=0.0, high=20.0, label="Lead radius", help="Radius of the arcs onto and off the face.")
+    safety: float = setting(2.0, unit="mm", low=0.2, high=50.0, label="Safety distance", help="How far rapids stay from the blank.")
+
+
+@dataclass(frozen=True, slots=True, eq=False, kw_only=True)
+class Milled:
+    """Passes of a leaning cutter, and the length of contact way in mm that had to be left."""
+
+    passes: tuple[Pass, ...]
+    left: float
+
+
+@strategy(settings=PointSettings)
+def point(drive: SurfaceDrive, tool: Tool, data: CuttingData, stock: PlanningStock, setup: Setup, settings: PointSettings,
+          progress: Progress = QUIET) -> Planned:
+    """Return the path of a leaning tool over the drive's faces, and what it must leave."""
+    if drive.ask is None:
+        raise Refused(f"{drive.feature}: point milling leans the tool; choose a machine with rotary axes, or another strategy")
+    lower_side(tool)
+    flow = choose(StreamlineSettings, {name: getattr(settings, name) for name in ("first_guide", "second_guide", "spiral")})
+    ways = streamlines(drive, tool, flow, progress.part(0.0, 0.3))
+    limits = LeanLimits(turn=math.radians(settings.turn), steepest=math.radians(settings.steepest))
+    done = milled(ways, tool, field_of(settings, drive.frame), drive.ask(tool), limits, settings.chord, drive.allowance,
+                  progress.part(0.3, 0.9))
+    stepover = stepover_on_plane(max(tool.corner_radius, drive.height), drive.height)
+    manner = Manner(stepover=stepover, safety=settings.safety, lead_radius=settings.lead_radius)
+    path = linked(done.passes, drive, tool, data, stock, setup, manner, progress.part(0.9, 1.0))
+    return Planned(path=path, findings=_left(done, drive, tool, stepover))
+
+
+def milled(ways: Sequence[Contacts], tool: Tool, field: AxisField, ask: Asker | None, limits: LeanLimits, chord: float,
+           allowance: float = 0.0, progress: Progress = QUIET) -> Milled:
+    """Return the passes of a cutter over contact passes, its axis as near to a field as `ask` and the limits let it.
+
+    The cutter stays within `chord` mm of where it touches, thicker by the allowance. Moves that touch what they must not are left out.
+    """
+    search = AxisSearch(ways, field, tool, ask, limits, allowance)
+    courses = search.courses(progress.part(0.0, 0.5))
+    found: list[list[tuple[Floats, Pass]]] = [[] for _ in ways]
+    again = list(range(len(ways)))
+    for n in range(TRIES):
+        share = progress.part(1.0 - 0.5 ** (n + 1), 1.0 - 0.5 ** (n + 2))
+        for k in share.over(again, "Following flow lines with a leaning tool"):
+            found[k], met = _cut([located(ways[k], run, tool, chord, allowance) for run in courses[k].runs()], ask)
+            if len(met) and n + 1 < TRIES:
+                search.met(k, met)
+        again = np.flatnonzero(search.dirty).tolist()
+        courses = search.courses(share) if again else courses
+    left = sum(_run(way, 0.0, len(way) - 1.0) - sum(_run(way, float(place[0]), float(place[-1])) for place, _ in pieces)
+               for way, pieces in zip(ways, found, strict=True))
+    return Milled(passes=tuple(one for pieces in found for _, one in pieces), left=max(left, 0.0))
+
+
+def located(way: Contacts, run: Course, tool: Tool, chord: float, allowance: float = 0.0) -> tuple[Floats, Pass]:
+    """Return where a cutter stands along a run of a contact pass: the places (k,) of the way and the pass itself."""
+    radius, feed = max(tool.corner_radius, 0.25 * tool.radius), way.feed
+    travel = way.travel(radius)
+    place = run.place
+    rows = np.arange(len(way), dtype=np.float64)
+    rows = rows[(rows > place[0]) & (rows < place[-1])]
+    normal, axis, tip = _standing(way, feed, run, tool, allowance, place)
+    for _ in range(HALVINGS):
+        share = np.concatenate([place[:-1] + s * np.diff(place) for s in SHARES])
+        probe = np.concatenate([rows, share])
+        block = np.clip(np.searchsorted(place, probe, side="right") - 1, 0, len(place) - 2)
+        gone = np.interp(probe, np.arange(len(way)), travel)
+        ends = np.interp(place, np.arange(len(way)), travel)
+        part = np.clip((gone - ends[block]) / np.maximum(ends[block + 1] - ends[block], tolerance.PARAMETRIC), 0.0, 1.0)
+        turned = slerp(axis[block], axis[block + 1], part)
+        at, out = between(way.point, way.normal, feed, probe)
+        stands = tip[block] + part[:, None] * (tip[block + 1] - tip[block])
+        off = np.abs(((stands - tip_at(tool, at + allowance * out, out, turned)) * out).sum(axis=1))
+        worst = np.zeros(len(place) - 1)
+        np.maximum.at(worst, block, off)
+        split = np.flatnonzero((worst > chord) & (np.linalg.norm(np.diff(tip, axis=0), axis=1) > 2.0 * tolerance.SHORT_MOVE))
+        if not len(split):
+            break
+        place = np.sort(np.concatenate([place, 0.5 * (place[split] + place[split + 1])]))
+        normal, axis, tip = _standing(way, feed, run, tool, allowance, place)
+    return place, Pass(tip=tip, axis=axis, normal=normal)
+
+
+def field_of(chosen: PointSettings, frame: Frame) -> AxisField:
+    """Return the axis field that settings ask for; places and directions are given in the part's coordinates."""
+    numbers = _numbers(chosen.axis_from)
+    if chosen.axis == "normal":
+        return leaning(math.radians(chosen.lead), math.radians(chosen.tilt))
+    if chosen.axis == "vectors" and len(numbers) and len(numbers) % 6 == 0:
+        rows = np.array(numbers).reshape(-1, 6)
+        return interpolated(frame.to_local(rows[:, :3]), frame.local_direction(rows[:, 3:]))
+    if chosen.axis != "vectors" and len(numbers) == 3:
+        if chosen.axis == "fixed":
+            return fixed(frame.local_direction(np.array(numbers)))
+        return from_point(frame.to_local(np.array(numbers)), chosen.axis == "away")
+    wanted = "vectors as x y z > i j k; x y z > i j k" if chosen.axis == "vectors" else "three numbers x y z"
+    raise BadInput(f"Axis from (surface.point.axis_from) must be {wanted} while the tool axis is {chosen.axis}; got {chosen.axis_from!r}")
+
+
+def _numbers(text: str) -> list[float]:
+    try:
+        return [float(word) for word in re.split(r"[\s,;>]+", text.strip()) if word]
+    except ValueError:
+        return []
+
+
+def _standing(way: Contacts, feed: Floats, run: Course, tool: Tool, allowance: float, place: Floats) -> tuple[Floats, Floats, Floats]:
+    """Return the normals, axes and tips (k, 3) at places (k,) of a run."""
+    point, normal = between(way.point, way.normal, feed, place)
+    axis = run.at(place)
+    return normal, axis, tip_at(tool, point + allowance * normal, normal, axis)
+
+
+def _cut(runs: Sequence[tuple[Floats, Pass]], ask: Asker | None) -> tuple[list[tuple[Floats, Pass]], Floats]:
+    """Return the stretches of runs whose moves are clear, and the places where a move is not."""
+    if ask is None:
+        return list(runs), np.zeros(0)
+    pieces, met = [], [np.zeros(0)]
+    for place, one in runs:
+        clear = ask(one.tip[1:], one.axis[1:], start_tip=one.tip[:-1], start_axis=one.axis[:-1])
+        pieces += [(place[s], one.of(s)) for s in _stretches(clear)]
+        met.append(0.5 * (place[:-1] + place[1:])[~clear])
+    return pieces, np.concatenate(met)
+
+
+def _stretches(clear: Bools) -> list[slice]:
+    """Return the rows of ends of blocks (k,) that are clear one after the other."""
+    edges = np.flatnonzero(np.diff(np.concatenate([[False], clear, [False]]).astype(np.int64)))
+    return [slice(a, b + 1) for a, b in edges.reshape(-1, 2).tolist()]
+
+
+def _run(way: Contacts, start: float, end: float) -> float:
+    """Return the length in mm of the contact way from a place to another."""
+    length = way.travel(0.0)
+    return float(np.diff(np.interp([start, end], np.arange(len(way)), length))[0])
+
+
+def _left(done: Milled, drive: SurfaceDrive, tool: Tool, stepover: float) -> tuple[Finding, ...]:
+    area = done.left * stepover
+    if area < SMALLEST_LEFTOVER:
+        return ()
+    return (warning("point.left", f"{area:.0f} mm2 of {drive.feature} stay: {tool.name} finds no way to lean there", drive.feature,
+                    remedy="choose a smaller or longer cutter, a slimmer holder, or let it lean further from the normal"),)
