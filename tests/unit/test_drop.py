@@ -123,3 +123,32 @@ def test_heights_agree_with_opencamlib() -> None:
         batch.run()
         z = np.array([p.z for p in batch.getCLPoints()])
         assert np.abs(DropSurface.of(points, triangles).drop(at, cutter, LOWEST) - z).max() < 1e-4
+
+
+@pytest.mark.parametrize("name", CUTTERS)
+def test_a_touch_lies_on_its_triangle_and_on_the_cutter(name: str) -> None:
+    points, triangles = wavy(14)
+    at = np.random.default_rng(7).uniform(2.0, 58.0, (80, 2))
+    z, facet, contact = DropSurface.of(points, triangles).touch(at, CUTTERS[name], LOWEST)
+    away = np.hypot(*(contact[:, :2] - at).T)
+    assert away.max() <= CUTTERS[name][-1, 1] + 1e-9
+    assert contact[:, 2] - height_at(CUTTERS[name], np.minimum(away, CUTTERS[name][-1, 1])) == pytest.approx(z, abs=1e-9)
+    a, b, c = np.moveaxis(points[triangles[facet]], 1, 0)
+    parts = [np.linalg.norm(np.cross(p - contact, q - contact), axis=1) for p, q in ((a, b), (b, c), (c, a))]
+    assert sum(parts) == pytest.approx(np.linalg.norm(np.cross(b - a, c - a), axis=1), abs=1e-9)
+
+
+def test_over_nothing_no_triangle_is_touched() -> None:
+    surface = DropSurface.of(np.array([[0, 0, 0], [1, 0, 0], [0, 1, 0.0]]), np.array([[0, 1, 2]]))
+    z, facet, contact = surface.touch(np.array([[30.0, 30.0], [0.2, 0.2]]), BALL, LOWEST)
+    assert (z.tolist(), facet.tolist()) == ([LOWEST, 0.0], [-1, 0]) and np.isnan(contact[0]).all()
+
+
+@settings(deadline=None, max_examples=20)
+@given(st.integers(0, 10_000), st.sampled_from(sorted(CUTTERS)))
+def test_points_along_a_way_find_what_loose_points_find(seed: int, name: str) -> None:
+    rng = np.random.default_rng(seed)
+    corners = rng.uniform(-12.0, 12.0, (40, 3, 3)) * rng.choice([0.02, 0.3, 1.0], (40, 1, 3)) + rng.uniform(-9.0, 9.0, (40, 1, 3))
+    way = np.column_stack([np.linspace(-15.0, 15.0, 60), np.linspace(-9.0, 12.0, 60)])
+    found = DropSurface.of(corners.reshape(-1, 3), np.arange(120).reshape(-1, 3)).drop(way, CUTTERS[name], LOWEST)
+    assert np.abs(found - drop(way, corners, CUTTERS[name], LOWEST)).max() < 1e-9
