@@ -13,7 +13,8 @@ from trunnion.model.operation import Operation
 def operation_dict(operation: Operation) -> dict[str, Any]:
     """Return an operation as JSON data."""
     return {"id": operation.id, "kind": operation.kind, "strategy": operation.strategy, "feature": operation.feature,
-            "setup": operation.setup, "tool": operation.tool.number, "faces": list(operation.faces), "data": asdict(operation.data),
+            "setup": operation.setup, "direction": list(operation.direction), "tool": operation.tool.number,
+            "faces": list(operation.faces), "data": asdict(operation.data),
             "choices": dict(operation.choices), "rules": list(operation.rules), "after": list(operation.after),
             "by_hand": operation.by_hand, "suppressed": operation.suppressed}
 

@@ -19,6 +19,7 @@ from trunnion.model.feature import Recognition
 from trunnion.model.operation import Operation, OperationPath
 from trunnion.model.session import Session
 from trunnion.model.setup import Setup
+from trunnion.model.tool import Tool
 from trunnion.model.toolpath import Toolpath
 from trunnion.pipeline.asking import PartSurroundings
 from trunnion.pipeline.bench import Bench
@@ -32,6 +33,7 @@ from trunnion.progress import Progress
 from trunnion.settings import checked, choose, digest
 from trunnion.toolpath.sides import Sides
 from trunnion.toolpath.stock import PlanningStock
+from trunnion.toolpath.turning import Pose, moved_over, swing_of
 
 SURFACE_FAMILY = "surface"
 """The family whose plane operations are driven by how high the part stands, not by its features."""
@@ -59,18 +61,27 @@ def make_paths(session: Session, bench: Bench, progress: Progress) -> tuple[Oper
 
 @dataclass(slots=True)
 class Room:
-    """What the operations of one setup are made in: the part as each direction sees it, and the stock that is left there."""
+    """What the operations of one setup are made in: the part as each direction sees it, the stock that is left there, and the last path
+    with its tool."""
 
     bench: Bench
     recognition: Recognition
     blank: Blank
     setup: Setup
     sides: Sides = field(init=False)
+    last: OperationPath | None = None
+    tool: Tool | None = None
     _plane: Space | None = None
     _curved: dict[Direction, SurfaceSpace] = field(default_factory=dict)
 
     def __post_init__(self) -> None:
         self.sides = Sides(self.blank)
+
+    def before(self, tool: Tool) -> Pose | None:
+        """Return the pose that a tool was left in, or None when it comes from its change."""
+        if self.last is None or self.tool is None or self.tool.number != tool.number:
+            return None
+        return self.last.path.position[-1], self.last.path.axis[-1]
 
     def plane(self) -> Space:
         """Return the part's sections as the setup sees them."""
@@ -93,7 +104,8 @@ def _make_one(session: Session, room: Room, operation: Operation, progress: Prog
     chosen = checked(choose(strategy.settings, {**session.choices, **operation.choices}))
     try:
         setup, stock, drive, told = _driven(session, room, operation, progress)
-        key = digest(operation.strategy, told, operation.tool, operation.data, chosen, stock.digest, setup)
+        before = room.before(operation.tool)
+        key = digest(operation.strategy, told, operation.tool, operation.data, chosen, stock.digest, setup, before)
         kept = session.path_of(operation.id)
         if isinstance(drive, PlaneDrive) and not any(level.wanted for level in drive.levels):
             nothing = info("toolpath.nothing-left", f"{operation.id}: nothing stands there any more that it could cut", operation.id,
@@ -101,12 +113,15 @@ def _make_one(session: Session, room: Room, operation: Operation, progress: Prog
             kept = OperationPath(operation=operation.id, findings=(nothing,), key=key)
         if kept is None or kept.key != key:
             planned: Any = strategy(drive, operation.tool, operation.data, stock, setup, chosen, progress)
-            path = turned(planned.path, setup.frame, room.setup.frame)
+            swing = swing_of(room.blank, replace(room.setup, fixtures=session.fixtures_of(room.setup.name)))
+            path = moved_over(turned(planned.path, setup.frame, room.setup.frame), before, swing)
             kept = OperationPath(operation=operation.id, path=path, findings=tuple(planned.findings), key=key)
     except Refused as reason:
         left = error("toolpath.refused", str(reason), operation.id, operation.feature)
         return OperationPath(operation=operation.id, findings=(left,))
-    room.sides.cut(setup, turned(kept.path, room.setup.frame, setup.frame), operation.tool)
+    if len(kept.path):
+        room.sides.cut(setup, turned(kept.path, room.setup.frame, setup.frame), operation.tool)
+        room.last, room.tool = kept, operation.tool
     return kept
 
 

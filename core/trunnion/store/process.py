@@ -18,6 +18,8 @@ from trunnion.store.atomic import write_bytes
 from trunnion.store.pieces import add, add_findings, add_frame, add_values, attributes, findings_of, frame_of, made, text_of, values_of
 
 FORMAT = 1
+UPRIGHT = (0.0, 0.0, 1.0)
+"""The direction of a tool that comes along the setup's z: it isn't written."""
 
 
 def write_process(session: Session, path: str | Path) -> None:
@@ -99,13 +101,21 @@ def _add_operation(root: Any, operation: Operation) -> None:
     add_values(element, "choice", "key", operation.choices)
     for rule in operation.rules:
         add(element, "rule", rule)
+    if operation.direction != UPRIGHT:
+        x, y, z = (text_of(float(v)) for v in operation.direction)
+        add(element, "direction", x=x, y=y, z=z)
 
 
 def _operation(element: Any, tools: dict[int, Tool]) -> Operation:
     cutting = element.find("cutting")
     return made(Operation, element, tool=tools[int(element.get("tool"))], data=made(CuttingData, cutting, rules=_rules(cutting)),
                 faces=tuple(int(f.get("tag")) for f in element.findall("face")), rules=_rules(element),
-                after=tuple(a.get("operation") for a in element.findall("after")), choices=values_of(element, "choice", "key"))
+                after=tuple(a.get("operation") for a in element.findall("after")), choices=values_of(element, "choice", "key"),
+                direction=_direction(element.find("direction")))
+
+
+def _direction(element: Any) -> tuple[float, float, float]:
+    return UPRIGHT if element is None else (float(element.get("x")), float(element.get("y")), float(element.get("z")))
 
 
 def _rules(element: Any) -> tuple[str, ...]:

@@ -17,7 +17,7 @@ from trunnion.geometry.frame import Frame
 from trunnion.model.blank import Blank
 from trunnion.model.setup import Setup
 from trunnion.model.tool import Tool
-from trunnion.model.toolpath import Toolpath
+from trunnion.model.toolpath import Motion, Toolpath
 from trunnion.plan.surface.frames import corners_in
 from trunnion.settings import digest
 from trunnion.toolpath.stock import PlanningStock
@@ -49,7 +49,7 @@ class Sides:
 
     def cut(self, setup: Setup, path: Toolpath, tool: Tool) -> None:
         """Take a path in the frame of a setup off its stock. A leaning tool takes nothing off: the stock is then higher than it is."""
-        if len(path) and bool((path.axis[:, 2] > 1.0 - tolerance.PARAMETRIC).all()):
+        if len(path) and bool((path.axis[path.motion != Motion.RAPID, 2] > 1.0 - tolerance.PARAMETRIC).all()):
             name = digest(setup.frame)
             self._stocks[name] = self._stocks[name].after(path, tool)
 

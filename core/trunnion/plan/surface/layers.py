@@ -19,7 +19,7 @@ from trunnion.plan.surface.settings import ALLOWANCE, BOTTOM, CELL, number
 from trunnion.plan.surface.space import SurfaceSpace
 from trunnion.progress import Progress
 
-STRAIGHT = 0.25
+STRAIGHT = 0.5
 """Of the allowance: how far the rims of layers may be straightened."""
 LEAST_STRAIGHT = 0.02
 """mm: the same where hardly anything is left."""
