@@ -102,13 +102,14 @@ def figures(folder: Path, only: str, quick: bool) -> Iterator[Figure]:
 def cases(folder: Path, quick: bool) -> dict[str, Callable[[], Iterator[Figure]]]:
     """Return what can be measured, by name."""
     from cases import contact, graph, recognition, roughing, whole_line
+    from drop import drop
     from proof import PROOF
 
     path = unpacked(folder)
     panel = {"import": reading, "graph": graph, "recognition": recognition, "roughing": roughing, "contact": contact,
              "whole-line": whole_line}
     return {**{name: partial(case, path, folder, compared) for name, case in panel.items()},
-            **{name: partial(_rows, case, quick) for name, case in PROOF.items()}}
+            **{name: partial(_rows, case, quick) for name, case in {**PROOF, "drop": drop}.items()}}
 
 
 def _rows(case: Callable[[bool], Iterator[dict[str, Any]]], quick: bool) -> Iterator[Figure]:

@@ -154,7 +154,8 @@ class _Net:
     def between(self, nodes: Ints, share: Floats) -> Floats:
         """Return places (k, 2) at shares (n,) between nodes (k, n); what means nothing at a pole doesn't count."""
         places = sum(s * self.place[n] for s, n in zip(share, nodes.T, strict=True))
-        beside = np.flatnonzero(~self.fixed.all(axis=1)[nodes].all(axis=1))
+        whole = np.asarray(self.fixed.all(axis=1))
+        beside = np.flatnonzero(~whole[nodes].all(axis=1))
         counts = self.fixed[nodes[beside]] * share[:, None]
         counts = np.where(counts.sum(axis=1, keepdims=True) > 0.0, counts, share[:, None])
         places[beside] = (self.place[nodes[beside]] * counts).sum(axis=1) / counts.sum(axis=1)
