@@ -40,8 +40,8 @@ GOUGE = 0.02
 FINISH_GOUGE = 6e-3
 """How deep a planned finishing move may be found in the part it touches: chords of path and facets and the turning bound together."""
 
-SKIN_CHORD = 2e-3
-"""Chord error of the triangles that finishing cutters are dropped on: with that of the path it is a quarter of the finest scallop asked for."""
+SKIN_CHORD = 5e-4
+"""Chord error of the triangles that finishing cutters are dropped on: with that of the path an eighth of a scallop of 0.004 mm."""
 
 HOLDER_ROOM = 0.2
 """How far neck, shank and holder of a leaning tool are kept from part and fixtures: what a machine's five axes may add up to."""
