@@ -257,8 +257,9 @@ def test_both_sides_of_a_block_are_measured_with_the_programs_of_both_setups(mon
     programs = tuple(Program(name=f"S{k}", setup=replace(SETUP, name=f"S{k}", frame=frame), sections=(
         passes(EVERY_FORM["ball"], np.arange(-3.0, 3.5, pitch), z=-0.003 * k, x=(-9.0, 9.0), operation=f"face-{k}"),))
         for k, frame in enumerate(frames))
-    monkeypatch.setattr(fine, "read_back", lambda session, posted: programs)
-    bench, session = SimpleNamespace(bench=SimpleNamespace(part=part)), SimpleNamespace(posted=("a program",))
+    monkeypatch.setattr(fine, "read_back", lambda session, posted, machines: programs)
+    bench = SimpleNamespace(bench_of=lambda session: SimpleNamespace(part=part, shop=SimpleNamespace(machines={})))
+    session = SimpleNamespace(posted=("a program",))
     level = [tag for tag in part.tags if part.graph().box_low[tag - 1][2] == approx(part.graph().box_high[tag - 1][2], abs=1e-3)]
     for tag in level:
         found = measure_fine(bench, session, [tag], 0.5)

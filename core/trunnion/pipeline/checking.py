@@ -27,7 +27,7 @@ def verify_texts(engine: Engine, session: Session, files: Sequence[Path], progre
     dialect = checked(choose(PostSettings, session.choices)).dialect
     posted = [PostedFile(suffix=file.name, dialect=dialect, setup=setup.name, text=text_of(file))
               for file, setup in zip(files, session.process.setups, strict=False)]
-    programs = read_back(session, tuple(posted))
+    programs = read_back(session, tuple(posted), engine.bench_of(session).shop.machines)
     verdict = held_back(prove_programs(session, engine.bench_of(session), programs, progress), errors_of_part(session))
     record = StepRecord(key="texts from outside", seconds=0.0, findings=verdict.findings)
     return replace(session, verdict=verdict, posted=tuple(posted), records={**session.records, "verify": record})

@@ -8,6 +8,7 @@ playback may stop anywhere.
 from __future__ import annotations
 
 import time
+from collections.abc import Mapping
 from dataclasses import replace
 
 import numpy as np
@@ -57,7 +58,7 @@ class Playback:
         """`cell` mm is the fineness of the stock; 0: as fine as a picture shows. Raises `BadCall` where nothing can be played."""
         if session.process is None or session.blank is None:
             raise BadCall("no toolpaths yet: generate them first")
-        programs, files = played(session)
+        programs, files = played(session, bench.shop.machines)
         if not any(p.sections for p in programs):
             raise BadCall("no toolpaths yet: generate them first")
         self.blank = session.blank
@@ -156,13 +157,13 @@ class Playback:
                       removed=self._removed, time=line.seconds_at(self._position))
 
 
-def played(session: Session) -> tuple[tuple[Program, ...], tuple[PostedFile, ...]]:
+def played(session: Session, machines: Mapping[str, Machine]) -> tuple[tuple[Program, ...], tuple[PostedFile, ...]]:
     """Return the programs to play, and the posted file of each: of the text that belongs to the plan, else of the toolpaths, without."""
     try:
         files = tuple(f for f in release(session) if f.setup)
     except (BadCall, Refused):
         return programs_of(session), ()
-    return read_back(session, session.posted), files
+    return read_back(session, session.posted, machines), files
 
 
 def _keys(session: Session) -> tuple[str, ...]:

@@ -9,19 +9,21 @@ from trunnion.model.program import Program
 from trunnion.model.setup import Setup
 from trunnion.model.tool import Tool
 from trunnion.post.header import Header
+from trunnion.post.place import NO_PLACES, Places
 from trunnion.post.settings import PostSettings
 
 
 class Dialect(Protocol):
     """Writes programs as text and reads text back. Same programs, header and settings: same bytes.
 
-    `suffix` is the file name's end; the first `STAMP_LINES` lines of every text are its stamp.
+    `suffix` is the file name's end; the first `STAMP_LINES` lines of every text are its stamp. Where the machine of a setup has rotary
+    axes, `places` says where its work stands on it.
     """
 
     name: str
     suffix: str
 
-    def write(self, programs: Sequence[Program], header: Header, settings: PostSettings) -> str:
+    def write(self, programs: Sequence[Program], header: Header, settings: PostSettings, places: Places = NO_PLACES) -> str:
         """Return the text; raise `Refused` for what the control can't do."""
         ...
 
@@ -29,6 +31,6 @@ class Dialect(Protocol):
         """Return the stamp's lines as this dialect writes them."""
         ...
 
-    def read(self, text: str, tools: Sequence[Tool], setups: Sequence[Setup]) -> tuple[Program, ...]:
+    def read(self, text: str, tools: Sequence[Tool], setups: Sequence[Setup], places: Places = NO_PLACES) -> tuple[Program, ...]:
         """Return the programs that a text says; raise `BadInput` with the line of anything that isn't understood."""
         ...

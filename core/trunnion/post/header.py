@@ -12,8 +12,10 @@ from typing import Any
 from trunnion.findings import BadCall, Severity
 from trunnion.model.program import Program
 from trunnion.model.session import Session
+from trunnion.model.setup import Setup
 from trunnion.model.tool import Tool
 from trunnion.model.verdict import Verdict
+from trunnion.post.place import Place
 from trunnion.settings import digest
 from trunnion.units import MM_PER_INCH, trimmed
 
@@ -85,6 +87,20 @@ class Header:
         lines += [f"FRAME {p.setup.name} {_frame(p, units)}" for p in programs]
         lines.append(f"UNITS {units.upper()}")
         return (*lines, *(tool_line(t, units) for t in tools_of(programs)))
+
+
+def place_lines(setup: Setup, place: Place, units: str) -> tuple[str, ...]:
+    """Return the lines of a header that say where the work stands and what the words of rotary axes mean; a reader compares the first."""
+    rotary = place.machine.rotary
+    stands = " ".join(f"{letter}{_length(-v, units)}" for letter, v in zip("XYZ", place.foot.tolist(), strict=True))
+    zero = " ".join(f"{a.name}0" for a in rotary)
+    lines = [f"STANDS {setup.name} {stands} FROM THE MIDDLE OF THE TABLE OF {place.machine.name}",
+             f"WORDS ARE POSITIONS OF THE MACHINE'S AXES, {setup.work_offset} IS THE ORIGIN OF {setup.name} WHERE IT STANDS WITH {zero}"]
+    if any(a.carries == "tool" for a in rotary):
+        lines.append("TOOL LENGTHS ARE IN THE WORDS: TOOLS MUST HAVE THE LENGTHS LISTED")
+    if any(a.carries == "work" for a in rotary):
+        lines.append("THE PLACE ON THE TABLE IS IN THE WORDS: THE WORK MUST STAND THERE")
+    return tuple(lines)
 
 
 def plan_digest(session: Session) -> str:

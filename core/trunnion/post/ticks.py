@@ -55,7 +55,8 @@ class Scale:
 class WrittenPath:
     """A toolpath in ticks, row by row, without the blocks that rounding makes vanish.
 
-    point (m, 3), centre (m, 3) and motion (m,) of the blocks kept; feed (m,) mm/min. A full turn ends exactly where it starts; an arc so
+    point (m, 3), centre (m, 3) and motion (m,) of the blocks kept; feed (m,) mm/min; more (m, c) what else is written of each, in whole
+    numbers of its own. A full turn ends exactly where it starts; an arc so
     short that rounding would turn it round is a line.
     """
 
@@ -63,15 +64,27 @@ class WrittenPath:
     centre: Ints
     motion: Ints
     feed: Floats
+    more: Ints
 
     def blocks(self) -> Iterator[tuple[list[int], list[int], int, float]]:
         """Yield end point, centre, motion and feed of each row."""
         return zip(self.point.tolist(), self.centre.tolist(), self.motion.tolist(), self.feed.tolist(), strict=True)
 
 
-def written(path: Toolpath, scale: Scale, operation: str) -> WrittenPath:
-    """Return a path as it will be written; raise `Refused` for a tilted axis or an arc that no control takes."""
-    _refuse_tilted(path, operation)
+def upright(path: Toolpath, operation: str) -> Toolpath:
+    """Return a path whose tool axis is z all along; raise `Refused` for another."""
+    tilted = np.flatnonzero(path.axis[:, 2] < np.cos(tolerance.ANGLE))
+    if len(tilted):
+        raise Refused(f"operation {operation}, block {tilted[0] + 1}: a tilted tool axis; this dialect has three axes")
+    return path
+
+
+def written(path: Toolpath, scale: Scale, operation: str, more: Ints | None = None) -> WrittenPath:
+    """Return a path as it will be written, arcs across z; raise `Refused` for an arc that no control takes.
+
+    A block is kept where its point or one of the further numbers `more` (n, c) changes.
+    """
+    more = np.zeros((len(path), 0), np.int64) if more is None else more
     point, motion = scale.ticks(path.position), np.array(path.motion)
     arcs = np.flatnonzero(motion >= Motion.ARC_CW)
     centre = np.zeros_like(point)
@@ -86,14 +99,8 @@ def written(path: Toolpath, scale: Scale, operation: str) -> WrittenPath:
         point[row, :2] = point[row - 1, :2]
     kept = np.ones(len(motion), dtype=bool)
     if len(motion):
-        kept[1:] = (motion[1:] >= Motion.ARC_CW) | (point[1:] != point[:-1]).any(axis=1)
-    return WrittenPath(point=point[kept], centre=centre[kept], motion=motion[kept], feed=path.feed[kept])
-
-
-def _refuse_tilted(path: Toolpath, operation: str) -> None:
-    tilted = np.flatnonzero(path.axis[:, 2] < np.cos(tolerance.ANGLE))
-    if len(tilted):
-        raise Refused(f"operation {operation}, block {tilted[0] + 1}: a tilted tool axis; this dialect has three axes")
+        kept[1:] = (motion[1:] >= Motion.ARC_CW) | (point[1:] != point[:-1]).any(axis=1) | (more[1:] != more[:-1]).any(axis=1)
+    return WrittenPath(point=point[kept], centre=centre[kept], motion=motion[kept], feed=path.feed[kept], more=more[kept])
 
 
 def _refuse_bad_arcs(path: Toolpath, arcs: Ints, operation: str) -> None:

@@ -13,8 +13,9 @@ from trunnion.model.setup import Setup
 from trunnion.model.tool import Tool
 from trunnion.model.toolpath import Motion
 from trunnion.post.header import Header
+from trunnion.post.place import NO_PLACES, Places
 from trunnion.post.settings import PostSettings
-from trunnion.post.ticks import Scale, written
+from trunnion.post.ticks import Scale, upright, written
 from trunnion.post.words import dialect_words, plain, refuse_unwritable
 from trunnion.units import trimmed
 
@@ -43,7 +44,7 @@ class AptDialect:
         self.words = dialect_words(AptWords, self.name)
         self.suffix = self.words.suffix
 
-    def write(self, programs: Sequence[Program], header: Header, settings: PostSettings) -> str:
+    def write(self, programs: Sequence[Program], header: Header, settings: PostSettings, places: Places = NO_PLACES) -> str:
         """Return the text of all setups' programs."""
         if not programs:
             raise BadCall("no program to write")
@@ -55,7 +56,7 @@ class AptDialect:
         first, *others = header.stamp(program)
         return (f"PARTNO/{plain(first, self.words.line_length)}", *(_print(self.words, line) for line in others))
 
-    def read(self, text: str, tools: Sequence[Tool], setups: Sequence[Setup]) -> tuple[Program, ...]:
+    def read(self, text: str, tools: Sequence[Tool], setups: Sequence[Setup], places: Places = NO_PLACES) -> tuple[Program, ...]:
         """Return the programs of the setups that the text names."""
         from trunnion.post.readers.apt import read_apt
         return read_apt(text, tools, setups)
@@ -96,7 +97,7 @@ def _section(words: AptWords, section: ProgramSection, scale: Scale, changes: bo
 
 def _motions(section: ProgramSection, scale: Scale, feed_words: str) -> Iterator[str]:
     text, said, start = scale.text, "", [0, 0, 0]
-    for point, centre, motion, feed in written(section.path, scale, section.operation).blocks():
+    for point, centre, motion, feed in written(upright(section.path, section.operation), scale, section.operation).blocks():
         if motion == Motion.RAPID:
             yield "RAPID"
         elif (now := scale.feed(feed)) != said:

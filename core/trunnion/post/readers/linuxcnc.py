@@ -1,13 +1,14 @@
 """Reads LinuxCNC text, ours or edited by hand, into motions. What it doesn't understand it refuses with the line; nothing is skipped.
 
 The order of work inside a line is LinuxCNC's own: feed, spindle speed, tool, spindle and coolant, units and offsets, motion, end.
+On a machine with rotary axes the words are positions of its axes; what the tool does is reckoned from where the work stands.
 """
 
 from __future__ import annotations
 
 import math
 import re
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 
 from trunnion import tolerance
 from trunnion.findings import BadInput
@@ -15,15 +16,17 @@ from trunnion.model.program import Program
 from trunnion.model.setup import Setup
 from trunnion.model.tool import Tool
 from trunnion.model.toolpath import Motion
+from trunnion.post.place import Place
 from trunnion.post.readers.blocks import Block, split_line
-from trunnion.post.readers.sections import NOWHERE, Point, Sections
-from trunnion.post.readers.tools import by_number, check_tool
+from trunnion.post.readers.joints import Joints
+from trunnion.post.readers.sections import NOWHERE, Point, Sections, Upright
+from trunnion.post.readers.tools import by_number, check_place, check_tool
 from trunnion.units import MM_PER_INCH
 
 _OPERATION = re.compile(r"OPERATION\s+(\S+)$", re.IGNORECASE)
 _MOTIONS = {"G0": Motion.RAPID, "G1": Motion.LINE, "G2": Motion.ARC_CW, "G3": Motion.ARC_CCW}
 _OFFSETS = ("G54", "G55", "G56", "G57", "G58", "G59", "G59.1", "G59.2", "G59.3")
-_GROUPS = (("G0", "G1", "G2", "G3", "G80"), ("G20", "G21"), _OFFSETS, ("G43", "G49"), ("G61", "G61.1", "G64"),
+_GROUPS = (("G0", "G1", "G2", "G3", "G80"), ("G20", "G21"), _OFFSETS, ("G43", "G49"), ("G61", "G61.1", "G64"), ("G93", "G94"),
            ("M3", "M5"), ("M7", "M9"), ("M8", "M9"), ("M0", "M1", "M2", "M30"))
 _WITHOUT_MOTION = frozenset(("G17", "G40", "G61", "G61.1", "G90", "G91.1", "G94", "G97", "M0", "M1"))
 _KNOWN = _WITHOUT_MOTION | frozenset((*_MOTIONS, *_OFFSETS, "G4", "G20", "G21", "G43", "G49", "G53", "G64", "G80", "M2", "M3", "M5", "M6",
@@ -40,14 +43,16 @@ _REFUSED = {
 }
 _CYCLES = frozenset(("G73", "G74", "G76", "G81", "G82", "G83", "G84", "G85", "G86", "G87", "G88", "G89", "G98", "G99"))
 _PLAIN_LETTERS = frozenset("NFSTXYZIJRHPQ")
+_ROTARY = "ABC"
 
 
-def read_linuxcnc(text: str, tools: Sequence[Tool], setup: Setup) -> Program:
+def read_linuxcnc(text: str, tools: Sequence[Tool], setup: Setup, place: Place | None = None) -> Program:
     """Return the motions of one setup's text, with the line of each block; raise `BadInput` naming the line of what isn't understood.
 
-    `tools` are found by their T number; operations by our comments, else they are called `line N`.
+    `tools` are found by their T number; operations by our comments, else they are called `line N`. `place` says where the work stands on a
+    machine with rotary axes.
     """
-    control = _Control(by_number(tools), setup)
+    control = _Control(by_number(tools), setup, place if place is not None and place.machine.rotary else None)
     for number, line in enumerate(text.split("\n"), 1):
         if line.strip() == "%":
             control.percent(number)
@@ -58,6 +63,8 @@ def read_linuxcnc(text: str, tools: Sequence[Tool], setup: Setup) -> Program:
                 control.sections.operation(found.group(1))
             elif comment.startswith("TOOL "):
                 check_tool(number, comment, control.tools)
+            elif comment.startswith("STANDS "):
+                check_place(number, comment, setup, control.place)
         if block is not None:
             control.run(block)
     if not control.ended:
@@ -68,9 +75,13 @@ def read_linuxcnc(text: str, tools: Sequence[Tool], setup: Setup) -> Program:
 class _Control:
     """The modal state of the control while a text runs. Lengths are mm in the setup frame."""
 
-    def __init__(self, tools: dict[int, Tool], setup: Setup) -> None:
-        self.tools, self.setup = tools, setup
-        self.sections = Sections(setup.clearance)
+    def __init__(self, tools: dict[int, Tool], setup: Setup, place: Place | None) -> None:
+        self.tools, self.setup, self.place = tools, setup, place
+        self.sections = Sections(Upright(setup.clearance) if place is None else Joints(place, setup.clearance))
+        self.rotary = place.names if place else ""
+        self.letters, self.angle = _PLAIN_LETTERS | set(self.rotary), [math.nan] * len(self.rotary)
+        self.known = _KNOWN | ({"G93"} if place else set())
+        self.inverse = False
         self.over: tuple[float, float] | None = None
         self.unit, self.offset, self.last_n = 1.0, "", -1.0
         self.motion: Motion | None = None
@@ -97,10 +108,14 @@ class _Control:
             self.speeds(block)
         if codes and codes[0] in _MOTIONS and len(codes) == 1:
             self.motion = _MOTIONS[codes[0]]
-        if "X" in words or "Y" in words or "Z" in words or "I" in words or "J" in words or "R" in words:
+        if "X" in words or "Y" in words or "Z" in words or "I" in words or "J" in words or "R" in words or self.turns(words):
             self.move(block)
         if "M30" in codes or "M2" in codes:
             self.ended = True
+
+    def turns(self, words: Mapping[str, float]) -> bool:
+        """Say whether a line has a word of a rotary axis."""
+        return any(letter in words for letter in self.rotary)
 
     def check(self, block: Block) -> None:
         """Refuse what can't be understood or stands in a wrong place."""
@@ -113,11 +128,12 @@ class _Control:
                 raise BadInput(f"line {line}: N{n:g} comes after N{self.last_n:g}: lines are out of order; put them back or renumber them")
             self.last_n = n
         for code in codes:
-            if code not in _KNOWN:
+            if code not in self.known:
                 raise BadInput(f"line {line}: {_why_not(code)}")
         for letter in words:
-            if letter not in _PLAIN_LETTERS:
-                raise BadInput(f"line {line}: the word {letter} is not understood by a three-axis program; remove it")
+            if letter not in self.letters:
+                axes = f"a program for the axes XYZ{self.rotary}" if self.rotary else "a three-axis program"
+                raise BadInput(f"line {line}: the word {letter} is not understood by {axes}; remove it")
         if len(codes) > 1:
             _one_of_a_group(line, codes)
         _letters_belong(block)
@@ -128,7 +144,7 @@ class _Control:
         if "F" in words:
             if words["F"] <= 0.0:
                 raise BadInput(f"line {line}: the feed F must be above zero")
-            self.feed = words["F"] * self.unit
+            self.feed = words["F"] if self.inverse else words["F"] * self.unit
         if "S" in words:
             if words["S"] < 0.0:
                 raise BadInput(f"line {line}: the spindle speed S must not be negative")
@@ -150,6 +166,8 @@ class _Control:
             if "F" in words:
                 raise BadInput(f"line {line}: F and a change of units in one line: the feed's unit is not clear; write two lines")
             self.unit, self.units_said = unit, True
+        if "G93" in codes or ("G94" in codes and self.inverse):
+            self.inverse, self.feed = "G93" in codes, 0.0
         self.speeds(block)
         if "M6" in codes:
             self.change_tool(line)
@@ -226,7 +244,23 @@ class _Control:
         if self.feed <= 0.0:
             raise BadInput(f"line {line}: a feed move without a feed; give F")
         centre = NOWHERE if motion == Motion.LINE else self.centre(block, motion, point)
-        self.sections.feed(line, motion, point, centre, self.feed, tool, (self.spindle, self.coolant))
+        feed, minutes = (self.feed, 0.0) if not self.rotary else self.pace(block, point)
+        self.sections.feed(line, motion, point, centre, feed, tool, (self.spindle, self.coolant), minutes)
+
+    def pace(self, block: Block, end: Point) -> tuple[float, float]:
+        """Return the feed of a block, and its minutes where they are what is said: in inverse time, or where rotary axes turn.
+
+        In units a minute LinuxCNC feeds along X, Y and Z, and by degrees where none of them moves.
+        """
+        start = self.sections.at
+        if self.inverse:
+            if "F" not in block.words:
+                raise BadInput(f"line {block.line}: a feed move in inverse time (G93) needs an F word of its own")
+            return self.feed, 1.0 / self.feed
+        if start is None or start[3:] == end[3:]:
+            return self.feed, 0.0
+        way = math.dist(start[:3], end[:3])
+        return self.feed, way / self.feed if way > 0.0 else math.dist(start[3:], end[3:]) / (self.feed / self.unit)
 
     def ready(self, line: int) -> Tool:
         """Return the tool when the control knows all it needs for a move in the work offset."""
@@ -246,30 +280,43 @@ class _Control:
         at = self.sections.at
         if at is None:
             return self.first_target(block, motion, tool)
+        angle = self.turned(words)
         if not self.length_on:
             raise BadInput(f"line {block.line}: a move without the tool's length; put G43 H{tool.number} first")
         x, y, z = words.get("X"), words.get("Y"), words.get("Z")
-        return (at[0] if x is None else x * unit, at[1] if y is None else y * unit, at[2] if z is None else z * unit)
+        return (at[0] if x is None else x * unit, at[1] if y is None else y * unit, at[2] if z is None else z * unit, *angle)
+
+    def turned(self, words: Mapping[str, float]) -> list[float]:
+        """Return where the rotary axes stand after a line, in degrees."""
+        if self.rotary and self.turns(words):
+            self.angle = [words.get(letter, angle) for letter, angle in zip(self.rotary, self.angle, strict=True)]
+        return self.angle
 
     def first_target(self, block: Block, motion: Motion, tool: Tool) -> Point | None:
         words, unit, line = block.words, self.unit, block.line
         if motion != Motion.RAPID:
             raise BadInput(f"line {line}: a feed move before it is known where the tool is; begin with a rapid to X, Y and Z")
+        if "Z" in words and self.turns(words):
+            raise BadInput(f"line {line}: turn {' and '.join(self.rotary)} at the top of the machine, in a line before Z comes down")
+        angle = self.turned(words)
         x, y = words.get("X"), words.get("Y")
         if x is not None and y is not None:
             self.over = (x * unit, y * unit)
-        elif x is not None or y is not None or self.over is None:
+        elif x is not None or y is not None or (self.over is None and ("Z" in words or not self.turns(words))):
             raise BadInput(f"line {line}: it is not known where the tool is; begin with a rapid to X, Y and Z")
-        if "Z" not in words:
+        if "Z" not in words or self.over is None:
             return None
         if not self.length_on:
             raise BadInput(f"line {line}: a move in Z without the tool's length; put G43 H{tool.number} first")
-        return (*self.over, words["Z"] * unit)
+        lost = [letter for letter, v in zip(self.rotary, angle, strict=True) if math.isnan(v)]
+        if lost:
+            raise BadInput(f"line {line}: it is not known where {' and '.join(lost)} stand; begin with a rapid that says so")
+        return (*self.over, words["Z"] * unit, *angle)
 
     def machine_move(self, block: Block) -> None:
         """Do G53: only a rapid straight up to the top of the machine, Z0."""
         words, line = block.words, block.line
-        if self.motion != Motion.RAPID or words.get("Z") != 0.0 or "X" in words or "Y" in words:
+        if self.motion != Motion.RAPID or words.get("Z") != 0.0 or "X" in words or "Y" in words or self.turns(words):
             raise BadInput(f"line {line}: of G53 only G53 G0 Z0, straight up to the top of the machine, is understood")
         if self.tool is not None:
             self.sections.lift(line, self.tool, (self.spindle, self.coolant))
@@ -335,7 +382,7 @@ def _letters_belong(block: Block) -> None:
         raise BadInput(f"line {block.line}: Q without G64; remove it")
     if "H" in words and "G43" not in codes:
         raise BadInput(f"line {block.line}: H without G43; write G43 H{words['H']:g}")
-    if "G4" in codes and any(letter in words for letter in "XYZIJR"):
+    if "G4" in codes and any(letter in words for letter in "XYZIJR" + _ROTARY):
         raise BadInput(f"line {block.line}: a dwell G4 and a move in one line; write two lines")
     if "G53" in codes and not any(letter in words for letter in "XYZ"):
         raise BadInput(f"line {block.line}: G53 without a move")

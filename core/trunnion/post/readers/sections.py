@@ -4,17 +4,73 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass, field
+from typing import Protocol
 
 import numpy as np
 
 from trunnion import tolerance
 from trunnion.findings import BadInput
+from trunnion.geometry.arrays import Floats, Ints
 from trunnion.model.program import ProgramSection
 from trunnion.model.tool import Tool
 from trunnion.model.toolpath import Mark, Motion, Toolpath
 
-Point = tuple[float, float, float]
+Point = tuple[float, ...]
+"""A place as a reader counts it: x, y, z mm, and after them what else says where the tool is (rotary angles, the tool axis)."""
 NOWHERE = (math.nan, math.nan, math.nan)
+
+
+@dataclass(slots=True, kw_only=True)
+class Rows:
+    """The blocks of a section while it grows; `minutes` are those of blocks fed in inverse time, else 0."""
+
+    tool: Tool
+    point: list[Point] = field(default_factory=list)
+    motion: list[int] = field(default_factory=list)
+    centre: list[Point] = field(default_factory=list)
+    feed: list[float] = field(default_factory=list)
+    minutes: list[float] = field(default_factory=list)
+    line: list[int] = field(default_factory=list)
+
+
+class Reckoning(Protocol):
+    """What the points of a text mean."""
+
+    def above(self, point: Point, tool: Tool) -> Point | None:
+        """Return where a tool at a point comes out when it is lifted above everything; None when it is as high already."""
+        ...
+
+    def opened(self, rows: Rows) -> tuple[Toolpath, tuple[int, ...]]:
+        """Return the motions that the blocks amount to, and the line of each."""
+        ...
+
+
+@dataclass(frozen=True, slots=True)
+class Upright:
+    """Points are tips in the setup frame, the tool stands along z; above everything is the clearance height."""
+
+    clearance: float
+
+    def above(self, point: Point, tool: Tool) -> Point | None:
+        """See `Reckoning`."""
+        return None if point[2] >= self.clearance - tolerance.WRITTEN else (point[0], point[1], self.clearance)
+
+    def opened(self, rows: Rows) -> tuple[Toolpath, tuple[int, ...]]:
+        """See `Reckoning`."""
+        axis = np.zeros((len(rows.motion), 3))
+        axis[:, 2] = 1.0
+        return path_of(rows, np.array(rows.point), axis, np.array(rows.centre)), tuple(rows.line)
+
+
+def path_of(rows: Rows, position: Floats, axis: Floats, centre: Floats) -> Toolpath:
+    """Return the path of rows whose tips, axes and centres are known."""
+    motion = np.array(rows.motion)
+    return Toolpath(position=position, axis=axis, motion=motion, centre=centre, feed=np.array(rows.feed), mark=marks_of(motion))
+
+
+def marks_of(motion: Ints) -> Ints:
+    """Return what blocks are for as far as a text says it: rapids retract, all else cuts."""
+    return np.where(motion == Motion.RAPID, Mark.RETRACT, Mark.CUT)
 
 
 @dataclass(slots=True, kw_only=True)
@@ -22,25 +78,14 @@ class _Open:
     """A section that still grows; `cutting` is spindle and coolant at its first feed move, `idle` at its last rapid before."""
 
     operation: str
-    tool: Tool
+    rows: Rows
     cutting: tuple[float, str] | None = None
     idle: tuple[float, str] = (0.0, "off")
-    position: list[Point] = field(default_factory=list)
-    motion: list[int] = field(default_factory=list)
-    centre: list[Point] = field(default_factory=list)
-    feed: list[float] = field(default_factory=list)
-    line: list[int] = field(default_factory=list)
 
-    def closed(self) -> ProgramSection:
-        n = len(self.motion)
-        axis = np.zeros((n, 3))
-        axis[:, 2] = 1.0
-        motion = np.array(self.motion)
-        path = Toolpath(position=np.array(self.position), axis=axis, motion=motion, centre=np.array(self.centre),
-                        feed=np.array(self.feed), mark=np.where(motion == Motion.RAPID, Mark.RETRACT, Mark.CUT))
+    def closed(self, reckoning: Reckoning) -> ProgramSection:
+        path, lines = reckoning.opened(self.rows)
         spindle, coolant = self.cutting or self.idle
-        return ProgramSection(operation=self.operation, tool=self.tool, spindle=spindle, path=path, coolant=coolant,
-                              block_lines=tuple(self.line))
+        return ProgramSection(operation=self.operation, tool=self.rows.tool, spindle=spindle, path=path, coolant=coolant, block_lines=lines)
 
 
 class Sections:
@@ -51,8 +96,8 @@ class Sections:
     from where it really starts; after a tool change the tool comes from above, at the clearance height or higher.
     """
 
-    def __init__(self, clearance: float) -> None:
-        self.clearance = clearance
+    def __init__(self, reckoning: Reckoning) -> None:
+        self.reckoning = reckoning
         self.at: Point | None = None
         self._done: list[ProgramSection] = []
         self._open: _Open | None = None
@@ -74,24 +119,24 @@ class Sections:
     def lift(self, line: int, tool: Tool, state: tuple[float, str]) -> None:
         """Take the tool straight up out of sight (G53 G0 Z0)."""
         if self.at is not None:
-            if self.at[2] < self.clearance - tolerance.WRITTEN:
-                self.rapid(line, (self.at[0], self.at[1], self.clearance), tool, state)
+            if (up := self.reckoning.above(self.at, tool)) is not None:
+                self.rapid(line, up, tool, state)
             self.at = None
 
     def rapid(self, line: int, point: Point, tool: Tool, state: tuple[float, str]) -> None:
         """Add a rapid to a point; `state` is spindle and coolant, for a section that cuts nothing."""
         if self._open is None:
             self._begin(line, tool)
-            first = self.at if self.at is not None else (point[0], point[1], max(point[2], self.clearance))
-            low = first[2] < self.clearance - tolerance.WRITTEN
-            if low or (self.at is None and point[2] < self.clearance - tolerance.WRITTEN):
-                self._add(line, Motion.RAPID, first, NOWHERE, 0.0)
+            start = self.reckoning.above(point, tool) if self.at is None else self.at
+            if start is not None and (self.at is None or start[3:] != point[3:] or self.reckoning.above(start, tool) is not None):
+                self._add(line, Motion.RAPID, start, NOWHERE, 0.0)
         self._add(line, Motion.RAPID, point, NOWHERE, 0.0)
         if self._open is not None:
             self._open.idle = state
 
-    def feed(self, line: int, motion: Motion, point: Point, centre: Point, feed: float, tool: Tool, cutting: tuple[float, str]) -> None:
-        """Add a feed move, a line or an arc, with the spindle and coolant it runs with."""
+    def feed(self, line: int, motion: Motion, point: Point, centre: Point, feed: float, tool: Tool, cutting: tuple[float, str],
+             minutes: float = 0.0) -> None:
+        """Add a feed move, a line or an arc, with the spindle and coolant it runs with; `minutes` when it is fed in inverse time."""
         if self.at is None:
             raise BadInput(f"line {line}: a feed move before it is known where the tool is; begin with a rapid to X, Y and Z")
         opened = self._open
@@ -103,7 +148,7 @@ class Sections:
             opened = self._begin(line, tool)
             self._add(line, Motion.RAPID, start, NOWHERE, 0.0)
         opened.cutting = cutting
-        self._add(line, motion, point, centre, feed)
+        self._add(line, motion, point, centre, feed, minutes)
 
     def finished(self) -> tuple[ProgramSection, ...]:
         """Return all sections; raise `BadInput` when nothing moves."""
@@ -113,21 +158,22 @@ class Sections:
         return tuple(self._done)
 
     def _begin(self, line: int, tool: Tool) -> _Open:
-        self._open = _Open(operation=self._operation or f"line {line}", tool=tool)
+        self._open = _Open(operation=self._operation or f"line {line}", rows=Rows(tool=tool))
         self._operation = self._open.operation
         return self._open
 
-    def _add(self, line: int, motion: Motion, point: Point, centre: Point, feed: float) -> None:
-        opened = self._open
-        assert opened is not None
-        opened.position.append(point)
-        opened.motion.append(motion)
-        opened.centre.append(centre)
-        opened.feed.append(feed)
-        opened.line.append(line)
+    def _add(self, line: int, motion: Motion, point: Point, centre: Point, feed: float, minutes: float = 0.0) -> None:
+        assert self._open is not None
+        rows = self._open.rows
+        rows.point.append(point)
+        rows.motion.append(motion)
+        rows.centre.append(centre)
+        rows.feed.append(feed)
+        rows.minutes.append(minutes)
+        rows.line.append(line)
         self.at = point
 
     def _close(self) -> None:
         if self._open is not None:
-            self._done.append(self._open.closed())
+            self._done.append(self._open.closed(self.reckoning))
             self._open = None

@@ -1,4 +1,4 @@
-"""The tool list that a text is read with, and whether it is the one that the text was made for."""
+"""What a text is read with, and whether the text was made for it: the tool list, and where the work stands."""
 
 from __future__ import annotations
 
@@ -6,8 +6,10 @@ import re
 from collections.abc import Mapping, Sequence
 
 from trunnion.findings import BadInput
+from trunnion.model.setup import Setup
 from trunnion.model.tool import Tool
-from trunnion.post.header import tool_line
+from trunnion.post.header import place_lines, tool_line
+from trunnion.post.place import Place
 from trunnion.post.words import plain
 
 _TOOL = re.compile(r"TOOL (\d+) .* HOLDER ")
@@ -30,3 +32,11 @@ def check_tool(line: int, comment: str, tools: Mapping[int, Tool]) -> None:
     tool = tools.get(int(found.group(1)))
     if tool is None or comment not in [plain(tool_line(tool, units), len(comment)) for units in ("mm", "inch")]:
         raise BadInput(f"line {line}: the text was made for another tool {found.group(1)} than the tool list has; post the program anew")
+
+
+def check_place(line: int, comment: str, setup: Setup, place: Place | None) -> None:
+    """Raise `BadInput` when a comment is our header's line of where the work stands and it stands elsewhere now."""
+    if place is None:
+        raise BadInput(f"line {line}: the text was made for a machine with rotary axes, {setup.machine} has none; post the program anew")
+    if comment not in [plain(place_lines(setup, place, units)[0], len(comment)) for units in ("mm", "inch")]:
+        raise BadInput(f"line {line}: the text was made for work that stands elsewhere on its machine; post the program anew")

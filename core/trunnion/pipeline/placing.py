@@ -1,0 +1,31 @@
+"""Where the work of each setup stands on its machine: what posts and readers need where rotary axes turn."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import replace
+
+import numpy as np
+
+from trunnion.model.blank import Blank
+from trunnion.model.material import Machine
+from trunnion.model.session import Session
+from trunnion.model.setup import Setup
+from trunnion.post.place import Place, Places
+from trunnion.toolpath.turning import box_of, swing_of
+
+
+def places_of(session: Session, machines: Mapping[str, Machine]) -> Places:
+    """Return where the work of every setup stands; setups on machines that the catalogue doesn't know are left out."""
+    if session.blank is None:
+        return {}
+    held = (replace(s, fixtures=session.fixtures_of(s.name)) for s in session.setups)
+    return {s.name: place_of(session.blank, s, machines[s.machine]) for s in held if s.machine in machines}
+
+
+def place_of(blank: Blank, setup: Setup, machine: Machine) -> Place:
+    """Return where a setup's work stands: the middle of the blank's underside lies on the middle of the table."""
+    low, high = box_of(blank, setup)
+    swing = swing_of(blank, setup)
+    foot = np.array([*(0.5 * (low + high))[:2], low[2]])
+    return Place(machine=machine, foot=foot, centre=swing.centre, radius=swing.radius)
