@@ -5,23 +5,37 @@ from __future__ import annotations
 from collections.abc import Callable
 
 import numpy as np
-from PySide6.QtCore import QPointF, QRectF, Qt, Signal
+from PySide6.QtCore import QPoint, QPointF, QRectF, Qt, Signal
 from PySide6.QtGui import QResizeEvent
 from PySide6.QtWidgets import QHBoxLayout, QLabel, QSlider, QVBoxLayout, QWidget
 
+from trunnion.model.feature import Feature, Recognition
 from trunnion.model.playback import Moment
 from trunnion.model.session import Session, SizeEntry
 from trunnion.report.deviation import WorstPlace
 from trunnion.report.lines import leans
-from trunnion.report.palette import load_palette
+from trunnion.report.palette import GROUP, load_palette
 from trunnion_gui.actions import Registry
-from trunnion_gui.colours import Theme, axis_colour, kind_colour, motions, stock_colours, tool_colours
+from trunnion_gui.colours import (
+    Theme,
+    axis_colour,
+    class_colours,
+    feature_colours,
+    kind_colour,
+    motions,
+    radius_colour,
+    radius_steps,
+    stock_colours,
+    tool_colours,
+)
 from trunnion_gui.deviation import DeviationSource
+from trunnion_gui.docks.cutting import CutBar
 from trunnion_gui.document import Document, Selection
-from trunnion_gui.drawing import DrawnMap
+from trunnion_gui.drawing import DrawnMap, place_on
 from trunnion_gui.i18n import tr
+from trunnion_gui.patches import PatchTools
 from trunnion_gui.player import Player
-from trunnion_gui.viewport.scene import Scene
+from trunnion_gui.viewport.scene import Click, Scene
 from trunnion_gui.widgets.legend import Legend
 from trunnion_gui.widgets.notice import Notice
 from trunnion_gui.widgets.scale import Scale
@@ -30,6 +44,8 @@ from trunnion_gui.words import amount, fine_amount, kind_words, sentence
 
 _EDGE = 14
 _TIP_AWAY = 16
+_MOST_IDS = 200
+"""IDs that are written on the part at most."""
 _CLOSE_LOOK = 30.0
 """mm above and below a worst place that a click on it shows."""
 
@@ -40,15 +56,18 @@ class Centre(QWidget):
     hinted = Signal(str)
     """Words for the status line about what is under the mouse."""
 
-    def __init__(self, document: Document, registry: Registry, theme: Theme, player: Player, deviation: DeviationSource) -> None:
+    def __init__(self, document: Document, registry: Registry, theme: Theme, player: Player, deviation: DeviationSource,
+                 tools: PatchTools) -> None:
         super().__init__()
         self._document = document
-        self._player, self._deviation = player, deviation
+        self._player, self._deviation, self._tools = player, deviation, tools
         self._theme = theme
         self._tool: object = None
         self._run: tuple[int, np.ndarray, np.ndarray] = (-1, np.zeros((0, 3)), np.zeros(0))
         self._drawn: dict[str, object] = {}
-        self.shows = {"colours": True, "blank": True, "paths": True, "isolate": False}
+        self.shows = {"colours": True, "blank": True, "paths": True, "isolate": False, "ids": False, "radii": False}
+        self.marks_local = False
+        """Whether a click on the part calls its group a local feature, or no longer."""
         self.motions: tuple[str, ...] = tuple(motions())
         self.notice = Notice()
         self.scene = Scene(theme)
@@ -63,9 +82,14 @@ class Centre(QWidget):
         self._column.addWidget(self.notice)
         self._column.addWidget(self.scene, 1)
         self._column.addWidget(self.section_bar)
-        self.scene.clicked.connect(document.select_face)
+        self.cutting = CutBar(document, self.scene)
+        self._column.addWidget(self.cutting)
+        self.scene.clicked.connect(self._click)
+        self.scene.asked.connect(self._ask)
+        tools.cut_wanted.connect(self.begin_cut)
         self.scene.hovered.connect(self._hover)
         document.mesh_changed.connect(self._show_mesh)
+        document.redrawn.connect(self._redraw_mesh)
         document.changed.connect(self.refresh)
         document.selected.connect(self._choose)
         self.scene.pointed.connect(self._point)
@@ -79,6 +103,7 @@ class Centre(QWidget):
         self._theme = theme
         self.scene.use_theme(theme)
         self.scale.use_theme(theme)
+        self.cutting.use_theme()
         self._drawn = {}
         self._show_map(self._deviation.shown if self._deviation.is_on else None)
         self.refresh()
@@ -113,7 +138,10 @@ class Centre(QWidget):
         """Draw what changed in the shown session."""
         session = self._document.shown
         self._once("frame", (session.recognition,), lambda: self._use_frame(session))
-        self._once("kinds", (session.recognition, self.shows["colours"], self._shows_paths(session)), lambda: self._paint(session))
+        self._once("kinds", (session.recognition, self.shows["colours"], self.shows["radii"], self._shows_paths(session)),
+                   lambda: self._paint(session))
+        self._once("ids", (session.recognition, self._document.mesh, self._document.selection, self.shows["ids"]),
+                   lambda: self._write_ids(session))
         shows_blank = self.shows["blank"] and not self._shows_paths(session) and not self._plays and not self._shows_map
         self._once("blank", (session.blank, shows_blank), lambda: self.scene.show_blank(session.blank if shows_blank else None))
         self._once("setups", (session.setups, self._document.mesh), lambda: self.scene.show_setups(session.setups))
@@ -147,6 +175,46 @@ class Centre(QWidget):
         self.scene.show_label("")
         self.scene.show_mesh(self._document.drawing)
 
+    def _redraw_mesh(self) -> None:
+        self._drawn = {}
+        self.scene.show_mesh(self._document.drawing, keep_camera=True)
+
+    def begin_cut(self, face: int, by_plane: bool) -> None:
+        """Begin to cut a face (0: the one that is clicked next), by a plane or along a line that is drawn."""
+        if self._document.has_part:
+            self.cutting.begin(face, by_plane)
+
+    def _click(self, click: Click) -> None:
+        if self.cutting.is_on:
+            self.cutting.take(click)
+        elif self.marks_local and self._tools.groups_of((click.face,)):
+            self._tools.toggle_local((click.face,))
+        elif click.with_ctrl:
+            self._document.toggle_face(click.face)
+        else:
+            self._document.select_face(click.face)
+
+    def _ask(self, click: Click, at: QPoint) -> None:
+        """Offer what can be done with the face that was clicked, or with all selected ones when it is among them."""
+        chosen = self._document.selection
+        if not click.face or self.cutting.is_on:
+            return
+        if not (chosen.kind == "faces" and click.face in chosen.faces):
+            self._document.select_face_alone(click.face)
+        menu = self._tools.menu(self, self._document.selection.faces)
+        if menu.actions():
+            menu.popup(at)
+
+    def _write_ids(self, session: Session) -> None:
+        """Write the ID of every feature on the part; of the faces of the selection, when there is one."""
+        mesh, found, chosen = self._document.mesh, session.recognition, self._document.selection
+        if not self.shows["ids"] or mesh is None:
+            self.scene.show_names(())
+        elif chosen.faces:
+            self.scene.show_names([(str(tag), place_on(mesh, (tag,))) for tag in chosen.faces[:_MOST_IDS]])
+        else:
+            self.scene.show_names([(f.id, place_on(mesh, f.tags)) for f in (found or ()) if f.tags][:_MOST_IDS])
+
     def _use_frame(self, session: Session) -> None:
         if session.recognition is not None:
             self.scene.use_frame(session.recognition.frame)
@@ -171,9 +239,12 @@ class Centre(QWidget):
         found = session.recognition
         if found is not None and self.shows["colours"]:
             colours.update(dict.fromkeys(found.unexplained, kind_colour("unexplained")))
+            own = feature_colours(found)
             # The smaller feature wins a face that two features have, as it wins the click.
             for feature in sorted(found, key=lambda f: -len(f.tags)):
-                colours.update(dict.fromkeys(feature.tags, kind_colour(feature.kind)))
+                colours.update(dict.fromkeys(feature.tags, own[feature.id]))
+        if found is not None and self.shows["radii"]:
+            colours = {tag: radius_colour(radius) for f in found for tag in f.tags if (radius := radius_of(f)) is not None}
         self.scene.show_kinds(colours, faded=self._shows_paths(session))
 
     def _draw_paths(self, session: Session) -> None:
@@ -195,8 +266,10 @@ class Centre(QWidget):
         if self._shows_map:
             return rows
         found = session.recognition
-        if found is not None and self.shows["colours"]:
-            rows += [(kind_colour(kind), sentence(tr(kind_words(kind))), str(n)) for kind, n in found.counts().items()]
+        if found is not None and self.shows["radii"]:
+            rows += [("", tr("Smallest concave radius"), ""), *((colour, words, "") for colour, words in radius_steps())]
+        elif found is not None and self.shows["colours"]:
+            rows += class_rows(found)
             if found.unexplained:
                 rows.append((kind_colour("unexplained"), tr("Unexplained"), str(len(found.unexplained))))
         if self._shows_paths(session):
@@ -298,6 +371,25 @@ class Centre(QWidget):
         row.addWidget(slider, 1)
         bar.hide()
         return bar, slider
+
+
+def class_rows(found: Recognition) -> list[tuple[str, str, str]]:
+    """Return the legend of what was found: kinds with their number, groups of equal patches in their two classes."""
+    rows = []
+    for kind, n in found.counts().items():
+        if kind != GROUP:
+            rows.append((kind_colour(kind), sentence(tr(kind_words(kind))), str(n)))
+            continue
+        local = sum(bool(f.attributes.get("local")) for f in found.of_kind(GROUP))
+        counted = zip(class_colours(), (tr("Remaining area"), tr("Local features")), (n - local, local), strict=True)
+        rows += [(colour, words, str(count)) for colour, words, count in counted if count]
+    return rows
+
+
+def radius_of(feature: Feature) -> float | None:
+    """Return the smallest concave radius of a group of patches in mm, None where nothing is concave."""
+    value = feature.sizes.get("concave_radius")
+    return float(value) if isinstance(value, (int, float)) and 0.0 < value < float("inf") else None
 
 
 def _equal(a: object, b: object) -> bool:

@@ -9,7 +9,9 @@ from dataclasses import dataclass
 from functools import cache
 from importlib.resources import files
 
+from trunnion.model.feature import Recognition
 from trunnion.report.lines import AXIS, MOTIONS
+from trunnion.report.palette import Palette, load_palette
 
 Rgb = tuple[int, int, int]
 READABLE = 4.5
@@ -51,6 +53,12 @@ def _palette() -> dict[str, dict[str, str]]:
 
 
 @cache
+def _shared() -> Palette:
+    """Return the palette that reports use too."""
+    return load_palette()
+
+
+@cache
 def theme(name: str) -> Theme:
     """Return the theme `light` or `dark`."""
     return Theme(name=name, **_themes()[name])
@@ -59,6 +67,29 @@ def theme(name: str) -> Theme:
 def kinds() -> dict[str, str]:
     """Return the colour of every kind of feature."""
     return _palette()["kinds"]
+
+
+def feature_colours(found: Recognition) -> dict[str, str]:
+    """Return the colour of every feature by id; groups of equal patches are told apart, local ones by warm colours."""
+    return {id: hexed(colour) for id, colour in _shared().features(found).items()}
+
+
+def class_colours() -> tuple[str, str]:
+    """Return the colours that stand for the groups of the remaining area, and for local features."""
+    palette = _shared()
+    return hexed(palette.remaining[0]), hexed(palette.local[0])
+
+
+def radius_colour(radius: float) -> str:
+    """Return the colour of a radius in mm."""
+    return hexed(_shared().radius.at(radius))
+
+
+def radius_steps() -> list[tuple[str, str]]:
+    """Return the steps of the colours of radii: colour, and the words for it."""
+    scale = _shared().radius
+    words = [f"≤ {limit:g} mm" for limit in scale.limits]
+    return list(zip(map(hexed, scale.colours), [*words, f"> {scale.limits[-1]:g} mm"]))
 
 
 def motions() -> dict[str, str]:
@@ -102,6 +133,15 @@ def rgb(colour: str) -> Rgb:
     (68, 119, 170)
     """
     return int(colour[1:3], 16), int(colour[3:5], 16), int(colour[5:7], 16)
+
+
+def hexed(colour: Rgb) -> str:
+    """Return red, green and blue (0 to 255) as `#rrggbb`.
+
+    >>> hexed((68, 119, 170))
+    '#4477aa'
+    """
+    return "#{:02x}{:02x}{:02x}".format(*colour)
 
 
 def mixed(colour: str, other: str, share: float) -> str:

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Iterable
 from dataclasses import dataclass, replace
 
 from trunnion.findings import Refused
@@ -119,6 +119,19 @@ def with_kind(id: str, kind: str) -> Edit:
             return session
         changed = tuple(replace(f, kind=kind, by_hand=True) if f.id == id else f for f in found.features)
         return replace(session, recognition=replace(found, features=changed))
+
+    return edit
+
+
+def with_local(ids: Iterable[str], value: bool) -> Edit:
+    """Return the edit that calls groups of patches local features, or not, marked as a person's."""
+    wanted = frozenset(ids)
+
+    def edit(session: Session) -> Session:
+        found = _recognition(session)
+        changed = tuple(replace(f, attributes={**f.attributes, "local": value}, by_hand=True)
+                        if f.id in wanted and bool(f.attributes.get("local")) != value else f for f in found.features)
+        return session if changed == found.features else replace(session, recognition=replace(found, features=changed))
 
     return edit
 

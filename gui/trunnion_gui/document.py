@@ -13,9 +13,11 @@ from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Any
 
+import numpy as np
 from PySide6.QtCore import QObject, Signal
 
 from trunnion.findings import Finding, Severity, TrunnionError
+from trunnion.geometry.cut import Cut
 from trunnion.geometry.mesh import Mesh
 from trunnion.model.feature import Feature
 from trunnion.model.operation import Operation
@@ -60,6 +62,9 @@ class Document(QObject):
     changed = Signal()
     """The shown session is another one, or its states are."""
     mesh_changed = Signal()
+    """Another part is there."""
+    redrawn = Signal()
+    """The part is the same, its faces are others: one was cut, or a cut was taken back."""
     selected = Signal(object)
     job_changed = Signal()
     progressed = Signal(float, str)
@@ -67,6 +72,8 @@ class Document(QObject):
     """A `Finding` about the program itself: a failure, a crash, a refusal."""
     opened = Signal(str)
     saved = Signal(str)
+    exported = Signal(str, int)
+    """The file that patches were written to, and how many."""
     written = Signal(object)
     """The folder and the names of the files written there."""
 
@@ -77,6 +84,7 @@ class Document(QObject):
         self.states: dict[str, str] = {}
         self.groups: Mapping[str, tuple[Group, ...]] = {}
         self.drawing: Drawing | None = None
+        self._drawings: dict[tuple[Cut, ...], Drawing] = {}
         self.path = ""
         self.project = ""
         self.selection = NOTHING
@@ -150,6 +158,30 @@ class Document(QObject):
         if self._is_free() and self._needs_part():
             self._start("write", tr("writing files"), self.session, str(folder), path=str(folder))
 
+    # patches
+
+    def cut(self, cut: Cut) -> None:
+        """Cut a face in two; features are found anew where they had been found."""
+        if self._is_free() and self._needs_part():
+            self._start("cut", tr("Cut face {n}").format(n=cut.face), self.session, cut)
+
+    def take_back(self, number: int) -> None:
+        """Take one of the cuts back, counted from 0."""
+        if self._is_free() and number < len(self.session.cuts):
+            self._start("uncut", tr("Join face {n} again").format(n=self.session.cuts[number].face), self.session, number)
+
+    def move(self, faces: tuple[int, ...], group: str = "") -> None:
+        """Move faces to a group by its id, or to a new one."""
+        if self._is_free() and faces:
+            words = ", ".join(map(str, faces[:3])) + ("…" if len(faces) > 3 else "")
+            label = tr("Move face {faces} to {group}").format(faces=words, group=group or tr("a new group"))
+            self._start("move", label, self.session, faces, group)
+
+    def export(self, what: tuple[str, ...], path: str) -> None:
+        """Write patches as IGES or STEP by the path's suffix: `local`, `remaining`, or groups by their ids."""
+        if self._is_free():
+            self._start("export", tr("exporting {name}").format(name=Path(path).name), self.session, what, path, path=path)
+
     def cancel(self) -> None:
         """Ask the running job to stop."""
         if self.job is not None:
@@ -219,6 +251,31 @@ class Document(QObject):
             self.select_feature(min(owners, key=lambda f: len(f.tags)).id)
         else:
             self.select(Selection("faces", f"face {tag}", (tag,)) if tag else NOTHING)
+
+    def select_ids(self, words: Sequence[str]) -> bool:
+        """Select features and faces by their ids (`group-05`, `face 12`, `12`), all together; say whether there was any."""
+        features = [f for f in (self.shown.recognition or ()) if f.id in words]
+        known = set(np.unique(self.mesh.face).tolist()) if self.mesh is not None else set()
+        given = [w.removeprefix("face").strip() for w in words]
+        faces = [int(w) for w in given if w.isdigit() and int(w) in known]
+        if len(features) == 1 and not faces:
+            self.select_feature(features[0].id)
+        elif features or faces:
+            names = [f.id for f in features] + [f"face {t}" for t in faces]
+            tags = dict.fromkeys([t for f in features for t in f.tags] + faces)
+            self.select(Selection("faces", ", ".join(names), tuple(tags)))
+        return bool(features or faces)
+
+    def select_face_alone(self, tag: int) -> None:
+        """Select one face, whatever it belongs to."""
+        self.select(Selection("faces", f"face {tag}", (tag,)) if tag else NOTHING)
+
+    def toggle_face(self, tag: int) -> None:
+        """Take one more face into the selection, or out of it again."""
+        if tag:
+            chosen = self.selection.faces if self.selection.kind in ("faces", "feature") else ()
+            faces = tuple(t for t in chosen if t != tag) if tag in chosen else (*chosen, tag)
+            self.select(Selection("faces", ", ".join(f"face {t}" for t in faces), faces) if faces else NOTHING)
 
     def select_where(self, words: tuple[str, ...]) -> None:
         """Select what the words of a finding name."""
@@ -294,6 +351,10 @@ class Document(QObject):
         self.shown = session
         if states is not None:
             self.states = states
+        drawing = self._drawings.get(session.cuts, self.drawing)
+        if drawing is not self.drawing:
+            self.drawing = drawing
+            self.redrawn.emit()
         self._keep_selection()
         self.changed.emit()
 
@@ -361,6 +422,16 @@ class Document(QObject):
             self._show(reply.value.session, reply.value.steps)
             if reply.value.refusal:
                 self.notice(reply.value.refusal)
+        elif job.verb == "move":
+            self.history.push(job.label, reply.value.session)
+            self._show(reply.value.session, reply.value.steps)
+        elif job.verb in ("cut", "uncut"):
+            state = reply.value.state
+            self._drawings[state.session.cuts] = reply.value.drawing
+            self.history.push(job.label, state.session)
+            self._show(state.session, state.steps)
+        elif job.verb == "export":
+            self.exported.emit(job.path, reply.value)
         elif job.verb == "save":
             self.project = job.path
             self.history.mark_saved(self.session)
@@ -385,6 +456,7 @@ class Document(QObject):
         if job.is_recovery:
             self.history.mark_saved(None)
         self.drawing, self._kept = opened.drawing, opened.kept
+        self._drawings = {opened.state.session.cuts: opened.drawing}
         self.selection = NOTHING
         self.shown, self.states = opened.state.session, opened.state.steps
         self.mesh_changed.emit()

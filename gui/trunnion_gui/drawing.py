@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -63,3 +64,47 @@ def normals_of(points: np.ndarray, triangles: np.ndarray) -> np.ndarray:
     total = np.stack([np.bincount(rows, weights=np.tile(across[:, k], 3), minlength=n) for k in range(3)], axis=1)
     length = np.linalg.norm(total, axis=1, keepdims=True)
     return np.divide(total, length, out=np.zeros_like(total), where=length > 0).astype(np.float32)
+
+
+def place_on(mesh: Mesh, tags: Iterable[int]) -> tuple[float, float, float]:
+    """Return a place near the middle of the largest of some faces, on it."""
+    area = np.bincount(mesh.face, weights=mesh.areas())
+    rows = np.flatnonzero(mesh.face == max(tags, key=lambda t: area[t] if t < len(area) else 0.0))
+    if not len(rows):
+        return (0.0, 0.0, 0.0)
+    middles = mesh.corners()[rows].mean(axis=1)
+    weights = mesh.areas()[rows, None]
+    middle = (middles * weights).sum(axis=0) / max(float(weights.sum()), 1e-12)
+    x, y, z = middles[np.argmin(np.linalg.norm(middles - middle, axis=1))]
+    return float(x), float(y), float(z)
+
+
+def box_of(mesh: Mesh, tag: int) -> tuple[np.ndarray, np.ndarray]:
+    """Return the lowest and highest corner of the box around a face."""
+    points = mesh.points[mesh.triangles[mesh.face == tag].ravel()]
+    return points.min(axis=0), points.max(axis=0)
+
+
+def plane_line(mesh: Mesh, tag: int, place: Sequence[float], normal: Sequence[float]) -> np.ndarray:
+    """Return the pieces (k, 2, 3) of the line in which a plane meets a face."""
+    corners = mesh.corners()[mesh.face == tag]
+    height = (corners - np.asarray(place)) @ np.asarray(normal)
+    above = height > 0.0
+    met = np.flatnonzero(above.any(axis=1) & ~above.all(axis=1))
+    corners, height, above = corners[met], height[met], above[met]
+    # The corner that lies alone on its side: the line crosses both edges that begin there.
+    alone = np.where(above.sum(axis=1) == 1, above.argmax(axis=1), (~above).argmax(axis=1))
+    row = np.arange(len(met))
+    ends = []
+    for step in (1, 2):
+        other = (alone + step) % 3
+        share = height[row, alone] / (height[row, alone] - height[row, other])
+        ends.append(corners[row, alone] + share[:, None] * (corners[row, other] - corners[row, alone]))
+    return np.stack(ends, axis=1)
+
+
+def sampled(places: Sequence[Sequence[float]], pieces: int) -> np.ndarray:
+    """Return points (k, 3) along straight lines through places, so many between two of them; the ends are there too."""
+    given = np.asarray(places, dtype=float).reshape(-1, 3)
+    at = np.linspace(0.0, len(given) - 1.0, (len(given) - 1) * pieces + 1)
+    return np.column_stack([np.interp(at, np.arange(len(given)), given[:, k]) for k in range(3)])

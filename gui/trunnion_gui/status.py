@@ -36,7 +36,7 @@ class Status(QStatusBar):
         self.addWidget(self.text, 1)
         self.addPermanentWidget(self.verdict)
         self.setContentsMargins(10, 0, 12, 0)
-        self._doing = ""
+        self._doing, self._has_said = "", False
         self._clock = QTimer(self)
         self._clock.setInterval(_TICK_MS)
         self._clock.timeout.connect(self._tick)
@@ -44,6 +44,7 @@ class Status(QStatusBar):
         document.progressed.connect(self._progress)
         document.changed.connect(self.refresh)
         document.saved.connect(lambda path: self._say(tr("Saved {path}").format(path=path)))
+        document.exported.connect(lambda path, n: self._say(tr("{n} faces written to {path}").format(n=n, path=path)))
         document.written.connect(lambda what: self._say(tr("{n} files written to {folder}").format(n=len(what[1]), folder=what[0])))
         self._job()
         self.refresh()
@@ -73,6 +74,8 @@ class Status(QStatusBar):
             self.text.setText(words)
 
     def _say(self, words: str) -> None:
+        """Say what came of a job; it stays when the job is put away."""
+        self._has_said = True
         self.text.setText(words)
 
     def _job(self) -> None:
@@ -81,12 +84,12 @@ class Status(QStatusBar):
         self.cancel.setVisible(job is not None)
         if job is not None:
             self.bar.setValue(0)
-            self._doing = job.label
+            self._doing, self._has_said = job.label, False
             self._clock.start()
             self._tick()
         else:
             self._clock.stop()
-            if self._doing:
+            if self._doing and not self._has_said:
                 self.text.setText("")
             self._doing = ""
         self.cancel.setIcon(icons.icon("cancel"))

@@ -50,9 +50,11 @@ from trunnion_gui.panels.optimize import OptimizePanel
 from trunnion_gui.panels.recognize import RecognizePanel
 from trunnion_gui.panels.route import RoutePanel
 from trunnion_gui.panels.size import SizePanel
+from trunnion_gui.patches import PatchTools
 from trunnion_gui.player import Player
 from trunnion_gui.status import Status
 from trunnion_gui.steps import STAGES
+from trunnion_gui.widgets.export import SUFFIXES, ExportDialog
 from trunnion_gui.widgets.panel import Panel
 from trunnion_gui.worker import ENGINE
 
@@ -63,11 +65,11 @@ _AUTOSAVE_MS = 20_000
 _FOLLOW_MS = 66
 """G-code and process tree follow the tool this often at most."""
 _LEFT_WIDTH = 344
-_RIGHT_WIDTH = 380
+_RIGHT_WIDTH = 396
 _LEFT = Qt.DockWidgetArea.LeftDockWidgetArea
 _RIGHT = Qt.DockWidgetArea.RightDockWidgetArea
 _BELOW = Qt.DockWidgetArea.BottomDockWidgetArea
-_MENUS = ("File", "Edit", "Steps", "Playback", "View", "Help")
+_MENUS = ("File", "Edit", "Steps", "Patches", "Playback", "View", "Help")
 _MENU_OF = {"file": "File", "edit": "Edit", "run": "Steps", "step": "Steps", "job": "Steps", "play": "Playback", "view": "View",
             "help": "Help"}
 """The menu of a command, by the first word of its id."""
@@ -92,9 +94,12 @@ class Window(QMainWindow):
         self.document = Document(factory, self)
         self.registry = Registry(self)
         self.player, self.deviation = Player(self.document, self), DeviationSource(self.document, self)
+        self.patches = PatchTools(self.document, self)
         self._add_commands()
+        self._add_patches()
         self._add_playing()
-        self.centre = Centre(self.document, self.registry, self.theme, self.player, self.deviation)
+        self.centre = Centre(self.document, self.registry, self.theme, self.player, self.deviation, self.patches)
+        self.export_dialog = ExportDialog(self.document, self.ask_export_path, self)
         self.setCentralWidget(self.centre)
         self.panels = {s.name: PANELS[s.name](s, n, self.document, self.registry) for n, s in enumerate(STAGES, 1)}
         self._make_docks()
@@ -129,6 +134,10 @@ class Window(QMainWindow):
     def ask_folder(self) -> str:
         """Ask which folder the programs are written to."""
         return QFileDialog.getExistingDirectory(self, tr("Write programs into"))
+
+    def ask_export_path(self, proposed: str, kind: str) -> str:
+        """Ask which STEP or IGES file patches are written to."""
+        return QFileDialog.getSaveFileName(self, tr("Export patches"), proposed, f"{kind} (*{' *'.join(SUFFIXES[kind])})")[0]
 
     def ask_picture_path(self) -> str:
         """Ask where to keep a picture."""
@@ -186,6 +195,13 @@ class Window(QMainWindow):
         edit = commands.without_feature if chosen.kind == "feature" else commands.without_operation
         if chosen.kind in ("feature", "operation"):
             self.document.edit(tr("Delete {id}").format(id=chosen.id), edit(chosen.id))
+
+    def leave(self) -> None:
+        """Put away what is being done in the picture; else select nothing."""
+        if self.centre.cutting.is_on:
+            self.centre.cutting.end()
+        else:
+            self.document.select_face(0)
 
     def suppress_selected(self) -> None:
         """Suppress the selected operation, or take it up again."""
@@ -285,7 +301,7 @@ class Window(QMainWindow):
                 partial(has_chosen, "feature", "operation"))
         command("edit.suppress", "Suppress or cut again", self.suppress_selected, "suppress", "Ctrl+D",
                 "Keep the selected operation in the tree without cutting it", partial(has_chosen, "operation"))
-        command("edit.none", "Select nothing", lambda: document.select_face(0), "", "Escape", "", None)
+        command("edit.none", "Select nothing", self.leave, "", "Escape", "", None)
         command("run.program", "Program", self.program, "program", "F5", "The whole line: features, route, toolpaths, proof", is_free)
         for id, text, last, icon, keys in (
                 ("step.recognize", "Recognize", "recognize", "recognize", "F6"), ("step.size", "Analyse", "size", "size", "F7"),
@@ -312,6 +328,48 @@ class Window(QMainWindow):
         command("view.arrangement", "Put docks back", self.forget_arrangement, "reset", "", "", None)
         command("view.language", "Next language", self.change_language, "language", "", "", None)
         command("help.about", "About Trunnion", self.about, "help", "", "", None)
+
+    def _add_patches(self) -> None:
+        document, tools = self.document, self.patches
+
+        def is_free() -> bool:
+            return tools.has_groups and not document.is_busy
+
+        def can_cut() -> bool:
+            return document.has_part and not document.is_busy
+
+        def command(id: str, text: str, run: Callable[..., object], icon: str, keys: str, help: str,
+                    enabled: Callable[[], bool] = is_free, checkable: bool = False) -> None:
+            self.registry.add(Command(id=f"patch.{id}", text=text, run=run, icon=icon, keys=keys, help=help, menu="Patches",
+                                      enabled=enabled, checkable=checkable))
+
+        command("local", "Local feature, or no longer", lambda: tools.toggle_local(document.selection.faces), "local", "O",
+                "Give the selected groups a cutter of their own, or let them go with the remaining area",
+                lambda: is_free() and bool(tools.groups_of(document.selection.faces)))
+        command("click_local", "Click local features", self._mark_local, "local", "Shift+O",
+                "While this is on, a click on the part makes its group a local feature, or no longer", checkable=True)
+        command("ids", "Show IDs", partial(self._show_layer, "ids"), "ids", "N",
+                "Write the ID of every group on the part, or of every selected face", lambda: document.has_part, True)
+        command("radii", "Colours by radius", partial(self._show_layer, "radii"), "radii", "R",
+                "Colour every group by its smallest concave radius", lambda: tools.has_groups, True)
+        command("cut_plane", "Cut a face by a plane…", lambda: self.centre.begin_cut(self._one_face(), True), "cut_plane", "",
+                "Make two patches of one, across x, y or z or through three places", can_cut)
+        command("cut_way", "Cut a face along a drawn line…", lambda: self.centre.begin_cut(self._one_face(), False), "cut_way", "",
+                "Make two patches of one, along a line through the places you click", can_cut)
+        command("export", "Export patches…", self.export_dialog_opened, "export", "Ctrl+Shift+E",
+                "Write local features, the remaining area or some groups as STEP or IGES")
+
+    def export_dialog_opened(self) -> None:
+        """Open the dialog in which patches are chosen for export."""
+        self.export_dialog.begin()
+
+    def _mark_local(self, on: bool) -> None:
+        self.centre.marks_local = on
+
+    def _one_face(self) -> int:
+        """Return the selected face when there is exactly one, else 0."""
+        faces = self.document.selection.faces
+        return faces[0] if len(faces) == 1 else 0
 
     def _add_playing(self) -> None:
         player = self.player
@@ -374,7 +432,7 @@ class Window(QMainWindow):
         for corner, side in ((Qt.Corner.BottomLeftCorner, _LEFT), (Qt.Corner.BottomRightCorner, _RIGHT)):
             self.setCorner(corner, side)
         self.setTabPosition(Qt.DockWidgetArea.AllDockWidgetAreas, QTabWidget.TabPosition.North)
-        self.features, self.process = FeatureDock(self.document), ProcessDock(self.document)
+        self.features, self.process = FeatureDock(self.document, self.patches), ProcessDock(self.document)
         self.properties, self.messages = PropertiesDock(self.document), MessagesDock(self.document)
         self.code, self.listing = CodeDock(self.document), ListingDock(self.document)
         self.places = DeviationDock(self.document)

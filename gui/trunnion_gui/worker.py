@@ -24,6 +24,7 @@ from typing import Any
 from PySide6.QtCore import QObject, QTimer, Signal
 
 from trunnion.findings import Cancelled, TrunnionError
+from trunnion.geometry.cut import Cut
 from trunnion.model.session import Session
 from trunnion.progress import Progress
 from trunnion.settings import Declared, declared
@@ -81,6 +82,14 @@ class Opened:
     state: State
     drawing: Drawing
     kept: tuple[bytes, str]
+
+
+@dataclass(frozen=True, slots=True)
+class Patched:
+    """A session after its part's patches were changed, and what the window draws of the part then."""
+
+    state: State
+    drawing: Drawing
 
 
 @dataclass(frozen=True, slots=True)
@@ -161,6 +170,38 @@ def _deviation(engine: Any, _progress: Progress, _tell: Tell, session: Session) 
     return drawn_map(engine.deviation_map(session))
 
 
+def _cut(engine: Any, progress: Progress, _tell: Tell, session: Session, cut: Cut) -> Patched:
+    from trunnion.pipeline.patches import with_cut
+
+    return _patched(engine, session, with_cut(engine, session, cut, progress.part(0.0, 0.5)), progress.part(0.5, 1.0))
+
+
+def _uncut(engine: Any, progress: Progress, _tell: Tell, session: Session, number: int) -> Patched:
+    from trunnion.pipeline.patches import without_cut
+
+    return _patched(engine, session, without_cut(engine, session, number, progress.part(0.0, 0.5)), progress.part(0.5, 1.0))
+
+
+def _patched(engine: Any, before: Session, after: Session, progress: Progress) -> Patched:
+    """Return a session whose part has other faces with its features found anew, where they had been found before."""
+    if engine.states(before)["recognize"] in ("done", "problem"):
+        after = engine.run(after, until="recognize", progress=progress)
+    return Patched(State(after, engine.states(after)), drawing_of(engine.mesh(after)))
+
+
+def _move(engine: Any, _progress: Progress, _tell: Tell, session: Session, faces: tuple[int, ...], group: str) -> State:
+    from trunnion.pipeline.patches import with_moved
+
+    after = with_moved(engine, session, faces, group)
+    return State(after, engine.states(after))
+
+
+def _export(engine: Any, _progress: Progress, _tell: Tell, session: Session, what: tuple[str, ...], path: str) -> int:
+    from trunnion.pipeline.patches import export
+
+    return export(engine, session, what, path)
+
+
 def _settings(engine: Any, _progress: Progress, _tell: Tell) -> dict[str, tuple[Group, ...]]:
     return {step: tuple(Group(c.GROUP, _title(c), tuple(_offered(d) for d in declared(c))) for c in classes)
             for step, classes in engine.settings().items()}
@@ -181,7 +222,7 @@ _CATALOGUES = {"blank.material": "materials", "setup.machine": "machines"}
 """Settings that name a thing of a catalogue: the form offers what there is."""
 VERBS: dict[str, Callable[..., Any]] = {
     "open": _open, "run": _run, "states": _states, "attach": _attach, "save": _save, "write": _write, "settings": _settings,
-    "playback": _playback, "moment": _moment, "deviation": _deviation}
+    "playback": _playback, "moment": _moment, "deviation": _deviation, "cut": _cut, "uncut": _uncut, "move": _move, "export": _export}
 
 
 def _title(group: Any) -> str:

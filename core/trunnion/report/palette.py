@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import tomllib
+from collections.abc import Iterable
 from dataclasses import dataclass
 from typing import Any
 
@@ -11,9 +12,12 @@ from numpy.typing import NDArray
 
 from trunnion.findings import BadInput
 from trunnion.geometry.arrays import Floats
+from trunnion.model.feature import Feature
 from trunnion_resources import folder
 
 Colour = tuple[int, int, int]
+GROUP = "group"
+"""The kind of a group of equal patches."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -36,17 +40,46 @@ class DeviationColours:
         return np.round(found).astype(np.uint8)
 
 
+@dataclass(frozen=True, slots=True, kw_only=True)
+class RadiusColours:
+    """Colours of radii: `colours[k]` up to `limits[k]` mm, the last one above all of them."""
+
+    limits: tuple[float, ...]
+    colours: tuple[Colour, ...]
+
+    def at(self, radius: float) -> Colour:
+        """Return the colour of a radius in mm."""
+        return self.colours[sum(radius > limit for limit in self.limits)]
+
+
 @dataclass(frozen=True, kw_only=True)
 class Palette:
-    """Colours of feature kinds, of motions and of deviations."""
+    """Colours of feature kinds, of groups of equal patches by class, of radii, of motions and of deviations."""
 
     kinds: dict[str, Colour]
+    remaining: tuple[Colour, ...]
+    local: tuple[Colour, ...]
+    radius: RadiusColours
     motions: dict[str, Colour]
     deviation: DeviationColours
 
     def kind(self, name: str) -> Colour:
         """Return the colour of a feature kind; kinds without one of their own share that of `other`."""
         return self.kinds.get(name, self.kinds["other"])
+
+    def features(self, features: Iterable[Feature]) -> dict[str, Colour]:
+        """Return the colour of each feature by id: its kind's, but groups of equal patches are told apart, local ones by warm colours."""
+        found: dict[str, Colour] = {}
+        met = {True: 0, False: 0}
+        for f in features:
+            if f.kind != GROUP:
+                found[f.id] = self.kind(f.kind)
+                continue
+            is_local = bool(f.attributes.get("local"))
+            wheel = self.local if is_local else self.remaining
+            found[f.id] = wheel[met[is_local] % len(wheel)]
+            met[is_local] += 1
+        return found
 
     def motion(self, name: str) -> Colour:
         """Return the colour of a kind of motion."""
@@ -57,7 +90,9 @@ def load_palette() -> Palette:
     """Return the palette that is shipped; raise `BadInput` when a colour is not written as `#rrggbb`."""
     data = tomllib.loads((folder("palette") / "palette.toml").read_text(encoding="utf-8"))
     kinds, motions = ({k: _colour(k, v) for k, v in data[table].items()} for table in ("kinds", "motions"))
-    return Palette(kinds=kinds, motions=motions, deviation=_deviation(data["deviation"]))
+    remaining, local = (tuple(_colour(name, text) for text in data["groups"][name]) for name in ("remaining", "local"))
+    radius = RadiusColours(limits=tuple(data["radius"]["limits"]), colours=tuple(_colour("radius", c) for c in data["radius"]["colours"]))
+    return Palette(kinds=kinds, remaining=remaining, local=local, radius=radius, motions=motions, deviation=_deviation(data["deviation"]))
 
 
 def _deviation(data: dict[str, Any]) -> DeviationColours:

@@ -16,12 +16,13 @@ import numpy as np
 
 from trunnion.geometry.arrays import Floats, Ints
 from trunnion.geometry.mesh import Mesh
+from trunnion.model.feature import Recognition
 from trunnion.model.session import Session
 from trunnion.model.setup import Setup
 from trunnion.model.toolpath import Toolpath
 from trunnion.report.deviation import DeviationMap, deviation_map
 from trunnion.report.lines import AXIS, MOST_STROKES, MOTIONS, STROKE_EVERY, STROKE_LENGTH, kinds_of, opened, strokes
-from trunnion.report.palette import Colour, Palette
+from trunnion.report.palette import GROUP, Colour, Palette
 from trunnion.settings import checked, choose
 from trunnion.verify.settings import ProofSettings
 
@@ -111,13 +112,23 @@ def _features(session: Session, mesh: Mesh, palette: Palette) -> Plotter:
     plotter, surface = _plotter(), _surface(mesh.points, mesh.triangles)
     recognition = session.recognition
     assert recognition is not None
-    by_face = {tag: palette.kind(f.kind) for f in reversed(recognition.features) for tag in f.tags}
+    own = palette.features(recognition.features)
+    by_face = {tag: own[f.id] for f in reversed(recognition.features) for tag in f.tags}
     surface.cell_data["colour"] = _colours(mesh, by_face, palette.kind("unexplained"))
     plotter.add_mesh(surface, scalars="colour", rgb=True, ambient=0.25, diffuse=0.8)
     _outline(plotter, surface)
-    counts = recognition.counts()
-    _legend(plotter, {f"{kind.replace('_', ' ')} {n}": palette.kind(kind) for kind, n in counts.items()})
+    _legend(plotter, feature_legend(recognition, palette))
     return _look(plotter, session)
+
+
+def feature_legend(recognition: Recognition, palette: Palette) -> dict[str, Colour]:
+    """Return what the colours of features mean: kinds with their number, or, of groups of equal patches, both classes with theirs."""
+    groups = [bool(f.attributes.get("local")) for f in recognition.of_kind(GROUP)]
+    words = {f"{kind.replace('_', ' ')} {n}": palette.kind(kind) for kind, n in recognition.counts().items() if kind != GROUP}
+    if groups:
+        words |= {f"groups of the remaining area {groups.count(False)}": palette.remaining[0]}
+        words |= {f"groups of local features {groups.count(True)}": palette.local[0]} if any(groups) else {}
+    return words
 
 
 def _outline(plotter: Plotter, surface: Any) -> None:

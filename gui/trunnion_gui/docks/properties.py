@@ -58,7 +58,8 @@ class PropertiesDock(QScrollArea):
         elif chosen.kind == "operation" and operation:
             self._show(operation.id, f"{sentence(tr(kind_words(operation.kind)))} · {operation.feature}", self._operation_rows(operation))
         elif chosen.kind == "faces":
-            self._show(chosen.id, tr("no feature has this face") if len(chosen.faces) == 1 else "", [])
+            rows = self._owner_rows(chosen.faces)
+            self._show(chosen.id, "" if rows or len(chosen.faces) != 1 else tr("no feature has this face"), rows)
         else:
             self._show("", tr("Click a feature or an operation, in the picture or in a table."), [])
         rules = (*operation.rules, *operation.data.rules) if chosen.kind == "operation" and operation else ()
@@ -73,6 +74,15 @@ class PropertiesDock(QScrollArea):
         self.table.setVisible(bool(rows))
         tables.fill(self.table, rows, right=(1,))
         self.table.setFixedHeight(26 * len(rows) + 4)
+
+    def _owner_rows(self, tags: tuple[int, ...]) -> Rows:
+        """Return what the selected faces belong to, feature by feature."""
+        rows = []
+        for f in self._document.shown.recognition or ():
+            own = [t for t in tags if t in f.tags]
+            if own:
+                rows.append((f.id, ", ".join(map(str, own)) if len(own) <= 5 else f"{len(own)} {tr('faces')}"))
+        return rows
 
     def _operation_rows(self, o: Operation) -> Rows:
         data, verdict = o.data, self._document.shown.verdict

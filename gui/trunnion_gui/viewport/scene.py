@@ -3,10 +3,11 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Mapping, Sequence
+from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
-from PySide6.QtCore import QEvent, QObject, QPointF, QRectF, Qt, Signal
+from PySide6.QtCore import QEvent, QObject, QPoint, QPointF, QRectF, Qt, Signal
 from PySide6.QtGui import QMouseEvent, QPolygonF, QResizeEvent
 from PySide6.QtWidgets import QVBoxLayout, QWidget
 
@@ -21,8 +22,9 @@ from trunnion.report.lines import MOTIONS
 from trunnion_gui.colours import Theme, mixed, rgb
 from trunnion_gui.drawing import Drawing, DrawnMap
 from trunnion_gui.viewport.layers.blank import draw_blank
+from trunnion_gui.viewport.layers.cut import draw_cut
 from trunnion_gui.viewport.layers.deviation import DeviationLayer
-from trunnion_gui.viewport.layers.label import draw_label
+from trunnion_gui.viewport.layers.label import draw_label, draw_names
 from trunnion_gui.viewport.layers.part import PartLayer
 from trunnion_gui.viewport.layers.paths import draw_paths
 from trunnion_gui.viewport.layers.setups import draw_setups
@@ -49,6 +51,7 @@ _LEAST_ROOM = 120.0
 _DIRECTIONS = 24
 _ASIDE = 0.45
 """How far from straight above a worst place the eye goes."""
+_BUTTONS = (Qt.MouseButton.LeftButton, Qt.MouseButton.RightButton)
 _CLICK = 4
 """A press and a release this many pixels apart are a click; further apart they turn the part."""
 _FADED = 0.8
@@ -84,11 +87,23 @@ def outline(x: np.ndarray, y: np.ndarray) -> QPolygonF:
     return QPolygonF([QPointF(float(x[r]), float(y[r])) for r in rows])
 
 
+@dataclass(frozen=True, slots=True)
+class Click:
+    """A click on the picture: the tag of the face there (0 beside the part), the place on it in the part's coordinates, and whether Ctrl
+    was held down."""
+
+    face: int
+    place: tuple[float, float, float]
+    with_ctrl: bool = False
+
+
 class Scene(QWidget):
     """The viewport with its layers."""
 
-    clicked = Signal(int)
-    """The tag of the face that was clicked, 0 beside the part."""
+    clicked = Signal(object)
+    """A `Click`."""
+    asked = Signal(object, QPoint)
+    """A `Click` with the right button, and where on the screen: what can be done there?"""
     hovered = Signal(int)
     pointed = Signal(object, QPointF)
     """Face tag, deviation and place under the mouse while the map is shown (None beside the part), and where the mouse is."""
@@ -229,6 +244,20 @@ class Scene(QWidget):
         nearest = np.argmin(np.linalg.norm(self._mesh.corners()[rows].mean(axis=1) - place, axis=1))
         return self._mesh.normals()[rows[nearest]]
 
+    def on_face(self, tag: int, points: np.ndarray) -> np.ndarray:
+        """Return the places (k, 3) on the drawn face that are nearest to points (k, 3)."""
+        return self._part.on_face(tag, points) if self._part is not None else points
+
+    def show_names(self, names: Sequence[tuple[str, tuple[float, float, float]]]) -> None:
+        """Write words at places of the part, or none."""
+        draw_names(self.view, names, self._theme)
+        self.view.render()
+
+    def show_cut(self, places: Sequence[tuple[float, float, float]], line: np.ndarray) -> None:
+        """Show places that were clicked, and the line (k, 2, 3) that a cut will follow; both may be empty."""
+        draw_cut(self.view, places, line, self._theme)
+        self.view.render()
+
     def show_label(self, text: str, at: tuple[float, ...] = ()) -> None:
         """Write a size at a point of the part."""
         draw_label(self.view, text if len(at) == 3 else "", at, self._theme)
@@ -297,18 +326,27 @@ class Scene(QWidget):
     def eventFilter(self, watched: QObject, event: QEvent) -> bool:
         if isinstance(event, QMouseEvent):
             kind = event.type()
-            if kind == QEvent.Type.MouseButtonPress and event.button() == Qt.MouseButton.LeftButton:
+            if kind == QEvent.Type.MouseButtonPress and event.button() in _BUTTONS:
                 self._pressed = event.position()
             elif kind == QEvent.Type.MouseButtonRelease and self._pressed is not None:
                 moved = event.position() - self._pressed
                 self._pressed = None
-                if event.button() == Qt.MouseButton.LeftButton and abs(moved.x()) + abs(moved.y()) <= _CLICK:
-                    self.clicked.emit(self.face_at(event.position()))
+                if event.button() in _BUTTONS and abs(moved.x()) + abs(moved.y()) <= _CLICK:
+                    self._click(event)
             elif kind == QEvent.Type.MouseMove and event.buttons() == Qt.MouseButton.NoButton:
                 self._point(event.position())
         elif event.type() == QEvent.Type.Leave and self._map is not None:
             self.pointed.emit(None, QPointF())
         return False
+
+    def _click(self, event: QMouseEvent) -> None:
+        face = self.face_at(event.position())
+        place = self._picker.point if face and self._picker is not None else (0.0, 0.0, 0.0)
+        click = Click(face, place, bool(event.modifiers() & Qt.KeyboardModifier.ControlModifier))
+        if event.button() == Qt.MouseButton.LeftButton:
+            self.clicked.emit(click)
+        else:
+            self.asked.emit(click, event.globalPosition().toPoint())
 
     def _point(self, at: QPointF) -> None:
         if self._map is None or self._is_playing:

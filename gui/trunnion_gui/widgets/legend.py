@@ -23,7 +23,7 @@ class Legend(QFrame):
         self.hide()
 
     def show_rows(self, rows: Sequence[tuple[str, str, str]]) -> None:
-        """Show rows of colour, words and count; a row without a colour is a gap."""
+        """Show rows of colour, words and count; a row without a colour is a heading, or a gap when it has no words either."""
         if tuple(rows) == self.rows:
             return
         self.rows = tuple(rows)
@@ -44,8 +44,11 @@ def _body(rows: Sequence[tuple[str, str, str]]) -> QWidget:
     grid.setHorizontalSpacing(8)
     grid.setVerticalSpacing(3)
     for n, (colour, words, count) in enumerate(rows):
-        if not colour:
+        if not colour and not words:
             grid.setRowMinimumHeight(n, 6)
+            continue
+        if not colour:
+            grid.addWidget(QLabel(words), n, 0, 1, 3)
             continue
         number = QLabel(count)
         number.setObjectName("muted")

@@ -1,7 +1,8 @@
-"""One size, written where it is."""
+"""Words written where they belong: one size, or the names of what is there."""
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from typing import Any
 
 import numpy as np
@@ -18,3 +19,14 @@ def draw_label(view: Any, text: str, at: tuple[float, ...], theme: Theme) -> Non
                               shape_color=theme.panel, shape_opacity=0.92, point_color=theme.selection, point_size=11,
                               always_visible=True, pickable=False,
                               reset_camera=False, shape="rounded_rect", margin=5)
+
+
+def draw_names(view: Any, names: Sequence[tuple[str, tuple[float, float, float]]], theme: Theme) -> None:
+    """Write words at places of the part, or nothing; those that would lie on others are left out."""
+    view.remove_actor("names", render=False)
+    view.remove_actor("names-labels", render=False)
+    view.remove_actor("names-points", render=False)
+    if names:
+        view.add_point_labels(np.array([place for _, place in names], dtype=float), [words for words, _ in names], name="names",
+                              font_size=12, text_color=theme.text, shape_color=theme.panel, shape_opacity=0.85, show_points=False,
+                              always_visible=True, pickable=False, reset_camera=False, shape="rounded_rect", margin=3)

@@ -35,6 +35,14 @@ class PartLayer:
         self._surface.GetCellData().GetArray("rgb").Modified()
         self._surface.Modified()
 
+    def on_face(self, tag: int, points: np.ndarray) -> np.ndarray:
+        """Return the places (k, 3) on a face that are nearest to points (k, 3)."""
+        face = self._surface.extract_cells(np.flatnonzero(self._mesh.face == tag))
+        if not face.n_cells or not len(points):
+            return points
+        _, near = face.find_closest_cell(points, return_closest_point=True)
+        return np.asarray(near).reshape(-1, 3)
+
     def outline(self, name: str, faces: Iterable[int], colour: str, width: float) -> None:
         """Draw a line around some faces, or none."""
         chosen = np.isin(self._edge_faces, np.fromiter(faces, int))

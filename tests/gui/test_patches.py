@@ -1,0 +1,347 @@
+"""Groups of equal patches in the window, with the real engine and real clicks: local features, faces moved, cut and exported.
+
+The part is a plate with three small domes and a larger one: seen from the top every dome is one patch.
+"""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+from PySide6.QtCore import QPoint, Qt
+from PySide6.QtTest import QTest
+from PySide6.QtWidgets import QMenu
+from test_viewport import hue, pixel
+
+from samples import written
+from trunnion_gui.colours import rgb
+from trunnion_gui.docks.cutting import DRAWN, THREE
+
+LEFT, RIGHT = Qt.MouseButton.LeftButton, Qt.MouseButton.RightButton
+CTRL = Qt.KeyboardModifier.ControlModifier
+TOP = 10.0
+SMALL, LARGE = ((-20.0, 10.0), (0.0, 10.0), (20.0, 10.0)), (0.0, -8.0)
+SMALL_RADIUS, LARGE_RADIUS = 4.0, 7.0
+ON_SMALL = [(x, y, TOP + SMALL_RADIUS) for x, y in SMALL]
+ON_LARGE = (*LARGE, TOP + LARGE_RADIUS)
+ON_TOP = (-24.0, -14.0, TOP)
+
+
+def domed_plate():
+    """Return the plate: 60 x 40 x 10 mm."""
+    import cadquery as cq
+
+    body = cq.Workplane("XY").box(60.0, 40.0, TOP, centered=(True, True, False))
+    for (x, y), radius in (*((at, SMALL_RADIUS) for at in SMALL), (LARGE, LARGE_RADIUS)):
+        body = body.union(cq.Workplane("XY").sphere(radius).translate((x, y, TOP)))
+    return body.val().wrapped
+
+
+@pytest.fixture(scope="module")
+def segmented(qapp, tmp_path_factory):
+    """One window for all tests here, with the plate segmented; every test takes back what it changed."""
+    from trunnion_gui.window import Window
+
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setenv("TRUNNION_SETTINGS", str(tmp_path_factory.mktemp("settings")))
+        window = Window()
+        window.confirms_closing = False
+        window.resize(1440, 900)
+        window.show()
+        window.document.open(written(domed_plate(), name="domes"))
+        until(lambda: window.document.has_part and not window.document.is_busy)
+        window.document.choose("recognize.family", "Family: surface", "surface")
+        window.document.run("recognize", "Recognize")
+        until(lambda: window.document.session.recognition is not None and not window.document.is_busy)
+        yield window
+        window.close()
+
+
+@pytest.fixture
+def shown(segmented, qtbot):
+    """That window seen from the top, with nothing selected."""
+    window, before = segmented, segmented.document.session
+    window.registry.run("view.top")
+    window.document.select_face(0)
+    yield window
+    window.centre.cutting.end()
+    while window.document.session is not before:
+        window.registry.run("edit.undo")
+    qtbot.waitUntil(lambda: not window.document.is_busy and not window.document._quiet, timeout=30000)
+
+
+def until(is_so, seconds=60.0) -> None:
+    """Wait until something is so."""
+    import time
+
+    end = time.monotonic() + seconds
+    while not is_so():
+        assert time.monotonic() < end
+        QTest.qWait(10)
+
+
+def click(window, place, button=LEFT, keys=Qt.KeyboardModifier.NoModifier) -> None:
+    """Click the part at a place of it."""
+    QTest.mouseClick(window.centre.scene.view, button, keys, window.centre.scene.where(place).toPoint())
+
+
+def face_at(window, place) -> int:
+    """Return the tag of the face at a place of the picture."""
+    return window.centre.scene.face_at(window.centre.scene.where(place))
+
+
+def group_at(window, place):
+    """Return the group of the face at a place of the picture."""
+    face = face_at(window, place)
+    return next(f for f in window.document.shown.recognition if face in f.tags)
+
+
+def done(window, qtbot) -> None:
+    """Wait until a job that a click began is done."""
+    qtbot.waitUntil(lambda: not window.document.is_busy and not window.document._quiet, timeout=60000)
+
+
+def test_equal_domes_are_one_group_and_local(shown):
+    small, large = group_at(shown, ON_SMALL[0]), group_at(shown, ON_LARGE)
+    assert {face_at(shown, p) for p in ON_SMALL} == set(small.tags)
+    assert small.attributes["local"] and large.attributes["local"] and small.id != large.id
+    assert not group_at(shown, ON_TOP).attributes["local"]
+
+
+def test_local_groups_have_warm_colours_and_the_rest_cold_ones(shown, qtbot):
+    (_, remaining, _), (_, local, _) = ((rgb(c), w, n) for c, w, n in shown.centre.legend.rows[:2])
+    assert (remaining, local) == ("Remaining area", "Local features")
+    cold, warm = (pixel(shown, place) for place in (ON_TOP, ON_SMALL[0]))
+    assert cold[2] > cold[0] + 20 and warm[0] > warm[2] + 20
+    assert hue(pixel(shown, ON_SMALL[1])) @ hue(warm) > 0.97
+
+
+def test_a_row_shows_faces_size_and_the_mark(shown):
+    small = group_at(shown, ON_SMALL[0])
+    row = shown.features.item(small.id)
+    assert (row.text(0), row.text(1), row.text(2)) == (small.id, "3", "8")
+    assert row.checkState(5) is Qt.CheckState.Checked
+    assert row.parent().text(0).startswith("Local features")
+    assert not shown.features.tree.isColumnHidden(5)
+
+
+def test_a_click_on_the_mark_changes_the_class_and_undo_brings_it_back(shown, qtbot):
+    id, tree = group_at(shown, ON_SMALL[0]).id, shown.features.tree
+    tree.scrollToItem(shown.features.item(id))
+    at = tree.visualItemRect(shown.features.item(id))
+    QTest.mouseClick(tree.viewport(), LEFT, pos=QPoint(tree.columnViewportPosition(5) + tree.columnWidth(5) // 2, at.center().y()))
+    qtbot.waitUntil(lambda: shown.document.feature(id).attributes["local"] is False)
+    assert shown.features.item(id).parent().text(0).startswith("Remaining area")
+    assert shown.document.feature(id).by_hand
+    shown.registry.run("edit.undo")
+    qtbot.waitUntil(lambda: shown.features.item(id).parent().text(0).startswith("Local features"))
+
+
+def test_clicks_on_the_part_mark_local_features_while_that_is_on(shown, qtbot):
+    shown.registry.run("patch.click_local")
+    try:
+        click(shown, ON_TOP)
+        qtbot.waitUntil(lambda: group_at(shown, ON_TOP).attributes["local"] is True)
+        click(shown, ON_LARGE)
+        qtbot.waitUntil(lambda: group_at(shown, ON_LARGE).attributes["local"] is False)
+    finally:
+        shown.registry.run("patch.click_local")
+    click(shown, ON_LARGE)
+    assert shown.document.selection.id == group_at(shown, ON_LARGE).id
+    assert group_at(shown, ON_LARGE).attributes["local"] is False
+
+
+def test_groups_are_chosen_by_id_and_marked_together(shown, qtbot):
+    small, large = group_at(shown, ON_SMALL[0]), group_at(shown, ON_LARGE)
+    line = shown.features.line
+    line.setFocus()
+    QTest.keyClicks(line, f"{small.id}, {large.id}")
+    QTest.keyClick(line, Qt.Key.Key_Return)
+    assert set(shown.document.selection.faces) == {*small.tags, *large.tags}
+    assert {i.text(0) for i in shown.features.tree.selectedItems()} == {small.id, large.id}
+    shown.registry.run("patch.local")
+    assert not any(shown.document.feature(f.id).attributes["local"] for f in (small, large))
+    line.clear()
+
+
+def test_an_id_that_is_not_there_is_told(shown):
+    shown.features.line.setText("group-99")
+    QTest.keyClick(shown.features.line, Qt.Key.Key_Return)
+    assert shown.centre.notice.text == "group-99: no feature and no face has this ID"
+    shown.features.line.clear()
+    shown.centre.notice.hide()
+
+
+def test_ctrl_clicks_gather_faces_of_any_group(shown):
+    for place in (ON_SMALL[0], ON_LARGE):
+        click(shown, place, keys=CTRL)
+    assert set(shown.document.selection.faces) == {face_at(shown, ON_SMALL[0]), face_at(shown, ON_LARGE)}
+    click(shown, ON_LARGE, keys=CTRL)
+    assert shown.document.selection.faces == (face_at(shown, ON_SMALL[0]),)
+
+
+def test_a_face_moves_to_another_group_by_the_menu_of_a_right_click(shown, qtbot):
+    face, into = face_at(shown, ON_SMALL[1]), group_at(shown, ON_LARGE)
+    click(shown, ON_SMALL[1], RIGHT)
+    menu = next(m for m in shown.centre.findChildren(QMenu) if m.isVisible())
+    groups = next(a.menu() for a in menu.actions() if a.menu() is not None and a.text() == "Move to")
+    next(a for a in groups.actions() if a.text() == into.id).trigger()
+    menu.close()
+    done(shown, qtbot)
+    assert group_at(shown, ON_LARGE).id == into.id == group_at(shown, ON_SMALL[1]).id
+    assert len(group_at(shown, ON_SMALL[0]).tags) == 2
+    shown.registry.run("edit.undo")
+    assert face in group_at(shown, ON_SMALL[0]).tags
+
+
+def test_faces_move_to_a_new_group(shown, qtbot):
+    shown.document.move((face_at(shown, ON_SMALL[1]),))
+    done(shown, qtbot)
+    alone = group_at(shown, ON_SMALL[1])
+    assert len(alone.tags) == 1 and alone.by_hand
+    assert shown.features.item(alone.id).text(1) == "1"
+
+
+def test_a_plane_through_a_click_cuts_a_patch_in_two(shown, qtbot):
+    before, n = shown.document.mesh, shown.document.session.part.n_faces
+    click(shown, ON_TOP)
+    shown.document.select_face_alone(face_at(shown, ON_TOP))
+    shown.registry.run("patch.cut_plane")
+    bar = shown.centre.cutting
+    assert bar.isVisible() and bar.manner.currentData() == "x"  # across the face's longest side
+    click(shown, (-10.0, -14.0, TOP))
+    assert bar.value.value() == pytest.approx(-10.0, abs=0.2)
+    assert "cut line" in shown.centre.scene.view.actors
+    QTest.mouseClick(bar.apply, LEFT)
+    done(shown, qtbot)
+    assert not bar.isVisible() and "cut line" not in shown.centre.scene.view.actors
+    assert shown.document.session.part.n_faces == n + 1
+    assert face_at(shown, (-15.0, -14.0, TOP)) != face_at(shown, (-5.0, -14.0, TOP))
+    assert shown.panels["recognize"].state == "done"
+    shown.registry.run("edit.undo")
+    assert shown.document.mesh is before
+    assert face_at(shown, (-15.0, -14.0, TOP)) == face_at(shown, (-5.0, -14.0, TOP))
+    shown.registry.run("edit.redo")
+    assert face_at(shown, (-15.0, -14.0, TOP)) != face_at(shown, (-5.0, -14.0, TOP))
+
+
+def test_three_clicks_make_a_plane(shown, qtbot):
+    n = shown.document.session.part.n_faces
+    shown.registry.run("patch.cut_plane")
+    bar = shown.centre.cutting
+    bar.manner.setCurrentIndex(bar.manner.findData(THREE))
+    x, y, z = ON_SMALL[2]
+    for place in ((x, y, z), (x + 1.0, y + 1.0, z - 0.26), (x - 1.0, y - 1.0, z - 0.26)):
+        assert not bar.apply.isEnabled()
+        click(shown, place)
+    assert bar.face == face_at(shown, ON_SMALL[2])
+    QTest.mouseClick(bar.apply, LEFT)
+    done(shown, qtbot)
+    assert shown.document.session.part.n_faces == n + 1
+    assert face_at(shown, (x + 2.0, y - 2.0, z)) != face_at(shown, (x - 2.0, y + 2.0, z))
+
+
+def test_a_line_drawn_with_clicks_cuts_a_patch_and_the_cut_can_be_taken_back(shown, qtbot):
+    x, y, z = ON_LARGE
+    n = shown.document.session.part.n_faces
+    shown.document.select_face_alone(face_at(shown, ON_LARGE))
+    shown.registry.run("patch.cut_way")
+    bar = shown.centre.cutting
+    assert bar.manner.currentData() == DRAWN and not bar.apply.isEnabled()
+    for dx, dy in ((-4.0, 0.0), (0.0, 1.5), (3.0, 1.0), (4.0, 0.0)):
+        click(shown, (x + dx, y + dy, z))
+    assert len(bar.places) == 4
+    QTest.mouseClick(bar.back, LEFT)
+    assert len(bar.places) == 3
+    QTest.mouseClick(bar.apply, LEFT)
+    done(shown, qtbot)
+    assert shown.document.session.part.n_faces == n + 1
+    assert face_at(shown, (x, y + 4.0, z)) != face_at(shown, (x, y - 4.0, z))
+    menu = shown.patches.menu(shown, (face_at(shown, ON_TOP),))
+    back = next(a.menu() for a in menu.actions() if a.text() == "Take back a cut")
+    assert [a.text() for a in back.actions()] == [f"1: face {bar_face(shown)} along a drawn line"]
+    back.actions()[0].trigger()
+    done(shown, qtbot)
+    assert shown.document.session.part.n_faces == n and shown.document.session.cuts == ()
+
+
+def bar_face(window) -> int:
+    """Return the face that was cut last."""
+    return window.document.session.cuts[-1].face
+
+
+def test_escape_puts_a_cut_away_and_keeps_the_selection(shown):
+    shown.document.select_face_alone(face_at(shown, ON_TOP))
+    shown.registry.run("patch.cut_way")
+    click(shown, ON_TOP)
+    shown.registry.run("edit.none")
+    assert not shown.centre.cutting.isVisible() and shown.document.selection.faces == (face_at(shown, ON_TOP),)
+
+
+def test_a_cut_along_its_faces_border_is_refused_in_words(shown, qtbot):
+    shown.document.select_face_alone(face_at(shown, ON_TOP))
+    shown.registry.run("patch.cut_plane")
+    bar = shown.centre.cutting
+    assert bar.manner.currentData() == "x"
+    bar.value.setValue(-30.0)
+    QTest.mouseClick(bar.apply, LEFT)
+    qtbot.waitUntil(lambda: shown.centre.notice.isVisible(), timeout=30000)
+    assert "doesn't divide it" in shown.centre.notice.text
+    assert bar.isVisible() and shown.document.session.cuts == ()
+    shown.centre.notice.hide()
+
+
+@pytest.mark.parametrize(("kind", "suffix"), [("STEP", ".step"), ("IGES", ".igs")])
+def test_local_features_are_exported_alone(shown, qtbot, tmp_path, kind, suffix):
+    path = tmp_path / f"local{suffix}"
+    dialog = shown.export_dialog
+    shown.registry.run("patch.export")
+    dialog._ask_path = lambda proposed, chosen: str(path.with_suffix(""))
+    QTest.mouseClick(dialog.parts["local"], LEFT, pos=QPoint(8, 8))
+    QTest.mouseClick(dialog.formats[kind], LEFT, pos=QPoint(8, 8))
+    assert dialog.words() == ("local",) and dialog.count.text() == "4 faces in 2 groups"
+    QTest.mouseClick(dialog.export_button, LEFT)
+    done(shown, qtbot)
+    dialog.hide()
+    assert path.exists()
+    assert "4 faces written" in shown.status.text.text()
+    assert faces_in(path) == 4
+
+
+def faces_in(path) -> int:
+    """Return how many faces the CAD kernel's own reader finds in a file."""
+    from OCP.IGESControl import IGESControl_Reader
+    from OCP.STEPControl import STEPControl_Reader
+
+    from trunnion.part.identity import faces_of
+
+    reader = IGESControl_Reader() if path.suffix == ".igs" else STEPControl_Reader()
+    reader.ReadFile(str(path))
+    reader.TransferRoots()
+    return len(faces_of(reader.OneShape()))
+
+
+def test_the_groups_of_the_selection_are_ticked_for_export(shown):
+    click(shown, ON_LARGE)
+    shown.registry.run("patch.export")
+    assert shown.export_dialog.words() == (group_at(shown, ON_LARGE).id,)
+    assert shown.export_dialog.list.isEnabled()
+    shown.export_dialog.hide()
+
+
+def test_ids_are_written_on_the_part(shown):
+    shown.registry.run("patch.ids")
+    assert any(name.startswith("names") for name in shown.centre.scene.view.actors)
+    shown.registry.run("patch.ids")
+    assert not any(name.startswith("names") for name in shown.centre.scene.view.actors)
+
+
+def test_the_properties_say_what_the_selected_faces_belong_to(shown):
+    click(shown, ON_SMALL[0], keys=CTRL)
+    click(shown, ON_LARGE, keys=CTRL)
+    table = shown.properties.table
+    assert [table.item(r, 0).text() for r in range(table.rowCount())] == sorted(
+        {group_at(shown, ON_SMALL[0]).id, group_at(shown, ON_LARGE).id})
+
+
+def test_a_plate_seen_from_the_top_shows_what_was_built(shown):
+    assert np.allclose(np.ptp(shown.document.mesh.points, axis=0), (60.0, 40.0, 17.0), atol=0.2)
