@@ -11,7 +11,7 @@ from typing import Any
 
 import numpy as np
 
-from trunnion import registry
+from trunnion import registry, tolerance
 from trunnion.findings import BadCall, Refused, error, info
 from trunnion.geometry.frame import Frame
 from trunnion.model.blank import Blank
@@ -72,7 +72,7 @@ class Room:
     last: OperationPath | None = None
     tool: Tool | None = None
     _plane: Space | None = None
-    _curved: dict[Direction, SurfaceSpace] = field(default_factory=dict)
+    _curved: dict[tuple[Direction, float], SurfaceSpace] = field(default_factory=dict)
 
     def __post_init__(self) -> None:
         self.sides = Sides(self.blank)
@@ -89,12 +89,12 @@ class Room:
             self._plane = Space.of(self.bench.part, self.recognition, self.blank, self.setup)
         return self._plane
 
-    def curved(self, direction: Direction, progress: Progress) -> SurfaceSpace:
-        """Return the part's skin as a tool from a direction sees it."""
-        if direction not in self._curved:
-            skin = self.bench.skin(progress=progress)
-            self._curved[direction] = SurfaceSpace.of(self.bench.part, skin, self.blank, self.setup, direction)
-        return self._curved[direction]
+    def curved(self, direction: Direction, chord: float, progress: Progress) -> SurfaceSpace:
+        """Return the part's skin, within a chord error (mm), as a tool from a direction sees it."""
+        if (direction, chord) not in self._curved:
+            skin = self.bench.skin(chord, progress)
+            self._curved[direction, chord] = SurfaceSpace.of(self.bench.part, skin, self.blank, self.setup, direction)
+        return self._curved[direction, chord]
 
 
 def _make_one(session: Session, room: Room, operation: Operation, progress: Progress) -> OperationPath:
@@ -133,7 +133,7 @@ def _driven(session: Session, room: Room, operation: Operation, progress: Progre
     if plane and room.recognition.family != SURFACE_FAMILY:
         flat = drive_of(operation, session.process, room.plane())
         return room.setup, room.sides.seen(room.setup), flat, flat
-    space = room.curved(operation.direction, progress)
+    space = room.curved(operation.direction, tolerance.CHORD if plane else tolerance.SKIN_CHORD, progress)
     stock = room.sides.seen(space.setup)
     if plane:
         layers = plane_drive_of(operation, space, stock, progress)

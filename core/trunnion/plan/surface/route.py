@@ -187,12 +187,21 @@ def _area(draft: Draft, area: Area, progress: Progress) -> None:
 def _by_slope(area: Area, shallow: tuple[int, ...], steep: tuple[int, ...]) -> list[tuple[str, tuple[int, ...], str]]:
     """Return the operations of an area: name, faces, strategy. A local feature that is both shallow and steep is cut as one where a
     strategy keeps the scallop on any slope."""
-    known = registry.names("strategies")
-    if area.local and "surface.constant" in known:
+    if area.local and "surface.constant" in registry.names("strategies"):
         return [(area.id, tuple(sorted((*shallow, *steep))), "surface.constant")]
-    found = [(area.id, shallow, "surface.parallel")] if shallow else []
-    strategy = "surface.waterline" if "surface.waterline" in known else "surface.parallel"
-    return [*found, (f"{area.id}-steep", steep, strategy)] if steep else found
+    found = [(area.id, shallow, first_known(FOR_SHALLOW))] if shallow else []
+    return [*found, (f"{area.id}-steep", steep, first_known(FOR_STEEP))] if steep else found
+
+
+FOR_SHALLOW = ("surface.parallel", "surface.constant")
+FOR_STEEP = ("surface.waterline", "surface.constant", "surface.parallel")
+"""Strategies for faces of a slope, the best first."""
+
+
+def first_known(names: Sequence[str]) -> str:
+    """Return the first of some strategies that is there; the first one where none is."""
+    known = registry.names("strategies")
+    return next((name for name in names if name in known), names[0])
 
 
 def _add_finish(draft: Draft, kind: str, name: str, tags: tuple[int, ...], tool: Tool, strategy: str, places: Places,
