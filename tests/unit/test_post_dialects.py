@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from dataclasses import replace
 
-import numpy as np
 import pytest
 
 from programs import BULL_10, FLAT_16, S1, WALL, program_1, section, verdict
@@ -12,6 +11,7 @@ from trunnion import registry
 from trunnion.findings import BadInput, Refused
 from trunnion.model.listing import listing
 from trunnion.model.program import Program
+from trunnion.model.toolpath import EMPTY
 from trunnion.model.verdict import Outcome
 from trunnion.post.contract import Dialect
 from trunnion.post.header import REJECTED, STAMP_LINES, Header
@@ -68,8 +68,7 @@ def test_every_block_knows_a_line_of_the_text(dialect):
 
 
 def test_it_refuses_what_it_cannot_write(dialect):
-    tilted = replace(WALL, axis=np.tile([0.6, 0.0, 0.8], (len(WALL), 1)))
-    for bad in (section("op", FLAT_16, tilted), section("op", FLAT_16, WALL, coolant="steam"), section("", FLAT_16, WALL)):
+    for bad in (section("op", FLAT_16, EMPTY), section("op", FLAT_16, WALL, coolant="steam"), section("", FLAT_16, WALL)):
         with pytest.raises(Refused):
             dialect.write([Program(name="B1.S1", setup=S1, sections=(bad,))], HEADER, PostSettings())
 

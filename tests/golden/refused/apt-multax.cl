@@ -1,4 +1,4 @@
-$$ line 3: MULTAX/ON: tilted axes are not understood; use MULTAX/OFF
+$$ line 3: MULTAX/SLANTED is not understood; use ON or OFF
 UNITS/MM
-MULTAX/ON
+MULTAX/SLANTED
 FINI

@@ -1,4 +1,4 @@
-$$ line 8: a tilted tool axis is not understood
+$$ line 8: a tilted tool axis after MULTAX/OFF; put MULTAX/ON first
 UNITS/MM
 LOADTL/1
 SPINDL/RPM,9000,CLW

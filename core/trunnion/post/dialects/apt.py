@@ -1,4 +1,7 @@
-"""APT cutter location text with the words of ISO 4343, all setups in one; positions in each setup's frame."""
+"""APT cutter location text with the words of ISO 4343, all setups in one; positions in each setup's frame.
+
+Where any tool leans, every GOTO has the tool axis too (MULTAX/ON): between two of them the tip goes straight and the axis turns evenly.
+"""
 
 from __future__ import annotations
 
@@ -7,15 +10,17 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from trunnion import tolerance
 from trunnion.findings import BadCall
 from trunnion.model.program import Program, ProgramSection
 from trunnion.model.setup import Setup
 from trunnion.model.tool import Tool
-from trunnion.model.toolpath import Motion
+from trunnion.model.toolpath import Motion, Toolpath
 from trunnion.post.header import Header
+from trunnion.post.linearize import lines_for_arcs
 from trunnion.post.place import NO_PLACES, Places
 from trunnion.post.settings import PostSettings
-from trunnion.post.ticks import Scale, upright, written
+from trunnion.post.ticks import Scale, WrittenPath, upright, written
 from trunnion.post.words import dialect_words, plain, refuse_unwritable
 from trunnion.units import trimmed
 
@@ -33,6 +38,7 @@ class AptWords:
     units: dict[str, str]
     feed: dict[str, str]
     coolant: dict[str, str]
+    axis_decimals: int
 
 
 class AptDialect:
@@ -69,19 +75,27 @@ def _print(words: AptWords, text: str) -> str:
 def _lines(words: AptWords, programs: Sequence[Program], header: Header, settings: PostSettings) -> Iterator[str]:
     yield from (_print(words, line) for line in header.about(programs, settings.units))
     yield words.units[settings.units]
-    yield "MULTAX/OFF"
+    leans = any(leaning(section.path) for program in programs for section in program.sections)
+    yield "MULTAX/ON" if leans else "MULTAX/OFF"
     scale = Scale.of(settings, words.extra_decimals_inch, words.feed_decimals)
+    axes = Scale(unit=1.0, decimals=words.axis_decimals, feed_decimals=words.feed_decimals) if leans else None
     for program in programs:
         yield _print(words, f"SETUP {program.setup.name} WORK OFFSET {program.setup.work_offset}")
         tool = None
         for section in program.sections:
-            yield from _section(words, section, scale, section.tool.number != tool, words.feed[settings.units])
+            yield from _section(words, section, scale, section.tool.number != tool)
+            yield from _motions(_blocks(section, scale, axes, settings.straying), scale, axes, words.feed[settings.units])
             tool = section.tool.number
     yield from words.end
 
 
-def _section(words: AptWords, section: ProgramSection, scale: Scale, changes: bool, feed_words: str) -> Iterator[str]:
-    """Yield one operation: its name, the tool when it changes, spindle, coolant, motions."""
+def leaning(path: Toolpath) -> bool:
+    """Say whether the tool leans anywhere on a path."""
+    return bool((np.abs(path.axis[:, :2]).max(axis=1, initial=0.0) > tolerance.PARAMETRIC).any())
+
+
+def _section(words: AptWords, section: ProgramSection, scale: Scale, changes: bool) -> Iterator[str]:
+    """Yield the head of one operation: its name, the tool when it changes, spindle, coolant."""
     tool = section.tool
     refuse_unwritable(section, words.title, words.coolant)
     yield _print(words, f"OPERATION {section.operation}")
@@ -92,12 +106,21 @@ def _section(words: AptWords, section: ProgramSection, scale: Scale, changes: bo
         yield f"CUTTER/{diameter},{radius}"
     yield f"SPINDL/RPM,{trimmed(section.spindle, 0)},CLW"
     yield words.coolant[section.coolant]
-    yield from _motions(section, scale, feed_words)
 
 
-def _motions(section: ProgramSection, scale: Scale, feed_words: str) -> Iterator[str]:
+def _blocks(section: ProgramSection, scale: Scale, axes: Scale | None, within: float) -> WrittenPath:
+    """Return the blocks of a section; arcs about a leaning axis are lines within a distance of them."""
+    path = section.path
+    if axes is None:
+        return written(upright(path, section.operation), scale, section.operation)
+    leans = np.abs(path.axis[:, :2]).max(axis=1) > tolerance.PARAMETRIC
+    path, _ = lines_for_arcs(path, np.flatnonzero((path.motion >= Motion.ARC_CW) & leans), within)
+    return written(path, scale, section.operation, axes.ticks(path.axis))
+
+
+def _motions(path: WrittenPath, scale: Scale, axes: Scale | None, feed_words: str) -> Iterator[str]:
     text, said, start = scale.text, "", [0, 0, 0]
-    for point, centre, motion, feed in written(upright(section.path, section.operation), scale, section.operation).blocks():
+    for (point, centre, motion, feed), axis in zip(path.blocks(), path.more.tolist(), strict=True):
         if motion == Motion.RAPID:
             yield "RAPID"
         elif (now := scale.feed(feed)) != said:
@@ -107,5 +130,6 @@ def _motions(section: ProgramSection, scale: Scale, feed_words: str) -> Iterator
             radius = int(round(((start[0] - centre[0]) ** 2 + (start[1] - centre[1]) ** 2) ** 0.5))
             sense = 1 if motion == Motion.ARC_CCW else -1
             yield f"CIRCLE/{text(centre[0])},{text(centre[1])},{text(start[2])},0,0,{sense},{text(radius)}"
-        yield f"GOTO/{text(point[0])},{text(point[1])},{text(point[2])}"
+        leans = "".join(f",{axes.text(v)}" for v in axis) if axes is not None else ""
+        yield f"GOTO/{text(point[0])},{text(point[1])},{text(point[2])}{leans}"
         start = point

@@ -12,14 +12,16 @@ from trunnion.model.program import Program
 from trunnion.model.setup import Setup
 from trunnion.model.tool import Tool
 from trunnion.model.toolpath import Motion
-from trunnion.post.readers.sections import NOWHERE, Sections, Upright
+from trunnion.post.readers.sections import NOWHERE, Leaning, Point, Sections
 from trunnion.post.readers.tools import by_number, check_tool
 from trunnion.units import MM_PER_INCH
 
 _TEXT_WORDS = ("PARTNO", "PPRINT", "REMARK")
 _SETUP = re.compile(r"SETUP\s+(\S+)\s+WORK OFFSET\s+(\S+)$", re.IGNORECASE)
 _OPERATION = re.compile(r"OPERATION\s+(\S+)$", re.IGNORECASE)
-_FULL_AXIS = (0.0, 0.0, 1.0)
+_UP = (0.0, 0.0, 1.0)
+_UNIT = 1e-4
+"""How far the length of a tool axis may be from 1: other systems write four decimals."""
 
 
 def read_apt(text: str, tools: Sequence[Tool], setups: Sequence[Setup]) -> tuple[Program, ...]:
@@ -67,8 +69,8 @@ class _Reader:
         self.tools, self.setups = tools, {s.name: s for s in setups}
         self.programs: list[Program] = []
         self.setup: Setup | None = setups[0] if len(setups) == 1 else None
-        self.sections = Sections(Upright(self.setup.clearance if self.setup else 0.0))
-        self.named = self.rapid = self.ended = False
+        self.sections = Sections(Leaning(self.setup.clearance if self.setup else 0.0))
+        self.named = self.rapid = self.ended = self.leans = False
         self.tool: Tool | None = None
         self.unit, self.feed, self.spindle, self.coolant = 0.0, 0.0, 0.0, "off"
         self.circle: list[float] | None = None
@@ -115,7 +117,7 @@ class _Reader:
         if any(p.setup.name == name for p in self.programs):
             raise BadInput(f"line {line}: setup {name} comes twice; put its operations together")
         self.setup, self.named, self.tool = self.setups[name], True, None
-        self.sections = Sections(Upright(self.setup.clearance))
+        self.sections = Sections(Leaning(self.setup.clearance))
 
     def units(self, line: int, rest: str) -> None:
         if rest not in ("MM", "INCHES"):
@@ -126,8 +128,9 @@ class _Reader:
         self.unit = unit
 
     def multax(self, line: int, rest: str) -> None:
-        if rest != "OFF":
-            raise BadInput(f"line {line}: MULTAX/{rest or 'ON'}: tilted axes are not understood; use MULTAX/OFF")
+        if rest not in ("ON", "OFF", ""):
+            raise BadInput(f"line {line}: MULTAX/{rest} is not understood; use ON or OFF")
+        self.leans = rest != "OFF"
 
     def load(self, line: int, rest: str) -> None:
         number, *more = rest.split(",")
@@ -184,13 +187,11 @@ class _Reader:
     def goto(self, line: int, rest: str) -> None:
         x, y, z, *axis = self.numbers(line, rest, 3, 6)
         tool, scale = self.tool, self.scale(line)
-        if axis and math.dist(axis, _FULL_AXIS) > tolerance.ANGLE:
-            raise BadInput(f"line {line}: a tilted tool axis is not understood")
         if self.setup is None:
             raise BadInput(f"line {line}: a move before its setup; put PPRINT/SETUP name WORK OFFSET word first")
         if tool is None:
             raise BadInput(f"line {line}: a move before a tool is loaded; put LOADTL first")
-        point = (x * scale, y * scale, z * scale)
+        point = (x * scale, y * scale, z * scale, *self.axis(line, axis))
         if self.rapid and self.circle is None:
             self.sections.rapid(line, point, tool, (self.spindle, self.coolant))
             self.rapid = False
@@ -203,13 +204,31 @@ class _Reader:
         motion, centre = self.motion(line, point)
         self.sections.feed(line, motion, point, centre, self.feed, tool, (self.spindle, self.coolant))
 
-    def motion(self, line: int, end: tuple[float, float, float]) -> tuple[Motion, tuple[float, float, float]]:
+    def axis(self, line: int, said: list[float]) -> tuple[float, ...]:
+        """Return the unit tool axis that a GOTO says: z where it says none or three axes are on; raise `BadInput` for what can't be."""
+        if not said:
+            return _UP
+        length = math.hypot(*said)
+        if abs(length - 1.0) > _UNIT:
+            raise BadInput(f"line {line}: the tool axis has the length {length:.4f}; it must be a unit vector")
+        axis = tuple(v / length for v in said)
+        if math.hypot(*axis[:2]) <= tolerance.PARAMETRIC and axis[2] > 0.0:
+            return _UP
+        if not self.leans:
+            if math.dist(axis, _UP) > tolerance.ANGLE:
+                raise BadInput(f"line {line}: a tilted tool axis after MULTAX/OFF; put MULTAX/ON first")
+            return _UP
+        return axis
+
+    def motion(self, line: int, end: Point) -> tuple[Motion, Point]:
         """Return how the move goes, and the centre of the arc when a CIRCLE came before it."""
         start = self.sections.at
         if self.circle is None or start is None:
             self.circle = None
             return Motion.LINE, NOWHERE
         (x, y, z, _, _, sense, radius), self.circle = self.circle, None
+        if start[3:] != _UP or end[3:] != _UP:
+            raise BadInput(f"line {line}: an arc of a tool that leans is not understood; write lines")
         first, last = math.dist((x, y), start[:2]), math.dist((x, y), end[:2])
         if max(abs(first - radius), abs(last - radius)) > tolerance.ARC_RADIUS or abs(z - start[2]) > tolerance.WRITTEN:
             raise BadInput(f"line {line}: the arc of radius {radius:.4f} starts at radius {first:.4f} and ends at {last:.4f} mm; "

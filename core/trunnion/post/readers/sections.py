@@ -62,6 +62,23 @@ class Upright:
         return path_of(rows, np.array(rows.point), axis, np.array(rows.centre)), tuple(rows.line)
 
 
+@dataclass(frozen=True, slots=True)
+class Leaning:
+    """Points are tips in the setup frame and the unit axis of the tool; an upright one is lifted to the clearance height."""
+
+    clearance: float
+
+    def above(self, point: Point, tool: Tool) -> Point | None:
+        """See `Reckoning`; a leaning tool comes from wherever the text's machine brings it from."""
+        high = point[2] >= self.clearance - tolerance.WRITTEN
+        return None if high or point[3:] != (0.0, 0.0, 1.0) else (point[0], point[1], self.clearance, *point[3:])
+
+    def opened(self, rows: Rows) -> tuple[Toolpath, tuple[int, ...]]:
+        """See `Reckoning`."""
+        points = np.array(rows.point)
+        return path_of(rows, points[:, :3], points[:, 3:], np.array(rows.centre)), tuple(rows.line)
+
+
 def path_of(rows: Rows, position: Floats, axis: Floats, centre: Floats) -> Toolpath:
     """Return the path of rows whose tips, axes and centres are known."""
     motion = np.array(rows.motion)
