@@ -83,8 +83,8 @@ def test_nearest_passes_come_first_and_may_be_turned_round() -> None:
     passes = [straight((0, 0, 0), (10, 0, 0)), straight((0, 2, 0), (10, 2, 0)), straight((0, 0.5, 0), (10, 0.5, 0))]
     path, *_ = made(passes, Manner(stepover=0.5, order="nearest", reversing=True))
     ends = path.position[path.mark == Mark.CUT]
-    # A pass that is reached over the surface begins with the end of that way.
-    assert ends[:, :2].tolist() == [[0.0, 0.0], [10.0, 0.0], [0.0, 0.5], [10.0, 2.0]]
+    # A pass's first tip is the end of the way to it.
+    assert ends[:, :2].tolist() == [[10.0, 0.0], [0.0, 0.5], [10.0, 2.0]]
 
 
 def test_a_closed_pass_begins_where_it_is_nearest_to_the_one_before() -> None:

@@ -72,7 +72,7 @@ def linked(passes: Sequence[Pass], drive: SurfaceDrive, tool: Tool, data: Cuttin
             if k:
                 blocks.feed(leads_out[k - 1], passes[k - 1].axis[-1], Mark.LEAD)
             blocks.travel(leads_in[k][0], one.axis[0])
-            blocks.feed(leads_in[k][1:], one.axis[0], Mark.LEAD)
+            blocks.feed(np.vstack([leads_in[k][1:], one.tip[:1]]), one.axis[0], Mark.LEAD)
         blocks.feed(one.tip, one.axis, Mark.CUT)
     blocks.feed(leads_out[-1], passes[-1].axis[-1], Mark.LEAD)
     return blocks.finished()

@@ -1,0 +1,213 @@
+"""Finishing by passes in parallel upright planes, as far apart as the wanted scallop height allows where the faces lean most across them.
+
+Planes are laid over all places where the cutter's tip is while it touches the area, and each is followed over the whole part's skin. What
+touches a face of the area is cut, and a little more on either side, so that no mark stays where areas meet.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable
+from dataclasses import dataclass
+
+import numpy as np
+import shapely
+
+from trunnion.findings import Finding, Refused, warning
+from trunnion.geometry.arrays import Bools, Floats, Ints
+from trunnion.geometry.skin import Skin
+from trunnion.model.operation import CuttingData
+from trunnion.model.setup import Setup
+from trunnion.model.tool import Tool
+from trunnion.plan.surface.drive import SurfaceDrive
+from trunnion.progress import Progress
+from trunnion.settings import setting, settings
+from trunnion.toolpath.contract import Planned, strategy
+from trunnion.toolpath.stock import PlanningStock
+from trunnion.toolpath.surface.cutter import lower_side
+from trunnion.toolpath.surface.linking import Manner, linked
+from trunnion.toolpath.surface.passes import UPRIGHT, Pass
+from trunnion.toolpath.surface.spacing import Places, places_of, plan_spacing
+from trunnion.toolpath.surface.tracing import follow
+
+ALONG = 0.1
+"""Of the cutter's radius: distance of the places along a plane that are asked for what the cutter touches."""
+CLOSER = 7
+"""Times the distance between a place that touches the area and one that doesn't is halved."""
+FINENESS = 0.25
+"""Of the nearest two planes' distance: width of the strips that distances are found for."""
+MOST_STRIPS = 200_000
+SMALLEST_LEFTOVER = 0.5
+"""mm2: less than this is the rim of an area."""
+Touches = Callable[[Ints, Floats, Progress], Bools]
+"""Says for planes (n,) and places (n,) along them whether the cutter touches the area there."""
+
+
+@settings("surface.parallel")
+class ParallelSettings:
+    """How an area is finished by parallel passes."""
+
+    direction: str = setting("auto", choices=("auto", "angle"), label="Direction",
+                             help="auto: along the side of the area that makes the shortest way; angle: as said by the angle.")
+    angle: float = setting(0.0, unit="deg", low=-180.0, high=180.0, label="Angle", help="From the setup's x axis to the feed direction.")
+    way: str = setting("both", choices=("both", "one"), label="Way", help="both: to and fro; one: every pass in the same direction.")
+    stepover: float = setting(0.0, unit="mm", low=0.0, high=100.0, label="Stepover",
+                              help="Distance of the planes; 0: by the wanted scallop height and how the faces lean.")
+    steepest: float = setting(80.0, unit="deg", low=5.0, high=89.5, label="Steepest",
+                              help="Faces that lean by more from level are left to waterlines.")
+    overlap: float = setting(0.3, unit="mm", low=0.0, high=20.0, label="Overlap", help="How far passes go on past the rim of the area.")
+    chord: float = setting(0.0005, unit="mm", low=0.00005, high=0.1, label="Chord error",
+                           help="How far straight moves may leave the cutter's way over the faces.")
+    lead_radius: float = setting(1.0, unit="mm", low=0.05, high=50.0, label="Lead radius",
+                                 help="Of the quarter circles onto and off passes.")
+    safety: float = setting(2.0, unit="mm", low=0.2, high=50.0, label="Safety distance",
+                            help="Where a rapid ends above what may still be there.")
+
+
+@strategy(settings=ParallelSettings)
+def parallel(drive: SurfaceDrive, tool: Tool, data: CuttingData, stock: PlanningStock, setup: Setup, settings: ParallelSettings,
+             progress: Progress) -> Planned:
+    """Return the motions that finish the drive's faces by parallel passes, and the area that is too steep for them."""
+    if drive.height <= 0.0 and settings.stepover <= 0.0:
+        raise Refused(f"{drive.feature}: parallel passes need a scallop height or a stepover above zero")
+    places = places_of(drive, tool)
+    places = places.some(places.normal[:, 2] >= math.cos(math.radians(settings.steepest)))
+    found = _too_steep(drive, places)
+    if not len(places.row):
+        return Planned(findings=found)
+    planes = _planes(places, tool, drive.height, settings)
+    passes = _passes(planes, drive, tool, settings, progress.part(0.0, 0.7))
+    manner = Manner(stepover=planes.widest, safety=settings.safety, lead_radius=settings.lead_radius, order="nearest",
+                    reversing=settings.way == "both", chord=settings.chord)
+    return Planned(path=linked(passes, drive, tool, data, stock, setup, manner, progress.part(0.7, 1.0)), findings=found)
+
+
+@dataclass(frozen=True, slots=True, eq=False, kw_only=True)
+class _Planes:
+    """Upright planes along unit directions `along` and across `across` (2,): at distances (p,) along `across`, each from where to where
+    (p, 2) along `along` the tips of the area lie; `widest`: the largest distance of two; `triangles` (m,): the area's rows of the skin."""
+
+    along: Floats
+    across: Floats
+    at: Floats
+    reach: Floats
+    widest: float
+    triangles: Ints
+
+
+def _planes(places: Places, tool: Tool, height: float, settings: ParallelSettings) -> _Planes:
+    """Return the planes of the direction that is asked for, or of the better one of both sides of the box around the area."""
+    if settings.direction == "angle":
+        return _laid(places, tool, height, math.radians(settings.angle), settings.stepover)
+    box = shapely.get_coordinates(shapely.oriented_envelope(shapely.MultiPoint(places.tips.reshape(-1, 3)[:, :2])))
+    sides = np.diff(box[:3], axis=0)
+    longest = sides[np.argmax(np.hypot(*sides.T))]
+    angle = math.atan2(longest[1], longest[0]) % math.pi
+    both = [_laid(places, tool, height, a, settings.stepover) for a in (angle, (angle + 0.5 * math.pi) % math.pi)]
+    return min(both, key=lambda planes: float(np.diff(planes.reach, axis=1).sum()) + tool.diameter * len(planes.at))
+
+
+def _laid(places: Places, tool: Tool, height: float, angle: float, stepover: float) -> _Planes:
+    """Return the planes at an angle (radians), from one side of the area to the other, as far apart as any place near both allows."""
+    along, across = np.array([math.cos(angle), math.sin(angle)]), np.array([-math.sin(angle), math.cos(angle)])
+    run, beside = places.tips[:, :, :2] @ along, places.tips[:, :, :2] @ across
+    low, high = beside.min(axis=1), beside.max(axis=1)
+    spacing = np.full(len(low), stepover) if stepover > 0.0 else plan_spacing(places, tool, height, across)
+    begin, end = float(low.min()), float(high.max())
+    width = max(FINENESS * float(spacing.min()), (end - begin) / MOST_STRIPS)
+    strips = int((end - begin) / width) + 1
+    first, last = (((v - begin) / width).astype(np.int64) for v in (low, high))
+    count = last - first + 1
+    row = np.repeat(np.arange(len(first)), count)
+    strip = first[row] + np.arange(len(row)) - np.repeat(np.cumsum(count) - count, count)
+    allowed, least, most = np.full(strips, np.inf), np.full(strips, np.inf), np.full(strips, -np.inf)
+    np.minimum.at(allowed, strip, spacing[row])
+    np.minimum.at(least, strip, run.min(axis=1)[row])
+    np.maximum.at(most, strip, run.max(axis=1)[row])
+    at = _marched(allowed, width, end - begin)
+    rows = np.minimum((at / width).astype(np.int64), strips - 1)
+    kept = least[rows] <= most[rows]
+    return _Planes(along=along, across=across, at=begin + at[kept], reach=np.column_stack([least[rows], most[rows]])[kept],
+                   widest=float(np.diff(at, append=at[-1] + width).max()), triangles=places.row)
+
+
+def _marched(allowed: Floats, width: float, length: float) -> Floats:
+    """Return places (p,) from 0 to a length, as far apart as the least that is allowed (strips,) in the strips of a width between them."""
+    at = [0.0]
+    while at[-1] < length:
+        here, step = at[-1], math.inf
+        strip, ahead = int(here / width), 0.0
+        while strip < len(allowed) and ahead < step:
+            step = min(step, float(allowed[strip]))
+            strip += 1
+            ahead = strip * width - here
+        at.append(min(here + min(step, length), length))
+    return np.array(at)
+
+
+def _passes(planes: _Planes, drive: SurfaceDrive, tool: Tool, settings: ParallelSettings, progress: Progress) -> list[Pass]:
+    """Return the passes where the cutter touches the area, plane by plane."""
+    pieces, lowest = lower_side(tool, drive.allowance), float(drive.low[2]) - tool.flute_length
+    on_area = np.zeros(len(drive.skin.triangles), dtype=bool)
+    on_area[planes.triangles] = True
+
+    def touches(plane: Ints, run: Floats, share: Progress) -> Bools:
+        plan = run[:, None] * planes.along + planes.at[plane, None] * planes.across
+        facet = drive.skin.drop.touch(plan, pieces, lowest, share)[1]
+        # Past the area the cutter rolls over its rim.
+        within = (run >= planes.reach[plane, 0]) & (run <= planes.reach[plane, 1])
+        return np.asarray((facet >= 0) & on_area[np.maximum(facet, 0)] & within)
+
+    plane, runs = _runs(planes, ALONG * tool.radius, touches, progress.part(0.0, 0.4))
+    plane, runs = _joined(plane, runs, settings.overlap, tool.radius)
+    lines = [planes.at[p] * planes.across + np.outer(r, planes.along) for p, r in zip(plane, runs, strict=True)]
+    tips = follow(drive.skin.drop, pieces, lines, settings.chord, lowest, progress.part(0.4, 0.9))
+    count = np.cumsum([len(t) for t in tips])[:-1]
+    plan = np.concatenate([np.zeros((0, 2)), *(t[:, :2] for t in tips)])
+    facet = drive.skin.drop.touch(plan, pieces, lowest, progress.part(0.9, 1.0))[1]
+    normals = np.split(_facing(drive.skin, facet), count)
+    lift = drive.allowance * UPRIGHT
+    return [Pass(tip=tip + lift, axis=np.broadcast_to(UPRIGHT, tip.shape), normal=normal)
+            for tip, normal in zip(tips, normals, strict=True)]
+
+
+def _facing(skin: Skin, facet: Ints) -> Floats:
+    """Return the unit normals (n, 3) of the triangles that are touched; upwards where none is."""
+    a, b, c = np.moveaxis(skin.points[skin.triangles[np.maximum(facet, 0)]], 1, 0)
+    normal = np.where(facet[:, None] >= 0, np.cross(b - a, c - a), UPRIGHT)
+    size = np.linalg.norm(normal, axis=1, keepdims=True)
+    return np.divide(normal, size, out=np.broadcast_to(UPRIGHT, normal.shape).copy(), where=size > 0.0)
+
+
+def _too_steep(drive: SurfaceDrive, level: Places) -> tuple[Finding, ...]:
+    """Return a finding of the area that no level place stands for."""
+    a, b, c = np.moveaxis(drive.skin.points[drive.skin.triangles[drive.skin.of(drive.faces)]], 1, 0)
+    area = float(0.5 * np.linalg.norm(np.cross(b - a, c - a), axis=1).sum() - level.area.sum())
+    if area < SMALLEST_LEFTOVER:
+        return ()
+    return (warning("surface.too-steep", f"{area:.1f} mm2 of {drive.feature} are too steep for parallel passes", drive.feature,
+                    remedy="cut them by waterlines or from another direction"),)
+
+
+def _runs(planes: _Planes, step: float, touches: Touches, progress: Progress) -> tuple[Ints, Floats]:
+    """Return the plane (k,) and from where to where (k, 2) along it the cutter touches the area, one run after the other."""
+    count = np.ceil((planes.reach[:, 1] - planes.reach[:, 0]) / step).astype(np.int64) + 3
+    plane = np.repeat(np.arange(len(count)), count)
+    place = np.arange(len(plane)) - np.repeat(np.cumsum(count) - count, count) - 1
+    run = planes.reach[plane, 0] + place * step
+    on = touches(plane, run, progress.part(0.0, 0.8))
+    edge = np.flatnonzero((on[1:] != on[:-1]) & (plane[1:] == plane[:-1]))
+    inside, outside = np.where(on[edge], run[edge], run[edge + 1]), np.where(on[edge], run[edge + 1], run[edge])
+    for k in range(CLOSER):
+        middle = 0.5 * (inside + outside)
+        found = touches(plane[edge], middle, progress.part(0.8 + 0.2 * k / CLOSER, 0.8 + 0.2 * (k + 1) / CLOSER))
+        inside, outside = np.where(found, middle, inside), np.where(found, outside, middle)
+    return plane[edge[::2]], inside.reshape(-1, 2)
+
+
+def _joined(plane: Ints, runs: Floats, overlap: float, gap: float) -> tuple[Ints, Floats]:
+    """Return runs with an overlap at both ends, and as one where the way between two is no longer than a gap."""
+    runs = runs + np.array([-overlap, overlap])
+    begins = np.append(True, (plane[1:] != plane[:-1]) | (runs[1:, 0] - runs[:-1, 1] > gap))[: len(plane)]
+    ends = np.append(begins[1:], True)[: len(plane)]
+    return plane[begins], np.column_stack([runs[begins, 0], runs[ends, 1]])

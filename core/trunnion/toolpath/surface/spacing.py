@@ -1,0 +1,77 @@
+"""How far apart passes in parallel planes may lie over a drive's faces so that the scallops between them stay as low as wanted.
+
+Along the face it is the stepover of `stepovers`, square to the feed; seen in plan, passes are nearer to each other the more the face leans
+across them.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, fields
+
+import numpy as np
+
+from trunnion.geometry.arrays import Bools, Floats, Ints, unit
+from trunnion.model.tool import Tool
+from trunnion.plan.surface.drive import SurfaceDrive
+from trunnion.toolpath.surface.cutter import tip_at
+from trunnion.toolpath.surface.passes import UPRIGHT
+from trunnion.toolpath.surface.stepovers import stepover_measure
+
+CLOSEST = 0.02
+"""Of a stepover: how near tips may come where a hollow is nearly, or more than, as round as the cutter."""
+
+
+@dataclass(frozen=True, slots=True, eq=False, kw_only=True)
+class Places:
+    """Triangles of a drive's faces in the cutting frame: row (m,) of the skin's, unit normals of their middles (m, 3), areas (m,), where
+    the cutter's tip is when it touches their corners (m, 3, 3), and two edges of each (m, 2, 3) with the turn of the normal along them."""
+
+    row: Ints
+    normal: Floats
+    area: Floats
+    tips: Floats
+    edges: Floats
+    turns: Floats
+
+    def some(self, which: Bools) -> Places:
+        """Return some of the places."""
+        return Places(**{f.name: getattr(self, f.name)[which] for f in fields(self)})
+
+    def along(self, way: Floats) -> tuple[Floats, Floats]:
+        """Return how the normal turns and how the tip moves for each mm that the contact goes along unit tangents (m, 3), each (m, 3)."""
+        a, b = self.edges[:, 0], self.edges[:, 1]
+        aa, ab, bb = (a * a).sum(axis=1), (a * b).sum(axis=1), (b * b).sum(axis=1)
+        wa, wb = (way * a).sum(axis=1), (way * b).sum(axis=1)
+        size = np.maximum(aa * bb - ab * ab, np.finfo(float).tiny)
+        first, second = ((bb * wa - ab * wb) / size)[:, None], ((aa * wb - ab * wa) / size)[:, None]
+        moves = self.tips[:, 1:] - self.tips[:, :1]
+        return first * self.turns[:, 0] + second * self.turns[:, 1], first * moves[:, 0] + second * moves[:, 1]
+
+
+def places_of(drive: SurfaceDrive, tool: Tool) -> Places:
+    """Return the triangles of the faces to be finished that an upright cutter can come to from above: those that look upwards."""
+    skin = drive.skin
+    row = np.flatnonzero(skin.of(drive.faces))
+    points, normals = skin.points[skin.triangles[row]], skin.normals[skin.triangles[row]]
+    flat = np.cross(points[:, 1] - points[:, 0], points[:, 2] - points[:, 0])
+    size = np.linalg.norm(flat, axis=1)
+    seen = (size > 0.0) & (normals[:, :, 2].min(axis=1) > 0.0)
+    row, points, normals, size = row[seen], points[seen], normals[seen], size[seen]
+    contact = (points + drive.allowance * normals).reshape(-1, 3)
+    tips = tip_at(tool, contact, normals.reshape(-1, 3), np.broadcast_to(UPRIGHT, contact.shape)).reshape(-1, 3, 3)
+    return Places(row=row, normal=unit(normals.sum(axis=1)), area=0.5 * size, tips=tips,
+                  edges=points[:, 1:] - points[:, :1], turns=normals[:, 1:] - normals[:, :1])
+
+
+def plan_spacing(places: Places, tool: Tool, height: float, across: Floats) -> Floats:
+    """Return how far apart (m,) passes in planes across a level unit direction (2,) may lie at each triangle, measured between tips."""
+    side = np.append(across, 0.0)
+    lean = places.normal @ side
+    # Along the face, square to the feed: what is left of the direction in the tangent plane.
+    share = np.sqrt(np.maximum(1.0 - lean * lean, np.finfo(float).tiny))
+    way = (side - lean[:, None] * places.normal) / share[:, None]
+    turn, move = places.along(way)
+    bend = (turn * way).sum(axis=1, keepdims=True)
+    stepover = 1.0 / stepover_measure(tool, height)(np.zeros_like(way), places.normal, way, places.normal + bend * way)
+    # Tips are nearer to each other than contacts in a hollow, and wider apart on a hill.
+    return np.asarray(stepover * np.maximum(move @ side, CLOSEST * share))
