@@ -24,8 +24,7 @@ def mapped(window, part_file, idle, qtbot):
     idle(window)
     window.registry.run("view.top")
     QTest.mouseClick(window.toolbar.widgetForAction(window.registry.action("view.deviation")), BUTTON)
-    qtbot.waitUntil(lambda: window.deviation.shown is not None, timeout=20000)
-    qtbot.wait(60)
+    qtbot.waitUntil(lambda: window.deviation.shown is not None and window.centre.scale.isVisible(), timeout=20000)
     return window
 
 
@@ -70,7 +69,7 @@ def test_the_value_under_the_mouse_is_said(mapped, qtbot):
     assert mapped.status.text.text() == ""
 
 
-def test_the_worst_places_are_listed_and_a_click_goes_there(mapped, qtbot):
+def test_the_worst_places_are_listed_and_a_click_goes_there(mapped):
     table = mapped.places.table
     assert [table.item(r, 1).text() for r in range(table.rowCount())] == ["-50 µm", "+200 µm"]
     assert [table.item(r, 3).text() for r in range(table.rowCount())] == ["pocket-02", "pocket-03"]
@@ -79,7 +78,6 @@ def test_the_worst_places_are_listed_and_a_click_goes_there(mapped, qtbot):
     at = scene.where(mapped.places.places[0].point)
     assert abs(at.x() - scene.width() / 2) < 3 and abs(at.y() - scene.height() / 2) < 3
     assert scene.view.camera.parallel_scale < 50.0
-    qtbot.wait(30)
     # Beside the number that is written at the place.
     x, y, z = mapped.places.places[0].point
     inside = np.array([GOUGE[0] - x, GOUGE[1] - y, 0.0]) * 0.8 + (x, y, z)
@@ -101,9 +99,8 @@ def test_an_empty_list_says_why(make_window, part_file, idle, qtbot):
     assert "lies between -20 µm and +20 µm" in window.places.empty.text()
 
 
-def test_the_map_goes_as_it_came(mapped, qtbot):
+def test_the_map_goes_as_it_came(mapped):
     mapped.registry.run("view.deviation")
-    qtbot.wait(30)
     assert "deviation" not in mapped.centre.scene.view.actors
     assert mapped.centre.scene.view.actors["part"].visibility
     assert mapped.centre.legend.isVisible() and not mapped.centre.scale.isVisible()

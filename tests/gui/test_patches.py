@@ -5,6 +5,8 @@ The part is a plate with three small domes and a larger one: seen from the top e
 
 from __future__ import annotations
 
+import time
+
 import numpy as np
 import pytest
 from PySide6.QtCore import QPoint, Qt
@@ -71,8 +73,6 @@ def shown(segmented, qtbot):
 
 def until(is_so, seconds=60.0) -> None:
     """Wait until something is so."""
-    import time
-
     end = time.monotonic() + seconds
     while not is_so():
         assert time.monotonic() < end

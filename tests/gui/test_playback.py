@@ -67,9 +67,9 @@ def until(is_so, seconds=60.0) -> None:
 
 
 def settled(window, qtbot) -> None:
-    """Wait until the stock is where the tool is."""
-    qtbot.waitUntil(lambda: window.player.is_settled, timeout=60000)
-    qtbot.wait(90)
+    """Wait until the stock is where the tool is, and words and program follow."""
+    followers = (window.playback._soon, window._soon)
+    qtbot.waitUntil(lambda: window.player.is_settled and not any(timer.isActive() for timer in followers), timeout=60000)
 
 
 def go(window, qtbot, position) -> None:
@@ -156,7 +156,7 @@ def test_words_that_do_not_fit_end_in_dots(played, qtbot):
     full = played.playback.place.text()
     assert not full.endswith("…")
     played.playback.place.setFixedWidth(120)
-    qtbot.wait(20)
+    qtbot.waitUntil(lambda: played.playback.place.width() == 120)
     go(played, qtbot, 22.0)
     assert played.playback.place.text().endswith("…")
     played.playback.place.setMinimumWidth(0)
@@ -249,8 +249,7 @@ def test_load_and_blocks_at_fault_stand_below_the_operations(played, qtbot):
     load[: n // 2], bad[3 * n // 4] = 100.0, True
     low = track.height()
     track.show_load(load, bad)
-    qtbot.wait(60)
-    assert track.height() > low
+    qtbot.waitUntil(lambda: track.height() > low)
     picture = track.grab().toImage()
     ratio = picture.height() / track.height()
 

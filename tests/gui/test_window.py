@@ -213,8 +213,9 @@ def test_a_program_of_an_earlier_plan_is_marked_as_stale(programmed, idle):
 
 
 def test_the_palette_runs_what_was_typed(opened, qtbot, idle):
+    qtbot.waitUntil(opened.isActiveWindow)  # a window that is not active yet has no shortcuts
     QTest.keyClick(opened, Qt.Key.Key_P, Qt.KeyboardModifier.ControlModifier | Qt.KeyboardModifier.ShiftModifier)
-    assert opened.finder.isVisible()
+    qtbot.waitUntil(opened.finder.isVisible)
     QTest.keyClicks(opened.finder.line, "recog")
     QTest.keyClick(opened.finder.line, Qt.Key.Key_Return)
     idle(opened)
@@ -277,9 +278,10 @@ def test_what_is_up_to_date_is_not_computed_again(programmed, idle):
     assert "up to date" in programmed.centre.notice.text
 
 
-def test_a_row_dragged_onto_another_moves_in_front_of_it(programmed, idle):
+def test_a_row_dragged_onto_another_moves_in_front_of_it(programmed, idle, qtbot):
     tree, target = programmed.process.tree, programmed.process.item("op-04")
-    programmed.process.tree.parentWidget().parentWidget().raise_()
+    programmed.show_dock("process")
+    qtbot.waitUntil(tree.isVisible)
     tree.setCurrentItem(programmed.process.item("op-06"))
     at = tree.visualItemRect(target).topLeft() + QPoint(4, 2)
     tree.dropEvent(QDropEvent(QPointF(at), Qt.DropAction.MoveAction, QMimeData(), LEFT, Qt.KeyboardModifier.NoModifier))
@@ -288,11 +290,10 @@ def test_a_row_dragged_onto_another_moves_in_front_of_it(programmed, idle):
     assert order.index("op-06") == order.index("op-04") - 1
 
 
-def test_the_listing_shows_the_selected_operations_motions(programmed):
-    programmed.listing.parentWidget().raise_()
+def test_the_listing_shows_the_selected_operations_motions(programmed, qtbot):
+    programmed.show_dock("listing")
     programmed.document.select_operation("op-02")
-    programmed.listing.refresh()
-    assert programmed.listing.toPlainText().startswith("setup S1")
+    qtbot.waitUntil(lambda: programmed.listing.toPlainText().startswith("setup S1"))
 
 
 def test_the_program_text_is_shown(programmed, qtbot):
@@ -352,6 +353,5 @@ def test_a_message_has_the_room_that_the_columns_beside_it_do_not_need(window, q
     window.resize(1280, 800)
     window.show_dock("messages")
     window.document.notice("a message that is long enough to be cut off where every other column takes its full width " * 2)
-    qtbot.wait(20)
     table = window.messages.table
-    assert table.columnWidth(1) > 0.5 * table.viewport().width()
+    qtbot.waitUntil(lambda: table.columnWidth(1) > 0.5 * table.viewport().width())
