@@ -15,6 +15,8 @@ import time
 from dataclasses import asdict
 from pathlib import Path
 
+import numpy as np
+
 from trunnion.findings import BadInput, OutOfMemory, TrunnionError
 from trunnion.part.limits import ReadLimits
 from trunnion.part.request import Request
@@ -45,7 +47,7 @@ def run(request: Request, data: bytes, limits: ReadLimits, progress: Progress) -
 
 
 def _wait(child: subprocess.Popen[bytes], request: Request, limits: ReadLimits, progress: Progress) -> None:
-    import OCP  # noqa: F401  the library is wanted for the answer; loading it now costs no time, the other process is at work
+    _load()
     start = looked = time.monotonic()
     while child.poll() is None:
         now = time.monotonic()
@@ -55,6 +57,16 @@ def _wait(child: subprocess.Popen[bytes], request: Request, limits: ReadLimits, 
             progress.at(min(0.9, (now - start) / limits.seconds), "reading")
             looked = now
         time.sleep(_LOOK)
+
+
+def _load() -> None:
+    """Load what the part is wanted with next: that costs no time now, the other process is at work."""
+    import OCP  # noqa: F401
+
+    from trunnion.geometry.spline import SplineSurface
+    flat = SplineSurface(knots_u=np.array([0.0, 0.0, 1.0, 1.0]), knots_v=np.array([0.0, 0.0, 1.0, 1.0]), degree_u=1, degree_v=1,
+                         poles=np.ones((2, 2, 4)))
+    flat.at(np.zeros((1, 2)))
 
 
 def _answer(code: int, place: Path, request: Request, limits: ReadLimits) -> bytes:

@@ -14,6 +14,7 @@ from trunnion import tolerance
 from trunnion.findings import BadInput, Finding, Severity
 from trunnion.geometry.arrays import Floats, Ints
 from trunnion.geometry.boundary import Boundary
+from trunnion.geometry.curvature import FaceBend
 from trunnion.geometry.facegraph import FaceGraph
 from trunnion.geometry.frame import Frame
 from trunnion.geometry.mesh import Mesh
@@ -80,6 +81,7 @@ class Part:
         self._graph: FaceGraph | None = None
         self._meshes: dict[tuple[float, float], Mesh] = {}
         self._sections: dict[tuple[bytes, float], Region] = {}
+        self._bends: dict[int, FaceBend] = {}
         self._slicer: Any = None
 
     path = property(lambda self: self.facts.path, doc="Where the part was read from.")
@@ -149,6 +151,16 @@ class Part:
         from trunnion.part.boundary import boundary_of
         own = set(self._faces)
         return boundary_of(((tag, face) for tag, face in enumerate(faces_of(self.as_read), 1) if tag in own), parts)
+
+    def bend(self, tag: int) -> FaceBend:
+        """Return how a face bends; raise `BadInput` when it is not of the chosen solid."""
+        if tag not in self._bends:
+            from trunnion.part.curvature import bend_of
+            face = self.face_shape(tag)
+            if face is None:
+                raise BadInput(f"face {tag} is not a face of the chosen solid of {self.name}")
+            self._bends[tag] = bend_of(face)
+        return self._bends[tag]
 
     def face_outline(self, frame: Frame, tag: int) -> Region:
         """Return the plan projection, in the frame's x and y, of a plane face that is level or nearly so; raise `BadInput` otherwise."""

@@ -7,6 +7,7 @@ from typing import Any, Protocol, runtime_checkable
 
 from trunnion.geometry.arrays import Floats, Ints
 from trunnion.geometry.boundary import Boundary
+from trunnion.geometry.curvature import FaceBend
 from trunnion.geometry.facegraph import FaceGraph
 from trunnion.geometry.frame import Frame
 from trunnion.geometry.region import Region
@@ -26,10 +27,14 @@ class Slicer(Protocol):
 
 
 class Bounded(Protocol):
-    """Something whose faces have boundaries; a part satisfies it."""
+    """Something whose faces have boundaries and bends; a part satisfies it."""
 
     def boundary(self, parts: Callable[[Floats], Ints] | None) -> Boundary:
         """Return the boundary of every face: each edge cut into `parts(lengths)` pieces of equal length, or its exact extremes."""
+        ...
+
+    def bend(self, tag: int) -> FaceBend:
+        """Return how a face bends."""
         ...
 
 

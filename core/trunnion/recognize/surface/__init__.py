@@ -12,6 +12,7 @@ from trunnion.geometry.facegraph import FaceGraph
 from trunnion.model.feature import FaceRole, Feature, Recognition
 from trunnion.progress import QUIET, Progress
 from trunnion.recognize.contract import Bounded
+from trunnion.recognize.surface.bends import PatchBends, patch_bends
 from trunnion.recognize.surface.groups import aligned_groups, invariant_groups
 from trunnion.recognize.surface.settings import ALIGNED, EXACT, SurfaceSettings
 from trunnion.recognize.surface.size import PatchSizes, patch_sizes
@@ -36,7 +37,7 @@ class SurfaceFamily:
         """Return one feature a group of equal patches, largest first; local ones are marked. Raises `Cancelled` when asked to stop."""
         progress.at(0.0, "measuring patches")
         sizes = _sizes(graph, bounded, settings)
-        progress.at(0.8, "grouping patches")
+        progress.at(0.5, "grouping patches")
         size = _size(sizes, settings)
         sliver = sizes.width < settings.sliver_width
         small = ~sliver & (size < settings.smallest)
@@ -45,7 +46,8 @@ class SurfaceFamily:
             groups = aligned_groups(sizes, rows, settings.tolerance, relative=settings.relative, subdivide=settings.subdivide)
         else:
             groups = invariant_groups(sizes, rows, settings.tolerance, relative=settings.relative)
-        features = tuple(_feature(f"group-{k:02}", g, sizes, settings) for k, g in enumerate(groups, 1))
+        bends = patch_bends(bounded, graph, sizes)
+        features = tuple(_feature(f"group-{k:02}", g, sizes, bends, settings) for k, g in enumerate(groups, 1))
         apart = sliver | small
         return Recognition(family=self.name, features=features, unexplained=tuple(int(t) for t in sizes.tag[apart]),
                            unexplained_share=float(sizes.area[apart].sum() / sizes.area.sum()),
@@ -54,7 +56,9 @@ class SurfaceFamily:
     def measured(self, found: Recognition, graph: FaceGraph, part: Bounded, settings: SurfaceSettings) -> Recognition:
         """Return the groups with sizes that fit their faces; whether those made or changed by hand are local stays as a person said."""
         sizes = _sizes(graph, part, settings)
-        anew = {f.id: _feature(f.id, np.flatnonzero(np.isin(sizes.tag, f.tags)), sizes, settings) for f in found.of_kind("group")}
+        bends = patch_bends(part, graph, sizes)
+        anew = {f.id: _feature(f.id, np.flatnonzero(np.isin(sizes.tag, f.tags)), sizes, bends, settings)
+                for f in found.of_kind("group")}
         features = tuple(f if f.kind != "group" else replace(f, sizes=anew[f.id].sizes) if f.by_hand else anew[f.id]
                          for f in found.features)
         apart = np.isin(sizes.tag, found.unexplained)
@@ -70,14 +74,14 @@ def _size(sizes: PatchSizes, settings: SurfaceSettings) -> Floats:
     return sizes.diagonal if settings.grouping == ALIGNED else sizes.diameter
 
 
-def _feature(id: str, rows: Ints, sizes: PatchSizes, settings: SurfaceSettings) -> Feature:
+def _feature(id: str, rows: Ints, sizes: PatchSizes, bends: PatchBends, settings: SurfaceSettings) -> Feature:
     size = _size(sizes, settings)
     ratio = float(size[rows].max() / size.max())
     return Feature(id=id, kind="group", faces=tuple(FaceRole(role="face", face=int(t)) for t in np.sort(sizes.tag[rows])),
                    sizes={"feature_size": float(size[rows].mean()), "feature_size_min": float(size[rows].min()),
                           "feature_size_max": float(size[rows].max()), "size_ratio": ratio, "diagonal": float(sizes.diagonal[rows].mean()),
                           "diameter": float(sizes.diameter[rows].mean()), "boundary_length": float(sizes.length[rows].mean()),
-                          "area": float(sizes.area[rows].sum())},
+                          "area": float(sizes.area[rows].sum()), **bends.sizes(rows)},
                    attributes={"local": ratio < settings.local_ratio})
 
 

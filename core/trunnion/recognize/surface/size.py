@@ -7,15 +7,18 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from trunnion import tolerance
 from trunnion.geometry.arrays import Floats, Ints
 from trunnion.recognize.contract import Bounded
 
 REPAIR = ((0.7, 8), (0.5, 6), (0.3, 4), (0.1, 2))
 """The paper's boundary repair: an edge longer than this share of the datum length is cut into so many equal parts."""
-SPREAD, LEAST = 1000, 48
+SPREAD, LEAST = 500, 48
 """Where the largest distance of two boundary points is wanted: points along the longest edge, and the fewest on any."""
+RUN = 8
+"""Neighbouring points that are looked at as one while the largest distance is searched."""
 BLOCK = 1000
-"""Rows of the table of distances that are looked at together."""
+"""Rows of a table of distances that are looked at together."""
 
 
 @dataclass(frozen=True, slots=True, eq=False, kw_only=True)
@@ -56,9 +59,25 @@ def _repaired(length: Floats) -> Ints:
 
 
 def _diameter(points: Floats) -> float:
-    most = 0.0
-    for first in range(0, len(points), BLOCK):
-        rows = points[first:first + BLOCK]
-        square = (rows**2).sum(axis=1)[:, None] + (points**2).sum(axis=1) - 2.0 * rows @ points.T
-        most = max(most, float(square.max(initial=0.0)))
-    return float(np.sqrt(most))
+    """Return the largest distance of two points (k, 3): of runs of points first, then only where two runs may hold the farthest pair."""
+    if not len(points):
+        return 0.0
+    points = points - points.mean(axis=0)
+    points = np.vstack([points, np.repeat(points[-1:], -len(points) % RUN, axis=0)])
+    runs = points.reshape(-1, RUN, 3)
+    centre = runs.mean(axis=1)
+    reach = np.linalg.norm(runs - centre[:, None], axis=2).max(axis=1)
+    best = float(np.linalg.norm(points - points[np.linalg.norm(points, axis=1).argmax()], axis=1).max())
+    for start in range(0, len(runs), BLOCK):
+        rows = slice(start, start + BLOCK)
+        bound = np.sqrt(_squares(centre[rows], centre)) + reach[rows, None] + reach
+        a, b = np.nonzero(bound > best * (1.0 + tolerance.PARAMETRIC))
+        a, b = a[a + start <= b] + start, b[a + start <= b]
+        for k in range(0, len(a), BLOCK):
+            apart = runs[a[k:k + BLOCK], :, None] - runs[b[k:k + BLOCK], None]
+            best = max(best, float(np.sqrt((apart**2).sum(axis=3).max(initial=0.0))))
+    return best
+
+
+def _squares(a: Floats, b: Floats) -> Floats:
+    return np.asarray(np.maximum((a**2).sum(axis=1)[:, None] + (b**2).sum(axis=1) - 2.0 * a @ b.T, 0.0))
