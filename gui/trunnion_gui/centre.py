@@ -44,6 +44,8 @@ from trunnion_gui.words import amount, fine_amount, kind_words, sentence
 
 _EDGE = 14
 _TIP_AWAY = 16
+_LONGEST_TRAIL = 20_000
+"""Chords of the way behind the tool that are shown: a surface's path has hundreds of thousands, and each frame sends them anew."""
 _MOST_IDS = 200
 """IDs that are written on the part at most."""
 _CLOSE_LOOK = 30.0
@@ -315,8 +317,9 @@ class Centre(QWidget):
         tip, axis = line.pose(position)
         _, points, reached = self._run
         done = int(np.searchsorted(reached, position, side="right"))
-        blocks = np.append(np.ceil(reached[1:done]) - 1, line.block(position)).astype(int)
-        self.scene.show_trail(np.vstack([points[:done], tip]), line.rapid[blocks])
+        first = max(done - _LONGEST_TRAIL, 0)
+        blocks = np.append(np.ceil(reached[first + 1:done]) - 1, line.block(position)).astype(int)
+        self.scene.show_trail(np.vstack([points[first:done], tip]), line.rapid[blocks])
         self.scene.move_tool(tip, axis)
 
     def _show_stock(self, moment: Moment) -> None:

@@ -332,6 +332,29 @@ class CrashingEngine(FakeEngine):
             os._exit(139)
 
 
+def swaying(box: tuple[float, float, float, float], z: float, tilt: float) -> Toolpath:
+    """Return a made-up path along a box whose tool sways from one side to the other, by so many radians across x."""
+    x0, y0, x1, y1 = box
+    x = np.linspace(x0 + 20, x1 - 20, 21)
+    lean = tilt * np.sin(np.linspace(0.0, 2 * np.pi, 21))
+    way = np.column_stack([x, np.full(21, (y0 + y1) / 2), np.full(21, z)])
+    position = np.vstack([way[:1] + (0, 0, 60.0), way, way[-1:] + (0, 0, 60.0)])
+    axis = np.column_stack([np.sin(lean), np.zeros(21), np.cos(lean)])
+    n = len(position)
+    return Toolpath(position=position, axis=np.vstack([axis[:1], axis, axis[-1:]]), centre=np.full((n, 3), np.nan),
+                    motion=np.array([Motion.RAPID] + [Motion.LINE] * (n - 2) + [Motion.RAPID]),
+                    mark=np.array([Mark.RETRACT] + [Mark.CUT] * (n - 2) + [Mark.RETRACT]), feed=np.array([0.0] + [900.0] * (n - 2) + [0.0]))
+
+
+class SwayingEngine(FakeEngine):
+    """Its second operation is cut with a tool that leans by up to 30 degrees to either side."""
+
+    def _toolpath(self, session: Session) -> Session:
+        session = super()._toolpath(session)
+        path = swaying(POCKETS[0], -10.0, np.radians(30.0))
+        return replace(session, paths=tuple(replace(p, path=path) if p.operation == "op-02" else p for p in session.paths))
+
+
 class FailingEngine(FakeEngine):
     """Its proof finds a gouge; its programs carry the plan they belong to, so that they may be stamped."""
 

@@ -6,7 +6,7 @@ import numpy as np
 
 from trunnion.geometry.arrays import Floats, Ints
 from trunnion.model.playback import CHORD_ANGLE, turned_axes
-from trunnion.model.toolpath import Motion, Toolpath
+from trunnion.model.toolpath import Mark, Motion, Toolpath
 
 MOTIONS = ("cut", "entry", "lead", "link", "retract", "rapid")
 """Kinds of motion by the palette's words: those of the marks in their order, and rapids."""
@@ -54,13 +54,16 @@ def leans(path: Toolpath) -> bool:
 
 
 def strokes(path: Toolpath, every: float, length: float, most: int) -> Floats:
-    """Return strokes (k, 2, 3) from the tip along the tool axis at equal distances on the feed moves of a path that leans anywhere.
+    """Return strokes (k, 2, 3) from the tip along the tool axis at equal distances on the moves at the work of a path that leans anywhere.
 
     `every` mm between two of them, or more where that would give above `most`; `length` mm. Between two blocks the axis turns evenly.
     """
-    run = np.where(path.motion == Motion.RAPID, 0.0, np.linalg.norm(path.position - path.starts(), axis=1)) if len(path) else np.zeros(0)
+    if not len(path) or not leans(path):
+        return np.zeros((0, 2, 3))
+    away = (path.motion == Motion.RAPID) | (path.mark == Mark.RETRACT)
+    run = np.where(away, 0.0, np.linalg.norm(path.position - path.starts(), axis=1))
     reached = np.cumsum(run)
-    if not len(path) or not leans(path) or reached[-1] <= 0.0:
+    if reached[-1] <= 0.0:
         return np.zeros((0, 2, 3))
     count = int(min(reached[-1] // every + 1, most))
     at = np.linspace(0.0, reached[-1], count + 1)[:-1] + 0.5 * reached[-1] / count
