@@ -9,7 +9,7 @@ from __future__ import annotations
 import math
 import re
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
@@ -17,9 +17,11 @@ from trunnion import tolerance
 from trunnion.findings import BadInput, Finding, Refused, warning
 from trunnion.geometry.arrays import Bools, Floats
 from trunnion.geometry.frame import Frame
+from trunnion.geometry.kernels.drop import ROUND, C
 from trunnion.model.operation import CuttingData
 from trunnion.model.setup import Setup
 from trunnion.model.tool import Tool
+from trunnion.model.toolpath import Mark, Toolpath
 from trunnion.plan.surface.drive import Asker, SurfaceDrive
 from trunnion.progress import QUIET, Progress
 from trunnion.settings import choose, setting, settings
@@ -27,18 +29,23 @@ from trunnion.toolpath.contract import Planned, strategy
 from trunnion.toolpath.stock import PlanningStock
 from trunnion.toolpath.surface.axis import AxisField, fixed, from_point, interpolated, leaning
 from trunnion.toolpath.surface.contacts import Contacts, between, slerp
-from trunnion.toolpath.surface.cutter import lower_side, tip_at
+from trunnion.toolpath.surface.cutter import lower_side, tip_at, touching
 from trunnion.toolpath.surface.lean import AxisSearch, Course, LeanLimits
 from trunnion.toolpath.surface.linking import Manner, linked
 from trunnion.toolpath.surface.passes import Pass
 from trunnion.toolpath.surface.scallop import stepover_on_plane
 from trunnion.toolpath.surface.streamline import StreamlineSettings, streamlines
+from trunnion.units import trimmed
 
 SHARES = (0.25, 0.5, 0.75)
 """Where on a block its chord error is looked at, beside the contacts on its way."""
 HALVINGS = 12
 TRIES = 4
 """Times that axes are chosen again where a move between two clear ones touched something."""
+LEADS = (1.0, 0.4, 0.0)
+"""Shares of the lead radius that are tried where leads touch something."""
+STRAIGHT = 1000.0
+"""mm: a cutter that is flatter where it touches counts as this round."""
 SMALLEST_LEFTOVER = 0.5
 """mm2: less than this is the rim of an area."""
 
@@ -80,16 +87,19 @@ def point(drive: SurfaceDrive, tool: Tool, data: CuttingData, stock: PlanningSto
     """Return the path of a leaning tool over the drive's faces, and what it must leave."""
     if drive.ask is None:
         raise Refused(f"{drive.feature}: point milling leans the tool; choose a machine with rotary axes, or another strategy")
-    lower_side(tool)
+    ask, lead, tilt = drive.ask(tool), math.radians(settings.lead), math.radians(settings.tilt)
+    ball = grooving(tool, lead, tilt)
     flow = choose(StreamlineSettings, {name: getattr(settings, name) for name in ("first_guide", "second_guide", "spiral")})
-    ways = streamlines(drive, tool, flow, progress.part(0.0, 0.3))
+    ways = streamlines(drive, ball, flow, progress.part(0.0, 0.3))
     limits = LeanLimits(turn=math.radians(settings.turn), steepest=math.radians(settings.steepest))
-    done = milled(ways, tool, field_of(settings, drive.frame), drive.ask(tool), limits, settings.chord, drive.allowance,
-                  progress.part(0.3, 0.9))
-    stepover = stepover_on_plane(max(tool.corner_radius, drive.height), drive.height)
+    done = milled(ways, tool, field_of(settings, drive.frame), ask, limits, settings.chord, drive.allowance, progress.part(0.3, 0.9))
+    stepover = stepover_on_plane(max(ball.radius, drive.height), drive.height)
+    findings = _left(done, drive, tool, stepover)
+    if not done.passes:
+        return Planned(findings=findings)
     manner = Manner(stepover=stepover, safety=settings.safety, lead_radius=settings.lead_radius)
-    path = linked(done.passes, drive, tool, data, stock, setup, manner, progress.part(0.9, 1.0))
-    return Planned(path=path, findings=_left(done, drive, tool, stepover))
+    path, met = _linked(done, drive, tool, data, stock, setup, manner, ask, progress.part(0.9, 1.0))
+    return Planned(path=path, findings=(*findings, *met, *_low(path, drive, tool)))
 
 
 def milled(ways: Sequence[Contacts], tool: Tool, field: AxisField, ask: Asker | None, limits: LeanLimits, chord: float,
@@ -144,6 +154,27 @@ def located(way: Contacts, run: Course, tool: Tool, chord: float, allowance: flo
     return place, Pass(tip=tip, axis=axis, normal=normal)
 
 
+def grooving(tool: Tool, lead: float, tilt: float) -> Tool:
+    """Return the ball that leaves the same grooves as a cutter that leans by a lead and a tilt (rad): how wide apart passes may lie.
+
+    Where a cutter touches, it is as round as its profile in the plane of its axis, and round about its axis across that plane.
+    """
+    if tool.form == "ball" or (tool.form == "taper" and tool.corner_radius == tool.radius):
+        radius = tool.corner_radius
+    else:
+        lean = math.acos(math.cos(lead) * math.cos(tilt))
+        pieces = lower_side(tool)
+        rho = float(touching(tool, np.array([lean]))[0][0])
+        profile = next((1.0 / row[C] for row in pieces if row[ROUND] and row[0] <= rho <= row[1]), 0.0)
+        # The share of the lean that lies across the feed.
+        across = (math.sin(tilt) / math.sin(lean)) ** 2 if lean > 0.0 else 0.0
+        curved = across * profile + (1.0 - across) * (math.sin(lean) / rho if rho > 0.0 else profile)
+        radius = 1.0 / max(curved, 1.0 / STRAIGHT)
+    return replace(tool, form="ball", diameter=2.0 * radius, corner_radius=radius, flute_length=max(tool.flute_length, radius),
+                   neck_length=max(tool.neck_length, radius), stickout=max(tool.stickout, radius),
+                   gauge_length=max(tool.gauge_length, radius), taper_angle=0.0, barrel_radius=0.0)
+
+
 def field_of(chosen: PointSettings, frame: Frame) -> AxisField:
     """Return the axis field that settings ask for; places and directions are given in the part's coordinates."""
     numbers = _numbers(chosen.axis_from)
@@ -158,6 +189,33 @@ def field_of(chosen: PointSettings, frame: Frame) -> AxisField:
         return from_point(frame.to_local(np.array(numbers)), chosen.axis == "away")
     wanted = "vectors as x y z > i j k; x y z > i j k" if chosen.axis == "vectors" else "three numbers x y z"
     raise BadInput(f"Axis from (surface.point.axis_from) must be {wanted} while the tool axis is {chosen.axis}; got {chosen.axis_from!r}")
+
+
+def _linked(done: Milled, drive: SurfaceDrive, tool: Tool, data: CuttingData, stock: PlanningStock, setup: Setup, manner: Manner,
+            ask: Asker, progress: Progress) -> tuple[Toolpath, tuple[Finding, ...]]:
+    """Return the path through all passes; leads that touch something are tried shorter, what touches in the end is a finding."""
+    path, touched = Toolpath.join([]), np.zeros(0, dtype=bool)
+    for n, share in enumerate(LEADS):
+        path = linked(done.passes, drive, tool, data, stock, setup, replace(manner, lead_radius=share * manner.lead_radius),
+                      progress.part(n / len(LEADS), (n + 1) / len(LEADS)))
+        between_cuts = np.flatnonzero(path.mark[1:] != Mark.CUT) + 1
+        touched = ~ask(path.position[between_cuts], path.axis[between_cuts], start_tip=path.position[between_cuts - 1],
+                       start_axis=path.axis[between_cuts - 1])
+        if not touched.any():
+            return path, ()
+    return path, (warning("point.link", f"{int(touched.sum())} moves between the passes of {drive.feature} touch part or fixtures",
+                          drive.feature, remedy="choose a smaller cutter or another lead, or cut fewer faces in one operation"),)
+
+
+def _low(path: Toolpath, drive: SurfaceDrive, tool: Tool) -> tuple[Finding, ...]:
+    """Say how far the leaning tool comes down beside the blank: no table is in the proof."""
+    nose = path.position + tool.gauge_length * path.axis
+    reach = np.sqrt(np.maximum(1.0 - path.axis[:, 2] ** 2, 0.0)) * tool.holder.radius
+    deep = float(drive.low[2] - (nose[:, 2] - reach).min(initial=np.inf))
+    if deep <= 0.0:
+        return ()
+    return (warning("point.low", f"the holder of {tool.name} comes {trimmed(deep, 0)} mm lower than the blank's underside while it leans",
+                    drive.feature, remedy=f"let the part stand at least {trimmed(deep, 0)} mm above the table"),)
 
 
 def _numbers(text: str) -> list[float]:
