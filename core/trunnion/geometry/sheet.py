@@ -7,6 +7,7 @@ through both ends of the edge (Vlachos, Curved PN Triangles), so that they leave
 
 from __future__ import annotations
 
+import math
 from collections.abc import Callable
 from dataclasses import dataclass
 
@@ -26,6 +27,10 @@ MOST_TRIANGLES = 2_000_000
 """Triangles of a sheet at most: half a gigabyte of working room."""
 ROUNDS = 400
 """Rounds of splitting at most; each one halves the longest edges of all triangles."""
+TURNS = 12
+"""Rounds of turning edges at most; after a few hardly any are left."""
+OBTUSE = 0.05
+"""Sum of cotangents that is still no obtuse pair: points on a grid would turn their edges for ever."""
 Measure = Callable[[Floats, Floats, Floats, Floats], Floats]
 """The lengths (e,) of edges from points (e, 3) with normals (e, 3) to points (e, 3) with normals (e, 3)."""
 
@@ -136,13 +141,26 @@ def between(a: Floats, a_normal: Floats, b: Floats, b_normal: Floats, share: Flo
 
 
 def split_finely(sheet: Sheet, measure: Measure, longest: float, progress: Progress = QUIET) -> Sheet:
-    """Return the sheet with triangles split until no edge measures more than `longest`.
+    """Return the sheet with triangles split until hardly an edge measures more than `longest`.
 
-    Edges are halved that are the longest of all their triangles, round after round (Rivara): no triangle gets much thinner than those
-    it was made of. Raises `Refused` when too many triangles would be needed.
+    The limit falls by halves; at each one edges are turned in their pairs of triangles where that makes these less obtuse, since a
+    field is as good as its triangles. Raises `Refused` when too many triangles would be needed.
     """
-    points, normals, whole, tags = sheet.points, sheet.normals, [], []
-    triangles, face = sheet.triangles, sheet.face
+    points, normals, triangles, face = sheet.points, sheet.normals, sheet.triangles, sheet.face
+    ends = edges_of(triangles, len(points))[0] if len(triangles) else np.zeros((0, 2), np.int64)
+    size = measure(points[ends[:, 0]], normals[ends[:, 0]], points[ends[:, 1]], normals[ends[:, 1]])
+    stages = max(math.ceil(math.log2(size.max(initial=longest) / longest)), 0)
+    for stage in range(stages, -1, -1):
+        points, normals, triangles, face = _split(points, normals, triangles, face, measure, longest * 2.0**stage, progress)
+        triangles = _turned(points, normals, triangles, face, measure, progress)
+    return Sheet(points=points, normals=normals, triangles=triangles, face=face)
+
+
+def _split(points: Floats, normals: Floats, triangles: Ints, face: Ints, measure: Measure, longest: float,
+           progress: Progress) -> tuple[Floats, Floats, Ints, Ints]:
+    """Return points, normals, triangles and faces with edges halved that are too long and the longest of all their triangles, round after
+    round (Rivara): no triangle gets much thinner than those it was made of."""
+    whole, tags = [], []
     for _ in range(ROUNDS):
         progress.check()
         ends, side = edges_of(triangles, len(points))
@@ -168,7 +186,51 @@ def split_finely(sheet: Sheet, measure: Measure, longest: float, progress: Progr
         if len(triangles) + sum(len(w) for w in whole) > MOST_TRIANGLES:
             raise Refused(f"passes this narrow over so large an area need over {MOST_TRIANGLES} triangles: allow a higher scallop, or cut "
                           "the area in pieces")
-    return Sheet(points=points, normals=normals, triangles=np.vstack([*whole, triangles]), face=np.concatenate([*tags, face]))
+    return points, normals, np.vstack([*whole, triangles]), np.concatenate([*tags, face])
+
+
+def _turned(points: Floats, normals: Floats, triangles: Ints, face: Ints, measure: Measure, progress: Progress) -> Ints:
+    """Return the triangles with edges turned towards Delaunay's condition in a measure: the angles opposite an edge make no more than a
+    half turn. Edges between faces, and those in bent or hollow quadrangles, stay."""
+    triangles = triangles.copy()
+    for _ in range(TURNS):
+        progress.check()
+        ends, side = edges_of(triangles, len(points))
+        size = measure(points[ends[:, 0]], normals[ends[:, 0]], points[ends[:, 1]], normals[ends[:, 1]]) ** 2
+        square = size[side]
+        total = square.sum(axis=1, keepdims=True)
+        four = np.sqrt(np.maximum(total**2 - 2.0 * (square**2).sum(axis=1, keepdims=True), 1e-24 * total**2))
+        opposite = (total - 2.0 * square) / four
+        order = np.argsort(side.ravel(), kind="stable")
+        twice = np.flatnonzero(np.diff(side.ravel()[order]) == 0)
+        one, two = order[twice], order[twice + 1]
+        bad = opposite.ravel()[one] + opposite.ravel()[two]
+        wrong = (bad < -OBTUSE) & (face[one // 3] == face[two // 3])
+        one, two, bad = one[wrong], two[wrong], bad[wrong]
+        # Each triangle takes part in one turn at most: the worst one.
+        rank = np.empty(len(bad), np.int64)
+        rank[np.argsort(bad, kind="stable")] = np.arange(len(bad))
+        first = np.full(len(triangles), len(bad))
+        np.minimum.at(first, one // 3, rank)
+        np.minimum.at(first, two // 3, rank)
+        mine = (first[one // 3] == rank) & (first[two // 3] == rank)
+        one, two = one[mine], two[mine]
+        a, b, c, d = (triangles[t // 3, (t % 3 + k) % 3] for t, k in ((one, 0), (one, 1), (one, 2), (two, 2)))
+        made = np.column_stack([a, d, c]), np.column_stack([d, b, c])
+        known = set((np.minimum(*ends.T) * len(points) + np.maximum(*ends.T)).tolist()) if len(one) else set()
+        fresh = np.array([key not in known for key in (np.minimum(c, d) * len(points) + np.maximum(c, d)).tolist()], dtype=bool)
+        good = fresh & _upright(points, normals, made[0]) & _upright(points, normals, made[1])
+        if not good.any():
+            break
+        triangles[one[good] // 3], triangles[two[good] // 3] = made[0][good], made[1][good]
+    return triangles
+
+
+def _upright(points: Floats, normals: Floats, triangles: Ints) -> Bools:
+    """Say which triangles (t,) face, all but a little, as the faces do at their corners."""
+    a, b, c = np.moveaxis(points[triangles], 1, 0)
+    normal = _unit(np.cross(b - a, c - a))
+    return np.asarray((np.einsum("tk,tck->tc", normal, normals[triangles]) > SMOOTH).all(axis=1))
 
 
 def _halved(triangles: Ints, face: Ints, corner: Ints, middle: Ints) -> tuple[Ints, Ints]:

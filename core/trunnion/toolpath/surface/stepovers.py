@@ -23,6 +23,8 @@ from trunnion.toolpath.surface.cutter import lower_side, touching
 
 WIDEST = 0.5
 """Stepover at most, as a share of the diameter: a cutter that fits a hollow, or stands flat on a plane, would allow any."""
+CORNER = math.cos(math.radians(15.0))
+"""Cosine of the least turn from one piece of a line to the next that is a corner."""
 
 
 def stepover_measure(tool: Tool, height: float) -> Measure:
@@ -76,16 +78,23 @@ def metric_of(sheet: Sheet, measure: Measure) -> Metric:
 
 def spread(point: Floats, normal: Floats, closed: bool, radius: float, chord: float, longest: float) -> tuple[Floats, Floats]:
     """Return contacts (m, 3) with normals over the curved way through contacts (k, 3), at most `longest` mm apart, and so close that
-    straight moves between them, and between points a radius above them, leave the way by no more than a chord error."""
+    straight moves between them, and between points a radius above them, leave the way by no more than a chord error. Corners stay."""
     size = np.linalg.norm(np.diff(point, axis=0), axis=1)
     kept = np.concatenate([[True], size > tolerance.SHORT_MOVE])
     if not kept[-1]:
         kept[-1], kept[np.flatnonzero(kept)[-1]] = True, kept.sum() < 2
     point, normal = point[kept], normal[kept]
-    size, turn = (np.linalg.norm(np.diff(x, axis=0), axis=1) for x in (point, normal))
+    way = np.diff(point, axis=0)
+    size, turn = np.linalg.norm(way, axis=1), np.linalg.norm(np.diff(normal, axis=0), axis=1)
     pieces = np.maximum(np.sqrt((size + radius * turn) * turn / (8.0 * chord)), size / longest)
-    run = np.concatenate([[0.0], np.cumsum(pieces)])
-    at = np.linspace(0.0, run[-1], max(math.ceil(run[-1]), 6 if closed else 1) + 1)
+    along = way / size[:, None]
+    section = np.concatenate([[0], np.cumsum((along[1:] * along[:-1]).sum(axis=1) < CORNER)])
+    # Each section between corners has a whole number of pieces, so that corners stay.
+    whole = np.bincount(section, pieces)
+    count = np.maximum(np.ceil(whole), max(1, -(-6 // len(whole))) if closed else 1)
+    run = np.concatenate([[0.0], np.cumsum(pieces * (count / whole)[section])])
+    at = np.arange(int(count.sum()) + 1.0)
+    run[-1] = at[-1]
     row = np.clip(np.searchsorted(run, at, side="right") - 1, 0, len(run) - 2)
     share = np.clip((at - run[row]) / np.maximum(run[row + 1] - run[row], tolerance.PARAMETRIC), 0.0, 1.0)
     return between(point[row], normal[row], point[row + 1], normal[row + 1], share)

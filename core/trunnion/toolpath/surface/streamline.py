@@ -16,13 +16,20 @@ from trunnion.geometry.arrays import Floats
 from trunnion.geometry.contours import SheetLine, whole_levels
 from trunnion.geometry.fields import Metric, blend, turns_about
 from trunnion.geometry.sheet import Sheet, sheet_of, split_finely
+from trunnion.model.operation import CuttingData
+from trunnion.model.setup import Setup
 from trunnion.model.tool import Tool
 from trunnion.plan.surface.drive import SurfaceDrive
 from trunnion.progress import QUIET, Progress
 from trunnion.settings import choose, setting, settings
+from trunnion.toolpath.contract import Planned, strategy
+from trunnion.toolpath.stock import PlanningStock
 from trunnion.toolpath.surface.contacts import Contacts
 from trunnion.toolpath.surface.guides import Guides, guides_beside, guides_of, tags_named
+from trunnion.toolpath.surface.linking import Manner, linked
+from trunnion.toolpath.surface.scallop import stepover_on_plane
 from trunnion.toolpath.surface.stepovers import metric_of, spread, stepover_measure
+from trunnion.toolpath.surface.upright import stood
 
 FINENESS = 1.0
 """Stepovers: the longest edge of the triangles that a blend is laid over, if not so many are needed that it takes seconds."""
@@ -42,11 +49,27 @@ class StreamlineSettings:
     spiral: bool = setting(True, label="Spiral", help="Cut a tube or ring in one continuous spiral instead of closed passes.")
     pattern: str = setting("zigzag", label="Pattern", help="Passes to and fro, or all of them in the climbing direction.",
                            choices=("zigzag", "climb"))
+    steepest: float = setting(80.0, unit="deg", low=5.0, high=89.0, label="Steepest slope",
+                              help="Steeper places are left to waterlines.")
     chord: float = setting(0.0003, unit="mm", low=0.00005, high=0.1, label="Chord error",
                            help="How far straight moves may leave the way of the cutter.")
     lead_radius: float = setting(1.0, unit="mm", low=0.0, high=20.0, label="Lead radius", help="Radius of the arcs onto and off the face.")
     safety: float = setting(2.0, unit="mm", low=0.2, high=50.0, label="Safety distance",
                             help="Where a rapid ends above what may still be there.")
+
+
+@strategy(settings=StreamlineSettings)
+def streamline(drive: SurfaceDrive, tool: Tool, data: CuttingData, stock: PlanningStock, setup: Setup, settings: StreamlineSettings,
+               progress: Progress = QUIET) -> Planned:
+    """Return the motions of an upright tool along flow lines over the drive's faces, and what it leaves."""
+    ways = streamlines(drive, tool, settings, progress.part(0.0, 0.4))
+    if settings.pattern == "zigzag":
+        ways = tuple(way if way.closed or k % 2 == 0 else way.reversed() for k, way in enumerate(ways))
+    done = stood(ways, drive, tool, settings.chord, math.radians(settings.steepest), progress.part(0.4, 0.8))
+    stepover = stepover_on_plane(tool.corner_radius, drive.height)
+    manner = Manner(stepover=stepover, safety=settings.safety, lead_radius=settings.lead_radius)
+    path = linked(done.passes, drive, tool, data, stock, setup, manner, progress.part(0.8, 1.0))
+    return Planned(path=path, findings=done.left(drive, tool, stepover))
 
 
 def streamlines(drive: SurfaceDrive, tool: Tool, settings: StreamlineSettings | None = None,
@@ -69,7 +92,7 @@ def streamlines(drive: SurfaceDrive, tool: Tool, settings: StreamlineSettings | 
         sheet = split_finely(part, measure, max(FINENESS, math.sqrt(wide / ENOUGH)), share)
         for line in _lines(metric_of(sheet, measure), _guides(sheet, drive, chosen), chosen.spiral, share):
             point, normal = spread(*sheet.on_edges(line.ends, line.share), line.closed, tool.radius, chosen.chord,
-                                   _stepover(drive, tool))
+                                   stepover_on_plane(tool.corner_radius, drive.height))
             made.append(Contacts(point=point, normal=normal, closed=line.closed))
     return tuple(made)
 
@@ -79,10 +102,6 @@ def _guides(sheet: Sheet, drive: SurfaceDrive, chosen: StreamlineSettings) -> Gu
     if bool(first) != bool(second):
         raise BadInput("flow lines need both guides, or none of them to have them chosen")
     return guides_beside(sheet, drive.skin, first, second) if first else guides_of(sheet)
-
-
-def _stepover(drive: SurfaceDrive, tool: Tool) -> float:
-    return 2.0 * math.sqrt(2.0 * tool.corner_radius * drive.height)
 
 
 def _lines(metric: Metric, guides: Guides, spiral: bool, progress: Progress) -> list[SheetLine]:

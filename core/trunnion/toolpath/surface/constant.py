@@ -1,0 +1,157 @@
+"""Constant scallop: passes as far apart as the wanted scallop height allows, everywhere, from the rim of an area inwards.
+
+A distance that counts stepovers (`stepovers.py`) spreads over the joined faces; its level lines are the passes, the first one so near the
+rim that a square corner of it is reached. Where fronts meet, level lines have corners or end: one more pass along such a ridge takes what
+they leave between them, wherever that is more than the wanted height.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+
+import numpy as np
+from scipy.spatial import cKDTree
+
+from trunnion.geometry.arrays import Floats, Ints
+from trunnion.geometry.contours import SheetLine, whole_levels
+from trunnion.geometry.fields import Metric, distances
+from trunnion.geometry.ridges import chained, ridges
+from trunnion.geometry.sheet import Sheet, sheet_of, split_finely
+from trunnion.model.operation import CuttingData
+from trunnion.model.setup import Setup
+from trunnion.model.tool import Tool
+from trunnion.plan.surface.drive import SurfaceDrive
+from trunnion.progress import QUIET, Progress
+from trunnion.settings import setting, settings
+from trunnion.toolpath.contract import Planned, strategy
+from trunnion.toolpath.stock import PlanningStock
+from trunnion.toolpath.surface.contacts import Contacts
+from trunnion.toolpath.surface.linking import Manner, linked
+from trunnion.toolpath.surface.scallop import stepover_on_plane
+from trunnion.toolpath.surface.stepovers import metric_of, spread, stepover_measure
+from trunnion.toolpath.surface.upright import stood
+
+FINENESS = 0.5
+"""Stepovers: the longest edge of the triangles that distances are measured over."""
+FIRST = 0.35
+"""Stepovers from the rim to the first pass: half a stepover from a square corner."""
+FARTHEST = 0.515
+"""Stepovers from the nearest pass beyond which a place needs another one: the scallop there is 6 % higher than wanted."""
+BESIDE = 0.08
+"""Stepovers that the farthest place between two lines' corners is farther from them than the points of triangles around it."""
+REACH = 1.5
+"""Stepovers that a pass along a ridge goes on past such a place: the next one between corners is not farther."""
+SMOOTHINGS = 3
+"""Times that a ridge's points are put halfway between their neighbours: it was found triangle by triangle."""
+
+
+@settings("surface.constant")
+class ConstantSettings:
+    """How an area is cut at a constant scallop height."""
+
+    direction: str = setting("climb", label="Cutting direction", help="With the uncut side on the right of the cutter, or on its left.",
+                             choices=("climb", "conventional"))
+    order: str = setting("inwards", label="Order", help="From the rim inwards, or from the inside to the rim.",
+                         choices=("inwards", "outwards"))
+    steepest: float = setting(80.0, unit="deg", low=5.0, high=89.0, label="Steepest slope",
+                              help="Steeper places are left to waterlines.")
+    chord: float = setting(0.0003, unit="mm", low=0.00005, high=0.1, label="Chord error",
+                           help="How far straight moves may leave the way of the cutter.")
+    lead_radius: float = setting(1.0, unit="mm", low=0.0, high=20.0, label="Lead radius", help="Radius of the arcs onto and off the face.")
+    safety: float = setting(2.0, unit="mm", low=0.2, high=50.0, label="Safety distance",
+                            help="Where a rapid ends above what may still be there.")
+
+
+@strategy(settings=ConstantSettings)
+def constant(drive: SurfaceDrive, tool: Tool, data: CuttingData, stock: PlanningStock, setup: Setup, settings: ConstantSettings,
+             progress: Progress = QUIET) -> Planned:
+    """Return the motions of passes at a constant scallop height over the drive's faces, and what they leave."""
+    ways = scallop_passes(drive, tool, settings.chord, progress.part(0.0, 0.4))
+    done = stood(ways, drive, tool, settings.chord, math.radians(settings.steepest), progress.part(0.4, 0.8))
+    inwards = settings.order == "inwards"
+    passes = list(done.passes if inwards else done.passes[::-1])
+    if inwards == (settings.direction == "climb"):
+        passes = [p.reversed() for p in passes]
+    stepover = stepover_on_plane(tool.corner_radius, drive.height)
+    manner = Manner(stepover=stepover, safety=settings.safety, lead_radius=settings.lead_radius)
+    path = linked(passes, drive, tool, data, stock, setup, manner, progress.part(0.8, 1.0))
+    return Planned(path=path, findings=done.left(drive, tool, stepover))
+
+
+def scallop_passes(drive: SurfaceDrive, tool: Tool, chord: float, progress: Progress = QUIET) -> list[Contacts]:
+    """Return the passes of contacts from the rim of the drive's faces inwards, what is inside on their left, each connected part and each
+    branch of it by itself; then those along ridges. Raises `Refused` for a flat end and for too large an area."""
+    measure = stepover_measure(tool, drive.height)
+    longest = stepover_on_plane(tool.corner_radius, drive.height)
+    parts = sheet_of(drive.skin, drive.faces).components()
+    made = []
+    for k, part in enumerate(parts):
+        share = progress.part(k / len(parts), (k + 1) / len(parts))
+        share.at(0.0, "Measuring distances in stepovers")
+        sheet = split_finely(part, measure, FINENESS, share)
+        metric = metric_of(sheet, measure)
+        rims = sheet.rims()
+        # An area that is closed all round begins at its highest place.
+        rim = np.concatenate(rims) if rims else np.array([np.argmax(sheet.points[:, 2])])
+        time, foot = distances(metric, rim)
+        lines = _nested(sheet, whole_levels(sheet, time + 1.0 - FIRST))
+        contacts = [sheet.on_edges(line.ends, line.share) for line in lines]
+        contacts += _along_ridges(metric, rim, time, foot, lines, longest)
+        closed = [line.closed for line in lines] + [False] * (len(contacts) - len(lines))
+        made += [Contacts(point=p, normal=n, closed=c)
+                 for (p, n), c in ((spread(*pn, c, tool.radius, chord, longest), c) for pn, c in zip(contacts, closed, strict=True))]
+    return made
+
+
+def _nested(sheet: Sheet, lines: Sequence[SheetLine]) -> list[SheetLine]:
+    """Return lines of ascending levels so that each is followed by those inside of it, branch by branch."""
+    if not lines:
+        return []
+    middles = [sheet.on_edges(line.ends, line.share)[0] for line in lines]
+    levels = np.array([line.level for line in lines])
+    inside: dict[int, list[int]] = {-1: []}
+    for k, line in enumerate(lines):
+        outer = np.flatnonzero(levels == line.level - 1)
+        inside[k] = []
+        if len(outer):
+            owner = np.repeat(outer, [len(middles[j]) for j in outer])
+            inside[int(owner[cKDTree(np.concatenate([middles[j] for j in outer])).query(middles[k][0])[1]])].append(k)
+        else:
+            inside[-1].append(k)
+    order, todo = [], inside[-1][::-1]
+    while todo:
+        k = todo.pop()
+        order.append(lines[k])
+        todo += inside[k][::-1]
+    return order
+
+
+def _along_ridges(metric: Metric, rim: Ints, time: Floats, foot: Floats, lines: Sequence[SheetLine],
+                  stepover: float) -> list[tuple[Floats, Floats]]:
+    """Return points and normals (k, 3) of passes along the ridges where places are too far from all lines."""
+    sheet = metric.sheet
+    if not lines:
+        return []
+    rows = np.concatenate([line.ends.ravel() for line in lines])
+    level = np.repeat([line.level - 1.0 + FIRST for line in lines], [2 * len(line.share) for line in lines])
+    away, _ = distances(metric, rows, np.abs(time[rows] - level))
+    found = []
+    for ridge in chained(sheet, ridges(metric, time, foot), FINENESS * stepover):
+        point, normal = _smoothed(*sheet.on_edges(ridge.ends, ridge.share), ridge.closed)
+        run = np.concatenate([[0.0], np.cumsum(np.linalg.norm(np.diff(point, axis=0), axis=1))])
+        # Points of triangles lie beside a ridge, so none of them is quite as far from the lines as places on it are.
+        lacking = run[away[ridge.ends].max(axis=1) > FARTHEST - BESIDE]
+        if len(lacking):
+            first = np.searchsorted(lacking, run - REACH * stepover)
+            wanted = (first < len(lacking)) & (lacking[np.minimum(first, len(lacking) - 1)] <= run + REACH * stepover)
+            edges = np.flatnonzero(np.diff(wanted.astype(np.int8), prepend=0, append=0)).reshape(-1, 2)
+            found += [(point[a:b], normal[a:b]) for a, b in edges.tolist() if b - a > 1]
+    return found
+
+
+def _smoothed(point: Floats, normal: Floats, closed: bool) -> tuple[Floats, Floats]:
+    """Return a ridge's points and normals (k, 3), smoother; its ends stay."""
+    for _ in range(0 if closed else SMOOTHINGS):
+        point, normal = (np.vstack([x[:1], 0.25 * (x[:-2] + 2.0 * x[1:-1] + x[2:]), x[-1:]]) for x in (point, normal))
+    return point, normal / np.linalg.norm(normal, axis=1, keepdims=True)
