@@ -200,7 +200,7 @@ class AxisSearch:
             if not self._improved():
                 break
         at = [slice(a, b) for a, b in pairwise(self.places.start.tolist())]
-        return [Course(place=self.places.place[s], axis=self.axis[s], free=self.free[s], leap=self.leap[s]) for s in at]
+        return [Course(place=self.places.place[s], axis=self.axis[s].copy(), free=self.free[s].copy(), leap=self.leap[s].copy()) for s in at]
 
     def met(self, number: int, places: Floats) -> None:
         """Take in that on the pass of a number something was met at places (k,): the axes to both sides of them won't do."""
