@@ -14,6 +14,7 @@ from trunnion import registry, tolerance
 from trunnion.findings import BadCall, BadInput, Finding
 from trunnion.model.feature import Recognition
 from trunnion.model.session import Session
+from trunnion.pipeline.asking import PartSurroundings
 from trunnion.pipeline.bench import Bench
 from trunnion.pipeline.hand import with_features_by_hand, with_operations_by_hand
 from trunnion.pipeline.making import make_paths, strategy_settings
@@ -143,7 +144,9 @@ def _route(session: Session, bench: Bench, progress: Progress) -> Result:
     if recognition.family == "surface":
         curved = checked(choose(SurfaceRouteSettings, session.choices))
         space = SurfaceSpace.of(bench.part, bench.skin(tolerance.CHORD, progress.part(0.0, 0.5)), session.blank, setups[0])
-        process = make_surface_route(recognition, session.blank, setups, bench.shop, space, chosen, curved, progress.part(0.5, 1.0))
+        around = PartSurroundings(bench.part, space.skin, space.frame, setups[0].frame, bench.shop.machines[setup.machine],
+                                  session.fixtures_of(setups[0].name), progress)
+        process = make_surface_route(recognition, session.blank, setups, bench.shop, space, around, chosen, curved, progress.part(0.5, 1.0))
     else:
         process = make_route(recognition, session.sizes, session.blank, setups, bench.shop, bench.part, chosen, progress)
     process = with_operations_by_hand(session.process, process)

@@ -11,11 +11,13 @@ from trunnion import tolerance
 from trunnion.geometry.arrays import Floats
 from trunnion.geometry.facegraph import CONVEX, FaceGraph
 from trunnion.model.blank import Blank
-from trunnion.model.feature import Recognition
+from trunnion.model.feature import Feature, Recognition
 from trunnion.part.part import Part
 from trunnion.plan.surface.reach import Places, level_disc
 from trunnion.plan.surface.space import SurfaceSpace
 
+TIGHT = 8.0
+"""mm: a hollow with a smaller radius bears only cutters smaller than those for what lies around it."""
 LOCAL, REMAINING = "local", "remaining"
 END_MILL = 3.0
 """mm: radius of a cutter that must have room down to the foot of an upright wall for it to stand free."""
@@ -25,11 +27,13 @@ VERTICAL = np.sin(np.radians(0.5))
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Area:
-    """Faces that are finished together: its name in operations, its tags, and whether it is a local feature."""
+    """Faces that are finished together: its name in operations, its tags, whether it is a local feature, and whether it is hidden from an
+    upright tool."""
 
     id: str
     tags: tuple[int, ...]
     local: bool
+    hidden: bool = False
 
 
 def areas_of(recognition: Recognition, graph: FaceGraph, left_out: Collection[int] = ()) -> tuple[Area, ...]:
@@ -40,6 +44,24 @@ def areas_of(recognition: Recognition, graph: FaceGraph, left_out: Collection[in
     sets = connected(local, graph)
     found = [Area(id=f"{LOCAL}-{n:02}", tags=tags, local=True) for n, tags in enumerate(sets, 1)]
     return (*([Area(id=REMAINING, tags=tuple(remaining), local=False)] if remaining else []), *found)
+
+
+def hidden_areas(recognition: Recognition, graph: FaceGraph, tags: Collection[int]) -> tuple[Area, ...]:
+    """Return hidden faces as areas: planes by themselves, hollows that are too tight for large cutters where they hang together (the
+    fillets round a blade), and the other curved faces where they do. Hollows count as local."""
+    tight = {tag for f in recognition if 0.0 < _radius(f) < TIGHT for tag in f.tags} & set(tags)
+    flat = [tag for tag in sorted(tags) if graph.surface[tag - 1] == "plane"]
+    found = [Area(id=f"face-{tag}", tags=(tag,), local=False, hidden=True) for tag in flat]
+    for word, faces in (("hidden", set(tags) - tight - set(flat)), ("hollow", tight - set(flat))):
+        found += [Area(id=f"{word}-{n:02}", tags=each, local=word == "hollow", hidden=True)
+                  for n, each in enumerate(connected(faces, graph), 1)]
+    return tuple(found)
+
+
+def _radius(feature: Feature) -> float:
+    """Return the smallest concave radius of a feature's faces; 0 where none is known."""
+    value = feature.sizes.get("concave_radius", 0.0)
+    return float(value) if isinstance(value, (int, float)) else 0.0
 
 
 def connected(tags: Collection[int], graph: FaceGraph) -> list[tuple[int, ...]]:

@@ -25,11 +25,15 @@ from trunnion.plan.choosing import depth_reached
 from trunnion.plan.cutting import CuttingSettings, cutting_data, roughing_depth, roughing_width
 from trunnion.plan.left import too_large, too_many_tools
 from trunnion.plan.order import Job, ordered
-from trunnion.plan.surface.areas import Area, areas_of, blank_faces, connected, on_outline, walls_of
+from trunnion.plan.surface.areas import Area, areas_of, blank_faces, connected, hidden_areas, on_outline, walls_of
 from trunnion.plan.surface.cutters import Chosen, cutter_for, named
-from trunnion.plan.surface.reach import Places, leans, places_on
+from trunnion.plan.surface.frames import UPRIGHT, Direction
+from trunnion.plan.surface.leaning import SAMPLES as LEANING_SAMPLES
+from trunnion.plan.surface.leaning import leaning_cutter
+from trunnion.plan.surface.reach import Places, leans, places_on, reached
 from trunnion.plan.surface.scallop import stepover_on_plane
 from trunnion.plan.surface.settings import ALLOWANCE, BOTTOM, CELL, EARLIER, SCALLOP, SurfaceRouteSettings
+from trunnion.plan.surface.sides import Around, sides_for
 from trunnion.plan.surface.space import SurfaceSpace
 from trunnion.plan.wishes import RouteSettings
 from trunnion.progress import Progress
@@ -45,6 +49,12 @@ LEAST_REST = 4.0
 """mm: rest roughing with a smaller cutter than this costs more than it spares the finishing."""
 MISSED = 1.0
 """mm2 that an area's cutter may leave without a further cutter for it."""
+MOST = 0.9
+"""Share of a face that an upright cutter must reach; else the face counts as hidden from above."""
+LARGEST_LEANING = 16.0
+"""mm: larger balls have no room to lean on parts that need it."""
+SLENDER = 4
+"""How many of the most slender cutters say what is hidden: larger ones reach no more."""
 WALL_STEP = 1.5
 """Axial step of a wall over the cutter's diameter."""
 WALL_SHARE = 0.7
@@ -56,6 +66,8 @@ class Draft:
     """What is known while one setup is planned."""
 
     space: SurfaceSpace
+    around: Around
+    setup: Setup
     recognition: Recognition
     material: Material
     machine: Machine
@@ -71,18 +83,19 @@ class Draft:
         return self.shop.tools_for(self.material.iso_group, use)
 
 
-def make_surface_route(recognition: Recognition, blank: Blank, setups: Sequence[Setup], shop: Shop, space: SurfaceSpace,
+def make_surface_route(recognition: Recognition, blank: Blank, setups: Sequence[Setup], shop: Shop, space: SurfaceSpace, around: Around,
                        route: RouteSettings, chosen: SurfaceRouteSettings, progress: Progress) -> ProcessTree:
     """Return the process of a part of curved surfaces: operations in cutting order, tools numbered in the order of use.
 
-    Faces that no cutter reaches from the setup's directions become findings (`route.not-planned`) that name the remedy.
+    What an upright tool doesn't reach is roughed from other directions and finished by a leaning one where the machine has rotary axes.
+    Faces that no cutter reaches become findings (`route.not-planned`) that name the remedy.
     """
     plan, material = shop.plan_for(recognition.family), shop.material(blank.material)
     findings = too_large(blank, setups, shop)
     if findings:
         return ProcessTree(plan=plan.name, material=material.name, setups=tuple(setups), findings=tuple(findings))
-    draft = Draft(space=space, recognition=recognition, material=material, machine=shop.machine(setups[0].machine), shop=shop, route=route,
-                  chosen=chosen, stages={s.kind: s for s in plan.stages})
+    draft = Draft(space=space, around=around, recognition=recognition, material=material, machine=shop.machine(setups[0].machine),
+                  shop=shop, setup=setups[0], route=route, chosen=chosen, stages={s.kind: s for s in plan.stages})
     _plan(draft, progress)
     operations = _numbered(_in_order(draft, plan.stages))
     findings = [*draft.findings, *too_many_tools(operations, setups, shop)]
@@ -97,19 +110,43 @@ def _plan(draft: Draft, progress: Progress) -> None:
     places = places_on(space.skin, tuple(mine))
     upright = walls_of(places, mine)
     walls = on_outline(space, places, upright)
-    _rough(draft, float(space.skin.points[:, 2].min()))
+    hidden = _hidden(draft, places, set(mine) - set(walls), progress.part(0.0, 0.1)) if draft.machine.rotary else ()
+    _rough(draft, space, float(space.skin.points[:, 2].min()))
+    if hidden:
+        seen = places.of(np.isin(places.face, hidden))
+        for n, side in enumerate(sides_for(space, draft.setup, draft.around, seen, _finishers(draft), draft.route.reach_clearance,
+                                           progress.part(0.1, 0.3)), 1):
+            _rough(draft, side.space, side.bottom, f"side-{n}")
     for tags in connected(walls, part.graph()):
         _outline(draft, tags)
-    areas = areas_of(draft.recognition, part.graph(), {*outside, *walls})
+    areas = [*areas_of(draft.recognition, part.graph(), {*outside, *walls, *hidden}),
+             *hidden_areas(draft.recognition, part.graph(), hidden)]
     for n, area in enumerate(areas):
-        share = progress.part(n / len(areas), (n + 1) / len(areas))
+        share = progress.part(0.3 + 0.7 * n / len(areas), 0.3 + 0.7 * (n + 1) / len(areas))
         share.at(0.0, f"cutter for {area.id}")
-        _area(draft, area, share)
+        if area.hidden:
+            _hidden_area(draft, area, share)
+        else:
+            _area(draft, area, share)
 
 
-def _rough(draft: Draft, bottom: float) -> None:
-    """Plan roughing by layers with a large cutter, and once more with a smaller one what that left."""
-    space = draft.space
+def _hidden(draft: Draft, places: Places, tags: set[int], progress: Progress) -> tuple[int, ...]:
+    """Return the faces that no upright cutter finishes most of."""
+    seen = np.zeros(len(places), dtype=bool)
+    slender = sorted(_finishers(draft), key=lambda t: (t.diameter, -depth_reached(t)))[:SLENDER]
+    for tool in slender:
+        seen |= reached(draft.space, places, tool, draft.route.reach_clearance, 0.0, progress)
+    return tuple(sorted(t for t in tags if seen[places.face == t].mean() < MOST))
+
+
+def _leaning_finishers(draft: Draft) -> tuple[Tool, ...]:
+    """Return the longest ball of each diameter, the smallest first."""
+    longest = {t.diameter: t for t in sorted(_finishers(draft), key=lambda t: (t.diameter, depth_reached(t), t.name))}
+    return tuple(longest[d] for d in sorted(longest) if d <= LARGEST_LEANING)
+
+
+def _rough(draft: Draft, space: SurfaceSpace, bottom: float, name: str = "part") -> None:
+    """Plan roughing by layers with a large cutter from a direction, and once more with a smaller one what that left."""
     size, deep = float((space.high - space.low)[:2].min()), float(space.high[2]) - bottom
     most = min(draft.route.largest, ROUGH_SHARE * size)
     tool = _rougher(draft, most, deep, draft.chosen.rough_cutter)
@@ -117,10 +154,10 @@ def _rough(draft: Draft, bottom: float) -> None:
         draft.findings.append(error("route.no-cutter", f"no roughing cutter up to D {trimmed(most, 1)} reaches {trimmed(deep, 1)} mm deep",
                                     draft.recognition.features[0].id, remedy="add a longer cutter to the tools folder"))
         return
-    _add_rough(draft, "rough", tool, bottom)
+    _add_rough(draft, "rough", name, tool, space, bottom)
     rest = _rougher(draft, REST_SHARE * tool.diameter, deep, "")
     if rest is not None and rest.diameter >= LEAST_REST:
-        _add_rough(draft, "rest", rest, bottom)
+        _add_rough(draft, "rest", name, rest, space, bottom)
 
 
 def _rougher(draft: Draft, most: float, deep: float, name: str) -> Tool | None:
@@ -132,14 +169,15 @@ def _rougher(draft: Draft, most: float, deep: float, name: str) -> Tool | None:
     return max(fits, key=lambda t: (t.diameter, -depth_reached(t), -abs(t.corner_radius - 0.1 * t.diameter), t.name), default=None)
 
 
-def _add_rough(draft: Draft, kind: str, tool: Tool, bottom: float) -> None:
+def _add_rough(draft: Draft, kind: str, name: str, tool: Tool, space: SurfaceSpace, bottom: float) -> None:
     stage, chosen, cutting = draft.stages[kind], draft.chosen, choose(CuttingSettings, {})
     depth = min(chosen.layer, roughing_depth(tool, draft.material, cutting))
     width = roughing_width(tool, draft.material, cutting)
     rules = (stage.rule, f"{tool.name}: reaches {trimmed(depth_reached(tool), 1)} mm deep.",
              f"It leaves {trimmed(chosen.rough_allowance, 2)} mm all round, in layers of {trimmed(depth, 2)} mm.")
     choices: dict[str, Value] = {ALLOWANCE: chosen.rough_allowance, BOTTOM: bottom, CELL: chosen.cell}
-    _add(draft, kind, "part", _first_feature(draft), tool, (), depth, width, choices, rules, operation_kind="rough")
+    _add(draft, kind, name, _first_feature(draft), tool, (), depth, width, choices, rules, operation_kind="rough",
+         direction=space.direction)
 
 
 def _outline(draft: Draft, tags: tuple[int, ...]) -> None:
@@ -182,6 +220,21 @@ def _area(draft: Draft, area: Area, progress: Progress) -> None:
     if found.rest is not None:
         left = tuple(t for t in tags if (found.missed & (places.face == t)).any())
         _add_finish(draft, "rest_finish", area.id, left, found.rest, "surface.pencil", places, earlier=found.tool)
+
+
+def _hidden_area(draft: Draft, area: Area, progress: Progress) -> None:
+    """Plan semi-finishing and finishing of an area with a leaning cutter."""
+    chosen = draft.chosen
+    places, few = places_on(draft.space.skin, area.tags), places_on(draft.space.skin, area.tags, LEANING_SAMPLES)
+    wanted = chosen.local_cutter if area.local else chosen.cutter
+    own = named(draft.shop, wanted) if wanted else None
+    found = leaning_cutter(few, _leaning_finishers(draft), draft.around, chosen.share, own, progress)
+    _tell_unreached(draft, area, few, found)
+    if found.tool is None:
+        return
+    if chosen.semi_allowance > 0.0:
+        _add_finish(draft, "semi", area.id, area.tags, found.tool, "surface.point", places)
+    _add_finish(draft, "finish", area.id, area.tags, found.tool, "surface.point", places)
 
 
 def _by_slope(area: Area, shallow: tuple[int, ...], steep: tuple[int, ...]) -> list[tuple[str, tuple[int, ...], str]]:
@@ -242,13 +295,14 @@ def _tell_unreached(draft: Draft, area: Area, places: Places, found: Chosen) -> 
 
 
 def _add(draft: Draft, kind: str, name: str, feature: str, tool: Tool, tags: tuple[int, ...], depth: float, width: float,
-         choices: dict[str, Value], rules: tuple[str, ...], *, strategy: str = "", operation_kind: str = "") -> None:
+         choices: dict[str, Value], rules: tuple[str, ...], *, strategy: str = "", operation_kind: str = "",
+         direction: Direction = UPRIGHT) -> None:
     stage = draft.stages[kind]
     data = cutting_data(tool, draft.material, draft.machine, operation_kind or kind, choose(CuttingSettings, {}), depth, width)
     draft.operations.append(Operation(
         id=f"{kind.replace('_', '-')}-{name}", kind=operation_kind or kind, strategy=strategy or stage.strategy, feature=feature,
         setup="S1", tool=tool, data=data, faces=tags, choices=choices, rules=rules, group=stage.name,
-        direction=draft.space.direction))
+        direction=direction))
 
 
 def _in_order(draft: Draft, stages: Sequence[Stage]) -> list[Operation]:
