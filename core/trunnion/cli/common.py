@@ -99,6 +99,36 @@ def open_session(chosen: argparse.Namespace, until: str | None) -> tuple[Engine,
     return engine, session
 
 
+def add_by_hand(made: argparse.ArgumentParser) -> None:
+    """Add the options that change groups of patches by hand."""
+    made.add_argument("--local", metavar="ID,...", default="", help="groups that are local features (group-05,group-06)")
+    made.add_argument("--not-local", metavar="ID,...", default="", help="groups that are none")
+    made.add_argument("--move", metavar="FACE,...=ID", action="append", default=[], dest="moves",
+                      help="move faces to a group, or with =new to a new one; may be repeated")
+
+
+def with_by_hand(chosen: argparse.Namespace, engine: Engine, session: Session) -> Session:
+    """Return the session with the changes that the options of `add_by_hand` say."""
+    from trunnion.pipeline.patches import with_local, with_moved
+    for word in chosen.moves:
+        faces, equals, group = word.partition("=")
+        if not equals or not all(f.isdecimal() for f in listed(faces)):
+            raise BadCall(f"--move wants FACE,...=ID, not {word}")
+        session = with_moved(engine, session, map(int, listed(faces)), "" if group == "new" else group)
+    for ids, value in ((chosen.local, True), (chosen.not_local, False)):
+        session = with_local(session, listed(ids), value) if ids else session
+    return session
+
+
+def listed(words: str) -> tuple[str, ...]:
+    """Return the words that commas part.
+
+    >>> listed("group-05, group-06")
+    ('group-05', 'group-06')
+    """
+    return tuple(w.strip() for w in words.split(",") if w.strip())
+
+
 def show_json(data: Any) -> None:
     """Print data as JSON on standard output."""
     print(json.dumps(data, indent=1, ensure_ascii=False))

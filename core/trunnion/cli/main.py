@@ -16,7 +16,8 @@ from trunnion.findings import Cancelled, TrunnionError
 
 DONE, PROBLEMS, BAD, CANCELLED = 0, 1, 2, 130
 
-COMMANDS = ("info", "recognize", "size", "blank", "route", "optimize", "program", "verify", "post", "batch", "settings", "gui")
+COMMANDS = ("info", "recognize", "size", "blank", "route", "optimize", "program", "verify", "post", "batch", "patches", "cut", "export",
+            "settings", "gui")
 
 
 class OneLineParser(argparse.ArgumentParser):

@@ -5,24 +5,29 @@ from __future__ import annotations
 import argparse
 from typing import Any
 
-from trunnion.cli.common import exit_code, open_session, part_command, show_findings, show_json, table
+from trunnion.cli.common import add_by_hand, exit_code, open_session, part_command, show_findings, show_json, table, with_by_hand
 
 
 def add(commands: Any) -> None:
     """Add the command to the command line."""
     made = part_command(commands, "recognize", "recognise the machining features of a part")
     made.add_argument("--xml", metavar="FILE", help="write the features as XML as well")
+    made.add_argument("--save", metavar="FILE", help="write a project with the features, those changed by hand among them, as well")
+    add_by_hand(made)
     made.set_defaults(run=run)
 
 
 def run(chosen: argparse.Namespace) -> int:
     """Print the features and what nothing explains."""
-    _, session = open_session(chosen, "recognize")
+    engine, session = open_session(chosen, "recognize")
+    session = with_by_hand(chosen, engine, session)
     part, found = session.part, session.recognition
     assert part is not None and found is not None
     if chosen.xml:
         from trunnion.store.features import write_features
         write_features(session, chosen.xml)
+    if chosen.save:
+        engine.save(session, chosen.save)
     if chosen.json:
         show_json({"part": part.name, "digest": part.digest, "family": found.family, "frame": found.frame.as_dict(),
                    "features": [f.as_dict() for f in found.features],
@@ -32,7 +37,7 @@ def run(chosen: argparse.Namespace) -> int:
         rows = [("feature", "kind", "faces", "sizes")]
         for f in found.features:
             sizes = "  ".join(f"{k} {v:g}" for k, v in f.sizes.items() if isinstance(v, (int, float)) and not isinstance(v, bool))
-            rows.append((f.id, f.kind, str(len(f.faces)), sizes))
+            rows.append((f.id, f"{f.kind}, local" if f.attributes.get("local") else f.kind, str(len(f.faces)), sizes))
         print(table(rows, right=(2,)))
         print("  ".join(f"{n} {kind}" for kind, n in found.counts().items()))
         print(f"unexplained: {len(found.unexplained)} faces, {100 * found.unexplained_share:.2f} % of the area")

@@ -6,7 +6,7 @@ from collections.abc import Callable, Iterable
 
 import numpy as np
 from OCP.BRep import BRep_Tool
-from OCP.BRepAdaptor import BRepAdaptor_Curve
+from OCP.BRepAdaptor import BRepAdaptor_Curve, BRepAdaptor_Curve2d, BRepAdaptor_Surface
 from OCP.GCPnts import GCPnts_AbscissaPoint, GCPnts_QuasiUniformAbscissa
 from OCP.GeomAbs import GeomAbs_Line
 from OCP.gp import gp_Pnt, gp_Vec
@@ -20,6 +20,8 @@ from trunnion.part.identity import Shape, edges_of
 
 _SAMPLES, _ROUNDS = 33, 24
 """Points an edge is searched at for its extremes, and how often the span around the best is narrowed at most."""
+_NODES, _NEARER = 17, 4
+"""Nodes on an edge, and steps towards the nearest point of its curve: they start beside it."""
 _PLACES = (0.0, 0.25, 0.5, 0.75, 1.0)
 """Shares of a curve's parameters at which two curves in the same place are compared."""
 
@@ -45,6 +47,37 @@ def boundary_of(faces: Iterable[tuple[int, Shape]], parts: Callable[[Floats], In
         points = [_spread(c, int(n)) for c, n in zip(curves, parts(length), strict=True)]
     return Boundary(face=rows, length=length, edge=np.repeat(np.arange(len(curves)), [len(p) for p in points]),
                     point=np.vstack([np.zeros((0, 3)), *points]))
+
+
+def approximation_of(face: Shape) -> float:
+    """Return how far a face's boundary curves are from its surface at most, in mm: the paper's approximation error.
+
+    A node is a point of the trim on the surface; its distance is that to the nearest point of the curve in space.
+    """
+    surface, most = BRepAdaptor_Surface(face), 0.0
+    for edge in edges_of(face):
+        if BRep_Tool.Degenerated_s(edge):
+            continue
+        trim, curve = BRepAdaptor_Curve2d(edge, TopoDS.Face_s(face)), BRepAdaptor_Curve(edge)
+        for t in np.linspace(trim.FirstParameter(), trim.LastParameter(), _NODES).tolist():
+            place = trim.Value(t)
+            most = max(most, _distance(curve, np.array(surface.Value(place.X(), place.Y()).Coord()), t))
+    return most
+
+
+def _distance(curve: BRepAdaptor_Curve, node: Floats, t: float) -> float:
+    """Return the distance of a node from a curve, searched from the parameter that both should share (Newton)."""
+    point, along = gp_Pnt(), gp_Vec()
+    nearest = np.inf
+    for _ in range(_NEARER):
+        curve.D1(t, point, along)
+        away, way = node - np.array(point.Coord()), np.array(along.Coord())
+        nearest = min(nearest, float(np.linalg.norm(away)))
+        speed = float(way @ way)
+        if speed <= 0.0:
+            break
+        t = min(max(t + float(away @ way) / speed, curve.FirstParameter()), curve.LastParameter())
+    return nearest
 
 
 def _bounding(face: Shape) -> list[BRepAdaptor_Curve]:

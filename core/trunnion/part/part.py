@@ -152,6 +152,11 @@ class Part:
         own = set(self._faces)
         return boundary_of(((tag, face) for tag, face in enumerate(faces_of(self.as_read), 1) if tag in own), parts)
 
+    def boundary_error(self) -> dict[int, float]:
+        """Return how far each face's boundary curves, as read, are from its surface at most, mm, by tag."""
+        from trunnion.part.boundary import approximation_of
+        return {tag: approximation_of(face) for tag, face in enumerate(faces_of(self.as_read), 1) if tag in self._faces}
+
     def bend(self, tag: int) -> FaceBend:
         """Return how a face bends; raise `BadInput` when it is not of the chosen solid."""
         if tag not in self._bends:

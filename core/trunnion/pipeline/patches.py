@@ -20,9 +20,14 @@ from trunnion.progress import QUIET, Progress
 
 if TYPE_CHECKING:
     from trunnion.pipeline.engine import Engine
+    from trunnion.recognize.surface.accuracy import SizeError
 
 LOCAL, REMAINING = "local", "remaining"
 """What may be exported beside groups by their id: all local features, and all other faces of the part."""
+
+
+COUNTS = (0, 1, 3, 7, 15, 31, 63, 127, 255, 500)
+"""Points on an edge that the table of size errors is made for; the paper's figure 8 ends with 500."""
 
 
 def with_cut(engine: Engine, session: Session, cut: Cut, progress: Progress = QUIET) -> Session:
@@ -92,6 +97,18 @@ def export(engine: Engine, session: Session, what: Sequence[str], path: str | Pa
     part, tags = engine.bench_of(session).part, tags_of(session, what)
     write_faces([part.face_shape(t) for t in tags], path)
     return len(tags)
+
+
+def size_errors(engine: Engine, session: Session, counts: Sequence[int] = COUNTS, progress: Progress = QUIET) -> tuple[SizeError, ...]:
+    """Return how exact the feature sizes are, and what they cost, for so many points on each edge; the last is the paper's repair."""
+    from trunnion.recognize.surface.accuracy import size_errors as measured
+    part = engine.bench_of(session).part
+    return measured(part, part.tags, counts, progress)
+
+
+def boundary_errors(engine: Engine, session: Session) -> dict[int, float]:
+    """Return how far each face's boundary curves are from its surface at most, mm, by tag: what the file itself leaves open."""
+    return engine.bench_of(session).part.boundary_error()
 
 
 def _recognition(session: Session) -> Recognition:

@@ -2,17 +2,22 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 
 import numpy as np
 
 from trunnion import tolerance
 from trunnion.geometry.arrays import Floats, Ints
+from trunnion.geometry.boundary import Boundary
 from trunnion.recognize.contract import Bounded
 
+Parts = Callable[[Floats], Ints]
+"""From the lengths of edges to how many pieces each is cut into."""
 REPAIR = ((0.7, 8), (0.5, 6), (0.3, 4), (0.1, 2))
 """The paper's boundary repair: an edge longer than this share of the datum length is cut into so many equal parts."""
+FEW = 2
+"""Parts of every edge for the first estimate of the largest feature size."""
 SPREAD, LEAST = 500, 48
 """Where the largest distance of two boundary points is wanted: points along the longest edge, and the fewest on any."""
 RUN = 8
@@ -41,20 +46,33 @@ class PatchSizes:
 
 def patch_sizes(bounded: Bounded, tags: Sequence[int], area: Floats, *, exact: bool) -> PatchSizes:
     """Return the sizes of patches, given by tag with their area (n,) mm2; by the paper's points on the edges unless `exact`."""
-    boxes = bounded.boundary(None if exact else _repaired)
+    boxes = bounded.boundary(None if exact else repaired(bounded))
     spread = bounded.boundary(lambda length: np.maximum(np.ceil(SPREAD * length / length.max(initial=1.0)), LEAST).astype(np.int64))
-    sides = np.array([np.ptp(p, axis=0) if len(p) else np.zeros(3) for p in map(boxes.points_of, tags)]).reshape(-1, 3)
+    sides = box_sides(boxes, tags)
     return PatchSizes(tag=np.array(tags, dtype=np.int64), sides=sides, diagonal=np.linalg.norm(sides, axis=1),
                       diameter=np.array([_diameter(spread.points_of(t)) for t in tags]),
                       length=np.array([boxes.length_of(t) for t in tags]), area=np.asarray(area, dtype=np.float64))
 
 
-def _repaired(length: Floats) -> Ints:
-    """Return how many parts each edge is cut into; the datum length is the longest edge's, for want of a better estimate."""
-    share = length / length.max(initial=1.0)
-    parts = np.ones(len(length), dtype=np.int64)
-    for above, count in reversed(REPAIR):
-        parts[share > above] = count
+def box_sides(boundary: Boundary, tags: Sequence[int]) -> Floats:
+    """Return the sides (n, 3) of the axis-aligned box of each patch's boundary points."""
+    return np.array([np.ptp(p, axis=0) if len(p) else np.zeros(3) for p in map(boundary.points_of, tags)]).reshape(-1, 3)
+
+
+def repaired(bounded: Bounded) -> Parts:
+    """Return the paper's rule for how many parts each edge is cut into.
+
+    Its datum length, the estimated largest feature size, is the largest diagonal that a few points on each edge give.
+    """
+    few = bounded.boundary(lambda length: np.full(len(length), FEW))
+    datum = float(np.linalg.norm(box_sides(few, np.unique(few.face).tolist()), axis=1).max(initial=0.0))
+
+    def parts(length: Floats) -> Ints:
+        found = np.ones(len(length), dtype=np.int64)
+        for above, count in reversed(REPAIR):
+            found[length > above * datum] = count
+        return found
+
     return parts
 
 

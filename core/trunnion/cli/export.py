@@ -1,0 +1,48 @@
+"""`trunnion export`: some faces of a part, such as its local features, as a file of their own."""
+
+from __future__ import annotations
+
+import argparse
+from pathlib import Path
+from typing import Any
+
+from trunnion.cli.common import (
+    add_by_hand,
+    check_output,
+    exit_code,
+    listed,
+    open_session,
+    part_command,
+    show_findings,
+    show_json,
+    with_by_hand,
+)
+from trunnion.findings import BadInput
+
+
+def add(commands: Any) -> None:
+    """Add the command to the command line."""
+    made = part_command(commands, "export", "write groups of patches, local features or the remaining area as IGES or STEP")
+    made.add_argument("--groups", metavar="WORD,...", default="local", help="local, remaining, or ids such as group-03 (default: local)")
+    made.add_argument("--out", type=Path, required=True, metavar="FILE", help="file to write (.igs, .iges, .step, .stp)")
+    add_by_hand(made)
+    made.set_defaults(run=run)
+
+
+def run(chosen: argparse.Namespace) -> int:
+    """Write the faces and say how many they are."""
+    from trunnion.pipeline.patches import export, tags_of
+    if not chosen.out.parent.is_dir():
+        raise BadInput(f"{chosen.out}: there is no folder {chosen.out.parent}")
+    check_output(chosen.out.parent)
+    engine, session = open_session(chosen, "recognize")
+    session = with_by_hand(chosen, engine, session)
+    what = listed(chosen.groups)
+    tags = tags_of(session, what)
+    export(engine, session, what, chosen.out)
+    if chosen.json:
+        show_json({"file": str(chosen.out), "groups": list(what), "faces": list(tags)})
+    else:
+        print(f"{len(tags)} faces written to {chosen.out}")
+    show_findings(chosen, session.findings())
+    return exit_code(session.findings())
