@@ -6,7 +6,7 @@ from collections.abc import Callable, Mapping, Sequence
 
 from PySide6.QtCore import QEvent, QObject, QPoint, Qt, Signal
 from PySide6.QtGui import QWheelEvent
-from PySide6.QtWidgets import QCheckBox, QComboBox, QDoubleSpinBox, QGridLayout, QLabel, QLineEdit, QMenu, QSpinBox, QWidget
+from PySide6.QtWidgets import QCheckBox, QComboBox, QCompleter, QDoubleSpinBox, QGridLayout, QLabel, QLineEdit, QMenu, QSpinBox, QWidget
 
 from trunnion.settings import Declared, Value
 from trunnion.units import trimmed
@@ -14,6 +14,8 @@ from trunnion_gui.i18n import tr
 
 _WIDEST = 10**9
 _FIELD_WIDTH = 138
+_LONG = 60
+"""A list of more words than this is searched, not opened."""
 
 
 class Number(QDoubleSpinBox):
@@ -125,6 +127,8 @@ def make_field(setting: Declared) -> QWidget:
     """Return the widget that suits a setting."""
     if setting.kind is bool:
         return QCheckBox()
+    if len(setting.choices) > _LONG:
+        return _searched(setting)
     if setting.choices:
         choice = Choice()
         for word in setting.choices:
@@ -135,6 +139,19 @@ def make_field(setting: Declared) -> QWidget:
         return _number(setting)
     line = QLineEdit()
     line.setFixedWidth(_FIELD_WIDTH)
+    return line
+
+
+def _searched(setting: Declared) -> QLineEdit:
+    """Return a line that finds names of a long list by any of their letters."""
+    line = QLineEdit()
+    line.setFixedWidth(_FIELD_WIDTH)
+    line.setPlaceholderText(tr("automatic"))
+    line.setClearButtonEnabled(True)
+    finder = QCompleter([word for word in setting.choices if word], line)
+    finder.setFilterMode(Qt.MatchFlag.MatchContains)
+    finder.setCaseSensitivity(Qt.CaseSensitivity.CaseInsensitive)
+    line.setCompleter(finder)
     return line
 
 

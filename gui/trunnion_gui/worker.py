@@ -214,11 +214,13 @@ def _offered(setting: Declared) -> Declared:
         return setting
     from trunnion.shop import load_shop
 
-    names = dict.fromkeys((str(setting.default), *sorted(getattr(load_shop(), catalogue))))
-    return replace(setting, choices=tuple(names))
+    shop = load_shop()
+    known = [tool.name for tool in shop.tools] if catalogue == "tools" else sorted(getattr(shop, catalogue))
+    return replace(setting, choices=tuple(dict.fromkeys((str(setting.default), *known))))
 
 
-_CATALOGUES = {"blank.material": "materials", "setup.machine": "machines"}
+_CATALOGUES = {"blank.material": "materials", "setup.machine": "machines", "surface.cutter": "tools", "surface.local_cutter": "tools",
+               "surface.rough_cutter": "tools"}
 """Settings that name a thing of a catalogue: the form offers what there is."""
 VERBS: dict[str, Callable[..., Any]] = {
     "open": _open, "run": _run, "states": _states, "attach": _attach, "save": _save, "write": _write, "settings": _settings,

@@ -343,7 +343,8 @@ def swaying(box: tuple[float, float, float, float], z: float, tilt: float) -> To
     n = len(position)
     return Toolpath(position=position, axis=np.vstack([axis[:1], axis, axis[-1:]]), centre=np.full((n, 3), np.nan),
                     motion=np.array([Motion.RAPID] + [Motion.LINE] * (n - 2) + [Motion.RAPID]),
-                    mark=np.array([Mark.RETRACT] * 2 + [Mark.CUT] * (n - 3) + [Mark.RETRACT]), feed=np.array([0.0] + [900.0] * (n - 2) + [0.0]))
+                    mark=np.array([Mark.RETRACT] * 2 + [Mark.CUT] * (n - 3) + [Mark.RETRACT]),
+                    feed=np.array([0.0] + [900.0] * (n - 2) + [0.0]))
 
 
 class SwayingEngine(FakeEngine):

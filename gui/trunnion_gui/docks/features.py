@@ -29,6 +29,8 @@ _LOCAL = 5
 """The column of the marks for local features."""
 _COLUMNS = 6
 _UNEXPLAINED = "?"
+_LARGE = 100.0
+"""mm: of larger radii nobody wants to know the decimals."""
 
 
 class FeatureDock(QWidget):
@@ -131,6 +133,9 @@ class FeatureDock(QWidget):
             item.setToolTip(0, ", ".join(f"{role} {tag}" for role, tag in ((x.role, x.face) for x in f.faces)))
             if f.kind == GROUP:
                 item.setIcon(0, colour_icon(colours[f.id]))
+                for place, name, title in ((3, "fillet_radius", tr("fillet")), (4, "rounding_radius", tr("rounded edge"))):
+                    if radius_words(f, name):
+                        item.setToolTip(place, f"{title} R {radius_words(f, name)} mm")
                 item.setCheckState(_LOCAL, Qt.CheckState.Checked if f.attributes.get("local") else Qt.CheckState.Unchecked)
                 item.setFlags(item.flags() & ~Qt.ItemFlag.ItemIsUserCheckable)  # a click is an edit of the session, not of the row
             if f.by_hand:
@@ -203,4 +208,6 @@ def main_size(feature: Feature) -> str:
 def radius_words(feature: Feature, name: str) -> str:
     """Return a radius of a group without its unit, nothing where there is none."""
     value = feature.sizes.get(name)
-    return amount(value, 2) if isinstance(value, (int, float)) and 0.0 < value < float("inf") else ""
+    if not isinstance(value, (int, float)) or not 0.0 < value < float("inf"):
+        return ""
+    return amount(value, 2 if value < _LARGE else 0)

@@ -40,6 +40,7 @@ class Panel(Foldout):
         self.theme: Theme | None = None
         self.forms: list[Form] = []
         self._groups: list[Foldout] = []
+        self._by_name: dict[str, QWidget] = {}
         self._main: list[QPushButton] = []
         self._settings_shown: Mapping | None = None
         self._settings = QVBoxLayout()
@@ -94,6 +95,7 @@ class Panel(Foldout):
             self._make_forms()
         for form in self.forms:
             form.fill(document.session.choices)
+        self._show_own_groups()
         self._stress(state)
         self.fill()
         self.result.setVisible(bool(self.result.text()))
@@ -129,10 +131,25 @@ class Panel(Foldout):
             form = self._form(group)
             if n == 0 and len(group.settings) <= _FEW and not self.folds_settings:
                 self._settings.addWidget(form)
+                self._by_name[group.name] = form
                 continue
             foldout = self._folded(tr("{group} settings").format(group=tr(group.title)))
             foldout.content.addWidget(form)
             inside.addWidget(foldout)
+            self._by_name[group.name] = foldout
+
+    def _show_own_groups(self) -> None:
+        """Hide the settings that only other families of parts have."""
+        found = self.document.shown.recognition
+        others = self._families - {found.family} if found is not None else set()
+        for name, widget in self._by_name.items():
+            widget.setVisible(not others & set(name.split(".")))
+
+    @property
+    def _families(self) -> set[str]:
+        """The names of all families, from the setting that chooses one."""
+        declared = (s for g in self.document.groups.get("recognize", ()) for s in g.settings if s.key == "recognize.family")
+        return {name for s in declared for name in s.choices}
 
     def _folded(self, title: str) -> Foldout:
         foldout = Foldout(title, is_group=True)
