@@ -200,7 +200,9 @@ class AxisSearch:
             if not self._improved():
                 break
         at = [slice(a, b) for a, b in pairwise(self.places.start.tolist())]
-        return [Course(place=self.places.place[s], axis=self.axis[s].copy(), free=self.free[s].copy(), leap=self.leap[s].copy()) for s in at]
+        # The search may go on: what is given away is a copy.
+        axis, free, leap = self.axis.copy(), self.free.copy(), self.leap.copy()
+        return [Course(place=self.places.place[s], axis=axis[s], free=free[s], leap=leap[s]) for s in at]
 
     def met(self, number: int, places: Floats) -> None:
         """Take in that on the pass of a number something was met at places (k,): the axes to both sides of them won't do."""

@@ -75,7 +75,7 @@ class PointSettings:
 
 @dataclass(frozen=True, slots=True, eq=False, kw_only=True)
 class Milled:
-    """Passes of a leaning cutter, and the length of contact way in mm that had to be left."""
+    """Passes of a leaning cutter, and the share of the contact ways that had to be left."""
 
     passes: tuple[Pass, ...]
     left: float
@@ -94,7 +94,7 @@ def point(drive: SurfaceDrive, tool: Tool, data: CuttingData, stock: PlanningSto
     limits = LeanLimits(turn=math.radians(settings.turn), steepest=math.radians(settings.steepest))
     done = milled(ways, tool, field_of(settings, drive.frame), ask, limits, settings.chord, drive.allowance, progress.part(0.3, 0.9))
     stepover = stepover_on_plane(max(ball.radius, drive.height), drive.height)
-    findings = _left(done, drive, tool, stepover)
+    findings = _left(done, drive, tool)
     if not done.passes:
         return Planned(findings=findings)
     manner = Manner(stepover=stepover, safety=settings.safety, lead_radius=settings.lead_radius)
@@ -120,9 +120,9 @@ def milled(ways: Sequence[Contacts], tool: Tool, field: AxisField, ask: Asker | 
                 search.met(k, met)
         again = np.flatnonzero(search.dirty).tolist()
         courses = search.courses(share) if again else courses
-    left = sum(_run(way, 0.0, len(way) - 1.0) - sum(_run(way, float(place[0]), float(place[-1])) for place, _ in pieces)
-               for way, pieces in zip(ways, found, strict=True))
-    return Milled(passes=tuple(one for pieces in found for _, one in pieces), left=max(left, 0.0))
+    whole = sum(_run(way, 0.0, len(way) - 1.0) for way in ways)
+    done = sum(_run(way, float(place[0]), float(place[-1])) for way, pieces in zip(ways, found, strict=True) for place, _ in pieces)
+    return Milled(passes=tuple(one for pieces in found for _, one in pieces), left=max(1.0 - done / whole, 0.0) if whole > 0.0 else 0.0)
 
 
 def located(way: Contacts, run: Course, tool: Tool, chord: float, allowance: float = 0.0) -> tuple[Floats, Pass]:
@@ -256,8 +256,10 @@ def _run(way: Contacts, start: float, end: float) -> float:
     return float(np.diff(np.interp([start, end], np.arange(len(way)), length))[0])
 
 
-def _left(done: Milled, drive: SurfaceDrive, tool: Tool, stepover: float) -> tuple[Finding, ...]:
-    area = done.left * stepover
+def _left(done: Milled, drive: SurfaceDrive, tool: Tool) -> tuple[Finding, ...]:
+    corners = drive.skin.points[drive.skin.triangles[drive.skin.of(drive.faces)]]
+    across = np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0])
+    area = done.left * 0.5 * float(np.linalg.norm(across, axis=1).sum())
     if area < SMALLEST_LEFTOVER:
         return ()
     return (warning("point.left", f"{area:.0f} mm2 of {drive.feature} stay: {tool.name} finds no way to lean there", drive.feature,
