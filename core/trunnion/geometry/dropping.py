@@ -134,7 +134,8 @@ def _covers(facets: Floats, lattice: Lattice, cell: Ints) -> tuple[Floats, Float
 
 def _cover(facets: Floats, group: Ints, n: int) -> Floats:
     """Return for each of n groups of facets (k, 19), group (k,), a plane (n, 3) that nothing of them is above."""
-    weight = np.abs(facets[:, kernel.TURN])
+    # What looks down, the other side of a part, says nothing of how steep the side is that a cutter comes to, large as it may be.
+    weight = np.maximum(facets[:, kernel.TURN], np.finfo(float).eps * np.abs(facets[:, kernel.TURN]))
     total = np.bincount(group, weight, n)
     out = np.zeros((n, 3))
     for column, slope in ((0, kernel.GX), (1, kernel.GY)):
