@@ -21,6 +21,7 @@ from trunnion.model.setup import Setup
 from trunnion.model.tool import Tool
 from trunnion.model.toolpath import Motion
 from trunnion.post.readers.linuxcnc import read_linuxcnc
+from trunnion.post.readers.sections import Rows
 
 Call = tuple[str, str, list[float]]
 
@@ -61,6 +62,30 @@ def motions_of(text: str, tools: Sequence[Tool], setup: Setup) -> list[Call]:
             else:
                 calls.append((number, "STRAIGHT_TRAVERSE" if path.motion[row] == Motion.RAPID else "STRAIGHT_FEED", [x, y, z]))
     return calls
+
+
+def compare_joints(text: str, rows: Sequence[Rows], letters: str, tools: Sequence[Tool], folder: Path) -> int:
+    """Return the number of moves after seeing that rs274's positions of all axes equal our reading of a text with rotary axes to 1e-4."""
+    lines = text.split("\n")
+    lifts = {line.split()[0][1:] for line in lines if "G53" in line}
+    ours = [(lines[line - 1].split()[0][1:], point, motion) for part in rows
+            for line, point, motion in zip(part.line, part.point, part.motion, strict=True)]
+    theirs: dict[str, tuple[str, list[float]]] = {}
+    for number, name, numbers in run(text, tools, folder):
+        if name in ("STRAIGHT_TRAVERSE", "STRAIGHT_FEED", "ARC_FEED"):
+            theirs[number] = (name, numbers)
+    names = {Motion.RAPID: "STRAIGHT_TRAVERSE", Motion.LINE: "STRAIGHT_FEED"}
+    compared = 0
+    for k, (number, point, motion) in enumerate(ours):
+        if (k + 1 < len(ours) and ours[k + 1][0] == number) or number not in theirs or number in lifts:
+            continue
+        name, numbers = theirs[number]
+        assert name == names.get(Motion(motion), "ARC_FEED")
+        linear = [*numbers[:2], numbers[5]] if name == "ARC_FEED" else numbers[:3]
+        found = np.array([*linear, *(numbers[-3:]["ABC".index(letter)] for letter in letters)])
+        assert np.abs(found - np.array(point)).max() <= 1e-4
+        compared += 1
+    return compared
 
 
 def compare(text: str, tools: Sequence[Tool], setup: Setup, folder: Path, scale: float = 1.0) -> int:

@@ -6,13 +6,19 @@ import math
 from pathlib import Path
 
 import numpy as np
+import pytest
 
 import rs274
+from five_axis import five_axis_case
+from leaning_paths import ENDLESS_FORK, TABLE, joint_rows, lean, standing, text_of
+from leaning_paths import path_of as leaning_path
+from leaning_paths import program as leaning_program
 from programs import BULL_10, CCW, CW, FLAT_16, LINE, RAPID, S1, path_of, program_1, section
 from trunnion.model.program import Program
 from trunnion.post.dialects.linuxcnc import LinuxCncDialect
 from trunnion.post.header import Header
 from trunnion.post.settings import PostSettings
+from trunnion.toolpath.turning import Swing, moved_over
 
 HEADER = Header(name="B1", part="B1", part_digest="ab12", plan_digest="cd34")
 TOOLS = (FLAT_16, BULL_10)
@@ -54,6 +60,34 @@ def test_rs274_feeds_as_we_mean(tmp_path):
     calls = run(LinuxCncDialect().write([program_1()], HEADER, PostSettings()), tmp_path)
     feeds = [numbers[-1] for _, name, numbers in calls if name == "SET_FEED_RATE" and numbers[-1] > 0.0]
     assert feeds == [300.0, 600.0, 1200.0, 900.5, 800.0, 800.0]
+
+
+@pytest.mark.parametrize("machine", [TABLE, ENDLESS_FORK], ids=["table", "fork"])
+def test_rs274_moves_five_axes_as_we_mean(machine, tmp_path):
+    place, case = standing(machine, foot=(100.0, 100.0, -30.0)), five_axis_case(60, 500)
+    tilt = lean(35.0, 50.0)
+    path = leaning_path(((20.0, 10.0, 60.0), tilt), ((20.0, 10.0, 5.0), tilt), ((60.0, -20.0, 5.0), tilt))
+    made = leaning_program(case.section.path, moved_over(path, (case.section.path.position[-1], case.section.path.axis[-1]),
+                                                         Swing(centre=place.centre, radius=250.0)), tool=case.section.tool)
+    text, tools = text_of(made, place), (case.section.tool,)
+    assert text.count("G93") > 0 and text.count("G94") > 2
+    assert rs274.compare_joints(text, joint_rows(text, place, tools), place.names, tools, tmp_path) > 1000
+
+
+def test_rs274_takes_inverse_time_as_we_mean(tmp_path):
+    # It tells mm a minute along X, Y and Z: over the way of the axes that is the time that we have said.
+    place = standing(TABLE)
+    text = text_of(leaning_program(leaning_path(((0.0, 0.0, 10.0), lean(5.0)), ((40.0, 0.0, 10.0), lean(25.0)), feed=600.0)), place)
+    (rows,) = joint_rows(text, place)
+    calls, minutes, at = rs274.run(text, TOOLS, tmp_path), [], None
+    for _, name, numbers in calls:
+        if name == "SET_FEED_RATE":
+            feed = numbers[-1]
+        elif name in ("STRAIGHT_TRAVERSE", "STRAIGHT_FEED"):
+            if name == "STRAIGHT_FEED":
+                minutes.append(math.dist(at, numbers[:3]) / feed)
+            at = numbers[:3]
+    assert minutes == pytest.approx([m for m in rows.minutes if m > 0.0], rel=2e-3)
 
 
 def test_rs274_takes_random_arcs_lines_and_helices(tmp_path):

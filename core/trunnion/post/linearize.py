@@ -28,12 +28,15 @@ MARGIN = 0.9
 """Share of the tolerance that a piece is made for: what comes between its samples stays below the whole."""
 MOST_TURN = math.radians(30.0)
 """Turn of an axis in one piece, beyond which the samples would not see how far it strays."""
+MOST_TURNS = 3
+"""Whole turns, each way, that another beginning is looked for; an axis with so many to spare needs none."""
 TURN = 2.0 * math.pi
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Straying:
-    """How far the tool may leave its planned motion between blocks, mm: at its tip and at the upper end of what must not stray."""
+    """How far the tool may leave its planned motion between blocks, mm: its tip, and by its lean as much again over the flutes (in rapids
+    over the whole tool)."""
 
     feed: float
     rapid: float
@@ -138,19 +141,19 @@ def _beginnings(angles: Floats, free: Bools, near: Floats, low: Floats, high: Fl
         return [np.clip(near, low, high)]
     found = []
     for way in angles[fixed[0]]:
-        turns = np.round((near - way) / TURN)
-        for more in itertools.product((0.0, -1.0, 1.0), repeat=len(near)):
-            start = way + TURN * (turns + np.array(more))
-            if (start >= low - SLACK).all() and (start <= high + SLACK).all():
-                found.append(start)
+        least, most = np.ceil((low - SLACK - way) / TURN), np.floor((high + SLACK - way) / TURN)
+        nearest = np.round((near - way) / TURN)
+        turns = [np.arange(max(a, n - MOST_TURNS), min(b, n + MOST_TURNS) + 1) for a, b, n in zip(least, most, nearest, strict=True)]
+        found += [way + TURN * np.array(n) for n in itertools.product(*turns)]
     return found or [np.clip(near, low, high)]
 
 
 def _beyond(ways: Floats, place: Place) -> str:
     """Return what a pose asks of the axes and what they have."""
-    asked = " or ".join(" ".join(f"{a.name}{math.degrees(v):.1f}" for a, v in zip(place.machine.rotary, way, strict=True)) for way in ways)
+    near = np.degrees(ways - TURN * np.round(ways / TURN))
+    asked = " or ".join(" ".join(f"{a.name}{v:.1f}" for a, v in zip(place.machine.rotary, way, strict=True)) for way in near.tolist())
     has = ", ".join(f"{a.name} {a.low:g} to {a.high:g}" for a in place.machine.rotary)
-    return f"its tool axis needs {asked}, from where the axes stand; {place.machine.title} has {has}"
+    return f"its tool axis needs {asked}, which can't be reached from the block before; {place.machine.title} has {has}"
 
 
 def _arcs_opened(path: Toolpath, angle: Floats, place: Place, straying: Straying) -> tuple[Toolpath, Floats]:
@@ -250,12 +253,16 @@ def _halved(path: Toolpath, pieces: _Pieces, place: Place) -> _Pieces:
 
 def _tip_held(path: Toolpath, pieces: _Pieces, allowed: Floats, gauge: float, place: Place) -> tuple[Ints, Floats, Floats]:
     """Return the ends of blocks (row, share of it, angles) along which the tip stays within `allowed` (n,) mm of its straight way."""
-    n = np.ceil(np.abs(pieces.last - pieces.first).max(axis=1, initial=0.0) / MOST_TURN - SLACK)
-    pieces = _parted(pieces, np.maximum(1, n).astype(np.int64))
-    strays = _tip_strays(path, pieces, gauge, place)
-    n = np.ceil(np.sqrt(strays / (MARGIN * allowed[pieces.block])))
-    pieces = _parted(pieces, np.maximum(1, n).astype(np.int64))
-    return pieces.block, pieces.end, pieces.last
+    turn = np.abs(pieces.last - pieces.first).max(axis=1, initial=0.0)
+    pieces = _parted(pieces, np.maximum(1, np.ceil(turn / MOST_TURN - SLACK)).astype(np.int64))
+    done: list[_Pieces] = []
+    while len(pieces.block):
+        strays = _tip_strays(path, pieces, gauge, place) / allowed[pieces.block]
+        done.append(pieces.of(strays <= 1.0))
+        far = strays > 1.0
+        pieces = _parted(pieces.of(far), np.ceil(np.sqrt(strays[far] / MARGIN)).astype(np.int64))
+    whole = _ordered([pieces, *done])
+    return whole.block, whole.end, whole.last
 
 
 def _parted(pieces: _Pieces, n: Ints) -> _Pieces:
