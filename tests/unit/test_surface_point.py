@@ -205,3 +205,12 @@ def test_axes_are_asked_for_in_the_part_s_coordinates() -> None:
         axis(axis="fixed", axis_from="up")
     with pytest.raises(BadInput, match="vectors as"):
         axis(axis="vectors", axis_from="1 2 3")
+
+
+def test_passes_of_constant_scallop_are_milled_by_points_too() -> None:
+    ask = Boxes(FLOOR, WALL)
+    plan, _ = planned(ask, tool=LONG, high=6.0, pattern="constant")
+    path = plan.path
+    assert ask(LONG)(path.position[1:], path.axis[1:], start_tip=path.position[:-1], start_axis=path.axis[:-1]).all()
+    cut = path.position[path.mark == 0]
+    assert np.ptp(cut[:, 0]) > 19.0 and np.ptp(cut[:, 1]) > 4.5

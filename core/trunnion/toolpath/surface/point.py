@@ -1,7 +1,7 @@
-"""Point milling: a cutter led along flow lines of the faces, its axis leaning to a field and out of the way of everything.
+"""Point milling: a cutter led along passes of contacts, its axis leaning to a field and out of the way of everything.
 
-Contacts come from the flow lines, axes from `lean`; where the cutter stands follows from its form. Blocks are as long as the cutter,
-carried straight from tip to tip while its axis turns evenly, stays within the chord error of the faces, on either side of them.
+Contacts come from flow lines or passes of constant scallop, axes from `lean`; where the cutter stands follows from its form. Blocks are as
+long as the cutter, carried straight from tip to tip while its axis turns evenly, stays within the chord error of the faces, on either side.
 """
 
 from __future__ import annotations
@@ -28,6 +28,7 @@ from trunnion.settings import choose, setting, settings
 from trunnion.toolpath.contract import Planned, strategy
 from trunnion.toolpath.stock import PlanningStock
 from trunnion.toolpath.surface.axis import AxisField, fixed, from_point, interpolated, leaning
+from trunnion.toolpath.surface.constant import scallop_passes
 from trunnion.toolpath.surface.contacts import Contacts, between, slerp
 from trunnion.toolpath.surface.cutter import lower_side, tip_at, touching
 from trunnion.toolpath.surface.lean import AxisSearch, Course, LeanLimits
@@ -54,6 +55,8 @@ SMALLEST_LEFTOVER = 0.5
 class PointSettings:
     """How the tool leans, how its axis may turn, and how finely the way is cut."""
 
+    pattern: str = setting("flow", label="Pattern", help="Along flow lines between two guides, or as far from pass to pass as keeps the "
+                           "scallop the same everywhere.", choices=("flow", "constant"))
     axis: str = setting("normal", label="Tool axis", help="What the axis keeps to: the face's normal with lead and tilt, a fixed "
                         "direction, away from a place, towards a place, or between given vectors. It leaves that where it must.",
                         choices=("normal", "fixed", "away", "towards", "vectors"))
@@ -90,7 +93,9 @@ def point(drive: SurfaceDrive, tool: Tool, data: CuttingData, stock: PlanningSto
     ask, lead, tilt = drive.ask(tool), math.radians(settings.lead), math.radians(settings.tilt)
     ball = grooving(tool, lead, tilt)
     flow = choose(StreamlineSettings, {name: getattr(settings, name) for name in ("first_guide", "second_guide", "spiral")})
-    ways = streamlines(drive, ball, flow, progress.part(0.0, 0.3))
+    ways = (streamlines(drive, ball, flow, progress.part(0.0, 0.3)) if settings.pattern == "flow" else
+            # They run with what is inside on their left: the other way round a cutter that turns clockwise climbs.
+            tuple(way.reversed() for way in scallop_passes(drive, ball, settings.chord, progress.part(0.0, 0.3))))
     limits = LeanLimits(turn=math.radians(settings.turn), steepest=math.radians(settings.steepest))
     done = milled(ways, tool, field_of(settings, drive.frame), ask, limits, settings.chord, drive.allowance, progress.part(0.3, 0.9))
     stepover = stepover_on_plane(max(ball.radius, drive.height), drive.height)
