@@ -10,6 +10,7 @@ from OCP.BRepBuilderAPI import BRepBuilderAPI_MakeEdge
 from OCP.BRepLib import BRepLib
 from OCP.BRepTools import BRepTools
 from OCP.BRepTopAdaptor import BRepTopAdaptor_FClass2d
+from OCP.Geom2d import Geom2d_TrimmedCurve
 from OCP.Geom2dAPI import Geom2dAPI_Interpolate
 from OCP.gp import gp_Pnt, gp_Pnt2d, gp_Vec2d
 from OCP.ShapeAnalysis import ShapeAnalysis_Surface
@@ -26,6 +27,8 @@ _BEYOND = 0.02
 """How far an end is led on outside the face, as a share of the face's parameters: clear of its boundary."""
 _STEP = 0.01
 """Share of the face's parameters by which an end is led on until it is outside."""
+_MORE = 3
+"""Places before and after a way round the surface that make it run on smoothly where it closes."""
 _BESIDE = 1e-4
 """Share of the face's parameters beside the way at which pieces are asked for."""
 _ASKED = 64
@@ -50,15 +53,12 @@ class DrawnWay:
         at, steps = at[kept], steps[kept[1:]]
         if len(at) < 2:
             raise BadInput(f"{where}: the places of a drawn cut fall together")
-        self.is_closed = bool(np.abs(at[-1] - at[0]).max() < tolerance.PARAMETRIC * self._size.max())
-        if not self.is_closed:
-            head, tail = self._led_out(at[0], at[0] - at[1]), self._led_out(at[-1], at[-1] - at[-2])
-            at = np.vstack([head, at, tail])
-            scale = steps / np.maximum(np.linalg.norm(np.diff(at[len(head):len(at) - len(tail)], axis=0) / self._size, axis=1),
-                                       tolerance.PARAMETRIC)
-            steps = np.concatenate([[_lead(head, at[len(head)], self._size) * scale[0]] * len(head), steps,
-                                    [_lead(tail, at[-len(tail) - 1], self._size) * scale[-1]] * len(tail)])
-        self._curve = _through(at, np.concatenate([[0.0], np.cumsum(steps)]), self.is_closed)
+        is_back = bool(np.linalg.norm(places[-1] - places[0]) < tolerance.COINCIDENT)
+        is_loop = is_back and bool(np.abs(at[-1] - at[0]).max() < tolerance.PARAMETRIC * self._size.max())
+        if not is_back:
+            at, steps = self._led_out(at, steps)
+        along = np.concatenate([[0.0], np.cumsum(steps)])
+        self._curve = _around(at, along) if is_back and not is_loop else _through(at, along, is_loop)
         if self._curve is None:
             raise BadInput(f"{where}: no smooth curve goes through the places of the drawn cut; draw it with fewer places")
 
@@ -106,21 +106,31 @@ class DrawnWay:
         s = self._surface
         return (s.UPeriod() if s.IsUPeriodic() else 0.0), (s.VPeriod() if s.IsVPeriodic() else 0.0)
 
-    def _led_out(self, end: Floats, way: Floats) -> Floats:
-        """Return the place (1, 2) straight on from an end of the way that lies outside the face; (0, 2) when the end is outside already."""
+    def _led_out(self, at: Floats, steps: Floats) -> tuple[Floats, Floats]:
+        """Return the places (k, 2) of an open way and the steps between them (k - 1,), led straight on from both ends out of the face."""
+        for _ in range(2):
+            end = self._outside(at[-1], at[-1] - at[-2])
+            if end is not None:
+                share = np.linalg.norm((end - at[-1]) / self._size) / np.linalg.norm((at[-1] - at[-2]) / self._size)
+                at, steps = np.vstack([at, end]), np.append(steps, max(share, tolerance.ANGLE) * steps[-1])
+            at, steps = at[::-1], steps[::-1]
+        return at, steps
+
+    def _outside(self, end: Floats, way: Floats) -> Floats | None:
+        """Return the place (2,) straight on from an end of the way that lies outside the face, None when the end does already."""
         inside: Any = BRepTopAdaptor_FClass2d(self._face, tolerance.COINCIDENT)
-        limits = self._limits()
         if inside.Perform(gp_Pnt2d(*end.tolist())) == TopAbs_OUT:
-            return np.empty((0, 2))
+            return None
+        limits = self._limits()
         step = way / max(np.abs(way / self._size).max(), tolerance.PARAMETRIC) * _STEP
         at, beyond = end, 0.0
         while beyond < _BEYOND:
             further = np.clip(at + step, *limits)
             if np.abs((further - at) - step).max() > tolerance.PARAMETRIC * np.abs(step).max():
-                return np.array([_onto(at, step, limits)])
+                return _onto(at, step, limits)
             at = further
             beyond += _STEP if inside.Perform(gp_Pnt2d(*at.tolist())) == TopAbs_OUT else 0.0
-        return np.array([at])
+        return at
 
     def _limits(self) -> tuple[Floats, Floats]:
         """Return the least and greatest parameters at which there is a surface, but not far beyond the face."""
@@ -138,20 +148,24 @@ def _onto(at: Floats, step: Floats, limits: tuple[Floats, Floats]) -> Floats:
     return np.clip(at + max(float(share.min()), 0.0) * step, *limits)
 
 
-def _lead(lead: Floats, end: Floats, size: Floats) -> float:
-    return float(np.linalg.norm((lead[0] - end) / size)) if len(lead) else 0.0
+def _around(at: Floats, along: Floats) -> Any:
+    """Return the plane curve through places (k, 2) that come back to the first one round a surface that closes on itself, or None."""
+    round_trip, length = at[-1] - at[0], along[-1]
+    more = min(_MORE, len(at) - 1)
+    at = np.vstack([at[-1 - more:-1] - round_trip, at, at[1:1 + more] + round_trip])
+    along = np.concatenate([along[-1 - more:-1] - length, along, along[1:1 + more] + length])
+    curve = _through(at, along, False)
+    return None if curve is None else Geom2d_TrimmedCurve(curve, 0.0, length)
 
 
-def _through(at: Floats, along: Floats, is_closed: bool) -> Any:
+def _through(at: Floats, along: Floats, is_loop: bool) -> Any:
     """Return the plane curve through places (k, 2) at the parameters (k,), or None."""
-    if is_closed:
-        at = at[:-1]
-    places = TColgp_HArray1OfPnt2d(1, len(at))
-    for n, (u, v) in enumerate(at.tolist(), 1):
-        places.SetValue(n, gp_Pnt2d(u, v))
+    places = TColgp_HArray1OfPnt2d(1, len(at) - is_loop)
+    for n in range(len(at) - is_loop):
+        places.SetValue(n + 1, gp_Pnt2d(*at[n].tolist()))
     parameters = TColStd_HArray1OfReal(1, len(along))
     for n, t in enumerate(along.tolist(), 1):
         parameters.SetValue(n, t)
-    made = Geom2dAPI_Interpolate(places, parameters, is_closed, tolerance.PARAMETRIC)
+    made = Geom2dAPI_Interpolate(places, parameters, is_loop, tolerance.PARAMETRIC)
     made.Perform()
     return made.Curve() if made.IsDone() else None
