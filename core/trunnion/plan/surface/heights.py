@@ -97,8 +97,8 @@ def _slices(height: Floats, mixed: Bools, corner: Floats, cell: float, z: float)
     # Corner, crossing, corner, ... : what isn't there takes the place of what was before it, which adds no area.
     ring = np.stack([place, crossing], axis=2).reshape(len(i), 8, 2)
     there = np.stack([value <= 0.0, crossed], axis=2).reshape(len(i), 8)
-    rows = np.where(there, np.arange(8), -1)
-    rows = np.maximum.accumulate(np.concatenate([rows, rows + 0], axis=1), axis=1)[:, 8:]
+    twice = np.concatenate([there, there], axis=1)
+    rows = np.maximum.accumulate(np.where(twice, np.arange(16), -1), axis=1)[:, 8:] % 8
     ring = corner + cell * np.take_along_axis(ring, rows[:, :, None], axis=1)
     return [*np.atleast_1d(np.asarray(shapely.polygons(ring)))]
 
