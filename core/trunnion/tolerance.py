@@ -52,8 +52,9 @@ CONTACT_BOUND = 2e-3
 TURNING_BOUND = 5e-3
 """The same with a tool axis that turns during a block."""
 
-FACET_CHORD = 2.5e-3
-"""Chord error of the triangles that stand for curved faces in the contact engine: half of what a turning axis is judged to."""
+FACET_CHORD = 1.5e-3
+"""Chord error of the triangles that stand for curved faces in the contact engine: with what they may be off in between it is still less
+than what a fixed axis is judged to."""
 
 STOCK_CHORD = 2e-3
 """How far a cutter's way through the stock may be from the spans it is cut in: ridges and steps stay below it."""

@@ -76,7 +76,7 @@ def opened(part: Part, chords: Mapping[int, float], progress: Progress = QUIET) 
     finally:
         BRepTools.Clean_s(part.shape)
     net.refine(progress.part(0.3, 1.0))
-    return net.result(tags)
+    return net.result(tags, net.bounded())
 
 
 @dataclass(slots=True)
@@ -205,9 +205,13 @@ class _Net:
             known, known_off = keys[~split], off[~split]
             middle = self._halve(edges, edge, split, keys, middle)
         np.maximum.at(self.bound, self.face, BETWEEN * np.maximum(np.nan_to_num(middle), off[edge].max(axis=1)))
-        beside = np.zeros(len(self.bound))
-        np.maximum.at(beside, self.owner, np.linalg.norm(self.points - self.surface, axis=1))
+
+    def bounded(self) -> Floats:
+        """Add to the bounds how far points on edges are from the faces' surfaces; return the normals (v, 3) at all points."""
+        normals, beside = self.normals(), np.zeros(len(self.bound))
+        np.maximum.at(beside, self.owner, np.abs(((self.points - self.surface) * normals).sum(axis=1)))
         self.bound += beside
+        return normals
 
     def _agree(self, split: Bools, border: Ints) -> None:
         """Halve a piece of the border in all faces that meet there, or in none; border (b,) says which edge each piece is."""
@@ -313,18 +317,21 @@ class _Net:
                               "allow a larger one")
         return np.concatenate([middle[whole], np.full(len(self.triangles) - kept, np.nan)])
 
-    def result(self, tags: list[int]) -> Opened:
-        """Return what was made, in the order of the faces."""
-        at = self.on(self.owner, self.place)
-        normals, there = self.normal(at)
+    def normals(self) -> Floats:
+        """Return the outward unit normals (v, 3) of the faces at all points."""
+        normals, there = self.normal(self.on(self.owner, self.place))
         lost = np.flatnonzero(~there)
         if len(lost):
             # Beside a pole, where the surface has no normal, the one next to it.
             beside = self.place[lost] + tolerance.ANGLE * (self.middles[self.owner[lost]] - self.place[lost])
             normals[lost] = self.normal(self.on(self.owner[lost], beside))[0]
+        return np.asarray(normals * self.sides[self.owner][:, None])
+
+    def result(self, tags: list[int], normals: Floats) -> Opened:
+        """Return what was made, in the order of the faces."""
         order = np.argsort(self.face, kind="stable")
-        return Opened(tag=np.array(tags, dtype=np.int64), points=self.points, normals=normals * self.sides[self.owner][:, None],
-                      triangles=self.triangles[order], face=self.face[order], bound=self.bound)
+        return Opened(tag=np.array(tags, dtype=np.int64), points=self.points, normals=normals, triangles=self.triangles[order],
+                      face=self.face[order], bound=self.bound)
 
 
 def _coarse(part: Part, tags: list[int], limits: Floats, progress: Progress) -> _Net:
@@ -357,7 +364,7 @@ def _coarse(part: Part, tags: list[int], limits: Floats, progress: Progress) -> 
             t = t[:, ::-1]
         middles.append((0.5 * (adaptor.FirstUParameter() + adaptor.LastUParameter()),
                         0.5 * (adaptor.FirstVParameter() + adaptor.LastVParameter())))
-        borders += _border_of(shape, net, index, curves, lines, count)
+        borders += _border_of(shape, net, uv, index, curves, lines, count)
         places.append(uv)
         points.append(p)
         owners.append(np.full(len(p), row))
@@ -410,7 +417,7 @@ def _looks_out(evaluate: Evaluator, side: float, places: Floats, points: Floats,
     return float((np.cross(at[:, 1], at[:, 2]) * across[largest]).sum()) * side > 0.0
 
 
-def _border_of(shape: Any, net: Any, index: Any, curves: list[Any], lines: list[Any], first: int) -> list[_Border]:
+def _border_of(shape: Any, net: Any, places: Floats, index: Any, curves: list[Any], lines: list[Any], first: int) -> list[_Border]:
     """Return the pieces of a face's boundary edges, its nodes counted from `first`; adds to the curves and to their lines in faces."""
     from OCP.BRep import BRep_Tool
     from OCP.BRepAdaptor import BRepAdaptor_Curve, BRepAdaptor_Curve2d
@@ -433,10 +440,13 @@ def _border_of(shape: Any, net: Any, index: Any, curves: list[Any], lines: list[
         curve = index.Add(edge) - 1
         if curve == len(curves):
             curves.append(BRepAdaptor_Curve(edge))
-        lines.append(BRepAdaptor_Curve2d(edge, shape))
-        nodes = np.array([chain.Node(k) for k in range(1, chain.NbNodes() + 1)], dtype=np.int64) - 1 + first
+        nodes = np.array([chain.Node(k) for k in range(1, chain.NbNodes() + 1)], dtype=np.int64) - 1
         t = np.array([chain.Parameter(k) for k in range(1, chain.NbNodes() + 1)])
-        n = len(nodes) - 1
+        # A seam has two lines, and which one goes with the net's own nodes isn't told.
+        sides = [edge, TopoDS.Edge_s(edge.Reversed())] if BRep_Tool.IsClosed_s(edge, shape) else [edge]
+        both = [BRepAdaptor_Curve2d(side, shape) for side in sides]
+        lines.append(min(both, key=lambda line: np.hypot(*(np.array(line.Value(t[0]).Coord()) - places[nodes[0]]))))
+        n, nodes = len(nodes) - 1, nodes + first
         found.append(_Border(np.column_stack([nodes[:-1], nodes[1:]]), np.full(n, curve), np.full(n, len(lines) - 1),
                              np.column_stack([t[:-1], t[1:]]), np.zeros(n, np.int64)))
     return found
