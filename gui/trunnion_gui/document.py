@@ -74,6 +74,8 @@ class Document(QObject):
     saved = Signal(str)
     exported = Signal(str, int)
     """The file that patches were written to, and how many."""
+    measured = Signal(object)
+    """An `Accuracy` of the part's patches."""
     written = Signal(object)
     """The folder and the names of the files written there."""
 
@@ -176,6 +178,11 @@ class Document(QObject):
             words = ", ".join(map(str, faces[:3])) + ("…" if len(faces) > 3 else "")
             label = tr("Move face {faces} to {group}").format(faces=words, group=group or tr("a new group"))
             self._start("move", label, self.session, faces, group)
+
+    def measure(self) -> None:
+        """Measure how exact the patches' feature sizes are by the number of points on their edges."""
+        if self._is_free() and self._needs_part():
+            self._start("accuracy", tr("measuring patches"), self.session)
 
     def export(self, what: tuple[str, ...], path: str) -> None:
         """Write patches as IGES or STEP by the path's suffix: `local`, `remaining`, or groups by their ids."""
@@ -430,6 +437,8 @@ class Document(QObject):
             self._drawings[state.session.cuts] = reply.value.drawing
             self.history.push(job.label, state.session)
             self._show(state.session, state.steps)
+        elif job.verb == "accuracy":
+            self.measured.emit(reply.value)
         elif job.verb == "export":
             self.exported.emit(job.path, reply.value)
         elif job.verb == "save":

@@ -65,8 +65,10 @@ QComboBox::drop-down {{ border: none; width: 20px; }}
 QComboBox::down-arrow {{ image: url({icons}/chevron.svg); width: 12px; height: 12px; }}
 QComboBox QAbstractItemView {{ background: {panel}; color: {text}; border: 1px solid {line}; padding: 4px; }}
 QCheckBox {{ spacing: 7px; color: {text}; }}
-QCheckBox::indicator {{ width: 15px; height: 15px; border: 1px solid {muted}; border-radius: 4px; background: {panel}; }}
-QCheckBox::indicator:checked {{ background: {accent}; border-color: {accent}; image: url({icons}/tick.svg); }}
+QCheckBox::indicator, QTreeView::indicator, QListView::indicator {{
+    width: 15px; height: 15px; border: 1px solid {muted}; border-radius: 4px; background: {panel}; }}
+QCheckBox::indicator:checked, QTreeView::indicator:checked, QListView::indicator:checked {{
+    background: {accent}; border-color: {accent}; image: url({icons}/tick.svg); }}
 QPushButton {{ background: {raised}; color: {text}; border: 1px solid {line}; border-radius: 5px; padding: 5px 13px; min-height: 20px; }}
 QPushButton:hover {{ border-color: {accent}; }}
 QPushButton:disabled {{ color: {muted}; background: {window}; border-color: {line}; }}

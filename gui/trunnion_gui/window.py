@@ -33,6 +33,7 @@ from trunnion_gui import colours, commands, i18n, icons, remembered, theme
 from trunnion_gui.actions import Command, Registry
 from trunnion_gui.centre import Centre
 from trunnion_gui.deviation import DeviationSource
+from trunnion_gui.docks.accuracy import AccuracyDock
 from trunnion_gui.docks.code import CodeDock
 from trunnion_gui.docks.deviation import DeviationDock
 from trunnion_gui.docks.features import FeatureDock
@@ -356,8 +357,15 @@ class Window(QMainWindow):
                 "Make two patches of one, across x, y or z or through three places", can_cut)
         command("cut_way", "Cut a face along a drawn line…", lambda: self.centre.begin_cut(self._one_face(), False), "cut_way", "",
                 "Make two patches of one, along a line through the places you click", can_cut)
+        command("errors", "Size error by points", self.measure_patches, "errors", "",
+                "Measure how exact the feature sizes are and what they cost, by the number of points on each edge", can_cut)
         command("export", "Export patches…", self.export_dialog_opened, "export", "Ctrl+Shift+E",
                 "Write local features, the remaining area or some groups as STEP or IGES")
+
+    def measure_patches(self) -> None:
+        """Measure the patches' sizes and show what came of it."""
+        self.document.measure()
+        self.show_dock("accuracy")
 
     def export_dialog_opened(self) -> None:
         """Open the dialog in which patches are chosen for export."""
@@ -435,7 +443,7 @@ class Window(QMainWindow):
         self.features, self.process = FeatureDock(self.document, self.patches), ProcessDock(self.document)
         self.properties, self.messages = PropertiesDock(self.document), MessagesDock(self.document)
         self.code, self.listing = CodeDock(self.document), ListingDock(self.document)
-        self.places = DeviationDock(self.document)
+        self.places, self.accuracy = DeviationDock(self.document), AccuracyDock(self.document)
         self.playback = PlaybackBar(self.player, self.registry, self.theme)
         self.centre.add_bar(self.playback)
         self._dock("steps", tr("Steps"), self._steps(), _LEFT)
@@ -450,7 +458,9 @@ class Window(QMainWindow):
         self.tabifyDockWidget(self.messages_dock, code)
         self.tabifyDockWidget(code, listing)
         self.tabifyDockWidget(listing, places)
-        for dock in (features, process, self.messages_dock, code, listing, places):
+        accuracy = self._dock("accuracy", tr("Size error"), self.accuracy, _BELOW)
+        self.tabifyDockWidget(places, accuracy)
+        for dock in (features, process, self.messages_dock, code, listing, places, accuracy):
             dock.setTitleBarWidget(QWidget())  # the tab is title enough, and can be dragged
         features.raise_()
         self.messages_dock.raise_()
@@ -602,7 +612,7 @@ class Window(QMainWindow):
         # The main button is drawn on the accent colour, in both themes.
         self.registry.action("run.program").setIcon(icons.icon("program", chosen.accent_text))
         self.centre.use_theme(chosen)
-        for dock in (self.process, self.messages, self.code, self.places, self.playback):
+        for dock in (self.process, self.messages, self.code, self.places, self.accuracy, self.playback):
             dock.use_theme(chosen)
         for panel in self.panels.values():
             panel.use_theme(chosen)

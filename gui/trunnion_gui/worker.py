@@ -93,6 +93,16 @@ class Patched:
 
 
 @dataclass(frozen=True, slots=True)
+class Accuracy:
+    """How exact feature sizes are by the number of points (`SizeError`s), and how far in mm the boundary of a face (the worst) is from its
+    surface."""
+
+    rows: tuple[Any, ...]
+    boundary: float
+    face: int
+
+
+@dataclass(frozen=True, slots=True)
 class Group:
     """The declared settings of one group, as the window's forms need them (the class stays in the worker)."""
 
@@ -202,6 +212,15 @@ def _export(engine: Any, _progress: Progress, _tell: Tell, session: Session, wha
     return export(engine, session, what, path)
 
 
+def _accuracy(engine: Any, progress: Progress, _tell: Tell, session: Session) -> Accuracy:
+    from trunnion.pipeline.patches import boundary_errors, size_errors
+
+    rows = size_errors(engine, session, progress=progress)
+    errors = boundary_errors(engine, session)
+    worst = max(errors, key=lambda tag: errors[tag])
+    return Accuracy(rows, errors[worst], worst)
+
+
 def _settings(engine: Any, _progress: Progress, _tell: Tell) -> dict[str, tuple[Group, ...]]:
     return {step: tuple(Group(c.GROUP, _title(c), tuple(_offered(d) for d in declared(c))) for c in classes)
             for step, classes in engine.settings().items()}
@@ -224,7 +243,8 @@ _CATALOGUES = {"blank.material": "materials", "setup.machine": "machines", "surf
 """Settings that name a thing of a catalogue: the form offers what there is."""
 VERBS: dict[str, Callable[..., Any]] = {
     "open": _open, "run": _run, "states": _states, "attach": _attach, "save": _save, "write": _write, "settings": _settings,
-    "playback": _playback, "moment": _moment, "deviation": _deviation, "cut": _cut, "uncut": _uncut, "move": _move, "export": _export}
+    "playback": _playback, "moment": _moment, "deviation": _deviation, "cut": _cut, "uncut": _uncut, "move": _move, "export": _export,
+    "accuracy": _accuracy}
 
 
 def _title(group: Any) -> str:

@@ -379,3 +379,18 @@ def test_the_properties_say_what_the_selected_faces_belong_to(shown):
 
 def test_a_plate_seen_from_the_top_shows_what_was_built(shown):
     assert np.allclose(np.ptp(shown.document.mesh.points, axis=0), (60.0, 44.0, 17.0), atol=0.2)
+
+
+def test_the_error_of_the_sizes_is_shown_by_the_number_of_points(shown, qtbot):
+    shown.registry.run("patch.errors")
+    qtbot.waitUntil(lambda: shown.accuracy.shown is not None, timeout=60000)
+    dock, rows = shown.accuracy, shown.accuracy.shown.rows
+    assert dock.isVisible() and dock.table.rowCount() == len(rows)
+    assert dock.table.item(len(rows) - 1, 0).text() == "the paper's repair"
+    assert rows[0].largest > rows[3].largest >= rows[7].largest
+    heights = [dock.chart.point(dock.chart.left, k).y() for k in (0, 3, 7)]
+    assert heights == sorted(heights)  # less error lies lower
+    picture = dock.chart.grab().toImage()
+    ratio = picture.width() / dock.chart.width()
+    at = dock.chart.point(dock.chart.left, 0) * ratio
+    assert hue(picture.pixelColor(at.toPoint()).toTuple()[:3]) @ hue(rgb(shown.theme.accent)) > 0.9
