@@ -18,12 +18,12 @@ from trunnion.model.tool import Tool
 from trunnion.model.toolpath import Mark, Motion, Toolpath
 from trunnion.post.dialects.linuxcnc import LinuxCncDialect
 from trunnion.post.header import Header
-from trunnion.post.place import Place
 from trunnion.post.readers import linuxcnc as reader
 from trunnion.post.readers.joints import Joints
 from trunnion.post.readers.sections import Rows
 from trunnion.post.settings import PostSettings
 from trunnion.shop import load_shop
+from trunnion.shop.kinematics import Place
 
 SHOP = load_shop()
 TABLE, FORK = SHOP.machine("Trunnion 650"), SHOP.machine("Gantry 6000 fork")

@@ -34,8 +34,8 @@ from trunnion.model.toolpath import Motion, Toolpath
 from trunnion.post.dialects.apt import AptDialect
 from trunnion.post.dialects.linuxcnc import LinuxCncDialect
 from trunnion.post.linearize import Straying, even_turn, joint_path
-from trunnion.post.place import SLACK, poses_of, stands_of, words_of
 from trunnion.post.settings import PostSettings
+from trunnion.shop.kinematics import SLACK, poses_of, stands_of, words_of
 from trunnion.verify.machine.kinematics import linear_positions
 
 BOTH = pytest.mark.parametrize("machine", [TABLE, ENDLESS_FORK], ids=["table", "fork"])

@@ -11,7 +11,7 @@ from trunnion.model.blank import Blank
 from trunnion.model.material import Machine
 from trunnion.model.session import Session
 from trunnion.model.setup import Setup
-from trunnion.post.place import Place, Places
+from trunnion.shop.kinematics import Place, Places
 from trunnion.toolpath.turning import box_of, swing_of
 
 

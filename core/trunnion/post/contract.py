@@ -9,8 +9,8 @@ from trunnion.model.program import Program
 from trunnion.model.setup import Setup
 from trunnion.model.tool import Tool
 from trunnion.post.header import Header
-from trunnion.post.place import NO_PLACES, Places
 from trunnion.post.settings import PostSettings
+from trunnion.shop.kinematics import NO_PLACES, Places
 
 
 class Dialect(Protocol):

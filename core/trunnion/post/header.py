@@ -15,8 +15,8 @@ from trunnion.model.session import Session
 from trunnion.model.setup import Setup
 from trunnion.model.tool import Tool
 from trunnion.model.verdict import Verdict
-from trunnion.post.place import Place
 from trunnion.settings import digest
+from trunnion.shop.kinematics import Place
 from trunnion.units import MM_PER_INCH, trimmed
 
 REJECTED = "REJECTED"

@@ -7,7 +7,6 @@ near the pole of the rotary axes, then the tip, which strays with every turn.
 
 from __future__ import annotations
 
-import itertools
 import math
 from dataclasses import dataclass
 
@@ -15,10 +14,10 @@ import numpy as np
 
 from trunnion.findings import Refused
 from trunnion.geometry.arrays import Bools, Floats, Ints
-from trunnion.geometry.kernels.winding_compiled import follow
 from trunnion.model.tool import Tool
 from trunnion.model.toolpath import Motion, Toolpath
-from trunnion.post.place import POLE, SLACK, UPRIGHT, Place, axes_of, pole_of, poses_of, spindle_of, stands_of, words_of
+from trunnion.shop.kinematics import SLACK, UPRIGHT, Place, axes_of, poses_of, spindle_of, stands_of, words_of
+from trunnion.shop.winding import TURN, beyond, followed
 
 HALVINGS = 40
 """A block through the pole itself is halved until what is left of its lean is below the tolerance: far fewer times than this."""
@@ -28,9 +27,6 @@ MARGIN = 0.9
 """Share of the tolerance that a piece is made for: what comes between its samples stays below the whole."""
 MOST_TURN = math.radians(30.0)
 """Turn of an axis in one piece, beyond which the samples would not see how far it strays."""
-MOST_TURNS = 3
-"""Whole turns, each way, that another beginning is looked for; an axis with so many to spare needs none."""
-TURN = 2.0 * math.pi
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -60,7 +56,7 @@ def joint_path(path: Toolpath, tool: Tool, place: Place, stand: Floats | None, s
     `stand` (a,) rad are the angles that the rotary axes have; the path goes on from there when it can, else it begins with others. None:
     it may begin with any. Raises `Refused` for what the machine can't hold or can't follow.
     """
-    angle = _followed(path.axis, _through_pole(path, tool, place, straying), place, stand, operation)
+    angle = followed(path.axis, place, stand, MARGIN * straying.feed / tool.flute_length, operation)
     path, angle = _arcs_opened(path, angle, place, straying)
     return _between(path, angle, tool, place, straying, operation)
 
@@ -97,63 +93,6 @@ def lines_for_arcs(path: Toolpath, rows: Ints, within: float) -> tuple[Toolpath,
     position[opened[row]] = points
     motion[opened[row]], centre[opened[row]] = Motion.LINE, np.nan
     return Toolpath(position=position, axis=path.axis[row], motion=motion, centre=centre, feed=path.feed[row], mark=path.mark[row]), row
-
-
-def _through_pole(path: Toolpath, tool: Tool, place: Place, straying: Straying) -> Bools:
-    """Say on the way to which poses (n,) the tool axis comes so near to the pole that it may be taken for going through it."""
-    pole = pole_of(place.machine)
-    first, last = np.vstack([path.axis[:1], path.axis[:-1]]), path.axis
-    # Seen along the pole the even turn is a chord of an ellipse; the axis is near the pole only where that chord is straight.
-    a, b = (v - np.outer(v @ pole, pole) for v in (first, last))
-    run = b - a
-    share = np.clip(-(a * run).sum(axis=1) / np.maximum((run * run).sum(axis=1), np.finfo(float).tiny), 0.0, 1.0)
-    return np.asarray(np.linalg.norm(a + share[:, None] * run, axis=1) < 0.5 * MARGIN * straying.feed / tool.flute_length)
-
-
-def _followed(axis: Floats, through: Bools, place: Place, stand: Floats | None, operation: str) -> Floats:
-    """Return the rotary angles (n, a) of a path's poses: on from where the axes stand, else from the beginning that turns least."""
-    machine = place.machine
-    angles, free, held = stands_of(machine, axis)
-    lost = np.flatnonzero(~held)
-    if len(lost):
-        has = f"{' and '.join(a.name for a in machine.rotary)} can't hold"
-        raise Refused(f"operation {operation}, block {lost[0] + 1}: a tool axis that {machine.title} with {has}; lean it another way or "
-                      "choose another machine")
-    low, high = place.limits
-    chosen = np.zeros((len(axis), len(machine.rotary)))
-    near = np.zeros(len(machine.rotary)) if stand is None else stand
-    tries: list[tuple[int, float, int, Floats]] = []
-    for start in ([] if stand is None else [stand]) + [*_beginnings(angles, free, near, low, high)]:
-        reached, turned = follow(angles, free, through, low, high, SLACK, start, chosen)
-        if reached == len(axis) and start is stand and np.abs(chosen[:1] - stand).max(initial=0.0) <= 2.0 * POLE:
-            return chosen
-        tries.append((-reached, turned + float(np.abs(start - near).sum()), len(tries), np.array(chosen)))
-    reached, _, _, best = min(tries, key=lambda t: t[:3])
-    if -reached < len(axis):
-        raise Refused(f"operation {operation}, block {1 - reached}: {_beyond(angles[-reached], place)}")
-    return best
-
-
-def _beginnings(angles: Floats, free: Bools, near: Floats, low: Floats, high: Floats) -> list[Floats]:
-    """Return the angles (a,) that a path may begin with: those of its first pose that leaves no axis free, within the limits."""
-    fixed = np.flatnonzero(~free[:, 0].any(axis=1))
-    if not len(fixed):
-        return [np.clip(near, low, high)]
-    found = []
-    for way in angles[fixed[0]]:
-        least, most = np.ceil((low - SLACK - way) / TURN), np.floor((high + SLACK - way) / TURN)
-        nearest = np.round((near - way) / TURN)
-        turns = [np.arange(max(a, n - MOST_TURNS), min(b, n + MOST_TURNS) + 1) for a, b, n in zip(least, most, nearest, strict=True)]
-        found += [way + TURN * np.array(n) for n in itertools.product(*turns)]
-    return found or [np.clip(near, low, high)]
-
-
-def _beyond(ways: Floats, place: Place) -> str:
-    """Return what a pose asks of the axes and what they have."""
-    near = np.degrees(ways - TURN * np.round(ways / TURN))
-    asked = " or ".join(" ".join(f"{a.name}{v:.1f}" for a, v in zip(place.machine.rotary, way, strict=True)) for way in near.tolist())
-    has = ", ".join(f"{a.name} {a.low:g} to {a.high:g}" for a in place.machine.rotary)
-    return f"its tool axis needs {asked}, which can't be reached from the block before; {place.machine.title} has {has}"
 
 
 def _arcs_opened(path: Toolpath, angle: Floats, place: Place, straying: Straying) -> tuple[Toolpath, Floats]:
@@ -219,7 +158,7 @@ def _axis_held(path: Toolpath, pieces: _Pieces, allowed: Floats, place: Place, o
         outside = ((pieces.first < low - SLACK) | (pieces.first > high + SLACK)).any(axis=1)
         if outside.any():
             k = int(np.argmax(outside))
-            raise Refused(f"operation {operation}, block {pieces.block[k] + 1}: {_beyond(pieces.first[k:k + 1], place)}")
+            raise Refused(f"operation {operation}, block {pieces.block[k] + 1}: {beyond(pieces.first[k:k + 1], place)}")
     raise Refused(f"operation {operation}, block {pieces.block[0] + 1}: {place.machine.title} must turn back {place.names} here because of "
                   "their limits, and can't while it moves; part the operation or choose another machine")
 

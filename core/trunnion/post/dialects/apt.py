@@ -18,10 +18,10 @@ from trunnion.model.tool import Tool
 from trunnion.model.toolpath import Motion, Toolpath
 from trunnion.post.header import Header
 from trunnion.post.linearize import lines_for_arcs
-from trunnion.post.place import NO_PLACES, Places
 from trunnion.post.settings import PostSettings
 from trunnion.post.ticks import Scale, WrittenPath, upright, written
 from trunnion.post.words import dialect_words, plain, refuse_unwritable
+from trunnion.shop.kinematics import NO_PLACES, Places
 from trunnion.units import trimmed
 
 

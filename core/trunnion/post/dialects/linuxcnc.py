@@ -20,10 +20,10 @@ from trunnion.model.tool import Tool
 from trunnion.model.toolpath import Motion, Toolpath
 from trunnion.post.header import Header, place_lines
 from trunnion.post.linearize import Straying, joint_path
-from trunnion.post.place import NO_PLACES, UPRIGHT, Place, Places, axes_of, poses_of
 from trunnion.post.settings import PostSettings
 from trunnion.post.ticks import Scale, WrittenPath, upright, written
 from trunnion.post.words import dialect_words, plain, refuse_unwritable
+from trunnion.shop.kinematics import NO_PLACES, UPRIGHT, Place, Places, axes_of, poses_of
 from trunnion.units import trimmed
 
 _DIGITS = 6

@@ -8,7 +8,7 @@ from trunnion import registry
 from trunnion.model.program import Program
 from trunnion.model.setup import Setup
 from trunnion.model.tool import Tool
-from trunnion.post.place import NO_PLACES, Places
+from trunnion.shop.kinematics import NO_PLACES, Places
 
 
 def read_program(dialect: str, text: str, tools: Sequence[Tool], setup: Setup, places: Places = NO_PLACES) -> Program:

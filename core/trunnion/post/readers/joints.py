@@ -17,8 +17,8 @@ from trunnion.geometry.arrays import Floats, Ints
 from trunnion.model.tool import Tool
 from trunnion.model.toolpath import Motion, Toolpath
 from trunnion.post.linearize import even_turn
-from trunnion.post.place import UP, UPRIGHT, Place, lift_of, poses_of, spindle_of
 from trunnion.post.readers.sections import Point, Rows, marks_of, path_of
+from trunnion.shop.kinematics import UP, UPRIGHT, Place, lift_of, poses_of, spindle_of
 
 OPENED, OPENED_RAPID = 0.001, 0.01
 """mm: how far a piece may be from what the tool does, in feed moves and in rapids."""

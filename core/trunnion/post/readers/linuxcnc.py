@@ -16,11 +16,11 @@ from trunnion.model.program import Program
 from trunnion.model.setup import Setup
 from trunnion.model.tool import Tool
 from trunnion.model.toolpath import Motion
-from trunnion.post.place import Place
 from trunnion.post.readers.blocks import Block, split_line
 from trunnion.post.readers.joints import Joints
 from trunnion.post.readers.sections import NOWHERE, Point, Sections, Upright
 from trunnion.post.readers.tools import by_number, check_place, check_tool
+from trunnion.shop.kinematics import Place
 from trunnion.units import MM_PER_INCH
 
 _OPERATION = re.compile(r"OPERATION\s+(\S+)$", re.IGNORECASE)

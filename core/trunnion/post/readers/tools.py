@@ -9,8 +9,8 @@ from trunnion.findings import BadInput
 from trunnion.model.setup import Setup
 from trunnion.model.tool import Tool
 from trunnion.post.header import place_lines, tool_line
-from trunnion.post.place import Place
 from trunnion.post.words import plain
+from trunnion.shop.kinematics import Place
 
 _TOOL = re.compile(r"TOOL (\d+) .* HOLDER ")
 
