@@ -1,4 +1,4 @@
-"""What the plan of curved parts stands on: cutting frames, height maps, layers, what a cutter reaches, areas and the stock of directions."""
+"""What the plan of curved parts stands on: cutting frames, height maps, what a cutter reaches, areas and the stock of directions."""
 
 from __future__ import annotations
 
@@ -20,6 +20,7 @@ from trunnion.model.blank import Blank
 from trunnion.model.feature import FaceRole, Feature, Recognition
 from trunnion.model.setup import Setup
 from trunnion.model.toolpath import Mark, Motion, Toolpath
+from trunnion.part.skin import skin_of
 from trunnion.pipeline.making import turned
 from trunnion.plan.surface.areas import areas_of, blank_faces, connected, hidden_areas, on_outline, walls_of
 from trunnion.plan.surface.frames import corners_in, cutting_setup
@@ -27,7 +28,6 @@ from trunnion.plan.surface.heights import HeightMap, region_below
 from trunnion.plan.surface.layers import level_faces
 from trunnion.plan.surface.reach import places_on, reached
 from trunnion.plan.surface.space import SurfaceSpace
-from trunnion.part.skin import skin_of
 from trunnion.toolpath.sides import Sides
 from trunnion.toolpath.stock import PlanningStock
 
@@ -45,7 +45,8 @@ def block(skin):
 
 def domed():
     """Return a block of 40 x 30 x 10 with a ball of radius 8 half in the middle of its top."""
-    return read(cq.Workplane("XY").box(40, 30, 10, centered=False).union(cq.Workplane("XY").sphere(8).translate((20, 15, 10))).val().wrapped)
+    ball = cq.Workplane("XY").sphere(8).translate((20, 15, 10))
+    return read(cq.Workplane("XY").box(40, 30, 10, centered=False).union(ball).val().wrapped)
 
 
 # cutting frames
@@ -97,7 +98,8 @@ def test_an_allowance_keeps_off_in_every_direction():
 
 
 @settings(deadline=None, max_examples=12)
-@given(st.lists(st.tuples(st.floats(5, 25), st.floats(5, 25), st.floats(1, 6), st.floats(1, 8)), min_size=1, max_size=4), st.floats(0.5, 6.0))
+@given(st.lists(st.tuples(st.floats(5, 25), st.floats(5, 25), st.floats(1, 6), st.floats(1, 8)), min_size=1, max_size=4),
+       st.floats(0.5, 6.0))
 def test_nothing_in_the_area_below_a_height_is_higher(bumps, z):
     def height(x, y):
         return np.max([h * np.exp(-((x - a) ** 2 + (y - b) ** 2) / r**2) for a, b, r, h in bumps], axis=0)
