@@ -40,7 +40,8 @@ def test_a_tool_above_the_part_is_clear_and_one_in_it_is_not(block) -> None:
 
 def test_a_move_is_asked_all_along_its_way(block) -> None:
     part, ask = block[0], around(block)(BALL)
-    left, right = (np.array([[x, 0.5 * (part.low[1] + part.high[1]), part.high[2] - 2.0]]) for x in (part.low[0] - 50.0, part.high[0] + 50.0))
+    y, z = 0.5 * (part.low[1] + part.high[1]), part.high[2] - 2.0
+    left, right = (np.array([[x, y, z]]) for x in (part.low[0] - 50.0, part.high[0] + 50.0))
     assert ask(left, UP).all() and ask(right, UP).all()
     assert not ask(right, UP, start_tip=left, start_axis=UP).any()
     assert ask(right + [0.0, 0.0, 90.0], UP, start_tip=left + [0.0, 0.0, 90.0], start_axis=SIDE).all()

@@ -3,17 +3,24 @@
 from __future__ import annotations
 
 import math
+from dataclasses import replace
 
 import numpy as np
+import pytest
 from pytest import approx
 
 from leaning_tools import contact_of, cutter
+from surface_drives import DATA, driven, grid
+from trunnion.findings import Refused
 from trunnion.geometry.sphere import angle_between
 from trunnion.pipeline.asking import PartAsker, roomy
+from trunnion.progress import QUIET
+from trunnion.settings import choose
 from trunnion.toolpath.surface.axis import fixed, leaning
 from trunnion.toolpath.surface.contacts import Contacts, slerp
 from trunnion.toolpath.surface.cutter import tip_at
 from trunnion.toolpath.surface.lean import AxisSearch, LeanLimits, free_axes, leaned
+from trunnion.toolpath.surface.parallel import ParallelSettings, parallel
 from trunnion.toolpath.surface.passes import UPRIGHT, Pass
 
 BALL = cutter("ball", diameter=6.0, corner=3.0, flute=12.0)
@@ -153,3 +160,25 @@ def test_leaned_passes_reach_beside_a_wall_where_upright_ones_touch() -> None:
     assert not ask(upright.tip, upright.axis).any()
     (one,) = leaned([upright], BALL, fixed([0.0, 0.0, 1.0]), ask, LeanLimits(), 0.001)
     assert ask(one.tip[1:], one.axis[1:], start_tip=one.tip[:-1], start_axis=one.axis[:-1]).all()
+
+
+def over_a_floor(ask=None, tool=BALL, **chosen):
+    drive, setup, stock = driven(grid(lambda x, y: 0.0 * x, n=8, high=(20.0, 6.0)), height=0.1)
+    return parallel(replace(drive, ask=ask), tool, DATA, stock, setup, choose(ParallelSettings, chosen), QUIET)
+
+
+def test_parallel_passes_of_a_ball_lean_by_a_tilt_and_keep_their_centre() -> None:
+    floor = ((0.0, 0.0, -9.0), (20.0, 6.0, 0.0))
+    upright, plan = over_a_floor(), over_a_floor(lambda tool: asker(floor, tool=tool), tilt=20.0)
+    cut, before = plan.path.mark == 0, upright.path.mark == 0
+    assert np.degrees(np.arccos(plan.path.axis[cut, 2])) == approx(np.full(cut.sum(), 20.0), abs=0.01)
+    centre = plan.path.position[cut] + 3.0 * plan.path.axis[cut]
+    assert centre.min(axis=0) == approx(upright.path.position[before].min(axis=0) + [0.0, 0.0, 3.0], abs=0.002)
+    assert not plan.findings
+
+
+def test_a_lead_is_refused_on_three_axes_and_for_cutters_that_are_no_balls() -> None:
+    with pytest.raises(Refused, match="rotary axes"):
+        over_a_floor(lead=10.0)
+    with pytest.raises(Refused, match="only passes of a ball"):
+        over_a_floor(lambda tool: asker(WALL, tool=tool), cutter("bull", corner=2.0), lead=10.0)

@@ -16,13 +16,14 @@ from itertools import pairwise
 
 import numpy as np
 
+from trunnion.findings import Finding, Refused, warning
 from trunnion.geometry.arrays import Bools, Floats, Ints
 from trunnion.geometry.kernels.course_compiled import course
 from trunnion.geometry.sphere import angle_between, directions, neighbours
 from trunnion.model.tool import Tool
-from trunnion.plan.surface.drive import Asker
+from trunnion.plan.surface.drive import Asker, SurfaceDrive
 from trunnion.progress import QUIET, Progress
-from trunnion.toolpath.surface.axis import AxisField, eased
+from trunnion.toolpath.surface.axis import AxisField, eased, leaning
 from trunnion.toolpath.surface.contacts import Contacts, axis_between, between, slerp
 from trunnion.toolpath.surface.cutter import tip_at
 from trunnion.toolpath.surface.passes import Pass
@@ -45,6 +46,8 @@ AHEAD = 4
 """Places before and behind one that met something which are asked with it."""
 CLOSE, ALIKE = 2.0, 0.25
 """mm and (of the normal's unit sphere) how close contacts lie that share an answer."""
+SMALLEST_SHARE = 0.001
+"""Less of the passes than this may be lost without a word."""
 AWAY = 1e4
 """mm: a tool this far from the part only meets the machine's limits."""
 
@@ -118,6 +121,25 @@ def leaned(passes: Sequence[Pass], tool: Tool, field: AxisField, ask: Asker | No
             found.append(Pass(tip=(1.0 - share) * centre[row] + share * centre[row + 1] - radius * axis, axis=axis, normal=normal,
                               closed=whole and bool(angle_between(axis[:1], axis[-1:])[0] < 1e-9)))
     return found
+
+
+def leaned_by(passes: Sequence[Pass], drive: SurfaceDrive, tool: Tool, lead: float, tilt: float, chord: float,
+              progress: Progress = QUIET) -> tuple[list[Pass], tuple[Finding, ...]]:
+    """Return passes of a ball leant by a lead and a tilt (rad), further where that keeps clear, and what had to be left; as they are when
+    both are 0. Raises `Refused` for a cutter that is no ball and where no tool may lean."""
+    if lead == 0.0 and tilt == 0.0:
+        return list(passes), ()
+    if drive.ask is None:
+        raise Refused(f"{drive.feature}: a lead or tilt angle needs a machine with rotary axes")
+    if tool.corner_radius < tool.radius:
+        raise Refused(f"{tool.name}: only passes of a ball keep their place when it leans; choose a ball, or point milling")
+    found = leaned(passes, tool, leaning(lead, tilt), drive.ask(tool), LeanLimits(), chord, progress)
+    whole, done = (sum(float(np.linalg.norm(np.diff(p.tip + tool.radius * p.axis, axis=0), axis=1).sum()) for p in some)
+                   for some in (passes, found))
+    if done > (1.0 - SMALLEST_SHARE) * whole:
+        return found, ()
+    return found, (warning("lean.left", f"{100.0 * (1.0 - done / whole):.1f} % of the passes over {drive.feature} stay: {tool.name} finds "
+                           "no way to lean there", drive.feature, remedy="choose another lead or tilt, or a longer cutter"),)
 
 
 def _finely(run: Course, rows: Floats, turn: float) -> Floats:

@@ -13,6 +13,7 @@ from dataclasses import dataclass
 import numpy as np
 import shapely
 
+from trunnion import tolerance
 from trunnion.findings import Finding, Refused, warning
 from trunnion.geometry.arrays import Bools, Floats, Ints
 from trunnion.geometry.skin import Skin
@@ -25,18 +26,16 @@ from trunnion.settings import setting, settings
 from trunnion.toolpath.contract import Planned, strategy
 from trunnion.toolpath.stock import PlanningStock
 from trunnion.toolpath.surface.cutter import lower_side
+from trunnion.toolpath.surface.lean import leaned_by
 from trunnion.toolpath.surface.linking import Manner, linked
 from trunnion.toolpath.surface.passes import UPRIGHT, Pass
-from trunnion.toolpath.surface.spacing import Places, places_of, plan_spacing
+from trunnion.toolpath.surface.spacing import Places, marched, places_of, strips_over, tip_spacing
 from trunnion.toolpath.surface.tracing import follow
 
 ALONG = 0.1
 """Of the cutter's radius: distance of the places along a plane that are asked for what the cutter touches."""
 CLOSER = 7
 """Times the distance between a place that touches the area and one that doesn't is halved."""
-FINENESS = 0.25
-"""Of the nearest two planes' distance: width of the strips that distances are found for."""
-MOST_STRIPS = 200_000
 SMALLEST_LEFTOVER = 0.5
 """mm2: less than this is the rim of an area."""
 Touches = Callable[[Ints, Floats, Progress], Bools]
@@ -58,6 +57,9 @@ class ParallelSettings:
     overlap: float = setting(0.3, unit="mm", low=0.0, high=20.0, label="Overlap", help="How far passes go on past the rim of the area.")
     chord: float = setting(0.0005, unit="mm", low=0.00005, high=0.1, label="Chord error",
                            help="How far straight moves may leave the cutter's way over the faces.")
+    lead: float = setting(0.0, unit="deg", low=-60.0, high=60.0, label="Lead angle", help="Lean of a ball from the normal towards the feed "
+                          "on a machine with rotary axes; with a tilt of 0 as well the tool stays upright.")
+    tilt: float = setting(0.0, unit="deg", low=-60.0, high=60.0, label="Tilt angle", help="Lean of a ball to the left of the feed.")
     lead_radius: float = setting(1.0, unit="mm", low=0.05, high=50.0, label="Lead radius",
                                  help="Of the quarter circles onto and off passes.")
     safety: float = setting(2.0, unit="mm", low=0.2, high=50.0, label="Safety distance",
@@ -76,10 +78,12 @@ def parallel(drive: SurfaceDrive, tool: Tool, data: CuttingData, stock: Planning
     if not len(places.row):
         return Planned(findings=found)
     planes = _planes(places, tool, drive.height, settings)
-    passes = _passes(planes, drive, tool, settings, progress.part(0.0, 0.7))
+    passes = _passes(planes, drive, tool, settings, progress.part(0.0, 0.6))
+    passes, lost = leaned_by(passes, drive, tool, math.radians(settings.lead), math.radians(settings.tilt), settings.chord,
+                             progress.part(0.6, 0.7))
     manner = Manner(stepover=planes.widest, safety=settings.safety, lead_radius=settings.lead_radius, order="nearest",
                     reversing=settings.way == "both", chord=settings.chord)
-    return Planned(path=linked(passes, drive, tool, data, stock, setup, manner, progress.part(0.7, 1.0)), findings=found)
+    return Planned(path=linked(passes, drive, tool, data, stock, setup, manner, progress.part(0.7, 1.0)), findings=(*found, *lost))
 
 
 @dataclass(frozen=True, slots=True, eq=False, kw_only=True)
@@ -112,37 +116,18 @@ def _laid(places: Places, tool: Tool, height: float, angle: float, stepover: flo
     along, across = np.array([math.cos(angle), math.sin(angle)]), np.array([-math.sin(angle), math.cos(angle)])
     run, beside = places.tips[:, :, :2] @ along, places.tips[:, :, :2] @ across
     low, high = beside.min(axis=1), beside.max(axis=1)
-    spacing = np.full(len(low), stepover) if stepover > 0.0 else plan_spacing(places, tool, height, across)
-    begin, end = float(low.min()), float(high.max())
-    width = max(FINENESS * float(spacing.min()), (end - begin) / MOST_STRIPS)
-    strips = int((end - begin) / width) + 1
-    first, last = (((v - begin) / width).astype(np.int64) for v in (low, high))
-    count = last - first + 1
-    row = np.repeat(np.arange(len(first)), count)
-    strip = first[row] + np.arange(len(row)) - np.repeat(np.cumsum(count) - count, count)
-    allowed, least, most = np.full(strips, np.inf), np.full(strips, np.inf), np.full(strips, -np.inf)
-    np.minimum.at(allowed, strip, spacing[row])
+    spacing = np.full(len(low), stepover) if stepover > 0.0 else tip_spacing(places, tool, height, np.append(across, 0.0))
+    at = marched(low, high, spacing, float(low.min()), float(high.max()))
+    # From where to where along a plane the tips of the triangles are that it passes.
+    width = max(float(np.diff(at).min(initial=np.inf)), (at[-1] - at[0]) / len(at), tolerance.SHORT_MOVE)
+    strip, row = strips_over(low, high, at[0], width)
+    least, most = np.full(int((at[-1] - at[0]) / width) + 1, np.inf), np.full(int((at[-1] - at[0]) / width) + 1, -np.inf)
     np.minimum.at(least, strip, run.min(axis=1)[row])
     np.maximum.at(most, strip, run.max(axis=1)[row])
-    at = _marched(allowed, width, end - begin)
-    rows = np.minimum((at / width).astype(np.int64), strips - 1)
+    rows = ((at - at[0]) / width).astype(np.int64)
     kept = least[rows] <= most[rows]
-    return _Planes(along=along, across=across, at=begin + at[kept], reach=np.column_stack([least[rows], most[rows]])[kept],
-                   widest=float(np.diff(at, append=at[-1] + width).max()), triangles=places.row)
-
-
-def _marched(allowed: Floats, width: float, length: float) -> Floats:
-    """Return places (p,) from 0 to a length, as far apart as the least that is allowed (strips,) in the strips of a width between them."""
-    at = [0.0]
-    while at[-1] < length:
-        here, step = at[-1], math.inf
-        strip, ahead = int(here / width), 0.0
-        while strip < len(allowed) and ahead < step:
-            step = min(step, float(allowed[strip]))
-            strip += 1
-            ahead = strip * width - here
-        at.append(min(here + min(step, length), length))
-    return np.array(at)
+    return _Planes(along=along, across=across, at=at[kept], reach=np.column_stack([least[rows], most[rows]])[kept],
+                   widest=float(np.diff(at).max(initial=width)), triangles=places.row)
 
 
 def _passes(planes: _Planes, drive: SurfaceDrive, tool: Tool, settings: ParallelSettings, progress: Progress) -> list[Pass]:
