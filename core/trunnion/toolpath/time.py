@@ -3,76 +3,117 @@
 Along a block the speed follows a trapezoid. Through a joint that turns by an angle a, a machine with acceleration A that rounds the joint
 by at most d may go at sqrt(A d s / (1 - s)), s = cos(a / 2) (the circle that touches both blocks and passes d from the joint).
 On an arc the centripetal acceleration bounds the speed.
+
+With rotary axes the blocks are ways of all axes together, and each axis has its own acceleration and rate: a tip that stands while the axis
+turns takes the time that the slowest axis needs.
 """
 
 from __future__ import annotations
 
 import math
+from dataclasses import dataclass
 
 import numpy as np
 
 from trunnion.geometry.arrays import Bools, Floats
 from trunnion.model.material import Machine
 from trunnion.model.toolpath import Motion, Toolpath
+from trunnion.shop.kinematics import Place, spindle_of, words_of
+from trunnion.shop.winding import followed
 from trunnion.units import SECONDS_PER_MINUTE
 
 ROUNDING = 0.01
 """mm: how far the machine may round a joint while it keeps moving, about what a control does in contouring mode."""
+NEAR_POLE = 1e-4
+"""rad: a tool axis that close to the pole of the rotary axes may go through it."""
 
 
-def machining_time(path: Toolpath, machine: Machine) -> float:
+def machining_time(path: Toolpath, machine: Machine, place: Place | None = None, gauge: float = 0.0) -> float:
     """Return the seconds that a machine takes for a path, rapids included, from where its first block ends."""
-    return float(block_times(path, machine).sum())
+    return float(block_times(path, machine, place, gauge).sum())
 
 
-def block_times(path: Toolpath, machine: Machine) -> Floats:
-    """Return the seconds (n,) of each block; the first, whose start is unknown, takes none."""
+def block_times(path: Toolpath, machine: Machine, place: Place | None = None, gauge: float = 0.0) -> Floats:
+    """Return the seconds (n,) of each block; the first, whose start is unknown, takes none.
+
+    On a machine with rotary axes `place` says where the work stands and `gauge` mm is the length of the tool from its tip to the spindle's
+    face; raises `Refused` for what the machine can't hold or follow.
+    """
     times = np.zeros(len(path))
-    length = path.lengths()
-    rows = np.flatnonzero(length > 0.0)
+    way = _way_of(path, place if place is not None and place.machine.rotary else None, gauge)
+    rows = np.flatnonzero(way.length > 0.0)
     if len(rows) == 0:
         return times
-    length = length[rows]
-    first, last = _directions(path, rows)
-    axes = [machine.axis(name) for name in "XYZ"]
-    rate = np.array([a.rapid / SECONDS_PER_MINUTE for a in axes])
-    push = np.array([a.acceleration for a in axes])
+    length, first, last = way.length[rows], way.first[rows], way.last[rows]
+    axes = [*(machine.axis(name) for name in "XYZ"), *machine.rotary][:first.shape[1]]
+    weight = np.array([1.0, 1.0, 1.0, *_weights(machine)])[:first.shape[1]]
+    rate = np.array([a.rapid / SECONDS_PER_MINUTE for a in axes]) * weight
+    push = np.array([a.acceleration for a in axes]) * weight
     share = np.maximum(np.abs(first), np.abs(last))
     is_arc = path.motion[rows] >= Motion.ARC_CW
-    share[is_arc, :2] = 1.0
+    share[is_arc, :3] = np.maximum(share[is_arc, :3], way.across[rows[is_arc]])
     with np.errstate(divide="ignore"):
         acceleration = (push / share).min(axis=1)
         limit = (rate / share).min(axis=1)
     is_rapid = path.motion[rows] == Motion.RAPID
-    speed = np.where(is_rapid, limit, np.minimum(np.minimum(path.feed[rows], machine.feed_max) / SECONDS_PER_MINUTE, limit))
-    speed[is_arc] = np.minimum(speed[is_arc], np.sqrt(acceleration[is_arc] * _radii(path, rows[is_arc])))
+    feed = np.minimum(path.feed[rows], machine.feed_max) / SECONDS_PER_MINUTE
+    # In a block that turns the tip has its feed, however far the machine's axes go for it.
+    stretch = np.divide(length, way.tip[rows], out=np.full(len(rows), np.inf), where=way.tip[rows] > 0.0)
+    speed = np.where(is_rapid, limit, np.minimum(feed * np.where(is_rapid, 1.0, stretch), limit))
+    speed[is_arc] = np.minimum(speed[is_arc], np.sqrt(acceleration[is_arc] * way.radius[rows[is_arc]]))
     joint = _joint_speeds(first, last, speed, acceleration, is_rapid)
     times[rows] = _trapezoids(length, speed, acceleration, _looked_ahead(length, joint, acceleration))
     return times
 
 
-def _directions(path: Toolpath, rows: np.ndarray) -> tuple[Floats, Floats]:
-    """Return the unit directions (m, 3) at the beginning and at the end of blocks."""
-    start, sweep = path.starts(), path.sweeps()
-    way = path.position[rows] - start[rows]
+@dataclass(frozen=True, slots=True, eq=False, kw_only=True)
+class _Way:
+    """How a machine's axes go along blocks: length (n,) of their common way, of the tip's alone (n,), and the unit directions (n, 3 + a) in
+    which they begin and end it. of arcs also across (n, 3), how much of it each linear axis takes, and radius (n,).
+
+    Ways are in mm; of a rotary axis in the mm in which a linear one gains as much speed."""
+
+    length: Floats
+    tip: Floats
+    first: Floats
+    last: Floats
+    across: Floats
+    radius: Floats
+
+
+def _way_of(path: Toolpath, place: Place | None, gauge: float) -> _Way:
+    """Return the way of a path: on a machine with rotary axes that of the positions of all its axes."""
+    tip, sweep = path.lengths(), path.sweeps()
+    arcs = np.flatnonzero(path.motion >= Motion.ARC_CW)
+    position, axis, centre = path.position, path.axis[arcs], path.centre[arcs]
+    turn = np.zeros((len(path), 0))
+    if place is not None:
+        angle = followed(path.axis, place, None, NEAR_POLE, "of the path")
+        turn = np.diff(np.degrees(angle), axis=0, prepend=np.degrees(angle[:1])) * _weights(place.machine)
+        position, axis = words_of(place, position, angle, gauge), spindle_of(place, angle[arcs])
+        centre = words_of(place, np.where(np.isnan(centre), path.position[arcs], centre), angle[arcs], gauge)
+    start = np.vstack([position[:1], position[:-1]])
+    way = np.column_stack([position - start, turn])
     first, last = way.copy(), way.copy()
-    arcs = np.flatnonzero(path.motion[rows] >= Motion.ARC_CW)
-    at = rows[arcs]
-    for out, point in ((first, start[at]), (last, path.position[at])):
-        ray = point[:, :2] - path.centre[at, :2]
-        turn = sweep[at][:, None]
-        out[arcs, :2] = np.stack([-ray[:, 1], ray[:, 0]], axis=1) * turn
-    return _units(first), _units(last)
+    for out, point in ((first, start[arcs]), (last, position[arcs])):
+        out[arcs, :3] = np.cross(axis, point - centre) * sweep[arcs, None]
+    turns = np.abs(turn).max(axis=1, initial=0.0) > 0.0
+    across, radius = np.zeros((len(path), 3)), np.zeros(len(path))
+    across[arcs] = np.sqrt(np.maximum(1.0 - axis * axis, 0.0))
+    radius[arcs] = np.linalg.norm(np.cross(axis, position[arcs] - centre), axis=1)
+    return _Way(length=np.where(turns, np.linalg.norm(way, axis=1), tip), tip=tip, first=_units(first), last=_units(last), across=across,
+                radius=radius)
+
+
+def _weights(machine: Machine) -> list[float]:
+    """Return for each rotary axis the mm in which the slowest linear axis gains as much speed as it does in a degree."""
+    slowest = min(machine.axis(name).acceleration for name in "XYZ")
+    return [slowest / a.acceleration for a in machine.rotary]
 
 
 def _units(vectors: Floats) -> Floats:
     scaled: Floats = vectors / np.maximum(np.linalg.norm(vectors, axis=1, keepdims=True), np.finfo(float).tiny)
     return scaled
-
-
-def _radii(path: Toolpath, rows: np.ndarray) -> Floats:
-    radius: Floats = np.linalg.norm(path.position[rows, :2] - path.centre[rows, :2], axis=1)
-    return radius
 
 
 def _joint_speeds(first: Floats, last: Floats, speed: Floats, acceleration: Floats, is_rapid: Bools) -> Floats:
