@@ -24,6 +24,8 @@ from trunnion.units import SECONDS_PER_MINUTE
 
 ROUNDING = 0.01
 """mm: how far the machine may round a joint while it keeps moving, about what a control does in contouring mode."""
+ROUNDING_TURNS = 0.05
+"""mm of a rotary axis: what stays within ROUNDING at the tip, on an arm of 100 mm."""
 NEAR_POLE = 1e-4
 """rad: a tool axis that close to the pole of the rotary axes may go through it."""
 
@@ -61,7 +63,8 @@ def block_times(path: Toolpath, machine: Machine, place: Place | None = None, ga
     stretch = np.divide(length, way.tip[rows], out=np.full(len(rows), np.inf), where=way.tip[rows] > 0.0)
     speed = np.where(is_rapid, limit, np.minimum(feed * np.where(is_rapid, 1.0, stretch), limit))
     speed[is_arc] = np.minimum(speed[is_arc], np.sqrt(acceleration[is_arc] * way.radius[rows[is_arc]]))
-    joint = _joint_speeds(first, last, speed, acceleration, is_rapid)
+    rounding = np.where(np.abs(first[:, 3:]).max(axis=1, initial=0.0) > 0.0, ROUNDING_TURNS, ROUNDING)
+    joint = _joint_speeds(first, last, speed, acceleration, is_rapid, rounding)
     times[rows] = _trapezoids(length, speed, acceleration, _looked_ahead(length, joint, acceleration))
     return times
 
@@ -116,12 +119,12 @@ def _units(vectors: Floats) -> Floats:
     return scaled
 
 
-def _joint_speeds(first: Floats, last: Floats, speed: Floats, acceleration: Floats, is_rapid: Bools) -> Floats:
+def _joint_speeds(first: Floats, last: Floats, speed: Floats, acceleration: Floats, is_rapid: Bools, rounding: Floats) -> Floats:
     """Return the greatest speed (m + 1,) at each block's beginning, and 0 at the end of the path; rapids begin and end at rest."""
     turn = np.clip((last[:-1] * first[1:]).sum(axis=1), -1.0, 1.0)
     half = np.sqrt(0.5 * (1.0 + turn))
     with np.errstate(divide="ignore"):
-        rounded = np.sqrt(np.minimum(acceleration[:-1], acceleration[1:]) * ROUNDING * half / (1.0 - half))
+        rounded = np.sqrt(np.minimum(acceleration[:-1], acceleration[1:]) * np.maximum(rounding[:-1], rounding[1:]) * half / (1.0 - half))
     inner = np.minimum(np.minimum(speed[:-1], speed[1:]), rounded)
     inner[is_rapid[:-1] != is_rapid[1:]] = 0.0
     return np.concatenate([[0.0], inner, [0.0]])
