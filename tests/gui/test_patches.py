@@ -16,6 +16,7 @@ from PySide6.QtWidgets import QMenu
 from test_viewport import hue, pixel
 
 from samples import written
+from trunnion.geometry.cut import plane_cut
 from trunnion_gui.colours import radius_colour, rgb
 from trunnion_gui.docks.cutting import DRAWN, THREE
 
@@ -71,7 +72,7 @@ def shown(segmented, qtbot):
     window.document.select_face(0)
     yield window
     window.centre.cutting.end()
-    while window.document.session is not before:
+    while window.document.session is not before and window.document.history.undo_label:
         window.registry.run("edit.undo")
     qtbot.waitUntil(lambda: not window.document.is_busy and not window.document._quiet, timeout=30000)
 
@@ -394,3 +395,28 @@ def test_the_error_of_the_sizes_is_shown_by_the_number_of_points(shown, qtbot):
     ratio = picture.width() / dock.chart.width()
     at = dock.chart.point(dock.chart.left, 0) * ratio
     assert hue(picture.pixelColor(at.toPoint()).toTuple()[:3]) @ hue(rgb(shown.theme.accent)) > 0.9
+
+
+def test_a_saved_project_opens_with_its_cuts_and_what_was_called_local(make_window, tmp_path, qtbot):
+    window = make_window("trunnion.pipeline:Engine")
+    window.document.open(written(domed_plate(), name="domes"))
+    done(window, qtbot)
+    window.document.choose("recognize.family", "Family: surface", "surface")
+    window.document.run("recognize", "Recognize")
+    done(window, qtbot)
+    window.registry.run("view.top")
+    window.document.cut(plane_cut(face_at(window, ON_TOP), (-10.0, 0.0, 0.0), (1.0, 0.0, 0.0)))
+    done(window, qtbot)
+    window.patches.toggle_local((face_at(window, ON_TOP),))
+    done(window, qtbot)
+    faces, id = window.document.session.part.n_faces, group_at(window, ON_TOP).id
+    assert window.document.feature(id).attributes["local"] is True
+    window.document.save(tmp_path / "domes.trunnion")
+    done(window, qtbot)
+    window.document.open(tmp_path / "domes.trunnion")
+    done(window, qtbot)
+    window.registry.run("view.top")
+    assert window.document.session.part.n_faces == faces
+    assert face_at(window, (-15.0, -14.0, TOP)) != face_at(window, (-5.0, -14.0, TOP))
+    assert group_at(window, ON_TOP).id == id and group_at(window, ON_TOP).attributes["local"] is True
+    assert window.document.states["recognize"] == "done"

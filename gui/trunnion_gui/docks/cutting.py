@@ -216,7 +216,7 @@ class CutBar(QWidget):
             return tr("Click the face that shall be cut.")
         where = f"{tr('face')} {self.face}"
         if kind in AXES:
-            return tr("{face}: type where, or click a place that the plane goes through.").format(face=where)
+            return tr("{face}: type where, or click a place of the plane.").format(face=where)
         if kind == THREE:
             return tr("{face}: click three places, {n} are there.").format(face=where, n=len(self.places))
         if self._is_closed():
