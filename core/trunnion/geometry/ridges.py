@@ -1,19 +1,20 @@
 """Where fronts meet: the lines over a sheet on which a distance has its ridges.
 
 A distance rises along the ways that its fronts took. Across a ridge these ways run towards each other, so the distance's level lines have
-corners there: between the corners of neighbouring lines it is farther than between the lines.
+corners there: between the corners of neighbouring lines it is farther than between the lines. Triangles that a ridge crosses are parted
+along it, for inside of them the distance is not even.
 """
 
 from __future__ import annotations
 
 import math
+from dataclasses import dataclass
 
 import numpy as np
 from scipy.spatial import cKDTree
 
 from trunnion import tolerance
 from trunnion.geometry.arrays import Bools, Floats, Ints
-from trunnion.geometry.contours import SheetLine
 from trunnion.geometry.fields import Metric
 from trunnion.geometry.sheet import Sheet
 
@@ -22,31 +23,68 @@ MEETING = math.cos(math.radians(36.0))
 their corners than between."""
 
 
-def ridges(metric: Metric, time: Floats, foot: Floats) -> list[SheetLine]:
-    """Return the ridge lines of distances (v,) that came from places (v, 3), as `geometry.fields.distances` gives them.
+NEAR_END = 1e-3
+"""Share of an edge: a ridge nearer to an end runs through that point."""
 
-    A line ends where ridges branch, so each is without branches; they come in the order of their lowest edges.
+
+@dataclass(frozen=True, slots=True, eq=False, kw_only=True)
+class Ridged:
+    """A sheet whose triangles are parted along the ridges of a distance, that distance (v,), and the ridges: rows of points (k,) each,
+    without branches; the last of a closed one is its first again."""
+
+    sheet: Sheet
+    time: Floats
+    ridges: list[Ints]
+
+
+def ridged(metric: Metric, time: Floats, foot: Floats, gap: float) -> Ridged:
+    """Return the sheet parted along the ridges of distances (v,) that came from places (v, 3), as `geometry.fields.distances` gives them.
+
+    Ridges whose ends lie within `gap` mm of each other are one.
     """
     sheet = metric.sheet
     ends, side = sheet.edges()
-    share, meets = _meeting(metric, ends, side, time, foot)
-    here = meets[side]
-    pairs = [side[here.sum(axis=1) == 2][here[here.sum(axis=1) == 2]].reshape(-1, 2)]
-    # In a triangle where three ridges meet, both lower edges are joined to the highest one.
-    stars = side[here.all(axis=1)]
-    top = np.argmax(time[ends[stars]].mean(axis=2), axis=1) if len(stars) else np.zeros(0, np.int64)
-    for k in (1, 2):
-        pairs.append(np.column_stack([stars[np.arange(len(stars)), top], stars[np.arange(len(stars)), (top + k) % 3]]))
-    return [SheetLine(ends=ends[line], share=share[line], closed=bool(line[0] == line[-1]), level=0)
-            for line in _lines(np.concatenate(pairs))]
+    share, top, meets = _meeting(metric, ends, side, time, foot)
+    crossed = np.flatnonzero(meets)
+    number = np.full(len(ends), -1)
+    number[crossed] = len(sheet.points) + np.arange(len(crossed))
+    points, normals = sheet.on_edges(ends[crossed], share[crossed])
+    triangles, face = _parted(sheet, number[side])
+    parted = Sheet(points=np.vstack([sheet.points, points]), normals=np.vstack([sheet.normals, normals]), triangles=triangles, face=face)
+    time = np.concatenate([time, top[crossed]])
+    split = number[side] >= 0
+    pairs = [number[side][split.sum(axis=1) == 2][split[split.sum(axis=1) == 2]].reshape(-1, 2)]
+    # In a triangle where three ridges meet, both lower points are joined to the highest one.
+    stars = number[side][split.all(axis=1)]
+    high = np.argmax(time[stars], axis=1) if len(stars) else np.zeros(0, np.int64)
+    pairs += [np.column_stack([stars[np.arange(len(stars)), high], stars[np.arange(len(stars)), (high + k) % 3]]) for k in (1, 2)]
+    return Ridged(sheet=parted, time=time, ridges=_chained(parted.points, _lines(np.concatenate(pairs)), gap))
 
 
-def chained(sheet: Sheet, lines: list[SheetLine], gap: float) -> list[SheetLine]:
+def _parted(sheet: Sheet, middle: Ints) -> tuple[Ints, Ints]:
+    """Return triangles, and their faces, with the sides (t, 3) parted that have a middle, -1: none."""
+    split = middle >= 0
+    count = split.sum(axis=1)
+    made, tags = [sheet.triangles[count == 0]], [sheet.face[count == 0]]
+    for n, lone in ((1, True), (2, False), (3, True)):
+        rows = np.flatnonzero(count == n)
+        # Turned so that a lone middle is on the first side, and a lone side without one is the second side.
+        k = np.argmax(split[rows] == lone, axis=1) if n != 2 else (np.argmax(~split[rows], axis=1) + 2) % 3
+        a, b, c = (sheet.triangles[rows, (k + j) % 3] for j in range(3))
+        ab, bc, ca = (middle[rows, (k + j) % 3] for j in range(3))
+        parts = {1: ((a, ab, c), (ab, b, c)), 2: ((a, ab, ca), (ab, b, c), (ab, c, ca)),
+                 3: ((a, ab, ca), (ab, b, bc), (ca, bc, c), (ab, bc, ca))}[n]
+        made += [np.column_stack(part) for part in parts]
+        tags += [sheet.face[rows]] * len(parts)
+    return np.vstack(made), np.concatenate(tags)
+
+
+def _chained(points: Floats, lines: list[Ints], gap: float) -> list[Ints]:
     """Return lines of which those whose ends lie within a gap (mm) of each other are one; nearest ends are joined first."""
-    open_lines = [line for line in lines if not line.closed]
+    open_lines = [line for line in lines if line[0] != line[-1]]
     if len(open_lines) < 2:
         return lines
-    tips = np.concatenate([sheet.on_edges(line.ends[[0, -1]], line.share[[0, -1]])[0] for line in open_lines])
+    tips = points[np.concatenate([line[[0, -1]] for line in open_lines])]
     pairs = cKDTree(tips).query_pairs(gap, output_type="ndarray")
     pairs = pairs[np.lexsort((pairs[:, 1], pairs[:, 0], np.linalg.norm(tips[pairs[:, 0]] - tips[pairs[:, 1]], axis=1)))]
     partner = np.full(len(tips), -1)
@@ -58,18 +96,15 @@ def chained(sheet: Sheet, lines: list[SheetLine], gap: float) -> list[SheetLine]
         parts = []
         while tip >= 0 and not used[tip // 2]:
             used[tip // 2] = True
-            line = open_lines[tip // 2]
-            step = 1 if tip % 2 == 0 else -1
-            parts.append((line.ends[::step], line.share[::step]))
+            parts.append(open_lines[tip // 2][:: 1 if tip % 2 == 0 else -1])
             tip = int(partner[tip ^ 1])
         if parts:
-            ends, share = (np.concatenate([p[k] for p in parts]) for k in (0, 1))
-            made.append(SheetLine(ends=ends, share=share, closed=False, level=0))
-    return [line for line in lines if line.closed] + made
+            made.append(np.concatenate(parts))
+    return [line for line in lines if line[0] == line[-1]] + made
 
 
-def _meeting(metric: Metric, ends: Ints, side: Ints, time: Floats, foot: Floats) -> tuple[Floats, Bools]:
-    """Return where on each edge (e,) fronts from both ends meet, as a share of its way, and whether they do."""
+def _meeting(metric: Metric, ends: Ints, side: Ints, time: Floats, foot: Floats) -> tuple[Floats, Floats, Bools]:
+    """Return where on each edge (e,) fronts from both ends meet, as a share of its way, when, and whether they do."""
     sheet = metric.sheet
     length = np.empty(len(ends))
     length[side] = metric.lengths
@@ -79,7 +114,10 @@ def _meeting(metric: Metric, ends: Ints, side: Ints, time: Floats, foot: Floats)
     meets = ((came[a] * came[b]).sum(axis=1) < MEETING) & (forth + back > 0.0) & np.isfinite(time[ends]).all(axis=1)
     meets &= (np.linalg.norm(came[ends], axis=2) > 0.5).all(axis=1)
     closing = np.maximum((forth + back) * length, tolerance.PARAMETRIC)
-    return np.clip((time[b] - time[a] + back * length) / closing, 0.0, 1.0), meets
+    share = (time[b] - time[a] + back * length) / closing
+    # So near an end that it is one, nothing is parted.
+    meets &= (share > NEAR_END) & (share < 1.0 - NEAR_END)
+    return share, time[a] + share * forth * length, meets
 
 
 def _lines(pairs: Ints) -> list[Ints]:

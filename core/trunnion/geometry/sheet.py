@@ -93,6 +93,17 @@ class Sheet:
         parts = [self.of(label == part) for part in np.unique(label)]
         return sorted(parts, key=lambda s: (int(s.face.min()), *s.points[0].tolist()))
 
+    def filled(self, holes: list[Ints]) -> Sheet:
+        """Return the sheet with holes (k,), loops of `rims`, closed by triangles with the tag 0: a field may run on over them."""
+        sheet = self
+        for hole in holes:
+            middle, n = len(sheet.points), len(hole)
+            fan = np.column_stack([np.roll(hole, -1), hole, np.full(n, middle)])
+            sheet = Sheet(points=np.vstack([sheet.points, sheet.points[hole].mean(axis=0)]),
+                          normals=np.vstack([sheet.normals, _unit(sheet.normals[hole].sum(axis=0)[None])]),
+                          triangles=np.vstack([sheet.triangles, fan]), face=np.concatenate([sheet.face, np.zeros(n, np.int64)]))
+        return sheet
+
     def of(self, rows: Bools) -> Sheet:
         """Return a part of the sheet: some triangles (t,) and the points they need."""
         used, triangles = np.unique(self.triangles[rows], return_inverse=True)

@@ -13,10 +13,10 @@ from collections.abc import Sequence
 import numpy as np
 from scipy.spatial import cKDTree
 
-from trunnion.geometry.arrays import Floats, Ints
+from trunnion.geometry.arrays import Floats
 from trunnion.geometry.contours import SheetLine, whole_levels
 from trunnion.geometry.fields import Metric, distances
-from trunnion.geometry.ridges import chained, ridges
+from trunnion.geometry.ridges import Ridged, ridged
 from trunnion.geometry.sheet import Sheet, sheet_of, split_finely
 from trunnion.model.operation import CuttingData
 from trunnion.model.setup import Setup
@@ -38,8 +38,6 @@ FIRST = 0.35
 """Stepovers from the rim to the first pass: half a stepover from a square corner."""
 FARTHEST = 0.515
 """Stepovers from the nearest pass beyond which a place needs another one: the scallop there is 6 % higher than wanted."""
-BESIDE = 0.08
-"""Stepovers that the farthest place between two lines' corners is farther from them than the points of triangles around it."""
 REACH = 1.5
 """Stepovers that a pass along a ridge goes on past such a place: the next one between corners is not farther."""
 SMOOTHINGS = 3
@@ -94,10 +92,10 @@ def scallop_passes(drive: SurfaceDrive, tool: Tool, chord: float, progress: Prog
         rims = sheet.rims()
         # An area that is closed all round begins at its highest place.
         rim = np.concatenate(rims) if rims else np.array([np.argmax(sheet.points[:, 2])])
-        time, foot = distances(metric, rim)
-        lines = _nested(sheet, whole_levels(sheet, time + 1.0 - FIRST))
-        contacts = [sheet.on_edges(line.ends, line.share) for line in lines]
-        contacts += _along_ridges(metric, rim, time, foot, lines, longest)
+        found = ridged(metric, *distances(metric, rim), FINENESS * longest)
+        lines = _nested(found.sheet, whole_levels(found.sheet, found.time + 1.0 - FIRST))
+        contacts = [found.sheet.on_edges(line.ends, line.share) for line in lines]
+        contacts += _along_ridges(found, metric_of(found.sheet, measure), lines, longest)
         closed = [line.closed for line in lines] + [False] * (len(contacts) - len(lines))
         made += [Contacts(point=p, normal=n, closed=c)
                  for (p, n), c in ((spread(*pn, c, tool.radius, chord, longest), c) for pn, c in zip(contacts, closed, strict=True))]
@@ -127,27 +125,36 @@ def _nested(sheet: Sheet, lines: Sequence[SheetLine]) -> list[SheetLine]:
     return order
 
 
-def _along_ridges(metric: Metric, rim: Ints, time: Floats, foot: Floats, lines: Sequence[SheetLine],
-                  stepover: float) -> list[tuple[Floats, Floats]]:
+def _along_ridges(found: Ridged, metric: Metric, lines: Sequence[SheetLine], stepover: float) -> list[tuple[Floats, Floats]]:
     """Return points and normals (k, 3) of passes along the ridges where places are too far from all lines."""
-    sheet = metric.sheet
-    if not lines:
+    if not lines or not found.ridges:
         return []
     rows = np.concatenate([line.ends.ravel() for line in lines])
     level = np.repeat([line.level - 1.0 + FIRST for line in lines], [2 * len(line.share) for line in lines])
-    away, _ = distances(metric, rows, np.abs(time[rows] - level))
-    found = []
-    for ridge in chained(sheet, ridges(metric, time, foot), FINENESS * stepover):
-        point, normal = _smoothed(*sheet.on_edges(ridge.ends, ridge.share), ridge.closed)
+    away, _ = distances(metric, rows, np.abs(found.time[rows] - level))
+    ways = []
+    for ridge in found.ridges:
+        point, normal = _smoothed(found.sheet.points[ridge], found.sheet.normals[ridge], bool(ridge[0] == ridge[-1]))
         run = np.concatenate([[0.0], np.cumsum(np.linalg.norm(np.diff(point, axis=0), axis=1))])
-        # Points of triangles lie beside a ridge, so none of them is quite as far from the lines as places on it are.
-        lacking = run[away[ridge.ends].max(axis=1) > FARTHEST - BESIDE]
+        lacking = run[away[ridge] > FARTHEST]
         if len(lacking):
             first = np.searchsorted(lacking, run - REACH * stepover)
             wanted = (first < len(lacking)) & (lacking[np.minimum(first, len(lacking) - 1)] <= run + REACH * stepover)
             edges = np.flatnonzero(np.diff(wanted.astype(np.int8), prepend=0, append=0)).reshape(-1, 2)
-            found += [(point[a:b], normal[a:b]) for a, b in edges.tolist() if b - a > 1]
-    return found
+            ways += [(point[a:b], normal[a:b]) for a, b in edges.tolist() if b - a > 1]
+    return _in_turn(ways)
+
+
+def _in_turn(ways: list[tuple[Floats, Floats]]) -> list[tuple[Floats, Floats]]:
+    """Return ways in an order in which each begins near the end of the one before, some of them the other way round."""
+    ways, order = list(ways), list[tuple[Floats, Floats]]()
+    while ways:
+        here = order[-1][0][-1] if order else ways[0][0][0]
+        gaps = np.array([[np.linalg.norm(point[k] - here) for k in (0, -1)] for point, _ in ways])
+        row, end = divmod(int(np.argmin(gaps)), 2)
+        point, normal = ways.pop(row)
+        order.append((point[::-1], normal[::-1]) if end else (point, normal))
+    return order
 
 
 def _smoothed(point: Floats, normal: Floats, closed: bool) -> tuple[Floats, Floats]:

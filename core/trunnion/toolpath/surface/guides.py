@@ -16,13 +16,14 @@ from scipy.spatial import cKDTree
 from trunnion import tolerance
 from trunnion.findings import BadInput
 from trunnion.geometry.arrays import Bools, Floats, Ints
+from trunnion.geometry.fields import Metric, distances
 from trunnion.geometry.sheet import Sheet
 from trunnion.geometry.skin import Skin
 
 CORNER = math.radians(30.0)
 """A rim that turns by more at a point has a corner there."""
-LIKE_A_RING = 0.4
-"""Two rims make a ring if the shorter one is at least this share of the longer one, or the longer one has no corners."""
+EVEN = 0.5
+"""Two rims make a ring if it is at its narrowest at least this share of its widest."""
 
 
 @dataclass(frozen=True, slots=True, eq=False, kw_only=True)
@@ -42,19 +43,30 @@ def tags_named(text: str) -> tuple[int, ...]:
     return tuple(int(w) for w in words)
 
 
+def holes_of(metric: Metric) -> list[Ints]:
+    """Return the rims of a connected sheet that flow lines had better pass as if they were not there: all but the outer one of an area
+    that is no ring."""
+    rims = metric.sheet.rims()
+    if len(rims) == 2:
+        gaps = np.concatenate([distances(metric, rims[k])[0][rims[1 - k]] for k in (0, 1)])
+        if gaps.min() >= EVEN * gaps.max():
+            return []
+    return rims[1:]
+
+
 def guides_of(sheet: Sheet) -> Guides:
-    """Return the guides that a connected sheet suggests; raise `BadInput` for one without a rim."""
+    """Return the guides that a connected sheet with its holes filled suggests; raise `BadInput` for one without a rim."""
     rims = sheet.rims()
     if not rims:
         raise BadInput("the area is closed all round: leave one of its faces out, or choose another strategy")
-    sides = _sides(sheet, rims[0])
-    if len(rims) == 2 and (len(sides) < 3 or _round(sheet, rims[1]) >= LIKE_A_RING * _round(sheet, rims[0])):
+    if len(rims) == 2:
         return Guides(first=rims[0], second=rims[1], rings=True)
+    sides = _sides(sheet, rims[0])
     lengths = np.array([_run(sheet, side) for side in sides])
-    if len(sides) < 4:
-        order = np.sort(np.argsort(-lengths, kind="stable")[:2])
-        return Guides(**_apart(sides[order[0]], sides[order[1]]), rings=False)
     n = len(sides)
+    if n < 4:
+        i, j = np.sort(np.argsort(-lengths, kind="stable")[:2]).tolist()
+        return Guides(**_apart(sides[i], sides[j]), rings=False)
     pairs = [(i, j) for i in range(n) for j in range(i + 2, n) if (j + 1) % n != i]
     i, j = max(pairs, key=lambda p: min(lengths[p[0]], lengths[p[1]]) + lengths[p[0]] + lengths[p[1]])
     return Guides(first=sides[i], second=sides[j], rings=False)
@@ -110,7 +122,3 @@ def _apart(first: Ints, second: Ints) -> dict[str, Ints]:
 
 def _run(sheet: Sheet, side: Ints) -> float:
     return float(np.linalg.norm(np.diff(sheet.points[side], axis=0), axis=1).sum())
-
-
-def _round(sheet: Sheet, rim: Ints) -> float:
-    return _run(sheet, np.append(rim, rim[0]))

@@ -25,7 +25,7 @@ from trunnion.settings import choose, setting, settings
 from trunnion.toolpath.contract import Planned, strategy
 from trunnion.toolpath.stock import PlanningStock
 from trunnion.toolpath.surface.contacts import Contacts
-from trunnion.toolpath.surface.guides import Guides, guides_beside, guides_of, tags_named
+from trunnion.toolpath.surface.guides import Guides, guides_beside, guides_of, holes_of, tags_named
 from trunnion.toolpath.surface.linking import Manner, linked
 from trunnion.toolpath.surface.scallop import stepover_on_plane
 from trunnion.toolpath.surface.stepovers import metric_of, spread, stepover_measure
@@ -88,9 +88,13 @@ def streamlines(drive: SurfaceDrive, tool: Tool, settings: StreamlineSettings | 
     for k, part in enumerate(parts):
         share = progress.part(k / len(parts), (k + 1) / len(parts))
         share.at(0.0, "Laying flow lines")
-        wide = float(metric_of(part, measure).area().sum())
-        sheet = split_finely(part, measure, max(FINENESS, math.sqrt(wide / ENOUGH)), share)
-        for line in _lines(metric_of(sheet, measure), _guides(sheet, drive, chosen), chosen.spiral, share):
+        coarse = metric_of(part, measure)
+        wide = float(coarse.area().sum())
+        # Guides that a person named may be rims of holes.
+        whole = part if chosen.first_guide else part.filled(holes_of(coarse))
+        sheet = split_finely(whole, measure, max(FINENESS, math.sqrt(wide / ENOUGH)), share)
+        guides = _guides(sheet, drive, chosen)
+        for line in _lines(metric_of(sheet, measure), guides, chosen.spiral, share):
             point, normal = spread(*sheet.on_edges(line.ends, line.share), line.closed, tool.radius, chosen.chord,
                                    stepover_on_plane(tool.corner_radius, drive.height))
             made.append(Contacts(point=point, normal=normal, closed=line.closed))
@@ -107,12 +111,15 @@ def _guides(sheet: Sheet, drive: SurfaceDrive, chosen: StreamlineSettings) -> Gu
 def _lines(metric: Metric, guides: Guides, spiral: bool, progress: Progress) -> list[SheetLine]:
     """Return the passes from the first guide to the second, what is not cut yet on their right."""
     field = blend(metric, guides.first, guides.second, progress)
-    slope, area = metric.slope(field), metric.sheet.area()
+    real = metric.sheet.face > 0
+    slope, area = metric.slope(field)[real], metric.sheet.area()[real]
     order = np.argsort(slope)
     narrowest = slope[order[np.searchsorted(np.cumsum(area[order]), SMALLEST * area.sum())]]
     count = max(math.ceil(1.0 / narrowest), 1)
     lines = [_turned(line) for line in whole_levels(metric.sheet, field * count + 0.5)]
-    return _wound(metric, guides, field, count, lines) if spiral and guides.rings and count > 1 else lines
+    if spiral and guides.rings and count > 1:
+        return _wound(metric, guides, field, count, lines)
+    return [piece for line in lines for piece in line.on(metric.sheet, real)]
 
 
 def _wound(metric: Metric, guides: Guides, field: Floats, count: int, lines: list[SheetLine]) -> list[SheetLine]:
