@@ -355,3 +355,15 @@ def test_a_message_has_the_room_that_the_columns_beside_it_do_not_need(window, q
     window.document.notice("a message that is long enough to be cut off where every other column takes its full width " * 2)
     table = window.messages.table
     qtbot.waitUntil(lambda: table.columnWidth(1) > 0.5 * table.viewport().width())
+
+
+@pytest.mark.parametrize(("id", "kind", "words"), [("profile-finish-face-2", "profile_finish", "Profile finish face-2"),
+                                                   ("semi-local-01", "semi", "Semi local-01"), ("floor-pocket-03", "floor", "Floor")])
+def test_an_operations_label_says_nothing_twice(id, kind, words):
+    from fake_engine import cutter, cutting
+
+    from trunnion.model.operation import Operation
+    from trunnion_gui.docks.process import label
+
+    made = Operation(id=id, kind=kind, strategy="fake", feature="pocket-03", setup="S1", tool=cutter(1, 10.0), data=cutting(300, 10))
+    assert label(made) == words

@@ -175,6 +175,6 @@ class ProcessDock(QWidget):
 
 def label(o: Operation) -> str:
     """Return what tells an operation from others of its feature: its kind, with what else its id says."""
-    rest = o.id.replace(f"-{o.feature}", "").removeprefix(o.kind).strip("-")
+    rest = o.id.replace(f"-{o.feature}", "").removeprefix(o.kind.replace("_", "-")).removeprefix(o.kind).strip("-")
     kind = sentence(tr(kind_words(o.kind)))
     return f"{kind} {rest}" if rest else kind

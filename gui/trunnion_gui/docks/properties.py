@@ -14,6 +14,8 @@ from trunnion_gui.widgets import table as tables
 from trunnion_gui.words import amount, duration, kind_words, sentence, size_unit
 
 Rows = list[tuple[str, str]]
+UPRIGHT = (0.0, 0.0, 1.0)
+"""The direction of a tool that stands along its setup's z."""
 
 
 class PropertiesDock(QScrollArea):
@@ -95,6 +97,8 @@ class PropertiesDock(QScrollArea):
                 (tr("Width of cut"), f"{amount(data.width)} mm"),
                 (tr("Power"), f"{amount(data.power, 1)} / {amount(data.power_limit, 1)} kW"),
                 (tr("Torque"), f"{amount(data.torque, 1)} Nm")]
+        if o.direction != UPRIGHT:
+            rows.insert(4, (tr("Tool comes from"), "  ".join(f"{axis} {amount(v)}" for axis, v in zip("xyz", o.direction, strict=True))))
         if proof is not None:
             rows += [(tr("Verdict"), tr(proof.outcome.value)), (tr("Time"), duration(proof.time_s)),
                      (tr("Deepest gouge"), f"{amount(proof.gouge)} mm")]
