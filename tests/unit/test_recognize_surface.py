@@ -9,12 +9,14 @@ import numpy as np
 import pytest
 
 from parts import PARTS, needs_parts
+from shaped_parts import bowl, plate, rounded_plate, torus
 from trunnion.geometry.boundary import Boundary
 from trunnion.part.boundary import boundary_of
 from trunnion.part.identity import faces_of
 from trunnion.pipeline import Engine
+from trunnion.recognize.surface import SurfaceFamily, SurfaceSettings
 from trunnion.recognize.surface.groups import aligned_groups, grouped, invariant_groups
-from trunnion.recognize.surface.size import patch_sizes
+from trunnion.recognize.surface.size import _diameter, patch_sizes, repaired
 
 
 class Rectangles:
@@ -87,6 +89,46 @@ def test_an_edge_is_cut_into_pieces_of_equal_length() -> None:
     assert np.linalg.norm(np.diff(ring, axis=0), axis=1) == pytest.approx(np.full(8, 10.0 * math.sin(math.pi / 8)), rel=1e-3)
 
 
+def recognised(part):
+    return SurfaceFamily().recognize(part.graph(), part, SurfaceSettings())
+
+
+def test_the_largest_distance_is_that_of_all_pairs() -> None:
+    spread = np.random.default_rng(7)
+    clouds = [spread.normal(size=(n, 3)) * (5.0, 1.0, 0.1) + 30.0 for n in (1, 2, 9, 250)]
+    turn = np.linspace(0.0, 2.0 * math.pi, 77)
+    clouds.append(np.column_stack([9.0 * np.cos(turn), 9.0 * np.sin(turn), 0.0 * turn]))
+    for points in clouds:
+        every = np.linalg.norm(points[:, None] - points[None], axis=2).max()
+        assert _diameter(points) == pytest.approx(every, rel=1e-9, abs=1e-9)
+
+
+def test_a_hollow_ball_is_concave_and_the_edge_rounded_off_a_plate_is_a_rounding() -> None:
+    hollow = recognised(bowl(40.0, 30.0, 12.0, 10.0))
+    assert [f.sizes["concave_radius"] for f in hollow if "concave_radius" in f.sizes] == pytest.approx([10.0])
+    assert not any("convex_radius" in f.sizes or "fillet_radius" in f.sizes for f in hollow)
+    rounded = recognised(rounded_plate(40.0, 30.0, 12.0, 3.0))
+    along = [f.sizes["rounding_radius"] for f in rounded if f.sizes["area"] > 100.0 and "rounding_radius" in f.sizes]
+    assert along == pytest.approx([3.0, 3.0])
+
+
+def test_a_round_hole_is_no_fillet() -> None:
+    (hole,) = [f for f in recognised(plate(30.0, 30.0, 5.0, hole=10.0)) if "concave_radius" in f.sizes]
+    assert hole.sizes["concave_radius"] == pytest.approx(10.0)
+    assert "fillet_radius" not in hole.sizes
+
+
+def test_a_ring_bends_most_inside_and_least_across() -> None:
+    bend = torus(10.0, 3.0).bend(1)
+    assert (bend.least, bend.most) == pytest.approx((-1.0 / 7.0, 1.0 / 3.0), rel=1e-6)
+
+
+def test_the_paper_s_repair_measures_edges_against_the_largest_feature() -> None:
+    patches = Rectangles((100.0, 10.0, 0.0), (45.0, 10.0, 0.0), (25.0, 5.0, 0.0))
+    asked = repaired(patches)(np.array([100.0, 75.0, 60.0, 45.0, 25.0, 10.0]))
+    assert asked.tolist() == [8, 8, 6, 4, 2, 1]
+
+
 GROUPINGS = (("aligned", "features"), ("invariant", "features_by_invariant_size"))
 
 
@@ -105,6 +147,21 @@ def test_groups_are_those_of_the_truth(name: str) -> None:
         assert found.family == "surface"
         assert {frozenset(f.tags) for f in found.features} == {frozenset(by_place[tuple(q["at"])] for q in f["faces"]) for f in wanted}
         assert not found.unexplained
+
+
+@needs_parts
+def test_radii_are_those_of_the_truth_and_fillets_have_their_nominal_one() -> None:
+    truth = json.loads((PARTS / "surface" / "D2.truth.json").read_text())
+    engine = Engine()
+    part = engine.bench_of(engine.open(PARTS / "surface" / "D2.step")).part
+    for face in truth["faces"]:
+        bend = part.bend(face["step_face"])
+        for wanted, curvature in ((face["smallest_concave_radius"], -bend.least), (face["smallest_convex_radius"], bend.most)):
+            assert (1.0 / curvature if curvature > 1e-6 else None) == (wanted and pytest.approx(wanted, rel=0.03))
+    fillets = {tag: f.sizes["fillet_radius"] for f in recognised(part) if "fillet_radius" in f.sizes for tag in f.tags}
+    nominal = {f["step_face"]: 2.5 if f["kind_of_face"].startswith("root") else 2.0 for f in truth["faces"]
+               if "_fillet_" in f["kind_of_face"]}
+    assert fillets == pytest.approx(nominal, rel=0.01)
 
 
 @needs_parts
