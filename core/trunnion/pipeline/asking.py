@@ -28,7 +28,9 @@ if TYPE_CHECKING:
     from trunnion.verify.contact import PartContact
     from trunnion.verify.motion import Moves
 
-CHUNK = 256
+BATCH = 1024
+"""Moves between two looks at cancel."""
+CHUNK = 128
 """Moves that one thread asks before it looks for more."""
 
 
@@ -36,13 +38,13 @@ class PartSurroundings:
     """A part and its fixtures as they stand in a cutting frame that itself stands in a setup's frame.
 
     `skin` is the part's in the cutting frame. What cuts may touch the part (`tolerance.FINISH_GOUGE`); neck, shank and holder are asked
-    for thicker by `tolerance.HOLDER_ROOM`.
+    for thicker by `tolerance.HOLDER_ROOM`. `progress` is looked at for cancel while something is asked.
     """
 
     def __init__(self, part: Part, skin: Skin, cutting: Frame, setup: Frame, machine: Machine, fixtures: Sequence[Fixture] = (),
                  progress: Progress = QUIET) -> None:
         self._part, self._skin, self._cutting, self._setup = part, skin, cutting, setup
-        self._machine, self._fixtures, self._progress = machine, tuple(fixtures), progress
+        self._machine, self._fixtures, self.progress = machine, tuple(fixtures), progress
 
     def __call__(self, tool: Tool) -> PartAsker:
         """Return who asks for a tool."""
@@ -56,6 +58,14 @@ class PartSurroundings:
 
     def clear(self, moves: Moves) -> Bools:
         """Say which moves (k,) enter nothing deeper than a finishing cutter may."""
+        clear = np.zeros(len(moves), dtype=bool)
+        for start in range(0, len(moves), BATCH):
+            self.progress.check()
+            some = _rows(moves, slice(start, start + BATCH))
+            clear[start : start + BATCH] = self._asked(some)
+        return clear
+
+    def _asked(self, moves: Moves) -> Bools:
         from trunnion.verify.threads import in_parallel
 
         clear, contact = np.zeros(len(moves), dtype=bool), self._contact
@@ -63,7 +73,7 @@ class PartSurroundings:
         def work(first: int, last: int) -> None:
             clear[first:last] = contact.clear(_rows(moves, slice(first, last)), tolerance.FINISH_GOUGE)
 
-        in_parallel(work, len(moves), CHUNK, self._progress, "Looking for room for a leaning tool")
+        in_parallel(work, len(moves), CHUNK, QUIET, "Looking for room for a leaning tool")
         return clear
 
     @cached_property
@@ -72,7 +82,7 @@ class PartSurroundings:
         from trunnion.verify.contact import PartContact
         from trunnion.verify.judge.sides import fixture_facets
 
-        surfaces = surfaces_of(self._part, self._cutting, self._progress)
+        surfaces = surfaces_of(self._part, self._cutting)
         skin = self._skin
         facets = Facets(tag=surfaces.tag, points=skin.points, triangles=skin.triangles, face=np.searchsorted(surfaces.tag, skin.face),
                         bound=skin.bound)

@@ -16,6 +16,7 @@ from trunnion.findings import BadCall, Refused, error, info
 from trunnion.geometry.frame import Frame
 from trunnion.model.blank import Blank
 from trunnion.model.feature import Recognition
+from trunnion.model.fixture import Fixture
 from trunnion.model.operation import Operation, OperationPath
 from trunnion.model.session import Session
 from trunnion.model.setup import Setup
@@ -73,6 +74,7 @@ class Room:
     tool: Tool | None = None
     _plane: Space | None = None
     _curved: dict[tuple[Direction, float], SurfaceSpace] = field(default_factory=dict)
+    _around: dict[Direction, PartSurroundings] = field(default_factory=dict)
 
     def __post_init__(self) -> None:
         self.sides = Sides(self.blank)
@@ -95,6 +97,15 @@ class Room:
             skin = self.bench.skin(chord, progress)
             self._curved[direction, chord] = SurfaceSpace.of(self.bench.part, skin, self.blank, self.setup, direction)
         return self._curved[direction, chord]
+
+    def around(self, direction: Direction, fixtures: tuple[Fixture, ...], progress: Progress) -> PartSurroundings:
+        """Return who says for a leaning tool, from a direction, whether it is clear of part and fixtures."""
+        if direction not in self._around:
+            space = self.curved(direction, tolerance.SKIN_CHORD, progress)
+            self._around[direction] = PartSurroundings(self.bench.part, space.skin, space.frame, self.setup.frame,
+                                                       self.bench.shop.machine(self.setup.machine), fixtures)
+        self._around[direction].progress = progress
+        return self._around[direction]
 
 
 def _make_one(session: Session, room: Room, operation: Operation, progress: Progress) -> OperationPath:
@@ -138,12 +149,11 @@ def _driven(session: Session, room: Room, operation: Operation, progress: Progre
     if plane:
         layers = plane_drive_of(operation, space, stock, progress)
         return space.setup, stock, layers, layers
-    ask = PartSurroundings(room.bench.part, space.skin, space.frame, room.setup.frame, room.bench.shop.machine(room.setup.machine),
-                           session.fixtures_of(room.setup.name), progress)
+    fixtures = session.fixtures_of(room.setup.name)
     name = operation.choices.get(EARLIER, "")
     earlier = next((t for t in session.process.tools() if t.name == name), None)
-    drive = space.drive_of(operation, earlier, ask)
-    return space.setup, stock, drive, drive.digest
+    drive = space.drive_of(operation, earlier, room.around(operation.direction, fixtures, progress))
+    return space.setup, stock, drive, (drive.digest, fixtures)
 
 
 def turned(path: Toolpath, frame: Frame, other: Frame) -> Toolpath:
