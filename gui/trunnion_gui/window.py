@@ -43,6 +43,7 @@ from trunnion_gui.docks.playback import PlaybackBar
 from trunnion_gui.docks.process import ProcessDock
 from trunnion_gui.docks.properties import PropertiesDock
 from trunnion_gui.document import PROJECT, Document
+from trunnion_gui.estimate import EstimateSource
 from trunnion_gui.finder import Finder
 from trunnion_gui.i18n import tr
 from trunnion_gui.panels.blank import BlankPanel
@@ -95,7 +96,7 @@ class Window(QMainWindow):
         self.document = Document(factory, self)
         self.registry = Registry(self)
         self.player, self.deviation = Player(self.document, self), DeviationSource(self.document, self)
-        self.patches = PatchTools(self.document, self)
+        self.patches, self.estimate = PatchTools(self.document, self), EstimateSource(self.document, self)
         self._add_commands()
         self._add_patches()
         self._add_playing()
@@ -565,9 +566,11 @@ class Window(QMainWindow):
         document.opened.connect(self._opened)
         document.saved.connect(remembered.add_recent)
         self.messages.counted.connect(lambda n: self.messages_dock.setWindowTitle(f"{tr('Messages')} {n}" if n else tr("Messages")))
-        size, generate = self.panels["size"], self.panels["generate"]
+        size, generate, optimize = self.panels["size"], self.panels["generate"], self.panels["optimize"]
         assert isinstance(size, SizePanel)
         assert isinstance(generate, GeneratePanel)
+        assert isinstance(optimize, OptimizePanel)
+        self.estimate.arrived.connect(optimize.show_estimate)
         size.pointed.connect(self.centre.show_size)
         self._connect_playing()
         generate.motions_changed.connect(self.centre.show_motions)

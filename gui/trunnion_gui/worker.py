@@ -93,13 +93,50 @@ class Patched:
 
 
 @dataclass(frozen=True, slots=True)
-class Accuracy:
-    """How exact feature sizes are by the number of points (`SizeError`s), and how far in mm the boundary of a face (the worst) is from its
-    surface."""
+class ErrorRow:
+    """How exact the feature sizes are with so many points on each edge (-1: the paper's repair): errors as shares, wall time in s."""
 
-    rows: tuple[Any, ...]
+    on_edge: int
+    points: int
+    largest: float
+    mean: float
+    seconds: float
+
+
+@dataclass(frozen=True, slots=True)
+class Accuracy:
+    """Size errors by the number of points, and how far in mm the boundary of a face (the worst) is from its surface."""
+
+    rows: tuple[ErrorRow, ...]
     boundary: float
     face: int
+
+
+@dataclass(frozen=True, slots=True)
+class AreaRow:
+    """An operation that finishes an area: mm2, mm2/s, s."""
+
+    operation: str
+    tool: str
+    area: float
+    rate: float
+    seconds: float
+
+
+@dataclass(frozen=True, slots=True)
+class Estimated:
+    """The time of finishing by area rates, s; that of the slowest cutter alone, and what cutters of their own gain and save, as shares.
+
+    `is_measured`: the rates are those of toolpaths, not computed from feed and passes.
+    """
+
+    rows: tuple[AreaRow, ...]
+    seconds: float
+    alone: str
+    seconds_alone: float
+    gain: float
+    saving: float
+    is_measured: bool
 
 
 @dataclass(frozen=True, slots=True)
@@ -215,10 +252,20 @@ def _export(engine: Any, _progress: Progress, _tell: Tell, session: Session, wha
 def _accuracy(engine: Any, progress: Progress, _tell: Tell, session: Session) -> Accuracy:
     from trunnion.pipeline.patches import boundary_errors, size_errors
 
-    rows = size_errors(engine, session, progress=progress)
+    rows = tuple(ErrorRow(r.on_edge, r.points, r.largest, r.mean, r.seconds) for r in size_errors(engine, session, progress=progress))
     errors = boundary_errors(engine, session)
     worst = max(errors, key=lambda tag: errors[tag])
     return Accuracy(rows, errors[worst], worst)
+
+
+def _estimate(engine: Any, _progress: Progress, _tell: Tell, session: Session) -> Estimated | None:
+    from trunnion.pipeline.estimating import estimate
+
+    found = estimate(session, engine.bench_of(session))
+    if found is None:
+        return None
+    rows = tuple(AreaRow(a.operation, a.tool, a.area, a.rate, a.seconds) for a in found.areas)
+    return Estimated(rows, found.seconds, found.alone, found.seconds_alone, found.gain, found.saving, bool(session.paths))
 
 
 def _settings(engine: Any, _progress: Progress, _tell: Tell) -> dict[str, tuple[Group, ...]]:
@@ -244,7 +291,7 @@ _CATALOGUES = {"blank.material": "materials", "setup.machine": "machines", "surf
 VERBS: dict[str, Callable[..., Any]] = {
     "open": _open, "run": _run, "states": _states, "attach": _attach, "save": _save, "write": _write, "settings": _settings,
     "playback": _playback, "moment": _moment, "deviation": _deviation, "cut": _cut, "uncut": _uncut, "move": _move, "export": _export,
-    "accuracy": _accuracy}
+    "accuracy": _accuracy, "estimate": _estimate}
 
 
 def _title(group: Any) -> str:

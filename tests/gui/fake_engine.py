@@ -347,6 +347,29 @@ def swaying(box: tuple[float, float, float, float], z: float, tilt: float) -> To
                     feed=np.array([0.0] + [900.0] * (n - 2) + [0.0]))
 
 
+class AreasEngine(FakeEngine):
+    """Takes the plate for a part of family surface: its pockets are groups, each finished as an area."""
+
+    def bench_of(self, session):
+        from trunnion.shop import load_shop
+
+        machine = next(iter(load_shop().machines.values()))
+        area = np.bincount(self._mesh.face, weights=self._mesh.areas())[1:]
+        return SimpleNamespace(part=SimpleNamespace(graph=lambda: SimpleNamespace(area=area)),
+                               shop=SimpleNamespace(machine=lambda name: machine))
+
+    def _recognize(self, session: Session) -> Session:
+        session = super()._recognize(session)
+        found = session.recognition
+        groups = tuple(replace(f, kind="group", attributes={"local": f.id.startswith("rib")}) for f in found.features)
+        return replace(session, recognition=replace(found, family="surface", features=groups))
+
+    def _route(self, session: Session) -> Session:
+        found = session.recognition
+        as_pockets = tuple(replace(f, kind=f.id[:-3]) for f in found.features)
+        return replace(super()._route(replace(session, recognition=replace(found, features=as_pockets))), recognition=found)
+
+
 class SwayingEngine(FakeEngine):
     """Its second operation is cut with a tool that leans by up to 30 degrees to either side."""
 

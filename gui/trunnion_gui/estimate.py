@@ -1,0 +1,56 @@
+"""The time of finishing by area rates, asked of the worker whenever the plan of a curved part is another one."""
+
+from __future__ import annotations
+
+from PySide6.QtCore import QObject, Signal
+
+from trunnion.model.session import Session
+from trunnion.report.palette import GROUP
+from trunnion_gui.document import Document
+from trunnion_gui.worker import Estimated, Reply
+
+
+class EstimateSource(QObject):
+    """Keeps the estimate in step with the session; asks only while no job runs, and only of parts with groups of patches."""
+
+    arrived = Signal(object)
+    """Another `Estimated`, or None."""
+
+    def __init__(self, document: Document, parent: QObject | None = None) -> None:
+        super().__init__(parent)
+        self._document = document
+        self.shown: Estimated | None = None
+        self._source: tuple[object, object] = (None, None)
+        self._asked = 0
+        document.worker.replied.connect(self._receive)
+        document.worker.restarted.connect(self._restart)
+        document.changed.connect(self._follow)
+        document.job_changed.connect(self._follow)
+
+    def _restart(self) -> None:
+        self._asked, self._source = 0, (None, None)
+
+    def _follow(self) -> None:
+        session = self._document.session
+        source = (session.process, session.paths)
+        if self._document.is_busy or all(a is b for a, b in zip(source, self._source, strict=True)):
+            return
+        self._source, self._asked = source, 0
+        if _has_areas(session):
+            self._asked = self._document.worker.ask("estimate", session)
+        else:
+            self._show(None)
+
+    def _receive(self, reply: Reply) -> None:
+        if reply.is_last and reply.number == self._asked:
+            self._asked = 0
+            self._show(reply.value if reply.kind == "done" else None)
+
+    def _show(self, found: Estimated | None) -> None:
+        if found is not self.shown:
+            self.shown = found
+            self.arrived.emit(found)
+
+
+def _has_areas(session: Session) -> bool:
+    return session.process is not None and session.recognition is not None and bool(session.recognition.of_kind(GROUP))
