@@ -64,7 +64,8 @@ def _summed(times: tuple[AreaTime, ...]) -> Estimate:
     slowest = min(times, key=lambda t: t.rate)
     alone = AreaRate(area=slowest.rate, time=1.0).seconds(sum(t.area for t in times))
     total = sum(t.seconds for t in times)
-    return Estimate(areas=times, seconds=total, alone=slowest.tool, seconds_alone=alone, gain=gain(alone, total), saving=saving(alone, total))
+    return Estimate(areas=times, seconds=total, alone=slowest.tool, seconds_alone=alone, gain=gain(alone, total),
+                    saving=saving(alone, total))
 
 
 def _time(operation: Operation, area: float) -> AreaTime:

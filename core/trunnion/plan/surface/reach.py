@@ -20,6 +20,8 @@ SAMPLES = 1500
 """Places that an area is judged by; one of them stands for less than a thousandth of it."""
 LIFTED = 0.5 * tolerance.GOUGE
 """mm: a cutter that other faces lift by no more than this still finishes a place."""
+BESIDE = 0.2
+"""mm that shank and holder keep from walls beside them."""
 FLAT = (0.5 * (math.sqrt(5.0) - 1.0), 0.5 * (math.sqrt(5.0) - 1.0) ** 2)
 """Steps of an even spread over a square, by the golden ratio and its square."""
 
@@ -65,8 +67,8 @@ def leans(places: Places) -> Floats:
 
 
 def reached(space: SurfaceSpace, places: Places, tool: Tool, room: float, allowance: float = 0.0, progress: Progress = QUIET) -> Bools:
-    """Say which places (k,) an upright cutter touches without being lifted off by other faces, without its neck, shank or holder (kept
-    `room` mm from the part) coming to it, and without going lower than the blank.
+    """Say which places (k,) an upright cutter touches without being lifted off by other faces, with its shank and holder at least `room`
+    mm above the part, and without going lower than the blank.
 
     With an allowance it is the faces thickened by so much that it touches.
     """
@@ -80,11 +82,11 @@ def reached(space: SurfaceSpace, places: Places, tool: Tool, room: float, allowa
     highest = float(space.skin.points[:, 2].max())
     clear = (top - tip[:, 2] < LIFTED + 2.0 * space.skin.bound) & (tip[:, 2] > space.low[2] - tolerance.SEW)
     for z0, r0, _, r1 in tool.profile():
-        wide = max(r0, r1) + room
-        if wide > tool.radius or z0 < tool.corner_radius:
-            some = np.flatnonzero(clear)[tip[clear, 2] + z0 < highest]
-            over = space.skin.drop.drop(plan[some], level_disc(wide), lowest, progress)
-            clear[some] = over < tip[some, 2] + z0
+        # What is no wider than the cutter goes where it has been.
+        if max(r0, r1) > tool.radius + tolerance.COINCIDENT:
+            some = np.flatnonzero(clear)[tip[clear, 2] + z0 - room < highest]
+            over = space.skin.drop.drop(plan[some], level_disc(max(r0, r1) + BESIDE), lowest, progress)
+            clear[some] = over + room < tip[some, 2] + z0
     found[rows] = clear
     return found
 

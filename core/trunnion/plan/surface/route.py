@@ -238,17 +238,15 @@ def _hidden_area(draft: Draft, area: Area, progress: Progress) -> None:
 
 
 def _by_slope(area: Area, shallow: tuple[int, ...], steep: tuple[int, ...]) -> list[tuple[str, tuple[int, ...], str]]:
-    """Return the operations of an area: name, faces, strategy. A local feature that is both shallow and steep is cut as one where a
-    strategy keeps the scallop on any slope."""
-    if area.local and "surface.constant" in registry.names("strategies"):
-        return [(area.id, tuple(sorted((*shallow, *steep))), "surface.constant")]
-    found = [(area.id, shallow, first_known(FOR_SHALLOW))] if shallow else []
+    """Return the operations of an area: name, faces, strategy. Local features are of many slopes, which constant scallop suits best."""
+    found = [(area.id, shallow, first_known(FOR_LOCAL if area.local else FOR_SHALLOW))] if shallow else []
     return [*found, (f"{area.id}-steep", steep, first_known(FOR_STEEP))] if steep else found
 
 
+FOR_LOCAL = ("surface.constant", "surface.parallel")
 FOR_SHALLOW = ("surface.parallel", "surface.constant")
 FOR_STEEP = ("surface.waterline", "surface.constant", "surface.parallel")
-"""Strategies for faces of a slope, the best first."""
+"""Strategies for local features and for faces of a slope, the best first."""
 
 
 def first_known(names: Sequence[str]) -> str:

@@ -1,0 +1,123 @@
+"""The route of parts of curved surfaces: every face is planned or told of, local features have their own cutter, sides are found."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import cadquery as cq
+import pytest
+
+from samples import written
+from trunnion.findings import BadInput
+from trunnion.pipeline import Engine
+from trunnion.plan.surface.cutters import named
+from trunnion.plan.surface.settings import ALLOWANCE, SCALLOP
+from trunnion.shop import load_shop
+from trunnion.store.process import read_process, write_process
+
+CURVED = {"recognize.family": "surface"}
+
+
+def routed(shape, **words):
+    engine = Engine()
+    session = engine.open(written(shape))
+    return engine.run(engine.with_choices(session, {**CURVED, **words}), "route")
+
+
+def hilly():
+    """Return a block with a wide, gentle hill and a small dome on it."""
+    hill = cq.Workplane("XY").sphere(60).translate((30, 20, -48)).intersect(cq.Workplane("XY").box(60, 40, 40, centered=False))
+    dome = cq.Workplane("XY").sphere(4).translate((20, 20, 10.5))
+    return cq.Workplane("XY").box(60, 40, 8, centered=False).union(hill).union(dome).val().wrapped
+
+
+@pytest.fixture(scope="module")
+def session():
+    return routed(hilly())
+
+
+def planned(process):
+    return {tag for o in process.operations for tag in o.faces}
+
+
+def test_every_face_is_planned_or_lies_in_the_blank(session):
+    tags = {tag for f in session.recognition for tag in f.tags}
+    told = {int(w.removeprefix("face ")) for f in session.process.findings if f.code == "route.not-planned" for w in f.where}
+    assert len(tags - planned(session.process) - told) == 1
+    assert not told
+
+
+def test_layers_come_first_and_finishing_last(session):
+    kinds = [o.kind for o in session.process.operations]
+    assert kinds[0] == "rough"
+    assert kinds.index("profile_finish") < kinds.index("finish")
+    for o in session.process.operations:
+        done = {b.id for b in session.process.operations[:session.process.operations.index(o)]}
+        assert set(o.after) <= done
+
+
+def test_a_local_feature_has_a_cutter_and_operations_of_its_own(session):
+    by_id = {o.id: o for o in session.process.operations}
+    dome = next(f for f in session.recognition if f.attributes["local"])
+    assert set(by_id["finish-local-01"].faces) <= set(dome.tags)
+    assert by_id["finish-remaining"].tool.diameter > by_id["finish-local-01"].tool.diameter or (
+        by_id["finish-remaining"].tool.name == by_id["finish-local-01"].tool.name)
+
+
+def test_finishing_leaves_the_wanted_scallop_and_semi_finishing_its_allowance(session):
+    for o in session.process.operations:
+        if o.kind == "finish":
+            assert (o.choices[SCALLOP], o.choices[ALLOWANCE]) == (0.004, 0.0)
+        if o.kind == "semi":
+            assert (o.choices[SCALLOP], o.choices[ALLOWANCE]) == (0.05, 0.1)
+
+
+def test_tools_are_numbered_in_the_order_of_use(session):
+    numbers = [o.tool.number for o in session.process.operations]
+    assert numbers == sorted(numbers) or [n for k, n in enumerate(numbers) if n not in numbers[:k]] == sorted(set(numbers))
+
+
+def test_a_person_may_name_the_cutters():
+    chosen = routed(hilly(), **{"surface.cutter": "AL2-ball D10 R5", "surface.ra": 3.2})
+    finish = chosen.process.operation("finish-remaining")
+    assert finish.tool.name == "AL2-ball D10 R5"
+    assert finish.choices[SCALLOP] == pytest.approx(0.008)
+
+
+def test_a_cutter_that_is_not_there_is_named():
+    with pytest.raises(BadInput, match="no cutter AL2-ball D7 R5 in the catalogue"):
+        named(load_shop(), "AL2-ball D7 R5")
+
+
+def spool():
+    """Return a post between two plates: what lies between them is hidden from above."""
+    plate = cq.Workplane("XY").box(30, 30, 6)
+    return plate.translate((0, 0, 3)).union(cq.Workplane("XY").circle(6).extrude(30)).union(plate.translate((0, 0, 29))).val().wrapped
+
+
+def test_without_rotary_axes_what_is_hidden_is_told_of_with_a_remedy():
+    process = routed(spool()).process
+    (told,) = [f for f in process.findings if f.code == "route.not-planned"]
+    assert len(told.where) == 3
+    assert "rotary axes" in told.remedy
+    assert all(o.direction == (0.0, 0.0, 1.0) for o in process.operations)
+
+
+def test_with_rotary_axes_it_is_roughed_from_two_sides_and_finished_leaning():
+    process = routed(spool(), **{"setup.machine": "Trunnion 650"}).process
+    sides = [o for o in process.operations if o.direction != (0.0, 0.0, 1.0)]
+    assert {round(o.direction[2], 9) for o in sides} == {0.0}
+    first, second = {o.direction for o in sides}
+    assert first == pytest.approx(tuple(-v for v in second))
+    leaning = [o for o in process.operations if o.strategy == "surface.point" and o.kind == "finish"]
+    assert sorted(len(o.faces) for o in leaning) == [1, 1, 1]
+    assert not [f for f in process.findings if f.code == "route.not-planned"]
+
+
+def test_an_operations_direction_comes_back_from_its_xml(session, tmp_path):
+    process = session.process
+    tilted = replace(process.operations[0], direction=(0.6, 0.0, 0.8))
+    write_process(replace(session, process=process.with_operation(tilted)), tmp_path / "a.xml")
+    again = read_process(tmp_path / "a.xml").operations
+    assert again[0].direction == (0.6, 0.0, 0.8)
+    assert again[1].direction == (0.0, 0.0, 1.0)
