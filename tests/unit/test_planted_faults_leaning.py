@@ -11,8 +11,15 @@ from pytest import approx
 
 from leaning import FIVE_AXES, RIGHT, block_facets, lean, long_reaching, section_through, standing_out
 from trunnion import tolerance
+from trunnion.model.program import Program
 from trunnion.model.toolpath import Motion, Toolpath
-from verify_tools import FLOOR, TAGS, clean_plan, pocketing, program_section, proof, tool_of
+from trunnion.pipeline.placing import place_of
+from trunnion.post.dialects.linuxcnc import LinuxCncDialect
+from trunnion.post.header import Header
+from trunnion.post.readers.linuxcnc import read_linuxcnc
+from trunnion.post.settings import PostSettings
+from trunnion.toolpath.turning import joined, swing_of
+from verify_tools import BLANK, FLOOR, SETUP, TAGS, clean_plan, pocketing, program_section, proof, tool_of
 
 FACETS = (block_facets(),)
 BALL = long_reaching(tool_of("ball", diameter=6.0, corner_radius=3.0, flute_length=12.0))
@@ -121,3 +128,27 @@ def test_the_verdict_is_the_same_for_any_number_of_threads():
     assert one.operations == three.operations and one.findings == three.findings
     assert one.deviation.deviation.tobytes() == three.deviation.deviation.tobytes()
     assert [b.rate.tobytes() for b in one.blocks] == [b.rate.tobytes() for b in three.blocks]
+
+
+def as_posted(*sections):
+    """Return sections written for LinuxCNC, each led from where the one before has left the tool, and read back."""
+    place = place_of(BLANK, SETUP, FIVE_AXES)
+    changes = [not n or s.tool.number != sections[n - 1].tool.number for n, s in enumerate(sections)]
+    led = joined([s.path for s in sections], changes, swing_of(BLANK, SETUP))
+    program = Program(name="test", setup=SETUP, sections=tuple(replace(s, path=path) for s, path in zip(sections, led, strict=True)))
+    header = Header(name="test", part="test", part_digest="ab", plan_digest="cd")
+    text = LinuxCncDialect().write([program], header, PostSettings(), {SETUP.name: place})
+    return read_linuxcnc(text, [s.tool for s in sections], SETUP, place).sections
+
+
+@pytest.mark.parametrize("deep", [0.0, 0.03])
+def test_a_leaning_section_is_judged_from_its_text_as_from_its_path(deep):
+    ball = replace(BALL, number=7)
+    turning = [((tip[0] + deep, *tip[1:]), axis) for tip, axis in
+               (along_wall(ball, LEAN)[0], along_wall(ball, lean(25.0))[1])]
+    sections = (*clean_plan(), section_through(ball, "finish", turning))
+    sections = [replace(s, tool=replace(s.tool, number=n)) for n, s in enumerate(sections, 1)]
+    planned, posted = judged(*sections), judged(*as_posted(*sections))
+    assert codes(planned) == codes(posted)
+    assert posted.gouge == approx(planned.gouge, abs=2e-3)
+    assert posted.rapids_in_stock == posted.collisions == 0

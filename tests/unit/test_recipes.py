@@ -34,7 +34,7 @@ class Murmur:
 
     name, suffix = "murmur", "txt"
 
-    def write(self, programs, header, settings):
+    def write(self, programs, header, settings, places):
         """Return the text."""
         return f"{len(programs)} programs"
 '''
