@@ -36,7 +36,9 @@ def followed(axis: Floats, place: Place, stand: Floats | None, near: float, oper
     chosen = np.zeros((len(axis), len(machine.rotary)))
     home = np.zeros(len(machine.rotary)) if stand is None else stand
     tries: list[tuple[int, float, int, Floats]] = []
-    for start in ([] if stand is None else [stand]) + [*_beginnings(angles, free, home, low, high)]:
+    # Spirals wind an axis up turn by turn: when it comes to its end it begins anew near the middle.
+    unwound = [] if stand is None else _beginnings(angles, free, np.clip(np.zeros(len(home)), low, high), low, high)
+    for start in ([] if stand is None else [stand]) + [*_beginnings(angles, free, home, low, high), *unwound]:
         reached, turned = follow(angles, free, through, low, high, SLACK, start, chosen)
         if reached == len(axis) and start is stand and np.abs(chosen[:1] - stand).max(initial=0.0) <= 2.0 * POLE:
             return chosen
