@@ -239,14 +239,17 @@ def _hidden_area(draft: Draft, area: Area, progress: Progress) -> None:
 
 def _by_slope(area: Area, shallow: tuple[int, ...], steep: tuple[int, ...]) -> list[tuple[str, tuple[int, ...], str]]:
     """Return the operations of an area: name, faces, strategy. Local features are of many slopes, which constant scallop suits best."""
+    if STEEP not in registry.names("strategies"):
+        shallow, steep = tuple(sorted((*shallow, *steep))), ()
     found = [(area.id, shallow, first_known(FOR_LOCAL if area.local else FOR_SHALLOW))] if shallow else []
-    return [*found, (f"{area.id}-steep", steep, first_known(FOR_STEEP))] if steep else found
+    return [*found, (f"{area.id}-steep", steep, STEEP)] if steep else found
 
 
 FOR_LOCAL = ("surface.constant", "surface.parallel")
 FOR_SHALLOW = ("surface.parallel", "surface.constant")
-FOR_STEEP = ("surface.waterline", "surface.constant", "surface.parallel")
-"""Strategies for local features and for faces of a slope, the best first."""
+"""Strategies for local features and for shallow faces, the best first."""
+STEEP = "surface.waterline"
+"""The strategy for steep faces."""
 
 
 def first_known(names: Sequence[str]) -> str:
