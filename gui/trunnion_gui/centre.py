@@ -9,25 +9,14 @@ from PySide6.QtCore import QPoint, QPointF, QRectF, Qt, Signal
 from PySide6.QtGui import QResizeEvent
 from PySide6.QtWidgets import QHBoxLayout, QLabel, QSlider, QVBoxLayout, QWidget
 
-from trunnion.model.feature import Feature, Recognition
 from trunnion.model.playback import Moment
 from trunnion.model.session import Session, SizeEntry
 from trunnion.report.deviation import WorstPlace
 from trunnion.report.lines import leans
-from trunnion.report.palette import GROUP, load_palette
+from trunnion.report.palette import load_palette
+from trunnion_gui import keys
 from trunnion_gui.actions import Registry
-from trunnion_gui.colours import (
-    Theme,
-    axis_colour,
-    class_colours,
-    feature_colours,
-    kind_colour,
-    motions,
-    radius_colour,
-    radius_steps,
-    stock_colours,
-    tool_colours,
-)
+from trunnion_gui.colours import Theme, motions
 from trunnion_gui.deviation import DeviationSource
 from trunnion_gui.docks.cutting import CutBar
 from trunnion_gui.document import Document, Selection
@@ -40,7 +29,7 @@ from trunnion_gui.widgets.legend import Legend
 from trunnion_gui.widgets.notice import Notice
 from trunnion_gui.widgets.scale import Scale
 from trunnion_gui.widgets.welcome import Welcome
-from trunnion_gui.words import amount, fine_amount, kind_words, sentence
+from trunnion_gui.words import amount, fine_amount, kind_words
 
 _EDGE = 14
 _TIP_AWAY = 16
@@ -237,16 +226,10 @@ class Centre(QWidget):
         return self._deviation.is_on and self._deviation.shown is not None
 
     def _paint(self, session: Session) -> None:
-        colours: dict[int, str] = {}
         found = session.recognition
-        if found is not None and self.shows["colours"]:
-            colours.update(dict.fromkeys(found.unexplained, kind_colour("unexplained")))
-            own = feature_colours(found)
-            # The smaller feature wins a face that two features have, as it wins the click.
-            for feature in sorted(found, key=lambda f: -len(f.tags)):
-                colours.update(dict.fromkeys(feature.tags, own[feature.id]))
-        if found is not None and self.shows["radii"]:
-            colours = {tag: radius_colour(radius) for f in found for tag in f.tags if (radius := radius_of(f)) is not None}
+        colours: dict[int, str] = {}
+        if found is not None:
+            colours = keys.radii_by_face(found) if self.shows["radii"] else keys.features_by_face(found) if self.shows["colours"] else {}
         self.scene.show_kinds(colours, faded=self._shows_paths(session))
 
     def _draw_paths(self, session: Session) -> None:
@@ -257,27 +240,18 @@ class Centre(QWidget):
         frames = {o.id: process.setup(o.setup).frame for o in process.operations if not o.suppressed and only in ("", o.id)}
         self.scene.show_paths([(p.path, frames[p.operation]) for p in session.paths if p.operation in frames], self.motions)
 
-    def _legend(self, session: Session) -> list[tuple[str, str, str]]:
-        rows: list[tuple[str, str, str]] = []
+    def _legend(self, session: Session) -> list[keys.Row]:
         if self._plays:
-            raw, cut = stock_colours(self._theme)
-            tool = tool_colours()
-            return [(raw, tr("Blank"), ""), (cut, tr("Cut surface"), ""), ("", "", ""),
-                    *((tool[name], sentence(tr(name)), "") for name in ("cutter", "shank", "holder")), ("", "", ""),
-                    *((tool[name], sentence(tr(name)), "") for name in ("feed", "rapid"))]
+            return keys.playing(self._theme)
         if self._shows_map:
-            return rows
-        found = session.recognition
+            return []
+        found, rows = session.recognition, []
         if found is not None and self.shows["radii"]:
-            rows += [("", tr("Smallest concave radius"), ""), *((colour, words, "") for colour, words in radius_steps())]
+            rows = keys.radii()
         elif found is not None and self.shows["colours"]:
-            rows += class_rows(found)
-            if found.unexplained:
-                rows.append((kind_colour("unexplained"), tr("Unexplained"), str(len(found.unexplained))))
+            rows = keys.features(found)
         if self._shows_paths(session):
-            rows += [("", "", ""), *((motions()[m], sentence(tr(m)), "") for m in self.motions)]
-            if "cut" in self.motions and any(leans(p.path) for p in session.paths):
-                rows.append((axis_colour(), tr("Tool axis"), ""))
+            rows = [*rows, keys.GAP, *keys.paths(self.motions, any(leans(p.path) for p in session.paths))]
         return rows
 
     def _choose(self, selection: Selection) -> None:
@@ -374,25 +348,6 @@ class Centre(QWidget):
         row.addWidget(slider, 1)
         bar.hide()
         return bar, slider
-
-
-def class_rows(found: Recognition) -> list[tuple[str, str, str]]:
-    """Return the legend of what was found: kinds with their number, groups of equal patches in their two classes."""
-    rows = []
-    for kind, n in found.counts().items():
-        if kind != GROUP:
-            rows.append((kind_colour(kind), sentence(tr(kind_words(kind))), str(n)))
-            continue
-        local = sum(bool(f.attributes.get("local")) for f in found.of_kind(GROUP))
-        counted = zip(class_colours(), (tr("Remaining area"), tr("Local features")), (n - local, local), strict=True)
-        rows += [(colour, words, str(count)) for colour, words, count in counted if count]
-    return rows
-
-
-def radius_of(feature: Feature) -> float | None:
-    """Return the smallest concave radius of a group of patches in mm, None where nothing is concave."""
-    value = feature.sizes.get("concave_radius")
-    return float(value) if isinstance(value, (int, float)) and 0.0 < value < float("inf") else None
 
 
 def _equal(a: object, b: object) -> bool:

@@ -28,7 +28,8 @@ from trunnion_gui.commands import Edit, History
 from trunnion_gui.drawing import Drawing
 from trunnion_gui.i18n import tr
 from trunnion_gui.steps import until
-from trunnion_gui.worker import ENGINE, Group, Opened, Reply, State, Worker
+from trunnion_gui.verbs import Group, Opened, State
+from trunnion_gui.worker import ENGINE, Reply, Worker
 
 
 @dataclass(frozen=True, slots=True)

@@ -7,7 +7,8 @@ from PySide6.QtCore import QObject, Signal
 from trunnion.model.session import Session
 from trunnion.report.palette import GROUP
 from trunnion_gui.document import Document
-from trunnion_gui.worker import Estimated, Reply
+from trunnion_gui.verbs import Estimated
+from trunnion_gui.worker import Reply
 
 
 class EstimateSource(QObject):

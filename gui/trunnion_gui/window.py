@@ -52,6 +52,7 @@ from trunnion_gui.panels.optimize import OptimizePanel
 from trunnion_gui.panels.recognize import RecognizePanel
 from trunnion_gui.panels.route import RoutePanel
 from trunnion_gui.panels.size import SizePanel
+from trunnion_gui.patch_commands import add_patch_commands
 from trunnion_gui.patches import PatchTools
 from trunnion_gui.player import Player
 from trunnion_gui.status import Status
@@ -98,7 +99,7 @@ class Window(QMainWindow):
         self.player, self.deviation = Player(self.document, self), DeviationSource(self.document, self)
         self.patches, self.estimate = PatchTools(self.document, self), EstimateSource(self.document, self)
         self._add_commands()
-        self._add_patches()
+        add_patch_commands(self)
         self._add_playing()
         self.centre = Centre(self.document, self.registry, self.theme, self.player, self.deviation, self.patches)
         self.export_dialog = ExportDialog(self.document, self.ask_export_path, self)
@@ -318,7 +319,7 @@ class Window(QMainWindow):
         command("view.fit", "Fit", self._fit, "fit", "F", "Fit the part into the picture", None)
         for name, text, keys, on in (("colours", "Show all features", "C", True), ("blank", "Show the blank", "B", True),
                                      ("paths", "Show toolpaths", "T", True), ("isolate", "Fade all but the selection", "I", False)):
-            add(Command(id=f"view.{name}", text=text, run=partial(self._show_layer, name), icon=name, keys=keys, checkable=True, checked=on,
+            add(Command(id=f"view.{name}", text=text, run=partial(self.show_layer, name), icon=name, keys=keys, checkable=True, checked=on,
                         menu="View"))
         add(Command(id="view.section", text="Section", run=self._section, icon="section", keys="X", checkable=True, menu="View",
                     help="Cut the part open across its height"))
@@ -330,55 +331,6 @@ class Window(QMainWindow):
         command("view.arrangement", "Put docks back", self.forget_arrangement, "reset", "", "", None)
         command("view.language", "Next language", self.change_language, "language", "", "", None)
         command("help.about", "About Trunnion", self.about, "help", "", "", None)
-
-    def _add_patches(self) -> None:
-        document, tools = self.document, self.patches
-
-        def is_free() -> bool:
-            return tools.has_groups and not document.is_busy
-
-        def can_cut() -> bool:
-            return document.has_part and not document.is_busy
-
-        def command(id: str, text: str, run: Callable[..., object], icon: str, keys: str, help: str,
-                    enabled: Callable[[], bool] = is_free, checkable: bool = False) -> None:
-            self.registry.add(Command(id=f"patch.{id}", text=text, run=run, icon=icon, keys=keys, help=help, menu="Patches",
-                                      enabled=enabled, checkable=checkable))
-
-        command("local", "Local feature, or no longer", lambda: tools.toggle_local(document.selection.faces), "local", "O",
-                "Give the selected groups a cutter of their own, or let them go with the remaining area",
-                lambda: is_free() and bool(tools.groups_of(document.selection.faces)))
-        command("click_local", "Click local features", self._mark_local, "local", "Shift+O",
-                "While this is on, a click on the part makes its group a local feature, or no longer", checkable=True)
-        command("ids", "Show IDs", partial(self._show_layer, "ids"), "ids", "N",
-                "Write the ID of every group on the part, or of every selected face", lambda: document.has_part, True)
-        command("radii", "Colours by radius", partial(self._show_layer, "radii"), "radii", "R",
-                "Colour every group by its smallest concave radius", lambda: tools.has_groups, True)
-        command("cut_plane", "Cut a face by a plane…", lambda: self.centre.begin_cut(self._one_face(), True), "cut_plane", "",
-                "Make two patches of one, across x, y or z or through three places", can_cut)
-        command("cut_way", "Cut a face along a drawn line…", lambda: self.centre.begin_cut(self._one_face(), False), "cut_way", "",
-                "Make two patches of one, along a line through the places you click", can_cut)
-        command("errors", "Size error by points", self.measure_patches, "errors", "",
-                "Measure how exact the feature sizes are and what they cost, by the number of points on each edge", can_cut)
-        command("export", "Export patches…", self.export_dialog_opened, "export", "Ctrl+Shift+E",
-                "Write local features, the remaining area or some groups as STEP or IGES")
-
-    def measure_patches(self) -> None:
-        """Measure the patches' sizes and show what came of it."""
-        self.document.measure()
-        self.show_dock("accuracy")
-
-    def export_dialog_opened(self) -> None:
-        """Open the dialog in which patches are chosen for export."""
-        self.export_dialog.begin()
-
-    def _mark_local(self, on: bool) -> None:
-        self.centre.marks_local = on
-
-    def _one_face(self) -> int:
-        """Return the selected face when there is exactly one, else 0."""
-        faces = self.document.selection.faces
-        return faces[0] if len(faces) == 1 else 0
 
     def _add_playing(self) -> None:
         player = self.player
@@ -428,7 +380,8 @@ class Window(QMainWindow):
     def _fit(self) -> None:
         self.centre.scene.fit()
 
-    def _show_layer(self, name: str, on: bool) -> None:
+    def show_layer(self, name: str, on: bool) -> None:
+        """Show or hide a layer of the picture."""
         self.centre.show_layer(name, on)
 
     def _section(self, on: bool) -> None:

@@ -47,7 +47,8 @@ def write_pictures(session: Session, mesh: Mesh, folder: Path, name: str, palett
     made = []
     if session.recognition is not None:
         _shoot(_features(session, mesh, palette), folder / f"{name}.features.png")
-        made.append(Picture(file=f"{name}.features.png", caption="Features by kind"))
+        words = "Groups of equal patches" if session.recognition.of_kind(GROUP) else "Features by kind"
+        made.append(Picture(file=f"{name}.features.png", caption=words))
     if any(len(p.path) for p in session.paths):
         _shoot(_toolpaths(session, mesh, palette), folder / f"{name}.toolpaths.png")
         made.append(Picture(file=f"{name}.toolpaths.png", caption="Toolpaths by kind of motion"))

@@ -7,11 +7,11 @@ from PySide6.QtWidgets import QHBoxLayout, QLabel, QSplitter, QTableWidget, QVBo
 from trunnion_gui.colours import Theme
 from trunnion_gui.document import Document
 from trunnion_gui.i18n import tr
+from trunnion_gui.verbs import Accuracy
 from trunnion_gui.widgets import table as tables
 from trunnion_gui.widgets.chart import Chart, Curve
 from trunnion_gui.widgets.panel import rule
 from trunnion_gui.words import duration, grouped
-from trunnion_gui.worker import Accuracy
 
 _REPAIR = -1
 """Stands for the points that the paper's repair puts on an edge, as many as its length asks for."""

@@ -6,10 +6,10 @@ from PySide6.QtWidgets import QLabel
 
 from trunnion.model.operation import Operation
 from trunnion_gui.i18n import tr
+from trunnion_gui.verbs import Estimated
 from trunnion_gui.widgets import table as tables
 from trunnion_gui.widgets.panel import Panel
 from trunnion_gui.words import amount, duration, share
-from trunnion_gui.worker import Estimated
 
 _MOST_ROWS = 8
 

@@ -13,9 +13,9 @@ from trunnion_gui.document import Document
 from trunnion_gui.form import Form
 from trunnion_gui.i18n import tr
 from trunnion_gui.steps import STEPS, Stage, joined_state
+from trunnion_gui.verbs import Group
 from trunnion_gui.widgets.foldout import Foldout
 from trunnion_gui.words import duration
-from trunnion_gui.worker import Group
 
 _FEW = 4
 """The first group of a step is shown open when it has at most so many settings; everything else is folded."""
