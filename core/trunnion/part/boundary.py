@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Iterable
+from dataclasses import dataclass
 
 import numpy as np
 from OCP.BRep import BRep_Tool
@@ -26,13 +27,32 @@ _PLACES = (0.0, 0.25, 0.5, 0.75, 1.0)
 """Shares of a curve's parameters at which two curves in the same place are compared."""
 
 
-def boundary_of(faces: Iterable[tuple[int, Shape]], parts: Callable[[Floats], Ints] | None) -> Boundary:
-    """Return the boundary of trimmed faces, given with their tags, in the coordinates of the shape.
+@dataclass(frozen=True, slots=True, eq=False, kw_only=True)
+class Bounding:
+    """The curves that bound trimmed faces: owner (e,) the tag of the face that each one bounds, length (e,) mm. Seams and edges without
+    length bound nothing."""
 
-    `parts` says for edge lengths (e,) in mm into how many pieces of equal length each is cut; every edge gives its end points and the
-    points between the pieces. Without it the points hold those of each face that are farthest along x, y and z, within
-    a tenth of `tolerance.FITTED` of the true ones. Seams and edges without length bound nothing.
-    """
+    owner: Ints
+    curves: list[BRepAdaptor_Curve]
+    length: Floats
+
+    def points(self, parts: Callable[[Floats], Ints] | None) -> Boundary:
+        """Return points on the curves, in the coordinates of the shape.
+
+        `parts` says for edge lengths (e,) in mm into how many pieces of equal length each is cut; every edge gives its end points and the
+        points between the pieces. Without it the points hold those of each face that are farthest along x, y and z, within a tenth of
+        `tolerance.FITTED` of the true ones.
+        """
+        if parts is None:
+            points = _farthest(self.curves, self.owner)
+        else:
+            points = [_spread(c, int(n)) for c, n in zip(self.curves, parts(self.length), strict=True)]
+        return Boundary(face=self.owner, length=self.length, edge=np.repeat(np.arange(len(points)), [len(p) for p in points]),
+                        point=np.vstack([np.zeros((0, 3)), *points]))
+
+
+def bounding_of(faces: Iterable[tuple[int, Shape]]) -> Bounding:
+    """Return what bounds trimmed faces, given with their tags."""
     owner: list[int] = []
     curves: list[BRepAdaptor_Curve] = []
     for tag, face in faces:
@@ -40,13 +60,12 @@ def boundary_of(faces: Iterable[tuple[int, Shape]], parts: Callable[[Floats], In
         curves += found
         owner += [tag] * len(found)
     length = np.array([GCPnts_AbscissaPoint.Length_s(c) for c in curves])
-    rows = np.array(owner, dtype=np.int64)
-    if parts is None:
-        points = _farthest(curves, rows)
-    else:
-        points = [_spread(c, int(n)) for c, n in zip(curves, parts(length), strict=True)]
-    return Boundary(face=rows, length=length, edge=np.repeat(np.arange(len(curves)), [len(p) for p in points]),
-                    point=np.vstack([np.zeros((0, 3)), *points]))
+    return Bounding(owner=np.array(owner, dtype=np.int64), curves=curves, length=length)
+
+
+def boundary_of(faces: Iterable[tuple[int, Shape]], parts: Callable[[Floats], Ints] | None) -> Boundary:
+    """Return points on the boundary of trimmed faces, given with their tags, as `Bounding.points` does."""
+    return bounding_of(faces).points(parts)
 
 
 def approximation_of(face: Shape) -> float:

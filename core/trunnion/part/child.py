@@ -61,8 +61,7 @@ def _wait(child: subprocess.Popen[bytes], request: Request, limits: ReadLimits, 
 
 def _load() -> None:
     """Load what the part is wanted with next: that costs no time now, the other process is at work."""
-    import OCP  # noqa: F401
-
+    import trunnion.part.boundary  # noqa: F401
     from trunnion.geometry.spline import SplineSurface
     flat = SplineSurface(knots_u=np.array([0.0, 0.0, 1.0, 1.0]), knots_v=np.array([0.0, 0.0, 1.0, 1.0]), degree_u=1, degree_v=1,
                          poles=np.ones((2, 2, 4)))

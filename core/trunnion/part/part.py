@@ -6,7 +6,7 @@ import io
 import json
 from collections.abc import Callable, Mapping
 from dataclasses import asdict, dataclass, field, replace
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
@@ -20,6 +20,9 @@ from trunnion.geometry.frame import Frame
 from trunnion.geometry.mesh import Mesh
 from trunnion.geometry.region import Region
 from trunnion.part.identity import Shape, faces_of
+
+if TYPE_CHECKING:
+    from trunnion.part.boundary import Bounding
 
 _MAGIC = b"trunnion part 1\n"
 
@@ -81,6 +84,7 @@ class Part:
         self._graph: FaceGraph | None = None
         self._meshes: dict[tuple[float, float], Mesh] = {}
         self._sections: dict[tuple[bytes, float], Region] = {}
+        self._bounding: Bounding | None = None
         self._bends: dict[int, FaceBend] = {}
         self._slicer: Any = None
 
@@ -148,9 +152,10 @@ class Part:
     def boundary(self, parts: Callable[[Floats], Ints] | None = None) -> Boundary:
         """Return the boundary of every face as read (healing may move edges): each edge cut into `parts(lengths)` pieces of equal length,
         or with the points that are farthest along x, y and z."""
-        from trunnion.part.boundary import boundary_of
-        own = set(self._faces)
-        return boundary_of(((tag, face) for tag, face in enumerate(faces_of(self.as_read), 1) if tag in own), parts)
+        if self._bounding is None:
+            from trunnion.part.boundary import bounding_of
+            self._bounding = bounding_of((tag, face) for tag, face in enumerate(faces_of(self.as_read), 1) if tag in self._faces)
+        return self._bounding.points(parts)
 
     def boundary_error(self) -> dict[int, float]:
         """Return how far each face's boundary curves, as read, are from its surface at most, mm, by tag."""

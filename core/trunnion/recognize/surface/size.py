@@ -18,7 +18,7 @@ REPAIR = ((0.7, 8), (0.5, 6), (0.3, 4), (0.1, 2))
 """The paper's boundary repair: an edge longer than this share of the datum length is cut into so many equal parts."""
 FEW = 2
 """Parts of every edge for the first estimate of the largest feature size."""
-SPREAD, LEAST = 500, 48
+SPREAD, LEAST = 500, 24
 """Where the largest distance of two boundary points is wanted: points along the longest edge, and the fewest on any."""
 RUN = 8
 """Neighbouring points that are looked at as one while the largest distance is searched."""
@@ -80,12 +80,16 @@ def _diameter(points: Floats) -> float:
     """Return the largest distance of two points (k, 3): of runs of points first, then only where two runs may hold the farthest pair."""
     if not len(points):
         return 0.0
-    points = points - points.mean(axis=0)
+    points = points - 0.5 * (points.min(axis=0) + points.max(axis=0))
     points = np.vstack([points, np.repeat(points[-1:], -len(points) % RUN, axis=0)])
     runs = points.reshape(-1, RUN, 3)
     centre = runs.mean(axis=1)
     reach = np.linalg.norm(runs - centre[:, None], axis=2).max(axis=1)
-    best = float(np.linalg.norm(points - points[np.linalg.norm(points, axis=1).argmax()], axis=1).max())
+    away = np.linalg.norm(points, axis=1)
+    best = float(np.linalg.norm(points - points[away.argmax()], axis=1).max())
+    # Whoever beats it comes from a run that reaches beyond what the farthest point leaves of it.
+    far = np.linalg.norm(centre, axis=1) + reach + away.max() > best
+    runs, centre, reach = runs[far], centre[far], reach[far]
     for start in range(0, len(runs), BLOCK):
         rows = slice(start, start + BLOCK)
         bound = np.sqrt(_squares(centre[rows], centre)) + reach[rows, None] + reach
