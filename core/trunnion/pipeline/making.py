@@ -6,18 +6,20 @@ frame here. An operation whose drive, tool, data, settings and stock have the sa
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass, field, replace
 from typing import Any
 
 import numpy as np
 
 from trunnion import registry, tolerance
-from trunnion.findings import BadCall, Refused, error, info
+from trunnion.findings import BadCall, Finding, Refused, error, info
 from trunnion.geometry.frame import Frame
 from trunnion.model.blank import Blank
 from trunnion.model.feature import Recognition
 from trunnion.model.fixture import Fixture
 from trunnion.model.operation import Operation, OperationPath
+from trunnion.model.process import ProcessTree
 from trunnion.model.session import Session
 from trunnion.model.setup import Setup
 from trunnion.model.tool import Tool
@@ -58,6 +60,21 @@ def make_paths(session: Session, bench: Bench, progress: Progress) -> tuple[Oper
             here = progress.part(len(made) / max(total, 1), (len(made) + 1) / max(total, 1))
             made.append(_make_one(session, room, operation, here))
     return tuple(made)
+
+
+SETTLED = {"surface.too-steep": {"surface.waterline"}, "surface.too-shallow": {"surface.parallel", "surface.constant"}}
+"""Findings of strategies that leave slopes to others, and the strategies that cut those."""
+
+
+def findings_of(paths: Sequence[OperationPath], process: ProcessTree) -> tuple[Finding, ...]:
+    """Return what toolpaths have told, without what is said of slopes that another operation on the same faces is there for."""
+    return tuple(f for path in paths for f in path.findings if not _settled(f, process.operation(path.operation), process))
+
+
+def _settled(finding: Finding, own: Operation, process: ProcessTree) -> bool:
+    strategies = SETTLED.get(finding.code, set())
+    return any(o.strategy in strategies and o.kind == own.kind and set(o.faces) & set(own.faces)
+               for o in process.operations if o.id != own.id and not o.suppressed)
 
 
 @dataclass(slots=True)

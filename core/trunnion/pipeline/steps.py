@@ -17,7 +17,7 @@ from trunnion.model.session import Session
 from trunnion.pipeline.asking import PartSurroundings
 from trunnion.pipeline.bench import Bench
 from trunnion.pipeline.hand import with_features_by_hand, with_operations_by_hand
-from trunnion.pipeline.making import make_paths, strategy_settings
+from trunnion.pipeline.making import findings_of, make_paths, strategy_settings
 from trunnion.pipeline.proving import prove_session
 from trunnion.plan.blank import BlankSettings, make_blank
 from trunnion.plan.cutting import CuttingSettings, balance
@@ -167,7 +167,8 @@ def _optimize(session: Session, bench: Bench, progress: Progress) -> Result:
 
 def _toolpath(session: Session, bench: Bench, progress: Progress) -> Result:
     paths = make_paths(session, bench, progress)
-    return Result(session=replace(session, paths=paths), findings=tuple(f for p in paths for f in p.findings))
+    found = findings_of(paths, session.process) if session.process else ()
+    return Result(session=replace(session, paths=paths), findings=found)
 
 
 def _verify(session: Session, bench: Bench, progress: Progress) -> Result:

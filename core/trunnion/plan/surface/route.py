@@ -209,11 +209,8 @@ def _area(draft: Draft, area: Area, progress: Progress) -> None:
     _tell_unreached(draft, area, places, found)
     if found.tool is None:
         return
-    lean = leans(places)
     tags = tuple(t for t in area.tags if found.reached[places.face == t].any())
-    steep = tuple(t for t in tags if float(lean[places.face == t].mean()) > math.radians(chosen.steep))
-    shallow = tuple(t for t in tags if t not in steep)
-    for name, mine, strategy in _by_slope(area, shallow, steep):
+    for name, mine, strategy in _by_slope(area, tags, places, math.radians(chosen.steep)):
         if chosen.semi_allowance > 0.0:
             _add_finish(draft, "semi", name, mine, found.tool, strategy, places)
         _add_finish(draft, "finish", name, mine, found.tool, strategy, places)
@@ -237,10 +234,16 @@ def _hidden_area(draft: Draft, area: Area, progress: Progress) -> None:
     _add_finish(draft, "finish", area.id, area.tags, found.tool, "surface.point", places)
 
 
-def _by_slope(area: Area, shallow: tuple[int, ...], steep: tuple[int, ...]) -> list[tuple[str, tuple[int, ...], str]]:
-    """Return the operations of an area: name, faces, strategy. Local features are of many slopes, which constant scallop suits best."""
+def _by_slope(area: Area, tags: Sequence[int], places: Places, limit: float) -> list[tuple[str, tuple[int, ...], str]]:
+    """Return the operations of an area: name, faces, strategy. Local features are of many slopes, which constant scallop suits best.
+
+    Places that lean by more than a limit (rad) are cut by waterlines: a face with some of both is in both operations.
+    """
+    above = leans(places) > limit
+    steep = tuple(t for t in tags if above[places.face == t].mean() > SOME)
     if STEEP not in registry.names("strategies"):
-        shallow, steep = tuple(sorted((*shallow, *steep))), ()
+        steep = ()
+    shallow = tuple(t for t in tags if t not in steep or above[places.face == t].mean() < 1.0 - SOME)
     found = [(area.id, shallow, first_known(FOR_LOCAL if area.local else FOR_SHALLOW))] if shallow else []
     return [*found, (f"{area.id}-steep", steep, STEEP)] if steep else found
 
@@ -250,6 +253,11 @@ FOR_SHALLOW = ("surface.parallel", "surface.constant")
 """Strategies for local features and for shallow faces, the best first."""
 STEEP = "surface.waterline"
 """The strategy for steep faces."""
+SOME = 0.02
+"""Share of a face that is worth another strategy."""
+MEETING = {"surface.waterline": ("surface.waterline.shallowest", -5.0), "surface.constant": ("surface.constant.steepest", 5.0),
+           "surface.parallel": ("surface.parallel.steepest", 5.0)}
+"""Where strategies for shallow and steep places meet: the setting that says it, and by how many degrees each goes on past the limit."""
 
 
 def first_known(names: Sequence[str]) -> str:
@@ -275,6 +283,9 @@ def _add_finish(draft: Draft, kind: str, name: str, tags: tuple[int, ...], tool:
     rules = (stage.rule, f"{tool.name} over {trimmed(area, 0)} mm2: scallops of {trimmed(1000.0 * height, 1)} um, "
              f"{trimmed(width, 3)} mm between passes on a plane.", f"It leaves {trimmed(allowance, 2)} mm.")
     choices: dict[str, Value] = {SCALLOP: height, ALLOWANCE: allowance}
+    if strategy in MEETING:
+        key, past = MEETING[strategy]
+        choices[key] = min(max(chosen.steep + past, 1.0), 89.0)
     if earlier is not None:
         choices[EARLIER] = earlier.name
     _add(draft, kind, name, _feature_of(draft, tags), tool, tags, depth, width, choices, rules, strategy=strategy)

@@ -41,8 +41,8 @@ class SurfaceRouteSettings:
                                     help="What semi-finishing leaves for the last cut; 0: nothing is semi-finished.")
     semi_scallop: float = setting(0.05, unit="mm", low=0.001, high=2.0, label="Semi-finishing scallop",
                                   help="Height of the ridges that semi-finishing leaves on its allowance.")
-    steep: float = setting(60.0, unit="deg", low=10.0, high=89.0, label="Steep from",
-                           help="Faces that lean from the plane across the tool by more are cut level by level.")
+    steep: float = setting(70.0, unit="deg", low=10.0, high=84.0, label="Steep from",
+                           help="What leans from level by more is cut level by level.")
     cell: float = setting(0.25, unit="mm", low=0.05, high=5.0, label="Map cell",
                           help="Distance of the places at which roughing measures how high the part stands.")
 
