@@ -193,6 +193,7 @@ class Centre(QWidget):
         if not (chosen.kind == "faces" and click.face in chosen.faces):
             self._document.select_face_alone(click.face)
         menu = self._tools.menu(self, self._document.selection.faces)
+        menu.aboutToHide.connect(menu.deleteLater)
         if menu.actions():
             menu.popup(at)
 

@@ -120,7 +120,8 @@ class Form(QWidget):
 
 def tooltip(setting: Declared) -> str:
     """Return what a setting does, what it may be, and its key for the command line."""
-    return f"<p>{tr(setting.help)}</p><p>{setting.allowed()}<br><tt>{setting.key}</tt></p>"
+    allowed = setting.allowed() if len(setting.choices) <= _LONG else tr("one of {n} names").format(n=len(setting.choices))
+    return f"<p>{tr(setting.help)}</p><p>{allowed}<br><tt>{setting.key}</tt></p>"
 
 
 def make_field(setting: Declared) -> QWidget:

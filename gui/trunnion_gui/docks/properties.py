@@ -33,6 +33,7 @@ class PropertiesDock(QScrollArea):
         self._column.setContentsMargins(12, 8, 12, 8)
         self.title = QLabel()
         self.title.setObjectName("title")
+        self.title.setWordWrap(True)
         self.subtitle = QLabel()
         self.subtitle.setObjectName("muted")
         self.subtitle.setWordWrap(True)

@@ -5,6 +5,7 @@ from __future__ import annotations
 from PySide6.QtWidgets import QComboBox, QLabel
 
 from trunnion.model.session import PartInfo
+from trunnion.report.palette import GROUP
 from trunnion_gui.i18n import tr
 from trunnion_gui.widgets.panel import Panel
 from trunnion_gui.words import amount, counted, share
@@ -14,6 +15,7 @@ class RecognizePanel(Panel):
     """Choose, recognize, and see the counts."""
 
     command = "step.recognize"
+
     def build(self) -> None:
         self.part = QLabel()
         self.part.setWordWrap(True)
@@ -39,7 +41,9 @@ class RecognizePanel(Panel):
         counts = " · ".join(counted(n, tr(kind)) for kind, n in found.counts().items())
         loose = "" if not found.unexplained else "<br>" + tr("{n} faces unexplained ({share} of the area)").format(
             n=len(found.unexplained), share=share(found.unexplained_share))
-        self.result.setText(f"{tr('Family')} {tr(found.family)}: {counts}{loose}")
+        local = sum(bool(f.attributes.get("local")) for f in found.of_kind(GROUP))
+        of_them = tr(", {n} of them local features").format(n=local) if local else ""
+        self.result.setText(f"{tr('Family')} {tr(found.family)}: {counts}{of_them}{loose}")
 
     def _fill_solids(self, part: PartInfo) -> None:
         self.solid.setVisible(part.n_solids > 1)
