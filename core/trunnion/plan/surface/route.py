@@ -283,7 +283,7 @@ def _add_finish(draft: Draft, kind: str, name: str, tags: tuple[int, ...], tool:
     rules = (stage.rule, f"{tool.name} over {trimmed(area, 0)} mm2: scallops of {trimmed(1000.0 * height, 1)} um, "
              f"{trimmed(width, 3)} mm between passes on a plane.", f"It leaves {trimmed(allowance, 2)} mm.")
     choices: dict[str, Value] = {SCALLOP: height, ALLOWANCE: allowance}
-    if strategy in MEETING:
+    if strategy in MEETING and STEEP in registry.names("strategies"):
         key, past = MEETING[strategy]
         choices[key] = min(max(chosen.steep + past, 1.0), 89.0)
     if earlier is not None:
