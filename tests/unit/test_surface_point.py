@@ -214,3 +214,32 @@ def test_passes_of_constant_scallop_are_milled_by_points_too() -> None:
     assert ask(LONG)(path.position[1:], path.axis[1:], start_tip=path.position[:-1], start_axis=path.axis[:-1]).all()
     cut = path.position[path.mark == 0]
     assert np.ptp(cut[:, 0]) > 19.0 and np.ptp(cut[:, 1]) > 4.5
+
+
+def test_after_an_earlier_cutter_only_what_it_left_is_milled() -> None:
+    # Beside the wall a ball of 12 mm comes no nearer than 6 mm, one of 6 mm comes to 3 mm.
+    drive, setup, stock = strip(high=7.0)
+    ask, large = Boxes(FLOOR, WALL), replace(cutter("ball", diameter=12.0, corner=6.0, flute=12.0), stickout=90.0, gauge_length=150.0)
+    plan = point(replace(drive, ask=ask, earlier=large), LONG, DATA, stock, setup, choose(PointSettings, {}))
+    cut = plan.path.position[plan.path.mark == 0] + 3.0 * plan.path.axis[plan.path.mark == 0]
+    # The earlier cutter had come to y = 4: passes are 1 mm apart, and one more overlaps what it did.
+    assert cut[:, 1].max() == approx(6.5) and 1.0 < cut[:, 1].min() < 4.0 and np.ptp(cut[:, 0]) > 18.9
+    assert not [f for f in plan.findings if f.code == "point.left"]
+
+
+def test_where_an_earlier_cutter_left_nothing_there_is_nothing_to_do() -> None:
+    drive, setup, stock = strip(high=4.0)
+    plan = point(replace(drive, ask=Boxes(FLOOR), earlier=BALL), BALL, DATA, stock, setup, choose(PointSettings, {}))
+    assert not len(plan.path) and [f.code for f in plan.findings] == ["point.nothing-left"]
+
+
+def test_to_and_fro_every_other_pass_runs_back() -> None:
+    ask = Boxes(FLOOR)
+    there, both = (planned(ask, way=way)[0].path for way in ("one", "both"))
+
+    def runs(path):
+        cut = path.position[path.mark == 0][:, :2]
+        step = np.diff(cut, axis=0)
+        return set(np.sign(step[np.abs(step[:, 1]) < 1e-6, 0]).tolist())
+
+    assert len(runs(there)) == 1 and len(runs(both)) == 2

@@ -12,9 +12,10 @@ from collections.abc import Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
+from scipy.spatial import cKDTree
 
 from trunnion import tolerance
-from trunnion.findings import BadInput, Finding, Refused, warning
+from trunnion.findings import BadInput, Finding, Refused, info, warning
 from trunnion.geometry.arrays import Bools, Floats
 from trunnion.geometry.frame import Frame
 from trunnion.geometry.kernels.drop import ROUND, C
@@ -31,7 +32,7 @@ from trunnion.toolpath.surface.axis import AxisField, fixed, from_point, interpo
 from trunnion.toolpath.surface.constant import scallop_passes
 from trunnion.toolpath.surface.contacts import Contacts, between, slerp
 from trunnion.toolpath.surface.cutter import lower_side, tip_at, touching
-from trunnion.toolpath.surface.lean import AxisSearch, Course, LeanLimits
+from trunnion.toolpath.surface.lean import STEP, AxisSearch, Course, LeanLimits, free_axes
 from trunnion.toolpath.surface.linking import Manner, linked
 from trunnion.toolpath.surface.passes import Pass
 from trunnion.toolpath.surface.scallop import stepover_on_plane
@@ -43,6 +44,8 @@ SHARES = (0.25, 0.5, 0.75)
 HALVINGS = 12
 TRIES = 4
 """Times that axes are chosen again where a move between two clear ones touched something."""
+OVERLAP = 0.25
+"""Of an earlier cutter's radius: how far what it left is cut beyond its end."""
 LEADS = (1.0, 0.4, 0.0)
 """Shares of the lead radius that are tried where leads touch something."""
 STRAIGHT = 1000.0
@@ -70,6 +73,8 @@ class PointSettings:
     first_guide: str = setting("", label="First guide", help="Faces beyond the rim where the flow lines begin, as in: face 12, face 13.")
     second_guide: str = setting("", label="Second guide", help="Faces beyond the rim where the flow lines end.")
     spiral: bool = setting(True, label="Spiral", help="Cut a tube or ring in one continuous spiral instead of closed passes.")
+    way: str = setting("one", label="Way", help="Every pass in the climbing direction, or to and fro, which unwinds rotary axes that can't "
+                       "turn for ever.", choices=("one", "both"))
     chord: float = setting(0.0005, unit="mm", low=0.0001, high=0.1, label="Chord error",
                            help="How far a block may leave the faces, on either side.")
     lead_radius: float = setting(0.5, unit="mm", low=0.0, high=20.0, label="Lead radius", help="Radius of the arcs onto and off the face.")
@@ -87,7 +92,7 @@ class Milled:
 @strategy(settings=PointSettings)
 def point(drive: SurfaceDrive, tool: Tool, data: CuttingData, stock: PlanningStock, setup: Setup, settings: PointSettings,
           progress: Progress = QUIET) -> Planned:
-    """Return the path of a leaning tool over the drive's faces, and what it must leave."""
+    """Return the path of a leaning tool over the drive's faces, or over what an earlier cutter left of them, and what it must leave."""
     if drive.ask is None:
         raise Refused(f"{drive.feature}: point milling leans the tool; choose a machine with rotary axes, or another strategy")
     ask, lead, tilt = drive.ask(tool), math.radians(settings.lead), math.radians(settings.tilt)
@@ -96,8 +101,15 @@ def point(drive: SurfaceDrive, tool: Tool, data: CuttingData, stock: PlanningSto
     ways = (streamlines(drive, ball, flow, progress.part(0.0, 0.3)) if settings.pattern == "flow" else
             # They run with what is inside on their left: the other way round a cutter that turns clockwise climbs.
             tuple(way.reversed() for way in scallop_passes(drive, ball, settings.chord, progress.part(0.0, 0.3))))
+    if settings.way == "both":
+        ways = tuple(way.reversed() if k % 2 else way for k, way in enumerate(ways))
     limits = LeanLimits(turn=math.radians(settings.turn), steepest=math.radians(settings.steepest))
-    done = milled(ways, tool, field_of(settings, drive.frame), ask, limits, settings.chord, drive.allowance, progress.part(0.3, 0.9))
+    field = field_of(settings, drive.frame)
+    if drive.earlier is not None:
+        ways = rest_of(ways, drive.earlier, field, drive.ask(drive.earlier), limits, drive.allowance, progress.part(0.3, 0.4))
+        if not ways:
+            return Planned(findings=(info("point.nothing-left", f"{drive.earlier.name} left nothing of {drive.feature}", drive.feature),))
+    done = milled(ways, tool, field, ask, limits, settings.chord, drive.allowance, progress.part(0.4, 0.9))
     stepover = stepover_on_plane(max(ball.radius, drive.height), drive.height)
     findings = _left(done, drive, tool)
     if not done.passes:
@@ -128,6 +140,22 @@ def milled(ways: Sequence[Contacts], tool: Tool, field: AxisField, ask: Asker | 
     whole = sum(_run(way, 0.0, len(way) - 1.0) for way in ways)
     done = sum(_run(way, float(place[0]), float(place[-1])) for way, pieces in zip(ways, found, strict=True) for place, _ in pieces)
     return Milled(passes=tuple(one for pieces in found for _, one in pieces), left=max(1.0 - done / whole, 0.0) if whole > 0.0 else 0.0)
+
+
+def rest_of(ways: Sequence[Contacts], earlier: Tool, field: AxisField, ask: Asker, limits: LeanLimits, allowance: float = 0.0,
+            progress: Progress = QUIET) -> tuple[Contacts, ...]:
+    """Return the stretches of contact passes where an earlier cutter had no free axis, and a little more all round."""
+    courses = free_axes(ways, field, earlier, ask, limits, allowance, progress)
+    gone = np.vstack([np.zeros((0, 3)), *(between(way.point, way.normal, way.feed, course.place[~course.free])[0]
+                                          for way, course in zip(ways, courses, strict=True))])
+    if not len(gone):
+        return ()
+    tree, beside, found = cKDTree(gone), OVERLAP * earlier.radius + STEP / limits.turn, []
+    for way in ways:
+        near = tree.query(way.point)[0] <= beside
+        edges = np.flatnonzero(np.diff(np.concatenate([[False], near, [False]]).astype(np.int64)))
+        found += [way.of(slice(a, b)) for a, b in edges.reshape(-1, 2).tolist() if b - a > 1]
+    return tuple(found)
 
 
 def located(way: Contacts, run: Course, tool: Tool, chord: float, allowance: float = 0.0) -> tuple[Floats, Pass]:
