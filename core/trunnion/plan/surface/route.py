@@ -232,6 +232,9 @@ def _hidden_area(draft: Draft, area: Area, progress: Progress) -> None:
     if chosen.semi_allowance > 0.0:
         _add_finish(draft, "semi", area.id, area.tags, found.tool, "surface.point", places)
     _add_finish(draft, "finish", area.id, area.tags, found.tool, "surface.point", places)
+    if found.rest is not None:
+        left = tuple(t for t in area.tags if (found.missed & (few.face == t)).any())
+        _add_finish(draft, "rest_finish", area.id, left, found.rest, "surface.point", places, earlier=found.tool)
 
 
 def _by_slope(area: Area, tags: Sequence[int], places: Places, limit: float) -> list[tuple[str, tuple[int, ...], str]]:
