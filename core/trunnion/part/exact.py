@@ -43,12 +43,13 @@ class ExactFace:
 
         from trunnion.part.evaluate import evaluator_of
         from trunnion.part.faces import FaceView
+        from trunnion.part.trim import Trim
 
         shape = part.face_shape(tag)
         if shape is None:
             raise BadInput(f"face {tag} is not a face of the chosen solid of {part.name}")
         self.tag, self._frame, self._view = tag, frame, FaceView(shape, tag - 1)
-        self._evaluate = evaluator_of(self._view.adaptor)
+        self._evaluate, self._trim = evaluator_of(self._view.adaptor), Trim(self._view)
         kind = self._view.adaptor.GetType()
         known = (Kind.GeomAbs_Plane, Kind.GeomAbs_Cylinder, Kind.GeomAbs_Sphere, Kind.GeomAbs_Cone, Kind.GeomAbs_Torus)
         self._growth = ROUND if kind in known else FREE_FORM
@@ -59,7 +60,7 @@ class ExactFace:
 
     def inside(self, places: Floats) -> Bools:
         """Say which places (k, 2) lie inside the trim."""
-        return np.array([self._view.holds(float(u), float(v)) for u, v in places], dtype=bool)
+        return self._trim.holds(np.asarray(places, dtype=np.float64))
 
     def at(self, places: Floats) -> ExactPoints:
         """Return the surface at places (k, 2)."""

@@ -10,7 +10,7 @@ between the samples of its cells, may be missed.
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Protocol
 
 import numpy as np
@@ -92,22 +92,24 @@ class FineMap:
 
 @dataclass(slots=True, eq=False)
 class _Cells:
-    """Cells: face (c,) rows, middle in the parameters uv (c, 2), half sides (c, 2)."""
+    """Cells: face (c,) rows, middle in the parameters uv (c, 2), half sides (c, 2), whether what is above them is wanted (c,)."""
 
     face: Ints
     uv: Floats
     half: Floats
+    above: Bools
 
     def __len__(self) -> int:
         return len(self.face)
 
     def some(self, rows: Ints | Bools) -> _Cells:
-        return _Cells(self.face[rows], self.uv[rows], self.half[rows])
+        return _Cells(*(getattr(self, name)[rows] for name in _Cells.__slots__))
 
     def quartered(self) -> _Cells:
         signs = np.array([[-1.0, -1.0], [1.0, -1.0], [-1.0, 1.0], [1.0, 1.0]])
         half = 0.5 * self.half
-        return _Cells(np.repeat(self.face, 4), (self.uv[:, None] + signs * half[:, None]).reshape(-1, 2), np.repeat(half, 4, axis=0))
+        return _Cells(np.repeat(self.face, 4), (self.uv[:, None] + signs * half[:, None]).reshape(-1, 2), np.repeat(half, 4, axis=0),
+                      np.repeat(self.above, 4))
 
 
 def fine_measure(faces: Sequence[Face], moves: Moves, spacing: float = 0.2, *, low: Floats | None = None, high: Floats | None = None,
@@ -193,8 +195,8 @@ class _Patch:
             half = np.array([(u1 - u0) / count[0], (v1 - v0) / count[1]]) / 2
             i, j = (a.ravel() for a in np.meshgrid(np.arange(count[0]), np.arange(count[1]), indexing="ij"))
             uv = np.column_stack([u0 + (2 * i + 1) * half[0], v0 + (2 * j + 1) * half[1]])
-            made.append(_Cells(np.full(len(uv), row), uv, np.tile(half, (len(uv), 1))))
-        return _Cells(*(np.concatenate([getattr(m, name) for m in made]) for name in ("face", "uv", "half")))
+            made.append(_Cells(np.full(len(uv), row), uv, np.tile(half, (len(uv), 1)), np.ones(len(uv), bool)))
+        return _Cells(*(np.concatenate([getattr(m, name) for m in made]) for name in _Cells.__slots__))
 
     def inside(self, cells: _Cells) -> _Placed:
         """Return the cells that touch the patch."""
@@ -215,7 +217,7 @@ class _Patch:
             points.append(_some(at, touches))
             holds.append((within[:, 0] & self._in_box(at.point, np.zeros((len(mine), 3))))[touches])
         joined = ExactPoints(**{name: np.concatenate([getattr(p, name) for p in points]) for name in ARRAYS})
-        whole = _Cells(*(np.concatenate([getattr(m, name) for m in parts]) for name in ("face", "uv", "half")))
+        whole = _Cells(*(np.concatenate([getattr(m, name) for m in parts]) for name in _Cells.__slots__))
         return _Placed(whole, joined, np.concatenate(holds))
 
     def _in_box(self, points: Floats, margin: Floats) -> Bools:
@@ -237,7 +239,8 @@ class _Patch:
         points = at.point + lift * at.normal
 
         def some(first: int, last: int) -> None:
-            kernel.cells_loop(first, last, points, a, b, slack, self.tree, self.flutes, FAR, least, self.bound, left, nearest, upper, lower)
+            kernel.cells_loop(first, last, points, a, b, slack, self.tree, self.flutes, FAR, least, self.bound, placed.cells.above,
+                              left, nearest, upper, lower)
 
         in_parallel(some, n, CHUNK, progress, "Measuring scallops", self.threads)
         return _Looked(left, nearest, upper, lower)
@@ -246,18 +249,21 @@ class _Patch:
         """Quarter cells until none may beat what is wanted by more than the bound."""
         lowest = -np.inf
         for k in range(ROUNDS):
-            open_rows = np.zeros(len(placed.cells), bool)
+            above, below = np.zeros((2, len(placed.cells)), bool)
             for best in wanted:
                 if best.raised(placed, looked):
                     self.climb(best, lift)
                 lowest = best.value if best.sign < 0.0 else lowest
             for best in wanted:
                 limit = best.value + best.sign * self.bound
-                open_rows |= (looked.upper > limit) if best.sign > 0.0 else (looked.lower < limit)
-            if not open_rows.any():
+                if best.sign > 0.0:
+                    above |= looked.upper > limit
+                else:
+                    below |= looked.lower < limit
+            if not (above | below).any():
                 return
             share = progress.part(1.0 - 0.8**k, 1.0 - 0.8 ** (k + 1))
-            placed = self.inside(placed.cells.some(open_rows).quartered())
+            placed = self.inside(replace(placed.cells, above=above).some(above | below).quartered())
             looked = self.look(placed, lift, share, lowest if lowest > -np.inf else np.inf)
 
     def climb(self, best: _Best, lift: float) -> None:

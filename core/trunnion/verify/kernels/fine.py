@@ -16,7 +16,7 @@ import math
 import numpy as np
 from numba import njit
 
-from trunnion.geometry.arrays import Floats, Ints
+from trunnion.geometry.arrays import Bools, Floats, Ints
 from trunnion.verify.kernels.body import depth_in_body
 from trunnion.verify.kernels.left import (
     AX,
@@ -188,17 +188,18 @@ def _nearest_body(flutes: Flutes, tool: int, w: Floats, place: Floats, share: fl
 
 @njit(cache=True, nogil=True)
 def cells_loop(first: int, last: int, middle: Floats, a: Floats, b: Floats, slack: Floats, tree: Tree, flutes: Flutes, far: float,
-               lowest: float, bound: float, left: Floats, nearest: Ints, upper: Floats, lower: Floats) -> None:
+               lowest: float, bound: float, above: Bools, left: Floats, nearest: Ints, upper: Floats, lower: Floats) -> None:
     """Fill for cells `first` to `last` what is left at their middle, by which move, and bounds from above and below over the whole cell.
 
     middle, a, b (c, 3), slack (c,) as in `cell_least`; far: no distance above it is told. Where a cell may fall by `bound` below both
-    `lowest` and its middle, its `lower` only says so; with an infinite `lowest` it isn't looked for.
+    `lowest` and its middle, its `lower` only says so; with an infinite `lowest` it isn't looked for. Where `above` (c,) is false, no bound
+    from above is looked for.
     """
     close = CLOSE * bound
     nodes, least, spans = np.zeros(len(tree.root) + 128, np.int64), np.zeros(len(tree.root) + 128), np.zeros((96, 2))
     rows, shares, distance, places = np.zeros(POSES, np.int64), np.zeros(POSES), np.zeros((POSES, 4)), np.zeros((POSES, 3))
     for n in range(first, last):
-        for k in range(POSES):
+        for k in range(POSES if above[n] else 1):
             i = 0.0 if k == 0 else (1.0 if k % 2 else -1.0)
             j = 0.0 if k == 0 else (1.0 if k > 2 else -1.0)
             places[k] = middle[n] + i * a[n] + j * b[n]
@@ -206,8 +207,8 @@ def cells_loop(first: int, last: int, middle: Floats, a: Floats, b: Floats, slac
                                                            False, -np.inf, nodes, least, spans)
             if k == 0:
                 left[n], nearest[n] = value, move
-        upper[n] = far
-        for k in range(POSES):
+        upper[n] = far if above[n] else -np.inf
+        for k in range(POSES if above[n] else 0):
             if rows[k] < 0:
                 continue
             w, tool = tree.way[rows[k]], tree.tool[rows[k]]

@@ -1,0 +1,43 @@
+"""Closed outlines in a plane, asked for many places at once."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from trunnion.geometry.arrays import Floats, Ints
+from trunnion.geometry.kernels.outline import within_loop
+
+
+@dataclass(frozen=True, slots=True, eq=False, kw_only=True)
+class Outlines:
+    """Pieces (s, 4) from x, y to x, y of outlines that close, listed by strips of y; `near`: how near is too near to tell."""
+
+    pieces: Floats
+    near: float
+    low: float
+    pitch: float
+    start: Ints
+    rows: Ints
+
+    @staticmethod
+    def of(pieces: Floats, near: float) -> Outlines:
+        """Return outlines ready to be asked; at least one piece."""
+        bottom, top = pieces[:, [1, 3]].min(axis=1) - near, pieces[:, [1, 3]].max(axis=1) + near
+        low = float(bottom.min())
+        count = max(1, min(4 * len(pieces), 4096))
+        pitch = max(float(top.max()) - low, near) / count * (1.0 + 1e-9)
+        first, last = (np.floor((y - low) / pitch).astype(np.int64) for y in (bottom, top))
+        times = last - first + 1
+        strip = np.repeat(first, times) + np.arange(times.sum()) - np.repeat(np.cumsum(times) - times, times)
+        order = np.argsort(strip, kind="stable")
+        start = np.searchsorted(strip[order], np.arange(count + 1))
+        return Outlines(pieces=pieces, near=near, low=low, pitch=pitch, start=start, rows=np.repeat(np.arange(len(pieces)), times)[order])
+
+    def within(self, places: Floats) -> Ints:
+        """Return `OUT`, `IN` or `NEAR` of `kernels.outline` (k,) for places (k, 2)."""
+        out = np.empty(len(places), np.int64)
+        places = np.ascontiguousarray(places, dtype=np.float64)
+        within_loop(places, self.pieces, self.near, self.low, self.pitch, self.start, self.rows, out)
+        return out
