@@ -45,7 +45,7 @@ def run(text: str, tools: Sequence[Tool], folder: Path) -> list[Call]:
     done = subprocess.run([RS274, "-g", "-t", str(table), str(folder / "program.ngc")], capture_output=True, text=True, timeout=60,
                           cwd=folder, env={**os.environ, "LD_LIBRARY_PATH": str(Path(RS274).resolve().parent)})
     assert done.returncode == 0, done.stderr
-    found = [re.match(r"\s*\d+ N(\S+)\s+(\w+)\((.*)\)", line) for line in done.stdout.splitlines()]
+    found = [re.match(r"\s*\d+ N(\d+|\.+)\s*([A-Z_]+)\((.*)\)", line) for line in done.stdout.splitlines()]
     return [(m[1], m[2], [float(v) for v in re.findall(r"-?\d+\.\d+|-?\d+", m[3])]) for m in found if m]
 
 
@@ -77,7 +77,7 @@ def compare_joints(text: str, rows: Sequence[Rows], letters: str, tools: Sequenc
     names = {Motion.RAPID: "STRAIGHT_TRAVERSE", Motion.LINE: "STRAIGHT_FEED"}
     compared = 0
     for k, (number, point, motion) in enumerate(ours):
-        if (k + 1 < len(ours) and ours[k + 1][0] == number) or number not in theirs or number in lifts:
+        if (k + 1 < len(ours) and ours[k + 1][0] == number) or number in lifts:
             continue
         name, numbers = theirs[number]
         assert name == names.get(Motion(motion), "ARC_FEED")

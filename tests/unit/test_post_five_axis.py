@@ -36,6 +36,7 @@ from trunnion.post.dialects.linuxcnc import LinuxCncDialect
 from trunnion.post.linearize import Straying, even_turn, joint_path
 from trunnion.post.settings import PostSettings
 from trunnion.shop.kinematics import SLACK, poses_of, stands_of, words_of
+from trunnion.shop.winding import followed
 from trunnion.verify.machine.kinematics import linear_positions
 
 BOTH = pytest.mark.parametrize("machine", [TABLE, ENDLESS_FORK], ids=["table", "fork"])
@@ -278,6 +279,14 @@ def test_axes_that_must_unwind_between_two_operations_do_so_at_the_top_of_the_ma
     assert [w[0] for w in lines[first + 1].split()[1:]] == ["G", "C", "A"]
     assert [w[0] for w in lines[first + 2].split()[1:]] == ["G", "X", "Y"]
     assert len(again(text, standing(FORK)).sections) == 2
+
+
+def test_an_axis_wound_up_to_its_limit_begins_again_near_home():
+    turns = np.array([lean(25.0, 10.0 * k) for k in range(181)])
+    short = replace(TABLE, axes=(*TABLE.axes[:4], replace(TABLE.axes[4], low=-36000.0, high=36000.0)))
+    wound = followed(turns, standing(short), np.radians([-25.0, 35990.0]), 1e-4, "op")
+    assert np.abs(np.degrees(wound[0, 1])) < 1500.0
+    assert math.degrees(np.ptp(wound[:, 1])) == approx(1800.0)
 
 
 def test_a_text_is_not_read_for_work_that_stands_elsewhere():

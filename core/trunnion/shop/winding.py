@@ -68,8 +68,9 @@ def _beginnings(angles: Floats, free: Bools, near: Floats, low: Floats, high: Fl
     found = []
     for way in angles[fixed[0]]:
         least, most = np.ceil((low - SLACK - way) / TURN), np.floor((high + SLACK - way) / TURN)
-        nearest = np.round((near - way) / TURN)
-        turns = [np.arange(max(a, n - MOST_TURNS), min(b, n + MOST_TURNS) + 1) for a, b, n in zip(least, most, nearest, strict=True)]
+        # Some turns about where the axes stand, and those at home when they are wound up to a limit.
+        turns = [sorted({n + k for n in (np.round((v - w) / TURN), np.round(-w / TURN)) for k in range(-MOST_TURNS, MOST_TURNS + 1)
+                         if a <= n + k <= b}) for w, v, a, b in zip(way, near, least, most, strict=True)]
         found += [way + TURN * np.array(n) for n in itertools.product(*turns)]
     return found or [np.clip(near, low, high)]
 
