@@ -23,8 +23,9 @@ MEETING = math.cos(math.radians(36.0))
 their corners than between."""
 
 
-NEAR_END = 1e-3
-"""Share of an edge: a ridge nearer to an end runs through that point."""
+NEAR_END, SLACK = 0.01, 0.25
+"""Shares of an edge: how near its ends it is parted at most, and how far past them fronts may seem to meet, for a ridge often runs
+through points."""
 
 
 @dataclass(frozen=True, slots=True, eq=False, kw_only=True)
@@ -59,6 +60,21 @@ def ridged(metric: Metric, time: Floats, foot: Floats, gap: float) -> Ridged:
     high = np.argmax(time[stars], axis=1) if len(stars) else np.zeros(0, np.int64)
     pairs += [np.column_stack([stars[np.arange(len(stars)), high], stars[np.arange(len(stars)), (high + k) % 3]]) for k in (1, 2)]
     return Ridged(sheet=parted, time=time, ridges=_chained(parted.points, _lines(np.concatenate(pairs)), gap))
+
+
+def opened(sheet: Sheet) -> Sheet:
+    """Return the sheet with those edges halved that run through it from rim to rim: a distance from its rims would be nothing all over a
+    triangle in a corner."""
+    ends, side = sheet.edges()
+    lone = np.bincount(side.ravel(), minlength=len(ends)) == 1
+    on_rim = np.zeros(len(sheet.points), bool)
+    on_rim[ends[lone]] = True
+    halved = np.flatnonzero(on_rim[ends].all(axis=1) & ~lone)
+    number = np.full(len(ends), -1)
+    number[halved] = len(sheet.points) + np.arange(len(halved))
+    points, normals = sheet.on_edges(ends[halved], np.full(len(halved), 0.5))
+    triangles, face = _parted(sheet, number[side])
+    return Sheet(points=np.vstack([sheet.points, points]), normals=np.vstack([sheet.normals, normals]), triangles=triangles, face=face)
 
 
 def _parted(sheet: Sheet, middle: Ints) -> tuple[Ints, Ints]:
@@ -115,8 +131,8 @@ def _meeting(metric: Metric, ends: Ints, side: Ints, time: Floats, foot: Floats)
     meets &= (np.linalg.norm(came[ends], axis=2) > 0.5).all(axis=1)
     closing = np.maximum((forth + back) * length, tolerance.PARAMETRIC)
     share = (time[b] - time[a] + back * length) / closing
-    # So near an end that it is one, nothing is parted.
-    meets &= (share > NEAR_END) & (share < 1.0 - NEAR_END)
+    meets &= np.abs(share - 0.5) < 0.5 + SLACK
+    share = np.clip(share, NEAR_END, 1.0 - NEAR_END)
     return share, time[a] + share * forth * length, meets
 
 

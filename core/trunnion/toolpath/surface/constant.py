@@ -16,7 +16,7 @@ from scipy.spatial import cKDTree
 from trunnion.geometry.arrays import Floats
 from trunnion.geometry.contours import SheetLine, whole_levels
 from trunnion.geometry.fields import Metric, distances
-from trunnion.geometry.ridges import Ridged, ridged
+from trunnion.geometry.ridges import Ridged, opened, ridged
 from trunnion.geometry.sheet import Sheet, sheet_of, split_finely
 from trunnion.model.operation import CuttingData
 from trunnion.model.setup import Setup
@@ -34,8 +34,8 @@ from trunnion.toolpath.surface.upright import stood
 
 FINENESS = 0.5
 """Stepovers: the longest edge of the triangles that distances are measured over."""
-FIRST = 0.35
-"""Stepovers from the rim to the first pass: half a stepover from a square corner."""
+FIRST = 0.3
+"""Stepovers from the rim to the first pass: less than half a stepover from a square corner, which triangles round a little."""
 FARTHEST = 0.515
 """Stepovers from the nearest pass beyond which a place needs another one: the scallop there is 6 % higher than wanted."""
 REACH = 1.5
@@ -87,7 +87,7 @@ def scallop_passes(drive: SurfaceDrive, tool: Tool, chord: float, progress: Prog
     for k, part in enumerate(parts):
         share = progress.part(k / len(parts), (k + 1) / len(parts))
         share.at(0.0, "Measuring distances in stepovers")
-        sheet = split_finely(part, measure, FINENESS, share)
+        sheet = opened(split_finely(part, measure, FINENESS, share))
         metric = metric_of(sheet, measure)
         rims = sheet.rims()
         # An area that is closed all round begins at its highest place.

@@ -77,8 +77,7 @@ def guides_beside(sheet: Sheet, skin: Skin, first: tuple[int, ...], second: tupl
     rims = sheet.rims()
     found = []
     for tags in (first, second):
-        points = skin.points[np.unique(skin.triangles[skin.of(tags)])]
-        beside = [rim[_beside(sheet.points[rim], points)] for rim in rims] if len(points) else []
+        beside = [rim[_beside(sheet.points[rim], skin, skin.triangles[skin.of(tags)])] for rim in rims]
         rows = np.concatenate([np.zeros(0, np.int64), *beside])
         if len(rows) < 2:
             raise BadInput(f"no rim of the area lies along {', '.join(f'face {t}' for t in tags)}: name faces next to it as guides")
@@ -87,17 +86,20 @@ def guides_beside(sheet: Sheet, skin: Skin, first: tuple[int, ...], second: tupl
     return Guides(**_apart(found[0], found[1]), rings=rings)
 
 
-def _beside(rim: Floats, points: Floats) -> Bools:
-    """Say which points (k,) of a rim lie on faces, given by points, or were put in between two that do."""
-    on = np.asarray(cKDTree(points).query(rim)[0] <= tolerance.JOINED_POINTS)
-    rows, n = np.flatnonzero(on), len(rim)
-    if len(rows) < 2:
-        return on
-    gap = np.mod(np.diff(rows, append=rows[:1] + n), n)
-    # Between neighbours of the faces' own mesh lie at most as many new points as splitting puts in: no gap is much wider than most.
-    narrow = gap <= 2 * np.median(gap)
-    for row, width in zip(rows[narrow].tolist(), gap[narrow].tolist(), strict=True):
-        on[np.arange(row, row + width) % n] = True
+def _beside(rim: Floats, skin: Skin, triangles: Ints) -> Bools:
+    """Say which points (k,) of a rim lie on triangles (t, 3) of a skin: on a point of these, or between two that one of their sides
+    joins."""
+    used = np.unique(triangles)
+    if not len(used):
+        return np.zeros(len(rim), bool)
+    gap, place = cKDTree(skin.points[used]).query(rim)
+    on = np.asarray(gap <= tolerance.JOINED_POINTS)
+    sides = {frozenset(side) for k in range(3) for side in zip(triangles[:, k].tolist(), triangles[:, (k + 1) % 3].tolist(), strict=True)}
+    rows, number, n = np.flatnonzero(on), used[np.asarray(place)].tolist(), len(rim)
+    for row, after in zip(rows.tolist(), np.roll(rows, -1).tolist(), strict=True):
+        width = (after - row) % n
+        if 2 * width <= n and frozenset((number[row], number[after])) in sides:
+            on[np.arange(row, row + width) % n] = True
     return on
 
 

@@ -63,11 +63,11 @@ def streamline(drive: SurfaceDrive, tool: Tool, data: CuttingData, stock: Planni
                progress: Progress = QUIET) -> Planned:
     """Return the motions of an upright tool along flow lines over the drive's faces, and what it leaves."""
     ways = streamlines(drive, tool, settings, progress.part(0.0, 0.4))
-    if settings.pattern == "zigzag":
-        ways = tuple(way if way.closed or k % 2 == 0 else way.reversed() for k, way in enumerate(ways))
+    to_and_fro = settings.pattern == "zigzag"
     done = stood(ways, drive, tool, settings.chord, math.radians(settings.steepest), progress.part(0.4, 0.8))
     stepover = stepover_on_plane(tool.corner_radius, drive.height)
-    manner = Manner(stepover=stepover, safety=settings.safety, lead_radius=settings.lead_radius)
+    manner = Manner(stepover=stepover, safety=settings.safety, lead_radius=settings.lead_radius,
+                    order="nearest" if to_and_fro else "given", reversing=to_and_fro)
     path = linked(done.passes, drive, tool, data, stock, setup, manner, progress.part(0.8, 1.0))
     return Planned(path=path, findings=done.left(drive, tool, stepover))
 

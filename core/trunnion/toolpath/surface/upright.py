@@ -79,9 +79,19 @@ def stood(ways: Sequence[Contacts], drive: SurfaceDrive, tool: Tool, chord: floa
                 passes.append(Pass(tip=tip[piece], axis=np.broadcast_to(UPRIGHT, (len(piece), 3)), normal=normal[piece],
                                    closed=way.closed and len(piece) == len(tip)))
                 owner.append(k)
-    cut, planned = sum(p.length for p in passes), sum(_length(f) for f in followed)
-    hidden = kept * max(1.0 - cut / planned, 0.0) if planned else 0.0
+    hidden = _lifted(tips, drive, pieces, lowest, 5.0 * chord)
     return Stood(passes=tuple(passes), source=tuple(owner), steep=whole - kept, hidden=hidden)
+
+
+def _lifted(tips: Sequence[Floats], drive: SurfaceDrive, pieces: Floats, lowest: float, error: float) -> float:
+    """Return over what length in mm tips (k, 3) on contacts can't stand, for another face would lift them by more than an error."""
+    if not tips:
+        return 0.0
+    places = np.concatenate(tips)
+    lifted = drive.skin.drop.drop(places[:, :2], pieces, lowest) + drive.allowance > places[:, 2] + error
+    line = np.repeat(np.arange(len(tips)), [len(t) for t in tips])
+    both = lifted[1:] & lifted[:-1] & (line[1:] == line[:-1])
+    return float(np.linalg.norm(np.diff(places, axis=0), axis=1)[both].sum())
 
 
 def _runs(wanted: Bools, closed: bool) -> list[Ints]:
