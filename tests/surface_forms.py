@@ -71,7 +71,8 @@ def drive_of(skin: Skin, faces=(1,), height=0.01) -> SurfaceDrive:
     """A drive of faces of a skin, which is all there is of its part."""
     low, high = skin.box()
     fields = {"feature": "group-01", "kind": "group", "faces": faces, "exact": (), "skin": skin, "frame": WORLD,
-              "low": low - [1.0, 1.0, 5.0], "high": high + 1.0, "clearance": float(high[2]) + 20.0, "allowance": 0.0, "height": height, "digest": ""}
+              "low": low - [1.0, 1.0, 5.0], "high": high + 1.0, "clearance": float(high[2]) + 20.0,
+              "allowance": 0.0, "height": height, "digest": ""}
     return SurfaceDrive(**{f.name: fields[f.name] for f in dataclasses.fields(SurfaceDrive) if f.name in fields})
 
 
