@@ -68,7 +68,7 @@ _AUTOSAVE_MS = 20_000
 _FOLLOW_MS = 66
 """G-code and process tree follow the tool this often at most."""
 _LEFT_WIDTH = 344
-_RIGHT_WIDTH = 396
+_RIGHT_WIDTH = 380
 _LEFT = Qt.DockWidgetArea.LeftDockWidgetArea
 _RIGHT = Qt.DockWidgetArea.RightDockWidgetArea
 _BELOW = Qt.DockWidgetArea.BottomDockWidgetArea
