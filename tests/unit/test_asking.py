@@ -10,8 +10,9 @@ from leaning_tools import cutter
 from trunnion.geometry.frame import WORLD, Frame
 from trunnion.part.read import read_part
 from trunnion.part.skin import skin_of
-from trunnion.pipeline.asking import PartSurroundings, roomy
+from trunnion.pipeline.asking import PartSurroundings
 from trunnion.shop import load_shop
+from trunnion.toolpath.surface.lean import roomy
 
 BALL = cutter("ball", diameter=6.0, corner=3.0, flute=12.0)
 UP, SIDE, DOWN = np.array([[0.0, 0.0, 1.0]]), np.array([[1.0, 0.0, 0.0]]), np.array([[0.6, 0.0, -0.8]])

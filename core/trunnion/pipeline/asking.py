@@ -19,9 +19,10 @@ from trunnion.geometry.frame import Frame
 from trunnion.geometry.skin import Skin
 from trunnion.model.fixture import Fixture
 from trunnion.model.material import Machine
-from trunnion.model.tool import Holder, Tool
+from trunnion.model.tool import Tool
 from trunnion.part.facets import Facets
 from trunnion.progress import QUIET, Progress
+from trunnion.toolpath.surface.lean import roomy
 
 if TYPE_CHECKING:
     from trunnion.part.part import Part
@@ -112,13 +113,6 @@ class PartAsker:
                             length=np.linalg.norm(moves.end - begin.start, axis=1))
         clear[rows] = self._around.clear(moves)
         return clear
-
-
-def roomy(tool: Tool, room: float) -> Tool:
-    """Return a tool whose neck, shank and holder are thicker by a room in mm; its cutting part stays as it is."""
-    rows = tuple((z0, r0 + room, z1, r1 + room) for z0, r0, z1, r1 in tool.holder.rows)
-    return replace(tool, neck_diameter=tool.neck_diameter + 2.0 * room, shank_diameter=tool.shank_diameter + 2.0 * room,
-                   holder=Holder(name=tool.holder.name, rows=rows))
 
 
 def _rows(moves: Moves, rows: slice) -> Moves:

@@ -10,7 +10,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cache
 from itertools import pairwise
 
@@ -20,7 +20,7 @@ from trunnion.findings import Finding, Refused, warning
 from trunnion.geometry.arrays import Bools, Floats, Ints
 from trunnion.geometry.kernels.course_compiled import course
 from trunnion.geometry.sphere import angle_between, directions, neighbours
-from trunnion.model.tool import Tool
+from trunnion.model.tool import Holder, Tool
 from trunnion.plan.surface.drive import Asker, SurfaceDrive
 from trunnion.progress import QUIET, Progress
 from trunnion.toolpath.surface.axis import AxisField, eased, leaning
@@ -140,6 +140,13 @@ def leaned_by(passes: Sequence[Pass], drive: SurfaceDrive, tool: Tool, lead: flo
         return found, ()
     return found, (warning("lean.left", f"{100.0 * (1.0 - done / whole):.1f} % of the passes over {drive.feature} stay: {tool.name} finds "
                            "no way to lean there", drive.feature, remedy="choose another lead or tilt, or a longer cutter"),)
+
+
+def roomy(tool: Tool, room: float) -> Tool:
+    """Return a tool whose neck, shank and holder are thicker by a room in mm; its cutting part stays as it is."""
+    rows = tuple((z0, r0 + room, z1, r1 + room) for z0, r0, z1, r1 in tool.holder.rows)
+    return replace(tool, neck_diameter=tool.neck_diameter + 2.0 * room, shank_diameter=tool.shank_diameter + 2.0 * room,
+                   holder=Holder(name=tool.holder.name, rows=rows))
 
 
 def _finely(run: Course, rows: Floats, turn: float) -> Floats:

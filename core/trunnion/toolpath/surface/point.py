@@ -32,7 +32,7 @@ from trunnion.toolpath.surface.axis import AxisField, fixed, from_point, interpo
 from trunnion.toolpath.surface.constant import scallop_passes
 from trunnion.toolpath.surface.contacts import Contacts, between, slerp
 from trunnion.toolpath.surface.cutter import lower_side, tip_at, touching
-from trunnion.toolpath.surface.lean import STEP, AxisSearch, Course, LeanLimits, free_axes
+from trunnion.toolpath.surface.lean import STEP, AxisSearch, Course, LeanLimits, free_axes, roomy
 from trunnion.toolpath.surface.linking import Manner, linked
 from trunnion.toolpath.surface.passes import Pass
 from trunnion.toolpath.surface.scallop import stepover_on_plane
@@ -44,6 +44,9 @@ SHARES = (0.25, 0.5, 0.75)
 HALVINGS = 12
 TRIES = 4
 """Times that axes are chosen again where a move between two clear ones touched something."""
+STANDING, LEAST_STANDING = 2.0, 1.0
+"""How much material neck, shank and holder are kept clear of where there is room: times the depth of cut, and mm at least. Earlier cutters
+leave more in corners than on faces."""
 OVERLAP = 0.25
 """Of an earlier cutter's radius: how far what it left is cut beyond its end."""
 LEADS = (1.0, 0.4, 0.0)
@@ -83,9 +86,10 @@ class PointSettings:
 
 @dataclass(frozen=True, slots=True, eq=False, kw_only=True)
 class Milled:
-    """Passes of a leaning cutter, and the share of the contact ways that had to be left."""
+    """Passes of a leaning cutter, the stretches of the contact ways that had to be left, and their share of the ways."""
 
     passes: tuple[Pass, ...]
+    rest: tuple[Contacts, ...]
     left: float
 
 
@@ -109,7 +113,11 @@ def point(drive: SurfaceDrive, tool: Tool, data: CuttingData, stock: PlanningSto
         ways = rest_of(ways, drive.earlier, field, drive.ask(drive.earlier), limits, drive.allowance, progress.part(0.3, 0.4))
         if not ways:
             return Planned(findings=(info("point.nothing-left", f"{drive.earlier.name} left nothing of {drive.feature}", drive.feature),))
-    done = milled(ways, tool, field, ask, limits, settings.chord, drive.allowance, progress.part(0.4, 0.9))
+    # Clear of what still stands beside the faces, and where no lean is, clear of the part itself.
+    wide = drive.ask(roomy(tool, max(STANDING * data.depth, LEAST_STANDING)))
+    done = milled(ways, tool, field, wide, limits, settings.chord, drive.allowance, progress.part(0.4, 0.7))
+    tight = milled(done.rest, tool, field, ask, limits, settings.chord, drive.allowance, progress.part(0.7, 0.9))
+    done = Milled(passes=(*done.passes, *tight.passes), rest=tight.rest, left=done.left * tight.left)
     stepover = stepover_on_plane(max(ball.radius, drive.height), drive.height)
     findings = _left(done, drive, tool)
     if not done.passes:
@@ -125,6 +133,8 @@ def milled(ways: Sequence[Contacts], tool: Tool, field: AxisField, ask: Asker | 
 
     The cutter stays within `chord` mm of where it touches, thicker by the allowance. Moves that touch what they must not are left out.
     """
+    if not ways:
+        return Milled(passes=(), rest=(), left=0.0)
     search = AxisSearch(ways, field, tool, ask, limits, allowance)
     courses = search.courses(progress.part(0.0, 0.5))
     found: list[list[tuple[Floats, Pass]]] = [[] for _ in ways]
@@ -137,9 +147,11 @@ def milled(ways: Sequence[Contacts], tool: Tool, field: AxisField, ask: Asker | 
                 search.met(k, met)
         again = np.flatnonzero(search.dirty).tolist()
         courses = search.courses(share) if again else courses
-    whole = sum(_run(way, 0.0, len(way) - 1.0) for way in ways)
-    done = sum(_run(way, float(place[0]), float(place[-1])) for way, pieces in zip(ways, found, strict=True) for place, _ in pieces)
-    return Milled(passes=tuple(one for pieces in found for _, one in pieces), left=max(1.0 - done / whole, 0.0) if whole > 0.0 else 0.0)
+    gaps = [_gaps(len(way) - 1.0, [(float(place[0]), float(place[-1])) for place, _ in pieces])
+            for way, pieces in zip(ways, found, strict=True)]
+    whole, left = sum(_run(way, 0.0, len(way) - 1.0) for way in ways), sum(_run(way, *g) for way, some in zip(ways, gaps) for g in some)
+    rest = tuple(way.of(slice(math.floor(a), math.ceil(b) + 1)) for way, some in zip(ways, gaps, strict=True) for a, b in some)
+    return Milled(passes=tuple(one for pieces in found for _, one in pieces), rest=rest, left=left / whole if whole > 0.0 else 0.0)
 
 
 def rest_of(ways: Sequence[Contacts], earlier: Tool, field: AxisField, ask: Asker, limits: LeanLimits, allowance: float = 0.0,
@@ -281,6 +293,16 @@ def _stretches(clear: Bools) -> list[slice]:
     """Return the rows of ends of blocks (k,) that are clear one after the other."""
     edges = np.flatnonzero(np.diff(np.concatenate([[False], clear, [False]]).astype(np.int64)))
     return [slice(a, b + 1) for a, b in edges.reshape(-1, 2).tolist()]
+
+
+def _gaps(end: float, done: Sequence[tuple[float, float]]) -> list[tuple[float, float]]:
+    """Return the stretches between places 0 and `end` that lie in none of those that are done."""
+    found, here = [], 0.0
+    for a, b in [*sorted(done), (end, end)]:
+        if a > here + tolerance.COINCIDENT:
+            found.append((here, a))
+        here = max(here, b)
+    return found
 
 
 def _run(way: Contacts, start: float, end: float) -> float:
