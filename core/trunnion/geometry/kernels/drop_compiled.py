@@ -229,11 +229,26 @@ def _touch(px: float, py: float, f: Floats, lift: Floats, owns: int, pieces: Flo
     """Return the larger of `best` and how high a facet, with the edges and corners that `owns` has bits of, lifts the cutter."""
     if _most(px, py, lift, f[LOW_X], f[LOW_Y], f[HIGH_X], f[HIGH_Y], pieces, radius, roundness) <= best - _SLACK:
         return best
+    if f[TURN] != 0.0:
+        # Where the plane touches inside the facet, that is the most of all of it; else it is less by how far that is from an edge.
+        x, y = px + lift[OUT_X], py + lift[OUT_Y]
+        side = 1.0 if f[TURN] > 0.0 else -1.0
+        out = 0.0
+        for k in range(3):
+            a, b = 3 * k, 3 * ((k + 1) % 3)
+            dx, dy = f[b] - f[a], f[b + 1] - f[a + 1]
+            cross = side * (dx * (y - f[a + 1]) - dy * (x - f[a]))
+            if cross < 0.0:
+                out = max(out, cross * cross / (dx * dx + dy * dy))
+        top = lift[LIFT_X] * px + lift[LIFT_Y] * py + lift[LIFT]
+        if out == 0.0:
+            return max(best, top)
+        if top - 0.5 * roundness * out <= best - _SLACK:
+            return best
     gx, gy = max(max(f[LOW_X] - px, px - f[HIGH_X]), 0.0), max(max(f[LOW_Y] - py, py - f[HIGH_Y]), 0.0)
     near = gx * gx + gy * gy
     if near > radius * radius or f[HIGH_Z] <= best or f[HIGH_Z] - _height(pieces, math.sqrt(near)) <= best:
         return best
-    best = _plane(px, py, f, pieces, best)
     for k in range(3):
         a, b = 3 * k, 3 * ((k + 1) % 3)
         if owns & (1 << k):
