@@ -34,6 +34,8 @@ NEAR = 3.0
 """Stepovers: a pass that begins no farther from the end of the one before is reached without lifting."""
 QUARTER = 16
 """Straight moves in a lead's quarter circle: at 2 mm, 2 um from it."""
+BETWEEN = 9
+"""Places between two leads that are asked for room."""
 SAME = 1e-9
 """Two directions that differ by less are one."""
 SWING = math.cos(math.radians(60.0))
@@ -43,7 +45,9 @@ SWING = math.cos(math.radians(60.0))
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Manner:
     """How passes are linked: the `stepover` between them, the `safety` distance of rapids and the `lead_radius` in mm; `order` is "given"
-    or "nearest"; `reversing` allows passes to be cut the other way where that is nearer; `chord` is the chord error of links, mm."""
+    or "nearest"; `reversing` allows passes to be cut the other way where that is nearer; `chord` is the chord error of links, mm. With
+    `arcs` a near pass is reached by the leads of both, and above the stock where these have no room: for walls, beside which a cutter that
+    follows the surface would be lifted to their tops. Closed passes go on over their start by the `overlap` in mm."""
 
     stepover: float
     safety: float = 2.0
@@ -51,6 +55,8 @@ class Manner:
     order: str = "given"
     reversing: bool = False
     chord: float = 2e-3
+    arcs: bool = False
+    overlap: float = 0.0
 
 
 def linked(passes: Sequence[Pass], drive: SurfaceDrive, tool: Tool, data: CuttingData, stock: PlanningStock, setup: Setup, manner: Manner,
@@ -61,8 +67,12 @@ def linked(passes: Sequence[Pass], drive: SurfaceDrive, tool: Tool, data: Cuttin
         return EMPTY
     passes = _ordered(passes, manner, progress.part(0.0, 0.2))
     near = _near(passes, manner)
-    ways = iter(_links(passes, near, drive, tool, manner, progress.part(0.2, 0.7)))
-    leads_in, leads_out = _leads(passes, drive, tool, manner.lead_radius, progress.part(0.7, 0.9))
+    leads_in, leads_out, has_room = _leads(passes, drive, tool, manner, progress.part(0.2, 0.4))
+    if manner.arcs:
+        near &= has_room
+        ways = iter([np.vstack([leads_out[k], leads_in[k + 1], passes[k + 1].tip[:1]]) for k in np.flatnonzero(near).tolist()])
+    else:
+        ways = iter(_links(passes, near, drive, tool, manner, progress.part(0.4, 0.9)))
     blocks = _Blocks(tool, data, stock, setup, drive, manner.safety)
     for k, one in enumerate(passes):
         progress.at(0.9 + 0.1 * k / len(passes), "Linking passes")
@@ -202,9 +212,11 @@ def _ordered(passes: Sequence[Pass], manner: Manner, progress: Progress) -> list
     """Return the passes in the order they are cut, closed ones begun where they come nearest to the end of the one before."""
     if manner.order == "nearest":
         passes = _nearest(passes, manner.reversing, progress)
-    out = [passes[0]]
-    for one in passes[1:]:
-        out.append(_begun(one, out[-1].tip[-1]) if one.closed else one)
+    out: list[Pass] = []
+    for one in passes:
+        if one.closed:
+            one = _overlapped(_begun(one, out[-1].tip[-1] if out else one.tip[0]), manner.overlap)
+        out.append(one)
     return out
 
 
@@ -230,6 +242,14 @@ def _begun(one: Pass, place: Floats) -> Pass:
     row = int(np.argmin(np.linalg.norm(one.tip[:-1] - place, axis=1)))
     order = np.append(np.roll(np.arange(len(one) - 1), -row), row)
     return Pass(tip=one.tip[order], axis=one.axis[order], normal=one.normal[order], closed=True)
+
+
+def _overlapped(one: Pass, overlap: float) -> Pass:
+    """Return a closed pass that goes on over its start by an overlap, or what comes next to it."""
+    run = np.concatenate([[0.0], np.cumsum(np.linalg.norm(np.diff(one.tip, axis=0), axis=1))])
+    over = int(np.searchsorted(run, min(overlap, 0.5 * float(run[-1]))))
+    rows = np.append(np.arange(len(one)), np.arange(1, over + 1))
+    return Pass(tip=one.tip[rows], axis=one.axis[rows], normal=one.normal[rows], closed=over == 0)
 
 
 def _near(passes: Sequence[Pass], manner: Manner) -> Bools:
@@ -262,20 +282,25 @@ def _bridged(way: Floats, chord: Floats, allowance: float, error: float) -> Floa
     return lifted[thinned(lifted, np.zeros(len(lifted), np.int64), error)]
 
 
-def _leads(passes: Sequence[Pass], drive: SurfaceDrive, tool: Tool, radius: float, progress: Progress) -> tuple[Floats, Floats]:
+def _leads(passes: Sequence[Pass], drive: SurfaceDrive, tool: Tool, manner: Manner, progress: Progress) -> tuple[Floats, Floats, Bools]:
     """Return the ways (m, k, 3) onto all passes, up to the first tip, and off them, after the last: quarter circles, lifted where they
-    would gouge."""
+    would gouge. And say of each pass but the last whether the way off it and onto the next one needs no lifting (m - 1,)."""
     coming = _arcs(np.array([p.tip[0] for p in passes]), np.array([p.tip[0] - p.tip[1] for p in passes]),
-                   np.array([p.normal[0] for p in passes]), np.array([p.axis[0] for p in passes]), radius)[:, ::-1]
+                   np.array([p.normal[0] for p in passes]), np.array([p.axis[0] for p in passes]), manner.lead_radius)[:, ::-1]
     going = _arcs(np.array([p.tip[-1] for p in passes]), np.array([p.tip[-1] - p.tip[-2] for p in passes]),
-                  np.array([p.normal[-1] for p in passes]), np.array([p.axis[-1] for p in passes]), radius)
-    for arcs, row in ((coming, 0), (going, -1)):
-        upright = np.array([_is_upright(p.axis[row]) for p in passes])
-        tips = arcs[upright].reshape(-1, 3)
-        floor = drive.skin.drop.drop(tips[:, :2], lower_side(tool, drive.allowance), float(drive.low[2]) - tool.flute_length, progress)
-        tips[:, 2] = np.maximum(tips[:, 2], floor + drive.allowance)
-        arcs[upright] = tips.reshape(-1, QUARTER, 3)
-    return coming, going
+                  np.array([p.normal[-1] for p in passes]), np.array([p.axis[-1] for p in passes]), manner.lead_radius)
+    upright = np.array([[_is_upright(p.axis[row]) for p in passes] for row in (0, -1)])
+    share = np.linspace(0.0, 1.0, BETWEEN)[:, None]
+    between = going[:-1, -1:] + share * (coming[1:, :1] - going[:-1, -1:])
+    ways = (coming, going, between)
+    flat = np.concatenate([w.reshape(-1, 3) for w in ways])
+    floor = drive.skin.drop.drop(flat[:, :2], lower_side(tool, drive.allowance), float(drive.low[2]) - tool.flute_length, progress)
+    lift = np.maximum(floor + drive.allowance - flat[:, 2], 0.0)
+    lifts = [x.reshape(w.shape[:2]) for x, w in zip(np.split(lift, np.cumsum([w[..., 0].size for w in ways])[:-1]), ways, strict=True)]
+    for arcs, up, stands in zip((coming, going), lifts, upright, strict=False):
+        arcs[:, :, 2] += np.where(stands[:, None], up, 0.0)
+    has_room = (lifts[0][1:].max(axis=1, initial=0.0) <= manner.chord) & (lifts[1][:-1].max(axis=1, initial=0.0) <= manner.chord)
+    return coming, going, np.asarray(has_room & (lifts[2].max(axis=1, initial=0.0) <= manner.chord) & upright[1, :-1] & upright[0, 1:])
 
 
 def _arcs(tips: Floats, along: Floats, normals: Floats, axes: Floats, radius: float) -> Floats:

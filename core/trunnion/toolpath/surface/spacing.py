@@ -1,11 +1,11 @@
-"""How far apart passes in parallel planes may lie over a drive's faces so that the scallops between them stay as low as wanted.
+"""How far apart passes in parallel planes, upright or level, may lie over a drive's faces so that scallops stay as low as wanted.
 
-Along the face it is the stepover of `stepovers`, square to the feed; seen in plan, passes are nearer to each other the more the face leans
-across them.
+Along the face it is the stepover of `stepovers`, square to the feed; planes are nearer to each other the more the face leans across them.
 """
 
 from __future__ import annotations
 
+import math
 from dataclasses import dataclass, fields
 
 import numpy as np
@@ -17,6 +17,9 @@ from trunnion.toolpath.surface.cutter import tip_at
 from trunnion.toolpath.surface.passes import UPRIGHT
 from trunnion.toolpath.surface.stepovers import stepover_measure
 
+FINENESS = 0.25
+"""Of the nearest two passes' distance: width of the strips that distances are found for."""
+MOST_STRIPS = 200_000
 CLOSEST = 0.02
 """Of a stepover: how near tips may come where a hollow is nearly, or more than, as round as the cutter."""
 
@@ -48,14 +51,15 @@ class Places:
         return first * self.turns[:, 0] + second * self.turns[:, 1], first * moves[:, 0] + second * moves[:, 1]
 
 
-def places_of(drive: SurfaceDrive, tool: Tool) -> Places:
-    """Return the triangles of the faces to be finished that an upright cutter can come to from above: those that look upwards."""
+def places_of(drive: SurfaceDrive, tool: Tool, least: float = 0.0) -> Places:
+    """Return the triangles of the faces to be finished that an upright cutter can come to from above: those that look upwards, their
+    normals' part along z above `least`."""
     skin = drive.skin
     row = np.flatnonzero(skin.of(drive.faces))
     points, normals = skin.points[skin.triangles[row]], skin.normals[skin.triangles[row]]
     flat = np.cross(points[:, 1] - points[:, 0], points[:, 2] - points[:, 0])
     size = np.linalg.norm(flat, axis=1)
-    seen = (size > 0.0) & (normals[:, :, 2].min(axis=1) > 0.0)
+    seen = (size > 0.0) & (normals[:, :, 2].min(axis=1) > least)
     row, points, normals, size = row[seen], points[seen], normals[seen], size[seen]
     contact = (points + drive.allowance * normals).reshape(-1, 3)
     tips = tip_at(tool, contact, normals.reshape(-1, 3), np.broadcast_to(UPRIGHT, contact.shape)).reshape(-1, 3, 3)
@@ -63,15 +67,52 @@ def places_of(drive: SurfaceDrive, tool: Tool) -> Places:
                   edges=points[:, 1:] - points[:, :1], turns=normals[:, 1:] - normals[:, :1])
 
 
-def plan_spacing(places: Places, tool: Tool, height: float, across: Floats) -> Floats:
-    """Return how far apart (m,) passes in planes across a level unit direction (2,) may lie at each triangle, measured between tips."""
-    side = np.append(across, 0.0)
-    lean = places.normal @ side
+def tip_spacing(places: Places, tool: Tool, height: float, across: Floats) -> Floats:
+    """Return how far apart (m,) passes in planes across a unit direction (3,) may lie at each triangle, measured between tips."""
+    lean = places.normal @ across
     # Along the face, square to the feed: what is left of the direction in the tangent plane.
     share = np.sqrt(np.maximum(1.0 - lean * lean, np.finfo(float).tiny))
-    way = (side - lean[:, None] * places.normal) / share[:, None]
+    way = (across - lean[:, None] * places.normal) / share[:, None]
     turn, move = places.along(way)
     bend = (turn * way).sum(axis=1, keepdims=True)
     stepover = 1.0 / stepover_measure(tool, height)(np.zeros_like(way), places.normal, way, places.normal + bend * way)
     # Tips are nearer to each other than contacts in a hollow, and wider apart on a hill.
-    return np.asarray(stepover * np.maximum(move @ side, CLOSEST * share))
+    return np.asarray(stepover * np.maximum(move @ across, CLOSEST * share))
+
+
+def level_spacing(places: Places, tool: Tool, height: float) -> Floats:
+    """Return how far apart (m,) level passes may lie at each triangle, measured between tips; infinite beside an upright wall.
+
+    The flank of the upper pass and the end of the lower one leave a step as well, of the drop between them times how much the wall leans:
+    whatever is larger of the two holds, and a flat end leaves nothing else.
+    """
+    lean = np.maximum(places.normal[:, 2], 0.0)
+    step = np.divide(height, lean, out=np.full(lean.shape, np.inf), where=lean > 0.0)
+    return step if tool.corner_radius <= 0.0 else np.maximum(step, tip_spacing(places, tool, height, UPRIGHT))
+
+
+def marched(low: Floats, high: Floats, spacing: Floats, begin: float, end: float) -> Floats:
+    """Return places (p,) from `begin` to `end`, each as far from the one before as is allowed by all that lies between the two: things from
+    low to high (m,) with a spacing (m,) each."""
+    width = max(FINENESS * float(spacing.min()), (end - begin) / MOST_STRIPS)
+    strip, row = strips_over(low, high, begin, width)
+    allowed = np.full(int((end - begin) / width) + 1, np.inf)
+    np.minimum.at(allowed, np.minimum(strip, len(allowed) - 1), spacing[row])
+    at = [begin]
+    while at[-1] < end:
+        here, step = at[-1], math.inf
+        first, ahead = int((here - begin) / width), 0.0
+        while first < len(allowed) and ahead < step:
+            step = min(step, float(allowed[first]))
+            first += 1
+            ahead = begin + first * width - here
+        at.append(min(here + min(step, end - here), end))
+    return np.array(at)
+
+
+def strips_over(low: Floats, high: Floats, begin: float, width: float) -> tuple[Ints, Ints]:
+    """Return the strips of a width from `begin` on that things from low to high (m,) lie over, (k,), and the row (k,) of each thing."""
+    first, last = (((v - begin) / width).astype(np.int64) for v in (low, high))
+    count = last - first + 1
+    row = np.repeat(np.arange(len(first)), count)
+    return first[row] + np.arange(len(row)) - np.repeat(np.cumsum(count) - count, count), row

@@ -1,0 +1,319 @@
+"""Finishing steep faces and upright walls level by level, the tip at one height all round.
+
+At a height the cutter is blocked where a drop would stand higher: the rim of that area is the pass. It is found on a grid of drops, put
+exactly on the grid's lines and then between them by halving, always on the free side, and cut where the cutter touches the area.
+"""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass, replace
+
+import numpy as np
+from scipy.ndimage import binary_dilation
+from scipy.spatial import cKDTree
+
+from trunnion import tolerance
+from trunnion.findings import Finding, Refused, warning
+from trunnion.geometry.arrays import Bools, Floats, Ints
+from trunnion.geometry.contours import SheetLine, whole_levels
+from trunnion.geometry.sheet import Sheet
+from trunnion.model.operation import CuttingData
+from trunnion.model.setup import Setup
+from trunnion.model.tool import Tool
+from trunnion.plan.surface.drive import SurfaceDrive
+from trunnion.progress import Progress
+from trunnion.settings import setting, settings
+from trunnion.toolpath.contract import Planned, strategy
+from trunnion.toolpath.stock import PlanningStock
+from trunnion.toolpath.surface.cutter import lower_side
+from trunnion.toolpath.surface.linking import Manner, linked
+from trunnion.toolpath.surface.passes import UPRIGHT, Pass
+from trunnion.toolpath.surface.spacing import Places, level_spacing, marched, places_of
+from trunnion.toolpath.surface.tracing import SEEN, THINNED, beside, thinned
+
+CELL, FINEST, COARSEST = 0.125, 0.1, 1.0
+"""Of the cutter's radius, and mm at least and at most: side of the grid's cells. What is blocked is as wide as the cutter and more."""
+MOST_POINTS = 1_500_000
+"""Points of a grid at most; beyond, cells grow."""
+MARGIN = 3
+"""Cells round where the area's tips are that are looked at."""
+CLOSE = 1e-5
+"""mm: how near to the rim of what is blocked a tip is put."""
+HALVINGS = 16
+ASIDE = ((8.0, 0.0), (0.0, 0.75), (0.0, 2.0))
+"""How far to both sides of a chord its rim is looked for, in chord errors and in the chord's length: near first, then as a corner needs."""
+STEEP = 50.0
+"""A tip that falls more steeply than this stands beside a wall."""
+UPWARD = -math.sin(tolerance.ANGLE)
+"""The least part along z of normals of upright walls."""
+NEARBY = 1.0
+"""Cells: a tip this near to one on the area touches it."""
+FLANK = 0.8
+"""Of the flutes' length: the largest step beside an upright wall."""
+SMALLEST_LEFTOVER = 0.5
+"""mm2: less than this is the rim of an area."""
+
+
+@settings("surface.waterline")
+class WaterlineSettings:
+    """How steep faces are finished level by level."""
+
+    step: float = setting(0.0, unit="mm", low=0.0, high=200.0, label="Step",
+                          help="Height from level to level; 0: by the wanted scallop height and how the faces lean.")
+    shallowest: float = setting(20.0, unit="deg", low=0.0, high=89.0, label="Shallowest",
+                                help="Faces that lean by less from level are left to parallel passes.")
+    way: str = setting("climb", choices=("climb", "both"), label="Way", help="climb: the face on the right of the feed; both: to and fro.")
+    overlap: float = setting(0.5, unit="mm", low=0.0, high=20.0, label="Overlap",
+                             help="How far passes go on past the rim of the area, and closed ones over their start.")
+    chord: float = setting(0.0005, unit="mm", low=0.00005, high=0.1, label="Chord error",
+                           help="How far straight moves may leave the cutter's way round the faces.")
+    lead_radius: float = setting(1.0, unit="mm", low=0.05, high=50.0, label="Lead radius",
+                                 help="Of the quarter circles onto and off passes.")
+    safety: float = setting(2.0, unit="mm", low=0.2, high=50.0, label="Safety distance",
+                            help="Where a rapid ends above what may still be there.")
+
+
+@strategy(settings=WaterlineSettings)
+def waterline(drive: SurfaceDrive, tool: Tool, data: CuttingData, stock: PlanningStock, setup: Setup, settings: WaterlineSettings,
+              progress: Progress) -> Planned:
+    """Return the motions that finish the drive's faces level by level, and the area that is too shallow for it or hangs over."""
+    if drive.height <= 0.0 and settings.step <= 0.0:
+        raise Refused(f"{drive.feature}: waterlines need a scallop height or a step above zero")
+    places = places_of(drive, tool, UPWARD)
+    places = places.some(places.normal[:, 2] <= math.cos(math.radians(settings.shallowest)))
+    found = _left(drive, places)
+    if not len(places.row):
+        return Planned(findings=found)
+    levels = _levels(places, tool, drive.height, settings.step)
+    loops = _loops(levels, places, drive, tool, settings, progress.part(0.0, 0.8))
+    passes = _in_order(loops, tool, both=settings.way == "both")
+    if not passes:
+        nothing = warning("surface.out-of-reach", f"{tool.name} touches nothing of the steep faces of {drive.feature}", drive.feature,
+                          remedy="finish them with a smaller or longer cutter")
+        return Planned(findings=(*found, nothing))
+    step = float(np.abs(np.diff(levels)).max(initial=tool.radius))
+    manner = Manner(stepover=max(step, tool.radius), safety=settings.safety, lead_radius=settings.lead_radius, chord=settings.chord,
+                    arcs=True, overlap=settings.overlap)
+    return Planned(path=linked(passes, drive, tool, data, stock, setup, manner, progress.part(0.8, 1.0)), findings=found)
+
+
+def _left(drive: SurfaceDrive, steep: Places) -> tuple[Finding, ...]:
+    """Return a finding of the area that no steep place stands for."""
+    a, b, c = np.moveaxis(drive.skin.points[drive.skin.triangles[drive.skin.of(drive.faces)]], 1, 0)
+    area = float(0.5 * np.linalg.norm(np.cross(b - a, c - a), axis=1).sum() - steep.area.sum())
+    if area < SMALLEST_LEFTOVER:
+        return ()
+    return (warning("surface.too-shallow", f"{area:.1f} mm2 of {drive.feature} are too shallow for waterlines, or hang over", drive.feature,
+                    remedy="finish them by parallel passes or from another direction"),)
+
+
+def _levels(places: Places, tool: Tool, height: float, step: float) -> Floats:
+    """Return the heights of the tip (p,) upwards, from the lowest place that is touched."""
+    low, high = places.tips[:, :, 2].min(axis=1), places.tips[:, :, 2].max(axis=1)
+    spacing = np.full(len(low), step) if step > 0.0 else level_spacing(places, tool, height)
+    spacing = np.minimum(spacing, FLANK * tool.flute_length)
+    levels = marched(low, high, spacing, float(low.min()), float(high.max()))
+    # The last one would only pass over the top.
+    return levels[:-1] if len(levels) > 1 else levels
+
+
+@dataclass(frozen=True, slots=True, eq=False, kw_only=True)
+class _Blocked:
+    """Where the cutter, its lower side given by pieces, is blocked at a height."""
+
+    drive: SurfaceDrive
+    pieces: Floats
+    lowest: float
+    progress: Progress
+
+    def heights(self, plan: Floats) -> Floats:
+        """Return how high the tip stands over plan points (n, 2)."""
+        return self.drive.skin.drop.drop(plan, self.pieces, self.lowest, self.progress)
+
+    def rim(self, blocked: Floats, free: Floats, z: Floats, high: Floats, low: Floats) -> Floats:
+        """Return plan points (n, 2) between blocked and free ones, over which the tip stands `high` and `low` (n,): on the free side, and
+        no more than `CLOSE` from the rim or from touching."""
+        blocked, free, high, low = blocked.copy(), free.copy(), high - z - tolerance.COINCIDENT, low - z - tolerance.COINCIDENT
+        rows = np.arange(len(z))
+        for k in range(2 * HALVINGS):
+            rows = rows[(np.abs(free[rows] - blocked[rows]).max(axis=1) > CLOSE) & (low[rows] < -CLOSE)]
+            if not len(rows):
+                break
+            # On a slope a straight line from height to height finds the rim at once; beside a wall only halving does.
+            fall = high[rows] - low[rows]
+            slopes = (fall < STEEP * np.abs(free[rows] - blocked[rows]).max(axis=1)) & (k % 3 < 2)
+            share = np.where(slopes, (high[rows] + 0.5 * CLOSE) / fall, 0.5)
+            middle = blocked[rows] + np.clip(share, 0.01, 0.99)[:, None] * (free[rows] - blocked[rows])
+            found = self.heights(middle) - z[rows] - tolerance.COINCIDENT
+            hit = found > 0.0
+            blocked[rows[hit]], high[rows[hit]] = middle[hit], found[hit]
+            free[rows[~hit]], low[rows[~hit]] = middle[~hit], found[~hit]
+            # The end that stays counts half the next time, so that it won't stay for ever (the Illinois rule).
+            low[rows[hit]] = np.where(low[rows[hit]] < -4.0 * CLOSE, 0.5 * low[rows[hit]], low[rows[hit]])
+            high[rows[~hit]] *= 0.5
+        return free
+
+
+@dataclass(frozen=True, slots=True, eq=False, kw_only=True)
+class _Loop:
+    """A way (k, 2) in plan at a height, the number of its level counted upwards; what is closed ends where it begins."""
+
+    plan: Floats
+    z: float
+    level: int
+    closed: bool
+
+
+def _loops(levels: Floats, places: Places, drive: SurfaceDrive, tool: Tool, settings: WaterlineSettings, progress: Progress) -> list[_Loop]:
+    """Return the passes where the cutter touches the area, lowest first, the material on their right."""
+    cell = float(np.clip(CELL * tool.radius, FINEST, COARSEST))
+    blocked = _Blocked(drive=drive, pieces=lower_side(tool, drive.allowance), lowest=float(drive.low[2]) - tool.flute_length,
+                       progress=progress)
+    # Tips are compared as drops put them, without the allowance that lifts the tool.
+    tips = _spread(places.tips, cell) - drive.allowance * UPRIGHT
+    levels = levels - drive.allowance
+    grid, heights = _grid(tips, cell, blocked)
+    knots = np.concatenate([levels[:1] - 1.0, levels + tolerance.COINCIDENT, levels[-1:] + 1.0])
+    numbers = np.concatenate([[-0.5], np.arange(len(levels)), [len(levels) - 0.5]])
+    near = cKDTree(tips)
+    found: list[tuple[SheetLine, Ints, bool]] = []
+    for line in whole_levels(grid, np.interp(heights, knots, numbers)):
+        progress.check()
+        line = replace(line, ends=line.ends[::-1], share=line.share[::-1])
+        plan = line.value(grid.points)[:, :2]
+        touches = np.asarray(near.query(np.column_stack([plan, np.full(len(plan), levels[line.level])]))[0] <= NEARBY * cell)
+        found += [(line, rows, closed) for rows, closed in _pieces(plan, touches, line.closed, settings.overlap)]
+    if not found:
+        return []
+    ends = np.concatenate([line.ends[rows] for line, rows, _ in found])
+    z = np.repeat([levels[line.level] for line, *_ in found], [len(rows) for _, rows, _ in found])
+    high = np.take_along_axis(ends, np.argsort(-heights[ends], axis=1, kind="stable"), axis=1)
+    plan = blocked.rim(grid.points[high[:, 0], :2], grid.points[high[:, 1], :2], z, heights[high[:, 0]], heights[high[:, 1]])
+    split = np.split(plan, np.cumsum([len(rows) for _, rows, _ in found])[:-1])
+    lines = [_Loop(plan=way, z=float(levels[line.level]), level=line.level, closed=closed)
+             for way, (line, _, closed) in zip(split, found, strict=True)]
+    ways = _closer(lines, blocked, settings.chord)
+    return [replace(line, plan=way, z=line.z + drive.allowance) for line, way in zip(lines, ways, strict=True)]
+
+
+def _spread(tips: Floats, step: float) -> Floats:
+    """Return places (n, 3) over triangles (m, 3, 3), no farther than `step` apart on each."""
+    sides = np.linalg.norm(tips - np.roll(tips, -1, axis=1), axis=2).max(axis=1)
+    parts = np.maximum(np.ceil(sides / step), 1.0).astype(np.int64)
+    out = []
+    for n in np.unique(parts).tolist():
+        i, j = (v.ravel() for v in np.meshgrid(np.arange(n + 1), np.arange(n + 1), indexing="ij"))
+        i, j = i[i + j <= n] / n, j[i + j <= n] / n
+        some = tips[parts == n]
+        shares = np.column_stack([1.0 - i - j, i, j])
+        out.append((shares @ some).reshape(-1, 3))
+    return np.concatenate(out)
+
+
+def _grid(tips: Floats, cell: float, blocked: _Blocked) -> tuple[Sheet, Floats]:
+    """Return a level sheet of square cells in halves around tips (n, 3), and how high the cutter stands over its points (v,)."""
+    corner = tips[:, :2].min(axis=0) - (MARGIN + 1) * cell
+    size = tips[:, :2].max(axis=0) + (MARGIN + 1) * cell - corner
+    cell = max(cell, float(np.sqrt(size.prod() / MOST_POINTS)))
+    shape = np.ceil(size / cell).astype(np.int64) + 1
+    wanted = np.zeros(shape, dtype=bool)
+    at = np.round((tips[:, :2] - corner) / cell).astype(np.int64)
+    wanted[at[:, 0], at[:, 1]] = True
+    wanted = binary_dilation(wanted, iterations=MARGIN)
+    number = np.full(wanted.shape, -1)
+    number[wanted] = np.arange(int(wanted.sum()))
+    a, b, c, d = number[:-1, :-1], number[1:, :-1], number[1:, 1:], number[:-1, 1:]
+    halves = np.concatenate([np.stack([a, b, c], axis=2).reshape(-1, 3), np.stack([a, c, d], axis=2).reshape(-1, 3)])
+    halves = halves[(halves >= 0).all(axis=1)]
+    plan = corner + cell * np.argwhere(wanted)
+    points = np.column_stack([plan, np.zeros(len(plan))])
+    sheet = Sheet(points=points, normals=np.broadcast_to(UPRIGHT, points.shape), triangles=halves, face=np.ones(len(halves), np.int64))
+    return sheet, blocked.heights(plan)
+
+
+def _pieces(plan: Floats, near: Bools, closed: bool, overlap: float) -> list[tuple[Ints, bool]]:
+    """Return the rows of the pieces of a way (k, 2) that are near the area, or no farther along the way than an overlap from such, and
+    whether each is closed."""
+    rows = np.arange(len(plan))
+    if near.all() or not near.any():
+        return [(rows, closed)] if near.all() and len(plan) > 1 else []
+    run = np.concatenate([[0.0], np.cumsum(np.hypot(*np.diff(plan, axis=0).T))])
+    places = run[near]
+    places = np.concatenate([places - run[-1], places, places + run[-1]]) if closed else np.concatenate([[-np.inf], places, [np.inf]])
+    after = np.clip(np.searchsorted(places, run), 1, len(places) - 1)
+    wanted = np.minimum(np.abs(places[after] - run), np.abs(run - places[after - 1])) <= overlap
+    if wanted.all():
+        return [(rows, closed)]
+    if closed:
+        first = int(np.flatnonzero(~wanted[:-1])[0])
+        rows = np.append(np.roll(rows[:-1], -first), first)
+    edges = np.flatnonzero(np.diff(wanted[rows].astype(np.int8), prepend=0, append=0)).reshape(-1, 2)
+    return [(rows[a:b], False) for a, b in edges.tolist() if b - a > 1]
+
+
+def _closer(loops: list[_Loop], blocked: _Blocked, chord: float) -> list[Floats]:
+    """Return the ways with places put in until no chord leaves the rim of what is blocked by more than a chord error."""
+    if not loops:
+        return []
+    plan, z = np.concatenate([loop.plan for loop in loops]), np.repeat([loop.z for loop in loops], [len(loop.plan) for loop in loops])
+    line = np.repeat(np.arange(len(loops)), [len(loop.plan) for loop in loops])
+    is_open = np.append(line[1:] == line[:-1], False)
+    for _ in range(HALVINGS):
+        rows = np.flatnonzero(is_open)
+        if not len(rows):
+            break
+        found = _middles(plan[rows], plan[rows + 1], z[rows], blocked, chord)
+        is_open[rows] = beside(found, plan[rows], plan[rows + 1]) > SEEN * chord
+        plan, z, line = np.insert(plan, rows + 1, found, axis=0), np.insert(z, rows + 1, z[rows]), np.insert(line, rows + 1, line[rows])
+        is_open = np.insert(is_open, rows + 1, is_open[rows])
+        is_open[:-1] &= (line[1:] == line[:-1]) & (np.hypot(*np.diff(plan, axis=0).T) > chord)
+    kept = thinned(plan, line, THINNED * chord)
+    return np.split(plan[kept], np.flatnonzero(np.diff(line[kept])) + 1)
+
+
+def _middles(start: Floats, end: Floats, z: Floats, blocked: _Blocked, chord: float) -> Floats:
+    """Return the places (n, 2) on the rim beside the middles of chords that have what is blocked on their right."""
+    way, middle = end - start, 0.5 * (start + end)
+    length = np.hypot(way[:, 0], way[:, 1])
+    left = np.column_stack([-way[:, 1], way[:, 0]]) / np.maximum(length, CLOSE)[:, None]
+    inside, outside, high, low = middle.copy(), middle.copy(), z + 1.0, z - 1.0
+    rows = np.arange(len(z))
+    for errors, lengths in ASIDE:
+        aside = (errors * chord + lengths * length[rows])[:, None] * left[rows]
+        inside[rows], outside[rows] = middle[rows] - aside, middle[rows] + aside
+        high[rows], low[rows] = blocked.heights(inside[rows]), blocked.heights(outside[rows])
+        rows = rows[(low[rows] > z[rows] + tolerance.COINCIDENT) | (high[rows] <= z[rows] + tolerance.COINCIDENT)]
+        if not len(rows):
+            break
+    has_rim = np.ones(len(z), dtype=bool)
+    has_rim[rows] = False
+    # Where no rim is found beside a chord it stays as it is.
+    found = middle
+    found[has_rim] = blocked.rim(inside[has_rim], outside[has_rim], z[has_rim], high[has_rim], low[has_rim])
+    return found
+
+
+def _in_order(loops: list[_Loop], tool: Tool, *, both: bool) -> list[Pass]:
+    """Return the passes of each wall from the top down, one wall after the other; with `both` every other open pass is turned round."""
+    walls: list[list[_Loop]] = []
+    for loop in sorted(loops, key=lambda loop: -loop.level):
+        open_walls = [w for w in walls if w[-1].level == loop.level + 1]
+        apart = [float(np.min(cKDTree(w[-1].plan).query(loop.plan)[0])) for w in open_walls]
+        if apart and min(apart) <= 2.0 * tool.radius:
+            open_walls[int(np.argmin(apart))].append(loop)
+        else:
+            walls.append([loop])
+    return [_pass(loop, turned=both and not loop.closed and k % 2 == 1) for wall in walls for k, loop in enumerate(wall)]
+
+
+def _pass(loop: _Loop, *, turned: bool) -> Pass:
+    way = np.diff(loop.plan, axis=0)
+    way /= np.maximum(np.hypot(way[:, 0], way[:, 1]), CLOSE)[:, None]
+    before, after = np.vstack([way[-1:] if loop.closed else way[:1], way]), np.vstack([way, way[:1] if loop.closed else way[-1:]])
+    ahead = before + after
+    ahead[np.hypot(ahead[:, 0], ahead[:, 1]) < CLOSE] = after[np.hypot(ahead[:, 0], ahead[:, 1]) < CLOSE]
+    ahead /= np.hypot(ahead[:, 0], ahead[:, 1])[:, None]
+    made = Pass(tip=np.column_stack([loop.plan, np.full(len(loop.plan), loop.z)]), axis=np.broadcast_to(UPRIGHT, (len(loop.plan), 3)),
+                normal=np.column_stack([-ahead[:, 1], ahead[:, 0], np.zeros(len(ahead))]), closed=loop.closed)
+    return made.reversed() if turned else made
