@@ -13,13 +13,12 @@ from trunnion.geometry.kernels.drop import RHO1
 from trunnion.geometry.skin import Skin
 from trunnion.model.tool import Tool
 from trunnion.plan.surface.cutter import lower_side, tip_at
+from trunnion.plan.surface.rest import LIFTED
 from trunnion.plan.surface.space import SurfaceSpace
 from trunnion.progress import QUIET, Progress
 
 SAMPLES = 1500
 """Places that an area is judged by; one of them stands for less than a thousandth of it."""
-LIFTED = 0.5 * tolerance.GOUGE
-"""mm: a cutter that other faces lift by no more than this still finishes a place."""
 BESIDE = 0.2
 """mm that shank and holder keep from walls beside them."""
 FLAT = (0.5 * (math.sqrt(5.0) - 1.0), 0.5 * (math.sqrt(5.0) - 1.0) ** 2)
@@ -76,11 +75,13 @@ def reached(space: SurfaceSpace, places: Places, tool: Tool, room: float, allowa
     found = leans(places) < steepest
     rows = np.flatnonzero(found)
     axis = np.tile([0.0, 0.0, 1.0], (len(rows), 1))
-    tip = tip_at(tool, places.point[rows] + allowance * places.normal[rows], places.normal[rows], axis)
+    # Off the face by what its triangles may be too high: beside steep faces a little of that lifts a cutter far.
+    off = allowance + 2.0 * space.skin.bound
+    tip = tip_at(tool, places.point[rows] + off * places.normal[rows], places.normal[rows], axis)
     plan, lowest = tip[:, :2], float(space.low[2]) - space.setup.clearance - tool.gauge_length
     top = space.skin.drop.drop(plan, lower_side(tool, allowance), lowest, progress) + allowance
     highest = float(space.skin.points[:, 2].max())
-    clear = (top - tip[:, 2] < LIFTED + 2.0 * space.skin.bound) & (tip[:, 2] > space.low[2] - tolerance.SEW)
+    clear = (top - tip[:, 2] < LIFTED) & (tip[:, 2] > space.low[2] - tolerance.SEW)
     for z0, r0, _, r1 in tool.profile():
         # What is no wider than the cutter goes where it has been.
         if max(r0, r1) > tool.radius + tolerance.COINCIDENT:

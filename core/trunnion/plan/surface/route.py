@@ -216,7 +216,7 @@ def _area(draft: Draft, area: Area, progress: Progress) -> None:
         _add_finish(draft, "finish", name, mine, found.tool, strategy, places)
     if found.rest is not None:
         left = tuple(t for t in tags if (found.missed & (places.face == t)).any())
-        _add_finish(draft, "rest_finish", area.id, left, found.rest, "surface.pencil", places, earlier=found.tool)
+        _add_finish(draft, "rest_finish", area.id, left, found.rest, first_known(FOR_LOCAL), places, earlier=found.tool)
 
 
 def _hidden_area(draft: Draft, area: Area, progress: Progress) -> None:

@@ -16,8 +16,12 @@ from trunnion.part.exact import ExactFace
 from trunnion.part.part import Part
 from trunnion.plan.surface.drive import Asker, SurfaceDrive
 from trunnion.plan.surface.frames import UPRIGHT, Direction, corners_in, cutting_setup
+from trunnion.plan.surface.rest import left_by
 from trunnion.plan.surface.settings import ALLOWANCE, SCALLOP, number
 from trunnion.settings import digest
+
+KNOWS_EARLIER = ("surface.pencil",)
+"""Strategies that find for themselves what an earlier cutter left; others get it as an area."""
 
 
 @dataclass(frozen=True, slots=True, eq=False, kw_only=True)
@@ -58,9 +62,12 @@ class SurfaceSpace:
     def drive_of(self, operation: Operation, earlier: Tool | None = None, ask: Callable[[Tool], Asker] | None = None) -> SurfaceDrive:
         """Return what an operation on curved faces is driven by; `earlier` is the cutter that finished them before, `ask` makes askers."""
         height, allowance = (number(operation, key) for key in (SCALLOP, ALLOWANCE))
+        skin, faces = self.skin, operation.faces
+        if earlier is not None and operation.strategy not in KNOWS_EARLIER:
+            skin, faces = left_by(skin, faces, earlier, float(self.low[2]) - self.setup.clearance)
         told = digest(self.part.digest, self.part.solid, operation.feature, operation.kind, operation.faces, self.frame, self.blank,
                       self.setup.clearance, self.skin.bound, len(self.skin.triangles), height, allowance, earlier)
-        return SurfaceDrive(feature=operation.feature, kind=operation.kind, faces=operation.faces, skin=self.skin, frame=self.frame,
+        return SurfaceDrive(feature=operation.feature, kind=operation.kind, faces=faces, skin=skin, frame=self.frame,
                             exact=tuple(ExactFace(self.part, tag, self.frame) for tag in operation.faces), low=self.low, high=self.high,
                             clearance=self.setup.clearance, allowance=allowance, height=height, digest=told,
                             earlier=earlier, ask=ask)
