@@ -43,8 +43,10 @@ from trunnion.units import trimmed
 
 ROUGH_SHARE = 0.4
 """Largest roughing cutter over the blank's smaller side seen along the tool: it has to turn inside."""
-REST_SHARE = 0.5
+REST_SHARE = 0.65
 """Largest cutter of rest roughing over the one before it."""
+NEAR_FINISH = 1.6
+"""Largest cutter of the last roughing over the smallest finishing cutter."""
 LEAST_REST = 4.0
 """mm: rest roughing with a smaller cutter than this costs more than it spares the finishing."""
 MISSED = 1.0
@@ -55,6 +57,8 @@ LARGEST_LEANING = 16.0
 """mm: larger balls have no room to lean on parts that need it."""
 SLENDER = 4
 """How many of the most slender cutters say what is hidden: larger ones reach no more."""
+FALLING = ("rough", "semi")
+"""Kinds of operations that larger cutters come first in: what they leave is little for the smaller ones."""
 WALL_STEP = 1.5
 """Axial step of a wall over the cutter's diameter."""
 WALL_SHARE = 0.7
@@ -111,23 +115,23 @@ def _plan(draft: Draft, progress: Progress) -> None:
     upright = walls_of(places, mine)
     walls = on_outline(space, places, upright)
     hidden = _hidden(draft, places, set(mine) - set(walls), progress.part(0.0, 0.1)) if draft.machine.rotary else ()
-    _rough(draft, space, float(space.skin.points[:, 2].min()))
-    if hidden:
-        seen = places.of(np.isin(places.face, hidden))
-        for n, side in enumerate(sides_for(space, draft.setup, draft.around, seen, _finishers(draft), draft.route.reach_clearance,
-                                           progress.part(0.1, 0.3)), 1):
-            _rough(draft, side.space, side.bottom, f"side-{n}")
     for tags in connected(walls, part.graph()):
         _outline(draft, tags)
     areas = [*areas_of(draft.recognition, part.graph(), {*outside, *walls, *hidden}),
              *hidden_areas(draft.recognition, part.graph(), hidden)]
     for n, area in enumerate(areas):
-        share = progress.part(0.3 + 0.7 * n / len(areas), 0.3 + 0.7 * (n + 1) / len(areas))
+        share = progress.part(0.1 + 0.7 * n / len(areas), 0.1 + 0.7 * (n + 1) / len(areas))
         share.at(0.0, f"cutter for {area.id}")
         if area.hidden:
             _hidden_area(draft, area, share)
         else:
             _area(draft, area, share)
+    _rough(draft, space, float(space.skin.points[:, 2].min()))
+    if hidden:
+        seen = places.of(np.isin(places.face, hidden))
+        for n, side in enumerate(sides_for(space, draft.setup, draft.around, seen, _finishers(draft), draft.route.reach_clearance,
+                                           progress.part(0.8, 1.0)), 1):
+            _rough(draft, side.space, side.bottom, f"side-{n}")
 
 
 def _hidden(draft: Draft, places: Places, tags: set[int], progress: Progress) -> tuple[int, ...]:
@@ -146,7 +150,8 @@ def _leaning_finishers(draft: Draft) -> tuple[Tool, ...]:
 
 
 def _rough(draft: Draft, space: SurfaceSpace, bottom: float, name: str = "part") -> None:
-    """Plan roughing by layers with a large cutter from a direction, and once more with a smaller one what that left."""
+    """Plan roughing by layers with a large cutter from a direction, and with falling sizes what those before left: down to about the size
+    of the smallest finishing cutter, so that this one finds little."""
     size, deep = float((space.high - space.low)[:2].min()), float(space.high[2]) - bottom
     most = min(draft.route.largest, ROUGH_SHARE * size)
     tool = _rougher(draft, most, deep, draft.chosen.rough_cutter)
@@ -155,9 +160,14 @@ def _rough(draft: Draft, space: SurfaceSpace, bottom: float, name: str = "part")
                                     draft.recognition.features[0].id, remedy="add a longer cutter to the tools folder"))
         return
     _add_rough(draft, "rough", name, tool, space, bottom)
-    rest = _rougher(draft, REST_SHARE * tool.diameter, deep, "")
-    if rest is not None and rest.diameter >= LEAST_REST:
-        _add_rough(draft, "rest", name, rest, space, bottom)
+    smallest = min((o.tool.diameter for o in draft.operations if o.kind == "finish"), default=tool.diameter)
+    n = 1
+    while tool.diameter > NEAR_FINISH * smallest:
+        rest = _rougher(draft, REST_SHARE * tool.diameter, deep, "")
+        if rest is None or rest.diameter < LEAST_REST:
+            break
+        _add_rough(draft, "rest", f"{name}-{n}", rest, space, bottom)
+        tool, n = rest, n + 1
 
 
 def _rougher(draft: Draft, most: float, deep: float, name: str) -> Tool | None:
@@ -328,7 +338,8 @@ def _in_order(draft: Draft, stages: Sequence[Stage]) -> list[Operation]:
     for o in draft.operations:
         stage = by_stage[o.group]
         before = {other.id for other in draft.operations if other.group in stage.after_all
-                  or (other.group in stage.after and set(other.faces or o.faces) & set(o.faces))}
+                  or (other.group in stage.after and set(other.faces or o.faces) & set(o.faces))
+                  or (o.kind in FALLING and other.group == o.group and other.tool.diameter > o.tool.diameter)}
         done[o.id] = replace(o, after=tuple(sorted(before)))
         jobs.append(Job(id=o.id, tool=o.tool.name, stage=rank[o.group], place=_place(draft, o.faces), after=frozenset(before)))
     return [done[id] for id in ordered(jobs)]
