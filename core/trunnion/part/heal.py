@@ -43,13 +43,18 @@ class Body:
 
 
 def bodies_of(as_read: Shape) -> tuple[list[Body], list[Finding]]:
-    """Return the solids of a shape as read, else the shells that its faces can be sewn to, with findings about the sewing."""
+    """Return the solids of a shape as read, else the closed shells that its faces can be sewn to, with findings about the sewing.
+
+    Where none closes, all faces are one open body: patches that don't meet belong together as much as those that do.
+    """
     tagged = faces_of(as_read)
     solids = solids_of(as_read)
     if solids:
         return [_body(solid, tagged, _same) for solid in solids], []
     sewn, image, findings = _sewn(as_read)
     bodies = [_body(_solid(shell), tagged, image) for shell in shells_of(sewn)]
+    if not any(body.is_closed for body in bodies) and sum(len(body.tags) for body in bodies) < len(tagged):
+        bodies = [_body(sewn, tagged, image)]
     return [body for body in bodies if body.tags], findings
 
 

@@ -19,6 +19,8 @@ _NO_NUMBER = re.compile(rb"(?<![A-Z0-9_#.'$])[-+]?(?:NAN|INF(?:INITY)?|1\.#(?:IN
 _IGES_LINE = re.compile(rb"[SGDPT][ 0-9]{7}$")
 IGES_COLUMNS = 72
 IGES_FACES = (144, 143, 510)
+IGES_SURFACES = (114, 118, 120, 122, 128)
+"""Entities that are a face by themselves where nothing trims them: spline, ruled, revolved and swept surfaces, and B-splines."""
 
 
 def kind_of(data: bytes, name: str) -> str:
@@ -78,6 +80,10 @@ def check_iges(data: bytes, name: str) -> int:
     directory = [line for line in lines if line[IGES_COLUMNS:IGES_COLUMNS + 1] == b"D"][::2]
     kinds = [int(line[:8]) for line in directory if line[:8].strip().isdigit()]
     faces = sum(kind in IGES_FACES for kind in kinds)
+    if not faces:
+        # Surfaces that stand alone have no trim: they end where their knots do.
+        faces = sum(kind in IGES_SURFACES and line[66:68].strip() in (b"", b"0", b"00")
+                    for kind, line in zip(kinds, directory, strict=True)) if len(kinds) == len(directory) else 0
     if not faces:
         raise BadInput(f"{name}: the IGES file holds no trimmed surfaces (entities 144, 143 or 510); export the part's faces too")
     return faces
