@@ -10,14 +10,12 @@ import math
 from dataclasses import dataclass, replace
 
 import numpy as np
-from scipy.ndimage import binary_dilation
 from scipy.spatial import cKDTree
 
 from trunnion import tolerance
 from trunnion.findings import Finding, Refused, warning
 from trunnion.geometry.arrays import Bools, Floats, Ints
 from trunnion.geometry.contours import SheetLine, whole_levels
-from trunnion.geometry.sheet import Sheet
 from trunnion.model.operation import CuttingData
 from trunnion.model.setup import Setup
 from trunnion.model.tool import Tool
@@ -30,20 +28,17 @@ from trunnion.toolpath.surface.cutter import lower_side
 from trunnion.toolpath.surface.linking import Manner, linked
 from trunnion.toolpath.surface.passes import UPRIGHT, Pass
 from trunnion.toolpath.surface.spacing import Places, level_spacing, marched, places_of
+from trunnion.toolpath.surface.tipgrid import grid_around, spread
 from trunnion.toolpath.surface.tracing import SEEN, THINNED, beside, thinned
 
-CELL, FINEST, COARSEST = 0.125, 0.1, 1.0
+CELL, FINEST, COARSEST = 0.2, 0.1, 1.5
 """Of the cutter's radius, and mm at least and at most: side of the grid's cells. What is blocked is as wide as the cutter and more."""
-MOST_POINTS = 1_500_000
-"""Points of a grid at most; beyond, cells grow."""
-MARGIN = 3
-"""Cells round where the area's tips are that are looked at."""
 CLOSE = 1e-5
 """mm: how near to the rim of what is blocked a tip is put."""
 HALVINGS = 16
 ASIDE = ((8.0, 0.0), (0.0, 0.75), (0.0, 2.0))
 """How far to both sides of a chord its rim is looked for, in chord errors and in the chord's length: near first, then as a corner needs."""
-STEEP = 50.0
+STEEP = 6.0
 """A tip that falls more steeply than this stands beside a wall."""
 UPWARD = -math.sin(tolerance.ANGLE)
 """The least part along z of normals of upright walls."""
@@ -142,7 +137,7 @@ class _Blocked:
                 break
             # On a slope a straight line from height to height finds the rim at once; beside a wall only halving does.
             fall = high[rows] - low[rows]
-            slopes = (fall < STEEP * np.abs(free[rows] - blocked[rows]).max(axis=1)) & (k % 3 < 2)
+            slopes = (fall < STEEP * np.abs(free[rows] - blocked[rows]).max(axis=1)) & (k % 2 == 0)
             share = np.where(slopes, (high[rows] + 0.5 * CLOSE) / fall, 0.5)
             middle = blocked[rows] + np.clip(share, 0.01, 0.99)[:, None] * (free[rows] - blocked[rows])
             found = self.heights(middle) - z[rows] - tolerance.COINCIDENT
@@ -171,9 +166,10 @@ def _loops(levels: Floats, places: Places, drive: SurfaceDrive, tool: Tool, sett
     blocked = _Blocked(drive=drive, pieces=lower_side(tool, drive.allowance), lowest=float(drive.low[2]) - tool.flute_length,
                        progress=progress)
     # Tips are compared as drops put them, without the allowance that lifts the tool.
-    tips = _spread(places.tips, cell) - drive.allowance * UPRIGHT
+    tips = spread(places.tips, cell) - drive.allowance * UPRIGHT
     levels = levels - drive.allowance
-    grid, heights = _grid(tips, cell, blocked)
+    grid = grid_around(tips, cell)
+    heights = blocked.heights(grid.points[:, :2])
     knots = np.concatenate([levels[:1] - 1.0, levels + tolerance.COINCIDENT, levels[-1:] + 1.0])
     numbers = np.concatenate([[-0.5], np.arange(len(levels)), [len(levels) - 0.5]])
     near = cKDTree(tips)
@@ -195,41 +191,6 @@ def _loops(levels: Floats, places: Places, drive: SurfaceDrive, tool: Tool, sett
              for way, (line, _, closed) in zip(split, found, strict=True)]
     ways = _closer(lines, blocked, settings.chord)
     return [replace(line, plan=way, z=line.z + drive.allowance) for line, way in zip(lines, ways, strict=True)]
-
-
-def _spread(tips: Floats, step: float) -> Floats:
-    """Return places (n, 3) over triangles (m, 3, 3), no farther than `step` apart on each."""
-    sides = np.linalg.norm(tips - np.roll(tips, -1, axis=1), axis=2).max(axis=1)
-    parts = np.maximum(np.ceil(sides / step), 1.0).astype(np.int64)
-    out = []
-    for n in np.unique(parts).tolist():
-        i, j = (v.ravel() for v in np.meshgrid(np.arange(n + 1), np.arange(n + 1), indexing="ij"))
-        i, j = i[i + j <= n] / n, j[i + j <= n] / n
-        some = tips[parts == n]
-        shares = np.column_stack([1.0 - i - j, i, j])
-        out.append((shares @ some).reshape(-1, 3))
-    return np.concatenate(out)
-
-
-def _grid(tips: Floats, cell: float, blocked: _Blocked) -> tuple[Sheet, Floats]:
-    """Return a level sheet of square cells in halves around tips (n, 3), and how high the cutter stands over its points (v,)."""
-    corner = tips[:, :2].min(axis=0) - (MARGIN + 1) * cell
-    size = tips[:, :2].max(axis=0) + (MARGIN + 1) * cell - corner
-    cell = max(cell, float(np.sqrt(size.prod() / MOST_POINTS)))
-    shape = np.ceil(size / cell).astype(np.int64) + 1
-    wanted = np.zeros(shape, dtype=bool)
-    at = np.round((tips[:, :2] - corner) / cell).astype(np.int64)
-    wanted[at[:, 0], at[:, 1]] = True
-    wanted = binary_dilation(wanted, iterations=MARGIN)
-    number = np.full(wanted.shape, -1)
-    number[wanted] = np.arange(int(wanted.sum()))
-    a, b, c, d = number[:-1, :-1], number[1:, :-1], number[1:, 1:], number[:-1, 1:]
-    halves = np.concatenate([np.stack([a, b, c], axis=2).reshape(-1, 3), np.stack([a, c, d], axis=2).reshape(-1, 3)])
-    halves = halves[(halves >= 0).all(axis=1)]
-    plan = corner + cell * np.argwhere(wanted)
-    points = np.column_stack([plan, np.zeros(len(plan))])
-    sheet = Sheet(points=points, normals=np.broadcast_to(UPRIGHT, points.shape), triangles=halves, face=np.ones(len(halves), np.int64))
-    return sheet, blocked.heights(plan)
 
 
 def _pieces(plan: Floats, near: Bools, closed: bool, overlap: float) -> list[tuple[Ints, bool]]:
