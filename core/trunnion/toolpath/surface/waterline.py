@@ -42,8 +42,8 @@ STEEP = 6.0
 """A tip that falls more steeply than this stands beside a wall."""
 UPWARD = -math.sin(tolerance.ANGLE)
 """The least part along z of normals of upright walls."""
-NEARBY = 1.0
-"""Cells: a tip this near to one on the area touches it."""
+NEARBY, ROUGHLY = 1.0, 2.5
+"""Cells: a tip this near to one on the area touches it; and one that is only known to be somewhere on a cell's side may."""
 FLANK = 0.8
 """Of the flutes' length: the largest step beside an upright wall."""
 SMALLEST_LEFTOVER = 0.5
@@ -178,19 +178,27 @@ def _loops(levels: Floats, places: Places, drive: SurfaceDrive, tool: Tool, sett
         progress.check()
         line = replace(line, ends=line.ends[::-1], share=line.share[::-1])
         plan = line.value(grid.points)[:, :2]
-        touches = np.asarray(near.query(np.column_stack([plan, np.full(len(plan), levels[line.level])]))[0] <= NEARBY * cell)
+        touches = _apart(near, plan, float(levels[line.level])) <= ROUGHLY * cell
         found += [(line, rows, closed) for rows, closed in _pieces(plan, touches, line.closed, settings.overlap)]
     if not found:
         return []
     ends = np.concatenate([line.ends[rows] for line, rows, _ in found])
-    z = np.repeat([levels[line.level] for line, *_ in found], [len(rows) for _, rows, _ in found])
+    over = np.repeat([levels[line.level] for line, *_ in found], [len(rows) for _, rows, _ in found])
     high = np.take_along_axis(ends, np.argsort(-heights[ends], axis=1, kind="stable"), axis=1)
-    plan = blocked.rim(grid.points[high[:, 0], :2], grid.points[high[:, 1], :2], z, heights[high[:, 0]], heights[high[:, 1]])
+    plan = blocked.rim(grid.points[high[:, 0], :2], grid.points[high[:, 1], :2], over, heights[high[:, 0]], heights[high[:, 1]])
     split = np.split(plan, np.cumsum([len(rows) for _, rows, _ in found])[:-1])
-    lines = [_Loop(plan=way, z=float(levels[line.level]), level=line.level, closed=closed)
-             for way, (line, _, closed) in zip(split, found, strict=True)]
+    lines = []
+    for way, (line, _, closed) in zip(split, found, strict=True):
+        z = float(levels[line.level])
+        for rows, whole in _pieces(way, _apart(near, way, z) <= NEARBY * cell, closed, settings.overlap):
+            lines.append(_Loop(plan=way[rows], z=z, level=line.level, closed=whole))
     ways = _closer(lines, blocked, settings.chord)
     return [replace(line, plan=way, z=line.z + drive.allowance) for line, way in zip(lines, ways, strict=True)]
+
+
+def _apart(tips: cKDTree, plan: Floats, z: float) -> Floats:
+    """Return how far tips at plan points (n, 2) and a height are from those that touch the area (n,)."""
+    return np.asarray(tips.query(np.column_stack([plan, np.full(len(plan), z)]))[0])
 
 
 def _pieces(plan: Floats, near: Bools, closed: bool, overlap: float) -> list[tuple[Ints, bool]]:
