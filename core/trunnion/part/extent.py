@@ -15,7 +15,9 @@ from OCP.ShapeAnalysis import ShapeAnalysis_Surface
 from trunnion import tolerance
 from trunnion.geometry.arrays import Floats
 from trunnion.part.canonical import Surface
+from trunnion.part.evaluate import evaluator_of
 from trunnion.part.faces import FaceView
+from trunnion.part.trim import Trim
 
 _GRID, _ZOOM, _ZOOMS, _STEPS = 13, 5, 4, 65
 Box = tuple[Floats, Floats]
@@ -83,8 +85,13 @@ def _searched(view: FaceView, boundary: Floats) -> Box:
     """Return the box of samples, each of the six farthest ones followed by a finer and finer search around it."""
     u0, u1, v0, v1 = view.bounds()
     step = np.array([(u1 - u0) / _GRID, (v1 - v0) / _GRID])
-    places = np.array(view.grid(_GRID))
-    places, points = _inside(view, places)
+    trim, evaluate = Trim(view), evaluator_of(view.adaptor)
+
+    def inside(places: Floats) -> tuple[Floats, Floats]:
+        kept = places[trim.holds(places)]
+        return kept, evaluate(kept)[:, 0]
+
+    places, points = inside(np.array(view.grid(_GRID)))
     found = [boundary, points]
     for axis in range(3):
         for way in (1.0, -1.0):
@@ -94,15 +101,10 @@ def _searched(view: FaceView, boundary: Floats) -> Box:
                 centre = here[int(np.argmax(way * best[:, axis]))]
                 share = np.linspace(-1.0, 1.0, _ZOOM)
                 around = np.stack(np.meshgrid(share, share), axis=-1).reshape(-1, 2)
-                here, best = _inside(view, np.clip(centre + around * reach, [u0, v0], [u1, v1]))
+                here, best = inside(np.clip(centre + around * reach, [u0, v0], [u1, v1]))
                 if not len(best):
                     break
                 found.append(best)
                 reach = reach * (2.0 / _ZOOM)
     cloud = np.concatenate([f for f in found if len(f)] or [np.array([view.at(0.5 * (u0 + u1), 0.5 * (v0 + v1))[0]])])
     return cloud.min(axis=0), cloud.max(axis=0)
-
-
-def _inside(view: FaceView, places: Floats) -> tuple[Floats, Floats]:
-    kept = np.array([uv for uv in places.tolist() if view.holds(*uv)]).reshape(-1, 2)
-    return kept, np.array([view.adaptor.Value(u, v).Coord() for u, v in kept.tolist()]).reshape(-1, 3)
