@@ -111,3 +111,28 @@ def test_a_level_face_alone_has_no_path_but_a_finding() -> None:
 def test_without_a_scallop_height_or_a_step_it_refuses() -> None:
     with pytest.raises(Refused, match="scallop height"):
         planned(round_wall(8.0, 0.0, 10.0), FLAT, height=0.0)
+
+
+def block(low, high):
+    """Return the skin of the four sides (tag 1) and the top (tag 2) of a block."""
+    (x0, y0, z0), (x1, y1, z1) = low, high
+    ring = np.array([[x0, y0], [x1, y0], [x1, y1], [x0, y1]])
+    points, normals, triangles = [], [], []
+    for k, out in enumerate(((0, -1), (1, 0), (0, 1), (-1, 0))):
+        a, b = ring[k], ring[(k + 1) % 4]
+        points += [[*a, z0], [*b, z0], [*b, z1], [*a, z1]]
+        normals += [[*out, 0.0]] * 4
+        triangles += [[4 * k, 4 * k + 1, 4 * k + 2], [4 * k, 4 * k + 2, 4 * k + 3]]
+    points += [[*p, z1] for p in ring]
+    normals += [[0.0, 0.0, 1.0]] * 4
+    triangles += [[16, 17, 18], [16, 18, 19]]
+    return Skin(points=np.array(points, dtype=float), normals=np.array(normals, dtype=float), triangles=np.array(triangles),
+                face=np.repeat([1, 2], [8, 2]), bound=0.0)
+
+
+def test_the_cutter_rolls_round_the_corners_of_a_block_in_one_closed_pass() -> None:
+    made, _ = planned(block((5, 5, 0), (25, 20, 8)), FLAT, chord=0.005)
+    assert (made.path.motion == Motion.RAPID).sum() == 3
+    around = made.path.lengths()[made.path.mark == Mark.CUT].sum()
+    # And over its start, to the next place after half a millimetre.
+    assert 2 * 20 + 2 * 15 + 2 * math.pi * 5.0 - 0.01 <= around <= 2 * 20 + 2 * 15 + 2 * math.pi * 5.0 + 20.0

@@ -34,6 +34,8 @@ from trunnion.toolpath.surface.tracing import follow
 
 CELL, FINEST, COARSEST = 0.1, 0.05, 0.5
 """Of the cutter's radius, and mm at least and at most: side of the grid's cells."""
+MARGIN = 3
+"""Cells round the area's tips that are looked at."""
 CLOSER = 14
 """Times the distance between two places on both sides of a valley is halved."""
 JUMP = 2.0
@@ -108,7 +110,7 @@ def _nothing(drive: SurfaceDrive, tool: Tool) -> Finding:
 
 def _valleys(tips: Floats, cell: float, ground: _Ground, angle: float, progress: Progress) -> list[Floats]:
     """Return the valleys (k, 2) near tips (n, 3), in plan: what the cutter touches jumps across them."""
-    grid = grid_around(tips, cell)
+    grid = grid_around(tips, cell, MARGIN)
     z, on_area, contact = ground.touch(grid.points[:, :2], progress.part(0.0, 0.5))
     ends, side = edges_of(grid.triangles, len(grid.points))
     a, b = ends.T

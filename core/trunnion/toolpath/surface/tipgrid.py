@@ -11,8 +11,6 @@ from trunnion.toolpath.surface.passes import UPRIGHT
 
 MOST_POINTS = 1_500_000
 """Points of a grid at most; beyond, cells grow."""
-MARGIN = 3
-"""Cells round where the area's tips are that are looked at."""
 
 
 def spread(tips: Floats, step: float) -> Floats:
@@ -29,15 +27,15 @@ def spread(tips: Floats, step: float) -> Floats:
     return np.concatenate(out)
 
 
-def grid_around(tips: Floats, cell: float) -> Sheet:
-    """Return a level sheet of square cells in halves, the triangles anticlockwise, over all places (2,) near tips (n, 3)."""
-    corner = tips[:, :2].min(axis=0) - (MARGIN + 1) * cell
-    size = tips[:, :2].max(axis=0) + (MARGIN + 1) * cell - corner
+def grid_around(tips: Floats, cell: float, margin: int) -> Sheet:
+    """Return a level sheet of square cells in halves, the triangles anticlockwise, as far as `margin` cells round tips (n, 3)."""
+    corner = tips[:, :2].min(axis=0) - (margin + 1) * cell
+    size = tips[:, :2].max(axis=0) + (margin + 1) * cell - corner
     cell = max(cell, float(np.sqrt(size.prod() / MOST_POINTS)))
     wanted = np.zeros(np.ceil(size / cell).astype(np.int64) + 1, dtype=bool)
     at = np.round((tips[:, :2] - corner) / cell).astype(np.int64)
     wanted[at[:, 0], at[:, 1]] = True
-    wanted = binary_dilation(wanted, iterations=MARGIN)
+    wanted = binary_dilation(wanted, iterations=margin)
     number = np.full(wanted.shape, -1)
     number[wanted] = np.arange(int(wanted.sum()))
     a, b, c, d = number[:-1, :-1], number[1:, :-1], number[1:, 1:], number[:-1, 1:]

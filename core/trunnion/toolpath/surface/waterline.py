@@ -8,6 +8,7 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass, replace
+from itertools import pairwise
 
 import numpy as np
 from scipy.spatial import cKDTree
@@ -33,6 +34,8 @@ from trunnion.toolpath.surface.tracing import SEEN, THINNED, beside, thinned
 
 CELL, FINEST, COARSEST = 0.2, 0.1, 1.5
 """Of the cutter's radius, and mm at least and at most: side of the grid's cells. What is blocked is as wide as the cutter and more."""
+MARGIN = 6
+"""Cells round the area's tips that are looked at: as far as the cutter goes away from both sides of an edge that it rolls round."""
 CLOSE = 1e-5
 """mm: how near to the rim of what is blocked a tip is put."""
 HALVINGS = 16
@@ -44,6 +47,8 @@ UPWARD = -math.sin(tolerance.ANGLE)
 """The least part along z of normals of upright walls."""
 NEARBY, ROUGHLY = 1.0, 2.5
 """Cells: a tip this near to one on the area touches it; and one that is only known to be somewhere on a cell's side may."""
+ROLLS = 0.15
+"""Of an arc: by how much the way round an edge may differ from it."""
 FLANK = 0.8
 """Of the flutes' length: the largest step beside an upright wall."""
 SMALLEST_LEFTOVER = 0.5
@@ -168,18 +173,18 @@ def _loops(levels: Floats, places: Places, drive: SurfaceDrive, tool: Tool, sett
     # Tips are compared as drops put them, without the allowance that lifts the tool.
     tips = spread(places.tips, cell) - drive.allowance * UPRIGHT
     levels = levels - drive.allowance
-    grid = grid_around(tips, cell)
+    grid = grid_around(tips, cell, MARGIN)
     heights = blocked.heights(grid.points[:, :2])
     knots = np.concatenate([levels[:1] - 1.0, levels + tolerance.COINCIDENT, levels[-1:] + 1.0])
     numbers = np.concatenate([[-0.5], np.arange(len(levels)), [len(levels) - 0.5]])
-    near = cKDTree(tips)
+    near, radius = cKDTree(tips), tool.radius + drive.allowance
     found: list[tuple[SheetLine, Ints, bool]] = []
     for line in whole_levels(grid, np.interp(heights, knots, numbers)):
         progress.check()
         line = replace(line, ends=line.ends[::-1], share=line.share[::-1])
         plan = line.value(grid.points)[:, :2]
         touches = _apart(near, plan, float(levels[line.level])) <= ROUGHLY * cell
-        found += [(line, rows, closed) for rows, closed in _pieces(plan, touches, line.closed, settings.overlap)]
+        found += [(line, rows, closed) for rows, closed in _pieces(plan, touches, line.closed, settings.overlap, radius)]
     if not found:
         return []
     ends = np.concatenate([line.ends[rows] for line, rows, _ in found])
@@ -190,7 +195,7 @@ def _loops(levels: Floats, places: Places, drive: SurfaceDrive, tool: Tool, sett
     lines = []
     for way, (line, _, closed) in zip(split, found, strict=True):
         z = float(levels[line.level])
-        for rows, whole in _pieces(way, _apart(near, way, z) <= NEARBY * cell, closed, settings.overlap):
+        for rows, whole in _pieces(way, _apart(near, way, z) <= NEARBY * cell, closed, settings.overlap, radius):
             lines.append(_Loop(plan=way[rows], z=z, level=line.level, closed=whole))
     ways = _closer(lines, blocked, settings.chord)
     return [replace(line, plan=way, z=line.z + drive.allowance) for line, way in zip(lines, ways, strict=True)]
@@ -201,24 +206,44 @@ def _apart(tips: cKDTree, plan: Floats, z: float) -> Floats:
     return np.asarray(tips.query(np.column_stack([plan, np.full(len(plan), z)]))[0])
 
 
-def _pieces(plan: Floats, near: Bools, closed: bool, overlap: float) -> list[tuple[Ints, bool]]:
-    """Return the rows of the pieces of a way (k, 2) that are near the area, or no farther along the way than an overlap from such, and
-    whether each is closed."""
+def _pieces(plan: Floats, near: Bools, closed: bool, overlap: float, radius: float) -> list[tuple[Ints, bool]]:
+    """Return the rows of the pieces of a way (k, 2) that are near the area, roll round an edge of it, or are no farther along the way than
+    an overlap from such, and whether each is closed."""
     rows = np.arange(len(plan))
-    if near.all() or not near.any():
-        return [(rows, closed)] if near.all() and len(plan) > 1 else []
+    if not near.any():
+        return []
+    if closed:
+        first = int(np.flatnonzero(near[:-1])[0]) if near[:-1].any() else 0
+        rows = np.append(np.roll(rows[:-1], -first), first)
+    plan, near = plan[rows], near[rows] | _rolls(plan[rows], near[rows], radius)
+    if near.all():
+        return [(rows, closed)] if len(rows) > 1 else []
     run = np.concatenate([[0.0], np.cumsum(np.hypot(*np.diff(plan, axis=0).T))])
-    places = run[near]
-    places = np.concatenate([places - run[-1], places, places + run[-1]]) if closed else np.concatenate([[-np.inf], places, [np.inf]])
+    places = np.concatenate([[-np.inf], run[near], [np.inf]])
     after = np.clip(np.searchsorted(places, run), 1, len(places) - 1)
-    wanted = np.minimum(np.abs(places[after] - run), np.abs(run - places[after - 1])) <= overlap
+    wanted = np.minimum(places[after] - run, run - places[after - 1]) <= overlap
     if wanted.all():
         return [(rows, closed)]
     if closed:
-        first = int(np.flatnonzero(~wanted[:-1])[0])
-        rows = np.append(np.roll(rows[:-1], -first), first)
-    edges = np.flatnonzero(np.diff(wanted[rows].astype(np.int8), prepend=0, append=0)).reshape(-1, 2)
+        first = int(np.flatnonzero(~wanted)[0])
+        turn = np.append(np.roll(np.arange(len(rows) - 1), -first), first)
+        rows, wanted = rows[turn], wanted[turn]
+    edges = np.flatnonzero(np.diff(wanted.astype(np.int8), prepend=0, append=0)).reshape(-1, 2)
     return [(rows[a:b], False) for a, b in edges.tolist() if b - a > 1]
+
+
+def _rolls(plan: Floats, near: Bools, radius: float) -> Bools:
+    """Say of places (k, 2) between two that are near the area whether the cutter rolls round an edge there: the way is as long as the arc
+    of its radius between both."""
+    out = np.zeros(len(plan), dtype=bool)
+    rows = np.flatnonzero(near)
+    run = np.concatenate([[0.0], np.cumsum(np.hypot(*np.diff(plan, axis=0).T))])
+    for a, b in pairwise(rows.tolist()):
+        across = math.dist(plan[a], plan[b])
+        if b > a + 1 and across < 2.0 * radius:
+            arc = 2.0 * radius * math.asin(across / (2.0 * radius))
+            out[a:b] = abs(float(run[b] - run[a]) - arc) <= ROLLS * arc
+    return out
 
 
 def _closer(loops: list[_Loop], blocked: _Blocked, chord: float) -> list[Floats]:
