@@ -245,11 +245,16 @@ def _begun(one: Pass, place: Floats) -> Pass:
 
 
 def _overlapped(one: Pass, overlap: float) -> Pass:
-    """Return a closed pass that goes on over its start by an overlap, or what comes next to it."""
+    """Return a closed pass that goes on over its start by an overlap."""
+    if overlap <= 0.0:
+        return one
     run = np.concatenate([[0.0], np.cumsum(np.linalg.norm(np.diff(one.tip, axis=0), axis=1))])
-    over = int(np.searchsorted(run, min(overlap, 0.5 * float(run[-1]))))
-    rows = np.append(np.arange(len(one)), np.arange(1, over + 1))
-    return Pass(tip=one.tip[rows], axis=one.axis[rows], normal=one.normal[rows], closed=over == 0)
+    last = min(overlap, 0.5 * float(run[-1]))
+    row = int(np.searchsorted(run, last, side="right")) - 1
+    share = (last - run[row]) / (run[row + 1] - run[row])
+    more = (np.vstack([a[1:row + 1], (1.0 - share) * a[row:row + 1] + share * a[row + 1:row + 2]]) for a in (one.tip, one.axis, one.normal))
+    tip, axis, normal = (np.vstack([a, b]) for a, b in zip((one.tip, one.axis, one.normal), more, strict=True))
+    return Pass(tip=tip, axis=unit(axis), normal=normal)
 
 
 def _near(passes: Sequence[Pass], manner: Manner) -> Bools:

@@ -184,7 +184,9 @@ def _loops(levels: Floats, places: Places, drive: SurfaceDrive, tool: Tool, sett
         line = replace(line, ends=line.ends[::-1], share=line.share[::-1])
         plan = line.value(grid.points)[:, :2]
         touches = _apart(near, plan, float(levels[line.level])) <= ROUGHLY * cell
-        found += [(line, rows, closed) for rows, closed in _pieces(plan, touches, line.closed, settings.overlap, radius)]
+        # So far only roughly, and as far as an edge may be rolled round.
+        reach = settings.overlap + math.pi * radius
+        found += [(line, rows, closed) for rows, closed in _pieces(plan, touches, line.closed, reach, radius)]
     if not found:
         return []
     ends = np.concatenate([line.ends[rows] for line, rows, _ in found])
