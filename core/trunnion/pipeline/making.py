@@ -73,7 +73,7 @@ def findings_of(paths: Sequence[OperationPath], process: ProcessTree) -> tuple[F
 
 def _settled(finding: Finding, own: Operation, process: ProcessTree) -> bool:
     strategies = SETTLED.get(finding.code, set())
-    return any(o.strategy in strategies and o.kind == own.kind and set(o.faces) & set(own.faces)
+    return any(o.strategy in strategies and set(o.faces) & set(own.faces)
                for o in process.operations if o.id != own.id and not o.suppressed)
 
 

@@ -220,9 +220,10 @@ def _area(draft: Draft, area: Area, progress: Progress) -> None:
     if found.tool is None:
         return
     tags = tuple(t for t in area.tags if found.reached[places.face == t].any())
+    if chosen.semi_allowance > 0.0:
+        # What is too steep for it keeps the allowance of roughing, which is little beside a wall.
+        _add_finish(draft, "semi", area.id, tags, found.tool, first_known(FOR_LOCAL if area.local else FOR_SHALLOW), places)
     for name, mine, strategy in _by_slope(area, tags, places, math.radians(chosen.steep)):
-        if chosen.semi_allowance > 0.0:
-            _add_finish(draft, "semi", name, mine, found.tool, strategy, places)
         _add_finish(draft, "finish", name, mine, found.tool, strategy, places)
     if found.rest is not None:
         left = tuple(t for t in tags if (found.missed & (places.face == t)).any())
@@ -296,7 +297,7 @@ def _add_finish(draft: Draft, kind: str, name: str, tags: tuple[int, ...], tool:
     rules = (stage.rule, f"{tool.name} over {trimmed(area, 0)} mm2: scallops of {trimmed(1000.0 * height, 1)} um, "
              f"{trimmed(width, 3)} mm between passes on a plane.", f"It leaves {trimmed(allowance, 2)} mm.")
     choices: dict[str, Value] = {SCALLOP: height, ALLOWANCE: allowance}
-    if strategy in MEETING and STEEP in registry.names("strategies"):
+    if not semi and strategy in MEETING and STEEP in registry.names("strategies"):
         key, past = MEETING[strategy]
         choices[key] = min(max(chosen.steep + past, 1.0), 89.0)
     if earlier is not None:
