@@ -17,6 +17,7 @@ from trunnion import tolerance
 from trunnion.findings import Finding, Refused, warning
 from trunnion.geometry.arrays import Bools, Floats, Ints
 from trunnion.geometry.contours import SheetLine, whole_levels
+from trunnion.geometry.kernels.drop import slope_at
 from trunnion.model.operation import CuttingData
 from trunnion.model.setup import Setup
 from trunnion.model.tool import Tool
@@ -41,6 +42,10 @@ CLOSE = 1e-5
 HALVINGS = 16
 ASIDE = ((8.0, 0.0), (0.0, 0.75), (0.0, 2.0))
 """How far to both sides of a chord its rim is looked for, in chord errors and in the chord's length: near first, then as a corner needs."""
+NEWTON = 8
+"""Steps of a search that mostly ends after three."""
+LEVEL, UPRIGHT_WALL = 0.05, 1e4
+"""A tip that falls less steeply, or more, than this along a search is left to halving."""
 STEEP = 6.0
 """A tip that falls more steeply than this stands beside a wall."""
 UPWARD = -math.sin(tolerance.ANGLE)
@@ -130,6 +135,37 @@ class _Blocked:
     def heights(self, plan: Floats) -> Floats:
         """Return how high the tip stands over plan points (n, 2)."""
         return self.drive.skin.drop.drop(plan, self.pieces, self.lowest, self.progress)
+
+    def falls(self, plan: Floats) -> tuple[Floats, Floats]:
+        """Return how high the tip stands over plan points (n, 2), and how that changes along x and y (n, 2): as the lower side rises from
+        the axis where it touches."""
+        z, facet, contact = self.drive.skin.drop.touch(plan, self.pieces, self.lowest, self.progress)
+        aside = contact[:, :2] - plan
+        away = np.hypot(aside[:, 0], aside[:, 1])
+        slope = np.minimum(slope_at(self.pieces, away), UPRIGHT_WALL)
+        # Under the axis and over nothing the tip is level.
+        fall = np.divide(slope, away, out=np.zeros(len(plan)), where=(facet >= 0) & (away > 0.0))
+        return z, fall[:, None] * np.nan_to_num(aside)
+
+    def along(self, start: Floats, way: Floats, z: Floats, most: Floats) -> tuple[Floats, Bools]:
+        """Return plan points (n, 2) on the free side of the rim, no more than `CLOSE` from it, on lines from `start` along unit ways (n, 2)
+        that leave what is blocked, and whether one was found no farther than `most` (n,) by Newton's steps."""
+        run, done = np.zeros(len(z)), np.zeros(len(z), dtype=bool)
+        rows = np.arange(len(z))
+        for _ in range(NEWTON):
+            height, fall = self.falls(start[rows] + run[rows, None] * way[rows])
+            above = height - z[rows] - tolerance.COINCIDENT
+            steep = -(fall * way[rows]).sum(axis=1)
+            fits = (steep > LEVEL) & (steep < UPRIGHT_WALL)
+            near = fits & (above <= 0.0) & (above >= -CLOSE * steep)
+            done[rows[near]] = True
+            goes = fits & ~near
+            rows = rows[goes]
+            if not len(rows):
+                break
+            run[rows] += above[goes] / steep[goes] + 0.5 * CLOSE
+            rows = rows[np.abs(run[rows]) <= most[rows]]
+        return start + run[:, None] * way, done
 
     def rim(self, blocked: Floats, free: Floats, z: Floats, high: Floats, low: Floats) -> Floats:
         """Return plan points (n, 2) between blocked and free ones, over which the tip stands `high` and `low` (n,): on the free side, and
@@ -273,8 +309,10 @@ def _middles(start: Floats, end: Floats, z: Floats, blocked: _Blocked, chord: fl
     way, middle = end - start, 0.5 * (start + end)
     length = np.hypot(way[:, 0], way[:, 1])
     left = np.column_stack([-way[:, 1], way[:, 0]]) / np.maximum(length, CLOSE)[:, None]
+    found, has_rim = blocked.along(middle, left, z, ASIDE[0][0] * chord + ASIDE[1][1] * length)
     inside, outside, high, low = middle.copy(), middle.copy(), z + 1.0, z - 1.0
-    rows = np.arange(len(z))
+    rows = np.flatnonzero(~has_rim)
+    halved = rows
     for errors, lengths in ASIDE:
         aside = (errors * chord + lengths * length[rows])[:, None] * left[rows]
         inside[rows], outside[rows] = middle[rows] - aside, middle[rows] + aside
@@ -282,11 +320,10 @@ def _middles(start: Floats, end: Floats, z: Floats, blocked: _Blocked, chord: fl
         rows = rows[(low[rows] > z[rows] + tolerance.COINCIDENT) | (high[rows] <= z[rows] + tolerance.COINCIDENT)]
         if not len(rows):
             break
-    has_rim = np.ones(len(z), dtype=bool)
-    has_rim[rows] = False
     # Where no rim is found beside a chord it stays as it is.
-    found = middle
-    found[has_rim] = blocked.rim(inside[has_rim], outside[has_rim], z[has_rim], high[has_rim], low[has_rim])
+    found[rows] = middle[rows]
+    rows = np.setdiff1d(halved, rows)
+    found[rows] = blocked.rim(inside[rows], outside[rows], z[rows], high[rows], low[rows])
     return found
 
 
