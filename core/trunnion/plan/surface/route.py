@@ -267,6 +267,8 @@ FOR_SHALLOW = ("surface.parallel", "surface.constant")
 """Strategies for local features and for shallow faces, the best first."""
 STEEP = "surface.waterline"
 """The strategy for steep faces."""
+REST_LEAD = 0.3
+"""mm: radius of leads in rest finishing: what is left lies beside faces that stand up."""
 SOME = 0.02
 """Share of a face that is worth another strategy."""
 MEETING = {"surface.waterline": ("surface.waterline.shallowest", -5.0), "surface.constant": ("surface.constant.steepest", 5.0),
@@ -301,7 +303,7 @@ def _add_finish(draft: Draft, kind: str, name: str, tags: tuple[int, ...], tool:
         key, past = MEETING[strategy]
         choices[key] = min(max(chosen.steep + past, 1.0), 89.0)
     if earlier is not None:
-        choices[EARLIER] = earlier.name
+        choices |= {EARLIER: earlier.name, f"{strategy}.lead_radius": REST_LEAD}
     _add(draft, kind, name, _feature_of(draft, tags), tool, tags, depth, width, choices, rules, strategy=strategy)
 
 
