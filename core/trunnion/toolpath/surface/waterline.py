@@ -37,7 +37,7 @@ CELL, FINEST, COARSEST = 0.2, 0.1, 1.5
 """Of the cutter's radius, and mm at least and at most: side of the grid's cells. What is blocked is as wide as the cutter and more."""
 MARGIN = 6
 """Cells round the area's tips that are looked at: as far as the cutter goes away from both sides of an edge that it rolls round."""
-CLOSE = 1e-5
+CLOSE = 1e-4
 """mm: how near to the rim of what is blocked a tip is put."""
 HALVINGS = 16
 ASIDE = ((8.0, 0.0), (0.0, 0.75), (0.0, 2.0))
