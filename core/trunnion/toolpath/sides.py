@@ -87,8 +87,8 @@ def _lowered(stock: PlanningStock, frame: Frame, other: PlanningStock, other_fra
         rows = rows[gone]
         heights[rows] -= step
         rows = rows[heights[rows] > lowest]
-    heights = np.maximum(heights, lowest).reshape(stock.heights.shape)
-    return replace(stock, heights=_fixed(heights), digest=digest(stock.digest, other.digest))
+    kept = np.maximum(heights, lowest).reshape(stock.heights.shape)
+    return replace(stock, heights=_fixed(kept), digest=digest(stock.digest, other.digest))
 
 
 def _lowest(blank: Blank, frame: Frame) -> float:
