@@ -36,6 +36,8 @@ QUARTER = 16
 """Straight moves in a lead's quarter circle: at 2 mm, 2 um from it."""
 BETWEEN = 9
 """Places between two leads that are asked for room."""
+LIFT_STEP = 0.02
+"""mm: the difference of what two neighbours on a lead are lifted by, from which on the lead is left out."""
 SAME = 1e-9
 """Two directions that differ by less are one."""
 SWING = math.cos(math.radians(60.0))
@@ -302,8 +304,13 @@ def _leads(passes: Sequence[Pass], drive: SurfaceDrive, tool: Tool, manner: Mann
     floor = drive.skin.drop.drop(flat[:, :2], lower_side(tool, drive.allowance), float(drive.low[2]) - tool.flute_length, progress)
     lift = np.maximum(floor + drive.allowance - flat[:, 2], 0.0)
     lifts = [x.reshape(w.shape[:2]) for x, w in zip(np.split(lift, np.cumsum([w[..., 0].size for w in ways])[:-1]), ways, strict=True)]
-    for arcs, up, stands in zip((coming, going), lifts, upright, strict=False):
+    for arcs, up, stands, nearest, row in zip((coming, going), lifts, upright, (-1, 0), (0, -1), strict=False):
         arcs[:, :, 2] += np.where(stands[:, None], up, 0.0)
+        # Lifted unevenly an arc runs along something steep, which its chords would enter: the tool then comes and goes along its axis.
+        uneven = stands & (np.abs(np.diff(up, axis=1)).max(axis=1, initial=0.0) + up[:, nearest] > LIFT_STEP)
+        tips = np.array([p.tip[row] for p in passes])[uneven]
+        rise = np.arange(1, QUARTER + 1) * (manner.lead_radius / QUARTER)
+        arcs[uneven] = tips[:, None] + (rise if nearest == 0 else rise[::-1])[None, :, None] * UPRIGHT
     has_room = (lifts[0][1:].max(axis=1, initial=0.0) <= manner.chord) & (lifts[1][:-1].max(axis=1, initial=0.0) <= manner.chord)
     return coming, going, np.asarray(has_room & (lifts[2].max(axis=1, initial=0.0) <= manner.chord) & upright[1, :-1] & upright[0, 1:])
 
