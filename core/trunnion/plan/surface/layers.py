@@ -13,12 +13,13 @@ from trunnion.geometry.arrays import Floats
 from trunnion.geometry.region import EMPTY_REGION, Region, union_all
 from trunnion.model.operation import Operation
 from trunnion.plan.drive import DriveLevel, PlaneDrive, WallGuide
-from trunnion.plan.regions import AROUND
 from trunnion.plan.surface.heights import HeightMap, region_below
 from trunnion.plan.surface.settings import ALLOWANCE, BOTTOM, CELL, number
 from trunnion.plan.surface.space import SurfaceSpace
 from trunnion.progress import Progress
 
+AROUND = 45.0
+"""mm: how far free space is looked at around the blank: two diameters of the largest cutter, but no way for it to wander."""
 STRAIGHT = 0.5
 """Of the allowance: how far the rims of layers may be straightened."""
 LEAST_STRAIGHT = 0.02

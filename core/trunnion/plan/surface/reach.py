@@ -92,6 +92,19 @@ def reached(space: SurfaceSpace, places: Places, tool: Tool, room: float, allowa
     return found
 
 
+def clear_beside(space: SurfaceSpace, places: Places, tool: Tool, bottom: float, room: float, allowance: float) -> bool:
+    """Say whether shank and holder of a cutter that goes along upright walls, its tip at a height, stay `room` mm over what stands beside:
+    the part with an allowance all round."""
+    beside = places.point[:, :2] + tool.radius * places.normal[:, :2]
+    lowest = float(space.low[2]) - 1.0
+    for z0, r0, _, r1 in tool.profile():
+        if max(r0, r1) > tool.radius + tolerance.COINCIDENT:
+            over = space.skin.drop.drop(beside, level_disc(max(r0, r1) + BESIDE + allowance), lowest)
+            if (over + allowance + room >= bottom + z0).any():
+                return False
+    return True
+
+
 def level_disc(radius: float) -> Floats:
     """Return the lower side of a level disc, as kernels of drops know it."""
     row = np.zeros((1, 6))

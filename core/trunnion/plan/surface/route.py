@@ -30,7 +30,7 @@ from trunnion.plan.surface.cutters import Chosen, cutter_for, named
 from trunnion.plan.surface.frames import UPRIGHT, Direction
 from trunnion.plan.surface.leaning import SAMPLES as LEANING_SAMPLES
 from trunnion.plan.surface.leaning import leaning_cutter
-from trunnion.plan.surface.reach import Places, leans, places_on, reached
+from trunnion.plan.surface.reach import Places, clear_beside, leans, places_on, reached
 from trunnion.plan.surface.scallop import stepover_on_plane
 from trunnion.plan.surface.settings import ALLOWANCE, BOTTOM, CELL, EARLIER, SCALLOP, SurfaceRouteSettings
 from trunnion.plan.surface.sides import Around, sides_for
@@ -55,6 +55,8 @@ MOST = 0.9
 """Share of a face that an upright cutter must reach; else the face counts as hidden from above."""
 LARGEST_LEANING = 16.0
 """mm: larger balls have no room to lean on parts that need it."""
+FEW = 200
+"""Places along a wall that say whether a tool has room beside it."""
 SLENDER = 4
 """How many of the most slender cutters say what is hidden: larger ones reach no more."""
 FALLING = ("rough", "semi")
@@ -197,7 +199,9 @@ def _outline(draft: Draft, tags: tuple[int, ...]) -> None:
     top, height = float(z.max()), float(z.max() - z.min())
     most = WALL_SHARE * draft.route.largest
     fits = [t for t in draft.cutters("finish") if t.form == "flat" and t.diameter <= most
-            and depth_reached(t) >= min(float(space.high[2]), top) - float(z.min()) + draft.route.reach_clearance]
+            and depth_reached(t) >= top - float(z.min()) + draft.route.reach_clearance
+            and clear_beside(space, places_on(space.skin, tags, FEW), t, float(z.min()), draft.route.reach_clearance,
+                             draft.chosen.rough_allowance)]
     if not fits:
         draft.findings.append(error("route.no-cutter", f"no end mill up to D {trimmed(most, 1)} reaches {trimmed(height, 1)} mm "
                                     "down a wall", *face_tags(tags), remedy="add a longer cutter to the tools folder"))
