@@ -76,3 +76,9 @@ def test_paths_one_after_the_other_are_led_only_where_the_direction_changes():
     led = joined([standing(UP), standing(UP), standing(lean(45)), standing(lean(45))], [True, False, False, True], SWING)
     assert [len(p) > 2 for p in led] == [False, False, True, True]
     assert led[2].position[0] == approx([0.0, 0.0, SWING.centre[2] + SWING.radius])
+
+
+def test_between_two_directions_from_below_it_goes_over_the_top_and_leans_no_lower_than_they_do():
+    path = moved_over(standing(lean(115.0, 180.0)), (60.0 * lean(115.0), lean(115.0)), SWING)
+    assert path.axis[:, 2].min() >= lean(115.0)[2] - 1e-9
+    assert path.axis[:, 2].max() == approx(1.0)

@@ -77,6 +77,10 @@ def moved_over(path: Toolpath, before: Pose | None, swing: Swing) -> Toolpath:
     if float(np.linalg.norm(axis - direction)) <= tolerance.PARAMETRIC:
         return path
     turned = turn(direction, axis)
+    if turned[:, 2].min() < min(direction[2], axis[2]) - tolerance.PARAMETRIC:
+        # Lower than either end a machine may not lean: over the top instead.
+        upright_axis = np.array([0.0, 0.0, 1.0])
+        turned = np.vstack([turn(direction, upright_axis), turn(upright_axis, axis)[1:]])
     around = [(swing.centre + swing.radius * a, a) for a in turned]
     return _led([(swing.above(start, direction), direction), *around, (swing.above(tip, axis), axis)], path)
 
