@@ -16,6 +16,7 @@ import shapely
 from trunnion import tolerance
 from trunnion.findings import Finding, Refused, warning
 from trunnion.geometry.arrays import Bools, Floats, Ints
+from trunnion.geometry.dropping import DropSurface
 from trunnion.geometry.skin import Skin
 from trunnion.model.operation import CuttingData
 from trunnion.model.setup import Setup
@@ -135,13 +136,18 @@ def _passes(planes: _Planes, drive: SurfaceDrive, tool: Tool, settings: Parallel
     pieces, lowest = lower_side(tool, drive.allowance), float(drive.low[2]) - tool.flute_length
     on_area = np.zeros(len(drive.skin.triangles), dtype=bool)
     on_area[planes.triangles] = True
+    area = DropSurface.of(drive.skin.points, drive.skin.triangles[on_area])
 
     def touches(plane: Ints, run: Floats, share: Progress) -> Bools:
         plan = run[:, None] * planes.along + planes.at[plane, None] * planes.across
-        facet = drive.skin.drop.touch(plan, pieces, lowest, share)[1]
+        z, facet, _ = drive.skin.drop.touch(plan, pieces, lowest, share)
+        found = (facet >= 0) & on_area[np.maximum(facet, 0)]
+        # On the rim either of two faces may be named.
+        other = np.flatnonzero((facet >= 0) & ~found)
+        found[other] = area.drop(plan[other], pieces, lowest, share) >= z[other] - tolerance.COINCIDENT
         # Past the area the cutter rolls over its rim.
         within = (run >= planes.reach[plane, 0]) & (run <= planes.reach[plane, 1])
-        return np.asarray((facet >= 0) & on_area[np.maximum(facet, 0)] & within)
+        return np.asarray(found & within)
 
     plane, runs = _runs(planes, ALONG * tool.radius, touches, progress.part(0.0, 0.4))
     plane, runs = _joined(plane, runs, settings.overlap, tool.radius)
