@@ -14,6 +14,7 @@ import numpy as np
 from scipy.spatial import cKDTree
 
 from trunnion import tolerance
+from trunnion.findings import OutOfMemory
 from trunnion.geometry.arrays import Bools, Floats, Ints
 from trunnion.model.material import Machine
 from trunnion.model.tool import PLAIN_FORMS, Tool
@@ -27,6 +28,8 @@ from trunnion.verify.motion import poses_of
 
 POSES = 2048
 """Poses tried between two looks at cancel."""
+MOST_SAMPLES = 4_000_000
+"""About a quarter of a GB, and some times as much while they are measured: a part of 4 x 4 m at the usual spacing."""
 MOST_TRIED = 3000
 """Samples that every cutter is tried on, about half a minute where none reaches."""
 MOST_LEANING = 200
@@ -49,9 +52,14 @@ class Samples:
 def samples_of(surfaces: Surfaces, spacing: float, progress: Progress = QUIET, facets: Facets | None = None) -> Samples:
     """Return samples about `spacing` mm apart on every face, the same ones each time; no face is without one.
 
-    Those of faces without closed form lie on their facets, which must be in the frame of the surfaces.
+    Those of faces without closed form lie on their facets, which must be in the frame of the surfaces. Raises `OutOfMemory` beyond
+    `MOST_SAMPLES`.
     """
     strips = np.vstack([surfaces.strip, surfaces.level])
+    expected = sum(_expected(strip, spacing) for strip in strips)
+    if expected > MOST_SAMPLES:
+        raise OutOfMemory(f"measuring coverage needs about {expected / 1e6:.0f} million samples at {spacing:g} mm: set a larger "
+                          "verify.spacing, or split the part")
     parts = [_strip_samples(strip, spacing) for strip in progress.over(strips, "Spreading samples")]
     face = np.repeat(np.concatenate([surfaces.strip_face, surfaces.level_face]), [len(p) for p in parts])
     rows = np.vstack([np.zeros((0, 7)), *parts])
@@ -60,6 +68,16 @@ def samples_of(surfaces: Surfaces, spacing: float, progress: Progress = QUIET, f
     free, point, normal, area = facet_samples(facets, surfaces.free, spacing)
     return Samples(face=np.concatenate([face.astype(np.int64), free]), point=np.vstack([rows[:, :3], point]),
                    normal=np.vstack([rows[:, 3:6], normal]), area=np.concatenate([rows[:, 6], area]))
+
+
+def _expected(strip: Floats, spacing: float) -> float:
+    """Return about how many samples a strip gets, by its size at the middle of its profile."""
+    u0, u1 = strip[U0], strip[U1]
+    straight = strip[PROFILE] == 0.0
+    length = np.hypot(strip[PW1] - strip[PW0], strip[PZ1] - strip[PZ0]) if straight else strip[PW1] * (u1 - u0)
+    low, high = guide_ends(strip, 0.5 * (u0 + u1))
+    wide = max(abs(strip[PW0]), abs(strip[PW1])) if strip[GUIDE] else 1.0
+    return max(float(length * (high - low) * wide), 0.0) / spacing**2
 
 
 def _strip_samples(strip: Floats, spacing: float) -> Floats:
