@@ -17,12 +17,12 @@ from trunnion.geometry.dropping import DropSurface
 from trunnion.geometry.kernels.drop import RHO1, height_at
 from trunnion.progress import QUIET, Progress
 
-UNSEEN = 2.0
+UNSEEN = 0.5
 """Of the chord error: what stands up between two places of a way, too narrow to be seen from either, is at most so high."""
-WIDEST = 0.25
+WIDEST = 0.06
 """Of the cutter's radius: places of a way are never farther apart, whatever would be seen; a wave could hide between them."""
 HALVINGS = 30
-SEEN, THINNED = 0.25, 0.45
+SEEN, THINNED = 0.1, 0.3
 """Shares of the chord error: how far a middle may be from its chord, and how far a place that is taken out."""
 
 
