@@ -4,13 +4,16 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
 from pytest import approx
 
 from samples import block_with_pocket_shape, drilled_block_shape, moved, read, turned, two_pockets_and_a_rib_shape
 from trunnion.findings import BadInput
 from trunnion.geometry.frame import WORLD, Frame
 from trunnion.part.facets import facets_of
-from trunnion.part.surfaces import level_face, line_edges, surfaces_of
+from trunnion.part import surfaces as strips
+from trunnion.part.surfaces import Guide, Profile, level_face, line_edges, strips_of, surfaces_of
 from trunnion.verify.contact import PartContact
 from trunnion.verify.finish.coverage import samples_of
 
@@ -69,3 +72,32 @@ def test_an_outline_with_a_gap_of_one_rounding_error_is_closed() -> None:
     edges = [e for side in sides for e in line_edges(np.array(side).reshape(2, 2))]
     ends = [tuple(end) for end in level_face(1, 0.0, edges).chords.reshape(-1, 2)]
     assert sorted(ends.count(end) for end in set(ends)) == [2, 2, 2, 2]
+
+
+def wall_under(tops: list[tuple[float, float]]) -> np.ndarray:
+    """Return the strips of an upright wall from s = 0 and u = 0 up to a chain of points (s, u)."""
+    outline = np.array([(tops[0][0], 0.0), *tops, (tops[-1][0], 0.0), (tops[0][0], 0.0)])
+    made = strips_of(Guide(0, 0.0, 0.0, 1.0, 0.0), Profile(0.0, 0.0, 0.0, 1.0), line_edges(outline), 1.0)
+    assert made is not None
+    return made
+
+
+def area_of(rows: np.ndarray) -> float:
+    half = 0.5 * (rows[:, strips.U1] - rows[:, strips.U0])
+    width = rows[:, strips.RA] + rows[:, strips.RB] * half - rows[:, strips.LA] - rows[:, strips.LB] * half
+    return float((width * 2.0 * half).sum())
+
+
+@given(st.floats(1e-7, 5e-6))
+def test_a_dip_in_a_walls_rim_stays_open_though_its_sides_differ_by_a_rounding(off: float) -> None:
+    rows = wall_under([(0.0, 10.0), (5.0, 9.0), (10.0, 8.0), (15.0, 9.0 + off), (20.0, 10.0)])
+    assert area_of(rows) == approx(20.0 * 9.0, abs=1e-4)
+    middle = rows[0.5 * (rows[:, strips.U0] + rows[:, strips.U1]) > 8.0]
+    assert not ((middle[:, strips.LA] < 9.0) & (middle[:, strips.RA] > 11.0)).any()
+
+
+@settings(deadline=None)
+@given(st.lists(st.sampled_from([3.0, 4.0, 5.0, 5.0 + 1.1e-6, 5.0 + 2.3e-6, 4.0 - 1.5e-6]), min_size=2, max_size=9))
+def test_a_walls_strips_cover_what_lies_under_its_rim(heights: list[float]) -> None:
+    rows = wall_under([(2.0 * k, u) for k, u in enumerate(heights)])
+    assert area_of(rows) == approx(float(np.trapezoid(heights, dx=2.0)), abs=1e-4)

@@ -98,7 +98,8 @@ class Edge:
         """Return s where the edge passes u."""
         if self.radius:
             return self.sc + self.sign * math.sqrt(max(self.radius**2 - (u - self.uc) ** 2, 0.0))
-        return self.s0 if self.u1 == self.u0 else self.s0 + (self.s1 - self.s0) * (u - self.u0) / (self.u1 - self.u0)
+        share = (u - self.u0) / (self.u1 - self.u0) if self.u1 != self.u0 else 0.0
+        return self.s0 + (self.s1 - self.s0) * min(max(share, 0.0), 1.0)
 
     def end_columns(self, u0: float, u1: float) -> tuple[float, float, float, float, float]:
         """Return the five columns of an end for a band from u0 to u1."""
@@ -165,15 +166,15 @@ def circle_edges(sc: float, uc: float, radius: float, start: float, end: float) 
 
 def strips_of(guide: Guide, profile: Profile, edges: list[Edge], side: float) -> Floats | None:
     """Return the strips (m, 37) of a face trimmed by edges in (s, u), or None when the edges don't close."""
-    steep = [e for e in edges if abs(e.u1 - e.u0) > tolerance.COINCIDENT]
-    if not steep:
+    ends = [u for e in edges for u in (e.u0, e.u1)]
+    if not ends:
         return np.zeros((0, STRIP_COLUMNS))
-    ends = [u for e in steep for u in (e.u0, e.u1)]
-    levels = _distinct(ends + profile.levels(min(ends), max(ends)))
+    levels = np.array(_distinct(ends + profile.levels(min(ends), max(ends))))
+    # Each edge goes from level to level: ends that nearly meet are on the same one, so that bands hold the same edges however thin they are.
+    spans = [sorted((np.searchsorted(levels, (e.u0, e.u1), side="right") - 1).tolist()) for e in edges]
     rows = []
-    for u0, u1 in pairwise(levels):
-        near = 2 * tolerance.COINCIDENT
-        across = [e for e in steep if min(e.u0, e.u1) <= u0 + near and max(e.u0, e.u1) >= u1 - near]
+    for k, (u0, u1) in enumerate(pairwise(levels.tolist())):
+        across = [e for e, (low, high) in zip(edges, spans, strict=True) if low <= k < high]
         if len(across) % 2:
             return None
         across.sort(key=lambda e: e.s_at(0.5 * (u0 + u1)))
