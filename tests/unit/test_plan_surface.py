@@ -118,6 +118,12 @@ def test_a_cell_with_two_low_corners_across_is_one_area():
     assert len(region_below(height, np.zeros(2), 1.0, 1.0, 1e-6).pieces) == 1
 
 
+@given(st.floats(0.1, 0.9), st.floats(-50.0, 50.0))
+def test_no_hair_stands_between_the_cells_of_a_low_area_whatever_their_size(cell, corner):
+    area = region_below(np.zeros((24, 7)), np.array([corner, 0.0]), cell, 1.0, 0.01)
+    assert area.area == pytest.approx((23 * cell - 0.02) * (6 * cell - 0.02))
+
+
 def test_level_faces_end_layers():
     assert level_faces(block(joined(grid(lambda x, y: 0 * x + 5.0, n=4), grid(lambda x, y: 0 * x + 12.0, n=4)))) == [12.0, 5.0]
 

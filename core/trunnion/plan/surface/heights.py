@@ -79,8 +79,9 @@ def _runs(whole: Bools, corner: Floats, cell: float) -> list[shapely.Geometry]:
     """Return boxes over rows of cells that are whole."""
     edge = np.diff(np.pad(whole, ((0, 0), (1, 1))).astype(np.int8), axis=1)
     (i, first), (_, last) = np.nonzero(edge == 1), np.nonzero(edge == -1)
-    x, y0, y1 = corner[0] + cell * i, corner[1] + cell * first, corner[1] + cell * last
-    return [shapely.box(*corners) for corners in np.column_stack([x, y0, x + cell, y1]).tolist()]
+    # Rows that meet have the very same x there: a hair between them would stay when rims are moved in.
+    x0, x1, y0, y1 = corner[0] + cell * i, corner[0] + cell * (i + 1), corner[1] + cell * first, corner[1] + cell * last
+    return [shapely.box(*corners) for corners in np.column_stack([x0, y0, x1, y1]).tolist()]
 
 
 def _slices(height: Floats, mixed: Bools, corner: Floats, cell: float, z: float) -> list[shapely.Geometry]:
