@@ -158,3 +158,17 @@ def test_it_stops_when_a_person_asks() -> None:
     with pytest.raises(Cancelled):
         rough(with_allowances(PLAN, 12.0), mill(16), cutting(6, 6), PlanningStock.of(BLANK, SETUP), SETUP, RoughSettings(),
               Progress(cancelled=lambda: True))
+
+
+def test_a_closed_space_beside_an_open_one_is_cleared_too() -> None:
+    bowl = Region.rectangle(25, 15, 55, 35)
+    block, around = Region.rectangle(0, 0, 80, 50), Region.rectangle(-60, -60, 140, 110)
+    level = DriveLevel(top=0.0, bottom=-10.0, wanted=Region.rectangle(-20, -20, 100, 70).minus(block).union(bowl),
+                       boundary=around.minus(block).union(bowl))
+    drive = PlaneDrive(feature="part", kind="rough", levels=(level,), stock_top=0.0)
+    _, milled = cut(drive, mill(10))
+    stands = block.minus(bowl).signed_distance(milled.points).reshape(milled.x.shape) > 0.05
+    inside = bowl.offset(-5.05).signed_distance(milled.points).reshape(milled.x.shape) > 0.0
+    beside = block.signed_distance(milled.points).reshape(milled.x.shape) < -0.05
+    assert (milled.height[stands] == 0.0).all() and milled.crashes == []
+    assert milled.height[inside].max() == milled.height[beside].max() == pytest.approx(-10.0)

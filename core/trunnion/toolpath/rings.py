@@ -45,8 +45,8 @@ def safe_step(tool: Tool, width: float, ridge: float = 0.0) -> float:
 
 def ring_tree(room: Region, step: float, clip: Region | None = None) -> tuple[Ring, ...]:
     """Return the rings of a room, a step apart; with a clip, only those that can touch it."""
-    points = None if clip is None else [points_along(c, CLIP_SPACING)[1] for c in clip.curves()]
-    return tuple(_ring(piece, step, points) for piece in room.split() if _touches(piece, points))
+    rim = None if clip is None else _Clip(clip, tuple(points_along(c, CLIP_SPACING)[1] for c in clip.curves()))
+    return tuple(_ring(piece, step, rim) for piece in room.split() if _touches(piece, rim))
 
 
 def depth_first(rings: tuple[Ring, ...]) -> Iterator[Ring]:
@@ -56,10 +56,23 @@ def depth_first(rings: tuple[Ring, ...]) -> Iterator[Ring]:
         yield ring
 
 
-def _ring(piece: Region, step: float, points: list[Floats] | None) -> Ring:
+@dataclass(frozen=True, slots=True, eq=False)
+class _Clip:
+    """A clip and places (k, 2) along each of its loops."""
+
+    region: Region
+    rim: tuple[Floats, ...]
+
+
+def _ring(piece: Region, step: float, clip: _Clip | None) -> Ring:
     inside = piece.offset(-step).split()
-    return Ring(piece, tuple(_ring(p, step, points) for p in inside if _touches(p, points)))
+    return Ring(piece, tuple(_ring(p, step, clip) for p in inside if _touches(p, clip)))
 
 
-def _touches(piece: Region, points: list[Floats] | None) -> bool:
-    return points is None or any(bool(piece.contains(p).any()) for p in points)
+def _touches(piece: Region, clip: _Clip | None) -> bool:
+    """Say whether a piece has some of a clip's rim in it or lies inside the clip, as a closed space beside open ones does."""
+    return clip is None or any(bool(piece.contains(p).any()) for p in clip.rim) or _lies_in(piece, clip.region)
+
+
+def _lies_in(piece: Region, clip: Region) -> bool:
+    return any(bool(clip.contains(c.points[:1]).all()) for c in piece.curves())
