@@ -152,3 +152,38 @@ def test_points_along_a_way_find_what_loose_points_find(seed: int, name: str) ->
     way = np.column_stack([np.linspace(-15.0, 15.0, 60), np.linspace(-9.0, 12.0, 60)])
     found = DropSurface.of(corners.reshape(-1, 3), np.arange(120).reshape(-1, 3)).drop(way, CUTTERS[name], LOWEST)
     assert np.abs(found - drop(way, corners, CUTTERS[name], LOWEST)).max() < 1e-9
+
+
+def test_each_point_may_have_its_own_height_to_begin_with() -> None:
+    points, triangles = wavy(14)
+    surface, at = DropSurface.of(points, triangles), np.random.default_rng(9).uniform(2.0, 58.0, (60, 2))
+    z = surface.drop(at, BALL, LOWEST)
+    floor = z + np.where(np.arange(60) % 2 == 0, 1.0, -0.1)
+    found, facet, _ = surface.touch(at, BALL, floor)
+    assert np.array_equal(found, np.maximum(z, floor)) and np.array_equal(facet >= 0, np.arange(60) % 2 == 1)
+
+
+def test_all_facets_of_a_node_lie_in_its_box_and_below_its_plane() -> None:
+    points, triangles = wavy(14)
+    surface = DropSurface.of(points, triangles)
+    leaves = len(surface.start) - 1
+    assert sorted(surface.row) == list(range(len(triangles)))
+    for node, (box, plane) in enumerate(zip(surface.boxes, surface.planes[0], strict=True)):
+        width = leaves >> (node + 1).bit_length() - 1
+        leaf = (node + 1) * width - leaves
+        corners = points[triangles[surface.row[surface.start[leaf]:surface.start[leaf + width]]]].reshape(-1, 3)
+        assert box == pytest.approx([*corners[:, :2].min(axis=0), *corners.max(axis=0)])
+        assert (corners[:, 2] - corners[:, :2] @ plane[:2]).max() == pytest.approx(plane[2])
+
+
+def test_a_wall_of_small_facets_beside_large_ones_lifts_as_its_plain_form_does() -> None:
+    turn, up = np.meshgrid(np.linspace(0.0, 0.5 * math.pi, 12), np.linspace(0.0, 0.48 * math.pi, 40), indexing="ij")
+    away = 9.0 - 3.2 * (1.0 - np.cos(up))
+    fillet = np.stack([away * np.cos(turn), away * np.sin(turn), 3.2 * np.sin(up) - 3.2], axis=-1).reshape(-1, 3)
+    a = (np.arange(11)[:, None] * 40 + np.arange(39)).ravel()
+    triangles = np.vstack([[[480, 481, 482]], np.column_stack([a, a + 40, a + 41]), np.column_stack([a, a + 41, a + 1])])
+    points = np.vstack([fillet, [[-60.0, -60.0, -3.0], [70.0, -60.0, -3.0], [0.0, 80.0, -3.0]]])
+    at = np.random.default_rng(2).uniform(0.0, 14.0, (80, 2))
+    for cutter in CUTTERS.values():
+        found = DropSurface.of(points, triangles).drop(at, cutter, LOWEST)
+        assert np.abs(found - drop(at, points[triangles], cutter, LOWEST)).max() < 1e-9

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from dataclasses import dataclass, field
 
 import numpy as np
@@ -10,6 +11,7 @@ from trunnion import tolerance
 from trunnion.geometry.arrays import Floats, Ints
 from trunnion.geometry.kernels import drop_compiled as kernel
 from trunnion.geometry.kernels.drop import ROUND, A, C
+from trunnion.geometry.kernels.drop_tree import BOX_COLUMNS, cover_loop, sort_loop
 from trunnion.geometry.kernels.push_compiled import push_loop
 from trunnion.geometry.lattice import Lattice, lattice_of
 from trunnion.progress import QUIET, Progress
@@ -18,76 +20,78 @@ CHUNK = 2000
 """Points between two looks at cancel."""
 LINES, FIRST_ROOM = 20, 256
 """Lines between two looks at cancel, and spans that each has room for at first."""
+FACETS_A_LEAF = 2
+"""How many facets the last nodes of a tree hold, or up to twice as many."""
 FACETS_A_CELL = 2.0
-"""How many facets a cell of the lattice holds on an even mesh."""
-BLOCK = 8
-"""Cells along each side of the squares that are looked at before their cells."""
+"""How many facets a cell of the lattice that pushing looks at holds on an even mesh."""
+STEEPEST = 100.0
+"""Slope of the steepest plane over several facets: with more, digits of its height are lost."""
 CUTTERS = 4
 """Cutters that a surface remembers how its planes lift them."""
 
 
 @dataclass(frozen=True, slots=True, eq=False, kw_only=True)
 class DropSurface:
-    """Facets (t, 19) as `kernels/drop_compiled.py` names their columns, and the lattice that finds them.
+    """Facets (t, 19) as `kernels/drop_compiled.py` names their columns, and the tree that finds them.
 
-    summit (cells,): how high the facets of each cell reach. planes: slopes along x and y and height over (0, 0) of planes that nothing is
-    above of a facet, of a cell's facets, of a square of `BLOCK` by `BLOCK` cells, each (n, 3).
+    row (t,): which triangle each facet is; start (leaves + 1,) and boxes (nodes, 5) as `kernels/drop_tree.py` describes them; planes:
+    slopes along x and y and height over (0, 0) of planes that nothing is above of a node's facets (nodes, 3), and of a facet (t, 3).
     """
 
     facets: Floats
-    lattice: Lattice
-    summit: Floats
-    planes: tuple[Floats, Floats, Floats]
-    _lifts: dict[bytes, tuple[Floats, Floats, Floats]] = field(init=False, repr=False, default_factory=dict)
+    row: Ints
+    start: Ints
+    boxes: Floats
+    planes: tuple[Floats, Floats]
+    _lifts: dict[bytes, tuple[Floats, Floats]] = field(init=False, repr=False, default_factory=dict)
+    _lattice: list[Lattice] = field(init=False, repr=False, default_factory=list)
 
     @staticmethod
     def of(points: Floats, triangles: Ints) -> DropSurface:
         """Return the surface of a mesh: points (v, 3), triangles (t, 3) rows of them; at least one triangle."""
         corners = np.asarray(points, dtype=np.float64)[triangles]
-        facets = np.zeros((len(corners), kernel.FACET_COLUMNS))
-        facets[:, :9] = corners.reshape(-1, 9)
-        normal = np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0])
-        up = normal[:, 2] != 0.0
-        facets[up, kernel.GX:kernel.GY + 1] = -normal[up, :2] / normal[up, 2:]
-        facets[:, kernel.STEEP] = np.hypot(facets[:, kernel.GX], facets[:, kernel.GY])
-        facets[:, kernel.TURN] = normal[:, 2]
-        low, high = corners.min(axis=1), corners.max(axis=1)
-        facets[:, kernel.LOW_X:kernel.LOW_Y + 1], facets[:, kernel.HIGH_X:kernel.HIGH_Z + 1] = low[:, :2], high
-        facets[:, kernel.OWNS] = _owned(triangles, len(points))
-        pitch = float(np.sqrt(np.prod(high[:, :2].max(axis=0) - low[:, :2].min(axis=0)) * FACETS_A_CELL / len(corners)))
-        lattice = lattice_of(low[:, :2], high[:, :2], max(pitch, tolerance.PLANE_REGION))
-        cell = np.repeat(np.arange(int(lattice.shape.prod())), np.diff(lattice.start))
-        summit = np.full(int(lattice.shape.prod()), -np.inf)
-        np.maximum.at(summit, cell, high[lattice.rows, 2])
-        return DropSurface(facets=facets, lattice=lattice, summit=summit, planes=_covers(facets, lattice, cell))
+        leaves = 1 << int(math.log2(max(len(corners) / FACETS_A_LEAF, 1.0)))
+        start = np.arange(leaves + 1) * len(corners) // leaves
+        row = np.arange(len(corners))
+        sort_loop(corners.mean(axis=1), start, row)
+        facets = _facets(corners[row], _owned(triangles, len(points))[row])
+        own = np.column_stack([facets[:, kernel.GX], facets[:, kernel.GY], np.zeros(len(facets))])
+        own[:, 2] = np.where(facets[:, kernel.TURN] == 0.0, np.inf, (facets[:, [2, 5, 8]] - own[:, :1] * facets[:, [0, 3, 6]]
+                                                                     - own[:, 1:2] * facets[:, [1, 4, 7]]).max(axis=1))
+        boxes, planes = np.empty((2 * leaves - 1, BOX_COLUMNS)), np.zeros((2 * leaves - 1, 3))
+        planes[:, :2] = _slopes(facets, start)
+        cover_loop(facets[:, :9], start, boxes, planes)
+        return DropSurface(facets=facets, row=row, start=start, boxes=boxes, planes=(planes, own))
 
-    def drop(self, points: Floats, pieces: Floats, lowest: float, progress: Progress = QUIET) -> Floats:
-        """Return the height (n,) of a cutter's tip over plan points (n, 2) when it comes down and touches, at least `lowest`.
+    def drop(self, points: Floats, pieces: Floats, lowest: float | Floats, progress: Progress = QUIET) -> Floats:
+        """Return the height (n,) of a cutter's tip over plan points (n, 2) when it comes down and touches, at least `lowest`, a height for
+        all or for each (n,).
 
         `pieces` (p, 6) is the cutter's lower side as `kernels/drop.py` describes it. Points that follow a way are quicker than loose ones.
         """
         return self.touch(points, pieces, lowest, progress)[0]
 
-    def touch(self, points: Floats, pieces: Floats, lowest: float, progress: Progress = QUIET) -> tuple[Floats, Ints, Floats]:
+    def touch(self, points: Floats, pieces: Floats, lowest: float | Floats, progress: Progress = QUIET) -> tuple[Floats, Ints, Floats]:
         """Return what `drop` does, the triangle (n,) that is touched at each point, and where (n, 3).
 
         Where two triangles meet it is one of them; over nothing that is higher than `lowest`, -1 and NaN.
         """
-        n, g = len(points), self.lattice
+        n = len(points)
         out, facet, contact = np.empty(n), np.empty(n, np.int64), np.empty((n, 3))
-        points, lifts, roundness = np.ascontiguousarray(points, dtype=np.float64), self._lifted(pieces), _roundness(pieces)
+        points, lifts = np.ascontiguousarray(points, dtype=np.float64), self._lifted(pieces)
+        floor = np.ascontiguousarray(np.broadcast_to(np.asarray(lowest, dtype=np.float64), (n,)))
         for first in range(0, n, CHUNK):
             progress.at(first / n, "Dropping the cutter")
-            kernel.touch_loop(first, min(first + CHUNK, n), points, self.facets, g.low, g.pitch, g.shape, g.start, g.rows, self.summit,
-                              BLOCK, *lifts, pieces, roundness, lowest, out, facet, contact)
-        return out, facet, contact
+            kernel.touch_loop(first, min(first + CHUNK, n), points, self.facets, self.start, self.boxes, *lifts, pieces, _ball(pieces),
+                              floor, out, facet, contact)
+        return out, np.where(facet >= 0, self.row[facet], -1), contact
 
     def push(self, lines: Floats, pieces: Floats, progress: Progress = QUIET) -> tuple[Ints, Floats]:
         """Return where the tip is blocked along lines (n, 2), each along x at a y and a z: start (n + 1,) into spans (k, 2) from x to x.
 
         The spans of a line are apart from each other and ascend. `pieces` as for `drop`.
         """
-        found, g, room = [], self.lattice, FIRST_ROOM
+        found, g, room = [], self._cells(), FIRST_ROOM
         lines = np.ascontiguousarray(lines, dtype=np.float64)
         for first in range(0, len(lines), LINES):
             progress.at(first / len(lines), "Pushing the cutter")
@@ -100,7 +104,15 @@ class DropSurface:
             found += [_merged(spans[k, :count[first + k]]) for k in range(last - first)]
         return np.cumsum([0, *(len(f) for f in found)]), np.vstack([np.zeros((0, 2)), *found])
 
-    def _lifted(self, pieces: Floats) -> tuple[Floats, Floats, Floats]:
+    def _cells(self) -> Lattice:
+        """Return the lattice over the facets' boxes; made when it is first asked for."""
+        if not self._lattice:
+            low, high = self.facets[:, kernel.LOW_X:kernel.LOW_Y + 1], self.facets[:, kernel.HIGH_X:kernel.HIGH_Y + 1]
+            pitch = float(np.sqrt(np.prod(high.max(axis=0) - low.min(axis=0)) * FACETS_A_CELL / len(low)))
+            self._lattice.append(lattice_of(low, high, max(pitch, tolerance.PLANE_REGION)))
+        return self._lattice[0]
+
+    def _lifted(self, pieces: Floats) -> tuple[Floats, Floats]:
         """Return how the planes lift a cutter, each (n, 6); remembered for the last few cutters."""
         key = pieces.tobytes()
         if key not in self._lifts:
@@ -109,41 +121,40 @@ class DropSurface:
             made = tuple(np.empty((len(planes), kernel.LIFT_COLUMNS)) for planes in self.planes)
             for planes, lifts in zip(self.planes, made, strict=True):
                 kernel.lift_loop(planes, pieces, lifts)
-            self._lifts[key] = (made[0], made[1], made[2])
+            self._lifts[key] = (made[0], made[1])
         return self._lifts[key]
 
 
-def _roundness(pieces: Floats) -> float:
-    """Return the least curvature (1/mm) of a lower side in any direction: 0 where any of it is straight, along or around the axis."""
-    is_round = bool((pieces[:, ROUND] != 0.0).all() and (pieces[:, A] <= 0.0).all())
-    return float(1.0 / pieces[:, C].max()) if is_round else 0.0
+def _ball(pieces: Floats) -> float:
+    """Return the radius of a lower side that is a ball's; 0 for others."""
+    return float(pieces[0, C]) if len(pieces) == 1 and pieces[0, ROUND] != 0.0 and pieces[0, A] == 0.0 else 0.0
 
 
-def _covers(facets: Floats, lattice: Lattice, cell: Ints) -> tuple[Floats, Floats, Floats]:
-    """Return planes (n, 3) that nothing is above of each facet, each cell's facets (cell (k,) of each of the lattice's rows), and each
-    square's: as steep as those are in the mean."""
-    own = np.column_stack([facets[:, kernel.GX], facets[:, kernel.GY], np.zeros(len(facets))])
-    upright = facets[:, kernel.TURN] == 0.0
-    own[:, 2] = np.where(upright, np.inf, (facets[:, [2, 5, 8]] - own[:, :1] * facets[:, [0, 3, 6]]
-                                           - own[:, 1:2] * facets[:, [1, 4, 7]]).max(axis=1))
-    nx, ny = lattice.shape.tolist()
-    blocks = -(-nx // BLOCK), -(-ny // BLOCK)
-    block = (cell // nx // BLOCK) * blocks[0] + cell % nx // BLOCK
-    return own, _cover(facets[lattice.rows], cell, nx * ny), _cover(facets[lattice.rows], block, blocks[0] * blocks[1])
+def _facets(corners: Floats, owned: Ints) -> Floats:
+    """Return the rows (t, 19) of triangles (t, 3, 3)."""
+    facets = np.zeros((len(corners), kernel.FACET_COLUMNS))
+    facets[:, :9] = corners.reshape(-1, 9)
+    normal = np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0])
+    up = normal[:, 2] != 0.0
+    facets[up, kernel.GX:kernel.GY + 1] = -normal[up, :2] / normal[up, 2:]
+    facets[:, kernel.STEEP] = np.hypot(facets[:, kernel.GX], facets[:, kernel.GY])
+    facets[:, kernel.TURN] = normal[:, 2]
+    facets[:, kernel.LOW_X:kernel.LOW_Y + 1], facets[:, kernel.HIGH_X:kernel.HIGH_Z + 1] = corners.min(axis=1)[:, :2], corners.max(axis=1)
+    facets[:, kernel.OWNS] = owned
+    return facets
 
 
-def _cover(facets: Floats, group: Ints, n: int) -> Floats:
-    """Return for each of n groups of facets (k, 19), group (k,), a plane (n, 3) that nothing of them is above."""
+def _slopes(facets: Floats, start: Ints) -> Floats:
+    """Return the slopes (nodes, 2) along x and y of a tree's nodes: those of their facets in the mean, seen from above."""
     # What looks down, the other side of a part, says nothing of how steep the side is that a cutter comes to, large as it may be.
     weight = np.maximum(facets[:, kernel.TURN], np.finfo(float).eps * np.abs(facets[:, kernel.TURN]))
-    total = np.bincount(group, weight, n)
-    out = np.zeros((n, 3))
-    for column, slope in ((0, kernel.GX), (1, kernel.GY)):
-        out[:, column] = np.divide(np.bincount(group, weight * facets[:, slope], n), total, out=np.zeros(n), where=total > 0.0)
-    out[:, 2] = -np.inf
-    for k in (0, 3, 6):
-        np.maximum.at(out[:, 2], group, facets[:, k + 2] - out[group, 0] * facets[:, k] - out[group, 1] * facets[:, k + 1])
-    return out
+    sums = [np.add.reduceat(weight[:, None] * np.column_stack([np.ones(len(facets)), facets[:, kernel.GX:kernel.GY + 1]]), start[:-1])]
+    while len(sums[-1]) > 1:
+        sums.append(sums[-1][::2] + sums[-1][1::2])
+    total = np.concatenate(sums[::-1])
+    slopes = np.divide(total[:, 1:], total[:, :1], out=np.zeros((len(total), 2)), where=total[:, :1] > 0.0)
+    size = np.hypot(slopes[:, 0], slopes[:, 1])[:, None]
+    return np.asarray(slopes * np.minimum(np.divide(STEEPEST, size, out=np.ones_like(size), where=size > 0.0), 1.0))
 
 
 def _merged(spans: Floats) -> Floats:

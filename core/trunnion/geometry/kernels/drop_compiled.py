@@ -9,17 +9,20 @@ from numba import njit
 
 from trunnion.geometry.arrays import Floats, Ints
 from trunnion.geometry.kernels.drop import RHO0, RHO1, ROUND, A, B, C
+from trunnion.geometry.kernels.drop_tree import X0, X1, Y0, Y1, Z1
 
 (AX, AY, AZ, BX, BY, BZ, CX, CY, CZ, GX, GY, STEEP, TURN, LOW_X, LOW_Y, HIGH_X, HIGH_Y, HIGH_Z, OWNS) = range(19)
 """A triangle's row: corners; slope of its plane along x and y, how steep that is, twice its signed plan area; its box; and which edges
 (bits 0 to 2, from the corner of that number on) and corners (bits 3 to 5) it looks after."""
 FACET_COLUMNS = 19
-LIFT_X, LIFT_Y, LIFT, OUT_X, OUT_Y, HEIGHT = range(6)
+LIFT_X, LIFT_Y, LIFT, OUT_X, OUT_Y, HEIGHT, SLOPE, SECANT = range(8)
 """How a triangle's plane lifts a cutter over (x, y): LIFT_X x + LIFT_Y y + LIFT (infinite: it stands upright), touching it OUT away;
-HEIGHT is its own over (0, 0)."""
-LIFT_COLUMNS = 6
+HEIGHT is its own over (0, 0), SLOPE how steep it is, SECANT how much larger than its plan a piece of it is."""
+LIFT_COLUMNS = 8
 ALL = 63
 """The bits of all edges and corners."""
+DEEPEST = 64
+"""Levels of a tree at most."""
 STEPS = 60
 """Most steps of a search that mostly ends after four."""
 _TINY, _ROUNDING, _SLACK = 1e-300, 1e-13, 1e-10
@@ -151,6 +154,27 @@ def _edge(px: float, py: float, ax: float, ay: float, az: float, bx: float, by: 
 
 
 @njit(cache=True, nogil=True)
+def _edge_of_ball(px: float, py: float, ax: float, ay: float, az: float, bx: float, by: float, bz: float, ball: float, radius: float,
+                  best: float) -> float:
+    """Return what `_edge` does for a ball."""
+    dx, dy = bx - ax, by - ay
+    square = dx * dx + dy * dy
+    if square == 0.0:
+        return best
+    cross = (ax - px) * dy - (ay - py) * dx
+    beside = cross * cross / square
+    if beside > radius * radius:
+        return best
+    length = math.sqrt(square)
+    foot, reach, rise = -((ax - px) * dx + (ay - py) * dy) / length, math.sqrt(radius * radius - beside), (bz - az) / length
+    low, high = max(-foot, -reach), min(length - foot, reach)
+    if low > high:
+        return best
+    u = min(max(rise * math.sqrt((ball * ball - beside) / (1.0 + rise * rise)), low), high)
+    return max(best, az + rise * (foot + u) - ball + math.sqrt(max(ball * ball - beside - u * u, 0.0)))
+
+
+@njit(cache=True, nogil=True)
 def _corner(px: float, py: float, x: float, y: float, z: float, pieces: Floats, radius: float, best: float) -> float:
     square = (x - px) * (x - px) + (y - py) * (y - py)
     if z <= best or square > radius * radius:
@@ -182,7 +206,7 @@ def _plane(px: float, py: float, f: Floats, pieces: Floats, best: float) -> floa
 
 @njit(cache=True, nogil=True)
 def lift_loop(planes: Floats, pieces: Floats, lifts: Floats) -> None:
-    """Fill lifts (n, 6), as `LIFT_X` to `HEIGHT` name it, with how planes (n, 3) lift a cutter: slopes and height over (0, 0)."""
+    """Fill lifts (n, 8), as `LIFT_X` to `SECANT` name it, with how planes (n, 3) lift a cutter: slopes and height over (0, 0)."""
     for n in range(len(planes)):
         gx, gy, height = planes[n, 0], planes[n, 1], planes[n, 2]
         steep = math.sqrt(gx * gx + gy * gy)
@@ -190,24 +214,34 @@ def lift_loop(planes: Floats, pieces: Floats, lifts: Floats) -> None:
         rho = _touching(pieces, steep)
         if steep > 0.0:
             lifts[n, OUT_X], lifts[n, OUT_Y] = rho * gx / steep, rho * gy / steep
-        lifts[n, HEIGHT] = height
+        lifts[n, HEIGHT], lifts[n, SLOPE], lifts[n, SECANT] = height, steep, math.sqrt(1.0 + steep * steep)
         lifts[n, LIFT] = height + rho * steep - _height(pieces, rho)
 
 
 @njit(cache=True, nogil=True, inline="always")
 def _most(px: float, py: float, lift: Floats, x0: float, y0: float, x1: float, y1: float, pieces: Floats, radius: float,
-          roundness: float) -> float:
+          ball: float) -> float:
     """Return a height that nothing below a plane and inside a box lifts the cutter over."""
     top = lift[LIFT_X] * px + lift[LIFT_Y] * py + lift[LIFT]
     if top < np.inf:
-        if roundness > 0.0:
-            # By the round of the cutter it is less away from where that touches the plane.
+        if ball > 0.0:
+            # By the round of the ball it is less away from where that touches the plane.
             x, y = px + lift[OUT_X], py + lift[OUT_Y]
             gx, gy = max(max(x0 - x, x - x1), 0.0), max(max(y0 - y, y - y1), 0.0)
-            top -= 0.5 * roundness * (gx * gx + gy * gy)
+            rise = abs(lift[LIFT_X] * (0.5 * (x0 + x1) - x) + lift[LIFT_Y] * (0.5 * (y0 + y1) - y))
+            rise = max(rise - 0.5 * (abs(lift[LIFT_X]) * (x1 - x0) + abs(lift[LIFT_Y]) * (y1 - y0)), 0.0)
+            top -= _below_ball(gx * gx + gy * gy + rise * rise, lift, ball)
         else:
             top = min(top, _below_tangent(px, py, lift, x0, y0, x1, y1, pieces, radius))
     return top
+
+
+@njit(cache=True, nogil=True, inline="always")
+def _below_ball(square: float, lift: Floats, ball: float) -> float:
+    """Return how far at least a ball that touches a plane stands straight above places of the plane whose distance from where it touches
+    has a square: as far as its tangent plane at what is nearest of it to them."""
+    away = math.sqrt(ball * ball + square)
+    return square * away * lift[SECANT] / ((away + ball) * (ball + math.sqrt(square) * lift[SLOPE]))
 
 
 @njit(cache=True, nogil=True)
@@ -224,10 +258,12 @@ def _below_tangent(px: float, py: float, lift: Floats, x0: float, y0: float, x1:
 
 
 @njit(cache=True, nogil=True)
-def _touch(px: float, py: float, f: Floats, lift: Floats, owns: int, pieces: Floats, radius: float, roundness: float,
+def _touch(px: float, py: float, f: Floats, lift: Floats, owns: int, pieces: Floats, radius: float, ball: float,
            best: float) -> float:
     """Return the larger of `best` and how high a facet, with the edges and corners that `owns` has bits of, lifts the cutter."""
-    if _most(px, py, lift, f[LOW_X], f[LOW_Y], f[HIGH_X], f[HIGH_Y], pieces, radius, roundness) <= best - _SLACK:
+    if f[HIGH_Z] <= best or lift[LIFT_X] * px + lift[LIFT_Y] * py + lift[LIFT] <= best - _SLACK:
+        return best
+    if ball <= 0.0 and _below_tangent(px, py, lift, f[LOW_X], f[LOW_Y], f[HIGH_X], f[HIGH_Y], pieces, radius) <= best - _SLACK:
         return best
     if f[TURN] != 0.0:
         # Where the plane touches inside the facet, that is the most of all of it; else it is less by how far that is from an edge.
@@ -239,20 +275,24 @@ def _touch(px: float, py: float, f: Floats, lift: Floats, owns: int, pieces: Flo
             dx, dy = f[b] - f[a], f[b + 1] - f[a + 1]
             cross = side * (dx * (y - f[a + 1]) - dy * (x - f[a]))
             if cross < 0.0:
-                out = max(out, cross * cross / (dx * dx + dy * dy))
+                dz = f[b + 2] - f[a + 2]
+                out = max(out, cross * cross / (dx * dx + dy * dy + dz * dz))
         top = lift[LIFT_X] * px + lift[LIFT_Y] * py + lift[LIFT]
         if out == 0.0:
             return max(best, top)
-        if top - 0.5 * roundness * out <= best - _SLACK:
+        if ball > 0.0 and top - _below_ball(out * lift[SECANT] * lift[SECANT], lift, ball) <= best - _SLACK:
             return best
     gx, gy = max(max(f[LOW_X] - px, px - f[HIGH_X]), 0.0), max(max(f[LOW_Y] - py, py - f[HIGH_Y]), 0.0)
     near = gx * gx + gy * gy
-    if near > radius * radius or f[HIGH_Z] <= best or f[HIGH_Z] - _height(pieces, math.sqrt(near)) <= best:
+    if near > radius * radius or f[HIGH_Z] - _height(pieces, math.sqrt(near)) <= best:
         return best
     for k in range(3):
         a, b = 3 * k, 3 * ((k + 1) % 3)
         if owns & (1 << k):
-            best = _edge(px, py, f[a], f[a + 1], f[a + 2], f[b], f[b + 1], f[b + 2], pieces, radius, best)
+            if ball > 0.0:
+                best = _edge_of_ball(px, py, f[a], f[a + 1], f[a + 2], f[b], f[b + 1], f[b + 2], ball, radius, best)
+            else:
+                best = _edge(px, py, f[a], f[a + 1], f[a + 2], f[b], f[b + 1], f[b + 2], pieces, radius, best)
         if owns & (8 << k):
             best = _corner(px, py, f[a], f[a + 1], f[a + 2], pieces, radius, best)
     return best
@@ -297,78 +337,68 @@ def _place(px: float, py: float, f: Floats, pieces: Floats, radius: float, at: F
             at[0], at[1], at[2] = x, y, z
 
 
-@njit(cache=True, nogil=True)
-def touch_loop(first: int, last: int, points: Floats, facets: Floats, low: Floats, pitch: float, shape: Ints, start: Ints, rows: Ints,
-               summit: Floats, block: int, lifts: Floats, cell_lifts: Floats, block_lifts: Floats, pieces: Floats, roundness: float,
-               lowest: float, out: Floats, facet: Ints, contact: Floats) -> None:
-    """Fill out[first:last] with the tip's height over plan points (n, 2) when the cutter touches facets (t, 19) listed in a lattice.
+@njit(cache=True, nogil=True, inline="always")
+def _node(px: float, py: float, box: Floats, lift: Floats, pieces: Floats, radius: float, ball: float, best: float) -> float:
+    """Return a height that nothing below a plane and inside a box lifts the cutter over; minus infinity when that isn't above `best`."""
+    top = box[Z1]
+    if top <= best:
+        return -np.inf
+    gx, gy = max(max(box[X0] - px, px - box[X1]), 0.0), max(max(box[Y0] - py, py - box[Y1]), 0.0)
+    near = gx * gx + gy * gy
+    if near > radius * radius:
+        return -np.inf
+    top -= _height(pieces, math.sqrt(near))
+    if top <= best:
+        return -np.inf
+    top = min(top, _most(px, py, lift, box[X0], box[Y0], box[X1], box[Y1], pieces, radius, ball) + _SLACK)
+    return top if top > best else -np.inf
 
-    summit (cells,) is how high the facets of each cell reach; lifts (t, 6), cell_lifts (cells, 6) and block_lifts (6 a square of `block` by
-    `block` cells) as `lift_loop` makes them, of planes that nothing of a facet, a cell's or a square's facets is above; roundness 1/mm: the
-    least curvature of the lower side in any direction. facet (n,) gets the row of the one that is touched, -1 over none, contact (n, 3)
-    where. What the cutter touched last mostly lies under it at the next point too: a height to begin with that leaves little to look at.
+
+@njit(cache=True, nogil=True)
+def touch_loop(first: int, last: int, points: Floats, facets: Floats, start: Ints, boxes: Floats, node_lifts: Floats, lifts: Floats,
+               pieces: Floats, ball: float, lowest: Floats, out: Floats, facet: Ints, contact: Floats) -> None:
+    """Fill out[first:last] with the tip's height over plan points (n, 2) when the cutter touches facets (t, 19), at least lowest (n,).
+
+    Facets lie in a tree as `drop_tree` makes it: start (leaves + 1,), boxes (nodes, 5); lifts (t, 8) and node_lifts (nodes, 8) as
+    `lift_loop` makes them, of planes that nothing of a facet or a node's facets is above; ball: the radius of a ball end, 0 for other
+    cutters. facet (n,) gets the row of the one that is touched, -1 over none, contact (n, 3) where. What the cutter touched
+    last mostly lies under it at the next point too: a height to begin with that leaves little to look at.
     """
     radius = pieces[len(pieces) - 1, RHO1]
-    square = radius * radius
-    side = block * pitch
-    blocks = (shape[0] + block - 1) // block
-    seen = np.full(len(facets), -1)
+    inner = len(start) - 2
+    nodes, reaches = np.empty(DEEPEST, np.int64), np.empty(DEEPEST)
     touched = -1
     for n in range(first, last):
         px, py = points[n, 0], points[n, 1]
-        best, own = lowest, -1
-        moved = abs(px - points[n - 1, 0]) + abs(py - points[n - 1, 1]) if n > first else np.inf
+        best, own = lowest[n], -1
         if touched >= 0:
-            seen[touched] = n
-            better = _touch(px, py, facets[touched], lifts[touched], ALL, pieces, radius, roundness, best)
+            better = _touch(px, py, facets[touched], lifts[touched], ALL, pieces, radius, ball, best)
             if better > best:
                 best, own = better, touched
-        i0, i1 = int(math.floor((px - radius - low[0]) / pitch)), int(math.floor((px + radius - low[0]) / pitch))
-        j0, j1 = int(math.floor((py - radius - low[1]) / pitch)), int(math.floor((py + radius - low[1]) / pitch))
-        i0, i1, j0, j1 = max(i0, 0), min(i1, shape[0] - 1), max(j0, 0), min(j1, shape[1] - 1)
-        # Where the planes of the middle say that it touches comes first: most of the rest is then too low to matter.
-        mi, mj = int(math.floor((px - low[0]) / pitch)), int(math.floor((py - low[1]) / pitch))
-        if (own < 0 or moved > pitch) and i0 <= mi <= i1 and j0 <= mj <= j1:
-            middle = cell_lifts[mj * shape[0] + mi]
-            ti, tj = int(math.floor((px + middle[OUT_X] - low[0]) / pitch)), int(math.floor((py + middle[OUT_Y] - low[1]) / pitch))
-            if i0 <= ti <= i1 and j0 <= tj <= j1:
-                cell = tj * shape[0] + ti
-                for c in range(start[cell], start[cell + 1]):
-                    r = rows[c]
-                    if seen[r] != n:
-                        seen[r] = n
-                        better = _touch(px, py, facets[r], lifts[r], int(facets[r, OWNS]), pieces, radius, roundness, best)
+        nodes[0], reaches[0] = 0, np.inf
+        waiting = 1
+        while waiting > 0:
+            waiting -= 1
+            node = nodes[waiting]
+            reach = reaches[waiting]
+            while node < inner and reach > best:
+                a, b = 2 * node + 1, 2 * node + 2
+                reach = _node(px, py, boxes[a], node_lifts[a], pieces, radius, ball, best)
+                other = _node(px, py, boxes[b], node_lifts[b], pieces, radius, ball, best)
+                # What may lift it more comes first: most of the rest is then too low to matter.
+                node = a
+                if other > reach:
+                    node, b = b, a
+                    reach, other = other, reach
+                if other > best:
+                    nodes[waiting], reaches[waiting] = b, other
+                    waiting += 1
+            if reach > best:
+                for r in range(start[node - inner], start[node - inner + 1]):
+                    if r != touched:
+                        better = _touch(px, py, facets[r], lifts[r], int(facets[r, OWNS]), pieces, radius, ball, best)
                         if better > best:
                             best, own = better, r
-        for bj in range(j0 // block, j1 // block + 1):
-            by = low[1] + bj * side
-            for bi in range(i0 // block, i1 // block + 1):
-                bx = low[0] + bi * side
-                if _most(px, py, block_lifts[bj * blocks + bi], bx, by, bx + side, by + side, pieces, radius,
-                         roundness) <= best - _SLACK:
-                    continue
-                for j in range(max(j0, bj * block), min(j1, bj * block + block - 1) + 1):
-                    y = low[1] + j * pitch
-                    gy = max(max(y - py, py - y - pitch), 0.0)
-                    for i in range(max(i0, bi * block), min(i1, bi * block + block - 1) + 1):
-                        cell = j * shape[0] + i
-                        if summit[cell] <= best:
-                            continue
-                        x = low[0] + i * pitch
-                        gx = max(max(x - px, px - x - pitch), 0.0)
-                        near = gx * gx + gy * gy
-                        # A facet that is nearer to the axis than this cell is listed in a nearer cell as well.
-                        if near > square or summit[cell] - _height(pieces, math.sqrt(near)) <= best:
-                            continue
-                        if _most(px, py, cell_lifts[cell], x, y, x + pitch, y + pitch, pieces, radius, roundness) <= best - _SLACK:
-                            continue
-                        for c in range(start[cell], start[cell + 1]):
-                            r = rows[c]
-                            if seen[r] != n:
-                                seen[r] = n
-                                better = _touch(px, py, facets[r], lifts[r], int(facets[r, OWNS]), pieces, radius, roundness, best)
-                                if better > best:
-                                    best, own = better, r
         out[n], facet[n] = best, own
         contact[n, 0], contact[n, 1], contact[n, 2] = np.nan, np.nan, np.nan
         if own >= 0:
