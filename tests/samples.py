@@ -83,6 +83,14 @@ def ball_shape() -> Any:
 
 
 @cache
+def dome_on_a_plate_shape() -> Any:
+    """Return a plate 60 x 60 x 10 with nearly half a ball R16 on it, its foot rounded by 3."""
+    cap = cq.Workplane("XY").sphere(16.0).translate((0, 0, 7)).intersect(cq.Workplane("XY").box(60, 60, 40).translate((0, 0, 28)))
+    plate = cq.Workplane("XY").box(60, 60, 10).translate((0, 0, 5)).union(cap)
+    return plate.edges(cq.selectors.BoxSelector((-20, -20, 9.9), (20, 20, 10.1))).fillet(3.0).val().wrapped
+
+
+@cache
 def two_blocks_shape() -> Any:
     """Return two separate solids: the plain box, and a smaller one beside it."""
     small = cq.Shape.cast(box_shape(10.0, 10.0, 10.0)).translate(cq.Vector(60, 0, 0))

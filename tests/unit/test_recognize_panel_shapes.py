@@ -24,3 +24,13 @@ def test_nothing_stands_over_the_pockets_of_a_panel_turned_about_its_own_axis(de
     found = recognized(samples.turned(samples.two_pockets_and_a_rib_shape(), (0, 0, 1), degrees))
     assert found.counts() == still.counts()
     assert not [f.id for f in found if "refused" in f.attributes]
+
+
+def test_a_dome_on_a_plate_is_no_fillet_and_nothing_is_planned_beside_it() -> None:
+    shape = samples.dome_on_a_plate_shape()
+    graph = samples.read(shape).graph()
+    dome = graph.surface.index("sphere") + 1
+    found = recognized(shape)
+    assert dome not in {tag for f in found for tag in f.tags} and dome in found.unexplained
+    assert ["lean" in str(f.attributes["refused"]) for f in found.of_kind("open_pocket")] == [True]
+    assert "recognize.family=surface" in next(f.remedy for f in found.findings if f.code == "panel.leaning-wall")

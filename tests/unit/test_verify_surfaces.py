@@ -11,8 +11,8 @@ from pytest import approx
 from samples import block_with_pocket_shape, drilled_block_shape, moved, read, turned, two_pockets_and_a_rib_shape
 from trunnion.findings import BadInput
 from trunnion.geometry.frame import WORLD, Frame
-from trunnion.part.facets import facets_of
 from trunnion.part import surfaces as strips
+from trunnion.part.facets import facets_of
 from trunnion.part.surfaces import Guide, Profile, level_face, line_edges, strips_of, surfaces_of
 from trunnion.verify.contact import PartContact
 from trunnion.verify.finish.coverage import samples_of

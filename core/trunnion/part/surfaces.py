@@ -170,7 +170,7 @@ def strips_of(guide: Guide, profile: Profile, edges: list[Edge], side: float) ->
     if not ends:
         return np.zeros((0, STRIP_COLUMNS))
     levels = np.array(_distinct(ends + profile.levels(min(ends), max(ends))))
-    # Each edge goes from level to level: ends that nearly meet are on the same one, so that bands hold the same edges however thin they are.
+    # Each edge goes from level to level; ends that nearly meet are on the same one, so that bands hold whole edges however thin they are.
     spans = [sorted((np.searchsorted(levels, (e.u0, e.u1), side="right") - 1).tolist()) for e in edges]
     rows = []
     for k, (u0, u1) in enumerate(pairwise(levels.tolist())):

@@ -54,9 +54,10 @@ def _floor_side(graph: FaceGraph, classes: FaceClasses, edge: int, face: int) ->
 
 
 def _patch(graph: FaceGraph, classes: FaceClasses, face: int) -> bool:
-    """Say whether a blend touches no floor and no top of its own: the ball in a corner between two fillets."""
-    return not any(classes.kind[graph.across(e, face)] in (FaceClass.UP, FaceClass.DOWN) for e in graph.edges_of[face]
-                   if graph.convexity[e] != CONVEX)
+    """Say whether a blend touches no floor and no top of its own: the ball in a corner between two fillets. A dome over them bulges."""
+    level = (FaceClass.UP, FaceClass.DOWN)
+    return bool(graph.bend[face] <= 0) and not any(classes.kind[graph.across(e, face)] in level for e in graph.edges_of[face]
+                                                   if graph.convexity[e] != CONVEX)
 
 
 def _stacked(graph: FaceGraph, face: int, other: int) -> bool:

@@ -10,6 +10,8 @@ from trunnion.recognize.panel.rules import Pocket
 from trunnion.recognize.panel.tree import COVER
 from trunnion.recognize.panel.view import View
 
+LEANING_REMEDY = "plan the part as one of curved surfaces (recognize.family=surface), or make the walls vertical"
+
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Confirmed:
@@ -55,10 +57,9 @@ def refusal(view: View, confirmed: Confirmed) -> tuple[str, str, str, tuple[int,
     leaning = tuple(f for f in sides if kind[f] is not FaceClass.VERTICAL)
     if leaning or pocket.slopes:
         lean = max((abs(float(view.classes.lean[f])) for f in leaning + pocket.slopes), default=0.0)
-        return ("panel.leaning-wall", f"its walls lean by up to {lean:.1f} degrees",
-                "machine it with a strategy for leaning walls, or make the walls vertical", leaning + pocket.slopes)
+        return ("panel.leaning-wall", f"its walls lean by up to {lean:.1f} degrees", LEANING_REMEDY, leaning + pocket.slopes)
     if _curved(view, pocket):
-        return ("panel.curved-floor", "its floor is curved", "machine it with a surface strategy",
+        return ("panel.curved-floor", "its floor is curved", "plan the part as one of curved surfaces (recognize.family=surface)",
                 tuple(f for f in pocket.floors if kind[f] is not FaceClass.UP))
     if confirmed.covered > COVER:
         return ("panel.overhang", f"material stands over {confirmed.covered:.0%} of it",

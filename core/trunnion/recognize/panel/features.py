@@ -11,13 +11,12 @@ from trunnion.geometry.facegraph import CONVEX, FaceGraph
 from trunnion.model.feature import FaceRole, Feature, Size
 from trunnion.recognize.panel.blends import is_rounding
 from trunnion.recognize.panel.classes import FaceClass
-from trunnion.recognize.panel.confirm import Confirmed, confirm, refusal
+from trunnion.recognize.panel.confirm import LEANING_REMEDY, Confirmed, confirm, refusal
 from trunnion.recognize.panel.rules import Island, Pocket, Shown
 from trunnion.recognize.panel.sizes import corner_radius, island_sizes, pocket_sizes, rib_sizes, tidy
 from trunnion.recognize.panel.view import View
 
 T = TypeVar("T")
-LEANING_REMEDY = "machine it with a strategy for leaning walls, or make the walls vertical"
 ROW = 0.01
 """mm: centres whose y differs by less lie in one row."""
 

@@ -10,6 +10,9 @@ from trunnion.recognize.panel.classes import FaceClass
 from trunnion.recognize.panel.view import View
 from trunnion.tolerance import ANGLE, SLIVER
 
+SLOPES = (FaceClass.CROSS, FaceClass.BLEND, FaceClass.OVERHANG)
+"""What rises from a fillet and is no wall: the side of a dome."""
+
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Ring:
@@ -59,6 +62,8 @@ def ring(view: View, floor: int, edges: tuple[int, ...]) -> Ring:
             other = graph.across(edge, blend)
             if rising[other] and graph.convexity[edge] != CONVEX:
                 sides.append(other)
+            elif other not in (floor, *view.fillets) and view.classes.kind[other] in SLOPES and graph.convexity[edge] != CONVEX:
+                slopes.append(other)
     sides = list(dict.fromkeys(sides))
     whole = grown(graph, sides, lambda edge, face, to: bool(rising[to] and _continues_up(view, edge, face, to)))
     return Ring(walls=tuple(r for r in whole if r not in view.corners), corners=tuple(r for r in whole if r in view.corners),
