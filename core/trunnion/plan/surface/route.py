@@ -224,11 +224,9 @@ def _area(draft: Draft, area: Area, progress: Progress) -> None:
     if found.tool is None:
         return
     tags = tuple(t for t in area.tags if found.reached[places.face == t].any())
-    if chosen.semi_allowance > 0.0:
-        # What is too steep for it keeps the allowance of roughing, which is little beside a wall.
-        _add_finish(draft, "semi", area.id, tags, found.tool, first_known(FOR_LOCAL if area.local else FOR_SHALLOW), places)
-    for name, mine, strategy in _by_slope(area, tags, places, math.radians(chosen.steep)):
-        _add_finish(draft, "finish", name, mine, found.tool, strategy, places)
+    for kind in ("semi", "finish") if chosen.semi_allowance > 0.0 else ("finish",):
+        for name, mine, strategy in _by_slope(area, tags, places, math.radians(chosen.steep)):
+            _add_finish(draft, kind, name, mine, found.tool, strategy, places)
     if found.rest is not None:
         left = tuple(t for t in tags if (found.missed & (places.face == t)).any())
         _add_finish(draft, "rest_finish", area.id, left, found.rest, first_known(FOR_LOCAL), places, earlier=found.tool)
@@ -263,7 +261,7 @@ def _by_slope(area: Area, tags: Sequence[int], places: Places, limit: float) -> 
         steep = ()
     shallow = tuple(t for t in tags if t not in steep or above[places.face == t].mean() < 1.0 - SOME)
     found = [(area.id, shallow, first_known(FOR_LOCAL if area.local else FOR_SHALLOW))] if shallow else []
-    return [*found, (f"{area.id}-steep", steep, STEEP)] if steep else found
+    return [*found, (f"{area.id}{FIRST}", steep, STEEP)] if steep else found
 
 
 FOR_LOCAL = ("surface.constant", "surface.parallel")
@@ -271,8 +269,13 @@ FOR_SHALLOW = ("surface.parallel", "surface.constant")
 """Strategies for local features and for shallow faces, the best first."""
 STEEP = "surface.waterline"
 """The strategy for steep faces."""
+FIRST = "-steep"
+"""Ends the name of an operation on the steep places of an area. It comes before the others there: from the top down it takes off what would
+stand in the way of a neck or shank at a wall's foot."""
 REST_LEAD = 0.3
 """mm: radius of leads in rest finishing: what is left lies beside faces that stand up."""
+COARSE, CHORD_SHARE = 0.01, 0.075
+"""mm: from this scallop height on passes need not follow their way as closely as strategies do by themselves; and how closely of it."""
 SOME = 0.02
 """Share of a face that is worth another strategy."""
 MEETING = {"surface.waterline": ("surface.waterline.shallowest", -5.0), "surface.constant": ("surface.constant.steepest", 5.0),
@@ -303,7 +306,9 @@ def _add_finish(draft: Draft, kind: str, name: str, tags: tuple[int, ...], tool:
     rules = (stage.rule, f"{tool.name} over {trimmed(area, 0)} mm2: scallops of {trimmed(1000.0 * height, 1)} um, "
              f"{trimmed(width, 3)} mm between passes on a plane.", f"It leaves {trimmed(allowance, 2)} mm.")
     choices: dict[str, Value] = {SCALLOP: height, ALLOWANCE: allowance}
-    if not semi and strategy in MEETING and STEEP in registry.names("strategies"):
+    if height >= COARSE:
+        choices[f"{strategy}.chord"] = CHORD_SHARE * height
+    if strategy in MEETING and STEEP in registry.names("strategies"):
         key, past = MEETING[strategy]
         choices[key] = min(max(chosen.steep + past, 1.0), 89.0)
     if earlier is not None:
@@ -346,6 +351,7 @@ def _in_order(draft: Draft, stages: Sequence[Stage]) -> list[Operation]:
         stage = by_stage[o.group]
         before = {other.id for other in draft.operations if other.group in stage.after_all
                   or (other.group in stage.after and set(other.faces or o.faces) & set(o.faces))
+                  or other.id == o.id + FIRST
                   or (o.kind in FALLING and other.group == o.group and other.tool.diameter > o.tool.diameter)}
         done[o.id] = replace(o, after=tuple(sorted(before)))
         jobs.append(Job(id=o.id, tool=o.tool.name, stage=rank[o.group], place=_place(draft, o.faces), after=frozenset(before)))
