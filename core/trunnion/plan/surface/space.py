@@ -64,7 +64,7 @@ class SurfaceSpace:
         height, allowance = (number(operation, key) for key in (SCALLOP, ALLOWANCE))
         skin, faces = self.skin, operation.faces
         if earlier is not None and operation.strategy not in KNOWS_EARLIER:
-            skin, faces = left_by(skin, faces, earlier, float(self.low[2]) - self.setup.clearance)
+            skin, faces = left_by(skin, faces, earlier, float(self.low[2]) - self.setup.clearance, height)
         told = digest(self.part.digest, self.part.solid, operation.feature, operation.kind, operation.faces, self.frame, self.blank,
                       self.setup.clearance, self.skin.bound, len(self.skin.triangles), height, allowance, earlier)
         return SurfaceDrive(feature=operation.feature, kind=operation.kind, faces=faces, skin=skin, frame=self.frame,

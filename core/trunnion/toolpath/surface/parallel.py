@@ -26,10 +26,12 @@ from trunnion.progress import Progress
 from trunnion.settings import setting, settings
 from trunnion.toolpath.contract import Planned, strategy
 from trunnion.toolpath.stock import PlanningStock
+from trunnion.toolpath.surface.beside import Strip
 from trunnion.toolpath.surface.cutter import lower_side
 from trunnion.toolpath.surface.lean import leaned_by
 from trunnion.toolpath.surface.linking import Manner, linked
 from trunnion.toolpath.surface.passes import UPRIGHT, Pass
+from trunnion.toolpath.surface.scallop import stepover_on_plane
 from trunnion.toolpath.surface.spacing import Places, marched, places_of, strips_over, tip_spacing
 from trunnion.toolpath.surface.tracing import follow
 
@@ -90,13 +92,15 @@ def parallel(drive: SurfaceDrive, tool: Tool, data: CuttingData, stock: Planning
 @dataclass(frozen=True, slots=True, eq=False, kw_only=True)
 class _Planes:
     """Upright planes along unit directions `along` and across `across` (2,): at distances (p,) along `across`, each from where to where
-    (p, 2) along `along` the tips of the area lie; `widest`: the largest distance of two; `triangles` (m,): the area's rows of the skin."""
+    (p, 2) along `along` the tips of the area lie; `widest`: the largest distance of two; `beyond`: how far past the rim of the area passes
+    are made, mm; `triangles` (m,): the area's rows of the skin."""
 
     along: Floats
     across: Floats
     at: Floats
     reach: Floats
     widest: float
+    beyond: float
     triangles: Ints
 
 
@@ -120,15 +124,16 @@ def _laid(places: Places, tool: Tool, height: float, angle: float, stepover: flo
     spacing = np.full(len(low), stepover) if stepover > 0.0 else tip_spacing(places, tool, height, np.append(across, 0.0))
     at = marched(low, high, spacing, float(low.min()), float(high.max()))
     # From where to where along a plane the tips of the triangles are that it passes.
+    beyond = stepover if stepover > 0.0 else stepover_on_plane(tool.corner_radius, height)
     width = max(float(np.diff(at).min(initial=np.inf)), (at[-1] - at[0]) / len(at), tolerance.SHORT_MOVE)
-    strip, row = strips_over(low, high, at[0], width)
+    strip, row = strips_over(np.maximum(low - beyond, at[0]), np.minimum(high + beyond, at[-1]), at[0], width)
     least, most = np.full(int((at[-1] - at[0]) / width) + 1, np.inf), np.full(int((at[-1] - at[0]) / width) + 1, -np.inf)
     np.minimum.at(least, strip, run.min(axis=1)[row])
     np.maximum.at(most, strip, run.max(axis=1)[row])
     rows = ((at - at[0]) / width).astype(np.int64)
     kept = least[rows] <= most[rows]
     return _Planes(along=along, across=across, at=at[kept], reach=np.column_stack([least[rows], most[rows]])[kept],
-                   widest=float(np.diff(at).max(initial=width)), triangles=places.row)
+                   widest=float(np.diff(at).max(initial=width)), beyond=beyond, triangles=places.row)
 
 
 def _passes(planes: _Planes, drive: SurfaceDrive, tool: Tool, settings: ParallelSettings, progress: Progress) -> list[Pass]:
@@ -137,20 +142,29 @@ def _passes(planes: _Planes, drive: SurfaceDrive, tool: Tool, settings: Parallel
     on_area = np.zeros(len(drive.skin.triangles), dtype=bool)
     on_area[planes.triangles] = True
     area = DropSurface.of(drive.skin.points, drive.skin.triangles[on_area])
+    strip = Strip.of(drive.skin, drive.faces, planes.beyond)
 
-    def touches(plane: Ints, run: Floats, share: Progress) -> Bools:
+    def asked(plane: Ints, run: Floats, share: Progress) -> tuple[Bools, Bools]:
         plan = run[:, None] * planes.along + planes.at[plane, None] * planes.across
-        z, facet, _ = drive.skin.drop.touch(plan, pieces, lowest, share)
+        z, facet, contact = drive.skin.drop.touch(plan, pieces, lowest, share)
         found = (facet >= 0) & on_area[np.maximum(facet, 0)]
         # On the rim either of two faces may be named.
         other = np.flatnonzero((facet >= 0) & ~found)
         found[other] = area.drop(plan[other], pieces, lowest, share) >= z[other] - tolerance.COINCIDENT
         # Past the area the cutter rolls over its rim.
         within = (run >= planes.reach[plane, 0]) & (run <= planes.reach[plane, 1])
-        return np.asarray(found & within)
+        return np.asarray(found & within), np.asarray(~found & strip.has(contact, facet))
 
-    plane, runs = _runs(planes, ALONG * tool.radius, touches, progress.part(0.0, 0.4))
-    plane, runs = _joined(plane, runs, settings.overlap, tool.radius)
+    def touches(plane: Ints, run: Floats, share: Progress) -> Bools:
+        area, beside = asked(plane, run, share)
+        return area | beside
+
+    # While the contact goes over the strip, the tip of a cutter that rolls over something tight goes its radius farther at most.
+    plane, runs = _runs(planes, ALONG * tool.radius, planes.beyond + tool.radius, touches, progress.part(0.0, 0.4))
+    # A run that ends past a smooth join has gone on over it.
+    beside = asked(np.repeat(plane, 2), runs.ravel(), progress.part(0.4, 0.4))[1].reshape(-1, 2)
+    overlap = np.where(beside, max(settings.overlap - planes.beyond, 0.0), settings.overlap)
+    plane, runs = _joined(plane, runs, overlap, tool.radius)
     lines = [planes.at[p] * planes.across + np.outer(r, planes.along) for p, r in zip(plane, runs, strict=True)]
     tips = follow(drive.skin.drop, pieces, lines, settings.chord, lowest, progress.part(0.4, 0.9))
     count = np.cumsum([len(t) for t in tips])[:-1]
@@ -180,11 +194,13 @@ def _too_steep(drive: SurfaceDrive, level: Places) -> tuple[Finding, ...]:
                     remedy="cut them by waterlines or from another direction"),)
 
 
-def _runs(planes: _Planes, step: float, touches: Touches, progress: Progress) -> tuple[Ints, Floats]:
-    """Return the plane (k,) and from where to where (k, 2) along it the cutter touches the area, one run after the other."""
-    count = np.ceil((planes.reach[:, 1] - planes.reach[:, 0]) / step).astype(np.int64) + 3
+def _runs(planes: _Planes, step: float, past: float, touches: Touches, progress: Progress) -> tuple[Ints, Floats]:
+    """Return the plane (k,) and from where to where (k, 2) along it the cutter touches the area, one run after the other; it is
+    looked for on places a step apart, and no farther than `past` mm beyond the area's tips."""
+    before = math.ceil(past / step) + 1
+    count = np.ceil((planes.reach[:, 1] - planes.reach[:, 0]) / step).astype(np.int64) + 1 + 2 * before
     plane = np.repeat(np.arange(len(count)), count)
-    place = np.arange(len(plane)) - np.repeat(np.cumsum(count) - count, count) - 1
+    place = np.arange(len(plane)) - np.repeat(np.cumsum(count) - count, count) - before
     run = planes.reach[plane, 0] + place * step
     on = touches(plane, run, progress.part(0.0, 0.8))
     edge = np.flatnonzero((on[1:] != on[:-1]) & (plane[1:] == plane[:-1]))
@@ -196,9 +212,9 @@ def _runs(planes: _Planes, step: float, touches: Touches, progress: Progress) ->
     return plane[edge[::2]], inside.reshape(-1, 2)
 
 
-def _joined(plane: Ints, runs: Floats, overlap: float, gap: float) -> tuple[Ints, Floats]:
-    """Return runs with an overlap at both ends, and as one where the way between two is no longer than a gap."""
-    runs = runs + np.array([-overlap, overlap])
+def _joined(plane: Ints, runs: Floats, overlap: Floats, gap: float) -> tuple[Ints, Floats]:
+    """Return runs (k, 2) with overlaps (k, 2) at their ends, and as one where the way between two is no longer than a gap."""
+    runs = runs + overlap * np.array([-1.0, 1.0])
     begins = np.append(True, (plane[1:] != plane[:-1]) | (runs[1:, 0] - runs[:-1, 1] > gap))[: len(plane)]
     ends = np.append(begins[1:], True)[: len(plane)]
     return plane[begins], np.column_stack([runs[begins, 0], runs[ends, 1]])
