@@ -10,7 +10,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from trunnion.geometry.dropping import DropSurface
-from trunnion.geometry.kernels.drop import drop, height_at
+from trunnion.geometry.kernels.drop import drop, height_at, radius_at
 from trunnion.geometry.kernels.push import push
 from trunnion.geometry.kernels.push_compiled import blocked
 from trunnion.geometry.lattice import lattice_of
@@ -187,3 +187,14 @@ def test_a_wall_of_small_facets_beside_large_ones_lifts_as_its_plain_form_does()
     for cutter in CUTTERS.values():
         found = DropSurface.of(points, triangles).drop(at, cutter, LOWEST)
         assert np.abs(found - drop(at, points[triangles], cutter, LOWEST)).max() < 1e-9
+
+
+@pytest.mark.parametrize("name", CUTTERS)
+def test_a_cutter_begins_no_higher_than_asked_up_to_its_radius_there(name: str) -> None:
+    pieces = CUTTERS[name]
+    height = np.array([-1.0, 0.0, 0.01, 0.3, 1.0, 2.0, 50.0])
+    inside = radius_at(pieces, height)
+    assert inside[0] == 0.0 and inside[-1] == pieces[-1, 1]
+    assert (height_at(pieces, inside)[1:] <= height[1:] + 1e-9).all()
+    beyond = inside[1:] + 1e-6
+    assert (height_at(pieces, beyond)[beyond < pieces[-1, 1]] > height[1:][beyond < pieces[-1, 1]]).all()

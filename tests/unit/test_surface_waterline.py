@@ -83,6 +83,22 @@ def test_nothing_is_gouged_and_the_tips_touch() -> None:
     assert (moves[:, 2] - drive.skin.drop.drop(moves[:, :2], lower_side(BALL), -9.0)).min() > -1e-3
 
 
+@pytest.mark.parametrize(("skin", "tool"), [(round_wall(9.0, 0.0, 5.0, lean=math.radians(30.0)), BALL), (round_wall(8.0, 0.0, 10.0), FLAT),
+                                            (round_wall(8.0, 0.0, 5.0, n=7), BALL),
+                                            (grid(lambda x, y: 4.0 * np.sin(0.4 * x) * np.cos(0.3 * y)), BALL)])
+def test_no_chord_leaves_the_rim_of_what_is_blocked_by_more_than_the_chord_error(skin, tool) -> None:
+    chord = 0.002
+    made, drive = planned(skin, tool, step=1.0, chord=chord)
+    tips, cut = made.path.position, made.path.mark == Mark.CUT
+    rows = np.flatnonzero(cut[1:] & cut[:-1] & (np.hypot(*np.diff(tips[:, :2], axis=0).T) > 0.01))
+    start, way = tips[rows], np.diff(tips, axis=0)[rows]
+    left = np.column_stack([-way[:, 1], way[:, 0]]) / np.hypot(way[:, 0], way[:, 1])[:, None]
+    for share in (0.2, 0.5, 0.8):
+        place = start + share * way
+        over = [drive.skin.drop.drop(place[:, :2] + side * chord * left, lower_side(tool), -9.0) - place[:, 2] for side in (-1.0, 1.0)]
+        assert (over[1] <= 1e-9).all() and (over[0] > -1e-9).all()
+
+
 def test_an_allowance_keeps_the_cutter_off_the_wall() -> None:
     tips = cut_tips(planned(round_wall(8.0, 0.0, 10.0), FLAT, allowance=0.5, chord=0.005)[0].path)
     assert np.hypot(tips[:, 0] - 15.0, tips[:, 1] - 15.0).max() == pytest.approx(13.5, abs=1e-3)

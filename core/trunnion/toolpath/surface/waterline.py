@@ -1,7 +1,8 @@
 """Finishing steep faces and upright walls level by level, the tip at one height all round.
 
 At a height the cutter is blocked where a drop would stand higher: the rim of that area is the pass. It is found on a grid of drops, put
-exactly on the grid's lines and then between them by halving, always on the free side, and cut where the cutter touches the area.
+exactly on the grid's lines and then between them by halving, always on the free side, and cut where the cutter touches the area. From a
+blocked place the rim is no nearer than where the cutter, at its height, gets past what a drop touches: few such steps come to it.
 """
 
 from __future__ import annotations
@@ -17,7 +18,7 @@ from trunnion import tolerance
 from trunnion.findings import Finding, Refused, warning
 from trunnion.geometry.arrays import Bools, Floats, Ints
 from trunnion.geometry.contours import SheetLine, whole_levels
-from trunnion.geometry.kernels.drop import slope_at
+from trunnion.geometry.kernels.drop import radius_at
 from trunnion.model.operation import CuttingData
 from trunnion.model.setup import Setup
 from trunnion.model.tool import Tool
@@ -31,23 +32,22 @@ from trunnion.toolpath.surface.linking import Manner, linked
 from trunnion.toolpath.surface.passes import UPRIGHT, Pass
 from trunnion.toolpath.surface.spacing import Places, level_spacing, marched, places_of
 from trunnion.toolpath.surface.tipgrid import grid_around, spread
-from trunnion.toolpath.surface.tracing import SEEN, THINNED, beside, thinned
+from trunnion.toolpath.surface.tracing import thinned
 
 CELL, FINEST, COARSEST = 0.2, 0.1, 1.5
 """Of the cutter's radius, and mm at least and at most: side of the grid's cells. What is blocked is as wide as the cutter and more."""
 MARGIN = 6
 """Cells round the area's tips that are looked at: as far as the cutter goes away from both sides of an edge that it rolls round."""
-CLOSE = 1e-4
+CLOSE = 2e-5
 """mm: how near to the rim of what is blocked a tip is put."""
+STEPS, DIRECT = 40, 2
+"""Of a search, which mostly ends after two; and after how many every other one is longer."""
 HALVINGS = 16
-ASIDE = ((8.0, 0.0), (0.0, 0.75), (0.0, 2.0))
-"""How far to both sides of a chord its rim is looked for, in chord errors and in the chord's length: near first, then as a corner needs."""
-NEWTON = 8
-"""Steps of a search that mostly ends after three."""
-LEVEL, UPRIGHT_WALL = 0.05, 1e4
-"""A tip that falls less steeply, or more, than this along a search is left to halving."""
-STEEP = 6.0
-"""A tip that falls more steeply than this stands beside a wall."""
+SEEN, THINNED = 0.25, 0.4
+"""Shares of the chord error: how far the rim may be from the middle of a chord, and a place that is taken out from its chord."""
+INSIDE = (0.25, 8.0, 0.75, 2.0)
+"""How far inside of where the rim is expected beside a chord its search begins: near first, in what a chord's middle is expected off it;
+then in chord errors and in the chord's length, as a corner needs."""
 UPWARD = -math.sin(tolerance.ANGLE)
 """The least part along z of normals of upright walls."""
 NEARBY, ROUGHLY = 1.0, 2.5
@@ -136,59 +136,30 @@ class _Blocked:
         """Return how high the tip stands over plan points (n, 2)."""
         return self.drive.skin.drop.drop(plan, self.pieces, self.lowest, self.progress)
 
-    def falls(self, plan: Floats) -> tuple[Floats, Floats]:
-        """Return how high the tip stands over plan points (n, 2), and how that changes along x and y (n, 2): as the lower side rises from
-        the axis where it touches."""
-        z, facet, contact = self.drive.skin.drop.touch(plan, self.pieces, self.lowest, self.progress)
-        aside = contact[:, :2] - plan
-        away = np.hypot(aside[:, 0], aside[:, 1])
-        slope = np.minimum(slope_at(self.pieces, away), UPRIGHT_WALL)
-        # Under the axis and over nothing the tip is level.
-        fall = np.divide(slope, away, out=np.zeros(len(plan)), where=(facet >= 0) & (away > 0.0))
-        return z, fall[:, None] * np.nan_to_num(aside)
-
-    def along(self, start: Floats, way: Floats, z: Floats, most: Floats) -> tuple[Floats, Bools]:
-        """Return plan points (n, 2) on the free side of the rim, no more than `CLOSE` from it, on lines from `start` along unit ways (n, 2)
-        that leave what is blocked, and whether one was found no farther than `most` (n,) by Newton's steps."""
-        run, done = np.zeros(len(z)), np.zeros(len(z), dtype=bool)
-        rows = np.arange(len(z))
-        for _ in range(NEWTON):
-            height, fall = self.falls(start[rows] + run[rows, None] * way[rows])
-            above = height - z[rows] - tolerance.COINCIDENT
-            steep = -(fall * way[rows]).sum(axis=1)
-            fits = (steep > LEVEL) & (steep < UPRIGHT_WALL)
-            near = fits & (above <= 0.0) & (above >= -CLOSE * steep)
-            done[rows[near]] = True
-            goes = fits & ~near
-            rows = rows[goes]
+    def rim(self, start: Floats, way: Floats, z: Floats, most: Floats) -> tuple[Floats, Bools]:
+        """Return how far (n,) the rim of what is blocked is from blocked plan points (n, 2) along unit ways (n, 2): as far as the free
+        side, no more than `CLOSE` from it. And say whether it is there, no farther than `most` (n,); from a free place it isn't."""
+        low, high = np.zeros(len(z)), np.full(len(z), np.inf)
+        at, rows = low.copy(), np.arange(len(z))
+        for k in range(STEPS):
+            places = start[rows] + at[rows, None] * way[rows]
+            _, facet, contact = self.drive.skin.drop.touch(places, self.pieces, z[rows] + tolerance.COINCIDENT, self.progress)
+            hits = facet >= 0
+            high[rows[~hits]] = at[rows[~hits]]
+            aside = contact[hits, :2] - start[rows[hits]]
+            ahead = (aside * way[rows[hits]]).sum(axis=1)
+            beside = (aside * aside).sum(axis=1) - ahead * ahead
+            reach = radius_at(self.pieces, contact[hits, 2] - z[rows[hits]])
+            low[rows[hits]] = np.maximum(ahead + np.sqrt(np.maximum(reach * reach - beside, 0.0)), at[rows[hits]])
+            rows = rows[(low[rows] < most[rows]) & (high[rows] - low[rows] > CLOSE)]
             if not len(rows):
                 break
-            run[rows] += above[goes] / steep[goes] + 0.5 * CLOSE
-            rows = rows[np.abs(run[rows]) <= most[rows]]
-        return start + run[:, None] * way, done
-
-    def rim(self, blocked: Floats, free: Floats, z: Floats, high: Floats, low: Floats) -> Floats:
-        """Return plan points (n, 2) between blocked and free ones, over which the tip stands `high` and `low` (n,): on the free side, and
-        no more than `CLOSE` from the rim or from touching."""
-        blocked, free, high, low = blocked.copy(), free.copy(), high - z - tolerance.COINCIDENT, low - z - tolerance.COINCIDENT
-        rows = np.arange(len(z))
-        for k in range(2 * HALVINGS):
-            rows = rows[(np.abs(free[rows] - blocked[rows]).max(axis=1) > CLOSE) & (low[rows] < -CLOSE)]
-            if not len(rows):
-                break
-            # On a slope a straight line from height to height finds the rim at once; beside a wall only halving does.
-            fall = high[rows] - low[rows]
-            slopes = (fall < STEEP * np.abs(free[rows] - blocked[rows]).max(axis=1)) & (k % 2 == 0)
-            share = np.where(slopes, (high[rows] + 0.5 * CLOSE) / fall, 0.5)
-            middle = blocked[rows] + np.clip(share, 0.01, 0.99)[:, None] * (free[rows] - blocked[rows])
-            found = self.heights(middle) - z[rows] - tolerance.COINCIDENT
-            hit = found > 0.0
-            blocked[rows[hit]], high[rows[hit]] = middle[hit], found[hit]
-            free[rows[~hit]], low[rows[~hit]] = middle[~hit], found[~hit]
-            # The end that stays counts half the next time, so that it won't stay for ever (the Illinois rule).
-            low[rows[hit]] = np.where(low[rows[hit]] < -4.0 * CLOSE, 0.5 * low[rows[hit]], low[rows[hit]])
-            high[rows[~hit]] *= 0.5
-        return free
+            at[rows] = low[rows] + 0.5 * CLOSE
+            if k >= DIRECT and k % 2:
+                # Where every touch is another one, on level ground and beside straight edges, such steps are short.
+                at[rows] = np.where(high[rows] < np.inf, 0.5 * (low + high)[rows], np.minimum(low[rows] + CLOSE * 4.0**k, most[rows]))
+        found = (high > 0.0) & (high < np.inf)
+        return np.where(found, high, 0.0), found
 
 
 @dataclass(frozen=True, slots=True, eq=False, kw_only=True)
@@ -227,14 +198,20 @@ def _loops(levels: Floats, places: Places, drive: SurfaceDrive, tool: Tool, sett
         return []
     ends = np.concatenate([line.ends[rows] for line, rows, _ in found])
     over = np.repeat([levels[line.level] for line, *_ in found], [len(rows) for _, rows, _ in found])
-    high = np.take_along_axis(ends, np.argsort(-heights[ends], axis=1, kind="stable"), axis=1)
-    plan = blocked.rim(grid.points[high[:, 0], :2], grid.points[high[:, 1], :2], over, heights[high[:, 0]], heights[high[:, 1]])
+    ends = np.take_along_axis(ends, np.argsort(-heights[ends], axis=1, kind="stable"), axis=1)
+    high, low = grid.points[ends[:, 0], :2], grid.points[ends[:, 1], :2]
+    side = np.hypot(*(low - high).T)
+    way = (low - high) / side[:, None]
+    run, has_rim = blocked.rim(high, way, over, side)
+    plan = np.where(has_rim[:, None], high + run[:, None] * way, low)
     split = np.split(plan, np.cumsum([len(rows) for _, rows, _ in found])[:-1])
     lines = []
     for way, (line, _, closed) in zip(split, found, strict=True):
         z = float(levels[line.level])
         for rows, whole in _pieces(way, _apart(near, way, z) <= NEARBY * cell, closed, settings.overlap, radius):
-            lines.append(_Loop(plan=way[rows], z=z, level=line.level, closed=whole))
+            rows = rows[np.append(True, np.hypot(*np.diff(way[rows], axis=0).T) > CLOSE)]
+            if len(rows) > 1:
+                lines.append(_Loop(plan=way[rows], z=z, level=line.level, closed=whole))
     ways = _closer(lines, blocked, settings.chord)
     return [replace(line, plan=way, z=line.z + drive.allowance) for line, way in zip(lines, ways, strict=True)]
 
@@ -290,41 +267,57 @@ def _closer(loops: list[_Loop], blocked: _Blocked, chord: float) -> list[Floats]
         return []
     plan, z = np.concatenate([loop.plan for loop in loops]), np.repeat([loop.z for loop in loops], [len(loop.plan) for loop in loops])
     line = np.repeat(np.arange(len(loops)), [len(loop.plan) for loop in loops])
+    off = _bulges(plan, line)
     is_open = np.append(line[1:] == line[:-1], False)
     for _ in range(HALVINGS):
         rows = np.flatnonzero(is_open)
         if not len(rows):
             break
-        found = _middles(plan[rows], plan[rows + 1], z[rows], blocked, chord)
-        is_open[rows] = beside(found, plan[rows], plan[rows + 1]) > SEEN * chord
-        plan, z, line = np.insert(plan, rows + 1, found, axis=0), np.insert(z, rows + 1, z[rows]), np.insert(line, rows + 1, line[rows])
+        left, found, has_rim = _middles(plan[rows], plan[rows + 1], off[rows], z[rows], blocked, chord)
+        # What is where a smooth rim would have it is the middle of two chords that are four times nearer to it.
+        seen = 0.25 * np.abs(found) + np.abs(found - off[rows]) <= SEEN * chord
+        is_open[rows], off[rows] = ~seen & has_rim, 0.25 * found
+        middle = 0.5 * (plan[rows] + plan[rows + 1]) + found[:, None] * left
+        rows, middle = rows[has_rim], middle[has_rim]
+        plan, z, line, off = (np.insert(old, rows + 1, new, axis=0) for old, new in ((plan, middle), (z, z[rows]), (line, line[rows]),
+                                                                                     (off, off[rows])))
         is_open = np.insert(is_open, rows + 1, is_open[rows])
+        # Beside a corner a chord that was never looked at may leave the way.
+        is_open |= np.abs(_bulges(plan, line)) > SEEN * chord
         is_open[:-1] &= (line[1:] == line[:-1]) & (np.hypot(*np.diff(plan, axis=0).T) > chord)
     kept = thinned(plan, line, THINNED * chord)
     return np.split(plan[kept], np.flatnonzero(np.diff(line[kept])) + 1)
 
 
-def _middles(start: Floats, end: Floats, z: Floats, blocked: _Blocked, chord: float) -> Floats:
-    """Return the places (n, 2) on the rim beside the middles of chords that have what is blocked on their right."""
-    way, middle = end - start, 0.5 * (start + end)
+def _bulges(plan: Floats, line: Ints) -> Floats:
+    """Return how far to the left (n,) of the middle of the chord from each place (n, 2) of lines to the next a smooth way would be, as the
+    lines turn at both ends."""
+    way = np.diff(plan, axis=0)
     length = np.hypot(way[:, 0], way[:, 1])
-    left = np.column_stack([-way[:, 1], way[:, 0]]) / np.maximum(length, CLOSE)[:, None]
-    found, has_rim = blocked.along(middle, left, z, ASIDE[0][0] * chord + ASIDE[1][1] * length)
-    inside, outside, high, low = middle.copy(), middle.copy(), z + 1.0, z - 1.0
-    rows = np.flatnonzero(~has_rim)
-    halved = rows
-    for errors, lengths in ASIDE:
-        aside = (errors * chord + lengths * length[rows])[:, None] * left[rows]
-        inside[rows], outside[rows] = middle[rows] - aside, middle[rows] + aside
-        high[rows], low[rows] = blocked.heights(inside[rows]), blocked.heights(outside[rows])
-        rows = rows[(low[rows] > z[rows] + tolerance.COINCIDENT) | (high[rows] <= z[rows] + tolerance.COINCIDENT)]
+    turn = way[:-1, 0] * way[1:, 1] - way[:-1, 1] * way[1:, 0]
+    size = length[:-1] * length[1:] * np.hypot(*(way[:-1] + way[1:]).T)
+    bend = np.divide(2.0 * turn, size, out=np.zeros(len(turn)), where=(size > 0.0) & (line[2:] == line[:-2]))
+    bend = np.concatenate([[0.0], bend, [0.0]])
+    return np.append(-0.0625 * (bend[:-1] + bend[1:]) * length * length, 0.0)
+
+
+def _middles(start: Floats, end: Floats, off: Floats, z: Floats, blocked: _Blocked, chord: float) -> tuple[Floats, Floats, Bools]:
+    """Return the directions (n, 2) to the left of chords, which have what is blocked on their right, how far the rim is from their middles
+    that way (n,), expected `off` (n,), and whether one is found."""
+    way, middle = end - start, 0.5 * (start + end)
+    length = np.maximum(np.hypot(way[:, 0], way[:, 1]), CLOSE)
+    left = np.column_stack([-way[:, 1], way[:, 0]]) / length[:, None]
+    off, found, rows = np.clip(off, -0.5 * length, 0.5 * length), np.zeros(len(z)), np.arange(len(z))
+    near, errors, *lengths = INSIDE
+    for inside in (near * np.abs(off) + 2.0 * CLOSE, np.abs(off) + errors * chord, *(share * length for share in lengths)):
+        begin = (off - inside)[rows]
+        run, has_rim = blocked.rim(middle[rows] + begin[:, None] * left[rows], left[rows], z[rows], 2.0 * inside[rows] + errors * chord)
+        found[rows[has_rim]] = (begin + run)[has_rim]
+        rows = rows[~has_rim]
         if not len(rows):
             break
     # Where no rim is found beside a chord it stays as it is.
-    found[rows] = middle[rows]
-    rows = np.setdiff1d(halved, rows)
-    found[rows] = blocked.rim(inside[rows], outside[rows], z[rows], high[rows], low[rows])
-    return found
+    return left, found, np.isin(np.arange(len(z)), rows, invert=True)
 
 
 def _in_order(loops: list[_Loop], tool: Tool, *, both: bool) -> list[Pass]:
