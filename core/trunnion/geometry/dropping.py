@@ -154,7 +154,7 @@ def _slopes(facets: Floats, start: Ints) -> Floats:
     total = np.concatenate(sums[::-1])
     slopes = np.divide(total[:, 1:], total[:, :1], out=np.zeros((len(total), 2)), where=total[:, :1] > 0.0)
     size = np.hypot(slopes[:, 0], slopes[:, 1])[:, None]
-    return np.asarray(slopes * np.minimum(np.divide(STEEPEST, size, out=np.ones_like(size), where=size > 0.0), 1.0))
+    return np.asarray(slopes * np.divide(STEEPEST, size, out=np.ones_like(size), where=size > STEEPEST))
 
 
 def _merged(spans: Floats) -> Floats:
