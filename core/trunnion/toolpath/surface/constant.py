@@ -26,6 +26,7 @@ from trunnion.progress import QUIET, Progress
 from trunnion.settings import setting, settings
 from trunnion.toolpath.contract import Planned, strategy
 from trunnion.toolpath.stock import PlanningStock
+from trunnion.toolpath.surface import choices
 from trunnion.toolpath.surface.contacts import Contacts
 from trunnion.toolpath.surface.linking import Manner, linked
 from trunnion.toolpath.surface.scallop import stepover_on_plane
@@ -55,13 +56,10 @@ class ConstantSettings:
                              choices=("climb", "conventional"))
     order: str = setting("inwards", label="Order", help="From the rim inwards, or from the inside to the rim.",
                          choices=("inwards", "outwards"))
-    steepest: float = setting(80.0, unit="deg", low=5.0, high=89.0, label="Steepest slope",
-                              help="Steeper places are left to waterlines.")
-    chord: float = setting(0.0003, unit="mm", low=0.00005, high=0.1, label="Chord error",
-                           help="How far straight moves may leave the way of the cutter.")
-    lead_radius: float = setting(1.0, unit="mm", low=0.0, high=20.0, label="Lead radius", help="Radius of the arcs onto and off the face.")
-    safety: float = setting(2.0, unit="mm", low=0.2, high=50.0, label="Safety distance",
-                            help="Where a rapid ends above what may still be there.")
+    steepest: float = choices.steepest()
+    chord: float = choices.chord()
+    lead_radius: float = choices.lead_radius()
+    safety: float = choices.safety()
 
 
 @strategy(settings=ConstantSettings)
