@@ -95,9 +95,9 @@ def marched(low: Floats, high: Floats, spacing: Floats, begin: float, end: float
     """Return places (p,) from `begin` to `end`, each as far from the one before as is allowed by all that lies between the two: things from
     low to high (m,) with a spacing (m,) each."""
     width = max(FINENESS * float(spacing.min()), (end - begin) / MOST_STRIPS)
-    strip, row = strips_over(low, high, begin, width)
-    allowed = np.full(int((end - begin) / width) + 1, np.inf)
-    np.minimum.at(allowed, np.minimum(strip, len(allowed) - 1), spacing[row])
+    count = int((end - begin) / width) + 1
+    begins, ends = (np.clip(((v - begin) / width).astype(np.int64), 0, count - 1) for v in (low, high))
+    allowed = least_over(begins, ends, spacing, count)
     at = [begin]
     while at[-1] < end:
         here, step = at[-1], math.inf
@@ -108,6 +108,23 @@ def marched(low: Floats, high: Floats, spacing: Floats, begin: float, end: float
             ahead = begin + first * width - here
         at.append(min(here + min(step, end - here), end))
     return np.array(at)
+
+
+def least_over(first: Ints, last: Ints, values: Floats, count: int) -> Floats:
+    """Return over each of `count` strips the least of the values (m,) of what lies over strips from first to last (m,); infinite over none.
+
+    Each is put down on two runs of strips, as long as a power of two, that cover its own; runs then hand on to their halves.
+    """
+    power = np.frexp(last - first + 1)[1] - 1
+    out = np.full(count, np.inf)
+    for k in range(int(power.max(initial=0)), -1, -1):
+        some = power == k
+        np.minimum.at(out, first[some], values[some])
+        np.minimum.at(out, last[some] - (1 << k) + 1, values[some])
+        if k:
+            half = 1 << (k - 1)
+            out[half:] = np.minimum(out[half:], out[:-half])
+    return out
 
 
 def strips_over(low: Floats, high: Floats, begin: float, width: float) -> tuple[Ints, Ints]:
