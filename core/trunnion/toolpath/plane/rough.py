@@ -51,6 +51,7 @@ def rough(drive: PlaneDrive, tool: Tool, data: CuttingData, stock: PlanningStock
     builder = PathBuilder(tool, data, stock, setup, settings.safety)
     manner = Manner(step=safe_step(tool, data.width, RIDGE), ramp=math.radians(settings.ramp_angle), slot=settings.slot_feed)
     findings: list[Finding] = []
+    left: list[tuple[DriveLevel, float]] = []
     above, first = max(drive.top, drive.stock_top), True
     for n, level in enumerate(drive.levels):
         heights = layers(above, level.bottom, data.depth, _horizontals(drive, n), drive.floor_allowance)
@@ -66,7 +67,11 @@ def rough(drive: PlaneDrive, tool: Tool, data: CuttingData, stock: PlanningStock
                 known = None if first or passes.clip is not None else above
                 clear(builder, Layer(z=z, rings=passes.rings, room=passes.room, clip=passes.clip, top=known), manner, progress)
             above, first = z, False
-        findings += _left(drive, level, tool, made)
+        if made and not made[max(made)].room.region:
+            findings.append(_too_wide(drive, level, tool))
+        elif made:
+            left.append((level, _left(level, max(made), made[max(made)].room.region)))
+    findings += _corners(drive, tool, [(level, area) for level, area in left if area >= SMALLEST_LEFTOVER])
     return Planned(path=eased(builder.finished(), tool, data, stock, settings.slot_feed), findings=tuple(findings))
 
 
@@ -91,17 +96,21 @@ def _is_clear(builder: PathBuilder, wanted: Region, z: float) -> bool:
     return bool(inner) and stock.is_clear(z + tolerance.COINCIDENT, inner)
 
 
-def _left(drive: PlaneDrive, level: DriveLevel, tool: Tool, made: dict[float, Passes]) -> list[Finding]:
-    if not made:
+def _too_wide(drive: PlaneDrive, level: DriveLevel, tool: Tool) -> Finding:
+    return error("rough.too-wide", f"{tool.name} does not fit between the walls of {drive.feature} below {level.top:.2f}: "
+                 f"{level.wanted.area:.0f} mm2 stay", drive.feature, *face_tags(drive.faces), remedy="choose a smaller cutter")
+
+
+def _left(level: DriveLevel, distance: float, room: Region) -> float:
+    """Return the area in mm2 that a cutter leaves of what is wanted, its axis everywhere in a room that keeps a distance from the rim."""
+    return level.wanted.minus(room.offset(distance + tolerance.SEW)).area
+
+
+def _corners(drive: PlaneDrive, tool: Tool, left: list[tuple[DriveLevel, float]]) -> list[Finding]:
+    """Return one finding for all bands with corners that are left."""
+    if not left:
         return []
-    distance = max(made)
-    room = made[distance].room
-    if not room.region:
-        return [error("rough.too-wide", f"{tool.name} does not fit between the walls of {drive.feature} below {level.top:.2f}: "
-                      f"{level.wanted.area:.0f} mm2 stay", drive.feature, *face_tags(drive.faces), remedy="choose a smaller cutter")]
-    left = level.wanted.minus(room.region.offset(distance + tolerance.SEW))
-    area = left.area
-    if area < SMALLEST_LEFTOVER:
-        return []
-    return [info("rough.left", f"{area:.0f} mm2 of {drive.feature} between {level.bottom:.2f} and {level.top:.2f} stay in corners that "
-                 f"{tool.name} can't reach", drive.feature, remedy="clear them by a smaller cutter afterwards")]
+    most, low, high = max(area for _, area in left), min(level.bottom for level, _ in left), max(level.top for level, _ in left)
+    size = f"{most:.0f} mm2" if len(left) == 1 else f"up to {most:.0f} mm2"
+    return [info("rough.left", f"{size} of {drive.feature} between {low:.2f} and {high:.2f} stay in corners that {tool.name} can't reach",
+                 drive.feature, remedy="clear them by a smaller cutter afterwards")]
