@@ -210,8 +210,7 @@ class _Patch:
             at = face.at(mine.uv)
             near = self._in_box(at.point, mine.half[:, :1] * np.abs(at.du) + mine.half[:, 1:] * np.abs(at.dv))
             mine, at = mine.some(near), _some(at, near)
-            corners = mine.uv[:, None] + signs * mine.half[:, None]
-            within = face.inside(corners.reshape(-1, 2)).reshape(-1, len(signs))
+            within = _within(face, mine, signs)
             touches = np.asarray(within.any(axis=1))
             parts.append(mine.some(touches))
             points.append(_some(at, touches))
@@ -301,6 +300,21 @@ class _Patch:
             if over.value <= self.bound:
                 break
         return Extreme(value=height, place=best.place, move=best.move)
+
+
+def _within(face: Face, cells: _Cells, signs: Floats) -> Bools:
+    """Say which places (c, s), at signs (s, 2) times the half sides from the middle, lie inside the trim of the face that cells are on.
+
+    All cells of a face are of one size, and neighbours share corners: each place is asked for once.
+    """
+    if not len(cells):
+        return np.zeros((0, len(signs)), bool)
+    u0, _, v0, _ = face.bounds()
+    start, half = np.array([u0, v0]), cells.half[0]
+    steps = np.rint((cells.uv[:, None] - start) / half + signs)
+    place, row = np.unique(steps[..., 0] + 1j * steps[..., 1], return_inverse=True)
+    inside = face.inside(start + np.column_stack([place.real, place.imag]) * half)
+    return np.asarray(inside[row.reshape(len(cells), len(signs))])
 
 
 def _some(at: ExactPoints, rows: Bools) -> ExactPoints:
