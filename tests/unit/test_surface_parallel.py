@@ -15,7 +15,7 @@ from trunnion.model.toolpath import Mark, Motion
 from trunnion.plan.surface.scallop import stepover_on_plane
 from trunnion.progress import QUIET
 from trunnion.toolpath.surface.cutter import lower_side
-from trunnion.toolpath.surface.parallel import ParallelSettings, parallel
+from trunnion.toolpath.surface.parallel import ParallelSettings, _joined, parallel
 from verify_tools import bull
 
 BALL = bull(6.0, 3.0)()
@@ -133,3 +133,9 @@ def test_tips_stand_where_the_plain_drop_puts_them() -> None:
     made, drive = planned(grid(lambda x, y: 0.1 * x * np.cos(y), n=12, high=(6.0, 6.0)), height=0.05)
     tips = cuts(made.path)[::7, 1]
     assert tips[:, 2] == pytest.approx(drop(tips[:, :2], drive.skin.points[drive.skin.triangles], lower_side(BALL), -9.0), abs=1e-9)
+
+
+def test_a_run_that_only_touches_a_corner_of_the_area_is_left_out():
+    plane, runs = np.array([0, 0, 1]), np.array([[1.0, 1.0], [8.0, 12.0], [3.0, 3.0]])
+    kept, longer = _joined(plane, runs, np.zeros((3, 2)), 2.0)
+    assert kept.tolist() == [0] and longer.tolist() == [[8.0, 12.0]]

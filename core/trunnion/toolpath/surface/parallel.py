@@ -213,8 +213,11 @@ def _runs(planes: _Planes, step: float, past: float, touches: Touches, progress:
 
 
 def _joined(plane: Ints, runs: Floats, overlap: Floats, gap: float) -> tuple[Ints, Floats]:
-    """Return runs (k, 2) with overlaps (k, 2) at their ends, and as one where the way between two is no longer than a gap."""
+    """Return runs (k, 2) with overlaps (k, 2) at their ends, and as one where the way between two is no longer than a gap. One that stays
+    shorter than any move is left out: it only touches a corner of the area."""
     runs = runs + overlap * np.array([-1.0, 1.0])
     begins = np.append(True, (plane[1:] != plane[:-1]) | (runs[1:, 0] - runs[:-1, 1] > gap))[: len(plane)]
     ends = np.append(begins[1:], True)[: len(plane)]
-    return plane[begins], np.column_stack([runs[begins, 0], runs[ends, 1]])
+    plane, runs = plane[begins], np.column_stack([runs[begins, 0], runs[ends, 1]])
+    long = runs[:, 1] - runs[:, 0] > tolerance.SHORT_MOVE
+    return plane[long], runs[long]
