@@ -341,7 +341,7 @@ def _place(px: float, py: float, f: Floats, pieces: Floats, radius: float, at: F
 def _node(px: float, py: float, box: Floats, lift: Floats, pieces: Floats, radius: float, ball: float, best: float) -> float:
     """Return a height that nothing below a plane and inside a box lifts the cutter over; minus infinity when that isn't above `best`."""
     top = box[Z1]
-    if top <= best:
+    if top <= best or lift[LIFT_X] * px + lift[LIFT_Y] * py + lift[LIFT] <= best - _SLACK:
         return -np.inf
     gx, gy = max(max(box[X0] - px, px - box[X1]), 0.0), max(max(box[Y0] - py, py - box[Y1]), 0.0)
     near = gx * gx + gy * gy
