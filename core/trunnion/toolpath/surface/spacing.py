@@ -20,8 +20,9 @@ from trunnion.toolpath.surface.stepovers import stepover_measure
 FINENESS = 0.25
 """Of the nearest two passes' distance: width of the strips that distances are found for."""
 MOST_STRIPS = 200_000
-CLOSEST = 0.02
-"""Of a stepover: how near tips may come where a hollow is nearly, or more than, as round as the cutter."""
+CLOSEST = 2.76
+"""Heights: how near tips need to come at most. In a hollow whose radius is larger by e the tip goes e for each radian that the contact goes;
+between passes d apart e (1 - cos(d / 2 e)) stays, which is no more than 0.3623 d for any e."""
 
 
 @dataclass(frozen=True, slots=True, eq=False, kw_only=True)
@@ -77,7 +78,10 @@ def tip_spacing(places: Places, tool: Tool, height: float, across: Floats) -> Fl
     bend = (turn * way).sum(axis=1, keepdims=True)
     stepover = 1.0 / stepover_measure(tool, height)(np.zeros_like(way), places.normal, way, places.normal + bend * way)
     # Tips are nearer to each other than contacts in a hollow, and wider apart on a hill.
-    return np.asarray(stepover * np.maximum(move @ across, CLOSEST * share))
+    going = (move @ across) / share
+    # What is rounder than the cutter by more than the height is left to a smaller one, wherever passes lie.
+    fits = going * tool.corner_radius > -height
+    return np.asarray(share * np.where(fits, np.maximum(stepover * going, CLOSEST * height), stepover))
 
 
 def level_spacing(places: Places, tool: Tool, height: float) -> Floats:

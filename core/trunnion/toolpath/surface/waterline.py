@@ -48,6 +48,8 @@ SEEN, THINNED = 0.25, 0.4
 INSIDE = (0.25, 8.0, 0.75, 2.0)
 """How far inside of where the rim is expected beside a chord its search begins: near first, in what a chord's middle is expected off it;
 then in chord errors and in the chord's length, as a corner needs."""
+BELOW_TOP = 0.1
+"""Of a step: how far the last level lies below the highest place."""
 UPWARD = -math.sin(tolerance.ANGLE)
 """The least part along z of normals of upright walls."""
 NEARBY, ROUGHLY = 1.0, 2.5
@@ -119,8 +121,14 @@ def _levels(places: Places, tool: Tool, height: float, step: float) -> Floats:
     spacing = np.full(len(low), step) if step > 0.0 else level_spacing(places, tool, height)
     spacing = np.minimum(spacing, FLANK * tool.flute_length)
     levels = marched(low, high, spacing, float(low.min()), float(high.max()))
-    # The last one would only pass over the top.
-    return levels[:-1] if len(levels) > 1 else levels
+    if len(levels) == 1:
+        return levels
+    if not (places.normal[high > levels[-2], 2] > -UPWARD).any():
+        # The flank of the level below goes up an upright wall to its top.
+        return levels[:-1]
+    # At its own height the last one would only pass over the top.
+    levels[-1] -= BELOW_TOP * (levels[-1] - levels[-2])
+    return levels
 
 
 @dataclass(frozen=True, slots=True, eq=False, kw_only=True)
