@@ -228,8 +228,15 @@ def _area(draft: Draft, area: Area, progress: Progress) -> None:
         for name, mine, strategy in _by_slope(area, tags, places, math.radians(chosen.steep)):
             _add_finish(draft, kind, name, mine, found.tool, strategy, places)
     if found.rest is not None:
-        left = tuple(t for t in tags if (found.missed & (places.face == t)).any())
-        _add_finish(draft, "rest_finish", area.id, left, found.rest, first_known(FOR_LOCAL), places, earlier=found.tool)
+        missed = places.of(found.missed)
+        left = Area(id=area.id, tags=tuple(t for t in area.tags if (missed.face == t).any()), local=True)
+        for name, mine, strategy in _by_slope(left, left.tags, missed, math.radians(chosen.steep)):
+            _add_finish(draft, "rest_finish", name, mine, found.rest, strategy, missed, earlier=found.tool)
+        # Faces that the larger cutter never touches are still as roughing left them.
+        raw = replace(left, id=f"{area.id}-rest", tags=tuple(t for t in left.tags if t not in tags))
+        if raw.tags and chosen.semi_allowance > 0.0:
+            for name, mine, strategy in _by_slope(raw, raw.tags, missed, math.radians(chosen.steep)):
+                _add_finish(draft, "semi", name, mine, found.rest, strategy, missed)
 
 
 def _hidden_area(draft: Draft, area: Area, progress: Progress) -> None:
