@@ -38,5 +38,12 @@ def test_rates_of_toolpaths_give_the_papers_gain_on_the_blade():
     assert round(100.0 * known.saving, 2) == 10.98
 
 
+def test_a_face_whose_steep_and_shallow_places_are_finished_apart_counts_once():
+    parts = finishing("finish-a-steep", 1, mill(8.0)), finishing("finish-a", 1, mill(8.0))
+    found = estimate_of(plan(*parts, finishing("finish-b", 2, mill(6.0))), AREAS)
+    assert sum(a.area for a in found.areas) == pytest.approx(AREAS.sum())
+    assert found.areas[0].area == found.areas[1].area
+
+
 def test_without_finished_areas_there_is_no_estimate():
     assert estimate_of(plan(finishing("semi-a", 1, mill(8.0), kind="semi")), AREAS) is None

@@ -45,11 +45,16 @@ class Estimate:
 
 
 def estimate_of(process: ProcessTree, area: Floats) -> Estimate | None:
-    """Return the estimate for a plan, by the area (n,) mm2 of face row = tag - 1; None where no area of curved faces is finished."""
+    """Return the estimate for a plan, by the area (n,) mm2 of face row = tag - 1; None where no area of curved faces is finished.
+
+    A face that several operations finish, one its steep places and one the others, counts in equal parts, so that none counts twice.
+    """
     finishing = [o for o in process.operations if o.kind == FINISH and not o.suppressed and o.faces]
     if not finishing:
         return None
-    times = tuple(_time(o, float(area[np.array(o.faces) - 1].sum())) for o in finishing)
+    rows = [np.array(o.faces) - 1 for o in finishing]
+    shared = area / np.maximum(np.bincount(np.concatenate(rows), minlength=len(area)), 1)
+    times = tuple(_time(o, float(shared[of_it].sum())) for o, of_it in zip(finishing, rows, strict=True))
     return _summed(times)
 
 
