@@ -9,6 +9,7 @@ import os
 import sys
 from collections.abc import Iterable, Mapping
 from dataclasses import dataclass
+from itertools import product
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -30,6 +31,8 @@ if TYPE_CHECKING:
     from pyvista import Plotter
 
 SIZE = (1600, 1000)
+FILLED = 0.92
+"""How far what is drawn may reach from the middle of a picture towards its border."""
 _NAMED_PLACES = 5
 """Worst places whose figure is written on the deviation's picture."""
 
@@ -89,8 +92,17 @@ def _look(plotter: Plotter, session: Session) -> Plotter:
         return plotter
     towards = frame.world_direction(np.array([-0.35, -0.8, 1.1]))
     plotter.view_vector(tuple(towards), viewup=tuple(frame.z))
-    plotter.camera.zoom(1.2)
+    plotter.camera.zoom(FILLED / _reach(plotter))
     return plotter
+
+
+def _reach(plotter: Plotter) -> float:
+    """Return how far what is drawn reaches from the middle of the picture; 1 is its border."""
+    bounds = np.reshape(plotter.bounds, (3, 2))
+    corners = np.array([(*corner, 1.0) for corner in product(*bounds)])
+    seen = plotter.camera.GetCompositeProjectionTransformMatrix(SIZE[0] / SIZE[1], -1.0, 1.0)
+    places = corners @ np.array([[seen.GetElement(row, column) for row in range(4)] for column in range(4)])
+    return float(np.abs(places[:, :2] / places[:, 3:]).max())
 
 
 def _legend(plotter: Plotter, entries: Mapping[str, Colour]) -> None:
