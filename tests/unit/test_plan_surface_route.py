@@ -84,9 +84,23 @@ def test_a_person_may_name_the_cutters():
     assert finish.choices[SCALLOP] == pytest.approx(0.008)
 
 
-def test_a_cutter_that_is_not_there_is_named():
-    with pytest.raises(BadInput, match="no cutter AL2-ball D7 R5 in the catalogue"):
-        named(load_shop(), "AL2-ball D7 R5")
+def test_a_cutter_that_is_not_there_is_named_with_those_it_is_nearest_to():
+    with pytest.raises(BadInput, match="no cutter al2-ball d6 r5 in the catalogue; .*AL2-ball D6 R3"):
+        named(load_shop(), "al2-ball d6 r5")
+
+
+def test_semi_finishing_that_leaves_more_than_roughing_is_refused():
+    with pytest.raises(BadInput, match=r"surface.semi_allowance.* 0.5 mm, .*surface.rough_allowance"):
+        routed(hilly(), **{"surface.semi_allowance": 0.5})
+
+
+def test_patches_that_enclose_nothing_are_segmented_but_not_planned():
+    engine = Engine()
+    sheet = cq.Face.makeSplineApprox([[cq.Vector(x, y, 0.02 * x * y) for y in range(0, 30, 5)] for x in range(0, 30, 5)])
+    found = engine.run(engine.with_choices(engine.open(written(sheet.wrapped)), CURVED), "recognize")
+    assert [f.kind for f in found.recognition] == ["group"]
+    with pytest.raises(BadInput, match="not closed, so nothing can be planned"):
+        engine.run(found, "route")
 
 
 def spool():

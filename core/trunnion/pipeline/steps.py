@@ -142,7 +142,10 @@ def _route(session: Session, bench: Bench, progress: Progress) -> Result:
     setups = make_setups(recognition, session.blank, bench.shop.machines[setup.machine], setup)
     chosen = checked(choose(RouteSettings, session.choices))
     if recognition.family == "surface":
-        curved = checked(choose(SurfaceRouteSettings, session.choices))
+        if not bench.part.is_closed:
+            raise BadInput("the part is not closed, so nothing can be planned: there is no telling on which side of its faces material is; "
+                           "export the whole solid from the CAD system. Patches of it can still be grouped, cut and exported")
+        curved = checked(choose(SurfaceRouteSettings, session.choices)).consistent()
         space = SurfaceSpace.of(bench.part, bench.skin(tolerance.CHORD, progress.part(0.0, 0.5)), session.blank, setups[0])
         around = PartSurroundings(bench.part, space.skin, space.frame, setups[0].frame, bench.shop.machines[setup.machine],
                                   session.fixtures_of(setups[0].name), progress)

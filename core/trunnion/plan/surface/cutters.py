@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass
+from difflib import get_close_matches
 
 import numpy as np
 
@@ -18,6 +19,8 @@ from trunnion.shop import Shop
 
 LEFT = 0.002
 """Share of an area that is left to no further cutter when its own one misses it."""
+NEAR = 3
+"""Names of cutters that are offered in place of one that is not there."""
 
 
 @dataclass(frozen=True, slots=True, eq=False, kw_only=True)
@@ -36,7 +39,9 @@ def named(shop: Shop, name: str) -> Tool:
     for tool in shop.tools:
         if tool.name == name:
             return tool
-    raise BadInput(f"there is no cutter {name} in the catalogue; `trunnion tools` lists them")
+    by_lower = {t.name.lower(): t.name for t in shop.tools}
+    near = [by_lower[word] for word in get_close_matches(name.lower(), by_lower, n=NEAR, cutoff=0.0)]
+    raise BadInput(f"there is no cutter {name} in the catalogue; the nearest names are {', '.join(near)}")
 
 
 def cutter_for(space: SurfaceSpace, places: Places, tools: Sequence[Tool], share: float, room: float, wanted: Tool | None,

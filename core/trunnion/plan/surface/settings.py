@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from trunnion.findings import BadInput
 from trunnion.model.operation import Operation
 from trunnion.plan.surface.scallop import height_of
 from trunnion.settings import setting, settings
@@ -45,6 +46,13 @@ class SurfaceRouteSettings:
                            help="What leans from level by more is cut level by level.")
     cell: float = setting(0.25, unit="mm", low=0.05, high=5.0, label="Map cell",
                           help="Distance of the places at which roughing measures how high the part stands.")
+
+    def consistent(self) -> SurfaceRouteSettings:
+        """Return itself; raise `BadInput` when semi-finishing would leave more than roughing did, and so cut nothing."""
+        if self.semi_allowance > self.rough_allowance:
+            raise BadInput(f"Semi-finishing allowance (surface.semi_allowance) is {self.semi_allowance:g} mm, more than roughing leaves "
+                           f"(surface.rough_allowance, {self.rough_allowance:g} mm); choose less, or 0 for no semi-finishing")
+        return self
 
     def height(self) -> float:
         """Return the scallop height in mm that is wanted."""
