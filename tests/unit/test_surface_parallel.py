@@ -15,7 +15,7 @@ from trunnion.model.toolpath import Mark, Motion
 from trunnion.plan.surface.scallop import stepover_on_plane
 from trunnion.progress import QUIET
 from trunnion.toolpath.surface.cutter import lower_side
-from trunnion.toolpath.surface.parallel import ParallelSettings, _joined, parallel
+from trunnion.toolpath.surface.parallel import ParallelSettings, _joined, _Planes, _runs, parallel
 from verify_tools import bull
 
 BALL = bull(6.0, 3.0)()
@@ -139,3 +139,11 @@ def test_a_run_that_only_touches_a_corner_of_the_area_is_left_out():
     plane, runs = np.array([0, 0, 1]), np.array([[1.0, 1.0], [8.0, 12.0], [3.0, 3.0]])
     kept, longer = _joined(plane, runs, np.zeros((3, 2)), 2.0)
     assert kept.tolist() == [0] and longer.tolist() == [[8.0, 12.0]]
+
+
+def test_runs_that_go_on_past_what_is_looked_at_end_there():
+    planes = _Planes(along=np.array([1.0, 0.0]), across=np.array([0.0, 1.0]), at=np.zeros(2), reach=np.array([[0.0, 10.0], [2.0, 5.0]]),
+                     widest=1.0, beyond=1.0, triangles=np.zeros(0, np.int64))
+    plane, runs = _runs(planes, 0.5, 1.0, lambda plane, run, progress: (plane == 0) | (run > 3.0), QUIET)
+    assert plane.tolist() == [0, 1]
+    assert runs[0, 0] < -0.9 and runs[0, 1] > 10.9 and runs[1, 0] == pytest.approx(3.0, abs=1e-3) and runs[1, 1] > 5.9

@@ -203,6 +203,7 @@ def _runs(planes: _Planes, step: float, past: float, touches: Touches, progress:
     place = np.arange(len(plane)) - np.repeat(np.cumsum(count) - count, count) - before
     run = planes.reach[plane, 0] + place * step
     on = touches(plane, run, progress.part(0.0, 0.8))
+    on[[*(np.cumsum(count) - count), *(np.cumsum(count) - 1)]] = False
     edge = np.flatnonzero((on[1:] != on[:-1]) & (plane[1:] == plane[:-1]))
     inside, outside = np.where(on[edge], run[edge], run[edge + 1]), np.where(on[edge], run[edge + 1], run[edge])
     for k in range(CLOSER):

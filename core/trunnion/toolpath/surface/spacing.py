@@ -10,6 +10,7 @@ from dataclasses import dataclass, fields
 
 import numpy as np
 
+from trunnion import tolerance
 from trunnion.geometry.arrays import Bools, Floats, Ints, unit
 from trunnion.model.tool import Tool
 from trunnion.plan.surface.drive import SurfaceDrive
@@ -20,8 +21,10 @@ from trunnion.toolpath.surface.stepovers import stepover_measure
 FINENESS = 0.25
 """Of the nearest two passes' distance: width of the strips that distances are found for."""
 MOST_STRIPS = 200_000
+AIM = 0.95
+"""Of the scallop height: what planes are laid for where a face bends, since moves leave their way by a chord error there."""
 CLOSEST = 2.76
-"""Heights: how near tips need to come at most. In a hollow whose radius is larger by e the tip goes e for each radian that the contact goes;
+"""Heights: how near tips need to come at most. In a hollow whose radius is larger by e a tip goes e for each radian that its contact does;
 between passes d apart e (1 - cos(d / 2 e)) stays, which is no more than 0.3623 d for any e."""
 
 
@@ -76,7 +79,9 @@ def tip_spacing(places: Places, tool: Tool, height: float, across: Floats) -> Fl
     way = (across - lean[:, None] * places.normal) / share[:, None]
     turn, move = places.along(way)
     bend = (turn * way).sum(axis=1, keepdims=True)
-    stepover = 1.0 / stepover_measure(tool, height)(np.zeros_like(way), places.normal, way, places.normal + bend * way)
+    bends = np.abs(places.turns).max(axis=(1, 2), initial=0.0) > tolerance.ANGLE
+    passes = stepover_measure(tool, height)(np.zeros_like(way), places.normal, way, places.normal + bend * way)
+    stepover = np.where(bends, math.sqrt(AIM), 1.0) / passes
     # Tips are nearer to each other than contacts in a hollow, and wider apart on a hill.
     going = (move @ across) / share
     # What is rounder than the cutter by more than the height is left to a smaller one, wherever passes lie.
