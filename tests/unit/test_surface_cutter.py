@@ -10,8 +10,8 @@ import pytest
 from trunnion.findings import Refused
 from trunnion.geometry.dropping import DropSurface
 from trunnion.geometry.kernels.drop import height_at, slope_at
+from trunnion.plan.surface.cutter import SURFACE_FORMS, lower_side, tip_at, touching
 from trunnion.shop import load_shop
-from trunnion.toolpath.surface.cutter import SURFACE_FORMS, lower_side, tip_at, touching
 
 SHOP = load_shop()
 ONE_OF_EACH = {form: next(t for t in SHOP.tools if t.form == form) for form in SURFACE_FORMS}

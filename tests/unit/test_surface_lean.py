@@ -14,11 +14,11 @@ from surface_drives import DATA, driven, grid
 from trunnion.findings import Refused
 from trunnion.geometry.sphere import angle_between
 from trunnion.pipeline.asking import PartAsker
+from trunnion.plan.surface.cutter import tip_at
 from trunnion.progress import QUIET
 from trunnion.settings import choose
 from trunnion.toolpath.surface.axis import fixed, leaning
 from trunnion.toolpath.surface.contacts import Contacts, slerp
-from trunnion.toolpath.surface.cutter import tip_at
 from trunnion.toolpath.surface.lean import AxisSearch, LeanLimits, free_axes, leaned, roomy
 from trunnion.toolpath.surface.parallel import ParallelSettings, parallel
 from trunnion.toolpath.surface.passes import UPRIGHT, Pass

@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 from trunnion.plan.surface.efficiency import AreaRate, gain, mixed_time, saving
-from trunnion.toolpath.surface.scallop import (
+from trunnion.plan.surface.scallop import (
     height_of,
     radius_across,
     roughness,

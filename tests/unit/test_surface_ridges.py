@@ -11,13 +11,13 @@ from surface_drives import DATA, driven
 from surface_forms import grid, joined
 from trunnion.model.program import ProgramSection
 from trunnion.part.exact import ExactPoints
+from trunnion.plan.surface.cutter import lower_side
 from trunnion.plan.surface.rest import LEFT, left_by
 from trunnion.plan.surface.scallop import stepover_on_plane
 from trunnion.progress import QUIET
 from trunnion.settings import choose
 from trunnion.toolpath.surface.beside import Strip
 from trunnion.toolpath.surface.constant import ConstantSettings, constant
-from trunnion.toolpath.surface.cutter import lower_side
 from trunnion.toolpath.surface.parallel import ParallelSettings, parallel
 from trunnion.verify.finish.fine import fine_measure
 from trunnion.verify.motion import moves_of

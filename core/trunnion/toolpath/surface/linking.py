@@ -21,12 +21,12 @@ from trunnion.model.operation import CuttingData
 from trunnion.model.setup import Setup
 from trunnion.model.tool import Tool
 from trunnion.model.toolpath import EMPTY, Mark, Motion, Toolpath
+from trunnion.plan.surface.cutter import lower_side
 from trunnion.plan.surface.drive import SurfaceDrive
 from trunnion.progress import QUIET, Progress
 from trunnion.toolpath.builder import PathBuilder
 from trunnion.toolpath.link import is_free, lowest_tip
 from trunnion.toolpath.stock import PlanningStock
-from trunnion.toolpath.surface.cutter import lower_side
 from trunnion.toolpath.surface.passes import UPRIGHT, Pass
 from trunnion.toolpath.surface.tracing import follow, thinned
 

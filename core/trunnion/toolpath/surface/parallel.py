@@ -21,17 +21,17 @@ from trunnion.geometry.skin import Skin
 from trunnion.model.operation import CuttingData
 from trunnion.model.setup import Setup
 from trunnion.model.tool import Tool
+from trunnion.plan.surface.cutter import lower_side
 from trunnion.plan.surface.drive import SurfaceDrive
+from trunnion.plan.surface.scallop import stepover_on_plane
 from trunnion.progress import Progress
 from trunnion.settings import setting, settings
 from trunnion.toolpath.contract import Planned, strategy
 from trunnion.toolpath.stock import PlanningStock
 from trunnion.toolpath.surface.beside import Strip
-from trunnion.toolpath.surface.cutter import lower_side
 from trunnion.toolpath.surface.lean import leaned_by
 from trunnion.toolpath.surface.linking import Manner, linked
 from trunnion.toolpath.surface.passes import UPRIGHT, Pass
-from trunnion.toolpath.surface.scallop import stepover_on_plane
 from trunnion.toolpath.surface.spacing import Places, marched, places_of, strips_over, tip_spacing
 from trunnion.toolpath.surface.tracing import follow
 

@@ -23,7 +23,9 @@ from trunnion.model.operation import CuttingData
 from trunnion.model.setup import Setup
 from trunnion.model.tool import Tool
 from trunnion.model.toolpath import Mark, Toolpath
+from trunnion.plan.surface.cutter import lower_side, tip_at, touching
 from trunnion.plan.surface.drive import Asker, SurfaceDrive
+from trunnion.plan.surface.scallop import stepover_on_plane
 from trunnion.progress import QUIET, Progress
 from trunnion.settings import choose, setting, settings
 from trunnion.toolpath.contract import Planned, strategy
@@ -31,11 +33,9 @@ from trunnion.toolpath.stock import PlanningStock
 from trunnion.toolpath.surface.axis import AxisField, fixed, from_point, interpolated, leaning
 from trunnion.toolpath.surface.constant import scallop_passes
 from trunnion.toolpath.surface.contacts import Contacts, between, slerp
-from trunnion.toolpath.surface.cutter import lower_side, tip_at, touching
 from trunnion.toolpath.surface.lean import STEP, AxisSearch, Course, LeanLimits, free_axes, roomy
 from trunnion.toolpath.surface.linking import Manner, linked
 from trunnion.toolpath.surface.passes import Pass
-from trunnion.toolpath.surface.scallop import stepover_on_plane
 from trunnion.toolpath.surface.streamline import StreamlineSettings, streamlines
 from trunnion.units import trimmed
 

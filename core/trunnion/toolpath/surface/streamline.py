@@ -20,6 +20,7 @@ from trunnion.model.operation import CuttingData
 from trunnion.model.setup import Setup
 from trunnion.model.tool import Tool
 from trunnion.plan.surface.drive import SurfaceDrive
+from trunnion.plan.surface.scallop import stepover_on_plane
 from trunnion.progress import QUIET, Progress
 from trunnion.settings import choose, setting, settings
 from trunnion.toolpath.contract import Planned, strategy
@@ -28,7 +29,6 @@ from trunnion.toolpath.surface import choices
 from trunnion.toolpath.surface.contacts import Contacts
 from trunnion.toolpath.surface.guides import Guides, guides_beside, guides_of, holes_of, tags_named
 from trunnion.toolpath.surface.linking import Manner, linked
-from trunnion.toolpath.surface.scallop import stepover_on_plane
 from trunnion.toolpath.surface.stepovers import metric_of, spread, stepover_measure
 from trunnion.toolpath.surface.upright import stood
 

@@ -16,10 +16,10 @@ from scipy.spatial import cKDTree
 from trunnion.findings import Finding, warning
 from trunnion.geometry.arrays import Bools, Floats, Ints
 from trunnion.model.tool import Tool
+from trunnion.plan.surface.cutter import lower_side, tip_at
 from trunnion.plan.surface.drive import SurfaceDrive
 from trunnion.progress import QUIET, Progress
 from trunnion.toolpath.surface.contacts import Contacts
-from trunnion.toolpath.surface.cutter import lower_side, tip_at
 from trunnion.toolpath.surface.passes import UPRIGHT, Pass
 from trunnion.toolpath.surface.tracing import follow
 

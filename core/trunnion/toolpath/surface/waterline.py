@@ -22,12 +22,12 @@ from trunnion.geometry.kernels.drop import radius_at
 from trunnion.model.operation import CuttingData
 from trunnion.model.setup import Setup
 from trunnion.model.tool import Tool
+from trunnion.plan.surface.cutter import lower_side
 from trunnion.plan.surface.drive import SurfaceDrive
 from trunnion.progress import Progress
 from trunnion.settings import setting, settings
 from trunnion.toolpath.contract import Planned, strategy
 from trunnion.toolpath.stock import PlanningStock
-from trunnion.toolpath.surface.cutter import lower_side
 from trunnion.toolpath.surface.linking import Manner, linked
 from trunnion.toolpath.surface.passes import UPRIGHT, Pass
 from trunnion.toolpath.surface.spacing import Places, level_spacing, marched, places_of
