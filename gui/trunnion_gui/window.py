@@ -309,7 +309,7 @@ class Window(QMainWindow):
         for id, text, last, icon, keys in (
                 ("step.recognize", "Recognize", "recognize", "recognize", "F6"), ("step.size", "Analyse", "size", "size", "F7"),
                 ("step.blank", "Create blank", "blank", "blank", "F8"), ("step.route", "Generate route", "route", "route", "F9"),
-                ("step.optimize", "Optimise", "optimize", "optimize", "F10"), ("step.generate", "Generate", "toolpath", "generate", "F11"),
+                ("step.optimize", "Optimize", "optimize", "optimize", "F10"), ("step.generate", "Generate", "toolpath", "generate", "F11"),
                 ("step.verify", "Verify", "verify", "verify", "F12")):
             command(id, text, partial(document.run, last, tr(text)), icon, keys, f"{text}: what is stale up to here", has_part)
         command("job.cancel", "Cancel the running job", document.cancel, "cancel", "Ctrl+.", "", lambda: document.is_busy)

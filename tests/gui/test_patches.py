@@ -131,6 +131,12 @@ def test_a_row_shows_faces_size_and_the_mark(shown):
     assert not shown.features.tree.isColumnHidden(5)
 
 
+def test_an_id_keeps_its_number_when_there_is_little_room(shown):
+    id, tree = group_at(shown, ON_SMALL[0]).id, shown.features.tree
+    narrow = tree.fontMetrics().elidedText(id, tree.textElideMode(), tree.fontMetrics().horizontalAdvance(id) - 10)
+    assert narrow != id and narrow.endswith(id[-2:])
+
+
 def test_a_click_on_the_mark_changes_the_class_and_undo_brings_it_back(shown, qtbot):
     id, tree = group_at(shown, ON_SMALL[0]).id, shown.features.tree
     tree.scrollToItem(shown.features.item(id))

@@ -390,3 +390,12 @@ def test_an_operations_label_says_nothing_twice(id, kind, words):
 
     made = Operation(id=id, kind=kind, strategy="fake", feature="pocket-03", setup="S1", tool=cutter(1, 10.0), data=cutting(300, 10))
     assert label(made) == words
+
+
+def test_operations_that_differ_at_their_ends_are_told_apart_in_the_panel(programmed):
+    table = programmed.panels["optimize"].table
+    metrics = table.fontMetrics()
+    room = metrics.horizontalAdvance("finish-local") - 1
+    shown = {metrics.elidedText(id, table.textElideMode(), room) for id in ("finish-local-01", "finish-local-02", "finish-local-01-steep")}
+    assert len(shown) == 3
+    assert "mm/min" in table.horizontalHeaderItem(2).toolTip()

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from PySide6.QtCore import Qt
 from PySide6.QtWidgets import QLabel
 
 from trunnion.model.operation import Operation
@@ -21,10 +22,13 @@ class OptimizePanel(Panel):
 
     def build(self) -> None:
         super().build()
-        self.table = tables.table([tr("Op"), "n 1/min", "vf mm/min", tr("Power")])
+        self.table = tables.table([tr("Op"), "n", "vf", tr("Power")], has_names=True)
+        tips = tr("Operation"), tr("Spindle speed, 1/min"), tr("Feed, mm/min"), tr("Share of the spindle's power")
+        for column, words in enumerate(tips):
+            self.table.model().setHeaderData(column, Qt.Orientation.Horizontal, words, Qt.ItemDataRole.ToolTipRole)
         self.table.cellClicked.connect(lambda row, _: self.document.select_operation(self._cut[row].id))
         self.content.addWidget(self.table)
-        self.areas = tables.table([tr("Area finished by"), "mm²", "mm²/s", tr("Time")])
+        self.areas = tables.table([tr("Area of"), "mm²", "mm²/s", tr("Time")], has_names=True)
         self.areas.cellClicked.connect(lambda row, _: self.document.select_operation(self._finished[row]))
         self.gain = QLabel()
         self.gain.setWordWrap(True)

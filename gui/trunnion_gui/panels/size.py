@@ -21,7 +21,7 @@ class SizePanel(Panel):
 
     def build(self) -> None:
         super().build()
-        self.table = tables.table([tr("Size"), tr("Feature"), tr("Value")])
+        self.table = tables.table([tr("Size"), tr("Feature"), tr("Value")], has_names=True)
         self.table.cellClicked.connect(lambda row, _: self._point(row))
         self.content.addWidget(self.table)
         self._shown: tuple = ()

@@ -18,6 +18,7 @@ def tree(headers: Sequence[str], stretched: int = 0, kind: type[Tree] = QTreeWid
     made = kind()
     made.setHeaderLabels(list(headers))
     made.setUniformRowHeights(True)
+    made.setTextElideMode(Qt.TextElideMode.ElideMiddle)  # names of one kind differ at their ends
     made.setIndentation(12)
     made.setSelectionMode(QAbstractItemView.SelectionMode.SingleSelection)
     made.setContextMenuPolicy(Qt.ContextMenuPolicy.CustomContextMenu)
@@ -28,8 +29,8 @@ def tree(headers: Sequence[str], stretched: int = 0, kind: type[Tree] = QTreeWid
     return made
 
 
-def table(headers: Sequence[str], stretched: Sequence[int] = (0,)) -> QTableWidget:
-    """Return an empty table with its columns; some of them share the room that is left."""
+def table(headers: Sequence[str], stretched: Sequence[int] = (0,), has_names: bool = False) -> QTableWidget:
+    """Return an empty table with its columns; some of them share the room that is left. Names that don't fit keep beginning and end."""
     made = QTableWidget(0, len(headers))
     made.setHorizontalHeaderLabels(list(headers))
     made.verticalHeader().hide()
@@ -40,6 +41,8 @@ def table(headers: Sequence[str], stretched: Sequence[int] = (0,)) -> QTableWidg
     made.setSelectionMode(QAbstractItemView.SelectionMode.SingleSelection)
     made.setHorizontalScrollMode(QAbstractItemView.ScrollMode.ScrollPerPixel)
     made.setWordWrap(False)
+    if has_names:
+        made.setTextElideMode(Qt.TextElideMode.ElideMiddle)
     header = made.horizontalHeader()
     header.setHighlightSections(False)
     header.setDefaultAlignment(Qt.AlignmentFlag.AlignLeft | Qt.AlignmentFlag.AlignVCenter)
