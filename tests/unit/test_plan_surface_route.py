@@ -99,7 +99,7 @@ def test_patches_that_enclose_nothing_are_segmented_but_not_planned():
     sheet = cq.Face.makeSplineApprox([[cq.Vector(x, y, 0.02 * x * y) for y in range(0, 30, 5)] for x in range(0, 30, 5)])
     found = engine.run(engine.with_choices(engine.open(written(sheet.wrapped)), CURVED), "recognize")
     assert [f.kind for f in found.recognition] == ["group"]
-    with pytest.raises(BadInput, match="not closed, so nothing can be planned"):
+    with pytest.raises(BadInput, match="nothing can be planned for faces that enclose no material.*; found before: the part is not closed"):
         engine.run(found, "route")
 
 

@@ -143,8 +143,8 @@ def _route(session: Session, bench: Bench, progress: Progress) -> Result:
     chosen = checked(choose(RouteSettings, session.choices))
     if recognition.family == "surface":
         if not bench.part.is_closed:
-            raise BadInput("the part is not closed, so nothing can be planned: there is no telling on which side of its faces material is; "
-                           "export the whole solid from the CAD system. Patches of it can still be grouped, cut and exported")
+            raise BadInput("nothing can be planned for faces that enclose no material; export the whole solid from the CAD system, or only "
+                           "group, cut and export these faces")
         curved = checked(choose(SurfaceRouteSettings, session.choices)).consistent()
         space = SurfaceSpace.of(bench.part, bench.skin(tolerance.CHORD, progress.part(0.0, 0.5)), session.blank, setups[0])
         around = PartSurroundings(bench.part, space.skin, space.frame, setups[0].frame, bench.shop.machines[setup.machine],
