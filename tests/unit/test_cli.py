@@ -74,6 +74,14 @@ def test_features_come_as_json_with_the_documented_keys(capsys: pytest.CaptureFi
     assert {"id", "kind", "faces", "sizes"} <= said["features"][0].keys()
 
 
+def test_the_table_of_features_names_the_faces_that_move_takes(capsys: pytest.CaptureFixture[str], sample_part: Path) -> None:
+    assert main(["recognize", str(sample_part), "--set", "recognize.family=surface", "--move", "1,2=new", "--quiet"]) == 0
+    said = capsys.readouterr().out.splitlines()
+    assert said[0].split() == ["feature", "kind", "n", "faces", "sizes"]
+    assert any(" 1,2 " in line for line in said)
+    assert any(line.endswith(" groups") for line in said)
+
+
 def test_sizes_blank_route_and_optimize_each_print_json(capsys: pytest.CaptureFixture[str], sample_part: Path) -> None:
     for command, key in (("size", "sizes"), ("blank", "volume"), ("route", "operations"), ("optimize", "operations")):
         main([command, str(sample_part), "--json"])

@@ -142,7 +142,7 @@ def test_names_and_colours_of_a_face_are_those_of_its_pieces():
 
 
 @pytest.mark.parametrize(("cut", "words"), [
-    (plane_cut(9, (0.0, 0.0, 0.0), (1.0, 0.0, 0.0)), "no such face"),
+    (plane_cut(9, (0.0, 0.0, 0.0), (1.0, 0.0, 0.0)), "no such face; its faces are 1 to 3"),
     (plane_cut(1, (0.0, 0.0, 99.0), (0.0, 0.0, 1.0)), "doesn't divide it"),
     (way_cut(1, ((0.0, 0.0, 5.0), (0.0, 0.1, 5.0))), "away from the face"),
     (way_cut(1, ((5.0, 0.0, 5.0), (5.0, 0.0, 5.0))), "fall together"),
@@ -156,6 +156,8 @@ def test_a_cut_that_can_not_be_made_is_refused_in_one_line(cut, words):
 def test_a_plane_without_a_normal_and_a_way_of_one_place_are_refused():
     with pytest.raises(BadInput, match="normal"):
         plane_cut(1, (0.0, 0.0, 0.0), (0.0, 0.0, 0.0))
+    with pytest.raises(BadInput, match="needs numbers; got nan 0 0 1 0 0"):
+        plane_cut(1, (float("nan"), 0.0, 0.0), (1.0, 0.0, 0.0))
     with pytest.raises(BadInput, match="two places"):
         way_cut(1, ((0.0, 0.0, 0.0),))
 

@@ -162,8 +162,10 @@ def test_faces_go_to_iges_without_surfaces_of_revolution(tmp_path):
 
 def test_words_that_mean_no_face_are_refused(engine, opened, found):
     none = with_local(found, [f.id for f in found.recognition], False)
-    with pytest.raises(BadInput, match="no face"):
+    with pytest.raises(BadInput, match="local: no face of the part belongs to it; name other groups"):
         tags_of(none, ["local"])
+    with pytest.raises(BadInput, match="no faces were chosen; name local, remaining"):
+        tags_of(found, [])
     with pytest.raises(BadInput, match="no group group-77; known: group-01 to"):
         tags_of(found, ["group-77"])
     with pytest.raises(BadInput, match=r"\.igs"):

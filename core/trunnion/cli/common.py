@@ -145,7 +145,8 @@ def show_findings(chosen: argparse.Namespace, findings: Iterable[Finding]) -> No
         else:
             print(str(finding), file=sys.stderr)
     if notes:
-        print(f"{notes} notes that ask for nothing stand in --json and in the report", file=sys.stderr)
+        words = "1 note that asks for nothing stands" if notes == 1 else f"{notes} notes that ask for nothing stand"
+        print(f"{words} in --json and in the report", file=sys.stderr)
 
 
 def table(rows: Sequence[tuple[str, ...]], right: tuple[int, ...] = ()) -> str:

@@ -3,9 +3,13 @@
 from __future__ import annotations
 
 import argparse
+from collections.abc import Iterable
 from typing import Any
 
 from trunnion.cli.common import add_by_hand, exit_code, open_session, part_command, show_findings, show_json, table, with_by_hand
+
+MOST_NUMBERS = 10
+"""Numbers of faces that a row of the table shows."""
 
 
 def add(commands: Any) -> None:
@@ -34,12 +38,18 @@ def run(chosen: argparse.Namespace) -> int:
                    "unexplained": {"faces": list(found.unexplained), "area_share": found.unexplained_share},
                    "findings": [f.as_dict() for f in session.findings()]})
     else:
-        rows = [("feature", "kind", "faces", "sizes")]
+        rows = [("feature", "kind", "n", "faces", "sizes")]
         for f in found.features:
             sizes = "  ".join(f"{k} {v:g}" for k, v in f.sizes.items() if isinstance(v, (int, float)) and not isinstance(v, bool))
-            rows.append((f.id, f"{f.kind}, local" if f.attributes.get("local") else f.kind, str(len(f.faces)), sizes))
+            rows.append((f.id, f"{f.kind}, local" if f.attributes.get("local") else f.kind, str(len(f.faces)), _numbers(f.tags), sizes))
         print(table(rows, right=(2,)))
-        print("  ".join(f"{n} {kind}" for kind, n in found.counts().items()))
+        print("  ".join(f"{n} {kind}{'s' if n > 1 else ''}" for kind, n in found.counts().items()))
         print(f"unexplained: {len(found.unexplained)} faces, {100 * found.unexplained_share:.2f} % of the area")
     show_findings(chosen, session.findings())
     return exit_code(session.findings())
+
+
+def _numbers(tags: Iterable[int]) -> str:
+    """Return the numbers of faces as `--move` takes them, cut short where they are many."""
+    listed = sorted(set(tags))
+    return ",".join(map(str, listed[:MOST_NUMBERS])) + (",..." if len(listed) > MOST_NUMBERS else "")

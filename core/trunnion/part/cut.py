@@ -46,7 +46,7 @@ def divided(part: Part, cut: Cut) -> Part:
     where = f"face {cut.face} of {part.name}"
     face = part.face_shape(cut.face)
     if face is None:
-        raise BadInput(f"{where}: the chosen solid has no such face")
+        raise BadInput(f"{where}: the chosen solid has no such face; its faces are {min(part.tags)} to {max(part.tags)}")
     try:
         as_read = faces_of(part.as_read)
         read_pieces = _pieces(as_read[cut.face - 1], cut, where)

@@ -83,8 +83,10 @@ def tags_of(session: Session, what: Sequence[str]) -> tuple[int, ...]:
             tags.update({*found.unexplained, *(t for f in found.features for t in f.tags)} - _local(found))
         else:
             tags.update(_group(found, word).tags)
+    if not what:
+        raise BadInput(f"no faces were chosen; name {LOCAL}, {REMAINING} or groups by their ids")
     if not tags:
-        raise BadInput(f"{' and '.join(what) or 'nothing'}: no face of the part belongs to it")
+        raise BadInput(f"{' and '.join(what)}: no face of the part belongs to it; name other groups, or call some local features")
     return tuple(sorted(tags))
 
 
