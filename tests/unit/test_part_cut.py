@@ -145,6 +145,7 @@ def test_names_and_colours_of_a_face_are_those_of_its_pieces():
     (plane_cut(9, (0.0, 0.0, 0.0), (1.0, 0.0, 0.0)), "no such face; its faces are 1 to 3"),
     (plane_cut(1, (0.0, 0.0, 99.0), (0.0, 0.0, 1.0)), "doesn't divide it"),
     (way_cut(1, ((0.0, 0.0, 5.0), (0.0, 0.1, 5.0))), "away from the face"),
+    (way_cut(1, ((8.0, 0.0, 5.0), (0.0, 5.0, 5.0))), "3 mm away from the face; .* nearest place is 5.000 0.000 5.000"),
     (way_cut(1, ((5.0, 0.0, 5.0), (5.0, 0.0, 5.0))), "fall together"),
 ])
 def test_a_cut_that_can_not_be_made_is_refused_in_one_line(cut, words):

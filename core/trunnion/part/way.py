@@ -92,8 +92,9 @@ class DrawnWay:
         for k, place in enumerate(places.tolist()):
             found = nearest.ValueOfUV(gp_Pnt(*place), tolerance.COINCIDENT)
             if nearest.Gap() > reach:
-                raise BadInput(f"{where}: place {k + 1} of the drawn cut is {nearest.Gap():.3g} mm away from the face; "
-                               f"{reach:g} mm are allowed")
+                gap, there = nearest.Gap(), nearest.Value(found)
+                raise BadInput(f"{where}: place {k + 1} of the drawn cut is {gap:.3g} mm away from the face; {reach:g} mm are allowed, "
+                               f"and its nearest place is {there.X():.3f} {there.Y():.3f} {there.Z():.3f}")
             at[k] = found.X(), found.Y()
         for column, period in enumerate(self._periods()):
             if period:
