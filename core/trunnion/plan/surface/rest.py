@@ -21,6 +21,8 @@ UNSEEN = 0.1
 """Of the scallop height: a cutter that is lifted by no more than this finishes a place."""
 AROUND = 0.3
 """mm at least that the area goes on past what was left, so that no seam stays; as far as passes are apart where that is more."""
+BETWEEN = 0.25
+"""Of a triangle's longest side: how far a place of its sides is from the nearest that is asked."""
 LEFT = 1_000_000
 """Added to a face's tag for the part of it that was left: more than any part has faces."""
 
@@ -35,8 +37,7 @@ def left_by(skin: Skin, tags: tuple[int, ...], earlier: Tool, lowest: float, hei
     up = normal[:, 2] > 0.0
     tip = tip_at(earlier, place[up], normal[up], np.tile([0.0, 0.0, 1.0], (int(up.sum()), 1)))
     lifted[up] = skin.drop.drop(tip[:, :2], lower_side(earlier), lowest) - tip[:, 2] > min(UNSEEN * height, LIFTED)
-    left = np.asarray(lifted[of].any(axis=1))
-    left = _with_those_near(place[of[:, -1]], left, max(AROUND, stepover_on_plane(earlier.corner_radius, height)))
+    left = _with_those_near(place, of, lifted, max(AROUND, stepover_on_plane(earlier.corner_radius, height)))
     face = skin.face.copy()
     face[rows[left]] += LEFT
     return replace(skin, face=face), tuple(int(t) for t in np.unique(face[rows[left]]))
@@ -54,8 +55,11 @@ def _places(skin: Skin, rows: Ints) -> tuple[Floats, Floats, Ints]:
     return place, normal / np.linalg.norm(normal, axis=1, keepdims=True), of
 
 
-def _with_those_near(middle: Floats, left: Bools, around: float) -> Bools:
-    if not left.any() or left.all():
-        return left
-    away = cKDTree(middle[left]).query(middle, distance_upper_bound=around)[0]
-    return np.asarray(left | np.isfinite(away))
+def _with_those_near(place: Floats, of: Ints, lifted: Bools, around: float) -> Bools:
+    """Say which triangles, with places (k, 7) of all (p, 3), come as near as that to a lifted place (p,): wide ones may between theirs."""
+    if not lifted.any():
+        return np.zeros(len(of), dtype=bool)
+    away = np.asarray(cKDTree(place[lifted]).query(place)[0])
+    corners = place[of[:, :3]]
+    longest = np.linalg.norm(corners - np.roll(corners, 1, axis=1), axis=2).max(axis=1)
+    return np.asarray(away[of].min(axis=1) <= around + BETWEEN * longest)
