@@ -40,8 +40,9 @@ AIM = 0.93
 where they bend; so the highest ridge stays within a tenth of what is wanted."""
 FIRST = 0.3
 """Stepovers from the rim to the first pass: less than half a stepover from a square corner, which triangles round a little."""
-FARTHEST = 0.515
-"""Stepovers from the nearest pass beyond which a place needs another one: the scallop there is 6 % higher than wanted."""
+FARTHEST = 0.48
+"""Stepovers from the nearest pass beyond which a place on a ridge needs another one: where ridges branch, distances are a few hundredths
+longer than they are measured."""
 REACH = 1.5
 """Stepovers that a pass along a ridge goes on past such a place: the next one between corners is not farther."""
 SMOOTHINGS = 3
