@@ -8,7 +8,8 @@ import numpy as np
 import pytest
 
 from surface_drives import DATA, driven
-from surface_forms import grid, joined
+from surface_forms import grid, joined, plane
+from trunnion.geometry.sheet import sheet_of
 from trunnion.model.program import ProgramSection
 from trunnion.part.exact import ExactPoints
 from trunnion.plan.surface.cutter import lower_side
@@ -108,6 +109,27 @@ def test_what_a_cutter_leaves_before_a_hollow_too_tight_for_it_is_another_ones_a
     # Where it stands last it is finished, and what is left goes on below it for a stepover.
     assert free < -0.1 and kept[:, :, 1].max() <= free - stepover_on_plane(3.0, HEIGHT) + 0.34
     assert kept[:, :, 1].max() > free - 1.5
+
+
+def test_what_a_cutter_leaves_has_a_rim_that_passes_can_follow() -> None:
+    # A wall slantwise across wide triangles: the ball of radius 3 leaves all that is nearer than 3 mm to its foot.
+    floor = plane(16.0, 12.0, n=9)
+    foot = np.array([[0.0, 1.0], [16.0, 5.0]])
+    wall = grid(lambda u, v: np.column_stack([16.0 * u, 1.0 + 4.0 * u, v]), lambda u, v: np.column_stack([-4.0 + 0 * u, 16.0 + 0 * u, 0 * u]),
+                np.linspace(0.0, 1.0, 9), np.linspace(0.0, 6.0, 3), 2)
+    skin = joined(floor, wall)
+    found, tags = left_by(skin, (1,), BALL, -9.0, HEIGHT)
+    sheet = sheet_of(found, tags)
+    along = (foot[1] - foot[0]) / np.linalg.norm(foot[1] - foot[0])
+    for rim in sheet.rims():
+        at = sheet.points[rim, :2] - foot[0]
+        run, away = at @ along, at[:, 1] * along[0] - at[:, 0] * along[1]
+        inner = (np.abs(sheet.points[rim, :2] - [8.0, 6.0]) < [7.0, 5.0]).all(axis=1) & (run > 3.0) & (run < 13.0) & (away > 1.0)
+        past = away[inner] - 3.0 - stepover_on_plane(3.0, HEIGHT)
+        assert inner.any() and past.min() > -0.01 and past.max() < 0.15 and np.ptp(past) < 0.02
+    # Nothing of the faces is lost or doubled.
+    both = sheet_of(found, (1, *tags))
+    assert both.area().sum() == pytest.approx(16.0 * 12.0, abs=1e-6) and len(both.rims()) == 1
 
 
 def test_a_strip_goes_on_over_smooth_joins_but_not_round_edges() -> None:

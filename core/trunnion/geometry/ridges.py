@@ -47,11 +47,7 @@ def ridged(metric: Metric, time: Floats, foot: Floats, gap: float) -> Ridged:
     ends, side = sheet.edges()
     share, top, meets = _meeting(metric, ends, side, time, foot)
     crossed = np.flatnonzero(meets)
-    number = np.full(len(ends), -1)
-    number[crossed] = len(sheet.points) + np.arange(len(crossed))
-    points, normals = sheet.on_edges(ends[crossed], share[crossed])
-    triangles, face = _parted(sheet, number[side])
-    parted = Sheet(points=np.vstack([sheet.points, points]), normals=np.vstack([sheet.normals, normals]), triangles=triangles, face=face)
+    parted, number = sheet.parted(ends, side, crossed, share[crossed])
     time = np.concatenate([time, top[crossed]])
     split = number[side] >= 0
     pairs = [number[side][split.sum(axis=1) == 2][split[split.sum(axis=1) == 2]].reshape(-1, 2)]
@@ -70,29 +66,7 @@ def opened(sheet: Sheet) -> Sheet:
     on_rim = np.zeros(len(sheet.points), bool)
     on_rim[ends[lone]] = True
     halved = np.flatnonzero(on_rim[ends].all(axis=1) & ~lone)
-    number = np.full(len(ends), -1)
-    number[halved] = len(sheet.points) + np.arange(len(halved))
-    points, normals = sheet.on_edges(ends[halved], np.full(len(halved), 0.5))
-    triangles, face = _parted(sheet, number[side])
-    return Sheet(points=np.vstack([sheet.points, points]), normals=np.vstack([sheet.normals, normals]), triangles=triangles, face=face)
-
-
-def _parted(sheet: Sheet, middle: Ints) -> tuple[Ints, Ints]:
-    """Return triangles, and their faces, with the sides (t, 3) parted that have a middle, -1: none."""
-    split = middle >= 0
-    count = split.sum(axis=1)
-    made, tags = [sheet.triangles[count == 0]], [sheet.face[count == 0]]
-    for n, lone in ((1, True), (2, False), (3, True)):
-        rows = np.flatnonzero(count == n)
-        # Turned so that a lone middle is on the first side, and a lone side without one is the second side.
-        k = np.argmax(split[rows] == lone, axis=1) if n != 2 else (np.argmax(~split[rows], axis=1) + 2) % 3
-        a, b, c = (sheet.triangles[rows, (k + j) % 3] for j in range(3))
-        ab, bc, ca = (middle[rows, (k + j) % 3] for j in range(3))
-        parts = {1: ((a, ab, c), (ab, b, c)), 2: ((a, ab, ca), (ab, b, c), (ab, c, ca)),
-                 3: ((a, ab, ca), (ab, b, bc), (ca, bc, c), (ab, bc, ca))}[n]
-        made += [np.column_stack(part) for part in parts]
-        tags += [sheet.face[rows]] * len(parts)
-    return np.vstack(made), np.concatenate(tags)
+    return sheet.parted(ends, side, halved, np.full(len(halved), 0.5))[0]
 
 
 def _chained(points: Floats, lines: list[Ints], gap: float) -> list[Ints]:

@@ -104,10 +104,38 @@ class Sheet:
                           triangles=np.vstack([sheet.triangles, fan]), face=np.concatenate([sheet.face, np.zeros(n, np.int64)]))
         return sheet
 
+    def parted(self, ends: Ints, side: Ints, rows: Ints, share: Floats) -> tuple[Sheet, Ints]:
+        """Return the sheet with some of its edges (`edges` gives ends and sides), rows (k,), parted at shares (k,) of their way, and for
+        each edge the row of its new point, -1: none. New points come after the old ones, in the order of `rows`."""
+        number = np.full(len(ends), -1)
+        number[rows] = len(self.points) + np.arange(len(rows))
+        points, normals = self.on_edges(ends[rows], share)
+        triangles, face = _parted(self, number[side])
+        made = Sheet(points=np.vstack([self.points, points]), normals=np.vstack([self.normals, normals]), triangles=triangles, face=face)
+        return made, number
+
     def of(self, rows: Bools) -> Sheet:
         """Return a part of the sheet: some triangles (t,) and the points they need."""
         used, triangles = np.unique(self.triangles[rows], return_inverse=True)
         return Sheet(points=self.points[used], normals=self.normals[used], triangles=triangles.reshape(-1, 3), face=self.face[rows])
+
+
+def _parted(sheet: Sheet, middle: Ints) -> tuple[Ints, Ints]:
+    """Return triangles, and their faces, with the sides (t, 3) parted that have a middle, -1: none."""
+    split = middle >= 0
+    count = split.sum(axis=1)
+    made, tags = [sheet.triangles[count == 0]], [sheet.face[count == 0]]
+    for n, lone in ((1, True), (2, False), (3, True)):
+        rows = np.flatnonzero(count == n)
+        # Turned so that a lone middle is on the first side, and a lone side without one is the second side.
+        k = np.argmax(split[rows] == lone, axis=1) if n != 2 else (np.argmax(~split[rows], axis=1) + 2) % 3
+        a, b, c = (sheet.triangles[rows, (k + j) % 3] for j in range(3))
+        ab, bc, ca = (middle[rows, (k + j) % 3] for j in range(3))
+        parts = {1: ((a, ab, c), (ab, b, c)), 2: ((a, ab, ca), (ab, b, c), (ab, c, ca)),
+                 3: ((a, ab, ca), (ab, b, bc), (ca, bc, c), (ab, bc, ca))}[n]
+        made += [np.column_stack(part) for part in parts]
+        tags += [sheet.face[rows]] * len(parts)
+    return np.vstack(made), np.concatenate(tags)
 
 
 def sheet_of(skin: Skin, faces: tuple[int, ...]) -> Sheet:

@@ -1,4 +1,8 @@
-"""What an earlier cutter left of faces, as an area of its own: triangles that it does not reach, and a little around them."""
+"""What an earlier cutter left of faces, as an area of its own: where it was lifted off them, and a little around.
+
+The area's rim is smooth, for passes follow it: it is a level line of a distance, drawn through triangles that are parted along it, and
+narrow necks and bays are filled.
+"""
 
 from __future__ import annotations
 
@@ -9,7 +13,7 @@ from scipy.spatial import cKDTree
 
 from trunnion import tolerance
 from trunnion.geometry.arrays import Bools, Floats, Ints
-from trunnion.geometry.sheet import edges_of
+from trunnion.geometry.sheet import Sheet, edges_of, sheet_of, split_finely
 from trunnion.geometry.skin import Skin
 from trunnion.model.tool import Tool
 from trunnion.plan.surface.cutter import lower_side, tip_at
@@ -21,6 +25,12 @@ UNSEEN = 0.1
 """Of the scallop height: a cutter that is lifted by no more than this finishes a place."""
 AROUND = 0.3
 """mm at least that the area goes on past what was left, so that no seam stays; as far as passes are apart where that is more."""
+FILLED = 1.0
+"""Of that: what is narrower than twice this between two parts of the area belongs to it, and no bay of its rim is rounder."""
+FINENESS = 0.5
+"""Of that: the longest edge of the triangles that the rim is drawn through."""
+NEAR_END = 0.05
+"""Share of an edge: how near its ends the rim crosses it at most."""
 BETWEEN = 0.25
 """Of a triangle's longest side: how far a place of its sides is from the nearest that is asked."""
 LEFT = 1_000_000
@@ -32,15 +42,84 @@ def left_by(skin: Skin, tags: tuple[int, ...], earlier: Tool, lowest: float, hei
     in mm that is wanted."""
     rows = np.flatnonzero(skin.of(tags))
     place, normal, of = _places(skin, rows)
-    place = place + 2.0 * skin.bound * normal
-    lifted = np.ones(len(place), dtype=bool)
-    up = normal[:, 2] > 0.0
-    tip = tip_at(earlier, place[up], normal[up], np.tile([0.0, 0.0, 1.0], (int(up.sum()), 1)))
-    lifted[up] = skin.drop.drop(tip[:, :2], lower_side(earlier), lowest) - tip[:, 2] > min(UNSEEN * height, LIFTED)
-    left = _with_those_near(place, of, lifted, max(AROUND, stepover_on_plane(earlier.corner_radius, height)))
+    limit = min(UNSEEN * height, LIFTED)
+    around = max(AROUND, stepover_on_plane(earlier.corner_radius, height))
+    lifted = _lift(skin, place, normal, earlier, lowest) > limit
+    near = rows[_with_those_near(place, of, lifted, (1.0 + FILLED) * around)]
+    if not len(near):
+        return skin, ()
     face = skin.face.copy()
-    face[rows[left]] += LEFT
-    return replace(skin, face=face), tuple(int(t) for t in np.unique(face[rows[left]]))
+    face[near] += LEFT
+    rough = sheet_of(replace(skin, face=face), tuple(int(t) for t in np.unique(face[near])))
+    fine = split_finely(rough, _length, FINENESS * around)
+    lift = _lift(skin, fine.points, fine.normals, earlier, lowest)
+    inside, outside = _cut(fine, _past_rim(fine, lift - limit, around))
+    # Parts of faces that are finished have their faces' tags again.
+    kept = np.setdiff1d(np.arange(len(face)), near)
+    points, normals, triangles, tag = [skin.points], [skin.normals], [skin.triangles[kept]], [skin.face[kept]]
+    for part, added in ((inside, 0), (outside, LEFT)):
+        triangles.append(part.triangles + sum(len(p) for p in points))
+        points.append(part.points)
+        normals.append(part.normals)
+        tag.append(part.face - added)
+    return replace(skin, points=np.concatenate(points), normals=np.concatenate(normals), triangles=np.concatenate(triangles),
+                   face=np.concatenate(tag)), tuple(int(t) for t in np.unique(inside.face))
+
+
+def _lift(skin: Skin, place: Floats, normal: Floats, earlier: Tool, lowest: float) -> Floats:
+    """Return by how much (p,) mm other faces lift a cutter that is to touch places (p, 3) with normals (p, 3); infinite where a face looks
+    down."""
+    lift = np.full(len(place), np.inf)
+    up = normal[:, 2] > 0.0
+    at = place[up] + 2.0 * skin.bound * normal[up]
+    tip = tip_at(earlier, at, normal[up], np.tile([0.0, 0.0, 1.0], (len(at), 1)))
+    lift[up] = skin.drop.drop(tip[:, :2], lower_side(earlier), lowest) - tip[:, 2]
+    return lift
+
+
+def _past_rim(sheet: Sheet, over: Floats, around: float) -> Floats:
+    """Return for a sheet's points how far (v,) mm they are inside the rim, negative outside: `around` mm past where the values `over`
+    (v,) are above nothing, bays and necks filled."""
+    away = _distance(sheet, over)
+    bay = FILLED * around
+    inside = _distance(sheet, away - around - bay)
+    return inside - bay
+
+
+def _distance(sheet: Sheet, value: Floats) -> Floats:
+    """Return how far (v,) mm a sheet's points are from where values (v,) are above nothing; infinite where these are nowhere."""
+    above = value > 0.0
+    if not above.any():
+        return np.full(len(value), np.inf)
+    ends = sheet.edges()[0]
+    ends = ends[above[ends[:, 0]] != above[ends[:, 1]]]
+    border = sheet.on_edges(ends, _crossing(value, ends))[0]
+    found = np.asarray(cKDTree(np.concatenate([sheet.points[above], border])).query(sheet.points)[0])
+    found[above] = 0.0
+    return found
+
+
+def _crossing(value: Floats, ends: Ints) -> Floats:
+    """Return the share of the way along edges (k, 2) where values (v,) of different signs are nothing; the middle where one is infinite."""
+    a, b = value[ends].T
+    even = np.isfinite(a) & np.isfinite(b)
+    return np.where(even, np.divide(a, a - b, out=np.full(len(a), 0.5), where=even & (a != b)), 0.5)
+
+
+def _cut(sheet: Sheet, inside: Floats) -> tuple[Sheet, Sheet]:
+    """Return what of a sheet is inside and what outside of the line on which values (v,) of its points are nothing."""
+    ends, side = sheet.edges()
+    isin = inside >= 0.0
+    crossed = np.flatnonzero(isin[ends[:, 0]] != isin[ends[:, 1]])
+    parted, _ = sheet.parted(ends, side, crossed, np.clip(_crossing(inside, ends[crossed]), NEAR_END, 1.0 - NEAR_END))
+    # New points are on the line: the others of a triangle are all on one side of it.
+    signs = np.concatenate([np.where(isin, 1, -1), np.zeros(len(crossed), np.int64)])
+    within = signs[parted.triangles].sum(axis=1) > 0
+    return parted.of(within), parted.of(~within)
+
+
+def _length(a: Floats, a_normal: Floats, b: Floats, b_normal: Floats) -> Floats:
+    return np.asarray(np.linalg.norm(b - a, axis=1))
 
 
 def _places(skin: Skin, rows: Ints) -> tuple[Floats, Floats, Ints]:
