@@ -115,7 +115,8 @@ def test_what_a_cutter_leaves_has_a_rim_that_passes_can_follow() -> None:
     # A wall slantwise across wide triangles: the ball of radius 3 leaves all that is nearer than 3 mm to its foot.
     floor = plane(16.0, 12.0, n=9)
     foot = np.array([[0.0, 1.0], [16.0, 5.0]])
-    wall = grid(lambda u, v: np.column_stack([16.0 * u, 1.0 + 4.0 * u, v]), lambda u, v: np.column_stack([-4.0 + 0 * u, 16.0 + 0 * u, 0 * u]),
+    wall = grid(lambda u, v: np.column_stack([16.0 * u, 1.0 + 4.0 * u, v]),
+                lambda u, v: np.column_stack([-4.0 + 0 * u, 16.0 + 0 * u, 0 * u]),
                 np.linspace(0.0, 1.0, 9), np.linspace(0.0, 6.0, 3), 2)
     skin = joined(floor, wall)
     found, tags = left_by(skin, (1,), BALL, -9.0, HEIGHT)
