@@ -18,9 +18,11 @@ from trunnion.model.toolpath import Mark
 from trunnion.settings import choose
 from trunnion.shop import load_shop
 from trunnion.toolpath.stock import PlanningStock
-from trunnion.toolpath.surface.constant import AIM, ConstantSettings, constant, scallop_passes
+from trunnion.toolpath.surface.constant import ConstantSettings, constant
+from trunnion.toolpath.surface.flowlines import Flow, flow_lines
+from trunnion.toolpath.surface.fronts import AIM, scallop_passes
 from trunnion.toolpath.surface.stepovers import spread, stepover_measure
-from trunnion.toolpath.surface.streamline import StreamlineSettings, streamline, streamlines
+from trunnion.toolpath.surface.streamline import StreamlineSettings, streamline
 
 SHOP = load_shop()
 BALL = next(t for t in SHOP.tools if t.form == "ball" and t.diameter == 6.0)
@@ -102,12 +104,12 @@ def test_passes_are_not_closer_than_the_scallop_wants(name: str) -> None:
 @pytest.mark.parametrize("name", FORMS)
 def test_flow_lines_cover_all_within_half_a_stepover(name: str) -> None:
     drive = drive_of(FORMS[name])
-    away = stepovers_away(drive, BALL, streamlines(drive, BALL))
+    away = stepovers_away(drive, BALL, flow_lines(drive, BALL))
     assert np.percentile(away, 99.0) < 0.52 and away.max() < 0.6
 
 
 def test_flow_lines_over_a_plane_are_rows_that_climb() -> None:
-    ways = streamlines(drive_of(plane()), BALL)
+    ways = flow_lines(drive_of(plane()), BALL)
     assert len(ways) == math.ceil(4.0 / STEP) and not any(w.closed for w in ways)
     step = ways[1].point[0] - ways[0].point[0]
     # What is not cut yet lies on the right of the feed.
@@ -116,8 +118,8 @@ def test_flow_lines_over_a_plane_are_rows_that_climb() -> None:
 
 def test_a_ring_is_one_spiral_and_without_one_closed_passes() -> None:
     drive = drive_of(zone())
-    spiral = streamlines(drive, BALL)
-    rings = streamlines(drive, BALL, choose(StreamlineSettings, {"spiral": False}))
+    spiral = flow_lines(drive, BALL)
+    rings = flow_lines(drive, BALL, Flow(spiral=False))
     assert len(spiral) == 1 and len(rings) > 3 and all(r.closed for r in rings)
     assert np.linalg.norm(spiral[0].point, axis=1) == approx(np.full(len(spiral[0]), 10.0), abs=1e-4)
     assert np.linalg.norm(np.diff(spiral[0].point, axis=0), axis=1).max() < 0.6
@@ -125,7 +127,7 @@ def test_a_ring_is_one_spiral_and_without_one_closed_passes() -> None:
 
 def test_flow_lines_run_between_the_faces_that_are_named() -> None:
     skin = joined(plane(), plane(tag=2, start=6.0), plane(tag=3, start=-6.0))
-    ways = streamlines(drive_of(skin), BALL, choose(StreamlineSettings, {"first_guide": "face 2", "second_guide": "face 3"}))
+    ways = flow_lines(drive_of(skin), BALL, Flow(first_guide="face 2", second_guide="face 3"))
     assert ways[0].point[:, 0] == approx(np.full(len(ways[0]), ways[0].point[0, 0])) and ways[0].point[0, 0] > ways[-1].point[0, 0]
 
 
@@ -134,7 +136,7 @@ def test_flow_lines_run_between_the_faces_that_are_named() -> None:
     ({"first_guide": "face 8", "second_guide": "face 9"}, "face 8")])
 def test_guides_that_cannot_be_are_refused_in_words(words, message: str) -> None:
     with pytest.raises(BadInput, match=message):
-        streamlines(drive_of(plane()), BALL, choose(StreamlineSettings, words))
+        flow_lines(drive_of(plane()), BALL, Flow(**words))
 
 
 @pytest.mark.parametrize(("strategy", "settings"), [(constant, ConstantSettings), (streamline, StreamlineSettings)])

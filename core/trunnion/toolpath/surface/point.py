@@ -27,16 +27,16 @@ from trunnion.plan.surface.cutter import lower_side, tip_at, touching
 from trunnion.plan.surface.drive import Asker, SurfaceDrive
 from trunnion.plan.surface.scallop import stepover_on_plane
 from trunnion.progress import QUIET, Progress
-from trunnion.settings import choose, setting, settings
+from trunnion.settings import setting, settings
 from trunnion.toolpath.contract import Planned, strategy
 from trunnion.toolpath.stock import PlanningStock
 from trunnion.toolpath.surface.axis import AxisField, fixed, from_point, interpolated, leaning
-from trunnion.toolpath.surface.constant import scallop_passes
 from trunnion.toolpath.surface.contacts import Contacts, between, slerp
+from trunnion.toolpath.surface.flowlines import Flow, flow_lines
+from trunnion.toolpath.surface.fronts import scallop_passes
 from trunnion.toolpath.surface.lean import STEP, AxisSearch, Course, LeanLimits, free_axes, roomy
 from trunnion.toolpath.surface.linking import Manner, linked
 from trunnion.toolpath.surface.passes import Pass
-from trunnion.toolpath.surface.streamline import StreamlineSettings, streamlines
 from trunnion.units import trimmed
 
 SHARES = (0.25, 0.5, 0.75)
@@ -101,8 +101,8 @@ def point(drive: SurfaceDrive, tool: Tool, data: CuttingData, stock: PlanningSto
         raise Refused(f"{drive.feature}: point milling leans the tool; choose a machine with rotary axes, or another strategy")
     ask, lead, tilt = drive.ask(tool), math.radians(settings.lead), math.radians(settings.tilt)
     ball = grooving(tool, lead, tilt)
-    flow = choose(StreamlineSettings, {name: getattr(settings, name) for name in ("first_guide", "second_guide", "spiral")})
-    ways = (streamlines(drive, ball, flow, progress.part(0.0, 0.3)) if settings.pattern == "flow" else
+    flow = Flow(first_guide=settings.first_guide, second_guide=settings.second_guide, spiral=settings.spiral)
+    ways = (flow_lines(drive, ball, flow, progress.part(0.0, 0.3)) if settings.pattern == "flow" else
             # They run with what is inside on their left: the other way round a cutter that turns clockwise climbs.
             tuple(way.reversed() for way in scallop_passes(drive, ball, settings.chord, progress.part(0.0, 0.3))))
     if settings.way == "both":
