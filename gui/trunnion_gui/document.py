@@ -23,9 +23,9 @@ from trunnion.model.feature import Feature
 from trunnion.model.operation import Operation
 from trunnion.model.session import Session
 from trunnion.settings import Value
-from trunnion_gui import commands
-from trunnion_gui.commands import Edit, History
+from trunnion_gui import edits
 from trunnion_gui.drawing import Drawing
+from trunnion_gui.edits import Edit, History
 from trunnion_gui.i18n import tr
 from trunnion_gui.steps import until
 from trunnion_gui.verbs import Group, Opened, State
@@ -218,7 +218,7 @@ class Document(QObject):
 
     def choose(self, key: str, label: str, value: Value, gesture: str = "") -> None:
         """Choose a setting by its full key."""
-        self.edit(label, commands.with_choice(key, value), gesture)
+        self.edit(label, edits.with_choice(key, value), gesture)
 
     def undo(self) -> None:
         """Take the last edit or run back."""

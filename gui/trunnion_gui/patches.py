@@ -11,7 +11,7 @@ from PySide6.QtWidgets import QMenu, QWidget
 from trunnion.geometry.cut import Cut
 from trunnion.model.feature import Feature
 from trunnion.report.palette import GROUP
-from trunnion_gui import commands, icons
+from trunnion_gui import edits, icons
 from trunnion_gui.colours import feature_colours
 from trunnion_gui.document import Document
 from trunnion_gui.i18n import tr
@@ -48,7 +48,7 @@ class PatchTools(QObject):
     def set_local(self, ids: list[str], value: bool) -> None:
         """Call groups local features, or not."""
         words = tr("{id} is a local feature") if value else tr("{id} is no local feature")
-        self._document.edit(words.format(id=", ".join(ids)), commands.with_local(ids, value))
+        self._document.edit(words.format(id=", ".join(ids)), edits.with_local(ids, value))
 
     def menu(self, parent: QWidget, tags: tuple[int, ...]) -> QMenu:
         """Return what may be done with some faces."""

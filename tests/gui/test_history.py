@@ -9,8 +9,8 @@ from fake_engine import FakeEngine
 
 from trunnion.findings import Refused
 from trunnion.model.session import Session
-from trunnion_gui import commands
-from trunnion_gui.commands import History
+from trunnion_gui import edits
+from trunnion_gui.edits import History
 
 
 @pytest.fixture(scope="module")
@@ -50,7 +50,7 @@ def test_edits_of_one_gesture_are_one_entry():
 
 def test_an_edit_that_changes_nothing_is_no_entry():
     history = History(Session(choices={"a.b": 2}))
-    history.push("again", commands.with_choice("a.b", 2)(history.session))
+    history.push("again", edits.with_choice("a.b", 2)(history.session))
     assert history.undo_label == ""
 
 
@@ -64,53 +64,53 @@ def test_a_session_is_dirty_until_it_is_saved():
 
 def test_faces_of_a_deleted_feature_become_unexplained(programmed):
     gone = programmed.recognition.feature("rib-01")
-    after = commands.without_feature("rib-01")(programmed)
+    after = edits.without_feature("rib-01")(programmed)
     assert set(gone.tags) <= set(after.recognition.unexplained)
     assert all(f.id != "rib-01" for f in after.recognition)
     assert after.recognition.removed == (gone.tags,)
 
 
 def test_a_changed_kind_is_marked_as_a_persons(programmed):
-    changed = commands.with_kind("rib-01", "island")(programmed).recognition.feature("rib-01")
+    changed = edits.with_kind("rib-01", "island")(programmed).recognition.feature("rib-01")
     assert (changed.kind, changed.by_hand) == ("island", True)
 
 
 def test_a_deleted_operation_holds_nothing_up_any_more(programmed):
-    after = commands.without_operation("op-01")(programmed)
+    after = edits.without_operation("op-01")(programmed)
     assert all("op-01" not in o.after for o in after.process.operations)
     assert after.process.removed == ("op-01",)
 
 
 def test_a_deletion_is_undone_as_if_it_had_never_been(programmed):
     history = History(programmed)
-    history.push("delete", commands.without_feature("rib-01")(programmed))
-    history.push("delete", commands.without_operation("op-01")(history.session))
+    history.push("delete", edits.without_feature("rib-01")(programmed))
+    history.push("delete", edits.without_operation("op-01")(history.session))
     assert history.undo().process.removed == ()
     assert history.undo() is programmed
 
 
 def test_an_operation_moves_in_front_of_another_and_is_marked(programmed):
-    after = commands.with_operation_before("op-06", "op-04")(programmed)
+    after = edits.with_operation_before("op-06", "op-04")(programmed)
     assert [o.id for o in after.process.operations] == ["op-01", "op-02", "op-03", "op-06", "op-04", "op-05", "op-07"]
     assert after.process.operation("op-06").by_hand
 
 
 def test_finishing_before_roughing_is_refused_in_words(programmed):
     with pytest.raises(Refused, match="op-03 must come after op-02"):
-        commands.with_operation_before("op-03", "op-02")(programmed)
+        edits.with_operation_before("op-03", "op-02")(programmed)
 
 
 def test_an_edit_of_features_needs_features():
     with pytest.raises(Refused, match="recognize the part first"):
-        commands.without_feature("pocket-01")(Session())
+        edits.without_feature("pocket-01")(Session())
 
 
 def test_a_suppressed_operation_stays_in_the_tree(programmed):
-    after = commands.with_suppressed("op-02", True)(programmed)
+    after = edits.with_suppressed("op-02", True)(programmed)
     assert len(after.process.operations) == len(programmed.process.operations)
     assert "op-02" not in [o.id for o in after.process.of_setup("S1")]
 
 
 def test_choices_go_back_to_their_defaults(programmed):
     chosen = replace(programmed, choices={"a.x": 1, "a.y": 2})
-    assert commands.without_choices("a.x")(chosen).choices == {"a.y": 2}
+    assert edits.without_choices("a.x")(chosen).choices == {"a.y": 2}

@@ -14,8 +14,8 @@ import trunnion_resources
 from trunnion_gui import i18n
 
 LANGUAGES = [name for name in i18n.languages() if name != "en"]
-CALLS = {"tr": (0,), "command": (1, 5)}
-"""Where a call carries words for the person: `tr(words)`, `command(id, words, …, help)`."""
+CALLS = {"tr": (0,), "command": (1, 5), "switch": (1, 4)}
+"""Where a call carries words for the person: `tr(words)`, `command(id, words, …, help)`, `switch(id, words, …, help)`."""
 
 
 def words_in_the_code() -> set[str]:

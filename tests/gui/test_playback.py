@@ -68,7 +68,7 @@ def until(is_so, seconds=60.0) -> None:
 
 def settled(window, qtbot) -> None:
     """Wait until the stock is where the tool is, and words and program follow."""
-    followers = (window.playback._soon, window._soon)
+    followers = (window.playback._soon, window.following.soon)
     qtbot.waitUntil(lambda: window.player.is_settled and not any(timer.isActive() for timer in followers), timeout=60000)
 
 

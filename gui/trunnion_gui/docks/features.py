@@ -14,7 +14,7 @@ from PySide6.QtWidgets import QAbstractItemView, QLineEdit, QMenu, QTreeWidget, 
 
 from trunnion.model.feature import Feature, Recognition
 from trunnion.report.palette import GROUP
-from trunnion_gui import commands, icons
+from trunnion_gui import edits, icons
 from trunnion_gui.colours import class_colours, feature_colours, kind_colour, kinds
 from trunnion_gui.document import Document, Selection
 from trunnion_gui.i18n import tr
@@ -103,10 +103,10 @@ class FeatureDock(QWidget):
         for kind in kinds():
             if kind not in ("unexplained", feature.kind):
                 change.addAction(colour_icon(kind_colour(kind)), sentence(tr(kind_words(kind))), lambda k=kind: self._document.edit(
-                    tr("{id} becomes {kind}").format(id=feature.id, kind=kind_words(k)), commands.with_kind(feature.id, k)))
+                    tr("{id} becomes {kind}").format(id=feature.id, kind=kind_words(k)), edits.with_kind(feature.id, k)))
         menu.addMenu(change)
         menu.addAction(icons.icon("delete"), tr("Delete {id}").format(id=feature.id), lambda: self._document.edit(
-            tr("Delete {id}").format(id=feature.id), commands.without_feature(feature.id)))
+            tr("Delete {id}").format(id=feature.id), edits.without_feature(feature.id)))
         return menu
 
     def _show_columns(self, has_groups: bool) -> None:

@@ -9,7 +9,7 @@ from PySide6.QtWidgets import QAbstractItemView, QMenu, QTreeWidget, QTreeWidget
 from trunnion.model.operation import Operation
 from trunnion.model.session import Session
 from trunnion.model.verdict import Outcome
-from trunnion_gui import commands, icons
+from trunnion_gui import edits, icons
 from trunnion_gui.colours import Theme
 from trunnion_gui.document import Document, Selection
 from trunnion_gui.i18n import tr
@@ -117,16 +117,16 @@ class ProcessDock(QWidget):
 
     def reorder(self, id: str, before: str | None) -> None:
         """Move an operation in front of another one."""
-        self._document.edit(tr("Move {id}").format(id=id), commands.with_operation_before(id, before))
+        self._document.edit(tr("Move {id}").format(id=id), edits.with_operation_before(id, before))
 
     def menu(self, operation: Operation) -> QMenu:
         """Return what may be done with an operation."""
         menu, id, edit = QMenu(self), operation.id, self._document.edit
         words = tr("Cut {id} again") if operation.suppressed else tr("Suppress {id}")
         menu.addAction(icons.icon("resume" if operation.suppressed else "suppress"), words.format(id=id),
-                       lambda: edit(words.format(id=id), commands.with_suppressed(id, not operation.suppressed)))
+                       lambda: edit(words.format(id=id), edits.with_suppressed(id, not operation.suppressed)))
         menu.addAction(icons.icon("delete"), tr("Delete {id}").format(id=id),
-                       lambda: edit(tr("Delete {id}").format(id=id), commands.without_operation(id)))
+                       lambda: edit(tr("Delete {id}").format(id=id), edits.without_operation(id)))
         return menu
 
     def _add(self, top: QTreeWidgetItem, o: Operation, session: Session) -> None:

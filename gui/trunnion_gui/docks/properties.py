@@ -6,7 +6,7 @@ from PySide6.QtWidgets import QLabel, QScrollArea, QTableWidget, QVBoxLayout, QW
 
 from trunnion.model.feature import Feature
 from trunnion.model.operation import Operation
-from trunnion_gui import commands
+from trunnion_gui import edits
 from trunnion_gui.document import Document
 from trunnion_gui.form import Form
 from trunnion_gui.i18n import tr
@@ -125,7 +125,7 @@ class PropertiesDock(QScrollArea):
         self.form.setProperty("strategy", operation.strategy)
         labels, id = {s.key: s.label for s in group.settings}, operation.id
         self.form.changed.connect(lambda key, value, gesture: self._document.edit(
-            f"{id}: {tr(labels[key])} {value}", commands.with_operation_choice(id, key, value), gesture))
+            f"{id}: {tr(labels[key])} {value}", edits.with_operation_choice(id, key, value), gesture))
         self._forms.addWidget(self.form)
 
 

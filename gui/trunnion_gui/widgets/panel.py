@@ -6,7 +6,7 @@ from collections.abc import Mapping
 
 from PySide6.QtWidgets import QFrame, QHBoxLayout, QLabel, QPushButton, QVBoxLayout, QWidget
 
-from trunnion_gui import commands, icons
+from trunnion_gui import edits, icons
 from trunnion_gui.actions import Registry
 from trunnion_gui.colours import Theme
 from trunnion_gui.document import Document
@@ -162,7 +162,7 @@ class Panel(Foldout):
         form = Form(group.settings)
         labels = {s.key: s.label for s in group.settings}
         form.changed.connect(lambda key, value, gesture: self.document.choose(key, f"{tr(labels[key])}: {value}", value, gesture))
-        form.reset.connect(lambda key: self.document.edit(f"{tr(labels[key])}: default", commands.without_choices(key)))
+        form.reset.connect(lambda key: self.document.edit(f"{tr(labels[key])}: default", edits.without_choices(key)))
         self.forms.append(form)
         return form
 

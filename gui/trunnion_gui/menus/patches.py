@@ -4,17 +4,14 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from functools import partial
-from typing import TYPE_CHECKING
 
 from trunnion_gui.actions import Command
-
-if TYPE_CHECKING:
-    from trunnion_gui.window import Window
+from trunnion_gui.menus.shell import Shell
 
 
-def add_patch_commands(window: Window) -> None:
-    """Add the commands to a window's registry; they reach for its other parts when they run."""
-    document, tools = window.document, window.patches
+def add_patch_commands(shell: Shell) -> None:
+    """Add them to a window's registry."""
+    document, tools = shell.document, shell.patches
 
     def is_free() -> bool:
         return tools.has_groups and not document.is_busy
@@ -24,28 +21,28 @@ def add_patch_commands(window: Window) -> None:
 
     def command(id: str, text: str, run: Callable[..., object], icon: str, keys: str, help: str,
                 enabled: Callable[[], bool] = is_free, checkable: bool = False) -> None:
-        window.registry.add(Command(id=f"patch.{id}", text=text, run=run, icon=icon, keys=keys, help=help, menu="Patches",
+        shell.registry.add(Command(id=f"patch.{id}", text=text, run=run, icon=icon, keys=keys, help=help, menu="Patches",
                                     enabled=enabled, checkable=checkable))
 
     def begin_cut(by_plane: bool) -> None:
         faces = document.selection.faces
-        window.centre.begin_cut(faces[0] if len(faces) == 1 else 0, by_plane)
+        shell.centre.begin_cut(faces[0] if len(faces) == 1 else 0, by_plane)
 
     def mark_local(on: bool) -> None:
-        window.centre.marks_local = on
+        shell.centre.marks_local = on
 
     def measure() -> None:
         document.measure()
-        window.show_dock("accuracy")
+        shell.show_dock("accuracy")
 
     command("local", "Local feature, or no longer", lambda: tools.toggle_local(document.selection.faces), "local", "O",
             "Give the selected groups a cutter of their own, or let them go with the remaining area",
             lambda: is_free() and bool(tools.groups_of(document.selection.faces)))
     command("click_local", "Click local features", mark_local, "local", "Shift+O",
             "While this is on, a click on the part makes its group a local feature, or no longer", checkable=True)
-    command("ids", "Show IDs", partial(window.show_layer, "ids"), "ids", "N",
+    command("ids", "Show IDs", lambda on: shell.centre.show_layer("ids", on), "ids", "N",
             "Write the ID of every group on the part, or of every selected face", lambda: document.has_part, True)
-    command("radii", "Colours by radius", partial(window.show_layer, "radii"), "radii", "R",
+    command("radii", "Colours by radius", lambda on: shell.centre.show_layer("radii", on), "radii", "R",
             "Colour every group by its smallest concave radius", lambda: tools.has_groups, True)
     command("cut_plane", "Cut a face by a plane…", partial(begin_cut, True), "cut_plane", "",
             "Make two patches of one, across x, y or z or through three places", can_cut)
@@ -53,5 +50,5 @@ def add_patch_commands(window: Window) -> None:
             "Make two patches of one, along a line through the places you click", can_cut)
     command("errors", "Size error by points", measure, "errors", "",
             "Measure how exact the feature sizes are and what they cost, by the number of points on each edge", can_cut)
-    command("export", "Export patches…", lambda: window.export_dialog.begin(), "export", "Ctrl+Shift+E",
+    command("export", "Export patches…", lambda: shell.export_dialog.begin(), "export", "Ctrl+Shift+E",
             "Write local features, the remaining area or some groups as STEP or IGES")

@@ -1,0 +1,66 @@
+"""The menu bar and the toolbar: which commands stand where."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from pathlib import Path
+
+from PySide6.QtCore import QSize, Qt
+from PySide6.QtWidgets import QMenu, QMenuBar, QSizePolicy, QToolBar, QToolButton, QWidget
+
+from trunnion_gui import remembered
+from trunnion_gui.actions import Registry
+from trunnion_gui.i18n import tr
+
+_MENUS = ("File", "Edit", "Steps", "Patches", "Playback", "View", "Help")
+_BEFORE_RECENT = "file.sample"
+"""The command that the files opened last are listed under."""
+_GAP, _RIGHTMOST = "", ">"
+_TOOLBAR = ("file.open", "file.save", _GAP, "edit.undo", "edit.redo", _GAP, "run.program", _GAP, "view.isometric", "view.top", "view.front",
+            "view.right", "view.fit", _GAP, "view.colours", "view.blank", "view.paths", "view.section", "view.isolate", _GAP, "play.show",
+            "view.deviation", _RIGHTMOST, "view.find", "view.theme")
+_MAIN = "run.program"
+_ICON = 19
+"""Pixels of a toolbar icon."""
+
+
+def fill_menus(bar: QMenuBar, registry: Registry, open: Callable[[str], object]) -> None:
+    """Fill a menu bar with every command of a registry, and with the files opened last, which `open` opens."""
+    menus = {name: bar.addMenu(tr(name)) for name in _MENUS}
+    for command in registry.commands():
+        menus[command.menu].addAction(registry.action(command.id))
+        if command.id == _BEFORE_RECENT:
+            _add_recent(menus[command.menu].addMenu(tr("Open recent")), open)
+
+
+def _add_recent(menu: QMenu, open: Callable[[str], object]) -> None:
+    def fill() -> None:
+        menu.clear()
+        for path in remembered.recent():
+            entry = menu.addAction(Path(path).name)
+            entry.setToolTip(path)
+            entry.triggered.connect(lambda _=False, chosen=path: open(chosen))
+
+    menu.aboutToShow.connect(fill)
+
+
+def toolbar(registry: Registry) -> QToolBar:
+    """Return the toolbar: what is used most, as icons; the main command in words too."""
+    bar = QToolBar(tr("Tools"))
+    bar.setObjectName("tools")
+    bar.setMovable(False)
+    bar.setIconSize(QSize(_ICON, _ICON))
+    for id in _TOOLBAR:
+        if id == _GAP:
+            bar.addSeparator()
+        elif id == _RIGHTMOST:
+            gap = QWidget()
+            gap.setSizePolicy(QSizePolicy.Policy.Expanding, QSizePolicy.Policy.Preferred)
+            bar.addWidget(gap)
+        else:
+            bar.addAction(registry.action(id))
+    button = bar.widgetForAction(registry.action(_MAIN))
+    assert isinstance(button, QToolButton)
+    button.setObjectName("program")
+    button.setToolButtonStyle(Qt.ToolButtonStyle.ToolButtonTextBesideIcon)
+    return bar
