@@ -9,7 +9,7 @@ import pytest
 from pytest import approx
 
 from milling import box_blank, cutting
-from surface_forms import cylinder, drive_of, joined, length, plane, saddle, stepovers_away, zone
+from surface_forms import cylinder, drive_of, grid, joined, length, plane, saddle, stepovers_away, zone
 from trunnion.findings import BadInput, Refused
 from trunnion.geometry.frame import WORLD
 from trunnion.geometry.sheet import sheet_of
@@ -20,7 +20,7 @@ from trunnion.shop import load_shop
 from trunnion.toolpath.stock import PlanningStock
 from trunnion.toolpath.surface.constant import ConstantSettings, constant
 from trunnion.toolpath.surface.flowlines import Flow, flow_lines
-from trunnion.toolpath.surface.fronts import AIM, scallop_passes
+from trunnion.toolpath.surface.fronts import AIM, FIRST, scallop_passes
 from trunnion.toolpath.surface.stepovers import spread, stepover_measure
 from trunnion.toolpath.surface.streamline import StreamlineSettings, streamline
 
@@ -86,6 +86,22 @@ def test_no_place_is_much_farther_than_half_a_stepover_from_a_pass(name: str) ->
     ways = scallop_passes(drive, BALL, 0.0005)
     away = stepovers_away(drive, BALL, ways)
     assert np.percentile(away, 99.5) < 0.515 and away.max() < 0.53
+
+
+@pytest.mark.parametrize("extra", [-0.03, 0.0, 0.02, 0.04, 0.1])
+def test_a_ridge_that_rises_and_falls_about_a_pass_has_one_pass_without_gaps(extra: float) -> None:
+    # A strip whose middle is as far from both rims as a pass, here a little more and there a little less.
+    wide = 2.0 * STEP * math.sqrt(AIM) * (2.0 + FIRST + extra)
+    strip = grid(lambda u, v: np.column_stack([u, v * (wide + 0.05 * STEP * np.sin(2.3 * u)), 0 * u]),
+                 lambda u, v: np.column_stack([0 * u, 0 * u, 0 * u + 1.0]), np.linspace(0.0, 8.0, 41), np.linspace(0.0, 1.0, 5))
+    drive = drive_of(strip)
+    ways = scallop_passes(drive, BALL, 0.0005)
+    assert stepovers_away(drive, BALL, ways).max() < 0.53
+    # What goes there and back on nearly one line is no pass.
+    for way in ways:
+        if way.closed:
+            x, y = way.point[:-1, 0], way.point[:-1, 1]
+            assert abs(x @ np.roll(y, -1) - y @ np.roll(x, -1)) / 2.0 > 0.02 * STEP * length([way])
 
 
 @pytest.mark.parametrize("name", FORMS)

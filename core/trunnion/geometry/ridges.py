@@ -70,7 +70,8 @@ def opened(sheet: Sheet) -> Sheet:
 
 
 def _chained(points: Floats, lines: list[Ints], gap: float) -> list[Ints]:
-    """Return lines of which those whose ends lie within a gap (mm) of each other are one; nearest ends are joined first."""
+    """Return lines of which those whose ends lie within a gap (mm) of each other are one; nearest ends are joined first, and where a third
+    line ends beside two that were joined it goes on to the nearest end of these."""
     open_lines = [line for line in lines if line[0] != line[-1]]
     if len(open_lines) < 2:
         return lines
@@ -81,6 +82,12 @@ def _chained(points: Floats, lines: list[Ints], gap: float) -> list[Ints]:
     for a, b in pairs.tolist():
         if partner[a] < 0 and partner[b] < 0 and a // 2 != b // 2:
             partner[a], partner[b] = b, a
+    ends = np.concatenate([line[[0, -1]] for line in open_lines])
+    for tip in np.flatnonzero(partner < 0).tolist():
+        beside = [a + b - tip for a, b in pairs.tolist() if tip in (a, b) and a // 2 != b // 2]
+        if beside and ends[beside[0]] != ends[tip]:
+            line, node = open_lines[tip // 2], ends[beside[0]]
+            open_lines[tip // 2] = np.append(line, node) if tip % 2 else np.insert(line, 0, node)
     made, used = [], np.zeros(len(open_lines), bool)
     for tip in [*np.flatnonzero(partner < 0).tolist(), *range(len(tips))]:
         parts = []

@@ -10,6 +10,8 @@ from __future__ import annotations
 from collections.abc import Sequence
 
 import numpy as np
+from scipy.sparse import coo_matrix
+from scipy.sparse.csgraph import connected_components
 from scipy.spatial import cKDTree
 
 from trunnion.geometry.arrays import Floats
@@ -34,6 +36,12 @@ FIRST = 0.3
 FARTHEST = 0.48
 """Stepovers from the nearest pass beyond which a place on a ridge needs another one: where ridges branch, distances are a few hundredths
 longer than they are measured."""
+SAMPLES = 4
+"""Places that are asked on each piece of a ridge: between two of its points it can be farther from all passes than at either."""
+CLOSE, DENSE = 0.2, 0.1
+"""Stepovers: nearer than this to a pass a point doesn't tell how wide a stepover is there; and how dense passes are for such distances."""
+SLIM = 0.05
+"""Stepovers: a pass round less than this is left to the ridge inside of it. It would go there and back on nearly one line."""
 REACH = 1.5
 """Stepovers that a pass along a ridge goes on past such a place: the next one between corners is not farther."""
 SMOOTHINGS = 3
@@ -56,13 +64,32 @@ def scallop_passes(drive: SurfaceDrive, tool: Tool, chord: float, progress: Prog
         # An area that is closed all round begins at its highest place.
         rim = np.concatenate(rims) if rims else np.array([np.argmax(sheet.points[:, 2])])
         found = ridged(metric, *distances(metric, rim), FINENESS * longest)
-        lines = _nested(found.sheet, whole_levels(found.sheet, found.time + 1.0 - FIRST))
+        field = found.time + 1.0 - FIRST
+        lines = _nested(found.sheet, _without_slim(found.sheet, field, whole_levels(found.sheet, field)))
         contacts = [found.sheet.on_edges(line.ends, line.share) for line in lines]
         contacts += _along_ridges(found, metric_of(found.sheet, measure), lines, longest)
         closed = [line.closed for line in lines] + [False] * (len(contacts) - len(lines))
         made += [Contacts(point=p, normal=n, closed=c)
                  for (p, n), c in ((spread(*pn, c, tool.radius, chord, longest), c) for pn, c in zip(contacts, closed, strict=True))]
     return made
+
+
+def _without_slim(sheet: Sheet, field: Floats, lines: Sequence[SheetLine]) -> list[SheetLine]:
+    """Return the lines but those inside of which a field (v,) rises or falls by less than `SLIM`."""
+    ends = sheet.edges()[0]
+    for sign in (1.0, -1.0):
+        value = sign * field
+        doubtful = {line.level for line in lines if value[line.ends].max() < sign * line.level + SLIM}
+        slim = set()
+        for level in sorted(doubtful):
+            a, b = ends[(value[ends] > sign * level).all(axis=1)].T
+            part = connected_components(coo_matrix((np.ones(len(a)), (a, b)), shape=(len(value),) * 2), directed=False)[1]
+            top = np.full(len(value), -np.inf)
+            np.maximum.at(top, part, value)
+            slim |= {k for k, line in enumerate(lines) if line.level == level
+                     and top[part[line.ends.ravel()[np.argmax(value[line.ends])]]] < sign * level + SLIM}
+        lines = [line for k, line in enumerate(lines) if k not in slim]
+    return list(lines)
 
 
 def _nested(sheet: Sheet, lines: Sequence[SheetLine]) -> list[SheetLine]:
@@ -95,17 +122,41 @@ def _along_ridges(found: Ridged, metric: Metric, lines: Sequence[SheetLine], ste
     rows = np.concatenate([line.ends.ravel() for line in lines])
     level = np.repeat([line.level - 1.0 + FIRST for line in lines], [2 * len(line.share) for line in lines])
     away, _ = distances(metric, rows, np.abs(found.time[rows] - level))
+    passes = cKDTree(np.concatenate([_dense(found.sheet.on_edges(line.ends, line.share)[0], DENSE * stepover) for line in lines]))
     ways = []
     for ridge in found.ridges:
         point, normal = _smoothed(found.sheet.points[ridge], found.sheet.normals[ridge], bool(ridge[0] == ridge[-1]))
         run = np.concatenate([[0.0], np.cumsum(np.linalg.norm(np.diff(point, axis=0), axis=1))])
-        lacking = run[away[ridge] > FARTHEST]
+        at, far = _away(found.sheet.points[ridge], away[ridge], passes, stepover)
+        lacking = np.interp(at[far > FARTHEST], np.arange(len(run)), run)
         if len(lacking):
             first = np.searchsorted(lacking, run - REACH * stepover)
             wanted = (first < len(lacking)) & (lacking[np.minimum(first, len(lacking) - 1)] <= run + REACH * stepover)
             edges = np.flatnonzero(np.diff(wanted.astype(np.int8), prepend=0, append=0)).reshape(-1, 2)
             ways += [(point[a:b], normal[a:b]) for a, b in edges.tolist() if b - a > 1]
     return _in_turn(ways)
+
+
+def _away(point: Floats, away: Floats, passes: cKDTree, stepover: float) -> tuple[Floats, Floats]:
+    """Return places on a ridge, as fractional rows (m,) of its points (k, 3), and how many stepovers (m,) they are away from all passes:
+    at its points as was measured (k,), between them by the distance in space and how wide stepovers are at the points beside."""
+    at = np.arange(SAMPLES * (len(point) - 1) + 1) / SAMPLES
+    row = np.minimum(at.astype(np.int64), len(point) - 2)
+    share = (at - row)[:, None]
+    space = np.asarray(passes.query((1.0 - share) * point[row] + share * point[row + 1])[0])
+    scale = np.full(len(point), 1.0 / stepover)
+    np.divide(away, space[::SAMPLES], out=scale, where=space[::SAMPLES] > CLOSE * stepover)
+    found = space * np.maximum(scale[row], scale[row + 1])
+    found[::SAMPLES] = away
+    return at, found
+
+
+def _dense(point: Floats, step: float) -> Floats:
+    """Return points at most a step (mm) apart on the straight way through points (k, 3)."""
+    size = np.linalg.norm(np.diff(point, axis=0), axis=1)
+    run = np.concatenate([[0.0], np.cumsum(size)])
+    at = np.unique(np.concatenate([run, np.linspace(0.0, run[-1], int(run[-1] / step) + 2)]))
+    return np.column_stack([np.interp(at, run, point[:, k]) for k in range(3)])
 
 
 def _in_turn(ways: list[tuple[Floats, Floats]]) -> list[tuple[Floats, Floats]]:
