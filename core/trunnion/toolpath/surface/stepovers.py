@@ -28,6 +28,10 @@ from trunnion.plan.surface.cutter import lower_side, touching
 
 WIDEST = 0.5
 """Stepover at most, as a share of the diameter: a cutter that fits a hollow, or stands flat on a plane, would allow any."""
+SNUG, UNSURE = 0.5, 0.03
+"""Of the cutter's own curvature: from where on a hollow is nearly as round as the cutter; and how much of what its curvature is past that
+may be missing, for modellers' fillets ripple. The gap is what little is left of the cutter's curvature there, and passes would lie too
+far apart."""
 JUMP = 1.25
 """Of two squares of stepovers beside an edge: from this ratio on the curvature jumps there."""
 PAST = 0.28
@@ -55,7 +59,8 @@ def stepover_measure(tool: Tool, height: float) -> Measure:
 
     def measure(a: Floats, a_normal: Floats, b: Floats, b_normal: Floats) -> Floats:
         way = b - a
-        gap = _own_curvature(tool, way, a_normal + b_normal) + (way * (b_normal - a_normal)).sum(axis=1)
+        own, bend = _own_curvature(tool, way, a_normal + b_normal), (way * (b_normal - a_normal)).sum(axis=1)
+        gap = own + bend + UNSURE * np.maximum(-bend - SNUG * own, 0.0)
         return np.sqrt(np.maximum(gap / (8.0 * depth), least * (way * way).sum(axis=1)))
 
     return measure
