@@ -10,6 +10,7 @@ import samples
 from trunnion.model.feature import Recognition
 from trunnion.progress import QUIET
 from trunnion.recognize.panel import PanelFamily
+from trunnion.recognize.surface import SurfaceFamily
 from trunnion.settings import choose
 
 
@@ -34,3 +35,12 @@ def test_a_dome_on_a_plate_is_no_fillet_and_nothing_is_planned_beside_it() -> No
     assert dome not in {tag for f in found for tag in f.tags} and dome in found.unexplained
     assert ["lean" in str(f.attributes["refused"]) for f in found.of_kind("open_pocket")] == [True]
     assert "recognize.family=surface" in next(f.remedy for f in found.findings if f.code == "panel.leaning-wall")
+
+
+def test_a_dome_on_a_plate_is_taken_for_a_curved_part_and_a_panel_is_not() -> None:
+    def best(shape) -> str:
+        graph = samples.read(shape).graph()
+        return max((PanelFamily(), SurfaceFamily()), key=lambda family: family.suits(graph)).name
+
+    assert best(samples.dome_on_a_plate_shape()) == "surface"
+    assert best(samples.two_pockets_and_a_rib_shape()) == "panel"

@@ -17,9 +17,10 @@ from trunnion.recognize.surface.groups import aligned_groups, invariant_groups
 from trunnion.recognize.surface.settings import ALIGNED, EXACT, SurfaceSettings
 from trunnion.recognize.surface.size import PatchSizes, patch_sizes
 
-FREE_FORM = ("spline", "revolution", "extrusion", "other")
-ENOUGH = 0.25
-"""Share of the area that is free-form on a part that is surely of this family; panels have a twentieth at most."""
+CURVED = ("spline", "revolution", "extrusion", "sphere", "torus", "other")
+"""Kinds of faces that are neither flat nor ruled in a plain way: no passes of an end mill on its levels and along walls finish them."""
+ENOUGH = 0.15
+"""Share of the area that is curved like that on a part that is surely of this family; panels have a third of it at most."""
 
 
 class SurfaceFamily:
@@ -29,9 +30,9 @@ class SurfaceFamily:
     settings = SurfaceSettings
 
     def suits(self, graph: FaceGraph) -> float:
-        """Return how near the free-form share of the part's area comes to `ENOUGH`."""
-        free = np.array([kind in FREE_FORM for kind in graph.surface])
-        return min(1.0, float(graph.area[free].sum() / graph.area.sum()) / ENOUGH)
+        """Return how near the curved share of the part's area comes to `ENOUGH`."""
+        curved = np.array([kind in CURVED for kind in graph.surface])
+        return min(1.0, float(graph.area[curved].sum() / graph.area.sum()) / ENOUGH)
 
     def recognize(self, graph: FaceGraph, bounded: Bounded, settings: SurfaceSettings, progress: Progress = QUIET) -> Recognition:
         """Return one feature a group of equal patches, largest first; local ones are marked. Raises `Cancelled` when asked to stop."""
