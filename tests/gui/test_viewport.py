@@ -117,6 +117,20 @@ def test_the_blank_stands_around_the_part(recognized, idle):
     assert low == pytest.approx([-5, -5, 0]) and high == pytest.approx([LENGTH + 5, WIDTH + 5, HEIGHT + 2])
 
 
+def test_the_blank_is_fitted_into_the_picture_while_it_is_shown(recognized, idle):
+    scene = recognized.centre.scene
+    before = scene.view.camera.parallel_scale
+    recognized.document.run("blank", "Create blank")
+    idle(recognized)
+    assert scene.view.camera.parallel_scale > before
+    for x in (-5.0, LENGTH + 5.0):
+        for y in (-5.0, WIDTH + 5.0):
+            for z in (0.0, HEIGHT + 2.0):
+                assert scene.view.rect().contains(scene.where((x, y, z)).toPoint())
+    recognized.registry.run("view.blank")
+    assert scene.view.camera.parallel_scale == pytest.approx(before)
+
+
 def test_cutting_moves_are_drawn_in_their_colour(recognized, idle, qtbot):
     recognized.document.run("toolpath", "Generate")
     idle(recognized)

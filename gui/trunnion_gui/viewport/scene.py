@@ -21,7 +21,7 @@ from trunnion.model.toolpath import Toolpath
 from trunnion.report.lines import MOTIONS
 from trunnion_gui.colours import Theme, mixed, rgb
 from trunnion_gui.drawing import Drawing, DrawnMap
-from trunnion_gui.viewport.layers.blank import draw_blank
+from trunnion_gui.viewport.layers.blank import corners, draw_blank
 from trunnion_gui.viewport.layers.cut import draw_cut
 from trunnion_gui.viewport.layers.deviation import DeviationLayer
 from trunnion_gui.viewport.layers.label import draw_label, draw_names
@@ -119,6 +119,7 @@ class Scene(QWidget):
         self._part: PartLayer | None = None
         self._drawing: Drawing | None = None
         self._mesh: Mesh | None = None
+        self._blank = np.zeros((0, 3))
         self._picker: FacePicker | None = None
         self._frame = WORLD
         self._colours: Mapping[int, str] = {}
@@ -179,8 +180,10 @@ class Scene(QWidget):
         self._repaint()
 
     def show_blank(self, blank: Blank | None) -> None:
-        """Show the blank, or none."""
+        """Show the blank, or none. A picture that nobody has turned since it was fitted is fitted anew."""
         draw_blank(self.view, blank, self._theme)
+        self._blank = corners(blank) if blank is not None else np.zeros((0, 3))
+        self._fit_again()
         self.view.render()
 
     def show_setups(self, setups: Sequence[Setup]) -> None:
@@ -405,15 +408,14 @@ class Scene(QWidget):
         return (*camera.position, *camera.focal_point, *camera.up, camera.parallel_scale)
 
     def _fit_tightly(self) -> None:
-        """Choose scale and middle of the picture so that the part is as large as it can be without lying under what covers it."""
-        assert self._mesh is not None
+        """Choose scale and middle of the picture so that all is as large as it can be without lying under what covers it."""
         camera = self.view.camera
         forward = np.subtract(camera.focal_point, camera.position)
         forward = forward / np.linalg.norm(forward)
         right = np.cross(forward, camera.up)
         right = right / np.linalg.norm(right)
         up = np.cross(right, forward)
-        plan = np.asarray(self._mesh.points - np.asarray(camera.focal_point)) @ np.column_stack([right, up])
+        plan = np.asarray(self._everything() - np.asarray(camera.focal_point)) @ np.column_stack([right, up])
         width, height = max(self.view.width(), 1), max(self.view.height(), 1)
         scale, (x, y) = best_fit(plan, width, height, self._covered)
         shift = x * right + y * up
@@ -426,11 +428,15 @@ class Scene(QWidget):
         """Return the part's longest side, mm."""
         return float(np.ptp(self._mesh.points, axis=0).max()) if self._mesh is not None else 1.0
 
+    def _everything(self) -> np.ndarray:
+        """Return the points (v, 3) of the part and of the blank that is shown."""
+        return np.vstack([self._mesh.points, self._blank]) if self._mesh is not None else self._blank
+
     def _bounds(self) -> tuple[float, ...] | None:
         if self._mesh is None:
             return None
-        low, high = self._mesh.box()
-        return tuple(float(v) for pair in zip(low, high) for v in pair)
+        points = self._everything()
+        return tuple(float(v) for pair in zip(points.min(axis=0), points.max(axis=0)) for v in pair)
 
     def _apply_section(self) -> None:
         for name in ("part", "edges", "chosen", "deviation", "stock"):
