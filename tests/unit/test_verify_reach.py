@@ -10,8 +10,9 @@ from pytest import approx
 
 from leaning_tools import EVERY_FORM, contact_of
 from trunnion.shop.machines import load_machines
-from trunnion.verify.finish.coverage import Reach, Samples
+from trunnion.verify.finish.coverage import Samples
 from trunnion.verify.finish.leaning import leaning_axes, touching_tips
+from trunnion.verify.finish.reach import Reach
 from trunnion.verify.machine.kinematics import can_hold
 from verify_tools import MACHINE
 

@@ -12,7 +12,7 @@ from threading import Lock
 import numpy as np
 
 from trunnion import tolerance
-from trunnion.geometry.arrays import Bools, Floats, Ints
+from trunnion.geometry.arrays import Floats, Ints
 from trunnion.part.surfaces import BX0, BY1, DX, DY, GUIDE, L_KIND, OX, OY, PROFILE, PW0, PW1, PZ0, PZ1, R_KIND, U0, U1, Surfaces
 from trunnion.progress import QUIET, Progress
 from trunnion.verify.contact.grid import grid_of
@@ -52,14 +52,17 @@ class StripContact:
 
     def along(self, moves: Moves, rows: Ints, progress: Progress = QUIET, threads: int = 0) -> Touch:
         """Return how deep the moves of some rows (k,) enter the faces; they must stand upright."""
-        found = self._measure(moves, rows, progress, threads)
+        return self._touch(moves, rows, self._measure(moves, rows, progress, threads))
+
+    def stopped(self, moves: Moves, rows: Ints, allowed: float) -> Floats:
+        """Return a place (k, 3) of the faces about where the tool enters them deeper than allowed, for the moves of some rows (k,), which
+        must stand upright; NaN where it doesn't."""
+        return self._touch(moves, rows, self._measure(moves, rows, QUIET, 1, allowed)).deeper_than(allowed)
+
+    def _touch(self, moves: Moves, rows: Ints, found: _Measured) -> Touch:
         s, face, place = self.surfaces, np.full((len(rows), 2), -1), np.full((len(rows), 2, 3), np.nan)
         kernel.places(rows, moves.row, found.which, found.where, s.strip, s.strip_face, s.region_z, s.region_face, face, place)
         return Touch(depth=found.depth, face=face, place=place, face_depth=found.face_depth, face_move=found.face_move)
-
-    def clear(self, moves: Moves, rows: Ints, allowed: float) -> Bools:
-        """Say for the moves of some rows (k,) whether nothing of the tool enters the faces deeper than allowed; they must stand upright."""
-        return np.asarray((self._measure(moves, rows, QUIET, 1, allowed).depth <= allowed).all(axis=1))
 
     def _measure(self, moves: Moves, rows: Ints, progress: Progress, threads: int, settle: float = np.inf) -> _Measured:
         s, g, bodies, bound = self.surfaces, self._grid, moves.bodies, tolerance.CONTACT_BOUND / 2

@@ -15,7 +15,8 @@ from trunnion.model.material import Machine
 from trunnion.model.tool import Tool
 from trunnion.model.verdict import Deviation, FaceProof
 from trunnion.progress import QUIET, Progress
-from trunnion.verify.finish.coverage import Reach, Samples, depth_in_blank, on_blank
+from trunnion.verify.finish.coverage import Samples, depth_in_blank, on_blank
+from trunnion.verify.finish.reach import Reach
 from trunnion.verify.judge.setups import SetupProof
 from trunnion.verify.judge.sides import Side
 from trunnion.verify.settings import ProofSettings
