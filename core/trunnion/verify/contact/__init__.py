@@ -102,7 +102,7 @@ class PartContact:
         return place
 
     def any_clear(self, tool: Tool, tips: Floats, axes: Floats, wanted: Bools, allowed: float, obstacles: Obstacles,
-                  progress: Progress = QUIET, text: str = "") -> Bools:
+                  progress: Progress = QUIET, text: str = "", threads: int = 0) -> Bools:
         """Say for k places whether one of the poses (k, a, 3) of a tool that are wanted (k, a) is clear as `clear` has it.
 
         Much quicker where most poses are stopped: `obstacles`, those of the k places, remembers by what, for the next tool too. The part
@@ -115,7 +115,7 @@ class PartContact:
         if leaning.any():
             if self._every is None:
                 raise BadInput("contact of a leaning tool needs the part's facets")
-            found |= self._every.any_clear(tool, tips, axes, leaning, allowed, obstacles, progress, text)
+            found |= self._every.any_clear(tool, tips, axes, leaning, allowed, obstacles, progress, text, threads)
         row, pose = np.nonzero(wanted & upright & ~found[:, None])
         for first in range(0, len(row), POSES):
             progress.check()

@@ -34,10 +34,10 @@ ASIDE = (1.0, 0.5)
 
 class Reach:
     """Finds collision-free poses of catalogue cutters that touch a point of the part: upright ones from above, and leaning ones where the
-    machine has rotary axes (contact then needs facets). Contact must be without fixtures."""
+    machine has rotary axes (contact then needs facets). Contact must be without fixtures. Works on `threads` threads (0: one a core)."""
 
-    def __init__(self, contact: PartContact, tools: Sequence[Tool], allowed: float, machine: Machine | None = None) -> None:
-        self._contact, self._allowed, self._machine = contact, allowed, machine
+    def __init__(self, contact: PartContact, tools: Sequence[Tool], allowed: float, machine: Machine | None = None, threads: int = 0) -> None:
+        self._contact, self._allowed, self._machine, self._threads = contact, allowed, machine, threads
         # Upright and from above, no other form goes where none of these fits. Slender cutters reach what any reach: the order is for speed.
         plain = [t for t in tools if t.form in PLAIN_FORMS]
         self._tools = sorted(reaching_furthest(plain), key=lambda t: (t.radius, -t.reach, t.number))
@@ -76,7 +76,7 @@ class Reach:
                 break
             tips, axes, possible = poses(tool, rows)
             known = obstacles.of(rows)
-            found[rows] = self._contact.any_clear(tool, tips, axes, possible, self._allowed, known, share, text)
+            found[rows] = self._contact.any_clear(tool, tips, axes, possible, self._allowed, known, share, text, self._threads)
             obstacles.put(rows, known)
         return found
 

@@ -75,7 +75,7 @@ def _unreached(samples: Samples, rows: Ints, sides: Sequence[Side], tools: Seque
             face=samples.face, area=samples.area, point=side.frame.to_local(home.to_world(samples.point)),
             normal=side.frame.local_direction(home.world_direction(samples.normal)))
         share = progress.part(k / len(sides), (k + 1) / len(sides))
-        reached = Reach(side.part, tools, settings.tolerance, machine).reached(here, rows, share)
+        reached = Reach(side.part, tools, settings.tolerance, machine, settings.threads).reached(here, rows, share)
         rows = rows[~reached]
     return rows
 

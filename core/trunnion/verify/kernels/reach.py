@@ -12,7 +12,7 @@ import numpy as np
 from numba import njit
 
 from trunnion.geometry.arrays import Bools, Floats, Ints
-from trunnion.verify.kernels.body import CLOSED_FIRST, CLOSED_LAST, R_MAX, Z_HIGH, Z_LOW, depth_in_body
+from trunnion.verify.kernels.body import CLOSED_FIRST, CLOSED_LAST, KIND, R_MAX, Z_HIGH, Z_LOW, depth_in_body
 from trunnion.verify.kernels.facets import TASK_COLUMNS, TASKS, box_depth, enter_triangle
 from trunnion.verify.kernels.way import END_COLUMNS, S_FROM, S_TO, SPAN_COLUMNS, WAY_COLUMNS, fill_span, fill_way
 
@@ -71,18 +71,20 @@ def remember_loop(found: Floats, rows: Ints, places: Floats, count: Ints) -> Non
 
 @njit(cache=True, nogil=True)
 def clear_loop(first: int, last: int, tips: Floats, axes: Floats, wanted: Bools, arcs: Floats, pieces: Floats, boxes: Floats, skip: Ints,
-               leaves: Ints, corners: Floats, normals: Floats, allowed: float, bound: float, places: Floats, count: Ints,
-               found: Bools) -> None:
+               leaves: Ints, corners: Floats, normals: Floats, face: Ints, n_faces: int, allowed: float, bound: float, places: Floats,
+               count: Ints, found: Bools) -> None:
     """Say for places `first` to `last` whether one of their poses is clear: found (k,).
 
     tips, axes (k, a, 3): the poses of one tool, of which those `wanted` (k, a) are tried in turn. The tree is as `kernels/facets.py` has
-    it. A pose is clear when nothing of the tool enters a triangle deeper than allowed, within `bound`. places (k, w, 3), count (k,): what
+    it. A pose is clear when nothing of the tool enters a triangle deeper than allowed, within `bound`: just when `contact_loop` of
+    `kernels/facets.py` says so, which looks at the triangles in the same order. places (k, w, 3), count (k,): what
     is known to stop tools at each place; more is remembered there.
     """
     way, ends, span = np.zeros(WAY_COLUMNS), np.zeros((2, END_COLUMNS)), np.zeros(SPAN_COLUMNS)
     near_ends, near = np.zeros((2, END_COLUMNS)), np.zeros(SPAN_COLUMNS)
     tasks, task, deepest = np.zeros((TASKS, TASK_COLUMNS)), np.zeros(TASK_COLUMNS), np.zeros(4)
     six, cuts, flat, nowhere = np.zeros((6, 3)), np.zeros((3, 6)), np.zeros((3, 3)), np.full(3, np.nan)
+    best, stamp, pose = np.full((n_faces, 2), -np.inf), np.full(n_faces, -1), 0
     for k in range(first, last):
         if count[k] == 0 and k > first:
             # What stops tools at one place often stops them at the next.
@@ -93,8 +95,9 @@ def clear_loop(first: int, last: int, tips: Floats, axes: Floats, wanted: Bools,
             fill_way(tips[k, n], tips[k, n], axes[k, n], axes[k, n], nowhere, 0.0, way)
             fill_span(way, 0.0, 1.0, ends, span)
             near[S_FROM] = near[S_TO] = -1.0
-            clear = True
+            clear, pose = True, pose + 1
             for p in range(len(pieces)):
+                column = 0 if pieces[p, KIND] == 0.0 else 1
                 a, b = int(pieces[p, CLOSED_FIRST]), int(pieces[p, CLOSED_LAST])
                 node = 0
                 while node < len(boxes) and clear:
@@ -102,13 +105,17 @@ def clear_loop(first: int, last: int, tips: Floats, axes: Floats, wanted: Bools,
                         node = skip[node]
                         continue
                     for m in range(leaves[node, 0], leaves[node, 0] + leaves[node, 1]):
-                        deepest[0] = -np.inf
+                        f = face[m]
+                        if stamp[f] != pose:
+                            stamp[f], best[f, 0], best[f, 1] = pose, -np.inf, -np.inf
+                        deepest[0] = best[f, column]
                         enter_triangle(corners[m], normals[m], way, 0.0, 1.0, arcs, a, b, allowed, bound, allowed, deepest, tasks, task,
                                        near_ends, near, six, cuts, flat)
                         if deepest[0] > allowed:
                             clear = False
                             count[k] = remember(places[k], count[k], deepest[1], deepest[2], deepest[3])
                             break
+                        best[f, column] = deepest[0]
                     node += 1
                 if not clear:
                     break
