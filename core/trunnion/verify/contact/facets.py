@@ -87,7 +87,7 @@ class FacetContact:
 
     def any_clear(self, tool: Tool, tips: Floats, axes: Floats, wanted: Bools, allowed: float, obstacles: Obstacles,
                   progress: Progress = QUIET, text: str = "", threads: int = 0) -> Bools:
-        """Say for k places whether one of the poses (k, a, 3) of a tool that are wanted (k, a) enters the faces nowhere deeper than allowed.
+        """Say for k places whether one of the poses (k, a, 3) of a tool that are wanted (k, a) enters no face deeper than allowed.
 
         `obstacles` are the places'; what stops a pose is added to them.
         """
@@ -95,8 +95,8 @@ class FacetContact:
 
         def some(first: int, last: int) -> None:
             reach.clear_loop(first, last, tips, axes, wanted, bodies.arc, bodies.piece, tree.boxes, tree.skip, tree.leaves, tree.corners,
-                             tree.normals, tree.face, len(self.facets.tag), allowed, tolerance.CONTACT_BOUND, obstacles.place, obstacles.count,
-                             found)
+                             tree.normals, tree.face, len(self.facets.tag), allowed, tolerance.CONTACT_BOUND, obstacles.place,
+                             obstacles.count, found)
 
         in_parallel(some, len(tips), PLACES, progress, text, threads)
         return found

@@ -36,7 +36,8 @@ class Reach:
     """Finds collision-free poses of catalogue cutters that touch a point of the part: upright ones from above, and leaning ones where the
     machine has rotary axes (contact then needs facets). Contact must be without fixtures. Works on `threads` threads (0: one a core)."""
 
-    def __init__(self, contact: PartContact, tools: Sequence[Tool], allowed: float, machine: Machine | None = None, threads: int = 0) -> None:
+    def __init__(self, contact: PartContact, tools: Sequence[Tool], allowed: float, machine: Machine | None = None,
+                 threads: int = 0) -> None:
         self._contact, self._allowed, self._machine, self._threads = contact, allowed, machine, threads
         # Upright and from above, no other form goes where none of these fits. Slender cutters reach what any reach: the order is for speed.
         plain = [t for t in tools if t.form in PLAIN_FORMS]
