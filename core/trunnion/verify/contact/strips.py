@@ -13,9 +13,9 @@ import numpy as np
 
 from trunnion import tolerance
 from trunnion.geometry.arrays import Floats, Ints
-from trunnion.part.surfaces import BX0, BY1, DX, DY, GUIDE, L_KIND, OX, OY, PROFILE, PW0, PW1, PZ0, PZ1, R_KIND, U0, U1, Surfaces
+from trunnion.part.surfaces import BX0, BY1, BZ0, BZ1, DX, DY, GUIDE, L_KIND, OX, OY, PROFILE, PW0, PW1, PZ0, PZ1, R_KIND, U0, U1, Surfaces
 from trunnion.progress import QUIET, Progress
-from trunnion.verify.contact.grid import grid_of
+from trunnion.verify.contact.grid import Grid, grid_of
 from trunnion.verify.contact.touch import Touch, deepen
 from trunnion.verify.kernels import strips as kernel
 from trunnion.verify.motion import Moves
@@ -49,6 +49,7 @@ class StripContact:
     def __init__(self, surfaces: Surfaces) -> None:
         self.surfaces = surfaces
         self._grid = grid_of(surfaces.strip[:, BX0:BY1 + 1], GRID_PITCH)
+        self._cell_z = _heights(self._grid, surfaces.strip[:, [BZ0, BZ1]])
 
     def along(self, moves: Moves, rows: Ints, progress: Progress = QUIET, threads: int = 0) -> Touch:
         """Return how deep the moves of some rows (k,) enter the faces; they must stand upright."""
@@ -71,13 +72,22 @@ class StripContact:
         def work(first: int, last: int) -> None:
             face_depth, face_move = np.full_like(found.face_depth, -np.inf), np.full_like(found.face_move, -1)
             kernel.contact_loop(first, last, rows, moves.row, moves.tool, bodies.arc, bodies.piece, bodies.start, s.strip, s.strip_face,
-                                g.start, g.rows, g.frame, g.shape, s.region_z, s.region_face, s.region_box, s.region_start, s.chords,
-                                bound, bound, settle, found.depth, found.which, found.where, face_depth, face_move)
+                                g.start, g.rows, self._cell_z, g.frame, g.shape, s.region_z, s.region_face, s.region_box, s.region_start,
+                                s.chords, bound, bound, settle, found.depth, found.which, found.where, face_depth, face_move)
             with merging:
                 deepen(found.face_depth, found.face_move, face_depth, face_move)
 
         in_parallel(work, len(rows), CHUNK, progress, "Measuring gouges and collisions", threads)
         return found
+
+
+def _heights(grid: Grid, z: Floats) -> Floats:
+    """Return how low and how high (cells, 2) what is listed by each cell reaches, z (n, 2) what each row does; empty cells nowhere."""
+    out = np.tile([np.inf, -np.inf], (len(grid.start) - 1, 1))
+    cell = np.repeat(np.arange(len(out)), np.diff(grid.start))
+    np.minimum.at(out[:, 0], cell, z[grid.rows, 0])
+    np.maximum.at(out[:, 1], cell, z[grid.rows, 1])
+    return out
 
 
 def guide_points(strip: Floats, u: float, shares: Floats) -> Floats:
