@@ -12,10 +12,11 @@ from pytest import approx
 from trunnion import tolerance
 from trunnion.part import surfaces
 from trunnion.part.surfaces import STRIP_COLUMNS, Edge, Face, Guide, Profile, level_face, line_edges, strip_row, surfaces_from
-from trunnion.verify.contact import PartContact
+from trunnion.verify.contact import PartContact, grid_of
+from trunnion.verify.contact.strips import StripContact
 from trunnion.verify.kernels import strips as kernel
 from trunnion.verify.motion import moves_of
-from verify_tools import FORMS, plain_depth, program_section, supports_of
+from verify_tools import FORMS, block_with_pocket, plain_depth, program_section, supports_of
 
 NUMBER = st.integers(-1000, 1000).map(lambda n: n / 50)
 
@@ -183,3 +184,21 @@ def _deepest(strip, move, parts, measured):
     if quick >= measured - tolerance.CONTACT_BOUND:
         return quick
     return max(quick, *(sampled_depth(strip, move, p, rounds=14, grid=201, kept=20) for p in parts))
+
+
+@settings(deadline=None, max_examples=25, phases=[Phase.explicit, Phase.generate])
+@given(form=st.sampled_from(sorted(FORMS)), seed=st.integers(0, 2**32 - 1))
+def test_cells_that_are_passed_over_hide_no_contact(form, seed):
+    random = np.random.default_rng(seed)
+    stops = random.uniform([-40.0, -28.0, -5.0], [40.0, 28.0, 20.0], (12, 3))
+    stops[::3, 2] = stops[1::3, 2]
+    moves = moves_of([program_section(FORMS[form], [tuple(s) for s in stops])])
+    engine, rows = StripContact(block_with_pocket()), np.arange(len(moves))
+    found = engine.along(moves, rows, threads=1)
+    # Cells that reach from the deepest to the highest are passed over for their place in plan alone; of one cell nothing is.
+    engine._cell_z = np.tile([-np.inf, np.inf], (len(engine._cell_z), 1))
+    higher = engine.along(moves, rows, threads=1)
+    engine._grid = grid_of(engine.surfaces.strip[:, surfaces.BX0:surfaces.BY1 + 1], 1000.0)
+    every = engine.along(moves, rows, threads=1)
+    for other in (higher, every):
+        assert np.array_equal(found.depth, other.depth) and np.array_equal(found.face_depth, other.face_depth)

@@ -13,6 +13,7 @@ from __future__ import annotations
 import math
 from collections.abc import Sequence
 from dataclasses import dataclass
+from functools import lru_cache
 from itertools import pairwise
 
 import numpy as np
@@ -69,6 +70,12 @@ def bodies_of(tools: Sequence[Tool]) -> Bodies:
         start.append(len(pieces))
     return Bodies(arc=np.vstack([np.zeros((0, kernel.ARC_COLUMNS)), *arcs]), piece=np.array(pieces, dtype=np.float64).reshape(-1, 8),
                   start=np.array(start, dtype=np.int64))
+
+
+@lru_cache(maxsize=256)
+def bodies_of_one(tool: Tool) -> Bodies:
+    """Return the bodies of one tool, kept for those who ask about it again and again: not to be changed."""
+    return bodies_of((tool,))
 
 
 def outline_of(tool: Tool) -> list[Span]:

@@ -12,7 +12,7 @@ from trunnion.geometry.frame import Frame
 from trunnion.model.program import ProgramSection
 from trunnion.model.tool import Tool
 from trunnion.model.toolpath import Motion
-from trunnion.verify.cutter import Bodies, bodies_of
+from trunnion.verify.cutter import Bodies, bodies_of, bodies_of_one
 from trunnion.verify.kernels.strips import (
     COS_HALF,
     CX,
@@ -140,8 +140,12 @@ def seen_from(moves: Moves, frame: Frame, other: Frame) -> Moves:
 
 
 def _upright(first: Floats, last: Floats) -> Bools:
-    still = np.abs(np.hstack([first[:, :2], last[:, :2]])) <= AXIS_LEAN
-    return np.asarray(still.all(axis=1) & (first[:, 2] > 0.0) & (last[:, 2] > 0.0))
+    return upright_axes(first) & upright_axes(last)
+
+
+def upright_axes(axes: Floats) -> Bools:
+    """Say which tool axes (..., 3) stand on +z."""
+    return np.asarray((np.abs(axes[..., :2]) <= AXIS_LEAN).all(axis=-1) & (axes[..., 2] > 0.0))
 
 
 def _points(parts: list[Floats]) -> Floats:
@@ -156,7 +160,7 @@ def poses_of(tool: Tool, tips: Floats, axes: Floats | None = None) -> Moves:
     return Moves(start=tips, end=tips, start_axis=axes, end_axis=axes, centre=nowhere, sweep=np.zeros(n), upright=_upright(axes, axes),
                  row=_rows(tips, tips, nowhere, np.zeros(n), np.zeros(n, int)), section=np.zeros(n, np.int64), block=np.arange(n),
                  rapid=np.zeros(n, bool), feed=np.zeros(n), length=np.zeros(n), tools=(tool,), tool=np.zeros(n, np.int64),
-                 bodies=bodies_of((tool,)))
+                 bodies=bodies_of_one(tool))
 
 
 def _ints(parts: list[Ints]) -> Ints:

@@ -11,21 +11,26 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from trunnion.findings import BadInput
+from trunnion.findings import BadCall, BadInput
 from trunnion.geometry.arrays import Bools, Floats, Ints
+from trunnion.model.tool import Tool
 from trunnion.part.facets import Facets
 from trunnion.part.surfaces import Surfaces
 from trunnion.progress import QUIET, Progress
 from trunnion.verify.contact.facets import FacetContact
 from trunnion.verify.contact.grid import Grid as Grid
 from trunnion.verify.contact.grid import grid_of as grid_of
+from trunnion.verify.contact.obstacles import Obstacles as Obstacles
 from trunnion.verify.contact.strips import StripContact
 from trunnion.verify.contact.strips import guide_points as guide_points
 from trunnion.verify.contact.touch import Touch
-from trunnion.verify.motion import Moves
+from trunnion.verify.motion import Moves, poses_of, upright_axes
 
 LEANING_COST = 50.0
 """What a leaning move costs against an upright one, about: only for the share of progress."""
+
+POSES = 1024
+"""Upright poses tried between two looks at cancel."""
 
 
 @dataclass(frozen=True, slots=True, eq=False, kw_only=True)
@@ -84,12 +89,44 @@ class PartContact:
 
     def clear(self, moves: Moves, allowed: float) -> Bools:
         """Say for each move or pose (n,) whether nothing of its tool enters part or fixtures deeper than allowed."""
-        clear = np.ones(len(moves), bool)
+        return np.isnan(self.stopped(moves, allowed)[:, 0])
+
+    def stopped(self, moves: Moves, allowed: float) -> Floats:
+        """Return a place (n, 3) of part or fixtures, on it, where something of the tool of each move or pose is deeper than allowed, or
+        beside the deepest such place; NaN where there is none."""
+        place = np.full((len(moves), 3), np.nan)
         engines = self._engines(moves) + ([(self._fixtures, np.arange(len(moves)))] if self._fixtures else [])
         for engine, rows in engines:
-            still = rows[clear[rows]]
-            clear[still] = engine.clear(moves, still, allowed)
-        return clear
+            still = rows[np.isnan(place[rows, 0])]
+            place[still] = engine.stopped(moves, still, allowed)
+        return place
+
+    def any_clear(self, tool: Tool, tips: Floats, axes: Floats, wanted: Bools, allowed: float, obstacles: Obstacles,
+                  progress: Progress = QUIET, text: str = "", threads: int = 0) -> Bools:
+        """Say for k places whether one of the poses (k, a, 3) of a tool that are wanted (k, a) is clear as `clear` has it.
+
+        Much quicker where most poses are stopped: `obstacles`, those of the k places, remembers by what, for the next tool too. The part
+        must have no fixtures, and poses that lean need its facets.
+        """
+        if self._fixtures is not None:
+            raise BadCall("poses are looked for without fixtures")
+        upright = upright_axes(axes)
+        leaning, found = wanted & ~upright, np.zeros(len(tips), bool)
+        if leaning.any():
+            if self._every is None:
+                raise BadInput("contact of a leaning tool needs the part's facets")
+            found |= self._every.any_clear(tool, tips, axes, leaning, allowed, obstacles, progress, text, threads)
+        row, pose = np.nonzero(wanted & upright & ~found[:, None])
+        for first in range(0, len(row), POSES):
+            progress.check()
+            some = np.arange(first, min(first + POSES, len(row)))
+            some = some[~found[row[some]]]
+            some = some[~obstacles.stop(tool, tips[row[some], pose[some]], axes[row[some], pose[some]], row[some], allowed)]
+            if len(some):
+                place = self.stopped(poses_of(tool, tips[row[some], pose[some]], axes[row[some], pose[some]]), allowed)
+                obstacles.add(place, row[some])
+                found[row[some[np.isnan(place[:, 0])]]] = True
+        return found
 
     def _engines(self, moves: Moves) -> list[tuple[StripContact | FacetContact, Ints]]:
         """Return what measures which rows of the moves against the part."""

@@ -15,10 +15,14 @@ import numpy as np
 
 from trunnion import tolerance
 from trunnion.geometry.arrays import Bools, Floats, Ints
+from trunnion.model.tool import Tool
 from trunnion.part.facets import Facets
 from trunnion.progress import QUIET, Progress
+from trunnion.verify.contact.obstacles import Obstacles
 from trunnion.verify.contact.touch import Touch, deepen
+from trunnion.verify.cutter import bodies_of_one
 from trunnion.verify.kernels import facets as kernel
+from trunnion.verify.kernels import reach
 from trunnion.verify.kernels.tree import build_tree
 from trunnion.verify.motion import Moves
 from trunnion.verify.threads import in_parallel
@@ -27,6 +31,8 @@ CHUNK = 100
 """Moves between two looks at cancel, fewer when they are long."""
 SHORT = 10.0
 """mm: a move so much longer than this counts as several."""
+PLACES = 16
+"""Places whose poses are tried between two looks at cancel: some tens of milliseconds when nothing is known of what is in the way."""
 LEAF = 4
 """Most triangles of a leaf."""
 
@@ -75,9 +81,25 @@ class FacetContact:
         """Return how deep the moves of some rows (k,) enter the faces, whichever way the tool stands."""
         return self._measure(moves, rows, progress, threads)
 
-    def clear(self, moves: Moves, rows: Ints, allowed: float) -> Bools:
-        """Say for the moves of some rows (k,) whether nothing of the tool enters the faces deeper than allowed."""
-        return np.asarray((self._measure(moves, rows, QUIET, 1, allowed).depth <= allowed).all(axis=1))
+    def stopped(self, moves: Moves, rows: Ints, allowed: float) -> Floats:
+        """Return a place (k, 3) of the faces that the tool enters deeper than allowed, for the moves of some rows (k,); NaN where none."""
+        return self._measure(moves, rows, QUIET, 1, allowed).deeper_than(allowed)
+
+    def any_clear(self, tool: Tool, tips: Floats, axes: Floats, wanted: Bools, allowed: float, obstacles: Obstacles,
+                  progress: Progress = QUIET, text: str = "", threads: int = 0) -> Bools:
+        """Say for k places whether one of the poses (k, a, 3) of a tool that are wanted (k, a) enters no face deeper than allowed.
+
+        `obstacles` are the places'; what stops a pose is added to them.
+        """
+        tree, bodies, found = self.tree, bodies_of_one(tool), np.zeros(len(tips), bool)
+
+        def some(first: int, last: int) -> None:
+            reach.clear_loop(first, last, tips, axes, wanted, bodies.arc, bodies.piece, tree.boxes, tree.skip, tree.leaves, tree.corners,
+                             tree.normals, tree.face, len(self.facets.tag), allowed, tolerance.CONTACT_BOUND, obstacles.place,
+                             obstacles.count, found)
+
+        in_parallel(some, len(tips), PLACES, progress, text, threads)
+        return found
 
     def _measure(self, moves: Moves, rows: Ints, progress: Progress, threads: int, settle: float = np.inf) -> Touch:
         tree, bodies, k, f = self.tree, moves.bodies, len(rows), len(self.facets.tag)

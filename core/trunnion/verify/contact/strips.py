@@ -12,10 +12,10 @@ from threading import Lock
 import numpy as np
 
 from trunnion import tolerance
-from trunnion.geometry.arrays import Bools, Floats, Ints
-from trunnion.part.surfaces import BX0, BY1, DX, DY, GUIDE, L_KIND, OX, OY, PROFILE, PW0, PW1, PZ0, PZ1, R_KIND, U0, U1, Surfaces
+from trunnion.geometry.arrays import Floats, Ints
+from trunnion.part.surfaces import BX0, BY1, BZ0, BZ1, DX, DY, GUIDE, L_KIND, OX, OY, PROFILE, PW0, PW1, PZ0, PZ1, R_KIND, U0, U1, Surfaces
 from trunnion.progress import QUIET, Progress
-from trunnion.verify.contact.grid import grid_of
+from trunnion.verify.contact.grid import Grid, grid_of
 from trunnion.verify.contact.touch import Touch, deepen
 from trunnion.verify.kernels import strips as kernel
 from trunnion.verify.motion import Moves
@@ -49,17 +49,21 @@ class StripContact:
     def __init__(self, surfaces: Surfaces) -> None:
         self.surfaces = surfaces
         self._grid = grid_of(surfaces.strip[:, BX0:BY1 + 1], GRID_PITCH)
+        self._cell_z = _heights(self._grid, surfaces.strip[:, [BZ0, BZ1]])
 
     def along(self, moves: Moves, rows: Ints, progress: Progress = QUIET, threads: int = 0) -> Touch:
         """Return how deep the moves of some rows (k,) enter the faces; they must stand upright."""
-        found = self._measure(moves, rows, progress, threads)
+        return self._touch(moves, rows, self._measure(moves, rows, progress, threads))
+
+    def stopped(self, moves: Moves, rows: Ints, allowed: float) -> Floats:
+        """Return a place (k, 3) of the faces about where the tool enters them deeper than allowed, for the moves of some rows (k,), which
+        must stand upright; NaN where it doesn't."""
+        return self._touch(moves, rows, self._measure(moves, rows, QUIET, 1, allowed)).deeper_than(allowed)
+
+    def _touch(self, moves: Moves, rows: Ints, found: _Measured) -> Touch:
         s, face, place = self.surfaces, np.full((len(rows), 2), -1), np.full((len(rows), 2, 3), np.nan)
         kernel.places(rows, moves.row, found.which, found.where, s.strip, s.strip_face, s.region_z, s.region_face, face, place)
         return Touch(depth=found.depth, face=face, place=place, face_depth=found.face_depth, face_move=found.face_move)
-
-    def clear(self, moves: Moves, rows: Ints, allowed: float) -> Bools:
-        """Say for the moves of some rows (k,) whether nothing of the tool enters the faces deeper than allowed; they must stand upright."""
-        return np.asarray((self._measure(moves, rows, QUIET, 1, allowed).depth <= allowed).all(axis=1))
 
     def _measure(self, moves: Moves, rows: Ints, progress: Progress, threads: int, settle: float = np.inf) -> _Measured:
         s, g, bodies, bound = self.surfaces, self._grid, moves.bodies, tolerance.CONTACT_BOUND / 2
@@ -68,13 +72,22 @@ class StripContact:
         def work(first: int, last: int) -> None:
             face_depth, face_move = np.full_like(found.face_depth, -np.inf), np.full_like(found.face_move, -1)
             kernel.contact_loop(first, last, rows, moves.row, moves.tool, bodies.arc, bodies.piece, bodies.start, s.strip, s.strip_face,
-                                g.start, g.rows, g.frame, g.shape, s.region_z, s.region_face, s.region_box, s.region_start, s.chords,
-                                bound, bound, settle, found.depth, found.which, found.where, face_depth, face_move)
+                                g.start, g.rows, self._cell_z, g.frame, g.shape, s.region_z, s.region_face, s.region_box, s.region_start,
+                                s.chords, bound, bound, settle, found.depth, found.which, found.where, face_depth, face_move)
             with merging:
                 deepen(found.face_depth, found.face_move, face_depth, face_move)
 
         in_parallel(work, len(rows), CHUNK, progress, "Measuring gouges and collisions", threads)
         return found
+
+
+def _heights(grid: Grid, z: Floats) -> Floats:
+    """Return how low and how high (cells, 2) what is listed by each cell reaches, z (n, 2) what each row does; empty cells nowhere."""
+    out = np.tile([np.inf, -np.inf], (len(grid.start) - 1, 1))
+    cell = np.repeat(np.arange(len(out)), np.diff(grid.start))
+    np.minimum.at(out[:, 0], cell, z[grid.rows, 0])
+    np.maximum.at(out[:, 1], cell, z[grid.rows, 1])
+    return out
 
 
 def guide_points(strip: Floats, u: float, shares: Floats) -> Floats:

@@ -36,6 +36,12 @@ class Touch:
         self.depth[at, kind], self.face[at, kind], self.place[at, kind] = other.depth[deeper], other.face[deeper], other.place[deeper]
         deepen(self.face_depth, self.face_move, other.face_depth, other.face_move)
 
+    def deeper_than(self, allowed: float) -> Floats:
+        """Return where each move is deepest (k, 3), NaN where that is not deeper than allowed."""
+        kind = np.argmax(self.depth, axis=1)
+        rows = np.arange(len(kind))
+        return np.where((self.depth[rows, kind] > allowed)[:, None], self.place[rows, kind], np.nan)
+
 
 def deepen(face_depth: Floats, face_move: Ints, depth: Floats, move: Ints) -> None:
     """Raise the depths of faces (f, 2), and their moves, to those of another share of the work.

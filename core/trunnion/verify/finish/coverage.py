@@ -6,34 +6,20 @@ sample is finished when that is within tolerance and allowance. A face that lies
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
 from dataclasses import dataclass
-from functools import partial
 
 import numpy as np
-from scipy.spatial import cKDTree
 
 from trunnion import tolerance
 from trunnion.findings import OutOfMemory
 from trunnion.geometry.arrays import Bools, Floats, Ints
-from trunnion.model.material import Machine
-from trunnion.model.tool import PLAIN_FORMS, Tool
 from trunnion.part.facets import Facets, facet_samples
 from trunnion.part.surfaces import DX, DY, GUIDE, L_KIND, PROFILE, PW0, PW1, PZ0, PZ1, R_KIND, SIDE, U0, U1, Surfaces
 from trunnion.progress import QUIET, Progress
-from trunnion.verify.contact import PartContact, guide_points
-from trunnion.verify.finish.leaning import leaning_axes, touching_tips
-from trunnion.verify.machine.kinematics import can_hold
-from trunnion.verify.motion import poses_of
+from trunnion.verify.contact import guide_points
 
-POSES = 2048
-"""Poses tried between two looks at cancel."""
 MOST_SAMPLES = 4_000_000
 """About a quarter of a GB, and some times as much while they are measured: a part of 4 x 4 m at the usual spacing."""
-MOST_TRIED = 3000
-"""Samples that every cutter is tried on, about half a minute where none reaches."""
-MOST_LEANING = 200
-"""The same for leaning cutters, which are tried in many more poses."""
 
 
 @dataclass(frozen=True, slots=True, eq=False, kw_only=True)
@@ -139,123 +125,3 @@ def on_blank(samples: Samples, low: Floats, high: Floats, n_faces: int) -> Bools
 def depth_in_blank(points: Floats, low: Floats, high: Floats) -> Floats:
     """Return how far points (s, 3) are below the blank's surface (s,), 0 outside: the most material that can be left on them."""
     return np.clip(np.minimum(points - low, high - points).min(axis=1), 0.0, None)
-
-
-class Reach:
-    """Finds collision-free poses of catalogue cutters that touch a point of the part: upright ones from above, and leaning ones where the
-    machine has rotary axes (contact then needs facets)."""
-
-    def __init__(self, contact: PartContact, tools: Sequence[Tool], allowed: float, machine: Machine | None = None) -> None:
-        self._contact, self._allowed, self._machine = contact, allowed, machine
-        # Upright and from above, no other form goes where none of these fits. Slender cutters reach what any reach: the order is for speed.
-        plain = [t for t in tools if t.form in PLAIN_FORMS]
-        self._tools = sorted(reaching_furthest(plain), key=lambda t: (t.radius, -t.reach, t.number))
-
-    def reached(self, samples: Samples, rows: Ints, progress: Progress = QUIET) -> Bools:
-        """Say for each of the samples' rows whether some cutter reaches it.
-
-        Of very many rows, evenly chosen ones of every face are tried, and the others share the answer of the nearest on their face.
-        """
-        machine = self._machine
-        if machine is None or not machine.rotary:
-            return _shared(self._try, samples, rows, MOST_TRIED, progress)
-        found = _shared(self._try, samples, rows, MOST_TRIED, progress.part(0.0, 0.3))
-        found[~found] = _shared(partial(self._try_leaning, machine), samples, rows[~found], MOST_LEANING, progress.part(0.3, 1.0))
-        return found
-
-    def _try(self, samples: Samples, rows: Ints, progress: Progress) -> Bools:
-        found = np.zeros(len(rows), bool)
-        for k, tool in enumerate(self._tools):
-            for shape in range(_n_poses(tool)):
-                open_rows = np.flatnonzero(~found)
-                for first in range(0, len(open_rows), POSES):
-                    progress.at(k / len(self._tools), "Looking for cutters that reach what is left")
-                    some = open_rows[first:first + POSES]
-                    tips, possible = _pose(tool, samples.point[rows[some]], samples.normal[rows[some]], shape)
-                    if possible.any():
-                        clear = self._contact.clear(poses_of(tool, tips[possible]), self._allowed)
-                        found[some[possible]] |= clear
-            if found.all():
-                break
-        return found
-
-    def _try_leaning(self, machine: Machine, samples: Samples, rows: Ints, progress: Progress) -> Bools:
-        found = np.zeros(len(rows), bool)
-        axes = [(axis, can_hold(axis, machine)) for axis in leaning_axes(samples.normal[rows])]
-        for k, tool in enumerate(self._tools):
-            for axis, holds in axes:
-                progress.at(k / len(self._tools), "Looking for leaning cutters that reach what is left")
-                some = np.flatnonzero(~found & holds)
-                tips, possible = touching_tips(tool, samples.point[rows[some]], samples.normal[rows[some]], axis[some])
-                if possible.any():
-                    found[some[possible]] = self._contact.clear(poses_of(tool, tips[possible], axis[some[possible]]), self._allowed)
-            if found.all():
-                break
-        return found
-
-
-def _shared(ask: Callable[[Samples, Ints, Progress], Bools], samples: Samples, rows: Ints, most: int, progress: Progress) -> Bools:
-    """Return what is answered for rows, of very many only for evenly chosen ones: the others share the nearest answer on their face."""
-    tried = _tried(samples.face[rows], most)
-    answer = ask(samples, rows[tried], progress)
-    if len(tried) == len(rows):
-        return answer
-    # Faces are told apart by a fourth coordinate longer than any part.
-    place = np.column_stack([samples.point[rows], samples.face[rows] * 4.0 * np.ptp(samples.point)])
-    return np.asarray(answer[cKDTree(place[tried]).query(place)[1]])
-
-
-def reaching_furthest(tools: Sequence[Tool]) -> list[Tool]:
-    """Return the tools without those that another one of the same form outreaches: as long flutes, as far to anything thicker, as far to
-    the holder."""
-    best: dict[tuple[float, float], list[Tool]] = {}
-    for tool in tools:
-        alike = best.setdefault((tool.radius, tool.corner_radius), [])
-        if not any(_outreaches(other, tool) for other in alike):
-            alike[:] = [other for other in alike if not _outreaches(tool, other)] + [tool]
-    return [tool for alike in best.values() for tool in alike]
-
-
-def _outreaches(one: Tool, other: Tool) -> bool:
-    return one.flute_length >= other.flute_length and one.reach >= other.reach and one.stickout >= other.stickout
-
-
-def _tried(face: Ints, most: int) -> Ints:
-    """Return which rows are tried: all, or evenly chosen ones of every face when there are more than `most`."""
-    step = -(-len(face) // most)
-    order = np.argsort(face, kind="stable")
-    first = np.flatnonzero(np.diff(face[order], prepend=-1))
-    within = np.arange(len(face)) - np.repeat(first, np.diff(first, append=len(face)))
-    return np.sort(order[within % step == 0]) if step > 1 else np.arange(len(face))
-
-
-_AROUND = 8
-
-
-def _n_poses(tool: Tool) -> int:
-    return 3 + 2 * _AROUND
-
-
-def _pose(tool: Tool, point: Floats, normal: Floats, shape: int) -> tuple[Floats, Bools]:
-    """Return tips (k, 3) at which a cutter touches points from above, and which make sense.
-
-    Shape 0 touches along the normal with the corner (or the flank, where the face is upright), 1 and 2 with the flank higher up, the others
-    stand on a level face with the point anywhere under the cutter's flat end.
-    """
-    level = normal[:, 2] > np.cos(tolerance.ANGLE)
-    plan = np.hypot(normal[:, 0], normal[:, 1])
-    out = np.divide(normal[:, :2], plan[:, None], out=np.zeros_like(normal[:, :2]), where=plan[:, None] > 0.0)
-    inner, corner = tool.radius - tool.corner_radius, tool.corner_radius
-    if shape < 3:
-        tips = point + corner * normal
-        tips[:, :2] += np.where(level[:, None], 0.0, inner * out)
-        tips[:, 2] -= corner
-        upright = np.abs(normal[:, 2]) < np.sin(tolerance.ANGLE)
-        tips[:, 2] -= shape * 0.5 * (tool.flute_length - corner) * upright
-        usable = (normal[:, 2] > -np.sin(tolerance.ANGLE)) & (upright if shape else True)
-        return tips, usable & np.ones(len(point), bool)
-    ring, k = divmod(shape - 3, _AROUND)
-    angle, share = 2 * np.pi * k / _AROUND, (1.0, 0.5)[ring]
-    tips = point.copy()
-    tips[:, :2] += share * inner * np.array([np.cos(angle), np.sin(angle)])
-    return tips, level if inner > 0.0 else np.zeros(len(point), bool)

@@ -15,7 +15,8 @@ from trunnion.model.material import Machine
 from trunnion.model.tool import Tool
 from trunnion.model.verdict import Deviation, FaceProof
 from trunnion.progress import QUIET, Progress
-from trunnion.verify.finish.coverage import Reach, Samples, depth_in_blank, on_blank
+from trunnion.verify.finish.coverage import Samples, depth_in_blank, on_blank
+from trunnion.verify.finish.reach import Reach
 from trunnion.verify.judge.setups import SetupProof
 from trunnion.verify.judge.sides import Side
 from trunnion.verify.settings import ProofSettings
@@ -74,7 +75,7 @@ def _unreached(samples: Samples, rows: Ints, sides: Sequence[Side], tools: Seque
             face=samples.face, area=samples.area, point=side.frame.to_local(home.to_world(samples.point)),
             normal=side.frame.local_direction(home.world_direction(samples.normal)))
         share = progress.part(k / len(sides), (k + 1) / len(sides))
-        reached = Reach(side.part, tools, settings.tolerance, machine).reached(here, rows, share)
+        reached = Reach(side.part, tools, settings.tolerance, machine, settings.threads).reached(here, rows, share)
         rows = rows[~reached]
     return rows
 

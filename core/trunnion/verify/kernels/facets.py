@@ -333,7 +333,7 @@ def enter_triangle(corners: Floats, normal: Floats, way: Floats, t0: float, t1: 
 
 
 @njit(cache=True, nogil=True)
-def _box_depth(box: Floats, ends: Floats, span: Floats, arcs: Floats, first: int, last: int) -> float:
+def box_depth(box: Floats, ends: Floats, span: Floats, arcs: Floats, first: int, last: int) -> float:
     """Return a bound on how deep any point of a box (centre (3,), half sides (3,)) gets into a body during a span."""
     ax, ay, az = span[S_AXIS], span[S_AXIS + 1], span[S_AXIS + 2]
     x0, y0, z0 = seen(ends, 0, box[0], box[1], box[2])
@@ -385,7 +385,7 @@ def contact_loop(first: int, last: int, rows: Ints, start: Floats, end: Floats, 
                 while node < len(boxes) and not done:
                     f = node_face[node]
                     known = f >= 0 and stamp[f] == k and best[f, column] >= DEEP
-                    if known or _box_depth(boxes[node], ends, span, arcs, a, b) <= enough[k]:
+                    if known or box_depth(boxes[node], ends, span, arcs, a, b) <= enough[k]:
                         node = skip[node]
                         continue
                     for m in range(leaves[node, 0], leaves[node, 0] + leaves[node, 1]):

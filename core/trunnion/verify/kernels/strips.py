@@ -474,14 +474,28 @@ def _over(x: float, y: float, box: Floats, chords: Floats) -> bool:
 
 
 @njit(cache=True, nogil=True)
+def _near_cell(i: int, j: int, z: Floats, grid: Floats, x0: float, y0: float, x1: float, y1: float, z_low: float, rise: float,
+               pieces: Floats) -> bool:
+    """Say whether some piece comes near a cell of a grid whose strips are between two heights z (2,), from a move's plan box."""
+    low_x, low_y = grid[0] + i * grid[2], grid[1] + j * grid[2]
+    gx, gy = max(max(low_x - x1, x0 - low_x - grid[2]), 0.0), max(max(low_y - y1, y0 - low_y - grid[2]), 0.0)
+    gap = math.sqrt(gx * gx + gy * gy)
+    for p in range(len(pieces)):
+        if z[1] >= z_low + pieces[p, Z_LOW] and z[0] <= z_low + rise + pieces[p, Z_HIGH] and gap < pieces[p, R_MAX]:
+            return True
+    return False
+
+
+@njit(cache=True, nogil=True)
 def contact_loop(first: int, last: int, rows: Ints, moves: Floats, tool: Ints, arcs: Floats, pieces: Floats, piece_start: Ints,
-                 strips: Floats, strip_face: Ints, cell_start: Ints, cell_strip: Ints, grid: Floats, shape: Ints, region_z: Floats,
-                 region_face: Ints, region_box: Floats, region_start: Ints, chords: Floats, enough: float, bound: float, settle: float,
-                 depth: Floats, which: Ints, where: Floats, face_depth: Floats, face_move: Ints) -> None:
+                 strips: Floats, strip_face: Ints, cell_start: Ints, cell_strip: Ints, cell_z: Floats, grid: Floats, shape: Ints,
+                 region_z: Floats, region_face: Ints, region_box: Floats, region_start: Ints, chords: Floats, enough: float,
+                 bound: float, settle: float, depth: Floats, which: Ints, where: Floats, face_depth: Floats, face_move: Ints) -> None:
     """Measure the moves of rows `first` to `last` against every strip and every level region near them.
 
     rows (k,) into moves (n, 15) and tool (n,), which is into piece_start; arcs and pieces as in `kernels/body.py`. grid (3,) is x, y of
-    the strips' grid and its pitch, shape (2,) its cells, cell_start and cell_strip its lists. region_* and chords (c, 4) are level faces.
+    the strips' grid and its pitch, shape (2,) its cells, cell_start and cell_strip its lists, cell_z (cells, 2) how low and how high the
+    strips of each cell are: no piece but those that come as near and are as high looks into it. region_* and chords (c, 4) are level faces.
     Fills depth (k, 2) for what cuts and for what does not; which (k, 2) strip rows or -2 - region; where (k, 2) profile parameters, of a
     region the share of the move; face_depth (f, 2) and face_move (f, 2), rows of moves. A move found deeper than `settle` is not looked
     at further: its depth is then only known to be above it.
@@ -503,6 +517,10 @@ def contact_loop(first: int, last: int, rows: Ints, moves: Floats, tool: Ints, a
         for j in range(max(j0, 0), min(j1, shape[1] - 1) + 1):
             for i in range(max(i0, 0), min(i1, shape[0] - 1) + 1):
                 cell = j * shape[0] + i
+                if cell_z[cell, 1] - z_low <= enough:
+                    continue
+                if not _near_cell(i, j, cell_z[cell], grid, x0, y0, x1, y1, z_low, rise, pieces[p0:p1]):
+                    continue
                 for c in range(cell_start[cell], cell_start[cell + 1]):
                     m = cell_strip[c]
                     if seen[m] == n:

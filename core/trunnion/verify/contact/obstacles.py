@@ -1,0 +1,51 @@
+"""What is known to be in a tool's way at some places: asked before any search, it answers for most poses of a place that is hard to reach.
+
+An obstacle is a point of the part. Where it is deeper in a tool than is allowed, and by more than the bound of the engines of contact, each
+of them would say so too; where none is, nothing is known.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from trunnion import tolerance
+from trunnion.geometry.arrays import Bools, Floats, Ints
+from trunnion.model.tool import Tool
+from trunnion.verify.cutter import bodies_of_one
+from trunnion.verify.kernels import reach as kernel
+
+KEPT = 24
+"""Obstacles that are remembered at a place, those that stopped a tool last: a pit is closed by about so many from all sides."""
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Obstacles:
+    """Points place (k, w, 3) of the part that were in a tool's way at each of k places, the first count (k,) of them known."""
+
+    place: Floats
+    count: Ints
+
+    @staticmethod
+    def none(k: int) -> Obstacles:
+        """Return that nothing is known at k places."""
+        return Obstacles(np.zeros((k, KEPT, 3)), np.zeros(k, np.int64))
+
+    def of(self, rows: Ints) -> Obstacles:
+        """Return a copy for some of the places; `put` takes what it learns back."""
+        return Obstacles(self.place[rows], self.count[rows])
+
+    def put(self, rows: Ints, known: Obstacles) -> None:
+        """Take what is known of some of the places."""
+        self.place[rows], self.count[rows] = known.place, known.count
+
+    def stop(self, tool: Tool, tips: Floats, axes: Floats, rows: Ints, allowed: float) -> Bools:
+        """Say for poses (n, 3) of a tool, each of one of the places, whether what is known there is deeper in the tool than allowed."""
+        bodies, stopped = bodies_of_one(tool), np.zeros(len(tips), bool)
+        kernel.known_loop(tips, axes, rows, bodies.arc, bodies.piece, self.place, self.count, allowed + tolerance.CONTACT_BOUND, stopped)
+        return stopped
+
+    def add(self, found: Floats, rows: Ints) -> None:
+        """Remember what stopped poses, each of one of the places: points (n, 3), NaN where nothing did."""
+        kernel.remember_loop(found, rows, self.place, self.count)
