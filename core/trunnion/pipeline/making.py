@@ -164,7 +164,7 @@ def _driven(session: Session, room: Room, operation: Operation, progress: Progre
     space = room.curved(operation.direction, tolerance.CHORD if plane else tolerance.SKIN_CHORD, progress)
     stock = room.sides.seen(space.setup)
     if plane:
-        layers = plane_drive_of(operation, space, stock, progress)
+        layers = plane_drive_of(operation, space, stock, progress, session.process)
         return space.setup, stock, layers, layers
     fixtures = session.fixtures_of(room.setup.name)
     name = operation.choices.get(EARLIER, "")

@@ -13,7 +13,7 @@ from dataclasses import replace
 import numpy as np
 
 from trunnion import registry
-from trunnion.findings import error, face_tags, warning
+from trunnion.findings import error, face_tags, info, warning
 from trunnion.model.blank import Blank
 from trunnion.model.feature import Recognition
 from trunnion.model.operation import Operation
@@ -27,6 +27,9 @@ from trunnion.plan.order import Job, ordered
 from trunnion.plan.surface.areas import Area, areas_of, blank_faces, connected, hidden_areas, on_outline, walls_of
 from trunnion.plan.surface.cutters import Chosen, cutter_for, named
 from trunnion.plan.surface.draft import Draft, face_name
+from trunnion.plan.surface.end_mills import Chosen as OnLand
+from trunnion.plan.surface.land_route import Levels, plan_lands
+from trunnion.plan.surface.lands import LAND, REST_LAND
 from trunnion.plan.surface.leaning import SAMPLES as LEANING_SAMPLES
 from trunnion.plan.surface.leaning import leaning_cutter
 from trunnion.plan.surface.reach import Places, clear_beside, leans, places_on, reached
@@ -35,7 +38,7 @@ from trunnion.plan.surface.settings import ALLOWANCE, BOTTOM, CELL, EARLIER, SCA
 from trunnion.plan.surface.sides import Around, sides_for
 from trunnion.plan.surface.space import SurfaceSpace
 from trunnion.plan.wishes import RouteSettings
-from trunnion.progress import Progress
+from trunnion.progress import QUIET, Progress
 from trunnion.settings import Value, choose
 from trunnion.shop import Shop, Stage
 from trunnion.units import trimmed
@@ -93,10 +96,13 @@ def _plan(draft: Draft, progress: Progress) -> None:
     places = places_on(space.skin, tuple(mine))
     upright = walls_of(places, mine)
     walls = on_outline(space, places, upright)
-    hidden = _hidden(draft, places, set(mine) - set(walls), progress.part(0.0, 0.1)) if draft.machine.rotary else ()
     for tags in connected(walls, part.graph()):
         _outline(draft, tags)
-    areas = [*areas_of(draft.recognition, part.graph(), {*outside, *walls, *hidden}),
+    level = plan_lands(draft, set(mine) - set(walls), min((t.radius for t in _finishers(draft)), default=0.0), progress.part(0.0, 0.05))
+    for each in level.lands:
+        _corners_of_land(draft, each)
+    hidden = _hidden(draft, places, set(mine) - set(walls) - level.tags, progress.part(0.05, 0.1)) if draft.machine.rotary else ()
+    areas = [*areas_of(draft.recognition, part.graph(), {*outside, *walls, *level.tags, *hidden}),
              *hidden_areas(draft.recognition, part.graph(), hidden)]
     for n, area in enumerate(areas):
         share = progress.part(0.1 + 0.7 * n / len(areas), 0.1 + 0.7 * (n + 1) / len(areas))
@@ -104,7 +110,7 @@ def _plan(draft: Draft, progress: Progress) -> None:
         if area.hidden:
             _hidden_area(draft, area, share)
         else:
-            _area(draft, area, share)
+            _area(draft, area, level, share)
     _rough(draft, space, float(space.skin.points[:, 2].min()))
     if hidden:
         seen = places.of(np.isin(places.face, hidden))
@@ -139,7 +145,7 @@ def _rough(draft: Draft, space: SurfaceSpace, bottom: float, name: str = "part")
                                     draft.recognition.features[0].id, remedy="add a longer cutter to the tools folder"))
         return
     _add_rough(draft, "rough", name, tool, space, bottom)
-    smallest = min((o.tool.diameter for o in draft.operations if o.kind == "finish"), default=tool.diameter)
+    smallest = min((o.tool.diameter for o in draft.operations if o.kind in ("finish", LAND, REST_LAND)), default=tool.diameter)
     n = 1
     while tool.diameter > NEAR_FINISH * smallest:
         rest = _rougher(draft, REST_SHARE * tool.diameter, deep, "")
@@ -190,10 +196,14 @@ def _outline(draft: Draft, tags: tuple[int, ...]) -> None:
               max(draft.chosen.rough_allowance, 0.1), {}, rules)
 
 
-def _area(draft: Draft, area: Area, progress: Progress) -> None:
-    """Plan semi-finishing and finishing of an area with its own cutter, and of what that cutter leaves with a smaller one."""
+def _area(draft: Draft, area: Area, level: Levels, progress: Progress) -> None:
+    """Plan semi-finishing and finishing of an area with its own cutter, and of what that cutter leaves with a smaller one.
+
+    The feet of sides that end mills finish with lands are no matter of its cutter.
+    """
     chosen = draft.chosen
-    places = places_on(draft.space.skin, area.tags)
+    places = level.without_feet(places_on(draft.space.skin, area.tags))
+    area = replace(area, tags=tuple(t for t in area.tags if (places.face == t).any()))
     wanted = chosen.local_cutter if area.local else chosen.cutter
     found = cutter_for(draft.space, places, _finishers(draft), chosen.share, draft.route.reach_clearance,
                        named(draft.shop, wanted) if wanted else None, progress)
@@ -214,6 +224,21 @@ def _area(draft: Draft, area: Area, progress: Progress) -> None:
         if raw.tags and chosen.semi_allowance > 0.0:
             for name, mine, strategy in _by_slope(raw, raw.tags, missed, math.radians(chosen.steep)):
                 _add_finish(draft, "semi", name, mine, found.rest, strategy, missed)
+
+
+def _corners_of_land(draft: Draft, level: OnLand) -> None:
+    """Plan what end mills leave of a land with a ball where one reaches it, else say that it stays."""
+    if level.left.area <= MISSED:
+        return
+    land, places = level.land, places_on(draft.space.skin, level.land.tags)
+    places = places.of(level.left.contains(places.point[:, :2]))
+    found = cutter_for(draft.space, places, _finishers(draft), draft.chosen.share, draft.route.reach_clearance, None, QUIET)
+    if found.tool is not None and float(found.reached.sum()) * places.area > MISSED:
+        _add_finish(draft, "rest_finish", face_name(land.tags), land.tags, found.tool, first_known(FOR_LOCAL), places,
+                    earlier=level.rest or level.tool)
+    else:
+        draft.findings.append(info("route.land-left", f"{trimmed(level.left.area, 1)} mm2 of the land at {trimmed(land.z, 2)} stay in "
+                                   "corners that no cutter gets into", *face_tags(land.tags), remedy="finish them by other means"))
 
 
 def _hidden_area(draft: Draft, area: Area, progress: Progress) -> None:
