@@ -13,12 +13,14 @@ from trunnion.geometry.region import EMPTY_REGION, Region
 from trunnion.model.tool import Tool
 from trunnion.plan.choosing import covered_by_few, depth_reached
 from trunnion.plan.surface.areas import VERTICAL
-from trunnion.plan.surface.lands import SIDE, Keeping, Land, Standing, covered, stands_free, without
+from trunnion.plan.surface.lands import SIDE, SKIM, Keeping, Land, Standing, covered, stands_free, without
 from trunnion.plan.surface.reach import Places
 from trunnion.progress import Progress
 
 MOST = 0.9
 """Share of a land that end mills must cover: of less they would leave too much for another way of cutting it."""
+HALF = 0.5
+"""Share of a land that an end mill must cover off its sides: else it is a slot, with sides all over."""
 WORTH = 100.0
 """mm2: a ball finishes a smaller land in the time of a tool change."""
 WORTH_LEFT = 4.0
@@ -57,6 +59,26 @@ class Chosen:
         return found
 
 
+@dataclass(frozen=True, slots=True, eq=False, kw_only=True)
+class _Reach:
+    """What of a land end mills cover, by their names: off sides that are not finished yet, and right up to them."""
+
+    land: Land
+    before: dict[str, Region]
+    after: dict[str, Region]
+
+    @staticmethod
+    def of(standing: Standing, land: Land, tools: Sequence[Tool], keeping: Keeping) -> _Reach:
+        """Return what tools cover of a land."""
+        before, after = ({t.name: covered(land, standing.free(land.z, t, keeps), t) for t in tools}
+                         for keeps in (keeping, replace(keeping, beside=0.0)))
+        return _Reach(land=land, before=before, after=after)
+
+    def missed(self, tool: Tool) -> Region:
+        """Return what an end mill leaves while it keeps off sides."""
+        return without(self.land.region, self.before[tool.name])
+
+
 def end_mills_for(standing: Standing, lands: Sequence[Land], tools: Sequence[Tool], ball: float, share: float, keeping: Keeping,
                   kept: Sequence[Tool], progress: Progress) -> tuple[Chosen, ...]:
     """Return the lands that are worth an end mill, with their cutters.
@@ -65,45 +87,52 @@ def end_mills_for(standing: Standing, lands: Sequence[Land], tools: Sequence[Too
     """
     ranked = sorted((t for t in tools if t.form in ("flat", "bull")),
                     key=lambda t: (-t.diameter, t.corner_radius, depth_reached(t), t.name))
-    bare = replace(keeping, beside=0.0)
-    reach: dict[int, dict[str, Region]] = {}
-    fits: dict[str, list[Tool]] = {}
+    reach: dict[str, _Reach] = {}
     for n, land in enumerate(lands):
         progress.at(n / max(len(lands), 1), f"end mill for the land at {land.z:.2f}")
-        if not _is_worth(standing, land, ball):
-            continue
-        reach[n] = {t.name: covered(land, standing.free(land.z, t, bare), t) for t in ranked}
-        most = max((r.area for r in reach[n].values()), default=0.0)
-        if most < MOST * land.region.area:
-            continue
-        free = [t for t in ranked if reach[n][t.name].area >= share * most
-                and stands_free(standing.space, land, standing.free(land.z, t, bare), t)]
-        fits[str(n)] = [t for t in free if t.diameter >= NEAR * free[0].diameter]
-    first = covered_by_few({key: found for key, found in fits.items() if found}, kept)
-    missed: dict[str, Region] = {}
-    rests: dict[str, list[Tool]] = {}
-    for key, tool in first.items():
-        land = lands[int(key)]
-        missed[key] = without(land.region, covered(land, standing.free(land.z, tool, keeping), tool))
-        rests[key] = _for_rest(missed[key], reach[int(key)], [t for t in ranked if t.diameter <= tool.diameter], share)
-    second = covered_by_few({key: found for key, found in rests.items() if found}, tuple(first.values()))
-    found = []
-    for key, tool in first.items():
-        rest = second.get(key)
-        done = reach[int(key)][rest.name] if rest else EMPTY_REGION
-        found.append(Chosen(land=lands[int(key)], tool=tool, rest=rest, left=without(missed[key], done),
-                            flanks=tuple((region, height) for mill, region, height in (
-                                (tool, reach[int(key)][tool.name].minus(missed[key]), SIDE),
-                                (rest, done, FOOT * rest.diameter if rest else 0.0)) if mill and region and mill.form == "flat")))
-    return tuple(found)
+        if ranked and _is_worth(standing, land, ball) and _may_cover(standing, land, ranked):
+            reach[str(n)] = _Reach.of(standing, land, ranked, keeping)
+    first = covered_by_few({key: _for_land(standing, each, ranked, share) for key, each in reach.items()}, kept)
+    rest = covered_by_few({key: _for_rest(standing, reach[key], tool, ranked, share) for key, tool in first.items()}, tuple(first.values()))
+    return tuple(_chosen(reach[key], tool, rest.get(key)) for key, tool in first.items())
 
 
-def _for_rest(missed: Region, reach: dict[str, Region], tools: Sequence[Tool], share: float) -> list[Tool]:
-    """Return the end mills that cover nearly all that any does of what was missed; none where that is too little."""
-    area = {t.name: missed.intersect(reach[t.name]).area for t in tools} if missed else {}
-    most = max(area.values(), default=0.0)
-    found = [t for t in tools if area[t.name] >= share * most] if most > MISSED else []
-    return [t for t in found if t.diameter >= NEAR * found[0].diameter]
+def _chosen(reach: _Reach, tool: Tool, rest: Tool | None) -> Chosen:
+    missed, done = reach.missed(tool), reach.after[rest.name] if rest else EMPTY_REGION
+    flanks = [(tool, reach.before[tool.name], SIDE)] + ([(rest, done, FOOT * rest.diameter)] if rest else [])
+    return Chosen(land=reach.land, tool=tool, rest=rest, left=without(missed, done),
+                  flanks=tuple((region, height) for mill, region, height in flanks if mill.form == "flat"))
+
+
+def _may_cover(standing: Standing, land: Land, tools: Sequence[Tool]) -> bool:
+    """Say whether the slimmest end mill would cover enough of a land with nothing above its flutes: others cover no more."""
+    slimmest = min(tools, key=lambda t: (t.diameter, t.corner_radius))
+    return _is_most(covered(land, standing.space.around().minus(standing.over(land.z + SKIM)), slimmest), land)
+
+
+def _is_most(region: Region, land: Land) -> bool:
+    return region.area >= MOST * land.region.area
+
+
+def _for_land(standing: Standing, reach: _Reach, tools: Sequence[Tool], share: float) -> list[Tool]:
+    """Return the end mills, largest first, that cover off its sides nearly all of a land that any does; none where that is too little."""
+    most = max(r.area for r in reach.before.values())
+    if most < HALF * reach.land.region.area or not any(_is_most(r, reach.land) for r in reach.after.values()):
+        return []
+    return _near([t for t in tools if reach.before[t.name].area >= share * most and stands_free(standing, reach.land, t)])
+
+
+def _for_rest(standing: Standing, reach: _Reach, tool: Tool, tools: Sequence[Tool], share: float) -> list[Tool]:
+    """Return the end mills, largest first, that cover nearly all that any does of what another one missed; none where that is too little."""
+    missed = reach.missed(tool)
+    area = {t.name: missed.intersect(reach.after[t.name]).area for t in tools if t.diameter <= tool.diameter}
+    most = max(area.values())
+    return _near([t for t in tools if area.get(t.name, 0.0) >= share * most and stands_free(standing, reach.land, t)]
+                 if most > MISSED else [])
+
+
+def _near(tools: list[Tool]) -> list[Tool]:
+    return [t for t in tools if t.diameter >= NEAR * tools[0].diameter]
 
 
 def _is_worth(standing: Standing, land: Land, ball: float) -> bool:

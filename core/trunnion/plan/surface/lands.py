@@ -34,8 +34,8 @@ STEP = 2.0
 """mm: heights that shank and holder are kept off the part at go in such steps, always down: few sections serve many tools."""
 UNDER = math.sin(math.radians(0.01))
 """Part along -z of the normal from which on a triangle hangs over: 1 um in 6 mm."""
-GRID = 1e-4
-"""mm: points of the shadows of triangles that are closer are one: their edges then meet without hairs."""
+LAP, EVEN = 1e-3, 0.02
+"""mm that shadows of neighbouring triangles overlap by, and that the rim of them all is evened by, always outwards."""
 TOUCHING = 0.02
 """mm: a disc that is smaller by this stands free wherever the cutter only touches what is beside it."""
 HAIR = 0.02
@@ -91,9 +91,12 @@ class Standing:
         hangs = (normal[:, 2] < -UNDER * np.linalg.norm(normal, axis=1)) & (corners[:, :, 2].max(axis=1) > z)
         if not hangs.any():
             return EMPTY_REGION
-        pieces = [_above(c, z) for c in corners[hangs]]
-        shadow = shapely.union_all(np.array([shapely.Polygon(p) for p in pieces if len(p) > 2]), grid_size=GRID)
-        return region_of(shapely.buffer(shadow, 2.0 * skin.bound + GRID, join_style="mitre", mitre_limit=2.0))
+        corners, whole = corners[hangs], corners[hangs][:, :, 2].min(axis=1) >= z
+        pieces = np.concatenate([np.atleast_1d(shapely.polygons(corners[whole][:, :, :2])),
+                                 [shapely.convex_hull(shapely.MultiPoint(_above(c, z))) for c in corners[~whole]]])
+        # Each is grown by itself: then neighbours overlap, where they would only touch along an edge that is none the same.
+        shadow = shapely.union_all(shapely.buffer(pieces, 2.0 * skin.bound + LAP, quad_segs=1))
+        return region_of(shapely.simplify(shapely.buffer(shadow, EVEN, join_style="mitre", mitre_limit=2.0), EVEN))
 
     def free(self, z: float, tool: Tool, keeping: Keeping) -> Region:
         """Return the plan area that the envelope of an end mill may be in, its tip at a height: what is in its way, and in that of shank
@@ -133,10 +136,11 @@ def covered(land: Land, free: Region, tool: Tool) -> Region:
     return room.offset(tool.radius - tool.corner_radius).intersect(land.region) if room else EMPTY_REGION
 
 
-def stands_free(space: SurfaceSpace, land: Land, free: Region, tool: Tool) -> bool:
-    """Say whether the part, as triangles, is nowhere in the way of an end mill along the rim of its room: a section that misses something
-    would let it in."""
-    room = free.offset(-tool.radius).intersect(land.region.offset(2.0 * tool.radius))
+def stands_free(standing: Standing, land: Land, tool: Tool) -> bool:
+    """Say whether the part, as triangles, is nowhere in the way of an end mill that comes right up to what stands beside a land: a section
+    that misses something would let it in."""
+    space = standing.space
+    room = standing.space.around().minus(standing.over(land.z + SKIM)).offset(-tool.radius).intersect(land.region.offset(tool.radius))
     if not room:
         return True
     rim = room.segments()
@@ -146,17 +150,6 @@ def stands_free(space: SurfaceSpace, land: Land, free: Region, tool: Tool) -> bo
     disc = level_disc(max(tool.radius - TOUCHING, 0.5 * tool.radius))
     over = space.skin.drop.drop(rim.at(row, share * rim.length[row]), disc, float(space.low[2]) - 1.0)
     return bool((over <= land.z + tolerance.FINISH_GOUGE + 2.0 * space.skin.bound).all())
-
-
-def _above(corners: Floats, z: float) -> Floats:
-    """Return the plan (k, 2) of what of a triangle (3, 3) is above a height."""
-    found = []
-    for a, b in zip(corners, np.roll(corners, -1, axis=0), strict=True):
-        if a[2] >= z:
-            found.append(a[:2])
-        if (a[2] >= z) != (b[2] >= z):
-            found.append(a[:2] + (z - a[2]) / (b[2] - a[2]) * (b - a)[:2])
-    return np.array(found).reshape(-1, 2)
 
 
 def land_drive(operation: Operation, space: SurfaceSpace, before: Sequence[Operation], stock_top: float) -> PlaneDrive:
@@ -209,3 +202,14 @@ def _together(lands: Sequence[Land]) -> list[list[Land]]:
         else:
             found.append([land])
     return found
+
+
+def _above(corners: Floats, z: float) -> Floats:
+    """Return the plan (k, 2) of what of a triangle (3, 3) is above a height."""
+    found = []
+    for a, b in zip(corners, np.roll(corners, -1, axis=0), strict=True):
+        if a[2] >= z:
+            found.append(a[:2])
+        if (a[2] >= z) != (b[2] >= z):
+            found.append(a[:2] + (z - a[2]) / (b[2] - a[2]) * (b - a)[:2])
+    return np.array(found).reshape(-1, 2)
