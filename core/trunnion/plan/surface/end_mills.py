@@ -81,7 +81,7 @@ class _Reach:
 
 def end_mills_for(standing: Standing, lands: Sequence[Land], tools: Sequence[Tool], ball: float, share: float, keeping: Keeping,
                   kept: Sequence[Tool], progress: Progress) -> tuple[Chosen, ...]:
-    """Return the lands that are worth an end mill, with their cutters.
+    """Return the lands that are worth an end mill, and small ones that the cutters of these finish as well, with their cutters.
 
     `ball`: radius of the smallest ball that would finish them instead; `kept`: cutters that are in use anyhow.
     """
@@ -90,11 +90,19 @@ def end_mills_for(standing: Standing, lands: Sequence[Land], tools: Sequence[Too
     reach: dict[str, _Reach] = {}
     for n, land in enumerate(lands):
         progress.at(n / max(len(lands), 1), f"end mill for the land at {land.z:.2f}")
-        if ranked and _is_worth(standing, land, ball) and _may_cover(standing, land, ranked):
+        if ranked and _may_cover(standing, land, ranked):
             reach[str(n)] = _Reach.of(standing, land, ranked, keeping)
-    first = covered_by_few({key: _for_land(standing, each, ranked, share) for key, each in reach.items()}, kept)
+    fits = {key: _for_land(standing, each, ranked, share) for key, each in reach.items()}
+    worth = {key for key, each in reach.items() if _is_worth(standing, each.land, ball)}
+    first = covered_by_few({key: found for key, found in fits.items() if key in worth}, kept)
     rest = covered_by_few({key: _for_rest(standing, reach[key], tool, ranked, share) for key, tool in first.items()}, tuple(first.values()))
-    return tuple(_chosen(reach[key], tool, rest.get(key)) for key, tool in first.items())
+    found = [_chosen(reach[key], tool, rest.get(key)) for key, tool in first.items()]
+    in_use = {t.name for t in first.values()}
+    for key in reach.keys() - worth if in_use else ():
+        tool = next((t for t in fits[key] if t.name in in_use), None)
+        if tool is not None and reach[key].missed(tool).area <= MISSED:
+            found.append(_chosen(reach[key], tool, None))
+    return tuple(sorted(found, key=lambda c: (-c.land.z, c.land.tags)))
 
 
 def _chosen(reach: _Reach, tool: Tool, rest: Tool | None) -> Chosen:
@@ -123,7 +131,7 @@ def _for_land(standing: Standing, reach: _Reach, tools: Sequence[Tool], share: f
 
 
 def _for_rest(standing: Standing, reach: _Reach, tool: Tool, tools: Sequence[Tool], share: float) -> list[Tool]:
-    """Return the end mills, largest first, that cover nearly all that any does of what another one missed; none where that is too little."""
+    """Return the end mills, largest first, that cover nearly all that any does of what another missed; none where that is too little."""
     missed = reach.missed(tool)
     area = {t.name: missed.intersect(reach.after[t.name]).area for t in tools if t.diameter <= tool.diameter}
     most = max(area.values())

@@ -26,6 +26,8 @@ BETWEEN = 0.25
 """Of a triangle's longest side: how far a place of its sides is from the nearest that is asked."""
 SHARES, TURNS = (0.5, 1.0), 16
 """Where the middle of an end mill is tried round a place: at which shares of its flat's radius, and in how many directions."""
+RIM = 0.02
+"""mm that an end mill's middle is tried farther away: right beside a wall it would touch that as well."""
 LEFT = 1_000_000
 """Added to a face's tag for the part of it that was left: more than any part has faces."""
 
@@ -54,7 +56,7 @@ def _under_flat(skin: Skin, place: Floats, normal: Floats, mill: Tool, lowest: f
     rows = np.flatnonzero(normal[:, 2] > math.cos(tolerance.ANGLE))
     for share in SHARES:
         for turn in np.arange(TURNS) * 2.0 * math.pi / TURNS:
-            beside = place[rows, :2] + share * (mill.radius - mill.corner_radius) * np.array([math.cos(turn), math.sin(turn)])
+            beside = place[rows, :2] + (share * (mill.radius - mill.corner_radius) + RIM) * np.array([math.cos(turn), math.sin(turn)])
             found[rows] |= skin.drop.drop(beside, lower_side(mill), lowest) - place[rows, 2] <= LIFTED
     return found
 
