@@ -119,6 +119,12 @@ def test_it_keeps_off_sides_that_are_not_finished_yet_but_not_off_a_fillet() -> 
     assert without(whole.region, covered(whole, Standing(space).free(6.0, MILLS[2], KEEPING), MILLS[2])).area < 1e-3
 
 
+def test_it_keeps_farther_off_an_unfinished_side_that_is_higher_than_its_flutes() -> None:
+    space, low = spaced(walled()), replace(mill(8.0), flute_length=8.0)
+    rims = [Standing(space).free(6.0, low, keeping).signed_distance([[10.0, 15.0]])[0] for keeping in (BARE, KEEPING)]
+    assert rims == pytest.approx([5.0, 4.0], abs=1e-3)
+
+
 def test_a_shank_as_thick_as_the_cutter_keeps_off_a_taller_wall() -> None:
     short = replace(mill(8.0), flute_length=8.0, neck_length=10.0, neck_diameter=7.6, shank_diameter=8.0, stickout=60.0)
     space = spaced(walled(30.0))

@@ -32,6 +32,9 @@ SIDE = 1.0
 """mm: what stands higher than this over a land's rim is a side; a fillet that is still lower there is cut along by the rim as it comes."""
 STEP = 2.0
 """mm: heights that shank and holder are kept off the part at go in such steps, always down: few sections serve many tools."""
+NECK = 1.0
+"""mm that an end mill keeps off unfinished sides that are higher than its flutes: in corners more stands there than roughing's allowance,
+and a neck does not cut."""
 UNDER = math.sin(math.radians(0.01))
 """Part along -z of the normal from which on a triangle hangs over: 1 um in 6 mm."""
 LAP, EVEN = 1e-3, 0.02
@@ -105,10 +108,11 @@ class Standing:
         if keeping.beside > 0.0:
             ways.append(self.over(z + SIDE).offset(keeping.beside))
         for z0, r0, _, r1 in tool.profile():
-            more = max(r0, r1) - tool.radius
+            more, height = max(r0, r1) - tool.radius, z + max(SKIM, STEP * math.floor((z0 - keeping.above) / STEP))
             if more > -tolerance.COINCIDENT:
-                height = z + max(SKIM, STEP * math.floor((z0 - keeping.above) / STEP))
                 ways.append(self.over(height).offset(more + keeping.around))
+            elif keeping.beside > 0.0:
+                ways.append(self.over(height).offset(max(NECK, keeping.beside)))
         return self.space.around().minus(union_all(ways))
 
 
