@@ -22,7 +22,6 @@ from trunnion.plan.surface.end_mills import end_mills_for
 from trunnion.plan.surface.lands import SKIM, Keeping, Standing, covered, lands_of, without
 from trunnion.plan.surface.layers import plane_drive_of
 from trunnion.plan.surface.reach import places_on
-from trunnion.plan.surface.rest import left_by
 from trunnion.plan.surface.space import SurfaceSpace
 from trunnion.progress import QUIET
 from trunnion.toolpath.stock import PlanningStock
@@ -180,14 +179,6 @@ def test_the_foot_of_the_wall_is_finished_with_the_land_and_no_more_of_it() -> N
     assert (done == (places.point[:, 2] <= 14.0)).all()
 
 
-def test_an_end_mill_leaves_of_a_land_what_its_flat_does_not_come_to() -> None:
-    space = spaced(walled())
-    tag = lands(space)[1].tags[0]
-    assert left_by(space.skin, (tag,), MILLS[2], -1.0, 0.004)[1] == ()
-    groove = spaced(walled().union(box(8, 0, 0, 40, 30, 12)))
-    assert left_by(groove.skin, lands(groove)[-1].tags, MILLS[2], -1.0, 0.004)[1] != ()
-
-
 # operations
 
 
@@ -217,6 +208,13 @@ def test_no_ball_cuts_a_land_and_the_wall_beside_asks_for_no_small_one(line) -> 
 def test_a_small_land_joins_those_that_an_end_mill_is_there_for(line) -> None:
     land = next(o for o in line[1].process.operations if o.kind == "land")
     assert len(land.faces) == 3
+
+
+def test_a_land_with_slits_that_only_balls_come_into_stays_with_them() -> None:
+    pocket = box(0, 0, 0, 44, 26, 9).cut(box(3, 3, 5, 25, 23, 9))
+    for slit, kinds in ((box(20, 12, 5, 38, 15, 9), 0), (box(20, 12, 5, 26, 15, 9), 1)):
+        process = routed(pocket.cut(slit))[1].process
+        assert len([o for o in process.operations if o.kind == "rest_land"]) == kinds
 
 
 def test_the_setting_leaves_lands_to_balls() -> None:

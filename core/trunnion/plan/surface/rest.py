@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import math
 from dataclasses import replace
 
 import numpy as np
@@ -24,10 +23,6 @@ AROUND = 0.3
 """mm at least that the area goes on past what was left, so that no seam stays; as far as passes are apart where that is more."""
 BETWEEN = 0.25
 """Of a triangle's longest side: how far a place of its sides is from the nearest that is asked."""
-SHARES, TURNS = (0.5, 1.0), 16
-"""Where the middle of an end mill is tried round a place: at which shares of its flat's radius, and in how many directions."""
-RIM = 0.02
-"""mm that an end mill's middle is tried farther away: right beside a wall it would touch that as well."""
 LEFT = 1_000_000
 """Added to a face's tag for the part of it that was left: more than any part has faces."""
 
@@ -42,23 +37,10 @@ def left_by(skin: Skin, tags: tuple[int, ...], earlier: Tool, lowest: float, hei
     up = normal[:, 2] > 0.0
     tip = tip_at(earlier, place[up], normal[up], np.tile([0.0, 0.0, 1.0], (int(up.sum()), 1)))
     lifted[up] = skin.drop.drop(tip[:, :2], lower_side(earlier), lowest) - tip[:, 2] > min(UNSEEN * height, LIFTED)
-    if earlier.form in ("flat", "bull"):
-        lifted &= ~_under_flat(skin, place, normal, earlier, lowest)
     left = _with_those_near(place, of, lifted, max(AROUND, stepover_on_plane(earlier.corner_radius, height)))
     face = skin.face.copy()
     face[rows[left]] += LEFT
     return replace(skin, face=face), tuple(int(t) for t in np.unique(face[rows[left]]))
-
-
-def _under_flat(skin: Skin, place: Floats, normal: Floats, mill: Tool, lowest: float) -> Bools:
-    """Say which places (p, 3) are level and under the flat of an end mill that stands there beside them without being lifted."""
-    found = np.zeros(len(place), dtype=bool)
-    rows = np.flatnonzero(normal[:, 2] > math.cos(tolerance.ANGLE))
-    for share in SHARES:
-        for turn in np.arange(TURNS) * 2.0 * math.pi / TURNS:
-            beside = place[rows, :2] + (share * (mill.radius - mill.corner_radius) + RIM) * np.array([math.cos(turn), math.sin(turn)])
-            found[rows] |= skin.drop.drop(beside, lower_side(mill), lowest) - place[rows, 2] <= LIFTED
-    return found
 
 
 def _places(skin: Skin, rows: Ints) -> tuple[Floats, Floats, Ints]:

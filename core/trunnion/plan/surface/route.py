@@ -13,7 +13,7 @@ from dataclasses import replace
 import numpy as np
 
 from trunnion import registry
-from trunnion.findings import error, face_tags, info, warning
+from trunnion.findings import error, face_tags, warning
 from trunnion.model.blank import Blank
 from trunnion.model.feature import Recognition
 from trunnion.model.operation import Operation
@@ -27,7 +27,6 @@ from trunnion.plan.order import Job, ordered
 from trunnion.plan.surface.areas import Area, areas_of, blank_faces, connected, hidden_areas, on_outline, walls_of
 from trunnion.plan.surface.cutters import Chosen, cutter_for, named
 from trunnion.plan.surface.draft import Draft, face_name
-from trunnion.plan.surface.end_mills import Chosen as OnLand
 from trunnion.plan.surface.land_route import Levels, plan_lands
 from trunnion.plan.surface.lands import LAND, REST_LAND
 from trunnion.plan.surface.leaning import SAMPLES as LEANING_SAMPLES
@@ -38,7 +37,7 @@ from trunnion.plan.surface.settings import ALLOWANCE, BOTTOM, CELL, EARLIER, SCA
 from trunnion.plan.surface.sides import Around, sides_for
 from trunnion.plan.surface.space import SurfaceSpace
 from trunnion.plan.wishes import RouteSettings
-from trunnion.progress import QUIET, Progress
+from trunnion.progress import Progress
 from trunnion.settings import Value, choose
 from trunnion.shop import Shop, Stage
 from trunnion.units import trimmed
@@ -98,9 +97,7 @@ def _plan(draft: Draft, progress: Progress) -> None:
     walls = on_outline(space, places, upright)
     for tags in connected(walls, part.graph()):
         _outline(draft, tags)
-    level = plan_lands(draft, set(mine) - set(walls), min((t.radius for t in _finishers(draft)), default=0.0), progress.part(0.0, 0.05))
-    for each in level.lands:
-        _corners_of_land(draft, each)
+    level = plan_lands(draft, set(mine) - set(walls), _finishers(draft), progress.part(0.0, 0.05))
     hidden = _hidden(draft, places, set(mine) - set(walls) - level.tags, progress.part(0.05, 0.1)) if draft.machine.rotary else ()
     areas = [*areas_of(draft.recognition, part.graph(), {*outside, *walls, *level.tags, *hidden}),
              *hidden_areas(draft.recognition, part.graph(), hidden)]
@@ -224,21 +221,6 @@ def _area(draft: Draft, area: Area, level: Levels, progress: Progress) -> None:
         if raw.tags and chosen.semi_allowance > 0.0:
             for name, mine, strategy in _by_slope(raw, raw.tags, missed, math.radians(chosen.steep)):
                 _add_finish(draft, "semi", name, mine, found.rest, strategy, missed)
-
-
-def _corners_of_land(draft: Draft, level: OnLand) -> None:
-    """Plan what end mills leave of a land with a ball where one reaches it, else say that it stays."""
-    if level.left.area <= MISSED:
-        return
-    land, places = level.land, places_on(draft.space.skin, level.land.tags)
-    places = places.of(level.left.contains(places.point[:, :2]))
-    found = cutter_for(draft.space, places, _finishers(draft), draft.chosen.share, draft.route.reach_clearance, None, QUIET)
-    if found.tool is not None and float(found.reached.sum()) * places.area > MISSED:
-        _add_finish(draft, "rest_finish", face_name(land.tags), land.tags, found.tool, first_known(FOR_LOCAL), places,
-                    earlier=level.rest or level.tool)
-    else:
-        draft.findings.append(info("route.land-left", f"{trimmed(level.left.area, 1)} mm2 of the land at {trimmed(land.z, 2)} stay in "
-                                   "corners that no cutter gets into", *face_tags(land.tags), remedy="finish them by other means"))
 
 
 def _hidden_area(draft: Draft, area: Area, progress: Progress) -> None:
