@@ -7,7 +7,7 @@ import math
 import numpy as np
 import pytest
 
-from surface_drives import DATA, driven, grid
+from surface_drives import DATA, driven, grid, joined
 from trunnion.findings import Refused
 from trunnion.geometry.skin import Skin
 from trunnion.model.toolpath import Mark, Motion
@@ -50,6 +50,21 @@ def test_an_upright_wall_is_cut_once_at_its_foot_with_the_flank() -> None:
     away = np.hypot(tips[:, 0] - 15.0, tips[:, 1] - 15.0)
     # A polygon of 90 sides lies inside its circle by 8 (1 - cos 2 deg), 5 um.
     assert away.min() > 12.99 and away.max() < 13.0 + 1e-4
+
+
+def test_a_ball_goes_down_an_upright_wall_to_the_floor_it_stands_on() -> None:
+    skin = joined(round_wall(8.0, 0.0, 10.0), grid(lambda x, y: 0.0 * x, tag=3))
+    levels = np.unique(cut_tips(planned(skin, bull(6.0, 3.0)(flute=8.0), chord=0.005)[0].path)[:, 2].round(4))
+    assert levels[0] == pytest.approx(0.0, abs=1e-3)
+
+
+def test_the_flank_above_a_ball_leaves_no_band_of_an_upright_wall() -> None:
+    ball = bull(6.0, 3.0)(flute=8.0)
+    skin = joined(round_wall(8.0, 0.0, 17.0), grid(lambda x, y: 0.0 * x, tag=3))
+    levels = np.unique(cut_tips(planned(skin, ball, chord=0.005)[0].path)[:, 2].round(4))
+    # Up to the end of the ball the flank does not touch yet, and above the flutes it no longer cuts.
+    assert np.diff(levels).max() <= ball.flute_length - ball.corner_radius
+    assert levels[-1] + ball.flute_length >= 17.0
 
 
 def test_the_wall_is_on_the_right_of_the_feed() -> None:

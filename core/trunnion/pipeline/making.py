@@ -62,12 +62,13 @@ def make_paths(session: Session, bench: Bench, progress: Progress) -> tuple[Oper
     return tuple(made)
 
 
-SETTLED = {"surface.too-steep": {"surface.waterline"}, "surface.too-shallow": {"surface.parallel", "surface.constant"}}
-"""Findings of strategies that leave slopes to others, and the strategies that cut those."""
+SETTLED = {"surface.too-steep": {"surface.waterline"}, "surface.too-shallow": {"surface.parallel", "surface.constant"},
+           "floor.left": {"plane.floor"}}
+"""Findings of strategies that leave slopes or corners to others, and the strategies that cut those."""
 
 
 def findings_of(paths: Sequence[OperationPath], process: ProcessTree) -> tuple[Finding, ...]:
-    """Return what toolpaths have told, without what is said of slopes that another operation on the same faces is there for."""
+    """Return what toolpaths have told, without what is said of slopes and corners that another operation on the same faces is there for."""
     return tuple(f for path in paths for f in path.findings if not _settled(f, process.operation(path.operation), process))
 
 
@@ -164,7 +165,7 @@ def _driven(session: Session, room: Room, operation: Operation, progress: Progre
     space = room.curved(operation.direction, tolerance.CHORD if plane else tolerance.SKIN_CHORD, progress)
     stock = room.sides.seen(space.setup)
     if plane:
-        layers = plane_drive_of(operation, space, stock, progress)
+        layers = plane_drive_of(operation, space, stock, progress, session.process)
         return space.setup, stock, layers, layers
     fixtures = session.fixtures_of(room.setup.name)
     name = operation.choices.get(EARLIER, "")

@@ -8,7 +8,7 @@ from pathlib import Path
 from trunnion.shop.reading import Entry, by_name, entries
 
 CUTTER_RULES = ("face", "rough", "rest", "top", "floor", "wall", "corner", "profile_rough", "profile_finish",
-                "layers", "outline", "area", "rest_area")
+                "layers", "outline", "area", "rest_area", "land", "rest_land")
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)

@@ -66,7 +66,7 @@ def region_below(height: Floats, corner: Floats, cell: float, z: float, chord: f
     area = shapely.union_all(np.array(parts))
     # Moved in by as much as it was straightened, corners kept sharp; and out and in again over what is narrower than that.
     area = shapely.buffer(shapely.simplify(area, chord), -chord, join_style="mitre", mitre_limit=2.0)
-    return _region(area)
+    return region_of(area)
 
 
 def _disc(radius: float, allowance: float) -> Floats:
@@ -104,7 +104,8 @@ def _slices(height: Floats, mixed: Bools, corner: Floats, cell: float, z: float)
     return [*np.atleast_1d(np.asarray(shapely.polygons(ring)))]
 
 
-def _region(area: shapely.Geometry) -> Region:
+def region_of(area: shapely.Geometry) -> Region:
+    """Return a shapely area of straight edges as a region; what is smaller than noise is left out."""
     curves = []
     for polygon in shapely.get_parts(area):
         if polygon.geom_type == "Polygon" and polygon.area > tolerance.AREA:

@@ -12,14 +12,14 @@ from trunnion.findings import Refused
 from trunnion.geometry.arrays import Floats
 from trunnion.geometry.region import EMPTY_REGION, Region, union_all
 from trunnion.model.operation import Operation
+from trunnion.model.process import ProcessTree
 from trunnion.plan.drive import DriveLevel, PlaneDrive, WallGuide
 from trunnion.plan.surface.heights import HeightMap, region_below
+from trunnion.plan.surface.lands import LAND, REST_LAND, land_drive
 from trunnion.plan.surface.settings import ALLOWANCE, BOTTOM, CELL, number
 from trunnion.plan.surface.space import SurfaceSpace
 from trunnion.progress import Progress
 
-AROUND = 45.0
-"""mm: how far free space is looked at around the blank: two diameters of the largest cutter, but no way for it to wander."""
 STRAIGHT = 0.5
 """Of the allowance: how far the rims of layers may be straightened."""
 LEAST_STRAIGHT = 0.02
@@ -48,8 +48,14 @@ class Heights(Protocol):
         """Side of a cell in mm."""
 
 
-def plane_drive_of(operation: Operation, space: SurfaceSpace, stock: Heights, progress: Progress) -> PlaneDrive:
-    """Return the drive of a plane operation on a part of curved surfaces, in the cutting frame."""
+def plane_drive_of(operation: Operation, space: SurfaceSpace, stock: Heights, progress: Progress,
+                   process: ProcessTree | None = None) -> PlaneDrive:
+    """Return the drive of a plane operation on a part of curved surfaces, in the cutting frame; `process` says what was cut before."""
+    if operation.kind == REST_LAND:
+        before = [o for o in process.operations if o.kind == LAND and not o.suppressed] if process else []
+        return land_drive(operation, space, before, float(stock.heights.max()))
+    if operation.kind == LAND:
+        return land_drive(operation, space, (), float(stock.heights.max()))
     if operation.kind == "rough":
         return _layers(operation, space, stock, progress)
     if operation.kind == "profile_finish":
@@ -68,7 +74,7 @@ def _layers(operation: Operation, space: SurfaceSpace, stock: Heights, progress:
     tall = HeightMap.of(space.skin.drop, space.low - margin, space.high + margin, cell, allowance, progress)
     top, chord = float(stock.heights.max()), max(STRAIGHT * allowance, LEAST_STRAIGHT)
     blank = Region.rectangle(*space.low[:2], *space.high[:2])
-    around = Region.rectangle(*(space.low[:2] - AROUND), *(space.high[:2] + AROUND))
+    around = space.around()
     outside = around.minus(Region.rectangle(*(tall.corner + cell), *(tall.corner + tall.cell * (np.array(tall.height.shape) - 1) - cell)))
     levels = []
     for above, z in pairwise([top, *_heights(space, top, bottom, operation.data.depth, allowance)]):
@@ -130,7 +136,7 @@ def _outline(operation: Operation, space: SurfaceSpace) -> PlaneDrive:
     heights = [bottom + beside, 0.5 * (bottom + top), top - beside, *np.linspace(top, highest, 4)[1:-1], highest - beside]
     sections = [space.part.section(space.frame, h).holes_filled() for h in heights if bottom < h < highest]
     outline = union_all([s for s in sections if s]).holes_filled()
-    around = Region.rectangle(*(space.low[:2] - AROUND), *(space.high[:2] + AROUND))
+    around = space.around()
     blank = Region.rectangle(*space.low[:2], *space.high[:2])
     level = DriveLevel(top=top, bottom=bottom, wanted=blank.minus(outline), boundary=around.minus(outline))
     walls = tuple(WallGuide(curve=piece.outer.reversed(), top=top, bottom=bottom, fillet=0.0, faces=operation.faces)

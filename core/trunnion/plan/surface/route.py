@@ -8,26 +8,27 @@ from __future__ import annotations
 
 import math
 from collections.abc import Sequence
-from dataclasses import dataclass, field, replace
+from dataclasses import replace
 
 import numpy as np
 
 from trunnion import registry
-from trunnion.findings import BadInput, Finding, error, face_tags, warning
+from trunnion.findings import error, face_tags, warning
 from trunnion.model.blank import Blank
 from trunnion.model.feature import Recognition
-from trunnion.model.material import Machine, Material
 from trunnion.model.operation import Operation
 from trunnion.model.process import ProcessTree
 from trunnion.model.setup import Setup
 from trunnion.model.tool import Tool
 from trunnion.plan.choosing import depth_reached
-from trunnion.plan.cutting import CuttingSettings, cutting_data, roughing_depth, roughing_width
+from trunnion.plan.cutting import CuttingSettings, roughing_depth, roughing_width
 from trunnion.plan.left import too_large, too_many_tools
 from trunnion.plan.order import Job, ordered
 from trunnion.plan.surface.areas import Area, areas_of, blank_faces, connected, hidden_areas, on_outline, walls_of
 from trunnion.plan.surface.cutters import Chosen, cutter_for, named
-from trunnion.plan.surface.frames import UPRIGHT, Direction
+from trunnion.plan.surface.draft import Draft, face_name
+from trunnion.plan.surface.land_route import Levels, plan_lands
+from trunnion.plan.surface.lands import LAND, REST_LAND
 from trunnion.plan.surface.leaning import SAMPLES as LEANING_SAMPLES
 from trunnion.plan.surface.leaning import leaning_cutter
 from trunnion.plan.surface.reach import Places, clear_beside, leans, places_on, reached
@@ -67,28 +68,6 @@ WALL_SHARE = 0.7
 """Largest cutter of an outline over the largest roughing cutter: finishing wants it stiff, but not heavy."""
 
 
-@dataclass(slots=True)
-class Draft:
-    """What is known while one setup is planned."""
-
-    space: SurfaceSpace
-    around: Around
-    setup: Setup
-    recognition: Recognition
-    material: Material
-    machine: Machine
-    shop: Shop
-    route: RouteSettings
-    chosen: SurfaceRouteSettings
-    stages: dict[str, Stage]
-    operations: list[Operation] = field(default_factory=list)
-    findings: list[Finding] = field(default_factory=list)
-
-    def cutters(self, use: str) -> tuple[Tool, ...]:
-        """Return the catalogue's cutters for a use and the blank's material."""
-        return self.shop.tools_for(self.material.iso_group, use)
-
-
 def make_surface_route(recognition: Recognition, blank: Blank, setups: Sequence[Setup], shop: Shop, space: SurfaceSpace, around: Around,
                        route: RouteSettings, chosen: SurfaceRouteSettings, progress: Progress) -> ProcessTree:
     """Return the process of a part of curved surfaces: operations in cutting order, tools numbered in the order of use.
@@ -116,10 +95,11 @@ def _plan(draft: Draft, progress: Progress) -> None:
     places = places_on(space.skin, tuple(mine))
     upright = walls_of(places, mine)
     walls = on_outline(space, places, upright)
-    hidden = _hidden(draft, places, set(mine) - set(walls), progress.part(0.0, 0.1)) if draft.machine.rotary else ()
     for tags in connected(walls, part.graph()):
         _outline(draft, tags)
-    areas = [*areas_of(draft.recognition, part.graph(), {*outside, *walls, *hidden}),
+    level = plan_lands(draft, set(mine) - set(walls), _finishers(draft), progress.part(0.0, 0.05))
+    hidden = _hidden(draft, places, set(mine) - set(walls) - level.tags, progress.part(0.05, 0.1)) if draft.machine.rotary else ()
+    areas = [*areas_of(draft.recognition, part.graph(), {*outside, *walls, *level.tags, *hidden}),
              *hidden_areas(draft.recognition, part.graph(), hidden)]
     for n, area in enumerate(areas):
         share = progress.part(0.1 + 0.7 * n / len(areas), 0.1 + 0.7 * (n + 1) / len(areas))
@@ -127,7 +107,7 @@ def _plan(draft: Draft, progress: Progress) -> None:
         if area.hidden:
             _hidden_area(draft, area, share)
         else:
-            _area(draft, area, share)
+            _area(draft, area, level, share)
     _rough(draft, space, float(space.skin.points[:, 2].min()))
     if hidden:
         seen = places.of(np.isin(places.face, hidden))
@@ -162,7 +142,7 @@ def _rough(draft: Draft, space: SurfaceSpace, bottom: float, name: str = "part")
                                     draft.recognition.features[0].id, remedy="add a longer cutter to the tools folder"))
         return
     _add_rough(draft, "rough", name, tool, space, bottom)
-    smallest = min((o.tool.diameter for o in draft.operations if o.kind == "finish"), default=tool.diameter)
+    smallest = min((o.tool.diameter for o in draft.operations if o.kind in ("finish", LAND, REST_LAND)), default=tool.diameter)
     n = 1
     while tool.diameter > NEAR_FINISH * smallest:
         rest = _rougher(draft, REST_SHARE * tool.diameter, deep, "")
@@ -188,8 +168,8 @@ def _add_rough(draft: Draft, kind: str, name: str, tool: Tool, space: SurfaceSpa
     rules = (stage.rule, f"{tool.name}: reaches {trimmed(depth_reached(tool), 1)} mm deep.",
              f"It leaves {trimmed(chosen.rough_allowance, 2)} mm all round, in layers of {trimmed(depth, 2)} mm.")
     choices: dict[str, Value] = {ALLOWANCE: chosen.rough_allowance, BOTTOM: bottom, CELL: chosen.cell}
-    _add(draft, kind, name, _first_feature(draft), tool, (), depth, width, choices, rules, operation_kind="rough",
-         direction=space.direction)
+    draft.add(kind, name, draft.first_feature(), tool, (), depth, width, choices, rules, operation_kind="rough",
+              direction=space.direction)
 
 
 def _outline(draft: Draft, tags: tuple[int, ...]) -> None:
@@ -209,14 +189,18 @@ def _outline(draft: Draft, tags: tuple[int, ...]) -> None:
     tool = max(fits, key=lambda t: (t.diameter, -depth_reached(t), t.name))
     steps = max(1, math.ceil(height / min(tool.flute_length, WALL_STEP * tool.diameter)))
     rules = (stage.rule, f"{tool.name}: the stiffest end mill up to D {trimmed(most, 1)} that reaches {trimmed(height, 1)} mm.")
-    _add(draft, "profile_finish", _name(tags), _feature_of(draft, tags), tool, tags, height / steps, max(draft.chosen.rough_allowance, 0.1),
-         {}, rules)
+    draft.add("profile_finish", face_name(tags), draft.feature_of(tags), tool, tags, height / steps,
+              max(draft.chosen.rough_allowance, 0.1), {}, rules)
 
 
-def _area(draft: Draft, area: Area, progress: Progress) -> None:
-    """Plan semi-finishing and finishing of an area with its own cutter, and of what that cutter leaves with a smaller one."""
+def _area(draft: Draft, area: Area, level: Levels, progress: Progress) -> None:
+    """Plan semi-finishing and finishing of an area with its own cutter, and of what that cutter leaves with a smaller one.
+
+    The feet of sides that end mills finish with lands are no matter of its cutter.
+    """
     chosen = draft.chosen
-    places = places_on(draft.space.skin, area.tags)
+    places = level.without_feet(places_on(draft.space.skin, area.tags))
+    area = replace(area, tags=tuple(t for t in area.tags if (places.face == t).any()))
     wanted = chosen.local_cutter if area.local else chosen.cutter
     found = cutter_for(draft.space, places, _finishers(draft), chosen.share, draft.route.reach_clearance,
                        named(draft.shop, wanted) if wanted else None, progress)
@@ -320,7 +304,7 @@ def _add_finish(draft: Draft, kind: str, name: str, tags: tuple[int, ...], tool:
         choices[key] = min(max(chosen.steep + past, 1.0), 89.0)
     if earlier is not None:
         choices |= {EARLIER: earlier.name, f"{strategy}.lead_radius": REST_LEAD}
-    _add(draft, kind, name, _feature_of(draft, tags), tool, tags, depth, width, choices, rules, strategy=strategy)
+    draft.add(kind, name, draft.feature_of(tags), tool, tags, depth, width, choices, rules, strategy=strategy)
 
 
 def _finishers(draft: Draft) -> tuple[Tool, ...]:
@@ -336,17 +320,6 @@ def _tell_unreached(draft: Draft, area: Area, places: Places, found: Chosen) -> 
                   "machine them on a machine with rotary axes (setup.machine), or turn the part in another setup")
         draft.findings.append(warning("route.not-planned", f"{area.id}: no cutter reaches {len(lost)} faces with {trimmed(size, 0)} mm2 "
                                       "from the tool's direction", *face_tags(lost, most=len(lost)), remedy=remedy))
-
-
-def _add(draft: Draft, kind: str, name: str, feature: str, tool: Tool, tags: tuple[int, ...], depth: float, width: float,
-         choices: dict[str, Value], rules: tuple[str, ...], *, strategy: str = "", operation_kind: str = "",
-         direction: Direction = UPRIGHT) -> None:
-    stage = draft.stages[kind]
-    data = cutting_data(tool, draft.material, draft.machine, operation_kind or kind, choose(CuttingSettings, {}), depth, width)
-    draft.operations.append(Operation(
-        id=f"{kind.replace('_', '-')}-{name}", kind=operation_kind or kind, strategy=strategy or stage.strategy, feature=feature,
-        setup="S1", tool=tool, data=data, faces=tags, choices=choices, rules=rules, group=stage.name,
-        direction=direction))
 
 
 def _in_order(draft: Draft, stages: Sequence[Stage]) -> list[Operation]:
@@ -375,18 +348,3 @@ def _place(draft: Draft, tags: tuple[int, ...]) -> tuple[float, float]:
 def _numbered(operations: Sequence[Operation]) -> list[Operation]:
     numbers: dict[str, int] = {}
     return [replace(o, tool=replace(o.tool, number=numbers.setdefault(o.tool.name, len(numbers) + 1))) for o in operations]
-
-
-def _name(tags: tuple[int, ...]) -> str:
-    return f"face-{tags[0]}"
-
-
-def _first_feature(draft: Draft) -> str:
-    if not draft.recognition.features:
-        raise BadInput("nothing was recognised on this part: there is nothing to plan")
-    return draft.recognition.features[0].id
-
-
-def _feature_of(draft: Draft, tags: Sequence[int]) -> str:
-    """Return the feature that has most of some faces."""
-    return max(draft.recognition, key=lambda f: len(set(f.tags) & set(tags))).id

@@ -44,6 +44,8 @@ class SurfaceRouteSettings:
                                   help="Height of the ridges that semi-finishing leaves on its allowance.")
     steep: float = setting(70.0, unit="deg", low=10.0, high=84.0, label="Steep from",
                            help="What leans from level by more is cut level by level.")
+    lands: bool = setting(True, label="End mills on level lands", help="Level faces are finished with end mills where these reach most of "
+                                                                       "them; off: with balls, as curved ones.")
     cell: float = setting(0.25, unit="mm", low=0.05, high=5.0, label="Map cell",
                           help="Distance of the places at which roughing measures how high the part stands.")
 

@@ -7,6 +7,7 @@ from dataclasses import dataclass, replace
 
 from trunnion.geometry.arrays import Floats
 from trunnion.geometry.frame import WORLD, Frame
+from trunnion.geometry.region import Region
 from trunnion.geometry.skin import Skin
 from trunnion.model.blank import Blank
 from trunnion.model.operation import Operation
@@ -22,6 +23,8 @@ from trunnion.settings import digest
 
 KNOWS_EARLIER = ("surface.pencil",)
 """Strategies that find for themselves what an earlier cutter left; others get it as an area."""
+AROUND = 45.0
+"""mm: how far free space is looked at around the blank: two diameters of the largest cutter, but no way for it to wander."""
 
 
 @dataclass(frozen=True, slots=True, eq=False, kw_only=True)
@@ -51,6 +54,10 @@ class SurfaceSpace:
     def frame(self) -> Frame:
         """The cutting frame."""
         return self.setup.frame
+
+    def around(self) -> Region:
+        """Return the plan area of the blank and of the free space around it."""
+        return Region.rectangle(*(self.low[:2] - AROUND), *(self.high[:2] + AROUND))
 
     def seen_from(self, setup: Setup, direction: Direction) -> SurfaceSpace:
         """Return the same part seen from another direction given in the frame of the machine's setup."""

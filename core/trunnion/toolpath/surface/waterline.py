@@ -57,7 +57,12 @@ NEARBY, ROUGHLY = 1.0, 2.5
 ROLLS = 0.15
 """Of an arc: by how much the way round an edge may differ from it."""
 FLANK = 0.8
-"""Of the flutes' length: the largest step beside an upright wall."""
+"""Of the flutes' length over the corner: the largest step beside an upright wall."""
+FOOT, FEET = 5e-4, 0.2
+"""mm over what stops a cutter at the foot of an upright wall: there its lowest level is; and of the corner's radius: feet whose heights
+differ by less have one level."""
+OFF = 2e-3
+"""mm off an upright wall: there a cutter comes down past it."""
 SMALLEST_LEFTOVER = 0.5
 """mm2: less than this is the rim of an area."""
 
@@ -92,7 +97,7 @@ def waterline(drive: SurfaceDrive, tool: Tool, data: CuttingData, stock: Plannin
     found = _left(drive, places)
     if not len(places.row):
         return Planned(findings=found)
-    levels = _levels(places, tool, drive.height, settings.step)
+    levels = _levels(places, _feet(places, drive, tool), tool, drive.height, settings.step)
     loops = _loops(levels, places, drive, tool, settings, progress.part(0.0, 0.8))
     passes = _in_order(loops, tool, both=settings.way == "both")
     if not passes:
@@ -115,20 +120,41 @@ def _left(drive: SurfaceDrive, steep: Places) -> tuple[Finding, ...]:
                     remedy="finish them by parallel passes or from another direction"),)
 
 
-def _levels(places: Places, tool: Tool, height: float, step: float) -> Floats:
-    """Return the heights of the tip (p,) upwards, from the lowest place that is touched."""
+def _feet(places: Places, drive: SurfaceDrive, tool: Tool) -> Floats:
+    """Return how low (m,) the tip comes that touches each triangle: lower than it only where the foot of an upright one stops it."""
+    low, high = places.tips[:, :, 2].min(axis=1), places.tips[:, :, 2].max(axis=1)
+    upright = np.flatnonzero(places.normal[:, 2] <= -UPWARD)
+    beside = (places.tips[upright] + OFF * places.normal[upright, None])[:, :, :2].reshape(-1, 2)
+    over = drive.skin.drop.drop(beside, lower_side(tool, drive.allowance), float(drive.low[2]) - tool.flute_length) + drive.allowance
+    stopped = over.reshape(-1, 3).min(axis=1) + FOOT
+    # Where it is stopped over the whole triangle, the foot is another one's.
+    low[upright] = np.where(stopped < high[upright], np.maximum(low[upright], stopped), high[upright])
+    return low
+
+
+def _levels(places: Places, feet: Floats, tool: Tool, height: float, step: float) -> Floats:
+    """Return the heights of the tip (p,) upwards, from the lowest place that is touched; `feet` is how low the tip comes (m,)."""
     low, high = places.tips[:, :, 2].min(axis=1), places.tips[:, :, 2].max(axis=1)
     spacing = np.full(len(low), step) if step > 0.0 else level_spacing(places, tool, height)
-    spacing = np.minimum(spacing, FLANK * tool.flute_length)
-    levels = marched(low, high, spacing, float(low.min()), float(high.max()))
-    if len(levels) == 1:
-        return levels
-    if not (places.normal[high > levels[-2], 2] > -UPWARD).any():
-        # The flank of the level below goes up an upright wall to its top.
-        return levels[:-1]
-    # At its own height the last one would only pass over the top.
-    levels[-1] -= BELOW_TOP * (levels[-1] - levels[-2])
-    return levels
+    spacing = np.minimum(spacing, FLANK * max(tool.flute_length - tool.corner_radius, tool.corner_radius))
+    levels = marched(low, high, spacing, float(feet.min()), float(high.max()))
+    if len(levels) > 1:
+        if not (places.normal[high > levels[-2], 2] > -UPWARD).any():
+            # The flank of the level below goes up an upright wall to its top.
+            levels = levels[:-1]
+        else:
+            # At its own height the last one would only pass over the top.
+            levels[-1] -= BELOW_TOP * (levels[-1] - levels[-2])
+    return np.unique([*levels, *_without_near(feet[(feet > low) & (feet < high)], levels, FEET * tool.corner_radius)])
+
+
+def _without_near(feet: Floats, levels: Floats, least: float) -> list[float]:
+    """Return heights of feet, upwards, that have no level near above them: none nearer to each other than is asked for."""
+    found: list[float] = []
+    for z in np.unique(feet).tolist():
+        if (not found or z > found[-1] + least) and not ((levels >= z - tolerance.COINCIDENT) & (levels < z + least)).any():
+            found.append(z)
+    return found
 
 
 @dataclass(frozen=True, slots=True, eq=False, kw_only=True)

@@ -1,0 +1,111 @@
+"""The operations on level lands: a large end mill before curved faces are finished, and after that another one for what it left."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Collection, Sequence
+from dataclasses import dataclass
+
+import numpy as np
+
+from trunnion.findings import BadInput, face_tags, info
+from trunnion.model.tool import Tool
+from trunnion.plan.surface.draft import Draft, face_name
+from trunnion.plan.surface.end_mills import MISSED, Chosen, end_mills_for
+from trunnion.plan.surface.lands import ABOVE_TOOL, AROUND_TOOL, BESIDE_SIDES, LAND, REST_LAND, STOCK, Keeping, Land, Standing, lands_of
+from trunnion.plan.surface.reach import BESIDE, Places, places_on, reached
+from trunnion.progress import Progress
+from trunnion.settings import Value
+from trunnion.units import trimmed
+
+WIDTH = 0.6
+"""Distance of an end mill's passes over the width of its flat."""
+DEEPEST = 0.5
+"""mm: the thickest stock that an end mill takes off a land at once; more comes off in even steps."""
+LEAST = 0.02
+"""mm: the depth that cutting data are found for where roughing leaves nothing."""
+SLITS = 0.01
+"""Share of a land that balls may come to and no end mill; a land with more of it stays with them as a whole."""
+FEW = 200
+"""Places on a face that say whether end mills finish all of it."""
+APART = 0.1
+"""mm that an end mill keeps more than roughing's allowance from sides that are not finished yet."""
+
+
+@dataclass(frozen=True, slots=True, eq=False, kw_only=True)
+class Levels:
+    """The lands that end mills finish, with these, and the tags of all faces that they finish: lands, and low sides beside them."""
+
+    lands: tuple[Chosen, ...] = ()
+    tags: frozenset[int] = frozenset()
+
+    def without_feet(self, places: Places) -> Places:
+        """Return the places that are not on the feet of sides that end mills finish."""
+        done = np.zeros(len(places), dtype=bool)
+        for each in self.lands:
+            done |= each.finishes(places)
+        return places.of(~done)
+
+
+def plan_lands(draft: Draft, tags: Collection[int], balls: Sequence[Tool], progress: Progress) -> Levels:
+    """Add operations on the level lands among faces; `balls` would finish them instead."""
+    if not draft.chosen.lands or not {LAND, REST_LAND} <= set(draft.stages):
+        return Levels()
+    chosen, route = draft.chosen, draft.route
+    keeping = Keeping(beside=chosen.rough_allowance + APART, around=chosen.rough_allowance + BESIDE, above=route.reach_clearance)
+    mills = [t for t in draft.cutters("finish") if t.diameter <= route.largest]
+    try:
+        found = end_mills_for(Standing(draft.space), lands_of(draft.space, tags), mills, min((t.radius for t in balls), default=0.0),
+                              chosen.share, keeping, [o.tool for o in draft.operations], progress)
+        found = tuple(c for c in found if not _is_for_balls(draft, c, balls))
+    except BadInput as reason:
+        draft.findings.append(info("route.lands", f"level faces are left to balls: {reason}", remedy="nothing needs to be done"))
+        return Levels()
+    for c in found:
+        if c.left.area > MISSED:
+            draft.findings.append(info("route.land-left", f"{trimmed(c.left.area, 1)} mm2 of the land at {trimmed(c.land.z, 2)} stay in "
+                                       "corners that no end mill gets into", *face_tags(c.land.tags), remedy="finish them by other means"))
+    low = _low_sides(draft, tags, found)
+    for kind, pairs, beside in ((LAND, [(c.tool, c) for c in found], keeping.beside),
+                                (REST_LAND, [(c.rest, c) for c in found if c.rest is not None], 0.0)):
+        by_name = {tool.name: tool for tool, _ in pairs}
+        for name, tool in by_name.items():
+            mine = [c for other, c in pairs if other.name == name]
+            sides = [t for t, c in low.items() if c in mine and (kind == REST_LAND or c.rest is None)]
+            _add(draft, kind, tool, [c.land for c in mine], sides,
+                 {BESIDE_SIDES: beside, AROUND_TOOL: keeping.around, ABOVE_TOOL: keeping.above})
+    return Levels(lands=found, tags=frozenset({t for c in found for t in c.land.tags} | set(low)))
+
+
+def _is_for_balls(draft: Draft, chosen: Chosen, balls: Sequence[Tool]) -> bool:
+    """Say whether balls come to too much of a land that no end mill does: into slits that run out from it."""
+    if chosen.left.area <= MISSED:
+        return False
+    places = places_on(draft.space.skin, chosen.land.tags)
+    places = places.of(chosen.left.contains(places.point[:, :2]))
+    seen = np.zeros(len(places), dtype=bool)
+    for ball in sorted(balls, key=lambda t: t.diameter):
+        seen[~seen] = reached(draft.space, places.of(~seen), ball, draft.route.reach_clearance)
+    return float(seen.sum()) * places.area > max(MISSED, SLITS * chosen.land.region.area)
+
+
+def _low_sides(draft: Draft, tags: Collection[int], lands: Sequence[Chosen]) -> dict[int, Chosen]:
+    """Return the upright faces that the end mills of a land finish all over, with that land."""
+    found = {}
+    for tag in sorted(tags) if lands else ():
+        places = places_on(draft.space.skin, (tag,), FEW)
+        done = next((c for c in lands if len(places) and c.finishes(places).all()), None)
+        if done is not None:
+            found[tag] = done
+    return found
+
+
+def _add(draft: Draft, kind: str, tool: Tool, lands: Sequence[Land], sides: Sequence[int], choices: dict[str, Value]) -> None:
+    tags = tuple(sorted([*(t for land in lands for t in land.tags), *sides]))
+    stock = draft.chosen.rough_allowance
+    depth = max(stock / max(1, math.ceil(stock / DEEPEST)), LEAST)
+    width = WIDTH * (tool.diameter - 2.0 * tool.corner_radius)
+    rules = (draft.stages[kind].rule, f"{tool.name} over {trimmed(sum(land.region.area for land in lands), 0)} mm2: "
+             f"{trimmed(width, 2)} mm between passes, {trimmed(depth, 2)} mm deep.")
+    draft.add(kind, face_name(tags), draft.feature_of(tags), tool, tags, depth, width,
+              {STOCK: stock if kind == LAND else 0.0, "plane.floor.wall_distance": 0.0, **choices}, rules)

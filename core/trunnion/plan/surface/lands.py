@@ -1,0 +1,219 @@
+"""Level lands of a part of curved surfaces, and where an end mill may be whose tip is at their height.
+
+A land is cut flat, in plan. What the part has higher than a land is in the way of its end mill: the part's section just above it, and what
+leans out over that.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Collection, Sequence
+from dataclasses import dataclass, field
+
+import numpy as np
+import shapely
+
+from trunnion import tolerance
+from trunnion.geometry.arrays import Floats
+from trunnion.geometry.region import EMPTY_REGION, Region, union_all
+from trunnion.model.operation import Operation
+from trunnion.model.tool import Tool
+from trunnion.plan.drive import DriveLevel, Floor, PlaneDrive
+from trunnion.plan.surface.areas import connected
+from trunnion.plan.surface.heights import region_of
+from trunnion.plan.surface.reach import level_disc
+from trunnion.plan.surface.settings import number
+from trunnion.plan.surface.space import SurfaceSpace
+
+SKIM = 2e-4
+"""mm: how far above a land what stands in the way is looked for. An end mill enters a fillet that begins on the land by no more than this,
+and goes on over its rim by sqrt(2 R SKIM), less than a stepover of any ball."""
+SIDE = 1.0
+"""mm: what stands higher than this over a land's rim is a side; a fillet that is still lower there is cut along by the rim as it comes."""
+STEP = 2.0
+"""mm: heights that shank and holder are kept off the part at go in such steps, always down: few sections serve many tools."""
+NECK = 1.0
+"""mm that an end mill keeps off unfinished sides that are higher than its flutes: in corners more stands there than roughing's allowance,
+and a neck does not cut."""
+UNDER = math.sin(math.radians(0.01))
+"""Part along -z of the normal from which on a triangle hangs over: 1 um in 6 mm."""
+LAP, EVEN = 1e-3, 0.02
+"""mm that shadows of neighbouring triangles overlap by, and that the rim of them all is evened by, always outwards."""
+TOUCHING = 0.02
+"""mm: a disc that is smaller by this stands free wherever the cutter only touches what is beside it."""
+HAIR = 0.02
+"""mm: half the width up to which what is left along the rim of what is done is none."""
+PLACES = 0.5
+"""mm between the places along a rim that are asked whether a cutter stands free there."""
+LAND, REST_LAND = "land", "rest_land"
+"""Kinds of operations on lands: with a large end mill, and with another one of what that left."""
+STOCK, BESIDE_SIDES, AROUND_TOOL, ABOVE_TOOL = "surface.stock", "surface.beside", "surface.around", "surface.above"
+"""Keys of the choices of operations on lands, mm: the stock that roughing left on them, and what `Keeping` says."""
+
+
+@dataclass(frozen=True, slots=True, eq=False, kw_only=True)
+class Land:
+    """Level faces at one height that hang together: their tags, the height in the cutting frame, and their area in plan."""
+
+    tags: tuple[int, ...]
+    z: float
+    region: Region
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Keeping:
+    """What an end mill keeps, in mm: `beside` from sides of the part that are not finished yet, `around` shank and holder from the part all
+    round, `above` them over it."""
+
+    beside: float
+    around: float
+    above: float
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Standing:
+    """What a part has above heights, in plan; each is found once."""
+
+    space: SurfaceSpace
+    _found: dict[float, Region] = field(init=False, repr=False, default_factory=dict)
+
+    def over(self, z: float) -> Region:
+        """Return the plan area over which the part reaches higher than `z`."""
+        if z not in self._found:
+            if z >= float(self.space.skin.points[:, 2].max()):
+                self._found[z] = EMPTY_REGION
+            else:
+                self._found[z] = self.space.part.section(self.space.frame, z).union(self._hanging(z))
+        return self._found[z]
+
+    def _hanging(self, z: float) -> Region:
+        """Return the shadow of what faces downwards above a height: together with the section there it is all that stands above."""
+        skin = self.space.skin
+        corners = skin.points[skin.triangles]
+        normal = np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0])
+        hangs = (normal[:, 2] < -UNDER * np.linalg.norm(normal, axis=1)) & (corners[:, :, 2].max(axis=1) > z)
+        if not hangs.any():
+            return EMPTY_REGION
+        corners, whole = corners[hangs], corners[hangs][:, :, 2].min(axis=1) >= z
+        pieces = np.concatenate([np.atleast_1d(shapely.polygons(corners[whole][:, :, :2])),
+                                 [shapely.convex_hull(shapely.MultiPoint(_above(c, z))) for c in corners[~whole]]])
+        # Each is grown by itself: then neighbours overlap, where they would only touch along an edge that is none the same.
+        shadow = shapely.union_all(shapely.buffer(pieces, 2.0 * skin.bound + LAP, quad_segs=1))
+        return region_of(shapely.simplify(shapely.buffer(shadow, EVEN, join_style="mitre", mitre_limit=2.0), EVEN))
+
+    def free(self, z: float, tool: Tool, keeping: Keeping) -> Region:
+        """Return the plan area that the envelope of an end mill may be in, its tip at a height: what is in its way, and in that of shank
+        and holder, is left out. It goes on past the blank."""
+        ways = [self.over(z + SKIM)]
+        if keeping.beside > 0.0:
+            ways.append(self.over(z + SIDE).offset(keeping.beside))
+        for z0, r0, _, r1 in tool.profile():
+            more, height = max(r0, r1) - tool.radius, z + max(SKIM, STEP * math.floor((z0 - keeping.above) / STEP))
+            if more > -tolerance.COINCIDENT:
+                ways.append(self.over(height).offset(more + keeping.around))
+            elif keeping.beside > 0.0:
+                ways.append(self.over(height).offset(max(NECK, keeping.beside)))
+        return self.space.around().minus(union_all(ways))
+
+
+def lands_of(space: SurfaceSpace, tags: Collection[int]) -> tuple[Land, ...]:
+    """Return the level lands among faces that look up, from the highest down."""
+    graph, skin = space.part.graph(), space.skin
+    level = [t for t in sorted(tags) if graph.surface[t - 1] == "plane" and _is_level(space, t)]
+    found = []
+    for mine in connected(level, graph):
+        top = float(skin.points[skin.triangles[skin.of(mine)], 2].max())
+        region = union_all([space.part.face_outline(space.frame, t) for t in mine])
+        found.append(Land(tags=mine, z=top, region=region))
+    return tuple(sorted(found, key=lambda land: (-land.z, land.tags)))
+
+
+def _is_level(space: SurfaceSpace, tag: int) -> bool:
+    up = space.frame.local_direction(space.part.graph().normal[tag - 1])[2]
+    z = space.skin.points[space.skin.triangles[space.skin.face == tag], 2]
+    return bool(up > np.cos(tolerance.ANGLE) and np.ptp(z) < tolerance.SLIVER)
+
+
+def covered(land: Land, free: Region, tool: Tool) -> Region:
+    """Return what of a land the flat of an end mill covers that stays in a free area."""
+    room = free.offset(-tool.radius)
+    return room.offset(tool.radius - tool.corner_radius).intersect(land.region) if room else EMPTY_REGION
+
+
+def stands_free(standing: Standing, land: Land, tool: Tool) -> bool:
+    """Say whether the part, as triangles, is nowhere in the way of an end mill that comes right up to what stands beside a land: a section
+    that misses something would let it in."""
+    space = standing.space
+    room = standing.space.around().minus(standing.over(land.z + SKIM)).offset(-tool.radius).intersect(land.region.offset(tool.radius))
+    if not room:
+        return True
+    rim = room.segments()
+    count = np.maximum(np.ceil(rim.length / PLACES), 1.0).astype(np.int64)
+    row = np.repeat(np.arange(len(rim)), count)
+    share = (np.arange(len(row)) - np.repeat(np.cumsum(count) - count, count)) / count[row]
+    disc = level_disc(max(tool.radius - TOUCHING, 0.5 * tool.radius))
+    over = space.skin.drop.drop(rim.at(row, share * rim.length[row]), disc, float(space.low[2]) - 1.0)
+    return bool((over <= land.z + tolerance.FINISH_GOUGE + 2.0 * space.skin.bound).all())
+
+
+def land_drive(operation: Operation, space: SurfaceSpace, before: Sequence[Operation], stock_top: float) -> PlaneDrive:
+    """Return the drive of an end mill on lands, from the highest down: of each what the operations `before` it left.
+
+    Stock that is thicker than the operation's depth comes off in even steps.
+    """
+    standing, keeping, tool = Standing(space), keeping_of(operation), operation.tool
+    stock = number(operation, STOCK)
+    steps = max(1, math.ceil(stock / operation.data.depth - tolerance.COINCIDENT)) if operation.data.depth > 0.0 else 1
+    levels: list[DriveLevel] = []
+    floors: list[Floor] = []
+    for lands in _together(lands_of(space, operation.faces)):
+        z = min(land.z for land in lands)
+        wanted = [left_by(standing, land, before) for land in lands]
+        levels.append(DriveLevel(top=levels[-1].bottom if levels else max(stock_top, z), bottom=z, wanted=union_all(wanted),
+                                 boundary=standing.free(z, tool, keeping)))
+        floors += [Floor(z=land.z + stock * n / steps, region=region, fillet=0.0, face=land.tags[0])
+                   for land, region in zip(lands, wanted, strict=True) if region for n in reversed(range(steps))]
+    return PlaneDrive(feature=operation.feature, kind=operation.kind, levels=tuple(levels), floors=tuple(floors), stock_top=stock_top,
+                      faces=operation.faces)
+
+
+def left_by(standing: Standing, land: Land, before: Sequence[Operation]) -> Region:
+    """Return what operations on a land leave of it: but for hairs along their rims all of it where there are none."""
+    left = land.region
+    for operation in before:
+        if set(operation.faces) & set(land.tags):
+            left = without(left, covered(land, standing.free(land.z, operation.tool, keeping_of(operation)), operation.tool))
+    return left
+
+
+def without(region: Region, done: Region) -> Region:
+    """Return what is left of a region, without hairs along the rims of what is done."""
+    return region.minus(done).opened(HAIR) if done else region
+
+
+def keeping_of(operation: Operation) -> Keeping:
+    """Return what an operation on lands keeps, from its choices."""
+    beside, around, above = (number(operation, key) for key in (BESIDE_SIDES, AROUND_TOOL, ABOVE_TOOL))
+    return Keeping(beside=beside, around=around, above=above)
+
+
+def _together(lands: Sequence[Land]) -> list[list[Land]]:
+    """Return lands, from the highest down, in sets whose heights strategies take for one."""
+    found: list[list[Land]] = []
+    for land in lands:
+        if found and found[-1][0].z - land.z <= tolerance.SEW:
+            found[-1].append(land)
+        else:
+            found.append([land])
+    return found
+
+
+def _above(corners: Floats, z: float) -> Floats:
+    """Return the plan (k, 2) of what of a triangle (3, 3) is above a height."""
+    found = []
+    for a, b in zip(corners, np.roll(corners, -1, axis=0), strict=True):
+        if a[2] >= z:
+            found.append(a[:2])
+        if (a[2] >= z) != (b[2] >= z):
+            found.append(a[:2] + (z - a[2]) / (b[2] - a[2]) * (b - a)[:2])
+    return np.array(found).reshape(-1, 2)
