@@ -19,7 +19,7 @@ from trunnion.settings import choose
 from trunnion.shop import load_shop
 from trunnion.toolpath.stock import PlanningStock
 from trunnion.toolpath.surface.constant import ConstantSettings, constant
-from trunnion.toolpath.surface.flowlines import Flow, flow_lines
+from trunnion.toolpath.surface.flowlines import Crowded, Flow, flow_lines
 from trunnion.toolpath.surface.fronts import AIM, FIRST, scallop_passes
 from trunnion.toolpath.surface.stepovers import spread, stepover_measure
 from trunnion.toolpath.surface.streamline import StreamlineSettings, streamline
@@ -153,6 +153,15 @@ def test_flow_lines_run_between_the_faces_that_are_named() -> None:
 def test_guides_that_cannot_be_are_refused_in_words(words, message: str) -> None:
     with pytest.raises(BadInput, match=message):
         flow_lines(drive_of(plane()), BALL, Flow(**words))
+
+
+def test_flow_lines_that_would_crowd_are_refused() -> None:
+    # Guides at one end of a long strip: the blend stands still in all the rest of it.
+    strip = grid(lambda u, v: np.column_stack([u, v, 0 * u]), lambda u, v: np.column_stack([0 * u, 0 * u, 0 * u + 1.0]),
+                 np.linspace(0.0, 2.0, 9), np.linspace(0.0, 24.0, 97))
+    drive = drive_of(joined(strip, *(plane(1.0, 1.0, n=5, tag=tag, start=start) for tag, start in ((2, -1.0), (3, 2.0)))))
+    with pytest.raises(Crowded, match="constant scallop"):
+        flow_lines(drive, BALL, Flow(first_guide="2", second_guide="3"))
 
 
 @pytest.mark.parametrize(("strategy", "settings"), [(constant, ConstantSettings), (streamline, StreamlineSettings)])

@@ -11,7 +11,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from trunnion.findings import BadInput
+from trunnion.findings import BadInput, Refused
 from trunnion.geometry.arrays import Floats
 from trunnion.geometry.contours import SheetLine, whole_levels
 from trunnion.geometry.fields import Metric, blend, turns_about
@@ -30,6 +30,13 @@ ENOUGH = 6000
 """Squares, as wide as the longest edge, that an area is cut in at most: a blend is smooth, a finer one is no better."""
 SMALLEST = 0.002
 """Share of the area whose steps may be wider than the passes' own: a blend stands still in a sharp corner between guide and rim."""
+CROWDED = 8.0
+"""Passes in the room of one, on the average over an area and one more, from which on flow lines are no way to cut it: guides run into each
+other, or it is a scrap whose guides have little to do with its shape."""
+
+
+class Crowded(Refused):
+    """Flow lines would lie far closer nearly everywhere than they need to; passes at a constant scallop don't."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -47,7 +54,8 @@ def flow_lines(drive: SurfaceDrive, tool: Tool, flow: Flow = Flow(), progress: P
     """Return the passes of contacts over the drive's faces from the first guide to the second, in the cutting frame.
 
     All of them run the same way, the part that is still to be cut on their right: a tool that turns clockwise climbs. Each connected part
-    of the area has its own passes, one after the other. Raises `BadInput` for guides that can't be, `Refused` for a cutter that can't.
+    of the area has its own passes, one after the other. Raises `BadInput` for guides that can't be, `Refused` for a cutter that can't,
+    `Crowded` for an area that flow lines don't suit.
     """
     measure = stepover_measure(tool, drive.height)
     parts = sheet_of(drive.skin, drive.faces).components() if drive.faces else []
@@ -84,6 +92,9 @@ def _lines(metric: Metric, guides: Guides, spiral: bool, progress: Progress) -> 
     slope, area = metric.slope(field)[real], metric.sheet.area()[real]
     order = np.argsort(slope)
     narrowest = slope[order[np.searchsorted(np.cumsum(area[order]), SMALLEST * area.sum())]]
+    if CROWDED * narrowest * (1.0 + float(area.sum() / (slope @ area))) < 1.0:
+        raise Crowded("flow lines between these guides would lie far closer than the scallop wants; passes at a constant scallop don't, "
+                      "nor may those between other guides")
     count = max(math.ceil(1.0 / narrowest), 1)
     lines = [_turned(line) for line in whole_levels(metric.sheet, field * count + 0.5)]
     if spiral and guides.rings and count > 1:

@@ -32,7 +32,7 @@ from trunnion.toolpath.contract import Planned, strategy
 from trunnion.toolpath.stock import PlanningStock
 from trunnion.toolpath.surface.axis import AxisField, fixed, from_point, interpolated, leaning
 from trunnion.toolpath.surface.contacts import Contacts, between, slerp
-from trunnion.toolpath.surface.flowlines import Flow, flow_lines
+from trunnion.toolpath.surface.flowlines import Crowded, Flow, flow_lines
 from trunnion.toolpath.surface.fronts import scallop_passes
 from trunnion.toolpath.surface.lean import STEP, AxisSearch, Course, LeanLimits, free_axes, roomy
 from trunnion.toolpath.surface.linking import Manner, linked
@@ -101,10 +101,7 @@ def point(drive: SurfaceDrive, tool: Tool, data: CuttingData, stock: PlanningSto
         raise Refused(f"{drive.feature}: point milling leans the tool; choose a machine with rotary axes, or another strategy")
     ask, lead, tilt = drive.ask(tool), math.radians(settings.lead), math.radians(settings.tilt)
     ball = grooving(tool, lead, tilt)
-    flow = Flow(first_guide=settings.first_guide, second_guide=settings.second_guide, spiral=settings.spiral)
-    ways = (flow_lines(drive, ball, flow, progress.part(0.0, 0.3)) if settings.pattern == "flow" else
-            # They run with what is inside on their left: the other way round a cutter that turns clockwise climbs.
-            tuple(way.reversed() for way in scallop_passes(drive, ball, settings.chord, progress.part(0.0, 0.3))))
+    ways, told = _ways(drive, ball, settings, progress.part(0.0, 0.3))
     if settings.way == "both":
         ways = tuple(way.reversed() if k % 2 else way for k, way in enumerate(ways))
     limits = LeanLimits(turn=math.radians(settings.turn), steepest=math.radians(settings.steepest))
@@ -121,10 +118,25 @@ def point(drive: SurfaceDrive, tool: Tool, data: CuttingData, stock: PlanningSto
     stepover = stepover_on_plane(max(ball.radius, drive.height), drive.height)
     findings = _left(done, drive, tool)
     if not done.passes:
-        return Planned(findings=findings)
+        return Planned(findings=(*told, *findings))
     manner = Manner(stepover=stepover, safety=settings.safety, lead_radius=settings.lead_radius)
     path, met = _linked(done, drive, tool, data, stock, setup, manner, ask, progress.part(0.9, 1.0))
-    return Planned(path=path, findings=(*findings, *met, *_low(path, drive, tool)))
+    return Planned(path=path, findings=(*told, *findings, *met, *_low(path, drive, tool)))
+
+
+def _ways(drive: SurfaceDrive, ball: Tool, settings: PointSettings, progress: Progress) -> tuple[tuple[Contacts, ...], tuple[Finding, ...]]:
+    """Return the ways of contacts that the pattern asks for, or those of constant scallop where flow lines don't suit the area, and then
+    a finding that says so."""
+    told: tuple[Finding, ...] = ()
+    if settings.pattern == "flow":
+        flow = Flow(first_guide=settings.first_guide, second_guide=settings.second_guide, spiral=settings.spiral)
+        try:
+            return flow_lines(drive, ball, flow, progress), told
+        except Crowded as reason:
+            told = (info("point.pattern", f"{drive.feature}: cut at a constant scallop, for {reason}", drive.feature,
+                         remedy="set surface.point.pattern to constant to have it so without this note"),)
+    # They run with what is inside on their left: the other way round a cutter that turns clockwise climbs.
+    return tuple(way.reversed() for way in scallop_passes(drive, ball, settings.chord, progress)), told
 
 
 def milled(ways: Sequence[Contacts], tool: Tool, field: AxisField, ask: Asker | None, limits: LeanLimits, chord: float,
