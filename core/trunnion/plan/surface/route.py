@@ -318,7 +318,7 @@ def _tell_unreached(draft: Draft, area: Area, places: Places, found: Chosen) -> 
         size = places.area * float(np.isin(places.face, lost).sum())
         remedy = ("turn the part in another setup" if draft.machine.rotary else
                   "machine them on a machine with rotary axes (setup.machine), or turn the part in another setup")
-        draft.findings.append(warning("route.not-planned", f"{area.id}: no cutter reaches {len(lost)} faces with {trimmed(size, 0)} mm2 "
+        draft.findings.append(warning("route.not-planned", f"{area.id}: no cutter reaches {len(lost)} of its faces, {trimmed(size, 0)} mm2 "
                                       "from the tool's direction", *face_tags(lost, most=len(lost)), remedy=remedy))
 
 
