@@ -116,3 +116,12 @@ def test_a_tool_that_lies_flat_leaves_past_the_side_of_the_blank_and_turns_uprig
     rising = lying & (path.position[:, 2] > 12.0)
     assert (path.position[rising, 0] > drive.high[0] + BALL.holder.radius).all()
     assert path.position[lying][-1, 2] >= setup.clearance
+
+
+def test_a_pass_that_begins_by_turning_about_its_tip_has_leads_along_its_way() -> None:
+    turning = straight((5, 10, 0), (25, 10, 0))
+    standing = Pass(tip=np.vstack([turning.tip[:1], turning.tip]), axis=np.tile(UPRIGHT, (3, 1)), normal=np.tile(UPRIGHT, (3, 1)))
+    assert made([standing])[0].position[0] == pytest.approx(made([turning])[0].position[0])
+    # One that only turns is come to and left along its axis.
+    spot = Pass(tip=np.tile(turning.tip[:1], (2, 1)), axis=np.tile(UPRIGHT, (2, 1)), normal=np.tile(UPRIGHT, (2, 1)))
+    assert made([spot])[0].position[0, :2] == pytest.approx([5.0, 10.0])

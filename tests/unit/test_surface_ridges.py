@@ -13,10 +13,12 @@ from trunnion.geometry.sheet import sheet_of
 from trunnion.model.program import ProgramSection
 from trunnion.part.exact import ExactPoints
 from trunnion.plan.surface.cutter import lower_side
-from trunnion.plan.surface.rest import LEFT, left_by
+from trunnion.plan.surface.parting import PART
+from trunnion.plan.surface.rest import BESIDE, left_by, without_met
 from trunnion.plan.surface.scallop import stepover_on_plane
 from trunnion.progress import QUIET
 from trunnion.settings import choose
+from trunnion.shop import load_shop
 from trunnion.toolpath.surface.beside import Strip
 from trunnion.toolpath.surface.constant import ConstantSettings, constant
 from trunnion.toolpath.surface.parallel import ParallelSettings, parallel
@@ -104,7 +106,7 @@ def test_what_a_cutter_leaves_before_a_hollow_too_tight_for_it_is_another_ones_a
     tips = np.array([[3.0, y] for y in np.linspace(-2.0, 0.0, 2001)])
     free = tips[skin.drop.drop(tips, lower_side(BALL), -9.0) <= 1e-4, 1].max()
     found, tags = left_by(skin, (1,), BALL, -9.0, HEIGHT)
-    assert tags == (1 + LEFT,)
+    assert tags == (1 + PART,)
     kept = found.points[found.triangles[found.face == 1]]
     # Where it stands last it is finished, and what is left goes on below it for a stepover.
     assert free < -0.1 and kept[:, :, 1].max() <= free - stepover_on_plane(3.0, HEIGHT) + 0.34
@@ -143,3 +145,23 @@ def test_a_strip_goes_on_over_smooth_joins_but_not_round_edges() -> None:
     assert (inside & (skin.face == 2)).any() and not (inside & (skin.face == 3)).any()
     assert middle[inside & (skin.face == 2), 1].max() < 0.3
     assert not strip.has(middle[:1], np.array([-1])).any()
+
+
+def test_where_a_shank_would_meet_the_part_is_none_of_a_cutters_area() -> None:
+    # A floor beside a wall that stands higher than the flutes: the wide shank keeps the ball off, nearer than it would touch by itself.
+    floor = plane(24.0, 16.0, n=13)
+    wall = grid(lambda u, v: np.column_stack([u, 0 * u, v]), lambda u, v: np.column_stack([0 * u, 0 * u + 1.0, 0 * u]),
+                np.linspace(0.0, 24.0, 13), np.linspace(0.0, 30.0, 3), 2)
+    skin = joined(floor, wall)
+    wide = next(t for t in load_shop().tools if t.form == "ball" and max(max(r0, r1) for _, r0, _, r1 in t.profile()) > t.radius + 4.0)
+    reach = max(max(r0, r1) for z0, r0, _, r1 in wide.profile() if z0 < 30.0)
+    found, tags = without_met(skin, (1,), wide, -200.0, HEIGHT)
+    kept = found.points[found.triangles[found.of(tags)]]
+    around = 2.0 * max(0.3, stepover_on_plane(wide.corner_radius, HEIGHT))
+    assert tags == (1,) and reach > wide.radius
+    assert kept[:, :, 1].min() == pytest.approx(reach + BESIDE + around, abs=0.5)
+    # All that is kept hangs together as one piece with one rim.
+    assert len(sheet_of(found, tags).components()) == 1 and len(sheet_of(found, tags).rims()) == 1
+    # Away from walls nothing changes.
+    alone = plane(24.0, 16.0, n=13)
+    assert without_met(alone, (1,), wide, -200.0, HEIGHT) == (alone, (1,))

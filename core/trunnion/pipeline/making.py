@@ -62,6 +62,8 @@ def make_paths(session: Session, bench: Bench, progress: Progress) -> tuple[Oper
     return tuple(made)
 
 
+LEANING, LEANS = "surface.point", ("lead", "tilt")
+"""The strategy that leans its tool, and the settings by which others do."""
 SETTLED = {"surface.too-steep": {"surface.waterline"}, "surface.too-shallow": {"surface.parallel", "surface.constant"},
            "floor.left": {"plane.floor"}}
 """Findings of strategies that leave slopes or corners to others, and the strategies that cut those."""
@@ -132,7 +134,8 @@ def _make_one(session: Session, room: Room, operation: Operation, progress: Prog
     strategy = registry.get("strategies", operation.strategy)
     chosen = checked(choose(strategy.settings, {**session.choices, **operation.choices}))
     try:
-        setup, stock, drive, told = _driven(session, room, operation, progress)
+        leans = operation.strategy == LEANING or any(getattr(chosen, name, 0.0) != 0.0 for name in LEANS)
+        setup, stock, drive, told = _driven(session, room, operation, leans, progress)
         before = room.before(operation.tool)
         key = digest(operation.strategy, told, operation.tool, operation.data, chosen, stock.digest, setup, before)
         kept = session.path_of(operation.id)
@@ -154,7 +157,7 @@ def _make_one(session: Session, room: Room, operation: Operation, progress: Prog
     return kept
 
 
-def _driven(session: Session, room: Room, operation: Operation, progress: Progress) -> tuple[Setup, PlanningStock, Any, Any]:
+def _driven(session: Session, room: Room, operation: Operation, leans: bool, progress: Progress) -> tuple[Setup, PlanningStock, Any, Any]:
     """Return the setup, the stock and the drive of an operation in its cutting frame, and what tells the drive from others."""
     if session.process is None:
         raise BadCall("no operations yet: generate the route first")
@@ -170,7 +173,7 @@ def _driven(session: Session, room: Room, operation: Operation, progress: Progre
     fixtures = session.fixtures_of(room.setup.name)
     name = operation.choices.get(EARLIER, "")
     earlier = next((t for t in session.process.tools() if t.name == name), None)
-    drive = space.drive_of(operation, earlier, room.around(operation.direction, fixtures, progress))
+    drive = space.drive_of(operation, earlier, room.around(operation.direction, fixtures, progress), leans)
     return space.setup, stock, drive, (drive.digest, fixtures)
 
 

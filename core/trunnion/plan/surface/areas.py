@@ -13,7 +13,8 @@ from trunnion.geometry.facegraph import CONVEX, FaceGraph
 from trunnion.model.blank import Blank
 from trunnion.model.feature import Feature, Recognition
 from trunnion.part.part import Part
-from trunnion.plan.surface.reach import Places, level_disc
+from trunnion.plan.surface.cutter import level_disc
+from trunnion.plan.surface.reach import Places
 from trunnion.plan.surface.space import SurfaceSpace
 
 TIGHT = 8.0

@@ -13,7 +13,7 @@ import numpy as np
 
 from trunnion.findings import Refused
 from trunnion.geometry.arrays import Floats
-from trunnion.geometry.kernels.drop import ROUND, A, B, C
+from trunnion.geometry.kernels.drop import RHO1, ROUND, A, B, C
 from trunnion.model.tool import Tool
 
 SURFACE_FORMS = ("flat", "bull", "ball", "taper", "barrel")
@@ -101,3 +101,10 @@ def _line(start: float, end: float, height: float, slope: float) -> list[float]:
 
 def _arc(start: float, end: float, centre: float, height: float, radius: float) -> list[float]:
     return [start, end, 1.0, centre, height, radius]
+
+
+def level_disc(radius: float) -> Floats:
+    """Return the lower side of a level disc, as kernels of drops know it."""
+    row = np.zeros((1, 6))
+    row[0, RHO1] = radius
+    return row

@@ -20,8 +20,8 @@ from trunnion.model.operation import Operation
 from trunnion.model.tool import Tool
 from trunnion.plan.drive import DriveLevel, Floor, PlaneDrive
 from trunnion.plan.surface.areas import connected
+from trunnion.plan.surface.cutter import level_disc
 from trunnion.plan.surface.heights import region_of
-from trunnion.plan.surface.reach import level_disc
 from trunnion.plan.surface.settings import number
 from trunnion.plan.surface.space import SurfaceSpace
 

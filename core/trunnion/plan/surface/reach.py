@@ -9,18 +9,15 @@ import numpy as np
 
 from trunnion import tolerance
 from trunnion.geometry.arrays import Bools, Floats, Ints
-from trunnion.geometry.kernels.drop import RHO1
 from trunnion.geometry.skin import Skin
 from trunnion.model.tool import Tool
-from trunnion.plan.surface.cutter import lower_side, tip_at
-from trunnion.plan.surface.rest import LIFTED
+from trunnion.plan.surface.cutter import level_disc, lower_side, tip_at
+from trunnion.plan.surface.rest import BESIDE, LIFTED
 from trunnion.plan.surface.space import SurfaceSpace
 from trunnion.progress import QUIET, Progress
 
 SAMPLES = 1500
 """Places that an area is judged by; one of them stands for less than a thousandth of it."""
-BESIDE = 0.2
-"""mm that shank and holder keep from walls beside them."""
 FLAT = (0.5 * (math.sqrt(5.0) - 1.0), 0.5 * (math.sqrt(5.0) - 1.0) ** 2)
 """Steps of an even spread over a square, by the golden ratio and its square."""
 
@@ -103,10 +100,3 @@ def clear_beside(space: SurfaceSpace, places: Places, tool: Tool, bottom: float,
             if (over + allowance + room >= bottom + z0).any():
                 return False
     return True
-
-
-def level_disc(radius: float) -> Floats:
-    """Return the lower side of a level disc, as kernels of drops know it."""
-    row = np.zeros((1, 6))
-    row[0, RHO1] = radius
-    return row

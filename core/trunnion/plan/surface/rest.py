@@ -1,22 +1,18 @@
-"""What an earlier cutter left of faces, as an area of its own: where it was lifted off them, and a little around.
-
-The area's rim is smooth, for passes follow it: it is a level line of a distance, drawn through triangles that are parted along it, and
-narrow necks and bays are filled.
-"""
+"""What an earlier cutter left of faces, as an area of its own: where it was lifted off them, and a little around; and what is none of a
+cutter's area, for its shank or holder would meet the part there."""
 
 from __future__ import annotations
 
-from dataclasses import replace
+import math
 
 import numpy as np
-from scipy.spatial import cKDTree
 
 from trunnion import tolerance
-from trunnion.geometry.arrays import Bools, Floats, Ints
-from trunnion.geometry.sheet import Sheet, edges_of, sheet_of, split_finely
+from trunnion.geometry.arrays import Floats
 from trunnion.geometry.skin import Skin
 from trunnion.model.tool import Tool
-from trunnion.plan.surface.cutter import lower_side, tip_at
+from trunnion.plan.surface.cutter import level_disc, lower_side, tip_at
+from trunnion.plan.surface.parting import parted_near
 from trunnion.plan.surface.scallop import stepover_on_plane
 
 LIFTED = 0.5 * tolerance.GOUGE
@@ -24,121 +20,59 @@ LIFTED = 0.5 * tolerance.GOUGE
 UNSEEN = 0.1
 """Of the scallop height: a cutter that is lifted by no more than this finishes a place."""
 AROUND = 0.3
-"""mm at least that the area goes on past what was left, so that no seam stays; as far as passes are apart where that is more."""
-FILLED = 1.0
-"""Of that: what is narrower than twice this between two parts of the area belongs to it, and no bay of its rim is rounder."""
-FINENESS = 0.5
-"""Of that: the longest edge of the triangles that the rim is drawn through."""
-NEAR_END = 0.05
-"""Share of an edge: how near its ends the rim crosses it at most."""
-BETWEEN = 0.25
-"""Of a triangle's longest side: how far a place of its sides is from the nearest that is asked."""
-LEFT = 1_000_000
-"""Added to a face's tag for the part of it that was left: more than any part has faces."""
+"""mm at least that an area goes on past what was left, so that no seam stays; as far as passes are apart where that is more."""
+MET, MOST = 1.5, 20_000
+"""mm: the longest edge of triangles that are asked whether shank or holder meet something; and how many such squares there are at most."""
+BESIDE = 0.2
+"""mm that shank and holder keep from walls beside them."""
 
 
 def left_by(skin: Skin, tags: tuple[int, ...], earlier: Tool, lowest: float, height: float) -> tuple[Skin, tuple[int, ...]]:
     """Return the skin with what an upright cutter leaves of faces given tags of their own, and those tags; `height` is the scallop height
     in mm that is wanted."""
-    rows = np.flatnonzero(skin.of(tags))
-    place, normal, of = _places(skin, rows)
     limit = min(UNSEEN * height, LIFTED)
-    around = max(AROUND, stepover_on_plane(earlier.corner_radius, height))
-    lifted = _lift(skin, place, normal, earlier, lowest) > limit
-    near = rows[_with_those_near(place, of, lifted, (1.0 + FILLED) * around)]
-    if not len(near):
-        return skin, ()
-    face = skin.face.copy()
-    face[near] += LEFT
-    rough = sheet_of(replace(skin, face=face), tuple(int(t) for t in np.unique(face[near])))
-    fine = split_finely(rough, _length, FINENESS * around)
-    lift = _lift(skin, fine.points, fine.normals, earlier, lowest)
-    inside, outside = _cut(fine, _past_rim(fine, lift - limit, around))
-    # Parts of faces that are finished have their faces' tags again.
-    kept = np.setdiff1d(np.arange(len(face)), near)
-    points, normals, triangles, tag = [skin.points], [skin.normals], [skin.triangles[kept]], [skin.face[kept]]
-    for part, added in ((inside, 0), (outside, LEFT)):
-        triangles.append(part.triangles + sum(len(p) for p in points))
-        points.append(part.points)
-        normals.append(part.normals)
-        tag.append(part.face - added)
-    return replace(skin, points=np.concatenate(points), normals=np.concatenate(normals), triangles=np.concatenate(triangles),
-                   face=np.concatenate(tag)), tuple(int(t) for t in np.unique(inside.face))
+
+    def over(place: Floats, normal: Floats) -> Floats:
+        lift = np.full(len(place), np.inf)
+        up = normal[:, 2] > 0.0
+        tip, top = _stood(skin, place[up], normal[up], earlier, lowest)
+        lift[up] = top - tip[:, 2] - limit
+        return lift
+
+    return parted_near(skin, tags, over, max(AROUND, stepover_on_plane(earlier.corner_radius, height)))
 
 
-def _lift(skin: Skin, place: Floats, normal: Floats, earlier: Tool, lowest: float) -> Floats:
-    """Return by how much (p,) mm other faces lift a cutter that is to touch places (p, 3) with normals (p, 3); infinite where a face looks
-    down."""
-    lift = np.full(len(place), np.inf)
-    up = normal[:, 2] > 0.0
-    at = place[up] + 2.0 * skin.bound * normal[up]
-    tip = tip_at(earlier, at, normal[up], np.tile([0.0, 0.0, 1.0], (len(at), 1)))
-    lift[up] = skin.drop.drop(tip[:, :2], lower_side(earlier), lowest) - tip[:, 2]
-    return lift
+def without_met(skin: Skin, tags: tuple[int, ...], tool: Tool, lowest: float, height: float) -> tuple[Skin, tuple[int, ...]]:
+    """Return the skin and the tags of what of faces an upright tool finishes without its shank or holder meeting the part: all of them
+    where these meet nothing, else not what lies around such places, twice as far as passes are apart at a scallop height in mm."""
+    wider = [(z0, max(r0, r1)) for z0, r0, _, r1 in tool.profile() if max(r0, r1) > tool.radius + tolerance.COINCIDENT]
+    highest = float(skin.points[:, 2].max())
+
+    def over(place: Floats, normal: Floats) -> Floats:
+        met = np.full(len(place), -np.inf)
+        up = normal[:, 2] > -math.sin(tolerance.ANGLE)
+        tip, top = _stood(skin, place[up], normal[up], tool, lowest)
+        stands = np.maximum(top, tip[:, 2])
+        deepest = np.full(len(tip), -np.inf)
+        for z, radius in wider:
+            low = np.flatnonzero(stands + z < highest)
+            if len(low):
+                beside = skin.drop.drop(tip[low, :2], level_disc(radius + BESIDE), lowest)
+                deepest[low] = np.maximum(deepest[low], beside - stands[low] - z)
+        met[up] = deepest
+        return met
+
+    # The passes go on over a rim for the distance of two of them.
+    around = 2.0 * max(AROUND, stepover_on_plane(max(tool.corner_radius, height), height))
+    corners = skin.points[skin.triangles[skin.of(tags)]]
+    area = 0.5 * np.linalg.norm(np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0]), axis=1).sum()
+    met_skin, met = parted_near(skin, tags, over, around, max(MET, math.sqrt(area / MOST)))
+    return (met_skin, tuple(t for t in tags if met_skin.of((t,)).any())) if met else (skin, tags)
 
 
-def _past_rim(sheet: Sheet, over: Floats, around: float) -> Floats:
-    """Return for a sheet's points how far (v,) mm they are inside the rim, negative outside: `around` mm past where the values `over`
-    (v,) are above nothing, bays and necks filled."""
-    away = _distance(sheet, over)
-    bay = FILLED * around
-    inside = _distance(sheet, away - around - bay)
-    return inside - bay
-
-
-def _distance(sheet: Sheet, value: Floats) -> Floats:
-    """Return how far (v,) mm a sheet's points are from where values (v,) are above nothing; infinite where these are nowhere."""
-    above = value > 0.0
-    if not above.any():
-        return np.full(len(value), np.inf)
-    ends = sheet.edges()[0]
-    ends = ends[above[ends[:, 0]] != above[ends[:, 1]]]
-    border = sheet.on_edges(ends, _crossing(value, ends))[0]
-    found = np.asarray(cKDTree(np.concatenate([sheet.points[above], border])).query(sheet.points)[0])
-    found[above] = 0.0
-    return found
-
-
-def _crossing(value: Floats, ends: Ints) -> Floats:
-    """Return the share of the way along edges (k, 2) where values (v,) of different signs are nothing; the middle where one is infinite."""
-    a, b = value[ends].T
-    even = np.isfinite(a) & np.isfinite(b)
-    return np.where(even, np.divide(a, a - b, out=np.full(len(a), 0.5), where=even & (a != b)), 0.5)
-
-
-def _cut(sheet: Sheet, inside: Floats) -> tuple[Sheet, Sheet]:
-    """Return what of a sheet is inside and what outside of the line on which values (v,) of its points are nothing."""
-    ends, side = sheet.edges()
-    isin = inside >= 0.0
-    crossed = np.flatnonzero(isin[ends[:, 0]] != isin[ends[:, 1]])
-    parted, _ = sheet.parted(ends, side, crossed, np.clip(_crossing(inside, ends[crossed]), NEAR_END, 1.0 - NEAR_END))
-    # New points are on the line: the others of a triangle are all on one side of it.
-    signs = np.concatenate([np.where(isin, 1, -1), np.zeros(len(crossed), np.int64)])
-    within = signs[parted.triangles].sum(axis=1) > 0
-    return parted.of(within), parted.of(~within)
-
-
-def _length(a: Floats, a_normal: Floats, b: Floats, b_normal: Floats) -> Floats:
-    return np.asarray(np.linalg.norm(b - a, axis=1))
-
-
-def _places(skin: Skin, rows: Ints) -> tuple[Floats, Floats, Ints]:
-    """Return places (p, 3) on triangles, the faces' unit normals there, and which of them (k, 7) are the corners, the middles of the sides
-    and the middle of each triangle: what a cutter leaves beside a rim may be narrower than a triangle."""
-    used, corners = np.unique(skin.triangles[rows], return_inverse=True)
-    corners = corners.reshape(-1, 3)
-    ends, side = edges_of(corners, len(used))
-    parts = [(x, x[ends].mean(axis=1), x[corners].mean(axis=1)) for x in (skin.points[used], skin.normals[used])]
-    place, normal = (np.concatenate(part) for part in parts)
-    of = np.column_stack([corners, len(used) + side, len(used) + len(ends) + np.arange(len(rows))])
-    return place, normal / np.linalg.norm(normal, axis=1, keepdims=True), of
-
-
-def _with_those_near(place: Floats, of: Ints, lifted: Bools, around: float) -> Bools:
-    """Say which triangles, with places (k, 7) of all (p, 3), come as near as that to a lifted place (p,): wide ones may between theirs."""
-    if not lifted.any():
-        return np.zeros(len(of), dtype=bool)
-    away = np.asarray(cKDTree(place[lifted]).query(place)[0])
-    corners = place[of[:, :3]]
-    longest = np.linalg.norm(corners - np.roll(corners, 1, axis=1), axis=2).max(axis=1)
-    return np.asarray(away[of].min(axis=1) <= around + BETWEEN * longest)
+def _stood(skin: Skin, place: Floats, normal: Floats, tool: Tool, lowest: float) -> tuple[Floats, Floats]:
+    """Return the tips (p, 3) of an upright cutter that touches at places (p, 3) with normals (p, 3), and the heights (p,) that the part
+    lifts it to there."""
+    at = place + 2.0 * skin.bound * normal
+    tip = tip_at(tool, at, normal, np.tile([0.0, 0.0, 1.0], (len(at), 1)))
+    return tip, skin.drop.drop(tip[:, :2], lower_side(tool), lowest)

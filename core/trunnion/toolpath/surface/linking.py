@@ -292,9 +292,9 @@ def _bridged(way: Floats, chord: Floats, allowance: float, error: float) -> Floa
 def _leads(passes: Sequence[Pass], drive: SurfaceDrive, tool: Tool, manner: Manner, progress: Progress) -> tuple[Floats, Floats, Bools]:
     """Return the ways (m, k, 3) onto all passes, up to the first tip, and off them, after the last: quarter circles, lifted where they
     would gouge. And say of each pass but the last whether the way off it and onto the next one needs no lifting (m - 1,)."""
-    coming = _arcs(np.array([p.tip[0] for p in passes]), np.array([p.tip[0] - p.tip[1] for p in passes]),
+    coming = _arcs(np.array([p.tip[0] for p in passes]), np.array([_off(p.tip, p.axis[0]) for p in passes]),
                    np.array([p.normal[0] for p in passes]), np.array([p.axis[0] for p in passes]), manner.lead_radius)[:, ::-1]
-    going = _arcs(np.array([p.tip[-1] for p in passes]), np.array([p.tip[-1] - p.tip[-2] for p in passes]),
+    going = _arcs(np.array([p.tip[-1] for p in passes]), np.array([_off(p.tip[::-1], p.axis[-1]) for p in passes]),
                   np.array([p.normal[-1] for p in passes]), np.array([p.axis[-1] for p in passes]), manner.lead_radius)
     upright = np.array([[_is_upright(p.axis[row]) for p in passes] for row in (0, -1)])
     share = np.linspace(0.0, 1.0, BETWEEN)[:, None]
@@ -313,6 +313,14 @@ def _leads(passes: Sequence[Pass], drive: SurfaceDrive, tool: Tool, manner: Mann
         arcs[uneven] = tips[:, None] + (rise if nearest == 0 else rise[::-1])[None, :, None] * UPRIGHT
     has_room = (lifts[0][1:].max(axis=1, initial=0.0) <= manner.chord) & (lifts[1][:-1].max(axis=1, initial=0.0) <= manner.chord)
     return coming, going, np.asarray(has_room & (lifts[2].max(axis=1, initial=0.0) <= manner.chord) & upright[1, :-1] & upright[0, 1:])
+
+
+def _off(tip: Floats, axis: Floats) -> Floats:
+    """Return the way (3,) on which a pass that begins with tips (k, 3) is left, or come to, there: straight on, or along the axis where
+    the tool only turns about its tip, as a ball does in a hollow as round as it is."""
+    away = tip[0] - tip
+    moved = np.flatnonzero(np.linalg.norm(away, axis=1) > tolerance.COINCIDENT)
+    return np.asarray(away[moved[0]] if len(moved) else axis)
 
 
 def _arcs(tips: Floats, along: Floats, normals: Floats, axes: Floats, radius: float) -> Floats:

@@ -1,0 +1,124 @@
+"""Parts of faces near certain places as areas of their own, with rims that passes can follow: a rim is a level line of a distance, drawn
+through triangles that are parted along it, and narrow necks and bays are filled."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import replace
+
+import numpy as np
+from scipy.spatial import cKDTree
+
+from trunnion.geometry.arrays import Bools, Floats, Ints
+from trunnion.geometry.sheet import Sheet, edges_of, sheet_of, split_finely
+from trunnion.geometry.skin import Skin
+
+FILLED = 1.0
+"""Of the width around places: what is narrower than twice this between two parts of the area belongs to it, and no bay of its rim is
+rounder."""
+FINENESS = 0.5
+"""Of that width: the longest edge of the triangles that the rim is drawn through."""
+NEAR_END = 0.05
+"""Share of an edge: how near its ends the rim crosses it at most."""
+BETWEEN = 0.25
+"""Of a triangle's longest side: how far a place of its sides is from the nearest that is asked."""
+PART = 1_000_000
+"""Added to a face's tag for a part of it: more than any part has faces."""
+
+
+def parted_near(skin: Skin, tags: tuple[int, ...], over: Callable[[Floats, Floats], Floats], around: float,
+                longest: float = 0.0) -> tuple[Skin, tuple[int, ...]]:
+    """Return the skin with what of faces lies within `around` mm of certain places given tags of its own, and those tags.
+
+    `over` says for places (p, 3) with outward unit normals (p, 3) how much (p,) there is of what it is about: places above nothing count.
+    With `longest` mm the faces as a whole get triangles with such edges: what is not near hangs together as it did. Without it only what
+    is near gets finer ones, and triangles beside it no longer share all their corners with it.
+    """
+    rows = np.flatnonzero(skin.of(tags))
+    place, normal, of = _places(skin, rows)
+    near = rows[_with_those_near(place, of, over(place, normal) > 0.0, (1.0 + FILLED) * around)]
+    if not len(near):
+        return skin, ()
+    if longest > 0.0:
+        near = rows
+    face = skin.face.copy()
+    face[near] += PART
+    rough = sheet_of(replace(skin, face=face), tuple(int(t) for t in np.unique(face[near])))
+    fine = split_finely(rough, _length, longest or FINENESS * around)
+    inside, outside = _cut(fine, _past_rim(fine, over(fine.points, fine.normals), around))
+    kept = np.setdiff1d(np.arange(len(face)), near)
+    points, normals, triangles, tag = [skin.points], [skin.normals], [skin.triangles[kept]], [skin.face[kept]]
+    for part, added in ((inside, 0), (outside, PART)):
+        triangles.append(part.triangles + sum(len(p) for p in points))
+        points.append(part.points)
+        normals.append(part.normals)
+        tag.append(part.face - added)
+    return replace(skin, points=np.concatenate(points), normals=np.concatenate(normals), triangles=np.concatenate(triangles),
+                   face=np.concatenate(tag)), tuple(int(t) for t in np.unique(inside.face))
+
+
+def _past_rim(sheet: Sheet, over: Floats, around: float) -> Floats:
+    """Return for a sheet's points how far (v,) mm they are inside the rim, negative outside: `around` mm past where the values `over`
+    (v,) are above nothing, bays and necks filled."""
+    away = _distance(sheet, over)
+    bay = FILLED * around
+    inside = _distance(sheet, away - around - bay)
+    return inside - bay
+
+
+def _distance(sheet: Sheet, value: Floats) -> Floats:
+    """Return how far (v,) mm a sheet's points are from where values (v,) are above nothing; infinite where these are nowhere."""
+    above = value > 0.0
+    if not above.any():
+        return np.full(len(value), np.inf)
+    ends = sheet.edges()[0]
+    ends = ends[above[ends[:, 0]] != above[ends[:, 1]]]
+    border = sheet.on_edges(ends, _crossing(value, ends))[0]
+    found = np.asarray(cKDTree(np.concatenate([sheet.points[above], border])).query(sheet.points)[0])
+    found[above] = 0.0
+    return found
+
+
+def _crossing(value: Floats, ends: Ints) -> Floats:
+    """Return the share of the way along edges (k, 2) where values (v,) of different signs are nothing; the middle where one is infinite."""
+    a, b = value[ends].T
+    even = np.isfinite(a) & np.isfinite(b)
+    return np.where(even, np.divide(a, a - b, out=np.full(len(a), 0.5), where=even & (a != b)), 0.5)
+
+
+def _cut(sheet: Sheet, inside: Floats) -> tuple[Sheet, Sheet]:
+    """Return what of a sheet is inside and what outside of the line on which values (v,) of its points are nothing."""
+    ends, side = sheet.edges()
+    isin = inside >= 0.0
+    crossed = np.flatnonzero(isin[ends[:, 0]] != isin[ends[:, 1]])
+    parted, _ = sheet.parted(ends, side, crossed, np.clip(_crossing(inside, ends[crossed]), NEAR_END, 1.0 - NEAR_END))
+    # New points are on the line: the others of a triangle are all on one side of it.
+    signs = np.concatenate([np.where(isin, 1, -1), np.zeros(len(crossed), np.int64)])
+    within = signs[parted.triangles].sum(axis=1) > 0
+    return parted.of(within), parted.of(~within)
+
+
+def _length(a: Floats, a_normal: Floats, b: Floats, b_normal: Floats) -> Floats:
+    return np.asarray(np.linalg.norm(b - a, axis=1))
+
+
+def _places(skin: Skin, rows: Ints) -> tuple[Floats, Floats, Ints]:
+    """Return places (p, 3) on triangles, the faces' unit normals there, and which of them (k, 7) are the corners, the middles of the sides
+    and the middle of each triangle: what a cutter leaves beside a rim may be narrower than a triangle."""
+    used, corners = np.unique(skin.triangles[rows], return_inverse=True)
+    corners = corners.reshape(-1, 3)
+    ends, side = edges_of(corners, len(used))
+    parts = [(x, x[ends].mean(axis=1), x[corners].mean(axis=1)) for x in (skin.points[used], skin.normals[used])]
+    place, normal = (np.concatenate(part) for part in parts)
+    of = np.column_stack([corners, len(used) + side, len(used) + len(ends) + np.arange(len(rows))])
+    return place, normal / np.linalg.norm(normal, axis=1, keepdims=True), of
+
+
+def _with_those_near(place: Floats, of: Ints, certain: Bools, around: float) -> Bools:
+    """Say which triangles, with places (k, 7) of all (p, 3), come as near as that to a certain place (p,): wide ones may between theirs."""
+    if not certain.any():
+        return np.zeros(len(of), dtype=bool)
+    away = np.asarray(cKDTree(place[certain]).query(place)[0])
+    corners = place[of[:, :3]]
+    longest = np.linalg.norm(corners - np.roll(corners, 1, axis=1), axis=2).max(axis=1)
+    return np.asarray(away[of].min(axis=1) <= around + BETWEEN * longest)
