@@ -23,6 +23,9 @@ AROUND = 0.3
 """mm at least that an area goes on past what was left, so that no seam stays; as far as passes are apart where that is more."""
 MET, MOST = 1.5, 20_000
 """mm: the longest edge of triangles that are asked whether shank or holder meet something; and how many such squares there are at most."""
+ASKED, DOUBT = 1.0, 1.5
+"""mm: one place of each cube of this width, and of each side that faces turn there, is asked first; and by how much wider and lower shank
+and holder are taken then, for its neighbours' sake."""
 BESIDE = 0.2
 """mm that shank and holder keep from walls beside them."""
 
@@ -48,20 +51,26 @@ def without_met(skin: Skin, tags: tuple[int, ...], tool: Tool, lowest: float, he
     wider = [(z0, max(r0, r1)) for z0, r0, _, r1 in tool.profile() if max(r0, r1) > tool.radius + tolerance.COINCIDENT]
     highest = float(skin.points[:, 2].max())
 
-    def over(place: Floats, normal: Floats) -> Floats:
+    def over(place: Floats, normal: Floats, more: float = 0.0) -> Floats:
         met = np.full(len(place), -np.inf)
         up = normal[:, 2] > -math.sin(tolerance.ANGLE)
         tip, top = _stood(skin, place[up], normal[up], tool, lowest)
         stands = np.maximum(top, tip[:, 2])
         deepest = np.full(len(tip), -np.inf)
         for z, radius in wider:
-            low = np.flatnonzero(stands + z < highest)
+            low = np.flatnonzero(stands + z - more < highest)
             if len(low):
-                beside = skin.drop.drop(tip[low, :2], level_disc(radius + BESIDE), lowest)
-                deepest[low] = np.maximum(deepest[low], beside - stands[low] - z)
+                beside = skin.drop.drop(tip[low, :2], level_disc(radius + BESIDE + more), lowest)
+                deepest[low] = np.maximum(deepest[low], beside - stands[low] - z + more)
         met[up] = deepest
         return met
 
+    rows = skin.triangles[skin.of(tags)]
+    middle, normal = skin.points[rows].mean(axis=1), skin.normals[rows].mean(axis=1)
+    normal = normal / np.linalg.norm(normal, axis=1, keepdims=True)
+    some = np.unique(np.column_stack([np.floor(middle / ASKED), np.round(normal)]), axis=0, return_index=True)[1]
+    if not (over(middle[some], normal[some], DOUBT) > 0.0).any():
+        return skin, tags
     # The passes go on over a rim for the distance of two of them.
     around = 2.0 * max(AROUND, stepover_on_plane(max(tool.corner_radius, height), height))
     corners = skin.points[skin.triangles[skin.of(tags)]]
