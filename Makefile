@@ -5,17 +5,20 @@ OUT ?= out/demo
 export QT_QPA_PLATFORM ?= offscreen
 export PYTHONHASHSEED ?= 0
 
-.PHONY: setup demo test test-long bench screenshots run check lint docs clean
+.PHONY: packages setup demo test test-long bench screenshots run check lint docs clean
 
 # The environment is made anew when the lock or the project file changes.
-.venv/made: requirements.lock pyproject.toml
-	sh installer/debian.sh
+.venv/made: requirements.lock pyproject.toml | packages
 	$(PYTHON) -m venv .venv
 	$(BIN)/python -m pip install -q --disable-pip-version-check -r requirements.lock
 	$(BIN)/python -m pip install -q --disable-pip-version-check --no-deps -e .
 	touch .venv/made
 
-setup: .venv/made
+# Every time, because it takes no time and a machine may have lost a package, or an older checkout may have asked for fewer.
+packages:
+	@sh installer/debian.sh
+
+setup: packages .venv/made
 
 demo: setup
 	$(BIN)/trunnion program $$($(BIN)/python -m trunnion_resources B1) -o $(OUT) --name B1

@@ -1,11 +1,14 @@
 #!/bin/sh
-# Installs the Debian packages that Trunnion needs where it may (as root, or by sudo without a password), and says which are
-# missing where it may not. With --display also what a second run of the window's tests on a virtual screen needs.
+# Installs the Debian packages that Trunnion needs where it may (as root, or by sudo without a password), and names those that
+# are missing where it may not: for the core, for drawing, and for a window on an X server (Qt's xcb plugin does not bring its
+# libraries). With --display also the virtual screen for a second run of the window's tests.
 set -u
 
-needed="python3-venv libegl1 libgl1 libfontconfig1 libfreetype6 libdbus-1-3 libglib2.0-0 libxkbcommon0 libx11-6 libgomp1 fonts-dejavu-core"
-display="xvfb xauth libxcb-cursor0 libxcb-icccm4 libxcb-image0 libxcb-keysyms1 libxcb-render-util0 libxcb-shape0 libxcb-xkb1 libxkbcommon-x11-0"
-[ "${1:-}" = "--display" ] && needed="$needed $display"
+core="python3-venv libgomp1"
+drawing="libegl1 libgl1 libfontconfig1 libfreetype6 libdbus-1-3 libglib2.0-0 libxkbcommon0 libx11-6 fonts-dejavu-core"
+window="libxcb-cursor0 libxcb-icccm4 libxcb-image0 libxcb-keysyms1 libxcb-randr0 libxcb-render-util0 libxcb-render0 libxcb-shape0 libxcb-shm0 libxcb-sync1 libxcb-xfixes0 libxcb-xkb1 libx11-xcb1 libxkbcommon-x11-0"
+needed="$core $drawing $window"
+[ "${1:-}" = "--display" ] && needed="$needed xvfb xauth"
 
 command -v dpkg-query >/dev/null 2>&1 || { echo "This is not Debian: make sure you have the equivalents of: $needed"; exit 0; }
 

@@ -3,12 +3,12 @@
 from __future__ import annotations
 
 import multiprocessing
-import os
 import sys
 from collections.abc import Sequence
 from typing import NoReturn
 
-from trunnion.findings import BadCall, TrunnionError
+from trunnion.findings import TrunnionError
+from trunnion_gui.display import check_display
 
 
 def main(arguments: Sequence[str] | None = None) -> int:
@@ -38,12 +38,6 @@ def main(arguments: Sequence[str] | None = None) -> int:
         return QApplication.exec()
     finally:
         tidy.stop()
-
-
-def check_display() -> None:
-    """Raise `BadCall` where there is no screen to open a window on: Qt would end the process without a word of ours."""
-    if sys.platform.startswith("linux") and not any(os.environ.get(name) for name in ("DISPLAY", "WAYLAND_DISPLAY", "QT_QPA_PLATFORM")):
-        raise BadCall("no screen to open the window on (neither DISPLAY nor WAYLAND_DISPLAY is set); start a desktop, or use the commands")
 
 
 def run() -> NoReturn:
