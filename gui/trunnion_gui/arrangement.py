@@ -17,6 +17,11 @@ _LEFT_WIDTH = 344
 _RIGHT_WIDTH = 380
 _HEIGHTS = {"features": 420, "properties": 300}
 _BELOW_HEIGHT = 170
+_LEAST_WIDTHS = {LEFT: _LEFT_WIDTH, RIGHT: 260, BELOW: 200}
+"""A dock is never narrower: names in the tables right stay readable. It is also all that a dock insists on, whatever stands in it: a long
+line in one dock would else take its width from the others."""
+_LEAST_CENTRE = 490
+"""The bars below the picture fit into this; a window of 1280 pixels has it beside both columns."""
 
 
 class Arrangement:
@@ -34,6 +39,7 @@ class Arrangement:
         """Put a widget into a dock of its own."""
         dock = QDockWidget(title, self._window)
         dock.setObjectName(name)
+        widget.setMinimumWidth(_LEAST_WIDTHS[area])
         dock.setWidget(widget)
         self._window.addDockWidget(area, dock)
         self._docks[name] = dock
@@ -48,6 +54,10 @@ class Arrangement:
             dock.setTitleBarWidget(QWidget())  # the tab is title enough, and can be dragged
         docks[0].raise_()
 
+    def names(self) -> tuple[str, ...]:
+        """Return the names of all docks."""
+        return tuple(self._docks)
+
     def dock(self, name: str) -> QDockWidget:
         """Return a dock by its name."""
         return self._docks[name]
@@ -59,6 +69,7 @@ class Arrangement:
 
     def begin(self) -> None:
         """Remember this as the first arrangement, then take up the one a person left."""
+        self._window.centralWidget().setMinimumWidth(_LEAST_CENTRE)
         self._size()
         self._first = self._window.saveState()
         geometry, state = remembered.arrangement("geometry"), remembered.arrangement("state")
@@ -115,6 +126,5 @@ def column(panels: Sequence[QWidget]) -> QScrollArea:
     scroll.setWidgetResizable(True)
     scroll.setFrameShape(QScrollArea.Shape.NoFrame)
     scroll.setHorizontalScrollBarPolicy(Qt.ScrollBarPolicy.ScrollBarAlwaysOff)
-    scroll.setMinimumWidth(_LEFT_WIDTH)
     scroll.setWidget(inside)
     return scroll

@@ -123,6 +123,8 @@ class CutBar(QWidget):
 
     def _make_widgets(self) -> None:
         self.manner = QComboBox()
+        self.manner.setSizeAdjustPolicy(QComboBox.SizeAdjustPolicy.AdjustToMinimumContentsLengthWithIcon)
+        self.manner.setMinimumContentsLength(12)
         for words, kind in ((tr("plane across x"), "x"), (tr("plane across y"), "y"), (tr("plane across z"), "z"),
                             (tr("plane through three places"), THREE), (tr("along a drawn line"), DRAWN)):
             self.manner.addItem(words, kind)
