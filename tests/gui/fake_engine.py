@@ -263,7 +263,8 @@ class FakeEngine:
                     sizes={"depth": HEIGHT - FLOOR, "floor_z": FLOOR, "top_z": HEIGHT, "corner_radius": 8.0, "leans": (0.0, 2.5)}
                     if id.startswith("pocket") else {"thickness": 6.0})
             for id, faces in self._features.items())
-        return replace(session, recognition=Recognition(family="panel", features=features))
+        return replace(session, recognition=Recognition(family="panel", features=features,
+                                                        face_area=np.bincount(self._mesh.face, self._mesh.areas())[1:]))
 
     def _size(self, session: Session) -> Session:
         rows = [SizeEntry(name="depth", value=HEIGHT - FLOOR, unit="mm", feature=f.id, faces=f.with_role("floor"),

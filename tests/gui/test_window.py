@@ -96,6 +96,15 @@ def test_a_deleted_feature_comes_back_with_undo(programmed, idle):
     assert programmed.document.feature("rib-01") is not None
 
 
+def test_the_unexplained_share_follows_a_deletion(programmed, idle):
+    programmed.document.select_feature("profile-01")
+    programmed.registry.run("edit.delete")
+    idle(programmed)
+    around = 2 * (240.0 + 140.0) * 30.0
+    share = 100.0 * around / programmed.document.session.recognition.face_area.sum()
+    assert f"4 faces unexplained ({share:.1f} % of the area)" in programmed.panels["recognize"].result.text()
+
+
 def test_the_feature_menu_changes_a_kind(programmed, idle):
     feature = programmed.document.feature("rib-01")
     change = programmed.features.menu(feature).actions()[0].menu()

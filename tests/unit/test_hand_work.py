@@ -40,6 +40,20 @@ def test_a_deleted_feature_is_not_taken_up_again_and_its_faces_stay_unexplained(
     assert (told.code, told.where) == ("recognize.deleted", ("face 12",))
 
 
+def test_the_share_of_unexplained_faces_follows_a_deletion_and_a_run_after_it(routed):
+    engine, session = routed
+    found = session.recognition
+    gone = next(f for f in found if f.kind == "pocket")
+    loose = set(gone.tags) - {tag for f in found if f.id != gone.id for tag in f.tags}
+    area = engine.bench_of(session).part.graph().area
+    expected = pytest.approx(found.unexplained_share + float(area[[t - 1 for t in loose]].sum() / area.sum()))
+    deleted = found.without(gone.id)
+    assert deleted.unexplained_share == expected
+    assert deleted.unexplained_share > found.unexplained_share
+    again = engine.run(replace(session, recognition=deleted, choices={"recognize.panel.rib_width": 12.5}), "recognize")
+    assert again.recognition.unexplained_share == expected
+
+
 def test_a_deleted_feature_is_known_by_its_faces_when_numbers_change():
     renumbered = replace(FOUND, features=tuple(replace(f, id=f.id.replace("01", "09")) for f in FOUND))
     assert ids(with_features_by_hand(FOUND.without("pocket-01"), renumbered)) == ["pocket-02", "island-09", "rib-09"]

@@ -2,11 +2,14 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import dataclass, field, replace
 from typing import Any
 
+import numpy as np
+
 from trunnion.findings import Finding
+from trunnion.geometry.arrays import Floats
 from trunnion.geometry.frame import WORLD, Frame
 
 Size = float | int | bool | str | tuple[float, ...]
@@ -55,7 +58,8 @@ class Feature:
 class Recognition:
     """What a family found on a part: the frame it chose, features, and the faces that nothing explains (tags).
 
-    `removed` has the faces of each feature that a person deleted: a re-run does not take up again what claims most of them.
+    `face_area` (n_faces,) float64, mm2, is the area of every face of the part in the order of the tags; empty where it is not known, as in
+    features read from XML. `unexplained_share` is the unexplained faces' share of it. `removed` has the faces of each feature that a person deleted: a re-run does not take up again what claims most of them.
     """
 
     family: str
@@ -63,6 +67,7 @@ class Recognition:
     features: tuple[Feature, ...] = ()
     unexplained: tuple[int, ...] = ()
     unexplained_share: float = 0.0
+    face_area: Floats = field(default_factory=lambda: np.zeros(0), compare=False)
     findings: tuple[Finding, ...] = ()
     removed: tuple[tuple[int, ...], ...] = ()
 
@@ -85,7 +90,14 @@ class Recognition:
         gone = self.feature(id)
         kept = tuple(f for f in self.features if f.id != id)
         loose = {*self.unexplained, *gone.tags} - {tag for f in kept for tag in f.tags}
-        return replace(self, features=kept, unexplained=tuple(sorted(loose)), removed=(*self.removed, gone.tags))
+        return replace(self.with_unexplained(loose), features=kept, removed=(*self.removed, gone.tags))
+
+    def with_unexplained(self, tags: Iterable[int]) -> Recognition:
+        """Return the recognition with these faces unexplained, and their share of the area as far as areas are known."""
+        loose = tuple(sorted(tags))
+        total = float(self.face_area.sum())
+        share = float(self.face_area[np.array(loose, dtype=int) - 1].sum()) / total if total > 0.0 else self.unexplained_share
+        return replace(self, unexplained=loose, unexplained_share=share)
 
     def counts(self) -> dict[str, int]:
         """Return the number of features of each kind, in order of appearance."""

@@ -32,7 +32,7 @@ def with_features_by_hand(before: Recognition | None, found: Recognition) -> Rec
     deleted = [f for f in found.features if _claims_most(f, [set(tags) for tags in before.removed])]
     told = [info("recognize.deleted", f"{f.id} was deleted by hand and is not taken up again", *face_tags(f.tags),
                  remedy="undo the deletion, or open the part anew, to have it back") for f in deleted]
-    return replace(found, features=kept, unexplained=tuple(sorted(loose)), findings=(*found.findings, *told), removed=before.removed)
+    return replace(found.with_unexplained(loose), features=kept, findings=(*found.findings, *told), removed=before.removed)
 
 
 def _within(feature: Feature, there: set[int]) -> tuple[Feature, ...]:

@@ -69,7 +69,8 @@ def with_moved(engine: Engine, session: Session, faces: Iterable[int], group: st
     features = tuple(into if f.id == into.id else f for f in features if f.faces)
     features = features if into in features else (*features, into)
     loose = tuple(t for t in found.unexplained if t not in moved)
-    return measured_anew(replace(session, recognition=replace(found, features=features, unexplained=loose)), engine.bench_of(session))
+    after = replace(found.with_unexplained(loose), features=features)
+    return measured_anew(replace(session, recognition=after), engine.bench_of(session))
 
 
 def tags_of(session: Session, what: Sequence[str]) -> tuple[int, ...]:

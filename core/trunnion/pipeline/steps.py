@@ -92,7 +92,8 @@ def _family_settings() -> tuple[type, ...]:
 def _recognize(session: Session, bench: Bench, progress: Progress) -> Result:
     family = family_of(session, bench)
     chosen = checked(choose(family.settings, session.choices))
-    found: Recognition = family.recognize(bench.part.graph(), bench.part, chosen, progress)
+    graph = bench.part.graph()
+    found: Recognition = replace(family.recognize(graph, bench.part, chosen, progress), face_area=graph.area)
     kept = with_features_by_hand(session.recognition, found)
     after = replace(session, recognition=kept)
     return Result(session=after if kept is found else measured_anew(after, bench), findings=kept.findings)

@@ -62,8 +62,7 @@ class SurfaceFamily:
                 for f in found.of_kind("group")}
         features = tuple(f if f.kind != "group" else replace(f, sizes=anew[f.id].sizes) if f.by_hand else anew[f.id]
                          for f in found.features)
-        apart = np.isin(sizes.tag, found.unexplained)
-        return replace(found, features=features, unexplained_share=float(sizes.area[apart].sum() / sizes.area.sum()))
+        return replace(found, features=features)
 
 
 def _sizes(graph: FaceGraph, bounded: Bounded, settings: SurfaceSettings) -> PatchSizes:
