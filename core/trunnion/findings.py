@@ -39,6 +39,10 @@ class Cancelled(Exception):
     """A person asked to stop."""
 
 
+MOST_SHOWN = 8
+"""Names that a line about a finding shows."""
+
+
 class Severity(StrEnum):
     """How much a finding matters: `error` makes the exit code 1, `remark` lets a program be released with remarks."""
 
@@ -62,12 +66,18 @@ class Finding:
     where: tuple[str, ...] = ()
     remedy: str = ""
 
+    @property
+    def place(self) -> str:
+        """The first `MOST_SHOWN` names of `where` and how many more there are, as a line on a screen has room for; JSON has all."""
+        shown, more = ", ".join(self.where[:MOST_SHOWN]), len(self.where) - MOST_SHOWN
+        return f"{shown} and {more} more" if more > 0 else shown
+
     def as_dict(self) -> dict[str, object]:
         """Return the finding as the JSON that other programs rely on."""
         return {"severity": self.severity.value, "code": self.code, "text": self.text, "where": list(self.where), "remedy": self.remedy}
 
     def __str__(self) -> str:
-        where = f" ({', '.join(self.where)})" if self.where else ""
+        where = f" ({self.place})" if self.where else ""
         remedy = f": {self.remedy}" if self.remedy else ""
         return f"{self.severity.value} {self.code}: {self.text}{where}{remedy}"
 
@@ -97,12 +107,10 @@ def has_errors(findings: Iterable[Finding]) -> bool:
     return any(f.severity is Severity.ERROR for f in findings)
 
 
-def face_tags(faces: Iterable[int], most: int = 8) -> tuple[str, ...]:
-    """Return the words that name faces in a finding, cut off with a count when there are many.
+def face_tags(faces: Iterable[int]) -> tuple[str, ...]:
+    """Return the words that name faces in a finding, each once, in the order of their tags.
 
-    >>> face_tags([3, 1])
+    >>> face_tags([3, 1, 3])
     ('face 1', 'face 3')
     """
-    ordered = sorted(set(faces))
-    words = tuple(f"face {n}" for n in ordered[:most])
-    return words if len(ordered) <= most else (*words, f"and {len(ordered) - most} more faces")
+    return tuple(f"face {n}" for n in sorted(set(faces)))

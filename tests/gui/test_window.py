@@ -11,6 +11,7 @@ from PySide6.QtGui import QDropEvent
 from PySide6.QtTest import QTest
 from PySide6.QtWidgets import QPushButton, QToolButton
 
+from trunnion.findings import face_tags, warning
 from trunnion_gui import icons, remembered
 from trunnion_gui.finder import score
 from trunnion_gui.steps import STAGES, STEPS, joined_state
@@ -141,6 +142,15 @@ def test_a_click_on_a_finding_selects_what_it_names(programmed):
     row = next(r for r in range(table.rowCount()) if "leans" in table.item(r, 1).text())
     QTest.mouseClick(table.viewport(), LEFT, pos=table.visualItemRect(table.item(row, 1)).center())
     assert programmed.document.selection.id == "pocket-01"
+
+
+def test_a_message_about_many_faces_names_eight_and_selects_all(opened):
+    faces = face_tags(range(1, 16))
+    opened.document.noticed.emit(warning("fake.many", "many faces lean", *faces))
+    table = opened.messages.table
+    assert table.item(0, 2).text() == f"{', '.join(faces[:8])} and 7 more"
+    QTest.mouseClick(table.viewport(), LEFT, pos=table.visualItemRect(table.item(0, 1)).center())
+    assert opened.document.selection.faces == tuple(range(1, 16))
 
 
 def test_a_bad_file_is_told_with_what_to_do(window, tmp_path, idle):

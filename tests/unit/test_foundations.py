@@ -21,8 +21,14 @@ def test_only_errors_count_as_errors() -> None:
     assert has_errors([findings.remark("a", "b"), findings.error("a", "b")])
 
 
-def test_many_faces_are_named_shortly() -> None:
-    assert face_tags(range(1, 12), most=2) == ("face 1", "face 2", "and 9 more faces")
+def test_a_line_names_eight_places_and_json_all_of_them() -> None:
+    found = findings.warning("a.b", "they lean", "pocket-01", *face_tags(range(200, 0, -1)), remedy="tilt")
+    assert str(found).endswith("(pocket-01, face 1, face 2, face 3, face 4, face 5, face 6, face 7 and 193 more): tilt")
+    assert found.as_dict()["where"] == ["pocket-01", *(f"face {n}" for n in range(1, 201))]
+
+
+def test_eight_places_are_all_named() -> None:
+    assert findings.info("a.b", "so", *face_tags(range(1, 9))).place.endswith("face 7, face 8")
 
 
 def test_a_part_of_progress_reports_its_own_share() -> None:

@@ -58,7 +58,7 @@ class MessagesDock(QWidget):
         if listed == self.findings:
             return
         self.findings = listed
-        tables.fill(self.table, [("", f.text, ", ".join(f.where), f.remedy, f.code) for f in listed],
+        tables.fill(self.table, [("", f.text, f.place, f.remedy, f.code) for f in listed],
                     icons=[icons.icon(f.severity.value, self._colour(f.severity)) for f in listed])
         self._share_width()
         self.counted.emit(len(listed))

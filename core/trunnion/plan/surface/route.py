@@ -319,7 +319,7 @@ def _tell_unreached(draft: Draft, area: Area, places: Places, found: Chosen) -> 
         remedy = ("turn the part in another setup" if draft.machine.rotary else
                   "machine them on a machine with rotary axes (setup.machine), or turn the part in another setup")
         draft.findings.append(warning("route.not-planned", f"{area.id}: no cutter reaches {len(lost)} of its faces, {trimmed(size, 0)} mm2 "
-                                      "from the tool's direction", *face_tags(lost, most=len(lost)), remedy=remedy))
+                                      "from the tool's direction", *face_tags(lost), remedy=remedy))
 
 
 def _in_order(draft: Draft, stages: Sequence[Stage]) -> list[Operation]:

@@ -113,9 +113,9 @@ def _findings(faces: tuple[FaceProof, ...], of_reachable: float, settings: Proof
         unfinished = [f for f in missed if f.area - f.finished > tolerance.AREA]
         say = warning if unfinished else info
         found.append(say("verify.unplanned", f"no operation planned {len(missed)} faces, {len(unfinished)} of them are not finished",
-                         *face_tags((f.face for f in missed), most=len(missed)), remedy="add operations for these faces"))
+                         *face_tags(f.face for f in missed), remedy="add operations for these faces"))
     lost = [f for f in faces if not f.reachable]
     if lost:
         found.append(info("verify.unreachable", f"no cutter of the catalogue reaches all of {len(lost)} faces from this side",
-                          *face_tags((f.face for f in lost), most=len(lost))))
+                          *face_tags(f.face for f in lost)))
     return tuple(found)
