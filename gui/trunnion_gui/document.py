@@ -1,14 +1,14 @@
 """What the window is about: the session with its history, what is selected, and the job that runs. Views read it and repaint.
 
 A slot builds an edit and hands it over (`edit`), or asks for a job (`open`, `run`, `save`, `write`); the worker computes and the
-signals tell. While a run goes on, `shown` holds what is done so far; `session` stays as it was until the run ends, so that a
-cancelled or crashed job leaves nothing behind. What was done before a step refused (no plan for this family) is kept.
+signals tell. While a run goes on, `shown` holds what is done so far; `session` stays as it was until the run ends. Steps that a run
+finished before it was cancelled, refused or crashed are kept, as one entry of the history.
 """
 
 from __future__ import annotations
 
 import time
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Any
@@ -27,7 +27,7 @@ from trunnion_gui import edits
 from trunnion_gui.drawing import Drawing
 from trunnion_gui.edits import Edit, History
 from trunnion_gui.i18n import tr
-from trunnion_gui.steps import until
+from trunnion_gui.steps import STEPS, TITLES, until
 from trunnion_gui.verbs import Group, Opened, State
 from trunnion_gui.worker import ENGINE, Reply, Worker
 
@@ -51,6 +51,8 @@ class Job:
     started: float
     path: str = ""
     is_recovery: bool = False
+    project: str = ""
+    """The project file that recovered work belongs to."""
 
 
 NOTHING = Selection()
@@ -93,10 +95,14 @@ class Document(QObject):
         self.selection = NOTHING
         self.job: Job | None = None
         self.running_step = ""
+        self._doing = ""
         self._quiet: dict[int, str] = {}
         self._then = ""
         self._settled: dict[str, str] = {}
-        self._kept = (b"", "")
+        self.kept = (b"", "")
+        """The part file's bytes and suffix, as they go into a project file."""
+        self.holds_work: Callable[[Callable[[], None]], bool] = lambda go_on: False
+        """Asked before another part is opened: whether unsaved work stands in the way. It then calls what it is given later, or never."""
         self.worker = Worker(factory, self)
         self.worker.replied.connect(self._receive)
         self.worker.restarted.connect(self._attach)
@@ -122,13 +128,33 @@ class Document(QObject):
         """Whether a part is open."""
         return self.session.part is not None
 
+    @property
+    def name(self) -> str:
+        """The file's name that a person knows the work by: the project's, or the part's while there is none."""
+        return Path(self.project or self.path).name
+
+    @property
+    def has_unsaved_work(self) -> bool:
+        """Whether anything would be lost: an edit, a run, or the steps that a run has finished so far."""
+        return self.has_part and (self.history.is_dirty or self.shown is not self.session)
+
     # jobs
 
-    def open(self, path: str | Path, solid: int | None = None, *, is_recovery: bool = False) -> None:
-        """Open a part or a project file; what is recovered from an autosave still has to be saved."""
-        if self._is_free():
-            label = tr("opening {name}").format(name=Path(path).name)
-            self._start("open", label, str(path), solid, path=str(path), is_recovery=is_recovery)
+    def open(self, path: str | Path, solid: int | None = None) -> None:
+        """Open a part or a project file, after a person was asked about unsaved work."""
+        self._open(tr("opening {name}").format(name=Path(path).name), str(path), solid)
+
+    def recover(self, path: str | Path, project: str) -> None:
+        """Take up work from an autosave; it belongs to a project file (empty: none yet) and still has to be saved there."""
+        self._open(tr("recovering {name}").format(name=Path(project or path).name), str(path), None, is_recovery=True, project=project)
+
+    def _open(self, label: str, path: str, solid: int | None, *, is_recovery: bool = False, project: str = "") -> None:
+        def go_on() -> None:
+            if self._is_free():
+                self._start("open", label, path, solid, path=path, is_recovery=is_recovery, project=project)
+
+        if self._is_free() and not self.holds_work(go_on):
+            go_on()
 
     def run(self, last: str, label: str) -> None:
         """Compute what is stale up to and including a step. Asked while a file is being opened, it runs right after."""
@@ -150,11 +176,6 @@ class Document(QObject):
         """Write the project file."""
         if self._is_free() and self._needs_part():
             self._start("save", tr("saving {name}").format(name=Path(path).name), self.session, str(path), path=str(path))
-
-    def autosave(self, path: str | Path) -> None:
-        """Write the session beside, without telling anybody; done only while nothing runs."""
-        if not self.is_busy and self.has_part:
-            self._ask_quietly("save", self.session, str(path))
 
     def write(self, folder: str | Path) -> None:
         """Write programs, tool list, XML and report into a folder."""
@@ -333,9 +354,10 @@ class Document(QObject):
         """Whether nothing is stale up to a step; while the states of a fresh edit are still asked for, nobody knows."""
         return "states" not in self._quiet.values() and all(self.states.get(s) in ("done", "problem") for s in until(last))
 
-    def _start(self, verb: str, label: str, *arguments: Any, path: str = "", is_recovery: bool = False) -> None:
-        self._settled = self.states
-        self.job = Job(self.worker.ask(verb, *arguments), verb, label, time.monotonic(), path, is_recovery)
+    def _start(self, verb: str, label: str, *arguments: Any, path: str = "", is_recovery: bool = False,
+               project: str = "") -> None:
+        self._settled, self._doing = self.states, ""
+        self.job = Job(self.worker.ask(verb, *arguments), verb, label, time.monotonic(), path, is_recovery, project)
         self.job_changed.emit()
         self.progressed.emit(0.0, label)
 
@@ -351,7 +373,7 @@ class Document(QObject):
 
     def _attach(self) -> None:
         if self.has_part:
-            self._ask_quietly("attach", self.session, *self._kept)
+            self._ask_quietly("attach", self.session, *self.kept)
         if not self.groups:
             self._ask_quietly("settings")
 
@@ -396,12 +418,16 @@ class Document(QObject):
 
     def _receive_job(self, job: Job, reply: Reply) -> None:
         if reply.kind == "progress":
+            self._doing = reply.text or self._doing
             self.progressed.emit(reply.fraction, reply.text)
         elif reply.kind == "stage":
             self._receive_stage(*reply.value)
         else:
-            self.job, self.running_step = None, ""
-            self._finish(job, reply)
+            step, self.job, self.running_step = self.running_step, None, ""
+            if reply.kind == "done":
+                self._finish(job, reply)
+            else:
+                self._stop(job, reply, step)
             self.job_changed.emit()
             then, self._then = self._then, ""
             if then and job.verb == "open" and reply.kind == "done":
@@ -414,15 +440,28 @@ class Document(QObject):
         else:
             self._show(state.session, state.steps)
 
-    def _finish(self, job: Job, reply: Reply) -> None:
-        if reply.kind != "done":
+    def _stop(self, job: Job, reply: Reply, step: str) -> None:
+        """Keep the steps that a job finished before it stopped short, and tell where it stopped and what is kept."""
+        finished = [TITLES[s] for s in STEPS if s in self.shown.records and self.shown.records[s] != self.session.records.get(s)]
+        if finished:
+            self.history.push(job.label, self.shown)
+            self._show(self.shown, self.states)
+        else:
             self._show(self.session, self._settled)
-            if reply.kind == "failed":
-                self.notice(reply.text)
-            elif reply.kind == "crashed":
-                self.notice(tr("{job} was lost: {reason}").format(job=job.label, reason=reply.text),
-                            tr("your session is unchanged; try again, or save and report the part"))
-            return
+        kept = tr("finished and kept: {steps}").format(steps=", ".join(tr(t) for t in finished)) if finished else \
+            tr("your session is as it was")
+        if reply.kind == "cancelled":
+            at = " · ".join(words for words in (tr(TITLES[step]) if step else "", self._doing) if words)
+            where = tr("{job} was cancelled at: {place}").format(job=job.label, place=at) if at else \
+                tr("{job} was cancelled").format(job=job.label)
+            self.notice(where, kept, severity=Severity.INFO)
+        elif reply.kind == "crashed":
+            self.notice(tr("{job} was lost: {reason}").format(job=job.label, reason=reply.text),
+                        tr("{kept}; try again, or save and report the part").format(kept=kept))
+        else:
+            self.notice(reply.text, kept if finished else "")
+
+    def _finish(self, job: Job, reply: Reply) -> None:
         if job.verb == "open":
             self._install(job, reply.value)
         elif job.verb == "run":
@@ -461,11 +500,11 @@ class Document(QObject):
     def _install(self, job: Job, opened: Opened) -> None:
         part = opened.state.session.part
         self.path = part.path if job.is_recovery and part is not None else job.path
-        self.project = job.path if job.path.endswith(PROJECT) and not job.is_recovery else ""
+        self.project = job.project if job.is_recovery else job.path if job.path.endswith(PROJECT) else ""
         self.history = History(opened.state.session)
         if job.is_recovery:
             self.history.mark_saved(None)
-        self.drawing, self._kept = opened.drawing, opened.kept
+        self.drawing, self.kept = opened.drawing, opened.kept
         self._drawings = {opened.state.session.cuts: opened.drawing}
         self.selection = NOTHING
         self.shown, self.states = opened.state.session, opened.state.steps

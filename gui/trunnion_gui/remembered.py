@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import contextlib
 import os
 from pathlib import Path
 
@@ -66,8 +67,15 @@ def left_behind() -> Path | None:
 
 
 def _runs(path: Path) -> bool:
+    """Whether the program that an autosave belongs to still runs: its number may have been given to another one since."""
     try:
-        os.kill(int(path.stem.removeprefix("autosave-")), 0)
-    except (ValueError, ProcessLookupError, OSError):
+        number = int(path.stem.removeprefix("autosave-"))
+        os.kill(number, 0)
+    except (ValueError, OverflowError, ProcessLookupError):
         return False
+    except OSError:
+        return True  # it runs, for another user
+    with contextlib.suppress(OSError):
+        started = Path(f"/proc/{number}").stat().st_mtime
+        return started <= path.stat().st_mtime
     return True

@@ -49,7 +49,7 @@ def opened(part: str | Path, *, size: tuple[int, int] = (1600, 1000), factory: s
 
     app = QApplication.instance() or QApplication(["trunnion"])
     window = Window(factory or ENGINE)
-    window.confirms_closing = False
+    window.unsaved.asks = False
     try:
         window.use_theme(colours.theme(theme))
         window.resize(*size)

@@ -8,11 +8,7 @@ from pathlib import Path
 
 from PySide6.QtCore import QTimer
 from PySide6.QtGui import QCloseEvent, QDragEnterEvent, QDropEvent, QShowEvent
-from PySide6.QtWidgets import (
-    QFileDialog,
-    QMainWindow,
-    QMessageBox,
-)
+from PySide6.QtWidgets import QFileDialog, QMainWindow
 
 import trunnion_resources
 from trunnion import __version__
@@ -51,6 +47,7 @@ from trunnion_gui.player import Player
 from trunnion_gui.recovery import Recovery
 from trunnion_gui.status import Status
 from trunnion_gui.steps import STAGES
+from trunnion_gui.unsaved import UnsavedWork
 from trunnion_gui.widgets.export import SUFFIXES, ExportDialog
 from trunnion_gui.widgets.panel import Panel
 from trunnion_gui.worker import ENGINE
@@ -65,7 +62,7 @@ class Window(QMainWindow):
 
     def __init__(self, factory: str = ENGINE) -> None:
         super().__init__()
-        self.confirms_closing = True
+        self._is_leaving = False
         self.setWindowTitle("Trunnion")
         self.setWindowIcon(icons.window_icon())
         self.setAcceptDrops(True)
@@ -92,12 +89,14 @@ class Window(QMainWindow):
         self.setStatusBar(self.status)
         self.finder = Finder(self.registry, self)
         self.following = Following(self.player, self.code, self.process, self)
-        self.recovery = Recovery(self.document, self)
+        self.unsaved = UnsavedWork(self.document, self.save, self)
+        self.document.holds_work = self.unsaved.holds
+        self.recovery = Recovery(self.document, self.centre.notice, self)
         self._connect()
         self.use_theme(self.theme)
         self.arrangement.begin()
         self.centre.welcome.show_recent(remembered.recent())
-        self.recovery.offer(self.centre.notice)
+        self.recovery.offer()
         self._refresh()
 
     # what a person is asked; tests replace these
@@ -230,20 +229,18 @@ class Window(QMainWindow):
         QTimer.singleShot(0, self.arrangement.settle)
 
     def closeEvent(self, event: QCloseEvent) -> None:
-        if self.confirms_closing and self.document.has_part and self.document.history.is_dirty and not self._may_close():
+        if not self._is_leaving and self.unsaved.holds(self._leave):
             event.ignore()
             return
         self.arrangement.keep()
         self.recovery.end()
         self.document.close()
-        remembered.autosave_file().unlink(missing_ok=True)
         self.centre.scene.end()
         super().closeEvent(event)
 
-    def _may_close(self) -> bool:
-        answer = QMessageBox.question(self, tr("Close Trunnion"), tr("There are changes that were not saved. Close without saving?"),
-                                      QMessageBox.StandardButton.Discard | QMessageBox.StandardButton.Cancel)
-        return answer == QMessageBox.StandardButton.Discard
+    def _leave(self) -> None:
+        self._is_leaving = True
+        self.close()
 
     def show_playback(self, on: bool) -> None:
         """Open or close the playback; the deviation map and the playback take turns."""

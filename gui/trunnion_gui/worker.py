@@ -2,7 +2,8 @@
 
 CAD calls hold the interpreter's lock for seconds, so they run in one spawned process (never forked). A thread sends, a thread
 receives, and replies reach the window as a queued signal: the window never waits. A request is cancelled through a shared number
-that its progress looks at; one that does not obey within `GRACE_S` has its process ended and a fresh one started.
+that its progress looks at; one that does not obey within `GRACE_S` (`WRITING_GRACE_S` while it writes files) has its process ended and a
+fresh one started.
 """
 
 from __future__ import annotations
@@ -28,7 +29,11 @@ from trunnion_gui.parcel import packed, unpacked
 from trunnion_gui.verbs import VERBS
 
 ENGINE = "trunnion.pipeline:Engine"
-GRACE_S = 2.0
+GRACE_S = 0.35
+"""s: a person who cancels waits for half a second at most, the end of a process that hears nothing and the start of another included."""
+WRITING_GRACE_S = 5.0
+"""s: half a folder of programs is worse than a late answer."""
+_WRITING = ("save", "write", "export")
 _TELL_EVERY_S = 0.05
 _CRASHES_IN_A_ROW = 3
 
@@ -94,7 +99,7 @@ def _fault_line(request: Request, fault: Exception) -> str:
 
     last = traceback.extract_tb(fault.__traceback__)[-1]
     where = f"{os.path.basename(last.filename)}:{last.lineno}"
-    return f"{request.verb} met a fault of the program ({type(fault).__name__} at {where}: {fault}); your session is unchanged"
+    return f"{request.verb} met a fault of the program ({type(fault).__name__} at {where}: {fault})"
 
 
 def _answer(engine: Any, request: Request, pipe: Connection, cancelled: Any) -> Reply:
@@ -165,10 +170,12 @@ class Worker(QObject):
 
     def cancel(self, number: int) -> None:
         """Ask a request to stop; end its process when it does not obey in time."""
-        if self._process is None or all(r.number != number for r in self._awaited):
+        asked = next((r for r in self._awaited if r.number == number), None)
+        if self._process is None or asked is None:
             return
         self._cancelled.value = max(self._cancelled.value, number)
-        QTimer.singleShot(int(GRACE_S * 1000), lambda: self._insist(number))
+        grace = WRITING_GRACE_S if asked.verb in _WRITING else GRACE_S
+        QTimer.singleShot(int(grace * 1000), lambda: self._insist(number))
 
     def forget(self, number: int) -> None:
         """Await no reply to a request any more: it is dropped when it comes."""

@@ -39,7 +39,7 @@ def make_window(qtbot):
 
     def make(factory="fake_engine:FakeEngine", wait=True):
         window = Window(factory)
-        window.confirms_closing = False
+        window.unsaved.asks = False
         window.resize(1440, 900)
         qtbot.addWidget(window)
         made.append(window)

@@ -5,9 +5,9 @@ Everything is worked out at once from the declared settings, so that the window'
 
 from __future__ import annotations
 
+import hashlib
 import json
 import os
-import pickle
 import time
 from dataclasses import replace
 from pathlib import Path
@@ -31,7 +31,10 @@ from trunnion.post.header import STAMP_LINES, plan_digest
 from trunnion.post.release import release
 from trunnion.progress import QUIET
 from trunnion.settings import choose, digest, setting, settings
+from trunnion.store.project import load_project, save_project
 
+PART_BYTES = b"a made-up part"
+PART_DIGEST = hashlib.sha256(PART_BYTES).hexdigest()
 STEPS = ("recognize", "size", "blank", "route", "optimize", "toolpath", "verify")
 LENGTH, WIDTH, HEIGHT, FLOOR = 240.0, 140.0, 30.0, 6.0
 FINDINGS = {"recognize": (warning("panel.leaning-wall", "a wall leans over the floor", "pocket-01", "face 2",
@@ -199,18 +202,18 @@ class FakeEngine:
         if not path.exists():
             raise BadInput(f"{path.name} can't be read: there is no such file")
         if path.suffix == ".trunnion":
-            session = pickle.loads(path.read_bytes())
+            session, _, _ = load_project(path)
         elif path.suffix not in (".step", ".igs", ".stpz"):
             raise BadInput(f"{path.name} is neither STEP nor IGES: export the part as STEP AP214 or AP242")
         else:
-            session = Session(part=PartInfo(path=str(path), name=path.stem, digest="0123", unit="mm", n_faces=int(self._mesh.face.max()),
+            session = Session(part=PartInfo(path=str(path), name=path.stem, digest=PART_DIGEST, unit="mm", n_faces=int(self._mesh.face.max()),
                                             n_solids=1, solid=1, area=1e5, volume=4e5, low=np.zeros(3),
                                             high=np.array([LENGTH, WIDTH, HEIGHT])))
         self._attached = session.part.name
         return session
 
     def keep(self) -> tuple[bytes, str]:
-        return b"a made-up part", ".step"
+        return PART_BYTES, ".step"
 
     def attach(self, session, data=b"", suffix="", progress=QUIET) -> None:
         self._attached = session.part.name
@@ -219,7 +222,7 @@ class FakeEngine:
         return self._mesh
 
     def save(self, session, path) -> None:
-        Path(path).write_bytes(pickle.dumps(session))
+        save_project(session, path, *self.keep())
 
     def write(self, session, folder, *, name="", date="", progress=QUIET) -> tuple[str, ...]:
         Path(folder).mkdir(parents=True, exist_ok=True)

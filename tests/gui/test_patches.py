@@ -52,7 +52,7 @@ def segmented(qapp, tmp_path_factory):
     with pytest.MonkeyPatch.context() as patch:
         patch.setenv("TRUNNION_SETTINGS", str(tmp_path_factory.mktemp("settings")))
         window = Window()
-        window.confirms_closing = False
+        window.unsaved.asks = False
         window.resize(1440, 900)
         window.show()
         window.document.open(written(domed_plate(), name="domes"))

@@ -14,7 +14,7 @@ from PySide6.QtWidgets import QPushButton, QToolButton
 from trunnion.findings import face_tags, warning
 from trunnion_gui import icons, remembered
 from trunnion_gui.finder import score
-from trunnion_gui.steps import STAGES, STEPS, joined_state
+from trunnion_gui.steps import STAGES, STEPS, TITLES, joined_state
 
 LEFT = Qt.MouseButton.LeftButton
 
@@ -293,26 +293,6 @@ def test_light_and_dark_change_and_are_remembered(window):
     assert window.theme.name == "light"
 
 
-def test_a_session_left_behind_is_offered(make_window, tmp_path):
-    left = remembered.autosave_file().with_name("autosave-999999999.trunnion")
-    left.write_bytes(b"")
-    window = make_window()
-    assert window.centre.notice.isVisible()
-    assert "without being saved" in window.centre.notice.text
-
-
-def test_a_recovered_session_still_has_to_be_saved(make_window, programmed, idle):
-    left = remembered.autosave_file().with_name("autosave-999999999.trunnion")
-    programmed.document.autosave(left)
-    idle(programmed)
-    window = make_window()
-    QTest.mouseClick(next(b for b in window.centre.notice.findChildren(QPushButton) if b.text() == "Recover"), LEFT)
-    idle(window)
-    assert window.document.session.verdict is not None
-    assert window.document.history.is_dirty and window.document.project == ""
-    assert not left.exists()
-
-
 def test_what_is_up_to_date_is_not_computed_again(programmed, idle):
     before = programmed.document.session
     programmed.document.program()
@@ -351,8 +331,10 @@ def test_a_state_of_two_steps_is_the_one_that_asks_for_attention():
 
 def test_the_panels_stand_for_the_pipelines_steps():
     from trunnion.pipeline import STEPS as pipeline_steps
+    from trunnion.pipeline.steps import STEP_TABLE
 
     assert pipeline_steps == STEPS
+    assert {s.name: s.title for s in STEP_TABLE} == TITLES
     assert tuple(s for stage in STAGES for s in stage.steps) == STEPS
 
 

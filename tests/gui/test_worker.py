@@ -8,6 +8,8 @@ import numpy as np
 import pytest
 
 from trunnion_gui.parcel import packed, unpacked
+from trunnion_gui.steps import TITLES
+from trunnion_gui.worker import GRACE_S, WRITING_GRACE_S
 
 
 def opened(make_window, factory, part_file, idle):
@@ -17,15 +19,40 @@ def opened(make_window, factory, part_file, idle):
     return window
 
 
-def test_a_cancelled_job_leaves_the_session_as_it_was(make_window, part_file, idle, qtbot):
+def test_a_job_that_is_cancelled_before_anything_is_finished_leaves_the_session_as_it_was(make_window, part_file, idle, qtbot):
     window = opened(make_window, "SlowEngine", part_file, idle)
     before, pid = window.document.session, window.document.worker.pid
     window.document.program()
-    qtbot.waitUntil(lambda: window.status.bar.value() > 5, timeout=10000)
+    qtbot.waitUntil(lambda: window.document.running_step == "recognize", timeout=10000)
     window.registry.run("job.cancel")
     qtbot.waitUntil(lambda: not window.document.is_busy, timeout=10000)
-    assert window.document.worker.pid == pid  # it obeyed: one that doesn't in two seconds is ended
+    assert window.document.worker.pid == pid  # it obeyed
     assert window.document.session is window.document.shown is before
+    assert window.document.history.undo_label == ""
+    assert "was cancelled at: Recognize" in window.centre.notice.text and "as it was" in window.centre.notice.remedy
+
+
+@pytest.mark.parametrize("factory", ["SlowEngine", "DeafEngine"])
+def test_steps_that_were_finished_before_a_cancel_are_kept_and_the_place_is_named(make_window, part_file, idle, qtbot, factory):
+    window = opened(make_window, factory, part_file, idle)
+    before, pid = window.document.session, window.document.worker.pid
+    window.document.program()
+    last, kept = ("toolpath", "optimize") if factory == "DeafEngine" else ("size", "recognize")
+    qtbot.waitUntil(lambda: window.document.running_step == last, timeout=20000)
+    window.registry.run("job.cancel")
+    qtbot.waitUntil(lambda: not window.document.is_busy, timeout=2000)
+    assert (window.document.worker.pid == pid) == (factory == "SlowEngine")  # one that hears nothing is ended
+    idle(window)
+    assert window.document.states[kept] == "done" and window.document.states[last] == "empty"
+    assert f"was cancelled at: {TITLES[last]}" in window.centre.notice.text
+    assert TITLES[kept] in window.centre.notice.remedy and TITLES[last] not in window.centre.notice.remedy
+    window.document.undo()
+    assert window.document.session is before
+
+
+def test_a_person_who_cancels_waits_half_a_second_at_most():
+    assert GRACE_S <= 0.4
+    assert WRITING_GRACE_S > GRACE_S  # half a folder of programs is worse
 
 
 def test_what_is_done_so_far_is_shown_while_the_rest_runs(make_window, part_file, idle, qtbot):
@@ -38,21 +65,22 @@ def test_what_is_done_so_far_is_shown_while_the_rest_runs(make_window, part_file
     qtbot.waitUntil(lambda: window.panels["recognize"].state == "done", timeout=5000)
     qtbot.waitUntil(lambda: window.panels["size"].state == "running", timeout=5000)
     window.registry.run("job.cancel")
-    qtbot.waitUntil(lambda: window.document.shown.recognition is None, timeout=5000)
+    qtbot.waitUntil(lambda: not window.document.is_busy, timeout=5000)
+    assert window.document.session is window.document.shown
 
 
 def test_a_job_that_does_not_listen_is_ended_with_its_process(make_window, part_file, idle, qtbot):
     window = opened(make_window, "DeafEngine", part_file, idle)
-    before, pid = window.document.session, window.document.worker.pid
+    pid = window.document.worker.pid
     window.document.program()
     qtbot.waitUntil(lambda: window.document.running_step == "toolpath", timeout=10000)
     window.registry.run("job.cancel")
     qtbot.waitUntil(lambda: not window.document.is_busy, timeout=8000)
     assert window.document.worker.pid != pid
-    assert window.document.session is before
+    window.document.choose("fake.blank.side", "Allowance", 7.0)
     window.document.run("route", "Generate route")
     idle(window)
-    assert window.document.session.process is not None
+    assert window.document.states["route"] == "done"
 
 
 def test_a_crash_costs_the_job_and_not_the_session(make_window, part_file, idle, qtbot):
@@ -64,8 +92,10 @@ def test_a_crash_costs_the_job_and_not_the_session(make_window, part_file, idle,
     qtbot.waitUntil(lambda: not window.document.is_busy, timeout=10000)
     idle(window)
     assert window.isVisible()
+    assert "was lost" in window.centre.notice.text and "Optimize" in window.centre.notice.remedy
+    assert window.document.states["optimize"] == "done"  # finished before the crash
+    window.document.undo()
     assert window.document.session is before
-    assert "was lost" in window.centre.notice.text
     assert window.document.worker.is_alive and window.document.worker.pid != pid
     window.document.run("optimize", "Optimise")
     idle(window)
@@ -89,7 +119,9 @@ def test_a_fault_of_the_program_is_one_line_and_the_session_stays(make_window, p
     window.document.program()
     idle(window)
     assert "ZeroDivisionError" in window.centre.notice.text
-    assert "your session is unchanged" in window.centre.notice.text
+    assert "Blank" in window.centre.notice.remedy
+    assert window.document.states["blank"] == "done" and window.document.states["route"] == "empty"
+    window.document.undo()
     assert window.document.session is before
 
 

@@ -23,7 +23,7 @@ from trunnion.model.session import PartInfo, PostedFile, Session
 from trunnion.settings import digest
 from trunnion.store import project
 from trunnion.store.mapping import load_array
-from trunnion.store.project import autosave, autosave_path, load_project, project_bytes, recoverable, save_project
+from trunnion.store.project import load_project, project_bytes, save_project
 
 
 @pytest.fixture
@@ -111,26 +111,6 @@ def test_toolpaths_stand_as_npy_and_the_part_as_it_was_read(saved):
 def test_a_value_that_its_hint_forbids_is_not_saved():
     with pytest.raises(TypeError, match="a str stands where"):
         project_bytes(Session(sizes="wrong"), b"", "")
-
-
-def test_saving_leaves_no_autosave_behind(saved):
-    autosave(programs.session(), saved, PART_BYTES, ".step")
-    assert recoverable(saved) == autosave_path(saved) == saved.with_name("B1.trunnion.autosave")
-    save_project(programs.session(), saved, PART_BYTES, ".step")
-    assert recoverable(saved) is None
-
-
-def test_an_autosave_older_than_the_project_is_not_offered(saved):
-    beside = autosave(programs.session(), saved, PART_BYTES, ".step")
-    os.utime(beside, (1, 1))
-    assert recoverable(saved) is None
-
-
-def test_an_autosave_without_a_project_is_offered_and_loads(tmp_path):
-    autosave(programs.session(), tmp_path / "new.trunnion", PART_BYTES, ".step")
-    found = recoverable(tmp_path / "new.trunnion")
-    assert found is not None
-    assert load_project(found)[1] == PART_BYTES
 
 
 @pytest.mark.parametrize(("old", "new", "message"), [

@@ -5,7 +5,6 @@ Same session, same bytes. A file from elsewhere is not trusted: limits on size a
 
 from __future__ import annotations
 
-import contextlib
 import hashlib
 import io
 import re
@@ -22,7 +21,6 @@ from trunnion.store.atomic import write_bytes
 from trunnion.store.mapping import Members, from_xml, to_xml
 
 FORMAT = 1
-AUTOSAVE = ".autosave"
 MOST_MEMBERS = 100_000
 LARGEST_MEMBER = 1024**3
 """Bytes of one member, opened: above the largest part file that is read."""
@@ -34,32 +32,8 @@ _NO_TIME = (1980, 1, 1, 0, 0, 0)
 
 
 def save_project(session: Session, path: str | Path, part_bytes: bytes, part_suffix: str) -> None:
-    """Write a session with its part file's bytes, whole or not at all; the autosave beside it is then older and goes."""
-    data = project_bytes(session, part_bytes, part_suffix)
-    write_bytes(path, data)
-    with contextlib.suppress(OSError):
-        autosave_path(path).unlink()
-
-
-def autosave(session: Session, path: str | Path, part_bytes: bytes, part_suffix: str) -> Path:
-    """Write a session beside its project file, whole or not at all; return where."""
-    beside = autosave_path(path)
-    write_bytes(beside, project_bytes(session, part_bytes, part_suffix))
-    return beside
-
-
-def autosave_path(path: str | Path) -> Path:
-    """Return where the autosave of a project file stands."""
-    path = Path(path)
-    return path.with_name(path.name + AUTOSAVE)
-
-
-def recoverable(path: str | Path) -> Path | None:
-    """Return the autosave of a project file when there is one and the project file isn't newer."""
-    path, beside = Path(path), autosave_path(path)
-    if not beside.is_file():
-        return None
-    return beside if not path.is_file() or beside.stat().st_mtime_ns >= path.stat().st_mtime_ns else None
+    """Write a session with its part file's bytes, whole or not at all."""
+    write_bytes(path, project_bytes(session, part_bytes, part_suffix))
 
 
 def project_bytes(session: Session, part_bytes: bytes, part_suffix: str) -> bytes:

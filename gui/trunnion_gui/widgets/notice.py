@@ -46,6 +46,11 @@ class Notice(QFrame):
         """What the message says."""
         return self._text.text()
 
+    @property
+    def remedy(self) -> str:
+        """What it says to do, or what became of the work."""
+        return self._remedy.text()
+
     def tell(self, finding: Finding, answers: dict[str, Callable[[], None]] | None = None) -> None:
         """Show a finding with buttons for what can be done."""
         self.setProperty("severity", _SIDES.get(finding.severity, "info"))
