@@ -69,7 +69,9 @@ class Arrangement:
 
     def begin(self) -> None:
         """Remember this as the first arrangement, then take up the one a person left."""
-        self._window.centralWidget().setMinimumWidth(_LEAST_CENTRE)
+        middle = self._window.centralWidget()
+        if middle is not None:
+            middle.setMinimumWidth(_LEAST_CENTRE)
         self._size()
         self._first = self._window.saveState()
         geometry, state = remembered.arrangement("geometry"), remembered.arrangement("state")

@@ -206,8 +206,8 @@ class FakeEngine:
         elif path.suffix not in (".step", ".igs", ".stpz"):
             raise BadInput(f"{path.name} is neither STEP nor IGES: export the part as STEP AP214 or AP242")
         else:
-            session = Session(part=PartInfo(path=str(path), name=path.stem, digest=PART_DIGEST, unit="mm", n_faces=int(self._mesh.face.max()),
-                                            n_solids=1, solid=1, area=1e5, volume=4e5, low=np.zeros(3),
+            session = Session(part=PartInfo(path=str(path), name=path.stem, digest=PART_DIGEST, unit="mm",
+                                            n_faces=int(self._mesh.face.max()), n_solids=1, solid=1, area=1e5, volume=4e5, low=np.zeros(3),
                                             high=np.array([LENGTH, WIDTH, HEIGHT])))
         self._attached = session.part.name
         return session

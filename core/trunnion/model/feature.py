@@ -59,7 +59,8 @@ class Recognition:
     """What a family found on a part: the frame it chose, features, and the faces that nothing explains (tags).
 
     `face_area` (n_faces,) float64, mm2, is the area of every face of the part in the order of the tags; empty where it is not known, as in
-    features read from XML. `unexplained_share` is the unexplained faces' share of it. `removed` has the faces of each feature that a person deleted: a re-run does not take up again what claims most of them.
+    features read from XML. `unexplained_share` is the unexplained faces' share of it. `removed` has the faces of each feature that a person
+    deleted: a re-run does not take up again what claims most of them.
     """
 
     family: str
