@@ -8,6 +8,12 @@ MM_PER_INCH = 25.4
 SECONDS_PER_MINUTE = 60.0
 WATTS_PER_KILOWATT = 1000.0
 MM_PER_METRE = 1000.0
+FARTHEST = 100_000.0
+"""mm: no machine's axis goes farther from its zero; beyond, a number is a slip of the hand."""
+FASTEST = 500_000.0
+"""1/min, mm/min or degrees/min: no spindle and no axis is faster."""
+LONGEST_BLOCK = 3600.0
+"""s: no block of a milling program takes longer, nor does a dwell: a path of 4 m at 70 mm/min is done by then."""
 
 
 def radians(degrees: float) -> float:

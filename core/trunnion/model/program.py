@@ -8,12 +8,16 @@ from trunnion.model.setup import Setup
 from trunnion.model.tool import Tool
 from trunnion.model.toolpath import Toolpath
 
+STANDING = 0.5
+"""1/min: a spindle at this speed or below stands: speeds are written in whole turns."""
+
 
 @dataclass(frozen=True, slots=True, eq=False, kw_only=True)
 class ProgramSection:
     """The motions of one operation with one tool. `spindle` 1/min; `block_lines` the text line of each block when read back, else empty.
 
-    `width` ae and `depth` ap mm are the engagement that a `feed` in mm/min was chosen for; 0 where nothing is known of it.
+    `width` ae and `depth` ap mm are the engagement that a `feed` in mm/min was chosen for; 0 where nothing is known of it. `dwell` s is how
+    long the text makes the tool wait in all.
     """
 
     operation: str
@@ -25,6 +29,12 @@ class ProgramSection:
     width: float = 0.0
     depth: float = 0.0
     feed: float = 0.0
+    dwell: float = 0.0
+
+    @property
+    def spindle_stands(self) -> bool:
+        """Whether the spindle does not turn."""
+        return self.spindle <= STANDING
 
 
 @dataclass(frozen=True, slots=True, eq=False, kw_only=True)

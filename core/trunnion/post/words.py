@@ -74,7 +74,7 @@ def refuse_unwritable(section: ProgramSection, title: str, coolant: Container[st
         raise Refused(f"operation {id}: its id can't stand in a comment; use letters, digits, points and dashes")
     if section.coolant not in coolant:
         raise Refused(f"operation {id}: {title} has no coolant {section.coolant}")
-    if round(section.spindle) < 1:
+    if section.spindle_stands:
         raise Refused(f"operation {id}: a spindle speed of {section.spindle:g} turns nothing")
     if not len(section.path):
         raise Refused(f"operation {id} has no motion: nothing to write")

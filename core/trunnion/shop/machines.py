@@ -9,14 +9,13 @@ from typing import Any
 
 from trunnion.model.material import Axis, Machine
 from trunnion.shop.reading import Entry, by_name, entries
+from trunnion.units import FARTHEST, FASTEST
 
 AXIS_KINDS = ("linear", "rotary")
 CARRIES = ("tool", "work")
 MOST_ROTARY = 2
 _SHORTEST = 1e-6
 _LEAST_BETWEEN = 1e-3
-_FAR = 100_000.0
-_FASTEST = 500_000.0
 _STRONGEST = 1_000.0
 
 
@@ -27,8 +26,8 @@ def load_machines(user_folder: Path | None) -> dict[str, Machine]:
 
 def _machine(entry: Entry) -> Machine:
     spindle = entry.table("spindle")
-    low, high = spindle.number("low", 0.0, _FASTEST), spindle.number("high", 1.0, _FASTEST)
-    power = tuple((n, kw) for n, kw in spindle.rows("power", 2, 0.0, _FASTEST))
+    low, high = spindle.number("low", 0.0, FASTEST), spindle.number("high", 1.0, FASTEST)
+    power = tuple((n, kw) for n, kw in spindle.rows("power", 2, 0.0, FASTEST))
     if low >= high or any(a[0] >= b[0] for a, b in pairwise(power)) or not all(n > 0.0 and 0.0 < kw <= _STRONGEST for n, kw in power):
         raise spindle.wrong("low must be below high, and the power curve rows [1/min, kW] must grow in speed")
     spindle.done()
@@ -38,7 +37,7 @@ def _machine(entry: Entry) -> Machine:
         raise entry.wrong("axes must name X, Y and Z, each once")
     _check_rotary(entry, axes)
     machine = Machine(name=entry.name, title=entry.text("title"), axes=axes, spindle_low=low, spindle_high=high, power=power,
-                      feed_max=entry.number("feed_max", 1.0, _FASTEST), tool_change_s=entry.number("tool_change_s", 0.0, _FASTEST),
+                      feed_max=entry.number("feed_max", 1.0, FASTEST), tool_change_s=entry.number("tool_change_s", 0.0, FASTEST),
                       tool_places=entry.count("tool_places", 1, 10_000))
     entry.done()
     return machine
@@ -49,8 +48,9 @@ def _axis(entry: Entry) -> Axis:
     if kind not in AXIS_KINDS:
         raise entry.wrong(f"kind must be one of {', '.join(AXIS_KINDS)}; got {kind!r}")
     turning = _turning(entry) if kind == "rotary" else {}
-    axis = Axis(name=entry.text("name"), kind=kind, low=entry.number("low", -_FAR, _FAR), high=entry.number("high", -_FAR, _FAR),
-                rapid=entry.number("rapid", 1.0, _FASTEST), acceleration=entry.number("acceleration", 1.0, _FASTEST), **turning)
+    low, high = (entry.number(end, -FARTHEST, FARTHEST) for end in ("low", "high"))
+    axis = Axis(name=entry.text("name"), kind=kind, low=low, high=high,
+                rapid=entry.number("rapid", 1.0, FASTEST), acceleration=entry.number("acceleration", 1.0, FASTEST), **turning)
     if axis.low >= axis.high or (kind == "rotary" and not axis.low <= 0.0 <= axis.high):
         raise entry.wrong("low must be below high, and a rotary axis must be able to stand at 0")
     entry.done()
@@ -62,7 +62,7 @@ def _turning(entry: Entry) -> dict[str, Any]:
     carries = entry.text("carries")
     if carries not in CARRIES:
         raise entry.wrong(f"carries must be one of {', '.join(CARRIES)}; got {carries!r}")
-    direction, point = entry.numbers("direction", -1.0, 1.0), entry.numbers("point", -_FAR, _FAR)
+    direction, point = entry.numbers("direction", -1.0, 1.0), entry.numbers("point", -FARTHEST, FARTHEST)
     length = math.hypot(*direction)
     if len(direction) != 3 or len(point) != 3 or length < _SHORTEST:
         raise entry.wrong("direction and point must be three numbers each, and a direction must not be 0")

@@ -12,6 +12,8 @@ from trunnion.model.program import Program
 from trunnion.model.setup import Setup
 from trunnion.model.tool import Tool
 from trunnion.model.toolpath import Motion
+from trunnion.post.readers.arcs import refuse_nearly_closed, refuse_no_radius
+from trunnion.post.readers.numbers import FEED, LENGTH, SPINDLE, shown
 from trunnion.post.readers.sections import NOWHERE, Leaning, Point, Sections
 from trunnion.post.readers.tools import by_number, check_tool
 from trunnion.units import MM_PER_INCH
@@ -19,6 +21,7 @@ from trunnion.units import MM_PER_INCH
 _TEXT_WORDS = ("PARTNO", "PPRINT", "REMARK")
 _SETUP = re.compile(r"SETUP\s+(\S+)\s+WORK OFFSET\s+(\S+)$", re.IGNORECASE)
 _OPERATION = re.compile(r"OPERATION\s+(\S+)$", re.IGNORECASE)
+_NUMBER = re.compile(r"[-+]?(?:[0-9]+\.?[0-9]*|\.[0-9]+)(?:E[-+]?[0-9]+)?")
 _UP = (0.0, 0.0, 1.0)
 _UNIT = 1e-4
 """How far the length of a tool axis may be from 1: other systems write four decimals."""
@@ -70,7 +73,7 @@ class _Reader:
         self.programs: list[Program] = []
         self.setup: Setup | None = setups[0] if len(setups) == 1 else None
         self.sections = Sections(Leaning(self.setup.clearance if self.setup else 0.0))
-        self.named = self.rapid = self.ended = self.leans = False
+        self.named = self.rapid = self.ended = self.leans = self.turning = False
         self.tool: Tool | None = None
         self.unit, self.feed, self.spindle, self.coolant = 0.0, 0.0, 0.0, "off"
         self.circle: list[float] | None = None
@@ -81,11 +84,11 @@ class _Reader:
     def run(self, line: int, word: str, rest: str) -> None:
         """Do one statement."""
         if self.ended:
-            raise BadInput(f"line {line}: {word} stands after FINI; remove it")
+            raise BadInput(f"line {line}: {shown(word)} stands after FINI; remove it")
         if word not in self.words:
-            raise BadInput(f"line {line}: {word} is not understood; known are {', '.join(self.words)}")
+            raise BadInput(f"line {line}: {shown(word)} is not understood; known are {', '.join(self.words)}")
         if self.circle is not None and word != "GOTO":
-            raise BadInput(f"line {line}: after CIRCLE comes the GOTO that ends the arc, not {word}")
+            raise BadInput(f"line {line}: after CIRCLE comes the GOTO that ends the arc, not {shown(word)}")
         self.words[word](line, rest)
 
     def finished(self) -> tuple[Program, ...]:
@@ -109,9 +112,9 @@ class _Reader:
 
     def next_setup(self, line: int, name: str, offset: str) -> None:
         if name not in self.setups:
-            raise BadInput(f"line {line}: setup {name} is not in the plan; it has {', '.join(self.setups)}")
+            raise BadInput(f"line {line}: setup {shown(name)} is not in the plan; it has {', '.join(self.setups)}")
         if self.setups[name].work_offset != offset.upper():
-            raise BadInput(f"line {line}: {offset} is not the work offset of setup {name}, {self.setups[name].work_offset}")
+            raise BadInput(f"line {line}: {shown(offset)} is not the work offset of setup {name}, {self.setups[name].work_offset}")
         if self.named:
             self.close()
         if any(p.setup.name == name for p in self.programs):
@@ -121,7 +124,7 @@ class _Reader:
 
     def units(self, line: int, rest: str) -> None:
         if rest not in ("MM", "INCHES"):
-            raise BadInput(f"line {line}: UNITS/{rest} is not understood; use MM or INCHES")
+            raise BadInput(f"line {line}: UNITS/{shown(rest)} is not understood; use MM or INCHES")
         unit = MM_PER_INCH if rest == "INCHES" else 1.0
         if self.unit not in (0.0, unit):
             raise BadInput(f"line {line}: the units change in the middle of the text; keep one")
@@ -129,20 +132,21 @@ class _Reader:
 
     def multax(self, line: int, rest: str) -> None:
         if rest not in ("ON", "OFF", ""):
-            raise BadInput(f"line {line}: MULTAX/{rest} is not understood; use ON or OFF")
+            raise BadInput(f"line {line}: MULTAX/{shown(rest)} is not understood; use ON or OFF")
         self.leans = rest != "OFF"
 
     def load(self, line: int, rest: str) -> None:
         number, *more = rest.split(",")
-        tool = self.tools.get(int(number)) if number.isdecimal() else None
+        tool = next((t for n, t in self.tools.items() if str(n) == number), None)
         if tool is None:
-            raise BadInput(f"line {line}: tool {number} is not in the tool list; it has {', '.join(str(n) for n in sorted(self.tools))}")
+            known = ", ".join(str(n) for n in sorted(self.tools))
+            raise BadInput(f"line {line}: tool {shown(number)} is not in the tool list; it has {known}")
         if more and (len(more) != 2 or more[0] != "LENGTH"):
-            raise BadInput(f"line {line}: LOADTL/{rest} is not understood; write LOADTL/number,LENGTH,length")
+            raise BadInput(f"line {line}: LOADTL/{shown(rest)} is not understood; write LOADTL/number,LENGTH,length")
         if more and not self.same(line, more[1], tool.gauge_length):
-            raise BadInput(f"line {line}: length {more[1]} is not that of tool {number}, {tool.gauge_length:g} mm")
+            raise BadInput(f"line {line}: length {shown(more[1])} is not that of tool {number}, {tool.gauge_length:g} mm")
         self.sections.change_tool()
-        self.tool, self.spindle = tool, 0.0
+        self.tool, self.spindle, self.turning = tool, 0.0, False
 
     def cutter(self, line: int, rest: str) -> None:
         sizes = rest.split(",")
@@ -150,7 +154,8 @@ class _Reader:
         if tool is None:
             raise BadInput(f"line {line}: CUTTER before LOADTL; load the tool first")
         if len(sizes) != 2 or not self.same(line, sizes[0], tool.diameter) or not self.same(line, sizes[1], tool.corner_radius):
-            raise BadInput(f"line {line}: CUTTER/{rest} is not tool {tool.number}, CUTTER/{tool.diameter:g},{tool.corner_radius:g} in mm")
+            raise BadInput(f"line {line}: CUTTER/{shown(rest)} is not tool {tool.number}, "
+                           f"CUTTER/{tool.diameter:g},{tool.corner_radius:g} in mm")
 
     def same(self, line: int, word: str, length: float) -> bool:
         return abs(self.numbers(line, word, 1)[0] * self.scale(line) - length) <= tolerance.WRITTEN
@@ -158,15 +163,17 @@ class _Reader:
     def spindl(self, line: int, rest: str) -> None:
         words = [w for w in rest.split(",") if w not in ("RPM", "CLW")]
         if rest == "OFF":
-            self.spindle = 0.0
+            self.spindle, self.turning = 0.0, False
             return
         if len(words) != 1:
-            raise BadInput(f"line {line}: SPINDL/{rest} is not understood; write SPINDL/RPM,speed,CLW or SPINDL/OFF")
-        self.spindle = self.numbers(line, words[0], 1)[0]
+            raise BadInput(f"line {line}: SPINDL/{shown(rest)} is not understood; write SPINDL/RPM,speed,CLW or SPINDL/OFF")
+        speed = self.numbers(line, words[0], 1)[0]
+        SPINDLE.check(line, "SPINDL ", speed)
+        self.spindle, self.turning = speed, True
 
     def coolnt(self, line: int, rest: str) -> None:
         if rest not in ("FLOOD", "MIST", "OFF", "ON"):
-            raise BadInput(f"line {line}: COOLNT/{rest} is not understood; use FLOOD, MIST or OFF")
+            raise BadInput(f"line {line}: COOLNT/{shown(rest)} is not understood; use FLOOD, MIST or OFF")
         self.coolant = "flood" if rest == "ON" else rest.lower()
 
     def go_rapid(self, line: int, rest: str) -> None:
@@ -178,14 +185,17 @@ class _Reader:
         words = [w for w in rest.split(",") if w not in ("MMPM", "IPM")]
         said = "MMPM" if self.scale(line) == 1.0 else "IPM"
         if len(words) != 1 or any(w in ("MMPM", "IPM") and w != said for w in rest.split(",")):
-            raise BadInput(f"line {line}: FEDRAT/{rest} is not understood; write FEDRAT/feed,{said}")
+            raise BadInput(f"line {line}: FEDRAT/{shown(rest)} is not understood; write FEDRAT/feed,{said}")
         feed = self.numbers(line, words[0], 1)[0]
         if feed <= 0.0:
             raise BadInput(f"line {line}: the feed must be above zero")
+        FEED.check(line, "FEDRAT ", feed)
         self.feed, self.rapid = feed * self.unit, False
 
     def goto(self, line: int, rest: str) -> None:
         x, y, z, *axis = self.numbers(line, rest, 3, 6)
+        for value in (x, y, z):
+            LENGTH.check(line, "GOTO ", value)
         tool, scale = self.tool, self.scale(line)
         if self.setup is None:
             raise BadInput(f"line {line}: a move before its setup; put PPRINT/SETUP name WORK OFFSET word first")
@@ -197,7 +207,7 @@ class _Reader:
             self.rapid = False
             return
         self.rapid = False
-        if self.spindle <= 0.0:
+        if not self.turning:
             raise BadInput(f"line {line}: a feed move while the spindle stands; put SPINDL first")
         if self.feed <= 0.0:
             raise BadInput(f"line {line}: a feed move without a feed; put FEDRAT first")
@@ -230,13 +240,18 @@ class _Reader:
         if start[3:] != _UP or end[3:] != _UP:
             raise BadInput(f"line {line}: an arc of a tool that leans is not understood; write lines")
         first, last = math.dist((x, y), start[:2]), math.dist((x, y), end[:2])
+        refuse_no_radius(line, radius)
         if max(abs(first - radius), abs(last - radius)) > tolerance.ARC_RADIUS or abs(z - start[2]) > tolerance.WRITTEN:
             raise BadInput(f"line {line}: the arc of radius {radius:.4f} starts at radius {first:.4f} and ends at {last:.4f} mm; "
                            "check CIRCLE")
+        refuse_no_radius(line, min(first, last))
+        refuse_nearly_closed(line, start, end)
         return (Motion.ARC_CCW if sense > 0.0 else Motion.ARC_CW), (x, y, start[2])
 
     def arc(self, line: int, rest: str) -> None:
         numbers, scale = self.numbers(line, rest, 7), self.scale(line)
+        for value in (*numbers[:3], numbers[6]):
+            LENGTH.check(line, "CIRCLE ", value)
         if self.rapid:
             raise BadInput(f"line {line}: RAPID before an arc; put FEDRAT instead")
         if numbers[3:6] not in ([0.0, 0.0, 1.0], [0.0, 0.0, -1.0]):
@@ -257,11 +272,11 @@ class _Reader:
         return self.unit
 
     def numbers(self, line: int, rest: str, *counts: int) -> list[float]:
-        """Return the numbers after a word; raise `BadInput` unless they are of an allowed count and finite."""
-        try:
-            values = [float(w) for w in rest.split(",")]
-        except ValueError:
-            raise BadInput(f"line {line}: {rest} is not a list of numbers") from None
+        """Return the numbers after a word, zero without a sign; raise `BadInput` unless they are of an allowed count and finite."""
+        words = rest.split(",")
+        if not all(_NUMBER.fullmatch(w) for w in words):
+            raise BadInput(f"line {line}: {shown(rest)} is not a list of numbers")
+        values = [float(w) + 0.0 for w in words]
         if len(values) not in counts or not all(math.isfinite(v) for v in values):
-            raise BadInput(f"line {line}: {rest} must be {' or '.join(str(c) for c in counts)} numbers")
+            raise BadInput(f"line {line}: {shown(rest)} must be {' or '.join(str(c) for c in counts)} numbers")
         return values

@@ -6,9 +6,12 @@ import re
 from dataclasses import dataclass
 
 from trunnion.findings import BadInput
+from trunnion.post.readers.numbers import shown
 
 _WORD = re.compile(r"([A-Z])([-+]?(?:[0-9]+\.?[0-9]*|\.[0-9]+))")
 _COMMENT = re.compile(r"\(([^()]*)\)")
+_MOST_CODE = 1000.0
+"""G and M codes stay below."""
 _SPACE = str.maketrans("", "", " \t\r")
 _REFUSED = {
     "#": "parameters (#) are not understood; write the numbers themselves",
@@ -53,7 +56,8 @@ def _words(line: int, packed: str) -> Block:
         elif letter in words:
             raise BadInput(f"line {line}: two {letter} words; keep one")
         else:
-            words[letter] = float(number)
+            # Zero has no sign here: -0 + 0 is 0.
+            words[letter] = float(number) + 0.0
     if length != len(packed):
         raise BadInput(f"line {line}: {_why(packed)}")
     return Block(line, codes, words)
@@ -61,8 +65,8 @@ def _words(line: int, packed: str) -> Block:
 
 def _code(line: int, letter: str, number: str) -> str:
     value = round(float(number), 1)
-    if value != float(number) or value < 0:
-        raise BadInput(f"line {line}: {letter}{number} is no code of this control")
+    if value != float(number) or not 0.0 <= value < _MOST_CODE:
+        raise BadInput(f"line {line}: {letter}{shown(number)} is no code of this control")
     return f"{letter}{int(value)}" if value == int(value) else f"{letter}{value}"
 
 
@@ -71,7 +75,7 @@ def _why(packed: str) -> str:
         if sign in packed:
             return why
     rest = _WORD.sub(" ", packed).split()
-    return f"{rest[0] if rest[0].isprintable() else repr(rest[0])} is not understood; a word is a letter and a number"
+    return f"{shown(rest[0] if rest[0].isprintable() else repr(rest[0]))} is not understood; a word is a letter and a number"
 
 
 def _without_end_comment(text: str) -> tuple[str, tuple[str, ...]]:

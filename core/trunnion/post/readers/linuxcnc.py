@@ -16,34 +16,20 @@ from trunnion.model.program import Program
 from trunnion.model.setup import Setup
 from trunnion.model.tool import Tool
 from trunnion.model.toolpath import Motion
+from trunnion.post.readers.arcs import centre_by_offset, centre_by_radius
 from trunnion.post.readers.blocks import Block, split_line
+from trunnion.post.readers.codes import KNOWN, MOTIONS, OFFSETS, letters_belong, one_of_a_group, why_not
 from trunnion.post.readers.joints import Joints
+from trunnion.post.readers.numbers import COUNT, DWELL, FEED, INVERSE_TIME, LENGTH, LINE_NUMBER, MOST_TURN, SPINDLE, Range
 from trunnion.post.readers.sections import NOWHERE, Point, Sections, Upright
 from trunnion.post.readers.tools import by_number, check_place, check_tool
-from trunnion.shop.kinematics import Place
-from trunnion.units import MM_PER_INCH
+from trunnion.shop.kinematics import SLACK, Place
+from trunnion.units import LONGEST_BLOCK, MM_PER_INCH, SECONDS_PER_MINUTE
 
 _OPERATION = re.compile(r"OPERATION\s+(\S+)$", re.IGNORECASE)
-_MOTIONS = {"G0": Motion.RAPID, "G1": Motion.LINE, "G2": Motion.ARC_CW, "G3": Motion.ARC_CCW}
-_OFFSETS = ("G54", "G55", "G56", "G57", "G58", "G59", "G59.1", "G59.2", "G59.3")
-_GROUPS = (("G0", "G1", "G2", "G3", "G80"), ("G20", "G21"), _OFFSETS, ("G43", "G49"), ("G61", "G61.1", "G64"), ("G93", "G94"),
-           ("M3", "M5"), ("M7", "M9"), ("M8", "M9"), ("M0", "M1", "M2", "M30"))
-_WITHOUT_MOTION = frozenset(("G17", "G40", "G61", "G61.1", "G90", "G91.1", "G94", "G97", "M0", "M1"))
-_KNOWN = _WITHOUT_MOTION | frozenset((*_MOTIONS, *_OFFSETS, "G4", "G20", "G21", "G43", "G49", "G53", "G64", "G80", "M2", "M3", "M5", "M6",
-                                      "M7", "M8", "M9", "M30"))
-_REFUSED = {
-    "G18": "arcs in the plane ZX are not understood; use G17", "G19": "arcs in the plane YZ are not understood; use G17",
-    "G41": "cutter compensation changes the path at the machine; write the tool centre's path under G40",
-    "G42": "cutter compensation changes the path at the machine; write the tool centre's path under G40",
-    "G90.1": "absolute arc centres are not understood; use G91.1 and centres from the arc's start",
-    "G91": "incremental moves are not understood; use G90", "G93": "inverse-time feeds are not understood; use G94",
-    "G95": "feeds a turn are not understood; use G94", "M4": "it turns the cutter backwards; use M3",
-    "G28": "the place of G28 is not known here; use G53 G0 Z0", "G30": "the place of G30 is not known here; use G53 G0 Z0",
-    "G92": "it moves the program's zero; use the setup's work offset", "G10": "it changes offsets; set them at the machine",
-}
-_CYCLES = frozenset(("G73", "G74", "G76", "G81", "G82", "G83", "G84", "G85", "G86", "G87", "G88", "G89", "G98", "G99"))
+_RANGES = {**dict.fromkeys("XYZIJR", LENGTH), "T": COUNT, "H": COUNT, "N": LINE_NUMBER}
+"""Ranges of the words whose numbers mean one thing; those of F, S, P and Q are checked where they are taken over."""
 _PLAIN_LETTERS = frozenset("NFSTXYZIJRHPQ")
-_ROTARY = "ABC"
 
 
 def read_linuxcnc(text: str, tools: Sequence[Tool], setup: Setup, place: Place | None = None) -> Program:
@@ -80,14 +66,15 @@ class _Control:
         self.sections = Sections(Upright(setup.clearance) if place is None else Joints(place, setup.clearance))
         self.rotary = place.names if place else ""
         self.letters, self.angle = _PLAIN_LETTERS | set(self.rotary), [math.nan] * len(self.rotary)
-        self.known = _KNOWN | ({"G93"} if place else set())
+        self.ranges = _RANGES | (_rotary_ranges(place) if place else {})
+        self.known = KNOWN | ({"G93"} if place else set())
         self.inverse = False
         self.over: tuple[float, float] | None = None
         self.unit, self.offset, self.last_n = 1.0, "", -1.0
         self.motion: Motion | None = None
         self.tool: Tool | None = None
         self.next_tool: Tool | None = None
-        self.length_on = self.turning = self.ended = self.units_said = self.begun = False
+        self.length_on = self.turning = self.ended = self.units_said = self.begun = self.speed_said = False
         self.feed = self.spindle = 0.0
         self.coolant = "off"
 
@@ -102,12 +89,12 @@ class _Control:
         words, codes = block.words, block.codes
         self.begun = True
         self.check(block)
-        if len(codes) > (1 if codes and codes[0] in _MOTIONS else 0):
+        if len(codes) > (1 if codes and codes[0] in MOTIONS else 0):
             self.modes(block)
         elif "F" in words or "S" in words or "T" in words:
             self.speeds(block)
-        if codes and codes[0] in _MOTIONS and len(codes) == 1:
-            self.motion = _MOTIONS[codes[0]]
+        if codes and codes[0] in MOTIONS and len(codes) == 1:
+            self.motion = MOTIONS[codes[0]]
         if "X" in words or "Y" in words or "Z" in words or "I" in words or "J" in words or "R" in words or self.turns(words):
             self.move(block)
         if "M30" in codes or "M2" in codes:
@@ -122,21 +109,28 @@ class _Control:
         line, words, codes = block.line, block.words, block.codes
         if self.ended:
             raise BadInput(f"line {line}: stands after the end of the program; remove it or the M30 before it")
-        n = words.get("N")
-        if n is not None:
-            if n <= self.last_n:
-                raise BadInput(f"line {line}: N{n:g} comes after N{self.last_n:g}: lines are out of order; put them back or renumber them")
-            self.last_n = n
         for code in codes:
             if code not in self.known:
-                raise BadInput(f"line {line}: {_why_not(code)}")
-        for letter in words:
+                raise BadInput(f"line {line}: {why_not(code)}")
+        self.check_words(line, words)
+        if len(codes) > 1:
+            one_of_a_group(line, codes)
+        letters_belong(block)
+
+    def check_words(self, line: int, words: Mapping[str, float]) -> None:
+        """Refuse letters that no word of this program begins with, numbers out of range, and lines out of order."""
+        for letter, value in words.items():
             if letter not in self.letters:
                 axes = f"a program for the axes XYZ{self.rotary}" if self.rotary else "a three-axis program"
                 raise BadInput(f"line {line}: the word {letter} is not understood by {axes}; remove it")
-        if len(codes) > 1:
-            _one_of_a_group(line, codes)
-        _letters_belong(block)
+            if letter in self.ranges:
+                self.ranges[letter].check(line, letter, value)
+        n = words.get("N")
+        if n is not None:
+            if n <= self.last_n:
+                raise BadInput(f"line {line}: N{n:.10g} comes after N{self.last_n:.10g}: lines are out of order; put them back or renumber "
+                               "them")
+            self.last_n = n
 
     def speeds(self, block: Block) -> None:
         """Take over F, S and T."""
@@ -144,11 +138,13 @@ class _Control:
         if "F" in words:
             if words["F"] <= 0.0:
                 raise BadInput(f"line {line}: the feed F must be above zero")
+            (INVERSE_TIME if self.inverse else FEED).check(line, "F", words["F"])
             self.feed = words["F"] if self.inverse else words["F"] * self.unit
         if "S" in words:
             if words["S"] < 0.0:
                 raise BadInput(f"line {line}: the spindle speed S must not be negative")
-            self.spindle = words["S"]
+            SPINDLE.check(line, "S", words["S"])
+            self.spindle, self.speed_said = words["S"], True
         if "T" in words:
             tool = self.tools.get(int(words["T"]))
             if tool is None or words["T"] != int(words["T"]):
@@ -173,19 +169,21 @@ class _Control:
             self.change_tool(line)
         self.spindle_and_coolant(line, codes)
         for code in codes:
-            if code in _OFFSETS:
+            if code in OFFSETS:
                 self.work_offset(line, code)
         if "G43" in codes:
             self.length(line, words.get("H"))
         if "G49" in codes:
             self.length_on = False
         if "G64" in codes:
-            self.path_tolerance(line, words.get("P"))
+            self.path_tolerance(line, words)
+        if "G4" in codes:
+            self.dwell(line, words.get("P"))
         if "G80" in codes:
             self.motion = None
         for code in codes:
-            if code in _MOTIONS:
-                self.motion = _MOTIONS[code]
+            if code in MOTIONS:
+                self.motion = MOTIONS[code]
 
     def change_tool(self, line: int) -> None:
         if self.next_tool is None:
@@ -195,7 +193,7 @@ class _Control:
 
     def spindle_and_coolant(self, line: int, codes: list[str]) -> None:
         if "M3" in codes:
-            if self.spindle <= 0.0:
+            if not self.speed_said:
                 raise BadInput(f"line {line}: M3 without a spindle speed; give S")
             self.turning = True
         if "M5" in codes:
@@ -217,11 +215,22 @@ class _Control:
                            f"use H{self.tool.number}")
         self.length_on = True
 
-    def path_tolerance(self, line: int, limit: float | None) -> None:
+    def path_tolerance(self, line: int, words: Mapping[str, float]) -> None:
+        """Check how far G64 lets the control leave the path: P at corners, Q where it joins lines into one."""
+        limit, joined = words.get("P"), words.get("Q", 0.0)
         if limit is None:
             raise BadInput(f"line {line}: G64 without P rounds corners off without a limit; give P")
         if not 0.0 <= limit * self.unit <= tolerance.GOUGE:
             raise BadInput(f"line {line}: G64 P{limit:g} rounds corners off by more than {tolerance.GOUGE:g} mm; give a smaller P")
+        if not 0.0 <= joined * self.unit <= tolerance.GOUGE:
+            raise BadInput(f"line {line}: G64 Q{joined:g} joins lines that are more than {tolerance.GOUGE:g} mm apart; give a smaller Q")
+
+    def dwell(self, line: int, seconds: float | None) -> None:
+        """Wait as G4 says; its P is in seconds."""
+        if seconds is None:
+            raise BadInput(f"line {line}: G4 without P; say how many seconds")
+        DWELL.check(line, "P", seconds)
+        self.sections.dwell(seconds)
 
     def move(self, block: Block) -> None:
         """Move as the words and the modal motion say."""
@@ -260,7 +269,11 @@ class _Control:
         if start is None or start[3:] == end[3:]:
             return self.feed, 0.0
         way = math.dist(start[:3], end[:3])
-        return self.feed, way / self.feed if way > 0.0 else math.dist(start[3:], end[3:]) / (self.feed / self.unit)
+        minutes = way / self.feed if way > 0.0 else math.dist(start[3:], end[3:]) / (self.feed / self.unit)
+        if minutes * SECONDS_PER_MINUTE > LONGEST_BLOCK:
+            raise BadInput(f"line {block.line}: at this feed the block takes {minutes:.0f} min, no block takes more than "
+                           f"{LONGEST_BLOCK / SECONDS_PER_MINUTE:.0f}; check F")
+        return self.feed, minutes
 
     def ready(self, line: int) -> Tool:
         """Return the tool when the control knows all it needs for a move in the work offset."""
@@ -281,6 +294,10 @@ class _Control:
         if at is None:
             return self.first_target(block, motion, tool)
         angle = self.turned(words)
+        for letter, before, after in zip(self.rotary, at[3:], angle, strict=True):
+            if abs(after - before) > MOST_TURN:
+                raise BadInput(f"line {block.line}: {letter} turns by {abs(after - before):.10g} degrees in one block, at most "
+                               f"{MOST_TURN:g} are understood; write several")
         if not self.length_on:
             raise BadInput(f"line {block.line}: a move without the tool's length; put G43 H{tool.number} first")
         x, y, z = words.get("X"), words.get("Y"), words.get("Z")
@@ -334,55 +351,9 @@ class _Control:
             raise BadInput(f"line {line}: an arc without I, J or R")
         if words.get("P", 1.0) != 1.0:
             raise BadInput(f"line {line}: an arc of several turns (P) is not understood; write each turn")
-        x, y = start[0] + words.get("I", 0.0) * self.unit, start[1] + words.get("J", 0.0) * self.unit
-        first, last = math.dist((x, y), start[:2]), math.dist((x, y), end[:2])
-        if first == 0.0:
-            raise BadInput(f"line {line}: an arc without a radius; check I and J")
-        if abs(first - last) > tolerance.ARC_RADIUS:
-            raise BadInput(f"line {line}: the arc starts at radius {first:.4f} and ends at {last:.4f} mm; check its end or its centre")
-        return (x, y, start[2])
+        return centre_by_offset(line, start, end, (words.get("I", 0.0) * self.unit, words.get("J", 0.0) * self.unit))
 
 
-def centre_by_radius(line: int, motion: Motion, start: Point, end: Point, radius: float) -> Point:
-    """Return the centre of an arc given by its radius; negative for the longer way round. Lengths in mm."""
-    dx, dy = end[0] - start[0], end[1] - start[1]
-    chord = math.hypot(dx, dy)
-    if chord == 0.0:
-        raise BadInput(f"line {line}: an arc with R must end elsewhere than it starts; use I and J for a full circle")
-    if chord / 2 - abs(radius) > tolerance.ARC_RADIUS:
-        raise BadInput(f"line {line}: the radius R{radius:g} is too small to reach the arc's end, {chord:.4f} mm away")
-    height = math.sqrt(max(radius**2 - chord**2 / 4, 0.0))
-    left = (motion == Motion.ARC_CCW) == (radius > 0.0)
-    side = height / chord if left else -height / chord
-    return (start[0] + dx / 2 - dy * side, start[1] + dy / 2 + dx * side, start[2])
-
-
-def _why_not(code: str) -> str:
-    if code in _REFUSED:
-        return f"{code}: {_REFUSED[code]}"
-    if code in _CYCLES:
-        return f"{code}: canned cycles are not understood; write the moves out"
-    return f"{code} is not understood; remove it or write what it does in known words"
-
-
-def _one_of_a_group(line: int, codes: list[str]) -> None:
-    for group in _GROUPS:
-        found = [c for c in codes if c in group]
-        if len(found) > 1:
-            raise BadInput(f"line {line}: {' and '.join(found)} can't stand in one line; keep one")
-
-
-def _letters_belong(block: Block) -> None:
-    """Refuse letters whose code is missing: H without G43, P and Q without what takes them."""
-    words, codes = block.words, block.codes
-    takes_p = "G64" in codes or "G4" in codes or "I" in words or "J" in words
-    if "P" in words and not takes_p:
-        raise BadInput(f"line {block.line}: P without G4, G64 or an arc; remove it")
-    if "Q" in words and "G64" not in codes:
-        raise BadInput(f"line {block.line}: Q without G64; remove it")
-    if "H" in words and "G43" not in codes:
-        raise BadInput(f"line {block.line}: H without G43; write G43 H{words['H']:g}")
-    if "G4" in codes and any(letter in words for letter in "XYZIJR" + _ROTARY):
-        raise BadInput(f"line {block.line}: a dwell G4 and a move in one line; write two lines")
-    if "G53" in codes and not any(letter in words for letter in "XYZ"):
-        raise BadInput(f"line {block.line}: G53 without a move")
+def _rotary_ranges(place: Place) -> dict[str, Range]:
+    """Return the angles that the words of a machine's rotary axes may say: those within its limits, as a control checks them."""
+    return {a.name: Range(a.low, a.high, "degrees", math.degrees(SLACK)) for a in place.machine.rotary}

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from typing import Protocol
 
 import numpy as np
@@ -92,17 +92,20 @@ def marks_of(motion: Ints) -> Ints:
 
 @dataclass(slots=True, kw_only=True)
 class _Open:
-    """A section that still grows; `cutting` is spindle and coolant at its first feed move, `idle` at its last rapid before."""
+    """A section that still grows; `cutting` is spindle and coolant at its first feed move, `idle` at its last rapid before, `dwell` how
+    long it waits, s."""
 
     operation: str
     rows: Rows
     cutting: tuple[float, str] | None = None
     idle: tuple[float, str] = (0.0, "off")
+    dwell: float = 0.0
 
     def closed(self, reckoning: Reckoning) -> ProgramSection:
         path, lines = reckoning.opened(self.rows)
         spindle, coolant = self.cutting or self.idle
-        return ProgramSection(operation=self.operation, tool=self.rows.tool, spindle=spindle, path=path, coolant=coolant, block_lines=lines)
+        return ProgramSection(operation=self.operation, tool=self.rows.tool, spindle=spindle, path=path, coolant=coolant, block_lines=lines,
+                              dwell=self.dwell)
 
 
 class Sections:
@@ -119,6 +122,7 @@ class Sections:
         self._done: list[ProgramSection] = []
         self._open: _Open | None = None
         self._operation = ""
+        self._waits = 0.0
 
     def operation(self, name: str) -> None:
         """Begin an operation; its tool may still change before the first motion."""
@@ -167,15 +171,25 @@ class Sections:
         opened.cutting = cutting
         self._add(line, motion, point, centre, feed, minutes)
 
+    def dwell(self, seconds: float) -> None:
+        """Wait: a dwell between two sections belongs to the one that follows, after the last to that."""
+        if self._open is not None:
+            self._open.dwell += seconds
+        else:
+            self._waits += seconds
+
     def finished(self) -> tuple[ProgramSection, ...]:
         """Return all sections; raise `BadInput` when nothing moves."""
         self._close()
         if not self._done:
             raise BadInput("the program moves nothing: it holds no feed move or rapid")
+        self._done[-1] = replace(self._done[-1], dwell=self._done[-1].dwell + self._waits)
+        self._waits = 0.0
         return tuple(self._done)
 
     def _begin(self, line: int, tool: Tool) -> _Open:
-        self._open = _Open(operation=self._operation or f"line {line}", rows=Rows(tool=tool))
+        self._open = _Open(operation=self._operation or f"line {line}", rows=Rows(tool=tool), dwell=self._waits)
+        self._waits = 0.0
         self._operation = self._open.operation
         return self._open
 

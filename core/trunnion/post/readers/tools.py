@@ -9,6 +9,7 @@ from trunnion.findings import BadInput
 from trunnion.model.setup import Setup
 from trunnion.model.tool import Tool
 from trunnion.post.header import place_lines, tool_line
+from trunnion.post.readers.numbers import shown
 from trunnion.post.words import plain
 from trunnion.shop.kinematics import Place
 
@@ -29,9 +30,10 @@ def check_tool(line: int, comment: str, tools: Mapping[int, Tool]) -> None:
     found = _TOOL.match(comment)
     if found is None:
         return
-    tool = tools.get(int(found.group(1)))
+    tool = next((t for n, t in tools.items() if str(n) == found.group(1)), None)
     if tool is None or comment not in [plain(tool_line(tool, units), len(comment)) for units in ("mm", "inch")]:
-        raise BadInput(f"line {line}: the text was made for another tool {found.group(1)} than the tool list has; post the program anew")
+        raise BadInput(f"line {line}: the text was made for another tool {shown(found.group(1))} than the tool list has; "
+                       "post the program anew")
 
 
 def check_place(line: int, comment: str, setup: Setup, place: Place | None) -> None:

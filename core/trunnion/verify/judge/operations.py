@@ -36,7 +36,7 @@ def operation_proofs(proof: SetupProof, tags: Ints, area: Floats, machine: Machi
         found.append(OperationProof(
             operation=section.operation, setup=proof.program.setup.name, outcome=Outcome.FAILED if failed else Outcome.PASSED, gouge=gouge,
             collisions=int(collides[rows].sum()), rapids_in_stock=int(rapids.sum()),
-            time_s=float(proof.times.seconds[rows].sum()) + machine.tool_change_s * new_tool, removed=removed,
+            time_s=float(proof.times.seconds[rows].sum()) + section.dwell + machine.tool_change_s * new_tool, removed=removed,
             air_share=1.0 - _share(float(moves.length[cuts].sum()), float(moves.length[feeds].sum()), 1.0),
             gouges=_gouges(proof, rows, tags),
             left_min=float(left.min(initial=np.inf)) if len(left) else 0.0, left_max=float(left.max(initial=-np.inf)) if len(left) else 0.0,
