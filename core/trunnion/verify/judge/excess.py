@@ -59,7 +59,7 @@ def chosen_load(section: ProgramSection, material: Material | None) -> Chosen:
     tool = section.tool
     feed = section.feed or float(section.path.feed.max(initial=0.0))
     area, angle = section.width * section.depth, _angle(section.width, tool.diameter)
-    per_tooth = feed / (tool.teeth * section.spindle) if section.spindle > 0.0 else 0.0
+    per_tooth = 0.0 if section.spindle_stands else feed / (tool.teeth * section.spindle)
     chip = per_tooth * math.sin(min(angle, math.pi / 2.0))
     if material is not None:
         area = max(area, material.depth_factor * material.width_factor * tool.diameter**2)
@@ -88,7 +88,7 @@ Said = tuple[list[Finding], list[Offer]]
 
 def _power(proof: SetupProof, section: ProgramSection, rows: Ints, machine: Machine, material: Material | None,
            settings: ProofSettings) -> Said:
-    if material is None:
+    if material is None or section.spindle_stands:
         return [], []
     limit = machine.power_at(section.spindle) * settings.power
     power = proof.load.power[rows]

@@ -7,6 +7,7 @@ import numpy as np
 from trunnion.findings import Finding, error
 from trunnion.geometry.arrays import Floats, Ints
 from trunnion.model.program import ProgramSection
+from trunnion.units import LONGEST_BLOCK, SECONDS_PER_MINUTE
 from trunnion.verify.judge.places import block_of, place_of
 from trunnion.verify.judge.setups import SetupProof
 from trunnion.verify.settings import ProofSettings
@@ -24,6 +25,7 @@ def setup_findings(proof: SetupProof, tags: Ints, settings: ProofSettings) -> li
         found += _collisions(proof, section, rows, tags, settings)
         found += _fixtures(proof, section, rows, settings)
         found += _rapids(proof, section, rows)
+        found += _endless(proof, section, rows)
     return found
 
 
@@ -80,3 +82,15 @@ def _rapids(proof: SetupProof, section: ProgramSection, rows: Ints) -> list[Find
     return [error("verify.rapid-in-stock", f"a rapid of {section.operation} goes {depth[row]:.3f} mm into stock at "
                   f"{place_of(proof.stock.rapid_place[row])}", section.operation, block_of(proof, section, row),
                   remedy="lift the rapid, or make it a feed move") for row in worst if depth[row] > 0.0]
+
+
+def _endless(proof: SetupProof, section: ProgramSection, rows: Ints) -> list[Finding]:
+    """Return an error for a block that takes so long that its feed must be a slip of the hand."""
+    seconds = proof.times.seconds[rows]
+    if seconds.max(initial=0.0) <= LONGEST_BLOCK:
+        return []
+    row = rows[np.argmax(seconds)]
+    where = block_of(proof, section, row)
+    return [error("verify.endless", f"{section.operation} takes {seconds.max() / SECONDS_PER_MINUTE:.0f} min for one block, {where}, at a "
+                  f"feed of {proof.moves.feed[row]:g} mm/min; no block takes more than {LONGEST_BLOCK / SECONDS_PER_MINUTE:.0f} min",
+                  section.operation, where, remedy="check this block's feed and length")]

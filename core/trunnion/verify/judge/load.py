@@ -16,7 +16,7 @@ import numpy as np
 
 from trunnion.geometry.arrays import Floats
 from trunnion.model.material import Material
-from trunnion.model.program import ProgramSection
+from trunnion.model.program import STANDING, ProgramSection
 from trunnion.units import MM_PER_METRE, SECONDS_PER_MINUTE, WATTS_PER_KILOWATT
 from trunnion.verify.motion import Moves
 from trunnion.verify.stock import StockRun
@@ -51,7 +51,8 @@ def load_of(moves: Moves, run: StockRun, speed: Floats, sections: Sequence[Progr
             material: Material | None) -> Load:
     """Return the load of every move.
 
-    speed (n,) mm/s of the tip; `cell` mm of the stock. Without a material there is no power.
+    speed (n,) mm/s of the tip; `cell` mm of the stock. Without a material there is no power; while the spindle stands there is no chip, no
+    power and no torque, whatever the tool is pushed through.
     """
     radius = np.array([t.radius for t in moves.tools])[moves.tool] if len(moves) else np.zeros(0)
     teeth = np.array([s.tool.teeth for s in sections])[moves.section] if len(moves) else np.zeros(0)
@@ -64,12 +65,14 @@ def load_of(moves: Moves, run: StockRun, speed: Floats, sections: Sequence[Progr
     cuts = (area > 0.0) & ~moves.rapid
     feed = np.where(cuts, speed * SECONDS_PER_MINUTE, 0.0)
     rate = np.where(cuts, area, 0.0) * feed / MM_PER_METRE
-    per_tooth = np.divide(feed, teeth * spindle, out=np.zeros(len(moves)), where=spindle > 0.0)
+    per_tooth = np.divide(feed, teeth * spindle, out=np.zeros(len(moves)), where=spindle > STANDING)
     chip = per_tooth * np.sin(np.minimum(angle, math.pi / 2.0))
     mean = per_tooth * mean_share(angle)
-    power = np.zeros(len(moves)) if material is None else rate * specific_force(material, mean) / (SECONDS_PER_MINUTE * WATTS_PER_KILOWATT)
+    power = np.zeros(len(moves))
+    if material is not None:
+        power = np.where(spindle > STANDING, rate * specific_force(material, mean) / (SECONDS_PER_MINUTE * WATTS_PER_KILOWATT), 0.0)
     held = np.divide(area, width, out=np.zeros(len(moves)), where=cuts & (width > 0.0))
-    torque = NEWTON_METRES * np.divide(power, spindle, out=np.zeros(len(moves)), where=spindle > 0.0)
+    torque = NEWTON_METRES * np.divide(power, spindle, out=np.zeros(len(moves)), where=spindle > STANDING)
     return Load(depth=np.minimum(held, run.depth_of_cut), rate=rate, chip=np.where(cuts, chip, 0.0),
                 mean_chip=np.where(cuts, mean, 0.0), power=power, torque=torque)
 

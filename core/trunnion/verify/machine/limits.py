@@ -11,6 +11,7 @@ from trunnion import tolerance
 from trunnion.findings import Finding, error
 from trunnion.model.material import Axis, Machine
 from trunnion.model.program import ProgramSection
+from trunnion.model.toolpath import Motion
 from trunnion.verify.machine.kinematics import SLACK, UP, Stands, angle_between
 from trunnion.verify.machine.times import LINEAR
 from trunnion.verify.motion import Moves
@@ -24,11 +25,24 @@ def limit_findings(setup: str, sections: Sequence[ProgramSection], moves: Moves,
         if fastest > machine.feed_max * (1 + tolerance.COINCIDENT):
             found.append(error("verify.feed", f"{s.operation} feeds at {fastest:.0f} mm/min, {machine.title} allows {machine.feed_max:.0f}",
                                s.operation, remedy="lower the feed"))
-        if not machine.spindle_low <= s.spindle <= machine.spindle_high * (1 + tolerance.COINCIDENT):
+        if s.spindle_stands:
+            found += _standing(s)
+        elif not machine.spindle_low <= s.spindle <= machine.spindle_high * (1 + tolerance.COINCIDENT):
             found.append(error("verify.spindle", f"{s.operation} turns the spindle at {s.spindle:.0f} 1/min, {machine.title} has "
                                f"{machine.spindle_low:.0f} to {machine.spindle_high:.0f}", s.operation, remedy="change the spindle speed"))
         found += _rotary(s, k, moves, stands, machine)
     return found
+
+
+def _standing(section: ProgramSection) -> list[Finding]:
+    """Return an error when a section feeds while its spindle stands; rapids may."""
+    feeds = np.flatnonzero(section.path.motion != Motion.RAPID)
+    if not len(feeds):
+        return []
+    block = int(feeds[0])
+    where = f"line {section.block_lines[block]}" if block < len(section.block_lines) else f"block {block}"
+    return [error("verify.spindle-stands", f"{section.operation} feeds the cutter with the spindle standing still "
+                  f"(S{section.spindle:g}) from {where} on", section.operation, where, remedy="give the spindle speed before the cut")]
 
 
 def _travel(setup: str, stands: Stands, machine: Machine) -> list[Finding]:
