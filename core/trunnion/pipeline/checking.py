@@ -7,12 +7,16 @@ from dataclasses import replace
 from pathlib import Path
 
 from trunnion.findings import BadCall, BadInput
+from trunnion.model.program import Program
 from trunnion.model.session import PostedFile, Session, StepRecord
 from trunnion.pipeline.engine import Engine
 from trunnion.pipeline.proving import errors_of_part, held_back, prove_programs, read_back
 from trunnion.post.settings import PostSettings
 from trunnion.progress import Progress
 from trunnion.settings import checked, choose
+
+MOST_BYTES = 200_000_000
+"""Size of an NC file that is read: about ten million blocks; more is a file of another kind, or a stream without an end."""
 
 
 def verify_texts(engine: Engine, session: Session, files: Sequence[Path], progress: Progress) -> Session:
@@ -27,16 +31,28 @@ def verify_texts(engine: Engine, session: Session, files: Sequence[Path], progre
     dialect = checked(choose(PostSettings, session.choices)).dialect
     posted = [PostedFile(suffix=file.name, dialect=dialect, setup=setup.name, text=text_of(file))
               for file, setup in zip(files, session.process.setups, strict=False)]
-    programs = read_back(session, tuple(posted), engine.bench_of(session).shop.machines)
-    verdict = held_back(prove_programs(session, engine.bench_of(session), programs, progress), errors_of_part(session))
+    programs = [p for file, text in zip(files, posted, strict=True) for p in _read(session, file, text, engine)]
+    verdict = held_back(prove_programs(session, engine.bench_of(session), tuple(programs), progress), errors_of_part(session))
     record = StepRecord(key="texts from outside", seconds=0.0, findings=verdict.findings)
     return replace(session, verdict=verdict, posted=tuple(posted), records={**session.records, "verify": record})
+
+
+def _read(session: Session, file: Path, text: PostedFile, engine: Engine) -> tuple[Program, ...]:
+    """Return what a file's text says; a refusal names the file before the line."""
+    try:
+        return read_back(session, (text,), engine.bench_of(session).shop.machines)
+    except BadInput as reason:
+        raise BadInput(f"{file}: {reason}") from None
 
 
 def text_of(file: Path) -> str:
     """Return the NC text of a file; raise `BadInput` when there is none to read."""
     try:
-        return file.read_text(encoding="utf-8")
+        with file.open("rb") as stream:
+            data = stream.read(MOST_BYTES + 1)
+        if len(data) > MOST_BYTES:
+            raise BadInput(f"{file}: is larger than {MOST_BYTES // 1_000_000} MB; give the NC file to be proven")
+        return data.decode("utf-8").replace("\r\n", "\n").replace("\r", "\n")
     except OSError as reason:
         why = (reason.strerror or "the system refuses").lower()
         raise BadInput(f"{file}: can't be read: {why}; give the NC file to be proven") from None
