@@ -12,7 +12,7 @@ from pytest import approx
 from trunnion.model.verdict import Outcome
 from trunnion.shop import load_shop
 from trunnion.verify.judge.excess import chosen_load
-from trunnion.verify.judge.load import load_of, mean_share, stretched
+from trunnion.verify.judge.load import least_angle, load_of, mean_share, stretched
 from trunnion.verify.motion import moves_of
 from trunnion.verify.stock import StockRun
 from verify_tools import BLANK, MACHINE, TOP, flat, program_section, proof
@@ -46,7 +46,8 @@ def test_a_full_slot_has_the_chips_and_the_power_of_the_formula():
     section = slot()
     moves = moves_of((section,))
     run = StockRun(removed=np.where(moves.rapid, 0.0, 60.0 * moves.length), rapid_depth=np.zeros(4), rapid_place=np.zeros((4, 3)),
-                   body_depth=np.zeros(4), engagement=np.full(4, math.pi), depth_of_cut=np.full(4, 6.0), peak=np.ones(4))
+                   body_depth=np.zeros(4), engagement=np.full(4, math.pi), depth_of_cut=np.full(4, 6.0), widest=np.full(4, 10.0),
+                   peak=np.ones(4))
     speed = np.where(moves.rapid, 0.0, 50.0)
     load = load_of(moves, run, speed, (section,), 0.5, MATERIAL)
     force = 700.0 * (0.2 / math.pi) ** -0.25
@@ -56,6 +57,41 @@ def test_a_full_slot_has_the_chips_and_the_power_of_the_formula():
     assert load.power[2] == approx(180.0 * force / 60_000.0)
     assert load.torque[2] == approx(load.power[2] * 60_000.0 / (2 * math.pi * 10000.0))
     assert not load.power[moves.rapid].any()
+
+
+def test_a_move_through_the_air_beside_a_cut_has_no_load():
+    # Down beside the blank at more than three times the slot's feed: it takes nothing, though the stretch about it reaches into the slot.
+    stops = [(-35.5, 0.0, 30.0), (-35.5, 0.0, TOP + 2.0), (-35.5, 0.0, TOP), *SLOT[2:]]
+    section = program_section(SLOTTER, stops, operation="slot", rapid_to=1)
+    fast = replace(slot(), path=replace(section.path, feed=np.array([0.0, 0.0, 10_000.0, 3000.0, 3000.0])))
+    measured = judged(fast).operations[0]
+    assert measured.power == approx(4.2, rel=0.05)
+    assert measured.rate == approx(180.0, rel=0.02)
+
+
+def test_a_cut_narrower_than_the_cells_has_about_the_power_of_the_formula():
+    # ae 0.3 at D 10: 0.348 rad, of which the chip's mean is a share of 0.172; k_c = 700 (0.1 * 0.172)^-0.25; Q = 5.4 cm3/min. The stock
+    # has columns 0.5 mm apart, and gives one of them.
+    beside = [(x, 22.7, z) for x, _, z in SLOT]
+    section = replace(slot(), path=replace(program_section(SLOTTER, beside, rapid_to=1).path, feed=slot().path.feed))
+    power = 5.4 * 700.0 * (0.1 * 0.1725) ** -0.25 / 60_000.0
+    measured = judged(section).operations[0]
+    assert measured.engaged == 0.0
+    assert power <= measured.power <= 2.0 * power
+
+
+def test_the_least_angle_is_that_of_a_cut_all_along_the_flutes():
+    # 50 mm2 along 20 mm of flutes: 2.5 wide, a quarter of the diameter.
+    assert least_angle(np.array([50.0, 0.0]), np.full(2, 5.0), np.full(2, 20.0)) == approx([math.pi / 3.0, 0.0])
+
+
+def test_a_short_widening_counts_for_no_more_than_its_own_section():
+    # 94 mm with 3.4 mm2 on the mean; over a diameter 2.9 mm wide and 6.5 deep, eight times the mean of the widths that were seen.
+    moves = moves_of((slot(),))
+    run = StockRun(removed=np.where(moves.rapid, 0.0, 3.4 * moves.length), rapid_depth=np.zeros(4), rapid_place=np.zeros((4, 3)),
+                   body_depth=np.zeros(4), engagement=np.full(4, 2.0), depth_of_cut=np.full(4, 6.5), widest=np.full(4, 2.9),
+                   peak=np.full(4, 8.0))
+    assert load_of(moves, run, np.where(moves.rapid, 0.0, 50.0), (slot(),), 0.5, MATERIAL).rate[2] == approx(2.9 * 6.5 * 3.0)
 
 
 def test_the_mean_chip_over_half_a_turn_is_two_over_pi():

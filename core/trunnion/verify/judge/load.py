@@ -57,12 +57,16 @@ def load_of(moves: Moves, run: StockRun, speed: Floats, sections: Sequence[Progr
     radius = np.array([t.radius for t in moves.tools])[moves.tool] if len(moves) else np.zeros(0)
     teeth = np.array([s.tool.teeth for s in sections])[moves.section] if len(moves) else np.zeros(0)
     spindle = np.array([s.spindle for s in sections])[moves.section] if len(moves) else np.zeros(0)
-    angle = np.clip(run.engagement, 0.0, math.pi)
-    width = radius * (1.0 - np.cos(angle))
+    flute = np.array([t.flute_length for t in moves.tools])[moves.tool] if len(moves) else np.zeros(0)
+    seen = np.clip(run.engagement, 0.0, math.pi)
+    width = radius * (1.0 - np.cos(seen))
     mean_area = stretched(moves, run.removed, np.maximum(2.0 * STRETCH * radius, CELLS * cell))
     # A long block cuts, where it is widest, what its mean says times how much wider it is there, and no more than fits.
-    area = np.maximum(mean_area, np.minimum(mean_area * run.peak, width * run.depth_of_cut))
-    cuts = (area > 0.0) & ~moves.rapid
+    # What is narrower than the stock's cells is missing in the mean of widths: the widest stretch itself is the other bound.
+    area = np.maximum(mean_area, np.minimum(mean_area * run.peak, run.widest * run.depth_of_cut))
+    # Of a stretch's volume a move that meets no material has no share: it runs through the air before or behind it.
+    cuts = (area > 0.0) & ~moves.rapid & ((run.removed > 0.0) | (run.engagement > 0.0))
+    angle = np.maximum(seen, least_angle(area, radius, flute))
     feed = np.where(cuts, speed * SECONDS_PER_MINUTE, 0.0)
     rate = np.where(cuts, area, 0.0) * feed / MM_PER_METRE
     per_tooth = np.divide(feed, teeth * spindle, out=np.zeros(len(moves)), where=spindle > STANDING)
@@ -75,6 +79,15 @@ def load_of(moves: Moves, run: StockRun, speed: Floats, sections: Sequence[Progr
     torque = NEWTON_METRES * np.divide(power, spindle, out=np.zeros(len(moves)), where=spindle > STANDING)
     return Load(depth=np.minimum(held, run.depth_of_cut), rate=rate, chip=np.where(cuts, chip, 0.0),
                 mean_chip=np.where(cuts, mean, 0.0), power=power, torque=torque)
+
+
+def least_angle(area: Floats, radius: Floats, flute: Floats) -> Floats:
+    """Return the smallest angle of contact (n,) rad at which cutters take cross-sections of area (n,) mm2: all along their flutes (n,) mm.
+
+    A cut narrower than the stock's cells is not seen by the probes, though its volume is.
+    """
+    width = np.minimum(np.divide(area, flute, out=np.zeros_like(area), where=flute > 0.0), 2.0 * radius)
+    return np.arccos(1.0 - np.divide(width, radius, out=np.zeros_like(area), where=radius > 0.0))
 
 
 def mean_share(angle: Floats) -> Floats:

@@ -60,12 +60,13 @@ class Tally:
 @dataclass(frozen=True, slots=True, eq=False)
 class Engagement:
     """A row a move: largest (n,) and mean (n,) angle of the circumference in material, rad, 0 for rapids and in air; depth (n,) the
-    largest depth of the material along the axis, mm; peak (n,) how many times as wide as on the mean of the way the cut is over the
-    diameter's length where it is widest, 1 in air."""
+    largest depth of the material along the axis, mm; widest (n,) mm how wide the cut is, from the cutter's side, over the diameter's length
+    where it is widest, and peak (n,) how many times as wide as on the mean of the way, 1 in air."""
 
     largest: Floats
     mean: Floats
     depth: Floats
+    widest: Floats
     peak: Floats
 
 
@@ -93,11 +94,12 @@ def engagement_of(probes: Probes, tally: Tally, moves: Moves) -> Engagement:
     np.maximum.at(largest, owner, angle)
     np.maximum.at(depth, owner, deep)
     count = np.maximum(np.diff(probes.start), 1)
-    return Engagement(largest, np.bincount(owner, angle, n) / count, depth, _peaks(probes, moves, owner, angle))
+    return Engagement(largest, np.bincount(owner, angle, n) / count, depth, *_widest(probes, moves, owner, angle))
 
 
-def _peaks(probes: Probes, moves: Moves, owner: Ints, angle: Floats) -> Floats:
-    """Return how many times as wide as on the mean of each move (n,) the cut is over a diameter's length where it is widest."""
+def _widest(probes: Probes, moves: Moves, owner: Ints, angle: Floats) -> tuple[Floats, Floats]:
+    """Return how wide the cut of each move is over a diameter's length where it is widest (n,) mm, and how many times as wide as on the
+    mean of the move that is (n,)."""
     n, count = len(moves), np.maximum(np.diff(probes.start), 1)
     diameter = np.array([tool.diameter for tool in moves.tools])[moves.tool] if n else np.zeros(0)
     several = np.clip(np.ceil(diameter * count / np.maximum(moves.length, 1e-9)), 1, count).astype(np.int64)
@@ -107,7 +109,7 @@ def _peaks(probes: Probes, moves: Moves, owner: Ints, angle: Floats) -> Floats:
     around = (width[last] - width[last - several[owner]]) / several[owner]
     widest, mean = np.zeros(n), (width[probes.start[1:]] - width[probes.start[:-1]]) / count
     np.maximum.at(widest, owner, around)
-    return np.divide(widest, mean, out=np.ones(n), where=mean > tolerance.PARAMETRIC)
+    return 0.5 * diameter * widest, np.divide(widest, mean, out=np.ones(n), where=mean > tolerance.PARAMETRIC)
 
 
 def rings_of(tool: Tool) -> list[tuple[float, float]]:

@@ -25,8 +25,8 @@ class StockRun:
 
     removed (n,) mm3; rapid_depth (n,) how deep a rapid goes into stock, 0 when clear; rapid_place (n, 3) in the setup frame, NaN when
     clear; body_depth (n,) how deep shank or holder enter stock; engagement (n,) rad, the largest angle of the cutter's circumference in
-    material along a feed move, and depth_of_cut (n,) mm along the axis, both 0 for rapids; peak (n,) how many times as wide as on the mean
-    of the way the cut is over the diameter's length where it is widest.
+    material along a feed move, and depth_of_cut (n,) mm along the axis, both 0 for rapids; widest (n,) mm how wide the cut is over the
+    diameter's length where it is widest, peak (n,) how many times as wide as on the mean of the way.
     """
 
     removed: Floats
@@ -35,6 +35,7 @@ class StockRun:
     body_depth: Floats
     engagement: Floats
     depth_of_cut: Floats
+    widest: Floats
     peak: Floats
 
 
@@ -63,4 +64,5 @@ def run_stock(stock: Stock, moves: Moves, frame: Frame, sweep: Sweep | None = No
     place = np.where(rapid_depth[:, None] > 0.0, found.place, np.nan)
     engaged = engagement_of(probes, found.tally, moves)
     return StockRun(removed=found.removed, rapid_depth=rapid_depth, rapid_place=frame.to_local(stock.frame.to_world(place)),
-                    body_depth=found.body, engagement=engaged.largest, depth_of_cut=engaged.depth, peak=engaged.peak)
+                    body_depth=found.body, engagement=engaged.largest, depth_of_cut=engaged.depth, widest=engaged.widest,
+                    peak=engaged.peak)
