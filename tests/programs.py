@@ -104,7 +104,8 @@ def recognition() -> Recognition:
 def process_tree() -> ProcessTree:
     """Return a plan with a suppressed operation, choices of every type and rules."""
     data = CuttingData(speed=500.0, spindle=12000.0, feed_per_tooth=0.1, feed=3600.0, plunge_feed=900.0, depth=2.5, width=8.0,
-                       removal_rate=72.0, power=1.8, power_limit=15.0, torque=1.43, rules=("vc from the catalogue",))
+                       removal_rate=72.0, power=1.8, power_limit=15.0, torque=1.43, rules=("vc from the catalogue",), widest=40.0,
+                       slot_share=0.75, peak_power=4.5, peak_torque=3.58, peak_at="the cutter enters at full width", routed_depth=3.5)
     choices = {"plane.rough.stepover": 0.4, "plane.rough.climb": True, "plane.rough.levels": 3, "plane.rough.entry": "helix"}
     rough = Operation(id="pocket-01.rough", kind="rough", strategy="plane.rough", feature="pocket-01", setup="S1", tool=FLAT_16, data=data,
                       choices=choices, rules=("largest cutter that passes the corners",))

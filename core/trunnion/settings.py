@@ -133,10 +133,22 @@ def digest(*things: Any) -> str:
     return hashlib.sha256(json.dumps([_plain(t) for t in things], sort_keys=True).encode()).hexdigest()[:16]
 
 
+def added(default: Any) -> Any:
+    """Return a dataclass field that older files don't have: at its default it is no part of a digest, so theirs stay what they were."""
+    return dataclasses.field(default=default, metadata={_ADDED: True})
+
+
+_ADDED = "added"
+
+
+def _is_unused(field: Any, thing: Any) -> bool:
+    return _ADDED in field.metadata and getattr(thing, field.name) == field.default
+
+
 def _plain(thing: Any) -> Any:
     if dataclasses.is_dataclass(thing) and not isinstance(thing, type):
         # A field that is not given at construction is a cache: it may be there or not yet.
-        own = {f.name: _plain(getattr(thing, f.name)) for f in dataclasses.fields(thing) if f.init}
+        own = {f.name: _plain(getattr(thing, f.name)) for f in dataclasses.fields(thing) if f.init and not _is_unused(f, thing)}
         return {"": type(thing).__qualname__, **own}
     if isinstance(thing, Mapping):
         return {str(k): _plain(v) for k, v in thing.items()}

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+import re
 import subprocess
 import sys
 from pathlib import Path
@@ -86,6 +87,14 @@ def test_sizes_blank_route_and_optimize_each_print_json(capsys: pytest.CaptureFi
     for command, key in (("size", "sizes"), ("blank", "volume"), ("route", "operations"), ("optimize", "operations")):
         main([command, str(sample_part), "--json"])
         assert key in json.loads(capsys.readouterr().out), command
+
+
+def test_optimize_tells_the_highest_load_and_where_it_is(capsys: pytest.CaptureFixture[str], sample_part: Path) -> None:
+    main(["optimize", str(sample_part)])
+    said = capsys.readouterr().out
+    assert "peak kW" in said.splitlines()[0]
+    (line,) = [line for line in said.splitlines() if line.startswith("highest load: ")]
+    assert re.fullmatch(r"highest load: \S+, \d+\.\d of 28\.0 kW where [a-z ]+ \(\d+\.\d kW steady\)", line)
 
 
 def test_every_setting_is_listed_with_its_range(capsys: pytest.CaptureFixture[str]) -> None:

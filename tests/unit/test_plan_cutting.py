@@ -12,7 +12,8 @@ from flat_parts import operation
 from trunnion.geometry.frame import WORLD
 from trunnion.model.process import ProcessTree
 from trunnion.model.setup import Setup
-from trunnion.plan.cutting import CuttingSettings, balance, chip_thinning, cutting_data, cutting_power, slenderness, table_feed
+from trunnion.plan.cutting import CuttingSettings, balance, chip_thinning, cutting_data, slenderness, table_feed
+from trunnion.plan.power import cutting_power
 from trunnion.settings import choose
 from trunnion.shop import load_shop
 
@@ -87,12 +88,12 @@ def process(kind: str, by_hand: bool = False) -> ProcessTree:
 
 
 def test_balance_computes_every_operation_again():
-    data = balance(process("wall"), SHOP, DEFAULT).operations[0].data
+    data = balance(process("wall"), SHOP, DEFAULT, {}).operations[0].data
     assert data.spindle == approx(900_000 / (math.pi * 20))
 
 
 def test_balance_leaves_what_a_person_set():
-    assert balance(process("wall", by_hand=True), SHOP, DEFAULT).operations[0].data.spindle == 1000
+    assert balance(process("wall", by_hand=True), SHOP, DEFAULT, {}).operations[0].data.spindle == 1000
 
 
 @pytest.mark.parametrize("material", sorted(SHOP.materials))

@@ -3,12 +3,14 @@
 from __future__ import annotations
 
 import argparse
+from collections.abc import Iterable
 from dataclasses import asdict
 from typing import TYPE_CHECKING, Any
 
 from trunnion.cli.common import exit_code, open_session, part_command, show_findings, show_json, table
 
 if TYPE_CHECKING:
+    from trunnion.model.operation import Operation
     from trunnion.plan.surface.estimate import Estimate
 
 
@@ -27,17 +29,28 @@ def run(chosen: argparse.Namespace) -> int:
         show_json({"operations": [{"id": o.id, "tool": o.tool.number, "data": asdict(o.data)} for o in process.operations],
                    "estimate": asdict(areas) if areas else None, "findings": [f.as_dict() for f in session.findings()]})
     else:
-        rows = [("operation", "tool", "vc m/min", "n 1/min", "fz mm", "vf mm/min", "Q cm3/min", "P kW", "limit kW", "M Nm")]
+        rows = [("operation", "tool", "vc m/min", "n 1/min", "fz mm", "vf mm/min", "Q cm3/min", "P kW", "peak kW", "limit kW", "M Nm")]
         for o in process.operations:
             d = o.data
             rows.append((o.id, f"T{o.tool.number}", f"{d.speed:.0f}", f"{d.spindle:.0f}", f"{d.feed_per_tooth:.3f}", f"{d.feed:.0f}",
-                         f"{d.removal_rate:.1f}", f"{d.power:.2f}", f"{d.power_limit:.2f}", f"{d.torque:.2f}"))
-        print(table(rows, right=tuple(range(2, 10))))
+                         f"{d.removal_rate:.1f}", f"{d.power:.2f}", f"{d.highest_power:.2f}", f"{d.power_limit:.2f}", f"{d.torque:.2f}"))
+        print(table(rows, right=tuple(range(2, 11))))
+        print(highest_load(process.operations))
         if areas is not None:
             print()
             print(estimate_table(areas))
     show_findings(chosen, session.findings())
     return exit_code(session.findings())
+
+
+def highest_load(operations: Iterable[Operation]) -> str:
+    """Return in words the operation that takes most of the spindle's power, and where."""
+    from trunnion.model.load import spindle_loads
+    most = max(spindle_loads(operations), key=lambda load: load.share, default=None)
+    if most is None:
+        return "no load"
+    where = f" where {most.at} ({most.steady:.1f} kW steady)" if most.at else ""
+    return f"highest load: {most.operation}, {most.highest:.1f} of {most.limit:.1f} kW{where}"
 
 
 def estimate_table(areas: Estimate) -> str:

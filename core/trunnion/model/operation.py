@@ -8,7 +8,7 @@ from dataclasses import dataclass, field
 from trunnion.findings import Finding
 from trunnion.model.tool import Tool
 from trunnion.model.toolpath import EMPTY, Toolpath
-from trunnion.settings import Value
+from trunnion.settings import Value, added
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -17,6 +17,10 @@ class CuttingData:
 
     `speed` vc m/min, `spindle` 1/min, `feed_per_tooth` mm, `feed` and `plunge_feed` mm/min, `depth` ap and `width` ae mm,
     `power` and `power_limit` kW, `torque` Nm, `removal_rate` cm3/min; `rules` say where each number comes from.
+    `widest` mm: what may stand in front of the cutter at once where the area says so (0: only the strategy knows); `slot_share`: share of
+    its feed in full width that the spindle leaves a strategy; `peak_power` kW and `peak_torque` Nm at the largest engagement that the
+    strategy can meet, and `peak_at`, in words, where that is; `routed_depth` mm: the depth that the route chose where
+    the spindle allows less (0: the same).
     """
 
     speed: float
@@ -31,6 +35,31 @@ class CuttingData:
     power_limit: float
     torque: float
     rules: tuple[str, ...] = ()
+    widest: float = added(0.0)
+    slot_share: float = added(1.0)
+    peak_power: float = added(0.0)
+    peak_torque: float = added(0.0)
+    peak_at: str = added("")
+    routed_depth: float = added(0.0)
+
+    @property
+    def highest_power(self) -> float:
+        """The power in kW at steady cutting or at the largest engagement, whichever is more."""
+        return max(self.power, self.peak_power)
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Engagement:
+    """The largest engagement that a strategy can meet: `width` and `depth` mm at a `share` of the feed; `at` says in words where.
+
+    `slows`: the strategy goes slower there by `CuttingData.slot_share`, and not elsewhere.
+    """
+
+    width: float
+    depth: float
+    share: float
+    at: str
+    slows: bool = False
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)

@@ -21,6 +21,7 @@ from trunnion.pipeline.making import findings_of, make_paths, strategy_settings
 from trunnion.pipeline.proving import prove_session
 from trunnion.plan.blank import BlankSettings, make_blank
 from trunnion.plan.cutting import CuttingSettings, balance
+from trunnion.plan.peak import overloads
 from trunnion.plan.route import RouteSettings, make_route
 from trunnion.plan.setups import SetupSettings, make_setups
 from trunnion.plan.size import size_table
@@ -162,11 +163,8 @@ def _optimize(session: Session, bench: Bench, progress: Progress) -> Result:
     if session.process is None:
         raise BadCall("no operations yet: generate the route first")
     routed = session.process
-    balanced = balance(routed, bench.shop, checked(choose(CuttingSettings, session.choices)))
-    by_hand = {o.id: o for o in routed.operations if o.by_hand}
-    kept = replace(balanced, operations=tuple(by_hand.get(o.id, o) for o in balanced.operations))
-    news = tuple(f for f in balanced.findings if f not in routed.findings)
-    return Result(session=replace(session, process=kept), findings=news)
+    balanced = balance(routed, bench.shop, checked(choose(CuttingSettings, session.choices)), session.choices)
+    return Result(session=replace(session, process=balanced), findings=overloads(balanced.operations))
 
 
 def _toolpath(session: Session, bench: Bench, progress: Progress) -> Result:
@@ -191,6 +189,12 @@ def _operations_without_data(session: Session) -> tuple[Any, ...]:
     return tuple((o.id, o.strategy, o.feature, o.tool, dict(o.choices), o.by_hand, o.suppressed) for o in session.process.operations)
 
 
+def _strategies_chosen(session: Session) -> tuple[Any, ...]:
+    """Return the settings of the strategies in use: they say how large an engagement each can meet."""
+    used = sorted({o.strategy for o in session.process.operations}) if session.process else ()
+    return tuple(checked(choose(registry.get("strategies", name).settings, session.choices)) for name in used)
+
+
 STEP_TABLE: tuple[Step, ...] = (
     Step(name="recognize", title="Recognize", after=(), settings=_family_settings, work=_recognize,
          reads=lambda s, b: (b.part.digest, b.part.solid), done=lambda s: s.recognition is not None),
@@ -203,7 +207,8 @@ STEP_TABLE: tuple[Step, ...] = (
          settings=lambda: (SetupSettings, RouteSettings, SurfaceRouteSettings),
          reads=lambda s, b: (b.part.digest, s.recognition, s.blank, b.shop.digest), done=lambda s: s.process is not None),
     Step(name="optimize", title="Optimize", after=("route",), settings=lambda: (CuttingSettings,), work=_optimize,
-         reads=lambda s, b: (_record_key(s, "route"), _operations_without_data(s), b.shop.digest), done=lambda s: s.process is not None),
+         reads=lambda s, b: (_record_key(s, "route"), _operations_without_data(s), _strategies_chosen(s), b.shop.digest),
+         done=lambda s: s.process is not None, version=2),
     Step(name="toolpath", title="Toolpaths", after=("optimize",), settings=strategy_settings, work=_toolpath,
          reads=lambda s, b: (b.part.digest, s.recognition, s.blank, s.setups, s.process), done=lambda s: "toolpath" in s.records),
     Step(name="verify", title="Verify and post", after=("toolpath",), settings=lambda: (PostSettings, ProofSettings), work=_verify,

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Mapping
 from dataclasses import replace
 from itertools import pairwise
 
@@ -10,15 +11,14 @@ from trunnion.model.material import Machine, Material
 from trunnion.model.operation import CuttingData, Operation
 from trunnion.model.process import ProcessTree
 from trunnion.model.tool import Tool
-from trunnion.settings import setting, settings
+from trunnion.plan.peak import with_peak
+from trunnion.plan.power import NEWTON_METRES, cutting_power
+from trunnion.settings import Value, setting, settings
 from trunnion.shop import Shop
-from trunnion.units import MM_PER_METRE, SECONDS_PER_MINUTE, WATTS_PER_KILOWATT, trimmed
+from trunnion.units import MM_PER_METRE, trimmed
 
 ROUGHING = ("face", "rough", "corner", "profile_rough")
 """Kinds of operation that take the material's roughing speed."""
-
-NEWTON_METRES = 60.0 * WATTS_PER_KILOWATT / (2.0 * math.pi)
-"""Torque in Nm of one kW at one turn a minute."""
 
 
 @settings("cutting")
@@ -77,14 +77,6 @@ def table_feed(material: Material, diameter: float) -> float:
     return rows[-1][1]
 
 
-def cutting_power(material: Material, diameter: float, feed_per_tooth: float, depth: float, width: float, feed: float) -> float:
-    """Return the power at the cutter in kW by Kienzle: k_c = k_c1.1 h^-m_c with the mean chip thickness over the arc of contact."""
-    arc = math.acos(max(1.0 - 2.0 * min(width, diameter) / diameter, -1.0))
-    chip = feed_per_tooth * 2.0 * (min(width, diameter) / diameter) / arc
-    specific = material.force * chip**-material.force_exponent
-    return depth * width * feed * specific / (SECONDS_PER_MINUTE * MM_PER_METRE * WATTS_PER_KILOWATT)
-
-
 def roughing_depth(tool: Tool, material: Material, settings: CuttingSettings) -> float:
     """Return the depth of cut in mm that a material and a cutter bear when roughing, not more than the flutes."""
     return min(material.depth_factor * settings.depth_share * slenderness(tool, settings) * tool.diameter, tool.flute_length)
@@ -96,10 +88,11 @@ def roughing_width(tool: Tool, material: Material, settings: CuttingSettings) ->
 
 
 def cutting_data(tool: Tool, material: Material, machine: Machine, kind: str, settings: CuttingSettings, depth: float,
-                 width: float) -> CuttingData:
+                 width: float, widest: float = 0.0) -> CuttingData:
     """Return the data of an operation of `kind` that cuts `depth` ap and `width` ae (mm), with a sentence for each number.
 
     Feeds follow from the material's table, chip thinning and slenderness; then spindle, feed and power of the machine bound them.
+    `widest` (mm) is what may stand in front of the cutter at once, where the area says so.
     """
     rough = kind in ROUGHING
     speed = (material.speed_rough if rough else material.speed_finish) * settings.speed_share
@@ -134,21 +127,28 @@ def cutting_data(tool: Tool, material: Material, machine: Machine, kind: str, se
     return CuttingData(speed=speed, spindle=spindle, feed_per_tooth=feed / (tool.teeth * spindle), feed=feed,
                        plunge_feed=feed * settings.plunge_share, depth=depth, width=width,
                        removal_rate=depth * width * feed / MM_PER_METRE, power=power, power_limit=limit,
-                       torque=NEWTON_METRES * power / spindle, rules=tuple(rules))
+                       torque=NEWTON_METRES * power / spindle, rules=tuple(rules), widest=widest)
 
 
-def balance(process: ProcessTree, shop: Shop, settings: CuttingSettings) -> ProcessTree:
-    """Return the process with every operation's data computed again under these limits; what a person set by hand stays."""
-    material = shop.material(process.material)
-    return replace(process, operations=tuple(_balanced(o, process, material, shop, settings) for o in process.operations))
+def balance(process: ProcessTree, shop: Shop, settings: CuttingSettings, choices: Mapping[str, Value]) -> ProcessTree:
+    """Return the process with every operation's data computed again under these limits; what a person set by hand stays.
+
+    Every operation is told the peak of its load under a session's `choices` for the strategies.
+    """
+    material, done = shop.material(process.material), list[Operation]()
+    for operation in process.operations:
+        balanced = _balanced(operation, process, material, shop, settings)
+        done.append(with_peak(balanced, [o for o in done if o.setup == operation.setup], material, choices))
+    return replace(process, operations=tuple(done))
 
 
 def _balanced(operation: Operation, process: ProcessTree, material: Material, shop: Shop, settings: CuttingSettings) -> Operation:
     if operation.by_hand:
         return operation
     machine = shop.machine(process.setup(operation.setup).machine)
-    depth, width = operation.data.depth, operation.data.width
+    depth, width = operation.data.routed_depth or operation.data.depth, operation.data.width
     if operation.kind in ROUGHING and operation.kind != "face":
         depth = min(depth, roughing_depth(operation.tool, material, settings))
         width = min(width, roughing_width(operation.tool, material, settings))
-    return replace(operation, data=cutting_data(operation.tool, material, machine, operation.kind, settings, depth, width))
+    data = cutting_data(operation.tool, material, machine, operation.kind, settings, depth, width, operation.data.widest)
+    return replace(operation, data=data)

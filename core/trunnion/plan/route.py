@@ -119,7 +119,7 @@ def _operation(draft: Draft, wish: Wish, after: frozenset[str]) -> Operation:
     choices: dict[str, Value] = {} if stage.finish else {WALL_ALLOWANCE: chosen.wall_allowance, FLOOR_ALLOWANCE: chosen.floor_allowance}
     if stage.kind == "floor":
         choices["plane.floor.wall_distance"] = floor_distance(chosen)
-    data = cutting_data(tool, draft.material, draft.machine, stage.kind, cutting, depth, width)
+    data = cutting_data(tool, draft.material, draft.machine, stage.kind, cutting, depth, width, _widest(wish, chosen))
     rules = (stage.rule, *_tool_rules(wish, tool, chosen))
     return Operation(
         id=wish.id, kind=stage.kind, strategy=stage.strategy, feature=wish.feature, setup=draft.space.setup.name, tool=tool,
@@ -143,6 +143,14 @@ def _engagement(draft: Draft, wish: Wish, tool: Tool, cutting: CuttingSettings) 
     if kind == "profile_rough":
         return rough_depth, min(rough_width, max(wish.width - allowance, tolerance.SEW))
     return rough_depth, rough_width
+
+
+def _widest(wish: Wish, chosen: RouteSettings) -> float:
+    """Return how wide what stands in front of the cutter can be at once, in mm: a face's shorter side, a rib with its walls' allowance; 0
+    where the area doesn't say."""
+    if wish.stage.kind == "face":
+        return wish.width
+    return wish.width + 2.0 * chosen.wall_allowance if wish.stage.kind == "rib_top" and math.isfinite(wish.width) else 0.0
 
 
 def _even(height: float, most: float) -> float:

@@ -37,7 +37,12 @@ def eased(path: Toolpath, tool: Tool, data: CuttingData, stock: PlanningStock, s
 
 def eased_finish(path: Toolpath, tool: Tool, data: CuttingData, stock: PlanningStock) -> Toolpath:
     """Return a finishing path as `eased`, where leftovers weigh as much as a slot that the cutter bears."""
-    return _eased(path, tool, data.feed, stock, FULL_WIDTH * tool.diameter * min(data.depth, FULL_DEPTH * tool.diameter))
+    return _eased(path, tool, data.feed, stock, slot_of_finish(tool, data))
+
+
+def slot_of_finish(tool: Tool, data: CuttingData) -> float:
+    """Return the cross-section in mm2 that a finishing cutter takes at its whole feed."""
+    return FULL_WIDTH * data.slot_share * tool.diameter * min(data.depth, FULL_DEPTH * tool.diameter)
 
 
 def _eased(path: Toolpath, tool: Tool, full_feed: float, stock: PlanningStock, most: float) -> Toolpath:

@@ -97,7 +97,8 @@ class PropertiesDock(QScrollArea):
                 (tr("Feed per tooth"), f"{amount(data.feed_per_tooth)} mm"), (tr("Depth of cut"), f"{amount(data.depth)} mm"),
                 (tr("Width of cut"), f"{amount(data.width)} mm"),
                 (tr("Power"), f"{amount(data.power, 1)} / {amount(data.power_limit, 1)} kW"),
-                (tr("Torque"), f"{amount(data.torque, 1)} Nm")]
+                (tr("Torque"), f"{amount(data.torque, 1)} Nm"),
+                (tr("Highest power"), f"{amount(data.highest_power, 1)} kW")]
         if o.direction != UPRIGHT:
             rows.insert(4, (tr("Tool comes from"), "  ".join(f"{axis} {amount(v)}" for axis, v in zip("xyz", o.direction, strict=True))))
         if proof is not None:

@@ -3,8 +3,10 @@
 from __future__ import annotations
 
 from PySide6.QtCore import Qt
+from PySide6.QtGui import QBrush, QColor
 from PySide6.QtWidgets import QLabel
 
+from trunnion.model.load import SpindleLoad, spindle_loads
 from trunnion.model.operation import Operation
 from trunnion_gui.i18n import tr
 from trunnion_gui.verbs import Estimated
@@ -13,6 +15,8 @@ from trunnion_gui.widgets.panel import Panel
 from trunnion_gui.words import amount, duration, share
 
 _MOST_ROWS = 8
+_POWER = 3
+"""The column of the share of the spindle's power."""
 
 
 class OptimizePanel(Panel):
@@ -23,7 +27,7 @@ class OptimizePanel(Panel):
     def build(self) -> None:
         super().build()
         self.table = tables.table([tr("Op"), "n", "vf", tr("Power")], has_names=True)
-        tips = tr("Operation"), tr("Spindle speed, 1/min"), tr("Feed, mm/min"), tr("Share of the spindle's power")
+        tips = tr("Operation"), tr("Spindle speed, 1/min"), tr("Feed, mm/min"), tr("Share of the spindle's power, at the highest load")
         for column, words in enumerate(tips):
             self.table.model().setHeaderData(column, Qt.Orientation.Horizontal, words, Qt.ItemDataRole.ToolTipRole)
         self.table.cellClicked.connect(lambda row, _: self.document.select_operation(self._cut[row].id))
@@ -35,27 +39,39 @@ class OptimizePanel(Panel):
         for widget in (self.areas, self.gain):
             self.content.addWidget(widget)
             widget.hide()
-        self._shown: object = None
+        self._shown: tuple[object, object, object] | None = None
         self._cut: list[Operation] = []
         self._finished: list[str] = []
 
     def fill(self) -> None:
         process = self.document.shown.process
+        # A verdict on an earlier plan says nothing of this one's load.
+        verdict = self.document.shown.verdict if self.document.states.get("verify") in ("done", "problem") else None
         self.table.setVisible(process is not None)
-        if process is self._shown:
+        if self._shown is not None and all(a is b for a, b in zip(self._shown, (process, verdict, self.theme), strict=True)):
             return
-        self._shown = process
+        self._shown = process, verdict, self.theme
         if process is None:
             self.result.setText("")
             return
         self._cut = cut = [o for o in process.operations if not o.suppressed]
-        rows = [(o.id, amount(o.data.spindle, 0), amount(o.data.feed, 0), share(o.data.power / o.data.power_limit)) for o in cut]
-        tables.fill(self.table, rows, right=(1, 2, 3))
+        loads = spindle_loads(cut, verdict)
+        rows = [(o.id, amount(o.data.spindle, 0), amount(o.data.feed, 0), share(load.share)) for o, load in zip(cut, loads, strict=True)]
+        tables.fill(self.table, rows, right=(1, 2, _POWER))
         tables.fit_height(self.table, _MOST_ROWS)
-        most = max(cut, key=lambda o: o.data.power / o.data.power_limit, default=None)
-        if most is not None:
-            self.result.setText(tr("highest load: {id}, {power} of {limit} kW").format(
-                id=most.id, power=amount(most.data.power, 1), limit=amount(most.data.power_limit, 1)))
+        self._show_overloads(loads)
+        most = max(loads, key=lambda load: load.share, default=None)
+        self.result.setText("" if most is None else load_words(most))
+
+    def _show_overloads(self, loads: tuple[SpindleLoad, ...]) -> None:
+        """Give shares over the whole the colour of what is wrong, and a tip with the figures on every share."""
+        for row, load in enumerate(loads):
+            item = self.table.item(row, _POWER)
+            if item is None:
+                continue
+            item.setToolTip(load_words(load))
+            if load.share > 1.0 and self.theme is not None:
+                item.setForeground(QBrush(QColor(self.theme.bad)))
 
     def show_estimate(self, found: Estimated | None) -> None:
         """Show how long each area takes by its rate, and the gain over the slowest cutter alone; nothing where no areas are finished."""
@@ -72,3 +88,16 @@ class OptimizePanel(Panel):
             tool=found.alone, alone=duration(found.seconds_alone), own=duration(found.seconds), gain=f"{100.0 * found.gain:.2f}",
             saving=f"{100.0 * found.saving:.2f}",
             source=tr("measured on the toolpaths") if found.is_measured else tr("from feed and distance of passes")))
+
+
+def load_words(load: SpindleLoad) -> str:
+    """Return an operation's highest load in words: how much, of what, and where."""
+    words = tr("highest load: {id}, {power} of {limit} kW")
+    if load.measured:
+        words = tr("highest load: {id}, {power} of {limit} kW as the proof measured ({steady} kW steady)")
+    elif load.at:
+        words = tr("highest load: {id}, {power} of {limit} kW where {place} ({steady} kW steady)")
+    if load.share > 1.0:
+        words = tr("overload: {load}").format(load=words)
+    return words.format(id=load.operation, power=amount(load.highest, 1), limit=amount(load.limit, 1), steady=amount(load.steady, 1),
+                        place=tr(load.at))

@@ -20,6 +20,7 @@ from trunnion.toolpath.builder import PathBuilder
 from trunnion.toolpath.contour import Approach, cut_open, cut_parts
 from trunnion.toolpath.contract import Planned, strategy
 from trunnion.toolpath.easing import eased_finish
+from trunnion.toolpath.engagement import eased_corner
 from trunnion.toolpath.levels import fillet_steps, steps_down
 from trunnion.toolpath.order import nearest_first
 from trunnion.toolpath.reach import Room, is_closed, parts_where
@@ -60,7 +61,7 @@ class _Height:
     distance: float
 
 
-@strategy(settings=CornerSettings)
+@strategy(settings=CornerSettings, meets=eased_corner)
 def corner(drive: PlaneDrive, tool: Tool, data: CuttingData, stock: PlanningStock, setup: Setup, settings: CornerSettings,
            progress: Progress) -> Planned:
     """Return the motions that clear what a cutter of `drive.earlier_radius` left in the corners, and what this one leaves."""

@@ -9,7 +9,7 @@ import numpy as np
 from trunnion import tolerance
 from trunnion.findings import error
 from trunnion.geometry.arrays import Floats
-from trunnion.model.operation import CuttingData
+from trunnion.model.operation import CuttingData, Engagement, Operation
 from trunnion.model.setup import Setup
 from trunnion.model.tool import Tool
 from trunnion.model.toolpath import Mark
@@ -22,6 +22,8 @@ from trunnion.toolpath.levels import steps_down
 from trunnion.toolpath.link import travel
 from trunnion.toolpath.rings import SAFE_SHARE
 from trunnion.toolpath.stock import PlanningStock
+
+ONE_ROW = "one row takes the whole top"
 
 
 @settings("plane.face")
@@ -36,7 +38,13 @@ class FaceSettings:
                             help="Where a rapid ends above what may still be there.")
 
 
-@strategy(settings=FaceSettings)
+def row_width(tool: Tool, data: CuttingData, settings: FaceSettings, before: Operation | None) -> Engagement:
+    """Return the width of a row: where one row takes the whole top, all of it."""
+    whole = 0.0 < data.widest <= _one_row(tool, settings.overlap)
+    return Engagement(width=max(data.width, data.widest) if whole else data.width, depth=data.depth, share=1.0, at=ONE_ROW if whole else "")
+
+
+@strategy(settings=FaceSettings, meets=row_width)
 def face(drive: PlaneDrive, tool: Tool, data: CuttingData, stock: PlanningStock, setup: Setup, settings: FaceSettings,
          progress: Progress) -> Planned:
     """Return the motions that take the blank's top down to the drive's bottom."""
@@ -57,11 +65,16 @@ def face(drive: PlaneDrive, tool: Tool, data: CuttingData, stock: PlanningStock,
     return Planned(path=builder.finished())
 
 
+def _one_row(tool: Tool, overlap: float) -> float:
+    """Return the widest top in mm that one row covers with its overlaps."""
+    return 2.0 * SAFE_SHARE * (tool.radius - tool.corner_radius) - 2.0 * overlap
+
+
 def _rows(across: tuple[float, float], tool: Tool, width: float, overlap: float) -> Floats:
     """Return where the middles of the rows are: each takes one width, the first and last cover the edges with their flat end."""
     flat = tool.radius - tool.corner_radius
     size = across[1] - across[0]
-    if size + 2.0 * overlap <= 2.0 * SAFE_SHARE * flat:
+    if size <= _one_row(tool, overlap):
         return np.array([0.5 * (across[0] + across[1])])
     step = min(width, 2.0 * SAFE_SHARE * flat)
     count = max(1, math.ceil((size + overlap) / step - tolerance.COINCIDENT))

@@ -19,6 +19,7 @@ from trunnion.toolpath.builder import PathBuilder
 from trunnion.toolpath.clear import Layer, Manner, clear
 from trunnion.toolpath.contract import Planned, strategy
 from trunnion.toolpath.easing import eased_finish
+from trunnion.toolpath.engagement import floor_leftovers
 from trunnion.toolpath.passes import passes_over
 from trunnion.toolpath.reach import level_at
 from trunnion.toolpath.rings import safe_step
@@ -41,7 +42,7 @@ class FloorSettings:
                             help="Where a rapid ends above what may still be there.")
 
 
-@strategy(settings=FloorSettings)
+@strategy(settings=FloorSettings, meets=floor_leftovers)
 def floor(drive: PlaneDrive, tool: Tool, data: CuttingData, stock: PlanningStock, setup: Setup, settings: FloorSettings,
           progress: Progress) -> Planned:
     """Return the motions that finish every floor of the drive, from the highest down, and what they leave."""

@@ -19,6 +19,7 @@ from trunnion.settings import setting, settings
 from trunnion.toolpath.builder import PathBuilder
 from trunnion.toolpath.contour import Approach, contour_parts, cut_parts, length_out_of_reach
 from trunnion.toolpath.contract import Planned, strategy
+from trunnion.toolpath.engagement import contour_leftovers, inner_corner
 from trunnion.toolpath.levels import steps_down
 from trunnion.toolpath.reach import Room, level_at, parts_where
 from trunnion.toolpath.stock import PlanningStock
@@ -53,7 +54,7 @@ class ProfileFinishSettings:
                             help="Where a rapid ends above what may still be there.")
 
 
-@strategy(settings=ProfileRoughSettings)
+@strategy(settings=ProfileRoughSettings, meets=inner_corner)
 def profile_rough(drive: PlaneDrive, tool: Tool, data: CuttingData, stock: PlanningStock, setup: Setup, settings: ProfileRoughSettings,
                   progress: Progress) -> Planned:
     """Return the motions that take the blank's margin off the profile by layers, in rings from outside in."""
@@ -79,7 +80,7 @@ def profile_rough(drive: PlaneDrive, tool: Tool, data: CuttingData, stock: Plann
     return _planned(drive, builder, findings)
 
 
-@strategy(settings=ProfileFinishSettings)
+@strategy(settings=ProfileFinishSettings, meets=contour_leftovers)
 def profile_finish(drive: PlaneDrive, tool: Tool, data: CuttingData, stock: PlanningStock, setup: Setup, settings: ProfileFinishSettings,
                    progress: Progress) -> Planned:
     """Return the motions that finish the profile in axial steps down to its bottom."""

@@ -16,6 +16,7 @@ from trunnion.settings import setting, settings
 from trunnion.toolpath.builder import PathBuilder
 from trunnion.toolpath.clear import Layer, Manner, clear
 from trunnion.toolpath.contract import Planned, strategy
+from trunnion.toolpath.engagement import top_width
 from trunnion.toolpath.levels import steps_down
 from trunnion.toolpath.reach import Room
 from trunnion.toolpath.rings import ring_tree, safe_step
@@ -43,12 +44,12 @@ class RibTopSettings:
                             help="Where a rapid ends above what may still be there.")
 
 
-@strategy(settings=RibTopSettings)
+@strategy(settings=RibTopSettings, meets=top_width)
 def rib_top(drive: PlaneDrive, tool: Tool, data: CuttingData, stock: PlanningStock, setup: Setup, settings: RibTopSettings,
             progress: Progress) -> Planned:
     """Return the motions that bring a top to its height by layers, and what of it the cutter leaves."""
     builder = PathBuilder(tool, data, stock, setup, settings.safety)
-    manner = Manner(step=safe_step(tool, data.width), ramp=math.radians(settings.ramp_angle), slot=settings.slot_feed)
+    manner = Manner(step=safe_step(tool, data.width), ramp=math.radians(settings.ramp_angle), slot=settings.slot_feed * data.slot_share)
     findings: list[Finding] = []
     above = max(drive.top, drive.stock_top)
     for level in drive.levels:

@@ -17,6 +17,7 @@ from trunnion.toolpath.builder import PathBuilder
 from trunnion.toolpath.clear import Layer, Manner, clear
 from trunnion.toolpath.contract import Planned, strategy
 from trunnion.toolpath.easing import eased
+from trunnion.toolpath.engagement import full_width
 from trunnion.toolpath.levels import layers
 from trunnion.toolpath.passes import Passes, passes_over
 from trunnion.toolpath.rings import safe_step
@@ -44,12 +45,13 @@ class RoughSettings:
                             help="Where a rapid ends above what may still be there.")
 
 
-@strategy(settings=RoughSettings)
+@strategy(settings=RoughSettings, meets=full_width)
 def rough(drive: PlaneDrive, tool: Tool, data: CuttingData, stock: PlanningStock, setup: Setup, settings: RoughSettings,
           progress: Progress) -> Planned:
     """Return the motions that clear every band of the drive layer by layer down to the floors' allowance, and what the cutter leaves."""
     builder = PathBuilder(tool, data, stock, setup, settings.safety)
-    manner = Manner(step=safe_step(tool, data.width, RIDGE), ramp=math.radians(settings.ramp_angle), slot=settings.slot_feed)
+    manner = Manner(step=safe_step(tool, data.width, RIDGE), ramp=math.radians(settings.ramp_angle),
+                    slot=settings.slot_feed * data.slot_share)
     findings: list[Finding] = []
     left: list[tuple[DriveLevel, float]] = []
     above, first = max(drive.top, drive.stock_top), True
@@ -72,7 +74,7 @@ def rough(drive: PlaneDrive, tool: Tool, data: CuttingData, stock: PlanningStock
         elif made:
             left.append((level, _left(level, max(made), made[max(made)].room.region)))
     findings += _corners(drive, tool, [(level, area) for level, area in left if area >= SMALLEST_LEFTOVER])
-    return Planned(path=eased(builder.finished(), tool, data, stock, settings.slot_feed), findings=tuple(findings))
+    return Planned(path=eased(builder.finished(), tool, data, stock, manner.slot), findings=tuple(findings))
 
 
 def _horizontals(drive: PlaneDrive, row: int) -> list[float]:

@@ -21,6 +21,7 @@ from trunnion.toolpath.clear import Layer, Manner, clear
 from trunnion.toolpath.contour import Approach, contour_parts, cut_parts, length_out_of_reach
 from trunnion.toolpath.contract import Planned, strategy
 from trunnion.toolpath.easing import eased_finish
+from trunnion.toolpath.engagement import eased_leftovers
 from trunnion.toolpath.levels import fillet_steps, steps_down
 from trunnion.toolpath.reach import Room, is_closed, level_at
 from trunnion.toolpath.rings import ring_tree, safe_step
@@ -53,7 +54,7 @@ class WallSettings:
                             help="Where a rapid ends above what may still be there.")
 
 
-@strategy(settings=WallSettings)
+@strategy(settings=WallSettings, meets=eased_leftovers)
 def wall(drive: PlaneDrive, tool: Tool, data: CuttingData, stock: PlanningStock, setup: Setup, settings: WallSettings,
          progress: Progress) -> Planned:
     """Return the motions that finish every wall of the drive, and the lengths of wall that the cutter can't reach."""

@@ -12,6 +12,7 @@ from trunnion.plan.surface.scallop import stepover_on_plane
 from trunnion.progress import QUIET, Progress
 from trunnion.settings import setting, settings
 from trunnion.toolpath.contract import Planned, strategy
+from trunnion.toolpath.engagement import surface_leftovers
 from trunnion.toolpath.stock import PlanningStock
 from trunnion.toolpath.surface import choices
 from trunnion.toolpath.surface.fronts import scallop_passes
@@ -33,7 +34,7 @@ class ConstantSettings:
     safety: float = choices.safety()
 
 
-@strategy(settings=ConstantSettings)
+@strategy(settings=ConstantSettings, meets=surface_leftovers)
 def constant(drive: SurfaceDrive, tool: Tool, data: CuttingData, stock: PlanningStock, setup: Setup, settings: ConstantSettings,
              progress: Progress = QUIET) -> Planned:
     """Return the motions of passes at a constant scallop height over the drive's faces, and what they leave."""

@@ -27,6 +27,7 @@ from trunnion.plan.surface.scallop import stepover_on_plane
 from trunnion.progress import Progress
 from trunnion.settings import setting, settings
 from trunnion.toolpath.contract import Planned, strategy
+from trunnion.toolpath.engagement import surface_leftovers
 from trunnion.toolpath.stock import PlanningStock
 from trunnion.toolpath.surface.beside import Strip
 from trunnion.toolpath.surface.lean import leaned_by
@@ -69,7 +70,7 @@ class ParallelSettings:
                             help="Where a rapid ends above what may still be there.")
 
 
-@strategy(settings=ParallelSettings)
+@strategy(settings=ParallelSettings, meets=surface_leftovers)
 def parallel(drive: SurfaceDrive, tool: Tool, data: CuttingData, stock: PlanningStock, setup: Setup, settings: ParallelSettings,
              progress: Progress) -> Planned:
     """Return the motions that finish the drive's faces by parallel passes, and the area that is too steep for them."""

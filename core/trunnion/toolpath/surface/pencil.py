@@ -25,6 +25,7 @@ from trunnion.plan.surface.scallop import stepover_on_plane
 from trunnion.progress import QUIET, Progress
 from trunnion.settings import setting, settings
 from trunnion.toolpath.contract import Planned, strategy
+from trunnion.toolpath.engagement import surface_leftovers
 from trunnion.toolpath.stock import PlanningStock
 from trunnion.toolpath.surface.linking import Manner, linked
 from trunnion.toolpath.surface.passes import UPRIGHT, Pass
@@ -64,7 +65,7 @@ class PencilSettings:
                             help="Where a rapid ends above what may still be there.")
 
 
-@strategy(settings=PencilSettings)
+@strategy(settings=PencilSettings, meets=surface_leftovers)
 def pencil(drive: SurfaceDrive, tool: Tool, data: CuttingData, stock: PlanningStock, setup: Setup, settings: PencilSettings,
            progress: Progress) -> Planned:
     """Return the motions along the valleys of the drive's faces."""

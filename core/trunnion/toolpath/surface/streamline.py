@@ -12,6 +12,7 @@ from trunnion.plan.surface.scallop import stepover_on_plane
 from trunnion.progress import QUIET, Progress
 from trunnion.settings import setting, settings
 from trunnion.toolpath.contract import Planned, strategy
+from trunnion.toolpath.engagement import surface_leftovers
 from trunnion.toolpath.stock import PlanningStock
 from trunnion.toolpath.surface import choices
 from trunnion.toolpath.surface.flowlines import Flow, flow_lines
@@ -35,7 +36,7 @@ class StreamlineSettings:
     safety: float = choices.safety()
 
 
-@strategy(settings=StreamlineSettings)
+@strategy(settings=StreamlineSettings, meets=surface_leftovers)
 def streamline(drive: SurfaceDrive, tool: Tool, data: CuttingData, stock: PlanningStock, setup: Setup, settings: StreamlineSettings,
                progress: Progress = QUIET) -> Planned:
     """Return the motions of an upright tool along flow lines over the drive's faces, and what it leaves."""

@@ -27,6 +27,7 @@ from trunnion.plan.surface.drive import SurfaceDrive
 from trunnion.progress import Progress
 from trunnion.settings import setting, settings
 from trunnion.toolpath.contract import Planned, strategy
+from trunnion.toolpath.engagement import surface_leftovers
 from trunnion.toolpath.stock import PlanningStock
 from trunnion.toolpath.surface.linking import Manner, linked
 from trunnion.toolpath.surface.passes import UPRIGHT, Pass
@@ -86,7 +87,7 @@ class WaterlineSettings:
                             help="Where a rapid ends above what may still be there.")
 
 
-@strategy(settings=WaterlineSettings)
+@strategy(settings=WaterlineSettings, meets=surface_leftovers)
 def waterline(drive: SurfaceDrive, tool: Tool, data: CuttingData, stock: PlanningStock, setup: Setup, settings: WaterlineSettings,
               progress: Progress) -> Planned:
     """Return the motions that finish the drive's faces level by level, and the area that is too shallow for it or hangs over."""

@@ -1,0 +1,80 @@
+"""What the plan foresees of the spindle's load is never less than what the proof measures, and not absurdly more."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import replace
+from functools import cache
+from typing import Any
+
+import numpy as np
+import pytest
+
+from random_panels import random_panel
+from samples import ball_shape, dome_on_a_plate_shape, written
+from trunnion.model.session import Session
+from trunnion.pipeline import Engine
+
+SEEDS = range(12)
+NOT_LESS = 0.95
+"""Of the measured: the stock's cells let the proof see a little more than there is."""
+NOT_MUCH_MORE = 1.5
+FULL_TURN = 0.95 * np.pi
+"""rad: an engagement that counts as full width."""
+
+
+@cache
+def programmed(seed: int) -> Session:
+    engine = Engine()
+    return engine.run(engine.open(written(random_panel(seed))))
+
+
+def ratios(session: Session) -> dict[str, float]:
+    """Return foreseen over measured power of every operation that cuts."""
+    proofs = {p.operation: p for p in session.verdict.operations}
+    return {o.id: o.data.highest_power / proofs[o.id].power for o in session.process.operations if o.id in proofs and proofs[o.id].power}
+
+
+@pytest.mark.parametrize("seed", SEEDS)
+def test_a_panel_is_foreseen_to_load_the_spindle_as_the_proof_sees_it(seed):
+    found = ratios(programmed(seed))
+    assert found and {id: ratio for id, ratio in found.items() if ratio < NOT_LESS} == {}
+
+
+@pytest.mark.parametrize("seed", SEEDS)
+def test_no_panel_passes_the_spindles_power_without_a_word(seed):
+    session = programmed(seed)
+    told = {f.where[0] for f in session.findings() if f.code == "optimize.load"}
+    assert {f.where[0] for f in session.verdict.findings if f.code == "verify.power"} <= told
+
+
+def test_what_is_foreseen_at_full_width_is_near_what_is_measured():
+    found = [ratio for seed in SEEDS for id, ratio in ratios(programmed(seed)).items() if id.startswith("rough-")]
+    assert len(found) >= len(SEEDS)
+    assert float(np.mean(found)) <= NOT_MUCH_MORE
+
+
+@cache
+def roughed(shape: Callable[[], Any]) -> Session:
+    """Return the session of a curved part whose finishing is left out."""
+    engine = Engine()
+    session = engine.run(engine.open(written(shape())), until="optimize")
+    operations = tuple(replace(o, suppressed=o.kind != "rough") for o in session.process.operations)
+    return engine.run(replace(session, process=replace(session.process, operations=operations)))
+
+
+CURVED = (dome_on_a_plate_shape, ball_shape)
+
+
+@pytest.mark.timeout(600)
+@pytest.mark.parametrize("shape", CURVED)
+def test_roughing_of_a_curved_part_is_foreseen_too(shape):
+    found = ratios(roughed(shape))
+    assert found and min(found.values()) >= NOT_LESS
+
+
+@pytest.mark.timeout(600)
+def test_what_is_foreseen_of_curved_parts_at_full_width_is_near_what_is_measured():
+    found = [ratios(session)[p.operation] for session in map(roughed, CURVED) for p in session.verdict.operations if p.engaged > FULL_TURN]
+    assert len(found) >= len(CURVED)
+    assert float(np.mean(found)) <= NOT_MUCH_MORE
