@@ -36,3 +36,12 @@ def trimmed(value: float, decimals: int) -> str:
     if "." in text:
         text = text.rstrip("0").rstrip(".")
     return "0" if text in ("-0", "") else text
+
+
+def percent(share: float) -> str:
+    """Return a share in whole per cent as a sentence has it.
+
+    >>> percent(0.9749)
+    '97 %'
+    """
+    return f"{100.0 * share:.0f} %"

@@ -71,13 +71,13 @@ def test_a_value_out_of_range_is_refused_in_words(capsys: pytest.CaptureFixture[
 def test_features_come_as_json_with_the_documented_keys(capsys: pytest.CaptureFixture[str], sample_part: Path) -> None:
     main(["recognize", str(sample_part), "--json"])
     said = json.loads(capsys.readouterr().out)
-    assert {"part", "digest", "family", "frame", "features", "unexplained", "findings"} <= said.keys()
+    assert {"part", "digest", "family", "taken_for", "frame", "features", "unexplained", "findings"} <= said.keys()
     assert {"id", "kind", "faces", "sizes"} <= said["features"][0].keys()
 
 
 def test_the_table_of_features_names_the_faces_that_move_takes(capsys: pytest.CaptureFixture[str], sample_part: Path) -> None:
     assert main(["recognize", str(sample_part), "--set", "recognize.family=surface", "--move", "1,2=new", "--quiet"]) == 0
-    said = capsys.readouterr().out.splitlines()
+    said = capsys.readouterr().out.splitlines()[1:]
     assert said[0].split() == ["feature", "kind", "n", "faces", "sizes"]
     assert any(" 1,2 " in line for line in said)
     assert any(line.endswith(" groups") for line in said)

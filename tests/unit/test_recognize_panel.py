@@ -215,4 +215,6 @@ def test_a_slice_that_fails_is_left_out_with_a_finding() -> None:
 
 
 def test_a_panel_suits_the_family() -> None:
-    assert PanelFamily().suits(terrace((0, 10, 90, 100), (0, 10, 50, 60), ringed([[8]])).graph()) == pytest.approx(1.0)
+    suits = PanelFamily().suits(terrace((0, 10, 90, 100), (0, 10, 50, 60), ringed([[8]])).graph())
+    assert (suits.score, suits.explained) == pytest.approx((1.0, 1.0))
+    assert suits.reason == "100 % of the area level or upright"

@@ -40,7 +40,7 @@ def test_a_dome_on_a_plate_is_no_fillet_and_nothing_is_planned_beside_it() -> No
 def test_a_dome_on_a_plate_is_taken_for_a_curved_part_and_a_panel_is_not() -> None:
     def best(shape) -> str:
         graph = samples.read(shape).graph()
-        return max((PanelFamily(), SurfaceFamily()), key=lambda family: family.suits(graph)).name
+        return max((PanelFamily(), SurfaceFamily()), key=lambda family: family.suits(graph).score).name
 
     assert best(samples.dome_on_a_plate_shape()) == "surface"
     assert best(samples.two_pockets_and_a_rib_shape()) == "panel"

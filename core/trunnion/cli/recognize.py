@@ -4,9 +4,12 @@ from __future__ import annotations
 
 import argparse
 from collections.abc import Iterable
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 from trunnion.cli.common import add_by_hand, exit_code, open_session, part_command, show_findings, show_json, table, with_by_hand
+
+if TYPE_CHECKING:
+    from trunnion.model.feature import Recognition
 
 MOST_NUMBERS = 10
 """Numbers of faces that a row of the table shows."""
@@ -33,20 +36,28 @@ def run(chosen: argparse.Namespace) -> int:
     if chosen.save:
         engine.save(session, chosen.save)
     if chosen.json:
-        show_json({"part": part.name, "digest": part.digest, "family": found.family, "frame": found.frame.as_dict(),
+        show_json({"part": part.name, "digest": part.digest, "family": found.family,
+                   "taken_for": found.taken_for.as_dict() if found.taken_for else None, "frame": found.frame.as_dict(),
                    "features": [f.as_dict() for f in found.features],
                    "unexplained": {"faces": list(found.unexplained), "area_share": found.unexplained_share},
                    "findings": [f.as_dict() for f in session.findings()]})
     else:
-        rows = [("feature", "kind", "n", "faces", "sizes")]
-        for f in found.features:
-            sizes = "  ".join(f"{k} {v:g}" for k, v in f.sizes.items() if isinstance(v, (int, float)) and not isinstance(v, bool))
-            rows.append((f.id, f"{f.kind}, local" if f.attributes.get("local") else f.kind, str(len(f.faces)), _numbers(f.tags), sizes))
-        print(table(rows, right=(2,)))
-        print("  ".join(f"{n} {kind}{'s' if n > 1 else ''}" for kind, n in found.counts().items()))
+        if found.taken_for:
+            print(f"taken for {found.taken_for}")
+        if found.features:
+            print(_feature_table(found))
         print(f"unexplained: {len(found.unexplained)} faces, {100 * found.unexplained_share:.2f} % of the area")
     show_findings(chosen, session.findings())
     return exit_code(session.findings())
+
+
+def _feature_table(found: Recognition) -> str:
+    """Return a row a feature, and a line with the number of each kind."""
+    rows = [("feature", "kind", "n", "faces", "sizes")]
+    for f in found.features:
+        sizes = "  ".join(f"{k} {v:g}" for k, v in f.sizes.items() if isinstance(v, (int, float)) and not isinstance(v, bool))
+        rows.append((f.id, f"{f.kind}, local" if f.attributes.get("local") else f.kind, str(len(f.faces)), _numbers(f.tags), sizes))
+    return table(rows, right=(2,)) + "\n" + "  ".join(f"{n} {kind}{'s' if n > 1 else ''}" for kind, n in found.counts().items())
 
 
 def _numbers(tags: Iterable[int]) -> str:

@@ -54,13 +54,31 @@ class Feature:
         return {"id": self.id, "kind": self.kind, "faces": [{"role": f.role, "face": f.face} for f in self.faces], "sizes": sizes, **extra}
 
 
+@dataclass(frozen=True, slots=True, kw_only=True)
+class TakenFor:
+    """What kind of part a part was taken for: the kind's name and what its parts are called ("a panel"), how sure (0 to 1) and why."""
+
+    kind: str
+    noun: str
+    score: float
+    reason: str
+
+    def as_dict(self) -> dict[str, Any]:
+        """Return it as the JSON that other programs rely on."""
+        return {"kind": self.kind, "score": self.score, "reason": self.reason}
+
+    def __str__(self) -> str:
+        return f"{self.noun} ({self.score:.2f}): {self.reason}"
+
+
 @dataclass(frozen=True, kw_only=True)
 class Recognition:
     """What a family found on a part: the frame it chose, features, and the faces that nothing explains (tags).
 
     `face_area` (n_faces,) float64, mm2, is the area of every face of the part in the order of the tags; empty where it is not known, as in
-    features read from XML. `unexplained_share` is the unexplained faces' share of it. `removed` has the faces of each feature that a person
-    deleted: a re-run does not take up again what claims most of them.
+    features read from XML. `unexplained_share` is the unexplained faces' share of it. `taken_for` is the kind of part it was taken for;
+    `doubt`, when not empty, the line that the steps after recognition refuse with until a person has chosen a family. `removed` has the
+    faces of each feature that a person deleted: a re-run does not take up again what claims most of them.
     """
 
     family: str
@@ -71,6 +89,8 @@ class Recognition:
     face_area: Floats = field(default_factory=lambda: np.zeros(0), compare=False)
     findings: tuple[Finding, ...] = ()
     removed: tuple[tuple[int, ...], ...] = ()
+    taken_for: TakenFor | None = None
+    doubt: str = ""
 
     def of_kind(self, *kinds: str) -> tuple[Feature, ...]:
         """Return the features of some kinds, in order."""

@@ -241,5 +241,5 @@ def _whole_line(session: Session, reason: str) -> str:
     """Return why a step stopped, with the part's file named and the errors found before it, which are the likely cause."""
     file = Path(session.part.path).name if session.part else ""
     line = reason if not file or file in reason else f"{file}: {reason}"
-    before = [f.text for f in session.findings() if f.severity is Severity.ERROR]
+    before = [f.text for f in session.findings() if f.severity is Severity.ERROR and f.text not in line]
     return f"{line}; found before: {'; '.join(before)}" if before else line

@@ -16,6 +16,7 @@ from trunnion.model.feature import Recognition
 from trunnion.model.session import Session
 from trunnion.pipeline.asking import PartSurroundings
 from trunnion.pipeline.bench import Bench
+from trunnion.pipeline.family import FAMILIES, KINDS, RecognizeSettings, recognised
 from trunnion.pipeline.hand import with_features_by_hand, with_operations_by_hand
 from trunnion.pipeline.making import findings_of, make_paths, strategy_settings
 from trunnion.pipeline.proving import prove_session
@@ -31,20 +32,11 @@ from trunnion.plan.surface.space import SurfaceSpace
 from trunnion.post.settings import PostSettings
 from trunnion.progress import Progress
 from trunnion.recognize.contract import Measuring
-from trunnion.settings import checked, choose, digest, setting, settings
+from trunnion.settings import checked, choose, digest
 from trunnion.verify.settings import ProofSettings
 
-AUTOMATIC = "auto"
 PLANNED = ("panel", "surface")
 """Families that a process plan can be made for."""
-
-
-@settings("recognize")
-class RecognizeSettings:
-    """Which family of parts the recogniser looks for."""
-
-    family: str = setting(AUTOMATIC, label="Family", help="Family of parts, or auto: the one that suits the part best.",
-                          choices=(AUTOMATIC, *registry.names("families")))
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -75,26 +67,12 @@ class Step:
         return digest(self.name, self.version, chosen, self.reads(session, bench), *session.cuts)
 
 
-def family_of(session: Session, bench: Bench) -> Any:
-    """Return the family of recognisers that the session asks for, or the one that suits the part best."""
-    wanted = checked(choose(RecognizeSettings, session.choices)).family
-    if wanted != AUTOMATIC:
-        return registry.get("families", wanted)()
-    graph = bench.part.graph()
-    rated = [(make().suits(graph), name) for name in registry.names("families") for make in (registry.get("families", name),)]
-    _, best = max(rated, key=lambda pair: (pair[0], pair[1]))
-    return registry.get("families", best)()
-
-
 def _family_settings() -> tuple[type, ...]:
-    return (RecognizeSettings, *(registry.get("families", name).settings for name in registry.names("families")))
+    return (RecognizeSettings, *(registry.get(FAMILIES, name).settings for name in registry.names(FAMILIES)))
 
 
 def _recognize(session: Session, bench: Bench, progress: Progress) -> Result:
-    family = family_of(session, bench)
-    chosen = checked(choose(family.settings, session.choices))
-    graph = bench.part.graph()
-    found: Recognition = replace(family.recognize(graph, bench.part, chosen, progress), face_area=graph.area)
+    found = replace(recognised(session, bench, progress), face_area=bench.part.graph().area)
     kept = with_features_by_hand(session.recognition, found)
     after = replace(session, recognition=kept)
     return Result(session=after if kept is found else measured_anew(after, bench), findings=kept.findings)
@@ -103,7 +81,7 @@ def _recognize(session: Session, bench: Bench, progress: Progress) -> Result:
 def measured_anew(session: Session, bench: Bench) -> Session:
     """Return the session with the sizes of features whose faces a person changed, where the family can measure them."""
     found = _recognition(session)
-    family = registry.get("families", found.family)()
+    family = registry.get(FAMILIES, found.family)() if found.family in registry.names(FAMILIES) else None
     if not isinstance(family, Measuring):
         return session
     chosen: Any = checked(choose(family.settings, session.choices))
@@ -116,23 +94,32 @@ def _recognition(session: Session) -> Recognition:
     return session.recognition
 
 
+def _certain(session: Session) -> Recognition:
+    """Return what was recognised; raise `BadInput` while recognition doubts what kind of part it is and no family is chosen."""
+    found = _recognition(session)
+    if found.doubt:
+        raise BadInput(found.doubt)
+    return found
+
+
 def _size(session: Session, bench: Bench, progress: Progress) -> Result:
     progress.at(0.0, "measuring")
-    return Result(session=replace(session, sizes=size_table(_recognition(session), bench.part.graph())))
+    return Result(session=replace(session, sizes=size_table(_certain(session), bench.part.graph())))
 
 
 def _blank(session: Session, bench: Bench, progress: Progress) -> Result:
     progress.at(0.0, "blank")
+    recognition = _certain(session)
     chosen = checked(choose(BlankSettings, session.choices))
     if chosen.material not in bench.shop.materials:
         raise BadInput(f"there is no material {chosen.material} in the catalogue; known: {', '.join(sorted(bench.shop.materials))}")
-    frame = _recognition(session).frame
+    frame = recognition.frame
     low, high = bench.box(frame)
     return Result(session=replace(session, blank=make_blank(frame, low, high, bench.shop.materials[chosen.material], chosen)))
 
 
 def _route(session: Session, bench: Bench, progress: Progress) -> Result:
-    recognition = _recognition(session)
+    recognition = _certain(session)
     if session.blank is None:
         raise BadCall("no blank yet: create the blank first")
     if recognition.family not in PLANNED:
@@ -197,7 +184,8 @@ def _strategies_chosen(session: Session) -> tuple[Any, ...]:
 
 STEP_TABLE: tuple[Step, ...] = (
     Step(name="recognize", title="Recognize", after=(), settings=_family_settings, work=_recognize,
-         reads=lambda s, b: (b.part.digest, b.part.solid), done=lambda s: s.recognition is not None),
+         reads=lambda s, b: (b.part.digest, b.part.solid, registry.names(FAMILIES), registry.names(KINDS)),
+         done=lambda s: s.recognition is not None, version=2),
     Step(name="size", title="Size analysis", after=("recognize",), settings=lambda: (), work=_size,
          reads=lambda s, b: (s.recognition,), done=lambda s: "size" in s.records),
     Step(name="blank", title="Blank", after=("recognize",), settings=lambda: (BlankSettings,), work=_blank,

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable
+from dataclasses import dataclass
 from typing import Any, Protocol, runtime_checkable
 
 from trunnion.geometry.arrays import Floats, Ints
@@ -38,18 +39,43 @@ class Bounded(Protocol):
         ...
 
 
-class Family(Protocol):
-    """A family of parts with its own features: the name it is registered under, its settings and its recogniser.
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Suitability:
+    """How well a kind of part fits a part: `score` from 0 (not at all) to 1, the share of the part's area that the kind would explain,
+    and what was found, in figures, as the end of a sentence."""
+
+    score: float
+    explained: float
+    reason: str
+
+    def __post_init__(self) -> None:
+        for name in ("score", "explained"):
+            if not 0.0 <= getattr(self, name) <= 1.0:
+                raise ValueError(f"{name} must be from 0 to 1, not {getattr(self, name)}")
+
+
+class PartKind(Protocol):
+    """A kind of part that can be told from others before anything is recognised: the name it is registered under, and what a part of
+    it is called, with its article ("a panel").
+
+    A package adds one that no family serves through the entry points `trunnion.part_kinds`; every family is one too.
+    """
+
+    name: str
+    noun: str
+
+    def suits(self, graph: FaceGraph) -> Suitability:
+        """Return how well the kind fits a part, from its face graph alone: in the part's coordinates, whatever its position and unit."""
+        ...
+
+
+class Family(PartKind, Protocol):
+    """A kind of parts with features of its own: its settings and its recogniser.
 
     A package adds one through the entry points `trunnion.families`.
     """
 
-    name: str
     settings: type
-
-    def suits(self, graph: FaceGraph) -> float:
-        """Return how well the family fits a part, from 0 (not at all) to 1."""
-        ...
 
     def recognize(self, graph: FaceGraph, slicer: Any, settings: Any, progress: Progress) -> Recognition:
         """Return the features of a part, given as a face graph and as what may be asked of it (`Slicer`, `Bounded`).

@@ -12,7 +12,7 @@ from typing import Any
 from lxml import etree
 
 from trunnion.findings import BadCall, BadInput
-from trunnion.model.feature import FaceRole, Feature, Recognition
+from trunnion.model.feature import FaceRole, Feature, Recognition, TakenFor
 from trunnion.model.session import PartInfo, Session
 from trunnion.store import xml
 from trunnion.store.atomic import write_bytes
@@ -34,6 +34,7 @@ def features_xml(recognition: Recognition, part: PartInfo) -> bytes:
     """Return the XML of what was recognised on a part."""
     root = etree.Element("features", version=str(FORMAT), family=recognition.family)
     add(root, "part", name=part.name, digest=part.digest, unit=part.unit, faces=str(part.n_faces), solid=str(part.solid))
+    _add_taken_for(root, recognition)
     add_frame(root, recognition.frame)
     for feature in recognition.features:
         _add_feature(root, feature, recognition)
@@ -60,9 +61,23 @@ def read_features(path: str | Path) -> Recognition:
         return Recognition(family=root.get("family"), frame=frame_of(root), features=tuple(_feature(e) for e in root.findall("feature")),
                            unexplained=tuple(int(e.get("tag")) for e in root.findall("unexplained/face")),
                            unexplained_share=float(root.find("unexplained").get("area-share")), findings=tuple(findings_of(root)),
-                           removed=tuple(tuple(int(f.get("tag")) for f in e.findall("face")) for e in root.findall("removed")))
+                           removed=tuple(tuple(int(f.get("tag")) for f in e.findall("face")) for e in root.findall("removed")),
+                           taken_for=_taken_for(root), doubt=root.findtext("doubt") or "")
     except ValueError as reason:
         raise BadInput(f"{path}: can't be used: {reason}") from None
+
+
+def _add_taken_for(root: Any, recognition: Recognition) -> None:
+    """Add what kind of part it was taken for, and why the steps after recognition wait for a person, where that is known."""
+    if (taken := recognition.taken_for) is not None:
+        add(root, "taken-for", taken.reason, kind=taken.kind, noun=taken.noun, score=text_of(float(taken.score)))
+    if recognition.doubt:
+        add(root, "doubt", recognition.doubt)
+
+
+def _taken_for(root: Any) -> TakenFor | None:
+    element = root.find("taken-for")
+    return None if element is None else made(TakenFor, element, reason=element.text or "")
 
 
 def _add_feature(root: Any, feature: Feature, recognition: Recognition) -> None:

@@ -9,34 +9,47 @@ from trunnion.geometry.facegraph import FaceGraph
 from trunnion.geometry.frame import Frame
 from trunnion.model.feature import Feature, Recognition
 from trunnion.progress import QUIET, Progress
-from trunnion.recognize.contract import Slicer
+from trunnion.recognize.contract import Slicer, Suitability
 from trunnion.recognize.extent import box
 from trunnion.recognize.panel.classes import STEEP_CLASSES, FaceClass, classify
 from trunnion.recognize.panel.features import Made, Numbers, make_datum, make_features, make_profile
-from trunnion.recognize.panel.frame import choose_frame, flipped
+from trunnion.recognize.panel.frame import choose_frame, flipped, height_frame
 from trunnion.recognize.panel.rest import rest_findings
 from trunnion.recognize.panel.rules import Shown, pockets_of, without
 from trunnion.recognize.panel.settings import PanelSettings
 from trunnion.recognize.panel.slices import cut, heights
 from trunnion.recognize.panel.view import View
 from trunnion.settings import choose
+from trunnion.units import percent
+
+STRAIGHT = (FaceClass.UP, FaceClass.DOWN, FaceClass.VERTICAL)
+"""Classes of faces that a panel has, whatever surface they lie on."""
+RULED = ("plane", "cylinder", "cone")
+"""Surfaces of walls that lean."""
 
 
 class PanelFamily:
     """Plates with pockets, ribs and islands, milled from one side or two."""
 
     name = "panel"
+    noun = "a panel"
     settings = PanelSettings
 
-    def suits(self, graph: FaceGraph) -> float:
-        """Return the share of the part's area that lies level or upright in the frame that a panel would have."""
+    def suits(self, graph: FaceGraph) -> Suitability:
+        """Return the share of the part's area that lies level or upright in the frame that a panel would have.
+
+        Walls may lean; free-form faces that do are no walls of a panel. Faces that enclose no material can't be sliced.
+        """
+        if graph.open_edges:
+            return Suitability(score=0.0, explained=0.0, reason="the faces enclose no material")
         try:
-            frame = choose_frame(graph)
+            frame = height_frame(graph)
         except BadInput:
-            return 0.0
+            return Suitability(score=0.0, explained=0.0, reason="no face is flat")
         kinds = classify(graph.in_frame(frame), choose(PanelSettings, {})).kind
-        fits = [k in (FaceClass.UP, FaceClass.DOWN, *STEEP_CLASSES) for k in kinds]
-        return float(graph.area[np.array(fits)].sum() / graph.area.sum())
+        fits = [k in STRAIGHT or (k in STEEP_CLASSES and s in RULED) for k, s in zip(kinds, graph.surface, strict=True)]
+        share = float(graph.area[np.array(fits)].sum() / graph.area.sum())
+        return Suitability(score=min(1.0, share), explained=min(1.0, share), reason=f"{percent(share)} of the area level or upright")
 
     def recognize(self, graph: FaceGraph, slicer: Slicer, settings: PanelSettings, progress: Progress = QUIET) -> Recognition:
         """Return the features of a panel. Raises `BadInput` when the part has no plane face, `Cancelled` when asked to stop."""

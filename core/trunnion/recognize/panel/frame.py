@@ -31,14 +31,19 @@ BALANCE = 1e-4
 
 def choose_frame(graph: FaceGraph) -> Frame:
     """Return the frame of recognition for a graph in the part's coordinates; raise `BadInput` when it has no plane face."""
-    z = _height_axis(graph)
-    flat = Frame(np.zeros(3), _any_across(graph, z), z)
+    flat = height_frame(graph)
     local = graph.in_frame(flat)
     angle = _smallest_rectangle(outline_points(local))
     x = flat.world_direction(_long_axis(local, angle, flat.world_direction))
-    turned = Frame(np.zeros(3), x, z)
+    turned = Frame(np.zeros(3), x, flat.z)
     low, _ = box(graph.in_frame(turned))
     return Frame(turned.to_world(low).round(DECIMALS) + 0.0, turned.x.round(DECIMALS) + 0.0, turned.z.round(DECIMALS) + 0.0)
+
+
+def height_frame(graph: FaceGraph) -> Frame:
+    """Return a frame in the part's origin with the z of recognition and any x; raise `BadInput` when the part has no plane face."""
+    z = _height_axis(graph)
+    return Frame(np.zeros(3), _any_across(graph, z), z)
 
 
 def flipped(frame: Frame, width: float, height: float) -> Frame:
@@ -76,14 +81,23 @@ def _height_axis(graph: FaceGraph) -> Floats:
         else:
             near.append(r)
     ways = [graph.normal[f[0]] for f in families]
-    seen = [_seen_area(graph, f) for f in families]
     shares = [np.array([foot_share(graph, r) for r in f]) for f in families]
-    floors = [float(a @ share) for a, share in zip(seen, shares, strict=True)]
-    opposite = [[k for k, other in enumerate(ways) if other @ way < -np.cos(ANGLE)] for way in ways]
-    floor = [f + sum(floors[k] for k in back) for f, back in zip(floors, opposite, strict=True)]
-    plan = [float(a.sum()) + sum(float(seen[k].sum()) for k in back) for a, back in zip(seen, opposite, strict=True)]
-    both = [f * p for f, p in zip(floor, plan, strict=True)]
-    left = list(range(len(ways)))
+    alike = [[k, *(n for n, other in enumerate(ways) if other @ way < -np.cos(ANGLE))] for k, way in enumerate(ways)]
+    bound = [sum(float(graph.area[families[n]] @ shares[n]) for n in same) * sum(float(graph.area[families[n]].sum()) for n in same)
+             for same in alike]
+    # What is hidden only takes away: once a family's bound is below the best score, neither it nor any after it can win.
+    seen: dict[int, Floats] = {}
+    both: dict[int, float] = {}
+    for k in sorted(range(len(ways)), key=lambda k: -bound[k]):
+        if both and bound[k] < max(both.values()) * (1.0 - BALANCE):
+            break
+        for n in alike[k]:
+            if n not in seen:
+                seen[n] = _seen_area(graph, families[n])
+        both[k] = sum(float(seen[n] @ shares[n]) for n in alike[k]) * sum(float(seen[n].sum()) for n in alike[k])
+    left = sorted(both)
+    plan = {k: sum(float(seen[n].sum()) for n in alike[k]) for k in left}
+    floors = {k: float(seen[k] @ shares[k]) for k in left}
     for scores in (both, plan, floors):
         most = max(scores[k] for k in left)
         left = [k for k in left if scores[k] >= most * (1.0 - BALANCE)]

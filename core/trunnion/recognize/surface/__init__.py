@@ -11,28 +11,24 @@ from trunnion.geometry.arrays import Bools, Floats, Ints
 from trunnion.geometry.facegraph import FaceGraph
 from trunnion.model.feature import FaceRole, Feature, Recognition
 from trunnion.progress import QUIET, Progress
-from trunnion.recognize.contract import Bounded
+from trunnion.recognize.contract import Bounded, Suitability
 from trunnion.recognize.surface.bends import PatchBends, patch_bends
 from trunnion.recognize.surface.groups import aligned_groups, invariant_groups
 from trunnion.recognize.surface.settings import ALIGNED, EXACT, SurfaceSettings
 from trunnion.recognize.surface.size import PatchSizes, patch_sizes
-
-CURVED = ("spline", "revolution", "extrusion", "sphere", "torus", "other")
-"""Kinds of faces that are neither flat nor ruled in a plain way: no passes of an end mill on its levels and along walls finish them."""
-ENOUGH = 0.15
-"""Share of the area that is curved like that on a part that is surely of this family; panels have a third of it at most."""
+from trunnion.recognize.surface.suitability import suitability
 
 
 class SurfaceFamily:
     """Blades, small impellers and other parts of free-form patches with local features on them."""
 
     name = "surface"
+    noun = "a part of curved surfaces"
     settings = SurfaceSettings
 
-    def suits(self, graph: FaceGraph) -> float:
-        """Return how near the curved share of the part's area comes to `ENOUGH`."""
-        curved = np.array([kind in CURVED for kind in graph.surface])
-        return min(1.0, float(graph.area[curved].sum() / graph.area.sum()) / ENOUGH)
+    def suits(self, graph: FaceGraph) -> Suitability:
+        """Return how near the curved share of the part's area comes to that of parts that are surely of this family."""
+        return suitability(graph)
 
     def recognize(self, graph: FaceGraph, bounded: Bounded, settings: SurfaceSettings, progress: Progress = QUIET) -> Recognition:
         """Return one feature a group of equal patches, largest first; local ones are marked. Raises `Cancelled` when asked to stop."""

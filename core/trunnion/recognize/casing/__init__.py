@@ -1,0 +1,1 @@
+"""Casings: thin walls of revolution about one axis, with bosses and flanges."""

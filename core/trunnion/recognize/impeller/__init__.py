@@ -1,0 +1,1 @@
+"""Centrifugal impellers: blades that stand evenly on a hub."""

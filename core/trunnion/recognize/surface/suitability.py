@@ -1,0 +1,74 @@
+"""Whether a part is one of curved surfaces: how much of its area no end mill finishes on its levels and along its walls."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from trunnion.geometry.arrays import Bools, Floats
+from trunnion.geometry.facegraph import FaceGraph
+from trunnion.recognize.contract import Suitability
+from trunnion.recognize.revolution import reach
+from trunnion.recognize.surface.settings import SurfaceSettings
+from trunnion.settings import choose
+from trunnion.tolerance import ANGLE
+from trunnion.units import percent, radians
+
+ENOUGH = 0.15
+"""Share of the area that is curved on a part that is surely of this family; panels have half of it at most, most of that in fillets."""
+GENERAL = 0.9
+"""Patches of any part can be grouped, which says nothing about what they are: a kind that explains as much of them is the better answer."""
+UPRIGHT = radians(2.0)
+"""A face whose normals stay within this of square to a direction stands upright along it, in radians."""
+MAIN = 0.25
+"""Area of parallel planes over that of the largest set of them from which on their normal may be the direction the part is milled from."""
+HOLE = 0.1
+"""Radius over the diagonal of the part's box up to which a hollow cylinder or cone is a hole, a countersink or a fillet."""
+
+
+def suitability(graph: FaceGraph) -> Suitability:
+    """Return how near the curved share of a part's area comes to `ENOUGH`; all patches that are no slivers can be grouped.
+
+    A face is curved when it is no plane, stands upright along none of the part's main directions and is no hole. Of faces that enclose no
+    material nothing else can be made than groups.
+    """
+    whole = float(graph.area.sum())
+    bent = ~_plain(graph)
+    curved = min((float(graph.area[bent & _leans(graph, z)].sum()) for z in _directions(graph)), default=float(graph.area[bent].sum()))
+    explained = min(1.0, float(graph.area[~_slivers(graph)].sum()) / whole)
+    fits, enclose = (1.0, ", and the faces enclose no material") if graph.open_edges else (min(1.0, curved / whole / ENOUGH), "")
+    return Suitability(score=GENERAL * explained * fits, explained=explained, reason=f"{percent(curved / whole)} of the area curved{enclose}")
+
+
+def _plain(graph: FaceGraph) -> Bools:
+    """Return which faces (n,) are planes, or hollow cylinders and cones that are narrow for the part."""
+    surface = np.array(graph.surface)
+    hollow = np.isin(surface, ("cylinder", "cone")) & (graph.bend < 0)
+    return np.asarray((surface == "plane") | (hollow & (np.nan_to_num(graph.radius, nan=np.inf) < HOLE * reach(graph))))
+
+
+def _directions(graph: FaceGraph) -> list[Floats]:
+    """Return the normals of the part's main planes."""
+    plane = (np.array(graph.surface) == "plane") & (graph.area > 0.0)
+    normal, area = graph.normal[plane], graph.area[plane]
+    found: list[tuple[float, Floats]] = []
+    while area.any():
+        way = normal[int(np.argmax(area))]
+        along = np.abs(normal @ way) > np.cos(ANGLE)
+        found.append((float(area[along].sum()), way))
+        area = np.where(along, 0.0, area)
+    most = max((size for size, _ in found), default=0.0)
+    return [way for size, way in found if size >= MAIN * most]
+
+
+def _leans(graph: FaceGraph, z: Floats) -> Bools:
+    """Return which faces (n,) do not stand upright along a direction all over."""
+    found = np.zeros(len(graph), dtype=bool)
+    found[graph.sample_face[np.abs(graph.sample_normal @ z) > np.sin(UPRIGHT)]] = True
+    return found
+
+
+def _slivers(graph: FaceGraph) -> Bools:
+    """Return which faces (n,) are narrower than slivers by their area over their edges, as far as these join other faces."""
+    border = np.bincount(graph.edge_face.ravel(), np.repeat(graph.length, 2), len(graph))
+    width = np.divide(2.0 * graph.area, border, out=np.full(len(graph), np.inf), where=border > 0.0)
+    return np.asarray(width < choose(SurfaceSettings, {}).sliver_width)
