@@ -19,7 +19,7 @@ from trunnion.findings import BadInput, remark, warning
 from trunnion.geometry.frame import Frame
 from trunnion.geometry.mesh import Mesh
 from trunnion.model.blank import Blank
-from trunnion.model.feature import FaceRole, Feature, Recognition
+from trunnion.model.feature import FaceRole, Feature, Recognition, TakenFor
 from trunnion.model.operation import CuttingData, Operation, OperationPath
 from trunnion.model.process import ProcessTree
 from trunnion.model.session import PartInfo, PostedFile, Session, SizeEntry, StepRecord
@@ -417,3 +417,38 @@ class RefusingEngine(FakeEngine):
 
     def _route(self, session: Session) -> Session:
         raise BadInput("tray.step: parts of this family are not planned yet")
+
+
+class DoubtingEngine(FakeEngine):
+    """Takes the plate for a casing, which no family serves, until a person chooses a family."""
+
+    def settings(self) -> dict[str, tuple[type, ...]]:
+        from trunnion.pipeline.family import RecognizeSettings
+
+        return super().settings() | {"recognize": (RecognizeSettings,)}
+
+    def _recognize(self, session: Session) -> Session:
+        session = super()._recognize(session)
+        chosen = session.choices.get("recognize.family", "auto")
+        if chosen != "auto":
+            taken = TakenFor(kind=str(chosen), noun=f"a {chosen}", score=0.12, reason="12 % of the area level or upright")
+            return replace(session, recognition=replace(session.recognition, family=str(chosen), taken_for=taken))
+        taken = TakenFor(kind="casing", noun="a casing", score=0.97, reason="96 % of the area is of revolution, <thin>")
+        tags = tuple(range(1, session.part.n_faces + 1))
+        return replace(session, recognition=Recognition(family="casing", unexplained=tags, unexplained_share=1.0, taken_for=taken,
+                                                        doubt="the part looks like a casing: choose recognize.family = panel or surface"))
+
+    def _size(self, session: Session) -> Session:
+        if session.recognition.doubt:
+            raise BadInput(session.recognition.doubt)
+        return super()._size(session)
+
+
+class UnsureEngine(DoubtingEngine):
+    """Takes the plate for a panel, and explains little of it."""
+
+    def _recognize(self, session: Session) -> Session:
+        found = super()._recognize(replace(session, choices={**session.choices, "recognize.family": "panel"}))
+        doubt = "" if session.choices.get("recognize.family", "auto") != "auto" else "88 % of the area is explained by no feature"
+        return replace(found, choices=session.choices,
+                       recognition=replace(found.recognition, family="surface", unexplained_share=0.88, doubt=doubt))

@@ -2,17 +2,25 @@
 
 from __future__ import annotations
 
-from PySide6.QtWidgets import QComboBox, QLabel
+from html import escape
 
+from PySide6.QtWidgets import QComboBox, QHBoxLayout, QLabel, QPushButton, QWidget
+
+from trunnion.model.feature import Recognition, TakenFor
 from trunnion.model.session import PartInfo
 from trunnion.report.palette import GROUP
 from trunnion_gui.i18n import tr
+from trunnion_gui.widgets.layout import empty
 from trunnion_gui.widgets.panel import Panel
 from trunnion_gui.words import amount, counted, share
 
 
+FAMILY, AUTOMATIC = "recognize.family", "auto"
+"""The setting that chooses a family, and its value that leaves the choice to the program."""
+
+
 class RecognizePanel(Panel):
-    """Choose, recognize, and see the counts."""
+    """Choose, recognize, see what the part was taken for and the counts; go on as a family where recognition stopped."""
 
     command = "step.recognize"
 
@@ -25,6 +33,12 @@ class RecognizePanel(Panel):
         self.solid.activated.connect(self._choose_solid)
         self.content.addWidget(self.solid)
         super().build()
+        self.go_on = QWidget()
+        self._answers = QHBoxLayout(self.go_on)
+        self._answers.setContentsMargins(0, 0, 0, 0)
+        self._answers.setSpacing(6)
+        self._offered: tuple[str, ...] = ()
+        self.content.addWidget(self.go_on)
 
     def fill(self) -> None:
         part, found = self.document.shown.part, self.document.shown.recognition
@@ -35,6 +49,7 @@ class RecognizePanel(Panel):
             self._fill_solids(part)
             size = " × ".join(amount(v, 1) for v in part.high - part.low)
             self.part.setText(f"<b>{part.name}</b><br>{size} mm · {part.n_faces} {tr('faces')}")
+        self._offer(found)
         if found is None:
             self.result.setText("")
             return
@@ -43,7 +58,35 @@ class RecognizePanel(Panel):
             n=len(found.unexplained), share=share(found.unexplained_share))
         local = sum(bool(f.attributes.get("local")) for f in found.of_kind(GROUP))
         of_them = tr(", {n} of them local features").format(n=local) if local else ""
-        self.result.setText(f"{tr('Family')} {tr(found.family)}: {counts}{of_them}{loose}")
+        taken = f"{_taken(found.taken_for)}<br>" if found.taken_for is not None else ""
+        counted_up = f"{tr('Family')} {tr(found.family)}: {counts}{of_them}" if found.features else tr("Nothing was recognized.")
+        self.result.setText(f"{taken}{counted_up}{loose}")
+
+    def _offer(self, found: Recognition | None) -> None:
+        """Offer to go on as one of the families there are while recognition doubts what the part is, its own choice first."""
+        families = self._served() if found is not None and found.doubt else ()
+        offered = tuple(sorted(families, key=lambda name: found is None or name != found.family))
+        if offered != self._offered:
+            self._offered = offered
+            empty(self._answers)
+            for name in offered:
+                button = QPushButton(tr("Go on as {family}").format(family=tr(name)))
+                button.setProperty("family", name)
+                button.setToolTip(tr("Choose this family of parts and recognize again"))
+                button.clicked.connect(lambda _=False, family=name: self._go_on_as(family))
+                self._answers.addWidget(button)
+        self.go_on.setVisible(bool(offered))
+        self.go_on.setEnabled(not self.document.is_busy)
+
+    def _served(self) -> tuple[str, ...]:
+        """Return the families there are, from the setting that chooses one."""
+        declared = (s for g in self.document.groups.get("recognize", ()) for s in g.settings if s.key == FAMILY)
+        return tuple(str(name) for s in declared for name in s.choices if name != AUTOMATIC)
+
+    def _go_on_as(self, family: str) -> None:
+        """Choose a family, which can be undone, and recognize the part as one of it."""
+        self.document.choose(FAMILY, f"{tr('Family')}: {tr(family)}", family)
+        self.document.run("recognize", tr("Recognize"))
 
     def _fill_solids(self, part: PartInfo) -> None:
         self.solid.setVisible(part.n_solids > 1)
@@ -57,3 +100,8 @@ class RecognizePanel(Panel):
         part = self.document.session.part
         if part is not None and part.solid != row + 1:
             self.document.open(self.document.path, solid=row + 1)
+
+
+def _taken(taken: TakenFor) -> str:
+    """Return what a part was taken for, how sure and why, as a line of rich text."""
+    return tr("Taken for {noun} ({sure}): {reason}").format(noun=escape(tr(taken.noun)), sure=f"{taken.score:.2f}", reason=escape(taken.reason))

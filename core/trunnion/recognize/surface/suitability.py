@@ -36,7 +36,8 @@ def suitability(graph: FaceGraph) -> Suitability:
     curved = min((float(graph.area[bent & _leans(graph, z)].sum()) for z in _directions(graph)), default=float(graph.area[bent].sum()))
     explained = min(1.0, float(graph.area[~_slivers(graph)].sum()) / whole)
     fits, enclose = (1.0, ", and the faces enclose no material") if graph.open_edges else (min(1.0, curved / whole / ENOUGH), "")
-    return Suitability(score=GENERAL * explained * fits, explained=explained, reason=f"{percent(curved / whole)} of the area curved{enclose}")
+    return Suitability(score=GENERAL * explained * fits, explained=explained,
+                       reason=f"{percent(curved / whole)} of the area curved{enclose}")
 
 
 def _plain(graph: FaceGraph) -> Bools:
