@@ -9,7 +9,9 @@ import pytest
 
 from samples import written
 from trunnion.findings import BadInput
+from trunnion.geometry.cut import plane_cut
 from trunnion.pipeline import Engine
+from trunnion.pipeline.patches import with_cut
 from trunnion.plan.surface.cutters import named
 from trunnion.plan.surface.settings import ALLOWANCE, SCALLOP
 from trunnion.shop import load_shop
@@ -135,3 +137,53 @@ def test_an_operations_direction_comes_back_from_its_xml(session, tmp_path):
     again = read_process(tmp_path / "a.xml").operations
     assert again[0].direction == (0.6, 0.0, 0.8)
     assert again[1].direction == (0.0, 0.0, 1.0)
+
+
+@pytest.fixture(scope="module")
+def speckled():
+    """The hilly block with a patch of 0.3 mm cut out of its hill, which joins no group."""
+    engine = Engine()
+    session = engine.with_choices(engine.open(written(hilly())), CURVED)
+    hill = max((t for t in engine.bench_of(session).part.tags), key=lambda t: _round_area(engine, session, t))
+    session = with_cut(engine, session, plane_cut(hill, (34.0, 0.0, 0.0), (1.0, 0.0, 0.0)))
+    for point, normal in (((34.3, 0.0, 0.0), (1.0, 0.0, 0.0)), ((0.0, 22.3, 0.0), (0.0, 1.0, 0.0)), ((0.0, 22.0, 0.0), (0.0, 1.0, 0.0))):
+        graph = engine.bench_of(session).part.graph()
+        face = next(t for t in engine.bench_of(session).part.tags if graph.surface[t - 1] == "sphere"
+                    and _holds(graph, t, (34.15, 22.15)))
+        session = with_cut(engine, session, plane_cut(face, point, normal))
+    return engine.run(session, "route"), engine
+
+
+def _round_area(engine, session, tag):
+    graph = engine.bench_of(session).part.graph()
+    return graph.area[tag - 1] if graph.surface[tag - 1] == "sphere" else 0.0
+
+
+def _holds(graph, tag, at):
+    return all(graph.box_low[tag - 1][k] <= at[k] <= graph.box_high[tag - 1][k] for k in (0, 1)) and graph.box_high[tag - 1][2] > 9.0
+
+
+def test_a_speck_on_a_curved_face_joins_no_group_and_is_told(speckled):
+    session, _ = speckled
+    (speck,) = session.recognition.unexplained
+    told = next(f for f in session.findings() if f.code == "surface.small")
+    assert told.where == (f"face {speck}",)
+    assert "0.42" in told.text and "0.5 mm" in told.text and "mm2" in told.text
+
+
+def test_a_speck_is_finished_with_the_area_around_it(speckled):
+    session, engine = speckled
+    (speck,) = session.recognition.unexplained
+    graph = engine.bench_of(session).part.graph()
+    around = {row + 1 for row in graph.neighbours(speck - 1)}
+    mine = [o for o in session.process.operations if speck in o.faces]
+    assert {"semi", "finish"} <= {o.kind for o in mine}
+    assert all(around & set(o.faces) for o in mine)
+    assert not [f for f in session.process.findings if f.code == "route.not-planned"]
+
+
+def test_a_group_that_a_person_deleted_is_not_cut(speckled):
+    session, engine = speckled
+    gone = next(f for f in session.recognition if f.attributes.get("local"))
+    after = engine.run(replace(session, recognition=session.recognition.without(gone.id)), "route")
+    assert not set(gone.tags) & planned(after.process)

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import json
 import math
+from types import SimpleNamespace
 
 import numpy as np
 import pytest
@@ -17,6 +18,7 @@ from trunnion.pipeline import Engine
 from trunnion.recognize.surface import SurfaceFamily, SurfaceSettings
 from trunnion.recognize.surface.groups import aligned_groups, grouped, invariant_groups
 from trunnion.recognize.surface.size import _diameter, patch_sizes, repaired
+from trunnion.settings import choose
 
 
 class Rectangles:
@@ -171,3 +173,54 @@ def test_an_impeller_gives_one_group_for_each_kind_of_blade_face() -> None:
     opened = engine.with_choices(engine.open(PARTS / "impeller" / "C3.step"), {"recognize.family": "surface"})
     found = engine.run(opened, until="recognize").recognition
     assert {len(f.tags) for f in found.features} == {1, 2, 11}
+
+
+class Squares(Rectangles):
+    """Flat square patches by their sides, with bends."""
+
+    def __init__(self, *sides: float) -> None:
+        super().__init__(*((s, s, 0.0) for s in sides))
+
+    def bend(self, tag):
+        from trunnion.geometry.curvature import FaceBend
+        return FaceBend(least=0.0, most=0.0, spread=np.zeros((0, 2)))
+
+    def graph(self):
+        n = len(self.patches)
+        return SimpleNamespace(area=np.array([w * h for w, h, _ in self.patches]), surface=("plane",) * n, bend=np.zeros(n, dtype=int),
+                               neighbours=lambda row, kind=None: ())
+
+
+def grouped_squares(*sides: float, **words):
+    patches = Squares(*sides)
+    return SurfaceFamily().recognize(patches.graph(), patches, choose(SurfaceSettings, words))
+
+
+@pytest.mark.parametrize("grouping", ["aligned", "invariant"])
+def test_patches_below_the_smallest_feature_size_join_no_group_and_are_told(grouping: str) -> None:
+    found = grouped_squares(80.0, 20.0, 0.25, 0.3, grouping=grouping)
+    assert [f.tags for f in found] == [(1,), (2,)]
+    assert found.unexplained == (3, 4)
+    (told,) = found.findings
+    assert told.code == "surface.small" and told.where == ("face 3", "face 4")
+    assert told.text == ("2 patches are below the smallest feature size of 0.5 mm and join no group: 0.354 to 0.424 mm across, "
+                         "0.152 mm2, 0.00% of the area")
+    assert "machined with the area around them" in told.remedy
+
+
+def test_the_smallest_feature_size_is_a_setting() -> None:
+    assert grouped_squares(80.0, 0.25, 0.3, **{"recognize.surface.smallest": 0.0}).unexplained == ()
+    assert grouped_squares(80.0, 0.25, 0.3, **{"recognize.surface.smallest": 0.4}).unexplained == (2,)
+
+
+def test_on_a_small_part_the_limits_are_a_hundredth_of_its_largest_patch() -> None:
+    assert grouped_squares(0.5, 0.3, 0.04, 0.03).unexplained == ()
+    assert grouped_squares(20.0, 0.3, 0.19).unexplained == (3,)
+
+
+@needs_parts
+def test_a_part_of_half_a_millimetre_is_grouped_as_a_whole() -> None:
+    engine = Engine()
+    opened = engine.with_choices(engine.open(PARTS / "nasty" / "tiny_half_millimetre.step"), {"recognize.family": "surface"})
+    found = engine.run(opened, until="recognize").recognition
+    assert not found.unexplained and sum(len(f.tags) for f in found) == 16

@@ -14,7 +14,6 @@ from trunnion_gui.widgets.layout import empty
 from trunnion_gui.widgets.panel import Panel
 from trunnion_gui.words import amount, counted, share
 
-
 FAMILY, AUTOMATIC = "recognize.family", "auto"
 """The setting that chooses a family, and its value that leaves the choice to the program."""
 
@@ -104,4 +103,5 @@ class RecognizePanel(Panel):
 
 def _taken(taken: TakenFor) -> str:
     """Return what a part was taken for, how sure and why, as a line of rich text."""
-    return tr("Taken for {noun} ({sure}): {reason}").format(noun=escape(tr(taken.noun)), sure=f"{taken.score:.2f}", reason=escape(taken.reason))
+    words = tr("Taken for {noun} ({sure}): {reason}")
+    return words.format(noun=escape(tr(taken.noun)), sure=f"{taken.score:.2f}", reason=escape(taken.reason))

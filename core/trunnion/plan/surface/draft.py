@@ -23,7 +23,7 @@ from trunnion.shop import Shop, Stage
 
 @dataclass(slots=True)
 class Draft:
-    """What is known while one setup is planned."""
+    """What is known while one setup is planned; `unsampled` are the faces so small that no place of their area lies on them."""
 
     space: SurfaceSpace
     around: Around
@@ -37,6 +37,7 @@ class Draft:
     stages: dict[str, Stage]
     operations: list[Operation] = field(default_factory=list)
     findings: list[Finding] = field(default_factory=list)
+    unsampled: set[int] = field(default_factory=set)
 
     def cutters(self, use: str) -> tuple[Tool, ...]:
         """Return the catalogue's cutters for a use and the blank's material."""

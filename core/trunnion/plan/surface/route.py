@@ -35,6 +35,7 @@ from trunnion.plan.surface.reach import Places, clear_beside, leans, places_on, 
 from trunnion.plan.surface.scallop import stepover_on_plane
 from trunnion.plan.surface.settings import ALLOWANCE, BOTTOM, CELL, EARLIER, SCALLOP, SurfaceRouteSettings
 from trunnion.plan.surface.sides import Around, sides_for
+from trunnion.plan.surface.slivers import slivers_of, with_slivers
 from trunnion.plan.surface.space import SurfaceSpace
 from trunnion.plan.wishes import RouteSettings
 from trunnion.progress import Progress
@@ -82,6 +83,7 @@ def make_surface_route(recognition: Recognition, blank: Blank, setups: Sequence[
     draft = Draft(space=space, around=around, recognition=recognition, material=material, machine=shop.machine(setups[0].machine),
                   shop=shop, setup=setups[0], route=route, chosen=chosen, stages={s.kind: s for s in plan.stages})
     _plan(draft, progress)
+    _add_slivers(draft)
     operations = _numbered(_in_order(draft, plan.stages))
     findings = [*draft.findings, *too_many_tools(operations, setups, shop)]
     return ProcessTree(plan=plan.name, material=material.name, setups=tuple(setups), operations=tuple(operations), findings=tuple(findings))
@@ -114,6 +116,16 @@ def _plan(draft: Draft, progress: Progress) -> None:
         for n, side in enumerate(sides_for(space, draft.setup, draft.around, seen, _finishers(draft), draft.route.reach_clearance,
                                            progress.part(0.8, 1.0)), 1):
             _rough(draft, side.space, side.bottom, f"side-{n}")
+
+
+def _add_slivers(draft: Draft) -> None:
+    """Cut the patches that are too small to be planned by themselves with what lies around them; tell of those that stay."""
+    part = draft.space.part
+    mine = (slivers_of(draft.recognition) | draft.unsampled) & set(part.tags) - set(blank_faces(part, draft.space.blank))
+    draft.operations, left = with_slivers(draft.operations, mine, part.graph(), draft.space.skin)
+    if left:
+        draft.findings.append(warning("route.not-planned", f"{len(left)} small faces lie beside nothing that is cut", *face_tags(
+            left, most=len(left)), remedy="lower recognize.surface.smallest and recognize.surface.sliver_width to plan them by themselves"))
 
 
 def _hidden(draft: Draft, places: Places, tags: set[int], progress: Progress) -> tuple[int, ...]:
@@ -199,7 +211,9 @@ def _area(draft: Draft, area: Area, level: Levels, progress: Progress) -> None:
     The feet of sides that end mills finish with lands are no matter of its cutter.
     """
     chosen = draft.chosen
-    places = level.without_feet(places_on(draft.space.skin, area.tags))
+    places = places_on(draft.space.skin, area.tags)
+    draft.unsampled.update(set(area.tags) - set(places.face.tolist()))
+    places = level.without_feet(places)
     area = replace(area, tags=tuple(t for t in area.tags if (places.face == t).any()))
     wanted = chosen.local_cutter if area.local else chosen.cutter
     found = cutter_for(draft.space, places, _finishers(draft), chosen.share, draft.route.reach_clearance,

@@ -18,6 +18,9 @@ from trunnion.recognize.surface.settings import ALIGNED, EXACT, SurfaceSettings
 from trunnion.recognize.surface.size import PatchSizes, patch_sizes
 from trunnion.recognize.surface.suitability import suitability
 
+SMALL_PART = 0.01
+"""Share of the largest patch's size that limits on small patches don't exceed: a part of half a millimetre has patches of its own."""
+
 
 class SurfaceFamily:
     """Blades, small impellers and other parts of free-form patches with local features on them."""
@@ -36,8 +39,10 @@ class SurfaceFamily:
         sizes = _sizes(graph, bounded, settings)
         progress.at(0.5, "grouping patches")
         size = _size(sizes, settings)
-        sliver = sizes.width < settings.sliver_width
-        small = ~sliver & (size < settings.smallest)
+        most = SMALL_PART * float(size.max())
+        sliver_width, smallest = min(settings.sliver_width, most), min(settings.smallest, most)
+        sliver = sizes.width < sliver_width
+        small = ~sliver & (size < smallest)
         rows = np.flatnonzero(~sliver & ~small)
         if settings.grouping == ALIGNED:
             groups = aligned_groups(sizes, rows, settings.tolerance, relative=settings.relative, subdivide=settings.subdivide)
@@ -46,9 +51,11 @@ class SurfaceFamily:
         bends = patch_bends(bounded, graph, sizes)
         features = tuple(_feature(f"group-{k:02}", g, sizes, bends, settings) for k, g in enumerate(groups, 1))
         apart = sliver | small
+        narrow = _told("surface.sliver", sizes, size, sliver, "sliver_width", f"narrower than {sliver_width:.3g} mm on average")
+        tiny = _told("surface.small", sizes, size, small, "smallest", f"below the smallest feature size of {smallest:.3g} mm")
         return Recognition(family=self.name, features=features, unexplained=tuple(int(t) for t in sizes.tag[apart]),
                            unexplained_share=float(sizes.area[apart].sum() / sizes.area.sum()),
-                           findings=_findings(sizes, sliver, small, settings))
+                           findings=(*narrow, *tiny))
 
     def measured(self, found: Recognition, graph: FaceGraph, part: Bounded, settings: SurfaceSettings) -> Recognition:
         """Return the groups with sizes that fit their faces; whether those made or changed by hand are local stays as a person said."""
@@ -81,12 +88,13 @@ def _feature(id: str, rows: Ints, sizes: PatchSizes, bends: PatchBends, settings
                    attributes={"local": ratio < settings.local_ratio})
 
 
-def _findings(sizes: PatchSizes, sliver: Bools, small: Bools, settings: SurfaceSettings) -> tuple[Finding, ...]:
-    found = []
-    for rows, code, words in ((sliver, "surface.sliver", f"narrower than {settings.sliver_width:g} mm on average"),
-                              (small, "surface.small", f"below the smallest size of {settings.smallest:g} mm")):
-        if rows.any():
-            tags = [int(t) for t in sizes.tag[rows]]
-            found.append(info(code, f"{len(tags)} patches are {words} and join no group", *face_tags(tags),
-                              remedy="lower the limit to keep them"))
-    return tuple(found)
+def _told(code: str, sizes: PatchSizes, size: Floats, rows: Bools, limit: str, words: str) -> tuple[Finding, ...]:
+    """Return what patches join no group, and why: how many, how large across, and how much area; nothing when there are none."""
+    if not rows.any():
+        return ()
+    tags, area = [int(t) for t in sizes.tag[rows]], float(sizes.area[rows].sum())
+    are, join = ("patch is", "joins") if len(tags) == 1 else ("patches are", "join")
+    return (info(code, f"{len(tags)} {are} {words} and {join} no group: {size[rows].min():.3g} to {size[rows].max():.3g} mm across, "
+                 f"{area:.3g} mm2, {area / float(sizes.area.sum()):.2%} of the area", *face_tags(tags),
+                 remedy=f"nothing needs to be done: they are machined with the area around them; lower recognize.surface.{limit} to "
+                 "group them"),)

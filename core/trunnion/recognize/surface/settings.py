@@ -24,5 +24,8 @@ class SurfaceSettings:
     local_ratio: float = setting(0.3, unit="of the largest", low=0.0, high=1.0, label="Local feature below",
                                  help="A group is a local feature when its size over the largest patch's is below this.")
     sliver_width: float = setting(0.05, unit="mm", low=0.0, high=10.0, label="Sliver",
-                                  help="A patch narrower than this on average (twice its area over its boundary) joins no group.")
-    smallest: float = setting(0.0, unit="mm", low=0.0, high=1000.0, label="Smallest size", help="Patches below this size join no group.")
+                                  help="A patch narrower than this on average (twice its area over its boundary) joins no group. "
+                                       "At most 1 % of the largest patch's size.")
+    smallest: float = setting(0.5, unit="mm", low=0.0, high=1000.0, label="Smallest feature size",
+                              help="A patch whose feature size is below this joins no group and is machined with the area around it. "
+                                   "At most 1 % of the largest patch's size.")
