@@ -28,13 +28,13 @@ def in_parallel(work: Callable[[int, int], None], count: int, chunk: int, progre
     with ThreadPoolExecutor(threads) as pool:
         waiting: set[Future[None]] = set()
         try:
-            for first in starts:
+            for n, first in enumerate(starts):
                 while len(waiting) >= 2 * threads:
                     waiting = _collected(waiting)
-                    progress.at(first / count, text)
+                    progress.at((n - len(waiting)) / len(starts), text)
                 waiting.add(pool.submit(work, first, min(first + chunk, count)))
             while waiting:
-                progress.check()
+                progress.at((len(starts) - len(waiting)) / len(starts), text)
                 waiting = _collected(waiting)
         except BaseException:
             pool.shutdown(cancel_futures=True)
