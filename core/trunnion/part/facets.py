@@ -72,21 +72,35 @@ def facets_of(part: Part, frame: Frame, chord: float = tolerance.FACET_CHORD, pr
                   whole=len(wanted) == len(part.tags))
 
 
-def facet_samples(facets: Facets, rows: Ints, spacing: float) -> tuple[Ints, Floats, Floats, Floats]:
+def facet_samples(facets: Facets, rows: Ints, spacing: float, progress: Progress = QUIET) -> tuple[Ints, Floats, Floats, Floats]:
     """Return samples of some faces about `spacing` mm apart: face (s,) rows, point and outward normal (s, 3), area (s,) mm2.
 
     Triangles wider than that are cut into equal ones; of those that share a cell of a grid one stands for all.
     """
-    chosen = np.isin(facets.face, rows)
+    found = [_face_samples(facets, int(row), spacing, progress)
+             for row in progress.each(np.intersect1d(rows, facets.face))] or [_none_sampled()]
+    face, point, normal, area = (np.concatenate(columns) for columns in zip(*found, strict=True))
+    return face, point, normal, area
+
+
+def _none_sampled() -> tuple[Ints, Floats, Floats, Floats]:
+    return np.zeros(0, np.int64), np.zeros((0, 3)), np.zeros((0, 3)), np.zeros(0)
+
+
+def _face_samples(facets: Facets, row: int, spacing: float, progress: Progress) -> tuple[Ints, Floats, Floats, Floats]:
+    """Return the samples of one face."""
+    chosen = facets.face == row
     corners, face = facets.points[facets.triangles[chosen]], facets.face[chosen]
     normal, area = _normals(corners)
     width = np.linalg.norm(np.roll(corners, -1, axis=1) - corners, axis=2).max(axis=1, initial=0.0)
     cuts = np.maximum(np.ceil(width / spacing), 1.0).astype(np.int64)
-    parts = [_middles(corners[cuts == n], int(n)) for n in np.unique(cuts)]
+    parts = [_middles(corners[cuts == n], int(n)) for n in progress.each(np.unique(cuts))]
     owner = np.concatenate([np.zeros(0, np.int64), *(np.repeat(np.flatnonzero(cuts == n), n * n) for n in np.unique(cuts))])
     point, share = np.vstack([np.zeros((0, 3)), *parts]), (area / cuts**2)[owner]
     cell = np.column_stack([face[owner], np.floor(point / spacing).astype(np.int64)])
+    progress.check()
     _, group = np.unique(cell, axis=0, return_inverse=True)
+    progress.check()
     total: Floats = np.bincount(group, share).astype(np.float64)
     middle = np.column_stack([np.bincount(group, share * point[:, k]).astype(np.float64) for k in range(3)])
     middle = middle / np.maximum(total, tolerance.COINCIDENT**2)[:, None]

@@ -38,6 +38,8 @@ ROUNDS, LATE = 16, 6
 """Times that edges are halved at most, and how often before the longest edge of a triangle is halved as well: where an edge beside it is
 just within its limit, others would come nearer to that without end."""
 
+MANY = 4000
+"""Places evaluated between two looks at cancel: some hundredths of a second where the kernel does it one by one."""
 PIECES = 1 << (ROUNDS + 2)
 """Numbers for all pieces of a piece of the border: halves of piece n are 2 n and 2 n + 1."""
 
@@ -75,7 +77,8 @@ def opened(part: Part, chords: Mapping[int, float], progress: Progress = QUIET) 
         net = _coarse(part, tags, np.array([chords[tag] for tag in tags]), progress.part(0.0, 0.3))
     finally:
         BRepTools.Clean_s(part.shape)
-    net.refine(progress.part(0.3, 1.0))
+    net.progress = progress.part(0.3, 1.0)
+    net.refine()
     return net.result(tags, net.bounded())
 
 
@@ -130,6 +133,7 @@ class _Net:
     lines: list[Any]
     fixed: Bools
     bound: Floats
+    progress: Progress = QUIET
 
     def join_poles(self) -> None:
         """Make one point of all that lie in the same pole, and leave out the triangles between them, which have no area."""
@@ -148,7 +152,9 @@ class _Net:
         out = np.empty((len(places), 6, 3))
         order = np.argsort(owner, kind="stable")
         for rows in np.split(order, np.flatnonzero(np.diff(owner[order])) + 1) if len(order) else []:
-            out[rows] = self.evaluators[int(owner[rows[0]])](places[rows])
+            for some in np.split(rows, range(MANY, len(rows), MANY)):
+                self.progress.check()
+                out[some] = self.evaluators[int(owner[rows[0]])](places[some])
         return out
 
     def between(self, nodes: Ints, share: Floats) -> Floats:
@@ -179,14 +185,14 @@ class _Net:
         there = size > tolerance.PARAMETRIC * np.maximum(lengths, tolerance.COINCIDENT)
         return np.divide(normal, size[:, None], out=np.zeros_like(normal), where=there[:, None]), there
 
-    def refine(self, progress: Progress) -> None:
+    def refine(self) -> None:
         """Halve edges until every edge and every triangle is within its face's limit."""
         known, known_off = np.zeros(0, np.int64), np.zeros(0)
         middle = np.full(len(self.triangles), np.nan)
         for k in range(ROUNDS + 1):
-            progress.at(1.0 - 0.7**k, "Refining triangles")
+            self.progress.at(1.0 - 0.7**k, "Refining triangles")
             pairs = self.triangles[:, [[0, 1], [1, 2], [2, 0]]].reshape(-1, 2)
-            keys, first, edge = np.unique(_key(pairs), return_index=True, return_inverse=True)
+            keys, first, edge = self._distinct(_key(pairs))
             edges, edge = pairs[first], edge.reshape(-1, 3)
             off, border = self._edges_off(keys, edges, known, known_off)
             limit = self.limits[self.owner[edges[:, 0]]]
@@ -205,6 +211,11 @@ class _Net:
             known, known_off = keys[~split], off[~split]
             middle = self._halve(edges, edge, split, keys, middle)
         np.maximum.at(self.bound, self.face, BETWEEN * np.maximum(np.nan_to_num(middle), off[edge].max(axis=1)))
+
+    def _distinct(self, keys: Ints) -> tuple[Ints, Ints, Ints]:
+        """Return the distinct ones of some keys, the first row of each, and which of them each key is."""
+        return self.progress.aside(lambda _: np.unique(keys, return_index=True, return_inverse=True)) if len(keys) > MANY else \
+            np.unique(keys, return_index=True, return_inverse=True)
 
     def bounded(self) -> Floats:
         """Add to the bounds how far points on edges are from the faces' surfaces; return the normals (v, 3) at all points."""
@@ -242,9 +253,10 @@ class _Net:
 
     def _border_at(self, pieces: _Border, share: Floats) -> Floats:
         """Return the points (b, 3) at a share (2,) between the ends of pieces of the border, the same for all faces that meet there."""
-        _, first, back = np.unique(pieces.piece, return_index=True, return_inverse=True)
+        _, first, back = self._distinct(pieces.piece)
         middle = pieces.t[first] @ share
-        points = np.array([self.curves[c].Value(t).Coord() for c, t in zip(pieces.curve[first].tolist(), middle.tolist(), strict=True)])
+        points = np.array([self.curves[c].Value(t).Coord()
+                           for c, t in self.progress.each(zip(pieces.curve[first].tolist(), middle.tolist(), strict=True))])
         return np.asarray(points.reshape(-1, 3)[back])
 
     def _border_off(self, pieces: _Border) -> Floats:
@@ -276,8 +288,8 @@ class _Net:
         cut[cut] = split[at[cut]]
         pieces, new = self.border.some(cut), node[at[cut]]
         t = pieces.t.mean(axis=1)
-        places[new - len(self.points)] = np.array([self.lines[k].Value(m).Coord() for k, m in zip(pieces.line.tolist(), t.tolist(),
-                                                                                                strict=True)]).reshape(-1, 2)
+        middles = self.progress.each(zip(pieces.line.tolist(), t.tolist(), strict=True))
+        places[new - len(self.points)] = np.array([self.lines[k].Value(m).Coord() for k, m in middles]).reshape(-1, 2)
         surface = self.on(owner, places)[:, 0]
         points = surface.copy()
         points[new - len(self.points)] = self._border_at(pieces, ALONG[0])

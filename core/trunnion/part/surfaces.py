@@ -164,7 +164,7 @@ def circle_edges(sc: float, uc: float, radius: float, start: float, end: float) 
     return edges
 
 
-def strips_of(guide: Guide, profile: Profile, edges: list[Edge], side: float) -> Floats | None:
+def strips_of(guide: Guide, profile: Profile, edges: list[Edge], side: float, progress: Progress = QUIET) -> Floats | None:
     """Return the strips (m, 37) of a face trimmed by edges in (s, u), or None when the edges don't close."""
     ends = [u for e in edges for u in (e.u0, e.u1)]
     if not ends:
@@ -174,6 +174,7 @@ def strips_of(guide: Guide, profile: Profile, edges: list[Edge], side: float) ->
     spans = [sorted((np.searchsorted(levels, (e.u0, e.u1), side="right") - 1).tolist()) for e in edges]
     rows = []
     for k, (u0, u1) in enumerate(pairwise(levels.tolist())):
+        progress.check()
         across = [e for e, (low, high) in zip(edges, spans, strict=True) if low <= k < high]
         if len(across) % 2:
             return None
@@ -240,10 +241,10 @@ class Face:
     is_free: bool = False
 
 
-def level_face(tag: int, z: float, edges: list[Edge], side: float = 1.0) -> Face:
+def level_face(tag: int, z: float, edges: list[Edge], side: float = 1.0, progress: Progress = QUIET) -> Face:
     """Return a level face from its outline's edges in plan (s is x, u is y); side +1 looks up, -1 down."""
     boundary, chords = [], []
-    for e in edges:
+    for e in progress.each(edges):
         if e.radius:
             a, b = math.atan2(e.u0 - e.uc, e.s0 - e.sc), math.atan2(e.u1 - e.uc, e.s1 - e.sc)
             b = a + (b - a + math.pi) % (2 * math.pi) - math.pi
@@ -259,7 +260,7 @@ def level_face(tag: int, z: float, edges: list[Edge], side: float = 1.0) -> Face
                 along = Guide(0, e.s0, e.u0, (e.s1 - e.s0) / length, (e.u1 - e.u0) / length)
                 boundary.append(point_strip(along, 0.0, z, 0.0, length))
                 chords.append(np.array([[e.s0, e.u0, e.s1, e.u1]]))
-    level = strips_of(Guide(0, 0.0, 0.0, 1.0, 0.0), Profile(0.0, z, 1.0, 0.0), edges, -side)
+    level = strips_of(Guide(0, 0.0, 0.0, 1.0, 0.0), Profile(0.0, z, 1.0, 0.0), edges, -side, progress)
     empty = np.zeros((0, STRIP_COLUMNS))
     return Face(tag, np.array(boundary).reshape(-1, STRIP_COLUMNS), empty if level is None else level,
                 closed_up(np.vstack([np.zeros((0, 4)), *chords])), z)
@@ -286,7 +287,8 @@ def closed_up(chords: Floats) -> Floats:
 def surfaces_of(part: Part, frame: Frame, progress: Progress = QUIET) -> Surfaces:
     """Return the trimmed faces of a part in a frame, its z the tool's axis."""
     shapes = [(tag, part.face_shape(tag)) for tag in part.tags]
-    return surfaces_from([_face(tag, shape, frame) for tag, shape in progress.over(shapes, "Reading the exact faces") if shape is not None])
+    return surfaces_from([_face(tag, shape, frame, progress) for tag, shape in progress.over(shapes, "Reading the exact faces")
+                          if shape is not None])
 
 
 def _distinct(values: list[float]) -> list[float]:
@@ -311,7 +313,7 @@ def _box(guide: Guide, w: tuple[float, float], z: tuple[float, float], low: floa
 
 # From here on CAD: one face's surface and edges, turned into the frame.
 
-def _face(tag: int, shape: Any, frame: Frame) -> Face:
+def _face(tag: int, shape: Any, frame: Frame, progress: Progress) -> Face:
     from OCP.BRepAdaptor import BRepAdaptor_Surface
     from OCP.GeomAbs import GeomAbs_SurfaceType as Kind
     from OCP.TopoDS import TopoDS
@@ -322,9 +324,9 @@ def _face(tag: int, shape: Any, frame: Frame) -> Face:
     kind = surface.GetType()
     made: Face | None = None
     if kind == Kind.GeomAbs_Plane:
-        made = _plane(tag, face, surface.Plane(), sign, frame)
+        made = _plane(tag, face, surface.Plane(), sign, frame, progress)
     elif kind in (Kind.GeomAbs_Cylinder, Kind.GeomAbs_Cone, Kind.GeomAbs_Torus, Kind.GeomAbs_Sphere):
-        made = _round(tag, face, surface, sign, frame)
+        made = _round(tag, face, surface, sign, frame, progress)
     if made is not None:
         return made
     nothing = np.zeros((0, STRIP_COLUMNS))
@@ -361,26 +363,26 @@ def _flat_enough(slope: float, extent: float) -> bool:
     return abs(slope) * extent < tolerance.CONTACT_BOUND / 4
 
 
-def _plane(tag: int, face: Any, plane: Any, sign: float, frame: Frame) -> Face | None:
+def _plane(tag: int, face: Any, plane: Any, sign: float, frame: Frame, progress: Progress) -> Face | None:
     origin, x, y, _ = _position(plane.Position(), frame)
     normal = sign * np.cross(x, y)
     if _flat_enough(math.hypot(normal[0], normal[1]), _extent(face)):
-        edges = _edges(face, np.array([x[:2], y[:2]]), origin[:2])
+        edges = _edges(face, np.array([x[:2], y[:2]]), origin[:2], progress)
         middle = origin[2] + np.mean([[(e.s0 - origin[0]) * -normal[0] / normal[2] + (e.u0 - origin[1]) * -normal[1] / normal[2]]
                                       for e in edges] or [[0.0]])
-        return level_face(tag, float(middle), edges, math.copysign(1.0, normal[2]))
+        return level_face(tag, float(middle), edges, math.copysign(1.0, normal[2]), progress)
     along = np.array([-normal[1], normal[0], 0.0]) / math.hypot(normal[0], normal[1])
     up = np.cross(normal, along)
     across = np.array([-along[1], along[0], 0.0])
-    edges = _edges(face, np.array([[x @ along, x @ up], [y @ along, y @ up]]), np.zeros(2))
+    edges = _edges(face, np.array([[x @ along, x @ up], [y @ along, y @ up]]), np.zeros(2), progress)
     guide = Guide(0, origin[0], origin[1], along[0], along[1])
     dw = 0.0 if abs(up @ across) < tolerance.PARAMETRIC else float(up @ across)
     side = math.copysign(1.0, (normal @ across) * up[2] - normal[2] * dw)
-    strips = strips_of(guide, Profile(0.0, origin[2], dw, up[2]), edges, side)
+    strips = strips_of(guide, Profile(0.0, origin[2], dw, up[2]), edges, side, progress)
     return None if strips is None else Face(tag, strips, np.zeros((0, STRIP_COLUMNS)), np.zeros((0, 4)))
 
 
-def _round(tag: int, face: Any, surface: Any, sign: float, frame: Frame) -> Face | None:
+def _round(tag: int, face: Any, surface: Any, sign: float, frame: Frame, progress: Progress) -> Face | None:
     from OCP.GeomAbs import GeomAbs_SurfaceType as Kind
 
     kind = surface.GetType()
@@ -401,7 +403,7 @@ def _round(tag: int, face: Any, surface: Any, sign: float, frame: Frame) -> Face
             major, minor = (shape.MajorRadius(), shape.MinorRadius()) if kind == Kind.GeomAbs_Torus else (0.0, shape.Radius())
             profile, outward = Profile(major, origin[2], radius=minor), 1.0
         v_scale = up if profile.radius else 1.0
-        edges = _edges(face, np.array([[turn, 0.0], [0.0, v_scale]]), np.array([phase, 0.0]))
+        edges = _edges(face, np.array([[turn, 0.0], [0.0, v_scale]]), np.array([phase, 0.0]), progress)
         # A right-handed placement's natural normal points away from the axis; a left-handed one's points towards it.
         handed = math.copysign(1.0, np.cross(x, y) @ axis)
         side = sign * outward * handed
@@ -412,15 +414,15 @@ def _round(tag: int, face: Any, surface: Any, sign: float, frame: Frame) -> Face
         phase = math.atan2(x[2], x @ across)
         turn = math.copysign(1.0, (x @ across) * y[2] - x[2] * (y @ across))
         profile, guide = Profile(0.0, origin[2], radius=shape.Radius()), Guide(0, origin[0], origin[1], along[0], along[1])
-        edges = _edges(face, np.array([[0.0, turn], [1.0, 0.0]]), np.array([0.0, phase]))
+        edges = _edges(face, np.array([[0.0, turn], [1.0, 0.0]]), np.array([0.0, phase]), progress)
         side = sign * math.copysign(1.0, np.cross(x, y) @ axis)
     else:
         return None
-    strips = strips_of(guide, profile, edges, side)
+    strips = strips_of(guide, profile, edges, side, progress)
     return None if strips is None else Face(tag, strips, np.zeros((0, STRIP_COLUMNS)), np.zeros((0, 4)))
 
 
-def _edges(face: Any, matrix: Floats, shift: Floats) -> list[Edge]:
+def _edges(face: Any, matrix: Floats, shift: Floats, progress: Progress) -> list[Edge]:
     """Return the face's edges in (s, u): rows of the matrix are where the surface's two parameters go, `shift` where its origin goes."""
     from OCP.BRep import BRep_Tool
     from OCP.BRepAdaptor import BRepAdaptor_Curve2d
@@ -433,6 +435,7 @@ def _edges(face: Any, matrix: Floats, shift: Floats) -> list[Edge]:
     found: list[Edge] = []
     walk = TopExp_Explorer(face, TopAbs_ShapeEnum.TopAbs_EDGE)
     while walk.More():
+        progress.check()
         edge = TopoDS.Edge_s(walk.Current())
         walk.Next()
         curve = BRepAdaptor_Curve2d(edge, face)

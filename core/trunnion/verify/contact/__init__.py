@@ -123,7 +123,9 @@ class PartContact:
             some = some[~found[row[some]]]
             some = some[~obstacles.stop(tool, tips[row[some], pose[some]], axes[row[some], pose[some]], row[some], allowed)]
             if len(some):
+                progress.check()
                 place = self.stopped(poses_of(tool, tips[row[some], pose[some]], axes[row[some], pose[some]]), allowed)
+                progress.check()
                 obstacles.add(place, row[some])
                 found[row[some[np.isnan(place[:, 0])]]] = True
         return found

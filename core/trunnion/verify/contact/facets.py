@@ -77,6 +77,12 @@ class FacetContact:
         """The tree over the triangles, built when first asked for."""
         return tree_of(self.facets.points, self.facets.triangles, self.facets.face)
 
+    def _ready(self, progress: Progress) -> Tree:
+        """Return the tree, with looks at progress while it is built."""
+        if "tree" not in self.__dict__:
+            progress.aside(lambda _: self.tree, "Making the faces ready for questions")
+        return self.tree
+
     def along(self, moves: Moves, rows: Ints, progress: Progress = QUIET, threads: int = 0) -> Touch:
         """Return how deep the moves of some rows (k,) enter the faces, whichever way the tool stands."""
         return self._measure(moves, rows, progress, threads)
@@ -91,7 +97,7 @@ class FacetContact:
 
         `obstacles` are the places'; what stops a pose is added to them.
         """
-        tree, bodies, found = self.tree, bodies_of_one(tool), np.zeros(len(tips), bool)
+        tree, bodies, found = self._ready(progress), bodies_of_one(tool), np.zeros(len(tips), bool)
 
         def some(first: int, last: int) -> None:
             reach.clear_loop(first, last, tips, axes, wanted, bodies.arc, bodies.piece, tree.boxes, tree.skip, tree.leaves, tree.corners,
@@ -102,7 +108,7 @@ class FacetContact:
         return found
 
     def _measure(self, moves: Moves, rows: Ints, progress: Progress, threads: int, settle: float = np.inf) -> Touch:
-        tree, bodies, k, f = self.tree, moves.bodies, len(rows), len(self.facets.tag)
+        tree, bodies, k, f = self._ready(progress), moves.bodies, len(rows), len(self.facets.tag)
         bound = np.where(moves.turning[rows], tolerance.TURNING_BOUND, tolerance.CONTACT_BOUND)
         enough = np.full(k, settle) if np.isfinite(settle) else bound
         touch = Touch(depth=np.full((k, 2), -np.inf), face=np.full((k, 2), -1), place=np.full((k, 2, 3), np.nan),

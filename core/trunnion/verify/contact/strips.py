@@ -53,7 +53,8 @@ class StripContact:
 
     def along(self, moves: Moves, rows: Ints, progress: Progress = QUIET, threads: int = 0) -> Touch:
         """Return how deep the moves of some rows (k,) enter the faces; they must stand upright."""
-        return self._touch(moves, rows, self._measure(moves, rows, progress, threads))
+        found = self._measure(moves, rows, progress, threads)
+        return progress.aside(lambda _: self._touch(moves, rows, found))
 
     def stopped(self, moves: Moves, rows: Ints, allowed: float) -> Floats:
         """Return a place (k, 3) of the faces about where the tool enters them deeper than allowed, for the moves of some rows (k,), which

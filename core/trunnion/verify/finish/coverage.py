@@ -42,16 +42,19 @@ def samples_of(surfaces: Surfaces, spacing: float, progress: Progress = QUIET, f
     `MOST_SAMPLES`.
     """
     strips = np.vstack([surfaces.strip, surfaces.level])
-    expected = sum(_expected(strip, spacing) for strip in strips)
+    progress.at(0.0, "Spreading samples")
+    expected = sum(_expected(strip, spacing) for strip in progress.each(strips))
     if expected > MOST_SAMPLES:
         raise OutOfMemory(f"measuring coverage needs about {expected / 1e6:.0f} million samples at {spacing:g} mm: set a larger "
                           "verify.spacing, or split the part")
-    parts = [_strip_samples(strip, spacing) for strip in progress.over(strips, "Spreading samples")]
+    parts = [_strip_samples(strip, spacing, progress) for strip in progress.over(strips, "Spreading samples")]
     face = np.repeat(np.concatenate([surfaces.strip_face, surfaces.level_face]), [len(p) for p in parts])
     rows = np.vstack([np.zeros((0, 7)), *parts])
     if facets is None or not len(surfaces.free):
         return Samples(face=face.astype(np.int64), point=rows[:, :3], normal=rows[:, 3:6], area=rows[:, 6])
-    free, point, normal, area = facet_samples(facets, surfaces.free, spacing)
+    triangles = facets
+    free, point, normal, area = progress.aside(lambda own: facet_samples(triangles, surfaces.free, spacing, own),
+                                               "Spreading samples over free-form faces")
     return Samples(face=np.concatenate([face.astype(np.int64), free]), point=np.vstack([rows[:, :3], point]),
                    normal=np.vstack([rows[:, 3:6], normal]), area=np.concatenate([rows[:, 6], area]))
 
@@ -66,7 +69,7 @@ def _expected(strip: Floats, spacing: float) -> float:
     return max(float(length * (high - low) * wide), 0.0) / spacing**2
 
 
-def _strip_samples(strip: Floats, spacing: float) -> Floats:
+def _strip_samples(strip: Floats, spacing: float, progress: Progress) -> Floats:
     """Return points, normals and areas (k, 7) of one strip: rows across the profile, each as long as the trim is there."""
     u0, u1 = strip[U0], strip[U1]
     straight = strip[PROFILE] == 0.0
@@ -75,7 +78,7 @@ def _strip_samples(strip: Floats, spacing: float) -> Floats:
         return np.zeros((0, 7))
     rows = max(1, int(np.ceil(length / spacing)))
     found = []
-    for u in u0 + (np.arange(rows) + 0.5) / rows * (u1 - u0):
+    for u in progress.each(u0 + (np.arange(rows) + 0.5) / rows * (u1 - u0)):
         ends = guide_ends(strip, u)
         if straight:
             share = (u - u0) / (u1 - u0)

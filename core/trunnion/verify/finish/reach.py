@@ -61,8 +61,8 @@ class Reach:
 
     def _try_leaning(self, machine: Machine, samples: Samples, rows: Ints, progress: Progress) -> Bools:
         point, normal = samples.point[rows], samples.normal[rows]
-        axes = np.stack(list(leaning_axes(normal)), axis=1)
-        holds = can_hold(axes.reshape(-1, 3), machine).reshape(axes.shape[:2])
+        axes = np.stack(list(progress.each(leaning_axes(normal))), axis=1)
+        holds = progress.aside(lambda _: can_hold(axes.reshape(-1, 3), machine)).reshape(axes.shape[:2])
         return self._first_clear(len(rows), partial(leaning_poses, point, normal, axes, holds), progress,
                                  "Looking for leaning cutters that reach what is left")
 
@@ -75,11 +75,16 @@ class Reach:
             rows = np.flatnonzero(~found)
             if not len(rows):
                 break
-            tips, axes, possible = poses(tool, rows)
+            tips, axes, possible = _poses_asked(poses, tool, rows, share)
             known = obstacles.of(rows)
             found[rows] = self._contact.any_clear(tool, tips, axes, possible, self._allowed, known, share, text, self._threads)
             obstacles.put(rows, known)
         return found
+
+
+def _poses_asked(poses: Callable[[Tool, Ints], tuple[Floats, Floats, Bools]], tool: Tool, rows: Ints,
+                 progress: Progress) -> tuple[Floats, Floats, Bools]:
+    return progress.aside(lambda _: poses(tool, rows))
 
 
 def upright_poses(point: Floats, normal: Floats, tool: Tool, rows: Ints) -> tuple[Floats, Floats, Bools]:
@@ -127,7 +132,7 @@ def _shared(ask: Callable[[Samples, Ints, Progress], Bools], samples: Samples, r
         return answer
     # Faces are told apart by a fourth coordinate longer than any part.
     place = np.column_stack([samples.point[rows], samples.face[rows] * 4.0 * np.ptp(samples.point)])
-    return np.asarray(answer[cKDTree(place[tried]).query(place)[1]])
+    return np.asarray(answer[progress.aside(lambda _: cKDTree(place[tried]).query(place)[1])])
 
 
 def reaching_furthest(tools: Sequence[Tool]) -> list[Tool]:

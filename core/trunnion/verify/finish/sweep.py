@@ -85,8 +85,7 @@ class Sweep:
         left, nearest = np.array(most, dtype=np.float64), np.full(len(points), -1)
         points, g = np.ascontiguousarray(points, dtype=np.float64), self.grid
         # Neighbours in plan look at the same moves: visiting them together keeps those in the cache.
-        cell = np.floor((points[:, :2] - g.frame[:2]) / g.frame[2])
-        order = np.lexsort((cell[:, 0], cell[:, 1]))
+        order = progress.aside(lambda _: _by_cell(points, g), "Measuring material left")
 
         def some(first: int, last: int) -> None:
             kernel.left_loop(first, last, points, order, self.moves.row, self.cutter, self.low, g.start, g.rows, g.frame, g.shape,
@@ -101,7 +100,7 @@ class Sweep:
         listed = np.unique(self.grid.rows)
         if not len(rows) or not len(listed):
             return
-        tree = tree_of(self.moves, listed, self.flutes)
+        tree = progress.aside(lambda _: tree_of(self.moves, listed, self.flutes))
 
         def some(first: int, last: int) -> None:
             kernel.far_loop(first, last, points, rows, tree, self.flutes, max(FAR_BOUND, self.bound), left, nearest)
@@ -128,6 +127,12 @@ class Sweep:
         kernel.around_loop(0, len(points), points, margin, move, self.moves.row, self.cutter, self.low, g.start, g.rows, g.frame, g.shape,
                            out)
         return out
+
+
+def _by_cell(points: Floats, grid: Grid) -> Ints:
+    """Return the order of points (s, 3) by the grid's cells."""
+    cell = np.floor((points[:, :2] - grid.frame[:2]) / grid.frame[2])
+    return np.lexsort((cell[:, 0], cell[:, 1]))
 
 
 def left_by_block(left: Floats, nearest: Ints, n_moves: int, area: Floats | None = None) -> BlockLeft:

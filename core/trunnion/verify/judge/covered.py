@@ -46,11 +46,11 @@ def covered(samples: Samples, tags: Ints, sides: Sequence[Side], blank: Blank, p
     """
     frame = sides[0].frame
     low, high = blank_box(blank, frame)
-    left = depth_in_blank(samples.point, low, high)
+    n = len(tags)
+    progress.at(0.0, "Adding up what is finished")
+    left, blank_face = progress.aside(lambda _: (depth_in_blank(samples.point, low, high), on_blank(samples, low, high, n)))
     for p in proofs:
         left = np.minimum(left, p.left)
-    n = len(tags)
-    blank_face = on_blank(samples, low, high, n)
     finished = (np.abs(left) <= settings.tolerance + settings.allowance) & ~blank_face[samples.face]
     open_rows = np.flatnonzero(~finished & ~blank_face[samples.face] & (left > 0.0))
     lost = np.zeros(len(samples), bool)
@@ -59,7 +59,7 @@ def covered(samples: Samples, tags: Ints, sides: Sequence[Side], blank: Blank, p
     wanted = float(area[~blank_face].sum())
     reachable_area = wanted - float(away.sum())
     gouge = np.max([np.zeros(n), *(p.contact.face_depth[:, 0] for p in proofs)], axis=0)
-    faces = _faces(samples, tags, left, area, done, away, gouge, blank_face, set(planned))
+    faces = progress.aside(lambda _: _faces(samples, tags, left, area, done, away, gouge, blank_face, set(planned)))
     coverage = round(float(done.sum()) / wanted, DECIMALS) if wanted and proofs else 0.0
     of_reachable = round(float(done.sum()) / reachable_area, DECIMALS) if reachable_area > 0.0 and proofs else 0.0
     return Covered(coverage=coverage, reachable=of_reachable, faces=faces, findings=_findings(faces, of_reachable, settings),

@@ -56,17 +56,22 @@ def prove_setup(program: Program, contact: PartContact, stock: Stock, machine: M
                 points: Floats, progress: Progress = QUIET) -> SetupProof:
     """Return what is measured of one setup's program; `stock` is cut by it, `points` (s, 3) are the samples in its frame."""
     frame = program.setup.frame
-    moves = moves_of(program.sections)
-    sweep = Sweep.of(moves, NEAR)
-    touched = contact.along(moves, progress.part(0.0, 0.4), settings.threads)
+    moves = progress.aside(lambda _: moves_of(program.sections), "Reading the moves")
+    sweep = progress.aside(lambda _: Sweep.of(moves, NEAR), "Making the moves ready for questions")
+    touched = contact.along(moves, progress.part(0.02, 0.4), settings.threads)
     run = run_stock(stock, moves, frame, sweep, progress.part(0.4, 0.7), settings.threads)
     low, high = blank_box(stock.blank, frame)
-    left, nearest = sweep.left(points, depth_in_blank(points, low, high), progress.part(0.7, 1.0), settings.threads)
-    stands = stands_of(moves, machine, foot_of(stock.blank, frame))
-    times = times_of(moves, stands, machine)
-    load = load_of(moves, run, times.speed, program.sections, settings.cell, material)
+    deep = progress.aside(lambda _: depth_in_blank(points, low, high))
+    left, nearest = sweep.left(points, deep, progress.part(0.7, 0.98), settings.threads)
+    stands, times = progress.aside(lambda _: _timed(moves, machine, foot_of(stock.blank, frame)), "Timing the moves")
+    load = progress.aside(lambda _: load_of(moves, run, times.speed, program.sections, settings.cell, material), "Weighing the load")
     return SetupProof(program=program, moves=moves, contact=touched, stock=run, stands=stands, times=times, load=load, left=left,
                       nearest=nearest)
+
+
+def _timed(moves: Moves, machine: Machine, foot: Floats) -> tuple[Stands, Times]:
+    stands = stands_of(moves, machine, foot)
+    return stands, times_of(moves, stands, machine)
 
 
 def foot_of(blank: Blank, frame: Frame) -> Floats:

@@ -11,6 +11,7 @@ from trunnion.geometry.frame import Frame
 from trunnion.model.fixture import Fixture
 from trunnion.part.facets import Facets
 from trunnion.part.surfaces import Surfaces
+from trunnion.progress import QUIET, Progress
 from trunnion.verify.contact import PartContact
 
 FIXTURE_BOUND = 0.02
@@ -27,12 +28,13 @@ class Side:
 
 
 def sides_of(frames: Sequence[Frame], surfaces: Sequence[Surfaces], facets: Sequence[Facets | None],
-             fixtures: Sequence[Sequence[Fixture]]) -> list[Side]:
+             fixtures: Sequence[Sequence[Fixture]], progress: Progress = QUIET) -> list[Side]:
     """Return the side of every frame, from the part's faces in it and what holds it there."""
     sides = []
     for frame, faces, triangles, held in zip(frames, surfaces, facets, fixtures, strict=True):
+        progress.check()
         part = PartContact(faces, triangles)
-        meshes = [fixture_facets(f, frame) for f in held]
+        meshes = [fixture_facets(f, frame) for f in progress.each(held)]
         sides.append(Side(frame=frame, part=part, contact=PartContact(faces, triangles, meshes) if meshes else part))
     return sides
 

@@ -7,11 +7,12 @@ or missing coverage; `passed with remarks` when a person should only look.
 from __future__ import annotations
 
 from collections.abc import Collection, Sequence
+from functools import partial
 
 import numpy as np
 
 from trunnion.findings import Finding, Severity
-from trunnion.geometry.arrays import Floats
+from trunnion.geometry.arrays import Floats, Ints
 from trunnion.geometry.frame import Frame
 from trunnion.model.blank import Blank
 from trunnion.model.material import Machine, Material
@@ -27,7 +28,7 @@ from trunnion.verify.judge.covered import covered
 from trunnion.verify.judge.excess import load_findings
 from trunnion.verify.judge.findings import setup_findings
 from trunnion.verify.judge.operations import block_proof, operation_proofs
-from trunnion.verify.judge.setups import bundles_of, prove_setup
+from trunnion.verify.judge.setups import SetupProof, bundles_of, prove_setup
 from trunnion.verify.judge.sides import sides_of
 from trunnion.verify.machine.limits import limit_findings
 from trunnion.verify.motion import AXIS_LEAN
@@ -69,31 +70,43 @@ def prove_surfaces(programs: Sequence[Program], surfaces: Sequence[Surfaces], bl
     """
     frames = [p.setup.frame for p in programs] or [blank.frame]
     held = [p.setup.fixtures for p in programs] or [()]
-    sides = sides_of(frames, surfaces, facets or [None] * len(frames), held)
+    sides = progress.aside(lambda own: sides_of(frames, surfaces, facets or [None] * len(frames), held, own),
+                           "Making the faces ready for questions")
     samples = samples_of(surfaces[0], settings.spacing, progress.part(0.0, 0.05), facets[0] if facets else None)
     stock = Stock.of(blank, settings.cell, bundles_of(programs, blank, settings))
     proofs = []
     for k, (program, side) in enumerate(zip(programs, sides, strict=False)):
-        share = progress.part(0.05 + 0.75 * k / len(programs), 0.05 + 0.75 * (k + 1) / len(programs))
+        share = progress.part(0.05 + 0.75 * k / len(programs), 0.05 + 0.75 * (k + 1) / len(programs), program.setup.name)
         points = _moved(samples, frames[0], side.frame)
         proofs.append(prove_setup(program, side.contact, stock, machine, material, settings, points, share))
     findings: list[Finding] = []
     offers: list[Offer] = []
     for p in proofs:
-        findings += setup_findings(p, surfaces[0].tag, settings)
-        said, offered = load_findings(p, machine, material, settings)
-        findings, offers = findings + said, offers + offered
-        findings += limit_findings(p.program.setup.name, p.program.sections, p.moves, p.stands, machine)
+        told, offered = progress.aside(partial(_told, p, surfaces[0].tag, machine, material, settings), "Judging the moves")
+        findings, offers = findings + told, offers + offered
     whole = covered(samples, surfaces[0].tag, sides, blank, proofs, tools, settings, planned_faces, progress.part(0.8, 1.0),
                     machine if facets else None)
     findings += whole.findings
-    operations = tuple(o for p in proofs for o in operation_proofs(p, surfaces[0].tag, samples.area, machine, settings))
+    operations, blocks = progress.aside(
+        lambda _: (tuple(o for p in proofs for o in operation_proofs(p, surfaces[0].tag, samples.area, machine, settings)),
+                   tuple(block_proof(p, samples.area) for p in proofs)), "Judging the operations")
     return Verdict(
         outcome=outcome_of(findings), coverage=whole.coverage, reachable=whole.reachable,
         gouge=max((o.gouge for o in operations), default=0.0), collisions=sum(o.collisions for o in operations),
         rapids_in_stock=sum(o.rapids_in_stock for o in operations), machining_time_s=sum(o.time_s for o in operations),
         operations=operations, faces=whole.faces, findings=tuple(findings), deviation=whole.deviation,
-        blocks=tuple(block_proof(p, samples.area) for p in proofs), offers=tuple(offers))
+        blocks=blocks, offers=tuple(offers))
+
+
+def _told(proof: SetupProof, tags: Ints, machine: Machine, material: Material | None, settings: ProofSettings,
+          progress: Progress) -> tuple[list[Finding], list[Offer]]:
+    """Return the findings on one setup's moves, and what is offered against too much load."""
+    findings = setup_findings(proof, tags, settings)
+    progress.check()
+    said, offers = load_findings(proof, machine, material, settings)
+    progress.check()
+    limits = limit_findings(proof.program.setup.name, proof.program.sections, proof.moves, proof.stands, machine)
+    return [*findings, *said, *limits], list(offers)
 
 
 def outcome_of(findings: Sequence[Finding]) -> Outcome:

@@ -47,7 +47,7 @@ def run_stock(stock: Stock, moves: Moves, frame: Frame, sweep: Sweep | None = No
     `threads` 0: one a core; the result is the same for any number. Cancelled or out of memory half-way, the stock is of no use any more:
     go back to a snapshot. Raises `OutOfMemory` when rays are cut in too many pieces.
     """
-    local, probes = seen_from(moves, frame, stock.frame), probes_of(moves)
+    local, probes = progress.aside(lambda _: (seen_from(moves, frame, stock.frame), probes_of(moves)), "Cutting the stock")
     found = Passed.empty(len(moves), probes)
     heights = progress.part(0.0, 1.0 if stock.bundles == ("z",) else 0.3)
     row, looked = run_heights(stock, local, frame, sweep, probes, found, heights)
@@ -58,11 +58,11 @@ def run_stock(stock: Stock, moves: Moves, frame: Frame, sweep: Sweep | None = No
         fine = rays_in_cell(stock.pitch) if sweep is not None else 0
         run_rays(stock, going, local, probes, found, fine, progress.part(0.3, 1.0), threads)
     if sweep is not None:
-        confirm_grazed(stock, found, frame, sweep, progress)
+        confirm_grazed(stock, found, frame, sweep, progress.part(1.0, 1.0))
         stock.cut_by.append((sweep, frame))
     rapid_depth = np.where(found.depth > tolerance.RAPID_DEPTH, found.depth, 0.0)
     place = np.where(rapid_depth[:, None] > 0.0, found.place, np.nan)
-    engaged = engagement_of(probes, found.tally, moves)
+    engaged = progress.aside(lambda _: engagement_of(probes, found.tally, moves))
     return StockRun(removed=found.removed, rapid_depth=rapid_depth, rapid_place=frame.to_local(stock.frame.to_world(place)),
                     body_depth=found.body, engagement=engaged.largest, depth_of_cut=engaged.depth, widest=engaged.widest,
                     peak=engaged.peak)
