@@ -23,7 +23,7 @@ from trunnion.part.request import Request
 from trunnion.progress import Progress
 
 _LOOK = 0.02
-_CHECK = 0.2
+_CHECK = 0.1
 _REFUSED, _NO_MEMORY = 3, 4
 _MEGA = 1 << 20
 
@@ -47,14 +47,14 @@ def run(request: Request, data: bytes, limits: ReadLimits, progress: Progress) -
 
 
 def _wait(child: subprocess.Popen[bytes], request: Request, limits: ReadLimits, progress: Progress) -> None:
-    _load()
     start = looked = time.monotonic()
+    progress.aside(lambda _: _load(), f"reading {request.file}")
     while child.poll() is None:
         now = time.monotonic()
         if now - start > limits.seconds:
             raise BadInput(f"{request.file}: reading took longer than {limits.seconds:g} s and was stopped; export the part again")
         if now - looked > _CHECK:
-            progress.at(min(0.9, (now - start) / limits.seconds), "reading")
+            progress.at(min(0.9, (now - start) / limits.seconds), f"reading {request.file}")
             looked = now
         time.sleep(_LOOK)
 

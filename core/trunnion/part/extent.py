@@ -18,6 +18,7 @@ from trunnion.part.canonical import Surface
 from trunnion.part.evaluate import evaluator_of
 from trunnion.part.faces import FaceView
 from trunnion.part.trim import Trim
+from trunnion.progress import QUIET, Progress
 
 _GRID, _ZOOM, _ZOOMS, _STEPS = 13, 5, 4, 65
 Box = tuple[Floats, Floats]
@@ -41,7 +42,7 @@ def edge_extremes(adaptor: Any, points: Floats) -> Floats:
     return np.concatenate([points[[0, -1]], round_points])
 
 
-def face_box(view: FaceView, surface: Surface, boundary: Floats) -> Box:
+def face_box(view: FaceView, surface: Surface, boundary: Floats, progress: Progress = QUIET) -> Box:
     """Return the lowest and highest corner around a face; `boundary` (k, 3) holds its edges' extremes.
 
     Planes, cylinders and cones are ruled, so their extremes lie on the boundary. Free-form faces are searched by sampling.
@@ -50,7 +51,7 @@ def face_box(view: FaceView, surface: Surface, boundary: Floats) -> Box:
         return boundary.min(axis=0), boundary.max(axis=0)
     if surface.kind in ("sphere", "torus"):
         return _with_candidates(view, boundary, np.array(list(_candidates(surface))))
-    return _searched(view, boundary)
+    return _searched(view, boundary, progress)
 
 
 def _candidates(surface: Surface) -> Iterator[Floats]:
@@ -81,11 +82,11 @@ def _with_candidates(view: FaceView, boundary: Floats, points: Floats) -> Box:
     return low, high
 
 
-def _searched(view: FaceView, boundary: Floats) -> Box:
+def _searched(view: FaceView, boundary: Floats, progress: Progress) -> Box:
     """Return the box of samples, each of the six farthest ones followed by a finer and finer search around it."""
     u0, u1, v0, v1 = view.bounds()
     step = np.array([(u1 - u0) / _GRID, (v1 - v0) / _GRID])
-    trim, evaluate = Trim(view), evaluator_of(view.adaptor)
+    trim, evaluate = Trim(view, progress), evaluator_of(view.adaptor)
 
     def inside(places: Floats) -> tuple[Floats, Floats]:
         kept = places[trim.holds(places)]

@@ -29,6 +29,7 @@ from trunnion.part.extent import edge_extremes, face_box
 from trunnion.part.faces import FaceView
 from trunnion.part.identity import Shape
 from trunnion.part.measure import ACCURACY
+from trunnion.progress import QUIET, Progress
 
 _GRIDS, _PLANE_GRIDS = (5, 13, 31), (4, 13, 31)
 _MIN_SAMPLES, _MIN_PLANE_SAMPLES = 9, 4
@@ -64,16 +65,17 @@ class EdgeView:
         self.extremes = edge_extremes(self.adaptor, self.points)
 
 
-def face_graph(shape: Shape, faces: Mapping[int, Shape], n_faces: int) -> FaceGraph:
+def face_graph(shape: Shape, faces: Mapping[int, Shape], n_faces: int, progress: Progress = QUIET) -> FaceGraph:
     """Return the graph of a solid's faces (by tag); rows of tags that aren't there have area 0, no samples and no edges.
 
     The normal bend of a torus is that of its tube; of a free-form face the one that is at least twice as sharp as the other.
     """
-    views = {tag: FaceView(face, tag - 1) for tag, face in sorted(faces.items())}
-    edges, rims = _edges(shape, views)
-    rows = {tag - 1: _face_row(view, rims[tag - 1]) for tag, view in views.items()}
+    progress.doing("looking at faces and edges")
+    views = {tag: FaceView(face, tag - 1) for tag, face in progress.each(sorted(faces.items()))}
+    edges, rims = _edges(shape, views, progress)
+    rows = {tag - 1: _face_row(view, rims[tag - 1], progress) for tag, view in progress.each(views.items())}
     columns = [rows.get(n, _ABSENT) for n in range(n_faces)]
-    joints = [joint for edge in edges for joint in _joints(edge)]
+    joints = [joint for edge in progress.each(edges) for joint in _joints(edge)]
     samples = [(n, c) for n, c in enumerate(columns) if len(c.points)]
 
     def column(name: str) -> np.ndarray:
@@ -105,14 +107,14 @@ def _points(rows: Any) -> Floats:
 
 # Edges
 
-def _edges(shape: Shape, views: Mapping[int, FaceView]) -> tuple[list[EdgeView], dict[int, list[EdgeView]]]:
+def _edges(shape: Shape, views: Mapping[int, FaceView], progress: Progress) -> tuple[list[EdgeView], dict[int, list[EdgeView]]]:
     """Return the edges with their users (a seam has its face twice), and by face row the edges around it."""
     index = TopTools_IndexedMapOfShape()
     TopExp.MapShapes_s(shape, TopAbs_EDGE, index)
-    edges = {n: EdgeView(edge) for n in range(1, index.Extent() + 1)
+    edges = {n: EdgeView(edge) for n in progress.each(range(1, index.Extent() + 1))
              if not BRep_Tool.Degenerated_s(edge := TopoDS.Edge_s(index.FindKey(n)))}
     rims: dict[int, list[EdgeView]] = {}
-    for view in views.values():
+    for view in progress.each(views.values()):
         rim = rims.setdefault(view.row, [])
         for coedge in coedges(view.face, index):
             if coedge.edge in edges:
@@ -217,23 +219,23 @@ _ABSENT = FaceRow(surface=replace(PLAIN, kind="other"), area=0.0, centre=_ORIGIN
                   points=np.empty((0, 3)), normals=np.empty((0, 3)))
 
 
-def _face_row(view: FaceView, rim: list[EdgeView]) -> FaceRow:
-    points, normals = _samples(view)
+def _face_row(view: FaceView, rim: list[EdgeView], progress: Progress) -> FaceRow:
+    points, normals = _samples(view, progress)
     surface = recognised(view.adaptor, lambda: view.evaluated(view.grid(_GRIDS[0])))
     best = _deepest(points, np.concatenate([e.points for e in rim]) if rim else np.empty((0, 3)))
-    low, high = face_box(view, surface, np.concatenate([e.extremes for e in rim]) if rim else np.empty((0, 3)))
+    low, high = face_box(view, surface, np.concatenate([e.extremes for e in rim]) if rim else np.empty((0, 3)), progress)
     surface = _beside(surface, points[best])
     return FaceRow(surface=surface, area=_area(view), centre=points[best], normal=normals[best],
                    bend=_bend(surface, points, normals, best), low=low, high=high, points=points, normals=normals)
 
 
-def _samples(view: FaceView) -> tuple[Floats, Floats]:
+def _samples(view: FaceView, progress: Progress) -> tuple[Floats, Floats]:
     """Return points spread over the trimmed area and their outward normals; at least one even on the thinnest face."""
     most: list[tuple[float, float]] = []
     is_plane = view.adaptor.GetType() == GeomAbs_Plane
     wanted = _MIN_PLANE_SAMPLES if is_plane else _MIN_SAMPLES
     for steps in _PLANE_GRIDS if is_plane else _GRIDS:
-        found = [uv for uv in view.grid(steps) if view.holds(*uv)]
+        found = [uv for uv in progress.each(view.grid(steps)) if view.holds(*uv)]
         most = found if len(found) > len(most) else most
         if len(most) >= wanted:
             break

@@ -4,7 +4,8 @@ from __future__ import annotations
 
 import io
 import json
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Iterator, Mapping
+from contextlib import contextmanager
 from dataclasses import asdict, dataclass, field, replace
 from typing import TYPE_CHECKING, Any
 
@@ -20,6 +21,7 @@ from trunnion.geometry.frame import Frame
 from trunnion.geometry.mesh import Mesh
 from trunnion.geometry.region import Region
 from trunnion.part.identity import Shape, faces_of
+from trunnion.progress import QUIET, Progress
 
 if TYPE_CHECKING:
     from trunnion.part.boundary import Bounding
@@ -87,6 +89,7 @@ class Part:
         self._bounding: Bounding | None = None
         self._bends: dict[int, FaceBend] = {}
         self._slicer: Any = None
+        self._progress = QUIET
 
     path = property(lambda self: self.facts.path, doc="Where the part was read from.")
     name = property(lambda self: self.facts.name, doc="The file's name without its suffix.")
@@ -117,6 +120,15 @@ class Part:
         """Highest corner (3,) of the box around the solid, mm."""
         return self.graph().box_high[np.asarray(self.tags) - 1].max(axis=0)
 
+    @contextmanager
+    def watched(self, progress: Progress) -> Iterator[None]:
+        """Look at a progress during whatever is computed from the part meanwhile: graph, mesh, sections, boundary and bends."""
+        before, self._progress = self._progress, progress
+        try:
+            yield
+        finally:
+            self._progress = before
+
     def face_shape(self, tag: int) -> Shape | None:
         """Return the face of a tag as it lies in the solid (its normal points outward), or None when it is not of this solid."""
         return self._faces.get(tag)
@@ -125,14 +137,14 @@ class Part:
         """Return the attributed face graph; row = tag - 1, faces of other solids have area 0, no samples and no edges."""
         if self._graph is None:
             from trunnion.part.graph import face_graph
-            self._graph = face_graph(self.shape, self._faces, self.n_faces)
+            self._graph = face_graph(self.shape, self._faces, self.n_faces, self._progress)
         return self._graph
 
     def mesh(self, chord: float = tolerance.CHORD, angle: float = tolerance.MESH_ANGLE) -> Mesh:
         """Return triangles of the solid within a chord error (mm) and an angle between neighbouring chords (radians)."""
         if (chord, angle) not in self._meshes:
             from trunnion.part.tessellate import tessellated
-            self._meshes[chord, angle] = tessellated(self.shape, self._faces, chord, angle)
+            self._meshes[chord, angle] = tessellated(self.shape, self._faces, chord, angle, self._progress)
         return self._meshes[chord, angle]
 
     def section(self, frame: Frame, z: float) -> Region:
@@ -141,12 +153,13 @@ class Part:
         Lines and arcs are exact, other curves are followed by arcs within `tolerance.FITTED`. A plane that touches vertices or holds
         faces is moved up by `tolerance.SECTION_STEP` until it doesn't.
         """
+        self._progress.check()
         key = (b"".join(a.tobytes() for a in (frame.origin, frame.x, frame.z)), float(z))
         if key not in self._sections:
             if self._slicer is None:
                 from trunnion.part.section import SolidSlicer
-                self._slicer = SolidSlicer(self.shape, list(self._faces.values()))
-            self._sections[key] = self._slicer.section(frame, float(z))
+                self._slicer = SolidSlicer(self.shape, list(self._faces.values()), self._progress)
+            self._sections[key] = self._slicer.section(frame, float(z), self._progress)
         return self._sections[key]
 
     def boundary(self, parts: Callable[[Floats], Ints] | None = None) -> Boundary:
@@ -154,18 +167,25 @@ class Part:
         or with the points that are farthest along x, y and z."""
         if self._bounding is None:
             from trunnion.part.boundary import bounding_of
-            self._bounding = bounding_of((tag, face) for tag, face in enumerate(faces_of(self.as_read), 1) if tag in self._faces)
+            self._bounding = bounding_of((tag, face) for tag, face in self._as_read() if tag in self._faces)
         return self._bounding.points(parts)
 
     def boundary_error(self) -> dict[int, float]:
         """Return how far each face's boundary curves, as read, are from its surface at most, mm, by tag."""
         from trunnion.part.boundary import approximation_of
-        return {tag: approximation_of(face) for tag, face in enumerate(faces_of(self.as_read), 1) if tag in self._faces}
+        return {tag: approximation_of(face) for tag, face in self._as_read() if tag in self._faces}
+
+    def _as_read(self) -> Iterator[tuple[int, Shape]]:
+        """Yield the faces as read by tag, looking at progress before each."""
+        for tag, face in enumerate(faces_of(self.as_read), 1):
+            self._progress.check()
+            yield tag, face
 
     def bend(self, tag: int) -> FaceBend:
         """Return how a face bends; raise `BadInput` when it is not of the chosen solid."""
         if tag not in self._bends:
             from trunnion.part.curvature import bend_of
+            self._progress.check()
             face = self.face_shape(tag)
             if face is None:
                 raise BadInput(f"face {tag} is not a face of the chosen solid of {self.name}")

@@ -38,6 +38,7 @@ from trunnion.part.fitting import along_arcs, arcs_through
 from trunnion.part.graph import coedges
 from trunnion.part.identity import Shape
 from trunnion.part.tracing import trace
+from trunnion.progress import QUIET, Progress
 
 _SAMPLES = 33
 _TRIES = 50
@@ -116,12 +117,17 @@ class Link:
 class SolidSlicer:
     """Answers sections of one solid; what doesn't depend on the plane is prepared once."""
 
-    def __init__(self, shape: Shape, faces: Iterable[Shape]) -> None:
+    def __init__(self, shape: Shape, faces: Iterable[Shape], progress: Progress = QUIET) -> None:
         index = TopTools_IndexedMapOfShape()
         TopExp.MapShapes_s(shape, TopAbs_EDGE, index)
         shapes = [TopoDS.Edge_s(index.FindKey(n)) for n in range(1, index.Extent() + 1)]
-        self.edges: dict[int, Edge] = {n: _edge(s) for n, s in enumerate(shapes, start=1) if not BRep_Tool.Degenerated_s(s)}
-        self.faces = [self._face(face, index) for face in faces]
+        self.edges: dict[int, Edge] = {}
+        progress.doing("making ready to cut the part by planes")
+        for n, s in enumerate(shapes, start=1):
+            progress.check()
+            if not BRep_Tool.Degenerated_s(s):
+                self.edges[n] = _edge(s)
+        self.faces = [self._face(face, index, progress) for face in faces]
         self._low = np.array([f.low for f in self.faces])
         self._high = np.array([f.high for f in self.faces])
         self._corners = np.concatenate([e.points[[0, -1]] for e in self.edges.values()])
@@ -129,13 +135,15 @@ class SolidSlicer:
         self._line_ends = np.array([self.edges[n].points[[0, -1]] for n in self._lines]).reshape(-1, 2, 3)
         self._others = [n for n, e in self.edges.items() if e.kind != GeomAbs_Line]
 
-    def section(self, frame: Frame, z: float) -> Region:
+    def section(self, frame: Frame, z: float, progress: Progress = QUIET) -> Region:
         """Return the material cut by the plane at a height of a frame, in the frame's x and y."""
+        progress.check()
         plane = self._clear_of_corners(frame, z)
         nodes = self._nodes(plane)
         links: list[Link] = []
         loops: list[Curve] = []
         for face in self._crossed(plane):
+            progress.check()
             own = [(node, point) for n in dict.fromkeys(face.edges) for node, point in nodes.get(n, ())]
             seams = {n for n in face.edges if face.edges.count(n) > 1}
             found, closed = _cut(face, plane, own, seams)
@@ -143,12 +151,13 @@ class SolidSlicer:
             loops += closed
         return Region.of(loops + _chained(links, f"z = {z:g}"))
 
-    def _face(self, face: Shape, index: TopTools_IndexedMapOfShape) -> Face:
+    def _face(self, face: Shape, index: TopTools_IndexedMapOfShape, progress: Progress) -> Face:
+        progress.check()
         view = FaceView(face, 0)
         own = tuple(c.edge for c in coedges(face, index) if c.edge in self.edges)
         surface = recognised(view.adaptor, lambda: view.evaluated(view.grid(5)))
         boundary = np.concatenate([self.edges[n].extremes for n in own]) if own else np.empty((0, 3))
-        low, high = face_box(view, surface, boundary)
+        low, high = face_box(view, surface, boundary, progress)
         return Face(view, surface, own, low, high)
 
     def _clear_of_corners(self, frame: Frame, z: float) -> Plane:

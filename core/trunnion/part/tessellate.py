@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Iterator, Mapping
 from typing import Any
 
 import numpy as np
@@ -14,19 +14,25 @@ from OCP.TopLoc import TopLoc_Location
 from trunnion.geometry.mesh import Mesh
 from trunnion.part.faces import FaceView
 from trunnion.part.identity import Shape
+from trunnion.progress import QUIET, Progress
+
+MANY = 2000
+"""Points or triangles taken from the kernel between two looks at cancel: some milliseconds."""
 
 
-def tessellated(shape: Shape, faces: Mapping[int, Shape], chord: float, angle: float) -> Mesh:
+def tessellated(shape: Shape, faces: Mapping[int, Shape], chord: float, angle: float, progress: Progress = QUIET) -> Mesh:
     """Return the triangles of a solid's faces (by tag), anticlockwise seen from outside.
 
     `chord` (mm) and `angle` (radians) bound the distance from the surface and the turn from chord to chord. A face that the mesher
     can't do is missing from the mesh; `Mesh.face` tells which are there.
     """
     BRepTools.Clean_s(shape)
+    progress.doing("triangles of the faces")
     BRepMesh_IncrementalMesh(shape, chord, False, angle, False)
     points, triangles, owners, count = [], [], [], 0
     for tag in sorted(faces):
-        p, t = face_triangles(faces[tag])
+        progress.check()
+        p, t = face_triangles(faces[tag], progress)
         points.append(p)
         triangles.append(t + count)
         owners.append(np.full(len(t), tag))
@@ -35,19 +41,27 @@ def tessellated(shape: Shape, faces: Mapping[int, Shape], chord: float, angle: f
     return Mesh(np.concatenate(points), np.concatenate(triangles), np.concatenate(owners))
 
 
-def face_triangles(face: Shape) -> tuple[np.ndarray, np.ndarray]:
+def face_triangles(face: Shape, progress: Progress = QUIET) -> tuple[np.ndarray, np.ndarray]:
     """Return the points (v, 3) and triangles (t, 3) that the mesher has left on a face, anticlockwise seen from outside."""
     place = TopLoc_Location()
     found = BRep_Tool.Triangulation_s(face, place)
     if found is None or not found.NbTriangles():
         return np.empty((0, 3)), np.empty((0, 3), dtype=np.int64)
-    points = np.array([found.Node(n).Coord() for n in range(1, found.NbNodes() + 1)])
-    rows = np.array([found.Triangle(n).Get() for n in range(1, found.NbTriangles() + 1)], dtype=np.int64) - 1
+    points = np.array([found.Node(n).Coord() for n in _numbers(found.NbNodes(), progress)])
+    rows = np.array([found.Triangle(n).Get() for n in _numbers(found.NbTriangles(), progress)], dtype=np.int64) - 1
     if not place.IsIdentity():
         move = place.Transformation()
         turn = np.array([[move.Value(r, c) for c in range(1, 5)] for r in range(1, 4)])
         points = points @ turn[:, :3].T + turn[:, 3]
     return points, rows if _looks_out(face, found, points, rows) else rows[:, ::-1]
+
+
+def _numbers(count: int, progress: Progress) -> Iterator[int]:
+    """Yield the kernel's numbers from 1 to `count`, with looks at progress."""
+    for n in range(1, count + 1):
+        if n % MANY == 0:
+            progress.check()
+        yield n
 
 
 def _looks_out(face: Shape, found: Any, points: np.ndarray, rows: np.ndarray) -> bool:

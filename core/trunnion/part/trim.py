@@ -17,6 +17,7 @@ from trunnion.geometry.arrays import Bools, Floats
 from trunnion.geometry.kernels.outline import IN, NEAR
 from trunnion.geometry.outlines import Outlines
 from trunnion.part.faces import FaceView
+from trunnion.progress import QUIET, Progress
 
 SAG = 1e-4
 """Of the face's size in its parameters: how far a piece may be from the outline."""
@@ -28,10 +29,10 @@ TRIED = 8
 
 
 class Trim:
-    """The trimmed area of a face."""
+    """The trimmed area of a face; `progress` is looked at while the kernel is asked."""
 
-    def __init__(self, view: FaceView) -> None:
-        self._view = view
+    def __init__(self, view: FaceView, progress: Progress = QUIET) -> None:
+        self._view, self._progress = view, progress
         u0, u1, v0, v1 = view.bounds()
         self._turns = np.array([view.adaptor.IsUPeriodic(), view.adaptor.IsVPeriodic()])
         self._low, self._size = np.array([u0, v0]), np.array([u1 - u0, v1 - v0])
@@ -54,7 +55,11 @@ class Trim:
         return inside
 
     def _by_kernel(self, places: Floats) -> Bools:
-        return np.array([self._view.holds(u, v) for u, v in places.tolist()], dtype=bool)
+        return np.array([self._holds(u, v) for u, v in places.tolist()], dtype=bool)
+
+    def _holds(self, u: float, v: float) -> bool:
+        self._progress.check()
+        return self._view.holds(u, v)
 
     def _opened(self) -> Outlines | None:
         """Return the face's outlines in shares of its size, or None when they don't close or don't say what the kernel says."""

@@ -2,11 +2,12 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import replace
 from pathlib import Path
 
 from trunnion.findings import BadCall, BadInput
+from trunnion.model.material import Machine
 from trunnion.model.program import Program
 from trunnion.model.session import PostedFile, Session, StepRecord
 from trunnion.pipeline.engine import Engine
@@ -31,16 +32,21 @@ def verify_texts(engine: Engine, session: Session, files: Sequence[Path], progre
     dialect = checked(choose(PostSettings, session.choices)).dialect
     posted = [PostedFile(suffix=file.name, dialect=dialect, setup=setup.name, text=text_of(file))
               for file, setup in zip(files, session.process.setups, strict=False)]
-    programs = [p for file, text in zip(files, posted, strict=True) for p in _read(session, file, text, engine)]
-    verdict = held_back(prove_programs(session, engine.bench_of(session), tuple(programs), progress), errors_of_part(session))
+    machines = engine.bench_of(session).shop.machines
+
+    def read(own: Progress) -> tuple[Program, ...]:
+        return tuple(p for file, text in zip(files, posted, strict=True) for p in _read(session, file, text, machines, own))
+
+    programs = progress.aside(read, "reading the text")
+    verdict = held_back(prove_programs(session, engine.bench_of(session), programs, progress), errors_of_part(session))
     record = StepRecord(key="texts from outside", seconds=0.0, findings=verdict.findings)
     return replace(session, verdict=verdict, posted=tuple(posted), records={**session.records, "verify": record})
 
 
-def _read(session: Session, file: Path, text: PostedFile, engine: Engine) -> tuple[Program, ...]:
+def _read(session: Session, file: Path, text: PostedFile, machines: Mapping[str, Machine], progress: Progress) -> tuple[Program, ...]:
     """Return what a file's text says; a refusal names the file before the line."""
     try:
-        return read_back(session, (text,), engine.bench_of(session).shop.machines)
+        return read_back(session, (text,), machines, progress)
     except BadInput as reason:
         raise BadInput(f"{file}: {reason}") from None
 

@@ -12,6 +12,7 @@ from typing import TYPE_CHECKING
 from trunnion import tolerance
 from trunnion.findings import BadCall, BadInput, Severity, TrunnionError, has_errors
 from trunnion.geometry.cut import Cut
+from trunnion.geometry.kernels.compiling import compiling
 from trunnion.geometry.mesh import Mesh
 from trunnion.model.fixture import Fixture
 from trunnion.model.playback import Moment, Timeline
@@ -46,30 +47,34 @@ class Engine:
 
     def open(self, path: str | Path, *, solid: int | None = None, progress: Progress = QUIET) -> Session:
         """Return a new session of a part file (STEP, IGES, gzipped STEP) or the saved session of a project file."""
-        path = Path(path)
+        path, progress = Path(path), progress.afresh()
         if path.suffix.lower() == PROJECT_SUFFIX:
             return self._open_project(path, progress)
         from trunnion.part.read import read_part
-        part = read_part(path, solid=solid, progress=progress)
+        with compiling(progress):
+            part = read_part(path, solid=solid, progress=progress.part(0.0, 0.7))
+            with part.watched(progress.part(0.7, 1.0)):
+                part.graph()
         self._benches = Benches(part, self._shop)
         self._file = (path.read_bytes(), path.suffix)
         return Session(part=self.bench.facts)
 
     def _open_project(self, path: Path, progress: Progress) -> Session:
         from trunnion.store.project import load_project
-        session, data, suffix = load_project(path)
-        self._take(session, data, suffix, progress)
+        session, data, suffix = load_project(path, progress.part(0.0, 0.3))
+        self._take(session, data, suffix, progress.part(0.3, 1.0))
         return session
 
     def _take(self, session: Session, data: bytes, suffix: str, progress: Progress) -> None:
         from trunnion.part.read import read_part_bytes
         if session.part is None:
             raise BadInput("the project holds no part: open the part file instead")
-        part = read_part_bytes(data, session.part.name, suffix, solid=session.part.solid, progress=progress)
+        with compiling(progress):
+            part = read_part_bytes(data, session.part.name, suffix, solid=session.part.solid, progress=progress.part(0.0, 0.9))
         if part.digest != session.part.digest:
             raise BadInput(f"{session.part.name}: the part kept with the project is not the one its plan was made for; open the part anew")
         benches = Benches(part, self._shop)
-        benches.after(session.cuts, progress)
+        benches.after(session.cuts, progress.part(0.9, 1.0))
         self._benches, self._file = benches, (data, suffix)
 
     def keep(self) -> tuple[bytes, str]:
@@ -100,9 +105,12 @@ class Engine:
             return self.bench
         return self._benches.after(session.cuts, progress)
 
-    def mesh(self, session: Session) -> Mesh:
+    def mesh(self, session: Session, progress: Progress = QUIET) -> Mesh:
         """Return the triangles of the part, with the tag of each one's face."""
-        return self.bench_of(session).part.mesh()
+        progress = progress.afresh()
+        part = self.bench_of(session, progress).part
+        with part.watched(progress):
+            return part.mesh()
 
     def settings(self) -> dict[str, tuple[type, ...]]:
         """Return the groups of settings that each step declares."""
@@ -163,8 +171,8 @@ class Engine:
 
     def run(self, session: Session, until: str = STEPS[-1], progress: Progress = QUIET) -> Session:
         """Return the session with every stale step up to `until` computed again; the one given stays as it was."""
-        last = STEPS.index(step_named(until).name)
-        for n, step in enumerate(STEP_TABLE[: last + 1]):
+        last, progress = STEPS.index(step_named(until).name), progress.afresh()
+        for n, step in enumerate(progress.each(STEP_TABLE[: last + 1])):
             if self._state(session, step) in FRESH:
                 continue
             share = progress.part(n / (last + 1), (n + 1) / (last + 1))
@@ -178,7 +186,8 @@ class Engine:
         bench = self.bench_of(session, progress)
         key = step.key(session, bench)
         try:
-            result = step.work(session, bench, progress)
+            with compiling(progress), bench.part.watched(progress):
+                result = step.work(session, bench, progress)
         except TrunnionError as reason:
             raise type(reason)(_whole_line(session, str(reason))) from None
         record = StepRecord(key=key, seconds=time.perf_counter() - began, findings=result.findings)
@@ -186,42 +195,50 @@ class Engine:
         return replace(result.session, records={name: record if name == step.name else kept[name]
                                                 for name in STEPS if name == step.name or name in kept})
 
-    def playback(self, session: Session, cell: float = 0.0) -> Timeline:
+    def playback(self, session: Session, cell: float = 0.0, progress: Progress = QUIET) -> Timeline:
         """Take up a plan for playback and return its blocks over time; `moment` then shows its stock."""
         from trunnion.pipeline.playback import Playback
-        self._playback = Playback(session, self.bench_of(session), cell)
+        progress = progress.afresh()
+        with compiling(progress):
+            self._playback = Playback(session, self.bench_of(session), cell, progress)
         return self._playback.timeline
 
     def moment(self, key: str, position: float, seconds: float = float("inf"), progress: Progress = QUIET) -> Moment:
         """Return the stock of the plan that is played (by its timeline's key) at a position, or on the way there after some seconds."""
         if self._playback is None or self._playback.timeline.key != key:
             raise BadCall("this plan is not played any more: start the playback again")
-        return self._playback.towards(position, seconds, progress)
+        progress = progress.afresh()
+        with compiling(progress):
+            return self._playback.towards(position, seconds, progress)
 
-    def deviation_map(self, session: Session) -> DeviationMap:
+    def deviation_map(self, session: Session, progress: Progress = QUIET) -> DeviationMap:
         """Return the deviation of the finished part as triangles to be drawn; raise `BadCall` before a proof."""
         from trunnion.report.deviation import deviation_map
         if session.verdict is None:
             raise BadCall("nothing is proven yet: verify first")
         chosen = checked(choose(ProofSettings, session.choices))
-        return deviation_map(self.mesh(session), session.verdict.deviation, chosen.tolerance, chosen.allowance)
+        progress = progress.afresh()
+        mesh = self.mesh(session, progress.part(0.0, 0.2))
+        return deviation_map(mesh, session.verdict.deviation, chosen.tolerance, chosen.allowance, progress.part(0.2, 1.0))
 
-    def save(self, session: Session, path: str | Path) -> None:
+    def save(self, session: Session, path: str | Path, progress: Progress = QUIET) -> None:
         """Write the project file, whole or not at all."""
         from trunnion.store.project import save_project
         data, suffix = self._file
-        save_project(session, Path(path), data, suffix)
+        save_project(session, Path(path), data, suffix, progress)
 
     def write(self, session: Session, folder: str | Path, *, name: str = "", date: str = "", progress: Progress = QUIET) -> tuple[str, ...]:
         """Write everything of a proven session into a folder (NC, CL, XML, tool list, report, project); return the file names."""
         from trunnion.pipeline.writing import name_of, write_documents
         if self.states(session)["verify"] not in FRESH:
             raise BadCall("something changed since the proof: verify again before anything leaves")
-        mesh = self.bench_of(session).part.mesh(tolerance.PICTURE)
-        files = write_documents(session, mesh, Path(folder), name=name, date=date, progress=progress.part(0.0, 0.9))
+        part, progress = self.bench_of(session).part, progress.afresh()
+        with compiling(progress), part.watched(progress):
+            mesh = part.mesh(tolerance.PICTURE)
+            files = write_documents(session, mesh, Path(folder), name=name, date=date, progress=progress.part(0.1, 0.9))
         project = f"{name_of(session, name)}{PROJECT_SUFFIX}"
         progress.at(0.9, "saving the project")
-        self.save(session, Path(folder) / project)
+        self.save(session, Path(folder) / project, progress.part(0.9, 1.0))
         return (*files, project)
 
 

@@ -73,13 +73,15 @@ def recognised(session: Session, bench: Bench, progress: Progress) -> Recognitio
     Raises `BadInput` when the family can't work on the part, `Cancelled` when a person asked to stop.
     """
     wanted = checked(choose(RecognizeSettings, session.choices)).family
-    rated = ratings(bench.part.graph())
+    progress.at(0.0, "looking for the family")
+    graph = bench.part.graph()
+    rated = progress.aside(lambda _: ratings(graph))
     best = rated[0] if wanted == AUTOMATIC else next(r for r in rated if r.name == wanted and r.served)
     unserved = () if rated[0].served else (_no_family(rated[0]),)
     if not best.served:
         return _nothing(best, bench, unserved)
     chosen = checked(choose(best.kind.settings, session.choices))
-    found: Recognition = best.kind.recognize(bench.part.graph(), bench.part, chosen, progress)
+    found: Recognition = best.kind.recognize(graph, bench.part, chosen, progress)
     poor = _unexplained(best, found)
     if wanted == AUTOMATIC:
         return _stopped(replace(found, taken_for=best.taken(), findings=(*found.findings, _told(best))), poor)

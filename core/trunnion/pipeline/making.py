@@ -57,13 +57,15 @@ def make_paths(session: Session, bench: Bench, progress: Progress) -> tuple[Oper
         room = Room(bench, session.recognition, session.blank, setup)
         for operation in session.process.of_setup(setup.name):
             progress.at(len(made) / max(total, 1), f"toolpath of {operation.id}")
-            here = progress.part(len(made) / max(total, 1), (len(made) + 1) / max(total, 1))
+            here = progress.part(len(made) / max(total, 1), (len(made) + 1) / max(total, 1), f"toolpath of {operation.id}")
             made.append(_make_one(session, room, operation, here))
     return tuple(made)
 
 
 LEANING, LEANS = "surface.point", ("lead", "tilt")
 """The strategy that leans its tool, and the settings by which others do."""
+DRIVEN = 0.2
+"""Share of an operation's progress for the geometry that drives it."""
 SETTLED = {"surface.too-steep": {"surface.waterline"}, "surface.too-shallow": {"surface.parallel", "surface.constant"},
            "floor.left": {"plane.floor"}}
 """Findings of strategies that leave slopes or corners to others, and the strategies that cut those."""
@@ -135,7 +137,7 @@ def _make_one(session: Session, room: Room, operation: Operation, progress: Prog
     chosen = checked(choose(strategy.settings, {**session.choices, **operation.choices}))
     try:
         leans = operation.strategy == LEANING or any(getattr(chosen, name, 0.0) != 0.0 for name in LEANS)
-        setup, stock, drive, told = _driven(session, room, operation, leans, progress)
+        setup, stock, drive, told = _driven(session, room, operation, leans, progress.part(0.0, DRIVEN))
         before = room.before(operation.tool)
         key = digest(operation.strategy, told, operation.tool, operation.data, chosen, stock.digest, setup, before)
         kept = session.path_of(operation.id)
@@ -144,7 +146,7 @@ def _make_one(session: Session, room: Room, operation: Operation, progress: Prog
                            remedy="suppress it")
             kept = OperationPath(operation=operation.id, findings=(nothing,), key=key)
         if kept is None or kept.key != key:
-            planned: Any = strategy(drive, operation.tool, operation.data, stock, setup, chosen, progress)
+            planned: Any = strategy(drive, operation.tool, operation.data, stock, setup, chosen, progress.part(DRIVEN, 1.0))
             swing = swing_of(room.blank, replace(room.setup, fixtures=session.fixtures_of(room.setup.name)))
             path = moved_over(turned(planned.path, setup.frame, room.setup.frame), before, swing)
             kept = OperationPath(operation=operation.id, path=path, findings=tuple(planned.findings), key=key)
@@ -152,7 +154,7 @@ def _make_one(session: Session, room: Room, operation: Operation, progress: Prog
         left = error("toolpath.refused", str(reason), operation.id, operation.feature)
         return OperationPath(operation=operation.id, findings=(left,))
     if len(kept.path):
-        room.sides.cut(setup, turned(kept.path, room.setup.frame, setup.frame), operation.tool)
+        room.sides.cut(setup, turned(kept.path, room.setup.frame, setup.frame), operation.tool, progress.part(1.0, 1.0))
         room.last, room.tool = kept, operation.tool
     return kept
 
@@ -173,7 +175,7 @@ def _driven(session: Session, room: Room, operation: Operation, leans: bool, pro
     fixtures = session.fixtures_of(room.setup.name)
     name = operation.choices.get(EARLIER, "")
     earlier = next((t for t in session.process.tools() if t.name == name), None)
-    drive = space.drive_of(operation, earlier, room.around(operation.direction, fixtures, progress), leans)
+    drive = space.drive_of(operation, earlier, room.around(operation.direction, fixtures, progress), leans, progress)
     return space.setup, stock, drive, (drive.digest, fixtures)
 
 

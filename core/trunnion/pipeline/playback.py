@@ -54,20 +54,21 @@ _PER_MOVE = ("start", "end", "start_axis", "end_axis", "centre", "sweep", "uprig
 class Playback:
     """A plan that can be looked at from its first block to its last. Not for several threads at a time."""
 
-    def __init__(self, session: Session, bench: Bench, cell: float = 0.0) -> None:
+    def __init__(self, session: Session, bench: Bench, cell: float = 0.0, progress: Progress = QUIET) -> None:
         """`cell` mm is the fineness of the stock; 0: as fine as a picture shows. Raises `BadCall` where nothing can be played."""
         if session.process is None or session.blank is None:
             raise BadCall("no toolpaths yet: generate them first")
-        programs, files = played(session, bench.shop.machines)
+        programs, files = progress.aside(lambda _: played(session, bench.shop.machines), "reading the text back")
         if not any(p.sections for p in programs):
             raise BadCall("no toolpaths yet: generate them first")
         self.blank = session.blank
         bundles = bundles_of(programs, self.blank, checked(choose(ProofSettings, session.choices)))
         self.cell = cell or float(np.max(self.blank.size)) / (FINENESS if bundles == ("z",) else COARSER)
         self._programs = programs
-        self._moves = [moves_of(p.sections) for p in programs]
+        self._moves = progress.aside(lambda _: [moves_of(p.sections) for p in programs], "putting the blocks in time")
         machine = bench.shop.machines[programs[0].setup.machine]
-        self.timeline = timeline_of(programs, self._moves, files, machine, digest(self.cell, [f.text for f in files], _keys(session)))
+        self.timeline = progress.aside(lambda _: timeline_of(programs, self._moves, files, machine,
+                                                             digest(self.cell, [f.text for f in files], _keys(session))))
         self._starts = np.cumsum([0, *(len(m) for m in self._moves)])
         self._every = max(1, -(-len(self.timeline) // SNAPSHOTS))
         self._chunk = _FIRST_CHUNK
@@ -100,7 +101,7 @@ class Playback:
             start = now
             if now >= end:
                 break
-        return self._moment()
+        return self._moment(progress)
 
     def _step(self, wanted: float, progress: Progress) -> None:
         """Cut some blocks: not beyond the position wanted, the next snapshot or the end of a program."""
@@ -146,9 +147,10 @@ class Playback:
         self._stock.restore(snapshot)
         self._position = float(nearest)
 
-    def _moment(self) -> Moment:
+    def _moment(self, progress: Progress) -> Moment:
         line = self.timeline
-        mesh = mesh_of(self._stock)
+        progress.doing("making the picture of the stock")
+        mesh = mesh_of(self._stock)  # not aside: cancelled, it would go on reading a stock that is cut again
         points, triangles = mesh.points, mesh.triangles
         tip, axis = line.pose(self._position)
         return Moment(position=self._position, points=self.blank.frame.to_world(points).astype(np.float32),

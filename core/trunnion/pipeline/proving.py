@@ -18,7 +18,7 @@ from trunnion.pipeline.placing import places_of
 from trunnion.post.header import Header
 from trunnion.post.readers import read_program
 from trunnion.post.settings import PostSettings
-from trunnion.progress import Progress
+from trunnion.progress import QUIET, Progress
 from trunnion.settings import checked, choose
 from trunnion.verify.settings import ProofSettings
 
@@ -46,24 +46,27 @@ def programs_of(session: Session) -> tuple[Program, ...]:
     return tuple(p for p in (program_of(session, s) for s in session.setups) if p.sections)
 
 
-def post_texts(session: Session, header: Header, machines: Mapping[str, Machine]) -> tuple[PostedFile, ...]:
+def post_texts(session: Session, header: Header, machines: Mapping[str, Machine], progress: Progress = QUIET) -> tuple[PostedFile, ...]:
     """Return the texts of every program: one for each setup in the control's dialect, and the CL of all setups."""
     chosen = checked(choose(PostSettings, session.choices))
     dialect, cl = registry.get("dialects", chosen.dialect)(), registry.get("dialects", "apt")()
     programs, places = programs_of(session), places_of(session, machines)
     posted = [PostedFile(suffix=f"{p.setup.name}.{dialect.suffix}", dialect=dialect.name, setup=p.setup.name,
-                         text=dialect.write((p,), header, chosen, places)) for p in programs]
+                         text=dialect.write((p,), header, chosen, places)) for p in progress.each(programs)]
+    progress.check()
     if programs:
         posted.append(PostedFile(suffix=cl.suffix, dialect=cl.name, setup="", text=cl.write(programs, header, chosen, places)))
     return tuple(posted)
 
 
-def read_back(session: Session, posted: tuple[PostedFile, ...], machines: Mapping[str, Machine]) -> tuple[Program, ...]:
+def read_back(session: Session, posted: tuple[PostedFile, ...], machines: Mapping[str, Machine],
+              progress: Progress = QUIET) -> tuple[Program, ...]:
     """Return the motions that the posted texts of the control's dialect say, setup by setup."""
     if session.process is None:
         raise BadCall("no operations yet: generate the route first")
     tools, places = session.process.tools(), places_of(session, machines)
-    read = (read_program(f.dialect, f.text, tools, held(session, session.process.setup(f.setup)), places) for f in posted if f.setup)
+    read = (read_program(f.dialect, f.text, tools, held(session, session.process.setup(f.setup)), places)
+            for f in progress.each(posted) if f.setup)
     return tuple(with_engagement(p, session.process) for p in read)
 
 
@@ -80,10 +83,10 @@ def prove_session(session: Session, bench: Bench, progress: Progress) -> tuple[V
     if session.process is None or session.blank is None or session.part is None:
         raise BadCall("no toolpaths yet: generate them first")
     progress.at(0.0, "posting")
-    posted = post_texts(session, Header.of(session), bench.shop.machines)
+    posted = progress.aside(lambda own: post_texts(session, Header.of(session), bench.shop.machines, own))
     progress.at(0.05, "reading the text back")
-    programs = read_back(session, posted, bench.shop.machines)
-    verdict = prove_programs(session, bench, programs, progress.part(0.1, 1.0))
+    programs = progress.aside(lambda own: read_back(session, posted, bench.shop.machines, own))
+    verdict = prove_programs(session, bench, programs, progress.part(0.1, 1.0, "proof"))
     return held_back(verdict, errors_before(session)), posted
 
 

@@ -8,6 +8,7 @@ from dataclasses import dataclass
 from trunnion import tolerance
 from trunnion.geometry.region import Region
 from trunnion.model.tool import Tool
+from trunnion.progress import QUIET, Progress
 from trunnion.units import trimmed
 
 CUSP_SPREAD = 1.1
@@ -50,7 +51,7 @@ class Candidates:
     remedy: str = ""
 
 
-def candidates(task: Task, tools: Sequence[Tool], clearance: float) -> Candidates:
+def candidates(task: Task, tools: Sequence[Tool], clearance: float, progress: Progress = QUIET) -> Candidates:
     """Return the cutters that fit a task; each test that leaves none says what would be needed."""
     if not tools:
         return Candidates(tools=(), reason="the catalogue has no cutter for this material", remedy="add cutters to the tools folder")
@@ -72,7 +73,7 @@ def candidates(task: Task, tools: Sequence[Tool], clearance: float) -> Candidate
         return Candidates(tools=(), remedy="add a longer cutter to the tools folder, or allow a larger one by a larger corner radius",
                           reason=f"no tool reaches {trimmed(task.depth, 2)} mm deep with {trimmed(clearance, 2)} mm clearance; "
                                  f"the longest that fits reaches {trimmed(max(depth_reached(t) for t in foot), 2)} mm")
-    inside = _fitting(task, deep) if task.keep < 0.0 else _fitting_floor(task, deep)
+    inside = _fitting(task, deep, progress) if task.keep < 0.0 else _fitting_floor(task, deep, progress)
     if not inside:
         return Candidates(tools=(), remedy="add a smaller cutter to the tools folder, or machine the feature by other means",
                           reason=f"no tool is small enough: the smallest that reaches is D {trimmed(min(t.diameter for t in deep), 3)}")
@@ -86,13 +87,13 @@ def depth_reached(tool: Tool) -> float:
     return min(tool.neck_length, tool.stickout)
 
 
-def _fitting(task: Task, tools: Sequence[Tool]) -> list[Tool]:
+def _fitting(task: Task, tools: Sequence[Tool], progress: Progress) -> list[Tool]:
     """Return the cutters that cover what is wanted without leaving the room, but for the share that may be missed.
 
     Where one fits, so do all smaller ones: the largest is looked for.
     """
     most = _missable(task, tools)
-    for tool in sorted(tools, key=lambda t: -t.diameter):
+    for tool in progress.each(sorted(tools, key=lambda t: -t.diameter)):
         if task.spare > 1.0 and not task.room.offset(-task.spare * tool.radius):
             continue
         if _left(task, tool) <= most(tool):
@@ -122,10 +123,10 @@ def _missable(task: Task, tools: Sequence[Tool]) -> Callable[[Tool], float]:
     return lambda tool: min(most, cusps * (tool.radius / smallest.radius) ** 2) + slack
 
 
-def _fitting_floor(task: Task, tools: Sequence[Tool]) -> list[Tool]:
+def _fitting_floor(task: Task, tools: Sequence[Tool], progress: Progress) -> list[Tool]:
     """Return the same for a floor, among sharp cutters and those with the largest corner radius: each radius has a flat of its own."""
     radii = {min(t.corner_radius for t in tools), max(t.corner_radius for t in tools)}
-    return [t for radius in sorted(radii) for t in _fitting(task, [t for t in tools if t.corner_radius == radius])]
+    return [t for radius in sorted(radii) for t in _fitting(task, [t for t in tools if t.corner_radius == radius], progress)]
 
 
 def _covered(task: Task, tool: Tool) -> Region:

@@ -45,6 +45,7 @@ def make_route(recognition: Recognition, sizes: tuple[SizeEntry, ...], blank: Bl
     findings = too_large(blank, setups, shop)
     if findings:
         return ProcessTree(plan=plan.name, material=material.name, setups=tuple(setups), findings=tuple(findings))
+    progress.at(0.0, "what is to be cut")
     near = beside(recognition, part)
     planned, refusals = without_lonely_ribs(*plannable(recognition, plan.stages), recognition, near)
     findings = not_planned(refusals, recognition)
@@ -55,6 +56,7 @@ def make_route(recognition: Recognition, sizes: tuple[SizeEntry, ...], blank: Bl
                       loaded=tuple(o.tool for o in operations))
         mine = [f for f in planned if _from_below(f, recognition, part) == (n > 0)]
         share = progress.part(n / len(setups), (n + 1) / len(setups))
+        draft.progress = share
         operations += _sequenced(draft, _with_cutters(draft, mine, plan.stages, share), plan.stages)
         findings += draft.findings
     operations = _numbered(operations)
@@ -76,10 +78,11 @@ def _with_cutters(draft: Draft, features: Sequence[Feature], stages: Sequence[St
     rounds = [[s for s in stages if s.cutter not in DEPENDENT], *([s] for s in stages if s.cutter in DEPENDENT)]
     for done, together in enumerate(rounds):
         fits: dict[str, Sequence[Tool]] = {}
-        fresh = [wish for stage in together for wish in WISHES[stage.cutter](draft, stage, features)]
+        progress.at(done / len(rounds), "what is to be cut")
+        fresh = [wish for stage in progress.each(together) for wish in WISHES[stage.cutter](draft, stage, features)]
         for n, wish in enumerate(fresh):
             progress.at((done + n / len(fresh)) / len(rounds), f"cutter for {wish.id}")
-            found = candidates(wish.task, catalogue(draft, wish.stage), draft.settings.reach_clearance)
+            found = candidates(wish.task, catalogue(draft, wish.stage), draft.settings.reach_clearance, progress)
             if found.tools:
                 fits[wish.id] = found.tools
             elif wish.stage.cutter != "rest":

@@ -16,6 +16,7 @@ from trunnion.model.material import Machine, Material
 from trunnion.model.tool import Tool
 from trunnion.plan.choosing import Task, candidates, depth_reached, fits_through
 from trunnion.plan.regions import Band, Space, floor_fillet, number, parent_of, touching
+from trunnion.progress import QUIET, Progress
 from trunnion.settings import setting, settings
 from trunnion.shop import Shop, Stage
 from trunnion.units import trimmed
@@ -75,7 +76,7 @@ class Wish:
 
 @dataclass(slots=True)
 class Draft:
-    """What is known while one setup is planned; `loaded` are the tools of the setups before."""
+    """What is known while one setup is planned; `loaded` are the tools of the setups before, `progress` is looked at on the way."""
 
     space: Space
     recognition: Recognition
@@ -88,6 +89,7 @@ class Draft:
     bands: dict[str, tuple[Band, ...]] = field(default_factory=dict)
     findings: list[Finding] = field(default_factory=list)
     tools: dict[str, Tool] = field(default_factory=dict)
+    progress: Progress = QUIET
 
 
 def floor_distance(settings: RouteSettings) -> float:
@@ -119,7 +121,7 @@ def _pocket_wishes(draft: Draft, stage: Stage, features: Sequence[Feature],
                    make: Callable[[Feature, tuple[Band, ...]], Wish | None]) -> list[Wish]:
     """Return the wishes for the pockets of a stage; a pocket without free space over its floor is told of once and left out."""
     found = []
-    for feature in features:
+    for feature in draft.progress.each(features):
         if feature.kind not in stage.on:
             continue
         if feature.id not in draft.bands:
@@ -168,12 +170,13 @@ def _wishes_floor(draft: Draft, stage: Stage, features: Sequence[Feature]) -> li
         # The wall's last pass finishes a strip of the floor as wide as its cutter's reach from the wall.
         tools, clearance = catalogue(draft, stage), draft.settings.reach_clearance
         walling = _wall_task(draft, feature, bands)
-        walls = candidates(walling, tools, clearance).tools or candidates(replace(walling, exact=False), tools, clearance).tools
+        walls = (candidates(walling, tools, clearance, draft.progress).tools
+                 or candidates(replace(walling, exact=False), tools, clearance, draft.progress).tools)
         inner = bands[-1].wanted.offset(STRIP_OVERLAP - min((t.diameter - t.corner_radius for t in walls), default=0.0))
         whole = Task(depth=_depth(draft, bands), room=bands[-1].boundary, wanted=bands[-1].wanted, corner_radius=floor_fillet(feature),
                      missable=draft.settings.missable, near=NEAR_FLOOR)
         rest = replace(whole, wanted=inner, keep=floor_distance(draft.settings), missable=0.0)
-        task = rest if inner and candidates(rest, tools, clearance).tools else whole
+        task = rest if inner and candidates(rest, tools, clearance, draft.progress).tools else whole
         return _wish(stage, feature, bands, task, feature.with_role("floor"))
 
     return _pocket_wishes(draft, stage, features, make)
@@ -188,10 +191,10 @@ def _wishes_wall(draft: Draft, stage: Stage, features: Sequence[Feature]) -> lis
                 "route.sharp-corner", f"{feature.id}: two of its walls meet in a sharp inner edge; the cutter leaves its radius there",
                 feature.id, *face_tags(feature.with_role("wall")), remedy="give the corner a radius, or finish it by other means"))
         task = _with_known_fillet(draft, stage, feature, _wall_task(draft, feature, bands))
-        fine = candidates(task, catalogue(draft, stage), draft.settings.reach_clearance).tools
+        fine = candidates(task, catalogue(draft, stage), draft.settings.reach_clearance, draft.progress).tools
         if all(t.stickout / t.diameter > draft.settings.slender for t in fine):
             stiff = replace(task, radius=0.0, missable=draft.settings.missable, cusps=False)
-            larger = candidates(stiff, catalogue(draft, stage), draft.settings.reach_clearance).tools
+            larger = candidates(stiff, catalogue(draft, stage), draft.settings.reach_clearance, draft.progress).tools
             if any(not fine or t.stickout / t.diameter <= draft.settings.slender for t in larger):
                 task = stiff
         return _wish(stage, feature, bands, task, faces)
@@ -309,7 +312,8 @@ def _with_known_fillet(draft: Draft, stage: Stage, feature: Feature, task: Task)
 
 def _smallest(draft: Draft, stage: Stage, task: Task) -> float:
     """Return the radius of the smallest cutter that gets to the foot of a wall."""
-    found = candidates(replace(task, missable=1.0, cusps=False, near=0.0), catalogue(draft, stage), draft.settings.reach_clearance).tools
+    found = candidates(replace(task, missable=1.0, cusps=False, near=0.0), catalogue(draft, stage), draft.settings.reach_clearance,
+                       draft.progress).tools
     return min((t.radius for t in found), default=math.inf)
 
 

@@ -13,6 +13,7 @@ import numpy as np
 from trunnion.geometry.arrays import Bools, Floats, Ints
 from trunnion.geometry.mesh import Mesh
 from trunnion.model.verdict import Deviation
+from trunnion.progress import QUIET, Progress
 
 RANGE = 2.5
 """Where the colours end, in tolerances."""
@@ -51,13 +52,19 @@ class DeviationMap:
     worst: tuple[WorstPlace, ...] = ()
 
 
-def deviation_map(mesh: Mesh, deviation: Deviation, tolerance: float, allowance: float = 0.0) -> DeviationMap:
+def deviation_map(mesh: Mesh, deviation: Deviation, tolerance: float, allowance: float = 0.0, progress: Progress = QUIET) -> DeviationMap:
     """Return the map of a part's mesh; faces without a sample count as finished."""
-    low, high = -tolerance, tolerance + allowance
+    low, high, limit = -tolerance, tolerance + allowance, RANGE * tolerance + allowance
+    return progress.aside(lambda own: _deviation_map(mesh, deviation, low, high, limit, own), "spreading the deviation over the faces")
+
+
+def _deviation_map(mesh: Mesh, deviation: Deviation, low: float, high: float, limit: float, progress: Progress) -> DeviationMap:
     uneven, apart = uneven_faces(deviation, int(mesh.face.max(initial=0)))
-    points, triangles, face = divided(mesh, uneven, apart)
+    points, triangles, face = divided(mesh, uneven, apart, progress)
+    progress.check()
     value = values_at(points, triangles, face, deviation, low, high)
-    return DeviationMap(points=points, triangles=triangles, face=face, value=value, low=low, high=high, limit=RANGE * tolerance + allowance,
+    progress.check()
+    return DeviationMap(points=points, triangles=triangles, face=face, value=value, low=low, high=high, limit=limit,
                         worst=worst_places(deviation, low, high))
 
 
@@ -82,13 +89,13 @@ def _spacing(deviation: Deviation) -> float:
     return float(np.quantile(np.asarray(near)[:, 1], 0.9))
 
 
-def divided(mesh: Mesh, uneven: Bools, apart: float) -> tuple[Floats, Ints, Ints]:
+def divided(mesh: Mesh, uneven: Bools, apart: float, progress: Progress = QUIET) -> tuple[Floats, Ints, Ints]:
     """Return points, triangles and faces of a mesh whose chosen faces (by tag) have no edge longer than `apart` mm."""
     points, triangles, face = np.asarray(mesh.points), np.asarray(mesh.triangles), np.asarray(mesh.face)
     fine = uneven[face]
     kept, kept_face = triangles[~fine], face[~fine]
     triangles, face = triangles[fine], face[fine]
-    for _ in range(_ROUNDS):
+    for _ in progress.each(range(_ROUNDS)):
         points, triangles, face, is_done = _halved(points, triangles, face, apart)
         if is_done:
             break

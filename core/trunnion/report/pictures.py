@@ -5,6 +5,7 @@ pyvista is imported late: a report is written once, and a command that writes no
 
 from __future__ import annotations
 
+import importlib
 import os
 import sys
 from collections.abc import Iterable, Mapping
@@ -21,6 +22,7 @@ from trunnion.model.feature import Recognition
 from trunnion.model.session import Session
 from trunnion.model.setup import Setup
 from trunnion.model.toolpath import Toolpath
+from trunnion.progress import QUIET, Progress
 from trunnion.report.deviation import DeviationMap, deviation_map
 from trunnion.report.lines import AXIS, MOST_STROKES, MOTIONS, STROKE_EVERY, STROKE_LENGTH, kinds_of, opened, strokes
 from trunnion.report.palette import GROUP, Colour, Palette
@@ -45,18 +47,23 @@ class Picture:
     caption: str
 
 
-def write_pictures(session: Session, mesh: Mesh, folder: Path, name: str, palette: Palette) -> tuple[Picture, ...]:
+def write_pictures(session: Session, mesh: Mesh, folder: Path, name: str, palette: Palette,
+                   progress: Progress = QUIET) -> tuple[Picture, ...]:
     """Write the pictures of a session as PNG files `NAME.*.png` into a folder and return them in the order of the work."""
     made = []
+    progress.aside(lambda _: importlib.import_module("pyvista.plotting.plotter"), "drawing pictures")
     if session.recognition is not None:
-        _shoot(_features(session, mesh, palette), folder / f"{name}.features.png")
+        progress.at(0.1, "drawing the features")
+        _shoot(_features(session, mesh, palette), folder / f"{name}.features.png", progress)
         words = "Groups of equal patches" if session.recognition.of_kind(GROUP) else "Features by kind"
         made.append(Picture(file=f"{name}.features.png", caption=words))
     if any(len(p.path) for p in session.paths):
-        _shoot(_toolpaths(session, mesh, palette), folder / f"{name}.toolpaths.png")
+        progress.at(0.3, "drawing the toolpaths")
+        _shoot(_toolpaths(session, mesh, palette), folder / f"{name}.toolpaths.png", progress)
         made.append(Picture(file=f"{name}.toolpaths.png", caption="Toolpaths by kind of motion"))
     if session.verdict is not None and len(session.verdict.deviation.face):
-        _shoot(_deviation(session, mesh, palette), folder / f"{name}.deviation.png")
+        progress.at(0.6, "drawing the deviation")
+        _shoot(_deviation(session, mesh, palette, progress), folder / f"{name}.deviation.png", progress)
         made.append(Picture(file=f"{name}.deviation.png", caption="Deviation of the finished part: + is material left, - is gouge"))
     return tuple(made)
 
@@ -74,9 +81,12 @@ def _plotter() -> Plotter:
     return made
 
 
-def _shoot(plotter: Plotter, file: Path) -> None:
-    plotter.screenshot(str(file))
+def _shoot(plotter: Plotter, file: Path, progress: Progress) -> None:
+    from PIL import Image
+    progress.check()
+    drawn = np.asarray(plotter.screenshot(return_img=True))
     plotter.close()
+    progress.aside(lambda _: Image.fromarray(drawn).save(file))
 
 
 def _surface(points: Floats, triangles: Ints) -> Any:
@@ -185,10 +195,11 @@ def _segments(pieces: Iterable[Floats]) -> Any:
     return pyvista.PolyData(ends.reshape(-1, 3), lines=lines)
 
 
-def _deviation(session: Session, mesh: Mesh, palette: Palette) -> Plotter:
+def _deviation(session: Session, mesh: Mesh, palette: Palette, progress: Progress) -> Plotter:
     assert session.verdict is not None
     chosen = checked(choose(ProofSettings, session.choices))
-    shown = deviation_map(mesh, session.verdict.deviation, chosen.tolerance, chosen.allowance)
+    shown = deviation_map(mesh, session.verdict.deviation, chosen.tolerance, chosen.allowance, progress)
+    progress.check()
     plotter = _plotter()
     surface = _surface(shown.points, shown.triangles)
     surface.point_data["colour"] = palette.deviation.at(shown.value, shown.low, shown.high, shown.limit)

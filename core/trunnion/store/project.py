@@ -16,6 +16,7 @@ from lxml import etree
 
 from trunnion.findings import BadInput
 from trunnion.model.session import Session
+from trunnion.progress import QUIET, Progress
 from trunnion.store import xml
 from trunnion.store.atomic import write_bytes
 from trunnion.store.mapping import Members, from_xml, to_xml
@@ -31,12 +32,14 @@ _MEMBER = re.compile(r"(arrays/[0-9]{5,}\.npy|texts/[0-9]{5,}\.txt)")
 _NO_TIME = (1980, 1, 1, 0, 0, 0)
 
 
-def save_project(session: Session, path: str | Path, part_bytes: bytes, part_suffix: str) -> None:
+def save_project(session: Session, path: str | Path, part_bytes: bytes, part_suffix: str, progress: Progress = QUIET) -> None:
     """Write a session with its part file's bytes, whole or not at all."""
-    write_bytes(path, project_bytes(session, part_bytes, part_suffix))
+    data = progress.aside(lambda own: project_bytes(session, part_bytes, part_suffix, own), "packing the project")
+    progress.at(1.0, "saving the project")
+    write_bytes(path, data)
 
 
-def project_bytes(session: Session, part_bytes: bytes, part_suffix: str) -> bytes:
+def project_bytes(session: Session, part_bytes: bytes, part_suffix: str, progress: Progress = QUIET) -> bytes:
     """Return the bytes of a project file; raise `BadInput` for a suffix that no part file has."""
     name = f"part{part_suffix.lower()}"
     if not _PART.fullmatch(name):
@@ -45,8 +48,9 @@ def project_bytes(session: Session, part_bytes: bytes, part_suffix: str) -> byte
     root = etree.Element(_ROOT, version=str(FORMAT), part=name)
     root.append(to_xml(session, Session, "session", members))
     file = io.BytesIO()
+    progress.check()
     with zipfile.ZipFile(file, "w") as archive:
-        for member, data in {_SESSION: xml.written(root), name: part_bytes, **members.files}.items():
+        for member, data in progress.each({_SESSION: xml.written(root), name: part_bytes, **members.files}.items()):
             archive.writestr(_entry(member), data, compress_type=zipfile.ZIP_DEFLATED, compresslevel=3)
     return file.getvalue()
 
@@ -57,10 +61,15 @@ def _entry(name: str) -> zipfile.ZipInfo:
     return entry
 
 
-def load_project(path: str | Path) -> tuple[Session, bytes, str]:
+def load_project(path: str | Path, progress: Progress = QUIET) -> tuple[Session, bytes, str]:
     """Return the session of a project file, the bytes of its part file and their suffix; raise `BadInput` with one clear line."""
     path = Path(path)
-    members = _members(path)
+    return progress.aside(lambda own: _loaded(path, own), f"opening {path.name}")
+
+
+def _loaded(path: Path, progress: Progress) -> tuple[Session, bytes, str]:
+    members = _members(path, progress)
+    progress.check()
     root = xml.parse(members.pop(_SESSION), f"{path}: {_SESSION}")
     version = root.get("version", "")
     if root.tag != _ROOT or not version.isdecimal():
@@ -82,13 +91,13 @@ def load_project(path: str | Path) -> tuple[Session, bytes, str]:
     return session, part, name.removeprefix("part")
 
 
-def _members(path: Path) -> dict[str, bytes]:
+def _members(path: Path, progress: Progress) -> dict[str, bytes]:
     """Return the members of an archive by name, checked before anything is opened."""
     try:
         with zipfile.ZipFile(path) as archive:
             entries = archive.infolist()
             _check(path, entries)
-            return {entry.filename: archive.read(entry) for entry in entries}
+            return {entry.filename: archive.read(entry) for entry in progress.each(entries)}
     except OSError as reason:
         raise BadInput(f"{path}: can't be read: {reason.strerror or reason}") from None
     except (zipfile.BadZipFile, zlib.error, EOFError, NotImplementedError, RuntimeError) as reason:

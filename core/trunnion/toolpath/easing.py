@@ -15,6 +15,7 @@ from trunnion.geometry.arrays import Floats, Ints
 from trunnion.model.operation import CuttingData
 from trunnion.model.tool import Tool
 from trunnion.model.toolpath import Mark, Motion, Toolpath
+from trunnion.progress import QUIET, Progress
 from trunnion.toolpath.stock import PlanningStock, places_on
 
 PIECE = 0.5
@@ -27,17 +28,17 @@ FULL_WIDTH, FULL_DEPTH = 0.6, 0.5
 """A finishing cutter that meets leftovers: share of the feed that it takes a full slot at, and the slot's depth over the diameter."""
 
 
-def eased(path: Toolpath, tool: Tool, data: CuttingData, stock: PlanningStock, slot: float) -> Toolpath:
+def eased(path: Toolpath, tool: Tool, data: CuttingData, stock: PlanningStock, slot: float, progress: Progress = QUIET) -> Toolpath:
     """Return a path with slower feeds where it removes more than a full slot of the operation's depth would at `slot` times its feed.
 
     `stock` is what the path is planned on. Blocks are cut where the feed changes; places and marks stay what they are.
     """
-    return _eased(path, tool, data.feed, stock, slot * tool.diameter * data.depth)
+    return _eased(path, tool, data.feed, stock, slot * tool.diameter * data.depth, progress)
 
 
-def eased_finish(path: Toolpath, tool: Tool, data: CuttingData, stock: PlanningStock) -> Toolpath:
+def eased_finish(path: Toolpath, tool: Tool, data: CuttingData, stock: PlanningStock, progress: Progress = QUIET) -> Toolpath:
     """Return a finishing path as `eased`, where leftovers weigh as much as a slot that the cutter bears."""
-    return _eased(path, tool, data.feed, stock, slot_of_finish(tool, data))
+    return _eased(path, tool, data.feed, stock, slot_of_finish(tool, data), progress)
 
 
 def slot_of_finish(tool: Tool, data: CuttingData) -> float:
@@ -45,13 +46,13 @@ def slot_of_finish(tool: Tool, data: CuttingData) -> float:
     return FULL_WIDTH * data.slot_share * tool.diameter * min(data.depth, FULL_DEPTH * tool.diameter)
 
 
-def _eased(path: Toolpath, tool: Tool, full_feed: float, stock: PlanningStock, most: float) -> Toolpath:
+def _eased(path: Toolpath, tool: Tool, full_feed: float, stock: PlanningStock, most: float, progress: Progress) -> Toolpath:
     if not len(path):
         return path
     pieces, block = _in_pieces(path, PIECE * tool.radius)
     length = pieces.lengths()
     # A piece's own front is partly opened by the one before: over a diameter's length that evens out.
-    section = _over(pieces, length, stock.working().lower(pieces, tool), tool.diameter)
+    section = _over(pieces, length, stock.working().lower(pieces, tool, progress), tool.diameter)
     share = np.clip(np.divide(most, section, out=np.ones(len(pieces)), where=section > most), LEAST, 1.0)
     share = np.floor(share * STEPS + tolerance.COINCIDENT) / STEPS
     cuts = (pieces.motion != Motion.RAPID) & (pieces.mark != Mark.ENTRY)

@@ -19,6 +19,7 @@ from trunnion.model.setup import Setup
 from trunnion.model.tool import Tool
 from trunnion.model.toolpath import Motion, Toolpath
 from trunnion.plan.surface.frames import corners_in
+from trunnion.progress import QUIET, Progress
 from trunnion.settings import digest
 from trunnion.toolpath.stock import PlanningStock
 
@@ -47,11 +48,11 @@ class Sides:
                 self._stocks[name] = _lowered(self._stocks[name], setup.frame, stock, self._frames[other], lowest)
         return self._stocks[name]
 
-    def cut(self, setup: Setup, path: Toolpath, tool: Tool) -> None:
+    def cut(self, setup: Setup, path: Toolpath, tool: Tool, progress: Progress = QUIET) -> None:
         """Take a path in the frame of a setup off its stock. A leaning tool takes nothing off: the stock is then higher than it is."""
         if len(path) and bool((path.axis[path.motion != Motion.RAPID, 2] > 1.0 - tolerance.PARAMETRIC).all()):
             name = digest(setup.frame)
-            self._stocks[name] = self._stocks[name].after(path, tool)
+            self._stocks[name] = self._stocks[name].after(path, tool, progress)
 
 
 def _uncut(blank: Blank, setup: Setup) -> PlanningStock:

@@ -20,6 +20,7 @@ from trunnion.model.blank import Blank
 from trunnion.model.setup import Setup
 from trunnion.model.tool import Tool
 from trunnion.model.toolpath import Motion, Toolpath
+from trunnion.progress import QUIET, Progress
 from trunnion.settings import digest
 
 CELL = 0.5
@@ -27,6 +28,9 @@ CELL = 0.5
 
 MOST_CELLS = 1_000_000
 """Most cells of a field: 8 MB, beyond which cells grow."""
+
+MOVES = 500
+"""Moves that a field is lowered under between two looks at cancel: some hundredths of a second with the largest cutters."""
 
 LARGEST_CELL = 10.0
 """A cell wider than this would hide every pocket from the field."""
@@ -61,12 +65,12 @@ class PlanningStock:
         return PlanningStock(heights=_fixed(np.full(tuple(count), high[2])), corner=corner, cell=cell,
                              digest=digest(tuple(count.tolist()), high[2].item(), corner, cell))
 
-    def after(self, path: Toolpath, tool: Tool) -> PlanningStock:
+    def after(self, path: Toolpath, tool: Tool, progress: Progress = QUIET) -> PlanningStock:
         """Return the stock after the feed moves of a path."""
         if (path.motion == Motion.RAPID).all():
             return self
         made = self.working()
-        made.lower(path, tool)
+        made.lower(path, tool, progress)
         cut = digest(self.digest, path.position, path.motion, path.centre, tool.radius, tool.corner_radius)
         return replace(made, heights=_fixed(made.heights), digest=cut)
 
@@ -74,13 +78,15 @@ class PlanningStock:
         """Return a copy that `lower` may change; its digest stays that of the stock it was taken from."""
         return replace(self, heights=self.heights.copy())
 
-    def lower(self, path: Toolpath, tool: Tool) -> Floats:
+    def lower(self, path: Toolpath, tool: Tool, progress: Progress = QUIET) -> Floats:
         """Take the feed moves of a path off this very field, which must be a `working` copy; return the volume (n,) in mm3 that each
         block takes off."""
         starts, ends, rows, error = chords(path)
         radius, gone = tool.radius - error, np.empty(len(starts))
-        heightfield.lower(self.heights, self.corner[0], self.corner[1], self.cell, starts, ends, radius, min(tool.corner_radius, radius),
-                          gone)
+        for first in progress.each(range(0, len(starts), MOVES)):
+            some = slice(first, first + MOVES)
+            heightfield.lower(self.heights, self.corner[0], self.corner[1], self.cell, starts[some], ends[some], radius,
+                              min(tool.corner_radius, radius), gone[some])
         volume: Floats = np.bincount(rows, gone, len(path)).astype(np.float64) * self.cell**2
         return volume
 

@@ -16,6 +16,7 @@ from trunnion.part.part import Part
 from trunnion.plan.surface.cutter import level_disc
 from trunnion.plan.surface.reach import Places
 from trunnion.plan.surface.space import SurfaceSpace
+from trunnion.progress import QUIET, Progress
 
 TIGHT = 8.0
 """mm: a hollow with a smaller radius bears only cutters smaller than those for what lies around it."""
@@ -95,19 +96,19 @@ def walls_of(places: Places, tags: Collection[int]) -> tuple[int, ...]:
     return tuple(sorted(t for t in tags if (own := places.face == t).any() and bool((np.abs(places.normal[own, 2]) < VERTICAL).all())))
 
 
-def on_outline(space: SurfaceSpace, places: Places, tags: Collection[int]) -> tuple[int, ...]:
+def on_outline(space: SurfaceSpace, places: Places, tags: Collection[int], progress: Progress = QUIET) -> tuple[int, ...]:
     """Return the upright faces that nothing of the part stands in front of at their height: an end mill beside them is out in the free.
 
     A face that runs into another one at its foot, or meets one that comes out of it, doesn't stand free.
     """
     found, graph = [], space.part.graph()
-    for tag in sorted(tags):
+    for tag in progress.each(sorted(tags)):
         edges = [e for e in graph.edges_of[tag - 1] if graph.across(e, tag - 1) + 1 not in tags]
         if any(graph.convexity[e] != CONVEX for e in edges):
             continue
         own = places.of(places.face == tag)
         beside = own.point[:, :2] + (END_MILL + tolerance.SEW) * own.normal[:, :2]
-        over = space.skin.drop.drop(beside, level_disc(END_MILL), float(space.low[2]) - 1.0)
+        over = space.skin.drop.drop(beside, level_disc(END_MILL), float(space.low[2]) - 1.0, progress.part(0.0, 0.0))
         if (over < own.point[:, 2].min() + tolerance.SEW).all():
             found.append(tag)
     return tuple(found)

@@ -68,9 +68,9 @@ class _Reach:
     after: dict[str, Region]
 
     @staticmethod
-    def of(standing: Standing, land: Land, tools: Sequence[Tool], keeping: Keeping) -> _Reach:
+    def of(standing: Standing, land: Land, tools: Sequence[Tool], keeping: Keeping, progress: Progress) -> _Reach:
         """Return what tools cover of a land."""
-        before, after = ({t.name: covered(land, standing.free(land.z, t, keeps), t) for t in tools}
+        before, after = ({t.name: covered(land, standing.free(land.z, t, keeps), t) for t in progress.each(tools)}
                          for keeps in (keeping, replace(keeping, beside=0.0)))
         return _Reach(land=land, before=before, after=after)
 
@@ -91,12 +91,14 @@ def end_mills_for(standing: Standing, lands: Sequence[Land], tools: Sequence[Too
     for n, land in enumerate(lands):
         progress.at(n / max(len(lands), 1), f"end mill for the land at {land.z:.2f}")
         if ranked and _may_cover(standing, land, ranked):
-            reach[str(n)] = _Reach.of(standing, land, ranked, keeping)
-    fits = {key: _for_land(standing, each, ranked, share) for key, each in reach.items()}
-    worth = {key for key, each in reach.items() if _is_worth(standing, each.land, ball)}
+            reach[str(n)] = _Reach.of(standing, land, ranked, keeping, progress)
+    progress.at(1.0, "end mills for all lands")
+    fits = {key: _for_land(standing, each, ranked, share, progress) for key, each in reach.items()}
+    worth = {key for key, each in progress.each(reach.items()) if _is_worth(standing, each.land, ball)}
     first = covered_by_few({key: found for key, found in fits.items() if key in worth}, kept)
-    rest = covered_by_few({key: _for_rest(standing, reach[key], tool, ranked, share) for key, tool in first.items()}, tuple(first.values()))
-    found = [_chosen(reach[key], tool, rest.get(key)) for key, tool in first.items()]
+    rest = covered_by_few({key: _for_rest(standing, reach[key], tool, ranked, share, progress) for key, tool in first.items()},
+                          tuple(first.values()))
+    found = [_chosen(reach[key], tool, rest.get(key)) for key, tool in progress.each(first.items())]
     in_use = {t.name for t in first.values()}
     for key in reach.keys() - worth if in_use else ():
         tool = next((t for t in fits[key] if t.name in in_use), None)
@@ -122,20 +124,20 @@ def _is_most(region: Region, land: Land) -> bool:
     return region.area >= MOST * land.region.area
 
 
-def _for_land(standing: Standing, reach: _Reach, tools: Sequence[Tool], share: float) -> list[Tool]:
+def _for_land(standing: Standing, reach: _Reach, tools: Sequence[Tool], share: float, progress: Progress) -> list[Tool]:
     """Return the end mills, largest first, that cover off its sides nearly all of a land that any does; none where that is too little."""
     most = max(r.area for r in reach.before.values())
     if most < HALF * reach.land.region.area or not any(_is_most(r, reach.land) for r in reach.after.values()):
         return []
-    return _near([t for t in tools if reach.before[t.name].area >= share * most and stands_free(standing, reach.land, t)])
+    return _near([t for t in tools if reach.before[t.name].area >= share * most and stands_free(standing, reach.land, t, progress)])
 
 
-def _for_rest(standing: Standing, reach: _Reach, tool: Tool, tools: Sequence[Tool], share: float) -> list[Tool]:
+def _for_rest(standing: Standing, reach: _Reach, tool: Tool, tools: Sequence[Tool], share: float, progress: Progress) -> list[Tool]:
     """Return the end mills, largest first, that cover nearly all that any does of what another missed; none where that is too little."""
     missed = reach.missed(tool)
-    area = {t.name: missed.intersect(reach.after[t.name]).area for t in tools if t.diameter <= tool.diameter}
+    area = {t.name: missed.intersect(reach.after[t.name]).area for t in progress.each(tools) if t.diameter <= tool.diameter}
     most = max(area.values())
-    return _near([t for t in tools if area.get(t.name, 0.0) >= share * most and stands_free(standing, reach.land, t)]
+    return _near([t for t in tools if area.get(t.name, 0.0) >= share * most and stands_free(standing, reach.land, t, progress)]
                  if most > MISSED else [])
 
 

@@ -56,7 +56,8 @@ def plan_lands(draft: Draft, tags: Collection[int], balls: Sequence[Tool], progr
     keeping = Keeping(beside=chosen.rough_allowance + APART, around=chosen.rough_allowance + BESIDE, above=route.reach_clearance)
     mills = [t for t in draft.cutters("finish") if t.diameter <= route.largest]
     try:
-        found = end_mills_for(Standing(draft.space), lands_of(draft.space, tags), mills, min((t.radius for t in balls), default=0.0),
+        standing = Standing(draft.space, progress)
+        found = end_mills_for(standing, lands_of(draft.space, tags), mills, min((t.radius for t in balls), default=0.0),
                               chosen.share, keeping, [o.tool for o in draft.operations], progress)
         found = tuple(c for c in found if not _is_for_balls(draft, c, balls))
     except BadInput as reason:

@@ -24,6 +24,7 @@ from trunnion.plan.surface.cutter import level_disc
 from trunnion.plan.surface.heights import region_of
 from trunnion.plan.surface.settings import number
 from trunnion.plan.surface.space import SurfaceSpace
+from trunnion.progress import QUIET, Progress
 
 SKIM = 2e-4
 """mm: how far above a land what stands in the way is looked for. An end mill enters a fillet that begins on the land by no more than this,
@@ -72,9 +73,10 @@ class Keeping:
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Standing:
-    """What a part has above heights, in plan; each is found once."""
+    """What a part has above heights, in plan; each is found once, with looks at progress."""
 
     space: SurfaceSpace
+    progress: Progress = QUIET
     _found: dict[float, Region] = field(init=False, repr=False, default_factory=dict)
 
     def over(self, z: float) -> Region:
@@ -83,7 +85,8 @@ class Standing:
             if z >= float(self.space.skin.points[:, 2].max()):
                 self._found[z] = EMPTY_REGION
             else:
-                self._found[z] = self.space.part.section(self.space.frame, z).union(self._hanging(z))
+                hanging = self.progress.aside(lambda _: self._hanging(z))
+                self._found[z] = self.space.part.section(self.space.frame, z).union(hanging)
         return self._found[z]
 
     def _hanging(self, z: float) -> Region:
@@ -140,7 +143,7 @@ def covered(land: Land, free: Region, tool: Tool) -> Region:
     return room.offset(tool.radius - tool.corner_radius).intersect(land.region) if room else EMPTY_REGION
 
 
-def stands_free(standing: Standing, land: Land, tool: Tool) -> bool:
+def stands_free(standing: Standing, land: Land, tool: Tool, progress: Progress = QUIET) -> bool:
     """Say whether the part, as triangles, is nowhere in the way of an end mill that comes right up to what stands beside a land: a section
     that misses something would let it in."""
     space = standing.space
@@ -152,21 +155,23 @@ def stands_free(standing: Standing, land: Land, tool: Tool) -> bool:
     row = np.repeat(np.arange(len(rim)), count)
     share = (np.arange(len(row)) - np.repeat(np.cumsum(count) - count, count)) / count[row]
     disc = level_disc(max(tool.radius - TOUCHING, 0.5 * tool.radius))
-    over = space.skin.drop.drop(rim.at(row, share * rim.length[row]), disc, float(space.low[2]) - 1.0)
+    progress.check()
+    over = space.skin.drop.drop(rim.at(row, share * rim.length[row]), disc, float(space.low[2]) - 1.0, progress.part(1.0, 1.0))
     return bool((over <= land.z + tolerance.FINISH_GOUGE + 2.0 * space.skin.bound).all())
 
 
-def land_drive(operation: Operation, space: SurfaceSpace, before: Sequence[Operation], stock_top: float) -> PlaneDrive:
+def land_drive(operation: Operation, space: SurfaceSpace, before: Sequence[Operation], stock_top: float,
+               progress: Progress = QUIET) -> PlaneDrive:
     """Return the drive of an end mill on lands, from the highest down: of each what the operations `before` it left.
 
     Stock that is thicker than the operation's depth comes off in even steps.
     """
-    standing, keeping, tool = Standing(space), keeping_of(operation), operation.tool
+    standing, keeping, tool = Standing(space, progress), keeping_of(operation), operation.tool
     stock = number(operation, STOCK)
     steps = max(1, math.ceil(stock / operation.data.depth - tolerance.COINCIDENT)) if operation.data.depth > 0.0 else 1
     levels: list[DriveLevel] = []
     floors: list[Floor] = []
-    for lands in _together(lands_of(space, operation.faces)):
+    for lands in progress.each(_together(lands_of(space, operation.faces))):
         z = min(land.z for land in lands)
         wanted = [left_by(standing, land, before) for land in lands]
         levels.append(DriveLevel(top=levels[-1].bottom if levels else max(stock_top, z), bottom=z, wanted=union_all(wanted),

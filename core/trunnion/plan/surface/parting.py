@@ -12,6 +12,7 @@ from scipy.spatial import cKDTree
 from trunnion.geometry.arrays import Bools, Floats, Ints
 from trunnion.geometry.sheet import Sheet, edges_of, sheet_of, split_finely
 from trunnion.geometry.skin import Skin
+from trunnion.progress import QUIET, Progress
 
 FILLED = 1.0
 """Of the width around places: what is narrower than twice this between two parts of the area belongs to it, and no bay of its rim is
@@ -27,7 +28,7 @@ PART = 1_000_000
 
 
 def parted_near(skin: Skin, tags: tuple[int, ...], over: Callable[[Floats, Floats], Floats], around: float,
-                longest: float = 0.0) -> tuple[Skin, tuple[int, ...]]:
+                longest: float = 0.0, progress: Progress = QUIET) -> tuple[Skin, tuple[int, ...]]:
     """Return the skin with what of faces lies within `around` mm of certain places given tags of its own, and those tags.
 
     `over` says for places (p, 3) with outward unit normals (p, 3) how much (p,) there is of what it is about: places above nothing count.
@@ -35,17 +36,19 @@ def parted_near(skin: Skin, tags: tuple[int, ...], over: Callable[[Floats, Float
     is near gets finer ones, and triangles beside it no longer share all their corners with it.
     """
     rows = np.flatnonzero(skin.of(tags))
-    place, normal, of = _places(skin, rows)
-    near = rows[_with_those_near(place, of, over(place, normal) > 0.0, (1.0 + FILLED) * around)]
+    place, normal, of = progress.aside(lambda _: _places(skin, rows), "Parting the faces")
+    certain = over(place, normal) > 0.0
+    near = rows[progress.aside(lambda _: _with_those_near(place, of, certain, (1.0 + FILLED) * around))]
     if not len(near):
         return skin, ()
     if longest > 0.0:
         near = rows
     face = skin.face.copy()
     face[near] += PART
-    rough = sheet_of(replace(skin, face=face), tuple(int(t) for t in np.unique(face[near])))
-    fine = split_finely(rough, _length, longest or FINENESS * around)
-    inside, outside = _cut(fine, _past_rim(fine, over(fine.points, fine.normals), around))
+    fine = progress.aside(lambda own: split_finely(
+        sheet_of(replace(skin, face=face), tuple(int(t) for t in np.unique(face[near]))), _length, longest or FINENESS * around, own))
+    above = over(fine.points, fine.normals)
+    inside, outside = progress.aside(lambda _: _cut(fine, _past_rim(fine, above, around)))
     kept = np.setdiff1d(np.arange(len(face)), near)
     points, normals, triangles, tag = [skin.points], [skin.normals], [skin.triangles[kept]], [skin.face[kept]]
     for part, added in ((inside, 0), (outside, PART)):

@@ -14,6 +14,7 @@ from trunnion.model.tool import Tool
 from trunnion.plan.surface.cutter import level_disc, lower_side, tip_at
 from trunnion.plan.surface.parting import parted_near
 from trunnion.plan.surface.scallop import stepover_on_plane
+from trunnion.progress import QUIET, Progress
 
 LIFTED = 0.5 * tolerance.GOUGE
 """mm: a cutter that other faces lift by no more than this still reaches a place."""
@@ -30,7 +31,8 @@ BESIDE = 0.2
 """mm that shank and holder keep from walls beside them."""
 
 
-def left_by(skin: Skin, tags: tuple[int, ...], earlier: Tool, lowest: float, height: float) -> tuple[Skin, tuple[int, ...]]:
+def left_by(skin: Skin, tags: tuple[int, ...], earlier: Tool, lowest: float, height: float,
+            progress: Progress = QUIET) -> tuple[Skin, tuple[int, ...]]:
     """Return the skin with what an upright cutter leaves of faces given tags of their own, and those tags; `height` is the scallop height
     in mm that is wanted."""
     limit = min(UNSEEN * height, LIFTED)
@@ -38,14 +40,15 @@ def left_by(skin: Skin, tags: tuple[int, ...], earlier: Tool, lowest: float, hei
     def over(place: Floats, normal: Floats) -> Floats:
         lift = np.full(len(place), np.inf)
         up = normal[:, 2] > 0.0
-        tip, top = _stood(skin, place[up], normal[up], earlier, lowest)
+        tip, top = _stood(skin, place[up], normal[up], earlier, lowest, progress)
         lift[up] = top - tip[:, 2] - limit
         return lift
 
-    return parted_near(skin, tags, over, max(AROUND, stepover_on_plane(earlier.corner_radius, height)))
+    return parted_near(skin, tags, over, max(AROUND, stepover_on_plane(earlier.corner_radius, height)), progress=progress)
 
 
-def without_met(skin: Skin, tags: tuple[int, ...], tool: Tool, lowest: float, height: float) -> tuple[Skin, tuple[int, ...]]:
+def without_met(skin: Skin, tags: tuple[int, ...], tool: Tool, lowest: float, height: float,
+                progress: Progress = QUIET) -> tuple[Skin, tuple[int, ...]]:
     """Return the skin and the tags of what of faces an upright tool finishes without its shank or holder meeting the part: all of them
     where these meet nothing, else not what lies around such places, twice as far as passes are apart at a scallop height in mm."""
     wider = [(z0, max(r0, r1)) for z0, r0, _, r1 in tool.profile() if max(r0, r1) > tool.radius + tolerance.COINCIDENT]
@@ -54,13 +57,13 @@ def without_met(skin: Skin, tags: tuple[int, ...], tool: Tool, lowest: float, he
     def over(place: Floats, normal: Floats, more: float = 0.0) -> Floats:
         met = np.full(len(place), -np.inf)
         up = normal[:, 2] > -math.sin(tolerance.ANGLE)
-        tip, top = _stood(skin, place[up], normal[up], tool, lowest)
+        tip, top = _stood(skin, place[up], normal[up], tool, lowest, progress)
         stands = np.maximum(top, tip[:, 2])
         deepest = np.full(len(tip), -np.inf)
         for z, radius in wider:
             low = np.flatnonzero(stands + z - more < highest)
             if len(low):
-                beside = skin.drop.drop(tip[low, :2], level_disc(radius + BESIDE + more), lowest)
+                beside = skin.drop.drop(tip[low, :2], level_disc(radius + BESIDE + more), lowest, progress)
                 deepest[low] = np.maximum(deepest[low], beside - stands[low] - z + more)
         met[up] = deepest
         return met
@@ -75,13 +78,13 @@ def without_met(skin: Skin, tags: tuple[int, ...], tool: Tool, lowest: float, he
     around = 2.0 * max(AROUND, stepover_on_plane(max(tool.corner_radius, height), height))
     corners = skin.points[skin.triangles[skin.of(tags)]]
     area = 0.5 * np.linalg.norm(np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0]), axis=1).sum()
-    met_skin, met = parted_near(skin, tags, over, around, max(MET, math.sqrt(area / MOST)))
+    met_skin, met = parted_near(skin, tags, over, around, max(MET, math.sqrt(area / MOST)), progress)
     return (met_skin, tuple(t for t in tags if met_skin.of((t,)).any())) if met else (skin, tags)
 
 
-def _stood(skin: Skin, place: Floats, normal: Floats, tool: Tool, lowest: float) -> tuple[Floats, Floats]:
+def _stood(skin: Skin, place: Floats, normal: Floats, tool: Tool, lowest: float, progress: Progress) -> tuple[Floats, Floats]:
     """Return the tips (p, 3) of an upright cutter that touches at places (p, 3) with normals (p, 3), and the heights (p,) that the part
     lifts it to there."""
     at = place + 2.0 * skin.bound * normal
     tip = tip_at(tool, at, normal, np.tile([0.0, 0.0, 1.0], (len(at), 1)))
-    return tip, skin.drop.drop(tip[:, :2], lower_side(tool), lowest)
+    return tip, skin.drop.drop(tip[:, :2], lower_side(tool), lowest, progress)

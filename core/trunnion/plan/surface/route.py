@@ -96,8 +96,8 @@ def _plan(draft: Draft, progress: Progress) -> None:
     progress.at(0.0, "looking at faces")
     places = places_on(space.skin, tuple(mine))
     upright = walls_of(places, mine)
-    walls = on_outline(space, places, upright)
-    for tags in connected(walls, part.graph()):
+    walls = on_outline(space, places, upright, progress)
+    for tags in progress.each(connected(walls, part.graph())):
         _outline(draft, tags)
     level = plan_lands(draft, set(mine) - set(walls), _finishers(draft), progress.part(0.0, 0.05))
     hidden = _hidden(draft, places, set(mine) - set(walls) - level.tags, progress.part(0.05, 0.1)) if draft.machine.rotary else ()
@@ -110,6 +110,7 @@ def _plan(draft: Draft, progress: Progress) -> None:
             _hidden_area(draft, area, share)
         else:
             _area(draft, area, level, share)
+    progress.at(0.8, "roughing")
     _rough(draft, space, float(space.skin.points[:, 2].min()))
     if hidden:
         seen = places.of(np.isin(places.face, hidden))

@@ -19,6 +19,7 @@ from trunnion.plan.surface.drive import Asker, SurfaceDrive
 from trunnion.plan.surface.frames import UPRIGHT, Direction, corners_in, cutting_setup
 from trunnion.plan.surface.rest import left_by, without_met
 from trunnion.plan.surface.settings import ALLOWANCE, SCALLOP, number
+from trunnion.progress import QUIET, Progress
 from trunnion.settings import digest
 
 KNOWS_EARLIER = ("surface.pencil",)
@@ -67,7 +68,7 @@ class SurfaceSpace:
                        low=corners.min(axis=0), high=corners.max(axis=0))
 
     def drive_of(self, operation: Operation, earlier: Tool | None = None, ask: Callable[[Tool], Asker] | None = None,
-                 leans: bool = False) -> SurfaceDrive:
+                 leans: bool = False, progress: Progress = QUIET) -> SurfaceDrive:
         """Return what an operation on curved faces is driven by; `earlier` is the cutter that finished them before, `ask` makes askers.
 
         Unless the tool leans, what it can't come to without its shank or holder meeting the part is none of its area.
@@ -75,9 +76,9 @@ class SurfaceSpace:
         height, allowance = (number(operation, key) for key in (SCALLOP, ALLOWANCE))
         skin, faces, lowest = self.skin, operation.faces, float(self.low[2]) - self.setup.clearance
         if earlier is not None and operation.strategy not in KNOWS_EARLIER:
-            skin, faces = left_by(skin, faces, earlier, lowest, height)
+            skin, faces = left_by(skin, faces, earlier, lowest, height, progress)
         if not leans:
-            skin, faces = without_met(skin, faces, operation.tool, lowest, height)
+            skin, faces = without_met(skin, faces, operation.tool, lowest, height, progress)
         told = digest(self.part.digest, self.part.solid, operation.feature, operation.kind, operation.faces, self.frame, self.blank,
                       self.setup.clearance, self.skin.bound, len(self.skin.triangles), height, allowance, earlier, leans)
         return SurfaceDrive(feature=operation.feature, kind=operation.kind, faces=faces, skin=skin, frame=self.frame,

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from functools import partial
+
 import numpy as np
 
 from trunnion.findings import BadInput, Finding
@@ -54,19 +56,19 @@ class PanelFamily:
     def recognize(self, graph: FaceGraph, slicer: Slicer, settings: PanelSettings, progress: Progress = QUIET) -> Recognition:
         """Return the features of a panel. Raises `BadInput` when the part has no plane face, `Cancelled` when asked to stop."""
         progress.at(0.0, "choosing the frame")
-        frame = choose_frame(graph)
+        frame = progress.aside(lambda _: choose_frame(graph))
         above, below = _views(graph, frame, slicer, settings, progress.part(0.1, 0.7))
         shown = []
         for view, share in ((above, 0.7), (below, 0.8)):
             progress.at(share, "growing pockets")
-            shown.append(pockets_of(view))
+            shown.append(progress.aside(partial(_shown, view)))
         features: list[Feature] = []
         findings: list[Finding] = []
         numbers = Numbers()
         for view, seen in zip((above, below), shown, strict=True):
             progress.at(0.9, "naming features")
             done = {tag - 1 for f in features for tag in f.with_role("wall", "corner")}
-            made = make_features(view, without(seen, done), above.graph, numbers)
+            made = progress.aside(partial(_made, view, without(seen, done), above.graph, numbers))
             features.extend(made.features)
             findings.extend(made.findings)
         around = _surroundings(above, shown, features)
@@ -78,6 +80,14 @@ class PanelFamily:
         findings.extend(rest_findings(above.graph, above.classes, left, {f for seen in shown for f in seen.tops.undercut}))
         return Recognition(family=self.name, frame=frame, features=tuple(features), unexplained=tuple(r + 1 for r in left),
                            unexplained_share=float(graph.area[list(left)].sum() / graph.area.sum()), findings=tuple(findings))
+
+
+def _shown(view: View, progress: Progress) -> Shown:
+    return pockets_of(view)
+
+
+def _made(view: View, seen: Shown, graph: FaceGraph, numbers: Numbers, progress: Progress) -> Made:
+    return make_features(view, seen, graph, numbers)
 
 
 def _views(graph: FaceGraph, frame: Frame, slicer: Slicer, settings: PanelSettings, progress: Progress) -> tuple[View, View]:

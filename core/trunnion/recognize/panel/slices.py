@@ -121,8 +121,9 @@ def cut(slicer: Slicer, frame: Frame, levels: tuple[float, ...], progress: Progr
                                     remedy="the graph decides alone between the faces there; heal the part"))
     if not cuts:
         raise BadInput(f"the part can't be cut by a plane: {findings[0].text}" if findings else "the part has no height in its frame")
+    progress.at(1.0, "slicing")
     outline = _filled(shapely.union_all([c[3] for c in cuts]).buffer(SLIVER, join_style="mitre").buffer(-SLIVER, join_style="mitre"))
-    layers = tuple(Slice(z=z, bottom=b, top=t, material=m, spaces=tuple(_spaces(m, outline))) for z, b, t, m in cuts)
+    layers = tuple(Slice(z=z, bottom=b, top=t, material=m, spaces=tuple(progress.each(_spaces(m, outline)))) for z, b, t, m in cuts)
     return Slices(layers=layers, outline=outline, findings=tuple(findings))
 
 

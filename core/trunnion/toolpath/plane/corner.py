@@ -92,7 +92,7 @@ def corner(drive: PlaneDrive, tool: Tool, data: CuttingData, stock: PlanningStoc
                     else:
                         cut_open(builder, part, height.z, room, approach, past=False)
         findings += _left(drive, level, tool, rests)
-    return Planned(path=eased_finish(builder.finished(), tool, data, stock), findings=tuple(findings))
+    return Planned(path=eased_finish(builder.finished(), tool, data, stock, progress), findings=tuple(findings))
 
 
 def _rests(drive: PlaneDrive, level: DriveLevel) -> Region:

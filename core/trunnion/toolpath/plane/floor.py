@@ -66,4 +66,4 @@ def floor(drive: PlaneDrive, tool: Tool, data: CuttingData, stock: PlanningStock
                                  drive.feature, f"face {each.face}", remedy="finish them with the corners, by a smaller cutter"))
     if not floors:
         findings.append(error("floor.none", f"{drive.feature} has no floor to finish", drive.feature, remedy="suppress the operation"))
-    return Planned(path=eased_finish(builder.finished(), tool, data, stock), findings=tuple(findings))
+    return Planned(path=eased_finish(builder.finished(), tool, data, stock, progress), findings=tuple(findings))

@@ -74,7 +74,7 @@ def rough(drive: PlaneDrive, tool: Tool, data: CuttingData, stock: PlanningStock
         elif made:
             left.append((level, _left(level, max(made), made[max(made)].room.region)))
     findings += _corners(drive, tool, [(level, area) for level, area in left if area >= SMALLEST_LEFTOVER])
-    return Planned(path=eased(builder.finished(), tool, data, stock, manner.slot), findings=tuple(findings))
+    return Planned(path=eased(builder.finished(), tool, data, stock, manner.slot, progress), findings=tuple(findings))
 
 
 def _horizontals(drive: PlaneDrive, row: int) -> list[float]:

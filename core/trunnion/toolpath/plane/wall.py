@@ -80,7 +80,7 @@ def wall(drive: PlaneDrive, tool: Tool, data: CuttingData, stock: PlanningStock,
             _cut_floor_rest(builder, drive, each, tool, approach, progress)
     if not drive.walls:
         findings.append(error("wall.none", f"{drive.feature} has no wall to finish", drive.feature, remedy="suppress the operation"))
-    return Planned(path=eased_finish(builder.finished(), tool, data, stock), findings=tuple(findings))
+    return Planned(path=eased_finish(builder.finished(), tool, data, stock, progress), findings=tuple(findings))
 
 
 def _cut_floor_rest(builder: PathBuilder, drive: PlaneDrive, each: Floor, tool: Tool, approach: Approach,

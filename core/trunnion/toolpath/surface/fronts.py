@@ -8,6 +8,7 @@ they leave between them, wherever that is more than the wanted height.
 from __future__ import annotations
 
 from collections.abc import Sequence
+from functools import partial
 
 import numpy as np
 from scipy.sparse import coo_matrix
@@ -18,7 +19,7 @@ from trunnion.geometry.arrays import Floats
 from trunnion.geometry.contours import SheetLine, whole_levels
 from trunnion.geometry.fields import Metric, distances
 from trunnion.geometry.ridges import Ridged, opened, ridged
-from trunnion.geometry.sheet import Sheet, sheet_of, split_finely
+from trunnion.geometry.sheet import Measure, Sheet, sheet_of, split_finely
 from trunnion.model.tool import Tool
 from trunnion.plan.surface.drive import SurfaceDrive
 from trunnion.plan.surface.scallop import stepover_on_plane
@@ -56,22 +57,29 @@ def scallop_passes(drive: SurfaceDrive, tool: Tool, chord: float, progress: Prog
     parts = sheet_of(drive.skin, drive.faces).components()
     made = []
     for k, part in enumerate(parts):
-        share = progress.part(k / len(parts), (k + 1) / len(parts))
-        share.at(0.0, "Measuring distances in stepovers")
-        sheet = opened(split_finely(part, measure, FINENESS, share))
-        metric = metric_of(sheet, measure)
-        rims = sheet.rims()
-        # An area that is closed all round begins at its highest place.
-        rim = np.concatenate(rims) if rims else np.array([np.argmax(sheet.points[:, 2])])
-        found = ridged(metric, *distances(metric, rim), FINENESS * longest)
-        field = found.time + 1.0 - FIRST
-        lines = _nested(found.sheet, _without_slim(found.sheet, field, whole_levels(found.sheet, field)))
-        contacts = [found.sheet.on_edges(line.ends, line.share) for line in lines]
-        contacts += _along_ridges(found, metric_of(found.sheet, measure), lines, longest)
-        closed = [line.closed for line in lines] + [False] * (len(contacts) - len(lines))
-        made += [Contacts(point=p, normal=n, closed=c)
-                 for (p, n), c in ((spread(*pn, c, tool.radius, chord, longest), c) for pn, c in zip(contacts, closed, strict=True))]
+        progress.at(k / len(parts), "Measuring distances in stepovers")
+        made += progress.aside(partial(_passes_over, part, measure, longest, tool.radius, chord))
     return made
+
+
+def _passes_over(part: Sheet, measure: Measure, longest: float, radius: float, chord: float, progress: Progress) -> list[Contacts]:
+    """Return the passes over one connected part; `longest` mm is the stepover on a plane."""
+    sheet = opened(split_finely(part, measure, FINENESS, progress))
+    metric = metric_of(sheet, measure)
+    progress.check()
+    rims = sheet.rims()
+    # An area that is closed all round begins at its highest place.
+    rim = np.concatenate(rims) if rims else np.array([np.argmax(sheet.points[:, 2])])
+    progress.check()
+    found = ridged(metric, *distances(metric, rim), FINENESS * longest)
+    field = found.time + 1.0 - FIRST
+    progress.check()
+    lines = _nested(found.sheet, _without_slim(found.sheet, field, whole_levels(found.sheet, field)))
+    contacts = [found.sheet.on_edges(line.ends, line.share) for line in progress.each(lines)]
+    contacts += _along_ridges(found, metric_of(found.sheet, measure), lines, longest)
+    closed = [line.closed for line in lines] + [False] * (len(contacts) - len(lines))
+    spreads = ((spread(*pn, c, radius, chord, longest), c) for pn, c in progress.each(zip(contacts, closed, strict=True)))
+    return [Contacts(point=p, normal=n, closed=c) for (p, n), c in spreads]
 
 
 def _without_slim(sheet: Sheet, field: Floats, lines: Sequence[SheetLine]) -> list[SheetLine]:

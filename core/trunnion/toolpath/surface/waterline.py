@@ -93,13 +93,14 @@ def waterline(drive: SurfaceDrive, tool: Tool, data: CuttingData, stock: Plannin
     """Return the motions that finish the drive's faces level by level, and the area that is too shallow for it or hangs over."""
     if drive.height <= 0.0 and settings.step <= 0.0:
         raise Refused(f"{drive.feature}: waterlines need a scallop height or a step above zero")
-    places = places_of(drive, tool, UPWARD)
+    places = progress.aside(lambda _: places_of(drive, tool, UPWARD), "Looking at steep faces")
     places = places.some(places.normal[:, 2] <= math.cos(math.radians(settings.shallowest)))
     found = _left(drive, places)
     if not len(places.row):
         return Planned(findings=found)
-    levels = _levels(places, _feet(places, drive, tool), tool, drive.height, settings.step)
-    loops = _loops(levels, places, drive, tool, settings, progress.part(0.0, 0.8))
+    feet = _feet(places, drive, tool, progress.part(0.0, 0.1))
+    levels = progress.aside(lambda _: _levels(places, feet, tool, drive.height, settings.step), "Laying levels")
+    loops = _loops(levels, places, drive, tool, settings, progress.part(0.1, 0.8))
     passes = _in_order(loops, tool, both=settings.way == "both")
     if not passes:
         nothing = warning("surface.out-of-reach", f"{tool.name} touches nothing of the steep faces of {drive.feature}", drive.feature,
@@ -121,12 +122,13 @@ def _left(drive: SurfaceDrive, steep: Places) -> tuple[Finding, ...]:
                     remedy="finish them by parallel passes or from another direction"),)
 
 
-def _feet(places: Places, drive: SurfaceDrive, tool: Tool) -> Floats:
+def _feet(places: Places, drive: SurfaceDrive, tool: Tool, progress: Progress) -> Floats:
     """Return how low (m,) the tip comes that touches each triangle: lower than it only where the foot of an upright one stops it."""
     low, high = places.tips[:, :, 2].min(axis=1), places.tips[:, :, 2].max(axis=1)
     upright = np.flatnonzero(places.normal[:, 2] <= -UPWARD)
     beside = (places.tips[upright] + OFF * places.normal[upright, None])[:, :, :2].reshape(-1, 2)
-    over = drive.skin.drop.drop(beside, lower_side(tool, drive.allowance), float(drive.low[2]) - tool.flute_length) + drive.allowance
+    over = drive.skin.drop.drop(beside, lower_side(tool, drive.allowance), float(drive.low[2]) - tool.flute_length, progress)
+    over = over + drive.allowance
     stopped = over.reshape(-1, 3).min(axis=1) + FOOT
     # Where it is stopped over the whole triangle, the foot is another one's.
     low[upright] = np.where(stopped < high[upright], np.maximum(low[upright], stopped), high[upright])
