@@ -6,6 +6,7 @@ import re
 import time
 from collections.abc import Mapping, Sequence
 from dataclasses import replace
+from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -161,7 +162,7 @@ class Engine:
             found[step.name] = state if upstream or state == "empty" else "stale"
         return found
 
-    def _state(self, session: Session, step: Step) -> str:
+    def _state(self, session: Session, step: Step, _progress: Progress = QUIET) -> str:
         record = session.records.get(step.name)
         if record is None or not step.done(session):
             return "empty"
@@ -173,7 +174,7 @@ class Engine:
         """Return the session with every stale step up to `until` computed again; the one given stays as it was."""
         last, progress = STEPS.index(step_named(until).name), progress.afresh()
         for n, step in enumerate(progress.each(STEP_TABLE[: last + 1])):
-            if self._state(session, step) in FRESH:
+            if progress.aside(partial(self._state, session, step)) in FRESH:
                 continue
             share = progress.part(n / (last + 1), (n + 1) / (last + 1))
             share.at(0.0, step.title)
@@ -184,7 +185,7 @@ class Engine:
     def _run_one(self, session: Session, step: Step, progress: Progress) -> Session:
         began = time.perf_counter()
         bench = self.bench_of(session, progress)
-        key = step.key(session, bench)
+        key = progress.aside(lambda _: step.key(session, bench))
         try:
             with compiling(progress), bench.part.watched(progress):
                 result = step.work(session, bench, progress)
