@@ -46,7 +46,7 @@ class Progress:
     def check(self) -> None:
         """Raise `Cancelled` when a person asked to stop; repeat the last report when it is `BEAT_S` old."""
         self._look()
-        if self._report is not None and time.monotonic() - self._last.time > BEAT_S:
+        if self._report is not None and self._last.time and time.monotonic() - self._last.time > BEAT_S:
             self._tell(self._last.fraction, self._last.text)
 
     def at(self, fraction: float, text: str = "") -> None:

@@ -18,7 +18,7 @@ from milling import SETUP, box_blank, cutting, mill
 from samples import block_with_pocket_shape, dome_on_a_plate_shape, read, written
 from trunnion.findings import Cancelled
 from trunnion.geometry.frame import WORLD
-from trunnion.part.facets import facet_samples, facets_of
+from trunnion.part.facets import facet_samples, facets_of, grouped
 from trunnion.pipeline import STEPS, Engine
 from trunnion.progress import Progress
 from trunnion.toolpath import stock as planning
@@ -133,3 +133,9 @@ def test_samples_of_many_faces_are_those_of_each_face_one_after_the_other():
         assert whole.tobytes() == np.concatenate(each).tobytes()
     assert set(together[0]) == set(rows) and together[3].sum() > 0.0
     assert all(len(empty) == 0 for empty in facet_samples(facets, np.zeros(0, np.int64), 0.7))
+
+
+@pytest.mark.parametrize("count", [0, 1, 2000])
+def test_rows_are_grouped_as_numpy_does_it(count):
+    rows = np.random.default_rng(3).integers(-6, 7, (count, 3))
+    assert np.array_equal(grouped(rows), np.unique(rows, axis=0, return_inverse=True)[1].ravel())

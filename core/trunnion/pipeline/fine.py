@@ -54,7 +54,7 @@ def measure_fine(engine: Engine, session: Session, faces: Sequence[int], spacing
     if not session.posted:
         raise BadCall("no programs yet: prove them first")
     machines = engine.bench_of(session).shop.machines
-    programs = progress.aside(lambda own: read_back(session, session.posted, machines, own), "reading the text back")
+    programs = progress.aside(lambda _: read_back(session, session.posted, machines), "reading the text back")
     if not any(p.sections for p in programs):
         raise BadCall("the programs cut nothing: there is nothing to measure")
     home = programs[0].setup.frame

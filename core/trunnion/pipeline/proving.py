@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import importlib
 from collections.abc import Mapping, Sequence
 from dataclasses import replace
 
@@ -115,12 +116,14 @@ def prove_programs(session: Session, bench: Bench, programs: tuple[Program, ...]
     """Return the verdict on programs, wherever their motions come from."""
     if session.process is None or session.blank is None:
         raise BadCall("no blank or operations: nothing to prove against")
-    from trunnion.verify.judge.verdict import prove
+    prove = progress.aside(lambda _: importlib.import_module("trunnion.verify.judge.verdict").prove)
     names = [s.name for s in session.process.setups]
     strange = next((f for f in session.fixtures if f.setup and f.setup not in names), None)
     if strange is not None:
         raise BadInput(f"fixture {strange.name} is for setup {strange.setup}; the part has {', '.join(names)}")
     machine = bench.shop.machines[session.process.setups[0].machine]
     planned = {tag for operation in session.process.operations if not operation.suppressed for tag in operation.faces}
-    return prove(programs, bench.part, session.blank, bench.shop.tools, machine, checked(choose(ProofSettings, session.choices)),
-                 progress, planned_faces=sorted(planned), material=bench.shop.materials.get(session.process.material))
+    verdict: Verdict = prove(programs, bench.part, session.blank, bench.shop.tools, machine,
+                             checked(choose(ProofSettings, session.choices)), progress, planned_faces=sorted(planned),
+                             material=bench.shop.materials.get(session.process.material))
+    return verdict

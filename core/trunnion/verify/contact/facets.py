@@ -80,7 +80,7 @@ class FacetContact:
     def _ready(self, progress: Progress) -> Tree:
         """Return the tree, with looks at progress while it is built."""
         if "tree" not in self.__dict__:
-            progress.aside(lambda _: self.tree, "Making the faces ready for questions")
+            progress.aside(lambda _: self.tree)
         return self.tree
 
     def along(self, moves: Moves, rows: Ints, progress: Progress = QUIET, threads: int = 0) -> Touch:
