@@ -106,7 +106,8 @@ Tell = Callable[[str, Any], None]
 def _open(engine: Any, progress: Progress, tell: Tell, path: str, solid: int | None) -> Opened:
     session = engine.open(path, solid=solid, progress=progress.part(0.0, 0.8))
     tell("progress", (0.85, "preparing the picture"))
-    return Opened(State(session, engine.states(session)), drawing_of(engine.mesh(session)), engine.keep())
+    mesh = engine.mesh(session, progress.part(0.85, 1.0))
+    return Opened(State(session, engine.states(session)), drawing_of(mesh), engine.keep())
 
 
 def _run(engine: Any, progress: Progress, tell: Tell, session: Session, last: str) -> State:
@@ -148,8 +149,8 @@ def _attach(engine: Any, progress: Progress, _tell: Tell, session: Session, data
     return State(session, engine.states(session))
 
 
-def _save(engine: Any, _progress: Progress, _tell: Tell, session: Session, path: str) -> str:
-    engine.save(session, path)
+def _save(engine: Any, progress: Progress, _tell: Tell, session: Session, path: str) -> str:
+    engine.save(session, path, progress)
     return path
 
 
@@ -157,16 +158,16 @@ def _write(engine: Any, progress: Progress, _tell: Tell, session: Session, folde
     return tuple(str(name) for name in engine.write(session, folder, progress=progress))
 
 
-def _playback(engine: Any, _progress: Progress, _tell: Tell, session: Session) -> Any:
-    return engine.playback(session)
+def _playback(engine: Any, progress: Progress, _tell: Tell, session: Session) -> Any:
+    return engine.playback(session, progress=progress)
 
 
 def _moment(engine: Any, progress: Progress, _tell: Tell, key: str, position: float, seconds: float) -> Any:
     return engine.moment(key, position, seconds, progress)
 
 
-def _deviation(engine: Any, _progress: Progress, _tell: Tell, session: Session) -> Any:
-    return drawn_map(engine.deviation_map(session))
+def _deviation(engine: Any, progress: Progress, _tell: Tell, session: Session) -> Any:
+    return drawn_map(engine.deviation_map(session, progress))
 
 
 def _cut(engine: Any, progress: Progress, _tell: Tell, session: Session, cut: Cut) -> Patched:
@@ -185,7 +186,7 @@ def _patched(engine: Any, before: Session, after: Session, progress: Progress) -
     """Return a session whose part has other faces with its features found anew, where they had been found before."""
     if engine.states(before)["recognize"] in ("done", "problem"):
         after = engine.run(after, until="recognize", progress=progress)
-    return Patched(State(after, engine.states(after)), drawing_of(engine.mesh(after)))
+    return Patched(State(after, engine.states(after)), drawing_of(engine.mesh(after, progress)))
 
 
 def _move(engine: Any, _progress: Progress, _tell: Tell, session: Session, faces: tuple[int, ...], group: str) -> State:

@@ -34,7 +34,8 @@ GRACE_S = 0.35
 WRITING_GRACE_S = 5.0
 """s: half a folder of programs is worse than a late answer."""
 _WRITING = ("save", "write", "export")
-_TELL_EVERY_S = 0.05
+_TELL_EVERY_S, _TELL_NEWS_S = 0.05, 0.01
+"""s between two reports of progress at least: the same words, and other ones, which must not be missing when the work then stands still."""
 _CRASHES_IN_A_ROW = 3
 
 
@@ -103,13 +104,13 @@ def _fault_line(request: Request, fault: Exception) -> str:
 
 
 def _answer(engine: Any, request: Request, pipe: Connection, cancelled: Any) -> Reply:
-    told = 0.0
+    told, words = 0.0, ""
 
     def report(fraction: float, text: str) -> None:
-        nonlocal told
+        nonlocal told, words
         now = time.monotonic()
-        if now - told >= _TELL_EVERY_S:
-            told = now
+        if now - told >= (_TELL_EVERY_S if text == words else _TELL_NEWS_S):
+            told, words = now, text
             pipe.send(packed(Reply(request.number, "progress", text=text, fraction=fraction)))
 
     def tell(kind: str, value: Any) -> None:

@@ -175,7 +175,7 @@ class FakeEngine:
         self._attached = ""
         self._playback = None
 
-    def playback(self, session, cell=0.0):
+    def playback(self, session, cell=0.0, progress=QUIET):
         from trunnion.pipeline.playback import Playback
         from trunnion.shop import load_shop
 
@@ -188,7 +188,7 @@ class FakeEngine:
     def moment(self, key, position, seconds=np.inf, progress=QUIET):
         return self._playback.towards(position, seconds, progress)
 
-    def deviation_map(self, session):
+    def deviation_map(self, session, progress=QUIET):
         from trunnion.report.deviation import deviation_map
 
         return deviation_map(self._mesh, session.verdict.deviation, 0.02)
@@ -218,10 +218,10 @@ class FakeEngine:
     def attach(self, session, data=b"", suffix="", progress=QUIET) -> None:
         self._attached = session.part.name
 
-    def mesh(self, session) -> Mesh:
+    def mesh(self, session, progress=QUIET) -> Mesh:
         return self._mesh
 
-    def save(self, session, path) -> None:
+    def save(self, session, path, progress=QUIET) -> None:
         save_project(session, path, *self.keep())
 
     def write(self, session, folder, *, name="", date="", progress=QUIET) -> tuple[str, ...]:

@@ -10,7 +10,7 @@ from typing import Any
 import numpy as np
 import pytest
 
-from random_panels import random_panel
+from seeded.pockets import random_panel
 from samples import ball_shape, dome_on_a_plate_shape, written
 from trunnion.model.session import Session
 from trunnion.pipeline import Engine

@@ -34,7 +34,8 @@ def _pocket(draw: Random, low: tuple[float, float], size: tuple[float, float], h
     """Return what is cut out of a cell: a rounded box, longer than its cell where it opens to the side, without its island."""
     floor = draw.choice((3.0, 4.0, 6.0))
     length = size[0] + (wall + corner if opens else 0.0)
-    body = cq.Workplane("XY").box(length, size[1], height - floor + 1.0, centered=False).edges("|Z and <X" if opens else "|Z").fillet(corner)
+    body = cq.Workplane("XY").box(length, size[1], height - floor + 1.0, centered=False)
+    body = body.edges("|Z and <X" if opens else "|Z").fillet(corner)
     if fillet > 0.0:
         body = body.faces("<Z").edges("not >X" if opens else None).fillet(fillet)
     if not opens and draw.random() < 0.3:

@@ -44,8 +44,8 @@ def _with_local(draw: Random, body: cq.Workplane, x: float, y: float, height: fl
     """Return the plate with a boss, a dome or a dimple at a place, its foot or rim rounded where the kernel can."""
     kind, radius = draw.choice(("boss", "dome", "dimple")), draw.uniform(4.0, 6.5)
     if kind == "boss":
-        cone = cq.Workplane("XY").circle(radius).extrude(height + draw.uniform(2.0, 4.0), taper=draw.uniform(3.0, 10.0)).translate((x, y, 0))
-        return body.union(cone)
+        cone = cq.Workplane("XY").circle(radius).extrude(height + draw.uniform(2.0, 4.0), taper=draw.uniform(3.0, 10.0))
+        return body.union(cone.translate((x, y, 0)))
     sphere = cq.Workplane("XY").sphere(1.6 * radius)
     if kind == "dome":
         return body.union(sphere.translate((x, y, height - radius)))
