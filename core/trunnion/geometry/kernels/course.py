@@ -1,7 +1,10 @@
-"""The cheapest course through a table: one column of each row, from row to row to a column that is near, or by a leap that costs extra.
+"""Least-cost path through a table, one column a row: dynamic programming over a trellis (Viterbi,
+1967; Bellman, 1957). Plain reference.
 
-Dynamic programming (Viterbi). Rows are places along a way, columns what may be chosen there; a cost of infinity forbids a choice. A row
-that has nothing to choose ends the course; a new one begins behind it.
+Rows are positions along a path in order, columns what may be chosen there (tool axes, for one).
+From row to row the choice moves to a column that is listed as near, at the cost of that turn, or
+leaps to any other at a constant extra cost. An infinite cost forbids a choice. A row that has
+nothing to choose ends the path; a new one begins behind it.
 """
 
 from __future__ import annotations
@@ -12,14 +15,18 @@ from trunnion.geometry.arrays import Bools, Floats, Ints
 
 
 def course(cost: Floats, near: Ints, turn: Floats, leap: float) -> tuple[Ints, Bools]:
-    """Return the chosen column of each row (k,), -1 where there is none, and whether the row is reached by a leap (k,).
+    """Return the chosen column of each row (k,), -1 where there is none, and whether the row is
+    reached by a leap (k,).
 
-    cost (k, m); near (m, q) the columns that each may come from, -1 for none, and turn (m, q) what that costs; leap: what any other costs.
-    Of equal ones the first is taken; a near column goes before a leap.
+    cost (k, m) of each choice; near (m, q) the columns that each may be reached from, -1 for none,
+    and turn (m, q) what that costs; leap: what any other costs. All costs in one unit. Of equal
+    ones the first is taken; a near column is preferred to a leap.
     """
     k, m = cost.shape
     total, back, leapt = np.full((k, m), np.inf), np.full((k, m), -1), np.zeros((k, m), bool)
     for row in range(k):
+        # Bellman's recursion: total[row, c] = cost[row, c] + min over predecessors p of total[row -
+        # 1, p] + step(p, c). The cheapest leap comes from the cheapest column of the row before.
         fresh = row == 0 or not np.isfinite(total[row - 1]).any()
         best = int(np.argmin(total[row - 1])) if not fresh else -1
         for column in range(m):
@@ -38,7 +45,8 @@ def course(cost: Floats, near: Ints, turn: Floats, leap: float) -> tuple[Ints, B
 
 
 def traced(total: Floats, back: Ints, leapt: Bools) -> tuple[Ints, Bools]:
-    """Return the course that ends cheapest in each run of rows, read backwards."""
+    """Return the path that ends cheapest in each run of rows, traced back; arguments (k, m): total
+    costs, predecessors, whether by a leap."""
     k = len(total)
     chosen, leaps = np.full(k, -1), np.zeros(k, bool)
     following = -1

@@ -1,4 +1,9 @@
-"""How far many points are from many lines and arcs, and how often loops of them go round the points."""
+"""Plane distance of points to lines and arcs, and winding numbers of loops made of them. Plain numpy
+reference.
+
+mm, rad. Segments as rows of `Segments`: start, end, centre (m, 2), radius (m,), sweep (m,) signed,
+0 for a line.
+"""
 
 from __future__ import annotations
 
@@ -11,10 +16,8 @@ BATCH = 1 << 18
 
 
 def nearest_segment(points: Floats, start: Floats, end: Floats, centre: Floats, radius: Floats, sweep: Floats) -> tuple[Floats, Ints]:
-    """Return the distance (k,) from each point (k, 2) to the nearest segment, and its row (k,).
-
-    Segments are given as rows of `Segments`: `start`, `end`, `centre` (m, 2), `radius`, `sweep` (m,).
-    """
+    """Return the distance (k,) mm from each point (k, 2) to the nearest segment, and its row (k,); of
+    equal ones the first."""
     best = np.empty(len(points))
     row = np.empty(len(points), dtype=np.int64)
     step = max(1, BATCH // max(1, len(start)))
@@ -27,6 +30,11 @@ def nearest_segment(points: Floats, start: Floats, end: Floats, centre: Floats, 
 
 
 def _distances(points: Floats, start: Floats, end: Floats, centre: Floats, radius: Floats, sweep: Floats) -> Floats:
+    """Return the distance (k, m) of each point to each segment.
+
+    A line: to the foot of the perpendicular, its share held to 0 to 1. An arc: | |q| - radius |
+    where the point's direction from the centre lies in its sector, else to the nearer end.
+    """
     away = np.empty((len(points), len(start)))
     lines, arcs = np.flatnonzero(sweep == 0.0), np.flatnonzero(sweep != 0.0)
     px, py = points[:, :1], points[:, 1:]
@@ -41,6 +49,8 @@ def _distances(points: Floats, start: Floats, end: Floats, centre: Floats, radiu
         cx, cy = centre[arcs].T
         turned = np.sign(sweep[arcs])
         (ax, ay), (bx, by) = (start[arcs] - centre[arcs]).T, (end[arcs] - centre[arcs]).T
+        # The sector by two cross products: within the half-planes of both ends, of either one where
+        # the sweep is more than half a turn.
         qx, qy = px - cx, py - cy
         after_start = turned * (ax * qy - ay * qx) >= 0.0
         before_end = turned * (qx * by - qy * bx) >= 0.0
@@ -52,14 +62,18 @@ def _distances(points: Floats, start: Floats, end: Floats, centre: Floats, radiu
 
 
 def _size(x: Floats, y: Floats) -> Floats:
+    """Return the length of plane vectors."""
     # As the compiled loops have it: which of the two answers must not show in a single digit.
     return np.sqrt(x * x + y * y)
 
 
 def winding_numbers(points: Floats, start: Floats, end: Floats, centre: Floats, radius: Floats, sweep: Floats) -> Ints:
-    """Return how often the loops made of all the segments go round each point (k,), anticlockwise counted positive.
+    """Return the winding number (k,) of the loops made of all the segments about each point (k, 2),
+    anticlockwise positive.
 
-    The loops of chords are counted by the crossings of a ray along x; an arc adds the cap between its chord and itself.
+    Loops of chords are counted by the signed crossings of a ray towards +x (Sunday, Inclusion of a
+    point in a polygon, 2001); an arc adds the cap between its chord and itself: +1 inside the
+    circle on the arc's side of the chord.
     """
     total = np.zeros(len(points), dtype=np.int64)
     step = max(1, BATCH // max(1, len(start)))
@@ -68,6 +82,8 @@ def winding_numbers(points: Floats, start: Floats, end: Floats, centre: Floats, 
     for first in range(0, len(points), step):
         block = slice(first, first + step)
         px, py = points[block, :1], points[block, 1:]
+        # Twice the signed area of chord and point: above 0 the point is to the left. A crossing
+        # takes in the lower end and leaves out the upper one, so a corner counts once.
         side = (bx - ax) * (py - ay) - (px - ax) * (by - ay)
         up = (ay <= py) & (by > py) & (side > 0.0)
         down = (ay > py) & (by <= py) & (side < 0.0)

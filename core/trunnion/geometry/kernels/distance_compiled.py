@@ -1,4 +1,7 @@
-"""The loops of `kernels.distance` compiled; same names, arguments and, to the last digit, answers."""
+"""The loops of `kernels.distance` compiled; same names, arguments and, to the last digit, answers.
+
+Every operation is in the order of the reference, so that which of the two ran never shows.
+"""
 
 from __future__ import annotations
 
@@ -17,13 +20,15 @@ _ASKED = (_PAIRS, _PAIRS, _PAIRS, _PAIRS, _NUMBERS, _NUMBERS)
 
 @njit(cache=True, nogil=True)
 def _size(x: float, y: float) -> float:
+    """Return the length of a plane vector."""
     # Three times as fast as hypot, and these numbers neither overflow nor vanish.
     return math.sqrt(x * x + y * y)
 
 
 @njit(types.Tuple((types.float64[::1], int64[::1]))(*_ASKED), cache=True, nogil=True)
 def nearest_segment(points: Floats, start: Floats, end: Floats, centre: Floats, radius: Floats, sweep: Floats) -> tuple[Floats, Ints]:
-    """Return the distance (k,) from each point (k, 2) to the nearest segment, and its row (k,)."""
+    """Return the distance (k,) mm from each point (k, 2) to the nearest segment, and its row (k,); of
+    equal ones the first."""
     best = np.empty(len(points))
     row = np.empty(len(points), dtype=np.int64)
     for k in range(len(points)):
@@ -31,12 +36,15 @@ def nearest_segment(points: Floats, start: Floats, end: Floats, centre: Floats, 
         least, nearest = math.inf, 0
         for i in range(len(start)):
             if sweep[i] == 0.0:
+                # A line: the foot of the perpendicular, held to the segment. One of no length is a
+                # point.
                 dx, dy = end[i, 0] - start[i, 0], end[i, 1] - start[i, 1]
                 square = dx * dx + dy * dy
                 share = ((px - start[i, 0]) * dx + (py - start[i, 1]) * dy) / (square if square > 0.0 else 1.0)
                 share = min(max(share, 0.0), 1.0)
                 away = _size(px - start[i, 0] - share * dx, py - start[i, 1] - share * dy)
             else:
+                # An arc: in its sector the circle is nearest, else an end.
                 qx, qy = px - centre[i, 0], py - centre[i, 1]
                 ax, ay = start[i, 0] - centre[i, 0], start[i, 1] - centre[i, 1]
                 bx, by = end[i, 0] - centre[i, 0], end[i, 1] - centre[i, 1]
@@ -56,7 +64,8 @@ def nearest_segment(points: Floats, start: Floats, end: Floats, centre: Floats, 
 
 @njit(int64[::1](*_ASKED), cache=True, nogil=True)
 def winding_numbers(points: Floats, start: Floats, end: Floats, centre: Floats, radius: Floats, sweep: Floats) -> Ints:
-    """Return how often the loops made of all the segments go round each point (k,), anticlockwise counted positive."""
+    """Return the winding number (k,) of the loops made of all the segments about each point (k, 2),
+    anticlockwise positive."""
     total = np.zeros(len(points), dtype=np.int64)
     for k in range(len(points)):
         px, py = points[k]
@@ -64,10 +73,13 @@ def winding_numbers(points: Floats, start: Floats, end: Floats, centre: Floats, 
         for i in range(len(start)):
             ax, ay, bx, by = start[i, 0], start[i, 1], end[i, 0], end[i, 1]
             side = (bx - ax) * (py - ay) - (px - ax) * (by - ay)
+            # Crossings of a ray towards +x with the chord, upwards +1, downwards -1.
             if ay <= py < by and side > 0.0:
                 count += 1
             elif by <= py < ay and side < 0.0:
                 count -= 1
+            # The cap between chord and arc; a point on the chord's line belongs to the side that
+            # the crossing above gave it to.
             if sweep[i] != 0.0 and _size(px - centre[i, 0], py - centre[i, 1]) < radius[i]:
                 left = side > 0.0 or (side == 0.0 and (by < ay or (by == ay and bx > ax)))
                 if sweep[i] > 0.0 and not left:

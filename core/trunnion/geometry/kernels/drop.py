@@ -1,8 +1,14 @@
-"""Dropping a cutter on triangles along its axis: how high its tip stands when it touches. Plain, every triangle for every point.
+"""Drop-cutter: the height of a cutter's tip when it comes down along its axis on triangles. Plain
+reference, every triangle for every point.
 
-A cutter is the graph of its lower side: pieces (p, 6) with the columns `RHO0` to `C`, over distances from the axis that go on from each
-other; a piece is straight (height A + B (rho - RHO0)) or an arc (height B - sqrt(C^2 - (rho - A)^2)). The graph is convex and never falls.
-The tip is highest where it touches a triangle's plane, one of its edges or one of its corners.
+A cutter is the graph g(rho) of its lower side over the distance rho from its axis: pieces (p, 6)
+with the columns `RHO0` to `C`, adjacent in rho; a piece is straight (height A + B (rho - RHO0)) or
+an arc (height B - sqrt(C^2 - (rho - A)^2)). The graph is convex and never falls. The tip stands at
+
+    max over points (x, y, z) of the triangles of z - g(distance of (x, y) from the axis)
+
+and the greatest is on a triangle's plane, one of its edges or one of its corners (the drop-cutter
+of opencamlib; Chuang, Chen and Yau, 2002). mm, tool axis +z.
 """
 
 from __future__ import annotations
@@ -60,11 +66,14 @@ def drop(points: Floats, corners: Floats, pieces: Floats, lowest: float) -> Floa
 
 
 def _on_corners(point: Floats, corners: Floats, pieces: Floats) -> float:
+    """Return the greatest height of the tip on any corner of triangles (t, 3, 3)."""
     flat = corners.reshape(-1, 3)
     return float((flat[:, 2] - height_at(pieces, np.hypot(flat[:, 0] - point[0], flat[:, 1] - point[1]))).max(initial=-np.inf))
 
 
 def _on_planes(point: Floats, corners: Floats, pieces: Floats) -> float:
+    """Return the greatest height of the tip where it touches a triangle's plane inside the triangle;
+    vertical triangles have no such place."""
     a, b, c = corners[:, 0], corners[:, 1], corners[:, 2]
     normal = np.cross(b - a, c - a)
     up = normal[:, 2] != 0.0
@@ -86,15 +95,22 @@ def _on_planes(point: Floats, corners: Floats, pieces: Floats) -> float:
 
 
 def _holds(point: Floats, a: Floats, b: Floats, c: Floats) -> Bools:
+    """Return whether plan points (t, 2) lie inside triangles a, b, c (t, 3), whichever way these turn."""
     sides = np.stack([(q[:, 0] - p[:, 0]) * (point[:, 1] - p[:, 1]) - (q[:, 1] - p[:, 1]) * (point[:, 0] - p[:, 0])
                       for p, q in ((a, b), (b, c), (c, a))])
     return np.asarray((sides >= 0.0).all(axis=0) | (sides <= 0.0).all(axis=0))
 
 
 def _on_edges(point: Floats, corners: Floats, pieces: Floats) -> float:
+    """Return the greatest height of the tip on any edge of triangles (t, 3, 3).
+
+    Along an edge the tip's height is concave: bisection on the sign of its slope, rise - g'(rho) u
+    / rho.
+    """
     start, end = corners.reshape(-1, 3), corners[:, [1, 2, 0]].reshape(-1, 3)
     run = end - start
     length = np.hypot(run[:, 0], run[:, 1])
+    # Foot of the axis on the edge's line, distance beside it, and the stretch under the cutter.
     some = length > 0.0
     start, run, length = start[some], run[some], length[some]
     along, rise = run[:, :2] / length[:, None], run[:, 2] / length
@@ -105,13 +121,15 @@ def _on_edges(point: Floats, corners: Floats, pieces: Floats) -> float:
     low, high = np.maximum(-foot, -reach), np.minimum(length - foot, reach)
     meets = (beside <= pieces[-1, RHO1]) & (low <= high)
     start, foot, beside, rise, low, high = (v[meets] for v in (start, foot, beside, rise, low, high))
-    # u runs along the edge from the foot of the axis; the tip's height is concave in it.
+    # u runs along the edge from the foot of the axis; the tip's height, z(u) - g(sqrt(beside^2 +
+    # u^2)), is concave in it.
     for _ in range(HALVINGS):
         u = 0.5 * (low + high)
         rho = np.hypot(beside, u)
         share = np.divide(u, rho, out=np.zeros_like(u), where=rho > 0.0)
         slope = np.multiply(slope_at(pieces, rho), share, out=np.zeros_like(u), where=share != 0.0)
         low, high = np.where(slope < rise, u, low), np.where(slope < rise, high, u)
+    # Both ends of the last bracket: the better is attained and exact to rounding.
     best = np.full(len(start), -np.inf)
     for u in (low, high):
         best = np.maximum(best, start[:, 2] + rise * (foot + u) - height_at(pieces, np.minimum(np.hypot(beside, u), pieces[-1, RHO1])))

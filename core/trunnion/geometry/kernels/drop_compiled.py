@@ -1,4 +1,18 @@
-"""The loops of `kernels.drop` compiled: closed forms, each edge and corner once, and only triangles that could be higher."""
+"""The drop-cutter of `kernels.drop` compiled: closed forms, each edge and corner once, and only
+triangles that could be higher (branch and bound over a tree).
+
+With g the cutter's lower side, convex and never falling, the tip over (px, py) is lifted to the
+greatest of z - g(rho). Bounds from above, of a facet or of a node of the tree, by three convex
+arguments:
+
+* nothing of it is above its highest z, and g at the nearest plan distance is the least lift-off;
+* nothing of it is above a plane: touching that plane lifts the tip by a closed form (`lift_loop`);
+* g is above its tangents: over the middle of the box (`_below_tangent`), of a ball also from where
+  it touches the plane (`_below_ball`).
+
+_SLACK (mm) keeps the rounding of a bound from leaving out what is higher: heights are exact. mm,
+tool axis +z.
+"""
 
 from __future__ import annotations
 
@@ -30,6 +44,8 @@ _TINY, _ROUNDING, _SLACK = 1e-300, 1e-13, 1e-10
 
 @njit(cache=True, nogil=True, inline="always")
 def _height(pieces: Floats, rho: float) -> float:
+    """Return g (mm), the height above the tip at which the cutter begins at the distance rho; rho
+    within its radius."""
     k = 0
     while k < len(pieces) - 1 and rho > pieces[k, RHO1]:
         k += 1
@@ -41,6 +57,7 @@ def _height(pieces: Floats, rho: float) -> float:
 
 @njit(cache=True, nogil=True, inline="always")
 def _slope(pieces: Floats, rho: float) -> float:
+    """Return g'(rho), towards the axis where the lower side has a bend."""
     k = 0
     while k < len(pieces) - 1 and rho > pieces[k, RHO1]:
         k += 1
@@ -52,7 +69,11 @@ def _slope(pieces: Floats, rho: float) -> float:
 
 @njit(cache=True, nogil=True)
 def _touching(pieces: Floats, steep: float) -> float:
-    """Return the largest distance from the axis at which the lower side is not steeper than a plane."""
+    """Return the largest distance rho (mm) from the axis at which the lower side is not steeper than a
+    plane of slope `steep`: where it touches.
+
+    On an arc g' = steep at rho = A + C steep / sqrt(1 + steep^2).
+    """
     if steep == 0.0:
         return 0.0
     rho = 0.0
@@ -69,13 +90,21 @@ def _touching(pieces: Floats, steep: float) -> float:
 
 @njit(cache=True, nogil=True)
 def _steepest(pieces: Floats, beside: float, rise: float, reach: float) -> float:
-    """Return how far from the foot of the axis (0 to `reach`) an edge that climbs by `rise` >= 0 touches, at a distance beside the axis."""
+    """Return how far (u, mm) from the foot of the axis, 0 to `reach`, an edge that climbs by `rise` >=
+    0 touches, at a distance beside the axis.
+
+    The contact is where the lower side's slope along the edge, g'(rho) u / rho with rho^2 =
+    beside^2 + u^2, equals the edge's; it grows with u, so the piece is found by its value at each
+    piece's outer end.
+    """
     low = 0.0
     for k in range(len(pieces)):
         if pieces[k, RHO1] <= beside:
             continue
         high = min(math.sqrt(pieces[k, RHO1] * pieces[k, RHO1] - beside * beside), reach)
         rho = math.sqrt(beside * beside + high * high)
+        # The piece's slope along the edge at its outer end, compared without a division: the root
+        # is 0 at a vertical end.
         if pieces[k, ROUND] != 0.0:
             out = rho - pieces[k, A]
             root = math.sqrt(max(pieces[k, C] * pieces[k, C] - out * out, 0.0))
@@ -90,11 +119,17 @@ def _steepest(pieces: Floats, beside: float, rise: float, reach: float) -> float
 
 @njit(cache=True, nogil=True)
 def _within(piece: Floats, beside: float, rise: float, low: float, high: float) -> float:
-    """Return where one piece is as steep along an edge as the edge climbs, between two distances from the foot."""
+    """Return where (u, mm) one piece is as steep along an edge as the edge climbs, between two
+    distances from the foot.
+
+    A cone and a sphere have closed forms; a torus takes Newton's method, safeguarded by bisection.
+    """
     if piece[ROUND] == 0.0:
+        # Cone: B u / rho = rise.
         square = piece[B] * piece[B] - rise * rise
         return min(max(rise * beside / math.sqrt(square), low), high) if square > 0.0 else high
     a, c = piece[A], piece[C]
+    # Sphere about the axis: u = rise sqrt((c^2 - beside^2) / (1 + rise^2)).
     if a == 0.0:
         return min(max(rise * math.sqrt(max((c * c - beside * beside) / (1.0 + rise * rise), 0.0)), low), high)
     u = 0.5 * (low + high)
@@ -108,6 +143,7 @@ def _within(piece: Floats, beside: float, rise: float, low: float, high: float) 
             high = u
         else:
             low = u
+        # d/du of g'(rho) u / rho: g'' (u / rho)^2 + g' beside^2 / rho^3, with g'' = c^2 / root^3.
         bend = c * c / (root * root * root) * (u / rho) ** 2 + k * beside * beside / (rho * rho * rho)
         step = u - value / bend if bend > 0.0 else low
         nearer = step if low < step < high else 0.5 * (low + high)
@@ -120,15 +156,22 @@ def _within(piece: Floats, beside: float, rise: float, low: float, high: float) 
 @njit(cache=True, nogil=True)
 def _edge(px: float, py: float, ax: float, ay: float, az: float, bx: float, by: float, bz: float, pieces: Floats, radius: float,
           best: float) -> float:
+    """Return the larger of `best` and the height (mm) to which an edge from a to b lifts the tip over
+    (px, py).
+
+    An edge that is vertical in plan is left to its corners.
+    """
     dx, dy = bx - ax, by - ay
     square = dx * dx + dy * dy
     if square == 0.0:
         return best
     cross = (ax - px) * dy - (ay - py) * dx
+    # Out of the cutter's radius, or even its higher end too low.
     if cross * cross > radius * radius * square or max(az, bz) - _height(pieces, min(abs(cross) / math.sqrt(square), radius)) <= best:
         return best
     length = math.sqrt(square)
     beside, foot = abs(cross) / length, -((ax - px) * dx + (ay - py) * dy) / length
+    # The stretch of the edge under the cutter, by u from the foot of the axis.
     reach = math.sqrt(max(radius * radius - beside * beside, 0.0))
     rise = (bz - az) / length
     low, high = max(-foot, -reach), min(length - foot, reach)
@@ -156,7 +199,8 @@ def _edge(px: float, py: float, ax: float, ay: float, az: float, bx: float, by: 
 @njit(cache=True, nogil=True)
 def _edge_of_ball(px: float, py: float, ax: float, ay: float, az: float, bx: float, by: float, bz: float, ball: float, radius: float,
                   best: float) -> float:
-    """Return what `_edge` does for a ball."""
+    """Return the larger of `best` and the height (mm) to which an edge lifts the tip of a ball end of
+    radius `ball`, in closed form."""
     dx, dy = bx - ax, by - ay
     square = dx * dx + dy * dy
     if square == 0.0:
@@ -176,6 +220,7 @@ def _edge_of_ball(px: float, py: float, ax: float, ay: float, az: float, bx: flo
 
 @njit(cache=True, nogil=True)
 def _corner(px: float, py: float, x: float, y: float, z: float, pieces: Floats, radius: float, best: float) -> float:
+    """Return the larger of `best` and the height (mm) to which a corner (x, y, z) lifts the tip."""
     square = (x - px) * (x - px) + (y - py) * (y - py)
     if z <= best or square > radius * radius:
         return best
@@ -184,6 +229,11 @@ def _corner(px: float, py: float, x: float, y: float, z: float, pieces: Floats, 
 
 @njit(cache=True, nogil=True)
 def _plane(px: float, py: float, f: Floats, pieces: Floats, best: float) -> float:
+    """Return the larger of `best` and the height (mm) to which the inside of a facet (19,) lifts the
+    tip; vertical facets have no inside in plan.
+
+    The cutter touches the plane uphill of its axis, where its lower side is as steep as the plane.
+    """
     turn = f[TURN]
     if turn == 0.0:
         return best
@@ -194,6 +244,7 @@ def _plane(px: float, py: float, f: Floats, pieces: Floats, best: float) -> floa
     z = f[AZ] + (x - f[AX]) * f[GX] + (y - f[AY]) * f[GY] - _height(pieces, rho)
     if z <= best:
         return best
+    # The touching point must be inside: left of all edges, or right of all, as the facet turns.
     side = 1.0 if turn > 0.0 else -1.0
     if side * ((f[BX] - f[AX]) * (y - f[AY]) - (f[BY] - f[AY]) * (x - f[AX])) < 0.0:
         return best
@@ -206,7 +257,11 @@ def _plane(px: float, py: float, f: Floats, pieces: Floats, best: float) -> floa
 
 @njit(cache=True, nogil=True)
 def lift_loop(planes: Floats, pieces: Floats, lifts: Floats) -> None:
-    """Fill lifts (n, 8), as `LIFT_X` to `SECANT` name it, with how planes (n, 3) lift a cutter: slopes and height over (0, 0)."""
+    """Fill lifts (n, 8), as `LIFT_X` to `SECANT` name it, with how planes (n, 3), slopes along x and y
+    and height over (0, 0), lift a cutter.
+
+    Touching the plane at rho uphill lifts the tip to plane(x, y) + rho steep - g(rho).
+    """
     for n in range(len(planes)):
         gx, gy, height = planes[n, 0], planes[n, 1], planes[n, 2]
         steep = math.sqrt(gx * gx + gy * gy)
@@ -221,11 +276,13 @@ def lift_loop(planes: Floats, pieces: Floats, lifts: Floats) -> None:
 @njit(cache=True, nogil=True, inline="always")
 def _most(px: float, py: float, lift: Floats, x0: float, y0: float, x1: float, y1: float, pieces: Floats, radius: float,
           ball: float) -> float:
-    """Return a height that nothing below a plane and inside a box lifts the cutter over."""
+    """Return a height (mm) that nothing below a plane and inside a box lifts the tip over: an upper
+    bound."""
     top = lift[LIFT_X] * px + lift[LIFT_Y] * py + lift[LIFT]
     if top < np.inf:
         if ball > 0.0:
-            # By the round of the ball it is less away from where that touches the plane.
+            # A ball leaves the plane away from where it touches: at the box's nearest point, by
+            # plan gap and by the gap in height along the slope.
             x, y = px + lift[OUT_X], py + lift[OUT_Y]
             gx, gy = max(max(x0 - x, x - x1), 0.0), max(max(y0 - y, y - y1), 0.0)
             rise = abs(lift[LIFT_X] * (0.5 * (x0 + x1) - x) + lift[LIFT_Y] * (0.5 * (y0 + y1) - y))
@@ -238,20 +295,31 @@ def _most(px: float, py: float, lift: Floats, x0: float, y0: float, x1: float, y
 
 @njit(cache=True, nogil=True, inline="always")
 def _below_ball(square: float, lift: Floats, ball: float) -> float:
-    """Return how far at least a ball that touches a plane stands straight above places of the plane whose distance from where it touches
-    has a square: as far as its tangent plane at what is nearest of it to them."""
+    """Return how far (mm) at least a ball that touches a plane stands above places of the plane at a
+    squared distance `square` (mm2) from where it touches, measured along z.
+
+    Along the line from the ball's centre to the place the gap is sqrt(ball^2 + d^2) - ball; the
+    tangent plane there is below the ball, and the gap along z to it is that over the z part of its
+    normal, at most (ball + d slope) / (secant away).
+    """
     away = math.sqrt(ball * ball + square)
     return square * away * lift[SECANT] / ((away + ball) * (ball + math.sqrt(square) * lift[SLOPE]))
 
 
 @njit(cache=True, nogil=True)
 def _below_tangent(px: float, py: float, lift: Floats, x0: float, y0: float, x1: float, y1: float, pieces: Floats, radius: float) -> float:
-    """Return `_most` by the tangent plane of the lower side over the middle of the box: it is nowhere below that."""
+    """Return an upper bound (mm) as `_most` does, by the tangent plane of the lower side over the
+    middle of the box: the lower side is convex, so nowhere below it.
+
+    Infinite where the middle is beyond the cutter.
+    """
     x, y = 0.5 * (x0 + x1) - px, 0.5 * (y0 + y1) - py
     rho = math.sqrt(x * x + y * y)
     if rho >= radius:
         return np.inf
     fall = _slope(pieces, rho) / rho if rho > 0.0 else 0.0
+    # Plane less tangent is linear: its greatest over the box is at the middle plus half the extent
+    # along its slopes.
     gx, gy = abs(lift[LIFT_X] - fall * x), abs(lift[LIFT_Y] - fall * y)
     middle = lift[HEIGHT] + lift[LIFT_X] * (px + x) + lift[LIFT_Y] * (py + y) - _height(pieces, rho)
     return middle + 0.5 * (gx * (x1 - x0) + gy * (y1 - y0))
@@ -260,13 +328,20 @@ def _below_tangent(px: float, py: float, lift: Floats, x0: float, y0: float, x1:
 @njit(cache=True, nogil=True)
 def _touch(px: float, py: float, f: Floats, lift: Floats, owns: int, pieces: Floats, radius: float, ball: float,
            best: float) -> float:
-    """Return the larger of `best` and how high a facet, with the edges and corners that `owns` has bits of, lifts the cutter."""
+    """Return the larger of `best` and the height (mm) to which a facet, with the edges and corners
+    that `owns` has bits of, lifts the tip.
+
+    Edges and corners that another facet owns are left to that one.
+    """
+    # Bounds first: by its highest z, by its plane, by the tangent over its box.
     if f[HIGH_Z] <= best or lift[LIFT_X] * px + lift[LIFT_Y] * py + lift[LIFT] <= best - _SLACK:
         return best
     if ball <= 0.0 and _below_tangent(px, py, lift, f[LOW_X], f[LOW_Y], f[HIGH_X], f[HIGH_Y], pieces, radius) <= best - _SLACK:
         return best
     if f[TURN] != 0.0:
-        # Where the plane touches inside the facet, that is the most of all of it; else it is less by how far that is from an edge.
+        # Where the plane touches inside the facet, that is the most of all of it. Else it is less
+        # by how far that is from an edge: `out` is the largest squared distance, in plan scale, to
+        # an edge that it lies beyond.
         x, y = px + lift[OUT_X], py + lift[OUT_Y]
         side = 1.0 if f[TURN] > 0.0 else -1.0
         out = 0.0
@@ -282,6 +357,7 @@ def _touch(px: float, py: float, f: Floats, lift: Floats, owns: int, pieces: Flo
             return max(best, top)
         if ball > 0.0 and top - _below_ball(out * lift[SECANT] * lift[SECANT], lift, ball) <= best - _SLACK:
             return best
+    # Bound by the plan distance of the box; then what it owns, one by one.
     gx, gy = max(max(f[LOW_X] - px, px - f[HIGH_X]), 0.0), max(max(f[LOW_Y] - py, py - f[HIGH_Y]), 0.0)
     near = gx * gx + gy * gy
     if near > radius * radius or f[HIGH_Z] - _height(pieces, math.sqrt(near)) <= best:
@@ -300,7 +376,8 @@ def _touch(px: float, py: float, f: Floats, lift: Floats, owns: int, pieces: Flo
 
 @njit(cache=True, nogil=True)
 def _edge_place(px: float, py: float, f: Floats, k: int, pieces: Floats, radius: float) -> float:
-    """Return at which share of its k-th edge, 0 to 1, a facet lifts the cutter most."""
+    """Return at which share of its k-th edge, 0 to 1, a facet lifts the cutter most; of a vertical
+    edge the higher end."""
     a, b = 3 * k, 3 * ((k + 1) % 3)
     dx, dy = f[b] - f[a], f[b + 1] - f[a + 1]
     length = math.sqrt(dx * dx + dy * dy)
@@ -318,7 +395,8 @@ def _edge_place(px: float, py: float, f: Floats, k: int, pieces: Floats, radius:
 
 @njit(cache=True, nogil=True)
 def _place(px: float, py: float, f: Floats, pieces: Floats, radius: float, at: Floats) -> None:
-    """Fill at (3,) with where a facet lifts the cutter most."""
+    """Fill at (3,) with the point of a facet that lifts the tip most: on its inside, or on one of its
+    edges (corners are their ends)."""
     best = -np.inf
     rho = _touching(pieces, f[STEEP])
     if _plane(px, py, f, pieces, best) > best:
@@ -339,7 +417,11 @@ def _place(px: float, py: float, f: Floats, pieces: Floats, radius: float, at: F
 
 @njit(cache=True, nogil=True, inline="always")
 def _node(px: float, py: float, box: Floats, lift: Floats, pieces: Floats, radius: float, ball: float, best: float) -> float:
-    """Return a height that nothing below a plane and inside a box lifts the cutter over; minus infinity when that isn't above `best`."""
+    """Return an upper bound (mm) of the height to which anything below a plane and inside a box lifts
+    the tip; -inf when that is not above `best`.
+
+    The cheap bounds first: highest z, plane, plan distance. _SLACK covers their rounding.
+    """
     top = box[Z1]
     if top <= best or lift[LIFT_X] * px + lift[LIFT_Y] * py + lift[LIFT] <= best - _SLACK:
         return -np.inf
@@ -357,12 +439,16 @@ def _node(px: float, py: float, box: Floats, lift: Floats, pieces: Floats, radiu
 @njit(cache=True, nogil=True)
 def touch_loop(first: int, last: int, points: Floats, facets: Floats, start: Ints, boxes: Floats, node_lifts: Floats, lifts: Floats,
                pieces: Floats, ball: float, lowest: Floats, out: Floats, facet: Ints, contact: Floats) -> None:
-    """Fill out[first:last] with the tip's height over plan points (n, 2) when the cutter touches facets (t, 19), at least lowest (n,).
+    """Fill out[first:last] with the tip's height (mm) over plan points (n, 2) when the cutter touches
+    facets (t, 19), at least lowest (n,).
 
-    Facets lie in a tree as `drop_tree` makes it: start (leaves + 1,), boxes (nodes, 5); lifts (t, 8) and node_lifts (nodes, 8) as
-    `lift_loop` makes them, of planes that nothing of a facet or a node's facets is above; ball: the radius of a ball end, 0 for other
-    cutters. facet (n,) gets the row of the one that is touched, -1 over none, contact (n, 3) where. What the cutter touched
-    last mostly lies under it at the next point too: a height to begin with that leaves little to look at.
+    Facets lie in a tree as `drop_tree` makes it: start (leaves + 1,), boxes (nodes, 5); lifts (t,
+    8) and node_lifts (nodes, 8) as `lift_loop` makes them, of planes that nothing of a facet or a
+    node's facets is above; ball: the radius of a ball end, 0 for other cutters. facet (n,) gets the
+    row of the one that is touched, -1 over none, contact (n, 3) where, NaN over none.
+
+    What the cutter touched last mostly lies under it at the next point too: a height to begin with
+    that leaves little to search.
     """
     radius = pieces[len(pieces) - 1, RHO1]
     inner = len(start) - 2
@@ -375,6 +461,8 @@ def touch_loop(first: int, last: int, points: Floats, facets: Floats, start: Int
             better = _touch(px, py, facets[touched], lifts[touched], ALL, pieces, radius, ball, best)
             if better > best:
                 best, own = better, touched
+        # Depth first, the more promising child first. Invariant: what may lift the tip above `best`
+        # is on the stack.
         nodes[0], reaches[0] = 0, np.inf
         waiting = 1
         while waiting > 0:

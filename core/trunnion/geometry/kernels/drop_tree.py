@@ -1,7 +1,9 @@
-"""A tree over facets for dropping cutters: every node's facets are halved across the longest side of their box.
+"""A complete binary bounding volume hierarchy over facets for dropping cutters: each node halved by
+median across the longest side of its box.
 
-The tree is complete and in the order of a heap: the children of node k are 2 k + 1 and 2 k + 2, the leaves are its last level. Facets lie
-in the order of the leaves, so that each node has a run of them.
+The tree is complete and in the order of a heap: the children of node k are 2 k + 1 and 2 k + 2, the
+leaves are its last level. Facets lie in the order of the leaves, so that each node has a run of
+them. The median split of a kd-tree (Bentley, 1975), each level in linear time. mm, tool axis +z.
 """
 
 from __future__ import annotations
@@ -12,15 +14,17 @@ from numba import njit
 from trunnion.geometry.arrays import Floats, Ints
 
 X0, Y0, X1, Y1, Z1 = range(5)
-"""A node's box, which has no lower end."""
+"""A node's box, which has no lower end: only what is above can lift a cutter."""
 BOX_COLUMNS = 5
 
 
 @njit(cache=True, nogil=True)
 def sort_loop(centres: Floats, start: Ints, order: Ints) -> None:
-    """Sort order (t,) in place so that each node's run of the centres (t, 3) is halved across its longest side; start (leaves + 1,)."""
+    """Sort order (t,) in place so that each node's run of the centres (t, 3) is halved across its
+    longest side; start (leaves + 1,) the runs of the leaves."""
     leaves = len(start) - 1
     width = leaves
+    # From the root down, a level at a time; `width` leaves lie below a node.
     while width > 1:
         for leaf in range(0, leaves, width):
             first, last = start[leaf], start[leaf + width]
@@ -37,11 +41,14 @@ def sort_loop(centres: Floats, start: Ints, order: Ints) -> None:
 
 @njit(cache=True, nogil=True)
 def _part(centres: Floats, axis: int, order: Ints, first: int, last: int, middle: int) -> None:
-    """Sort order[first:last + 1] so far that the one in the middle has no larger ones before and no smaller ones after it (Hoare)."""
+    """Order order[first:last + 1] along an axis so far that the one at `middle` has no larger ones
+    before and no smaller ones after it (quickselect: Hoare, 1961)."""
     while first < last:
         pivot = centres[order[(first + last) // 2], axis]
         i, j = first, last
         while i <= j:
+            # Hoare's partition: then everything up to j is at most the pivot, everything from i on
+            # at least; only the side that holds the middle goes on.
             while centres[order[i], axis] < pivot:
                 i += 1
             while centres[order[j], axis] > pivot:
@@ -60,12 +67,14 @@ def _part(centres: Floats, axis: int, order: Ints, first: int, last: int, middle
 
 @njit(cache=True, nogil=True)
 def cover_loop(corners: Floats, start: Ints, boxes: Floats, planes: Floats) -> None:
-    """Fill boxes (nodes, 5) of the facets' corners (t, 9), and the heights over (0, 0), in planes' (nodes, 3) last column, from which on
-    nothing of them is above the planes of the slopes in its first two."""
+    """Fill boxes (nodes, 5) of the facets' corners (t, 9), and the planes' (nodes, 3) last column: the
+    height over (0, 0) of the lowest plane with the slopes of the first two that nothing of the node
+    is above."""
     leaves = len(start) - 1
     node, width = 0, leaves
     while width > 0:
         for leaf in range(0, leaves, width):
+            # The plane through the corner that stands highest over the slopes: z - g_x x - g_y y.
             x0, y0, x1, y1, z1, top = np.inf, np.inf, -np.inf, -np.inf, -np.inf, -np.inf
             for n in range(start[leaf], start[leaf + width]):
                 for k in range(0, 9, 3):

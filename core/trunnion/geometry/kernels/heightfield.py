@@ -1,7 +1,10 @@
-"""Height fields for planning: lowered under a cutter's moves, asked for the greatest height under a straight move.
+"""Height fields (z-maps) for planning: lowered under a cutter's moves, and the greatest height under a
+straight move.
 
-A field is (nx, ny) heights of square cells of side `cell`; cell (i, j) spans x from `x0 + i cell` and y from `y0 + j cell`. Both kernels
-err on the side of material: a cell goes down only as far as the cutter covers all of it, and counts as touched when any of it may be.
+A field is (nx, ny) float64 heights of square cells of side `cell`; cell (i, j) spans x from `x0 + i
+cell` and y from `y0 + j cell`. Both kernels err on the side of material: a cell is lowered only as
+far as the cutter covers all of it, and counts as touched when any of it may be. mm, the setup
+frame, tool axis +z.
 """
 
 from __future__ import annotations
@@ -19,18 +22,23 @@ HALF_DIAGONAL = math.sqrt(0.5)
 @njit(cache=True)
 def lower(heights: Floats, x0: float, y0: float, cell: float, starts: Floats, ends: Floats, radius: float, corner: float,
           gone: Floats) -> None:
-    """Lower a field in place under straight moves of the tip from `starts` to `ends` (n, 3) of a flat or bull cutter.
+    """Lower a field in place under straight moves of the tip from `starts` to `ends` (n, 3) of a flat,
+    bull or ball end cutter.
 
-    gone (n,) gets the heights that each move takes off, summed over cells.
+    A cell gets the height of the cutter's lower side at its furthest corner from the path, at most
+    half a diagonal beyond its centre, for the move's higher end: never lower than the true cut
+    anywhere in the cell. gone (n,) gets the heights that each move takes off, summed over cells.
     """
     nx, ny = heights.shape
     slack = cell * HALF_DIAGONAL
     reach = radius - slack
+    # A cutter within half a diagonal never covers a whole cell.
     gone[:] = 0.0
     if reach <= 0.0:
         return
     for n in range(len(starts)):
         ax, ay, bx, by = starts[n, 0], starts[n, 1], ends[n, 0], ends[n, 1]
+        # Slopes count at their higher end.
         z = max(starts[n, 2], ends[n, 2])
         dx, dy = bx - ax, by - ay
         square = dx * dx + dy * dy
@@ -47,9 +55,11 @@ def lower(heights: Floats, x0: float, y0: float, cell: float, starts: Floats, en
                 t = 0.0
                 if square > 0.0:
                     t = min(max((px * dx + py * dy) / square, 0.0), 1.0)
+                # Plan distance of the furthest point of the cell.
                 far = math.hypot(px - t * dx, py - t * dy) + slack
                 if far > radius:
                     continue
+                # Quarter circle of the corner: corner - sqrt(corner^2 - inner^2).
                 inner = far - (radius - corner)
                 lift = z
                 if inner > 0.0:
@@ -61,7 +71,11 @@ def lower(heights: Floats, x0: float, y0: float, cell: float, starts: Floats, en
 
 @njit(cache=True)
 def highest(heights: Floats, x0: float, y0: float, cell: float, start: Floats, end: Floats, radius: float) -> float:
-    """Return the greatest height of the cells that a disc may touch on its straight way from `start` to `end` (2,), or -inf."""
+    """Return the greatest height of the cells that a disc may touch on its straight path from `start`
+    to `end` (2,), or -inf.
+
+    The disc is widened by half a cell's diagonal, so no cell with a point under it is left out.
+    """
     nx, ny = heights.shape
     reach = radius + cell * HALF_DIAGONAL
     ax, ay, bx, by = start[0], start[1], end[0], end[1]
@@ -88,7 +102,7 @@ def highest(heights: Floats, x0: float, y0: float, cell: float, start: Floats, e
 
 def lower_reference(heights: Floats, x0: float, y0: float, cell: float, starts: Floats, ends: Floats, radius: float,
                     corner: float, gone: Floats) -> None:
-    """The plain form of `lower`."""
+    """Plain numpy form of `lower`: every cell for every move."""
     centres = _centres(heights, x0, y0, cell)
     for n, (a, b) in enumerate(zip(starts, ends, strict=True)):
         before = heights.sum()
@@ -100,17 +114,19 @@ def lower_reference(heights: Floats, x0: float, y0: float, cell: float, starts: 
 
 
 def highest_reference(heights: Floats, x0: float, y0: float, cell: float, start: Floats, end: Floats, radius: float) -> float:
-    """The plain form of `highest`."""
+    """Plain numpy form of `highest`."""
     touched = _distance(_centres(heights, x0, y0, cell), start, end) < radius + cell * HALF_DIAGONAL
     return float(heights[touched].max(initial=-np.inf))
 
 
 def _centres(heights: Floats, x0: float, y0: float, cell: float) -> Floats:
+    """Return the plan centres (nx, ny, 2) of a field's cells."""
     i, j = np.meshgrid(np.arange(heights.shape[0]), np.arange(heights.shape[1]), indexing="ij")
     return np.stack([x0 + (i + 0.5) * cell, y0 + (j + 0.5) * cell], axis=-1)
 
 
 def _distance(points: Floats, start: Floats, end: Floats) -> Floats:
+    """Return the plan distances of points (..., 2) to a segment."""
     way = end - start
     square = float(way @ way)
     t = np.clip(((points - start) @ way) / square, 0.0, 1.0) if square > 0.0 else np.zeros(points.shape[:-1])

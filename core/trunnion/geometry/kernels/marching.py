@@ -1,9 +1,11 @@
-"""Distances over triangles whose sides have lengths of any metric: fast marching (Kimmel and Sethian, Computing geodesic paths on
-manifolds, 1998). Plain, in Python's own words.
+"""Geodesic distance over triangles whose sides have lengths of any metric: fast marching (Kimmel and
+Sethian, Computing geodesic paths on manifolds, 1998). Plain reference.
 
-A stencil is a point and two others before it: (c, a, b) with the lengths |ca|, |cb| and |ab|. A front that passes a and b as a straight
-line reaches c between them; where a triangle is obtuse at c, its neighbours are unfolded into its plane until a point lies in the
-sector that both sides leave free, and two stencils stand for one.
+A stencil is a point and two others before it: (c, a, b) with the lengths |ca|, |cb| and |ab|. A
+front that passes a and b as a straight line reaches c between them; where a triangle is obtuse at
+c, its neighbours are unfolded into its plane until a point lies in the sector that both sides leave
+free (causality asks for acute stencils), and two stencils stand for one. Lengths and times in one
+unit: the front has speed 1.
 """
 
 from __future__ import annotations
@@ -41,8 +43,11 @@ def stencils(triangles: Ints, lengths: Floats, across: Ints) -> tuple[Ints, Floa
 
 
 def _parted(triangles: Ints, lengths: Floats, across: Ints, t: int, k: int) -> tuple[int, float, float, float] | None:
-    """Return the point that parts an obtuse corner k, and how far it is from the corner and from both ends of the opposite side."""
+    """Return the point that divides an obtuse corner k, and how far it is from the corner and from
+    both ends of the opposite side; None where none is found within `UNFOLDED` triangles."""
     ca, ab, bc = (float(lengths[t, (k + j) % 3]) for j in range(3))
+    # In the triangle's plane: the corner at the origin, the one end of the opposite side along x,
+    # the other by its two lengths.
     x = (ca * ca + bc * bc - ab * ab) / (2.0 * ca)
     first, last = (ca, 0.0), (x, math.sqrt(max(bc * bc - x * x, 0.0)))
     left, right, side = first, last, int(across[t, (k + 1) % 3])
@@ -56,6 +61,7 @@ def _parted(triangles: Ints, lengths: Floats, across: Ints, t: int, k: int) -> t
         y = math.sqrt(max(back * back - x * x, 0.0))
         ex, ey = (left[0] - right[0]) / along, (left[1] - right[1]) / along
         apex = (right[0] + x * ex - y * ey, right[1] + x * ey + y * ex)
+        # The free sector: directions within a right angle of both sides.
         over_first = apex[0] * first[0] + apex[1] * first[1] > 0.0
         over_last = apex[0] * last[0] + apex[1] * last[1] > 0.0
         if over_first and over_last:
@@ -71,7 +77,14 @@ def _parted(triangles: Ints, lengths: Floats, across: Ints, t: int, k: int) -> t
 
 
 def reach(ta: float, tb: float, ca: float, cb: float, ab: float) -> tuple[float, float]:
-    """Return when a front that passes a and b at times ta and tb reaches c, and from where between them (0: a, 1: b)."""
+    """Return when a front that passes a and b at times ta and tb reaches c, and from where between
+    them (0: a, 1: b).
+
+    The planar front has the slope (tb - ta) / |ab| along the side and sqrt(1 - slope^2) across it,
+    so that its speed is 1; its ray to c must cross the side. Else the front runs along a side:
+    Dijkstra's update.
+    """
+    # Both along the sides first: always possible.
     best, share = (ta + ca, 0.0) if ta + ca <= tb + cb else (tb + cb, 1.0)
     if math.isinf(ta) or math.isinf(tb) or ab <= 0.0:
         return best, share
@@ -79,6 +92,7 @@ def reach(ta: float, tb: float, ca: float, cb: float, ab: float) -> tuple[float,
     if abs(slope) >= 1.0:
         return best, share
     rise = math.sqrt(1.0 - slope * slope)
+    # c from the side ab: x along it, y beside it; the ray meets the side at `foot`.
     x = (ca * ca - cb * cb + ab * ab) / (2.0 * ab)
     y = math.sqrt(max(ca * ca - x * x, 0.0))
     foot = x - y * slope / rise
@@ -90,14 +104,18 @@ def reach(ta: float, tb: float, ca: float, cb: float, ab: float) -> tuple[float,
 
 
 def march(points: Ints, sizes: Floats, start: Ints, rows: Ints, time: Floats, foot: Floats, farthest: float) -> None:
-    """Fill in times (v,) at which fronts reach points, and the feet (v, 3) from where they came, by stencils.
+    """Fill in times (v,) at which fronts reach points, and the feet (v, 3) from where they came, by
+    stencils.
 
-    start (v + 1,), rows: the stencils that name each point as a or b. `time` holds the starts, infinite elsewhere, `foot` their feet.
-    Nothing is reached after `farthest`.
+    points (s, 3), sizes (s, 3): stencils. start (v + 1,), rows: the stencils that name each point
+    as a or b. `time` holds the starts, infinite elsewhere, `foot` their feet. Nothing is reached
+    after `farthest`.
     """
     done = np.zeros(len(time), bool)
     heap = [(float(t), v) for v, t in enumerate(time) if t <= farthest]
     heapq.heapify(heap)
+    # Dijkstra's order: a point's time is final when it is the least of all that wait. Outdated
+    # entries of the heap are dropped.
     while heap:
         t, v = heapq.heappop(heap)
         if done[v] or t > time[v]:
@@ -116,7 +134,13 @@ def march(points: Ints, sizes: Floats, start: Ints, rows: Ints, time: Floats, fo
 
 
 def chain_loop(follows: Ints, order: Ints, start: Ints, closed: Ints) -> int:
-    """Return how many chains there are of nodes that each name the one that follows (n,); see `geometry.contours.chains`."""
+    """Return how many chains there are of nodes that each name the one that follows, -1 for none:
+    follows (n,); see `geometry.contours`.
+
+    order gets the nodes chain by chain, start[c + 1] where chain c ends, closed (c,) which are
+    loops; a loop's first node is repeated at its end. Open chains first, each from its first node,
+    then loops from their lowest node.
+    """
     used, count, at = np.zeros(len(follows), bool), 0, 0
     first_of = np.ones(len(follows), bool)
     first_of[follows[follows >= 0]] = False

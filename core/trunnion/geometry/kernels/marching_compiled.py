@@ -1,4 +1,8 @@
-"""The loops of `kernels.marching` compiled, with a heap of their own."""
+"""The loops of `kernels.marching` compiled, with an indexed binary heap.
+
+The heap holds each waiting point once and knows its place, so a lowered time moves the entry up
+instead of adding another. Equal times are ordered by the point's row: the same answer every time.
+"""
 
 from __future__ import annotations
 
@@ -13,12 +17,15 @@ from trunnion.geometry.kernels.marching import UNFOLDED
 
 @njit(cache=True, nogil=True)
 def stencils(triangles: Ints, lengths: Floats, across: Ints) -> tuple[Ints, Floats]:
+    """Return stencils: points (s, 3) and lengths |ca|, |cb|, |ab| (s, 3); see
+    `kernels.marching.stencils`."""
     points, sizes, n = np.empty((6 * len(triangles), 3), np.int64), np.empty((6 * len(triangles), 3)), 0
     for t in range(len(triangles)):
         for k in range(3):
             c, a, b = triangles[t, k], triangles[t, (k + 1) % 3], triangles[t, (k + 2) % 3]
             ca, ab, bc = lengths[t, k], lengths[t, (k + 1) % 3], lengths[t, (k + 2) % 3]
             d, cd, ad, bd = -1, 0.0, 0.0, 0.0
+            # Obtuse at c, by the law of cosines: two stencils on both sides of the unfolded point.
             if ca * ca + bc * bc < ab * ab:
                 d, cd, ad, bd = _parted(triangles, lengths, across, t, k)
             if d < 0:
@@ -36,10 +43,14 @@ def stencils(triangles: Ints, lengths: Floats, across: Ints) -> tuple[Ints, Floa
 
 @njit(cache=True, nogil=True)
 def _parted(triangles: Ints, lengths: Floats, across: Ints, t: int, k: int) -> tuple[int, float, float, float]:
+    """Return the point that divides an obtuse corner k, and its distances from the corner and from
+    both ends of the opposite side; -1 where there is none. See `kernels.marching._parted`."""
     ca, ab, bc = lengths[t, k], lengths[t, (k + 1) % 3], lengths[t, (k + 2) % 3]
     bx = (ca * ca + bc * bc - ab * ab) / (2.0 * ca)
     by = math.sqrt(max(bc * bc - bx * bx, 0.0))
     lx, ly, rx, ry, side = ca, 0.0, bx, by, across[t, (k + 1) % 3]
+    # Invariant: (lx, ly) and (rx, ry) are the ends of the side through which the free sector leaves
+    # the unfolded triangles.
     for _ in range(UNFOLDED):
         if side < 0:
             break
@@ -49,6 +60,7 @@ def _parted(triangles: Ints, lengths: Floats, across: Ints, t: int, k: int) -> t
         y = math.sqrt(max(back * back - x * x, 0.0))
         ex, ey = (lx - rx) / along, (ly - ry) / along
         px, py = rx + x * ex - y * ey, ry + x * ey + y * ex
+        # Both dot products positive: within a right angle of both sides.
         over_first, over_last = px * ca > 0.0, px * bx + py * by > 0.0
         if over_first and over_last:
             return triangles[u, (j + 2) % 3], math.hypot(px, py), math.hypot(px - ca, py), math.hypot(px - bx, py - by)
@@ -63,6 +75,8 @@ def _parted(triangles: Ints, lengths: Floats, across: Ints, t: int, k: int) -> t
 
 @njit(cache=True, nogil=True, inline="always")
 def _reach(ta: float, tb: float, ca: float, cb: float, ab: float) -> tuple[float, float]:
+    """Return when a planar front through a and b, at times ta and tb, reaches c, and from where
+    between them; see `kernels.marching.reach`."""
     best, share = ta + ca, 0.0
     if tb + cb < best:
         best, share = tb + cb, 1.0
@@ -84,6 +98,8 @@ def _reach(ta: float, tb: float, ca: float, cb: float, ab: float) -> tuple[float
 
 @njit(cache=True, nogil=True)
 def march(points: Ints, sizes: Floats, start: Ints, rows: Ints, time: Floats, foot: Floats, farthest: float) -> None:
+    """Fill in times (v,) at which fronts reach points, and the feet (v, 3) from where they came; see
+    `kernels.marching.march`."""
     n = len(time)
     done, place, heap, size = np.zeros(n, np.bool_), np.full(n, -1, np.int64), np.empty(n, np.int64), 0
     for v in range(n):
@@ -91,6 +107,8 @@ def march(points: Ints, sizes: Floats, start: Ints, rows: Ints, time: Floats, fo
             place[v], heap[size] = size, v
             size += 1
             _up(heap, place, time, place[v])
+    # The least of all waiting times is final (Dijkstra's invariant); the points beyond it are
+    # updated from final ones only.
     while size > 0:
         v = heap[0]
         size -= 1
@@ -117,6 +135,8 @@ def march(points: Ints, sizes: Floats, start: Ints, rows: Ints, time: Floats, fo
 
 @njit(cache=True, nogil=True)
 def _up(heap: Ints, place: Ints, time: Floats, at: int) -> None:
+    """Move the entry `at` up the heap while it is before its parent; place (v,) is where each point
+    stands."""
     v = heap[at]
     while at > 0:
         above = (at - 1) // 2
@@ -131,6 +151,7 @@ def _up(heap: Ints, place: Ints, time: Floats, at: int) -> None:
 
 @njit(cache=True, nogil=True)
 def _down(heap: Ints, place: Ints, time: Floats, at: int, size: int) -> None:
+    """Move the entry `at` down the heap of `size` while a child is before it."""
     if size == 0:
         return
     v = heap[at]
@@ -149,16 +170,20 @@ def _down(heap: Ints, place: Ints, time: Floats, at: int, size: int) -> None:
 
 @njit(cache=True, nogil=True, inline="always")
 def _before(time: Floats, v: int, w: int) -> bool:
+    """Return whether point v comes before w: by time, of equal ones by row."""
     return time[v] < time[w] or (time[v] == time[w] and v < w)
 
 
 @njit(cache=True, nogil=True)
 def chain_loop(follows: Ints, order: Ints, start: Ints, closed: Bools) -> int:
+    """Return how many chains there are of nodes that each name the one that follows (n,), -1 for none;
+    see `kernels.marching.chain_loop`."""
     n = len(follows)
     used, first_of, count, at = np.zeros(n, np.bool_), np.ones(n, np.bool_), 0, 0
     for node in range(n):
         if follows[node] >= 0:
             first_of[follows[node]] = False
+    # Open chains first, then loops.
     for turn in range(2):
         for first in range(n):
             if used[first] or first_of[first] != (turn == 0):

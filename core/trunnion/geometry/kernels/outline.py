@@ -1,4 +1,9 @@
-"""Which places lie within closed outlines of many short pieces, and which lie so near to one that it can't be told from the pieces."""
+"""Point in polygon by ray crossing, with a third answer for points too near to the boundary; compiled
+with a strip index.
+
+Outlines are closed chains of short chords that stand for curves; within `near` of them the chords
+can't tell inside from outside. Plain reference `within`. mm.
+"""
 
 from __future__ import annotations
 
@@ -13,18 +18,21 @@ OUT, IN, NEAR = 0, 1, 2
 
 
 def within(places: Floats, pieces: Floats, near: float) -> Ints:
-    """Return OUT, IN or NEAR (k,) for places (k, 2) and pieces (s, 4) from x, y to x, y that close.
+    """Return OUT, IN or NEAR (k,) for places (k, 2) and chords (s, 4), from x, y to x, y, that close.
 
-    Inside, a line to the right crosses an odd number of pieces.
+    Inside, a ray towards +x crosses an odd number of chords.
     """
     out = np.empty(len(places), np.int64)
     for k, (x, y) in enumerate(places):
         ax, ay, bx, by = pieces.T
         square = (bx - ax) ** 2 + (by - ay) ** 2
         share = np.divide((x - ax) * (bx - ax) + (y - ay) * (by - ay), square, out=np.zeros(len(pieces)), where=square > 0.0).clip(0.0, 1.0)
+        # Nearest point of any chord within `near`.
         if (np.hypot(ax + share * (bx - ax) - x, ay + share * (by - ay) - y) <= near).any():
             out[k] = NEAR
             continue
+        # Chords whose ends lie on different sides of the ray, and those of them that cross it to
+        # the right.
         beside = (ay > y) != (by > y)
         at = ax[beside] + (y - ay[beside]) / (by - ay)[beside] * (bx - ax)[beside]
         out[k] = IN if (at > x).sum() % 2 else OUT
@@ -33,9 +41,10 @@ def within(places: Floats, pieces: Floats, near: float) -> Ints:
 
 @njit(cache=True, nogil=True)
 def within_loop(places: Floats, pieces: Floats, near: float, low: float, pitch: float, start: Ints, rows: Ints, out: Ints) -> None:
-    """Fill `out` with what `within` returns.
+    """Fill out (k,) with what `within` returns.
 
-    Strip i, from `low + i pitch` in y, lists the pieces that come within `near` of it from start[i] on.
+    Strip i, from `low + i pitch` in y, lists in rows, from start[i] on, the chords that come within
+    `near` of it; places beyond all strips are OUT.
     """
     for n in range(len(places)):
         x, y = places[n, 0], places[n, 1]
@@ -45,8 +54,11 @@ def within_loop(places: Floats, pieces: Floats, near: float, low: float, pitch: 
             continue
         for c in range(start[strip], start[strip + 1]):
             ax, ay, bx, by = pieces[rows[c], 0], pieces[rows[c], 1], pieces[rows[c], 2], pieces[rows[c], 3]
+            # Parity of crossings towards +x; a chord is listed in every strip it passes, and this
+            # place reads one.
             if (ay > y) != (by > y) and ax + (y - ay) / (by - ay) * (bx - ax) > x:
                 out[n] = IN - out[n]
+            # Only chords whose box is within `near` can be too near.
             if min(ax, bx) - near > x or max(ax, bx) + near < x or min(ay, by) - near > y or max(ay, by) + near < y:
                 continue
             square = (bx - ax) * (bx - ax) + (by - ay) * (by - ay)

@@ -1,7 +1,10 @@
-"""Pushing a cutter sideways against triangles: between which places along a line its tip is blocked. Plain, by dropping it there.
+"""Push-cutter: between which positions along a line a cutter's tip is blocked by triangles. Plain
+reference, by dropping it there.
 
-A line runs along x at (y, z). The cutter is the graph of its lower side, as in `kernels/drop.py`, and goes on upwards for ever. Its tip is
-blocked where it would have to stand higher: what a triangle blocks is one span, since the height that it lifts the tip to is concave.
+A line runs along x at (y, z). The cutter is the graph of its lower side, as in `kernels/drop.py`,
+and extends upwards for ever. Its tip is blocked where it would have to stand higher: what a
+triangle blocks is one interval, since the height that it lifts the tip to is concave along the
+line. mm, tool axis +z (the push-cutter of opencamlib).
 """
 
 from __future__ import annotations
@@ -20,7 +23,8 @@ NOWHERE = -1e9
 
 
 def push(lines: Floats, corners: Floats, pieces: Floats) -> Floats:
-    """Return from where to where each triangle (t, 3, 3) blocks the tip along lines (n, 2) of y and z: (n, t, 2), NaN where it doesn't."""
+    """Return the intervals of x in which each triangle (t, 3, 3) blocks the tip along lines (n, 2) of
+    y and z: (n, t, 2), NaN where it doesn't."""
     out = np.full((len(lines), len(corners), 2), np.nan)
     for n, (y, z) in enumerate(lines):
         for t, triangle in enumerate(corners):
@@ -29,12 +33,19 @@ def push(lines: Floats, corners: Floats, pieces: Floats) -> Floats:
 
 
 def _span(triangle: Floats, y: float, z: float, pieces: Floats) -> tuple[float, float]:
+    """Return the interval in which one triangle (1, 3, 3) blocks the line.
+
+    A grid drawn closer round the highest place finds a blocked one, if there is any; then bisection
+    of both ends.
+    """
     def height(x: Floats) -> Floats:
+        """Return the tip's height over the triangle at places x (n,) of the line."""
         return drop(np.column_stack([x, np.full(len(x), y)]), triangle, pieces, NOWHERE)
 
     radius = pieces[-1, RHO1]
     low, high = float(triangle[..., 0].min()) - radius, float(triangle[..., 0].max()) + radius
     a, b = low, high
+    # Concave in x: the highest of the grid and its neighbours bracket the maximum.
     for _ in range(CLOSER):
         x = np.linspace(a, b, SAMPLES)
         top = height(x)
@@ -46,6 +57,8 @@ def _span(triangle: Floats, y: float, z: float, pieces: Floats) -> tuple[float, 
 
 
 def _edge(height: Callable[[Floats], Floats], z: float, inside: float, outside: float) -> float:
+    """Return the last blocked x between a blocked place and a free one, by bisection to the last
+    digit."""
     for _ in range(HALVINGS):
         middle = 0.5 * (inside + outside)
         if middle in (inside, outside):

@@ -1,8 +1,10 @@
-"""Points and derivatives of B-spline surfaces, the plain way: the recursive definition of the base functions, place by place.
+"""Points and derivatives of rational B-spline surfaces (NURBS) by the recursive definition of the
+basis functions. Plain reference.
 
-A surface is two rows of knots, each as often as it counts, two degrees, and poles (m, n, 4) with weights: x w, y w, z w, w. What comes
-back for a place is (6, 3): the point, its derivatives by u and v, and the second ones by u twice, by both, by v twice. A place beyond the
-knots is on the continued first or last piece.
+Cox and de Boor's recursion (Piegl and Tiller, The NURBS Book, 1997, 2.2). A surface is two rows of
+knots, each as often as it counts, two degrees, and poles (m, n, 4) with weights: x w, y w, z w, w.
+What comes back for a place (u, v) is (6, 3): the point S, its derivatives S_u, S_v, S_uu, S_uv,
+S_vv. A place beyond the knots is on the continued first or last piece.
 """
 
 from __future__ import annotations
@@ -13,13 +15,21 @@ from trunnion.geometry.arrays import Floats
 
 
 def surface_at(places: Floats, knots_u: Floats, knots_v: Floats, degree_u: int, degree_v: int, poles: Floats) -> Floats:
-    """Return points and derivatives (k, 6, 3) at places (k, 2)."""
+    """Return points and derivatives (k, 6, 3) at places (k, 2), in mm and mm per unit of the
+    parameters.
+
+    With A = w S the quotient rule gives S_u = (A_u - w_u S) / w, S_uu = (A_uu - 2 w_u S_u - w_uu S)
+    / w, S_uv = (A_uv - w_u S_v - w_v S_u - w_uv S) / w (The NURBS Book, 4.5).
+    """
     out = np.empty((len(places), 6, 3))
     for k, (u, v) in enumerate(places):
         along = [_bases(knots_u, degree_u, u, order) for order in range(3)]
         across = [_bases(knots_v, degree_v, v, order) for order in range(3)]
+        # Tensor product in homogeneous coordinates: A and w with the derivatives that are asked
+        # for.
         p, pu, pv, puu, puv, pvv = (np.einsum("i,j,ijc->c", along[i], across[j], poles)
                                     for i, j in ((0, 0), (1, 0), (0, 1), (2, 0), (1, 1), (0, 2)))
+        # Back by the quotient rule.
         w, s = p[3], p[:3] / p[3]
         su, sv = (pu[:3] - pu[3] * s) / w, (pv[:3] - pv[3] * s) / w
         out[k] = (s, su, sv, (puu[:3] - 2.0 * pu[3] * su - puu[3] * s) / w, (puv[:3] - pu[3] * sv - pv[3] * su - puv[3] * s) / w,
@@ -28,7 +38,8 @@ def surface_at(places: Floats, knots_u: Floats, knots_v: Floats, degree_u: int, 
 
 
 def span_of(knots: Floats, degree: int, t: float) -> int:
-    """Return which piece between two knots holds a parameter: the last one at or before it that has a length."""
+    """Return the knot span that holds a parameter: the last one of positive length that begins at or
+    before it, held to the surface's own."""
     last = len(knots) - degree - 2
     span = int(np.clip(np.searchsorted(knots, t, side="right") - 1, degree, last))
     while knots[span] == knots[span + 1]:
@@ -37,15 +48,24 @@ def span_of(knots: Floats, degree: int, t: float) -> int:
 
 
 def _bases(knots: Floats, degree: int, t: float, order: int) -> Floats:
-    """Return a derivative of all base functions of a degree at t, on the piece that holds t."""
+    """Return a derivative, of order 0 to 2, of all basis functions of a degree at t, by the
+    polynomials of the span that holds t."""
     span = span_of(knots, degree, t)
     return np.array([_base(knots, i, degree, span, t, order) for i in range(len(knots) - degree - 1)])
 
 
 def _base(knots: Floats, i: int, degree: int, span: int, t: float, order: int) -> float:
+    """Return a derivative of basis function i of a degree at t.
+
+    N_i,p = (t - t_i) / (t_i+p - t_i) N_i,p-1 + (t_i+p+1 - t) / (t_i+p+1 - t_i+1) N_i+1,p-1, its
+    derivative p (N_i,p-1 / (t_i+p - t_i) - N_i+1,p-1 / (t_i+p+1 - t_i+1)); a quotient over no
+    length is 0.
+    """
     if degree == 0:
         return float(i == span and order == 0)
     total = 0.0
+    # Both terms of the recursion: basis function, sign of its derivative, linear factor, length of
+    # its support.
     for k, sign, from_, run in ((i, 1.0, t - knots[i], knots[i + degree] - knots[i]),
                                 (i + 1, -1.0, knots[i + degree + 1] - t, knots[i + degree + 1] - knots[i + 1])):
         if run > 0.0:

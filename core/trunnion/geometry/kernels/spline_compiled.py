@@ -1,4 +1,5 @@
-"""The loop of `kernels.spline` compiled: only the base functions that count at a place, built up degree by degree (de Boor)."""
+"""The loop of `kernels.spline` compiled: only the degree + 1 basis functions that are not 0 at a
+place, built up degree by degree (Cox, 1972; de Boor, 1972)."""
 
 from __future__ import annotations
 
@@ -10,6 +11,8 @@ from trunnion.geometry.arrays import Floats
 
 @njit(cache=True, nogil=True)
 def _span(knots: Floats, degree: int, t: float) -> int:
+    """Return the knot span that holds t, by bisection; one of no length gives way to the one before
+    it."""
     low, high = degree, len(knots) - degree - 1
     if t >= knots[high]:
         low = high - 1
@@ -27,7 +30,13 @@ def _span(knots: Floats, degree: int, t: float) -> int:
 
 @njit(cache=True, nogil=True)
 def _bases(knots: Floats, degree: int, t: float, span: int, low: Floats, out: Floats) -> None:
-    """Fill out (3, degree + 1) with the base functions that count on a piece and their first two derivatives; low is room for as many."""
+    """Fill out (3, degree + 1) with the basis functions that are not 0 on a span and their first two
+    derivatives; low, as large, is workspace.
+
+    Invariant: after round d rows 0 to 2 hold the functions of degree d and their derivatives. A
+    derivative follows from the product rule on the recursion: (x N)^(r) = x N^(r) + r x' N^(r-1), x
+    linear in t.
+    """
     for order in range(3):
         for k in range(degree + 1):
             out[order, k] = 0.0
@@ -42,7 +51,8 @@ def _bases(knots: Floats, degree: int, t: float, span: int, low: Floats, out: Fl
         for k in range(d):
             right, left = knots[span + 1 + k], knots[span + 1 + k - d]
             each = 1.0 / (right - left)
-            # A base of degree d - 1 is shared by two of degree d: rising towards the right one, falling towards the left one.
+            # A function of degree d - 1 is shared by two of degree d: rising towards the right one,
+            # falling towards the left one.
             rising, falling = (t - left) * each, (right - t) * each
             out[0, k + 1] += rising * low[0, k]
             out[0, k] += falling * low[0, k]
@@ -54,7 +64,8 @@ def _bases(knots: Floats, degree: int, t: float, span: int, low: Floats, out: Fl
 @njit(cache=True, nogil=True)
 def surface_loop(first: int, last: int, places: Floats, knots_u: Floats, knots_v: Floats, degree_u: int, degree_v: int, poles: Floats,
                  out: Floats) -> None:
-    """Fill out[first:last] (k, 6, 3) with points and derivatives at places (k, 2)."""
+    """Fill out[first:last] (k, 6, 3) with points and derivatives at places (k, 2); see
+    `kernels.spline.surface_at`."""
     along, across = np.zeros((3, degree_u + 1)), np.zeros((3, degree_v + 1))
     room = np.zeros((3, max(degree_u, degree_v) + 1))
     p = np.zeros((6, 4))
@@ -64,6 +75,8 @@ def surface_loop(first: int, last: int, places: Floats, knots_u: Floats, knots_v
         _bases(knots_u, degree_u, u, su, room, along)
         _bases(knots_v, degree_v, v, sv, room, across)
         p[:] = 0.0
+        # Tensor product: sums over v first, then over u, of the homogeneous coordinates A and w and
+        # their derivatives.
         for i in range(degree_u + 1):
             for c in range(4):
                 row0, row1, row2 = 0.0, 0.0, 0.0
@@ -79,6 +92,7 @@ def surface_loop(first: int, last: int, places: Floats, knots_u: Floats, knots_v
                 p[4, c] += along[1, i] * row1
                 p[5, c] += along[0, i] * row2
         w = p[0, 3]
+        # Back from homogeneous coordinates by the quotient rule.
         for c in range(3):
             s = p[0, c] / w
             du, dv = (p[1, c] - p[1, 3] * s) / w, (p[2, c] - p[2, 3] * s) / w

@@ -1,7 +1,11 @@
-"""Which of a machine's rotary angles a row of poses is followed with: those that turn least, without a leap, inside the limits. Plain.
+"""Rotary axis angles along a whole sequence of poses: least total turning within the limits, by
+dynamic programming. Plain reference.
 
-A pose can be held in two ways, each the same again after whole turns. Where the tool lies along an axis that axis is free: it stays. From
-one way to the other the machine can go only through the pole, where both are the same.
+The inverse kinematics of a five-axis machine have two solutions for a tool axis, each repeated
+every full turn of an axis. Where the tool lies along an axis that axis is free: it stays. From one
+solution to the other the machine can pass only through the pole (singularity), where both are the
+same. Two states a pose, so the dynamic programme (Bellman, 1957) is exact over the two solutions;
+of the turns of an angle the nearest is taken.
 """
 
 from __future__ import annotations
@@ -17,11 +21,14 @@ TURN = 2.0 * math.pi
 
 def follow(angles: Floats, free: Bools, through: Bools, low: Floats, high: Floats, slack: float, start: Floats,
            chosen: Floats) -> tuple[int, float]:
-    """Fill `chosen` (m, a) with rotary angles in rad; return how many poses could be followed and how far the axes turned in all.
+    """Fill chosen (m, a) with rotary angles in rad; return how many poses could be followed and how
+    far (rad) the axes turned in all.
 
-    angles (m, 2, a): both ways to hold each pose, rad; free (m, 2, a): that axis may stand anywhere; through (m,): the pole lies on the way
-    to that pose. low, high (a,) are the limits, passed by at most `slack`; the first pose is reached from `start` (a,) by any turn, each
-    other by half a turn at most. Where a pose can be followed in no way it ends, and `chosen` is left as it was.
+    angles (m, 2, a): both solutions of each pose, rad; free (m, 2, a): that axis may stand
+    anywhere; through (m,): the pole lies on the path to that pose. low, high (a,) are the limits,
+    passed by at most `slack`; the first pose is reached from `start` (a,) by any turn, each other
+    by half a turn at most. Where a pose can be followed by neither solution it ends, and `chosen`
+    is left as it was.
     """
     m, _, axes = angles.shape
     stand: list[list[list[float] | None]] = []
@@ -31,6 +38,7 @@ def follow(angles: Floats, free: Bools, through: Bools, low: Floats, high: Float
         stand.append([None, None])
         cost.append([math.inf, math.inf])
         origin.append([0, 0])
+        # cost[k][way]: least turning to reach pose k by a solution, over both of the pose before.
         for way in range(2):
             for other in range(2) if k else (way,):
                 before = stand[k - 1][other] if k else [float(s) for s in start]
@@ -48,6 +56,7 @@ def follow(angles: Floats, free: Bools, through: Bools, low: Floats, high: Float
             return k, math.inf
     if not m:
         return 0, 0.0
+    # Trace back from the cheaper end.
     way = int(np.argmin(cost[-1]))
     spent = cost[-1][way]
     for k in reversed(range(m)):
@@ -57,7 +66,8 @@ def follow(angles: Floats, free: Bools, through: Bools, low: Floats, high: Float
 
 
 def nearest(angle: float, before: float, low: float, high: float, slack: float) -> float:
-    """Return the angle up to whole turns that is nearest to the one before and inside the limits; infinity where none is."""
+    """Return the angle congruent to `angle` modulo a full turn that is nearest to the one before and
+    inside the limits (rad, within slack); infinity where none is."""
     middle = round((before - angle) / TURN)
     least, most = math.ceil((low - slack - angle) / TURN), math.floor((high + slack - angle) / TURN)
     inside = [angle + TURN * n for n in (middle, least, most) if least <= n <= most]

@@ -1,9 +1,14 @@
-"""Compiled loops that make a closed mesh of three bundles of rays, by dual contouring (Ju, Losasso, Schaefer, Warren 2002).
+"""Compiled extraction of a closed mesh from a tri-dexel stock by dual contouring (Ju, Losasso,
+Schaefer, Warren, Dual contouring of Hermite data, 2002).
 
-The rays cross at the nodes of a lattice. A node is in material or not, by the z rays; on an edge between two that differ, the ray along it
-says where material ends, and its neighbours how the surface leans there. Each box of eight nodes that differ gets one point, as near as can
-be to the planes through its edges' ends, so edges and corners of the stock stay sharp; around each such edge four points make a face. Two
-layers of nodes and points are held at a time. Where a bundle is missing, its edges end half way.
+The rays cross at the nodes of a lattice. A node is in material or not, by the z rays; on an edge
+between two that differ, the ray along it tells where material ends, and its neighbours how the
+surface leans there (Hermite data). Each box of eight nodes that differ gets one point, as near as
+can be to the planes through its edges' ends, so edges and corners of the stock stay sharp; around
+each such edge four points make a face. Two layers of nodes and points are held at a time. Where a
+bundle is missing, its edges end half way.
+
+For display and comparison of stock, no bound of the proof. mm, the frame of the stock.
 """
 
 from __future__ import annotations
@@ -28,7 +33,8 @@ Ends = tuple[Floats, Floats, Floats]
 
 @njit(cache=True, nogil=True)
 def _end_near(count: Ints, ends: Floats, ray: int, place: float, reach: float) -> float:
-    """Return the end of material on a ray that is nearest to a place, NaN where none is within reach."""
+    """Return the end of material (mm) on a ray that is nearest to a place, NaN where none is within
+    `reach` (mm)."""
     best, found = reach, np.nan
     for k in range(count[ray]):
         away = abs(ends[ray, k] - place)
@@ -40,7 +46,13 @@ def _end_near(count: Ints, ends: Floats, ray: int, place: float, reach: float) -
 @njit(cache=True, nogil=True)
 def _edge(axis: int, cell: Ints, leaves: bool, counts: Counts, lows: Ends, highs: Ends, cells: Ints, origin: Floats, pitch: float,
           step: int, has: Bools, place: Floats, normal: Floats) -> None:
-    """Fill in where the surface crosses an edge that begins at the node of a cell, and its outward normal. `leaves`: upwards along it."""
+    # The two other axes in cyclic order: ray v * cells[u] + u.
+    """Fill place (3,) and normal (3,) with where the surface crosses a lattice edge along `axis` from
+    the node of a cell (3,), and its outward unit normal there.
+
+    `leaves`: material ends upwards along the edge. Without a bundle or an end on its ray the
+    crossing is half way and the normal along the edge.
+    """
     u, v = (axis + 1) % 3, (axis + 2) % 3
     half = 0.5 * step * pitch
     for c in range(3):
@@ -54,6 +66,8 @@ def _edge(axis: int, cell: Ints, leaves: bool, counts: Counts, lows: Ends, highs
     if np.isnan(end):
         return
     place[axis] = end
+    # Slopes across the edge from the ends of neighbouring rays: their mean where both sides agree,
+    # else the smaller, as the other is beyond an edge of the stock.
     for side in range(2):
         across, slope, sides = u if side == 0 else v, 0.0, 0
         for way in range(-1, 2, 2):
@@ -72,6 +86,7 @@ def _edge(axis: int, cell: Ints, leaves: bool, counts: Counts, lows: Ends, highs
             elif abs(rise) < abs(slope):
                 slope = rise
             sides += 1
+        # The surface a = end + slope * across has the normal (1, -slope), signed outwards.
         normal[across] = -slope * normal[axis]
     size = math.sqrt(normal[0] ** 2 + normal[1] ** 2 + normal[2] ** 2)
     for c in range(3):
@@ -81,7 +96,8 @@ def _edge(axis: int, cell: Ints, leaves: bool, counts: Counts, lows: Ends, highs
 @njit(cache=True, nogil=True)
 def _layer(k: int, count: Ints, low: Floats, high: Floats, cells: Ints, nodes: Ints, origin: Floats, pitch: float, step: int,
            inside: Bools) -> None:
-    """Fill in which nodes of a layer (rows, columns, each with a border of nodes outside) are in material."""
+    """Fill inside (rows, columns, each with a border of nodes outside) with which nodes of layer k are
+    in material."""
     inside[:] = False
     if not 0 <= k < nodes[2]:
         return
@@ -98,7 +114,8 @@ def _layer(k: int, count: Ints, low: Floats, high: Floats, cells: Ints, nodes: I
 
 @njit(cache=True, nogil=True)
 def _solve(a: Floats, b: Floats, out: Floats) -> None:
-    """Solve a symmetric positive system of three by Cramer's rule."""
+    """Solve a symmetric positive definite system of three, a (3, 3), b (3,), by Cramer's rule into out
+    (3,)."""
     c00, c01, c02 = a[1, 1] * a[2, 2] - a[1, 2] ** 2, a[0, 2] * a[1, 2] - a[0, 1] * a[2, 2], a[0, 1] * a[1, 2] - a[0, 2] * a[1, 1]
     c11, c12, c22 = a[0, 0] * a[2, 2] - a[0, 2] ** 2, a[0, 1] * a[0, 2] - a[0, 0] * a[1, 2], a[0, 0] * a[1, 1] - a[0, 1] ** 2
     size = a[0, 0] * c00 + a[0, 1] * c01 + a[0, 2] * c02
@@ -110,10 +127,18 @@ def _solve(a: Floats, b: Floats, out: Floats) -> None:
 @njit(cache=True, nogil=True)
 def _point(i: int, j: int, k: int, lower: Bools, upper: Bools, counts: Counts, lows: Ends, highs: Ends, cells: Ints, origin: Floats,
            pitch: float, step: int, has: Bools, work: Floats, cell: Ints, out: Floats) -> None:
-    """Fill in the point of the box whose lowest node is (i, j, k) of the lattice with its border."""
+    """Fill out (3,) with the point of the box whose lowest node is (i, j, k) of the lattice with its
+    border.
+
+    Least squares of the planes' distances (a quadratic error function), relative to the mean of the
+    crossings: sum n n^T x = sum n (n . (place - mean)), with CALM added on the diagonal (Tikhonov),
+    so that a flat or straight surface keeps its point at the mean. The point is held within its
+    box.
+    """
     a, b, mean, place, normal, offset = work[0:3], work[3], work[4], work[5], work[6], work[7]
     a[:], b[:], mean[:] = 0.0, 0.0, 0.0
     begin, total = step // 2, 0
+    # First round: mean of the crossings; second round: the normal equations about it.
     for again in range(2):
         for axis in range(3):
             for corner in range(4):
@@ -151,7 +176,8 @@ def _point(i: int, j: int, k: int, lower: Bools, upper: Bools, counts: Counts, l
 
 @njit(cache=True, nogil=True)
 def count_faces(counts: Counts, lows: Ends, highs: Ends, cells: Ints, origin: Floats, pitch: float, step: int) -> tuple[int, int]:
-    """Return how many points and how many faces of four points the mesh would have."""
+    """Return how many points and how many faces of four points the mesh of `mesh_rays` has; arguments
+    as there."""
     nodes = (cells - step // 2 + step - 1) // step
     lower, upper = np.zeros((nodes[1] + 2, nodes[0] + 2), np.bool_), np.zeros((nodes[1] + 2, nodes[0] + 2), np.bool_)
     points, faces = 0, 0
@@ -159,6 +185,7 @@ def count_faces(counts: Counts, lows: Ends, highs: Ends, cells: Ints, origin: Fl
         _layer(k, counts[2], lows[2], highs[2], cells, nodes, origin, pitch, step, upper)
         for j in range(nodes[1] + 1):
             for i in range(nodes[0] + 1):
+                # A box whose eight nodes differ has a point; an edge whose nodes differ has a face.
                 some = (int(lower[j, i]) + lower[j, i + 1] + lower[j + 1, i] + lower[j + 1, i + 1] + upper[j, i] + upper[j, i + 1]
                         + upper[j + 1, i] + upper[j + 1, i + 1])
                 points += 1 if 0 < some < 8 else 0
@@ -169,7 +196,8 @@ def count_faces(counts: Counts, lows: Ends, highs: Ends, cells: Ints, origin: Fl
 
 @njit(cache=True, nogil=True)
 def _face(a: int, b: int, c: int, d: int, turned: bool, points: Floats, triangles: Ints, n: int) -> int:
-    """Add a face of four points, cut along its shorter diagonal."""
+    """Add the two triangles of a face of four points, cut along its shorter diagonal, to triangles
+    from row n on; return the next row. `turned` reverses the orientation."""
     first, second = 0.0, 0.0
     for e in range(3):
         first += (points[a, e] - points[c, e]) ** 2
@@ -186,11 +214,13 @@ def _face(a: int, b: int, c: int, d: int, turned: bool, points: Floats, triangle
 @njit(cache=True, nogil=True)
 def mesh_rays(counts: Counts, lows: Ends, highs: Ends, has: Bools, cells: Ints, origin: Floats, pitch: float, step: int, n_points: int,
               n_faces: int) -> tuple[Floats, Ints]:
-    """Return points (v, 3) and triangles (t, 3), anticlockwise from outside, of the stock that three bundles of rays hold.
+    """Return points (v, 3) and triangles (t, 3), anticlockwise from outside, of the stock that three
+    bundles of rays hold.
 
-    counts, lows, highs: of the bundles along x, y, z; ray v * cells[u] + u stands in cell (u, v) of the two other axes, in cyclic order.
-    has (3,): which bundles there are (z always); cells (3,) along each axis from origin (3,), `pitch` wide; a lattice of every `step`-th
-    ray; n_points, n_faces: what `count_faces` says.
+    counts, lows, highs: of the bundles along x, y, z; ray v * cells[u] + u stands in cell (u, v) of
+    the two other axes, in cyclic order. has (3,): which bundles there are (z always); cells (3,)
+    along each axis from origin (3,), `pitch` wide; a lattice of every `step`-th ray; n_points,
+    n_faces: what `count_faces` says.
     """
     nodes = (cells - step // 2 + step - 1) // step
     wide, deep = nodes[0] + 2, nodes[1] + 2
@@ -210,11 +240,13 @@ def mesh_rays(counts: Counts, lows: Ends, highs: Ends, has: Bools, cells: Ints, 
                     over[j, i] = v
                     v += 1
         # Boxes of the layer below are in `under`; the edges in the lower layer of nodes and those up from it are now surrounded.
+        # Faces around edges along z, between the two layers of nodes.
         for j in range(1, deep - 1):
             for i in range(1, wide - 1):
                 here = lower[j, i]
                 if here != upper[j, i]:
                     n = _face(over[j - 1, i - 1], over[j - 1, i], over[j, i], over[j, i - 1], not here, points, triangles, n)
+        # Faces around edges along x and y in the lower layer, between the two layers of points.
         for j in range(deep - 1):
             for i in range(wide - 1):
                 here = lower[j, i]

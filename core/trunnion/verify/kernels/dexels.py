@@ -1,10 +1,25 @@
-"""Compiled loops of the stock engine: bundles of parallel rays, cut by convex bodies of revolution that move and turn.
+"""Compiled material removal on a tri-dexel stock: bundles of parallel rays, cut by convex bodies of
+revolution that move and turn.
 
-A bundle's rays run along w and stand at cell centres in (u, v): its coordinates are the blank's, turned in a cycle. A span is a short piece
-of a move: within it the tool's tip runs straight, and so does every point seen from the tool, up to an error that the spans' maker keeps
-below `tolerance.STOCK_CHORD`. How deep a point of a ray is in the body (`kernels/body.py`) is then concave in its place w and, at one
-place, in the time t; tangents bound it from above. So one look at the end of the material that is nearest rejects most rays, and the ends
-of what is cut are found by Newton steps from outside, which never go too far. Nothing is sampled over time: the envelope leaves no ridges.
+A ray (dexel) keeps its material as sorted disjoint intervals; up to three bundles along x, y and z
+stand for the stock (van Hook, 1986; Benouamer and Michelucci, Bridging the gap between CSG and Brep
+via a triple ray representation, 1997). A bundle's rays run along w and stand at cell centres in (u,
+v): its coordinates are the blank's, turned in a cycle.
+
+A span is a short piece of a move: within it the tool's tip runs straight, and so does every point
+seen from the tool, up to an error that `stock/spans.py` keeps below `tolerance.STOCK_CHORD`. What a
+body sweeps in a span takes from a ray the set of w with
+
+    F(w) = max over t in [0, 1] of D(w, t) > 0,
+
+D the depth of the ray's point at w in the body (`kernels/body.py`). D is concave in w and, at one
+w, in t: tangents bound it from above. So one evaluation at the end of the material that is nearest
+rejects most rays, and the ends of what is cut are found by Newton steps from outside, which never
+overshoot a concave function. Nothing is sampled over time: the envelope leaves no ridges.
+
+Where the tool turns, D is concave in w at every t but F need not be: such spans are bisected where
+Newton overshoots, and looked at in between for a gap. Bodies are taken smaller by SHRINK, so cuts
+err towards standing material. mm, rad.
 """
 
 from __future__ import annotations
@@ -18,13 +33,16 @@ from trunnion.geometry.arrays import Bools, Floats, Ints
 from trunnion.verify.kernels.body import CLOSED_FIRST, CLOSED_LAST, KIND, R_MAX, Z_HIGH, Z_LOW, depth_in_body, radius_at
 from trunnion.verify.kernels.engagement import look_in_intervals
 
-# Columns of a span: tip and tool frame (its rows: two axes across, the tool axis) at both ends, then the boxes of what cuts, of all and of
-# the tip's way. Of an arc that goes level about an axis of the blank, the whole is one span: centre, direction of its middle, then radius
-# and cosine of half its angle (each three times, so that turning coordinates changes nothing); the radius is 0 for all others.
+# Columns of a span: tip and tool frame (its rows: two axes across, the tool axis) at both ends,
+# then the boxes of what cuts, of all and of the tip's path. Of an arc that runs level about an axis
+# of the blank, the whole is one span: centre, direction of its middle, then radius and cosine of
+# half its angle (each three times, so that turning coordinates changes nothing); the radius is 0
+# for all others.
 TIP0, FRAME0, TIP1, FRAME1, CUT_BOX, ALL_BOX, WAY_BOX, CENTRE, MIDDLE, ARC_RADIUS, COS_HALF = 0, 3, 12, 15, 24, 30, 36, 42, 45, 48, 51
 SPAN_COLUMNS = 54
-# A ray as a span's tool frames see it: foot (3) and direction (3) at the start, what both gain until the end (3, 3), by how much the
-# direction turns, how much smaller the body is taken, and room to sort places on it.
+# A ray in the tool frames of a span: foot (3) and direction (3) at the start, what both gain until
+# the end (3, 3), by how much the direction turns, how much smaller the body is taken, and room to
+# sort places on it.
 TWIST, SMALLER, MARKS = 12, 13, 14
 RAY_COLUMNS = 22
 SHRINK = 1e-6
@@ -47,11 +65,17 @@ _in_body = njit(nogil=True, inline="always")(depth_in_body.py_func)
 
 @njit(cache=True, nogil=True, inline="always")
 def _depth(arcs: Floats, first: int, last: int, limit: float, ray: Floats, w: float, t: float) -> tuple[float, float, float]:
-    """Return how deep a ray's point is in a body at a time, and the slopes along w and t."""
+    """Return the depth D (mm) of a ray's point at w in a body at the time t, and the slopes along w
+    and t.
+
+    The point is foot + w direction + t (gain of the foot + w gain of the direction), in the tool
+    frame. `limit`: a level end face at that height, infinite for none.
+    """
     gx, gy, gz = ray[6] + w * ray[9], ray[7] + w * ray[10], ray[8] + w * ray[11]
     x, y, h = ray[0] + w * ray[3] + t * gx, ray[1] + w * ray[4] + t * gy, ray[2] + w * ray[5] + t * gz
     rho = math.sqrt(x * x + y * y)
     depth, nr, nz = _in_body(arcs, first, last, rho, h)
+    # The flutes' top is one more half-plane: depth at most limit - h.
     if limit - h < depth:
         depth, nr, nz = limit - h, 0.0, 1.0
     nx, ny = 0.0, 0.0
@@ -63,16 +87,22 @@ def _depth(arcs: Floats, first: int, last: int, limit: float, ray: Floats, w: fl
 
 @njit(cache=True, nogil=True)
 def _over_time(arcs: Floats, first: int, last: int, limit: float, ray: Floats, w: float) -> tuple[float, float]:
-    """Return the largest depth of a ray's point over a span, and a slope with which it bounds the depth along the ray from above.
+    """Return F(w), the largest depth (mm) of a ray's point over a span, and a slope with which it
+    bounds F along the ray from above.
 
-    The depth is from above itself, within `NOISE`, or a share of it where the point is outside.
+    The value is an upper bound, within `NOISE` of F, or within a twentieth of it where the point is
+    outside: it errs deep.
     """
+    # A concave function that falls at the start, or rises at the end, is greatest there.
     f0, slope0, s0 = _depth(arcs, first, last, limit, ray, w, 0.0)
     if s0 <= 0.0:
         return f0, slope0
     f1, slope1, s1 = _depth(arcs, first, last, limit, ray, w, 1.0)
     if s1 >= 0.0:
         return f1, slope1
+    # Cutting planes in time (Kelley, 1960). Invariant: D rises at t0 and falls at t1. The mixture
+    # of both tangent planes that is level in time bounds D for all times, and its slope along the
+    # ray bounds F.
     t0, t1 = 0.0, 1.0
     most, slope = f0, slope0
     for step in range(60):
@@ -83,6 +113,8 @@ def _over_time(arcs: Floats, first: int, last: int, limit: float, ray: Floats, w
         gap = most - max(f0, f1)
         if gap <= NOISE or (most < 0.0 and gap <= -0.05 * most):
             break
+        # Every other step at the slopes' balance and never at an end of the bracket: so it always
+        # shrinks.
         if step % 2:
             t = t0 + (t1 - t0) * share
         t = min(max(t, t0 + 1e-3 * (t1 - t0)), t1 - 1e-3 * (t1 - t0))
@@ -98,7 +130,8 @@ def _over_time(arcs: Floats, first: int, last: int, limit: float, ray: Floats, w
 
 @njit(cache=True, nogil=True)
 def _bisected(arcs: Floats, first: int, last: int, limit: float, ray: Floats, outside: float, inside: float) -> float:
-    """Return where a ray enters what is swept, between a place outside and one inside."""
+    """Return where a ray enters what is swept, between a place outside and one inside, to within THIN
+    (mm); the inner side, so not too much is cut."""
     while abs(inside - outside) > THIN:
         w = 0.5 * (inside + outside)
         if _over_time(arcs, first, last, limit, ray, w)[0] > 0.0:
@@ -110,7 +143,12 @@ def _bisected(arcs: Floats, first: int, last: int, limit: float, ray: Floats, ou
 
 @njit(cache=True, nogil=True)
 def _entered(arcs: Floats, first: int, last: int, limit: float, ray: Floats, w: float, end: float) -> float:
-    """Return where a ray that goes from w towards `end` enters what is swept; NaN when it doesn't before."""
+    """Return where a ray that runs from w towards `end` enters what is swept; NaN when it doesn't
+    before.
+
+    Newton's method on F from outside: F(w) + slope (w' - w) bounds F, so its root is not beyond the
+    entry.
+    """
     way = 1.0 if end > w else -1.0
     before = w
     for step in range(100):
@@ -121,6 +159,7 @@ def _entered(arcs: Floats, first: int, last: int, limit: float, ray: Floats, w: 
         # What is only touched to begin with, and left behind, was cut before.
         if f > NOISE or (f >= -NOISE and step > 0):
             return w
+        # F no longer rises towards the end: concave, so it never becomes positive.
         slope *= way
         if slope <= 1e-12:
             return np.nan
@@ -133,14 +172,23 @@ def _entered(arcs: Floats, first: int, last: int, limit: float, ray: Floats, w: 
 
 @njit(cache=True, nogil=True, inline="always")
 def _bound(arcs: Floats, first: int, last: int, limit: float, ray: Floats, w: float, end: float) -> float:
-    """Return a bound from above for the depth between two places over a span, from one look at w."""
+    """Return an upper bound (mm) of the depth between two places over a span, from one evaluation at w
+    and t = 0.
+
+    Tangents in w and t, plus the bilinear term: TWIST is how far a unit of w is turned over the
+    span.
+    """
     f, slope, s = _depth(arcs, first, last, limit, ray, w, 0.0)
     return f + max(slope * (end - w), 0.0) + max(s, 0.0) + ray[TWIST] * abs(end - w)
 
 
 @njit(cache=True, nogil=True)
 def _highest(arcs: Floats, first: int, last: int, limit: float, ray: Floats, low: float, high: float) -> tuple[float, float]:
-    """Return the largest depth between two places of a ray over a span, and its place."""
+    """Return the largest depth (mm) between two places of a ray over a span, and its place; attained,
+    within 1e-5 mm.
+
+    Cutting planes along w, as `_over_time` has them along t.
+    """
     f0, s0 = _over_time(arcs, first, last, limit, ray, low)
     f1, s1 = _over_time(arcs, first, last, limit, ray, high)
     best, place = (f0, low) if f0 >= f1 else (f1, high)
@@ -165,7 +213,12 @@ def _highest(arcs: Floats, first: int, last: int, limit: float, ray: Floats, low
 
 @njit(cache=True, nogil=True, inline="always")
 def _aim(ray: Floats, span: Floats, u: float, v: float) -> None:
-    """Write a ray as a span's tool frames see it: its foot and direction at the start, and how both go on until the end."""
+    """Write the ray at (u, v) into the tool frames of a span: foot and direction at the start, and
+    what both gain until the end.
+
+    A ray along the axis of a tool that moves level needs no time: its points are deepest when the
+    axis is nearest (the depth falls with rho alone), so its foot is set there and its gains to 0.
+    """
     for m in range(3):
         a, b = FRAME0 + 3 * m, FRAME1 + 3 * m
         foot = span[a] * (u - span[TIP0]) + span[a + 1] * (v - span[TIP0 + 1]) - span[a + 2] * span[TIP0 + 2]
@@ -186,7 +239,8 @@ def _aim(ray: Floats, span: Floats, u: float, v: float) -> None:
 
 @njit(cache=True, nogil=True)
 def _from_arc(span: Floats, u: float, v: float, w: float) -> float:
-    """Return how far a point is from the axis that goes along an arc, across the axis."""
+    """Return how far (mm) a point (u, v, w) is from the tool axis that moves along an arc, across the
+    axis: to the circle in the arc's sector, else to the nearer end."""
     a, b, c = span[FRAME0 + 6], span[FRAME0 + 7], span[FRAME0 + 8]
     x, y, z = u - span[CENTRE], v - span[CENTRE + 1], w - span[CENTRE + 2]
     along = a * x + b * y + c * z
@@ -204,7 +258,11 @@ def _from_arc(span: Floats, u: float, v: float, w: float) -> float:
 
 @njit(cache=True, nogil=True)
 def _box(box: Floats, span: Floats, piece: Floats, turns: bool) -> None:
-    """Write the box of what a piece sweeps in a span: low and high of u, v, w."""
+    """Write box (6,), low and high of u, v, w, of what a piece sweeps in a span.
+
+    Across a direction that the axis leans to by a, a disc of radius r reaches r sqrt(1 - a^2). With
+    `turns` wider by BENT.
+    """
     r, more = piece[R_MAX], BENT if turns else 0.0
     if span[ARC_RADIUS] != 0.0:
         for m in range(3):
@@ -225,7 +283,8 @@ def _box(box: Floats, span: Floats, piece: Floats, turns: bool) -> None:
 
 @njit(cache=True, nogil=True)
 def _misses(count: Ints, low: Floats, high: Floats, cell: int, bottom: float, top: float) -> bool:
-    """Say whether a ray has no material between two places, or no more than what a cut leaves."""
+    """Return whether a ray has no material between two places, or no more than what SHRINK leaves of a
+    cut."""
     for k in range(count[cell]):
         if high[cell, k] > bottom + 2.0 * SHRINK:
             return low[cell, k] >= top - 2.0 * SHRINK
@@ -234,7 +293,8 @@ def _misses(count: Ints, low: Floats, high: Floats, cell: int, bottom: float, to
 
 @njit(cache=True, nogil=True)
 def _cells(low: float, high: float, origin: float, pitch: float, first: int, last: int) -> tuple[int, int]:
-    """Return the first cell and the one after the last whose centres lie between two coordinates, of those from `first` to `last`."""
+    """Return the first cell and the one after the last whose centres lie between two coordinates (mm),
+    of those from `first` to `last`."""
     a = int(math.ceil((low - origin) / pitch - 0.5))
     b = int(math.floor((high - origin) / pitch - 0.5)) + 1
     return max(a, first), min(b, last)
@@ -242,8 +302,14 @@ def _cells(low: float, high: float, origin: float, pitch: float, first: int, las
 
 @njit(cache=True, nogil=True)
 def take_away(count: Ints, low: Floats, high: Floats, cell: int, k: int, a: float, b: float) -> float:
-    """Take what lies between a and b off a ray's interval k (a < b, both within it); return the length that is gone."""
+    """Subtract [a, b] from a ray's interval k (a < b, both within it); return the length (mm) that is
+    gone.
+
+    Remainders thinner than THIN go too. The ray needs room for one more interval. Intervals stay
+    sorted and disjoint.
+    """
     left, right = a - low[cell, k] > THIN, high[cell, k] - b > THIN
+    # The middle goes: two intervals remain.
     if left and right:
         for m in range(count[cell], k + 1, -1):
             low[cell, m], high[cell, m] = low[cell, m - 1], high[cell, m - 1]
@@ -268,7 +334,7 @@ def take_away(count: Ints, low: Floats, high: Floats, cell: int, k: int, a: floa
 
 @njit(cache=True, nogil=True)
 def _disc(arcs: Floats, first: int, last: int, limit: float, h: float) -> float:
-    """Return the radius of what a body cuts at a height; 0 where it cuts nothing."""
+    """Return the radius (mm) of what a body cuts at a height, less SHRINK; 0 where it cuts nothing."""
     if h > limit - SHRINK or depth_in_body(arcs, first, last, 0.0, h)[0] <= SHRINK:
         return 0.0
     return radius_at(arcs, first, last, h) - SHRINK
@@ -276,7 +342,12 @@ def _disc(arcs: Floats, first: int, last: int, limit: float, h: float) -> float:
 
 @njit(cache=True, nogil=True)
 def _across(arcs: Floats, first: int, last: int, limit: float, ray: Floats) -> tuple[float, float]:
-    """Return from where to where a ray across the axis is in a body that moves level: in a disc swept along a line."""
+    """Return from where to where (w, mm) a ray across the axis lies in a body that moves level: in a
+    disc swept along a line; low > high where it does not.
+
+    A capsule is convex, so the hull of the ray's stretches in both end discs and between the
+    straight sides is exact.
+    """
     r = _disc(arcs, first, last, limit, ray[2])
     if r <= 0.0:
         return 1.0, 0.0
@@ -306,7 +377,7 @@ def _across(arcs: Floats, first: int, last: int, limit: float, ray: Floats) -> t
 
 @njit(cache=True, nogil=True)
 def _marked(ray: Floats, n: int, w: float) -> int:
-    """Put one more place among those marked on a ray, in order; return how many there are."""
+    """Insert a place into those marked on a ray, in order; return how many there are."""
     k = MARKS + n
     while k > MARKS and ray[k - 1] > w:
         ray[k] = ray[k - 1]
@@ -318,7 +389,12 @@ def _marked(ray: Floats, n: int, w: float) -> int:
 @njit(cache=True, nogil=True)
 def _cut_across_arc(arcs: Floats, first: int, last: int, limit: float, ray: Floats, span: Floats, u: float, v: float, count: Ints,
                     low: Floats, high: Floats, cell: int, bottom: float, top: float) -> tuple[float, bool]:
-    """Cut a ray across the axis by a body that goes level along an arc: by a disc swept; return as `_cut_ray` does."""
+    """Cut a ray across the axis by a body that moves level along an arc: by a disc swept; return as
+    `_cut_ray` does.
+
+    The sweep is not convex. All its boundary points on the ray are marked, on the outer and the
+    inner circle and on both end discs, and each stretch between two marks is tested at its middle.
+    """
     r, radius = _disc(arcs, first, last, limit, ray[2]), span[ARC_RADIUS]
     if r <= 0.0:
         return 0.0, True
@@ -326,6 +402,7 @@ def _cut_across_arc(arcs: Floats, first: int, last: int, limit: float, ray: Floa
     x, y = span[CENTRE] - u, span[CENTRE + 1] - v
     along = span[FRAME0 + 6] * x + span[FRAME0 + 7] * y
     beside, middle = math.sqrt(max(x * x + y * y - along * along, 0.0)), span[CENTRE + 2]
+    # The ray passes outside of the outer circle, or has no material within it.
     if beside >= radius + r:
         return 0.0, True
     half = math.sqrt((radius + r) ** 2 - beside * beside)
@@ -344,6 +421,7 @@ def _cut_across_arc(arcs: Floats, first: int, last: int, limit: float, ray: Floa
         if square > 0.0:
             half = math.sqrt(square)
             n = _marked(ray, _marked(ray, n, w - half), w + half)
+    # Neighbouring stretches inside are taken away together.
     gone, open_at = 0.0, np.nan
     for k in range(n):
         inside = k + 1 < n and _from_arc(span, u, v, 0.5 * (ray[MARKS + k] + ray[MARKS + k + 1])) < r
@@ -359,7 +437,11 @@ def _cut_across_arc(arcs: Floats, first: int, last: int, limit: float, ray: Floa
 
 @njit(cache=True, nogil=True)
 def _take_all(count: Ints, low: Floats, high: Floats, cell: int, a: float, b: float) -> tuple[float, bool]:
-    """Take what lies between a and b off a ray; return the length that is gone, and whether the ray had room for all that is left."""
+    """Subtract [a, b] from all intervals of a ray; return the length (mm) that is gone, and whether
+    the ray had room for all that is left.
+
+    Overlaps thinner than NOISE are left.
+    """
     gone, k = 0.0, 0
     while k < count[cell]:
         c, d = max(a, low[cell, k]), min(b, high[cell, k])
@@ -375,7 +457,12 @@ def _take_all(count: Ints, low: Floats, high: Floats, cell: int, a: float, b: fl
 @njit(cache=True, nogil=True)
 def _cut_ray(arcs: Floats, first: int, last: int, limit: float, ray: Floats, span: Floats, u: float, v: float, count: Ints, low: Floats,
              high: Floats, cell: int, box: Floats) -> tuple[float, bool]:
-    """Cut a ray by a piece within a span; return the length that is gone, and whether the ray had room for all that is left."""
+    """Cut a ray by a piece within a span; return the length (mm) that is gone, and whether the ray had
+    room for all that is left.
+
+    A closed form where the ray lies across the axis of a tool that moves level; else each interval
+    of material is searched from both ends.
+    """
     w_low, w_high = box[2], box[5]
     if abs(ray[5]) + abs(ray[8]) + ray[TWIST] < LEVEL:
         if span[ARC_RADIUS] == 0.0:
@@ -390,10 +477,13 @@ def _cut_ray(arcs: Floats, first: int, last: int, limit: float, ray: Floats, spa
         if b <= a:
             k += 1
             continue
+        # From the end nearer to the middle of the body's box: there the bound rejects most.
         near, far = (a, b) if abs(a - middle) < abs(b - middle) else (b, a)
         if _bound(arcs, first, last, limit, ray, near, far) <= NOISE:
             k += 1
             continue
+        # For a still axis F is concave: no entry from one end means none at all. Where the tool
+        # turns, the other end is tried too, and an entry that one side overshot is bisected.
         turns = ray[TWIST] > 0.0
         from_near = _entered(arcs, first, last, limit, ray, near, far)
         from_far = np.nan if math.isnan(from_near) and not turns else _entered(arcs, first, last, limit, ray, far, near)
@@ -408,6 +498,8 @@ def _cut_ray(arcs: Floats, first: int, last: int, limit: float, ray: Floats, spa
         if (from_far - from_near) * (far - near) <= 0.0:
             k += 1
             continue
+        # F of a turning tool may be negative between two lobes; three places tell, so a gap
+        # narrower than a quarter of the cut may be missed and is then taken away.
         gap = np.nan
         if turns and from_b - from_a > 1.0:
             for m in range(1, 4):
@@ -415,6 +507,7 @@ def _cut_ray(arcs: Floats, first: int, last: int, limit: float, ray: Floats, spa
                 if _over_time(arcs, first, last, limit, ray, w)[0] < 0.0:
                     gap = w
                     break
+        # Two cuts may need two more intervals; the caller enlarges the rays and resumes.
         before = count[cell]
         if before + 2 > low.shape[1]:
             return gone, False
@@ -430,7 +523,8 @@ def _cut_ray(arcs: Floats, first: int, last: int, limit: float, ray: Floats, spa
 
 @njit(cache=True, nogil=True)
 def _beside(count: Ints, low: Floats, high: Floats, columns: int, row: int, end_row: int, i: int, j: int, a: float, b: float) -> float:
-    """Return a place between a and b where a ray of a cell, or of one beside it in the tile, has material; NaN when none has."""
+    """Return a place (w) between a and b where a ray of a cell, or of one beside it in the tile, has
+    material; NaN when none has."""
     for y in range(max(j - 1, row), min(j + 2, end_row)):
         for x in range(max(i - 1, 0), min(i + 2, columns)):
             cell = y * columns + x
@@ -444,7 +538,12 @@ def _beside(count: Ints, low: Floats, high: Floats, columns: int, row: int, end_
 @njit(cache=True, nogil=True)
 def _may_hide(arcs: Floats, first: int, last: int, ray: Floats, count: Ints, low: Floats, high: Floats, columns: int, row: int,
               end_row: int, i: int, j: int, pitch: float, box: Floats) -> bool:
-    """Say whether somewhere in a cell a body may be in material that is as the rays around have it; `ray` is the cell's middle."""
+    """Return whether somewhere in a cell a body may be in material that is as the rays around have it;
+    `ray` is the cell's middle.
+
+    The tangent at the deepest place bounds the depth across the cell: its gradient has length 1 at
+    most, so with `slope` along the ray it grows by sqrt(1 - slope^2) times half a diagonal at most.
+    """
     for y in range(max(j - 1, row), min(j + 2, end_row)):
         for x in range(max(i - 1, 0), min(i + 2, columns)):
             cell = y * columns + x
@@ -464,9 +563,16 @@ def _may_hide(arcs: Floats, first: int, last: int, ray: Floats, count: Ints, low
 @njit(cache=True, nogil=True)
 def _graze(arcs: Floats, first: int, last: int, span: Floats, ray: Floats, count: Ints, low: Floats, high: Floats, columns: int, row: int,
            end_row: int, origin: Floats, pitch: float, box: Floats, fine: int, places: Floats) -> None:
-    """List places between rays where a body may be in material, going by the material of the rays around."""
+    """List in places (r, 4), u, v, w and depth, where a body may be in material between the rays of a
+    bundle, going by the material of the rays around.
+
+    Within a suspicious cell fine x fine rays are tested, and the deepest of each quarter is kept.
+    ray[SMALLER] is what is allowed, so only deeper contact is listed. A suspicion:
+    `stock/closer.py` confirms it.
+    """
     i0, i1 = _cells(box[0] - 0.5 * pitch, box[3] + 0.5 * pitch, origin[0], pitch, 0, columns)
     j0, j1 = _cells(box[1] - 0.5 * pitch, box[4] + 0.5 * pitch, origin[1], pitch, row, end_row)
+    # Behind what earlier spans have listed.
     listed = 0
     while listed < len(places) and places[listed, 3] > 0.0:
         listed += 1
@@ -501,7 +607,8 @@ def _graze(arcs: Floats, first: int, last: int, span: Floats, ray: Floats, count
 
 @njit(cache=True, nogil=True)
 def _limit(piece: Floats, p: int, last: int) -> float:
-    """Return the height where a tool's flutes end, for the last piece that cuts: its closed body reaches beyond."""
+    """Return the height (mm) where a tool's flutes end, for the last piece that cuts: its closed body
+    reaches beyond into the next one. Infinite for others."""
     if piece[p, KIND] == 0.0 and p + 1 < last and piece[p + 1, KIND] != 0.0:
         return piece[p, Z_HIGH]
     return np.inf
@@ -512,26 +619,35 @@ def cut_tile(last: int, span: Floats, span_start: Ints, arcs: Floats, piece: Flo
              count: Ints, low: Floats, high: Floats, columns: int, row: int, end_row: int, origin: Floats, pitch: float,
              resume: Ints, removed: Floats, depth: Floats, place: Floats, body: Floats, way: Floats, rings: Floats, flute: Floats,
              circle: Floats, probe_start: Ints, counted: Ints, seen: Floats, fine: int, allowed: float, grazed: Floats) -> bool:
-    """Run moves up to `last` through a tile of a bundle: cut with feed moves, and judge rapids and what doesn't cut against what stands.
+    """Run moves up to `last` through a tile of a bundle: cut with feed moves, and judge rapids and
+    what doesn't cut against what stands.
 
-    span (s, `SPAN_COLUMNS`) in the bundle's coordinates, span_start (n + 1,); arcs, piece, piece_start, tool (n,) as `Bodies` has them;
-    count (c,), low and high (c, k) the bundle's intervals, the tile's rows from
-    `row` to `end_row`, `columns` cells each; origin (2,) of the cells.
-    resume (6,): move, span, piece, row and column to begin with, and whether that move has been looked at; changed. removed (n,) gets the
-    length that is gone, depth (n,) and place (n, 3) how deep a rapid's cutter is in material and where (u, v, w), body (n,) how deep what
-    doesn't cut is. way (n, 16): start, end, both axes, centre and sweep as `Moves` has them; rings, flute, circle, probe_start (n + 1,),
-    counted and seen: see `kernels/engagement.py`; without probes nothing is looked at. fine: rays along each side of a cell where a rapid
-    may go deeper than `allowed` in between, 0 for none; grazed (r, 4) gets such places (u, v, w) and depths, `MOST_GRAZED` rows for each
-    rapid in turn, depth 0 where there is none.
-    Returns whether all is done: when rays have no room for one more interval, `resume` says where to go on.
+    span (s, `SPAN_COLUMNS`) in the bundle's coordinates, span_start (n + 1,); arcs, piece,
+    piece_start, tool (n,) as `Bodies` has them; count (c,), low and high (c, k) the bundle's
+    intervals, the tile's rows from `row` to `end_row`, `columns` cells each; origin (2,) of the
+    cells.
+
+    resume (6,): move, span, piece, row and column to begin with, and whether that move has been
+    looked at; changed. removed (n,) gets the length (mm) that is gone, depth (n,) and place (n, 3)
+    how deep a rapid's cutter is in material and where (u, v, w), body (n,) how deep what doesn't
+    cut is. way (n, 16): start, end, both axes, centre and sweep as `Moves` has them; rings, flute,
+    circle, probe_start (n + 1,), counted and seen: see `kernels/engagement.py`; without probes
+    nothing is looked at. fine: rays along each side of a cell where a rapid may go deeper than
+    `allowed` in between, 0 for none; grazed (r, 4) gets such places (u, v, w) and depths,
+    `MOST_GRAZED` rows for each rapid in turn, depth 0 where there is none.
+
+    Returns whether all is done: when rays have no room for one more interval, `resume` says where
+    to continue. Tiles are independent, so the result doesn't depend on how many run at a time.
     """
     ray, box, corner = np.zeros(RAY_COLUMNS), np.empty(6), np.empty(2)
     ray[SMALLER] = SHRINK
+    # Range of w that holds the tile's material: what lies outside of it is skipped.
     bottom, top = np.inf, -np.inf
     for cell in range(row * columns, end_row * columns):
         if count[cell] > 0:
             bottom, top = min(bottom, low[cell, 0]), max(top, high[cell, count[cell] - 1])
     v_low, v_high = origin[1] + row * pitch, origin[1] + end_row * pitch
+    # Rapids are counted from the first move on, as `grazed` has rows for each.
     rapids = 0
     for n in range(resume[0]):
         rapids += rapid[n]
@@ -539,6 +655,8 @@ def cut_tile(last: int, span: Floats, span_start: Ints, arcs: Floats, piece: Flo
         rapids += rapid[n]
         going_on = n == resume[0]
         p0, p1 = piece_start[tool[n]], piece_start[tool[n] + 1]
+        # Feed move: engagement first, as the stock stood before; then every piece that cuts takes
+        # its sweep away, span by span.
         if not rapid[n]:
             if probe_start[n + 1] > probe_start[n] and not (going_on and resume[5] != 0) and _near(
                     span, span_start[n], span_start[n + 1], v_low - pitch, v_high + pitch):
@@ -577,6 +695,8 @@ def cut_tile(last: int, span: Floats, span_start: Ints, arcs: Floats, piece: Flo
                             if not whole:
                                 resume[0], resume[1], resume[2], resume[3], resume[4], resume[5] = n, s, p, j, i, 1
                                 return False
+        # Then what must not be in material: of rapids all of the tool, of feed moves what doesn't
+        # cut, against the stock as it now stands.
         for s in range(span_start[n], span_start[n + 1]):
             if span[s, ALL_BOX + 1] > v_high or span[s, ALL_BOX + 4] < v_low or span[s, ALL_BOX + 2] > top or \
                     span[s, ALL_BOX + 5] < bottom:
@@ -602,6 +722,8 @@ def cut_tile(last: int, span: Floats, span_start: Ints, arcs: Floats, piece: Flo
                         if _misses(count, low, high, cell, box[2], box[5]):
                             continue
                         u = origin[0] + (i + 0.5) * pitch
+                        # Only the deepest of a move is wanted: an interval that cannot be deeper
+                        # than what is known is skipped.
                         _aim(ray, span[s], u, v)
                         for k in range(count[cell]):
                             a, b = max(low[cell, k], box[2]), min(high[cell, k], box[5])
@@ -613,6 +735,7 @@ def cut_tile(last: int, span: Floats, span_start: Ints, arcs: Floats, piece: Flo
                                 depth[n], place[n, 0], place[n, 1], place[n, 2] = deepest, u, v, w
                             elif deepest > best:
                                 body[n] = deepest
+                # Rapids that miss the rays may still enter between them.
                 if cuts and fine > 0 and depth[n] <= allowed:
                     ray[SMALLER] = allowed
                     _graze(arcs, first, end, span[s], ray, count, low, high, columns, row, end_row, origin, pitch, box, fine,
@@ -623,7 +746,7 @@ def cut_tile(last: int, span: Floats, span_start: Ints, arcs: Floats, piece: Flo
 
 @njit(cache=True, nogil=True)
 def _near(span: Floats, first: int, last: int, v_low: float, v_high: float) -> bool:
-    """Say whether what cuts comes between two coordinates v in some spans."""
+    """Return whether what cuts comes between two coordinates v (mm) in spans `first` to `last`."""
     near = False
     for s in range(first, last):
         near = near or (span[s, CUT_BOX + 1] <= v_high and span[s, CUT_BOX + 4] >= v_low)
@@ -632,7 +755,8 @@ def _near(span: Floats, first: int, last: int, v_low: float, v_high: float) -> b
 
 @njit(cache=True, nogil=True)
 def _motion(span: Floats) -> float:
-    """Return how far the direction of rays turns in a span as the tool sees it; 0 when its axis keeps still."""
+    """Return how far the direction of rays turns in a span as the tool sees it (the length of its
+    change); 0 when the axis keeps still."""
     x = span[FRAME1 + 2] - span[FRAME0 + 2]
     y = span[FRAME1 + 5] - span[FRAME0 + 5]
     z = span[FRAME1 + 8] - span[FRAME0 + 8]

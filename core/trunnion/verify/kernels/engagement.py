@@ -1,11 +1,18 @@
-"""Compiled loops that ask, before a move cuts, how much of the cutter's front is in material.
+"""Compiled measurement of cutter engagement: how much of the cutter's front is in material, before a
+move cuts.
 
-At some positions along a move (probes) circles around the cutter at some heights (rings) are looked up in the stock as it is. Of a circle
-only the front counts: where the velocity points out of the cutter. Of a move straight along the axis it is the whole circle.
+At some positions along a move (probes) points on circles around the cutter at some heights (rings)
+are looked up in the stock as it stands. The fraction of a circle's directions that are in material
+is the engagement angle. Only the front half of a circle counts, where the velocity points out of
+the cutter; of a move straight along the axis the whole circle. This is a sample of directions: an
+estimate for load and chip width, not a bound of the proof.
 
-The lookups see columns, not points: a column within half a cell's diagonal (the margin) may stand for its neighbour. So the front keeps as
-much inside the cutter's width, where a wall beside it is not touched; and right behind the end of the move before it is moved ahead by as
-much, to where that has cut nothing.
+The lookups see columns, not points: a column within half a cell's diagonal (the margin) may stand
+for its neighbour. So the front is narrowed by the margin on both sides, where a wall beside it is
+not cut; and right behind the end of the move before it is moved ahead by as much, to where that has
+cut nothing.
+
+mm, rad, the frame of the stock. Columns of a move as in `kernels/strips.py`.
 """
 
 from __future__ import annotations
@@ -35,7 +42,8 @@ MERIDIANS = 8
 
 @njit(cache=True, nogil=True, inline="always")
 def _place(move: Floats, t: float) -> tuple[float, float, float, float, float]:
-    """Return tip and plan direction of an upright move at its share t; no direction when it stands in plan."""
+    """Return tip (x, y, z) and unit plan direction of an upright move at its share t; direction 0 when
+    it stands in plan."""
     z = move[Z_START] + t * (move[Z_END] - move[Z_START])
     if move[KIND] != 0.0:
         angle, side = move[START_ANGLE] + t * move[SWEEP], 1.0 if move[SWEEP] > 0.0 else -1.0
@@ -50,6 +58,7 @@ def _place(move: Floats, t: float) -> tuple[float, float, float, float, float]:
 
 @njit(cache=True, nogil=True, inline="always")
 def _plan_length(move: Floats) -> float:
+    """Return the length (mm) of a move in plan."""
     if move[KIND] != 0.0:
         return abs(move[SWEEP]) * move[ARC_RADIUS]
     return math.sqrt((move[X1] - move[X0]) ** 2 + (move[Y1] - move[Y0]) ** 2)
@@ -58,10 +67,14 @@ def _plan_length(move: Floats) -> float:
 @njit(cache=True, nogil=True)
 def look_in_field(top: Floats, origin: Floats, pitch: float, floor: float, move: Floats, rings: Floats, circle: Floats, first: int,
                   last: int, counted: Ints, spans: Floats) -> None:
-    """Look around the probes `first` to `last` of an upright feed move in a field of heights, before it cuts.
+    """Count the engaged directions around the probes `first` to `last` of an upright feed move in a
+    field of heights, before it cuts.
 
-    rings (RINGS, 2): radius and height, the widest first; circle (m, 2): cosine and sine over the front half. To counted (p, RINGS) is
-    added how many directions are in material; spans (p, 2) are widened to the lowest and highest material, from the tip.
+    top (rows, columns) heights, origin (2,), floor. rings (RINGS, 2): radius and height, the widest
+    first; circle (m, 2): cosine and sine over the front half. To counted (p, RINGS) is added how
+    many directions are in material; spans (p, 2) are widened to the lowest and highest material,
+    from the tip. Adding and widening make the result independent of how the field is divided into
+    tiles.
     """
     margin = 0.70711 * pitch
     rows, columns, cell = top.shape[0], top.shape[1], 1.0 / pitch
@@ -71,8 +84,10 @@ def look_in_field(top: Floats, origin: Floats, pitch: float, floor: float, move:
         return
     sides = 2 if whole else 1
     for probe in range(first, last):
+        # Probes stand at even shares, the last at the move's end.
         share = (probe - first + 1) / (last - first)
         x, y, z, ux, uy = _place(move, share)
+        # Moved ahead by up to a margin, fading out `CLEAR` margins from the start.
         ahead = min(max(CLEAR * margin - share * length, 0.0), margin)
         if whole and length <= STILL:
             ux = 1.0
@@ -86,6 +101,8 @@ def look_in_field(top: Floats, origin: Floats, pitch: float, floor: float, move:
             reach = max(radius - margin, 0.0)
             floor_here, limit, hits = floor + ABOVE, z + height + ABOVE, 0
             for side in range(sides):
+                # The ring's points: ahead along the direction of motion, narrowed across it; of a
+                # plunge both halves of the circle, made smaller by the margin.
                 for m in range(len(circle)):
                     along, across = radius * circle[m, 0] + ahead, min(max(radius * circle[m, 1], -reach), reach)
                     if whole:
@@ -106,6 +123,7 @@ def look_in_field(top: Floats, origin: Floats, pitch: float, floor: float, move:
 @njit(cache=True, nogil=True, inline="always")
 def _in_intervals(x: float, y: float, z: float, count: Ints, low: Floats, high: Floats, origin: Floats, cell: float, rows: int,
                   columns: int) -> bool:
+    """Return whether a point lies in the sorted intervals of the z ray whose cell holds it."""
     i, j = int(math.floor((x - origin[0]) * cell)), int(math.floor((y - origin[1]) * cell))
     if not (0 <= i < columns and 0 <= j < rows):
         return False
@@ -121,12 +139,14 @@ def _in_intervals(x: float, y: float, z: float, count: Ints, low: Floats, high: 
 @njit(cache=True, nogil=True)
 def _pose(start: Floats, end: Floats, start_axis: Floats, end_axis: Floats, centre: Floats, sweep: float, t: float, tip: Floats,
           axis: Floats, speed: Floats, turning: Floats) -> None:
-    """Fill in tip and axis of a move at its share t, and how fast both change with it."""
+    """Fill tip (3,) and axis (3,) of a move at its share t, and their derivatives by t: speed (3,) mm
+    and turning (3,)."""
     dot, square = 0.0, 0.0
     for c in range(3):
         dot += start_axis[c] * end_axis[c]
         square += (end_axis[c] - start_axis[c]) ** 2
     angle = math.acos(min(max(dot, -1.0), 1.0)) if square > STILL * STILL else 0.0
+    # Spherical linear interpolation (Shoemake, Animating rotation with quaternion curves, 1985).
     if angle > STILL:
         s = math.sin(angle)
         a, b = math.sin((1.0 - t) * angle) / s, math.sin(t * angle) / s
@@ -159,11 +179,13 @@ def _pose(start: Floats, end: Floats, start_axis: Floats, end_axis: Floats, cent
 def look_in_intervals(count: Ints, low: Floats, high: Floats, origin: Floats, pitch: float, rows: int, columns: int, start: Floats,
                       end: Floats, start_axis: Floats, end_axis: Floats, centre: Floats, sweep: float, rings: Floats, flute: Floats,
                       circle: Floats, first: int, last: int, counted: Ints, spans: Floats) -> None:
-    """Look around the probes of a feed move with any axis in columns of intervals along z, before it cuts.
+    """Count the engaged directions around the probes of a feed move with any axis in columns of
+    intervals along z, before it cuts.
 
-    count (rays,), low and high (rays, k) sorted intervals of rows x columns rays from origin (2,); start, end, axes, centre (3,) and sweep
-    of one row of `Moves`; rings, circle, counted and spans as in `look_in_field`. flute (s, 2): radius and height of the cutter, upwards
-    from the tip, at which material beside it is looked for.
+    count (rays,), low and high (rays, k) sorted intervals of rows x columns rays from origin (2,);
+    start, end, axes, centre (3,) and sweep of one row of `Moves`; rings, circle, counted and spans
+    as in `look_in_field`. flute (s, 2): radius and height of the cutter, upwards from the tip, at
+    which material beside it is looked for.
     """
     margin, cell = 0.70711 * pitch, 1.0 / pitch
     tip, axis, speed, turning, forward, across = np.empty(3), np.empty(3), np.empty(3), np.empty(3), np.empty(3), np.empty(3)
@@ -176,6 +198,8 @@ def look_in_intervals(count: Ints, low: Floats, high: Floats, origin: Floats, pi
             radius, height = (flute[k + len(flute), 0], flute[k + len(flute), 1]) if k < 0 else (rings[k, 0], rings[k, 1])
             if k > 0 and (height >= rings[k - 1, 1] or most - bottom >= 2.0 * rings[k - 1, 1]):
                 break
+            # Velocity of the axis at the ring's height: the part along the axis plunges, the part
+            # across it is the direction of the front.
             rate, square = 0.0, 0.0
             for c in range(3):
                 rate += (speed[c] + height * turning[c]) * axis[c]
@@ -184,6 +208,8 @@ def look_in_intervals(count: Ints, low: Floats, high: Floats, origin: Floats, pi
                 square += forward[c] ** 2
             size = math.sqrt(square)
             whole = -rate > STEEP * size
+            # Standing in place: only a plunge engages, and then any direction across the axis
+            # serves.
             if size <= STILL:
                 if not whole:
                     continue
@@ -209,6 +235,7 @@ def look_in_intervals(count: Ints, low: Floats, high: Floats, origin: Floats, pi
                         hits += 1
             if k >= 0:
                 counted[probe, k] += hits
+            # The depth of the material along the flutes, to a step of their heights.
             elif hits > 0:
                 gap = flute[1, 1] - flute[0, 1] if len(flute) > 1 else 0.0
                 bottom, most = min(bottom, height - 0.5 * gap), max(most, height + 0.5 * gap)

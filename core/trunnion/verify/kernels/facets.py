@@ -1,15 +1,27 @@
-"""Compiled search for the deepest that a moving body of revolution enters triangles, for axes that lean or turn.
+"""Compiled contact of a moving body of revolution with triangles, for axes that lean or turn: branch
+and bound over space and time.
 
-A triangle and a span of time are looked at together. In the frame that turns with the tool the triangle's corners at both ends of the span
-are six points; all it does in between lies in their hull, up to a sag of second order (angle^2 distance / 8 + angle length / 4, and an
-arc's own). Depth in a convex body is concave with slope one, so every supporting half-space of the body, and every tangent to the depth,
-bounds it from above over the whole hull by its values at six points; two of them together bound it better than each. The bounds are
+A task is a piece of a triangle in a piece of time, the span. In the frame that turns with the tool
+the triangle's three corners at both ends of the span are six points; all that the triangle does in
+between lies in their convex hull, up to the sag of `kernels/way.py` (angle^2 distance / 8 + angle
+length / 4, and an arc's own bulge). The depth D in a convex body is concave with slope 1 at most,
+so every affine function that bounds D from above bounds it over the whole hull by its values at the
+six points:
 
-* the half-space against the triangle's own normal: exact where the contact is inside the triangle, however large that is;
-* tangents at the hull's middle and at the place that is nearest to the body's core: exact where the contact is on an edge or a corner;
+* the half-space of the body against the triangle's own normal, s(n) - n . p: exact where the
+  contact is inside the triangle, however large that is;
+* tangents of D at the hull's middle and at the place nearest to the body's core: exact where the
+  contact is on an edge or a corner;
+* any mixture of two of them, (1 - m) one + m other with m from 0 to 1, which may be lower than
+  both.
 
-and what they leave open is halved, in time or across an edge, until it is below what is asked. Boxes of a tree are pruned by a tangent too.
-Nothing is sampled: a sharp rim that touches a strip between two places is found.
+What these leave open is halved, in time or across an edge, until the bound is at most the stated
+error above a depth that is attained (branch and bound with affine upper bounds; Horst and Tuy,
+Global Optimization, 1990). Boxes of a bounding volume hierarchy are pruned by a tangent too. Every
+approximation (hull, sag, boxes) errs deep; nothing is sampled, so a sharp rim that touches between
+two positions is found.
+
+mm, rad, the frame of the moves. Bodies are closed ones as in `kernels/body.py`.
 """
 
 from __future__ import annotations
@@ -52,7 +64,11 @@ DEEP = 1.0
 @njit(cache=True, nogil=True)
 def _tangent(arcs: Floats, first: int, last: int, ax: float, ay: float, az: float, x: float, y: float,
              z: float) -> tuple[float, float, float, float]:
-    """Return the depth of a point relative to the tip, and the normal (3) of the side that is nearest."""
+    """Return the signed depth (mm) of a point relative to the tip, and the outward unit normal (3) of
+    the nearest side; (ax, ay, az) the unit tool axis.
+
+    On the axis itself the radial part of the normal is 0: a supergradient still, by symmetry.
+    """
     h = x * ax + y * ay + z * az
     ex, ey, ez = x - h * ax, y - h * ay, z - h * az
     rho = math.sqrt(ex * ex + ey * ey + ez * ez)
@@ -63,7 +79,8 @@ def _tangent(arcs: Floats, first: int, last: int, ax: float, ay: float, az: floa
 
 @njit(cache=True, nogil=True)
 def depth_at(way: Floats, t: float, arcs: Floats, first: int, last: int, px: float, py: float, pz: float) -> float:
-    """Return how deep a point of space is in a body at a share of the way."""
+    """Return the depth (mm) of a point of space in a body at a share t of the block: exact, so
+    attained."""
     ax, ay, az = axis_at(way, t)
     cx, cy, cz = tip_at(way, t)
     return _tangent(arcs, first, last, ax, ay, az, px - cx, py - cy, pz - cz)[0]
@@ -72,7 +89,12 @@ def depth_at(way: Floats, t: float, arcs: Floats, first: int, last: int, px: flo
 @njit(cache=True, nogil=True)
 def _core(arcs: Floats, first: int, last: int, ax: float, ay: float, az: float, x: float, y: float,
           z: float) -> tuple[float, float, float]:
-    """Return the point that a body's side nearest to a point is round about: an arc's centre, or the axis beside a straight flank."""
+    """Return the point (relative to the tip) about which the body's nearest side is curved: an arc's
+    centre ring, or the axis beside a straight flank.
+
+    The contact of a triangle with that side is near the triangle's point nearest to the core. Only
+    a guess of where to place the next tangent: no bound depends on it.
+    """
     h = x * ax + y * ay + z * az
     ex, ey, ez = x - h * ax, y - h * ay, z - h * az
     rho = math.sqrt(ex * ex + ey * ey + ez * ez)
@@ -81,12 +103,16 @@ def _core(arcs: Floats, first: int, last: int, ax: float, ay: float, az: float, 
         dr, dz = rho - arcs[k, CR], h - arcs[k, CZ]
         c0 = arcs[k, A0R] * dz - arcs[k, A0Z] * dr
         c1 = dr * arcs[k, A1Z] - dz * arcs[k, A1R]
+        # As in `depth_in_body`: inside an arc's cone its centre counts, outside of it the flank's
+        # foot.
         if c0 >= 0.0 and c1 >= 0.0 and (dr * (arcs[k, A0R] + arcs[k, A1R]) + dz * (arcs[k, A0Z] + arcs[k, A1Z])) > 0.0:
             depth, r, up = arcs[k, R] - math.sqrt(dr * dr + dz * dz), arcs[k, CR], arcs[k, CZ]
         else:
             d0, d1 = dr * arcs[k, A0R] + dz * arcs[k, A0Z], dr * arcs[k, A1R] + dz * arcs[k, A1Z]
             nr, nz = (arcs[k, A0R], arcs[k, A0Z]) if d0 >= d1 else (arcs[k, A1R], arcs[k, A1Z])
             depth = arcs[k, R] - max(d0, d1)
+            # A flank that looks out more than along is followed inwards to the axis; a level one
+            # straight up or down by 1 mm.
             r, up = (0.0, h - rho * nz / nr) if nr > 0.5 else (rho, h - nz)
         if depth < best:
             best, cr, ch = depth, r, up
@@ -96,8 +122,14 @@ def _core(arcs: Floats, first: int, last: int, ax: float, ay: float, az: float, 
 
 @njit(cache=True, nogil=True)
 def _together(one: Floats, other: Floats) -> float:
-    """Return the least over all mixtures of two bounds (6,) of their greatest value."""
+    """Return the least over m in [0, 1] of the greatest over six points of (1 - m) one + m other (each
+    (6,), mm).
+
+    A linear programme in one variable: from m = 0 the upper envelope of six lines is followed
+    downhill from crossing to crossing. Any m gives a valid bound, so ending early only loosens it.
+    """
     share, top = 0.0, 0
+    # The line that is on top just after m = 0.
     for i in range(1, 6):
         if one[i] > one[top] or (one[i] == one[top] and other[i] > other[top]):
             top = i
@@ -108,6 +140,7 @@ def _together(one: Floats, other: Floats) -> float:
             return value
         step, after = 1.0 - share, -1
         for i in range(6):
+            # The first line that overtakes the one on top, by its greater slope.
             steeper = other[i] - one[i] - slope
             if steeper > 0.0:
                 reach = (value - one[i] - share * (other[i] - one[i])) / steeper
@@ -123,17 +156,24 @@ def _together(one: Floats, other: Floats) -> float:
 
 @njit(cache=True, nogil=True, inline="always")
 def _share(part: float, whole: float) -> float:
-    """Return a part of a whole; triangles without area, or with an edge of no length, have none."""
+    """Return part / whole, 0 where the whole is not positive: triangles without area or with an edge
+    of no length."""
     return part / whole if whole > 0.0 else 0.0
 
 
 @njit(cache=True, nogil=True)
 def _nearest_of_triangle(p: Floats, x: float, y: float, z: float) -> tuple[float, float]:
-    """Return the place (v, w) of the point a + v (b - a) + w (c - a) of a triangle (3, 3) that is nearest to a point."""
+    """Return the place (v, w) of the point a + v (b - a) + w (c - a) of a triangle (3, 3) that is
+    nearest to a point.
+
+    By the Voronoi regions of corners, edges and face (Ericson, Real-Time Collision Detection, 2005,
+    5.1.5).
+    """
     abx, aby, abz = p[1, 0] - p[0, 0], p[1, 1] - p[0, 1], p[1, 2] - p[0, 2]
     acx, acy, acz = p[2, 0] - p[0, 0], p[2, 1] - p[0, 1], p[2, 2] - p[0, 2]
     apx, apy, apz = x - p[0, 0], y - p[0, 1], z - p[0, 2]
     d1, d2 = abx * apx + aby * apy + abz * apz, acx * apx + acy * apy + acz * apz
+    # Corner a, corner b, edge ab, corner c, edge ac, edge bc, face: in this order.
     if d1 <= 0.0 and d2 <= 0.0:
         return 0.0, 0.0
     bb, bc, cc = abx * abx + aby * aby + abz * abz, abx * acx + aby * acy + abz * acz, acx * acx + acy * acy + acz * acz
@@ -160,6 +200,8 @@ def _nearest_of_triangle(p: Floats, x: float, y: float, z: float) -> tuple[float
 
 @njit(cache=True, nogil=True)
 def _attain(way: Floats, t: float, arcs: Floats, first: int, last: int, px: float, py: float, pz: float, found: Floats) -> None:
+    """Raise found (4,), depth and place, to the depth of a point of space at a share of the block
+    where that is deeper."""
     depth = depth_at(way, t, arcs, first, last, px, py, pz)
     if depth > found[0]:
         found[0], found[1], found[2], found[3] = depth, px, py, pz
@@ -168,18 +210,27 @@ def _attain(way: Floats, t: float, arcs: Floats, first: int, last: int, px: floa
 @njit(cache=True, nogil=True)
 def _look(task: Floats, normal: Floats, way: Floats, arcs: Floats, first: int, last: int, enough: float, bound: float, found: Floats,
           ends: Floats, span: Floats, six: Floats, cuts: Floats, flat: Floats) -> float:
-    """Return a bound on the depth of a task (13,), -inf when it settles below what is asked; say in it how to halve it.
+    """Return an upper bound (mm) on the depth of a task (13,), -inf when that is settled: at most
+    `enough`, or at most `bound` above what is attained.
 
-    Raises `found` (depth, place (3,)) to what is attained at the place looked at. cuts (3, 6) get the bounds at the six points.
+    found (4,), depth and place, is raised to what is attained at the place looked at; the task gets
+    its bound (UPPER) and how to halve it (HALVE). ends, span: the cached span, filled anew where
+    the task's time differs; six (6, 3), cuts (3, 6) the bounds at the six points, flat (3, 3):
+    workspace.
     """
     if span[S_FROM] != task[T_FROM] or span[S_TO] != task[T_TO]:
         fill_span(way, task[T_FROM], task[T_TO], ends, span)
+    # True positions lie within `drift` of the hull and D has slope 1: the hull's bound must be
+    # below what is asked by that much.
     ax, ay, az = span[S_AXIS], span[S_AXIS + 1], span[S_AXIS + 2]
     drift = _see(task, ends, span, six)
     settled = max(enough, found[0] + bound) - drift
+    # First bound: the half-space against the triangle's normal.
     upper = _half_space(arcs, first, last, ax, ay, az, normal, six, cuts[0])
     if upper <= settled:
         return -np.inf
+    # Second bound: the tangent at the middle of the six points; and its best mixture with the
+    # first.
     x = y = z = 0.0
     for i in range(6):
         x, y, z = x + six[i, 0] / 6.0, y + six[i, 1] / 6.0, z + six[i, 2] / 6.0
@@ -189,6 +240,8 @@ def _look(task: Floats, normal: Floats, way: Floats, arcs: Floats, first: int, l
     upper = min(upper, least, _together(cuts[0], cuts[1]))
     if upper <= settled:
         return -np.inf
+    # Third: the tangent at the place and time of the triangle nearest to the body's core there. The
+    # depth attained there, on the true motion, raises what is known.
     cx, cy, cz = _core(arcs, first, last, ax, ay, az, x, y, z)
     v, w, s = _nearest_place(six, cx, cy, cz, flat)
     u, r = 1.0 - v - w, 1.0 - s
@@ -203,6 +256,7 @@ def _look(task: Floats, normal: Floats, way: Floats, arcs: Floats, first: int, l
     upper = min(upper, least, _together(cuts[0], cuts[2]), _together(cuts[1], cuts[2]))
     if upper <= settled:
         return -np.inf
+    # Time where the drift is more than half of what is open, else the longest extent.
     task[HALVE] = _halving(task, six, drift > 0.5 * (upper - settled))
     task[UPPER] = upper + drift
     return upper + drift
@@ -210,7 +264,12 @@ def _look(task: Floats, normal: Floats, way: Floats, arcs: Floats, first: int, l
 
 @njit(cache=True, nogil=True)
 def _see(task: Floats, ends: Floats, span: Floats, six: Floats) -> float:
-    """Fill the six points (6, 3) that the tool sees of a task, and return how far from their hull it may go on the way."""
+    """Fill six (6, 3) with a task's corners as the tool sees them at both ends of the span, and return
+    the sag (mm): how far the triangle may leave their hull in between.
+
+    A point of the triangle keeps within `far` of the tip: its distance is convex over the chord and
+    over the triangle.
+    """
     far = 0.0
     for i in range(6):
         c = CORNERS + 3 * (i % 3)
@@ -222,7 +281,12 @@ def _see(task: Floats, ends: Floats, span: Floats, six: Floats) -> float:
 
 @njit(cache=True, nogil=True)
 def _half_space(arcs: Floats, first: int, last: int, ax: float, ay: float, az: float, normal: Floats, six: Floats, out: Floats) -> float:
-    """Fill `out` (6,) with the depth of six points in the half-space that holds a body against a normal; return the greatest."""
+    """Fill out (6,) with s(n) - n . p (mm) at six points for n against a triangle's unit normal, and
+    return the greatest.
+
+    Valid for any n; the part's outward normal points at the tool, so the body reaches into the part
+    along -normal.
+    """
     nx, ny, nz = -normal[0], -normal[1], -normal[2]
     nh = nx * ax + ny * ay + nz * az
     reach = support(arcs, first, last, math.sqrt(max(1.0 - nh * nh, 0.0)), nh)
@@ -235,7 +299,12 @@ def _half_space(arcs: Floats, first: int, last: int, ax: float, ay: float, az: f
 
 @njit(cache=True, nogil=True)
 def _nearest_place(six: Floats, cx: float, cy: float, cz: float, flat: Floats) -> tuple[float, float, float]:
-    """Return the place (v, w) in the triangle and the share of time at which it is nearest to a point, found one after the other."""
+    """Return the place (v, w) in the triangle and the share s of the span at which it is nearest to a
+    point.
+
+    Two rounds of alternating minimisation, triangle then time, from the span's middle: a guess, as
+    for `_core`.
+    """
     s = 0.5
     v = w = 0.0
     for _ in range(2):
@@ -258,7 +327,8 @@ def _nearest_place(six: Floats, cx: float, cy: float, cz: float, flat: Floats) -
 @njit(cache=True, nogil=True)
 def _cut(arcs: Floats, first: int, last: int, ax: float, ay: float, az: float, x: float, y: float, z: float, six: Floats,
          out: Floats) -> float:
-    """Fill `out` (6,) with the tangent to the depth at a point, at six points, and return its greatest value there."""
+    """Fill out (6,) with the tangent plane of the depth at a point, at six points (mm), and return its
+    greatest value: D(p) - n . (q - p)."""
     depth, nx, ny, nz = _tangent(arcs, first, last, ax, ay, az, x, y, z)
     most = -np.inf
     for i in range(6):
@@ -269,7 +339,8 @@ def _cut(arcs: Floats, first: int, last: int, ax: float, ay: float, az: float, x
 
 @njit(cache=True, nogil=True)
 def _halving(task: Floats, six: Floats, is_drift: bool) -> float:
-    """Return what to halve: 0 the time, 1 to 3 the edge after that corner; the longest, or the time where its sag is what is left open."""
+    """Return what to halve: 0 the time, 1 to 3 the edge that begins at that corner; the longest of
+    edges and corners' paths, or time where the sag is what is left open."""
     if is_drift:
         return 0.0
     longest, at = 0.0, 0
@@ -288,6 +359,8 @@ def _halving(task: Floats, six: Floats, is_drift: bool) -> float:
 
 @njit(cache=True, nogil=True)
 def _halve(task: Floats, one: Floats, other: Floats) -> None:
+    """Write both halves of a task: its time at the middle, or its triangle across the middle of an
+    edge."""
     one[:] = task
     other[:] = task
     what = int(task[HALVE])
@@ -303,15 +376,20 @@ def _halve(task: Floats, one: Floats, other: Floats) -> None:
 def enter_triangle(corners: Floats, normal: Floats, way: Floats, t0: float, t1: float, arcs: Floats, first: int, last: int, enough: float,
                    bound: float, settle: float, found: Floats, tasks: Floats, task: Floats, ends: Floats, span: Floats, six: Floats,
                    cuts: Floats, flat: Floats) -> None:
-    """Raise `found` (depth, place (3,)) to the deepest that a body enters a triangle (9,) between two shares of its way.
+    """Raise found (4,), depth (mm) and place, to the deepest that a body enters a triangle between two
+    shares of a block.
 
-    What it ends with is attained and at most `bound` below the deepest, or anything when the deepest is at most `enough`. Beyond `settle`
-    it may be any depth larger than that.
+    corners (9,), normal (3,) unit. What it ends with is attained and at most `bound` below the
+    deepest, or anything when the deepest is at most `enough`; beyond `settle` it may be any depth
+    larger than that. `found` as given counts as known: only what is deeper by more than `bound` is
+    searched for. The rest is workspace, see `_look`.
     """
     tasks[0, CORNERS:CORNERS + 9] = corners
     tasks[0, T_FROM], tasks[0, T_TO] = t0, t1
     if _look(tasks[0], normal, way, arcs, first, last, enough, bound, found, ends, span, six, cuts, flat) == -np.inf:
         return
+    # Depth first. Invariant: all that may be deeper than max(enough, found + bound) is in
+    # tasks[:top].
     top = 1
     while top > 0 and found[0] <= settle:
         top -= 1
@@ -334,7 +412,12 @@ def enter_triangle(corners: Floats, normal: Floats, way: Floats, t0: float, t1: 
 
 @njit(cache=True, nogil=True)
 def box_depth(box: Floats, ends: Floats, span: Floats, arcs: Floats, first: int, last: int) -> float:
-    """Return a bound on how deep any point of a box (centre (3,), half sides (3,)) gets into a body during a span."""
+    """Return an upper bound (mm) on the depth of any point of a box, centre (3,) and half sides (3,),
+    in a body during a span.
+
+    The tangent of the depth at the middle of the centre's chord, plus what the chord, the half
+    sides and the sag add along its normal.
+    """
     ax, ay, az = span[S_AXIS], span[S_AXIS + 1], span[S_AXIS + 2]
     x0, y0, z0 = seen(ends, 0, box[0], box[1], box[2])
     x1, y1, z1 = seen(ends, 1, box[0], box[1], box[2])
@@ -342,6 +425,8 @@ def box_depth(box: Floats, ends: Floats, span: Floats, arcs: Floats, first: int,
     depth += 0.5 * abs(nx * (x1 - x0) + ny * (y1 - y0) + nz * (z1 - z0))
     if span[S_ANGLE] == 0.0:
         return depth + abs(nx) * box[3] + abs(ny) * box[4] + abs(nz) * box[5] + sag_of(span, 0.0)
+    # The box turns against the normal: half sides at the end where they reach further, and the sag
+    # of its furthest corner.
     most = 0.0
     for e in range(2):
         m = ends[e]
@@ -357,11 +442,17 @@ def contact_loop(first: int, last: int, rows: Ints, start: Floats, end: Floats, 
                  sweep: Floats, tool: Ints, arcs: Floats, pieces: Floats, piece_start: Ints, boxes: Floats, skip: Ints, leaves: Ints,
                  node_face: Ints, corners: Floats, normals: Floats, face: Ints, n_faces: int, bound: Floats, enough: Floats,
                  settle: float, depth: Floats, which: Ints, place: Floats, face_depth: Floats, face_move: Ints) -> None:
-    """Measure the moves of `rows[first:last]` against all triangles.
+    """Measure the moves of rows[first:last] against all triangles.
 
-    boxes (m, 6), skip (m,), leaves (m, 2), node_face (m,): the tree, as `tree.py` has it, over triangles in its order: corners (t, 9),
-    normals (t, 3), face (t,). bound (k,): how far a depth may be from the truth; enough (k,): below it only that is known.
-    Fills depth (k, 2), which (k, 2) faces, place (k, 2, 3), and face_depth, face_move (f, 2). A move deeper than `settle` may stop there.
+    start, end, axis, end_axis, centre (n, 3), sweep (n,) rad, tool (n,): moves; arcs, pieces,
+    piece_start as in `kernels/body.py`. boxes (m, 6), skip (m,), leaves (m, 2), node_face (m,): the
+    tree, as `tree.py` has it, over triangles in its order: corners (t, 9), normals (t, 3), face
+    (t,). bound (k,) mm: how far a depth may be below the true one; enough (k,) mm: depths up to it
+    are not told.
+
+    Fills depth (k, 2) mm, of what cuts and what does not, which (k, 2) faces, place (k, 2, 3), and
+    face_depth, face_move (f, 2). A move deeper than `settle` may stop there, and depths beyond
+    `DEEP` are only known to be at least that.
     """
     way, ends, span = np.zeros(WAY_COLUMNS), np.zeros((2, END_COLUMNS)), np.zeros(SPAN_COLUMNS)
     near_ends, near = np.zeros((2, END_COLUMNS)), np.zeros(SPAN_COLUMNS)
@@ -382,6 +473,8 @@ def contact_loop(first: int, last: int, rows: Ints, start: Floats, end: Floats, 
             for q in range(count):
                 fill_span(way, q / count, (q + 1) / count, ends, span)
                 node = 0
+                # Preorder traversal; a subtree is skipped when its box cannot be entered by more
+                # than `enough`, or all of it is one face that is already known to be `DEEP`.
                 while node < len(boxes) and not done:
                     f = node_face[node]
                     known = f >= 0 and stamp[f] == k and best[f, column] >= DEEP
@@ -394,6 +487,7 @@ def contact_loop(first: int, last: int, rows: Ints, start: Floats, end: Floats, 
                             stamp[f], best[f, 0], best[f, 1] = k, -np.inf, -np.inf
                             touched[n_touched] = f
                             n_touched += 1
+                        # The face's depth so far is the one to beat: triangles of a face share it.
                         found[0] = before = best[f, column]
                         if before >= DEEP:
                             continue
@@ -406,6 +500,7 @@ def contact_loop(first: int, last: int, rows: Ints, start: Floats, end: Floats, 
                                 done = True
                                 break
                     node += 1
+        # Of equal depths the lower face row: the answer doesn't depend on the order of the tree.
         for i in range(n_touched):
             f = touched[i]
             for column in range(2):

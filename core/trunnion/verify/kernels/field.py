@@ -1,11 +1,27 @@
-"""Compiled loops of the stock's height field: columns cut by swept upright cutters, exactly at every column.
+"""Compiled material removal on a height field (z-map, a dexel model with one interval a column) by
+swept upright cutters.
 
-Columns stand at cell centres; a column keeps the height of its top. A level line or arc is cut in one pass over the rows that its sweep
-covers: within a row only the cells that the sweep reaches and that the move before has not cut already are looked at. A slope is cut by
-the lowest height over the part of the line that a column sees. All that call each other live here, but for the bodies of revolution.
+One column stands at each cell centre and keeps the height of its top (van Hook, Real-time shaded NC
+milling display, 1986; Anderson, Detecting and eliminating collisions in NC machining, 1978). A move
+lowers a column to the lower envelope of the cutter along the move,
 
-A field says all while nothing is left above a cut. Where a column stands higher than the height up to which the cutter gets no thinner
-(`profile.open_height`), it is left as it is and the move says so: the bundles with intervals must go on from there.
+    cut(x, y) = min over t of z(t) + g(|(x, y) - tip(t)|)
+
+with g(rho) the height above the tip at which the cutter begins at the distance rho from its axis.
+For level moves of any form and slopes of plain ones this minimum is taken in closed form, so a move
+is not sampled: only space is, at the cell centres. Between columns nothing is known here (see
+`_rims`).
+
+A level line or arc is cut in one pass over the rows that its sweep covers: within a row only the
+cells that the sweep reaches, less those that the move before has already cut to this height.
+
+A height field holds the whole truth while nothing is left above a cut. Where a column stands higher
+than the height OPEN up to which the cutter gets no thinner (`verify/profile.py`), it is left as it
+is and counted: the caller goes on with bundles of intervals (`kernels/dexels.py`) from there.
+
+Frame: the blank's, tool axis +z; mm, rad. top (rows, columns) float64 heights; cell (j, i) has its
+centre at origin + ((i + 0.5) pitch, (j + 0.5) pitch). At a column the height is exact, but for the
+chords of a helix, which leave it by a stated error to either side.
 """
 
 from __future__ import annotations
@@ -26,13 +42,18 @@ KIND, X0, Y0, X1, Y1, CX, CY, ARC_RADIUS, MX, MY, COS_HALF, START_ANGLE, SWEEP, 
 # Columns of a tool's profile, see `verify/profile.py`.
 RADIUS, CORNER, OPEN, PLAIN, FIRST, LAST = range(6)
 STILL = 1e-9
-"""mm; a step shorter than this has no direction."""
+"""mm; a move shorter than this in plan has no direction."""
 SHRINK = 2e-3
 """mm; by how much what the move before has cut is taken smaller: where it was an arc, its posted ends are off it by up to this."""
 
 
 @njit(cache=True, nogil=True, inline="always")
 def _arc_square(qx: float, qy: float, move: Floats) -> float:
+    """Return the squared plan distance (mm2) of a point to a move's arc.
+
+    Inside the arc's sector it is (|v| - radius)^2, v from the centre; outside of it an end is
+    nearest.
+    """
     vx, vy = qx - move[CX], qy - move[CY]
     length = math.sqrt(vx * vx + vy * vy)
     if vx * move[MX] + vy * move[MY] >= length * move[COS_HALF]:
@@ -43,6 +64,8 @@ def _arc_square(qx: float, qy: float, move: Floats) -> float:
 
 @njit(cache=True, nogil=True, inline="always")
 def _segment_square(qx: float, qy: float, x0: float, y0: float, dx: float, dy: float, square: float) -> float:
+    """Return the squared plan distance (mm2) of a point to a segment from (x0, y0) by (dx, dy),
+    `square` its squared length; 0 makes it a point."""
     t = 0.0
     if square > 0.0:
         t = min(max(((qx - x0) * dx + (qy - y0) * dy) / square, 0.0), 1.0)
@@ -52,7 +75,11 @@ def _segment_square(qx: float, qy: float, x0: float, y0: float, dx: float, dy: f
 
 @njit(cache=True, nogil=True)
 def formed_height(square: float, profile: Floats, arcs: Floats, pieces: Floats) -> float:
-    """Return how high above the tip a cutter of any form begins at a squared distance from its axis; infinite outside of it."""
+    """Return g (mm), the height above the tip at which a cutter of any form begins at a squared
+    distance `square` (mm2) from its axis; infinite outside of it.
+
+    The least over its convex bodies, rows FIRST to LAST of pieces.
+    """
     rho, best = math.sqrt(square), np.inf
     for k in range(int(profile[FIRST]), int(profile[LAST])):
         if rho < pieces[k, R_MAX]:
@@ -64,7 +91,11 @@ def formed_height(square: float, profile: Floats, arcs: Floats, pieces: Floats) 
 
 @njit(cache=True, nogil=True, inline="always")
 def _round_height(square: float, inner: float, corner: float) -> float:
-    """Return how high above the tip a plain cutter begins at a squared distance from its axis (inside its radius)."""
+    """Return g (mm) of a plain cutter at a squared distance inside its radius: 0 under the level end,
+    a quarter circle of radius `corner` around it.
+
+    inner = radius - corner; g = corner - sqrt(corner^2 - (rho - inner)^2).
+    """
     if square <= inner * inner or corner == 0.0:
         return 0.0
     out = math.sqrt(square) - inner
@@ -73,21 +104,25 @@ def _round_height(square: float, inner: float, corner: float) -> float:
 
 @njit(cache=True, nogil=True, inline="always")
 def first_cell(low: float, origin: float, pitch: float) -> int:
-    """Return the first cell whose centre is not below a coordinate."""
+    """Return the first cell, 0 at least, whose centre is not below the coordinate `low` (mm)."""
     return max(int(math.ceil((low - origin) / pitch - 0.5)), 0)
 
 
 @njit(cache=True, nogil=True, inline="always")
 def last_cell(high: float, origin: float, pitch: float, count: int) -> int:
-    """Return the last cell whose centre is not above a coordinate."""
+    """Return the last cell, count - 1 at most, whose centre is not above the coordinate `high` (mm)."""
     return min(int(math.floor((high - origin) / pitch - 0.5)), count - 1)
 
 
 @njit(cache=True, nogil=True)
 def _box(move: Floats, radius: float) -> tuple[float, float, float, float]:
+    """Return the plan box (x low, y low, x high, y high) of a move, wider by `radius` (mm) on all
+    sides."""
     x0, y0 = min(move[X0], move[X1]), min(move[Y0], move[Y1])
     x1, y1 = max(move[X0], move[X1]), max(move[Y0], move[Y1])
     if move[KIND] != 0.0:
+        # A quadrant point of the circle counts where the arc's sector holds it; the tolerance only
+        # makes the box larger.
         c = move[COS_HALF] - 1e-12
         if move[MX] >= c:
             x1 = max(x1, move[CX] + move[ARC_RADIUS])
@@ -103,7 +138,13 @@ def _box(move: Floats, radius: float) -> tuple[float, float, float, float]:
 @njit(cache=True, nogil=True)
 def _cut_row_plain(row: Floats, px: float, py: float, pitch: float, dx: float, dy: float, inverse: float, z: float, floor: float,
                    upper: float, radius: float, corner: float) -> tuple[float, int]:
-    """Cut cells of a row that a plain cutter passes. px, py: the first cell's centre from the line's start; inverse: 1 / length squared."""
+    """Lower the cells of a row under a plain cutter on a level line; return the removed height (mm,
+    summed) and how many columns were left standing.
+
+    row (k,) a view of the heights; px, py the first cell's centre relative to the line's start;
+    inverse: 1 / squared length, 0 for a standing cutter; z of the tip; floor: no column goes below
+    it; upper: a higher column is left and counted.
+    """
     removed, stands = 0.0, 0
     inner, limit, bottom = radius - corner, radius * radius, max(z, floor)
     flat = inner * inner
@@ -111,6 +152,7 @@ def _cut_row_plain(row: Floats, px: float, py: float, pitch: float, dx: float, d
         h = row[i]
         if h > bottom:
             x = px + i * pitch
+            # Nearest point of the segment; d is the squared distance of the cell's centre to it.
             t = min(max((x * dx + py * dy) * inverse, 0.0), 1.0)
             ex, ey = x - t * dx, py - t * dy
             d = ex * ex + ey * ey
@@ -131,7 +173,8 @@ def _cut_row_plain(row: Floats, px: float, py: float, pitch: float, dx: float, d
 @njit(cache=True, nogil=True)
 def _cut_row_formed(row: Floats, px: float, py: float, pitch: float, dx: float, dy: float, inverse: float, z: float, floor: float,
                     upper: float, profile: Floats, arcs: Floats, pieces: Floats) -> tuple[float, int]:
-    """Cut cells of a row that a cutter of any form passes."""
+    """Lower the cells of a row under a cutter of any form on a level line; arguments and results as
+    for `_cut_row_plain`."""
     removed, stands = 0.0, 0
     limit, bottom = profile[RADIUS] * profile[RADIUS], max(z, floor)
     for i in range(len(row)):
@@ -155,7 +198,12 @@ def _cut_row_formed(row: Floats, px: float, py: float, pitch: float, dx: float, 
 @njit(cache=True, nogil=True, fastmath={"reassoc", "nsz", "contract", "nnan"})
 def _cut_row_ball(row: Floats, px: float, py: float, pitch: float, dx: float, dy: float, inverse: float, z: float, floor: float,
                   upper: float, radius: float) -> tuple[float, int]:
-    """Cut cells of a row by a ball. Without branches: most cells before a ball get lower at every move, so computing all together wins."""
+    """Lower the cells of a row under a ball end on a level line, as `_cut_row_plain` does; without
+    branches, so that it is vectorised.
+
+    Most cells ahead of a ball get lower at every move: computing them all is faster than asking
+    first. Reassociation moves a height by a few units in the last place.
+    """
     removed, stands = 0.0, 0.0
     limit = radius * radius
     for i in range(len(row)):
@@ -180,7 +228,13 @@ def _cut_row_ball(row: Floats, px: float, py: float, pitch: float, dx: float, dy
 @njit(cache=True, nogil=True, inline="always")
 def _capsule_row(y: float, x0: float, y0: float, x1: float, y1: float, radius: float, sx: float, sy: float, inv_dy: float,
                  dx: float) -> tuple[float, float]:
-    """Return where a row enters and leaves a disc swept along a line; (sx, sy) leads from the line to its left side."""
+    """Return the x range in which the row at y meets a disc swept along a segment (a capsule); low >
+    high where it does not.
+
+    (sx, sy): from the segment to its left side, `radius` long; inv_dy: 1 / dy, 0 for a segment
+    along x. The hull of both end discs' chords and of the crossings with both straight sides: a
+    capsule is convex, so that is the whole range.
+    """
     low, high = np.inf, -np.inf
     gap = radius * radius - (y - y0) ** 2
     if gap >= 0.0:
@@ -205,9 +259,13 @@ def _capsule_row(y: float, x0: float, y0: float, x1: float, y1: float, radius: f
 @njit(cache=True, nogil=True)
 def _cut_level_line(top: Floats, origin: Floats, pitch: float, floor: float, x0: float, y0: float, x1: float, y1: float, z: float,
                     upper: float, joined: bool, profile: Floats, arcs: Floats, pieces: Floats) -> tuple[float, int]:
-    """Cut a level (or standing) line; `joined`: the same cutter has just come to its start at this height.
+    """Cut a level line, or a standing or plunging cutter at its lowest; return the removed height (mm,
+    summed) and how many columns were left standing.
 
-    Then what is behind the start's perpendicular is done, and so is all that the level end of the cutter covers there.
+    `joined`: the same cutter has just arrived at the start at this height. Then the cells behind
+    the start's perpendicular are done, and so is the disc of the cutter's level end around the
+    start: both are skipped. The level disc is taken smaller by SHRINK along the row, so that posted
+    ends which lie off their arc do not leave its rim standing.
     """
     radius, corner = profile[RADIUS], profile[CORNER]
     plain, ball = profile[PLAIN] != 0.0, profile[PLAIN] != 0.0 and corner == radius
@@ -227,6 +285,8 @@ def _cut_level_line(top: Floats, origin: Floats, pitch: float, floor: float, x0:
         y = origin[1] + (j + 0.5) * pitch
         py = y - y0
         low, high = _capsule_row(y, x0, y0, x1, y1, radius, sx, sy, inv_dy, dx)
+        # Cells ahead of the perpendicular: (x - x0) dx + (y - y0) dy >= 0, solved for x on this
+        # row.
         if joined and moves:
             if dx > STILL:
                 low = max(low, x0 - py * slant)
@@ -236,8 +296,9 @@ def _cut_level_line(top: Floats, origin: Floats, pitch: float, floor: float, x0:
                 continue
         if low > high:
             continue
+        # One cell more on each side than the range holds: the row functions decide by distance.
         a, b = max(int(math.floor((low - left) * cell)), 0), min(int(math.ceil((high - left) * cell)), columns - 1)
-        # The cells from c to d are done.
+        # The cells from c to d lie under the level end at the start and are done; c > d: none.
         c, d = b + 1, b
         gap = level * level - py * py
         if gap > SHRINK:
@@ -263,6 +324,8 @@ def _cut_level_line(top: Floats, origin: Floats, pitch: float, floor: float, x0:
 @njit(cache=True, nogil=True)
 def _cut_arc_cells(row: Floats, first: int, last: int, left: float, y: float, pitch: float, move: Floats, z: float, floor: float,
                    upper: float, profile: Floats, arcs: Floats, pieces: Floats) -> tuple[float, int]:
+    """Lower cells `first` to `last` of a row under a level arc; results as for `_cut_row_plain`. left:
+    x of the row's first cell centre, y of the row."""
     removed, stands = 0.0, 0
     corner, inner, limit = profile[CORNER], profile[RADIUS] - profile[CORNER], profile[RADIUS] ** 2
     bottom = max(z, floor)
@@ -287,7 +350,12 @@ def _cut_arc_cells(row: Floats, first: int, last: int, left: float, y: float, pi
 @njit(cache=True, nogil=True)
 def _cut_level_arc(top: Floats, origin: Floats, pitch: float, floor: float, move: Floats, z: float, upper: float, profile: Floats,
                    arcs: Floats, pieces: Floats) -> tuple[float, int]:
-    """Cut a level arc: within its box, the rows' cells between the circles that its rim draws."""
+    """Cut a level arc: in each row of its box, the cells between the outer and the inner circle of its
+    rim; results as for `_cut_row_plain`.
+
+    The inner circle, of radius arc radius - cutter radius, is never reached and is skipped with a
+    margin. The sector is not tested here: `_arc_square` measures to the arc itself.
+    """
     radius = profile[RADIUS]
     x0, y0, x1, y1 = _box(move, radius)
     left = origin[0] + 0.5 * pitch
@@ -315,22 +383,30 @@ def _cut_level_arc(top: Floats, origin: Floats, pitch: float, floor: float, move
 
 @njit(cache=True, nogil=True)
 def _steepness(wanted: float, across: float, inner: float, corner: float) -> float:
-    """Return the slope of a bull's rim, seen along its axial plane, where its slope along the way is `wanted`.
+    """Return the slope p of a bull end's rim, in its axial plane, where its slope along the direction
+    of motion equals `wanted` >= 0.
 
-    A point `across` beside the way and `rho` from the axis, where the rim rises by p a mm, sees p sqrt(1 - across^2 / rho^2) along it.
-    That grows with p: Newton's steps, halved where they leave the bracket.
+    At the distance `across` beside the path and rho from the axis, a rim that rises by p per mm
+    outwards rises by p sqrt(1 - across^2 / rho^2) along the path, with rho = inner + corner p /
+    sqrt(1 + p^2). This grows with p, so the root is unique: Newton's method, safeguarded by
+    bisection of a bracket. Infinite where the path passes the rim's widest circle.
     """
+    # Below `low` the rim is nearer to the axis than `across`, or its slope along the path too
+    # small.
     out = min(max(across - inner, 0.0) / corner, 1.0)
     if out >= 1.0:
         return np.inf
     low = max(out / math.sqrt(1.0 - out * out), wanted)
     high = 2.0 * low + 1.0
+    # Widen the bracket until the slope along the path reaches what is wanted.
     for _ in range(60):
         rho = inner + corner * high / math.sqrt(1.0 + high * high)
         if high * math.sqrt(max(1.0 - (across / rho) ** 2, 0.0)) >= wanted or high > 1e9:
             break
         low, high = high, 4.0 * high
     p = low + 0.1 * (high - low)
+    # d/dp of p seen(p): seen + p across^2 rho' / (rho^3 seen), with rho' = corner / (1 +
+    # p^2)^(3/2).
     for _ in range(60):
         q = 1.0 / math.sqrt(1.0 + p * p)
         rho = inner + corner * p * q
@@ -351,12 +427,19 @@ def _steepness(wanted: float, across: float, inner: float, corner: float) -> flo
 
 @njit(cache=True, nogil=True)
 def _formed_on_slope(across: float, low: float, high: float, slope: float, profile: Floats, arcs: Floats, pieces: Floats) -> float:
-    """Return the least of slope * w + height at the distance (across, w) over w from low to high, each convex body by itself."""
+    """Return the least of slope w + g(sqrt(across^2 + w^2)) (mm) over w from `low` to `high`, for a
+    cutter of any form; infinite where it never covers the column.
+
+    w (mm) runs along the path from the column's foot. Each convex body has a convex lower side, so
+    golden section finds its minimum; the least over the bodies is taken. 48 sections leave 1e-10 of
+    the interval, and what is returned is attained: it errs towards standing material.
+    """
     best = np.inf
     for k in range(int(profile[FIRST]), int(profile[LAST])):
         gap = pieces[k, R_MAX] ** 2 - across * across
         if gap <= 0.0:
             continue
+        # A chord of the body's disc, a hair shorter so that rounding does not step outside of it.
         half = math.sqrt(gap) * (1.0 - 1e-12)
         a, b = max(low, -half), min(high, half)
         if a > b:
@@ -377,7 +460,8 @@ def _formed_on_slope(across: float, low: float, high: float, slope: float, profi
 
 @njit(cache=True, nogil=True, inline="always")
 def _rise(w: float, square: float, inner: float, corner: float) -> float:
-    """Return how fast a bull's end rises along the way at w, a squared distance `square` beside it."""
+    """Return the derivative by w of a bull end's height g at w along the path, with `square` the
+    squared distance beside it; infinite at its rim."""
     rho = math.sqrt(square + w * w)
     out = rho - inner
     if out <= 0.0:
@@ -389,7 +473,14 @@ def _rise(w: float, square: float, inner: float, corner: float) -> float:
 
 @njit(cache=True, nogil=True)
 def _lowest_on_slope(along: float, across: float, length: float, z0: float, slope: float, radius: float, corner: float) -> float:
-    """Return the lowest height of a plain cutter over a column while it runs along a slope; infinite when it never covers it."""
+    """Return the lowest height (mm) of a plain cutter over a column while it moves along a slope;
+    infinite when it never covers it.
+
+    along, across: the column's plan coordinates (mm) from the start, along and beside the path; z0
+    tip at the start; slope: rise per mm in plan. With w the position of the axis from the column's
+    foot the height is base + slope w + g(sqrt(across^2 + w^2)), convex in w; its minimum over w in
+    [low, high] is found in closed form for flat and ball ends and by `_steepness` for a bull end.
+    """
     square = across * across
     gap = radius * radius - square
     if gap <= 0.0:
@@ -400,8 +491,10 @@ def _lowest_on_slope(along: float, across: float, length: float, z0: float, slop
     if low > high:
         return np.inf
     base, inner = z0 + along * slope, radius - corner
+    # Flat end: g = 0, linear in w.
     if corner == 0.0:
         return base + min(low * slope, high * slope)
+    # Ball end: slope + w / sqrt(half^2 - w^2) = 0.
     if inner <= 0.0:
         w = min(max(-slope * half / math.sqrt(1.0 + slope * slope), low), high)
     # The height over w is convex: where it rises at the low end already, that is the lowest; on short moves nearly everywhere.
@@ -410,6 +503,7 @@ def _lowest_on_slope(along: float, across: float, length: float, z0: float, slop
     elif slope + _rise(high, square, inner, corner) <= 0.0:
         w = high
     else:
+        # Inside: the rim's slope along the path equals minus the path's slope.
         p = _steepness(abs(slope), abs(across), inner, corner)
         rho = inner + corner * p / math.sqrt(1.0 + p * p)
         w = math.sqrt(max(rho * rho - square, 0.0))
@@ -420,7 +514,11 @@ def _lowest_on_slope(along: float, across: float, length: float, z0: float, slop
 @njit(cache=True, nogil=True)
 def _cut_slope(top: Floats, origin: Floats, pitch: float, floor: float, x0: float, y0: float, z0: float, x1: float, y1: float, z1: float,
                upper: float, joined: bool, profile: Floats, arcs: Floats, pieces: Floats) -> tuple[float, int]:
-    """Cut a slope. A column behind the start of a joined one that climbs is done: the cutter only goes up and away from it."""
+    """Cut a sloped line; results as for `_cut_row_plain`.
+
+    A column behind the start of a joined line that climbs is done: the cutter only moves up and
+    away from it, and stood at the start when the move before ended.
+    """
     dx, dy, radius, corner = x1 - x0, y1 - y0, profile[RADIUS], profile[CORNER]
     length = math.sqrt(dx * dx + dy * dy)
     slope, plain = (z1 - z0) / length, profile[PLAIN] != 0.0
@@ -428,6 +526,8 @@ def _cut_slope(top: Floats, origin: Floats, pitch: float, floor: float, x0: floa
     sx, sy = -radius * uy, radius * ux
     inv_dy = 1.0 / dy if abs(dy) > STILL else 0.0
     done_behind = joined and z1 >= z0
+    # No column at or below the lowest tip is lowered; a bound from below that saves most of the
+    # work.
     lowest, removed, stands = max(min(z0, z1), floor), 0.0, 0
     left = origin[0] + 0.5 * pitch
     for j in range(first_cell(min(y0, y1) - radius, origin[1], pitch), last_cell(max(y0, y1) + radius, origin[1], pitch, top.shape[0]) + 1):
@@ -462,9 +562,13 @@ def _cut_slope(top: Floats, origin: Floats, pitch: float, floor: float, x0: floa
 
 @njit(cache=True, nogil=True)
 def _cut_helix(top: Floats, origin: Floats, pitch: float, floor: float, move: Floats, radius: float, opening: float) -> tuple[float, int]:
-    """Cut a helix by a level end of a radius, exactly: a column keeps the height at which it was covered lowest.
+    """Cut a helix by a level disc of a radius (mm), exactly; results as for `_cut_row_plain`.
 
-    A column is covered while the tip is less than an angle away from its own about the centre; on the way down the last moment counts.
+    A column at the distance rho from the helix's centre is covered while the tip's angle is within
+    `half` of its own, by the law of cosines rho^2 + arm^2 - 2 rho arm cos(half) = radius^2; on the
+    way down the last covered moment is the lowest, on the way up the first. The sweep is at most
+    one turn (readers refuse arcs of several), so three windows, each a turn apart, hold every
+    covered moment. `opening`: OPEN of the tool's profile.
     """
     x0, y0, x1, y1 = _box(move, radius)
     arm, sweep, z0, z1 = move[ARC_RADIUS], abs(move[SWEEP]), move[Z_START], move[Z_END]
@@ -479,13 +583,16 @@ def _cut_helix(top: Floats, origin: Floats, pitch: float, floor: float, move: Fl
                 continue
             x = origin[0] + (i + 0.5) * pitch - move[CX]
             rho = math.sqrt(x * x + y * y)
+            # The disc never comes as near.
             if abs(rho - arm) >= radius:
                 continue
             z = np.inf
+            # Always covered, at every angle.
             if rho + arm < radius:
                 z = min(z0, z1)
             else:
                 half = math.acos(min(max((rho * rho + arm * arm - radius * radius) / (2.0 * rho * arm), -1.0), 1.0))
+                # The column's angle from the start in the direction of travel, 0 to a turn.
                 nearest = (turn * (math.atan2(y, x) - move[START_ANGLE])) % math.tau
                 for round_ in range(-1, 2):
                     a = max(nearest + round_ * math.tau - half, 0.0)
@@ -505,10 +612,13 @@ def _cut_helix(top: Floats, origin: Floats, pitch: float, floor: float, move: Fl
 @njit(cache=True, nogil=True)
 def cut_move(top: Floats, origin: Floats, pitch: float, floor: float, move: Floats, joined: bool, profile: Floats, arcs: Floats,
              pieces: Floats, chord: float) -> tuple[float, int]:
-    """Cut one upright feed move into the field; return the removed height summed over columns, and how many columns were left standing.
+    """Cut one upright feed move into the field; return the removed height (mm) summed over columns,
+    and how many columns were left standing.
 
-    top (rows, columns) heights, changed; origin (2,) the field's corner; floor its lowest height; joined as `joins` says; a helix is cut as
-    slopes within a chord error, by a level end exactly.
+    top (rows, columns) heights, changed; origin (2,) the field's corner; floor its lowest height;
+    joined as `joins` says. Level moves and sloped lines have a closed form. A helix is cut by the
+    level end exactly, then by its rounded rim as slopes along chords that leave the helix by at
+    most `chord` (mm).
     """
     z0, z1 = move[Z_START], move[Z_END]
     lowest = min(z0, z1)
@@ -530,6 +640,7 @@ def cut_move(top: Floats, origin: Floats, pitch: float, floor: float, move: Floa
         removed, stands = _cut_helix(top, origin, pitch, floor, move, level, profile[OPEN])
         if profile[CORNER] == 0.0:
             return removed, stands
+    # Sagitta of a chord over the angle `step`: arm step^2 / 8 = chord.
     step = math.sqrt(8.0 * chord / max(move[ARC_RADIUS], chord))
     count = max(1, int(math.ceil(abs(move[SWEEP]) / step)))
     px, py, pz = move[X0], move[Y0], z0
@@ -547,14 +658,20 @@ def cut_move(top: Floats, origin: Floats, pitch: float, floor: float, move: Floa
 
 @njit(cache=True, nogil=True, inline="always")
 def joins(moves: Floats, rapid: Bools, tool: Ints, n: int) -> bool:
-    """Say whether a move goes on where a feed move of the same tool has just ended."""
+    """Return whether a feed move continues where a feed move of the same tool has just ended: exactly
+    the same tip."""
     return (n > 0 and not rapid[n - 1] and not rapid[n] and tool[n] == tool[n - 1] and moves[n, X0] == moves[n - 1, X1]
             and moves[n, Y0] == moves[n - 1, Y1] and moves[n, Z_START] == moves[n - 1, Z_END])
 
 
 @njit(cache=True, nogil=True)
 def _formed_depth(rho: float, h: float, arcs: Floats, first: int, last: int, z_low: float, z_high: float) -> float:
-    """Return how deep the material at a distance from the axis up to a height is in a body; the depth is concave over the height."""
+    """Return the depth (mm) in one closed body of the material at a distance rho from the axis, from
+    below up to the height h above the tip.
+
+    The depth is concave over the height: golden section between the body's lower end and h. What is
+    returned is attained, so it errs low by less than 1e-7 of the body's length.
+    """
     low, high = z_low, max(min(h, z_high), z_low)
     for _ in range(40):
         a, b = low + 0.382 * (high - low), low + 0.618 * (high - low)
@@ -567,7 +684,12 @@ def _formed_depth(rho: float, h: float, arcs: Floats, first: int, last: int, z_l
 
 @njit(cache=True, nogil=True)
 def _depth(square: float, h: float, profile: Floats, arcs: Floats, pieces: Floats) -> float:
-    """Return how deep a column at a squared distance from the axis, whose top is h above the tip, is in the cutter."""
+    """Return how deep (mm) a column at a squared distance from the axis, its top h above the tip, lies
+    in the cutter; negative outside.
+
+    Of a plain cutter the signed distance to an endless cylinder with a rounded lower end; as the
+    flutes' top is left out it errs deep. Other forms: the deepest of their bodies.
+    """
     rho = math.sqrt(square)
     if profile[PLAIN] != 0.0:
         corner = profile[CORNER]
@@ -586,7 +708,8 @@ def _depth(square: float, h: float, profile: Floats, arcs: Floats, pieces: Float
 @njit(cache=True, nogil=True)
 def _deepest(top: Floats, origin: Floats, pitch: float, x0: float, y0: float, x1: float, y1: float, z: float, profile: Floats,
              arcs: Floats, pieces: Floats) -> tuple[float, int]:
-    """Return how deep columns are in a cutter along a level line, and the cell."""
+    """Return the greatest depth (mm) of a column in a cutter along a level line at z, and its flat
+    cell index, -1 without one."""
     radius = profile[RADIUS]
     i0 = first_cell(min(x0, x1) - radius, origin[0], pitch)
     i1 = last_cell(max(x0, x1) + radius, origin[0], pitch, top.shape[1])
@@ -608,7 +731,13 @@ def _deepest(top: Floats, origin: Floats, pitch: float, x0: float, y0: float, x1
 @njit(cache=True, nogil=True)
 def _rims(top: Floats, origin: Floats, pitch: float, x0: float, y0: float, x1: float, y1: float, z: float, radius: float, rims: Ints,
           count: int) -> int:
-    """List the cells that a level sweep touches: those on or beside which material stands above z, and the others as -1 - cell."""
+    """Append to `rims` the cells whose area a level sweep may touch; return the new count.
+
+    A cell is listed when it or a neighbour stands higher than z, as -1 - cell when none does: there
+    only a fin between the columns could stand. The sweep is widened by half a cell's diagonal, so
+    every cell with any point under the disc is listed. A full `rims` drops the rest: the caller
+    takes it as overflow.
+    """
     reach = radius + pitch * 0.7072
     i0, i1 = first_cell(min(x0, x1) - reach, origin[0], pitch), last_cell(max(x0, x1) + reach, origin[0], pitch, top.shape[1])
     j0, j1 = first_cell(min(y0, y1) - reach, origin[1], pitch), last_cell(max(y0, y1) + reach, origin[1], pitch, top.shape[0])
@@ -633,7 +762,11 @@ def _rims(top: Floats, origin: Floats, pitch: float, x0: float, y0: float, x1: f
 
 @njit(cache=True, nogil=True)
 def _cone_depth(d: float, h: float, cone: Floats) -> float:
-    """Return how deep a column whose top is h above the tip is in a truncated cone, by its nearest free side."""
+    """Return how deep (mm) a column, at a squared distance d, its top h above the tip, lies in a
+    truncated cone row (5,): to its side along the radius, or to a free lower face.
+
+    The radial distance to a leaning side is at least the true one: it errs deep.
+    """
     r0, r1, z0, z1 = cone[0], cone[1], cone[2], cone[3]
     if h <= z0:
         return -np.inf
@@ -644,7 +777,12 @@ def _cone_depth(d: float, h: float, cone: Floats) -> float:
 @njit(cache=True, nogil=True)
 def _cones(top: Floats, origin: Floats, pitch: float, highest: float, move: Floats, line: Floats, z: float, cones: Floats, first: int,
            last: int) -> float:
-    """Return how deep the truncated cones enter columns along a level plan curve: the move's arc, or a line (4,)."""
+    """Return the greatest depth (mm) of a column in truncated cones `first` to `last` along a level
+    plan curve: the move's arc, or a line (4,) x, y to x, y.
+
+    highest: no column stands higher. A sloped arc is judged at its lowest z all along: it errs
+    deep.
+    """
     best = -np.inf
     dx, dy = line[2] - line[0], line[3] - line[1]
     square = dx * dx + dy * dy
@@ -673,12 +811,17 @@ def _cones(top: Floats, origin: Floats, pitch: float, highest: float, move: Floa
 @njit(cache=True, nogil=True)
 def _judge(top: Floats, origin: Floats, pitch: float, highest: float, move: Floats, is_rapid: bool, profile: Floats, arcs: Floats,
            pieces: Floats, cones: Floats, first: int, last: int, allowed: float) -> tuple[float, int, float]:
-    """Return how deep a move's cutter (of rapids) and what is above its flutes enter the field as it is, and the cell of the former.
+    """Return how deep (mm) a move's cutter (rapids only) and what is above its flutes enter the field
+    as it stands, and the cell of the former.
 
-    A slope is halved until its pieces are clear or lower by less than `allowed` from end to end.
+    Branch and bound over the path: a sloped line is judged at the lowest z of a part of it, which
+    bounds the depth from above; the part is halved while that bound is above both `allowed` and the
+    deepest so far and the part still drops by more than `allowed`. So depths err deep: by less than
+    `allowed` on lines, by up to the whole drop on sloped arcs, which are not divided.
     """
     depth, cell, body = -np.inf, -1, -np.inf
     lowest = np.inf
+    # Clear of everything: the field is below the lowest point of what is judged.
     for k in range(first, last):
         lowest = min(lowest, cones[k, 2])
     if highest <= min(move[Z_START], move[Z_END]) + (0.0 if is_rapid else lowest):
@@ -700,6 +843,7 @@ def _judge(top: Floats, origin: Floats, pitch: float, highest: float, move: Floa
         if is_rapid:
             d, c = _deepest(top, origin, pitch, line[0], line[1], line[2], line[3], z, profile, arcs, pieces)
         b = _cones(top, origin, pitch, highest, move, line, z, cones, first, last)
+        # Where the stack is full the part is not halved: its bound counts as it is.
         worth = d > max(depth, allowed) or b > max(body, allowed)
         if worth and not still and move[KIND] == 0.0 and (t1 - t0) * abs(dz) > allowed and n + 2 < len(spans):
             middle = 0.5 * (t0 + t1)
@@ -718,20 +862,28 @@ def stock_loop(first: int, last: int, top: Floats, origin: Floats, pitch: float,
                rapid: Bools, tool: Ints, profiles: Floats, arcs: Floats, pieces: Floats, cones: Floats, cone_start: Ints, chord: float,
                allowed: float, removed: Floats, depth: Floats, cell: Ints, body_depth: Floats, rims: Ints, rim_start: Ints,
                probe_start: Ints, circle: Floats, rings: Floats, counted: Ints, spans: Floats) -> tuple[int, int]:
-    """Run upright moves `first` to `last`: judge rapids against the field as it is, and cut with the others.
+    """Run upright moves `first` to `last` in order: cut the field with feed moves, judge rapids and
+    what is above the flutes against it as it then stands.
 
-    top (rows, columns) heights of columns, changed; origin (2,) of the field's corner, `highest` its height at the start. tool (n,) rows of
-    profiles (t, 6), see `verify/profile.py`; arcs, pieces of the bodies of all tools; cones (k, 5) above the flutes, cone_start (t + 1,).
-    removed (n,) gets the summed height that a move takes off; depth (n,) and cell (n,) how deep a rapid goes and where; body_depth
-    (n,) how deep what is above the flutes goes into stock; rims gets the cells that a low rapid grazes as `_rims` lists them,
-    rim_start (n + 1,) their beginnings. probe_start (n + 1,), circle, rings, counted and spans: see `kernels/engagement.py`.
-    Returns the row after the last one done and why it ended early: 1 when `rims` is full, 2 when that row's move has to leave columns
-    standing that a field can't show: removed has what it took off, the rest is for the bundles with intervals.
+    top (rows, columns) heights, changed; origin (2,) of the field's corner, `highest` its height at
+    the start. moves (n, 15); tool (n,) rows of profiles (t, 6), see `verify/profile.py`; arcs,
+    pieces of the bodies of all tools; cones (k, 5) above the flutes, cone_start (t + 1,). chord,
+    allowed in mm.
+
+    removed (n,) gets the summed height that a move takes off; depth (n,) and cell (n,) how deep a
+    rapid enters and where; body_depth (n,) how deep what is above the flutes enters stock; rims
+    gets the cells that a low rapid grazes as `_rims` lists them, rim_start (n + 1,) their
+    beginnings. probe_start (n + 1,), circle, rings, counted and spans: see `kernels/engagement.py`.
+
+    Returns the row after the last one done and why it ended early: 1 when `rims` is full, 2 when
+    that row's move has to leave columns standing that a field can't show: removed has what it took
+    off, the rest is for the bundles with intervals.
     """
     for n in range(first, last):
         move, profile = moves[n], profiles[tool[n]]
         z = min(move[Z_START], move[Z_END])
         count = rim_start[n]
+        # The engagement is measured before the move cuts, the body's depth after it.
         if not rapid[n]:
             look_in_field(top, origin, pitch, floor, move, rings[tool[n]], circle, probe_start[n], probe_start[n + 1], counted, spans)
             took, standing = cut_move(top, origin, pitch, floor, move, joins(moves, rapid, tool, n), profile, arcs, pieces, chord)

@@ -1,12 +1,18 @@
-"""Compiled bounds on material left over cells of an exact surface: no point of a cell has more, none has less.
+"""Compiled two-sided bounds of residual material over cells of an exact surface: scallop height from
+above, gouge from below.
 
-A cell is a parallelogram about its middle, and how far the surface may be from it.
+A cell is a parallelogram, middle +- a +- b, and `slack`, how far the surface may be from it.
 
-* Above: the signed distance to a cutter that stands still is convex in the point, so over a cell it is largest at a corner; material left
-  is at most that, for every pose. So is every mean of two poses': where two passes meet in a ridge, the mean that is level there bounds
-  it to second order.
-* Below: seen from the tool, the cell goes along a chord, and the distance is convex in place and time together; the mean of two tangents
-  that is level along the chord bounds it, with its slope across the cell, the chord's sag and what the tool turns meanwhile.
+* Above: the signed distance f to a static convex cutter is convex in the point, so over a cell it
+  is largest at a corner; material left is at most that, for every pose. So it is for every mean of
+  two poses', since the least of two is at most any mean: where two passes meet in a ridge, the mean
+  that is level there bounds it to second order.
+* Below: seen from the tool, the cell moves along a chord, and f is convex in place and time
+  together; the mean of two tangents that is level along the chord bounds it from below, less its
+  slope across the cell, the chord's sag and what the tool turns meanwhile.
+
+f has slope 1 at most, so the slack is added above and taken off below: both bounds are safe. mm,
+rad, the frame of the moves; ways, flutes and trees as in `kernels/left.py`.
 """
 
 from __future__ import annotations
@@ -49,7 +55,7 @@ CLOSE = 0.05
 
 @njit(cache=True, nogil=True)
 def _turned(w: Floats, x: float, y: float, z: float, t: float) -> tuple[float, float, float]:
-    """Return a direction as it is seen from the tool at a share of its way."""
+    """Return a direction (vector, mm) as it is seen from the tool at a share t of its way."""
     nx, ny, nz = w[AY] * w[EZ] - w[AZ] * w[EY], w[AZ] * w[EX] - w[AX] * w[EZ], w[AX] * w[EY] - w[AY] * w[EX]
     e, n, a = x * w[EX] + y * w[EY] + z * w[EZ], x * nx + y * ny + z * nz, x * w[AX] + y * w[AY] + z * w[AZ]
     if w[TURN] > 0.0:
@@ -60,7 +66,7 @@ def _turned(w: Floats, x: float, y: float, z: float, t: float) -> tuple[float, f
 
 @njit(cache=True, nogil=True)
 def _tangent(arcs: Floats, first: int, last: int, x: float, y: float, z: float) -> tuple[float, float, float, float]:
-    """Return the signed distance to a body at a place seen from the tool, and its slopes."""
+    """Return the signed distance (mm) to a body at a place seen from the tool, and its gradient there."""
     rho = math.sqrt(x * x + y * y)
     depth, nr, nz = depth_in_body(arcs, first, last, rho, z)
     return (-depth, nr * x / rho, nr * y / rho, nz) if rho > 0.0 else (-depth, 0.0, 0.0, nz)
@@ -69,9 +75,13 @@ def _tangent(arcs: Floats, first: int, last: int, x: float, y: float, z: float) 
 @njit(cache=True, nogil=True)
 def _chord_least(arcs: Floats, first: int, last: int, x0: float, y0: float, z0: float, x1: float, y1: float, z1: float, s: float, t: float,
                  ax: float, ay: float, az: float, bx: float, by: float, bz: float) -> float:
-    """Return a bound from below of the distances of a cell (half sides a, b) that goes along a chord, by the tangents at two shares.
+    """Return a lower bound (mm) of the signed distance of a cell, half sides a and b, that moves along
+    a chord, by the tangents at the shares s <= t.
 
-    The distance is smallest between the shares: the mean of both tangents that is level along the chord bounds it everywhere.
+    The distance of the cell's middle is smallest between the shares. Mixed with p = rise / (rise -
+    fall) the two tangents are level along the chord, so the mixture bounds f everywhere on it;
+    across the cell it falls by |g . a| + |g . b| at most. Equal shares are a minimum at an end, or
+    a level tangent.
     """
     dx, dy, dz = x1 - x0, y1 - y0, z1 - z0
     f, gx, gy, gz = _tangent(arcs, first, last, x0 + s * dx, y0 + s * dy, z0 + s * dz)
@@ -87,7 +97,12 @@ def _chord_least(arcs: Floats, first: int, last: int, x0: float, y0: float, z0: 
 @njit(cache=True, nogil=True)
 def _span_least(w: Floats, flutes: Flutes, tool: int, x: float, y: float, z: float, t0: float, t1: float, a: Floats, b: Floats, size: float,
                 slack: float, least: float, close: float, spans: Floats) -> float:
-    """Return the smaller of `least` and a bound from below of the signed distances of a cell along a way between two shares."""
+    """Return the smaller of `least` and a lower bound (mm) of the signed distances of a cell along a
+    way between two shares.
+
+    a, b (3,) half sides, size |a| + |b|. A span whose sag is above `close` is halved; where the
+    workspace spans (k, 2) is full it counts with its sag, which is still a bound.
+    """
     spans[0, 0], spans[0, 1] = t0, t1
     top = 1
     length = math.sqrt(w[DX] * w[DX] + w[DY] * w[DY] + w[DZ] * w[DZ])
@@ -97,6 +112,8 @@ def _span_least(w: Floats, flutes: Flutes, tool: int, x: float, y: float, z: flo
         share = s1 - s0
         x0, y0, z0 = in_tool(w, x, y, z, s0)
         x1, y1, z1 = in_tool(w, x, y, z, s1)
+        # Sag of the middle's chord, as in `kernels/left.py`; a turning axis also turns the cell's
+        # sides, by `turn` x size at most.
         sag = 0.0
         if w[RADIUS] > 0.0:
             turn = w[SWEEP] * share
@@ -109,6 +126,7 @@ def _span_least(w: Floats, flutes: Flutes, tool: int, x: float, y: float, z: flo
         lowest = np.inf
         for k in range(flutes.start[tool], flutes.start[tool + 1]):
             low, _at, s, t = least_on_chord(flutes.arc, flutes.first[k], flutes.last[k], x0, y0, z0, x1, y1, z1, np.inf, close)
+            # Every point of the cell is within size + slack of its middle.
             if low - size - sag - slack < least:
                 lowest = min(lowest, _chord_least(flutes.arc, flutes.first[k], flutes.last[k], x0, y0, z0, x1, y1, z1, s, t, ax, ay, az, bx,
                                                   by, bz))
@@ -127,16 +145,18 @@ def _span_least(w: Floats, flutes: Flutes, tool: int, x: float, y: float, z: flo
 @njit(cache=True, nogil=True)
 def cell_least(x: float, y: float, z: float, a: Floats, b: Floats, slack: float, tree: Tree, flutes: Flutes, least: float, stop: float,
                close: float, nodes: Ints, lower: Floats, spans: Floats) -> float:
-    """Return a bound from below of the material left on a cell, or something below `stop` when that is found first.
+    """Return a lower bound (mm) of the material left on a cell, or something below `stop` when that is
+    found first.
 
-    a, b (3,) go from its middle to the middles of its sides; slack is how far the surface may be from it. `least` is what is left at the
-    middle.
+    a, b (3,) run from its middle to the middles of its sides; slack is how far the surface may be
+    from it. `least` is what is left at the middle. nodes, lower (k,), spans (k, 2): workspace.
     """
     size = math.sqrt(a[0] * a[0] + a[1] * a[1] + a[2] * a[2]) + math.sqrt(b[0] * b[0] + b[1] * b[1] + b[2] * b[2])
     top = 0
     for r in range(len(tree.root)):
         nodes[top], lower[top] = tree.root[r], node_least(tree, flutes, tree.root[r], x, y, z, False) - size - slack
         top += 1
+    # As `nearest_span`, every bound lowered by the cell's size and slack.
     while top > 0 and least >= stop:
         top -= 1
         n = nodes[top]
@@ -161,7 +181,12 @@ def cell_least(x: float, y: float, z: float, a: Floats, b: Floats, slack: float,
 
 @njit(cache=True, nogil=True)
 def _mean_of_two(p: Floats, q: Floats) -> float:
-    """Return the least, over all means of two poses, of the largest of their distances (4,) at the corners."""
+    """Return the least over all means of two poses of the largest of their distances (4,) at a cell's
+    corners (mm).
+
+    The largest of four lines in the share is convex and piecewise linear: its minimum is at an end
+    or where two of the lines cross.
+    """
     best = min(p.max(), q.max())
     for i in range(4):
         for j in range(4):
@@ -176,7 +201,11 @@ def _mean_of_two(p: Floats, q: Floats) -> float:
 
 @njit(cache=True, nogil=True)
 def _nearest_body(flutes: Flutes, tool: int, w: Floats, place: Floats, share: float) -> int:
-    """Return which of a tool's bodies is nearest to a place from a pose."""
+    """Return which of a tool's convex bodies a place lies deepest in, or is nearest to, in a pose.
+
+    The convexity that the bound from above needs holds for one body; its distance is at least the
+    union's.
+    """
     x, y, z = in_tool(w, place[0], place[1], place[2], share)
     best, deepest = flutes.start[tool], -np.inf
     for k in range(flutes.start[tool], flutes.start[tool + 1]):
@@ -189,16 +218,19 @@ def _nearest_body(flutes: Flutes, tool: int, w: Floats, place: Floats, share: fl
 @njit(cache=True, nogil=True)
 def cells_loop(first: int, last: int, middle: Floats, a: Floats, b: Floats, slack: Floats, tree: Tree, flutes: Flutes, far: float,
                lowest: float, bound: float, above: Bools, left: Floats, nearest: Ints, upper: Floats, lower: Floats) -> None:
-    """Fill for cells `first` to `last` what is left at their middle, by which move, and bounds from above and below over the whole cell.
+    """Fill for cells `first` to `last` what is left at their middle, by which move, and bounds from
+    above and below over the whole cell.
 
-    middle, a, b (c, 3), slack (c,) as in `cell_least`; far: no distance above it is told. Where a cell may fall by `bound` below both
-    `lowest` and its middle, its `lower` only says so; with an infinite `lowest` it isn't looked for. Where `above` (c,) is false, no bound
-    from above is looked for.
+    middle, a, b (c, 3), slack (c,) as in `cell_least`; far: no distance above it is told. Fills
+    left (c,) mm, nearest (c,) rows or -1, upper and lower (c,) mm. Where a cell may fall by `bound`
+    below both `lowest` and its middle, its `lower` only says so; with an infinite `lowest` it isn't
+    searched for. Where `above` (c,) is false, no bound from above is searched for.
     """
     close = CLOSE * bound
     nodes, least, spans = np.zeros(len(tree.root) + 128, np.int64), np.zeros(len(tree.root) + 128), np.zeros((96, 2))
     rows, shares, distance, places = np.zeros(POSES, np.int64), np.zeros(POSES), np.zeros((POSES, 4)), np.zeros((POSES, 3))
     for n in range(first, last):
+        # The nearest poses of the middle and the four corners: candidates for the bound from above.
         for k in range(POSES if above[n] else 1):
             i = 0.0 if k == 0 else (1.0 if k % 2 else -1.0)
             j = 0.0 if k == 0 else (1.0 if k > 2 else -1.0)
@@ -213,6 +245,8 @@ def cells_loop(first: int, last: int, middle: Floats, a: Floats, b: Floats, slac
                 continue
             w, tool = tree.way[rows[k]], tree.tool[rows[k]]
             body = _nearest_body(flutes, tool, w, places[k], shares[k])
+            # Distances of this pose at the four corners: their largest is a bound; so is each mean
+            # with an earlier pose.
             for c in range(4):
                 x, y, z = in_tool(w, places[c + 1, 0], places[c + 1, 1], places[c + 1, 2], shares[k])
                 depth, _r, _h = depth_in_body(flutes.arc, flutes.first[body], flutes.last[body], math.sqrt(x * x + y * y), z)

@@ -1,13 +1,20 @@
-"""Compiled loops that measure how near the cutting part of a tool comes to points of the part, along moves.
+"""Compiled residual material: the least signed distance from points of the part to the swept volume of
+the cutting edges.
 
-Seen from the tool, a point goes along a straight chord while the tool moves straight with a still axis, and leaves that chord by a known
-sag of second order where the tip turns along an arc or the axis turns. The signed distance to a convex body is convex along a chord, so
-tangents at both ends bound it from below; a span whose sag is too large is split. A value that is returned is attained somewhere on the
-move, and the true one is at most the bound smaller.
+The distance of a point to what a tool cuts along a move is the least over time of its signed
+distance f to the tool (negative inside: a gouge). Seen from the tool, the point moves along a
+straight chord while the tool moves straight with a still axis, and leaves that chord by a known sag
+of second order where the tip follows an arc or the axis turns. The signed distance to a convex body
+is convex along a chord, so tangents at both ends bound it from below; a span whose sag is too large
+is halved (branch and bound). A value that is returned is attained somewhere on the move, so
+residual material is never told too small; the true value is at most the stated bound smaller.
 
-Level and upright moves of plain cutters have a closed form in plan and are listed by the cells of a plan grid. All others are spans in a
-tree of poses: each node stands for poses within a distance and an angle of its own, and since a signed distance changes no faster than
-the point moves, one look at the node's pose tells the least that any of them can give.
+Level and upright moves of plain cutters have a closed form in plan and are listed by the cells of a
+plan grid. All others are spans in a bounding volume hierarchy of poses: each node stands for poses
+within a distance and an angle of its own, and since a signed distance changes no faster than the
+point moves, the distance at the node's pose less that bounds all of them from below.
+
+mm, rad, the frame of the moves.
 """
 
 from __future__ import annotations
@@ -22,7 +29,7 @@ from trunnion.geometry.arrays import Bools, Floats, Ints
 from trunnion.verify.kernels.body import depth_in_body
 from trunnion.verify.kernels.strips import Z_END, Z_START, move_box, point_distance
 
-# Columns of a way: how a tool moves in space, seen from itself.
+# Columns of a way: how a tool moves in space, as the chord of a point seen from it needs it.
 PX, PY, PZ, DX, DY, DZ, AX, AY, AZ, EX, EY, EZ, TURN, CENTRE_E, CENTRE_N, RADIUS, PHASE, SWEEP = range(18)
 """P the tip at the start and D from there to its end; A the axis at the start, E the unit direction across it in which the axis turns by
 the angle TURN. Of arcs (RADIUS above 0): centre along E and along A x E, radius, angle at the start and the signed angle turned."""
@@ -41,8 +48,10 @@ _depth = njit(nogil=True, inline="always")(depth_in_body.py_func)
 class Flutes(NamedTuple):
     """The cutting bodies of tools, closed at the flutes' top.
 
-    arc (a, 7) as `kernels/body.py` names its columns; first, last (b,) the arcs of each body, endless (b,) its last without the top of the
-    flutes (of plain cutters); start (t + 1,) the bodies of each tool; middle (t,) height of the place by which its poses are compared.
+    arc (a, 7) as `kernels/body.py` names its columns; first, last (b,) the arcs of each body,
+    endless (b,) its last without the top of the flutes (of plain cutters); start (t + 1,) the
+    bodies of each tool; middle (t,) mm, height of the place on the axis by which its poses are
+    compared.
     """
 
     arc: Floats
@@ -54,11 +63,13 @@ class Flutes(NamedTuple):
 
 
 class Tree(NamedTuple):
-    """Spans of ways in a tree of poses, for each tool its own.
+    """Spans of ways in a bounding volume hierarchy of poses, one for each tool.
 
-    way (w, 18), move (w,) their rows among the moves, tool (w,). Spans: of (k,) the row of the way, low and high (k,) shares of it, reach
-    (k,) how far its tip goes from its middle. Nodes: pose (m, 8) a place on the axis, the axis, and how far and by what chord of angle
-    poses below it differ; link (m, 5) children or -1, first and last span, tool. root (r,) nodes.
+    way (w, 18), move (w,) their rows among the moves, tool (w,). Spans: of (k,) the row of the way,
+    low and high (k,) shares of it, reach (k,) mm how far its tip moves from its middle. Nodes: pose
+    (m, 8) a place on the axis, the unit axis, and how far (mm) and by what chord of angle (|a - a'|
+    of two axes) poses below it differ; link (m, 5) children or -1, first and last span, tool. root
+    (r,) nodes.
     """
 
     way: Floats
@@ -75,7 +86,12 @@ class Tree(NamedTuple):
 
 @njit(cache=True, nogil=True)
 def plain_distance(radius: float, corner: float, top: float, rho: float, h: float) -> float:
-    """Return the signed distance of a point to a plain cutter whose flutes end at `top` (at least its corner radius); negative inside."""
+    """Return the signed distance (mm) of a point (rho, h) to a plain cutter whose flutes end at `top`
+    (mm, at least its corner radius); negative inside.
+
+    Rounded rectangle by its offset core: with q the point relative to the corner's centre, |max(q,
+    0)| + min(max(q), 0) - corner (Quilez, 2D distance functions).
+    """
     over = h - top
     if over > 0.0:
         out = max(rho - radius, 0.0)
@@ -87,17 +103,21 @@ def plain_distance(radius: float, corner: float, top: float, rho: float, h: floa
 
 @njit(cache=True, nogil=True)
 def left_by_move(x: float, y: float, z: float, move: Floats, radius: float, corner: float, top: float, best: float) -> float:
-    """Return the smaller of `best` and the signed distance of a point to a plain cutter along a level or upright move.
+    """Return the smaller of `best` and the signed distance (mm) of a point to a plain cutter along a
+    level or upright move (15,).
 
-    The flutes are at least twice as long as the corner is high: where the cutter passes up and down, no height is then nearer than one
-    clear of both ends of the flank.
+    The flutes are at least twice as long as the corner is high: where the cutter passes up and
+    down, no height is then nearer than one clear of both ends of the flank. Exact.
     """
     low, high = min(move[Z_START], move[Z_END]), max(move[Z_START], move[Z_END])
+    # The distance is at least that below the lowest tip, and that beside the cutter.
     if low - z >= best:
         return best
     rho = point_distance(x, y, move)
     if rho - radius >= best:
         return best
+    # Of the heights h at which the point is passed, from z - high to z - low, the one where the
+    # flank is nearest: above the corner, and above the end face by more than the flank is away.
     deep = min(max(radius - rho, 0.0), 0.5 * top)
     h = min(max(z - high, max(corner, deep)), z - low)
     return min(best, plain_distance(radius, corner, top, rho, h))
@@ -105,7 +125,9 @@ def left_by_move(x: float, y: float, z: float, move: Floats, radius: float, corn
 
 @njit(cache=True, nogil=True, inline="always")
 def in_tool(w: Floats, x: float, y: float, z: float, t: float) -> tuple[float, float, float]:
-    """Return where a point is seen from the tool at a share of its way: across its axis along E and A x E, and above its tip."""
+    """Return a point as seen from the tool at a share t of its way: across the axis along E and along
+    A x E, and above the tip (mm)."""
+    # N = A x E completes the frame.
     nx, ny, nz = w[AY] * w[EZ] - w[AZ] * w[EY], w[AZ] * w[EX] - w[AX] * w[EZ], w[AX] * w[EY] - w[AY] * w[EX]
     if w[RADIUS] > 0.0:
         angle = w[PHASE] + t * w[SWEEP]
@@ -113,6 +135,7 @@ def in_tool(w: Floats, x: float, y: float, z: float, t: float) -> tuple[float, f
         return (x * w[EX] + y * w[EY] + z * w[EZ] - w[CENTRE_E] - w[RADIUS] * math.cos(angle),
                 x * nx + y * ny + z * nz - w[CENTRE_N] - w[RADIUS] * math.sin(angle),
                 (x - w[PX]) * w[AX] + (y - w[PY]) * w[AY] + (z - w[PZ]) * w[AZ] - t * climb)
+    # On a line the frame turns by t TURN in the plane of E and A, about N.
     vx, vy, vz = x - w[PX] - t * w[DX], y - w[PY] - t * w[DY], z - w[PZ] - t * w[DZ]
     e, n, a = vx * w[EX] + vy * w[EY] + vz * w[EZ], vx * nx + vy * ny + vz * nz, vx * w[AX] + vy * w[AY] + vz * w[AZ]
     if w[TURN] > 0.0:
@@ -123,7 +146,12 @@ def in_tool(w: Floats, x: float, y: float, z: float, t: float) -> tuple[float, f
 
 @njit(cache=True, nogil=True, inline="always")
 def flute_distance(flutes: Flutes, tool: int, rho: float, h: float, endless: bool) -> float:
-    """Return the signed distance of a point to what cuts of a tool, negative inside."""
+    """Return the signed distance (mm) of a point (rho, h) to the union of a tool's cutting bodies,
+    negative inside.
+
+    Exact outside. Inside, the depth is that in the deepest single body: where two of them join, the
+    union may be deeper, which is why closed bodies overlap.
+    """
     best = np.inf
     for b in range(flutes.start[tool], flutes.start[tool + 1]):
         depth, _r, _h = _depth(flutes.arc, flutes.first[b], flutes.endless[b] if endless else flutes.last[b], rho, h)
@@ -133,6 +161,8 @@ def flute_distance(flutes: Flutes, tool: int, rho: float, h: float, endless: boo
 
 @njit(cache=True, nogil=True, inline="always")
 def _slope(arcs: Floats, first: int, last: int, x: float, y: float, z: float, dx: float, dy: float, dz: float) -> tuple[float, float]:
+    """Return the signed distance (mm) to a convex body at a point seen from the tool, and its
+    derivative in the direction (dx, dy, dz)."""
     rho = math.sqrt(x * x + y * y)
     depth, nr, nz = _depth(arcs, first, last, rho, z)
     return -depth, nz * dz + (nr * (x * dx + y * dy) / rho if rho > 0.0 else 0.0)
@@ -141,14 +171,17 @@ def _slope(arcs: Floats, first: int, last: int, x: float, y: float, z: float, dx
 @njit(cache=True, nogil=True)
 def least_on_chord(arcs: Floats, first: int, last: int, x0: float, y0: float, z0: float, x1: float, y1: float, z1: float, stop: float,
                    close: float) -> tuple[float, float, float, float]:
-    """Return a bound from below of the signed distance to a convex body along a chord, the share where it is nearly so small, and the two
-    shares between which it is smallest.
+    """Return a lower bound (mm) of the signed distance to a convex body along a chord, the share where
+    it is nearly attained, and two shares that bracket the minimum.
 
-    The bound is at most `close` below what the share attains, or it is above `stop`.
+    The bound is at most `close` below what the share attains, or it is above `stop`. Cutting planes
+    in one variable (Kelley, 1960): f is convex along the chord, so the tangents at both ends of the
+    bracket cross below it.
     """
     dx, dy, dz = x1 - x0, y1 - y0, z1 - z0
     a, b = 0.0, 1.0
     fa, ma = _slope(arcs, first, last, x0, y0, z0, dx, dy, dz)
+    # A minimum at an end: the tangent there already rises (or still falls) along the chord.
     if ma >= 0.0:
         return fa, 0.0, 0.0, 0.0
     fb, mb = _slope(arcs, first, last, x1, y1, z1, dx, dy, dz)
@@ -156,6 +189,8 @@ def least_on_chord(arcs: Floats, first: int, last: int, x0: float, y0: float, z0
         return fb, 1.0, 1.0, 1.0
     lower = -np.inf
     for _round in range(_ROUNDS):
+        # Invariant: f falls at a and rises at b. The crossing of both tangents is the least that f
+        # can be.
         t = min(max((fb - fa + ma * a - mb * b) / (ma - mb), a), b)
         lower = min(fa + ma * (t - a), fb + mb * (t - b))
         if lower >= stop or min(fa, fb) - lower <= close:
@@ -174,19 +209,26 @@ def least_on_chord(arcs: Floats, first: int, last: int, x0: float, y0: float, z0
 
 @njit(cache=True, nogil=True)
 def _level_rho(w: Floats, x: float, y: float, z: float, t0: float, t1: float) -> tuple[float, float, float]:
-    """Return the smallest distance of a point from the axis along a way across the axis, its height above the tip, and where."""
+    """Return the least distance (mm) of a point from the axis along a way across the axis, its height
+    above the tip, and the share where.
+
+    At a constant height f never falls with rho, so the least rho gives the least distance.
+    """
     ax, ay, h = in_tool(w, x, y, z, t0)
     bx, by, _h = in_tool(w, x, y, z, t1)
     if w[RADIUS] > 0.0:
         # Seen from the arc's centre the point stands still, and the tip turns past it.
         angle = w[PHASE] + t0 * w[SWEEP]
         px, py = ax + w[RADIUS] * math.cos(angle), ay + w[RADIUS] * math.sin(angle)
+        # The angle of the point from the middle of the arc, to -pi ... pi: opposite to it where the
+        # arc reaches there, else an end is nearest.
         off = math.atan2(py, px) - (w[PHASE] + 0.5 * (t0 + t1) * w[SWEEP])
         off -= 2.0 * math.pi * math.floor(off / (2.0 * math.pi) + 0.5)
         if abs(off) <= 0.5 * abs(w[SWEEP]) * (t1 - t0):
             return abs(math.sqrt(px * px + py * py) - w[RADIUS]), h, 0.5 * (t0 + t1) + off / w[SWEEP]
         square, other = ax * ax + ay * ay, bx * bx + by * by
         return math.sqrt(min(square, other)), h, (t0 if square <= other else t1)
+    # Nearest point of the chord to the axis.
     dx, dy = bx - ax, by - ay
     square = dx * dx + dy * dy
     t = min(max(-(ax * dx + ay * dy) / square, 0.0), 1.0) if square > 0.0 else 0.0
@@ -196,7 +238,12 @@ def _level_rho(w: Floats, x: float, y: float, z: float, t0: float, t1: float) ->
 
 @njit(cache=True, nogil=True)
 def _sag(w: Floats, span: float, far: float) -> float:
-    """Return how far a point `far` from the tip leaves its chord, seen from the tool, over a share of the way."""
+    """Return how far (mm) a point at most `far` from the tip leaves its chord, seen from the tool,
+    over a share of the way.
+
+    Arc: radius (1 - cos(turn / 2)) <= radius turn^2 / 8. Turning axis: turn (turn far / 8 + length
+    / 4), as in `kernels/way.py`.
+    """
     if w[RADIUS] > 0.0:
         turn = w[SWEEP] * span
         return min(0.125 * turn * turn, 2.0) * w[RADIUS]
@@ -209,13 +256,18 @@ def _sag(w: Floats, span: float, far: float) -> float:
 @njit(cache=True, nogil=True)
 def left_along(w: Floats, flutes: Flutes, tool: int, x: float, y: float, z: float, t0: float, t1: float, best: float, bound: float,
                endless: bool, spans: Floats) -> tuple[float, float]:
-    """Return the smaller of `best` and the signed distance of a point to what cuts of a tool along a way between two shares, and where.
+    """Return the smaller of `best` and the signed distance (mm) of a point to what cuts of a tool
+    along a way between two shares, and the share where.
 
-    What is returned is attained; the true one is at most `bound` smaller. `spans` (k, 2) is room to work in.
+    What is returned is attained; the true one is at most `bound` smaller. spans (k, 2): workspace;
+    where it is full a span is not divided further. With `endless` the flutes have no top.
     """
+    # Across a still axis: closed form.
     if w[TURN] == 0.0 and abs(w[DX] * w[AX] + w[DY] * w[AY] + w[DZ] * w[AZ]) <= _LEVEL:
         rho, h, at = _level_rho(w, x, y, z, t0, t1)
         return min(best, flute_distance(flutes, tool, rho, h, endless)), at
+    # Invariant: every time at which the distance may be below best - bound lies in a span on the
+    # stack.
     spans[0, 0], spans[0, 1] = t0, t1
     top, at = 1, t0
     while top > 0:
@@ -223,6 +275,8 @@ def left_along(w: Floats, flutes: Flutes, tool: int, x: float, y: float, z: floa
         a, b = spans[top, 0], spans[top, 1]
         x0, y0, z0 = in_tool(w, x, y, z, a)
         x1, y1, z1 = in_tool(w, x, y, z, b)
+        # The true path lies within the sag of its chord and f has slope 1: its minimum is at least
+        # the chord's less the sag.
         sag = _sag(w, b - a, math.sqrt(max(x0 * x0 + y0 * y0 + z0 * z0, x1 * x1 + y1 * y1 + z1 * z1)))
         least, share = np.inf, 0.0
         for k in range(flutes.start[tool], flutes.start[tool + 1]):
@@ -232,6 +286,7 @@ def left_along(w: Floats, flutes: Flutes, tool: int, x: float, y: float, z: floa
                 least, share = lower, s
         if least - sag >= best - bound:
             continue
+        # Evaluate on the true motion where the chord's minimum is: attained.
         t = a + share * (b - a)
         xt, yt, zt = in_tool(w, x, y, z, t)
         value = flute_distance(flutes, tool, math.sqrt(xt * xt + yt * yt), zt, endless)
@@ -248,7 +303,11 @@ def left_along(w: Floats, flutes: Flutes, tool: int, x: float, y: float, z: floa
 
 @njit(cache=True, nogil=True)
 def node_least(tree: Tree, flutes: Flutes, n: int, x: float, y: float, z: float, above: bool) -> float:
-    """Return the least signed distance that any pose below a node can give."""
+    """Return a lower bound (mm) of the signed distance of a point to any pose below a node.
+
+    f(node's pose) - translation - chord of angle x distance from the pose's place: a turn of the
+    axis moves the point by at most that chord times its distance.
+    """
     pose, tool = tree.pose, tree.link[n, 4]
     vx, vy, vz = x - pose[n, 0], y - pose[n, 1], z - pose[n, 2]
     square = vx * vx + vy * vy + vz * vz
@@ -260,16 +319,19 @@ def node_least(tree: Tree, flutes: Flutes, n: int, x: float, y: float, z: float,
 @njit(cache=True, nogil=True)
 def nearest_span(x: float, y: float, z: float, tree: Tree, flutes: Flutes, best: float, by: int, bound: float, before: int, above: bool,
                  enough: float, nodes: Ints, least: Floats, spans: Floats) -> tuple[float, int, int, float]:
-    """Return the smaller of `best` and the signed distance of a point to what cuts along the spans of a tree, the move (else `by`), the
-    row of its way (else -1), and the share of it where.
+    """Return the smaller of `best` and the signed distance (mm) of a point to what cuts along the
+    spans of a tree, the move (else `by`), the row of its way (else -1), and the share of it where.
 
-    Moves from row `before` on don't count. `above`: an upright plain cutter has also removed what is above it. The search ends at the first
-    value not above `enough`. nodes and least (k,), spans (k, 2) are room to work in.
+    Moves from row `before` on don't count. `above`: an upright plain cutter has also removed what
+    is above it. The search ends at the first value not above `enough`. nodes and least (k,), spans
+    (k, 2) are workspace, k above the number of roots by more than a tree is deep.
     """
     top, row_at, share_at = 0, -1, 0.0
     for r in range(len(tree.root)):
         nodes[top], least[top] = tree.root[r], node_least(tree, flutes, tree.root[r], x, y, z, above)
         top += 1
+    # Depth first, the nearer child first; a node that can no longer undercut `best` is dropped when
+    # it comes off the stack.
     while top > 0 and best > enough:
         top -= 1
         n = nodes[top]
@@ -278,6 +340,7 @@ def nearest_span(x: float, y: float, z: float, tree: Tree, flutes: Flutes, best:
         left, right = tree.link[n, 0], tree.link[n, 1]
         if left >= 0:
             a, b = node_least(tree, flutes, left, x, y, z, above), node_least(tree, flutes, right, x, y, z, above)
+            # The nearer child goes on top of the stack.
             if a < b:
                 left, right, a, b = right, left, b, a
             nodes[top], least[top], nodes[top + 1], least[top + 1] = left, a, right, b
@@ -290,6 +353,7 @@ def nearest_span(x: float, y: float, z: float, tree: Tree, flutes: Flutes, best:
                 continue
             w = tree.way[row]
             endless = above and w[AZ] > 1.0 - _LEVEL and w[TURN] == 0.0
+            # A span is bounded as a node is: by its middle pose.
             mx, my, mz = in_tool(w, x, y, z, 0.5 * (tree.low[k] + tree.high[k]))
             turn = w[TURN] * (tree.high[k] - tree.low[k])
             most = tree.reach[k] + 0.5 * turn * math.sqrt(mx * mx + my * my + mz * mz)
@@ -303,10 +367,11 @@ def nearest_span(x: float, y: float, z: float, tree: Tree, flutes: Flutes, best:
 
 @njit(cache=True, nogil=True)
 def span_poses(way: Floats, of: Ints, low: Floats, high: Floats, middle: Floats) -> tuple[Floats, Floats]:
-    """Return the middle pose of spans (k, 6), a place on the axis and the axis, and how far and by what chord of angle (k, 2) the others of
-    the span differ.
+    """Return the middle pose of spans (k, 6), a place on the axis and the unit axis, and how far (mm)
+    and by what chord of angle (k, 2) the others of the span differ.
 
-    middle (k,) is the height of that place above the tip.
+    middle (k,) mm is the height of that place above the tip: in the middle of the flutes the turn
+    moves points of the tool least. Half the angle stands for its chord, which is shorter.
     """
     pose, reach = np.empty((len(of), 6)), np.empty((len(of), 2))
     for k in range(len(of)):
@@ -332,9 +397,11 @@ def span_poses(way: Floats, of: Ints, low: Floats, high: Floats, middle: Floats)
 
 @njit(cache=True, nogil=True)
 def grow_tree(pose: Floats, reach: Floats, start: Ints, tools: Ints, nodes: Floats, links: Ints, root: Ints) -> int:
-    """Fill the nodes (m, 8) and links (m, 5) of trees over spans in their order; return how many nodes there are.
+    """Fill the nodes (m, 8) and links (m, 5) of trees over spans in their order; return how many nodes
+    there are.
 
-    start (r + 1,): where the spans of each tree begin; tools (r,) theirs; root (r,) gets the first node of each.
+    start (r + 1,): where the spans of each tree begin; tools (r,) theirs; root (r,) gets the first
+    node of each. Spans are halved by count: consecutive spans of a program are neighbours in space.
     """
     count = 0
     work = np.zeros((128, 3), np.int64)
@@ -360,6 +427,12 @@ def grow_tree(pose: Floats, reach: Floats, start: Ints, tools: Ints, nodes: Floa
 
 @njit(cache=True, nogil=True)
 def _bounding(pose: Floats, reach: Floats, first: int, last: int, out: Floats) -> None:
+    """Fill a node's row (8,): the middle of its places' box and of their axes, and the radius and
+    chord of angle that hold all its spans.
+
+    Both are greatest sums over the spans: how far a span's pose is from the node's, plus how far
+    the span's own poses differ from that (triangle inequality).
+    """
     low, high, axis = pose[first, :3].copy(), pose[first, :3].copy(), np.zeros(3)
     for k in range(first, last):
         for c in range(3):
@@ -381,7 +454,7 @@ def _bounding(pose: Floats, reach: Floats, first: int, last: int, out: Floats) -
 
 @njit(cache=True, nogil=True)
 def move_boxes(moves: Floats, margin: Floats) -> Floats:
-    """Return the plan box of every move (n, 4), wider by a margin (n,) on every side."""
+    """Return the plan box of every move (n, 4), wider by a margin (n,) mm on every side."""
     out = np.empty((len(moves), 4))
     for n in range(len(moves)):
         x0, y0, x1, y1 = move_box(moves[n])
@@ -392,10 +465,12 @@ def move_boxes(moves: Floats, margin: Floats) -> Floats:
 @njit(cache=True, nogil=True)
 def left_loop(first: int, last: int, points: Floats, order: Ints, moves: Floats, cutter: Floats, low: Floats, cell_start: Ints,
               cell_move: Ints, grid: Floats, shape: Ints, tree: Tree, flutes: Flutes, bound: float, left: Floats, nearest: Ints) -> None:
-    """Lower `left` (s,) to the smallest signed distance of each point to what cuts along the moves of its cell and of the tree.
+    """Lower left (s,) mm to the smallest signed distance of each point to what cuts along the moves of
+    its cell and of the tree.
 
-    order (s,) says in which order points are visited. cutter (n, 3) is radius, corner radius and flute length of each move, low (n,) its
-    lowest tip, by which the lists of a cell are sorted: what comes later is higher and can't be nearer. nearest (s,) gets the move.
+    points (s, 3); order (s,) in which they are visited. cutter (n, 3) is radius, corner radius and
+    flute length of each move, low (n,) its lowest tip, by which the lists of a cell are sorted:
+    what comes later is higher and can't be nearer. nearest (s,) gets the move.
     """
     nodes, least, spans = np.zeros(len(tree.root) + 128, np.int64), np.zeros(len(tree.root) + 128), np.zeros((96, 2))
     for k in range(first, last):
@@ -419,7 +494,7 @@ def left_loop(first: int, last: int, points: Floats, order: Ints, moves: Floats,
 @njit(cache=True, nogil=True)
 def far_loop(first: int, last: int, points: Floats, order: Ints, tree: Tree, flutes: Flutes, bound: float, left: Floats,
              nearest: Ints) -> None:
-    """Lower `left` (s,) as `left_loop` does, by the moves of a tree alone."""
+    """Lower left (s,) as `left_loop` does, by the moves of a tree alone."""
     nodes, least, spans = np.zeros(len(tree.root) + 128, np.int64), np.zeros(len(tree.root) + 128), np.zeros((96, 2))
     for k in range(first, last):
         n = order[k]
@@ -430,8 +505,12 @@ def far_loop(first: int, last: int, points: Floats, order: Ints, tree: Tree, flu
 @njit(cache=True, nogil=True)
 def _cut_from_above(x: float, y: float, z: float, before: int, thinner: float, most: float, moves: Floats, cutter: Floats, low: Floats,
                     cell_start: Ints, cell_move: Ints, grid: Floats, shape: Ints) -> bool:
-    """Say whether a listed move with a row below `before`, of a cutter `thinner` by some mm of radius, comes as near to a point or above it
-    as `most`."""
+    """Return whether a listed move with a row below `before`, of a cutter `thinner` by some mm of
+    radius, comes as near as `most` (mm) to a point or to one above it.
+
+    The flutes are taken as endless: an upright cutter has removed all above its lower side. Moves
+    are listed by their lowest tip, so the search ends at the first one that stays above the point.
+    """
     i, j = int(math.floor((x - grid[0]) / grid[2])), int(math.floor((y - grid[1]) / grid[2]))
     if i < 0 or j < 0 or i >= shape[0] or j >= shape[1]:
         return False
@@ -448,7 +527,11 @@ def _cut_from_above(x: float, y: float, z: float, before: int, thinner: float, m
 @njit(cache=True, nogil=True)
 def cut_loop(first: int, last: int, points: Floats, before: int, moves: Floats, cutter: Floats, low: Floats, cell_start: Ints,
              cell_move: Ints, grid: Floats, shape: Ints, tree: Tree, flutes: Flutes, bound: float, out: Bools) -> None:
-    """Say for each point (s, 3) whether one of the moves with a row below `before` has removed it; upright plain ones also all above."""
+    """Fill out[first:last] with whether a move with a row below `before` has removed each point (s,
+    3); upright plain cutters also all above.
+
+    Points within `bound` (mm) outside of what is cut count as removed.
+    """
     nodes, least, spans = np.zeros(len(tree.root) + 128, np.int64), np.zeros(len(tree.root) + 128), np.zeros((96, 2))
     for n in range(first, last):
         x, y, z = points[n, 0], points[n, 1], points[n, 2]
@@ -460,8 +543,11 @@ def cut_loop(first: int, last: int, points: Floats, before: int, moves: Floats, 
 @njit(cache=True, nogil=True)
 def around_loop(first: int, last: int, points: Floats, margin: float, before: int, moves: Floats, cutter: Floats, low: Floats,
                 cell_start: Ints, cell_move: Ints, grid: Floats, shape: Ints, out: Bools) -> None:
-    """Say for each point (s, 3) whether one of the listed moves with a row below `before` has removed all within a margin in plan of it,
-    and all above that."""
+    """Fill out[first:last] with whether one listed move with a row below `before` has removed all
+    within a margin (mm) in plan of each point (s, 3), and all above that.
+
+    Only single moves are asked, so it errs towards material that stands.
+    """
     for n in range(first, last):
         # A cutter thinner by the margin that holds the middle: the cutter itself holds all around.
         out[n] = _cut_from_above(points[n, 0], points[n, 1], points[n, 2], before, margin, 0.0, moves, cutter, low, cell_start, cell_move,

@@ -1,11 +1,14 @@
-"""Compiled loops that make a closed mesh of a height field.
+"""Compiled triangulation of a height field as a closed solid, with merged patches and vertical walls.
 
-Every cell has a top with four corners of its own; where the surface goes on over a cell's edge the corners of both sides are the same, the
-mean of the cells around them, elsewhere a vertical wall stands between. Neighbouring cells of one height, and small blocks of nearly flat
-ones, become one patch. A corner of the lattice that no patch has as a corner and where no wall begins, ends or changes is left out on all
-sides of it at once, so the mesh stays closed; a wall's upright sides have a point at every height that any cell has there.
+Every cell has a top with four corners of its own; where the surface continues over a cell's edge
+the corners of both sides are the same, the mean of the cells around them, elsewhere a vertical wall
+stands between. Neighbouring cells of one height, and small blocks of nearly flat ones, become one
+patch (greedy merging). A corner of the lattice that no patch has as a corner and where no wall
+begins, ends or changes is left out on all sides of it at once, so the mesh stays closed (no
+T-junctions); a wall's upright sides have a point at every height that any cell has there.
 
-Cells without material have the floor's height and neither top nor bottom. Plain reference: the same heights as separate blocks.
+Cells without material have the floor's height and neither top nor bottom. Plain reference: the same
+heights as separate blocks. mm; lattice corners (rows + 1, columns + 1), cells between them.
 """
 
 from __future__ import annotations
@@ -28,6 +31,12 @@ CORNER_COLUMN = (0, 1, 1, 0)
 
 @njit(cache=True, nogil=True, inline="always")
 def _goes_on(before: float, a: float, b: float, after: float, fine: float) -> bool:
+    """Return whether the surface continues from a cell of height a to its neighbour of height b, the
+    cells before and after them given too.
+
+    A jump is a wall when it is larger than `fine` (mm) and than STEP times both jumps beside it: a
+    slope jumps alike at every cell.
+    """
     jump = abs(b - a)
     return jump <= fine or jump <= STEP * max(abs(a - before), abs(b - after))
 
@@ -40,6 +49,7 @@ def corner_heights(top: Floats, floor: float, pitch: float) -> Floats:
     """
     rows, columns = top.shape
     fine = FINE * pitch
+    # right, up: whether the surface continues to the cell at the right, and to the one above.
     right, up = np.zeros((rows, columns), np.bool_), np.zeros((rows, columns), np.bool_)
     for j in range(rows):
         for i in range(columns):
@@ -57,6 +67,8 @@ def corner_heights(top: Floats, floor: float, pitch: float) -> Floats:
         for i in range(columns):
             for q in range(4):
                 out[j + 1, i + 1, q] = max(top[j, i], floor)
+    # At each lattice corner the cells around it that continue into each other form groups: union by
+    # relabelling, as there are only four. A group's corners get its mean height.
     label, h, linked = np.empty(4, np.int64), np.empty(4), np.empty(4, np.bool_)
     for j in range(rows + 1):
         for i in range(columns + 1):
@@ -85,6 +97,7 @@ def corner_heights(top: Floats, floor: float, pitch: float) -> Floats:
                 y, x = j - 1 + (q >= 2), i - 1 + (q == 1 or q == 2)
                 if not (0 <= y < rows and 0 <= x < columns and top[y, x] > floor):
                     continue
+                # As a difference from one member, so that equal heights give exactly that height.
                 total, count = 0.0, 0
                 for p in range(4):
                     if label[p] == label[q]:
@@ -96,7 +109,8 @@ def corner_heights(top: Floats, floor: float, pitch: float) -> Floats:
 
 @njit(cache=True, nogil=True)
 def _largest(free: Bools, top: Floats, j: int, i: int, same: bool) -> tuple[int, int]:
-    """Return the row and column after a rectangle of free cells (of one height, if so asked) that begins at a cell."""
+    """Return the row and column after a rectangle of free cells (of one height, if so asked) that
+    begins at cell (j, i): as wide as its first row goes, then as deep."""
     rows, columns = top.shape
     i1 = i + 1
     while i1 < columns and free[j, i1] and (not same or top[j, i1] == top[j, i]):
@@ -112,10 +126,12 @@ def _largest(free: Bools, top: Floats, j: int, i: int, same: bool) -> tuple[int,
 
 @njit(cache=True, nogil=True)
 def _is_even(free: Bools, corners: Floats, j: int, i: int, size: int, bound: float) -> bool:
-    """Say whether a block of free cells is one surface, everywhere within a bound of what its four corners span."""
+    """Return whether a size x size block of free cells is one surface, everywhere within a bound (mm)
+    of what its four corners span."""
     rows, columns = free.shape
     if j + size > rows or i + size > columns:
         return False
+    # One surface: shared corners agree on every inner edge.
     for y in range(j, j + size):
         for x in range(i, i + size):
             if not free[y, x]:
@@ -125,6 +141,7 @@ def _is_even(free: Bools, corners: Floats, j: int, i: int, size: int, bound: flo
                 return False
             if y + 1 < j + size and (own[3] != over[0] or own[2] != over[1]):
                 return False
+    # Every lattice corner of the block against the bilinear patch of the block's corners.
     e = size - 1
     y, x = j + size, i + size
     a, b, c, d = corners[j + 1, i + 1, 0], corners[j + 1, x, 1], corners[y, x, 2], corners[y, i + 1, 3]
@@ -155,6 +172,8 @@ def patches(top: Floats, floor: float, corners: Floats, bound: float) -> tuple[I
     there = free.copy()
     found = np.empty((2 * rows * columns, 4), np.int32)
     n = 0
+    # Stages: level rectangles, even blocks of 4, even blocks of 2 and single cells, then the
+    # bottom.
     for stage in range(4):
         if stage == 3:
             tops = n
@@ -196,16 +215,19 @@ def _needed(floor: float, corners: Floats, patch: Ints, tops: int) -> tuple[Bool
     rows, columns = corners.shape[0] - 2, corners.shape[1] - 2
     above, below = np.zeros((rows + 1, columns + 1), np.bool_), np.zeros((rows + 1, columns + 1), np.bool_)
     along, across = np.zeros((rows + 1, columns + 1), np.bool_), np.zeros((rows + 1, columns + 1), np.bool_)
+    # The corners of patches.
     for k in range(len(patch)):
         mark = above if k < tops else below
         for q in range(4):
             mark[patch[k, 2] if CORNER_ROW[q] else patch[k, 0], patch[k, 3] if CORNER_COLUMN[q] else patch[k, 1]] = True
+    # A wall stands along an edge of the lattice where the corners of both sides differ.
     for j in range(rows + 1):
         for i in range(columns + 1):
             # With the border, the cell above right of a corner is (j + 1, i + 1).
             own, left, under = corners[j + 1, i + 1], corners[j + 1, i], corners[j, i + 1]
             along[j, i] = own[0] != under[3] or own[1] != under[2]
             across[j, i] = own[0] != left[1] or own[3] != left[2]
+    # Where walls begin, end, meet or change height.
     for j in range(rows + 1):
         for i in range(columns + 1):
             ahead, behind = along[j, i], i > 0 and along[j, i - 1]
@@ -229,7 +251,11 @@ def _needed(floor: float, corners: Floats, patch: Ints, tops: int) -> tuple[Bool
 
 @njit(cache=True, nogil=True)
 def _slots(floor: float, corners: Floats, above: Bools, below: Bools) -> tuple[Floats, Ints]:
-    """Return the heights at each corner of the lattice, downwards (n,), and where each corner's begin (corners + 1,)."""
+    """Return the heights (mm) at each corner of the lattice, downwards (n,), and where each corner's
+    begin (corners + 1,).
+
+    One mesh point a slot. Equal heights share a slot, which is what joins the patches.
+    """
     rows, columns = corners.shape[0] - 2, corners.shape[1] - 2
     count = (rows + 1) * (columns + 1)
     start = np.zeros(count + 1, np.int64)
@@ -247,6 +273,7 @@ def _slots(floor: float, corners: Floats, above: Bools, below: Bools) -> tuple[F
                     if not above[j, i]:
                         continue
                     z = corners[j + (q >= 2), i + (q == 1 or q == 2), (q + 2) % 4]
+                # Insertion in descending order, without duplicates.
                 k = first
                 while k < n and heights[k] > z:
                     k += 1
@@ -262,6 +289,7 @@ def _slots(floor: float, corners: Floats, above: Bools, below: Bools) -> tuple[F
 
 @njit(cache=True, nogil=True, inline="always")
 def _point(heights: Floats, start: Ints, corner: int, z: float) -> int:
+    """Return the mesh point of a lattice corner at a height, which must be one of its slots."""
     k = start[corner]
     while heights[k] != z:
         k += 1
@@ -271,7 +299,13 @@ def _point(heights: Floats, start: Ints, corner: int, z: float) -> int:
 @njit(cache=True, nogil=True)
 def _wall(heights: Floats, start: Ints, p: int, ap: float, bp: float, q: int, aq: float, bq: float, triangles: Ints, n: int,
           write: bool) -> int:
-    """Add the wall between cell A and cell B over the edge from corner p to corner q, which A's top has in this order."""
+    """Add the triangles of the wall between cell A and cell B over the edge from corner p to corner q,
+    which A's top has in this order; return the new count.
+
+    ap, bp, aq, bq: heights (mm) of A and B at p and q. The strip between both uprights is
+    triangulated by advancing on one of them at a time, so every slot is used and the walls beside
+    it fit. Without `write` only counted.
+    """
     at_p, to_p, at_q, to_q = (_point(heights, start, p, ap), _point(heights, start, p, bp), _point(heights, start, q, aq),
                               _point(heights, start, q, bq))
     step_p, step_q = 1 if to_p > at_p else -1, 1 if to_q > at_q else -1
@@ -292,7 +326,12 @@ def _wall(heights: Floats, start: Ints, p: int, ap: float, bp: float, q: int, aq
 @njit(cache=True, nogil=True)
 def _faces(floor: float, corners: Floats, patch: Ints, tops: int, above: Bools, below: Bools, along: Bools, across: Bools, heights: Floats,
            start: Ints, centres: Floats, triangles: Ints, write: bool) -> tuple[int, int]:
-    """Add all triangles; return how many, and how many patches got a point in their middle (centres: column, row, height)."""
+    """Add all triangles, of patches and of walls; return how many, and how many patches got a point in
+    their middle (centres (k, 3): column, row, height).
+
+    Without `write` only counted: the same code first gives the sizes of the arrays, then fills
+    them.
+    """
     rows, columns = corners.shape[0] - 2, corners.shape[1] - 2
     wide = columns + 1
     n, middles = 0, 0
@@ -302,7 +341,7 @@ def _faces(floor: float, corners: Floats, patch: Ints, tops: int, above: Bools, 
         is_top = k < tops
         mark = above if is_top else below
         m = 0
-        # Around the patch anticlockwise, seen from above.
+        # The patch's outline at the points that the lattice keeps, anticlockwise seen from above.
         for side in range(4):
             length = i1 - i0 if side % 2 == 0 else j1 - j0
             for s in range(length):
@@ -343,6 +382,7 @@ def _faces(floor: float, corners: Floats, patch: Ints, tops: int, above: Bools, 
                 triangles[n + s, 0], triangles[n + s, 1], triangles[n + s, 2] = (middle, a, b) if is_top else (middle, b, a)
         middles += 1
         n += m
+    # Walls from each kept corner along its row and its column to the next kept one.
     for j in range(rows + 1):
         for i in range(columns + 1):
             if not above[j, i]:
@@ -365,9 +405,11 @@ def _faces(floor: float, corners: Floats, patch: Ints, tops: int, above: Bools, 
 
 @njit(cache=True, nogil=True)
 def mesh_heights(top: Floats, low_x: float, low_y: float, floor: float, pitch: float, bound: float) -> tuple[Floats, Ints]:
-    """Return points (v, 3) and triangles (t, 3), anticlockwise from outside, of the solid between a field of heights and its floor.
+    """Return points (v, 3) mm and triangles (t, 3), anticlockwise from outside, of the solid between a
+    field of heights and its floor.
 
-    top (rows, columns); cells as high as the floor (to FINE) are empty. `bound`: how far a patch may be from the corners it leaves out.
+    top (rows, columns); low_x, low_y the field's corner; cells as high as the floor are empty.
+    `bound`: how far (mm) a patch may be from the corners it leaves out.
     """
     rows, columns = top.shape
     corners = corner_heights(top, floor, pitch)

@@ -1,7 +1,15 @@
-"""Compiled search for a pose that is clear: tools that stand still, against triangles and against places that were in their way before.
+"""Compiled search for a collision-free pose among many: static tools against triangles, with a
+move-to-front cache of obstacles.
 
-Most poses of a place that is hard to reach are stopped by the same few obstacles. What stopped a tool there is remembered, and looked up
-before the triangles are: a point of the part that is deep in the tool needs no search.
+Whether any pose of a list is clear is decided by exclusion: one point of the part that lies deeper
+in the tool than allowed rules a pose out, and finding that point is the whole cost. Most poses at a
+position that is hard to access are ruled out by the same few points, so each position keeps a short
+list of the obstacles that stopped a tool there, most recent first (a self-organising list with the
+move-to-front rule: Sleator and Tarjan, Amortized efficiency of list update and paging rules, 1985).
+The list is tried before the tree of triangles. It can only rule a pose out; that a pose is clear is
+always decided by the full search of `kernels/facets.py`.
+
+Tips and axes (unit) in the frame of the triangles, mm. Obstacles (k, w, 3) mm in the same frame.
 """
 
 from __future__ import annotations
@@ -19,15 +27,21 @@ from trunnion.verify.kernels.way import END_COLUMNS, S_FROM, S_TO, SPAN_COLUMNS,
 
 @njit(cache=True, nogil=True)
 def stopped_before(tip: Floats, axis: Floats, arcs: Floats, pieces: Floats, places: Floats, count: int, deeper: float) -> bool:
-    """Say whether one of the first `count` places (w, 3) is deeper than that in a tool that stands, and put it first of them.
+    """Return whether one of the first `count` obstacles (w, 3) lies deeper (mm) than `deeper` in a
+    static tool; that one is moved to the front.
 
-    A place counts for a piece (p, 8) between its ends alone, where all engines of contact agree on its depth at least.
+    tip (3,), axis (3,) unit; arcs, pieces (p, 8) as in `kernels/body.py`. An obstacle counts for a
+    piece only between Z_LOW and Z_HIGH: there every contact engine reports at least the depth that
+    is found here, so no pose is ruled out that the full search would pass, provided `deeper`
+    includes its bound.
     """
     for i in range(count):
+        # The point in the tool's meridian: height along the axis and distance from it.
         x, y, z = places[i, 0] - tip[0], places[i, 1] - tip[1], places[i, 2] - tip[2]
         h = x * axis[0] + y * axis[1] + z * axis[2]
         rho = math.sqrt(max(x * x + y * y + z * z - h * h, 0.0))
         for p in range(len(pieces)):
+            # Depth in the closed body is at most R_MAX - rho.
             if h < pieces[p, Z_LOW] or h > pieces[p, Z_HIGH] or rho >= pieces[p, R_MAX] - deeper:
                 continue
             depth, _r, _h = depth_in_body(arcs, int(pieces[p, CLOSED_FIRST]), int(pieces[p, CLOSED_LAST]), rho, h)
@@ -39,7 +53,8 @@ def stopped_before(tip: Floats, axis: Floats, arcs: Floats, pieces: Floats, plac
 
 @njit(cache=True, nogil=True)
 def remember(places: Floats, count: int, x: float, y: float, z: float) -> int:
-    """Put a place first of the `count` that are known (w, 3), where all are known in place of the last; return how many are known then."""
+    """Insert an obstacle (mm) at the front of the `count` known ones in places (w, 3), dropping the
+    last when all rows are in use; return the new count."""
     count = min(count + 1, len(places))
     _put_first(places, count - 1, x, y, z)
     return count
@@ -47,6 +62,8 @@ def remember(places: Floats, count: int, x: float, y: float, z: float) -> int:
 
 @njit(cache=True, nogil=True)
 def _put_first(places: Floats, at: int, x: float, y: float, z: float) -> None:
+    """Shift rows 0 to at - 1 of places (w, 3) down by one and write (x, y, z) into row 0; the old row
+    `at` is overwritten."""
     for i in range(at, 0, -1):
         for k in range(3):
             places[i, k] = places[i - 1, k]
@@ -56,14 +73,19 @@ def _put_first(places: Floats, at: int, x: float, y: float, z: float) -> None:
 @njit(cache=True, nogil=True)
 def known_loop(tips: Floats, axes: Floats, rows: Ints, arcs: Floats, pieces: Floats, places: Floats, count: Ints, deeper: float,
                stopped: Bools) -> None:
-    """Say for poses (n, 3) of one tool, each of a row of places (k, w, 3), whether what is known there stops them: `stopped` (n,)."""
+    """Fill stopped (n,) with whether a known obstacle rules out each of n poses of one tool.
+
+    tips, axes (n, 3); rows (n,) the position of each pose among places (k, w, 3) with count (k,)
+    known ones. `deeper` (mm) as in `stopped_before`.
+    """
     for n in range(len(tips)):
         stopped[n] = stopped_before(tips[n], axes[n], arcs, pieces, places[rows[n]], count[rows[n]], deeper)
 
 
 @njit(cache=True, nogil=True)
 def remember_loop(found: Floats, rows: Ints, places: Floats, count: Ints) -> None:
-    """Remember what stopped poses: found (n, 3), NaN where nothing did, each for a row of places (k, w, 3) with their number (k,)."""
+    """Add the points found (n, 3) that stopped poses, NaN where none did, to the lists places (k, w,
+    3), count (k,) of the positions rows (n,)."""
     for n in range(len(found)):
         if not math.isnan(found[n, 0]):
             count[rows[n]] = remember(places[rows[n]], count[rows[n]], found[n, 0], found[n, 1], found[n, 2])
@@ -73,12 +95,17 @@ def remember_loop(found: Floats, rows: Ints, places: Floats, count: Ints) -> Non
 def clear_loop(first: int, last: int, tips: Floats, axes: Floats, wanted: Bools, arcs: Floats, pieces: Floats, boxes: Floats, skip: Ints,
                leaves: Ints, corners: Floats, normals: Floats, face: Ints, n_faces: int, allowed: float, bound: float, places: Floats,
                count: Ints, found: Bools) -> None:
-    """Say for places `first` to `last` whether one of their poses is clear: found (k,).
+    """Fill found[first:last] with whether at least one pose at each position is free of contact deeper
+    than `allowed` (mm).
 
-    tips, axes (k, a, 3): the poses of one tool, of which those `wanted` (k, a) are tried in turn. The tree is as `kernels/facets.py` has
-    it. A pose is clear when nothing of the tool enters a triangle deeper than allowed, within `bound`: just when `contact_loop` of
-    `kernels/facets.py` says so, which looks at the triangles in the same order. places (k, w, 3), count (k,): what
-    is known to stop tools at each place; more is remembered there.
+    tips, axes (k, a, 3): a candidate poses of one tool at each of k positions; only those `wanted`
+    (k, a) are tried, in order, up to the first clear one. boxes, skip, leaves, corners, normals,
+    face: the tree of triangles as in `kernels/facets.py`. places (k, w, 3), count (k,): known
+    obstacles, extended here.
+
+    A pose counts as clear exactly when `contact_loop` of `kernels/facets.py` with the same
+    `allowed` and `bound` finds nothing deeper, since both visit the triangles in the same order
+    with the same pruning: the deepest contact of a clear pose is at most allowed + bound.
     """
     way, ends, span = np.zeros(WAY_COLUMNS), np.zeros((2, END_COLUMNS)), np.zeros(SPAN_COLUMNS)
     near_ends, near = np.zeros((2, END_COLUMNS)), np.zeros(SPAN_COLUMNS)
@@ -87,18 +114,26 @@ def clear_loop(first: int, last: int, tips: Floats, axes: Floats, wanted: Bools,
     best, stamp, pose = np.full((n_faces, 2), -np.inf), np.full(n_faces, -1), 0
     for k in range(first, last):
         if count[k] == 0 and k > first:
+            # Neighbouring positions share obstacles: an empty list starts as a copy of the previous
+            # one. The first of a chunk starts empty, so that the answer doesn't depend on how the
+            # work is divided.
             # What stops tools at one place often stops them at the next.
             places[k], count[k] = places[k - 1], count[k - 1]
         for n in range(tips.shape[1]):
             if not wanted[k, n] or stopped_before(tips[k, n], axes[k, n], arcs, pieces, places[k], count[k], allowed + bound):
                 continue
+            # A static pose is a motion of no length: one span over its whole path.
             fill_way(tips[k, n], tips[k, n], axes[k, n], axes[k, n], nowhere, 0.0, way)
             fill_span(way, 0.0, 1.0, ends, span)
+            # A share no span has: the cached span of the previous pose must not be taken for this
+            # one's.
             near[S_FROM] = near[S_TO] = -1.0
             clear, pose = True, pose + 1
             for p in range(len(pieces)):
                 column = 0 if pieces[p, KIND] == 0.0 else 1
                 a, b = int(pieces[p, CLOSED_FIRST]), int(pieces[p, CLOSED_LAST])
+                # Preorder traversal: a box that the body cannot enter deeper than allowed skips its
+                # subtree.
                 node = 0
                 while node < len(boxes) and clear:
                     if box_depth(boxes[node], ends, span, arcs, a, b) <= allowed:
@@ -107,6 +142,8 @@ def clear_loop(first: int, last: int, tips: Floats, axes: Floats, wanted: Bools,
                     for m in range(leaves[node, 0], leaves[node, 0] + leaves[node, 1]):
                         f = face[m]
                         if stamp[f] != pose:
+                            # `stamp` marks which faces have a depth of this very pose; older
+                            # entries are stale.
                             stamp[f], best[f, 0], best[f, 1] = pose, -np.inf, -np.inf
                         deepest[0] = best[f, column]
                         enter_triangle(corners[m], normals[m], way, 0.0, 1.0, arcs, a, b, allowed, bound, allowed, deepest, tasks, task,

@@ -1,4 +1,11 @@
-"""Compiled loop of the rotary axes: of two ways to stand, take the nearer one, block by block."""
+"""Compiled choice of rotary axis angles along a sequence of poses: greedy, each pose next to the one
+before.
+
+The inverse kinematics of a five-axis machine have two solutions for a tool axis, each repeated
+every full turn of an axis. From pose to pose the solution within the limits that turns the axes
+least is taken (nearest-neighbour; the planner's `geometry/kernels/winding.py` optimises over the
+whole path, this one stands for a control that looks one block ahead). Angles in rad.
+"""
 
 from __future__ import annotations
 
@@ -13,7 +20,13 @@ TURN = 2.0 * math.pi
 
 @njit(cache=True, nogil=True)
 def nearest(value: float, before: float, low: float, high: float) -> float:
-    """Return the angle equal to `value` up to whole turns that is nearest to `before`, inside the limits when one is."""
+    """Return the angle congruent to `value` modulo a full turn that is nearest to `before` (rad),
+    shifted by whole turns into low to high where that is possible.
+
+    Where no congruent angle lies within the limits the result lies outside of them, by less than a
+    turn.
+    """
+    # Nearest of all, then as few whole turns as bring it back inside the limit that it passed.
     near = value + TURN * round((before - value) / TURN)
     if near > high:
         near -= TURN * math.ceil((near - high) / TURN)
@@ -24,15 +37,19 @@ def nearest(value: float, before: float, low: float, high: float) -> float:
 
 @njit(cache=True, nogil=True)
 def follow(angles: Floats, free: Bools, low: Floats, high: Floats, first: int, slack: float, chosen: Floats) -> tuple[float, int]:
-    """Fill `chosen` (m, a) with the rotary angles of poses, each near the one before; return the whole way turned and how many poses are
-    outside the limits.
+    """Fill chosen (m, a) with the rotary angles of m poses and return the total angle turned (rad,
+    summed over axes) and the number of poses outside the limits.
 
-    angles (m, 2, a) rad: both ways to stand; free (m, 2, a): that axis may stand anywhere. low, high (a,); `first` is the way that the
-    first pose takes; an angle is outside when it passes its limit by more than `slack`.
+    angles (m, 2, a) rad: both solutions of each pose; free (m, 2, a): that axis is arbitrary (the
+    tool lies along it) and stays where it is. low, high (a,) rad; an angle counts as outside when
+    it passes its limit by more than `slack`. `first`: the solution taken by the first pose, which
+    starts from 0 on every axis.
     """
     m, ways, axes = angles.shape
     turned, outside = 0.0, 0
     for k in range(m):
+        # Fewest axes outside their limits first, then the least turning; of equals the first
+        # solution.
         best, best_out, best_way = math.inf, axes + 1, 0
         for way in range(ways):
             if k == 0 and way != first:

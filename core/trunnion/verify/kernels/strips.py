@@ -1,17 +1,30 @@
-"""Compiled loops of the contact engine: how deep a swept cutter enters trimmed faces.
+"""Compiled contact of an upright tool with trimmed faces in closed form: depth of a swept body by
+branch and bound.
 
-The tool axis is +z. A face is a bundle of *strips*: a profile (w, z) carried along a guide in plan, a line or an arc about a vertical
-axis. A body of revolution that moves along a line or an arc at one height is deepest, at each height of the profile, where the plan
-distance between path and guide is smallest; that distance is exact, so only the profile's parameter is searched. The search is a
-branch and bound that ends within a stated bound:
+The tool axis is +z. A face is a bundle of *strips* (`part/surfaces.py`): a profile (w, z) carried
+along a guide in plan, a line or an arc about a vertical axis, trimmed at both ends. The tool moves
+along a line or an arc in plan, the path. For a body of revolution swept along the path at one
+height the deepest contact with the level curve of a strip at the profile parameter u is
 
-* the depth inside a convex body of revolution is a concave function of (rho, height) and never grows with rho, so tangents at both
-  ends of a straight piece bound it from above;
-* the plan distance as a function of w has slope at most one, and where it bends upwards its second derivative is at most one over
-  the distance; with these the distance is never below the chord between two evaluations by more than a known sag;
-* an arc profile leaves its chord by its sagitta.
+    depth(u) = D(rho(u), z(u)),  rho(u) = plan distance between path and guide at u,
 
-Bodies come from `kernels/body.py`: a cached caller does not notice a change there, so after one the cache is to be emptied.
+with D the concave depth of `kernels/body.py`. rho is exact (curve to curve), so only u, one number,
+is searched, by branch and bound with an upper bound over an interval [u0, u1]:
+
+* D is concave in (rho, h) and never increases with rho: tangents at both ends of a straight piece
+  bound it from above, and a rho that is too small only makes the bound larger;
+* rho as a function of w has slope 1 at most, so it lies below the chord of two evaluations by at
+  most (span^2 - step^2) / (2 span), the depth of a V of slopes 1 (Piyavskii, 1972; Shubert, 1972);
+  and where it bends upwards its second derivative is at most 1 over the distance, so it lies below
+  the chord by at most span^2 / (8 distance). The smaller of the two is the sag;
+* a circular profile leaves its chord by its sagitta, and D has slope 1 at most.
+
+Every approximation errs deep in the bound; what is reported is a depth that is attained, at most
+the stated bound below the deepest. Columns of strips (m, 37) as in `part/surfaces.py`; mm, rad; the
+frame of the moves. Guides use the columns of a move's plan curve.
+
+Bodies come from `kernels/body.py`: a cached caller does not notice a change there, so after one the
+cache is to be emptied.
 """
 
 from __future__ import annotations
@@ -65,7 +78,8 @@ from trunnion.verify.kernels.body import R_MAX, Z_HIGH, Z_LOW, swept_depth
 
 # Columns of a move: its plan curve first (shared with guides), then heights.
 KIND, X0, Y0, X1, Y1, CX, CY, RADIUS, MX, MY, COS_HALF = range(11)
-"""Plan curve: kind (0 line, 1 arc), ends, centre, radius, direction of an arc's middle, cosine of half its sweep."""
+"""Plan curve: kind (0 line, 1 arc), ends, centre, radius, unit direction of an arc's middle, cosine of
+half its sweep (-1: a full circle)."""
 START_ANGLE, SWEEP, Z_START, Z_END = range(11, 15)
 MOVE_COLUMNS = 15
 
@@ -74,11 +88,13 @@ _TINY = 1e-12
 
 @njit(cache=True, nogil=True, inline="always")
 def _point_point(ax: float, ay: float, bx: float, by: float) -> float:
+    """Return the plan distance (mm) of two points."""
     return math.sqrt((ax - bx) * (ax - bx) + (ay - by) * (ay - by))
 
 
 @njit(cache=True, nogil=True)
 def _point_segment(qx: float, qy: float, c: Floats) -> float:
+    """Return the plan distance (mm) of a point to a line curve; of no length it is a point."""
     dx, dy = c[X1] - c[X0], c[Y1] - c[Y0]
     square = dx * dx + dy * dy
     t = 0.0
@@ -90,11 +106,19 @@ def _point_segment(qx: float, qy: float, c: Floats) -> float:
 
 @njit(cache=True, nogil=True, inline="always")
 def _on_arc(vx: float, vy: float, length: float, c: Floats) -> bool:
+    """Return whether the direction (vx, vy), of a length, lies in an arc's sector: v . middle >= |v|
+    cos(half sweep).
+
+    The tolerance takes in points just beyond an end: there the distance comes out smaller, on the
+    deep side.
+    """
     return vx * c[MX] + vy * c[MY] >= length * c[COS_HALF] - _TINY
 
 
 @njit(cache=True, nogil=True)
 def _point_arc(qx: float, qy: float, c: Floats) -> float:
+    """Return the plan distance (mm) of a point to an arc: | |v| - radius | in its sector, else to the
+    nearer end; the radius from its centre."""
     vx, vy = qx - c[CX], qy - c[CY]
     length = math.sqrt(vx * vx + vy * vy)
     if length < _TINY:
@@ -106,7 +130,7 @@ def _point_arc(qx: float, qy: float, c: Floats) -> float:
 
 @njit(cache=True, nogil=True)
 def point_distance(qx: float, qy: float, c: Floats) -> float:
-    """Return the plan distance of a point to a curve."""
+    """Return the plan distance (mm) of a point to a curve, line or arc."""
     if c[KIND] == 0.0:
         return _point_segment(qx, qy, c)
     return _point_arc(qx, qy, c)
@@ -114,6 +138,8 @@ def point_distance(qx: float, qy: float, c: Floats) -> float:
 
 @njit(cache=True, nogil=True)
 def _segments(a: Floats, b: Floats) -> float:
+    """Return the least plan distance (mm) of two lines: 0 where they cross, else from an end of one to
+    the other."""
     ax, ay = a[X1] - a[X0], a[Y1] - a[Y0]
     bx, by = b[X1] - b[X0], b[Y1] - b[Y0]
     ex, ey = b[X0] - a[X0], b[Y0] - a[Y0]
@@ -129,16 +155,24 @@ def _segments(a: Floats, b: Floats) -> float:
 
 @njit(cache=True, nogil=True)
 def _segment_arc(a: Floats, b: Floats) -> float:
+    """Return the least plan distance (mm) of the line a and the arc b.
+
+    The least is at an end of either, at the foot of the arc's centre on the line, or 0 at a
+    crossing with the circle.
+    """
     dx, dy = a[X1] - a[X0], a[Y1] - a[Y0]
     square = dx * dx + dy * dy
     best = min(min(_point_arc(a[X0], a[Y0], b), _point_arc(a[X1], a[Y1], b)),
                min(_point_segment(b[X0], b[Y0], a), _point_segment(b[X1], b[Y1], a)))
     if square == 0.0:
         return best
+    # Foot of the centre on the line, at the share t.
     t = ((b[CX] - a[X0]) * dx + (b[CY] - a[Y0]) * dy) / square
     fx, fy = a[X0] + t * dx, a[Y0] + t * dy
     if 0.0 <= t <= 1.0:
         best = min(best, _point_arc(fx, fy, b))
+    # Crossings lie half a chord, in shares of the line, on both sides of the foot; a crossing
+    # outside the arc's sector counts with its distance.
     gap = b[RADIUS] * b[RADIUS] - (fx - b[CX]) * (fx - b[CX]) - (fy - b[CY]) * (fy - b[CY])
     if gap >= 0.0:
         half = math.sqrt(gap / square)
@@ -151,6 +185,11 @@ def _segment_arc(a: Floats, b: Floats) -> float:
 
 @njit(cache=True, nogil=True)
 def _arcs(a: Floats, b: Floats) -> float:
+    """Return the least plan distance (mm) of two arcs.
+
+    The least is at an end of either, on the line through both centres, or 0 at a crossing of the
+    circles. Concentric arcs that face each other have an end of one opposite to the other.
+    """
     best = min(min(_point_arc(a[X0], a[Y0], b), _point_arc(a[X1], a[Y1], b)),
                min(_point_arc(b[X0], b[Y0], a), _point_arc(b[X1], b[Y1], a)))
     vx, vy = b[CX] - a[CX], b[CY] - a[CY]
@@ -158,9 +197,11 @@ def _arcs(a: Floats, b: Floats) -> float:
     if length < _TINY:
         return best
     vx, vy = vx / length, vy / length
+    # Points of the one arc on the line of centres, on both sides.
     for sign in (-1.0, 1.0):
         if _on_arc(sign * vx, sign * vy, 1.0, a):
             best = min(best, _point_arc(a[CX] + sign * a[RADIUS] * vx, a[CY] + sign * a[RADIUS] * vy, b))
+    # Crossings of the circles, by their radical line at `along` from the first centre.
     along = (length * length + a[RADIUS] * a[RADIUS] - b[RADIUS] * b[RADIUS]) / (2.0 * length)
     square = a[RADIUS] * a[RADIUS] - along * along
     if square >= 0.0:
@@ -174,7 +215,8 @@ def _arcs(a: Floats, b: Floats) -> float:
 
 @njit(cache=True, nogil=True)
 def curve_distance(a: Floats, b: Floats) -> float:
-    """Return the smallest plan distance between two curves, each a line or an arc; 0 when they meet."""
+    """Return the least plan distance (mm) between two curves, each a line or an arc; 0 where they
+    meet."""
     if a[KIND] == 0.0:
         if b[KIND] == 0.0:
             return _segments(a, b)
@@ -186,6 +228,7 @@ def curve_distance(a: Floats, b: Floats) -> float:
 
 @njit(cache=True, nogil=True, inline="always")
 def _profile_w(s: Floats, u: float) -> float:
+    """Return w (mm) of a strip's profile at the parameter u; an arc's parameter is its angle (rad)."""
     if s[PROFILE] == 0.0:
         return s[PW0] + (s[PW1] - s[PW0]) * ((u - s[U0]) / (s[U1] - s[U0]) if s[U1] > s[U0] else 0.0)
     return s[PW0] + s[PW1] * math.cos(u)
@@ -193,6 +236,7 @@ def _profile_w(s: Floats, u: float) -> float:
 
 @njit(cache=True, nogil=True, inline="always")
 def _profile_z(s: Floats, u: float) -> float:
+    """Return z (mm) of a strip's profile at the parameter u."""
     if s[PROFILE] == 0.0:
         return s[PZ0] + (s[PZ1] - s[PZ0]) * ((u - s[U0]) / (s[U1] - s[U0]) if s[U1] > s[U0] else 0.0)
     return s[PZ0] + s[PW1] * math.sin(u)
@@ -200,10 +244,12 @@ def _profile_z(s: Floats, u: float) -> float:
 
 @njit(cache=True, nogil=True)
 def _profile_u(s: Floats, z: float) -> float:
-    """Return the parameter at which a profile that is monotone in z passes a height inside its range."""
+    """Return the parameter at which a profile, monotone in z, passes a height inside its range."""
     if s[PROFILE] == 0.0:
         return s[U0] + (s[U1] - s[U0]) * (z - s[PZ0]) / (s[PZ1] - s[PZ0])
     middle = 0.5 * (s[U0] + s[U1])
+    # asin gives the branch of the right half; then the whole turns that bring it next to the
+    # profile's middle.
     u = math.asin(min(max((z - s[PZ0]) / s[PW1], -1.0), 1.0))
     if math.cos(middle) < 0.0:
         u = math.pi - u
@@ -213,6 +259,8 @@ def _profile_u(s: Floats, z: float) -> float:
 
 @njit(cache=True, nogil=True)
 def _end(kind: float, a: float, b: float, c: float, sign: float, u: float, u0: float) -> float:
+    """Return the guide coordinate s (mm, on arcs rad) at which a strip ends at the parameter u: a line
+    in (s, u), or a circle about (a, c) of radius b."""
     if kind == 0.0:
         return a + b * (u - u0)
     return a + sign * math.sqrt(max(b * b - (u - c) * (u - c), 0.0))
@@ -220,7 +268,13 @@ def _end(kind: float, a: float, b: float, c: float, sign: float, u: float, u0: f
 
 @njit(cache=True, nogil=True)
 def _guide(s: Floats, w: float, u0: float, u1: float, out: Floats) -> None:
-    """Fill `out` with the guide at offset w, as wide as it is anywhere between two profile parameters (its ends are monotone)."""
+    """Fill out (15,) with the guide's plan curve at offset w, trimmed as wide as it is anywhere
+    between two profile parameters.
+
+    The ends are monotone in u, so the widest trim is that of an interval's end. A wider guide can
+    only be nearer to the path: the distance errs small, the depth bound deep. At u0 = u1 the guide
+    is exact.
+    """
     out[KIND] = s[GUIDE]
     if s[FIXED] != 0.0:
         low, high = s[LA], s[RA]
@@ -247,6 +301,8 @@ def _guide(s: Floats, w: float, u0: float, u1: float, out: Floats) -> None:
 
 @njit(cache=True, nogil=True)
 def _depth_at(s: Floats, u: float, path: Floats, z_low: float, rise: float, arcs: Floats, piece: Floats, guide: Floats) -> float:
+    """Return the depth (mm) that is attained at one profile parameter, for a tip along `path` from
+    z_low to z_low + rise."""
     _guide(s, _profile_w(s, u), u, u, guide)
     depth, _r, _h = swept_depth(arcs, piece, curve_distance(path, guide), _profile_z(s, u) - z_low, rise)
     return depth
@@ -255,11 +311,16 @@ def _depth_at(s: Floats, u: float, path: Floats, z_low: float, rise: float, arcs
 @njit(cache=True, nogil=True)
 def strip_depth(s: Floats, path: Floats, z_low: float, rise: float, arcs: Floats, piece: Floats, enough: float, bound: float,
                 guide: Floats, stack: Floats) -> tuple[float, float]:
-    """Return the deepest that one piece enters one strip while its tip runs along a plan path between z_low and z_low + rise.
+    """Return the deepest (mm) that one piece enters one strip while its tip follows a plan path
+    between z_low and z_low + rise, and the profile parameter there.
 
-    The move is level or vertical, so that the whole rise counts everywhere. Returns a depth that is attained and at most `bound` below
-    the deepest, or anything at most `enough` when the deepest is not above `enough`; and the profile parameter where.
+    The move is level or vertical, so that the whole rise counts everywhere on the path. The depth
+    is attained and at most `bound` below the deepest; strips that enter by `enough` at most may
+    come back with anything up to `enough`, or -inf. guide (15,), stack (k, 2): workspace; a full
+    stack drops intervals, so k is well above the halvings that any strip needs.
     """
+    # Only heights that the piece passes count: the profile is cut to them, since its open run has
+    # no end faces.
     z_from, z_to = z_low + piece[Z_LOW], z_low + rise + piece[Z_HIGH]
     if s[BZ1] < z_from or s[BZ0] > z_to:
         return -np.inf, s[U0]
@@ -273,6 +334,8 @@ def strip_depth(s: Floats, path: Floats, z_low: float, rise: float, arcs: Floats
             cut = _profile_u(s, z_to)
             low, high = (low, cut) if rising else (cut, high)
     best, where = -np.inf, low
+    # Invariant: every u that may be deeper than max(enough, best + bound) lies in an interval on
+    # the stack.
     r_path = path[RADIUS] if path[KIND] != 0.0 else np.inf
     stack[0, 0], stack[0, 1] = low, high
     top = 1
@@ -280,6 +343,7 @@ def strip_depth(s: Floats, path: Floats, z_low: float, rise: float, arcs: Floats
         top -= 1
         u0, u1 = stack[top, 0], stack[top, 1]
         w0, w1, z0, z1 = _profile_w(s, u0), _profile_w(s, u1), _profile_z(s, u0), _profile_z(s, u1)
+        # Both ends with the interval's widest guide: then w alone moves the guide.
         _guide(s, w0, u0, u1, guide)
         rho0 = curve_distance(path, guide)
         rho1, sag = rho0, 0.0
@@ -287,14 +351,20 @@ def strip_depth(s: Floats, path: Floats, z_low: float, rise: float, arcs: Floats
         if span > 0.0:
             _guide(s, w1, u0, u1, guide)
             rho1 = curve_distance(path, guide)
+            # Sag of the distance below its chord: by its slope of 1; and, where the curves cannot
+            # touch in between (`nearest` bounds the distance from below), by its second derivative.
             step = rho1 - rho0
             sag = max(span * span - step * step, 0.0) / (2.0 * span)
             nearest = 0.5 * (rho0 + rho1 - span)
             if nearest > 0.0:
                 sag = min(sag, 0.125 * span * span / min(nearest, r_path))
+        # Sagitta of a circular profile.
         arch = s[PW1] * (1.0 - math.cos(0.5 * (u1 - u0))) if s[PROFILE] != 0.0 else 0.0
         d0, r0, h0 = swept_depth(arcs, piece, rho0 - sag, z0 - z_low, rise)
         d1, r1, h1 = swept_depth(arcs, piece, rho1 - sag, z1 - z_low, rise)
+        # Slopes of the tangents along the interval, from 0 at u0 to 1 at u1. A falling start or a
+        # rising end is itself the greatest of a concave function; else the tangents' crossing
+        # bounds it.
         m0 = r0 * (rho1 - rho0) + h0 * (z1 - z0)
         m1 = r1 * (rho1 - rho0) + h1 * (z1 - z0)
         share, most = 0.5, d0
@@ -308,12 +378,14 @@ def strip_depth(s: Floats, path: Floats, z_low: float, rise: float, arcs: Floats
         most += arch
         if most <= max(enough, best + bound):
             continue
+        # A candidate at the place where the bound is greatest.
         at = u0 + share * (u1 - u0)
         depth = _depth_at(s, at, path, z_low, rise, arcs, piece, guide)
         if depth > best:
             best, where = depth, at
         if most <= max(enough, best + bound) or u1 - u0 < 1e-9 or top + 2 > len(stack):
             continue
+        # Cut at the candidate, unless that leaves a sliver.
         split = at if 0.1 <= share <= 0.9 else 0.5 * (u0 + u1)
         stack[top, 0], stack[top, 1] = u0, split
         stack[top + 1, 0], stack[top + 1, 1] = split, u1
@@ -323,7 +395,11 @@ def strip_depth(s: Floats, path: Floats, z_low: float, rise: float, arcs: Floats
 
 @njit(cache=True, nogil=True)
 def part_of_move(move: Floats, t0: float, t1: float, out: Floats) -> tuple[float, float]:
-    """Fill `out` with the plan curve of a move between two shares of it, and return its lowest and highest z."""
+    """Fill out (15,) with the plan curve of a move between two shares of it, and return its lowest and
+    highest z (mm).
+
+    Equal shares give a line of no length.
+    """
     za = move[Z_START] + t0 * (move[Z_END] - move[Z_START])
     zb = move[Z_START] + t1 * (move[Z_END] - move[Z_START])
     out[KIND] = move[KIND]
@@ -350,7 +426,7 @@ def part_of_move(move: Floats, t0: float, t1: float, out: Floats) -> tuple[float
 
 @njit(cache=True, nogil=True, inline="always")
 def is_sloped(move: Floats) -> bool:
-    """Say whether a move climbs while it goes along in plan."""
+    """Return whether a move climbs or falls while it moves in plan."""
     level = move[Z_START] == move[Z_END]
     upright = move[KIND] == 0.0 and move[X0] == move[X1] and move[Y0] == move[Y1]
     return not (level or upright)
@@ -359,7 +435,15 @@ def is_sloped(move: Floats) -> bool:
 @njit(cache=True, nogil=True)
 def move_depth(s: Floats, move: Floats, arcs: Floats, piece: Floats, enough: float, bound: float, path: Floats, guide: Floats,
                stack: Floats, spans: Floats) -> tuple[float, float]:
-    """Return the deepest that one piece enters one strip along a whole move, as `strip_depth`; ramps and helices are halved until flat."""
+    """Return the deepest (mm) that one piece enters one strip along a whole move, and the profile
+    parameter there.
+
+    Level and vertical moves go to `strip_depth`. A ramp or helix is divided by time: over a part of
+    it the body swept by the part's whole rise, all along the part's path, contains the true motion
+    and bounds its depth from above; a level position at the middle gives a depth that is attained.
+    The result is within twice `bound` of the deepest: once for the search over the strip, once for
+    the search over time.
+    """
     if not is_sloped(move):
         return strip_depth(s, move, min(move[Z_START], move[Z_END]), abs(move[Z_END] - move[Z_START]), arcs, piece, enough, bound, guide,
                            stack)
@@ -371,9 +455,12 @@ def move_depth(s: Floats, move: Floats, arcs: Floats, piece: Floats, enough: flo
         t0, t1 = spans[top, 0], spans[top, 1]
         z_low, z_high = part_of_move(move, t0, t1, path)
         most, u = strip_depth(s, path, z_low, z_high - z_low, arcs, piece, max(enough, best), bound, guide, stack)
+        # Not deeper than what is known: the part is done.
         if most <= max(enough, best):
             continue
-        # A rise of a fraction of the bound: where a trim leans more than it climbs, its end moves faster than the tip.
+        # The swept body itself stands for the part once its rise is a fraction of the bound. Not a
+        # larger one: where a trim leans more than the move climbs, the contact moves faster than
+        # the tip.
         if z_high - z_low <= 0.125 * bound or top + 2 > len(spans):
             best, where = most, u
             continue
@@ -392,10 +479,11 @@ def move_depth(s: Floats, move: Floats, arcs: Floats, piece: Floats, enough: flo
 
 @njit(cache=True, nogil=True)
 def move_box(move: Floats) -> tuple[float, float, float, float]:
-    """Return the plan box of a move (x low, y low, x high, y high)."""
+    """Return the plan box of a move's tip (x low, y low, x high, y high), mm."""
     x0, y0 = min(move[X0], move[X1]), min(move[Y0], move[Y1])
     x1, y1 = max(move[X0], move[X1]), max(move[Y0], move[Y1])
     if move[KIND] != 0.0:
+        # Quadrant points that lie on the arc.
         for k in range(4):
             qx, qy = (1.0, 0.0, -1.0, 0.0)[k], (0.0, 1.0, 0.0, -1.0)[k]
             if _on_arc(qx, qy, 1.0, move):
@@ -406,7 +494,8 @@ def move_box(move: Floats) -> tuple[float, float, float, float]:
 
 @njit(cache=True, nogil=True)
 def _inside(x: float, y: float, outline: Floats) -> bool:
-    """Say whether a point is inside closed chords (k, 4) by the parity of crossings to its right."""
+    """Return whether a point is inside closed chords (k, 4), x, y to x, y, by the parity of crossings
+    with a ray towards +x."""
     odd = False
     for k in range(len(outline)):
         xa, ya, xb, yb = outline[k, 0], outline[k, 1], outline[k, 2], outline[k, 3]
@@ -417,7 +506,8 @@ def _inside(x: float, y: float, outline: Floats) -> bool:
 
 @njit(cache=True, nogil=True)
 def _level_depth(arcs: Floats, piece: Floats, h: float, rise: float) -> float:
-    """Return how deep a piece's axis is in a level face, h above the tip at its lowest."""
+    """Return how deep (mm) a point on a piece's axis lies in it, at the height h above the tip in its
+    lowest position; -inf beyond its ends."""
     if h < piece[Z_LOW] or h > piece[Z_HIGH] + rise:
         return -np.inf
     depth, _r, _h = swept_depth(arcs, piece, 0.0, h, rise)
@@ -426,7 +516,11 @@ def _level_depth(arcs: Floats, piece: Floats, h: float, rise: float) -> float:
 
 @njit(cache=True, nogil=True)
 def deepest_height(arcs: Floats, piece: Floats) -> float:
-    """Return the height between a piece's ends at which a point on its axis is deepest in it, within a tenth of a micrometre."""
+    """Return the height (mm) between a piece's ends at which a point on its axis is deepest in it, to
+    within 1e-4 mm.
+
+    Bisection on the sign of the slope: the depth along the axis is concave.
+    """
     low, high = piece[Z_LOW], piece[Z_HIGH]
     while high - low > 1e-4:
         middle = 0.5 * (low + high)
@@ -441,11 +535,19 @@ def deepest_height(arcs: Floats, piece: Floats) -> float:
 @njit(cache=True, nogil=True)
 def region_depth(z: float, box: Floats, chords: Floats, move: Floats, arcs: Floats, piece: Floats,
                  path: Floats) -> tuple[float, float]:
-    """Return how deep one piece enters a level face (z, its plan box and chords) where its axis passes over or under it, and at which
-    share of the move.
+    """Return how deep (mm) one piece enters a level face where its axis passes over or under it, and
+    at which share of the move.
 
-    Where the axis crosses the outline, the boundary's strips are as deep; so the ends of a move count, and of a climbing one the moment
-    at which the piece is deepest.
+    z of the face, box (4,) its plan box, chords (k, 4) its outline. Only the face's inside is
+    judged here, where the nearest point of the face to the axis is on the axis itself (rho = 0);
+    its exact boundary is among the strips. Along a path over the face the axis depth is constant
+    (level move) or concave in time, and where the axis crosses the outline the boundary's strip is
+    as deep: so the ends of the move count, and of a sloped one the moment at which the piece is
+    deepest.
+
+    The chords leave an outline's arcs by up to `part.surfaces.CHORD_INSIDE`. An axis in the sliver
+    between an arc and its chord is judged by the boundary's strip alone, at the distance rho > 0:
+    that errs shallow, by n_rho rho, where the end of the tool is pointed.
     """
     z_low, rise = min(move[Z_START], move[Z_END]), abs(move[Z_END] - move[Z_START])
     if not is_sloped(move):
@@ -454,6 +556,7 @@ def region_depth(z: float, box: Floats, chords: Floats, move: Floats, arcs: Floa
         return _level_depth(arcs, piece, z - z_low, rise), 0.0
     most, when = -np.inf, 0.0
     climb = move[Z_END] - move[Z_START]
+    # Start, the moment of greatest depth, end.
     for moment in range(3):
         t = 0.5 * moment
         if moment == 1:
@@ -470,13 +573,18 @@ def region_depth(z: float, box: Floats, chords: Floats, move: Floats, arcs: Floa
 
 @njit(cache=True, nogil=True, inline="always")
 def _over(x: float, y: float, box: Floats, chords: Floats) -> bool:
+    """Return whether a plan point lies in a region, by its box (4,) first."""
     return box[0] <= x <= box[2] and box[1] <= y <= box[3] and _inside(x, y, chords)
 
 
 @njit(cache=True, nogil=True)
 def _near_cell(i: int, j: int, z: Floats, grid: Floats, x0: float, y0: float, x1: float, y1: float, z_low: float, rise: float,
                pieces: Floats) -> bool:
-    """Say whether some piece comes near a cell of a grid whose strips are between two heights z (2,), from a move's plan box."""
+    """Return whether some piece comes near a cell (i, j) of a grid whose strips stand between two
+    heights z (2,), from a move's plan box.
+
+    By the distance of two boxes and the ranges of height: it errs towards near.
+    """
     low_x, low_y = grid[0] + i * grid[2], grid[1] + j * grid[2]
     gx, gy = max(max(low_x - x1, x0 - low_x - grid[2]), 0.0), max(max(low_y - y1, y0 - low_y - grid[2]), 0.0)
     gap = math.sqrt(gx * gx + gy * gy)
@@ -491,14 +599,22 @@ def contact_loop(first: int, last: int, rows: Ints, moves: Floats, tool: Ints, a
                  strips: Floats, strip_face: Ints, cell_start: Ints, cell_strip: Ints, cell_z: Floats, grid: Floats, shape: Ints,
                  region_z: Floats, region_face: Ints, region_box: Floats, region_start: Ints, chords: Floats, enough: float,
                  bound: float, settle: float, depth: Floats, which: Ints, where: Floats, face_depth: Floats, face_move: Ints) -> None:
-    """Measure the moves of rows `first` to `last` against every strip and every level region near them.
+    """Measure the moves of rows `first` to `last` against every strip and every level region near
+    them.
 
-    rows (k,) into moves (n, 15) and tool (n,), which is into piece_start; arcs and pieces as in `kernels/body.py`. grid (3,) is x, y of
-    the strips' grid and its pitch, shape (2,) its cells, cell_start and cell_strip its lists, cell_z (cells, 2) how low and how high the
-    strips of each cell are: no piece but those that come as near and are as high looks into it. region_* and chords (c, 4) are level faces.
-    Fills depth (k, 2) for what cuts and for what does not; which (k, 2) strip rows or -2 - region; where (k, 2) profile parameters, of a
-    region the share of the move; face_depth (f, 2) and face_move (f, 2), rows of moves. A move found deeper than `settle` is not looked
-    at further: its depth is then only known to be above it.
+    rows (k,) into moves (n, 15) and tool (n,), which is into piece_start; arcs and pieces as in
+    `kernels/body.py`. strips (m, 37), strip_face (m,). grid (3,) is x, y of the strips' grid and
+    its pitch, shape (2,) its cells, cell_start and cell_strip its lists, cell_z (cells, 2) how low
+    and how high the strips of each cell are. region_z, region_face (r,), region_box (r, 4),
+    region_start (r + 1,) into chords (c, 4): level faces. enough, bound, settle in mm.
+
+    Fills depth (k, 2) mm for what cuts and for what does not; which (k, 2) strip rows or -2 -
+    region; where (k, 2) profile parameters, of a region the share of the move; face_depth (f, 2)
+    and face_move (f, 2), rows of moves. Depths up to `enough` are not told. A move found deeper
+    than `settle` is not searched further: its depth is then only known to be above that.
+
+    All that is skipped is skipped by a bound: depth <= h over the tool's lowest tip, depth <= R_MAX
+    - rho, and the distance of boxes is never above the true one.
     """
     guide, path = np.zeros(MOVE_COLUMNS), np.zeros(MOVE_COLUMNS)
     stack, spans = np.zeros((96, 2)), np.zeros((96, 2))
@@ -511,6 +627,7 @@ def contact_loop(first: int, last: int, rows: Ints, moves: Floats, tool: Ints, a
         widest = 0.0
         for p in range(p0, p1):
             widest = max(widest, pieces[p, R_MAX])
+        # Cells under the move's plan box, widened by the tool's largest radius.
         x0, y0, x1, y1 = move_box(move)
         i0, i1 = int(math.floor((x0 - widest - grid[0]) / grid[2])), int(math.floor((x1 + widest - grid[0]) / grid[2]))
         j0, j1 = int(math.floor((y0 - widest - grid[1]) / grid[2])), int(math.floor((y1 + widest - grid[1]) / grid[2]))
@@ -523,6 +640,7 @@ def contact_loop(first: int, last: int, rows: Ints, moves: Floats, tool: Ints, a
                     continue
                 for c in range(cell_start[cell], cell_start[cell + 1]):
                     m = cell_strip[c]
+                    # A strip is listed by several cells; `seen` holds the last move that judged it.
                     if seen[m] == n:
                         continue
                     seen[m] = n
@@ -542,6 +660,7 @@ def contact_loop(first: int, last: int, rows: Ints, moves: Floats, tool: Ints, a
                                 depth[k, kind], which[k, kind], where[k, kind] = d, m, u
                             if d > face_depth[strip_face[m], kind]:
                                 face_depth[strip_face[m], kind], face_move[strip_face[m], kind] = d, n
+        # Level faces: their inside, as `region_depth` has it.
         for r in range(len(region_z)):
             if region_z[r] - z_low <= enough or depth[k, 0] > settle or depth[k, 1] > settle:
                 continue
@@ -560,7 +679,8 @@ def contact_loop(first: int, last: int, rows: Ints, moves: Floats, tool: Ints, a
 
 @njit(cache=True, nogil=True)
 def guide_point(s: Floats, u: float, share: float) -> tuple[float, float, float]:
-    """Return the point of a strip at one profile parameter, at a share of the way from its left end to its right one."""
+    """Return the point (x, y, z) of a strip at one profile parameter, at a share of its guide from the
+    left end to the right one."""
     low = _end(s[L_KIND], s[LA], s[LB], s[LC], s[L_SIGN], u, s[U0])
     high = _end(s[R_KIND], s[RA], s[RB], s[RC], s[R_SIGN], u, s[U0])
     at, w = low + share * (high - low), _profile_w(s, u)
@@ -572,7 +692,11 @@ def guide_point(s: Floats, u: float, share: float) -> tuple[float, float, float]
 @njit(cache=True, nogil=True)
 def places(rows: Ints, moves: Floats, which: Ints, where: Floats, strips: Floats, strip_face: Ints, region_z: Floats, region_face: Ints,
            face: Ints, place: Floats) -> None:
-    """Fill face (k, 2) and place (k, 2, 3) of what `contact_loop` found: on a guide, the nearest to the path of 65 even points."""
+    """Fill face (k, 2) and place (k, 2, 3) with where `contact_loop` found its depths.
+
+    On a guide the nearest to the path of 65 even points is taken: a place to show, not part of any
+    bound.
+    """
     path = np.zeros(MOVE_COLUMNS)
     for k in range(len(rows)):
         move = moves[rows[k]]
@@ -594,7 +718,11 @@ def places(rows: Ints, moves: Floats, which: Ints, where: Floats, strips: Floats
 
 @njit(cache=True, nogil=True)
 def fill_cells(boxes: Floats, grid: Floats, shape: Ints, counts: Ints, start: Ints, rows: Ints) -> None:
-    """Count (rows empty) or list the boxes (n, 4) that touch each cell of a grid; `counts` (cells,) is filled either way."""
+    """Count or list the boxes (n, 4), x low, y low, x high, y high, that touch each cell of a grid;
+    counts (cells,) is filled either way.
+
+    rows empty: count only; else rows gets the boxes of each cell from start (cells + 1,) on.
+    """
     counts[:] = 0
     listing = len(rows) > 0
     for n in range(len(boxes)):

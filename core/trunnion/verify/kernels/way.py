@@ -1,7 +1,14 @@
-"""Compiled ways of a tool along its moves: straight with the tip while the axis turns in one plane, or an arc about the axis.
+"""Compiled tool motion along one block, and its division into spans that are nearly linear in the
+tool's own frame.
 
-A way is cut into spans. What a point of space does relative to the tool during a span is seen in the frame that the tool has in the middle
-of it: nearly a straight line between two places, and how nearly is known.
+A block moves the tip on a line while the axis turns at an even rate in one plane (slerp), or on an
+arc about a still axis, helical with CLIMB; arcs with a turning axis do not occur. A share t runs
+from 0 to 1 over the block.
+
+A span is a part of a block. Seen in the frame that the tool has in the middle of the span, a fixed
+point of space follows q(t) = M(t) (p - tip(t)). It stays close to the chord between its positions
+at both ends of the span: the deviation is bounded by `sag_of`, so a span stands for a continuous
+motion without sampling it. Lengths mm, angles rad, all in the frame of the moves.
 """
 
 from __future__ import annotations
@@ -16,8 +23,10 @@ from trunnion.geometry.arrays import Floats
 START, VECTOR, AXIS, PIVOT, ANGLE, CENTRE, ACROSS, ALONG = 0, 3, 6, 9, 12, 13, 16, 19
 R_START, R_END, SWEEP, CLIMB, LENGTH = range(22, 27)
 WAY_COLUMNS = 27
-"""START and VECTOR of the tip; AXIS at the start turns about PIVOT by ANGLE. An arc (SWEEP not 0) is about CENTRE, from ACROSS towards
-ALONG."""
+"""START and VECTOR of the tip; AXIS at the start turns about the unit vector PIVOT, perpendicular to
+it, by ANGLE >= 0. An arc (SWEEP not 0) is about CENTRE from the unit vector ACROSS towards ALONG =
+AXIS x ACROSS; R_START, R_END its radius at both ends, CLIMB its rise. LENGTH bounds the tip's path
+from above."""
 
 # A span of a way: for each end the matrix (9) that turns what is relative to the tip into the frame of the middle, and the tip (3).
 TIP, END_COLUMNS = 9, 12
@@ -33,7 +42,8 @@ FLAT = 1e-12
 
 @njit(cache=True, nogil=True)
 def fill_way(start: Floats, end: Floats, axis: Floats, end_axis: Floats, centre: Floats, sweep: float, way: Floats) -> None:
-    """Fill `way` (27,) from a move's ends (3,), its axes at both, and an arc's centre and angle (0: a line)."""
+    """Fill way (27,) from a block's tips start, end (3,), its unit axes at both, and an arc's centre
+    (3,) and signed angle `sweep` (0: a line, centre unused)."""
     way[:] = 0.0
     square = 0.0
     for k in range(3):
@@ -43,6 +53,7 @@ def fill_way(start: Floats, end: Floats, axis: Floats, end_axis: Floats, centre:
     if sweep != 0.0:
         _fill_arc(start, end, axis, centre, sweep, way)
         return
+    # Axis of the turn: axis x end_axis, whose length is the sine of the angle.
     wx, wy, wz = (axis[1] * end_axis[2] - axis[2] * end_axis[1], axis[2] * end_axis[0] - axis[0] * end_axis[2],
                   axis[0] * end_axis[1] - axis[1] * end_axis[0])
     sine, cosine = math.sqrt(wx * wx + wy * wy + wz * wz), axis[0] * end_axis[0] + axis[1] * end_axis[1] + axis[2] * end_axis[2]
@@ -60,6 +71,12 @@ def fill_way(start: Floats, end: Floats, axis: Floats, end_axis: Floats, centre:
 
 @njit(cache=True, nogil=True)
 def _fill_arc(start: Floats, end: Floats, axis: Floats, centre: Floats, sweep: float, way: Floats) -> None:
+    """Fill the columns of an arc: the centre moved along the axis to the start's level, the frame
+    across the axis, both radii and the climb.
+
+    The radius runs linearly from the start's to the end's: rounded words of the text leave them
+    apart by up to `tolerance.ARC_RADIUS`, and the arc must end where the next block starts.
+    """
     up = climb = 0.0
     for k in range(3):
         up += (start[k] - centre[k]) * axis[k]
@@ -77,12 +94,13 @@ def _fill_arc(start: Floats, end: Floats, axis: Floats, centre: Floats, sweep: f
         i, j = (k + 1) % 3, (k + 2) % 3
         way[ALONG + k] = axis[i] * way[ACROSS + j] - axis[j] * way[ACROSS + i]
     way[R_START], way[R_END], way[SWEEP], way[CLIMB] = radius, math.sqrt(last), sweep, climb
+    # Arc length at the larger radius: never too short.
     way[LENGTH] = math.hypot(max(radius, way[R_END]) * abs(sweep), climb)
 
 
 @njit(cache=True, nogil=True)
 def tip_at(way: Floats, t: float) -> tuple[float, float, float]:
-    """Return the tip at a share of the way."""
+    """Return the tip (mm) at a share t of the block."""
     if way[SWEEP] == 0.0:
         return way[START] + t * way[VECTOR], way[START + 1] + t * way[VECTOR + 1], way[START + 2] + t * way[VECTOR + 2]
     radius = way[R_START] + t * (way[R_END] - way[R_START])
@@ -94,29 +112,41 @@ def tip_at(way: Floats, t: float) -> tuple[float, float, float]:
 
 @njit(cache=True, nogil=True)
 def axis_at(way: Floats, t: float) -> tuple[float, float, float]:
-    """Return the tool axis at a share of the way; the pivot is across it."""
+    """Return the unit tool axis at a share t of the block."""
     ax, ay, az = way[AXIS], way[AXIS + 1], way[AXIS + 2]
     if way[ANGLE] == 0.0:
         return ax, ay, az
     wx, wy, wz = way[PIVOT], way[PIVOT + 1], way[PIVOT + 2]
+    # Rodrigues' rotation formula; the term along PIVOT drops out because PIVOT is perpendicular to
+    # AXIS.
     c, s = math.cos(t * way[ANGLE]), math.sin(t * way[ANGLE])
     return c * ax + s * (wy * az - wz * ay), c * ay + s * (wz * ax - wx * az), c * az + s * (wx * ay - wy * ax)
 
 
 @njit(cache=True, nogil=True)
 def fill_span(way: Floats, t0: float, t1: float, ends: Floats, span: Floats) -> None:
-    """Fill `ends` (2, 12) and `span` (8,) for the way between two shares of it."""
+    """Fill ends (2, 12) and span (8,) for the part of a block between two shares.
+
+    ends: for both ends the rotation matrix (9, row by row) that takes world directions into the
+    frame of the span's middle, and the tip (3). span: S_AXIS the axis in the middle, S_ANGLE the
+    angle turned (rad), S_LENGTH the tip's path (mm), S_BULGE how far (mm) an arc leaves the chord
+    of its ends, S_FROM and S_TO the shares.
+    """
     middle = 0.5 * (t0 + t1)
     span[S_AXIS], span[S_AXIS + 1], span[S_AXIS + 2] = axis_at(way, middle)
     share = t1 - t0
     span[S_ANGLE], span[S_LENGTH], span[S_BULGE] = share * way[ANGLE], share * way[LENGTH], 0.0
     span[S_FROM], span[S_TO] = t0, t1
     if way[SWEEP] != 0.0:
+        # Sagitta r (1 - cos(turn / 2)) of the larger radius; the second term is the mixed
+        # derivative of a radius that drifts while it turns, 2 drift turn / 8.
         turn = min(share * abs(way[SWEEP]), math.pi)
         drift = share * abs(way[R_END] - way[R_START])
         span[S_BULGE] = max(way[R_START], way[R_END]) * (1.0 - math.cos(0.5 * turn)) + 0.25 * drift * turn
     for e in range(2):
         ends[e, TIP], ends[e, TIP + 1], ends[e, TIP + 2] = tip_at(way, t0 if e == 0 else t1)
+        # At the start the tool is half the angle behind its middle: points turn forward by it, at
+        # the end back. Rodrigues' matrix about PIVOT; the identity where the axis keeps still.
         half = 0.5 * span[S_ANGLE] if e == 0 else -0.5 * span[S_ANGLE]
         c, s = math.cos(half), math.sin(half)
         wx, wy, wz = way[PIVOT], way[PIVOT + 1], way[PIVOT + 2]
@@ -128,7 +158,8 @@ def fill_span(way: Floats, t0: float, t1: float, ends: Floats, span: Floats) -> 
 
 @njit(cache=True, nogil=True, inline="always")
 def seen(ends: Floats, e: int, px: float, py: float, pz: float) -> tuple[float, float, float]:
-    """Return a point of space as the tool sees it at one end of a span, in the frame of its middle."""
+    """Return a point of space (mm) relative to the tip at end e (0, 1) of a span, in the frame of the
+    span's middle."""
     x, y, z = px - ends[e, TIP], py - ends[e, TIP + 1], pz - ends[e, TIP + 2]
     return (ends[e, 0] * x + ends[e, 1] * y + ends[e, 2] * z, ends[e, 3] * x + ends[e, 4] * y + ends[e, 5] * z,
             ends[e, 6] * x + ends[e, 7] * y + ends[e, 8] * z)
@@ -136,12 +167,24 @@ def seen(ends: Floats, e: int, px: float, py: float, pz: float) -> tuple[float, 
 
 @njit(cache=True, nogil=True)
 def spans_of(way: Floats, radius: float) -> int:
-    """Return into how many equal spans a way is cut for a body of a radius: none goes further than the body is wide."""
+    """Return into how many equal spans a block is cut for a body of a radius (mm).
+
+    No span is longer than the body is wide, turns by more than MOST_TURN or sweeps more than
+    MOST_SWEEP. For lines these are choices of speed alone; an arc's bulge is a bound only up to
+    half a circle, far above MOST_SWEEP.
+    """
     most = max(way[LENGTH] / (2.0 * max(radius, NARROW)), way[ANGLE] / MOST_TURN, abs(way[SWEEP]) / MOST_SWEEP)
     return max(1, int(math.ceil(most)))
 
 
 @njit(cache=True, nogil=True, inline="always")
 def sag_of(span: Floats, far: float) -> float:
-    """Return how far a point that is never further than `far` from the tip may be off the straight line between its places at both ends."""
+    """Return how far (mm) a point that stays within `far` of the tip can leave the chord between its
+    positions at both ends of a span, in the frame of the middle.
+
+    With q(t) = M(t) v(t), v linear in t and M turning by `angle` at an even rate, the second
+    derivative is |q''| <= angle^2 far + 2 angle length, and a curve leaves its chord by |q''| / 8
+    at most: the sag is angle (angle far / 8 + length / 4). Arcs, whose axis keeps still, have their
+    own bulge instead. The sag errs on the deep side: callers add it to a depth.
+    """
     return span[S_ANGLE] * (0.125 * span[S_ANGLE] * far + 0.25 * span[S_LENGTH]) + span[S_BULGE]
