@@ -141,7 +141,6 @@ def radius_at(arcs: Floats, first: int, last: int, h: float) -> float:
         r = arcs[k, R]
         # Where the level of h crosses the arc itself, the circle decides: rho = CR + sqrt(R^2 - (h
         # - CZ)^2). Elsewhere only the tangents at both ends of the cone can.
-        # The height's place on the arc, if it has one; else the tangent at the nearer end of the cone.
         if r > 0.0 and arcs[k, A0Z] * r <= dz <= arcs[k, A1Z] * r:
             least = min(least, arcs[k, CR] + math.sqrt(max(r * r - dz * dz, 0.0)))
             continue

@@ -239,14 +239,15 @@ def mesh_rays(counts: Counts, lows: Ends, highs: Ends, has: Bools, cells: Ints, 
                     _point(i, j, k, lower, upper, counts, lows, highs, cells, origin, pitch, step, has, work, cell, points[v])
                     over[j, i] = v
                     v += 1
-        # Boxes of the layer below are in `under`; the edges in the lower layer of nodes and those up from it are now surrounded.
-        # Faces around edges along z, between the two layers of nodes.
+        # Faces around edges along z, between the two layers of nodes: four boxes of the upper layer
+        # of points (`over`).
         for j in range(1, deep - 1):
             for i in range(1, wide - 1):
                 here = lower[j, i]
                 if here != upper[j, i]:
                     n = _face(over[j - 1, i - 1], over[j - 1, i], over[j, i], over[j, i - 1], not here, points, triangles, n)
-        # Faces around edges along x and y in the lower layer, between the two layers of points.
+        # Faces around edges along x and y in the lower layer of nodes: two boxes below (`under`)
+        # and two above (`over`).
         for j in range(deep - 1):
             for i in range(wide - 1):
                 here = lower[j, i]

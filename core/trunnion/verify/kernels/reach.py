@@ -117,7 +117,6 @@ def clear_loop(first: int, last: int, tips: Floats, axes: Floats, wanted: Bools,
             # Neighbouring positions share obstacles: an empty list starts as a copy of the previous
             # one. The first of a chunk starts empty, so that the answer doesn't depend on how the
             # work is divided.
-            # What stops tools at one place often stops them at the next.
             places[k], count[k] = places[k - 1], count[k - 1]
         for n in range(tips.shape[1]):
             if not wanted[k, n] or stopped_before(tips[k, n], axes[k, n], arcs, pieces, places[k], count[k], allowed + bound):
