@@ -92,6 +92,7 @@ def highest(heights: Floats, x0: float, y0: float, cell: float, start: Floats, e
             if heights[i, j] <= top:
                 continue
             py = y0 + (j + 0.5) * cell - ay
+            # Plan distance of the cell's centre to the path, against the widened disc.
             t = 0.0
             if square > 0.0:
                 t = min(max((px * dx + py * dy) / square, 0.0), 1.0)

@@ -85,6 +85,7 @@ def _reach(ta: float, tb: float, ca: float, cb: float, ab: float) -> tuple[float
     slope = (tb - ta) / ab
     if abs(slope) >= 1.0:
         return best, share
+    # Slope of the front along the side ab and across it; beyond 1 no front of speed 1 passes both.
     rise = math.sqrt(1.0 - slope * slope)
     x = (ca * ca - cb * cb + ab * ab) / (2.0 * ab)
     y = math.sqrt(max(ca * ca - x * x, 0.0))

@@ -43,6 +43,7 @@ def _span(triangle: Floats, y: float, z: float, pieces: Floats) -> tuple[float, 
         return drop(np.column_stack([x, np.full(len(x), y)]), triangle, pieces, NOWHERE)
 
     radius = pieces[-1, RHO1]
+    # Beyond a radius from the triangle nothing is blocked.
     low, high = float(triangle[..., 0].min()) - radius, float(triangle[..., 0].max()) + radius
     a, b = low, high
     # Concave in x: the highest of the grid and its neighbours bracket the maximum.
@@ -50,6 +51,7 @@ def _span(triangle: Floats, y: float, z: float, pieces: Floats) -> tuple[float, 
         x = np.linspace(a, b, SAMPLES)
         top = height(x)
         k = int(np.argmax(top))
+        # A blocked place splits the search: one end of the interval on either side of it.
         if top[k] >= z:
             return _edge(height, z, float(x[k]), low), _edge(height, z, float(x[k]), high)
         a, b = x[max(k - 1, 0)], x[min(k + 1, SAMPLES - 1)]

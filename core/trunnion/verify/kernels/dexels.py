@@ -18,8 +18,9 @@ rejects most rays, and the ends of what is cut are found by Newton steps from ou
 overshoot a concave function. Nothing is sampled over time: the envelope leaves no ridges.
 
 Where the tool turns, D is concave in w at every t but F need not be: such spans are bisected where
-Newton overshoots, and looked at in between for a gap. Bodies are taken smaller by SHRINK, so cuts
-err towards standing material. mm, rad.
+Newton overshoots, and looked at in three places in between for a gap. Bodies are taken smaller by
+SHRINK, so cuts err towards standing material; a gap that the three places miss is the one case that
+errs the other way. mm, rad.
 """
 
 from __future__ import annotations

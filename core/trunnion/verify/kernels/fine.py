@@ -85,6 +85,8 @@ def _chord_least(arcs: Floats, first: int, last: int, x0: float, y0: float, z0: 
     """
     dx, dy, dz = x1 - x0, y1 - y0, z1 - z0
     f, gx, gy, gz = _tangent(arcs, first, last, x0 + s * dx, y0 + s * dy, z0 + s * dz)
+    # Level along the chord: p fall + (1 - p) rise = 0; f is the mixture's value where the chord
+    # begins, so everywhere on it.
     if t > s:
         e, hx, hy, hz = _tangent(arcs, first, last, x0 + t * dx, y0 + t * dy, z0 + t * dz)
         fall, rise = gx * dx + gy * dy + gz * dz, hx * dx + hy * dy + hz * dz
@@ -190,6 +192,8 @@ def _mean_of_two(p: Floats, q: Floats) -> float:
     best = min(p.max(), q.max())
     for i in range(4):
         for j in range(4):
+            # The share at which corners i and j have equal distances: share p_i + (1 - share) q_i =
+            # share p_j + (1 - share) q_j.
             fall = (p[i] - q[i]) - (p[j] - q[j])
             if fall == 0.0:
                 continue
