@@ -10,8 +10,8 @@ from typing import Any
 import numpy as np
 import pytest
 
-from seeded.pockets import random_panel
 from samples import ball_shape, dome_on_a_plate_shape, written
+from seeded.pockets import random_panel
 from trunnion.model.session import Session
 from trunnion.pipeline import Engine
 
