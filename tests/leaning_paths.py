@@ -18,8 +18,9 @@ from trunnion.model.tool import Tool
 from trunnion.model.toolpath import Mark, Motion, Toolpath
 from trunnion.post.dialects.linuxcnc import LinuxCncDialect
 from trunnion.post.header import Header
-from trunnion.post.readers import linuxcnc as reader
+from trunnion.post.readers import control
 from trunnion.post.readers.joints import Joints
+from trunnion.post.readers.linuxcnc import read_linuxcnc
 from trunnion.post.readers.sections import Rows
 from trunnion.post.settings import PostSettings
 from trunnion.shop import load_shop
@@ -76,7 +77,7 @@ def text_of(made: Program, place: Place, **settings) -> str:
 
 def again(text: str, place: Place, tools: Sequence[Tool] = (FLAT_16,), setup: Setup = S1) -> Program:
     """Return what a text says, read back."""
-    return reader.read_linuxcnc(text, tools, setup, place)
+    return read_linuxcnc(text, tools, setup, place)
 
 
 def joint_rows(text: str, place: Place, tools: Sequence[Tool] = (FLAT_16,), setup: Setup = S1) -> list[Rows]:
@@ -88,6 +89,6 @@ def joint_rows(text: str, place: Place, tools: Sequence[Tool] = (FLAT_16,), setu
             caught.append(rows)
             return Joints.opened(self, rows)
 
-    with mock.patch.object(reader, "Joints", Caught):
+    with mock.patch.object(control, "Joints", Caught):
         again(text, place, tools, setup)
     return caught

@@ -8,7 +8,7 @@ from importlib.resources import files
 import pytest
 
 from trunnion.findings import BadInput
-from trunnion.post.dialects.linuxcnc import LinuxCncWords
+from trunnion.post.iso_words import IsoWords
 from trunnion.post.settings import PostSettings
 from trunnion.post.ticks import Scale
 from trunnion.post.words import checked_words, dialect_words, plain
@@ -28,12 +28,12 @@ TABLE = tomllib.loads((files("trunnion_resources") / "dialects" / "linuxcnc.toml
 def test_wrong_words_are_refused(change, message):
     table = {k: v for k, v in {**TABLE, **change}.items() if v is not None}
     with pytest.raises(BadInput, match=message):
-        checked_words(LinuxCncWords, "x", table)
+        checked_words(IsoWords, "x", table)
 
 
 def test_a_dialect_without_words_is_refused():
     with pytest.raises(BadInput, match="dialect nobody: its words can't be read"):
-        dialect_words(LinuxCncWords, "nobody")
+        dialect_words(IsoWords, "nobody")
 
 
 @pytest.mark.parametrize(("text", "said"), [("Träger (links)", "Trager [links]"), ("a;b$c\nd", "abc d"), ("x" * 20, "xxxxxx ..."),

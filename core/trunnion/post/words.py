@@ -5,7 +5,7 @@ from __future__ import annotations
 import tomllib
 import unicodedata
 from collections.abc import Container
-from dataclasses import fields
+from dataclasses import MISSING, fields
 from functools import cache
 from importlib.resources import files
 from typing import Any, TypeVar, get_args, get_origin, get_type_hints
@@ -17,28 +17,36 @@ T = TypeVar("T")
 
 
 @cache
-def dialect_words(cls: type[T], name: str) -> T:
-    """Return the words of a dialect as the dataclass that lists them; raise `BadInput` for a missing, unknown or wrong one."""
-    source = files("trunnion_resources") / "dialects" / f"{name}.toml"
+def dialect_words(cls: type[T], name: str, package: str = "") -> T:
+    """Return the words of a dialect as the dataclass that lists them; raise `BadInput` for a missing, unknown or wrong one.
+
+    They are read from our resources, or from `NAME.toml` in the package that brings the dialect.
+    """
+    folder = files(package) if package else files("trunnion_resources") / "dialects"
     try:
-        table = tomllib.loads(source.read_text(encoding="utf-8"))
-    except (OSError, tomllib.TOMLDecodeError) as reason:
+        table = tomllib.loads((folder / f"{name}.toml").read_text(encoding="utf-8"))
+    except (OSError, UnicodeDecodeError, tomllib.TOMLDecodeError) as reason:
         raise BadInput(f"dialect {name}: its words can't be read: {reason}") from None
     return checked_words(cls, name, table)
 
 
 def checked_words(cls: type[T], name: str, table: dict[str, Any]) -> T:
-    """Return a table of words as a dataclass whose fields are texts, whole numbers, tuples of texts and mappings of texts."""
+    """Return a table of words as a dataclass whose fields are texts, whole numbers, tuples of texts and mappings of texts.
+
+    Words whose fields have a default may be missing.
+    """
     hints = get_type_hints(cls)
-    wanted = [f.name for f in fields(cls)]  # type: ignore[arg-type]
+    optional = {f.name: f.default is not MISSING for f in fields(cls)}  # type: ignore[arg-type]
+    wanted = list(optional)
     for key in table:
         if key not in wanted:
             raise BadInput(f"dialect {name}: unknown word {key}; known: {', '.join(wanted)}")
     values = {}
     for key in wanted:
-        if key not in table:
+        if key not in table and not optional[key]:
             raise BadInput(f"dialect {name}: the word {key} is missing")
-        values[key] = _checked(hints[key], table[key], f"dialect {name}: {key}")
+        if key in table:
+            values[key] = _checked(hints[key], table[key], f"dialect {name}: {key}")
     return cls(**values)
 
 

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 import re
-from collections.abc import Iterator, Sequence
+from collections.abc import Sequence
 
 from trunnion import tolerance
 from trunnion.findings import BadInput
@@ -14,13 +14,12 @@ from trunnion.model.tool import Tool
 from trunnion.model.toolpath import Motion
 from trunnion.post.readers.arcs import refuse_nearly_closed, refuse_no_radius
 from trunnion.post.readers.numbers import FEED, LENGTH, SPINDLE, shown
-from trunnion.post.readers.sections import NOWHERE, Leaning, Point, Sections
+from trunnion.post.readers.sections import NOWHERE, Leaning, Point, Sections, operation_of
+from trunnion.post.readers.statements import statements
 from trunnion.post.readers.tools import by_number, check_tool
 from trunnion.units import MM_PER_INCH
 
-_TEXT_WORDS = ("PARTNO", "PPRINT", "REMARK")
 _SETUP = re.compile(r"SETUP\s+(\S+)\s+WORK OFFSET\s+(\S+)$", re.IGNORECASE)
-_OPERATION = re.compile(r"OPERATION\s+(\S+)$", re.IGNORECASE)
 _NUMBER = re.compile(r"[-+]?(?:[0-9]+\.?[0-9]*|\.[0-9]+)(?:E[-+]?[0-9]+)?")
 _UP = (0.0, 0.0, 1.0)
 _UNIT = 1e-4
@@ -33,36 +32,9 @@ def read_apt(text: str, tools: Sequence[Tool], setups: Sequence[Setup]) -> tuple
     A text that names no setup belongs to the only one given.
     """
     reader = _Reader(by_number(tools), setups)
-    for line, word, arguments in _statements(text):
+    for line, word, arguments in statements(text):
         reader.run(line, word, arguments)
     return reader.finished()
-
-
-def _statements(text: str) -> Iterator[tuple[int, str, str]]:
-    """Yield the line, major word and rest of each statement, lines that end in $ joined, comments ($$) left out."""
-    joined, first = "", 0
-    for line, raw in enumerate(text.split("\n"), 1):
-        part = raw.strip()
-        is_text = not joined and part.upper().startswith(_TEXT_WORDS)
-        if not is_text:
-            part = part.split("$$", 1)[0].rstrip()
-        first = first if joined else line
-        if part.endswith("$") and not is_text:
-            joined += part[:-1]
-            continue
-        statement, joined = joined + part, ""
-        if statement:
-            yield first, *_parted(statement, is_text)
-    if joined:
-        raise BadInput(f"line {first}: the statement goes on after the last line: is the text complete?")
-
-
-def _parted(statement: str, is_text: bool) -> tuple[str, str]:
-    if is_text:
-        word = next(w for w in _TEXT_WORDS if statement.upper().startswith(w))
-        return word, statement[len(word):].removeprefix("/").strip()
-    word, _, rest = statement.upper().partition("/")
-    return word.strip(), "".join(rest.split())
 
 
 class _Reader:
@@ -105,8 +77,8 @@ class _Reader:
     def text(self, line: int, rest: str) -> None:
         if found := _SETUP.match(rest):
             self.next_setup(line, found.group(1), found.group(2))
-        elif found := _OPERATION.match(rest):
-            self.sections.operation(found.group(1))
+        elif (operation := operation_of(rest)) is not None:
+            self.sections.operation(operation)
         else:
             check_tool(line, rest, self.tools)
 

@@ -31,12 +31,15 @@ class Block:
     words: dict[str, float]
 
 
-def split_line(line: int, text: str) -> tuple[Block | None, tuple[str, ...]]:
-    """Return the words of a line (None when it has none) and its comments; raise `BadInput` for anything else that stands in it."""
+def split_line(line: int, text: str, brackets: bool = True) -> tuple[Block | None, tuple[str, ...]]:
+    """Return the words of a line (None when it has none) and its comments; raise `BadInput` for anything else that stands in it.
+
+    Comments stand after a semicolon and, where the control has them so, in brackets.
+    """
     comments: tuple[str, ...] = ()
     if ";" in text:
-        text, comments = _without_end_comment(text)
-    if "(" in text or ")" in text:
+        text, comments = _without_end_comment(text, brackets)
+    if brackets and ("(" in text or ")" in text):
         text, inside = _without_comments(line, text)
         comments = inside + comments
     packed = text.translate(_SPACE).upper()
@@ -78,7 +81,10 @@ def _why(packed: str) -> str:
     return f"{shown(rest[0] if rest[0].isprintable() else repr(rest[0]))} is not understood; a word is a letter and a number"
 
 
-def _without_end_comment(text: str) -> tuple[str, tuple[str, ...]]:
+def _without_end_comment(text: str, brackets: bool) -> tuple[str, tuple[str, ...]]:
+    if not brackets:
+        words, _, comment = text.partition(";")
+        return words, (comment.strip(),)
     depth = 0
     for n, c in enumerate(text):
         depth += (c == "(") - (c == ")" and depth > 0)

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+import re
 from dataclasses import dataclass, field, replace
 from typing import Protocol
 
@@ -17,6 +18,7 @@ from trunnion.model.toolpath import Mark, Motion, Toolpath
 
 Point = tuple[float, ...]
 """A place as a reader counts it: x, y, z mm, and after them what else says where the tool is (rotary angles, the tool axis)."""
+_OPERATION = re.compile(r"OPERATION\s+(\S+)$", re.IGNORECASE)
 NOWHERE = (math.nan, math.nan, math.nan)
 
 
@@ -77,6 +79,16 @@ class Leaning:
         """See `Reckoning`."""
         points = np.array(rows.point)
         return path_of(rows, points[:, :3], points[:, 3:], np.array(rows.centre)), tuple(rows.line)
+
+
+def operation_of(comment: str) -> str | None:
+    """Return the operation that a comment of ours begins; None for another comment.
+
+    >>> operation_of("OPERATION pocket-01.rough")
+    'pocket-01.rough'
+    """
+    found = _OPERATION.match(comment)
+    return found.group(1) if found else None
 
 
 def path_of(rows: Rows, position: Floats, axis: Floats, centre: Floats) -> Toolpath:

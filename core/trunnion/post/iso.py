@@ -1,0 +1,62 @@
+"""A dialect in word-address format (ISO 6983, "G code"): one setup a text, words as data, and a control that reads them.
+
+A dialect of this kind derives from `IsoDialect` and gives a name, words, and a reader's control where the shared one doesn't know all that
+its own does.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from typing import TYPE_CHECKING, ClassVar
+
+from trunnion.findings import BadCall
+from trunnion.model.program import Program
+from trunnion.model.setup import Setup
+from trunnion.model.tool import Tool
+from trunnion.post.header import Header
+from trunnion.post.iso_words import iso_words
+from trunnion.post.settings import PostSettings
+from trunnion.post.writer.program import ProgramWriter, comment
+from trunnion.shop.kinematics import NO_PLACES, Places
+
+if TYPE_CHECKING:
+    from trunnion.post.readers.control import Control
+
+
+class IsoDialect:
+    """Writes one setup as a program and reads it back; see `trunnion.post.contract.Dialect`.
+
+    `package` is the package that has the words as `NAME.toml`; empty for our own resources.
+    """
+
+    name: ClassVar[str]
+    package: ClassVar[str] = ""
+
+    def __init__(self) -> None:
+        self.words = iso_words(self.name, self.package)
+        self.suffix = self.words.suffix
+
+    def write(self, programs: Sequence[Program], header: Header, settings: PostSettings, places: Places = NO_PLACES) -> str:
+        """Return the text of one setup's program."""
+        self._check_one(programs)
+        writer = ProgramWriter(self.words, programs[0], settings, places.get(programs[0].setup.name))
+        return "\n".join(writer.lines(header)) + "\n"
+
+    def stamp(self, program: str, header: Header) -> tuple[str, ...]:
+        """Return the stamp's lines as comments."""
+        return tuple(comment(self.words, line) for line in header.stamp(program))
+
+    def read(self, text: str, tools: Sequence[Tool], setups: Sequence[Setup], places: Places = NO_PLACES) -> tuple[Program, ...]:
+        """Return the program of the one setup."""
+        from trunnion.post.readers.iso import read_iso
+        self._check_one(setups)
+        return (read_iso(text, tools, setups[0], places.get(setups[0].name), self.words, self.control()),)
+
+    def control(self) -> type[Control]:
+        """Return the control that reads the dialect's texts."""
+        from trunnion.post.readers.control import Control
+        return Control
+
+    def _check_one(self, given: Sequence[Program] | Sequence[Setup]) -> None:
+        if len(given) != 1:
+            raise BadCall(f"a {self.words.title} program holds one setup; got {len(given)}")

@@ -1,0 +1,101 @@
+"""The words of a control in word-address format (ISO 6983, "G code"), as its writer and its reader share them."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass, fields
+from string import Formatter
+
+from trunnion.findings import BadInput
+from trunnion.post.words import dialect_words
+
+CENTRES = ("start", "absolute")
+"""Where I and J of an arc count from: its start, or the zero of the work offset."""
+ROLES = ("radius", "length", "dwell", "turns", "tolerance", "joining")
+"""What a control may have letters for, beside N, F, S, T, X, Y, Z, I and J which are the same on all."""
+_PLACEHOLDERS = {"opening": ("program",), "start": ("units", "tolerance", "offset"), "restart": ("offset",), "tool_change": ("tool",),
+                 "tool_length": ("tool",), "spindle": ("spindle",), "top": (), "end": ()}
+"""What may stand in braces in the lines of a word."""
+_KEYS = {"units": ("mm", "inch"), "coolant": ("off",), "letters": ("radius",)}
+"""Entries that a table must have."""
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class IsoWords:
+    """The words of `dialects/NAME.toml`.
+
+    `opening` are lines without number below the header; `start`, `restart`, `tool_change`, `tool_length`, `spindle`, `top` (straight up to
+    the top of the machine) and `end` are lines with what stands in braces filled in. `codes` and `refused` have one or several codes as
+    keys: what the control does at them (`readers.language.MEANINGS` and the dialect's own), and why the reader refuses them. Without
+    `inverse_time` the control has no rotary axes.
+    """
+
+    title: str
+    suffix: str
+    comment: tuple[str, str]
+    line_length: int
+    start: tuple[str, ...]
+    restart: str
+    tool_change: tuple[str, ...]
+    tool_length: str
+    spindle: str
+    top: str
+    end: tuple[str, ...]
+    work_offsets: tuple[str, ...]
+    motions: tuple[str, str, str, str]
+    centres: str
+    feed_decimals: int
+    extra_decimals_inch: int
+    groups: tuple[str, ...]
+    units: dict[str, str]
+    coolant: dict[str, str]
+    letters: dict[str, str]
+    codes: dict[str, str]
+    refused: dict[str, str]
+    opening: tuple[str, ...] = ()
+    angle_decimals: int = 0
+    per_minute: str = ""
+    inverse_time: str = ""
+
+
+def iso_words(name: str, package: str = "") -> IsoWords:
+    """Return the words of a control, read from our resources or from `NAME.toml` in a package; raise `BadInput` for wrong ones."""
+    words = dialect_words(IsoWords, name, package)
+    if words.centres not in CENTRES:
+        raise BadInput(f"dialect {name}: centres must be one of {', '.join(CENTRES)}; got {words.centres!r}")
+    for word in (f.name for f in fields(IsoWords)):
+        value = getattr(words, word)
+        if word in _KEYS:
+            _check_keys(name, word, value)
+        if word in _PLACEHOLDERS:
+            _check_placeholders(name, word, (value,) if isinstance(value, str) else value)
+    for role, letter in words.letters.items():
+        if role not in ROLES or len(letter) != 1:
+            raise BadInput(f"dialect {name}: letters must be one letter each for some of {', '.join(ROLES)}; got {role} = {letter!r}")
+    return words
+
+
+def by_code(table: Mapping[str, str]) -> dict[str, str]:
+    """Return a table whose keys name one or several codes with one key a code.
+
+    >>> by_code({"M30 M2": "end"})
+    {'M30': 'end', 'M2': 'end'}
+    """
+    return {code: value for codes, value in table.items() for code in codes.split()}
+
+
+def _check_keys(name: str, word: str, table: Mapping[str, str]) -> None:
+    for key in _KEYS[word]:
+        if key not in table:
+            raise BadInput(f"dialect {name}: {word} needs an entry {key}")
+
+
+def _check_placeholders(name: str, word: str, lines: tuple[str, ...]) -> None:
+    try:
+        places = [place for line in lines for _, place, _, _ in Formatter().parse(line) if place is not None]
+    except ValueError as reason:
+        raise BadInput(f"dialect {name}: {word}: {reason}; write braces as {{{{ and }}}}") from None
+    for place in places:
+        if place not in _PLACEHOLDERS[word]:
+            known = ", ".join(_PLACEHOLDERS[word]) or "none"
+            raise BadInput(f"dialect {name}: {word}: {{{place}}} is not known; known: {known}")

@@ -1,0 +1,24 @@
+"""Reads text in word-address format, by a dialect's words and control."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+from trunnion.model.program import Program
+from trunnion.model.setup import Setup
+from trunnion.model.tool import Tool
+from trunnion.post.iso_words import IsoWords
+from trunnion.post.readers.control import Control
+from trunnion.post.readers.tools import by_number
+from trunnion.shop.kinematics import Place
+
+
+def read_iso(text: str, tools: Sequence[Tool], setup: Setup, place: Place | None, words: IsoWords,
+             control: type[Control] = Control) -> Program:
+    """Return the motions of one setup's text, with the line of each block; raise `BadInput` naming the line of what isn't understood.
+
+    `tools` are found by their T number; operations by our comments, else they are called `line N`. `place` says where the work stands on a
+    machine with rotary axes.
+    """
+    on_rotary = place if place is not None and place.machine.rotary else None
+    return control(words, by_number(tools), setup, on_rotary).read(text)

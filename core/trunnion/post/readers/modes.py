@@ -1,0 +1,177 @@
+"""What codes and states do to the modal state of a control: units, feed, tool, spindle, coolant, offsets, dwell."""
+
+from __future__ import annotations
+
+from trunnion import tolerance
+from trunnion.findings import BadInput
+from trunnion.post.readers.blocks import Block
+from trunnion.post.readers.language import Language
+from trunnion.post.readers.numbers import DWELL, FEED, INVERSE_TIME, SPINDLE
+from trunnion.post.readers.state import State
+
+BEFORE_SPEEDS = {"units": "change_units", "inverse time": "feed_by_time", "per minute": "feed_a_minute"}
+AFTER_SPEEDS = {"tool change": "change_tool", "spindle": "start_spindle", "no spindle": "stop_spindle", "coolant": "switch_coolant",
+                "work offset": "set_offset", "length": "set_length", "no length": "drop_length", "path tolerance": "check_path_tolerance",
+                "dwell": "wait", "no motion": "cancel_motion", "motion": "set_motion"}
+"""The methods of `Modes` by the meanings of codes, in the order in which a line is worked off; speeds come between the two."""
+ELSEWHERE = ("machine", "end", "nothing")
+"""Meanings that change no modal state: a move in machine coordinates, the end, and what is so already."""
+MEANINGS = (*BEFORE_SPEEDS, *AFTER_SPEEDS, *ELSEWHERE)
+"""What a control can do at a code. Without `tool change` the T word changes the tool; without `length` the letter of the length alone
+switches it on, and off with 0."""
+
+
+class Modes:
+    """Works off the codes and states of lines. A control's own codes are methods of a class derived from this, named in its `own`."""
+
+    own: dict[str, str] = {}
+    """Methods by meaning of what only this control does; after all others."""
+
+    def __init__(self, language: Language, state: State) -> None:
+        self.language, self.state = language, state
+        self.before = [(meaning, getattr(self, name)) for meaning, name in BEFORE_SPEEDS.items()]
+        self.after = [(meaning, getattr(self, name)) for meaning, name in {**AFTER_SPEEDS, **self.own}.items()]
+
+    def run(self, block: Block) -> None:
+        """Do what the codes and states of a line say, all but moves and the end."""
+        said = {self.language.meanings[code] for code in block.codes}
+        for meaning, step in self.before:
+            if meaning in said:
+                step(block)
+        self.speeds(block)
+        for meaning, step in self.after:
+            if meaning in said:
+                step(block)
+
+    def speeds(self, block: Block) -> None:
+        """Take over F, S and T, and the tool's length where its letter alone switches it on."""
+        line, words, state = block.line, block.words, self.state
+        if "F" in words:
+            self.set_feed(line, words["F"])
+        if "S" in words:
+            if words["S"] < 0.0:
+                raise BadInput(f"line {line}: the spindle speed S must not be negative")
+            SPINDLE.check(line, "S", words["S"])
+            state.spindle, state.speed_given = words["S"], True
+        if "T" in words:
+            self.choose_tool(block)
+        if (letter := self.language.length_letter) in words and not self.language.length:
+            self.set_length(block) if words[letter] else self.drop_length(block)
+
+    def set_feed(self, line: int, feed: float) -> None:
+        """Take over F in the units of the feed mode."""
+        if feed <= 0.0:
+            raise BadInput(f"line {line}: the feed F must be above zero")
+        (INVERSE_TIME if self.state.inverse else FEED).check(line, "F", feed)
+        self.state.feed = feed if self.state.inverse else feed * self.state.unit
+
+    def choose_tool(self, block: Block) -> None:
+        """Take over T; on a control without a code for it the tool comes into the spindle now."""
+        number, tools = block.words["T"], self.state.tools
+        tool = tools.get(int(number))
+        if tool is None or number != int(number):
+            known = ", ".join(str(t) for t in sorted(tools))
+            raise BadInput(f"line {block.line}: T{number:g} is not in the tool list; it has {known}")
+        self.state.next_tool = tool
+        if not self.language.tool_change:
+            self.change_tool(block)
+
+    def change_units(self, block: Block) -> None:
+        """Set what a written length is; not in the middle of a program."""
+        state = self.state
+        unit = next(unit for code, unit in self.language.units.items() if code in block.codes)
+        if state.feed and unit != state.unit:
+            raise BadInput(f"line {block.line}: the units change in the middle of the program; keep one")
+        if "F" in block.words:
+            raise BadInput(f"line {block.line}: F and a change of units in one line: the feed's unit is not clear; write two lines")
+        state.unit, state.units_given = unit, True
+
+    def feed_by_time(self, block: Block) -> None:
+        """Feed in inverse time from here on; F must be given."""
+        self.state.inverse, self.state.feed = True, 0.0
+
+    def feed_a_minute(self, block: Block) -> None:
+        """Feed in units a minute from here on; after inverse time F must be given."""
+        if self.state.inverse:
+            self.state.inverse, self.state.feed = False, 0.0
+
+    def change_tool(self, block: Block) -> None:
+        """Bring the chosen tool into the spindle; its length is off, the spindle stands."""
+        state = self.state
+        if state.next_tool is None:
+            raise BadInput(f"line {block.line}: {self.language.tool_change} without a T word before it; say which tool")
+        state.sections.change_tool()
+        state.tool, state.length_on, state.turning, state.over = state.next_tool, False, False, None
+
+    def start_spindle(self, block: Block) -> None:
+        """Turn the spindle clockwise."""
+        if not self.state.speed_given:
+            raise BadInput(f"line {block.line}: {self.language.spindle} without a spindle speed; give S")
+        self.state.turning = True
+
+    def stop_spindle(self, block: Block) -> None:
+        """Stop the spindle."""
+        self.state.turning = False
+
+    def switch_coolant(self, block: Block) -> None:
+        """Set the coolant; of two in one line the later in the table of words counts."""
+        for code, coolant in self.language.coolants.items():
+            if code in block.codes:
+                self.state.coolant = coolant
+
+    def set_offset(self, block: Block) -> None:
+        """Take the work offset, which must be the setup's."""
+        setup = self.state.setup
+        for code in block.codes:
+            if self.language.meanings[code] == "work offset":
+                if code != setup.work_offset:
+                    raise BadInput(f"line {block.line}: {code} is not the work offset of setup {setup.name}, {setup.work_offset}; use that")
+                self.state.offset = code
+
+    def set_length(self, block: Block) -> None:
+        """Count the length of the tool in the spindle, never of another."""
+        letter, tool = self.language.length_letter, self.state.tool
+        number = block.words.get(letter)
+        if tool is None:
+            raise BadInput(f"line {block.line}: {self.language.length or letter} before a tool is in the spindle; "
+                           f"put {self.language.spoken_change} first")
+        if number is not None and number != tool.number:
+            raise BadInput(f"line {block.line}: {letter}{number:g} is the length of another tool than T{tool.number} in the spindle; "
+                           f"use {letter}{tool.number}")
+        self.state.length_on = True
+
+    def drop_length(self, block: Block) -> None:
+        """Count the tool's length no longer."""
+        self.state.length_on = False
+
+    def check_path_tolerance(self, block: Block) -> None:
+        """Check how far the control may leave the path: at corners, and where it joins lines into one."""
+        line, words, unit, roles = block.line, block.words, self.state.unit, self.language.words.letters
+        code = next(c for c in block.codes if self.language.meanings[c] == "path tolerance")
+        letter, joining = roles["tolerance"], roles.get("joining", "")
+        limit, joined = words.get(letter), words.get(joining, 0.0)
+        if limit is None:
+            raise BadInput(f"line {line}: {code} without {letter} rounds corners off without a limit; give {letter}")
+        if not 0.0 <= limit * unit <= tolerance.GOUGE:
+            raise BadInput(f"line {line}: {code} {letter}{limit:g} rounds corners off by more than {tolerance.GOUGE:g} mm; "
+                           f"give a smaller {letter}")
+        if not 0.0 <= joined * unit <= tolerance.GOUGE:
+            raise BadInput(f"line {line}: {code} {joining}{joined:g} joins lines that are more than {tolerance.GOUGE:g} mm apart; "
+                           f"give a smaller {joining}")
+
+    def wait(self, block: Block) -> None:
+        """Dwell for as many seconds as the line says."""
+        letter = self.language.words.letters["dwell"]
+        seconds = block.words.get(letter)
+        if seconds is None:
+            raise BadInput(f"line {block.line}: {self.language.dwell} without {letter}; say how many seconds")
+        DWELL.check(block.line, letter, seconds)
+        self.state.sections.dwell(seconds)
+
+    def cancel_motion(self, block: Block) -> None:
+        """Move no more until a motion is given."""
+        self.state.motion = None
+
+    def set_motion(self, block: Block) -> None:
+        """Take over how positions are reached."""
+        self.state.motion = next(motion for code, motion in self.language.motions.items() if code in block.codes)

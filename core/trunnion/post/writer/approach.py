@@ -1,0 +1,48 @@
+"""How a tool comes into the spindle and to the first point of a section; lines without their numbers.
+
+After a tool change, and where the rotary axes must unwind, they turn at the top of the machine; then XY on top, then down with the tool's
+length.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+
+from trunnion.model.tool import Tool
+from trunnion.model.toolpath import Motion
+from trunnion.post.writer.modal import Modal
+
+
+def tool_change(modal: Modal, tool: Tool) -> Iterator[str]:
+    """Yield the lines that bring a tool into the spindle; where it is is not known after them."""
+    yield from (line.format(tool=tool.number) for line in modal.words.tool_change)
+    modal.tool, modal.at, modal.coolant = tool.number, None, "off"
+
+
+def coolant(modal: Modal, wanted: str) -> Iterator[str]:
+    """Yield the lines that switch the coolant; another one is switched off before."""
+    if modal.coolant not in ("off", wanted):
+        yield modal.words.coolant["off"]
+    yield modal.words.coolant[wanted]
+    modal.coolant = wanted
+
+
+def approach(modal: Modal, tool: Tool, point: list[int], angle: list[int], changed: bool) -> Iterator[str]:
+    """Yield the lines of the first rapid, to a point and angles in ticks; `changed` after a tool change."""
+    words, rapid = modal.words, modal.words.motions[Motion.RAPID]
+    x, y, z = (modal.scale.text(v) for v in point)
+    turn = "".join(f" {letter}{modal.degrees.text(v)}" for letter, v in zip(modal.letters, angle, strict=True))
+    length = words.tool_length.format(tool=tool.number)
+    unwinds = not changed and angle != (modal.angle or [])
+    if unwinds:
+        yield words.top
+    if changed or unwinds:
+        if turn:
+            yield f"{rapid}{turn}"
+        yield f"{rapid} X{x} Y{y}"
+        yield f"{rapid} {length} Z{z}"
+    else:
+        yield length
+        yield f"{rapid} X{x} Y{y} Z{z}{turn}"
+    modal.reached(point, angle, Motion.RAPID)
+    modal.feed = ""

@@ -1,0 +1,98 @@
+"""The text of one setup's program: header, safe start, one restart point an operation, end."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+
+from trunnion.findings import Refused
+from trunnion.model.program import Program, ProgramSection
+from trunnion.post.header import Header, place_lines
+from trunnion.post.iso_words import IsoWords
+from trunnion.post.linearize import Straying
+from trunnion.post.settings import PostSettings
+from trunnion.post.ticks import Scale
+from trunnion.post.words import plain, refuse_unwritable
+from trunnion.post.writer.approach import approach, coolant, tool_change
+from trunnion.post.writer.modal import Modal, degrees_of
+from trunnion.post.writer.rotary import AxisForm, JointForm, ThreeAxes
+from trunnion.shop.kinematics import Place
+from trunnion.units import trimmed
+
+
+def comment(words: IsoWords, text: str) -> str:
+    """Return a text as a comment of the control."""
+    opened, closed = words.comment
+    return f"{opened}{plain(text, words.line_length - len(opened) - len(closed))}{closed}"
+
+
+class ProgramWriter:
+    """Writes one setup's program line by line. `place` says where the work stands on a machine with rotary axes."""
+
+    def __init__(self, words: IsoWords, program: Program, settings: PostSettings, place: Place | None) -> None:
+        self.words, self.program, self.settings = words, program, settings
+        self.place = place if place is not None and place.machine.rotary else None
+        self.axes = _axis_form(words, settings, self.place)
+        self.modal = Modal(words, settings, self.axes.letters)
+        self.number = 0
+
+    def lines(self, header: Header) -> Iterator[str]:
+        """Yield the lines of the text; raise `Refused` for what the control can't do."""
+        words, setup = self.words, self.program.setup
+        if setup.work_offset not in words.work_offsets:
+            raise Refused(f"setup {setup.name}: {words.title} has no work offset {setup.work_offset}; "
+                          f"it has {', '.join(words.work_offsets)}")
+        yield from (comment(words, line) for line in self.header(header))
+        yield from (line.format(program=plain(f"{header.name}.{setup.name}", words.line_length)) for line in words.opening)
+        limit = trimmed(self.settings.path_tolerance / self.modal.scale.unit, self.modal.scale.decimals)
+        filled = {"units": words.units[self.settings.units], "tolerance": limit, "offset": setup.work_offset}
+        yield from (self.numbered(line.format(**filled)) for line in words.start)
+        for section in self.program.sections:
+            yield from self.section(section)
+        yield from (self.numbered(line) for line in words.end)
+
+    def header(self, header: Header) -> Iterator[str]:
+        """Yield the lines of the header in words, the stamp first."""
+        yield from header.stamp(f"{header.name}.{self.program.setup.name}")
+        yield from header.about([self.program], self.settings.units)
+        if self.place is not None:
+            yield from place_lines(self.program.setup, self.place, self.settings.units)
+
+    def numbered(self, line: str) -> str:
+        """Return a line with the next number."""
+        self.number += self.settings.number_step
+        return f"N{self.number} {line}"
+
+    def section(self, section: ProgramSection) -> Iterator[str]:
+        """Yield one operation: its comment, the state it needs in full (so that a run may start here), its motions."""
+        words, modal, tool = self.words, self.modal, section.tool
+        refuse_unwritable(section, words.title, words.coolant)
+        yield comment(words, f"OPERATION {section.operation}")
+        yield comment(words, f"RESTART POINT N{self.number + self.settings.number_step} TOOL {tool.number} {tool.name}")
+        changes = tool.number != modal.tool
+        if changes:
+            yield from map(self.numbered, tool_change(modal, tool))
+        yield self.numbered(words.restart.format(offset=self.program.setup.work_offset))
+        yield self.numbered(words.spindle.format(spindle=trimmed(section.spindle, 0)))
+        yield from map(self.numbered, coolant(modal, section.coolant))
+        modal.inverse = False
+        yield from self.motions(section, changes)
+
+    def motions(self, section: ProgramSection, changed: bool) -> Iterator[str]:
+        """Yield the approach and the blocks of a section."""
+        modal = self.modal
+        path, minutes = self.axes.blocks(section, modal.angle, not changed)
+        blocks = zip(path.blocks(), path.more.tolist(), minutes.tolist(), strict=True)
+        (first, _, _, _), angle, _ = next(blocks)
+        yield from map(self.numbered, approach(modal, section.tool, first, angle, changed))
+        for block, turned, time in blocks:
+            yield self.numbered(modal.block(block, turned, time))
+
+
+def _axis_form(words: IsoWords, settings: PostSettings, place: Place | None) -> AxisForm:
+    scale = Scale.of(settings, words.extra_decimals_inch, words.feed_decimals)
+    if place is None:
+        return ThreeAxes(scale=scale)
+    if not words.inverse_time:
+        raise Refused(f"{words.title} has no words for the rotary axes of {place.machine.title}; choose another control or machine")
+    straying = Straying(feed=settings.straying, rapid=settings.rapid_straying)
+    return JointForm(place=place, scale=scale, degrees=degrees_of(words), straying=straying)
