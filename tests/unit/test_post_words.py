@@ -3,12 +3,15 @@
 from __future__ import annotations
 
 import tomllib
+from dataclasses import replace
 from importlib.resources import files
 
 import pytest
 
 from trunnion.findings import BadInput
-from trunnion.post.iso_words import IsoWords
+from trunnion.post.iso_words import IsoWords, checked_iso_words, iso_words
+from trunnion.post.readers.language import Language
+from trunnion.post.readers.modes import MEANINGS
 from trunnion.post.settings import PostSettings
 from trunnion.post.ticks import Scale
 from trunnion.post.words import checked_words, dialect_words, plain
@@ -29,6 +32,36 @@ def test_wrong_words_are_refused(change, message):
     table = {k: v for k, v in {**TABLE, **change}.items() if v is not None}
     with pytest.raises(BadInput, match=message):
         checked_words(IsoWords, "x", table)
+
+
+def test_a_word_that_has_a_default_may_be_missing():
+    table = {k: v for k, v in TABLE.items() if k not in ("inverse_time", "per_minute", "angle_decimals")}
+    assert checked_words(IsoWords, "x", table).inverse_time == ""
+
+
+@pytest.mark.parametrize(("change", "message"), [
+    ({"centres": "end"}, "dialect x: centres must be one of start, absolute; got 'end'"),
+    ({"units": {"mm": "G21"}}, "dialect x: units needs an entry inch"),
+    ({"coolant": {"flood": "M8"}}, "dialect x: coolant needs an entry off"),
+    ({"letters": {"length": "H"}}, "dialect x: letters needs an entry radius"),
+    ({"letters": {"radius": "CR"}}, "dialect x: letters must be one letter each for some of radius, .*; got radius = 'CR'"),
+    ({"letters": {"radius": "R", "colour": "Q"}}, "dialect x: letters must be .*; got colour = 'Q'"),
+    ({"start": ("{unit}",)}, r"dialect x: start: \{unit\} is not known; known: units, tolerance, offset"),
+    ({"end": ("M30 {}",)}, r"dialect x: end: \{\} is not known; known: none"),
+    ({"restart": "G90 {offset"}, "dialect x: restart: expected '}' before end of string; write braces as {{ and }}"),
+])
+def test_words_that_no_control_can_use_are_refused(change, message):
+    with pytest.raises(BadInput, match=message):
+        checked_iso_words("x", replace(iso_words("linuxcnc"), **change))
+
+
+@pytest.mark.parametrize(("change", "message"), [
+    ({"codes": {"M30": "stop"}}, "dialect LinuxCNC: M30: 'stop' is no meaning of a code; known: units, "),
+    ({"letters": {"radius": "R"}}, "dialect LinuxCNC: letters needs an entry dwell for G4"),
+])
+def test_codes_that_the_reader_cannot_follow_are_refused(change, message):
+    with pytest.raises(BadInput, match=message):
+        Language(replace(iso_words("linuxcnc"), **change), None, MEANINGS)
 
 
 def test_a_dialect_without_words_is_refused():

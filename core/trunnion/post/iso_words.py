@@ -60,7 +60,11 @@ class IsoWords:
 
 def iso_words(name: str, package: str = "") -> IsoWords:
     """Return the words of a control, read from our resources or from `NAME.toml` in a package; raise `BadInput` for wrong ones."""
-    words = dialect_words(IsoWords, name, package)
+    return checked_iso_words(name, dialect_words(IsoWords, name, package))
+
+
+def checked_iso_words(name: str, words: IsoWords) -> IsoWords:
+    """Return the words of a control; raise `BadInput` where they miss an entry, or name a place or a role that is not known."""
     if words.centres not in CENTRES:
         raise BadInput(f"dialect {name}: centres must be one of {', '.join(CENTRES)}; got {words.centres!r}")
     for word in (f.name for f in fields(IsoWords)):

@@ -39,7 +39,9 @@ def split_line(line: int, text: str, brackets: bool = True) -> tuple[Block | Non
     comments: tuple[str, ...] = ()
     if ";" in text:
         text, comments = _without_end_comment(text, brackets)
-    if brackets and ("(" in text or ")" in text):
+    if "(" in text or ")" in text:
+        if not brackets:
+            raise BadInput(f"line {line}: brackets are not understood on this control; write comments after a semicolon")
         text, inside = _without_comments(line, text)
         comments = inside + comments
     packed = text.translate(_SPACE).upper()

@@ -1,0 +1,206 @@
+"""What every registered dialect must do, whoever wrote it: ours, and the one of a package of its own in `tests/dialects`."""
+
+from __future__ import annotations
+
+import datetime
+import time
+from dataclasses import replace
+
+import numpy as np
+import pytest
+from hypothesis import given, settings
+
+from leaning_paths import TABLE, lean, standing
+from leaning_paths import path_of as leaning_path
+from own_dialects import all_dialects
+from programs import BULL_10, FLAT_16, S1, WALL, program_1, section, verdict
+from random_programs import program_of, programs, same, spoils
+from trunnion.findings import BadCall, BadInput, Refused
+from trunnion.model.listing import listing
+from trunnion.model.program import Program
+from trunnion.model.toolpath import EMPTY
+from trunnion.model.verdict import Outcome
+from trunnion.post.contract import Dialect
+from trunnion.post.header import REJECTED, STAMP_LINES, Header
+from trunnion.post.release import is_released
+from trunnion.post.settings import PostSettings
+from trunnion.shop.kinematics import NO_PLACES, Places
+from trunnion.units import MM_PER_INCH
+
+HEADER = Header(name="B1", part="B1", part_digest="ab12", plan_digest="cd34")
+PASSED = replace(HEADER, verdict=verdict())
+TOOLS = (FLAT_16, BULL_10)
+DIALECTS = all_dialects()
+OFFSETS = ("G54", "G57", "G58", "G59.3", "G70", "X5", "")
+by_name = pytest.mark.parametrize("name", DIALECTS)
+
+
+@pytest.fixture(params=DIALECTS)
+def dialect(request) -> Dialect:
+    return DIALECTS[request.param]()
+
+
+def written(dialect: Dialect, program: Program, places: Places = NO_PLACES, **chosen) -> str:
+    return dialect.write([program], HEADER, PostSettings(**chosen), places)
+
+
+def again(dialect: Dialect, program: Program, places: Places = NO_PLACES, **chosen) -> Program:
+    (read,) = dialect.read(written(dialect, program, places, **chosen), TOOLS, [program.setup], places)
+    return read
+
+
+def one(*sections, setup=S1) -> Program:
+    return Program(name="B1.S1", setup=setup, sections=sections)
+
+
+def test_a_dialect_of_ones_own_is_among_them():
+    assert {"apt", "linuxcnc", "kestrel"} <= set(DIALECTS)
+
+
+def test_it_has_the_name_that_it_is_registered_under():
+    assert {name: kind().name for name, kind in DIALECTS.items()} == {name: name for name in DIALECTS}
+    assert all(kind().suffix.isalnum() for kind in DIALECTS.values())
+
+
+def test_what_it_writes_it_reads_as_the_same_motions(dialect):
+    assert listing(again(dialect, program_1()), marks=False) == listing(program_1(), marks=False)
+
+
+@pytest.mark.parametrize(("units", "decimals"), [("mm", 3), ("mm", 4), ("mm", 6), ("inch", 4), ("inch", 6)])
+def test_what_it_writes_is_the_same_within_its_decimals(dialect, units, decimals):
+    half = 0.5 * 10.0**-decimals * (MM_PER_INCH / 10.0 if units == "inch" else 1.0)
+    for first, second in zip(program_1().sections, again(dialect, program_1(), units=units, decimals=decimals).sections, strict=True):
+        assert np.abs(first.path.position - second.path.position).max() <= half + 1e-9
+        assert list(first.path.motion) == list(second.path.motion)
+        assert (first.operation, first.tool, first.spindle, first.coolant) == (
+            second.operation, second.tool, second.spindle, second.coolant)
+
+
+@by_name
+@settings(deadline=None, max_examples=60)
+@given(parts=programs)
+def test_whatever_the_motions_they_are_read_as_the_same(name, parts):
+    program = program_of(parts)
+    same(program, again(DIALECTS[name](), program), 5e-4)
+
+
+def test_it_writes_the_same_bytes_twice_and_ends_with_a_line_end(dialect):
+    first, second = (kind.write([program_1()], PASSED, PostSettings()) for kind in (dialect, type(dialect)()))
+    assert first == second
+    assert first.endswith("\n")
+
+
+def test_it_needs_no_clock(dialect, monkeypatch):
+    def refuse(*_, **__):
+        raise AssertionError("a dialect must not look at the clock: the date comes in the header")
+
+    for clock in ("time", "time_ns", "localtime", "gmtime", "strftime", "ctime"):
+        monkeypatch.setattr(time, clock, refuse)
+    for clock in ("datetime", "date"):
+        monkeypatch.setattr(datetime, clock, type(clock, (), {"now": refuse, "today": refuse, "utcnow": refuse}))
+    assert listing(again(dialect, program_1()), marks=False) == listing(program_1(), marks=False)
+
+
+def test_a_program_does_not_change_what_the_next_one_says(dialect):
+    first = written(dialect, program_1())
+    written(dialect, one(section("other", BULL_10, WALL, 900.0, "off")), units="inch")
+    assert written(dialect, program_1()) == first
+
+
+def test_its_text_begins_with_its_stamp(dialect):
+    text = dialect.write([program_1()], PASSED, PostSettings())
+    assert len(dialect.stamp("B1", PASSED)) == STAMP_LINES
+    assert text.split("\n")[1:STAMP_LINES] == list(dialect.stamp("B1", PASSED)[1:])
+    assert any("PLAN cd34" in line for line in text.split("\n")[STAMP_LINES:STAMP_LINES + 2])
+
+
+def test_only_a_verdict_that_releases_makes_its_text_look_released(dialect):
+    for header in (HEADER, replace(HEADER, verdict=verdict(Outcome.FAILED))):
+        text = dialect.write([program_1()], header, PostSettings())
+        assert not is_released(text)
+        assert REJECTED in text.split("\n")[1]
+    assert is_released(dialect.write([program_1()], PASSED, PostSettings()))
+
+
+def test_every_block_knows_a_line_of_the_text(dialect):
+    text = written(dialect, program_1())
+    for part in again(dialect, program_1()).sections:
+        assert len(part.block_lines) == len(part.path)
+        assert list(part.block_lines) == sorted(part.block_lines)
+        assert 0 < part.block_lines[0] <= part.block_lines[-1] <= text.count("\n")
+
+
+def test_it_refuses_what_it_cannot_write(dialect):
+    for bad in (section("op", FLAT_16, EMPTY), section("op", FLAT_16, WALL, coolant="steam"), section("", FLAT_16, WALL),
+                section("op", FLAT_16, WALL, spindle=0.0)):
+        with pytest.raises(Refused):
+            written(dialect, one(bad))
+
+
+@pytest.mark.parametrize("offset", OFFSETS)
+def test_a_work_offset_is_written_so_that_it_is_read_or_refused(dialect, offset):
+    program = replace(program_1(), setup=replace(S1, work_offset=offset))
+    try:
+        text = written(dialect, program)
+    except Refused as refused:
+        assert repr(offset).strip("'") in str(refused) and "\n" not in str(refused)
+        return
+    assert offset.startswith("G5") or dialect.name == "apt"
+    (read,) = dialect.read(text, TOOLS, [program.setup])
+    assert listing(read, marks=False) == listing(program, marks=False)
+
+
+@pytest.mark.parametrize("coolant", ["flood", "mist", "off", "through", "FLOOD"])
+def test_a_coolant_is_written_so_that_it_is_read_or_refused(dialect, coolant):
+    program = one(section("a", FLAT_16, WALL), section("b", FLAT_16, WALL, coolant=coolant))
+    try:
+        read = again(dialect, program)
+    except Refused as refused:
+        assert coolant in str(refused) and coolant not in ("flood", "off")
+        return
+    assert [s.coolant for s in read.sections] == ["flood", coolant]
+
+
+@pytest.mark.parametrize("places", [NO_PLACES, {"S1": standing(TABLE)}], ids=["three axes", "rotary axes"])
+def test_a_leaning_tool_is_written_so_that_it_is_read_or_refused(dialect, places):
+    path = leaning_path(((0.0, 0.0, 40.0), lean(20.0, 30.0)), ((0.0, 0.0, 0.0), lean(20.0, 30.0)), ((9.0, 2.0, 0.0), lean(20.0, 30.0)))
+    try:
+        read = again(dialect, one(section("op", FLAT_16, path)), places).sections[0].path
+    except Refused as refused:
+        assert "axis" in str(refused) or "axes" in str(refused)
+        return
+    cut = read.motion != 0
+    assert np.abs(read.position[cut] - path.position[1:]).max() <= 3e-4
+    assert np.abs(read.axis[cut] - path.axis[1:]).max() <= 3e-7
+
+
+def test_a_text_cut_short_is_refused(dialect):
+    lines = written(dialect, program_1()).split("\n")
+    for keep in (0, 5, len(lines) // 2, len(lines) - 2):
+        with pytest.raises(BadInput):
+            dialect.read("\n".join(lines[:keep]), TOOLS, [S1])
+
+
+def test_a_text_made_for_other_tools_is_refused(dialect):
+    other = replace(FLAT_16, diameter=15.0)
+    with pytest.raises(BadInput, match=r"line \d+: the text was made for another tool 1"):
+        dialect.read(written(dialect, program_1()), (other, BULL_10), [S1])
+
+
+def test_no_program_at_all_is_a_bad_call(dialect):
+    with pytest.raises(BadCall):
+        dialect.write([], HEADER, PostSettings())
+
+
+@by_name
+@settings(deadline=None, max_examples=150)
+@given(places=spoils)
+def test_a_spoiled_text_is_read_or_refused_in_one_line(name, places):
+    dialect = DIALECTS[name]()
+    text = list(written(dialect, program_1()))
+    for share, letter in places:
+        text[int(share * len(text))] = letter
+    try:
+        dialect.read("".join(text), TOOLS, [S1])
+    except BadInput as refused:
+        assert "\n" not in str(refused)
