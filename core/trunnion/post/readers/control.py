@@ -102,7 +102,8 @@ class Control:
         self.check_words(line, words)
         if len(codes) > 1:
             self.language.refuse_two_of_a_group(line, codes)
-        self.language.refuse_stray_letters(block)
+        if not self.language.takers.keys().isdisjoint(words) or len(codes) > 1:
+            self.language.refuse_stray_letters(block)
         if codes:
             self.language.refuse_lonely_codes(block)
 

@@ -84,8 +84,9 @@ class ProgramWriter:
         blocks = zip(path.blocks(), path.more.tolist(), minutes.tolist(), strict=True)
         (first, _, _, _), angle, _ = next(blocks)
         yield from map(self.numbered, approach(modal, section.tool, first, angle, changed))
+        numbered, words_of = self.numbered, modal.block
         for block, turned, time in blocks:
-            yield self.numbered(modal.block(block, turned, time))
+            yield numbered(words_of(block, turned, time))
 
 
 def _axis_form(words: IsoWords, settings: PostSettings, place: Place | None) -> AxisForm:
