@@ -126,7 +126,8 @@ def _add_slivers(draft: Draft) -> None:
     draft.operations, left = with_slivers(draft.operations, mine, part.graph(), draft.space.skin)
     if left:
         draft.findings.append(warning(
-            "route.not-planned", f"{len(left)} small faces lie beside nothing that is cut", *face_tags(left), remedy="lower recognize.surface.smallest and recognize.surface.sliver_width to plan them by themselves"))
+            "route.not-planned", f"{len(left)} small faces lie beside nothing that is cut", *face_tags(left),
+            remedy="lower recognize.surface.smallest and recognize.surface.sliver_width to plan them by themselves"))
 
 
 def _hidden(draft: Draft, places: Places, tags: set[int], progress: Progress) -> tuple[int, ...]:
