@@ -11,12 +11,12 @@ from pytest import approx
 
 from trunnion import tolerance
 from trunnion.part import surfaces
-from trunnion.part.surfaces import STRIP_COLUMNS, Edge, Face, Guide, Profile, level_face, line_edges, strip_row, surfaces_from
+from trunnion.part.surfaces import STRIP_COLUMNS, Edge, Face, Guide, Profile, circle_edges, level_face, line_edges, strip_row, surfaces_from
 from trunnion.verify.contact import PartContact, grid_of
 from trunnion.verify.contact.strips import StripContact
 from trunnion.verify.kernels import strips as kernel
-from trunnion.verify.motion import moves_of
-from verify_tools import FORMS, block_with_pocket, plain_depth, program_section, supports_of
+from trunnion.verify.motion import moves_of, poses_of
+from verify_tools import FORMS, block_with_pocket, plain_depth, program_section, rounded, supports_of
 
 NUMBER = st.integers(-1000, 1000).map(lambda n: n / 50)
 
@@ -202,3 +202,57 @@ def test_cells_that_are_passed_over_hide_no_contact(form, seed):
     every = engine.along(moves, rows, threads=1)
     for other in (higher, every):
         assert np.array_equal(found.depth, other.depth) and np.array_equal(found.face_depth, other.face_depth)
+
+
+def from_rounded(x, y, half_x, half_y, radius):
+    """Return how far points (n,) are outside of a rectangle about the origin with rounded corners; negative inside."""
+    dx, dy = np.abs(x) - half_x + radius, np.abs(y) - half_y + radius
+    return np.hypot(np.maximum(dx, 0.0), np.maximum(dy, 0.0)) + np.minimum(np.maximum(dx, dy), 0.0) - radius
+
+
+@st.composite
+def curved_outlines(draw):
+    """Edges of a level face and how far points are from it: a disc, a ring, or a rounded rectangle with or without a rounded opening."""
+    size = 10.0 ** draw(st.floats(-1.0, 2.7))
+    if draw(st.booleans()):
+        hole = size * draw(st.sampled_from([0.0, 0.1, 0.7, 0.999]))
+        turn = draw(st.floats(0.0, 1.5))
+        edges = circle_edges(0.0, 0.0, size, turn, turn + math.tau)
+        edges += circle_edges(0.0, 0.0, hole, turn, turn + math.tau) if hole else []
+        return edges, [size, hole] if hole else [size], lambda x, y: np.maximum(np.hypot(x, y) - size, hole - np.hypot(x, y))
+    half, inner = np.array([size, size * draw(st.floats(0.3, 3.0))]), draw(st.sampled_from([0.0, 0.4]))
+    corner = float(half.min()) * draw(st.sampled_from([0.01, 0.3, 0.99]))
+    edges = rounded(-half, half, corner) + (rounded(-inner * half, inner * half, inner * corner) if inner else [])
+    return edges, [], lambda x, y: np.maximum(from_rounded(x, y, *half, corner),
+                                              -from_rounded(x, y, *(inner * half), inner * corner) if inner else -np.inf)
+
+
+@settings(deadline=None, max_examples=150, phases=[Phase.explicit, Phase.generate])
+@given(outline=curved_outlines(), form=st.sampled_from(sorted(FORMS)), plunge=st.floats(0.002, 2.0), seed=st.integers(0, 2**32 - 1))
+def test_an_axis_beside_the_arc_of_a_level_face_is_as_deep_as_its_distance_makes_it(outline, form, plunge, seed):
+    edges, circles, away = outline
+    tips = np.column_stack([_beside_edges(edges, circles, np.random.default_rng(seed), 60), np.full(60, -plunge)])
+    depth = PartContact(surfaces_from([level_face(1, 0.0, edges)])).along(poses_of(FORMS[form], tips)).depth
+    for kind in (0, 1):
+        expected = np.max([plain_depth(part, np.maximum(away(*tips[:, :2].T), 0.0), np.full(60, plunge))
+                           for part in supports_of(FORMS[form]) if part[3] == kind], axis=0)
+        told = expected > tolerance.CONTACT_BOUND / 2
+        assert (depth[told, kind] >= expected[told] - 1e-6).all()
+        assert (depth[:, kind] <= np.maximum(expected, 0.0) + tolerance.CONTACT_BOUND).all()
+
+
+def _beside_edges(edges, circles, random, count):
+    """Return plan places (count, 2): about arcs between their chords and beyond the arcs, on their chords, and anywhere in the face."""
+    arcs = [e for e in edges if e.radius]
+    found = []
+    for k in range(count):
+        e = arcs[random.integers(len(arcs))]
+        a, b = (math.atan2(u - e.uc, s - e.sc) for s, u in ((e.s0, e.u0), (e.s1, e.u1)))
+        angle = a + math.remainder(b - a, math.tau) * random.uniform()
+        if k % 5 == 0:
+            share = random.uniform()
+            found.append((e.s0 + share * (e.s1 - e.s0), e.u0 + share * (e.u1 - e.u0)))
+            continue
+        r = e.radius + random.choice([1e-9, 0.01, 0.06, 0.5]) * random.uniform(-1.0, 1.0)
+        found.append((e.sc + r * math.cos(angle), e.uc + r * math.sin(angle)))
+    return np.array(found)

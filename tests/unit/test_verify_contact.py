@@ -17,6 +17,7 @@ from trunnion.part.surfaces import (
     Face,
     Guide,
     Profile,
+    circle_edges,
     level_face,
     line_edges,
     strip_row,
@@ -29,7 +30,7 @@ from trunnion.verify.contact import strips as strips_module
 from trunnion.verify.finish.sweep import Sweep
 from trunnion.verify.kernels import strips as kernel
 from trunnion.verify.motion import moves_of, poses_of
-from verify_tools import FORMS, block_with_pocket, bull, flat, program_section
+from verify_tools import FORMS, block_with_pocket, bull, flat, program_section, tool_of
 
 NO_CHORDS, NO_LEVEL = np.zeros((0, 4)), np.zeros((0, STRIP_COLUMNS))
 
@@ -278,6 +279,26 @@ def test_a_cutter_that_ramps_through_a_level_face_is_deepest_half_way_through():
     # A disc 6 mm thick and far wider than that: its middle passes the face at a depth of 3.
     face = level(0.0, (-50, -50), (50, 50))
     assert entered(face, FORMS["t-slot"], [(0, 0, 12.0), (20, 0, -12.0)])[0] == approx(3.0, abs=BOUND)
+
+
+@pytest.mark.parametrize(("tool", "depth"), [(tool_of("drill", diameter=8.0, point_angle=120.0), 0.4 * math.sin(math.radians(60.0))),
+                                             (tool_of("drill", diameter=8.0, point_angle=60.0), 0.4 * math.sin(math.radians(30.0))),
+                                             (bull(1.0, 0.5)(), 0.4)])
+def test_a_pointed_tool_between_the_rim_of_a_disc_and_its_chords_is_as_deep_as_in_its_middle(tool, depth):
+    disc = surfaces_from([level_face(1, 0.0, circle_edges(0.0, 0.0, 10.0, 0.0, math.tau))])
+    angle = np.linspace(0.0, math.tau, 201)
+    tips = np.column_stack([9.953 * np.cos(angle), 9.953 * np.sin(angle), np.full(201, -0.4)])
+    assert PartContact(disc).along(poses_of(tool, tips)).depth[:, 0] == approx(np.full(201, depth), abs=1e-9)
+
+
+def test_a_pointed_tool_in_a_hole_beside_the_chords_of_its_rim_is_as_deep_as_its_distance_leaves():
+    square = line_edges(np.array([[-50, -50], [50, -50], [50, 50], [-50, 50], [-50, -50.0]]))
+    floor = surfaces_from([level_face(1, 0.0, square + circle_edges(0.0, 0.0, 10.0, 0.0, math.tau))])
+    angle = np.linspace(0.0, math.tau, 201)
+    tips = np.column_stack([9.953 * np.cos(angle), 9.953 * np.sin(angle), np.full(201, -0.4)])
+    half = math.radians(30.0)
+    depth = PartContact(floor).along(poses_of(tool_of("drill", diameter=8.0, point_angle=60.0), tips)).depth[:, 0]
+    assert depth == approx(np.full(201, 0.4 * math.sin(half) - 0.047 * math.cos(half)), abs=1e-9)
 
 
 def test_places_lie_on_the_guide_where_it_is_nearest_to_the_path():

@@ -70,7 +70,7 @@ def test_contact_with_a_face_without_closed_form_is_refused_without_its_facets()
 def test_an_outline_with_a_gap_of_one_rounding_error_is_closed() -> None:
     sides = ((0.0, 0.0, 4.0, 0.0), (4.0, 0.0, 4.0, 3.0), (4.0, 3.0000000000000004, 0.0, 3.0), (0.0, 3.0, 0.0, 0.0))
     edges = [e for side in sides for e in line_edges(np.array(side).reshape(2, 2))]
-    ends = [tuple(end) for end in level_face(1, 0.0, edges).chords.reshape(-1, 2)]
+    ends = [tuple(end) for end in level_face(1, 0.0, edges).outline[:, :4].reshape(-1, 2)]
     assert sorted(ends.count(end) for end in set(ends)) == [2, 2, 2, 2]
 
 

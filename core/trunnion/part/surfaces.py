@@ -9,14 +9,15 @@ a vertical or level axis, and every cone, torus and sphere about a vertical axis
     torus, sphere                  arc guide, arc profile in (r, z)
 
 The trim is read from the edges' own curves in the surface's parameters: the face is cut into bands at every vertex, and a band's two ends
-are lines or circles in (s, u), s along the guide and u along the profile. Level planes are regions: chords for the question whether a
-point is inside, strips of one point for their exact boundary. What none of this fits is only
+are lines or circles in (s, u), s along the guide and u along the profile. Level planes are regions: an outline of lines and arcs for the
+question whether a point is inside, strips of one point for their boundary. What none of this fits is only
 listed, in `Surfaces.free`: `part/facets.py` has it.
 """
 
 from __future__ import annotations
 
 import math
+from collections.abc import Sequence
 from dataclasses import dataclass
 from itertools import pairwise
 from typing import TYPE_CHECKING, Any
@@ -40,17 +41,19 @@ Ends left and right: kind 0 is s = A + B (u - U0), kind 1 is s = A + SIGN sqrt(B
 cosines and sines of an arc's ends, of its middle, and the cosine of half its sweep. B: the box. SIDE (t_z, -t_w) is the outward normal,
 t the profile's direction."""
 STRIP_COLUMNS = 37
-CHORD_INSIDE = 0.05
-"""Chord error of the outlines for the question inside or outside: a point nearer to the boundary than this is met by the exact boundary."""
+
+# Columns of an outline's edge: both ends, then of an arc its centre and radius, positive when it goes anticlockwise; 0 for a line.
+EX0, EY0, EX1, EY1, ECX, ECY, ERADIUS = range(7)
+EDGE_COLUMNS = 7
 
 
 @dataclass(frozen=True, slots=True, eq=False, kw_only=True)
 class Surfaces:
-    """The trimmed faces of a part in a frame. f faces in rows, m strips, r level regions, c chords.
+    """The trimmed faces of a part in a frame. f faces in rows, m strips, r level regions, c edges of their outlines.
 
     tag (f,); strip (m, 37) with face row strip_face (m,); boundaries of level faces are strips of one point. level (k, 37) and level_face
     (k,): the areas of level faces as strips, for samples. region_z (r,), region_face (r,), region_box (r, 4), region_start (r + 1,) into
-    chords (c, 4). free (k,): rows of the faces without closed form, of which nothing else is here.
+    outline (c, 7), whose arcs are less than half a turn. free (k,): rows of the faces without closed form, of which nothing else is here.
     """
 
     tag: Ints
@@ -62,7 +65,7 @@ class Surfaces:
     region_face: Ints
     region_box: Floats
     region_start: Ints
-    chords: Floats
+    outline: Floats
     free: Ints
 
     def __post_init__(self) -> None:
@@ -76,7 +79,7 @@ class Surfaces:
         object.__setattr__(self, "region_face", ints(self.region_face, (n,), "region_face"))
         object.__setattr__(self, "region_box", floats(self.region_box, (n, 4), "region_box"))
         object.__setattr__(self, "region_start", ints(self.region_start, (n + 1,), "region_start"))
-        object.__setattr__(self, "chords", floats(self.chords, (None, 4), "chords"))
+        object.__setattr__(self, "outline", floats(self.outline, (None, EDGE_COLUMNS), "outline"))
         object.__setattr__(self, "free", ints(self.free, (None,), "free"))
 
 
@@ -213,22 +216,21 @@ def point_strip(guide: Guide, w: float, z: float, low: float, high: float) -> Fl
 def surfaces_from(faces: list[Face]) -> Surfaces:
     """Return the arrays of faces given one by one."""
     empty = np.zeros((0, STRIP_COLUMNS))
-    regions = [(row, f) for row, f in enumerate(faces) if len(f.chords)]
-    starts = np.cumsum([0, *(len(f.chords) for _, f in regions)])
+    regions = [(row, f) for row, f in enumerate(faces) if len(f.outline)]
+    starts = np.cumsum([0, *(len(f.outline) for _, f in regions)])
     return Surfaces(
         tag=np.array([f.tag for f in faces], dtype=int),
         strip=np.vstack([empty, *(f.strips for f in faces)]), strip_face=np.repeat(np.arange(len(faces)), [len(f.strips) for f in faces]),
         level=np.vstack([empty, *(f.level for f in faces)]), level_face=np.repeat(np.arange(len(faces)), [len(f.level) for f in faces]),
         region_z=np.array([f.z for _, f in regions]), region_face=np.array([row for row, _ in regions], dtype=int),
-        region_box=np.array([[*np.minimum(f.chords[:, :2], f.chords[:, 2:]).min(axis=0),
-                              *np.maximum(f.chords[:, :2], f.chords[:, 2:]).max(axis=0)] for _, f in regions]).reshape(-1, 4),
-        region_start=starts, chords=np.vstack([np.zeros((0, 4)), *(f.chords for _, f in regions)]),
+        region_box=np.array([_outline_box(f.outline) for _, f in regions]).reshape(-1, 4),
+        region_start=starts, outline=np.vstack([np.zeros((0, EDGE_COLUMNS)), *(f.outline for _, f in regions)]),
         free=np.array([row for row, f in enumerate(faces) if f.is_free], dtype=int))
 
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Face:
-    """One face before it goes into `Surfaces`: strips (m, 37); of a level one also its area `level` (k, 37), chords (c, 4) and height.
+    """One face before it goes into `Surfaces`: strips (m, 37); of a level one also its area `level` (k, 37), outline (c, 7) and height.
 
     One without closed form `is_free`.
     """
@@ -236,52 +238,77 @@ class Face:
     tag: int
     strips: Floats
     level: Floats
-    chords: Floats
+    outline: Floats
     z: float = 0.0
     is_free: bool = False
 
 
 def level_face(tag: int, z: float, edges: list[Edge], side: float = 1.0, progress: Progress = QUIET) -> Face:
     """Return a level face from its outline's edges in plan (s is x, u is y); side +1 looks up, -1 down."""
-    boundary, chords = [], []
+    boundary, outline = [], []
     for e in progress.each(edges):
         if e.radius:
             a, b = math.atan2(e.u0 - e.uc, e.s0 - e.sc), math.atan2(e.u1 - e.uc, e.s1 - e.sc)
             b = a + (b - a + math.pi) % (2 * math.pi) - math.pi
             boundary.append(point_strip(Guide(1, e.sc, e.uc), e.radius, z, min(a, b), max(a, b)))
-            count = max(1, math.ceil(abs(b - a) / math.sqrt(8 * CHORD_INSIDE / max(e.radius, CHORD_INSIDE))))
-            angle = np.linspace(a, b, count + 1)
-            path = np.column_stack([e.sc + e.radius * np.cos(angle), e.uc + e.radius * np.sin(angle)])
-            path[0], path[-1] = (e.s0, e.u0), (e.s1, e.u1)
-            chords.append(np.hstack([path[:-1], path[1:]]))
-        else:
-            length = math.hypot(e.s1 - e.s0, e.u1 - e.u0)
-            if length > 0.0:
-                along = Guide(0, e.s0, e.u0, (e.s1 - e.s0) / length, (e.u1 - e.u0) / length)
-                boundary.append(point_strip(along, 0.0, z, 0.0, length))
-                chords.append(np.array([[e.s0, e.u0, e.s1, e.u1]]))
+            outline.append([e.s0, e.u0, e.s1, e.u1, e.sc, e.uc, math.copysign(e.radius, b - a)])
+        elif (e.s0, e.u0) != (e.s1, e.u1):
+            boundary.append(_line_strip((e.s0, e.u0), (e.s1, e.u1), z))
+            outline.append([e.s0, e.u0, e.s1, e.u1, 0.0, 0.0, 0.0])
+    closed, bridges = closed_up(np.array(outline).reshape(-1, EDGE_COLUMNS))
+    boundary += [_line_strip(row[:2], row[2:4], z) for row in bridges.tolist()]
     level = strips_of(Guide(0, 0.0, 0.0, 1.0, 0.0), Profile(0.0, z, 1.0, 0.0), edges, -side, progress)
     empty = np.zeros((0, STRIP_COLUMNS))
-    return Face(tag, np.array(boundary).reshape(-1, STRIP_COLUMNS), empty if level is None else level,
-                closed_up(np.vstack([np.zeros((0, 4)), *chords])), z)
+    return Face(tag, np.array(boundary).reshape(-1, STRIP_COLUMNS), empty if level is None else level, np.vstack([closed, bridges]), z)
 
 
-def closed_up(chords: Floats) -> Floats:
-    """Return an outline's chords (c, 4) with the ends that meet made the very same point.
+def _line_strip(start: Sequence[float], end: Sequence[float], z: float) -> Floats:
+    """Return the strip (37,) of a straight edge of a level face between two points (2,) in plan."""
+    length = math.dist(start, end)
+    along = Guide(0, start[0], start[1], (end[0] - start[0]) / length, (end[1] - start[1]) / length)
+    return point_strip(along, 0.0, z, 0.0, length)
 
-    Whether a point is inside is told by counting the chords a ray crosses; through a gap of one rounding error a ray slips uncounted, and
+
+def closed_up(outline: Floats) -> tuple[Floats, Floats]:
+    """Return an outline's edges (c, 7) with lines drawn to the ends that they meet, and lines (b, 7) that bridge what gaps remain.
+
+    Whether a point is inside is told by counting the edges a ray crosses; through a gap of one rounding error a ray slips uncounted, and
     the face would seem to cover its own openings. Ends meet when each is the other's nearest, no further than trimmed surfaces are sewn.
+    Lines are moved by `tolerance.COINCIDENT` at most, arcs not at all: an end beside its circle would open the cap over its chord.
     """
     from scipy.spatial import cKDTree
 
-    ends = chords.reshape(-1, 2)
+    ends = outline[:, :ECX].reshape(-1, 2)
     if not len(ends):
-        return chords
+        return outline, outline
     own = np.arange(len(ends))
     near = np.asarray(cKDTree(ends).query(ends, k=2, distance_upper_bound=tolerance.SEW)[1])
     other = np.where(near[:, 1] == own, near[:, 0], near[:, 1])
     other = np.where(other == len(ends), own, other)
-    return ends[np.where(other[other] == own, np.minimum(own, other), own)].reshape(-1, 4)
+    pairs = np.flatnonzero((other[other] == own) & (own < other) & (ends != ends[other]).any(axis=1))
+    moved, bridges = ends.copy(), []
+    straight = np.repeat(outline[:, ERADIUS] == 0.0, 2)
+    for k, m in np.column_stack([pairs, other[pairs]]):
+        if straight[[k, m]].any() and math.dist(ends[k], ends[m]) <= tolerance.COINCIDENT:
+            to, end = (k, m) if straight[m] else (m, k)
+            moved[end] = ends[to]
+        else:
+            bridges.append([*ends[k], *ends[m], 0.0, 0.0, 0.0])
+    return np.hstack([moved.reshape(-1, ECX), outline[:, ECX:]]), np.array(bridges).reshape(-1, EDGE_COLUMNS)
+
+
+def _outline_box(outline: Floats) -> list[float]:
+    """Return the plan box (4,) of an outline's edges (c, 7): of their ends, and of the points where an arc turns back along x or y."""
+    points = [outline[:, :EX1], outline[:, EX1:ECX]]
+    arcs = outline[outline[:, ERADIUS] != 0.0]
+    centre, radius, chord = arcs[:, ECX:ERADIUS], np.abs(arcs[:, ERADIUS]), arcs[:, EX1:ECX] - arcs[:, :EX1]
+    for x, y in ((1.0, 0.0), (0.0, 1.0), (-1.0, 0.0), (0.0, -1.0)):
+        place = centre + radius[:, None] * [x, y]
+        away = place - arcs[:, :EX1]
+        left = chord[:, 0] * away[:, 1] - chord[:, 1] * away[:, 0]
+        points.append(place[left * arcs[:, ERADIUS] <= 0.0])
+    every = np.vstack(points)
+    return [*every.min(axis=0).tolist(), *every.max(axis=0).tolist()]
 
 
 def surfaces_of(part: Part, frame: Frame, progress: Progress = QUIET) -> Surfaces:

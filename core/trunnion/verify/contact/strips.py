@@ -74,7 +74,7 @@ class StripContact:
             face_depth, face_move = np.full_like(found.face_depth, -np.inf), np.full_like(found.face_move, -1)
             kernel.contact_loop(first, last, rows, moves.row, moves.tool, bodies.arc, bodies.piece, bodies.start, s.strip, s.strip_face,
                                 g.start, g.rows, self._cell_z, g.frame, g.shape, s.region_z, s.region_face, s.region_box, s.region_start,
-                                s.chords, bound, bound, settle, found.depth, found.which, found.where, face_depth, face_move)
+                                s.outline, bound, bound, settle, found.depth, found.which, found.where, face_depth, face_move)
             with merging:
                 deepen(found.face_depth, found.face_move, face_depth, face_move)
 

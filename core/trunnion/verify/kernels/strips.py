@@ -44,6 +44,13 @@ from trunnion.part.surfaces import (
     BZ1,
     DX,
     DY,
+    ECX,
+    ECY,
+    ERADIUS,
+    EX0,
+    EX1,
+    EY0,
+    EY1,
     FIXED,
     GUIDE,
     H_COS,
@@ -494,13 +501,29 @@ def move_box(move: Floats) -> tuple[float, float, float, float]:
 
 @njit(cache=True, nogil=True)
 def _inside(x: float, y: float, outline: Floats) -> bool:
-    """Return whether a point is inside closed chords (k, 4), x, y to x, y, by the parity of crossings
-    with a ray towards +x."""
+    """Return whether a point is inside a closed outline (k, 7) of lines and arcs, by parity.
+
+    A ray towards +x crosses each chord or not (Sunday, Inclusion of a point in a polygon, 2001); an
+    arc, of less than half a turn, changes the parity once more in the cap between its chord and
+    itself. Both go by the same side of the chord, so that one rounding serves both: the chord
+    itself, far inside of a face, is nothing to the answer.
+    """
     odd = False
     for k in range(len(outline)):
-        xa, ya, xb, yb = outline[k, 0], outline[k, 1], outline[k, 2], outline[k, 3]
-        if (ya > y) != (yb > y) and x < xa + (y - ya) * (xb - xa) / (yb - ya):
+        xa, ya, xb, yb = outline[k, EX0], outline[k, EY0], outline[k, EX1], outline[k, EY1]
+        radius = outline[k, ERADIUS]
+        across = (ya > y) != (yb > y)
+        if not across and radius == 0.0:
+            continue
+        # Left of the chord; on its line, as a point a little further in x, and much less in y.
+        side = (xb - xa) * (y - ya) - (x - xa) * (yb - ya)
+        left = side > 0.0 or (side == 0.0 and (yb < ya or (yb == ya and xb > xa)))
+        if across and left == (yb > ya):
             odd = not odd
+        if radius != 0.0 and left == (radius < 0.0):
+            dx, dy = x - outline[k, ECX], y - outline[k, ECY]
+            if dx * dx + dy * dy < radius * radius:
+                odd = not odd
     return odd
 
 
@@ -533,25 +556,25 @@ def deepest_height(arcs: Floats, piece: Floats) -> float:
 
 
 @njit(cache=True, nogil=True)
-def region_depth(z: float, box: Floats, chords: Floats, move: Floats, arcs: Floats, piece: Floats,
+def region_depth(z: float, box: Floats, outline: Floats, move: Floats, arcs: Floats, piece: Floats,
                  path: Floats) -> tuple[float, float]:
     """Return how deep (mm) one piece enters a level face where its axis passes over or under it, and
     at which share of the move.
 
-    z of the face, box (4,) its plan box, chords (k, 4) its outline. Only the face's inside is
-    judged here, where the nearest point of the face to the axis is on the axis itself (rho = 0);
-    its exact boundary is among the strips. Along a path over the face the axis depth is constant
+    z of the face, box (4,) its plan box, outline (k, 7) its edges. Only the face's inside is judged
+    here, where the nearest point of the face to the axis is on the axis itself (rho = 0); its
+    boundary is among the strips. Along a path over the face the axis depth is constant
     (level move) or concave in time, and where the axis crosses the outline the boundary's strip is
     as deep: so the ends of the move count, and of a sloped one the moment at which the piece is
     deepest.
 
-    The chords leave an outline's arcs by up to `part.surfaces.CHORD_INSIDE`. An axis in the sliver
-    between an arc and its chord is judged by the boundary's strip alone, at the distance rho > 0:
-    that errs shallow, by n_rho rho, where the end of the tool is pointed.
+    Lines and arcs of the outline are those of the boundary's strips, with ends joined within
+    `tolerance.COINCIDENT`: an axis is over the face or beside its boundary, and its distance to
+    that is exact to as much.
     """
     z_low, rise = min(move[Z_START], move[Z_END]), abs(move[Z_END] - move[Z_START])
     if not is_sloped(move):
-        if z - z_low < piece[Z_LOW] or z - z_low > piece[Z_HIGH] + rise or not _over(move[X0], move[Y0], box, chords):
+        if z - z_low < piece[Z_LOW] or z - z_low > piece[Z_HIGH] + rise or not _over(move[X0], move[Y0], box, outline):
             return -np.inf, 0.0
         return _level_depth(arcs, piece, z - z_low, rise), 0.0
     most, when = -np.inf, 0.0
@@ -564,7 +587,7 @@ def region_depth(z: float, box: Floats, chords: Floats, move: Floats, arcs: Floa
             if not 0.0 < t < 1.0:
                 continue
         tip, _z = part_of_move(move, t, t, path)
-        if _over(path[X0], path[Y0], box, chords):
+        if _over(path[X0], path[Y0], box, outline):
             depth = _level_depth(arcs, piece, z - tip, 0.0)
             if depth > most:
                 most, when = depth, t
@@ -572,9 +595,9 @@ def region_depth(z: float, box: Floats, chords: Floats, move: Floats, arcs: Floa
 
 
 @njit(cache=True, nogil=True, inline="always")
-def _over(x: float, y: float, box: Floats, chords: Floats) -> bool:
+def _over(x: float, y: float, box: Floats, outline: Floats) -> bool:
     """Return whether a plan point lies in a region, by its box (4,) first."""
-    return box[0] <= x <= box[2] and box[1] <= y <= box[3] and _inside(x, y, chords)
+    return box[0] <= x <= box[2] and box[1] <= y <= box[3] and _inside(x, y, outline)
 
 
 @njit(cache=True, nogil=True)
@@ -597,7 +620,7 @@ def _near_cell(i: int, j: int, z: Floats, grid: Floats, x0: float, y0: float, x1
 @njit(cache=True, nogil=True)
 def contact_loop(first: int, last: int, rows: Ints, moves: Floats, tool: Ints, arcs: Floats, pieces: Floats, piece_start: Ints,
                  strips: Floats, strip_face: Ints, cell_start: Ints, cell_strip: Ints, cell_z: Floats, grid: Floats, shape: Ints,
-                 region_z: Floats, region_face: Ints, region_box: Floats, region_start: Ints, chords: Floats, enough: float,
+                 region_z: Floats, region_face: Ints, region_box: Floats, region_start: Ints, outlines: Floats, enough: float,
                  bound: float, settle: float, depth: Floats, which: Ints, where: Floats, face_depth: Floats, face_move: Ints) -> None:
     """Measure the moves of rows `first` to `last` against every strip and every level region near
     them.
@@ -606,7 +629,7 @@ def contact_loop(first: int, last: int, rows: Ints, moves: Floats, tool: Ints, a
     `kernels/body.py`. strips (m, 37), strip_face (m,). grid (3,) is x, y of the strips' grid and
     its pitch, shape (2,) its cells, cell_start and cell_strip its lists, cell_z (cells, 2) how low
     and how high the strips of each cell are. region_z, region_face (r,), region_box (r, 4),
-    region_start (r + 1,) into chords (c, 4): level faces. enough, bound, settle in mm.
+    region_start (r + 1,) into outlines (c, 7): level faces. enough, bound, settle in mm.
 
     Fills depth (k, 2) mm for what cuts and for what does not; which (k, 2) strip rows or -2 -
     region; where (k, 2) profile parameters, of a region the share of the move; face_depth (f, 2)
@@ -666,7 +689,7 @@ def contact_loop(first: int, last: int, rows: Ints, moves: Floats, tool: Ints, a
                 continue
             if x1 < region_box[r, 0] or x0 > region_box[r, 2] or y1 < region_box[r, 1] or y0 > region_box[r, 3]:
                 continue
-            outline = chords[region_start[r]:region_start[r + 1]]
+            outline = outlines[region_start[r]:region_start[r + 1]]
             for p in range(p0, p1):
                 d, t = region_depth(region_z[r], region_box[r], outline, move, arcs, pieces[p], path)
                 if d > enough:
