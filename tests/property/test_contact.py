@@ -256,3 +256,16 @@ def _beside_edges(edges, circles, random, count):
         r = e.radius + random.choice([1e-9, 0.01, 0.06, 0.5]) * random.uniform(-1.0, 1.0)
         found.append((e.sc + r * math.cos(angle), e.uc + r * math.sin(angle)))
     return np.array(found)
+
+
+@settings(deadline=None, max_examples=30, phases=[Phase.explicit, Phase.generate])
+@given(strip=strips(), form=st.sampled_from(sorted(FORMS)), path=paths(), room=st.integers(1, 4))
+def test_a_search_without_room_for_its_open_intervals_errs_deep(strip, form, path, room):
+    move = moves_of([program_section(FORMS[form], [path[0], path[1:]])])
+    row, guide = move.row[1].copy(), np.zeros(kernel.MOVE_COLUMNS)
+    row[kernel.Z_END] = row[kernel.Z_START]
+    for piece in move.bodies.piece:
+        def searched(rows, row=row, piece=piece):
+            return kernel.strip_depth(strip, row, row[kernel.Z_START], 0.0, move.bodies.arc, piece, 1e-5, 1e-5, guide,
+                                      np.zeros((rows, 2)))[0]
+        assert max(searched(room), 1e-5) >= searched(400) - 1e-5

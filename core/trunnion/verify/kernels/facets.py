@@ -373,6 +373,14 @@ def _halve(task: Floats, one: Floats, other: Floats) -> None:
 
 
 @njit(cache=True, nogil=True)
+def _concede(task: Floats, found: Floats) -> None:
+    """Raise found (4,), depth and place, to a task's bound, at the middle of its triangle."""
+    found[0] = task[UPPER]
+    for k in range(3):
+        found[1 + k] = (task[CORNERS + k] + task[CORNERS + 3 + k] + task[CORNERS + 6 + k]) / 3.0
+
+
+@njit(cache=True, nogil=True)
 def enter_triangle(corners: Floats, normal: Floats, way: Floats, t0: float, t1: float, arcs: Floats, first: int, last: int, enough: float,
                    bound: float, settle: float, found: Floats, tasks: Floats, task: Floats, ends: Floats, span: Floats, six: Floats,
                    cuts: Floats, flat: Floats) -> None:
@@ -382,7 +390,8 @@ def enter_triangle(corners: Floats, normal: Floats, way: Floats, t0: float, t1: 
     corners (9,), normal (3,) unit. What it ends with is attained and at most `bound` below the
     deepest, or anything when the deepest is at most `enough`; beyond `settle` it may be any depth
     larger than that. `found` as given counts as known: only what is deeper by more than `bound` is
-    searched for. The rest is workspace, see `_look`.
+    searched for. tasks (k, 13) wait; where they have no room for both halves of one, its bound
+    counts as the depth: that errs deep. The rest is workspace, see `_look`.
     """
     tasks[0, CORNERS:CORNERS + 9] = corners
     tasks[0, T_FROM], tasks[0, T_TO] = t0, t1
@@ -394,7 +403,10 @@ def enter_triangle(corners: Floats, normal: Floats, way: Floats, t0: float, t1: 
     while top > 0 and found[0] <= settle:
         top -= 1
         task[:] = tasks[top]
-        if task[UPPER] <= max(enough, found[0] + bound) or top + 2 > TASKS:
+        if task[UPPER] <= max(enough, found[0] + bound):
+            continue
+        if top + 2 > len(tasks):
+            _concede(task, found)
             continue
         _halve(task, tasks[top], tasks[top + 1])
         one = _look(tasks[top], normal, way, arcs, first, last, enough, bound, found, ends, span, six, cuts, flat)

@@ -323,8 +323,9 @@ def strip_depth(s: Floats, path: Floats, z_low: float, rise: float, arcs: Floats
 
     The move is level or vertical, so that the whole rise counts everywhere on the path. The depth
     is attained and at most `bound` below the deepest; strips that enter by `enough` at most may
-    come back with anything up to `enough`, or -inf. guide (15,), stack (k, 2): workspace; a full
-    stack drops intervals, so k is well above the halvings that any strip needs.
+    come back with anything up to `enough`, or -inf. guide (15,), stack (k, 2): workspace. Where the
+    stack is full, or an interval can't be divided any further, its bound counts as the depth: that
+    errs deep.
     """
     # Only heights that the piece passes count: the profile is cut to them, since its open run has
     # no end faces.
@@ -390,10 +391,13 @@ def strip_depth(s: Floats, path: Floats, z_low: float, rise: float, arcs: Floats
         depth = _depth_at(s, at, path, z_low, rise, arcs, piece, guide)
         if depth > best:
             best, where = depth, at
-        if most <= max(enough, best + bound) or u1 - u0 < 1e-9 or top + 2 > len(stack):
+        if most <= max(enough, best + bound):
             continue
         # Cut at the candidate, unless that leaves a sliver.
         split = at if 0.1 <= share <= 0.9 else 0.5 * (u0 + u1)
+        if top + 2 > len(stack) or not u0 < split < u1:
+            best, where = most, at
+            continue
         stack[top, 0], stack[top, 1] = u0, split
         stack[top + 1, 0], stack[top + 1, 1] = split, u1
         top += 2
