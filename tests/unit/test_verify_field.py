@@ -124,7 +124,7 @@ def test_slopes_up_and_down_leave_what_a_search_finds(form):
 
 @pytest.mark.parametrize("clockwise", [False, True])
 @pytest.mark.parametrize("rise", [-6.0, 4.0])
-@pytest.mark.parametrize("sweep", [1.0, 4.0, math.tau])
+@pytest.mark.parametrize("sweep", [1.0, 4.0, math.tau, 8.0, 7.0 * math.pi])
 def test_a_helix_of_a_flat_cutter_is_exact(sweep, rise, clockwise):
     turn = -sweep if clockwise else sweep
     moves = moves_of([program_section(PLAIN["flat"], [(25, 15, 16), ((25, 15, 14), (20, 15))])])

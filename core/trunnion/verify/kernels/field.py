@@ -566,13 +566,14 @@ def _cut_helix(top: Floats, origin: Floats, pitch: float, floor: float, move: Fl
 
     A column at the distance rho from the helix's centre is covered while the tip's angle is within
     `half` of its own, by the law of cosines rho^2 + arm^2 - 2 rho arm cos(half) = radius^2; on the
-    way down the last covered moment is the lowest, on the way up the first. The sweep is at most
-    one turn (readers refuse arcs of several), so three windows, each a turn apart, hold every
-    covered moment. `opening`: OPEN of the tool's profile.
+    way down the last covered moment is the lowest, on the way up the first. Windows a turn apart hold
+    every covered moment, as many as the sweep has turns, and one before. `opening`: OPEN of the
+    tool's profile.
     """
     x0, y0, x1, y1 = _box(move, radius)
     arm, sweep, z0, z1 = move[ARC_RADIUS], abs(move[SWEEP]), move[Z_START], move[Z_END]
     turn = 1.0 if move[SWEEP] > 0.0 else -1.0
+    turns = int(math.floor(sweep / math.tau)) + 1
     lowest, removed, stands = max(min(z0, z1), floor), 0.0, 0
     i0, i1 = first_cell(x0, origin[0], pitch), last_cell(x1, origin[0], pitch, top.shape[1])
     for j in range(first_cell(y0, origin[1], pitch), last_cell(y1, origin[1], pitch, top.shape[0]) + 1):
@@ -594,7 +595,7 @@ def _cut_helix(top: Floats, origin: Floats, pitch: float, floor: float, move: Fl
                 half = math.acos(min(max((rho * rho + arm * arm - radius * radius) / (2.0 * rho * arm), -1.0), 1.0))
                 # The column's angle from the start in the direction of travel, 0 to a turn.
                 nearest = (turn * (math.atan2(y, x) - move[START_ANGLE])) % math.tau
-                for round_ in range(-1, 2):
+                for round_ in range(-1, turns + 1):
                     a = max(nearest + round_ * math.tau - half, 0.0)
                     b = min(nearest + round_ * math.tau + half, sweep)
                     if a < b:

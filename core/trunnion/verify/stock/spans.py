@@ -111,7 +111,7 @@ class _Poses:
         radius, half = np.linalg.norm(self.away, axis=1, keepdims=True), 0.5 * self.sweep[:, None]
         middle = (np.cos(half) * self.away + np.sin(half) * self.over) / np.maximum(radius, tolerance.PARAMETRIC)
         three = np.ones((1, 3))
-        return np.stack([self.start - self.away, middle, radius * three, np.cos(half) * three], axis=1)
+        return np.stack([self.start - self.away, middle, radius * three, np.cos(np.clip(half, -np.pi, np.pi)) * three], axis=1)
 
     def way_boxes(self, rows: Bools) -> Floats:
         """Return boxes (k, 2, 3) of the tips' ways along some arcs."""
