@@ -3,17 +3,20 @@
 from __future__ import annotations
 
 import numpy as np
-from hypothesis import given, settings
+from hypothesis import Phase, given, settings
 from hypothesis import strategies as st
 
 from leaning_tools import EVERY_FORM, leaning_section
 from solids import box_solid, cutter_solid, swept
+from trunnion import tolerance
 from trunnion.geometry.frame import WORLD
 from trunnion.model.blank import Blank
 from trunnion.model.toolpath import Motion
+from trunnion.verify.kernels import dexels as kernel
 from trunnion.verify.motion import moves_of
 from trunnion.verify.stock import Stock, run_stock
 from trunnion.verify.stock.bundles import cycle
+from trunnion.verify.stock.spans import spans_of
 from verify_tools import FORMS, plain_depth, supports_of
 
 LOW, HIGH = np.zeros(3), np.array([24.0, 20.0, 16.0])
@@ -90,6 +93,58 @@ def test_arcs_and_helices_about_any_axis_cut_what_they_pass(form, seed):
     end = start - arm + np.cos(turn) * arm + np.sin(turn) * np.cross(axis, arm) + rng.choice([0.0, 2.0]) * axis
     section = leaning_section(FORMS[form], [start, end], [axis, axis], centre=start - arm, motion=Motion.ARC_CCW)
     check_rays(FORMS[form], section, rng)
+
+
+@given(st.sampled_from(["flat", "bull", "drill", "form"]), seeds)
+@settings(max_examples=20, deadline=None, phases=[Phase.explicit, Phase.generate])
+def test_a_tool_that_swings_within_a_span_takes_nothing_from_beyond_its_sweep(form, seed):
+    rng, tool = np.random.default_rng(seed), FORMS[form]
+    lean, height = rng.choice([0.007, 0.014, 0.03]), tool.flute_length * rng.uniform(0.3, 0.7)
+    # The ray at (12.5, 10.5) passes a pivot on the axis so near beside the flank that the tool leaves up to 3 mm of it on both sides.
+    beside, angle = tool.radius + 0.5 * lean * rng.uniform(0.0, 3.0), rng.uniform(0.0, 2.0 * np.pi)
+    ahead = np.array([np.cos(angle), np.sin(angle), 0.0])
+    pivot = np.array([12.5, 10.5, rng.uniform(2.0, 14.0)]) - beside * ahead
+    tilt = 0.1 * rng.normal() * lean + rng.choice([-0.5, 0.5]) * np.array([1.0, -1.0]) * lean
+    axes = np.array([np.sin(k) * ahead + np.cos(k) * np.array([0.0, 0.0, 1.0]) for k in tilt])
+    stock, _, moves = cut([leaning_section(tool, pivot - height * axes, axes)], 1.0)
+    column, w = np.stack(np.meshgrid([-1.0, 0.0, 1.0], [-1.0, 0.0, 1.0])).reshape(2, -1).T + (12.5, 10.5), np.linspace(0.01, 15.99, 200)
+    points = np.column_stack([np.repeat(column, len(w), axis=0), np.tile(w, len(column))])
+    gone, depth = ~bundles_of(stock)["z"].contains(points), closed_depth(tool, moves, points, 400)
+    steps = lean * tool.flute_length / 400.0
+    assert (depth[gone] > -tolerance.STOCK_CHORD - steps).all()
+    assert (depth[~gone] < tolerance.STOCK_CHORD).all()
+
+
+def closed_depth(tool, moves, points, steps):
+    """Return how deep points are in the cutter at any of many times; beyond its ends at least as far outside as it says."""
+    best, part = np.full(len(points), -np.inf), supports_of(tool)[0]
+    for tip, axis in zip(*poses(moves, steps), strict=True):
+        away = points - tip
+        h = away @ axis
+        rho, beyond = np.linalg.norm(away - h[:, None] * axis, axis=1), np.maximum(part[1] - h, h - part[2])
+        depth = plain_depth(part, rho, np.clip(h, part[1], part[2]))
+        best = np.maximum(best, np.where(beyond > 0.0, -np.hypot(np.minimum(depth, 0.0), beyond), np.minimum(depth, -beyond)))
+    return best
+
+
+@given(TOOLS, seeds)
+@settings(max_examples=60, deadline=None, phases=[Phase.explicit, Phase.generate])
+def test_the_deepest_of_a_ray_in_a_swinging_body_is_found_wherever_it_is(form, seed):
+    rng, tool = np.random.default_rng(seed), FORMS[form]
+    lean, height = rng.uniform(0.002, 0.03), tool.flute_length * rng.uniform(0.0, 1.0)
+    tilt = rng.normal() * 0.3 * lean + np.array([-0.5, 0.5]) * lean
+    axes = np.column_stack([np.sin(tilt), 0.0 * tilt, np.cos(tilt)])
+    moves = moves_of([leaning_section(tool, [10.0, 10.0, 8.0] - height * axes, axes)])
+    span = spans_of(moves, np.array([1]), np.array([1]), np.zeros(1, bool)).row[0]
+    piece, ray = moves.bodies.piece[0], np.zeros(kernel.RAY_COLUMNS)
+    body = (moves.bodies.arc, int(piece[kernel.CLOSED_FIRST]), int(piece[kernel.CLOSED_LAST]), np.inf)
+    ray[kernel.TWIST] = kernel._motion(span)
+    kernel._aim(ray, span, 10.0 + tool.radius + rng.uniform(-0.5, 0.3) * lean * tool.flute_length, 10.0)
+    low, high = np.sort(rng.uniform(8.0 - height - 2.0, 8.0 - height + tool.flute_length + 2.0, 2))
+    deepest = max(kernel._over_time(*body, ray, w)[0] for w in np.linspace(low, high, 600))
+    found, place = kernel._highest(*body, ray, low, high, -0.05)
+    assert max(found, -0.05) >= deepest - tolerance.CONTACT_BOUND
+    assert low <= place <= high and found <= kernel._over_time(*body, ray, place)[0] + 1e-9
 
 
 def check_rays(tool, section, rng):

@@ -118,6 +118,16 @@ def test_arcs_about_every_axis_of_the_blank_are_as_their_chords(axis):
         assert one.count.tolist() == other.count.tolist()
 
 
+def test_an_arc_of_more_than_a_turn_takes_off_all_of_its_ring():
+    def ring_of(sweep):
+        moves = moves_of([program_section(flat(8.0)(), [(30, 16, 15), ((10, 16, 15), (20, 16))], rapid_to=0)])
+        stock = whole(0.5)
+        run_stock(stock, replace(moves, sweep=np.array([0.0, sweep])), WORLD)
+        return gone(stock)
+
+    assert ring_of(3.0 * math.pi) == approx(ring_of(2.0 * math.pi), rel=1e-9)
+
+
 def test_a_helix_leaves_its_lowest_turn():
     stops = [(25, 16, 22), *(((x, 16, z), (20, 16)) for x, z in ((15, 19), (25, 16), (15, 13), (25, 13), (15, 13)))]
     stock, _ = cut(program_section(flat(10.0)(), stops), cell=0.125)
@@ -177,6 +187,18 @@ def test_a_tool_that_swings_about_its_middle_leaves_what_is_beside_its_waist():
     inner = ends_of(stock, "z", 22.3125, 16.0625)
     assert len(inner) == 1
     assert inner[0] == (approx(10.0 - waist, abs=0.02), approx(10.0 + waist, abs=0.02))
+
+
+@pytest.mark.parametrize("z", [7.5, 10.0, 12.5])
+def test_a_tool_that_swings_by_little_about_a_point_of_its_axis_leaves_what_is_beside_it(z):
+    lean, beside = 0.00705, 0.017
+    ends = [np.array([s * math.sin(lean), 0.0, math.cos(lean)]) for s in (-1.0, 1.0)]
+    # A ray of the z bundle stands `beside` off the flank of the upright tool, whose pivot is half way up its flutes.
+    pivot = np.array([22.3125 - 2.0 - beside, 16.0625, z])
+    stock, _ = cut(leaning_section(flat(4.0)(flute=40.0), [pivot - 20.0 * e for e in ends], ends), cell=0.125)
+    waist = (2.0 + beside - 2.0 / math.cos(lean)) / math.tan(lean)
+    left = [p for p in ends_of(stock, "z", 22.3125, 16.0625) if p[0] < z < p[1]]
+    assert left == [(approx(z - waist, abs=0.05), approx(z + waist, abs=0.05))]
 
 
 def test_a_cutter_that_leaves_the_blank_or_never_meets_it_takes_off_nothing_else():

@@ -17,10 +17,12 @@ w, in t: tangents bound it from above. So one evaluation at the end of the mater
 rejects most rays, and the ends of what is cut are found by Newton steps from outside, which never
 overshoot a concave function. Nothing is sampled over time: the envelope leaves no ridges.
 
-Where the tool turns, D is concave in w at every t but F need not be: such spans are bisected where
-Newton overshoots, and looked at in three places in between for a gap. Bodies are taken smaller by
-SHRINK, so cuts err towards standing material; a gap that the three places miss is the one case that
-errs the other way. mm, rad.
+Where the tool turns, D is concave in w at every t but F need not be: a tool that swings about its
+middle sweeps two lobes with a gap between them. There an entry is bisected where Newton overshoots,
+and what lies between both entries is taken away only where that is certain: between two places that
+are in the body at one time, since D is concave along the ray at that time. Bodies are taken smaller
+by SHRINK, so cuts err towards standing material; a gap that is nowhere deeper than GAP is taken
+with its lobes. mm, rad.
 """
 
 from __future__ import annotations
@@ -52,6 +54,10 @@ MOST_GRAZED = 64
 """Places that a rapid may be suspected at."""
 NOISE = 1e-7
 """mm: depths less apart are the same."""
+GAP = 2e-4
+"""mm: between two lobes of a tool that swings, less than twice this outside counts as inside: a fifth of `tolerance.STOCK_CHORD`."""
+SURE = 1e-3
+"""mm: how far the depth found in a body that turns may be below the deepest: a tenth of what a rapid is judged by."""
 BENT = 0.01
 """mm that boxes are wider by where a tool turns: its points leave the straight ways between both ends by a few micrometres."""
 LEVEL = 1e-9
@@ -184,9 +190,33 @@ def _bound(arcs: Floats, first: int, last: int, limit: float, ray: Floats, w: fl
 
 
 @njit(cache=True, nogil=True)
-def _highest(arcs: Floats, first: int, last: int, limit: float, ray: Floats, low: float, high: float) -> tuple[float, float]:
+def _highest(arcs: Floats, first: int, last: int, limit: float, ray: Floats, low: float, high: float, enough: float) -> tuple[float, float]:
     """Return the largest depth (mm) between two places of a ray over a span, and its place; attained,
-    within 1e-5 mm.
+    within 1e-5 mm, where the tool turns within SURE. One of at most `enough` need not be the largest.
+
+    A tangent at w bounds F from above at w' by F(w) + slope (w' - w) + TWIST |w' - w|, the last for
+    the bilinear term where the tool turns. So from the lower end on each tangent tells how far on
+    nothing can be deeper than what is known by more than SURE (Piyavskii, 1972, with slopes).
+    """
+    best, place = _peak(arcs, first, last, limit, ray, low, high)
+    if ray[TWIST] == 0.0:
+        return best, place
+    w = low
+    while w < high:
+        f, slope = _over_time(arcs, first, last, limit, ray, w)
+        if f > best:
+            best, place = f, w
+        steep = slope + ray[TWIST]
+        if steep <= 0.0:
+            break
+        w += (max(best, enough) + SURE - f) / steep
+    return best, place
+
+
+@njit(cache=True, nogil=True)
+def _peak(arcs: Floats, first: int, last: int, limit: float, ray: Floats, low: float, high: float) -> tuple[float, float]:
+    """Return the largest depth (mm) between two places of a ray over a span, and its place; attained,
+    within 1e-5 mm where the tool keeps its axis, else perhaps one of several peaks.
 
     Cutting planes along w, as `_over_time` has them along t.
     """
@@ -456,6 +486,81 @@ def _take_all(count: Ints, low: Floats, high: Floats, cell: int, a: float, b: fl
 
 
 @njit(cache=True, nogil=True)
+def _in_at_once(arcs: Floats, first: int, last: int, limit: float, ray: Floats, a: float, b: float) -> bool:
+    """Return whether two places of a ray are found in a body, to within GAP (mm), at one time of a span:
+    then all between them is, as the depth is concave along the ray at any time.
+
+    The depth of each place is concave in time. Where it is below -GAP at t, its tangent keeps all
+    times of that place on one side of t, and at least so far away; the two sides meet, or leave
+    none. Undecided after 30 steps counts as no.
+    """
+    t0, t1, t = 0.0, 1.0, 0.5
+    for _ in range(30):
+        inside = True
+        for k in range(2):
+            f, _along, s = _depth(arcs, first, last, limit, ray, a if k == 0 else b, t)
+            if f >= -GAP:
+                continue
+            inside = False
+            if s == 0.0:
+                return False
+            # Where the tangent reaches -GAP.
+            reach = t + (-GAP - f) / s
+            if s > 0.0:
+                t0 = max(t0, reach)
+            else:
+                t1 = min(t1, reach)
+        if inside:
+            return True
+        if t0 > t1:
+            return False
+        t = 0.5 * (t0 + t1)
+    return False
+
+
+@njit(cache=True, nogil=True)
+def _sure(arcs: Floats, first: int, last: int, limit: float, ray: Floats, a: float, b: float) -> tuple[float, float]:
+    """Return up to where from a on, towards b, a ray lies in what is swept for certain, and a place
+    behind that, at most b, where it doesn't; that is NaN when all up to b does.
+
+    Both places are inside to within GAP (mm). Steps are halved until two places are in the body at
+    one time, or 2 GAP apart: then all between them is inside to within 2 GAP, as the depth has
+    slope 1 at most.
+    """
+    while a < b:
+        step = b - a
+        while not _in_at_once(arcs, first, last, limit, ray, a, a + step) and step > 2.0 * GAP:
+            step *= 0.5
+            if _over_time(arcs, first, last, limit, ray, a + step)[0] < -GAP:
+                return a, a + step
+        if step >= b - a:
+            break
+        a += step
+    return b, np.nan
+
+
+@njit(cache=True, nogil=True)
+def _cut_lobes(arcs: Floats, first: int, last: int, limit: float, ray: Floats, a: float, b: float, count: Ints, low: Floats, high: Floats,
+               cell: int) -> tuple[float, bool]:
+    """Cut a ray between two places that a body which turns reaches, but for the gaps between its
+    lobes; return as `_cut_ray` does."""
+    gone = 0.0
+    while a < b:
+        end, gap = _sure(arcs, first, last, limit, ray, a, b)
+        if not math.isnan(gap):
+            # The lobe's end lies before the gap. If yet another gap hides there, the rest stays.
+            edge = _bisected(arcs, first, last, limit, ray, gap, end)
+            if math.isnan(_sure(arcs, first, last, limit, ray, end, edge)[1]):
+                end = edge
+        more, whole = _take_all(count, low, high, cell, a, end)
+        gone += more
+        if math.isnan(gap) or not whole:
+            return gone, whole
+        a = _bisected(arcs, first, last, limit, ray, gap, b)
+    return gone, True
+
+
+@njit(cache=True, nogil=True)
 def _cut_ray(arcs: Floats, first: int, last: int, limit: float, ray: Floats, span: Floats, u: float, v: float, count: Ints, low: Floats,
              high: Floats, cell: int, box: Floats) -> tuple[float, bool]:
     """Cut a ray by a piece within a span; return the length (mm) that is gone, and whether the ray had
@@ -499,25 +604,17 @@ def _cut_ray(arcs: Floats, first: int, last: int, limit: float, ray: Floats, spa
         if (from_far - from_near) * (far - near) <= 0.0:
             k += 1
             continue
-        # F of a turning tool may be negative between two lobes; three places tell, so a gap
-        # narrower than a quarter of the cut may be missed and is then taken away.
-        gap = np.nan
-        if turns and from_b - from_a > 1.0:
-            for m in range(1, 4):
-                w = from_a + 0.25 * m * (from_b - from_a)
-                if _over_time(arcs, first, last, limit, ray, w)[0] < 0.0:
-                    gap = w
-                    break
-        # Two cuts may need two more intervals; the caller enlarges the rays and resumes.
+        # A cut may need one more interval, a gap another; the caller enlarges the rays and resumes.
         before = count[cell]
-        if before + 2 > low.shape[1]:
+        if turns:
+            more, whole = _cut_lobes(arcs, first, last, limit, ray, from_a, from_b, count, low, high, cell)
+            gone += more
+            if not whole:
+                return gone, False
+        elif before + 1 > low.shape[1]:
             return gone, False
-        if math.isnan(gap):
-            gone += take_away(count, low, high, cell, k, from_a, from_b)
         else:
-            # A tool that swings about its middle sweeps two lobes: what lies between them stays.
-            gone += take_away(count, low, high, cell, k, _bisected(arcs, first, last, limit, ray, gap, from_b), from_b)
-            gone += take_away(count, low, high, cell, k, from_a, _bisected(arcs, first, last, limit, ray, gap, from_a))
+            gone += take_away(count, low, high, cell, k, from_a, from_b)
         k += 1 + count[cell] - before
     return gone, True
 
@@ -552,7 +649,7 @@ def _may_hide(arcs: Floats, first: int, last: int, ray: Floats, count: Ints, low
                 a, b = max(box[2], low[cell, k]), min(box[5], high[cell, k])
                 if b <= a:
                     continue
-                deepest, w = _highest(arcs, first, last, np.inf, ray, a, b)
+                deepest, w = _highest(arcs, first, last, np.inf, ray, a, b, -0.7072 * pitch)
                 if deepest > -0.7072 * pitch:
                     # Across rays the depth grows by what its slope along them leaves, up to half a diagonal.
                     slope = _over_time(arcs, first, last, np.inf, ray, w)[1]
@@ -731,7 +828,7 @@ def cut_tile(last: int, span: Floats, span_start: Ints, arcs: Floats, piece: Flo
                             best = depth[n] if cuts else body[n]
                             if b <= a or _bound(arcs, first, end, np.inf, ray, a, b) <= best:
                                 continue
-                            deepest, w = _highest(arcs, first, end, np.inf, ray, a, b)
+                            deepest, w = _highest(arcs, first, end, np.inf, ray, a, b, best)
                             if deepest > best and cuts:
                                 depth[n], place[n, 0], place[n, 1], place[n, 2] = deepest, u, v, w
                             elif deepest > best:
