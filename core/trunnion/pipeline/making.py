@@ -34,6 +34,7 @@ from trunnion.plan.surface.settings import EARLIER
 from trunnion.plan.surface.space import SurfaceSpace
 from trunnion.progress import Progress
 from trunnion.settings import checked, choose, digest
+from trunnion.toolpath.contract import ToolAxis
 from trunnion.toolpath.sides import Sides
 from trunnion.toolpath.stock import PlanningStock
 from trunnion.toolpath.turning import Pose, moved_over, swing_of
@@ -62,13 +63,8 @@ def make_paths(session: Session, bench: Bench, progress: Progress) -> tuple[Oper
     return tuple(made)
 
 
-LEANING, LEANS = "surface.point", ("lead", "tilt")
-"""The strategy that leans its tool, and the settings by which others do."""
 DRIVEN = 0.2
 """Share of an operation's progress for the geometry that drives it."""
-SETTLED = {"surface.too-steep": {"surface.waterline"}, "surface.too-shallow": {"surface.parallel", "surface.constant"},
-           "floor.left": {"plane.floor"}}
-"""Findings of strategies that leave slopes or corners to others, and the strategies that cut those."""
 
 
 def findings_of(paths: Sequence[OperationPath], process: ProcessTree) -> tuple[Finding, ...]:
@@ -77,9 +73,10 @@ def findings_of(paths: Sequence[OperationPath], process: ProcessTree) -> tuple[F
 
 
 def _settled(finding: Finding, own: Operation, process: ProcessTree) -> bool:
-    strategies = SETTLED.get(finding.code, set())
-    return any(o.strategy in strategies and set(o.faces) & set(own.faces)
-               for o in process.operations if o.id != own.id and not o.suppressed)
+    """Say whether a finding is of what its strategy leaves to others, and another operation on the same faces is there for it."""
+    return finding.code in registry.get("strategies", own.strategy).leaves and any(
+        finding.code in registry.get("strategies", o.strategy).settles and set(o.faces) & set(own.faces)
+        for o in process.operations if o.id != own.id and not o.suppressed)
 
 
 @dataclass(slots=True)
@@ -136,7 +133,7 @@ def _make_one(session: Session, room: Room, operation: Operation, progress: Prog
     strategy = registry.get("strategies", operation.strategy)
     chosen = checked(choose(strategy.settings, {**session.choices, **operation.choices}))
     try:
-        leans = operation.strategy == LEANING or any(getattr(chosen, name, 0.0) != 0.0 for name in LEANS)
+        leans = strategy.tool_axis(chosen) is ToolAxis.LEANING
         setup, stock, drive, told = _driven(session, room, operation, leans, progress.part(0.0, DRIVEN))
         before = room.before(operation.tool)
         key = digest(operation.strategy, told, operation.tool, operation.data, chosen, stock.digest, setup, before)
@@ -163,7 +160,7 @@ def _driven(session: Session, room: Room, operation: Operation, leans: bool, pro
     """Return the setup, the stock and the drive of an operation in its cutting frame, and what tells the drive from others."""
     if session.process is None:
         raise BadCall("no operations yet: generate the route first")
-    plane = operation.strategy.startswith("plane.")
+    plane = registry.get("strategies", operation.strategy).drive is PlaneDrive
     if plane and room.recognition.family != SURFACE_FAMILY:
         flat = drive_of(operation, session.process, room.plane())
         return room.setup, room.sides.seen(room.setup), flat, flat

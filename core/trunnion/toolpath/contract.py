@@ -1,7 +1,12 @@
 """What every strategy promises: from drive geometry, cutter and stock to motions, and what they leave.
 
-    @strategy(settings=RoughSettings, meets=full_width)
+    @strategy(settings=RoughSettings, drive=PlaneDrive, meets=full_width)
     def rough(drive, tool, data, stock, setup, settings, progress) -> Planned: ...
+
+`drive` is the class of drive geometry that the strategy works from: the planner of the part's family makes one for each operation.
+`tool_axis` says by the settings whether the tool keeps the axis of its cutting frame or leans from it. `leaves` are the codes of findings
+on what the strategy leaves to others, `settles` those of what it cuts where others leave it: a finding is kept quiet where another
+operation on the same faces settles it. `finds_rest`: the strategy finds for itself what an earlier cutter left.
 
 `meets` is the largest engagement that the strategy can meet, from which the planner takes the peak of the load (`toolpath.engagement` has
 those that several strategies share); without it a strategy promises to meet no more than the cutting data's depth and width.
@@ -14,6 +19,7 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import dataclass
+from enum import Enum
 from typing import Any, Protocol, TypeVar
 
 from trunnion.findings import Finding
@@ -40,13 +46,44 @@ Meets = Callable[[Tool, CuttingData, Any, Operation | None], Engagement]
 """From tool, cutting data, the strategy's settings and the operation that roughed there before to the largest engagement."""
 
 
+class ToolAxis(Enum):
+    """Whether a strategy's tool keeps the z axis of the cutting frame."""
+
+    FIXED = "fixed"
+    LEANING = "leaning"
+
+
+AxisRule = Callable[[Any], ToolAxis]
+"""From a strategy's settings to what its tool axis does."""
+
+
+def fixed_axis(settings: Any) -> ToolAxis:
+    """Return that the tool keeps the axis of its cutting frame, whatever the settings."""
+    return ToolAxis.FIXED
+
+
+def leaning_axis(settings: Any) -> ToolAxis:
+    """Return that the tool leans, whatever the settings."""
+    return ToolAxis.LEANING
+
+
+def lead_and_tilt(settings: Any) -> ToolAxis:
+    """Return that the tool leans where the settings' `lead` or `tilt` (degrees) is not zero."""
+    return ToolAxis.LEANING if settings.lead != 0.0 or settings.tilt != 0.0 else ToolAxis.FIXED
+
+
 class Strategy(Protocol):
-    """From drive geometry to motions; `settings` is the class of the settings it takes, `meets` tells its largest engagement."""
+    """From drive geometry to motions; `settings` is the class of the settings it takes, the others as in the module's description."""
 
     settings: type
+    drive: type
+    tool_axis: AxisRule
+    leaves: tuple[str, ...]
+    settles: tuple[str, ...]
+    finds_rest: bool
     meets: Meets
 
-    def __call__(self, drive: PlaneDrive, tool: Tool, data: CuttingData, stock: PlanningStock, setup: Setup, settings: Any,
+    def __call__(self, drive: Any, tool: Tool, data: CuttingData, stock: PlanningStock, setup: Setup, settings: Any,
                  progress: Progress) -> Planned:
         """Return the motions in the setup frame."""
 
@@ -56,12 +93,14 @@ def as_planned(tool: Tool, data: CuttingData, settings: Any, before: Operation |
     return Engagement(width=data.width, depth=data.depth, share=1.0, at="")
 
 
-def strategy(*, settings: type, meets: Meets = as_planned) -> Callable[[F], F]:
-    """Mark a function as a strategy and tell which settings it takes and what engagement it can meet."""
+def strategy(*, settings: type, drive: type = PlaneDrive, tool_axis: AxisRule = fixed_axis, leaves: tuple[str, ...] = (),
+             settles: tuple[str, ...] = (), finds_rest: bool = False, meets: Meets = as_planned) -> Callable[[F], F]:
+    """Mark a function as a strategy and tell what it takes, what it leaves to others, and what engagement it can meet."""
+    declared = {"settings": settings, "drive": drive, "tool_axis": tool_axis, "leaves": leaves, "settles": settles,
+                "finds_rest": finds_rest, "meets": meets}
 
     def mark(function: F) -> F:
-        function.settings = settings  # type: ignore[attr-defined]
-        function.meets = meets  # type: ignore[attr-defined]
+        vars(function).update(declared)
         return function
 
     return mark

@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable
 from dataclasses import dataclass, replace
 
+from trunnion import registry
 from trunnion.geometry.arrays import Floats
 from trunnion.geometry.frame import WORLD, Frame
 from trunnion.geometry.region import Region
@@ -22,8 +23,6 @@ from trunnion.plan.surface.settings import ALLOWANCE, SCALLOP, number
 from trunnion.progress import QUIET, Progress
 from trunnion.settings import digest
 
-KNOWS_EARLIER = ("surface.pencil",)
-"""Strategies that find for themselves what an earlier cutter left; others get it as an area."""
 AROUND = 45.0
 """mm: how far free space is looked at around the blank: two diameters of the largest cutter, but no way for it to wander."""
 
@@ -75,7 +74,7 @@ class SurfaceSpace:
         """
         height, allowance = (number(operation, key) for key in (SCALLOP, ALLOWANCE))
         skin, faces, lowest = self.skin, operation.faces, float(self.low[2]) - self.setup.clearance
-        if earlier is not None and operation.strategy not in KNOWS_EARLIER:
+        if earlier is not None and not registry.get("strategies", operation.strategy).finds_rest:
             skin, faces = left_by(skin, faces, earlier, lowest, height, progress)
         if not leans:
             skin, faces = without_met(skin, faces, operation.tool, lowest, height, progress)

@@ -61,7 +61,7 @@ class _Height:
     distance: float
 
 
-@strategy(settings=CornerSettings, meets=eased_corner)
+@strategy(settings=CornerSettings, drive=PlaneDrive, meets=eased_corner)
 def corner(drive: PlaneDrive, tool: Tool, data: CuttingData, stock: PlanningStock, setup: Setup, settings: CornerSettings,
            progress: Progress) -> Planned:
     """Return the motions that clear what a cutter of `drive.earlier_radius` left in the corners, and what this one leaves."""

@@ -44,7 +44,7 @@ def row_width(tool: Tool, data: CuttingData, settings: FaceSettings, before: Ope
     return Engagement(width=max(data.width, data.widest) if whole else data.width, depth=data.depth, share=1.0, at=ONE_ROW if whole else "")
 
 
-@strategy(settings=FaceSettings, meets=row_width)
+@strategy(settings=FaceSettings, drive=PlaneDrive, meets=row_width)
 def face(drive: PlaneDrive, tool: Tool, data: CuttingData, stock: PlanningStock, setup: Setup, settings: FaceSettings,
          progress: Progress) -> Planned:
     """Return the motions that take the blank's top down to the drive's bottom."""

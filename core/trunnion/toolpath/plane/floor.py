@@ -42,7 +42,7 @@ class FloorSettings:
                             help="Where a rapid ends above what may still be there.")
 
 
-@strategy(settings=FloorSettings, meets=floor_leftovers)
+@strategy(settings=FloorSettings, drive=PlaneDrive, leaves=("floor.left",), settles=("floor.left",), meets=floor_leftovers)
 def floor(drive: PlaneDrive, tool: Tool, data: CuttingData, stock: PlanningStock, setup: Setup, settings: FloorSettings,
           progress: Progress) -> Planned:
     """Return the motions that finish every floor of the drive, from the highest down, and what they leave."""

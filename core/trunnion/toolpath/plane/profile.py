@@ -54,7 +54,7 @@ class ProfileFinishSettings:
                             help="Where a rapid ends above what may still be there.")
 
 
-@strategy(settings=ProfileRoughSettings, meets=inner_corner)
+@strategy(settings=ProfileRoughSettings, drive=PlaneDrive, meets=inner_corner)
 def profile_rough(drive: PlaneDrive, tool: Tool, data: CuttingData, stock: PlanningStock, setup: Setup, settings: ProfileRoughSettings,
                   progress: Progress) -> Planned:
     """Return the motions that take the blank's margin off the profile by layers, in rings from outside in."""
@@ -80,7 +80,7 @@ def profile_rough(drive: PlaneDrive, tool: Tool, data: CuttingData, stock: Plann
     return _planned(drive, builder, findings)
 
 
-@strategy(settings=ProfileFinishSettings, meets=contour_leftovers)
+@strategy(settings=ProfileFinishSettings, drive=PlaneDrive, meets=contour_leftovers)
 def profile_finish(drive: PlaneDrive, tool: Tool, data: CuttingData, stock: PlanningStock, setup: Setup, settings: ProfileFinishSettings,
                    progress: Progress) -> Planned:
     """Return the motions that finish the profile in axial steps down to its bottom."""

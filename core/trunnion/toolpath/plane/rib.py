@@ -44,7 +44,7 @@ class RibTopSettings:
                             help="Where a rapid ends above what may still be there.")
 
 
-@strategy(settings=RibTopSettings, meets=top_width)
+@strategy(settings=RibTopSettings, drive=PlaneDrive, meets=top_width)
 def rib_top(drive: PlaneDrive, tool: Tool, data: CuttingData, stock: PlanningStock, setup: Setup, settings: RibTopSettings,
             progress: Progress) -> Planned:
     """Return the motions that bring a top to its height by layers, and what of it the cutter leaves."""

@@ -45,7 +45,7 @@ class RoughSettings:
                             help="Where a rapid ends above what may still be there.")
 
 
-@strategy(settings=RoughSettings, meets=full_width)
+@strategy(settings=RoughSettings, drive=PlaneDrive, meets=full_width)
 def rough(drive: PlaneDrive, tool: Tool, data: CuttingData, stock: PlanningStock, setup: Setup, settings: RoughSettings,
           progress: Progress) -> Planned:
     """Return the motions that clear every band of the drive layer by layer down to the floors' allowance, and what the cutter leaves."""

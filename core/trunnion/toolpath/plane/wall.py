@@ -54,7 +54,7 @@ class WallSettings:
                             help="Where a rapid ends above what may still be there.")
 
 
-@strategy(settings=WallSettings, meets=eased_leftovers)
+@strategy(settings=WallSettings, drive=PlaneDrive, meets=eased_leftovers)
 def wall(drive: PlaneDrive, tool: Tool, data: CuttingData, stock: PlanningStock, setup: Setup, settings: WallSettings,
          progress: Progress) -> Planned:
     """Return the motions that finish every wall of the drive, and the lengths of wall that the cutter can't reach."""

@@ -1,10 +1,13 @@
-"""Settings that strategies along contacts have in common: declared once, each in its own place on their pages."""
+"""Settings and codes of findings that surface strategies have in common: declared once, each setting in its own place on their pages."""
 
 from __future__ import annotations
 
 from typing import Any
 
 from trunnion.settings import setting
+
+TOO_STEEP, TOO_SHALLOW = "surface.too-steep", "surface.too-shallow"
+"""Codes of findings on slopes that one strategy leaves to another."""
 
 
 def steepest() -> Any:

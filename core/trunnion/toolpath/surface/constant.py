@@ -15,6 +15,7 @@ from trunnion.toolpath.contract import Planned, strategy
 from trunnion.toolpath.engagement import surface_leftovers
 from trunnion.toolpath.stock import PlanningStock
 from trunnion.toolpath.surface import choices
+from trunnion.toolpath.surface.choices import TOO_SHALLOW, TOO_STEEP
 from trunnion.toolpath.surface.fronts import scallop_passes
 from trunnion.toolpath.surface.linking import Manner, linked
 from trunnion.toolpath.surface.upright import stood
@@ -34,7 +35,8 @@ class ConstantSettings:
     safety: float = choices.safety()
 
 
-@strategy(settings=ConstantSettings, meets=surface_leftovers)
+@strategy(settings=ConstantSettings, drive=SurfaceDrive, leaves=(TOO_STEEP,), settles=(TOO_SHALLOW,),
+          meets=surface_leftovers)
 def constant(drive: SurfaceDrive, tool: Tool, data: CuttingData, stock: PlanningStock, setup: Setup, settings: ConstantSettings,
              progress: Progress = QUIET) -> Planned:
     """Return the motions of passes at a constant scallop height over the drive's faces, and what they leave."""

@@ -26,10 +26,11 @@ from trunnion.plan.surface.drive import SurfaceDrive
 from trunnion.plan.surface.scallop import stepover_on_plane
 from trunnion.progress import Progress
 from trunnion.settings import setting, settings
-from trunnion.toolpath.contract import Planned, strategy
+from trunnion.toolpath.contract import Planned, lead_and_tilt, strategy
 from trunnion.toolpath.engagement import surface_leftovers
 from trunnion.toolpath.stock import PlanningStock
 from trunnion.toolpath.surface.beside import Strip
+from trunnion.toolpath.surface.choices import TOO_SHALLOW, TOO_STEEP
 from trunnion.toolpath.surface.lean import leaned_by
 from trunnion.toolpath.surface.linking import Manner, linked
 from trunnion.toolpath.surface.passes import UPRIGHT, Pass
@@ -70,7 +71,8 @@ class ParallelSettings:
                             help="Where a rapid ends above what may still be there.")
 
 
-@strategy(settings=ParallelSettings, meets=surface_leftovers)
+@strategy(settings=ParallelSettings, drive=SurfaceDrive, tool_axis=lead_and_tilt, leaves=(TOO_STEEP,), settles=(TOO_SHALLOW,),
+          meets=surface_leftovers)
 def parallel(drive: SurfaceDrive, tool: Tool, data: CuttingData, stock: PlanningStock, setup: Setup, settings: ParallelSettings,
              progress: Progress) -> Planned:
     """Return the motions that finish the drive's faces by parallel passes, and the area that is too steep for them."""
@@ -191,7 +193,7 @@ def _too_steep(drive: SurfaceDrive, level: Places) -> tuple[Finding, ...]:
     area = float(0.5 * np.linalg.norm(np.cross(b - a, c - a), axis=1).sum() - level.area.sum())
     if area < SMALLEST_LEFTOVER:
         return ()
-    return (warning("surface.too-steep", f"{area:.1f} mm2 of {drive.feature} are too steep for parallel passes", drive.feature,
+    return (warning(TOO_STEEP, f"{area:.1f} mm2 of {drive.feature} are too steep for parallel passes", drive.feature,
                     remedy="cut them by waterlines or from another direction"),)
 
 

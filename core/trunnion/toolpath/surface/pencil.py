@@ -65,7 +65,7 @@ class PencilSettings:
                             help="Where a rapid ends above what may still be there.")
 
 
-@strategy(settings=PencilSettings, meets=surface_leftovers)
+@strategy(settings=PencilSettings, drive=SurfaceDrive, finds_rest=True, meets=surface_leftovers)
 def pencil(drive: SurfaceDrive, tool: Tool, data: CuttingData, stock: PlanningStock, setup: Setup, settings: PencilSettings,
            progress: Progress) -> Planned:
     """Return the motions along the valleys of the drive's faces."""

@@ -28,7 +28,7 @@ from trunnion.plan.surface.drive import Asker, SurfaceDrive
 from trunnion.plan.surface.scallop import stepover_on_plane
 from trunnion.progress import QUIET, Progress
 from trunnion.settings import setting, settings
-from trunnion.toolpath.contract import Planned, strategy
+from trunnion.toolpath.contract import Planned, leaning_axis, strategy
 from trunnion.toolpath.engagement import surface_leftovers
 from trunnion.toolpath.stock import PlanningStock
 from trunnion.toolpath.surface.axis import AxisField, fixed, from_point, interpolated, leaning
@@ -94,7 +94,7 @@ class Milled:
     left: float
 
 
-@strategy(settings=PointSettings, meets=surface_leftovers)
+@strategy(settings=PointSettings, drive=SurfaceDrive, tool_axis=leaning_axis, meets=surface_leftovers)
 def point(drive: SurfaceDrive, tool: Tool, data: CuttingData, stock: PlanningStock, setup: Setup, settings: PointSettings,
           progress: Progress = QUIET) -> Planned:
     """Return the path of a leaning tool over the drive's faces, or over what an earlier cutter left of them, and what it must leave."""

@@ -15,6 +15,7 @@ from trunnion.toolpath.contract import Planned, strategy
 from trunnion.toolpath.engagement import surface_leftovers
 from trunnion.toolpath.stock import PlanningStock
 from trunnion.toolpath.surface import choices
+from trunnion.toolpath.surface.choices import TOO_STEEP
 from trunnion.toolpath.surface.flowlines import Flow, flow_lines
 from trunnion.toolpath.surface.linking import Manner, linked
 from trunnion.toolpath.surface.upright import stood
@@ -36,7 +37,8 @@ class StreamlineSettings:
     safety: float = choices.safety()
 
 
-@strategy(settings=StreamlineSettings, meets=surface_leftovers)
+@strategy(settings=StreamlineSettings, drive=SurfaceDrive, leaves=(TOO_STEEP,),
+          meets=surface_leftovers)
 def streamline(drive: SurfaceDrive, tool: Tool, data: CuttingData, stock: PlanningStock, setup: Setup, settings: StreamlineSettings,
                progress: Progress = QUIET) -> Planned:
     """Return the motions of an upright tool along flow lines over the drive's faces, and what it leaves."""

@@ -19,6 +19,7 @@ from trunnion.model.tool import Tool
 from trunnion.plan.surface.cutter import lower_side, tip_at
 from trunnion.plan.surface.drive import SurfaceDrive
 from trunnion.progress import QUIET, Progress
+from trunnion.toolpath.surface.choices import TOO_STEEP
 from trunnion.toolpath.surface.contacts import Contacts
 from trunnion.toolpath.surface.passes import UPRIGHT, Pass
 from trunnion.toolpath.surface.tracing import follow
@@ -44,7 +45,7 @@ class Stood:
         steep, hidden = self.steep * stepover, self.hidden * stepover
         found = []
         if steep > SMALLEST_LEFTOVER:
-            found.append(warning("surface.too-steep", f"{drive.feature}: about {steep:.1f} mm2 are too steep for passes of {tool.name} "
+            found.append(warning(TOO_STEEP, f"{drive.feature}: about {steep:.1f} mm2 are too steep for passes of {tool.name} "
                                  "along contacts", drive.feature, remedy="cut them by waterlines or from another direction"))
         if hidden > SMALLEST_LEFTOVER:
             found.append(warning("surface.in-the-way", f"{drive.feature}: about {hidden:.1f} mm2 are out of reach of {tool.name}: other "

@@ -29,6 +29,7 @@ from trunnion.settings import setting, settings
 from trunnion.toolpath.contract import Planned, strategy
 from trunnion.toolpath.engagement import surface_leftovers
 from trunnion.toolpath.stock import PlanningStock
+from trunnion.toolpath.surface.choices import TOO_SHALLOW, TOO_STEEP
 from trunnion.toolpath.surface.linking import Manner, linked
 from trunnion.toolpath.surface.passes import UPRIGHT, Pass
 from trunnion.toolpath.surface.spacing import Places, level_spacing, marched, places_of
@@ -87,7 +88,8 @@ class WaterlineSettings:
                             help="Where a rapid ends above what may still be there.")
 
 
-@strategy(settings=WaterlineSettings, meets=surface_leftovers)
+@strategy(settings=WaterlineSettings, drive=SurfaceDrive, leaves=(TOO_SHALLOW,), settles=(TOO_STEEP,),
+          meets=surface_leftovers)
 def waterline(drive: SurfaceDrive, tool: Tool, data: CuttingData, stock: PlanningStock, setup: Setup, settings: WaterlineSettings,
               progress: Progress) -> Planned:
     """Return the motions that finish the drive's faces level by level, and the area that is too shallow for it or hangs over."""
@@ -118,7 +120,7 @@ def _left(drive: SurfaceDrive, steep: Places) -> tuple[Finding, ...]:
     area = float(0.5 * np.linalg.norm(np.cross(b - a, c - a), axis=1).sum() - steep.area.sum())
     if area < SMALLEST_LEFTOVER:
         return ()
-    return (warning("surface.too-shallow", f"{area:.1f} mm2 of {drive.feature} are too shallow for waterlines, or hang over", drive.feature,
+    return (warning(TOO_SHALLOW, f"{area:.1f} mm2 of {drive.feature} are too shallow for waterlines, or hang over", drive.feature,
                     remedy="finish them by parallel passes or from another direction"),)
 
 
