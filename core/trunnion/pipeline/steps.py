@@ -10,33 +10,27 @@ from collections.abc import Callable
 from dataclasses import dataclass, replace
 from typing import Any
 
-from trunnion import registry, tolerance
+from trunnion import registry
 from trunnion.findings import BadCall, BadInput, Finding
 from trunnion.model.feature import Recognition
 from trunnion.model.session import Session
-from trunnion.pipeline.asking import PartSurroundings
 from trunnion.pipeline.bench import Bench
 from trunnion.pipeline.family import FAMILIES, KINDS, RecognizeSettings, recognised
 from trunnion.pipeline.hand import with_features_by_hand, with_operations_by_hand
 from trunnion.pipeline.making import findings_of, make_paths, strategy_settings
 from trunnion.pipeline.proving import prove_session
+from trunnion.pipeline.scene import SessionContext
 from trunnion.plan.blank import BlankSettings, make_blank
+from trunnion.plan.contract import PLANNERS, RouteJob, planner_for
 from trunnion.plan.cutting import CuttingSettings, balance
 from trunnion.plan.peak import overloads
-from trunnion.plan.route import RouteSettings, make_route
 from trunnion.plan.setups import SetupSettings, make_setups
 from trunnion.plan.size import size_table
-from trunnion.plan.surface.route import make_surface_route
-from trunnion.plan.surface.settings import SurfaceRouteSettings
-from trunnion.plan.surface.space import SurfaceSpace
 from trunnion.post.settings import PostSettings
 from trunnion.progress import Progress
 from trunnion.recognize.contract import Measuring
 from trunnion.settings import checked, choose, digest
 from trunnion.verify.settings import ProofSettings
-
-PLANNED = ("panel", "surface")
-"""Families that a process plan can be made for."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -69,6 +63,12 @@ class Step:
 
 def _family_settings() -> tuple[type, ...]:
     return (RecognizeSettings, *(registry.get(FAMILIES, name).settings for name in registry.names(FAMILIES)))
+
+
+def _route_settings() -> tuple[type, ...]:
+    """Return the settings of setups and of every planner, each group once."""
+    return tuple(dict.fromkeys((SetupSettings, *(group for name in registry.names(PLANNERS)
+                                                 for group in registry.get(PLANNERS, name).settings))))
 
 
 def _recognize(session: Session, bench: Bench, progress: Progress) -> Result:
@@ -122,25 +122,14 @@ def _route(session: Session, bench: Bench, progress: Progress) -> Result:
     recognition = _certain(session)
     if session.blank is None:
         raise BadCall("no blank yet: create the blank first")
-    if recognition.family not in PLANNED:
-        raise BadInput(f"parts of the family {recognition.family} are segmented and measured, but not planned yet; for flat pockets and "
-                       f"outlines choose recognize.family = {' or '.join(PLANNED)}")
+    planner = planner_for(recognition.family)
     setup = checked(choose(SetupSettings, session.choices))
     if setup.machine not in bench.shop.machines:
         raise BadInput(f"there is no machine {setup.machine} in the catalogue; known: {', '.join(sorted(bench.shop.machines))}")
     setups = make_setups(recognition, session.blank, bench.shop.machines[setup.machine], setup)
-    chosen = checked(choose(RouteSettings, session.choices))
-    if recognition.family == "surface":
-        if not bench.part.is_closed:
-            raise BadInput("nothing can be planned for faces that enclose no material; export the whole solid from the CAD system, or only "
-                           "group, cut and export these faces")
-        curved = checked(choose(SurfaceRouteSettings, session.choices)).consistent()
-        space = SurfaceSpace.of(bench.part, bench.skin(tolerance.CHORD, progress.part(0.0, 0.5)), session.blank, setups[0])
-        around = PartSurroundings(bench.part, space.skin, space.frame, setups[0].frame, bench.shop.machines[setup.machine],
-                                  session.fixtures_of(setups[0].name), progress)
-        process = make_surface_route(recognition, session.blank, setups, bench.shop, space, around, chosen, curved, progress.part(0.5, 1.0))
-    else:
-        process = make_route(recognition, session.sizes, session.blank, setups, bench.shop, bench.part, chosen, progress)
+    planner.can_plan(bench.part)
+    process = planner.route(RouteJob(recognition=recognition, sizes=session.sizes, blank=session.blank, setups=setups, shop=bench.shop,
+                                     context=SessionContext(bench, session), choices=session.choices, progress=progress))
     process = with_operations_by_hand(session.process, process)
     return Result(session=replace(session, setups=setups, process=process), findings=process.findings)
 
@@ -192,7 +181,7 @@ STEP_TABLE: tuple[Step, ...] = (
          reads=lambda s, b: (b.part.digest, s.recognition.frame if s.recognition else None, b.shop.digest),
          done=lambda s: s.blank is not None),
     Step(name="route", title="Process route", after=("size", "blank"), work=_route,
-         settings=lambda: (SetupSettings, RouteSettings, SurfaceRouteSettings),
+         settings=_route_settings,
          reads=lambda s, b: (b.part.digest, s.recognition, s.blank, b.shop.digest), done=lambda s: s.process is not None),
     Step(name="optimize", title="Optimize", after=("route",), settings=lambda: (CuttingSettings,), work=_optimize,
          reads=lambda s, b: (_record_key(s, "route"), _operations_without_data(s), _strategies_chosen(s), b.shop.digest),

@@ -101,6 +101,11 @@ class PlaneDrive:
         """The height where the last level ends."""
         return self.levels[-1].bottom
 
+    @property
+    def is_empty(self) -> bool:
+        """Whether no level has material that is wanted away."""
+        return not any(level.wanted for level in self.levels)
+
 
 def foot_clearance(fillet: float, corner_radius: float, above: float) -> float:
     """Return how much further than its radius a cutter stays from a wall, its tip `above` a floor that meets the wall in a fillet.

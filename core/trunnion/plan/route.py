@@ -20,8 +20,9 @@ from trunnion.plan.drive import FLOOR_ALLOWANCE, WALL_ALLOWANCE
 from trunnion.plan.left import beside, no_cutter, not_planned, plannable, too_large, too_many_tools, without_lonely_ribs
 from trunnion.plan.order import Job, ordered
 from trunnion.plan.regions import Sections, Space, parent_of
+from trunnion.plan.settings import RouteSettings
 from trunnion.plan.setups import from_below
-from trunnion.plan.wishes import DEPENDENT, WISHES, Draft, RouteSettings, Wish, catalogue, floor_distance, with_falling_sizes
+from trunnion.plan.wishes import DEPENDENT, WISHES, Draft, Wish, catalogue, floor_distance, with_falling_sizes
 from trunnion.progress import Progress
 from trunnion.settings import Value, choose
 from trunnion.shop import Shop, Stage

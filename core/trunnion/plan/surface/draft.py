@@ -11,12 +11,12 @@ from trunnion.model.material import Machine, Material
 from trunnion.model.operation import Operation
 from trunnion.model.setup import Setup
 from trunnion.model.tool import Tool
+from trunnion.plan.clearance import Around
 from trunnion.plan.cutting import CuttingSettings, cutting_data
+from trunnion.plan.settings import RouteSettings
 from trunnion.plan.surface.frames import UPRIGHT, Direction
 from trunnion.plan.surface.settings import SurfaceRouteSettings
-from trunnion.plan.surface.sides import Around
 from trunnion.plan.surface.space import SurfaceSpace
-from trunnion.plan.wishes import RouteSettings
 from trunnion.settings import Value, choose
 from trunnion.shop import Shop, Stage
 

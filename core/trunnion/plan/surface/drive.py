@@ -15,6 +15,7 @@ from trunnion.geometry.arrays import Bools, Floats
 from trunnion.geometry.frame import Frame
 from trunnion.geometry.skin import Skin
 from trunnion.model.tool import Tool
+from trunnion.plan.clearance import Asker
 
 
 class ExactFace(Protocol):
@@ -60,13 +61,6 @@ class ExactPlaces(Protocol):
         """Derivatives (k, 3) of the normals by v."""
 
 
-class Asker(Protocol):
-    """Asks whether a tool is clear of part and fixtures; poses are in the cutting frame."""
-
-    def __call__(self, tip: Floats, axis: Floats, *, start_tip: Floats | None = None, start_axis: Floats | None = None) -> Bools:
-        """Say for tips (k, 3) with unit axes (k, 3) which poses (or moves from a start) enter nothing deeper than the tolerance."""
-
-
 @dataclass(frozen=True, slots=True, eq=False, kw_only=True)
 class SurfaceDrive:
     """All that a surface strategy needs to know of the geometry, in the cutting frame.
@@ -92,3 +86,8 @@ class SurfaceDrive:
     digest: str
     earlier: Tool | None = None
     ask: Callable[[Tool], Asker] | None = None
+
+    @property
+    def is_empty(self) -> bool:
+        """Never: faces are finished whatever stands over them."""
+        return False

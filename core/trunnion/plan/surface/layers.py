@@ -3,16 +3,15 @@
 from __future__ import annotations
 
 from itertools import pairwise
-from typing import Protocol
 
 import numpy as np
 
 from trunnion import tolerance
 from trunnion.findings import Refused
-from trunnion.geometry.arrays import Floats
 from trunnion.geometry.region import EMPTY_REGION, Region, union_all
 from trunnion.model.operation import Operation
 from trunnion.model.process import ProcessTree
+from trunnion.plan.contract import Heights
 from trunnion.plan.drive import DriveLevel, PlaneDrive, WallGuide
 from trunnion.plan.surface.heights import HeightMap, region_below
 from trunnion.plan.surface.lands import LAND, REST_LAND, land_drive
@@ -30,22 +29,6 @@ WORTH = 0.2
 """Of a layer: stock that stands no higher over it isn't worth a pass in it."""
 RIM = 2.0
 """Cells of the stock that walls keep high though everything beside them is cut."""
-
-
-class Heights(Protocol):
-    """What is known to be gone already, as a field of heights (`toolpath.stock.PlanningStock`)."""
-
-    @property
-    def heights(self) -> Floats:
-        """Heights (nx, ny) mm of square cells."""
-
-    @property
-    def corner(self) -> Floats:
-        """Where cell (0, 0) begins (2,)."""
-
-    @property
-    def cell(self) -> float:
-        """Side of a cell in mm."""
 
 
 def plane_drive_of(operation: Operation, space: SurfaceSpace, stock: Heights, progress: Progress,

@@ -10,9 +10,9 @@ import numpy as np
 from trunnion.geometry.arrays import Bools, Floats
 from trunnion.model.tool import Tool
 from trunnion.plan.choosing import depth_reached
+from trunnion.plan.clearance import Asker
 from trunnion.plan.surface.cutter import tip_at
 from trunnion.plan.surface.cutters import LEFT, Chosen
-from trunnion.plan.surface.drive import Asker
 from trunnion.plan.surface.reach import Places
 from trunnion.progress import QUIET, Progress
 

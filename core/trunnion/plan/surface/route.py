@@ -21,9 +21,11 @@ from trunnion.model.process import ProcessTree
 from trunnion.model.setup import Setup
 from trunnion.model.tool import Tool
 from trunnion.plan.choosing import depth_reached
+from trunnion.plan.clearance import Around
 from trunnion.plan.cutting import CuttingSettings, roughing_depth, roughing_width
 from trunnion.plan.left import too_large, too_many_tools
 from trunnion.plan.order import Job, ordered
+from trunnion.plan.settings import RouteSettings
 from trunnion.plan.surface.areas import Area, areas_of, blank_faces, connected, hidden_areas, on_outline, walls_of
 from trunnion.plan.surface.cutters import Chosen, cutter_for, named
 from trunnion.plan.surface.draft import Draft, face_name
@@ -34,15 +36,16 @@ from trunnion.plan.surface.leaning import leaning_cutter
 from trunnion.plan.surface.reach import Places, clear_beside, leans, places_on, reached
 from trunnion.plan.surface.scallop import stepover_on_plane
 from trunnion.plan.surface.settings import ALLOWANCE, BOTTOM, CELL, EARLIER, SCALLOP, SurfaceRouteSettings
-from trunnion.plan.surface.sides import Around, sides_for
+from trunnion.plan.surface.sides import sides_for
 from trunnion.plan.surface.slivers import slivers_of, with_slivers
 from trunnion.plan.surface.space import SurfaceSpace
-from trunnion.plan.wishes import RouteSettings
 from trunnion.progress import Progress
 from trunnion.settings import Value, choose
 from trunnion.shop import Shop, Stage
 from trunnion.units import trimmed
 
+CUTTER_RULES = ("layers", "outline", "land", "area", "rest_area", "rest_land")
+"""Words that a typical plan may give for a stage's cutter."""
 ROUGH_SHARE = 0.4
 """Largest roughing cutter over the blank's smaller side seen along the tool: it has to turn inside."""
 REST_SHARE = 0.65

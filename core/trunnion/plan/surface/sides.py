@@ -5,15 +5,13 @@ from __future__ import annotations
 import math
 from collections.abc import Sequence
 from dataclasses import dataclass
-from typing import Protocol
 
 import numpy as np
 
 from trunnion import tolerance
-from trunnion.geometry.arrays import Bools, Floats
 from trunnion.model.setup import Setup
 from trunnion.model.tool import Tool
-from trunnion.plan.surface.drive import Asker
+from trunnion.plan.clearance import Around
 from trunnion.plan.surface.frames import Direction
 from trunnion.plan.surface.reach import Places, reached
 from trunnion.plan.surface.space import SurfaceSpace
@@ -31,16 +29,6 @@ OFF = 0.3
 """mm: how far from the faces it is looked whether a cutter comes there."""
 PROBE = 6.0
 """mm: diameter of the cutter that says what a direction sees: about what comes after roughing."""
-
-
-class Around(Protocol):
-    """What stands round a leaning tool (`pipeline.asking.PartSurroundings`): who asks for a tool, and which axes the machine holds."""
-
-    def __call__(self, tool: Tool) -> Asker:
-        """Return who asks for a tool."""
-
-    def holds(self, axis: Floats) -> Bools:
-        """Say which tool axes (k, 3) the machine can hold."""
 
 
 @dataclass(frozen=True, slots=True, eq=False, kw_only=True)

@@ -5,7 +5,6 @@ from __future__ import annotations
 from collections.abc import Callable
 from dataclasses import dataclass, replace
 
-from trunnion import registry
 from trunnion.geometry.arrays import Floats
 from trunnion.geometry.frame import WORLD, Frame
 from trunnion.geometry.region import Region
@@ -16,7 +15,9 @@ from trunnion.model.setup import Setup
 from trunnion.model.tool import Tool
 from trunnion.part.exact import ExactFace
 from trunnion.part.part import Part
-from trunnion.plan.surface.drive import Asker, SurfaceDrive
+from trunnion.plan.clearance import Asker
+from trunnion.plan.contract import DriveNeeds
+from trunnion.plan.surface.drive import SurfaceDrive
 from trunnion.plan.surface.frames import UPRIGHT, Direction, corners_in, cutting_setup
 from trunnion.plan.surface.rest import left_by, without_met
 from trunnion.plan.surface.settings import ALLOWANCE, SCALLOP, number
@@ -66,20 +67,20 @@ class SurfaceSpace:
         return replace(self, setup=turned, direction=direction, skin=self.skin.moved(self.frame, turned.frame),
                        low=corners.min(axis=0), high=corners.max(axis=0))
 
-    def drive_of(self, operation: Operation, earlier: Tool | None = None, ask: Callable[[Tool], Asker] | None = None,
-                 leans: bool = False, progress: Progress = QUIET) -> SurfaceDrive:
+    def drive_of(self, operation: Operation, needs: DriveNeeds, earlier: Tool | None = None, ask: Callable[[Tool], Asker] | None = None,
+                 progress: Progress = QUIET) -> SurfaceDrive:
         """Return what an operation on curved faces is driven by; `earlier` is the cutter that finished them before, `ask` makes askers.
 
         Unless the tool leans, what it can't come to without its shank or holder meeting the part is none of its area.
         """
         height, allowance = (number(operation, key) for key in (SCALLOP, ALLOWANCE))
         skin, faces, lowest = self.skin, operation.faces, float(self.low[2]) - self.setup.clearance
-        if earlier is not None and not registry.get("strategies", operation.strategy).finds_rest:
+        if earlier is not None and not needs.finds_rest:
             skin, faces = left_by(skin, faces, earlier, lowest, height, progress)
-        if not leans:
+        if not needs.leans:
             skin, faces = without_met(skin, faces, operation.tool, lowest, height, progress)
         told = digest(self.part.digest, self.part.solid, operation.feature, operation.kind, operation.faces, self.frame, self.blank,
-                      self.setup.clearance, self.skin.bound, len(self.skin.triangles), height, allowance, earlier, leans)
+                      self.setup.clearance, self.skin.bound, len(self.skin.triangles), height, allowance, earlier, needs.leans)
         return SurfaceDrive(feature=operation.feature, kind=operation.kind, faces=faces, skin=skin, frame=self.frame,
                             exact=tuple(ExactFace(self.part, tag, self.frame) for tag in operation.faces), low=self.low, high=self.high,
                             clearance=self.setup.clearance, allowance=allowance, height=height, digest=told,

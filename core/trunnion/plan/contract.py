@@ -1,0 +1,174 @@
+"""What the planner of a family promises: from features to a process, and from an operation to the geometry that drives it.
+
+A package adds a planner through the entry points `trunnion.planners`, under the name of the family whose parts it plans. Any planner may
+use any strategy: it makes the drive geometry that the strategy declares.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Hashable, Mapping
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Any, Protocol, TypeVar
+
+from trunnion import registry
+from trunnion.findings import BadInput, Refused
+from trunnion.geometry.arrays import Floats
+from trunnion.geometry.frame import Frame
+from trunnion.geometry.skin import Skin
+from trunnion.model.blank import Blank
+from trunnion.model.feature import Recognition
+from trunnion.model.fixture import Fixture
+from trunnion.model.operation import Operation
+from trunnion.model.process import ProcessTree
+from trunnion.model.session import SizeEntry
+from trunnion.model.setup import Setup
+from trunnion.plan.clearance import Around
+from trunnion.progress import Progress
+from trunnion.settings import Value, checked, choose
+from trunnion.shop import Shop
+
+if TYPE_CHECKING:
+    from trunnion.part.part import Part
+
+PLANNERS = "planners"
+"""Registry of planners, by the name of their family."""
+T = TypeVar("T")
+
+
+class Heights(Protocol):
+    """What is known to be gone already, as a field of heights (`toolpath.stock.PlanningStock`)."""
+
+    @property
+    def heights(self) -> Floats:
+        """Heights (nx, ny) mm of square cells."""
+
+    @property
+    def corner(self) -> Floats:
+        """Where cell (0, 0) begins (2,)."""
+
+    @property
+    def cell(self) -> float:
+        """Side of a cell in mm."""
+
+
+class PartContext(Protocol):
+    """A part in its shop, and what may be asked of it beside its sections."""
+
+    part: Part
+
+    def skin(self, chord: float, progress: Progress) -> Skin:
+        """Return the part's skin in its own coordinates within a chord error (mm)."""
+
+    def around(self, setup: Setup, cutting: Frame, skin: Skin, progress: Progress) -> Around:
+        """Return the clearance queries of a setup for a cutting frame, in which `skin` is the part's."""
+
+
+@dataclass(frozen=True, slots=True, eq=False, kw_only=True)
+class RouteJob:
+    """All that a route is made of; `choices` are a session's settings by full key."""
+
+    recognition: Recognition
+    sizes: tuple[SizeEntry, ...]
+    blank: Blank
+    setups: tuple[Setup, ...]
+    shop: Shop
+    context: PartContext
+    choices: Mapping[str, Value]
+    progress: Progress
+
+    def chosen(self, group: type[T]) -> T:
+        """Return a group of settings as chosen; raise `BadInput` for a value that is not allowed."""
+        return checked(choose(group, self.choices))
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class DriveNeeds:
+    """What an operation's strategy needs: the class of its drive, whether its tool leans, whether it finds for itself what an earlier
+    cutter left."""
+
+    drive: type
+    leans: bool = False
+    finds_rest: bool = False
+
+
+class Scene(Protocol):
+    """What the operations of one setup are made in."""
+
+    context: PartContext
+    recognition: Recognition
+    blank: Blank
+    setup: Setup
+    process: ProcessTree
+    fixtures: tuple[Fixture, ...]
+
+    def stock(self, setup: Setup) -> Heights:
+        """Return the stock that is left at this moment, in the frame of a setup (a cutting frame is one)."""
+
+    def once(self, key: Hashable, make: Callable[[], T]) -> T:
+        """Return what is made once for all operations of the setup, kept under a key."""
+
+
+class Drive(Protocol):
+    """Drive geometry of any class."""
+
+    @property
+    def is_empty(self) -> bool:
+        """Whether an operation that it drives has nothing to cut."""
+
+
+@dataclass(frozen=True, slots=True, eq=False, kw_only=True)
+class Driven:
+    """The drive of an operation, the setup whose frame it lies in (the cutting frame), and `told`, what a digest is made of that tells the
+    drive from others: the drive itself, or its digest, with all else that its queries depend on."""
+
+    setup: Setup
+    drive: Drive
+    told: Any
+
+
+class Planner(Protocol):
+    """The planner of a family's parts.
+
+    `name` is the family's, `noun` what several of its parts are called ("panels"); `settings` are the groups that its route reads,
+    `cutter_rules` the words that its typical plans may give for a stage's cutter.
+    """
+
+    name: str
+    noun: str
+    settings: tuple[type, ...]
+    cutter_rules: tuple[str, ...]
+
+    def can_plan(self, part: Part) -> None:
+        """Raise `BadInput` with what to do where nothing can be planned for a part."""
+
+    def route(self, job: RouteJob) -> ProcessTree:
+        """Return the process: operations in cutting order, and findings on what is not planned.
+
+        Raises `BadInput` for settings or a typical plan that can't be followed, `Cancelled` when a person asked to stop.
+        """
+
+    def drive(self, operation: Operation, needs: DriveNeeds, scene: Scene, progress: Progress) -> Driven:
+        """Return the drive of an operation; raise `Refused` where the part does not bear the feature out."""
+
+
+DriveMaker = Callable[[Operation, DriveNeeds, Scene, Progress], Driven]
+"""How a planner makes drives of one class."""
+
+
+def planner_for(family: str) -> Planner:
+    """Return the planner of a family; raise `BadInput` where it has none."""
+    known = registry.names(PLANNERS)
+    if family not in known:
+        raise BadInput(f"parts of the family {family} are segmented and measured, but not planned yet; for flat pockets and "
+                       f"outlines choose recognize.family = {' or '.join(known)}")
+    planner: Planner = registry.get(PLANNERS, family)()
+    return planner
+
+
+def driven_by(makers: Mapping[type, DriveMaker], planner: Planner, operation: Operation, needs: DriveNeeds, scene: Scene,
+              progress: Progress) -> Driven:
+    """Return the drive of an operation by the maker for the class that its strategy needs; raise `Refused` where there is none."""
+    if needs.drive not in makers:
+        raise Refused(f"{operation.id}: {operation.strategy} is driven by a {needs.drive.__name__}, which is not made for {planner.noun}; "
+                      "choose another strategy")
+    return makers[needs.drive](operation, needs, scene, progress)

@@ -1,0 +1,46 @@
+"""The planner of panels."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+from trunnion.model.operation import Operation
+from trunnion.model.process import ProcessTree
+from trunnion.plan.contract import Driven, DriveNeeds, RouteJob, Scene, driven_by
+from trunnion.plan.drive import PlaneDrive, drive_of
+from trunnion.plan.regions import Space
+from trunnion.plan.route import make_route
+from trunnion.plan.settings import RouteSettings
+from trunnion.plan.surface.drive import SurfaceDrive
+from trunnion.plan.surface.driving import surface_driven
+from trunnion.plan.wishes import WISHES
+from trunnion.progress import Progress
+
+if TYPE_CHECKING:
+    from trunnion.part.part import Part
+
+
+class PanelPlanner:
+    """Plans pockets, ribs, islands and the outline; its plane operations are driven by features, through the part's sections."""
+
+    name, noun = "panel", "panels"
+    settings: tuple[type, ...] = (RouteSettings,)
+    cutter_rules: tuple[str, ...] = tuple(WISHES)
+
+    def can_plan(self, part: Part) -> None:
+        """Refuse no part: features whose sections can't be made are refused one by one."""
+
+    def route(self, job: RouteJob) -> ProcessTree:
+        """Return the process by `make_route`."""
+        return make_route(job.recognition, job.sizes, job.blank, job.setups, job.shop, job.context.part, job.chosen(RouteSettings),
+                          job.progress)
+
+    def drive(self, operation: Operation, needs: DriveNeeds, scene: Scene, progress: Progress) -> Driven:
+        """Return the drive that an operation's strategy needs."""
+        return driven_by({PlaneDrive: _plane_driven, SurfaceDrive: surface_driven}, self, operation, needs, scene, progress)
+
+
+def _plane_driven(operation: Operation, needs: DriveNeeds, scene: Scene, progress: Progress) -> Driven:
+    space = scene.once("sections", lambda: Space.of(scene.context.part, scene.recognition, scene.blank, scene.setup))
+    drive = drive_of(operation, scene.process, space)
+    return Driven(setup=scene.setup, drive=drive, told=drive)

@@ -1,0 +1,57 @@
+"""The planner of parts of curved surfaces."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+from trunnion import tolerance
+from trunnion.findings import BadInput
+from trunnion.model.operation import Operation
+from trunnion.model.process import ProcessTree
+from trunnion.plan.contract import Driven, DriveNeeds, RouteJob, Scene, driven_by
+from trunnion.plan.drive import PlaneDrive
+from trunnion.plan.settings import RouteSettings
+from trunnion.plan.surface.drive import SurfaceDrive
+from trunnion.plan.surface.driving import space_from, surface_driven
+from trunnion.plan.surface.layers import plane_drive_of
+from trunnion.plan.surface.route import CUTTER_RULES, make_surface_route
+from trunnion.plan.surface.settings import SurfaceRouteSettings
+from trunnion.plan.surface.space import SurfaceSpace
+from trunnion.progress import Progress
+
+if TYPE_CHECKING:
+    from trunnion.part.part import Part
+
+
+class SurfacePlanner:
+    """Plans layers, outlines, lands and areas; its plane operations are driven by how high the part stands."""
+
+    name, noun = "surface", "parts of curved surfaces"
+    settings: tuple[type, ...] = (RouteSettings, SurfaceRouteSettings)
+    cutter_rules: tuple[str, ...] = CUTTER_RULES
+
+    def can_plan(self, part: Part) -> None:
+        """Raise `BadInput` for faces that enclose no material."""
+        if not part.is_closed:
+            raise BadInput("nothing can be planned for faces that enclose no material; export the whole solid from the CAD system, or only "
+                           "group, cut and export these faces")
+
+    def route(self, job: RouteJob) -> ProcessTree:
+        """Return the process by `make_surface_route`."""
+        first, progress = job.setups[0], job.progress
+        curved = job.chosen(SurfaceRouteSettings).consistent()
+        skin = job.context.skin(tolerance.CHORD, progress.part(0.0, 0.5))
+        space = SurfaceSpace.of(job.context.part, skin, job.blank, first)
+        around = job.context.around(first, space.frame, space.skin, progress)
+        return make_surface_route(job.recognition, job.blank, job.setups, job.shop, space, around, job.chosen(RouteSettings), curved,
+                                  progress.part(0.5, 1.0))
+
+    def drive(self, operation: Operation, needs: DriveNeeds, scene: Scene, progress: Progress) -> Driven:
+        """Return the drive that an operation's strategy needs."""
+        return driven_by({PlaneDrive: _plane_driven, SurfaceDrive: surface_driven}, self, operation, needs, scene, progress)
+
+
+def _plane_driven(operation: Operation, needs: DriveNeeds, scene: Scene, progress: Progress) -> Driven:
+    space = space_from(operation.direction, tolerance.CHORD, scene, progress)
+    drive = plane_drive_of(operation, space, scene.stock(space.setup), progress, scene.process)
+    return Driven(setup=space.setup, drive=drive, told=drive)

@@ -1,0 +1,121 @@
+"""Planners: found by the family's name, asked for routes and drives; a family of one's own brings its planner along."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import pytest
+
+from trunnion import registry
+from trunnion.findings import BadInput, Refused, Severity
+from trunnion.model.process import ProcessTree
+from trunnion.pipeline import Engine
+from trunnion.pipeline.making import make_paths
+from trunnion.plan.contract import DriveNeeds, driven_by, planner_for
+from trunnion.progress import QUIET
+from trunnion.settings import declared, setting, settings
+
+
+@settings("wedge")
+class WedgeSettings:
+    """What a shop may choose about wedges."""
+
+    slope: float = setting(3.0, unit="deg", low=0.0, high=30.0, label="Slope", help="How much a wedge leans.")
+
+
+class WedgePlanner:
+    """A planner of a test: plans nothing, drives nothing."""
+
+    name, noun, settings, cutter_rules = "wedge", "wedges", (WedgeSettings,), ()
+
+    def can_plan(self, part):
+        """Refuse no part."""
+
+    def route(self, job):
+        """Return a process without operations, named by the slope."""
+        slope = job.chosen(WedgeSettings).slope
+        return ProcessTree(plan=f"wedge of {slope:g}", material=job.blank.material, setups=job.setups)
+
+    def drive(self, operation, needs, scene, progress):
+        """Make no drive."""
+        return driven_by({}, self, operation, needs, scene, progress)
+
+
+@pytest.fixture
+def wedges(monkeypatch):
+    """Registers the planner of wedges for one test."""
+    known, names = registry.get, registry.names
+    monkeypatch.setattr(registry, "get", lambda kind, name: WedgePlanner if (kind, name) == ("planners", "wedge") else known(kind, name))
+    monkeypatch.setattr(registry, "names", lambda kind: (*names(kind), "wedge") if kind == "planners" else names(kind))
+
+
+@pytest.fixture(scope="module")
+def measured(sample_panel):
+    """An engine and its session of the small panel, with a blank."""
+    engine = Engine()
+    return engine, engine.run(engine.open(sample_panel), until="blank")
+
+
+@pytest.fixture(scope="module")
+def routed(measured):
+    """The same with operations."""
+    engine, session = measured
+    return engine, engine.run(session, until="optimize")
+
+
+def as_family(session, family):
+    return replace(session, recognition=replace(session.recognition, family=family))
+
+
+def route_step():
+    from trunnion.pipeline.steps import step_named
+    return step_named("route")
+
+
+def test_every_family_of_ours_has_a_planner_of_its_name() -> None:
+    assert registry.names("planners") == registry.names("families")
+    assert [planner_for(name).name for name in registry.names("planners")] == list(registry.names("planners"))
+
+
+def test_a_family_without_a_planner_is_refused_with_what_to_do() -> None:
+    with pytest.raises(BadInput, match="parts of the family casing are segmented and measured, but not planned yet; for flat pockets and "
+                                       "outlines choose recognize.family = panel or surface"):
+        planner_for("casing")
+
+
+def test_a_family_of_ones_own_is_routed_by_its_planner(measured, wedges) -> None:
+    engine, session = measured
+    chosen = replace(as_family(session, "wedge"), choices={"wedge.slope": 7.0})
+    assert route_step().work(chosen, engine.bench, QUIET).session.process.plan == "wedge of 7"
+
+
+def test_its_settings_can_be_chosen(wedges) -> None:
+    assert "wedge.slope" in {d.key for group in Engine().settings()["route"] for d in declared(group)}
+
+
+def test_a_drive_that_a_planner_does_not_make_is_an_error_that_names_strategy_and_family(routed, wedges) -> None:
+    engine, session = routed
+    first = replace(session.process, operations=session.process.operations[:1])
+    found = make_paths(as_family(replace(session, process=first, paths=()), "wedge"), engine.bench, QUIET)[0].findings
+    assert [(f.severity, f.code) for f in found] == [(Severity.ERROR, "toolpath.refused")]
+    assert "plane.face is driven by a PlaneDrive, which is not made for wedges" in found[0].text
+
+
+@pytest.mark.parametrize("family", registry.names("planners"))
+def test_our_planners_drive_every_strategy_that_is_there(routed, family) -> None:
+    operation = routed[1].process.operations[0]
+    with pytest.raises(Refused, match="driven by a int, which is not made for"):
+        planner_for(family).drive(operation, DriveNeeds(drive=int), None, QUIET)
+    made = {registry.get("strategies", name).drive for name in registry.names("strategies")}
+    for drive in made:
+        with pytest.raises(AttributeError):     # it goes for the scene: a drive of this class is made
+            planner_for(family).drive(operation, DriveNeeds(drive=drive), None, QUIET)
+
+
+def test_unsewn_faces_are_refused_as_parts_of_curved_surfaces_only() -> None:
+    class Faces:
+        is_closed = False
+
+    planner_for("panel").can_plan(Faces())
+    with pytest.raises(BadInput, match="faces that enclose no material"):
+        planner_for("surface").can_plan(Faces())
