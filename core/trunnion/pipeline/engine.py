@@ -185,12 +185,13 @@ class Engine:
     def _run_one(self, session: Session, step: Step, progress: Progress) -> Session:
         began = time.perf_counter()
         bench = self.bench_of(session, progress)
-        key = progress.aside(lambda _: step.key(session, bench))
         try:
             with compiling(progress), bench.part.watched(progress):
                 result = step.work(session, bench, progress)
         except TrunnionError as reason:
             raise type(reason)(_whole_line(session, str(reason))) from None
+        # What a step uses may depend on its own result: the settings of the family that was recognised.
+        key = progress.aside(lambda _: step.key(result.session, bench))
         record = StepRecord(key=key, seconds=time.perf_counter() - began, findings=result.findings)
         kept = {name: session.records[name] for name in STEPS if name in session.records}
         return replace(result.session, records={name: record if name == step.name else kept[name]

@@ -1,7 +1,8 @@
 """The steps of the work, what each one reads, and the plain function behind it.
 
-A step's key is the digest of what it is given: the settings it declares, the results it reads and a version that its author
-raises when the answer changes. A step whose key differs from its record is stale; nothing keeps a list of setting names.
+A step's key is the digest of what it is given: the settings it uses, the results it reads and a version that its author raises when
+the answer changes. A step whose key differs from its record is stale; nothing keeps a list of setting names. Of families, planners and
+strategies a session uses its own ones' settings alone.
 """
 
 from __future__ import annotations
@@ -17,7 +18,7 @@ from trunnion.model.session import Session
 from trunnion.pipeline.bench import Bench
 from trunnion.pipeline.family import FAMILIES, KINDS, RecognizeSettings, recognised
 from trunnion.pipeline.hand import with_features_by_hand, with_operations_by_hand
-from trunnion.pipeline.making import findings_of, make_paths, strategy_settings
+from trunnion.pipeline.making import STRATEGIES, findings_of, make_paths, strategy_settings
 from trunnion.pipeline.proving import prove_session
 from trunnion.pipeline.scene import SessionContext
 from trunnion.plan.blank import BlankSettings, make_blank
@@ -43,8 +44,8 @@ class Result:
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Step:
-    """One step: name, title, the steps whose results it reads (`after`), the settings it declares, what it reads, the work, and whether its
-    result is there."""
+    """One step: name, title, the steps whose results it reads (`after`), the settings it declares and those among them that a session
+    uses (all where `uses` is None), what it reads, the work, and whether its result is there."""
 
     name: str
     title: str
@@ -54,15 +55,40 @@ class Step:
     work: Callable[[Session, Bench, Progress], Result]
     done: Callable[[Session], bool]
     version: int = 1
+    uses: Callable[[Session], tuple[type, ...]] | None = None
 
     def key(self, session: Session, bench: Bench) -> str:
         """Return the digest of everything the step would be given now."""
-        chosen: tuple[Any, ...] = tuple(checked(choose(group, session.choices)) for group in self.settings())
+        used = self.settings() if self.uses is None else self.uses(session)
+        chosen: tuple[Any, ...] = tuple(checked(choose(group, session.choices)) for group in used)
         return digest(self.name, self.version, chosen, self.reads(session, bench), *session.cuts)
 
 
 def _family_settings() -> tuple[type, ...]:
     return (RecognizeSettings, *(registry.get(FAMILIES, name).settings for name in registry.names(FAMILIES)))
+
+
+def _used_to_recognize(session: Session) -> tuple[type, ...]:
+    """Return the settings of recognition and of the family that was recognised: which one that is depends on no family's settings."""
+    known = _served(session, FAMILIES)
+    return (RecognizeSettings, registry.get(FAMILIES, known).settings) if known else (RecognizeSettings,)
+
+
+def _used_to_route(session: Session) -> tuple[type, ...]:
+    known = _served(session, PLANNERS)
+    return (SetupSettings, *registry.get(PLANNERS, known).settings) if known else (SetupSettings,)
+
+
+def _served(session: Session, kind: str) -> str:
+    """Return the name of a session's family where it is registered as a kind, else an empty name."""
+    family = session.recognition.family if session.recognition else ""
+    return family if family in registry.names(kind) else ""
+
+
+def _strategies_used(session: Session) -> tuple[type, ...]:
+    """Return the settings of the strategies in use."""
+    used = sorted({o.strategy for o in session.process.operations}) if session.process else ()
+    return tuple(registry.get(STRATEGIES, name).settings for name in used)
 
 
 def _route_settings() -> tuple[type, ...]:
@@ -166,13 +192,12 @@ def _operations_without_data(session: Session) -> tuple[Any, ...]:
 
 
 def _strategies_chosen(session: Session) -> tuple[Any, ...]:
-    """Return the settings of the strategies in use: they say how large an engagement each can meet."""
-    used = sorted({o.strategy for o in session.process.operations}) if session.process else ()
-    return tuple(checked(choose(registry.get("strategies", name).settings, session.choices)) for name in used)
+    """Return what is chosen for the strategies in use: it says how large an engagement each can meet."""
+    return tuple(checked(choose(group, session.choices)) for group in _strategies_used(session))
 
 
 STEP_TABLE: tuple[Step, ...] = (
-    Step(name="recognize", title="Recognize", after=(), settings=_family_settings, work=_recognize,
+    Step(name="recognize", title="Recognize", after=(), settings=_family_settings, uses=_used_to_recognize, work=_recognize,
          reads=lambda s, b: (b.part.digest, b.part.solid, registry.names(FAMILIES), registry.names(KINDS)),
          done=lambda s: s.recognition is not None, version=2),
     Step(name="size", title="Size analysis", after=("recognize",), settings=lambda: (), work=_size,
@@ -181,12 +206,13 @@ STEP_TABLE: tuple[Step, ...] = (
          reads=lambda s, b: (b.part.digest, s.recognition.frame if s.recognition else None, b.shop.digest),
          done=lambda s: s.blank is not None),
     Step(name="route", title="Process route", after=("size", "blank"), work=_route,
-         settings=_route_settings,
+         settings=_route_settings, uses=_used_to_route,
          reads=lambda s, b: (b.part.digest, s.recognition, s.blank, b.shop.digest), done=lambda s: s.process is not None),
     Step(name="optimize", title="Optimize", after=("route",), settings=lambda: (CuttingSettings,), work=_optimize,
          reads=lambda s, b: (_record_key(s, "route"), _operations_without_data(s), _strategies_chosen(s), b.shop.digest),
          done=lambda s: s.process is not None, version=2),
-    Step(name="toolpath", title="Toolpaths", after=("optimize",), settings=strategy_settings, work=_toolpath,
+    Step(name="toolpath", title="Toolpaths", after=("optimize",), settings=strategy_settings, uses=_strategies_used,
+         work=_toolpath,
          reads=lambda s, b: (b.part.digest, s.recognition, s.blank, s.setups, s.process), done=lambda s: "toolpath" in s.records),
     Step(name="verify", title="Verify and post", after=("toolpath",), settings=lambda: (PostSettings, ProofSettings), work=_verify,
          reads=lambda s, b: (b.part.digest, s.blank, s.setups, s.process, tuple(p.key for p in s.paths),
