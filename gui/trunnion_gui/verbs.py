@@ -238,8 +238,8 @@ def _offered(setting: Declared) -> Declared:
     return replace(setting, choices=tuple(dict.fromkeys((str(setting.default), *known))))
 
 
-_CATALOGUES = {"blank.material": "materials", "setup.machine": "machines", "surface.cutter": "tools", "surface.local_cutter": "tools",
-               "surface.rough_cutter": "tools"}
+_CATALOGUES = {"blank.material": "materials", "setup.machine": "machines", "route.plan": "plans",
+               "surface.cutter": "tools", "surface.local_cutter": "tools", "surface.rough_cutter": "tools"}
 """Settings that name a thing of a catalogue: the form offers what there is."""
 VERBS: dict[str, Callable[..., Any]] = {
     "open": _open, "run": _run, "states": _states, "attach": _attach, "save": _save, "write": _write, "settings": _settings,

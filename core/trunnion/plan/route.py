@@ -22,6 +22,7 @@ from trunnion.plan.order import Job, ordered
 from trunnion.plan.regions import Sections, Space, parent_of
 from trunnion.plan.settings import RouteSettings
 from trunnion.plan.setups import from_below
+from trunnion.plan.typical import typical_plan
 from trunnion.plan.wishes import DEPENDENT, WISHES, Draft, Wish, catalogue, floor_distance, with_falling_sizes
 from trunnion.progress import Progress
 from trunnion.settings import Value, choose
@@ -42,7 +43,8 @@ def make_route(recognition: Recognition, sizes: tuple[SizeEntry, ...], blank: Bl
     (`route.not-planned`); their material stays and the proof counts it. A cutter that does not exist is an error (`route.no-cutter`), so
     is a blank that the machine can't take (`route.travel`; nothing is planned then).
     """
-    plan, material = shop.plan_for(recognition.family), shop.material(blank.material)
+    plan = typical_plan(shop, recognition.family, settings.plan, tuple(WISHES))
+    material = shop.material(blank.material)
     findings = too_large(blank, setups, shop)
     if findings:
         return ProcessTree(plan=plan.name, material=material.name, setups=tuple(setups), findings=tuple(findings))

@@ -255,7 +255,7 @@ def _wishes_profile(draft: Draft, stage: Stage, features: Sequence[Feature]) -> 
 WISHES: Mapping[str, Callable[[Draft, Stage, Sequence[Feature]], list[Wish]]] = {
     "face": _wishes_face, "rough": _wishes_rough, "rest": _wishes_rest, "top": _wishes_top, "floor": _wishes_floor, "wall": _wishes_wall,
     "corner": _wishes_corner, "profile_rough": _wishes_profile, "profile_finish": _wishes_profile}
-"""The rule behind each word that a typical plan gives for its cutter (`shop.plans.CUTTER_RULES`)."""
+"""The rule behind each word that a typical plan gives for its cutter."""
 
 
 def _wish(stage: Stage, feature: Feature, bands: tuple[Band, ...], task: Task, faces: tuple[int, ...]) -> Wish:

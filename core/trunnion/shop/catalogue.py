@@ -22,7 +22,7 @@ T = TypeVar("T")
 
 @dataclass(frozen=True, kw_only=True)
 class Shop:
-    """Cutters, materials, machines and typical plans that a plan may choose from."""
+    """Cutters, materials, machines and typical plans that a plan may choose from; `plans` in their order (`load_plans`)."""
 
     cutters: tuple[Cutter, ...]
     materials: Mapping[str, Material]
@@ -37,7 +37,7 @@ class Shop:
     @cached_property
     def digest(self) -> str:
         """A short stable digest of everything in the catalogues: what was planned with another one is stale."""
-        return digest(self.cutters, self.materials, self.machines, self.plans)
+        return digest(self.cutters, self.materials, self.machines, self.plans, tuple(self.plans))
 
     def tools_for(self, iso_group: str, use: str) -> tuple[Tool, ...]:
         """Return the cutters made for a group of materials and a use (`face`, `rough`, `finish`)."""
@@ -51,12 +51,12 @@ class Shop:
         """Return a machine; raise `BadInput` with the known names."""
         return _named(self.machines, name, "machine")
 
-    def plan_for(self, family: str) -> TypicalPlan:
-        """Return the typical plan of a family, the first by name; raise `BadInput` when there is none."""
-        for _, plan in sorted(self.plans.items()):
-            if plan.family == family:
-                return plan
-        raise BadInput(f"there is no typical plan for the family {family}; add one to the plans folder")
+    def plan_for(self, family: str, named: str = "") -> TypicalPlan:
+        """Return the typical plan of a family that is named, or (empty) its first; raise `BadInput` when there is none."""
+        known = {name: plan for name, plan in self.plans.items() if plan.family == family}
+        if not known:
+            raise BadInput(f"there is no typical plan for the family {family}; add one to the plans folder")
+        return _named(known, named, f"typical plan for the family {family},") if named else next(iter(known.values()))
 
 
 def load_shop(user_folder: Path | None = None) -> Shop:

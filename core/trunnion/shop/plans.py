@@ -7,17 +7,14 @@ from pathlib import Path
 
 from trunnion.shop.reading import Entry, by_name, entries
 
-CUTTER_RULES = ("face", "rough", "rest", "top", "floor", "wall", "corner", "profile_rough", "profile_finish",
-                "layers", "outline", "area", "rest_area", "land", "rest_land")
-
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Stage:
     """One stage of a typical plan: an operation of `kind` by `strategy` for every feature of the kinds in `on` (`blank`: once a setup).
 
-    `cutter` names the rule that chooses the tool, `finish` says whether it cuts to size (else it leaves the route's allowances); `after`
-    names earlier stages that must be done on the same feature and on those of another kind beside it, `after_all` those that must be done
-    on every feature; `rule` says why, in words.
+    `cutter` names the rule that chooses the tool (the family's planner says which there are), `finish` says whether it cuts to size (else
+    it leaves the route's allowances); `after` names earlier stages that must be done on the same feature and on those of another kind
+    beside it, `after_all` those that must be done on every feature; `rule` says why, in words.
     """
 
     name: str
@@ -42,8 +39,12 @@ class TypicalPlan:
 
 
 def load_plans(user_folder: Path | None) -> dict[str, TypicalPlan]:
-    """Return the typical plans by name; a user's replaces the program's of the same name as a whole."""
-    return {name: _plan(entry) for name, entry in by_name(entries("plans", user_folder)).items()}
+    """Return the typical plans by name, in the order in which a family takes the first: a user's before the program's, then by file name,
+    then as they stand in the file. A user's replaces the program's of the same name as a whole."""
+    found = list(entries("plans", user_folder))
+    own = {entry.name for layer, entry in found if layer}
+    chosen = by_name(found)
+    return {name: _plan(chosen[name]) for name in sorted(chosen, key=lambda name: name not in own)}
 
 
 def _plan(entry: Entry) -> TypicalPlan:
@@ -62,11 +63,8 @@ def _plan(entry: Entry) -> TypicalPlan:
 
 
 def _stage(entry: Entry) -> Stage:
-    cutter = entry.text("cutter")
-    if cutter not in CUTTER_RULES:
-        raise entry.wrong(f"cutter must be one of {', '.join(CUTTER_RULES)}; got {cutter!r}")
-    stage = Stage(name=entry.text("name"), kind=entry.text("kind"), strategy=entry.text("strategy"), on=entry.texts("on"), cutter=cutter,
-                  finish=entry.flag("finish"), after=entry.texts("after", ()), after_all=entry.texts("after_all", ()),
-                  rule=entry.text("rule"))
+    stage = Stage(name=entry.text("name"), kind=entry.text("kind"), strategy=entry.text("strategy"), on=entry.texts("on"),
+                  cutter=entry.text("cutter"), finish=entry.flag("finish"), after=entry.texts("after", ()),
+                  after_all=entry.texts("after_all", ()), rule=entry.text("rule"))
     entry.done()
     return stage

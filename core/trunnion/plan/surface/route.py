@@ -39,6 +39,7 @@ from trunnion.plan.surface.settings import ALLOWANCE, BOTTOM, CELL, EARLIER, SCA
 from trunnion.plan.surface.sides import sides_for
 from trunnion.plan.surface.slivers import slivers_of, with_slivers
 from trunnion.plan.surface.space import SurfaceSpace
+from trunnion.plan.typical import typical_plan
 from trunnion.progress import Progress
 from trunnion.settings import Value, choose
 from trunnion.shop import Shop, Stage
@@ -79,7 +80,8 @@ def make_surface_route(recognition: Recognition, blank: Blank, setups: Sequence[
     What an upright tool doesn't reach is roughed from other directions and finished by a leaning one where the machine has rotary axes.
     Faces that no cutter reaches become findings (`route.not-planned`) that name the remedy.
     """
-    plan, material = shop.plan_for(recognition.family), shop.material(blank.material)
+    plan = typical_plan(shop, recognition.family, route.plan, CUTTER_RULES)
+    material = shop.material(blank.material)
     findings = too_large(blank, setups, shop)
     if findings:
         return ProcessTree(plan=plan.name, material=material.name, setups=tuple(setups), findings=tuple(findings))
