@@ -7,6 +7,7 @@ from dataclasses import replace
 import pytest
 
 from programs import process_tree, recognition
+from trunnion import registry
 from trunnion.model.feature import FaceRole, Feature, Recognition
 from trunnion.pipeline.engine import Engine
 from trunnion.pipeline.hand import with_features_by_hand, with_operations_by_hand
@@ -104,3 +105,22 @@ def test_a_deleted_operation_stays_deleted_when_the_route_is_made_again(routed):
     assert again.records["route"].key != session.records["route"].key
     assert gone not in [o.id for o in again.process.operations]
     assert again.process.removed == (gone,)
+
+
+def test_kinds_that_share_out_faces_are_what_the_family_says(monkeypatch):
+    class Wedges:
+        exclusive = ("wedge",)
+
+    known, names = registry.get, registry.names
+    monkeypatch.setattr(registry, "get", lambda kind, name: Wedges if name == "wedges" else known(kind, name))
+    monkeypatch.setattr(registry, "names", lambda kind: (*names(kind), "wedges"))
+
+    def wedge(id, *tags, by_hand=False):
+        return Feature(id=id, kind="wedge", faces=tuple(FaceRole(role="face", face=t) for t in tags), by_hand=by_hand)
+
+    found = Recognition(family="wedges", features=(wedge("wedge-01", 1, 2, 3, 4), wedge("wedge-02", 5, 6)))
+    before = replace(found, features=(wedge("wedge-01", 4, 5, 6, by_hand=True),))
+    after = with_features_by_hand(before, found)
+    assert {f.id: f.tags for f in after} == {"wedge-01": (4, 5, 6), "wedge-02": (1, 2, 3)}
+    other = replace(before, family="panel"), replace(found, family="panel")
+    assert {f.id: f.tags for f in with_features_by_hand(*other)} == {"wedge-01": (4, 5, 6)}

@@ -2,13 +2,17 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 import pytest
 
 from blockparts import terrace
+from trunnion import registry
 from trunnion.model.feature import FaceRole, Feature, Recognition
 from trunnion.model.session import SizeEntry
 from trunnion.plan.size import size_table
 from trunnion.progress import QUIET
+from trunnion.recognize.contract import Smallest
 from trunnion.recognize.panel import PanelFamily
 from trunnion.settings import choose
 
@@ -58,3 +62,18 @@ def test_a_size_is_in_the_unit_that_its_name_says(name: str, unit: str) -> None:
     graph = PART.graph()
     feature = Feature(id="group-01", kind="group", faces=(FaceRole(role="face", face=1),), sizes={name: 0.5})
     assert one(size_table(Recognition(family="surface", features=(feature,)), graph), "group-01", name).unit == unit
+
+
+def test_the_part_s_smallest_sizes_are_those_that_the_family_says(monkeypatch):
+    class Wedges:
+        smallest = (Smallest(name="thinnest_wedge", size="thickness", kinds=("wedge",)),)
+
+    known, names = registry.get, registry.names
+    monkeypatch.setattr(registry, "get", lambda kind, name: Wedges if name == "wedges" else known(kind, name))
+    monkeypatch.setattr(registry, "names", lambda kind: (*names(kind), "wedges"))
+    wedges = [Feature(id=f"wedge-{n}", kind="wedge", faces=(FaceRole(role="top", face=n),), sizes={"thickness": thickness})
+              for n, thickness in ((1, 4.0), (2, 3.0))]
+    found = Recognition(family="wedges", features=(*wedges, replace(wedges[0], id="rib-1", kind="rib", sizes={"thickness": 1.0})))
+    entry = one(size_table(found, PART.graph()), "part", "thinnest_wedge")
+    assert (entry.value, entry.faces) == (3.0, (2,))
+    assert not [e for e in size_table(found, PART.graph()) if e.name == "thinnest_rib"]

@@ -2,31 +2,31 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable
+from collections.abc import Collection, Iterable
 from dataclasses import replace
 
 from trunnion.findings import face_tags, info
 from trunnion.model.feature import Feature, Recognition
 from trunnion.model.process import ProcessTree
-
-GROUP = "group"
-"""The kind of the features that share out patches: each patch is in one at most, whoever put it there."""
+from trunnion.recognize.contract import exclusive_kinds
 
 
 def with_features_by_hand(before: Recognition | None, found: Recognition) -> Recognition:
     """Return what was found with the features that a person made or changed in place of those that claim most of their faces, and
     without those that claim most of the faces of a deleted one. Faces that lose their feature become unexplained.
 
-    Groups of patches only lose the faces that a person put elsewhere, and faces that the part has no more leave every group.
+    Features of kinds that share out faces (`exclusive_kinds`) only lose the faces that a person put elsewhere, and faces that the part has
+    no more leave every one of them.
     """
     if before is None or not (before.removed or any(f.by_hand for f in before.features)):
         return found
+    sharing = frozenset((*exclusive_kinds(before.family), *exclusive_kinds(found.family)))
     there = {*found.unexplained, *(tag for f in found.features for tag in f.tags)}
-    by_hand = tuple(kept for f in before.features if f.by_hand for kept in _within(f, there))
-    taken = [set(f.tags) for f in by_hand if f.kind != GROUP] + [set(tags) for tags in before.removed]
-    others = [f for f in _renamed(_shared_out(found.features, by_hand), by_hand) if not _claims_most(f, taken)]
+    by_hand = tuple(kept for f in before.features if f.by_hand for kept in _within(f, there, sharing))
+    taken = [set(f.tags) for f in by_hand if f.kind not in sharing] + [set(tags) for tags in before.removed]
+    others = [f for f in _renamed(_shared_out(found.features, by_hand, sharing), by_hand, sharing) if not _claims_most(f, taken)]
     kept = (*others, *by_hand)
-    if any(f.kind == GROUP for f in kept):
+    if any(f.kind in sharing for f in kept):
         kept = tuple(sorted(kept, key=lambda f: f.id))
     loose = there - {tag for f in kept for tag in f.tags}
     deleted = [f for f in found.features if _claims_most(f, [set(tags) for tags in before.removed])]
@@ -35,28 +35,28 @@ def with_features_by_hand(before: Recognition | None, found: Recognition) -> Rec
     return replace(found.with_unexplained(loose), features=kept, findings=(*found.findings, *told), removed=before.removed)
 
 
-def _within(feature: Feature, there: set[int]) -> tuple[Feature, ...]:
-    """Return a group with the faces that are there, nothing when there is none; other features as they are."""
-    if feature.kind != GROUP:
+def _within(feature: Feature, there: set[int], sharing: Collection[str]) -> tuple[Feature, ...]:
+    """Return a feature that shares out faces with those that are there, nothing when there is none; other features as they are."""
+    if feature.kind not in sharing:
         return (feature,)
     return tuple(f for f in (without_faces(feature, set(feature.tags) - there),) if f.faces)
 
 
-def _shared_out(features: Iterable[Feature], by_hand: Iterable[Feature]) -> tuple[Feature, ...]:
-    """Return features, groups among them without the faces that a person has put in another one; empty groups go."""
-    taken = {tag for f in by_hand if f.kind == GROUP for tag in f.tags}
-    return tuple(f for f in (without_faces(f, taken) if f.kind == GROUP else f for f in features) if f.faces or f.kind != GROUP)
+def _shared_out(features: Iterable[Feature], by_hand: Iterable[Feature], sharing: Collection[str]) -> tuple[Feature, ...]:
+    """Return features, those that share out faces without what a person has put in another one; empty ones of them go."""
+    taken = {tag for f in by_hand if f.kind in sharing for tag in f.tags}
+    return tuple(f for f in (without_faces(f, taken) if f.kind in sharing else f for f in features) if f.faces or f.kind not in sharing)
 
 
-def _renamed(features: tuple[Feature, ...], by_hand: Iterable[Feature]) -> tuple[Feature, ...]:
-    """Return features without those that bear a name of one made by hand; groups of that name get a free one."""
+def _renamed(features: tuple[Feature, ...], by_hand: Iterable[Feature], sharing: Collection[str]) -> tuple[Feature, ...]:
+    """Return features without those that bear a name of one made by hand; those that share out faces get a free name instead."""
     names = {f.id for f in by_hand}
     kept = []
     for f in features:
-        if f.kind == GROUP and f.id in names:
-            f = replace(f, id=free_id({*names, *(other.id for other in features)}))
+        if f.kind in sharing and f.id in names:
+            f = replace(f, id=free_id(f.kind, {*names, *(other.id for other in features)}))
             names.add(f.id)
-        if f.id not in names or f.kind == GROUP:
+        if f.id not in names or f.kind in sharing:
             kept.append(f)
     return tuple(kept)
 
@@ -66,16 +66,16 @@ def without_faces(feature: Feature, tags: set[int]) -> Feature:
     return replace(feature, faces=tuple(f for f in feature.faces if f.face not in tags)) if tags & set(feature.tags) else feature
 
 
-def free_id(taken: set[str]) -> str:
-    """Return the first name of a group that is not taken.
+def free_id(kind: str, taken: set[str]) -> str:
+    """Return the first name of a feature of a kind that is not taken.
 
-    >>> free_id({"group-01", "group-03"})
+    >>> free_id("group", {"group-01", "group-03"})
     'group-02'
     """
     number = 1
-    while f"{GROUP}-{number:02}" in taken:
+    while f"{kind}-{number:02}" in taken:
         number += 1
-    return f"{GROUP}-{number:02}"
+    return f"{kind}-{number:02}"
 
 
 def with_operations_by_hand(before: ProcessTree | None, made: ProcessTree) -> ProcessTree:

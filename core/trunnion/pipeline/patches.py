@@ -14,9 +14,10 @@ from trunnion.findings import BadCall, BadInput
 from trunnion.geometry.cut import Cut
 from trunnion.model.feature import FaceRole, Feature, Recognition
 from trunnion.model.session import Session
-from trunnion.pipeline.hand import GROUP, free_id, without_faces
+from trunnion.pipeline.hand import free_id, without_faces
 from trunnion.pipeline.steps import measured_anew
 from trunnion.progress import QUIET, Progress
+from trunnion.recognize.contract import exclusive_kinds
 
 if TYPE_CHECKING:
     from trunnion.pipeline.engine import Engine
@@ -24,7 +25,7 @@ if TYPE_CHECKING:
 
 LOCAL, REMAINING = "local", "remaining"
 """What may be exported beside groups by their id: all local features, and all other faces of the part."""
-
+NO_GROUPS = "the part's family has no groups of patches; choose recognize.family = surface"
 
 COUNTS = (0, 1, 3, 7, 15, 31, 63, 127, 255, 500)
 """Points on an edge that the table of size errors is made for; the paper's figure 8 ends with 500."""
@@ -63,8 +64,9 @@ def with_moved(engine: Engine, session: Session, faces: Iterable[int], group: st
     strange = sorted(moved - set(engine.bench_of(session).part.tags))
     if strange or not moved:
         raise BadInput(f"face {strange[0]} is not a face of the chosen solid" if strange else "no faces were chosen to be moved")
+    sharing = exclusive_kinds(found.family)
     into = _group(found, group) if group else _new_group(found, min(moved))
-    features = tuple(f if f.id == into.id or f.kind != GROUP else without_faces(f, moved) for f in found.features)
+    features = tuple(f if f.id == into.id or f.kind not in sharing else without_faces(f, moved) for f in found.features)
     into = replace(into, faces=_faces(moved.union(into.tags)), by_hand=True)
     features = tuple(into if f.id == into.id else f for f in features if f.faces)
     features = features if into in features else (*features, into)
@@ -121,17 +123,25 @@ def _recognition(session: Session) -> Recognition:
 
 
 def _group(found: Recognition, id: str) -> Feature:
-    for f in found.of_kind(GROUP):
+    groups = _groups(found)
+    for f in groups:
         if f.id == id:
             return f
-    known = [f.id for f in found.of_kind(GROUP)]
-    raise BadInput(f"there is no group {id}; " + (f"known: {known[0]} to {known[-1]}" if known else "the part is not of family surface"))
+    known = [f.id for f in groups]
+    raise BadInput(f"there is no group {id}; " + (f"known: {known[0]} to {known[-1]}" if known else NO_GROUPS))
+
+
+def _groups(found: Recognition) -> tuple[Feature, ...]:
+    return found.of_kind(*exclusive_kinds(found.family))
 
 
 def _new_group(found: Recognition, face: int) -> Feature:
-    from_group = next((f for f in found.of_kind(GROUP) if face in f.tags), None)
+    from_group = next((f for f in _groups(found) if face in f.tags), None)
+    if from_group is None and not exclusive_kinds(found.family):
+        raise BadInput(NO_GROUPS)
+    kind = exclusive_kinds(found.family)[0]
     local = from_group is not None and bool(from_group.attributes.get("local"))
-    return Feature(id=free_id({f.id for f in found.features}), kind=GROUP, faces=(), attributes={"local": local})
+    return Feature(id=free_id(kind, {f.id for f in found.features}), kind=kind, faces=(), attributes={"local": local})
 
 
 def _faces(tags: Iterable[int]) -> tuple[FaceRole, ...]:
@@ -139,4 +149,4 @@ def _faces(tags: Iterable[int]) -> tuple[FaceRole, ...]:
 
 
 def _local(found: Recognition) -> set[int]:
-    return {t for f in found.of_kind(GROUP) if f.attributes.get("local") for t in f.tags}
+    return {t for f in _groups(found) if f.attributes.get("local") for t in f.tags}

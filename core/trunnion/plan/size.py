@@ -12,6 +12,7 @@ import numpy as np
 from trunnion.geometry.facegraph import FaceGraph
 from trunnion.model.feature import Feature, Recognition
 from trunnion.model.session import SizeEntry
+from trunnion.recognize.contract import smallest_sizes
 from trunnion.recognize.extent import box
 from trunnion.recognize.grow import bend_radius
 
@@ -63,15 +64,11 @@ def _part_sizes(recognition: Recognition, graph: FaceGraph) -> Iterable[SizeEntr
         yield _entry(name, value, PART, (), graph)
     for name, value in zip(("stock_box_length", "stock_box_width", "stock_box_height"), (high - low).tolist(), strict=True):
         yield _entry(name, value, PART, (), graph)
-    for name, size in (("smallest_corner_radius", "corner_radius"), ("smallest_floor_fillet", "floor_fillet")):
-        holders = [f for f in recognition.of_kind("pocket", "open_pocket", "island") if _positive(f, size)]
+    for rule in smallest_sizes(recognition.family):
+        holders = [f for f in recognition.of_kind(*rule.kinds) if _positive(f, rule.size)]
         if holders:
-            smallest = min(holders, key=lambda f: (_number(f, size), f.id))
-            yield _entry(name, _number(smallest, size), PART, measured_at(smallest, size, graph), graph)
-    ribs = recognition.of_kind("rib")
-    if ribs:
-        thinnest = min(ribs, key=lambda f: (_number(f, "thickness"), f.id))
-        yield _entry("thinnest_rib", _number(thinnest, "thickness"), PART, measured_at(thinnest, "thickness", graph), graph)
+            smallest = min(holders, key=lambda f: (_number(f, rule.size), f.id))
+            yield _entry(rule.name, _number(smallest, rule.size), PART, measured_at(smallest, rule.size, graph), graph)
 
 
 def _entry(name: str, value: float, feature: str, faces: Sequence[int], graph: FaceGraph) -> SizeEntry:

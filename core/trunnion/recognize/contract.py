@@ -6,6 +6,7 @@ from collections.abc import Callable
 from dataclasses import dataclass
 from typing import Any, Protocol, runtime_checkable
 
+from trunnion import registry
 from trunnion.geometry.arrays import Floats, Ints
 from trunnion.geometry.boundary import Boundary
 from trunnion.geometry.curvature import FaceBend
@@ -96,3 +97,46 @@ class Measuring(Protocol):
     def measured(self, found: Recognition, graph: FaceGraph, part: Any, settings: Any) -> Recognition:
         """Return what was found with sizes and automatic attributes that fit the faces; what was set by hand stays."""
         ...
+
+
+FAMILIES = "families"
+"""Registry of families, by name."""
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Smallest:
+    """A size of the part that is the smallest of a size of its features: `name` in the size table, `size` of features of some `kinds`."""
+
+    name: str
+    size: str
+    kinds: tuple[str, ...]
+
+
+@runtime_checkable
+class Sharing(Protocol):
+    """A family with kinds of features that share out faces: each face is in one of them at most, whoever put it there."""
+
+    exclusive: tuple[str, ...]
+
+
+@runtime_checkable
+class Bounding(Protocol):
+    """A family whose smallest sizes bound what cutters a part can be machined with: they are sizes of the part."""
+
+    smallest: tuple[Smallest, ...]
+
+
+def exclusive_kinds(family: str) -> tuple[str, ...]:
+    """Return the kinds of features of a family that share out faces; none where the family has none or is not registered."""
+    found = _registered(family)
+    return found.exclusive if isinstance(found, Sharing) else ()
+
+
+def smallest_sizes(family: str) -> tuple[Smallest, ...]:
+    """Return the sizes of the part that are the smallest of its features' by a family; none where it has none or is not registered."""
+    found = _registered(family)
+    return found.smallest if isinstance(found, Bounding) else ()
+
+
+def _registered(family: str) -> Any:
+    return registry.get(FAMILIES, family)() if family in registry.names(FAMILIES) else None

@@ -11,7 +11,7 @@ from trunnion.geometry.facegraph import FaceGraph
 from trunnion.geometry.frame import Frame
 from trunnion.model.feature import Feature, Recognition
 from trunnion.progress import QUIET, Progress
-from trunnion.recognize.contract import Slicer, Suitability
+from trunnion.recognize.contract import Slicer, Smallest, Suitability
 from trunnion.recognize.extent import box
 from trunnion.recognize.panel.classes import STEEP_CLASSES, FaceClass, classify
 from trunnion.recognize.panel.features import Made, Numbers, make_datum, make_features, make_profile
@@ -36,6 +36,10 @@ class PanelFamily:
     name = "panel"
     noun = "a panel"
     settings = PanelSettings
+    smallest: tuple[Smallest, ...] = (
+        Smallest(name="smallest_corner_radius", size="corner_radius", kinds=("pocket", "open_pocket", "island")),
+        Smallest(name="smallest_floor_fillet", size="floor_fillet", kinds=("pocket", "open_pocket", "island")),
+        Smallest(name="thinnest_rib", size="thickness", kinds=("rib",)))
 
     def suits(self, graph: FaceGraph) -> Suitability:
         """Return the share of the part's area that lies level or upright in the frame that a panel would have.

@@ -28,6 +28,7 @@ class SurfaceFamily:
     name = "surface"
     noun = "a part of curved surfaces"
     settings = SurfaceSettings
+    exclusive: tuple[str, ...] = ("group",)
 
     def suits(self, graph: FaceGraph) -> Suitability:
         """Return how near the curved share of the part's area comes to that of parts that are surely of this family."""
