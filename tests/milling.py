@@ -19,7 +19,7 @@ from trunnion.model.operation import CuttingData
 from trunnion.model.setup import Setup
 from trunnion.model.tool import Holder, Tool
 from trunnion.model.toolpath import Motion, Toolpath
-from trunnion.plan.drive import DriveLevel, Floor, PlaneDrive, WallGuide
+from trunnion.plan.prismatic.drive import DriveLevel, Floor, PlaneDrive, WallGuide
 
 SETUP = Setup(name="S1", frame=WORLD, work_offset="G54", clearance=50.0, machine="Mill")
 STEP = 0.2

@@ -9,7 +9,7 @@ from trunnion.geometry.skin import Skin
 from trunnion.model.blank import Blank
 from trunnion.model.operation import CuttingData
 from trunnion.model.setup import Setup
-from trunnion.plan.surface.drive import SurfaceDrive
+from trunnion.plan.freeform.drive import SurfaceDrive
 from trunnion.toolpath.stock import PlanningStock
 
 DATA = CuttingData(speed=200.0, spindle=10000.0, feed_per_tooth=0.1, feed=2000.0, plunge_feed=500.0, depth=1.0, width=1.0, removal_rate=1.0,

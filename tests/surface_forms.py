@@ -11,7 +11,7 @@ from trunnion.geometry.fields import distances
 from trunnion.geometry.frame import WORLD
 from trunnion.geometry.sheet import sheet_of, split_finely
 from trunnion.geometry.skin import Skin
-from trunnion.plan.surface.drive import SurfaceDrive
+from trunnion.plan.freeform.drive import SurfaceDrive
 from trunnion.toolpath.surface.stepovers import metric_of, stepover_measure
 
 

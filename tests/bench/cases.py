@@ -60,8 +60,8 @@ def recognition(path: Path, folder: Path, compared: Compare) -> Iterator[Any]:
 def roughing(path: Path, folder: Path, compared: Compare) -> Iterator[Any]:
     """Roughing paths of every pocket, beside the same offsets by shapely alone (chords, no arcs, no entries, no links)."""
     from trunnion import registry
-    from trunnion.plan.drive import drive_of
-    from trunnion.plan.regions import Space
+    from trunnion.plan.prismatic.drive import drive_of
+    from trunnion.plan.prismatic.regions import Space
     from trunnion.settings import choose
     from trunnion.toolpath.stock import PlanningStock
     engine, session = _programmed(path, "optimize")

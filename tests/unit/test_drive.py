@@ -13,8 +13,8 @@ from trunnion.findings import Refused
 from trunnion.geometry.frame import WORLD
 from trunnion.model.feature import FaceRole, Feature, Recognition
 from trunnion.model.process import ProcessTree
-from trunnion.plan.drive import drive_of, foot_clearance
-from trunnion.plan.regions import Space
+from trunnion.plan.prismatic.drive import drive_of, foot_clearance
+from trunnion.plan.prismatic.regions import Space
 from trunnion.plan.setups import SetupSettings, make_setups
 from trunnion.settings import choose
 from trunnion.shop import load_shop

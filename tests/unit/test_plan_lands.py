@@ -18,11 +18,11 @@ from trunnion.model.setup import Setup
 from trunnion.model.verdict import Outcome
 from trunnion.part.skin import skin_of
 from trunnion.pipeline import Engine
-from trunnion.plan.surface.end_mills import end_mills_for
-from trunnion.plan.surface.lands import SKIM, Keeping, Standing, covered, lands_of, without
-from trunnion.plan.surface.layers import plane_drive_of
-from trunnion.plan.surface.reach import places_on
-from trunnion.plan.surface.space import SurfaceSpace
+from trunnion.plan.freeform.end_mills import end_mills_for
+from trunnion.plan.freeform.lands import SKIM, Keeping, Standing, covered, lands_of, without
+from trunnion.plan.freeform.layers import plane_drive_of
+from trunnion.plan.freeform.reach import places_on
+from trunnion.plan.freeform.space import SurfaceSpace
 from trunnion.progress import QUIET
 from trunnion.toolpath.stock import PlanningStock
 

@@ -11,7 +11,7 @@ from flat_parts import blank_of, narrow_panel, open_panel, panel, stepped_panel
 from trunnion.findings import Severity
 from trunnion.model.blank import Blank
 from trunnion.model.feature import FaceRole, Feature
-from trunnion.plan.route import RouteSettings, make_route
+from trunnion.plan.panel.route import RouteSettings, make_route
 from trunnion.plan.setups import SetupSettings, make_setups
 from trunnion.progress import QUIET
 from trunnion.settings import choose

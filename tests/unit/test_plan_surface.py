@@ -22,12 +22,12 @@ from trunnion.model.setup import Setup
 from trunnion.model.toolpath import Mark, Motion, Toolpath
 from trunnion.part.skin import skin_of
 from trunnion.pipeline.making import turned
-from trunnion.plan.surface.areas import areas_of, blank_faces, connected, hidden_areas, on_outline, walls_of
-from trunnion.plan.surface.frames import corners_in, cutting_setup
-from trunnion.plan.surface.heights import HeightMap, region_below
-from trunnion.plan.surface.layers import level_faces
-from trunnion.plan.surface.reach import places_on, reached
-from trunnion.plan.surface.space import SurfaceSpace
+from trunnion.plan.freeform.areas import areas_of, blank_faces, connected, hidden_areas, on_outline, walls_of
+from trunnion.plan.freeform.frames import corners_in, cutting_setup
+from trunnion.plan.freeform.heights import HeightMap, region_below
+from trunnion.plan.freeform.layers import level_faces
+from trunnion.plan.freeform.reach import places_on, reached
+from trunnion.plan.freeform.space import SurfaceSpace
 from trunnion.toolpath.sides import Sides
 from trunnion.toolpath.stock import PlanningStock
 

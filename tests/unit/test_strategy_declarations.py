@@ -11,7 +11,7 @@ from trunnion.findings import warning
 from trunnion.model.operation import OperationPath
 from trunnion.pipeline import Engine
 from trunnion.pipeline.making import findings_of, make_paths
-from trunnion.plan.drive import PlaneDrive
+from trunnion.plan.prismatic.drive import PlaneDrive
 from trunnion.progress import QUIET
 from trunnion.settings import settings
 from trunnion.toolpath.contract import Planned, ToolAxis, fixed_axis, lead_and_tilt, leaning_axis, strategy

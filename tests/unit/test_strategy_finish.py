@@ -12,7 +12,7 @@ from milling import SETUP, Milled, box_blank, closed_pocket, cutting, mill, roun
 from trunnion.geometry.region import Region
 from trunnion.model.tool import Tool
 from trunnion.model.toolpath import Mark, Motion, Toolpath
-from trunnion.plan.drive import DriveLevel, PlaneDrive, WallGuide
+from trunnion.plan.prismatic.drive import DriveLevel, PlaneDrive, WallGuide
 from trunnion.progress import QUIET
 from trunnion.toolpath.plane.corner import CornerSettings, corner
 from trunnion.toolpath.plane.floor import FloorSettings, floor

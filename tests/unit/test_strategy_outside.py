@@ -8,7 +8,7 @@ import pytest
 from milling import SETUP, Milled, box_blank, closed_pocket, cutting, mill, rounded
 from trunnion.geometry.region import Region
 from trunnion.model.toolpath import Mark, Motion
-from trunnion.plan.drive import DriveLevel, PlaneDrive, WallGuide
+from trunnion.plan.prismatic.drive import DriveLevel, PlaneDrive, WallGuide
 from trunnion.progress import QUIET
 from trunnion.toolpath.plane.face import FaceSettings, face
 from trunnion.toolpath.plane.profile import ProfileFinishSettings, ProfileRoughSettings, profile_finish, profile_rough

@@ -9,7 +9,7 @@ from milling import SETUP, Milled, box_blank, closed_pocket, cutting, mill, roun
 from trunnion.findings import Cancelled
 from trunnion.geometry.region import Region
 from trunnion.model.toolpath import Mark, Motion, Toolpath
-from trunnion.plan.drive import DriveLevel, PlaneDrive
+from trunnion.plan.prismatic.drive import DriveLevel, PlaneDrive
 from trunnion.progress import QUIET, Progress
 from trunnion.toolpath.contract import Planned
 from trunnion.toolpath.plane.rough import RoughSettings, rough

@@ -14,7 +14,7 @@ from surface_drives import DATA, driven, grid
 from trunnion.findings import Refused
 from trunnion.geometry.sphere import angle_between
 from trunnion.pipeline.asking import PartAsker
-from trunnion.plan.surface.cutter import tip_at
+from trunnion.plan.freeform.cutter import tip_at
 from trunnion.progress import QUIET
 from trunnion.settings import choose
 from trunnion.toolpath.surface.axis import fixed, leaning

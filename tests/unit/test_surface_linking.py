@@ -9,7 +9,7 @@ import pytest
 
 from surface_drives import DATA, driven, grid
 from trunnion.model.toolpath import Mark, Motion
-from trunnion.plan.surface.cutter import lower_side
+from trunnion.plan.freeform.cutter import lower_side
 from trunnion.toolpath.surface.linking import Manner, linked
 from trunnion.toolpath.surface.passes import UPRIGHT, Pass
 from verify_tools import bull

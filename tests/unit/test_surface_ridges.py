@@ -12,10 +12,10 @@ from surface_forms import grid, joined, plane
 from trunnion.geometry.sheet import sheet_of
 from trunnion.model.program import ProgramSection
 from trunnion.part.exact import ExactPoints
-from trunnion.plan.surface.cutter import lower_side
-from trunnion.plan.surface.parting import PART
-from trunnion.plan.surface.rest import BESIDE, left_by, without_met
-from trunnion.plan.surface.scallop import stepover_on_plane
+from trunnion.plan.freeform.cutter import lower_side
+from trunnion.plan.freeform.parting import PART
+from trunnion.plan.freeform.rest import BESIDE, left_by, without_met
+from trunnion.plan.freeform.scallop import stepover_on_plane
 from trunnion.progress import QUIET
 from trunnion.settings import choose
 from trunnion.shop import load_shop

@@ -11,7 +11,7 @@ from trunnion.cli.common import exit_code, open_session, part_command, show_find
 
 if TYPE_CHECKING:
     from trunnion.model.operation import Operation
-    from trunnion.plan.surface.estimate import Estimate
+    from trunnion.plan.freeform.estimate import Estimate
 
 
 def add(commands: Any) -> None:

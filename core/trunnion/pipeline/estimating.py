@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from trunnion.model.session import Session
 from trunnion.pipeline.bench import Bench
-from trunnion.plan.surface.estimate import Estimate, estimate_of, measured
+from trunnion.plan.freeform.estimate import Estimate, estimate_of, measured
 from trunnion.toolpath.time import machining_time
 
 

@@ -13,7 +13,7 @@ from trunnion.findings import Refused
 from trunnion.geometry.arrays import Floats
 from trunnion.geometry.curve import Curve, segment_boxes
 from trunnion.geometry.region import Region, union_all
-from trunnion.plan.drive import DriveLevel, PlaneDrive
+from trunnion.plan.prismatic.drive import DriveLevel, PlaneDrive
 
 OPEN_MARGIN = 0.5
 """mm: a boundary that runs on past the wanted area by more than this is open there."""

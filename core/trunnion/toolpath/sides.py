@@ -18,7 +18,7 @@ from trunnion.model.blank import Blank
 from trunnion.model.setup import Setup
 from trunnion.model.tool import Tool
 from trunnion.model.toolpath import Motion, Toolpath
-from trunnion.plan.surface.frames import corners_in
+from trunnion.plan.freeform.frames import corners_in
 from trunnion.progress import QUIET, Progress
 from trunnion.settings import digest
 from trunnion.toolpath.stock import PlanningStock

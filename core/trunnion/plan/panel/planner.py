@@ -7,13 +7,13 @@ from typing import TYPE_CHECKING
 from trunnion.model.operation import Operation
 from trunnion.model.process import ProcessTree
 from trunnion.plan.contract import Driven, DriveNeeds, RouteJob, Scene, driven_by
-from trunnion.plan.drive import PlaneDrive, drive_of
-from trunnion.plan.regions import Space
-from trunnion.plan.route import make_route
+from trunnion.plan.freeform.drive import SurfaceDrive
+from trunnion.plan.freeform.driving import surface_driven
+from trunnion.plan.panel.route import make_route
+from trunnion.plan.panel.wishes import WISHES
+from trunnion.plan.prismatic.drive import PlaneDrive, drive_of
+from trunnion.plan.prismatic.regions import Space
 from trunnion.plan.settings import RouteSettings
-from trunnion.plan.surface.drive import SurfaceDrive
-from trunnion.plan.surface.driving import surface_driven
-from trunnion.plan.wishes import WISHES
 from trunnion.progress import Progress
 
 if TYPE_CHECKING:

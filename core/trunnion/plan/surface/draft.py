@@ -13,10 +13,10 @@ from trunnion.model.setup import Setup
 from trunnion.model.tool import Tool
 from trunnion.plan.clearance import Around
 from trunnion.plan.cutting import CuttingSettings, cutting_data
+from trunnion.plan.freeform.frames import UPRIGHT, Direction
+from trunnion.plan.freeform.space import SurfaceSpace
 from trunnion.plan.settings import RouteSettings
-from trunnion.plan.surface.frames import UPRIGHT, Direction
 from trunnion.plan.surface.settings import SurfaceRouteSettings
-from trunnion.plan.surface.space import SurfaceSpace
 from trunnion.settings import Value, choose
 from trunnion.shop import Shop, Stage
 

@@ -10,11 +10,11 @@ import numpy as np
 
 from trunnion.findings import BadInput, face_tags, info
 from trunnion.model.tool import Tool
+from trunnion.plan.freeform.end_mills import MISSED, Chosen, end_mills_for
+from trunnion.plan.freeform.lands import ABOVE_TOOL, AROUND_TOOL, BESIDE_SIDES, LAND, REST_LAND, STOCK, Keeping, Land, Standing, lands_of
+from trunnion.plan.freeform.reach import Places, places_on, reached
+from trunnion.plan.freeform.rest import BESIDE
 from trunnion.plan.surface.draft import Draft, face_name
-from trunnion.plan.surface.end_mills import MISSED, Chosen, end_mills_for
-from trunnion.plan.surface.lands import ABOVE_TOOL, AROUND_TOOL, BESIDE_SIDES, LAND, REST_LAND, STOCK, Keeping, Land, Standing, lands_of
-from trunnion.plan.surface.reach import Places, places_on, reached
-from trunnion.plan.surface.rest import BESIDE
 from trunnion.progress import Progress
 from trunnion.settings import Value
 from trunnion.units import trimmed

@@ -9,14 +9,14 @@ from trunnion.findings import BadInput
 from trunnion.model.operation import Operation
 from trunnion.model.process import ProcessTree
 from trunnion.plan.contract import Driven, DriveNeeds, RouteJob, Scene, driven_by
-from trunnion.plan.drive import PlaneDrive
+from trunnion.plan.freeform.drive import SurfaceDrive
+from trunnion.plan.freeform.driving import space_from, surface_driven
+from trunnion.plan.freeform.layers import plane_drive_of
+from trunnion.plan.freeform.space import SurfaceSpace
+from trunnion.plan.prismatic.drive import PlaneDrive
 from trunnion.plan.settings import RouteSettings
-from trunnion.plan.surface.drive import SurfaceDrive
-from trunnion.plan.surface.driving import space_from, surface_driven
-from trunnion.plan.surface.layers import plane_drive_of
 from trunnion.plan.surface.route import CUTTER_RULES, make_surface_route
 from trunnion.plan.surface.settings import SurfaceRouteSettings
-from trunnion.plan.surface.space import SurfaceSpace
 from trunnion.progress import Progress
 
 if TYPE_CHECKING:

@@ -23,22 +23,23 @@ from trunnion.model.tool import Tool
 from trunnion.plan.choosing import depth_reached
 from trunnion.plan.clearance import Around
 from trunnion.plan.cutting import CuttingSettings, roughing_depth, roughing_width
-from trunnion.plan.left import too_large, too_many_tools
+from trunnion.plan.feasibility import too_large, too_many_tools
+from trunnion.plan.freeform.areas import Area, areas_of, blank_faces, connected, hidden_areas, on_outline, walls_of
+from trunnion.plan.freeform.cutters import Chosen, cutter_for, named
+from trunnion.plan.freeform.keys import ALLOWANCE, BOTTOM, CELL, EARLIER, SCALLOP
+from trunnion.plan.freeform.lands import LAND, REST_LAND
+from trunnion.plan.freeform.leaning import SAMPLES as LEANING_SAMPLES
+from trunnion.plan.freeform.leaning import leaning_cutter
+from trunnion.plan.freeform.reach import Places, clear_beside, leans, places_on, reached
+from trunnion.plan.freeform.scallop import stepover_on_plane
+from trunnion.plan.freeform.sides import sides_for
+from trunnion.plan.freeform.space import SurfaceSpace
 from trunnion.plan.order import Job, ordered
 from trunnion.plan.settings import RouteSettings
-from trunnion.plan.surface.areas import Area, areas_of, blank_faces, connected, hidden_areas, on_outline, walls_of
-from trunnion.plan.surface.cutters import Chosen, cutter_for, named
 from trunnion.plan.surface.draft import Draft, face_name
 from trunnion.plan.surface.land_route import Levels, plan_lands
-from trunnion.plan.surface.lands import LAND, REST_LAND
-from trunnion.plan.surface.leaning import SAMPLES as LEANING_SAMPLES
-from trunnion.plan.surface.leaning import leaning_cutter
-from trunnion.plan.surface.reach import Places, clear_beside, leans, places_on, reached
-from trunnion.plan.surface.scallop import stepover_on_plane
-from trunnion.plan.surface.settings import ALLOWANCE, BOTTOM, CELL, EARLIER, SCALLOP, SurfaceRouteSettings
-from trunnion.plan.surface.sides import sides_for
+from trunnion.plan.surface.settings import SurfaceRouteSettings
 from trunnion.plan.surface.slivers import slivers_of, with_slivers
-from trunnion.plan.surface.space import SurfaceSpace
 from trunnion.plan.typical import typical_plan
 from trunnion.progress import Progress
 from trunnion.settings import Value, choose

@@ -3,21 +3,8 @@
 from __future__ import annotations
 
 from trunnion.findings import BadInput
-from trunnion.model.operation import Operation
-from trunnion.plan.surface.scallop import height_of
+from trunnion.plan.freeform.scallop import height_of
 from trunnion.settings import setting, settings
-
-SCALLOP, ALLOWANCE, BOTTOM, CELL = "surface.scallop", "surface.allowance", "surface.bottom", "surface.cell"
-"""Keys of an operation's choices, mm: the scallop height it is wanted with, what it leaves on purpose, the height in the cutting frame that
-it goes down to, and the distance of the places at which the part's height is measured."""
-EARLIER = "surface.earlier"
-"""Key of an operation's choices: the name of the cutter that finished its faces before."""
-
-
-def number(operation: Operation, key: str) -> float:
-    """Return a choice of an operation that is a number; 0 where there is none."""
-    value = operation.choices.get(key, 0.0)
-    return float(value) if isinstance(value, (int, float)) else 0.0
 
 
 @settings("surface")

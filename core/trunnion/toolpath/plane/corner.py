@@ -13,7 +13,7 @@ from trunnion.geometry.region import Region
 from trunnion.model.operation import CuttingData
 from trunnion.model.setup import Setup
 from trunnion.model.tool import Tool
-from trunnion.plan.drive import DriveLevel, PlaneDrive, foot_clearance
+from trunnion.plan.prismatic.drive import DriveLevel, PlaneDrive, foot_clearance
 from trunnion.progress import Progress
 from trunnion.settings import setting, settings
 from trunnion.toolpath.builder import PathBuilder

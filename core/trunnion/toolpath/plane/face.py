@@ -13,7 +13,7 @@ from trunnion.model.operation import CuttingData, Engagement, Operation
 from trunnion.model.setup import Setup
 from trunnion.model.tool import Tool
 from trunnion.model.toolpath import Mark
-from trunnion.plan.drive import PlaneDrive
+from trunnion.plan.prismatic.drive import PlaneDrive
 from trunnion.progress import Progress
 from trunnion.settings import setting, settings
 from trunnion.toolpath.builder import PathBuilder

@@ -12,7 +12,7 @@ from trunnion.findings import Finding, error, info
 from trunnion.model.operation import CuttingData
 from trunnion.model.setup import Setup
 from trunnion.model.tool import Tool
-from trunnion.plan.drive import PlaneDrive, foot_clearance
+from trunnion.plan.prismatic.drive import PlaneDrive, foot_clearance
 from trunnion.progress import Progress
 from trunnion.settings import setting, settings
 from trunnion.toolpath.builder import PathBuilder

@@ -13,7 +13,7 @@ from trunnion.geometry.curve import Curve
 from trunnion.model.operation import CuttingData
 from trunnion.model.setup import Setup
 from trunnion.model.tool import Tool
-from trunnion.plan.drive import PlaneDrive, WallGuide
+from trunnion.plan.prismatic.drive import PlaneDrive, WallGuide
 from trunnion.progress import Progress
 from trunnion.settings import setting, settings
 from trunnion.toolpath.builder import PathBuilder

@@ -13,7 +13,7 @@ from trunnion.geometry.region import Region, union_all
 from trunnion.model.operation import CuttingData
 from trunnion.model.setup import Setup
 from trunnion.model.tool import Tool
-from trunnion.plan.drive import Floor, PlaneDrive, WallGuide, foot_clearance
+from trunnion.plan.prismatic.drive import Floor, PlaneDrive, WallGuide, foot_clearance
 from trunnion.progress import Progress
 from trunnion.settings import setting, settings
 from trunnion.toolpath.builder import PathBuilder

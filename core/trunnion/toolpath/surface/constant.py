@@ -7,8 +7,8 @@ import math
 from trunnion.model.operation import CuttingData
 from trunnion.model.setup import Setup
 from trunnion.model.tool import Tool
-from trunnion.plan.surface.drive import SurfaceDrive
-from trunnion.plan.surface.scallop import stepover_on_plane
+from trunnion.plan.freeform.drive import SurfaceDrive
+from trunnion.plan.freeform.scallop import stepover_on_plane
 from trunnion.progress import QUIET, Progress
 from trunnion.settings import setting, settings
 from trunnion.toolpath.contract import Planned, strategy

@@ -17,8 +17,8 @@ from trunnion.geometry.contours import SheetLine, whole_levels
 from trunnion.geometry.fields import Metric, blend, turns_about
 from trunnion.geometry.sheet import Sheet, sheet_of, split_finely
 from trunnion.model.tool import Tool
-from trunnion.plan.surface.drive import SurfaceDrive
-from trunnion.plan.surface.scallop import stepover_on_plane
+from trunnion.plan.freeform.drive import SurfaceDrive
+from trunnion.plan.freeform.scallop import stepover_on_plane
 from trunnion.progress import QUIET, Progress
 from trunnion.toolpath.surface.contacts import Contacts
 from trunnion.toolpath.surface.guides import Guides, guides_beside, guides_of, holes_of, tags_named

@@ -21,8 +21,8 @@ from trunnion.geometry.fields import Metric, distances
 from trunnion.geometry.ridges import Ridged, opened, ridged
 from trunnion.geometry.sheet import Measure, Sheet, sheet_of, split_finely
 from trunnion.model.tool import Tool
-from trunnion.plan.surface.drive import SurfaceDrive
-from trunnion.plan.surface.scallop import stepover_on_plane
+from trunnion.plan.freeform.drive import SurfaceDrive
+from trunnion.plan.freeform.scallop import stepover_on_plane
 from trunnion.progress import QUIET, Progress
 from trunnion.toolpath.surface.contacts import Contacts
 from trunnion.toolpath.surface.stepovers import metric_of, spread, stepover_measure

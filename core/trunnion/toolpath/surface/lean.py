@@ -22,8 +22,8 @@ from trunnion.geometry.kernels.course_compiled import course
 from trunnion.geometry.sphere import angle_between, directions, neighbours
 from trunnion.model.tool import Holder, Tool
 from trunnion.plan.clearance import Asker
-from trunnion.plan.surface.cutter import tip_at
-from trunnion.plan.surface.drive import SurfaceDrive
+from trunnion.plan.freeform.cutter import tip_at
+from trunnion.plan.freeform.drive import SurfaceDrive
 from trunnion.progress import QUIET, Progress
 from trunnion.toolpath.surface.axis import AxisField, eased, leaning
 from trunnion.toolpath.surface.contacts import Contacts, axis_between, between, slerp

@@ -21,8 +21,8 @@ from trunnion.model.operation import CuttingData
 from trunnion.model.setup import Setup
 from trunnion.model.tool import Tool
 from trunnion.model.toolpath import EMPTY, Mark, Motion, Toolpath
-from trunnion.plan.surface.cutter import lower_side
-from trunnion.plan.surface.drive import SurfaceDrive
+from trunnion.plan.freeform.cutter import lower_side
+from trunnion.plan.freeform.drive import SurfaceDrive
 from trunnion.progress import QUIET, Progress
 from trunnion.toolpath.builder import PathBuilder
 from trunnion.toolpath.link import is_free, lowest_tip

@@ -21,9 +21,9 @@ from trunnion.geometry.skin import Skin
 from trunnion.model.operation import CuttingData
 from trunnion.model.setup import Setup
 from trunnion.model.tool import Tool
-from trunnion.plan.surface.cutter import lower_side
-from trunnion.plan.surface.drive import SurfaceDrive
-from trunnion.plan.surface.scallop import stepover_on_plane
+from trunnion.plan.freeform.cutter import lower_side
+from trunnion.plan.freeform.drive import SurfaceDrive
+from trunnion.plan.freeform.scallop import stepover_on_plane
 from trunnion.progress import Progress
 from trunnion.settings import setting, settings
 from trunnion.toolpath.contract import Planned, lead_and_tilt, strategy

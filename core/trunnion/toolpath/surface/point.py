@@ -24,9 +24,9 @@ from trunnion.model.setup import Setup
 from trunnion.model.tool import Tool
 from trunnion.model.toolpath import Mark, Toolpath
 from trunnion.plan.clearance import Asker
-from trunnion.plan.surface.cutter import lower_side, tip_at, touching
-from trunnion.plan.surface.drive import SurfaceDrive
-from trunnion.plan.surface.scallop import stepover_on_plane
+from trunnion.plan.freeform.cutter import lower_side, tip_at, touching
+from trunnion.plan.freeform.drive import SurfaceDrive
+from trunnion.plan.freeform.scallop import stepover_on_plane
 from trunnion.progress import QUIET, Progress
 from trunnion.settings import setting, settings
 from trunnion.toolpath.contract import Planned, leaning_axis, strategy

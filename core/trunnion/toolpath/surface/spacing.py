@@ -13,8 +13,8 @@ import numpy as np
 from trunnion import tolerance
 from trunnion.geometry.arrays import Bools, Floats, Ints, unit
 from trunnion.model.tool import Tool
-from trunnion.plan.surface.cutter import tip_at
-from trunnion.plan.surface.drive import SurfaceDrive
+from trunnion.plan.freeform.cutter import tip_at
+from trunnion.plan.freeform.drive import SurfaceDrive
 from trunnion.toolpath.surface.passes import UPRIGHT
 from trunnion.toolpath.surface.stepovers import stepover_measure
 

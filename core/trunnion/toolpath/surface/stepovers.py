@@ -24,7 +24,7 @@ from trunnion.geometry.fields import Metric
 from trunnion.geometry.kernels.drop import ROUND, C
 from trunnion.geometry.sheet import Measure, Sheet, between
 from trunnion.model.tool import Tool
-from trunnion.plan.surface.cutter import lower_side, touching
+from trunnion.plan.freeform.cutter import lower_side, touching
 
 WIDEST = 0.5
 """Stepover at most, as a share of the diameter: a cutter that fits a hollow, or stands flat on a plane, would allow any."""

@@ -16,8 +16,8 @@ from scipy.spatial import cKDTree
 from trunnion.findings import Finding, warning
 from trunnion.geometry.arrays import Bools, Floats, Ints
 from trunnion.model.tool import Tool
-from trunnion.plan.surface.cutter import lower_side, tip_at
-from trunnion.plan.surface.drive import SurfaceDrive
+from trunnion.plan.freeform.cutter import lower_side, tip_at
+from trunnion.plan.freeform.drive import SurfaceDrive
 from trunnion.progress import QUIET, Progress
 from trunnion.toolpath.surface.choices import TOO_STEEP
 from trunnion.toolpath.surface.contacts import Contacts

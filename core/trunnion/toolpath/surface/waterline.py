@@ -22,8 +22,8 @@ from trunnion.geometry.kernels.drop import radius_at
 from trunnion.model.operation import CuttingData
 from trunnion.model.setup import Setup
 from trunnion.model.tool import Tool
-from trunnion.plan.surface.cutter import lower_side
-from trunnion.plan.surface.drive import SurfaceDrive
+from trunnion.plan.freeform.cutter import lower_side
+from trunnion.plan.freeform.drive import SurfaceDrive
 from trunnion.progress import Progress
 from trunnion.settings import setting, settings
 from trunnion.toolpath.contract import Planned, strategy

@@ -15,7 +15,7 @@ from trunnion.model.feature import Feature, Recognition
 from trunnion.model.material import Machine, Material
 from trunnion.model.tool import Tool
 from trunnion.plan.choosing import Task, candidates, depth_reached, fits_through
-from trunnion.plan.regions import Band, Space, floor_fillet, number, parent_of, touching
+from trunnion.plan.prismatic.regions import Band, Space, floor_fillet, number, parent_of, touching
 from trunnion.plan.settings import RouteSettings
 from trunnion.progress import QUIET, Progress
 from trunnion.shop import Shop, Stage

@@ -12,11 +12,11 @@ from trunnion.geometry.region import EMPTY_REGION, Region, union_all
 from trunnion.model.operation import Operation
 from trunnion.model.process import ProcessTree
 from trunnion.plan.contract import Heights
-from trunnion.plan.drive import DriveLevel, PlaneDrive, WallGuide
-from trunnion.plan.surface.heights import HeightMap, region_below
-from trunnion.plan.surface.lands import LAND, REST_LAND, land_drive
-from trunnion.plan.surface.settings import ALLOWANCE, BOTTOM, CELL, number
-from trunnion.plan.surface.space import SurfaceSpace
+from trunnion.plan.freeform.heights import HeightMap, region_below
+from trunnion.plan.freeform.keys import ALLOWANCE, BOTTOM, CELL, number
+from trunnion.plan.freeform.lands import LAND, REST_LAND, land_drive
+from trunnion.plan.freeform.space import SurfaceSpace
+from trunnion.plan.prismatic.drive import DriveLevel, PlaneDrive, WallGuide
 from trunnion.progress import Progress
 
 STRAIGHT = 0.5

@@ -1,4 +1,4 @@
-"""What the route leaves and why: features that no operation is planned for, and blanks that no machine takes."""
+"""What the route leaves and why: features that no operation is planned for."""
 
 from __future__ import annotations
 
@@ -7,15 +7,11 @@ from collections.abc import Mapping, Sequence
 
 from trunnion import tolerance
 from trunnion.findings import Finding, error, face_tags, warning
-from trunnion.model.blank import Blank
 from trunnion.model.feature import Feature, Recognition
-from trunnion.model.operation import Operation
-from trunnion.model.setup import Setup
 from trunnion.plan.choosing import Candidates
-from trunnion.plan.regions import Sections, parent_of
-from trunnion.plan.setups import box_in
-from trunnion.plan.wishes import Wish
-from trunnion.shop import Shop, Stage
+from trunnion.plan.panel.wishes import Wish
+from trunnion.plan.prismatic.regions import Sections, parent_of
+from trunnion.shop import Stage
 from trunnion.units import trimmed
 
 POCKETS = ("pocket", "open_pocket")
@@ -100,29 +96,3 @@ def no_cutter(wish: Wish, found: Candidates) -> Finding:
     """Return the error that no cutter of the catalogue fits an operation."""
     return error("route.no-cutter", f"{wish.feature}: {found.reason} ({wish.stage.name})", wish.feature, *face_tags(wish.faces),
                  remedy=found.remedy)
-
-
-def too_large(blank: Blank, setups: Sequence[Setup], shop: Shop) -> list[Finding]:
-    """Return an error for each setup whose machine has less travel than the blank needs."""
-    found = []
-    for setup in setups:
-        machine = shop.machine(setup.machine)
-        low, high = box_in(setup.frame, blank)
-        need = dict(zip("XYZ", (high[0] - low[0], high[1] - low[1], setup.clearance - low[2]), strict=True))
-        short = [f"{name} needs {trimmed(float(span), 1)} of {trimmed(axis.high - axis.low, 1)} mm"
-                 for name, span in need.items() if span > (axis := machine.axis(name)).high - axis.low]
-        if short:
-            found.append(error("route.travel", f"the blank exceeds the machine's travel ({machine.name}): {', '.join(short)}", setup.name,
-                               remedy="choose a larger machine"))
-    return found
-
-
-def too_many_tools(operations: Sequence[Operation], setups: Sequence[Setup], shop: Shop) -> list[Finding]:
-    """Return a warning for each machine whose magazine does not take the tools of the plan."""
-    count, found = len({o.tool.name for o in operations}), []
-    for setup in setups:
-        machine = shop.machine(setup.machine)
-        if count > machine.tool_places:
-            found.append(warning("route.tool-places", f"{count} tools are planned, {machine.name} has {machine.tool_places} places",
-                                 setup.name, remedy="load tools by hand or choose another machine"))
-    return found

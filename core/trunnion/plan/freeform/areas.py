@@ -13,10 +13,11 @@ from trunnion.geometry.facegraph import CONVEX, FaceGraph
 from trunnion.model.blank import Blank
 from trunnion.model.feature import Feature, Recognition
 from trunnion.part.part import Part
-from trunnion.plan.surface.cutter import level_disc
-from trunnion.plan.surface.reach import Places
-from trunnion.plan.surface.space import SurfaceSpace
+from trunnion.plan.freeform.cutter import level_disc
+from trunnion.plan.freeform.reach import Places
+from trunnion.plan.freeform.space import SurfaceSpace
 from trunnion.progress import QUIET, Progress
+from trunnion.recognize.contract import exclusive_kinds
 
 TIGHT = 8.0
 """mm: a hollow with a smaller radius bears only cutters smaller than those for what lies around it."""
@@ -40,7 +41,7 @@ class Area:
 
 def areas_of(recognition: Recognition, graph: FaceGraph, left_out: Collection[int] = ()) -> tuple[Area, ...]:
     """Return each connected set of local faces as an area of its own, by its largest face's tag, and the remaining faces as one."""
-    groups = [f for f in recognition if f.kind == "group"]
+    groups = recognition.of_kind(*exclusive_kinds(recognition.family))
     local = {tag for f in groups if f.attributes.get("local") for tag in f.tags} - set(left_out)
     remaining = sorted({tag for f in groups for tag in f.tags} - local - set(left_out))
     sets = connected(local, graph)

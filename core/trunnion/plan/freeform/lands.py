@@ -18,12 +18,12 @@ from trunnion.geometry.arrays import Floats
 from trunnion.geometry.region import EMPTY_REGION, Region, union_all
 from trunnion.model.operation import Operation
 from trunnion.model.tool import Tool
-from trunnion.plan.drive import DriveLevel, Floor, PlaneDrive
-from trunnion.plan.surface.areas import connected
-from trunnion.plan.surface.cutter import level_disc
-from trunnion.plan.surface.heights import region_of
-from trunnion.plan.surface.settings import number
-from trunnion.plan.surface.space import SurfaceSpace
+from trunnion.plan.freeform.areas import connected
+from trunnion.plan.freeform.cutter import level_disc
+from trunnion.plan.freeform.heights import region_of
+from trunnion.plan.freeform.keys import number
+from trunnion.plan.freeform.space import SurfaceSpace
+from trunnion.plan.prismatic.drive import DriveLevel, Floor, PlaneDrive
 from trunnion.progress import QUIET, Progress
 
 SKIM = 2e-4

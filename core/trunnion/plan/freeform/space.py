@@ -17,10 +17,10 @@ from trunnion.part.exact import ExactFace
 from trunnion.part.part import Part
 from trunnion.plan.clearance import Asker
 from trunnion.plan.contract import DriveNeeds
-from trunnion.plan.surface.drive import SurfaceDrive
-from trunnion.plan.surface.frames import UPRIGHT, Direction, corners_in, cutting_setup
-from trunnion.plan.surface.rest import left_by, without_met
-from trunnion.plan.surface.settings import ALLOWANCE, SCALLOP, number
+from trunnion.plan.freeform.drive import SurfaceDrive
+from trunnion.plan.freeform.frames import UPRIGHT, Direction, corners_in, cutting_setup
+from trunnion.plan.freeform.keys import ALLOWANCE, SCALLOP, number
+from trunnion.plan.freeform.rest import left_by, without_met
 from trunnion.progress import QUIET, Progress
 from trunnion.settings import digest
 

@@ -5,9 +5,9 @@ from __future__ import annotations
 from trunnion import tolerance
 from trunnion.model.operation import Operation
 from trunnion.plan.contract import Driven, DriveNeeds, Scene
-from trunnion.plan.surface.frames import Direction
-from trunnion.plan.surface.settings import EARLIER
-from trunnion.plan.surface.space import SurfaceSpace
+from trunnion.plan.freeform.frames import Direction
+from trunnion.plan.freeform.keys import EARLIER
+from trunnion.plan.freeform.space import SurfaceSpace
 from trunnion.progress import Progress
 
 

@@ -16,14 +16,15 @@ from trunnion.model.setup import Setup
 from trunnion.model.tool import Tool
 from trunnion.plan.choosing import candidates, covered_by_few, depth_reached
 from trunnion.plan.cutting import CuttingSettings, cutting_data, roughing_depth, roughing_width
-from trunnion.plan.drive import FLOOR_ALLOWANCE, WALL_ALLOWANCE
-from trunnion.plan.left import beside, no_cutter, not_planned, plannable, too_large, too_many_tools, without_lonely_ribs
+from trunnion.plan.feasibility import too_large, too_many_tools
 from trunnion.plan.order import Job, ordered
-from trunnion.plan.regions import Sections, Space, parent_of
+from trunnion.plan.panel.left import beside, no_cutter, not_planned, plannable, without_lonely_ribs
+from trunnion.plan.panel.wishes import DEPENDENT, WISHES, Draft, Wish, catalogue, floor_distance, with_falling_sizes
+from trunnion.plan.prismatic.drive import FLOOR_ALLOWANCE, WALL_ALLOWANCE
+from trunnion.plan.prismatic.regions import Sections, Space, parent_of
 from trunnion.plan.settings import RouteSettings
 from trunnion.plan.setups import from_below
 from trunnion.plan.typical import typical_plan
-from trunnion.plan.wishes import DEPENDENT, WISHES, Draft, Wish, catalogue, floor_distance, with_falling_sizes
 from trunnion.progress import Progress
 from trunnion.settings import Value, choose
 from trunnion.shop import Shop, Stage

@@ -16,7 +16,7 @@ from trunnion.geometry.region import Region
 from trunnion.model.feature import Feature
 from trunnion.model.operation import Operation
 from trunnion.model.process import ProcessTree
-from trunnion.plan.regions import Band, Space, floor_fillet, on_rim, parent_of, runs, same_curve, touching
+from trunnion.plan.prismatic.regions import Band, Space, floor_fillet, on_rim, parent_of, runs, same_curve, touching
 
 
 @dataclass(frozen=True, slots=True, eq=False, kw_only=True)

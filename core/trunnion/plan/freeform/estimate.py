@@ -14,7 +14,7 @@ import numpy as np
 from trunnion.geometry.arrays import Floats
 from trunnion.model.operation import Operation
 from trunnion.model.process import ProcessTree
-from trunnion.plan.surface.efficiency import AreaRate, gain, saving
+from trunnion.plan.freeform.efficiency import AreaRate, gain, saving
 from trunnion.units import SECONDS_PER_MINUTE
 
 FINISH = "finish"

@@ -12,9 +12,9 @@ from trunnion import tolerance
 from trunnion.model.setup import Setup
 from trunnion.model.tool import Tool
 from trunnion.plan.clearance import Around
-from trunnion.plan.surface.frames import Direction
-from trunnion.plan.surface.reach import Places, reached
-from trunnion.plan.surface.space import SurfaceSpace
+from trunnion.plan.freeform.frames import Direction
+from trunnion.plan.freeform.reach import Places, reached
+from trunnion.plan.freeform.space import SurfaceSpace
 from trunnion.progress import Progress
 
 TILTS = (math.radians(90.0), math.radians(60.0))

@@ -1,0 +1,17 @@
+"""Keys of an operation's choices that say what a drive on curved faces is made with."""
+
+from __future__ import annotations
+
+from trunnion.model.operation import Operation
+
+SCALLOP, ALLOWANCE, BOTTOM, CELL = "surface.scallop", "surface.allowance", "surface.bottom", "surface.cell"
+"""Keys of an operation's choices, mm: the scallop height it is wanted with, what it leaves on purpose, the height in the cutting frame that
+it goes down to, and the distance of the places at which the part's height is measured."""
+EARLIER = "surface.earlier"
+"""Key of an operation's choices: the name of the cutter that finished its faces before."""
+
+
+def number(operation: Operation, key: str) -> float:
+    """Return a choice of an operation that is a number; 0 where there is none."""
+    value = operation.choices.get(key, 0.0)
+    return float(value) if isinstance(value, (int, float)) else 0.0

@@ -1,0 +1,1 @@
+"""What planners share for vertical walls and level floors: plan regions by features, and plane drives."""
