@@ -61,7 +61,7 @@ class Draft:
         data = cutting_data(tool, self.material, self.machine, operation_kind or kind, choose(CuttingSettings, {}), depth, width)
         self.operations.append(Operation(
             id=f"{kind.replace('_', '-')}-{name}", kind=operation_kind or kind, strategy=strategy or stage.strategy, feature=feature,
-            setup="S1", tool=tool, data=data, faces=tags, choices=choices, rules=rules, group=stage.name,
+            setup=self.setup.name, tool=tool, data=data, faces=tags, choices=choices, rules=rules, group=stage.name,
             direction=direction))
 
 
