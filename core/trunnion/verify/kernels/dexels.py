@@ -21,8 +21,8 @@ Where the tool turns, D is concave in w at every t but F need not be: a tool tha
 middle sweeps two lobes with a gap between them. There an entry is bisected where Newton overshoots,
 and what lies between both entries is taken away only where that is certain: between two places that
 are in the body at one time, since D is concave along the ray at that time. Bodies are taken smaller
-by SHRINK, so cuts err towards standing material; a gap that is nowhere deeper than GAP is taken
-with its lobes. mm, rad.
+by SHRINK, so cuts err towards standing material; a gap that is nowhere deeper than 3 GAP may be
+taken with its lobes. mm, rad.
 """
 
 from __future__ import annotations
@@ -55,7 +55,8 @@ MOST_GRAZED = 64
 NOISE = 1e-7
 """mm: depths less apart are the same."""
 GAP = 2e-4
-"""mm: between two lobes of a tool that swings, less than twice this outside counts as inside: a fifth of `tolerance.STOCK_CHORD`."""
+"""mm: between two lobes of a tool that swings, what is less than three times this outside may be taken too, within a third of
+`tolerance.STOCK_CHORD`."""
 SURE = 1e-3
 """mm: how far the depth found in a body that turns may be below the deepest: a tenth of what a rapid is judged by."""
 BENT = 0.01
@@ -93,9 +94,9 @@ def _depth(arcs: Floats, first: int, last: int, limit: float, ray: Floats, w: fl
 
 
 @njit(cache=True, nogil=True)
-def _over_time(arcs: Floats, first: int, last: int, limit: float, ray: Floats, w: float) -> tuple[float, float]:
-    """Return F(w), the largest depth (mm) of a ray's point over a span, and a slope with which it
-    bounds F along the ray from above.
+def _over_time(arcs: Floats, first: int, last: int, limit: float, ray: Floats, w: float) -> tuple[float, float, float]:
+    """Return F(w), the largest depth (mm) of a ray's point over a span, a slope with which it bounds F
+    along the ray from above, and a time at which the point is as deep.
 
     The value is an upper bound, within `NOISE` of F, or within a twentieth of it where the point is
     outside: it errs deep.
@@ -103,10 +104,10 @@ def _over_time(arcs: Floats, first: int, last: int, limit: float, ray: Floats, w
     # A concave function that falls at the start, or rises at the end, is greatest there.
     f0, slope0, s0 = _depth(arcs, first, last, limit, ray, w, 0.0)
     if s0 <= 0.0:
-        return f0, slope0
+        return f0, slope0, 0.0
     f1, slope1, s1 = _depth(arcs, first, last, limit, ray, w, 1.0)
     if s1 >= 0.0:
-        return f1, slope1
+        return f1, slope1, 1.0
     # Cutting planes in time (Kelley, 1960). Invariant: D rises at t0 and falls at t1. The mixture
     # of both tangent planes that is level in time bounds D for all times, and its slope along the
     # ray bounds F.
@@ -131,8 +132,8 @@ def _over_time(arcs: Floats, first: int, last: int, limit: float, ray: Floats, w
         elif s < 0.0:
             t1, f1, slope1, s1 = t, f, along, s
         else:
-            return f, along
-    return most, slope
+            return f, along, t
+    return most, slope, t0 if f0 > f1 else t1
 
 
 @njit(cache=True, nogil=True)
@@ -149,9 +150,9 @@ def _bisected(arcs: Floats, first: int, last: int, limit: float, ray: Floats, ou
 
 
 @njit(cache=True, nogil=True)
-def _entered(arcs: Floats, first: int, last: int, limit: float, ray: Floats, w: float, end: float) -> float:
-    """Return where a ray that runs from w towards `end` enters what is swept; NaN when it doesn't
-    before.
+def _entered(arcs: Floats, first: int, last: int, limit: float, ray: Floats, w: float, end: float) -> tuple[float, float]:
+    """Return where a ray that runs from w towards `end` enters what is swept, NaN when it doesn't
+    before, and a time to try first for it in the body.
 
     Newton's method on F from outside: F(w) + slope (w' - w) bounds F, so its root is not beyond the
     entry.
@@ -159,22 +160,22 @@ def _entered(arcs: Floats, first: int, last: int, limit: float, ray: Floats, w: 
     way = 1.0 if end > w else -1.0
     before = w
     for step in range(100):
-        f, slope = _over_time(arcs, first, last, limit, ray, w)
+        f, slope, t = _over_time(arcs, first, last, limit, ray, w)
         if f > 1e-5 and step > 0:
             # Only where the body turns is the depth not quite concave, and a step too long.
-            return _bisected(arcs, first, last, limit, ray, before, w)
+            return _bisected(arcs, first, last, limit, ray, before, w), 0.5
         # What is only touched to begin with, and left behind, was cut before.
         if f > NOISE or (f >= -NOISE and step > 0):
-            return w
+            return w, t
         # F no longer rises towards the end: concave, so it never becomes positive.
         slope *= way
         if slope <= 1e-12:
-            return np.nan
+            return np.nan, 0.5
         before = w
         w += way * max(-f / slope, NOISE)
         if (end - w) * way < 0.0:
-            return np.nan
-    return np.nan
+            return np.nan, 0.5
+    return np.nan, 0.5
 
 
 @njit(cache=True, nogil=True, inline="always")
@@ -203,7 +204,7 @@ def _highest(arcs: Floats, first: int, last: int, limit: float, ray: Floats, low
         return best, place
     w = low
     while w < high:
-        f, slope = _over_time(arcs, first, last, limit, ray, w)
+        f, slope, _t = _over_time(arcs, first, last, limit, ray, w)
         if f > best:
             best, place = f, w
         steep = slope + ray[TWIST]
@@ -220,8 +221,8 @@ def _peak(arcs: Floats, first: int, last: int, limit: float, ray: Floats, low: f
 
     Cutting planes along w, as `_over_time` has them along t.
     """
-    f0, s0 = _over_time(arcs, first, last, limit, ray, low)
-    f1, s1 = _over_time(arcs, first, last, limit, ray, high)
+    f0, s0, _t = _over_time(arcs, first, last, limit, ray, low)
+    f1, s1, _t = _over_time(arcs, first, last, limit, ray, high)
     best, place = (f0, low) if f0 >= f1 else (f1, high)
     if s0 <= 0.0 or s1 >= 0.0:
         return best, place
@@ -232,7 +233,7 @@ def _peak(arcs: Floats, first: int, last: int, limit: float, ray: Floats, low: f
         if step % 2:
             w = low + (high - low) * s0 / (s0 - s1)
         w = min(max(w, low + 1e-3 * (high - low)), high - 1e-3 * (high - low))
-        f, s = _over_time(arcs, first, last, limit, ray, w)
+        f, s, _t = _over_time(arcs, first, last, limit, ray, w)
         if f > best:
             best, place = f, w
         if s > 0.0:
@@ -486,6 +487,12 @@ def _take_all(count: Ints, low: Floats, high: Floats, cell: int, a: float, b: fl
 
 
 @njit(cache=True, nogil=True)
+def _both_in(arcs: Floats, first: int, last: int, limit: float, ray: Floats, a: float, b: float, t: float) -> bool:
+    """Return whether two places of a ray are in a body at a time, to within GAP (mm)."""
+    return _depth(arcs, first, last, limit, ray, a, t)[0] >= -GAP and _depth(arcs, first, last, limit, ray, b, t)[0] >= -GAP
+
+
+@njit(cache=True, nogil=True)
 def _in_at_once(arcs: Floats, first: int, last: int, limit: float, ray: Floats, a: float, b: float) -> bool:
     """Return whether two places of a ray are found in a body, to within GAP (mm), at one time of a span:
     then all between them is, as the depth is concave along the ray at any time.
@@ -524,12 +531,14 @@ def _sure(arcs: Floats, first: int, last: int, limit: float, ray: Floats, a: flo
     behind that, at most b, where it doesn't; that is NaN when all up to b does.
 
     Both places are inside to within GAP (mm). Steps are halved until two places are in the body at
-    one time, or 2 GAP apart: then all between them is inside to within 2 GAP, as the depth has
-    slope 1 at most.
+    one time, or so near that the turn hardly counts: without the bilinear term about the middle of
+    a step, at most TWIST step / 4, F is concave, so in a step of 4 GAP / TWIST it is at most 2 GAP
+    below its ends.
     """
+    short = 4.0 * GAP / ray[TWIST]
     while a < b:
         step = b - a
-        while not _in_at_once(arcs, first, last, limit, ray, a, a + step) and step > 2.0 * GAP:
+        while step > short and not _in_at_once(arcs, first, last, limit, ray, a, a + step):
             step *= 0.5
             if _over_time(arcs, first, last, limit, ray, a + step)[0] < -GAP:
                 return a, a + step
@@ -591,8 +600,8 @@ def _cut_ray(arcs: Floats, first: int, last: int, limit: float, ray: Floats, spa
         # For a still axis F is concave: no entry from one end means none at all. Where the tool
         # turns, the other end is tried too, and an entry that one side overshot is bisected.
         turns = ray[TWIST] > 0.0
-        from_near = _entered(arcs, first, last, limit, ray, near, far)
-        from_far = np.nan if math.isnan(from_near) and not turns else _entered(arcs, first, last, limit, ray, far, near)
+        from_near, t_near = _entered(arcs, first, last, limit, ray, near, far)
+        from_far, t_far = (np.nan, t_near) if math.isnan(from_near) and not turns else _entered(arcs, first, last, limit, ray, far, near)
         if math.isnan(from_near) and math.isnan(from_far):
             k += 1
             continue
@@ -606,7 +615,9 @@ def _cut_ray(arcs: Floats, first: int, last: int, limit: float, ray: Floats, spa
             continue
         # A cut may need one more interval, a gap another; the caller enlarges the rays and resumes.
         before = count[cell]
-        if turns:
+        # Of a tool that turns, both entries in the body at one of their times tell that all between is.
+        if turns and not (_both_in(arcs, first, last, limit, ray, from_far, from_near, t_near)
+                          or _both_in(arcs, first, last, limit, ray, from_near, from_far, t_far)):
             more, whole = _cut_lobes(arcs, first, last, limit, ray, from_a, from_b, count, low, high, cell)
             gone += more
             if not whole:
@@ -685,10 +696,10 @@ def _graze(arcs: Floats, first: int, last: int, span: Floats, ray: Floats, count
                 x, y = m % fine, m // fine
                 u, v = origin[0] + (i + (x + 0.5) / fine) * pitch, origin[1] + (j + (y + 0.5) / fine) * pitch
                 _aim(ray, span, u, v)
-                a = _entered(arcs, first, last, np.inf, ray, box[2], box[5])
+                a, _t = _entered(arcs, first, last, np.inf, ray, box[2], box[5])
                 if math.isnan(a):
                     continue
-                b = _entered(arcs, first, last, np.inf, ray, box[5], box[2])
+                b, _t = _entered(arcs, first, last, np.inf, ray, box[5], box[2])
                 if math.isnan(b) or b <= a:
                     continue
                 w = _beside(count, low, high, columns, row, end_row, i, j, a, b)
