@@ -1,4 +1,4 @@
-"""Names to things that are imported only when wanted: families, kinds of part, planners, strategies, dialects.
+"""Names to things that are imported only when wanted: families, kinds of part, planners, strategies, dialects, views.
 
 The names come from the entry points `trunnion.KIND` of installed packages, so a user's own package adds one without
 touching ours; the module behind a name is imported on the first `get`.
@@ -12,7 +12,7 @@ from typing import Any
 
 from trunnion.findings import BadCall
 
-KINDS = ("families", "part_kinds", "planners", "strategies", "dialects")
+KINDS = ("families", "part_kinds", "planners", "strategies", "dialects", "views")
 
 
 @cache
@@ -28,7 +28,7 @@ def _points(kind: str) -> dict[str, EntryPoint]:
 
 
 def names(kind: str) -> tuple[str, ...]:
-    """Return the registered names of a kind (`families`, `part_kinds`, `planners`, `strategies`, `dialects`), sorted."""
+    """Return the registered names of a kind (one of `KINDS`), sorted."""
     return tuple(sorted(_points(kind)))
 
 

@@ -21,8 +21,9 @@ from trunnion_gui.deviation import DeviationSource
 from trunnion_gui.docks.cutting import CutBar
 from trunnion_gui.document import Document, Selection
 from trunnion_gui.drawing import DrawnMap, place_on
+from trunnion_gui.families.contract import Colouring, LegendRow
+from trunnion_gui.families.views import Views
 from trunnion_gui.i18n import tr
-from trunnion_gui.patches import PatchTools
 from trunnion_gui.player import Player
 from trunnion_gui.viewport.scene import Click, Scene
 from trunnion_gui.widgets.legend import Legend
@@ -48,17 +49,17 @@ class Centre(QWidget):
     """Words for the status line about what is under the mouse."""
 
     def __init__(self, document: Document, registry: Registry, theme: Theme, player: Player, deviation: DeviationSource,
-                 tools: PatchTools) -> None:
+                 views: Views) -> None:
         super().__init__()
         self._document = document
-        self._player, self._deviation, self._tools = player, deviation, tools
+        self._player, self._deviation, self._views = player, deviation, views
         self._theme = theme
         self._tool: object = None
         self._run: tuple[int, np.ndarray, np.ndarray] = (-1, np.zeros((0, 3)), np.zeros(0))
         self._drawn: dict[str, object] = {}
-        self.shows = {"colours": True, "blank": True, "paths": True, "isolate": False, "ids": False, "radii": False}
-        self.marks_local = False
-        """Whether a click on the part calls its group a local feature, or no longer."""
+        self.shows = {"colours": True, "blank": True, "paths": True, "isolate": False, "ids": False}
+        self._colouring: Colouring | None = None
+        self._takes_click: Callable[[int], bool] | None = None
         self.motions: tuple[str, ...] = tuple(motions())
         self.notice = Notice()
         self.scene = Scene(theme)
@@ -77,7 +78,6 @@ class Centre(QWidget):
         self._column.addWidget(self.cutting)
         self.scene.clicked.connect(self._click)
         self.scene.asked.connect(self._ask)
-        tools.cut_wanted.connect(self.begin_cut)
         self.scene.hovered.connect(self._hover)
         document.mesh_changed.connect(self._show_mesh)
         document.redrawn.connect(self._redraw_mesh)
@@ -110,6 +110,15 @@ class Centre(QWidget):
         self.scene.isolate(self.shows["isolate"])
         self.refresh()
 
+    def colour_by(self, colouring: Colouring | None) -> None:
+        """Colour the part otherwise than by its features; None: by these again."""
+        self._colouring = colouring
+        self.refresh()
+
+    def give_clicks_to(self, takes_click: Callable[[int], bool] | None) -> None:
+        """Offer the face of every click to a function first, which returns whether it took it; None: to nobody."""
+        self._takes_click = takes_click
+
     def show_motions(self, kinds: tuple[str, ...]) -> None:
         """Show these kinds of motion only."""
         self.motions = kinds
@@ -129,7 +138,7 @@ class Centre(QWidget):
         """Draw what changed in the shown session."""
         session = self._document.shown
         self._once("frame", (session.recognition,), lambda: self._use_frame(session))
-        self._once("kinds", (session.recognition, self.shows["colours"], self.shows["radii"], self._shows_paths(session)),
+        self._once("kinds", (session.recognition, self.shows["colours"], self._colouring, self._shows_paths(session)),
                    lambda: self._paint(session))
         self._once("ids", (session.recognition, self._document.mesh, self._document.selection, self.shows["ids"]),
                    lambda: self._write_ids(session))
@@ -178,8 +187,8 @@ class Centre(QWidget):
     def _click(self, click: Click) -> None:
         if self.cutting.is_on:
             self.cutting.take(click)
-        elif self.marks_local and self._tools.groups_of((click.face,)):
-            self._tools.toggle_local((click.face,))
+        elif self._takes_click is not None and self._takes_click(click.face):
+            return
         elif click.with_ctrl:
             self._document.toggle_face(click.face)
         else:
@@ -192,7 +201,7 @@ class Centre(QWidget):
             return
         if not (chosen.kind == "faces" and click.face in chosen.faces):
             self._document.select_face_alone(click.face)
-        menu = self._tools.menu(self, self._document.selection.faces)
+        menu = self._views.face_menu(self, self._document.selection.faces)
         menu.aboutToHide.connect(menu.deleteLater)
         if menu.actions():
             menu.popup(at)
@@ -230,7 +239,7 @@ class Centre(QWidget):
         found = session.recognition
         colours: dict[int, str] = {}
         if found is not None:
-            colours = keys.radii_by_face(found) if self.shows["radii"] else keys.features_by_face(found) if self.shows["colours"] else {}
+            colours = self._colouring.by_face(found) if self._colouring else keys.features_by_face(found) if self.shows["colours"] else {}
         self.scene.show_kinds(colours, faded=self._shows_paths(session))
 
     def _draw_paths(self, session: Session) -> None:
@@ -241,16 +250,16 @@ class Centre(QWidget):
         frames = {o.id: process.setup(o.setup).frame for o in process.operations if not o.suppressed and only in ("", o.id)}
         self.scene.show_paths([(p.path, frames[p.operation]) for p in session.paths if p.operation in frames], self.motions)
 
-    def _legend(self, session: Session) -> list[keys.Row]:
+    def _legend(self, session: Session) -> list[LegendRow]:
         if self._plays:
             return keys.playing(self._theme)
         if self._shows_map:
             return []
         found, rows = session.recognition, []
-        if found is not None and self.shows["radii"]:
-            rows = keys.radii()
+        if found is not None and self._colouring is not None:
+            rows = list(self._colouring.legend())
         elif found is not None and self.shows["colours"]:
-            rows = keys.features(found)
+            rows = keys.features(found, self._views)
         if self._shows_paths(session):
             rows = [*rows, keys.GAP, *keys.paths(self.motions, any(leans(p.path) for p in session.paths))]
         return rows

@@ -53,7 +53,7 @@ def _palette() -> dict[str, dict[str, str]]:
 
 
 @cache
-def _shared() -> Palette:
+def palette() -> Palette:
     """Return the palette that reports use too."""
     return load_palette()
 
@@ -70,26 +70,8 @@ def kinds() -> dict[str, str]:
 
 
 def feature_colours(found: Recognition) -> dict[str, str]:
-    """Return the colour of every feature by id; groups of equal patches are told apart, local ones by warm colours."""
-    return {id: hexed(colour) for id, colour in _shared().features(found).items()}
-
-
-def class_colours() -> tuple[str, str]:
-    """Return the colours that stand for the groups of the remaining area, and for local features."""
-    palette = _shared()
-    return hexed(palette.remaining[0]), hexed(palette.local[0])
-
-
-def radius_colour(radius: float) -> str:
-    """Return the colour of a radius in mm."""
-    return hexed(_shared().radius.at(radius))
-
-
-def radius_steps() -> list[tuple[str, str]]:
-    """Return the steps of the colours of radii: colour, and the words for it."""
-    scale = _shared().radius
-    words = [f"≤ {limit:g} mm" for limit in scale.limits]
-    return list(zip(map(hexed, scale.colours), [*words, f"> {scale.limits[-1]:g} mm"]))
+    """Return the colour of every feature by id: its kind's, or one of its own."""
+    return {id: hexed(colour) for id, colour in palette().features(found).items()}
 
 
 def motions() -> dict[str, str]:

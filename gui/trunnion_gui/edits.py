@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable
+from collections.abc import Callable
 from dataclasses import dataclass, replace
 
 from trunnion.findings import Refused
@@ -105,7 +105,7 @@ def without_feature(id: str) -> Edit:
     """Return the edit that deletes a feature, also for when its step runs again."""
 
     def edit(session: Session) -> Session:
-        return replace(session, recognition=_recognition(session).without(id))
+        return replace(session, recognition=recognition_of(session).without(id))
 
     return edit
 
@@ -114,24 +114,11 @@ def with_kind(id: str, kind: str) -> Edit:
     """Return the edit that changes the kind of a feature, marked as a person's."""
 
     def edit(session: Session) -> Session:
-        found = _recognition(session)
+        found = recognition_of(session)
         if found.feature(id).kind == kind:
             return session
         changed = tuple(replace(f, kind=kind, by_hand=True) if f.id == id else f for f in found.features)
         return replace(session, recognition=replace(found, features=changed))
-
-    return edit
-
-
-def with_local(ids: Iterable[str], value: bool) -> Edit:
-    """Return the edit that calls groups of patches local features, or not, marked as a person's."""
-    wanted = frozenset(ids)
-
-    def edit(session: Session) -> Session:
-        found = _recognition(session)
-        changed = tuple(replace(f, attributes={**f.attributes, "local": value}, by_hand=True)
-                        if f.id in wanted and bool(f.attributes.get("local")) != value else f for f in found.features)
-        return session if changed == found.features else replace(session, recognition=replace(found, features=changed))
 
     return edit
 
@@ -204,7 +191,8 @@ def _with_operation(id: str, change: Callable[[Operation], Operation]) -> Edit:
     return edit
 
 
-def _recognition(session: Session) -> Recognition:
+def recognition_of(session: Session) -> Recognition:
+    """Return what was recognized; raise `Refused` when nothing was yet."""
     if session.recognition is None:
         raise Refused("there are no features yet: recognize the part first")
     return session.recognition

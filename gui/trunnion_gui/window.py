@@ -29,12 +29,12 @@ from trunnion_gui.docks.process import ProcessDock
 from trunnion_gui.docks.properties import PropertiesDock
 from trunnion_gui.document import PROJECT, Document
 from trunnion_gui.estimate import EstimateSource
+from trunnion_gui.families.views import Views
 from trunnion_gui.finder import Finder
 from trunnion_gui.following import Following
 from trunnion_gui.i18n import tr
 from trunnion_gui.menus.bars import fill_menus, toolbar
 from trunnion_gui.menus.general import add_general_commands
-from trunnion_gui.menus.patches import add_patch_commands
 from trunnion_gui.menus.playing import add_playback_commands
 from trunnion_gui.panels.blank import BlankPanel
 from trunnion_gui.panels.generate import GeneratePanel
@@ -42,7 +42,6 @@ from trunnion_gui.panels.optimize import OptimizePanel
 from trunnion_gui.panels.recognize import RecognizePanel
 from trunnion_gui.panels.route import RoutePanel
 from trunnion_gui.panels.size import SizePanel
-from trunnion_gui.patches import PatchTools
 from trunnion_gui.player import Player
 from trunnion_gui.recovery import Recovery
 from trunnion_gui.status import Status
@@ -72,14 +71,17 @@ class Window(QMainWindow):
         self.document = Document(factory, self)
         self.registry = Registry(self)
         self.player, self.deviation = Player(self.document, self), DeviationSource(self.document, self)
-        self.patches, self.estimate = PatchTools(self.document, self), EstimateSource(self.document, self)
+        self.views, self.estimate = Views(self.document), EstimateSource(self.document, self)
         add_general_commands(self)
-        add_patch_commands(self)
+        for view in self.views:
+            view.add_commands(self)
         add_playback_commands(self)
-        self.centre = Centre(self.document, self.registry, self.theme, self.player, self.deviation, self.patches)
+        self.centre = Centre(self.document, self.registry, self.theme, self.player, self.deviation, self.views)
         self.export_dialog = ExportDialog(self.document, self.ask_export_path, self)
         self.setCentralWidget(self.centre)
-        self.panels = {s.name: PANELS[s.name](s, n, self.document, self.registry) for n, s in enumerate(STAGES, 1)}
+        for view in self.views:
+            view.begin(self)
+        self.panels = {s.name: PANELS[s.name](s, n, self.document, self.registry, self.views) for n, s in enumerate(STAGES, 1)}
         self.arrangement = Arrangement(self)
         self._make_docks()
         fill_menus(self.menuBar(), self.registry, self.document.open)
@@ -269,7 +271,7 @@ class Window(QMainWindow):
     # building
 
     def _make_docks(self) -> None:
-        self.features, self.process = FeatureDock(self.document, self.patches), ProcessDock(self.document)
+        self.features, self.process = FeatureDock(self.document, self.views), ProcessDock(self.document)
         self.properties, self.messages = PropertiesDock(self.document), MessagesDock(self.document)
         self.code, self.listing = CodeDock(self.document), ListingDock(self.document)
         self.places, self.accuracy = DeviationDock(self.document), AccuracyDock(self.document)

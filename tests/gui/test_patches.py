@@ -17,8 +17,9 @@ from test_viewport import hue, pixel
 
 from samples import written
 from trunnion.geometry.cut import plane_cut
-from trunnion_gui.colours import radius_colour, rgb
+from trunnion_gui.colours import rgb
 from trunnion_gui.docks.cutting import DRAWN, THREE
+from trunnion_gui.families.surface.looks import radius_colour
 
 LEFT, RIGHT = Qt.MouseButton.LeftButton, Qt.MouseButton.RightButton
 CTRL = Qt.KeyboardModifier.ControlModifier
@@ -269,7 +270,7 @@ def test_a_line_drawn_with_clicks_cuts_a_patch_and_the_cut_can_be_taken_back(sho
     done(shown, qtbot)
     assert shown.document.session.part.n_faces == n + 1
     assert face_at(shown, (x, y + 4.0, z)) != face_at(shown, (x, y - 4.0, z))
-    menu = shown.patches.menu(shown, (face_at(shown, ON_TOP),))
+    menu = shown.views.face_menu(shown, (face_at(shown, ON_TOP),))
     back = next(a.menu() for a in menu.actions() if a.text() == "Take back a cut")
     assert [a.text() for a in back.actions()] == [f"1: face {bar_face(shown)} along a drawn line"]
     back.actions()[0].trigger()
@@ -414,7 +415,7 @@ def test_a_saved_project_opens_with_its_cuts_and_what_was_called_local(make_wind
     window.registry.run("view.top")
     window.document.cut(plane_cut(face_at(window, ON_TOP), (-10.0, 0.0, 0.0), (1.0, 0.0, 0.0)))
     done(window, qtbot)
-    window.patches.toggle_local((face_at(window, ON_TOP),))
+    window.views["surface"].tools.toggle_local((face_at(window, ON_TOP),))
     done(window, qtbot)
     faces, id = window.document.session.part.n_faces, group_at(window, ON_TOP).id
     assert window.document.feature(id).attributes["local"] is True

@@ -9,7 +9,6 @@ from trunnion_gui.centre import Centre
 from trunnion_gui.deviation import DeviationSource
 from trunnion_gui.document import Document
 from trunnion_gui.finder import Finder
-from trunnion_gui.patches import PatchTools
 from trunnion_gui.player import Player
 from trunnion_gui.widgets.export import ExportDialog
 
@@ -21,7 +20,6 @@ class Shell(Protocol):
     registry: Registry
     player: Player
     deviation: DeviationSource
-    patches: PatchTools
     centre: Centre
     export_dialog: ExportDialog
     finder: Finder

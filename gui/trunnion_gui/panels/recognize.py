@@ -8,7 +8,6 @@ from PySide6.QtWidgets import QComboBox, QHBoxLayout, QLabel, QPushButton, QWidg
 
 from trunnion.model.feature import Recognition, TakenFor
 from trunnion.model.session import PartInfo
-from trunnion.report.palette import GROUP
 from trunnion_gui.i18n import tr
 from trunnion_gui.widgets.layout import empty
 from trunnion_gui.widgets.panel import Panel
@@ -55,10 +54,10 @@ class RecognizePanel(Panel):
         counts = " · ".join(counted(n, tr(kind)) for kind, n in found.counts().items())
         loose = "" if not found.unexplained else "<br>" + tr("{n} faces unexplained ({share} of the area)").format(
             n=len(found.unexplained), share=share(found.unexplained_share))
-        local = sum(bool(f.attributes.get("local")) for f in found.of_kind(GROUP))
-        of_them = tr(", {n} of them local features").format(n=local) if local else ""
         taken = f"{_taken(found.taken_for)}<br>" if found.taken_for is not None else ""
-        counted_up = f"{tr('Family')} {tr(found.family)}: {counts}{of_them}" if found.features else tr("Nothing was recognized.")
+        counted_up = tr("Nothing was recognized.")
+        if found.features:
+            counted_up = f"{tr('Family')} {tr(found.family)}: {counts}{self.views.remarks(found)}"
         self.result.setText(f"{taken}{counted_up}{loose}")
 
     def _offer(self, found: Recognition | None) -> None:

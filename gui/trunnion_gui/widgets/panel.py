@@ -10,6 +10,7 @@ from trunnion_gui import edits, icons
 from trunnion_gui.actions import Registry
 from trunnion_gui.colours import Theme
 from trunnion_gui.document import Document
+from trunnion_gui.families.views import Views
 from trunnion_gui.form import Form
 from trunnion_gui.i18n import tr
 from trunnion_gui.steps import STEPS, Stage, joined_state
@@ -31,12 +32,13 @@ class Panel(Foldout):
     command = ""
     folds_settings = False
 
-    def __init__(self, stage: Stage, number: int, document: Document, registry: Registry) -> None:
+    def __init__(self, stage: Stage, number: int, document: Document, registry: Registry, views: Views) -> None:
         super().__init__(tr(stage.title), number, is_open=number == 1)
         self.setProperty("stage", stage.name)
         self.stage = stage
         self.document = document
         self.registry = registry
+        self.views = views
         self.theme: Theme | None = None
         self.forms: list[Form] = []
         self._groups: list[Foldout] = []
@@ -139,17 +141,10 @@ class Panel(Foldout):
             self._by_name[group.name] = foldout
 
     def _show_own_groups(self) -> None:
-        """Hide the settings that only other families of parts have."""
+        """Hide the settings of families that the part has nothing of."""
         found = self.document.shown.recognition
-        others = self._families - {found.family} if found is not None else set()
         for name, widget in self._by_name.items():
-            widget.setVisible(not others & set(name.split(".")))
-
-    @property
-    def _families(self) -> set[str]:
-        """The names of all families, from the setting that chooses one."""
-        declared = (s for g in self.document.groups.get("recognize", ()) for s in g.settings if s.key == "recognize.family")
-        return {name for s in declared for name in s.choices}
+            widget.setVisible(self.views.offers(name, found))
 
     def _folded(self, title: str) -> Foldout:
         foldout = Foldout(title, is_group=True)

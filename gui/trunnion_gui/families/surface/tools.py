@@ -6,14 +6,14 @@ from collections.abc import Iterable
 from functools import partial
 
 from PySide6.QtCore import QObject, Signal
-from PySide6.QtWidgets import QMenu, QWidget
+from PySide6.QtWidgets import QMenu
 
 from trunnion.geometry.cut import Cut
 from trunnion.model.feature import Feature
-from trunnion.report.palette import GROUP
-from trunnion_gui import edits, icons
+from trunnion_gui import icons
 from trunnion_gui.colours import feature_colours
 from trunnion_gui.document import Document
+from trunnion_gui.families.surface.groups import GROUP, is_local, with_local
 from trunnion_gui.i18n import tr
 from trunnion_gui.widgets.table import colour_icon
 
@@ -24,8 +24,8 @@ class PatchTools(QObject):
     cut_wanted = Signal(int, bool)
     """A face (0: the next one that is clicked) shall be cut: by a plane, or else by a way that is drawn."""
 
-    def __init__(self, document: Document, parent: QObject | None = None) -> None:
-        super().__init__(parent)
+    def __init__(self, document: Document) -> None:
+        super().__init__(document)
         self._document = document
 
     @property
@@ -39,25 +39,31 @@ class PatchTools(QObject):
         wanted = set(tags)
         return [f for f in self._document.shown.recognition or () if f.kind == GROUP and wanted & set(f.tags)]
 
+    def toggle_face(self, face: int) -> bool:
+        """Change the class of a face's group; return whether there is one."""
+        groups = self.groups_of((face,))
+        self.toggle_local((face,))
+        return bool(groups)
+
     def toggle_local(self, tags: Iterable[int]) -> None:
         """Call the groups of some faces local features; when they all are, call them so no longer."""
         groups = self.groups_of(tags)
         if groups:
-            self.set_local([f.id for f in groups], not all(f.attributes.get("local") for f in groups))
+            self.set_local([f.id for f in groups], not all(map(is_local, groups)))
 
     def set_local(self, ids: list[str], value: bool) -> None:
         """Call groups local features, or not."""
         words = tr("{id} is a local feature") if value else tr("{id} is no local feature")
-        self._document.edit(words.format(id=", ".join(ids)), edits.with_local(ids, value))
+        self._document.edit(words.format(id=", ".join(ids)), with_local(ids, value))
 
-    def menu(self, parent: QWidget, tags: tuple[int, ...]) -> QMenu:
-        """Return what may be done with some faces."""
-        menu, groups, document = QMenu(parent), self.groups_of(tags), self._document
+    def add_entries(self, menu: QMenu, tags: tuple[int, ...]) -> None:
+        """Add what may be done with some faces to a menu."""
+        groups, document = self.groups_of(tags), self._document
         if groups:
-            is_local = all(f.attributes.get("local") for f in groups)
-            local = menu.addAction(tr("Local feature"), lambda: self.set_local([f.id for f in groups], not is_local))
+            are_local = all(map(is_local, groups))
+            local = menu.addAction(tr("Local feature"), lambda: self.set_local([f.id for f in groups], not are_local))
             local.setCheckable(True)
-            local.setChecked(is_local)
+            local.setChecked(are_local)
         if self.has_groups and tags:
             self._add_groups(menu, tags, groups)
         if len(tags) == 1:
@@ -70,7 +76,6 @@ class PatchTools(QObject):
             back = menu.addMenu(icons.icon("undo"), tr("Take back a cut"))
             for number, cut in enumerate(cuts):
                 back.addAction(cut_words(number, cut), partial(document.take_back, number))
-        return menu
 
     def _add_groups(self, menu: QMenu, tags: tuple[int, ...], own: list[Feature]) -> None:
         found = self._document.shown.recognition

@@ -4,14 +4,18 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from functools import partial
+from typing import TYPE_CHECKING
 
 from trunnion_gui.actions import Command
 from trunnion_gui.menus.shell import Shell
 
+if TYPE_CHECKING:
+    from trunnion_gui.families.surface import SurfaceView
 
-def add_patch_commands(shell: Shell) -> None:
+
+def add_commands(view: SurfaceView, shell: Shell) -> None:
     """Add them to a window's registry."""
-    document, tools = shell.document, shell.patches
+    document, tools = view.document, view.tools
 
     def is_free() -> bool:
         return tools.has_groups and not document.is_busy
@@ -29,7 +33,7 @@ def add_patch_commands(shell: Shell) -> None:
         shell.centre.begin_cut(faces[0] if len(faces) == 1 else 0, by_plane)
 
     def mark_local(on: bool) -> None:
-        shell.centre.marks_local = on
+        shell.centre.give_clicks_to(tools.toggle_face if on else None)
 
     def measure() -> None:
         document.measure()
@@ -42,7 +46,7 @@ def add_patch_commands(shell: Shell) -> None:
             "While this is on, a click on the part makes its group a local feature, or no longer", checkable=True)
     command("ids", "Show IDs", lambda on: shell.centre.show_layer("ids", on), "ids", "N",
             "Write the ID of every group on the part, or of every selected face", lambda: document.has_part, True)
-    command("radii", "Colours by radius", lambda on: shell.centre.show_layer("radii", on), "radii", "R",
+    command("radii", "Colours by radius", lambda on: shell.centre.colour_by(view.by_radius if on else None), "radii", "R",
             "Colour every group by its smallest concave radius", lambda: tools.has_groups, True)
     command("cut_plane", "Cut a face by a plane…", partial(begin_cut, True), "cut_plane", "",
             "Make two patches of one, across x, y or z or through three places", can_cut)

@@ -1,0 +1,129 @@
+"""What a family of parts brings to the window; as it stands here, the view of families that bring nothing of their own.
+
+A family's view is a subclass under the entry-point group `trunnion.views`, with the family's name. One of each is made for a window; all of
+them add their commands, but what they have to show appears only with features of their kinds.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterable, Sequence
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+from PySide6.QtWidgets import QMenu
+
+from trunnion.model.feature import Feature, Recognition
+from trunnion_gui.colours import kind_colour
+from trunnion_gui.document import Document
+from trunnion_gui.i18n import tr
+from trunnion_gui.words import amount, kind_words, sentence
+
+if TYPE_CHECKING:
+    from trunnion_gui.menus.shell import Shell
+
+SIZES = ("depth", "thickness", "height", "diameter", "feature_size")
+"""Names of sizes, from the one that tells most about a feature on."""
+LegendRow = tuple[str, str, str]
+"""Colour, words and count; without a colour a heading, without words either a gap."""
+
+
+def nothing(_feature: Feature) -> str:
+    """Return no words."""
+    return ""
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Column:
+    """A column of the feature table that one family fills: its title and tip, and what stands in the row of a feature.
+
+    With `is_ticked` a row has a mark instead of words, and `click` is called when the cell is clicked.
+    """
+
+    title: str
+    tip: str
+    words: Callable[[Feature], str] = nothing
+    cell_tip: Callable[[Feature], str] = nothing
+    is_ticked: Callable[[Feature], bool] | None = None
+    click: Callable[[Feature], None] | None = None
+
+
+@dataclass(frozen=True, slots=True)
+class FeatureClass:
+    """Features that stand together in table and legend, never none: `name` tells classes apart, the rest is shown."""
+
+    name: str
+    words: str
+    colour: str
+    features: tuple[Feature, ...]
+
+
+@dataclass(frozen=True, slots=True)
+class Colouring:
+    """Other colours of the part than those of its features: the colour of faces by tag, and the rows of the legend."""
+
+    by_face: Callable[[Recognition], dict[int, str]]
+    legend: Callable[[], Sequence[LegendRow]]
+
+
+class FamilyView:
+    """The look of one family in a window, and what a person can do with its features. A subclass changes what is its own."""
+
+    name = ""
+    """The family."""
+    kinds: tuple[str, ...] = ()
+    """The kinds of feature that this view presents; each kind has one view at most."""
+    has_own_colours = False
+    """Whether every feature has a colour of its own, which its row in the table shows."""
+
+    def __init__(self, document: Document) -> None:
+        self.document = document
+
+    # settings
+
+    def owns(self, group: str) -> bool:
+        """Return whether a group of settings is for parts of this family alone."""
+        return bool(self.name) and self.name in group.split(".")
+
+    # table, legend, words
+
+    def headings(self) -> tuple[str, str]:
+        """Return the titles of the columns with a feature's id and its number of faces."""
+        return tr("Feature"), tr("Faces")
+
+    def columns(self) -> tuple[Column, ...]:
+        """Return the columns behind id, faces and size; hidden while the part has no features of these kinds."""
+        return ()
+
+    def classes(self, kind: str, features: Sequence[Feature]) -> tuple[FeatureClass, ...]:
+        """Return the classes that the features of a kind stand in."""
+        return (FeatureClass(kind, sentence(tr(kind_words(kind))), kind_colour(kind), tuple(features)),)
+
+    def size(self, feature: Feature) -> str:
+        """Return the one size that tells most about a feature, in mm; empty without one."""
+        found = main_size(feature)
+        return f"{found} mm" if found else ""
+
+    def remark(self, found: Recognition) -> str:
+        """Return what is said after the counts of a recognition."""
+        return ""
+
+    # menus
+
+    def add_face_entries(self, menu: QMenu, tags: tuple[int, ...]) -> None:
+        """Add what may be done with some faces to a menu."""
+
+    def add_feature_entries(self, menu: QMenu, feature: Feature) -> None:
+        """Add what may be done with a feature of this view to a menu, besides what may be done with any feature."""
+
+    # the window
+
+    def add_commands(self, shell: Shell) -> None:
+        """Add commands to a window's registry; what they reach of the window is made later."""
+
+    def begin(self, shell: Shell) -> None:
+        """Take up work in a window whose picture is there, before its panels and docks are."""
+
+
+def main_size(feature: Feature, names: Iterable[str] = SIZES) -> str:
+    """Return the first of some sizes that a feature has, without its unit; empty without any."""
+    return next((amount(feature.sizes[name], 2) for name in names if name in feature.sizes), "")

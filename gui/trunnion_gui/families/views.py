@@ -1,0 +1,75 @@
+"""The views of all families in a window: which one presents what."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+
+from PySide6.QtWidgets import QMenu, QWidget
+
+from trunnion import registry
+from trunnion.findings import BadCall
+from trunnion.model.feature import Feature, Recognition
+from trunnion_gui.document import Document
+from trunnion_gui.families.contract import FamilyView, FeatureClass
+
+
+class Views:
+    """One view for each family, by its name; families without one have a plain view."""
+
+    def __init__(self, document: Document) -> None:
+        """Make the registered views; raise `BadCall` when two present the same kind of feature."""
+        self._plain = FamilyView(document)
+        self._by_name = {name: _view(name, document) for name in sorted({*registry.names("families"), *registry.names("views")})}
+        self._by_kind: dict[str, FamilyView] = {}
+        for view in self:
+            for kind in view.kinds:
+                other = self._by_kind.setdefault(kind, view)
+                if other is not view:
+                    raise BadCall(f"the views of {other.name} and {view.name} both present the kind {kind}: take it out of one of them")
+
+    def __iter__(self) -> Iterator[FamilyView]:
+        return iter(self._by_name.values())
+
+    def __getitem__(self, family: str) -> FamilyView:
+        return self._by_name[family]
+
+    def of(self, feature: Feature) -> FamilyView:
+        """Return the view that presents a feature."""
+        return self._by_kind.get(feature.kind, self._plain)
+
+    def present(self, found: Recognition | None) -> tuple[FamilyView, ...]:
+        """Return the views of kinds that were found."""
+        kinds = {f.kind for f in found or ()}
+        return tuple(view for view in self if kinds & set(view.kinds))
+
+    def headings(self, found: Recognition | None) -> tuple[str, str]:
+        """Return the titles of the columns with a feature's id and its number of faces."""
+        return next(iter((*self.present(found), self._plain))).headings()
+
+    def classes(self, found: Recognition) -> Iterator[FeatureClass]:
+        """Give the classes that features stand in, kind by kind."""
+        for kind in found.counts():
+            features = tuple(found.of_kind(kind))
+            yield from self.of(features[0]).classes(kind, features)
+
+    def remarks(self, found: Recognition) -> str:
+        """Return what is said after the counts of a recognition."""
+        return "".join(view.remark(found) for view in self.present(found))
+
+    def offers(self, group: str, found: Recognition | None) -> bool:
+        """Return whether a group of settings may matter to a part: it isn't owned by families alone that the part has nothing of."""
+        owners = [view for view in self if view.owns(group)]
+        return found is None or not owners or any(v.name == found.family or v in self.present(found) for v in owners)
+
+    def face_menu(self, parent: QWidget, tags: tuple[int, ...]) -> QMenu:
+        """Return what may be done with some faces."""
+        menu = QMenu(parent)
+        for view in self:
+            view.add_face_entries(menu, tags)
+        return menu
+
+
+def _view(name: str, document: Document) -> FamilyView:
+    made: FamilyView = (registry.get("views", name) if name in registry.names("views") else FamilyView)(document)
+    made.name = name
+    return made
