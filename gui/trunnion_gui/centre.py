@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable
+from typing import Protocol
 
 import numpy as np
 from PySide6.QtCore import QPoint, QPointF, QRectF, Qt, Signal
@@ -18,7 +19,6 @@ from trunnion_gui import keys
 from trunnion_gui.actions import Registry
 from trunnion_gui.colours import Theme, motions
 from trunnion_gui.deviation import DeviationSource
-from trunnion_gui.docks.cutting import CutBar
 from trunnion_gui.document import Document, Selection
 from trunnion_gui.drawing import DrawnMap, place_on
 from trunnion_gui.families.contract import Colouring, LegendRow
@@ -40,6 +40,16 @@ _MOST_IDS = 200
 """IDs that are written on the part at most."""
 _CLOSE_LOOK = 30.0
 """mm above and below a worst place that a click on it shows."""
+
+
+class PictureTool(Protocol):
+    """Something a person does in the picture with clicks on the part, from beginning to end."""
+
+    @property
+    def is_on(self) -> bool: ...
+    def take(self, click: Click) -> None: ...
+    def end(self) -> None: ...
+    def use_theme(self) -> None: ...
 
 
 class Centre(QWidget):
@@ -74,8 +84,7 @@ class Centre(QWidget):
         self._column.addWidget(self.notice)
         self._column.addWidget(self.scene, 1)
         self._column.addWidget(self.section_bar)
-        self.cutting = CutBar(document, self.scene)
-        self._column.addWidget(self.cutting)
+        self._tools: list[PictureTool] = []
         self.scene.clicked.connect(self._click)
         self.scene.asked.connect(self._ask)
         self.scene.hovered.connect(self._hover)
@@ -94,7 +103,8 @@ class Centre(QWidget):
         self._theme = theme
         self.scene.use_theme(theme)
         self.scale.use_theme(theme)
-        self.cutting.use_theme()
+        for tool in self._tools:
+            tool.use_theme()
         self._drawn = {}
         self._show_map(self._deviation.shown if self._deviation.is_on else None)
         self.refresh()
@@ -103,6 +113,20 @@ class Centre(QWidget):
     def add_bar(self, bar: QWidget) -> None:
         """Put a bar below the picture."""
         self._column.addWidget(bar)
+
+    def add_tool(self, tool: PictureTool) -> None:
+        """Give clicks on the part to a tool while it is on."""
+        self._tools.append(tool)
+
+    def end_tool(self) -> bool:
+        """Put the tool away that is on; return whether there was one."""
+        tool = self._tool_on()
+        if tool is not None:
+            tool.end()
+        return tool is not None
+
+    def _tool_on(self) -> PictureTool | None:
+        return next((tool for tool in self._tools if tool.is_on), None)
 
     def show_layer(self, name: str, on: bool) -> None:
         """Show or hide colours, blank or paths; fade what is not selected (`isolate`)."""
@@ -179,14 +203,10 @@ class Centre(QWidget):
         self._drawn = {}
         self.scene.show_mesh(self._document.drawing, keep_camera=True)
 
-    def begin_cut(self, face: int, by_plane: bool) -> None:
-        """Begin to cut a face (0: the one that is clicked next), by a plane or along a line that is drawn."""
-        if self._document.has_part:
-            self.cutting.begin(face, by_plane)
-
     def _click(self, click: Click) -> None:
-        if self.cutting.is_on:
-            self.cutting.take(click)
+        tool = self._tool_on()
+        if tool is not None:
+            tool.take(click)
         elif self._takes_click is not None and self._takes_click(click.face):
             return
         elif click.with_ctrl:
@@ -197,7 +217,7 @@ class Centre(QWidget):
     def _ask(self, click: Click, at: QPoint) -> None:
         """Offer what can be done with the face that was clicked, or with all selected ones when it is among them."""
         chosen = self._document.selection
-        if not click.face or self.cutting.is_on:
+        if not click.face or self._tool_on() is not None:
             return
         if not (chosen.kind == "faces" and click.face in chosen.faces):
             self._document.select_face_alone(click.face)

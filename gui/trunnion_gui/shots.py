@@ -21,6 +21,8 @@ if TYPE_CHECKING:
     from trunnion_gui.window import Window
 
 
+_SHOWN = "pocket-01"
+"""The feature of the sample part that is selected in its picture."""
 Prepare = Callable[["Window"], None]
 
 
@@ -99,29 +101,10 @@ def shoot_all(folder: str | Path) -> tuple[Path, ...]:
     return tuple(made)
 
 
-def shoot_patches(part: str | Path, folder: str | Path) -> Path:
-    """Write the picture of a curved part's groups for the documentation, with a cut about to be made, and return its path."""
-    made = Path(folder) / "patches.png"
-    with opened(part, until="recognize", size=(1500, 900)) as window:
-        take(window, made, _show_patches)
-    return made
-
-
-def _show_patches(window: Window) -> None:
-    """Show where a plane would cut a curved face of the remaining area."""
-    recognition = window.document.session.recognition
-    if recognition is not None:
-        curved = [f for f in recognition.of_kind("group") if "convex_radius" in f.sizes and not f.attributes.get("local")]
-        if curved:
-            window.centre.begin_cut(curved[0].tags[0], True)
-
-
 def _show_feature(window: Window) -> None:
     window.panels["blank"].fold(False)
     window.panels["route"].fold(False)
-    recognition = window.document.session.recognition
-    if recognition is not None:
-        window.document.select_feature(recognition.of_kind("pocket")[0].id)
+    window.document.select_feature(_SHOWN)
 
 
 def _show_operation(window: Window) -> None:
@@ -186,5 +169,3 @@ def wait(is_done: Callable[[], bool], timeout_s: float = 120.0) -> None:
 
 if __name__ == "__main__":
     shoot_all(sys.argv[1] if len(sys.argv) > 1 else "docs/pictures")
-    if len(sys.argv) > 2:
-        shoot_patches(sys.argv[2], sys.argv[1])

@@ -18,7 +18,6 @@ from trunnion_gui.actions import Registry
 from trunnion_gui.arrangement import BELOW, LEFT, RIGHT, Arrangement, column
 from trunnion_gui.centre import Centre
 from trunnion_gui.deviation import DeviationSource
-from trunnion_gui.docks.accuracy import AccuracyDock
 from trunnion_gui.docks.code import CodeDock
 from trunnion_gui.docks.deviation import DeviationDock
 from trunnion_gui.docks.features import FeatureDock
@@ -28,7 +27,6 @@ from trunnion_gui.docks.playback import PlaybackBar
 from trunnion_gui.docks.process import ProcessDock
 from trunnion_gui.docks.properties import PropertiesDock
 from trunnion_gui.document import PROJECT, Document
-from trunnion_gui.estimate import EstimateSource
 from trunnion_gui.families.views import Views
 from trunnion_gui.finder import Finder
 from trunnion_gui.following import Following
@@ -47,7 +45,6 @@ from trunnion_gui.recovery import Recovery
 from trunnion_gui.status import Status
 from trunnion_gui.steps import STAGES
 from trunnion_gui.unsaved import UnsavedWork
-from trunnion_gui.widgets.export import SUFFIXES, ExportDialog
 from trunnion_gui.widgets.panel import Panel
 from trunnion_gui.worker import ENGINE
 
@@ -71,17 +68,19 @@ class Window(QMainWindow):
         self.document = Document(factory, self)
         self.registry = Registry(self)
         self.player, self.deviation = Player(self.document, self), DeviationSource(self.document, self)
-        self.views, self.estimate = Views(self.document), EstimateSource(self.document, self)
+        self.views = Views(self.document)
         add_general_commands(self)
         for view in self.views:
             view.add_commands(self)
         add_playback_commands(self)
         self.centre = Centre(self.document, self.registry, self.theme, self.player, self.deviation, self.views)
-        self.export_dialog = ExportDialog(self.document, self.ask_export_path, self)
         self.setCentralWidget(self.centre)
         for view in self.views:
             view.begin(self)
         self.panels = {s.name: PANELS[s.name](s, n, self.document, self.registry, self.views) for n, s in enumerate(STAGES, 1)}
+        for view in self.views:
+            for name, block in view.blocks().items():
+                self.panels[name].content.addWidget(block)
         self.arrangement = Arrangement(self)
         self._make_docks()
         fill_menus(self.menuBar(), self.registry, self.document.open)
@@ -116,10 +115,6 @@ class Window(QMainWindow):
     def ask_folder(self) -> str:
         """Ask which folder the programs are written to."""
         return QFileDialog.getExistingDirectory(self, tr("Write programs into"))
-
-    def ask_export_path(self, proposed: str, kind: str) -> str:
-        """Ask which STEP or IGES file patches are written to."""
-        return QFileDialog.getSaveFileName(self, tr("Export patches"), proposed, f"{kind} (*{' *'.join(SUFFIXES[kind])})")[0]
 
     def ask_picture_path(self) -> str:
         """Ask where to keep a picture."""
@@ -180,9 +175,7 @@ class Window(QMainWindow):
 
     def leave(self) -> None:
         """Put away what is being done in the picture; else select nothing."""
-        if self.centre.cutting.is_on:
-            self.centre.cutting.end()
-        else:
+        if not self.centre.end_tool():
             self.document.select_face(0)
 
     def suppress_selected(self) -> None:
@@ -274,7 +267,7 @@ class Window(QMainWindow):
         self.features, self.process = FeatureDock(self.document, self.views), ProcessDock(self.document)
         self.properties, self.messages = PropertiesDock(self.document), MessagesDock(self.document)
         self.code, self.listing = CodeDock(self.document), ListingDock(self.document)
-        self.places, self.accuracy = DeviationDock(self.document), AccuracyDock(self.document)
+        self.places = DeviationDock(self.document)
         self.playback = PlaybackBar(self.player, self.registry, self.theme)
         self.centre.add_bar(self.playback)
         self.arrangement.add("steps", tr("Steps"), column(list(self.panels.values())), LEFT)
@@ -282,7 +275,7 @@ class Window(QMainWindow):
         self.arrangement.add("properties", tr("Properties"), self.properties, RIGHT)
         self.arrangement.add_tabs(BELOW, ("messages", tr("Messages"), self.messages), ("code", tr("G-code"), self.code),
                                   ("listing", tr("Listing"), self.listing), ("deviation", tr("Deviation"), self.places),
-                                  ("accuracy", tr("Size error"), self.accuracy))
+                                  *((d.name, d.title, d.widget) for view in self.views for d in view.docks()))
 
     def _connect(self) -> None:
         document, messages = self.document, self.arrangement.dock("messages")
@@ -293,11 +286,9 @@ class Window(QMainWindow):
         document.opened.connect(self._opened)
         document.saved.connect(remembered.add_recent)
         self.messages.counted.connect(lambda n: messages.setWindowTitle(f"{tr('Messages')} {n}" if n else tr("Messages")))
-        size, generate, optimize = self.panels["size"], self.panels["generate"], self.panels["optimize"]
+        size, generate = self.panels["size"], self.panels["generate"]
         assert isinstance(size, SizePanel)
         assert isinstance(generate, GeneratePanel)
-        assert isinstance(optimize, OptimizePanel)
-        self.estimate.arrived.connect(optimize.show_estimate)
         size.pointed.connect(self.centre.show_size)
         for changed in (self.player.opened, self.player.changed, self.deviation.arrived):
             changed.connect(lambda *_: self.registry.refresh())
@@ -314,8 +305,10 @@ class Window(QMainWindow):
         # The main button is drawn on the accent colour, in both themes.
         self.registry.action("run.program").setIcon(icons.icon("program", chosen.accent_text))
         self.centre.use_theme(chosen)
-        for dock in (self.process, self.messages, self.code, self.places, self.accuracy, self.playback):
+        for dock in (self.process, self.messages, self.code, self.places, self.playback):
             dock.use_theme(chosen)
+        for view in self.views:
+            view.use_theme(chosen)
         for panel in self.panels.values():
             panel.use_theme(chosen)
 

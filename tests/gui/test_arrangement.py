@@ -47,7 +47,7 @@ def test_bars_below_the_picture_take_no_width_from_the_docks(programmed, idle, q
     idle(programmed)
     assert relaid(programmed, qtbot) == before
     programmed.show_playback(False)
-    programmed.centre.begin_cut(1, by_plane=True)
+    programmed.views["surface"].begin_cut(1, by_plane=True)
     assert relaid(programmed, qtbot) == before
 
 

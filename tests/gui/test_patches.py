@@ -18,7 +18,7 @@ from test_viewport import hue, pixel
 from samples import written
 from trunnion.geometry.cut import plane_cut
 from trunnion_gui.colours import rgb
-from trunnion_gui.docks.cutting import DRAWN, THREE
+from trunnion_gui.families.surface.cutting import DRAWN, THREE
 from trunnion_gui.families.surface.looks import radius_colour
 
 LEFT, RIGHT = Qt.MouseButton.LeftButton, Qt.MouseButton.RightButton
@@ -72,7 +72,7 @@ def shown(segmented, qtbot):
     window.registry.run("view.top")
     window.document.select_face(0)
     yield window
-    window.centre.cutting.end()
+    window.views["surface"].cutting.end()
     while window.document.session is not before and window.document.history.undo_label:
         window.registry.run("edit.undo")
     qtbot.waitUntil(lambda: not window.document.is_busy and not window.document._quiet, timeout=30000)
@@ -220,7 +220,7 @@ def test_a_plane_through_a_click_cuts_a_patch_in_two(shown, qtbot):
     click(shown, ON_TOP)
     shown.document.select_face_alone(face_at(shown, ON_TOP))
     shown.registry.run("patch.cut_plane")
-    bar = shown.centre.cutting
+    bar = shown.views["surface"].cutting
     assert bar.isVisible() and bar.manner.currentData() == "x"  # across the face's longest side
     click(shown, (-10.0, -14.0, TOP))
     assert bar.value.value() == pytest.approx(-10.0, abs=0.2)
@@ -241,7 +241,7 @@ def test_a_plane_through_a_click_cuts_a_patch_in_two(shown, qtbot):
 def test_three_clicks_make_a_plane(shown, qtbot):
     n = shown.document.session.part.n_faces
     shown.registry.run("patch.cut_plane")
-    bar = shown.centre.cutting
+    bar = shown.views["surface"].cutting
     bar.manner.setCurrentIndex(bar.manner.findData(THREE))
     x, y, z = ON_SMALL[2]
     for place in ((x, y, z), (x + 1.0, y + 1.0, z - 0.26), (x - 1.0, y - 1.0, z - 0.26)):
@@ -259,7 +259,7 @@ def test_a_line_drawn_with_clicks_cuts_a_patch_and_the_cut_can_be_taken_back(sho
     n = shown.document.session.part.n_faces
     shown.document.select_face_alone(face_at(shown, ON_LARGE))
     shown.registry.run("patch.cut_way")
-    bar = shown.centre.cutting
+    bar = shown.views["surface"].cutting
     assert bar.manner.currentData() == DRAWN and not bar.apply.isEnabled()
     for dx, dy in ((-4.0, 0.0), (0.0, 1.5), (3.0, 1.0), (4.0, 0.0)):
         click(shown, (x + dx, y + dy, z))
@@ -288,13 +288,13 @@ def test_escape_puts_a_cut_away_and_keeps_the_selection(shown):
     shown.registry.run("patch.cut_way")
     click(shown, ON_TOP)
     shown.registry.run("edit.none")
-    assert not shown.centre.cutting.isVisible() and shown.document.selection.faces == (face_at(shown, ON_TOP),)
+    assert not shown.views["surface"].cutting.isVisible() and shown.document.selection.faces == (face_at(shown, ON_TOP),)
 
 
 def test_a_cut_along_its_faces_border_is_refused_in_words(shown, qtbot):
     shown.document.select_face_alone(face_at(shown, ON_TOP))
     shown.registry.run("patch.cut_plane")
-    bar = shown.centre.cutting
+    bar = shown.views["surface"].cutting
     assert bar.manner.currentData() == "x"
     bar.value.setValue(-30.0)
     QTest.mouseClick(bar.apply, LEFT)
@@ -307,7 +307,7 @@ def test_a_cut_along_its_faces_border_is_refused_in_words(shown, qtbot):
 @pytest.mark.parametrize(("kind", "suffix"), [("STEP", ".step"), ("IGES", ".igs")])
 def test_local_features_are_exported_alone(shown, qtbot, tmp_path, kind, suffix):
     path = tmp_path / f"local{suffix}"
-    dialog = shown.export_dialog
+    dialog = shown.views["surface"].export_dialog
     shown.registry.run("patch.export")
     dialog._ask_path = lambda proposed, chosen: str(path.with_suffix(""))
     QTest.mouseClick(dialog.parts["local"], LEFT, pos=QPoint(8, 8))
@@ -337,9 +337,9 @@ def faces_in(path) -> int:
 def test_the_groups_of_the_selection_are_ticked_for_export(shown):
     click(shown, ON_LARGE)
     shown.registry.run("patch.export")
-    assert shown.export_dialog.words() == (group_at(shown, ON_LARGE).id,)
-    assert shown.export_dialog.list.isEnabled()
-    shown.export_dialog.hide()
+    assert shown.views["surface"].export_dialog.words() == (group_at(shown, ON_LARGE).id,)
+    assert shown.views["surface"].export_dialog.list.isEnabled()
+    shown.views["surface"].export_dialog.hide()
 
 
 def test_radii_stand_in_columns_and_as_colours(shown, qtbot):
@@ -392,8 +392,8 @@ def test_a_plate_seen_from_the_top_shows_what_was_built(shown):
 
 def test_the_error_of_the_sizes_is_shown_by_the_number_of_points(shown, qtbot):
     shown.registry.run("patch.errors")
-    qtbot.waitUntil(lambda: shown.accuracy.shown is not None, timeout=60000)
-    dock, rows = shown.accuracy, shown.accuracy.shown.rows
+    qtbot.waitUntil(lambda: shown.views["surface"].accuracy.shown is not None, timeout=60000)
+    dock, rows = shown.views["surface"].accuracy, shown.views["surface"].accuracy.shown.rows
     assert dock.isVisible() and dock.table.rowCount() == len(rows)
     assert dock.table.item(len(rows) - 1, 0).text() == "the paper's repair"
     assert rows[0].largest > rows[3].largest >= rows[7].largest

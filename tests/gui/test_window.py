@@ -196,20 +196,22 @@ def test_the_time_of_areas_stands_below_the_balance_of_operations(make_window, p
     window.document.run("optimize", "Optimise")
     panel = window.panels["optimize"]
     panel.fold(False)
-    qtbot.waitUntil(panel.areas.isVisible, timeout=20000)
-    assert [panel.areas.item(r, 0).text() for r in range(panel.areas.rowCount())] == ["op-03", "op-05", "op-07"]
+    areas = window.views["surface"].areas
+    assert panel.isAncestorOf(areas)
+    qtbot.waitUntil(areas.isVisible, timeout=20000)
+    assert [areas.table.item(r, 0).text() for r in range(areas.table.rowCount())] == ["op-03", "op-05", "op-07"]
     # The floor of 104 x 124 and four walls 24 high.
-    assert panel.areas.item(0, 1).text() == f"{104 * 124 + 2 * (104 + 124) * 24}"
-    assert "0.00 % of the time saved" in panel.gain.text() and "from feed and distance of passes" in panel.gain.text()
-    QTest.mouseClick(panel.areas.viewport(), LEFT, pos=panel.areas.visualItemRect(panel.areas.item(1, 0)).center())
+    assert areas.table.item(0, 1).text() == f"{104 * 124 + 2 * (104 + 124) * 24}"
+    assert "0.00 % of the time saved" in areas.gain.text() and "from feed and distance of passes" in areas.gain.text()
+    QTest.mouseClick(areas.table.viewport(), LEFT, pos=areas.table.visualItemRect(areas.table.item(1, 0)).center())
     assert window.document.selection.id == "op-05"
     window.document.run("toolpath", "Generate")
-    qtbot.waitUntil(lambda: "measured on the toolpaths" in panel.gain.text(), timeout=20000)
+    qtbot.waitUntil(lambda: "measured on the toolpaths" in areas.gain.text(), timeout=20000)
 
 
 def test_a_panel_has_no_areas_to_be_timed(programmed):
     programmed.panels["optimize"].fold(False)
-    assert not programmed.panels["optimize"].areas.isVisible()
+    assert not programmed.views["surface"].areas.isVisible()
 
 
 def test_a_failed_verdict_names_the_files_that_must_not_run(make_window, part_file, tmp_path, idle, monkeypatch):

@@ -10,10 +10,10 @@ from collections.abc import Callable, Iterable, Sequence
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
-from PySide6.QtWidgets import QMenu
+from PySide6.QtWidgets import QMenu, QWidget
 
 from trunnion.model.feature import Feature, Recognition
-from trunnion_gui.colours import kind_colour
+from trunnion_gui.colours import Theme, kind_colour
 from trunnion_gui.document import Document
 from trunnion_gui.i18n import tr
 from trunnion_gui.words import amount, kind_words, sentence
@@ -63,6 +63,15 @@ class Colouring:
 
     by_face: Callable[[Recognition], dict[int, str]]
     legend: Callable[[], Sequence[LegendRow]]
+
+
+@dataclass(frozen=True, slots=True)
+class Dock:
+    """A dock of a family's own: the name it is shown by, its title, and what stands in it."""
+
+    name: str
+    title: str
+    widget: QWidget
 
 
 class FamilyView:
@@ -116,6 +125,17 @@ class FamilyView:
         """Add what may be done with a feature of this view to a menu, besides what may be done with any feature."""
 
     # the window
+
+    def blocks(self) -> dict[str, QWidget]:
+        """Return what stands below the results of panels, by the name of the panel."""
+        return {}
+
+    def docks(self) -> tuple[Dock, ...]:
+        """Return docks that stand as tabs below the picture, behind those that every family has."""
+        return ()
+
+    def use_theme(self, theme: Theme) -> None:
+        """Draw docks and blocks in the colours of a theme."""
 
     def add_commands(self, shell: Shell) -> None:
         """Add commands to a window's registry; what they reach of the window is made later."""

@@ -12,7 +12,8 @@ from trunnion_gui import remembered
 from trunnion_gui.actions import Registry
 from trunnion_gui.i18n import tr
 
-_MENUS = ("File", "Edit", "Steps", "Patches", "Playback", "View", "Help")
+_FIRST_MENUS, _LAST_MENUS = ("File", "Edit", "Steps"), ("Playback", "View", "Help")
+"""The menus of every window; those that families bring stand between them."""
 _BEFORE_RECENT = "file.sample"
 """The command that the files opened last are listed under."""
 _GAP, _RIGHTMOST = "", ">"
@@ -26,7 +27,9 @@ _ICON = 19
 
 def fill_menus(bar: QMenuBar, registry: Registry, open: Callable[[str], object]) -> None:
     """Fill a menu bar with every command of a registry, and with the files opened last, which `open` opens."""
-    menus = {name: bar.addMenu(tr(name)) for name in _MENUS}
+    named = dict.fromkeys(command.menu for command in registry.commands())
+    own = (name for name in named if name not in (*_FIRST_MENUS, *_LAST_MENUS))
+    menus = {name: bar.addMenu(tr(name)) for name in (*_FIRST_MENUS, *own, *_LAST_MENUS)}
     for command in registry.commands():
         menus[command.menu].addAction(registry.action(command.id))
         if command.id == _BEFORE_RECENT:

@@ -10,7 +10,6 @@ from trunnion_gui.deviation import DeviationSource
 from trunnion_gui.document import Document
 from trunnion_gui.finder import Finder
 from trunnion_gui.player import Player
-from trunnion_gui.widgets.export import ExportDialog
 
 
 class Shell(Protocol):
@@ -21,7 +20,6 @@ class Shell(Protocol):
     player: Player
     deviation: DeviationSource
     centre: Centre
-    export_dialog: ExportDialog
     finder: Finder
 
     def open(self) -> None: ...

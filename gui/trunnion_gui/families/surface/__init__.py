@@ -4,14 +4,20 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 
-from PySide6.QtWidgets import QMenu
+from PySide6.QtWidgets import QMenu, QWidget
 
 from trunnion.model.feature import Feature, Recognition
 from trunnion_gui import icons
+from trunnion_gui.colours import Theme
 from trunnion_gui.document import Document
-from trunnion_gui.families.contract import Colouring, Column, FamilyView, FeatureClass, main_size
+from trunnion_gui.families.contract import Colouring, Column, Dock, FamilyView, FeatureClass, main_size
 from trunnion_gui.families.surface import looks
+from trunnion_gui.families.surface.accuracy import AccuracyDock
+from trunnion_gui.families.surface.areas import AreasBlock
 from trunnion_gui.families.surface.commands import add_commands
+from trunnion_gui.families.surface.cutting import CutBar
+from trunnion_gui.families.surface.estimate import EstimateSource
+from trunnion_gui.families.surface.export import ExportDialog
 from trunnion_gui.families.surface.groups import GROUP, is_local
 from trunnion_gui.families.surface.tools import PatchTools
 from trunnion_gui.i18n import tr
@@ -29,6 +35,10 @@ class SurfaceView(FamilyView):
     def __init__(self, document: Document) -> None:
         super().__init__(document)
         self.tools = PatchTools(document)
+        self.estimate = EstimateSource(document)
+        self.areas, self.accuracy = AreasBlock(document), AccuracyDock(document)
+        self.estimate.arrived.connect(self.areas.show_estimate)
+        self.tools.cut_wanted.connect(self.begin_cut)
 
     def headings(self) -> tuple[str, str]:
         return tr("Group"), tr("n")
@@ -62,4 +72,21 @@ class SurfaceView(FamilyView):
         add_commands(self, shell)
 
     def begin(self, shell: Shell) -> None:
-        self.tools.cut_wanted.connect(shell.centre.begin_cut)
+        self.cutting = CutBar(self.document, shell.centre.scene)
+        shell.centre.add_bar(self.cutting)
+        shell.centre.add_tool(self.cutting)
+        self.export_dialog = ExportDialog(self.document, shell.centre.window())
+
+    def begin_cut(self, face: int, by_plane: bool) -> None:
+        """Begin to cut a face (0: the one that is clicked next), by a plane or along a line that is drawn."""
+        if self.document.has_part:
+            self.cutting.begin(face, by_plane)
+
+    def blocks(self) -> dict[str, QWidget]:
+        return {"optimize": self.areas}
+
+    def docks(self) -> tuple[Dock, ...]:
+        return (Dock("accuracy", tr("Size error"), self.accuracy),)
+
+    def use_theme(self, theme: Theme) -> None:
+        self.accuracy.use_theme(theme)

@@ -30,7 +30,7 @@ def add_commands(view: SurfaceView, shell: Shell) -> None:
 
     def begin_cut(by_plane: bool) -> None:
         faces = document.selection.faces
-        shell.centre.begin_cut(faces[0] if len(faces) == 1 else 0, by_plane)
+        view.begin_cut(faces[0] if len(faces) == 1 else 0, by_plane)
 
     def mark_local(on: bool) -> None:
         shell.centre.give_clicks_to(tools.toggle_face if on else None)
@@ -54,5 +54,5 @@ def add_commands(view: SurfaceView, shell: Shell) -> None:
             "Make two patches of one, along a line through the places you click", can_cut)
     command("errors", "Size error by points", measure, "errors", "",
             "Measure how exact the feature sizes are and what they cost, by the number of points on each edge", can_cut)
-    command("export", "Export patches…", lambda: shell.export_dialog.begin(), "export", "Ctrl+Shift+E",
+    command("export", "Export patches…", lambda: view.export_dialog.begin(), "export", "Ctrl+Shift+E",
             "Write local features, the remaining area or some groups as STEP or IGES")

@@ -2,13 +2,13 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
 from pathlib import Path
 
 from PySide6.QtCore import Qt
 from PySide6.QtWidgets import (
     QButtonGroup,
     QDialog,
+    QFileDialog,
     QHBoxLayout,
     QLabel,
     QListWidget,
@@ -19,13 +19,13 @@ from PySide6.QtWidgets import (
     QWidget,
 )
 
-from trunnion.report.palette import GROUP
 from trunnion_gui.colours import feature_colours
 from trunnion_gui.document import Document
+from trunnion_gui.families.surface.groups import GROUP, LOCAL, is_local
 from trunnion_gui.i18n import tr
 from trunnion_gui.widgets.table import colour_icon
 
-LOCAL, REMAINING, CHOSEN = "local", "remaining", "chosen"
+REMAINING, CHOSEN = "remaining", "chosen"
 SUFFIXES = {"STEP": (".step", ".stp"), "IGES": (".igs", ".iges")}
 _LINES = 10
 
@@ -33,10 +33,9 @@ _LINES = 10
 class ExportDialog(QDialog):
     """Chooses patches and a format, asks where to, and hands it to the document."""
 
-    def __init__(self, document: Document, ask_path: Callable[[str, str], str], parent: QWidget) -> None:
-        """`ask_path(proposed, format)` returns the path a person chose, empty when none."""
+    def __init__(self, document: Document, parent: QWidget) -> None:
         super().__init__(parent)
-        self._document, self._ask_path = document, ask_path
+        self._document = document
         self.setWindowTitle(tr("Export patches"))
         self.setModal(False)
         self._ticked: set[str] = set()
@@ -79,6 +78,10 @@ class ExportDialog(QDialog):
             right = Path(path).suffix.lower() in SUFFIXES[kind]
             self._document.export(words, path if right else path + SUFFIXES[kind][0])
 
+    def _ask_path(self, proposed: str, kind: str) -> str:
+        """Ask which STEP or IGES file patches are written to; empty when none was chosen. Tests replace this."""
+        return QFileDialog.getSaveFileName(self.parentWidget(), tr("Export patches"), proposed, f"{kind} (*{' *'.join(SUFFIXES[kind])})")[0]
+
     def refresh(self) -> None:
         """Show the groups of the shown session, and say how much is chosen."""
         if not self.isVisible() and not self.list.count():
@@ -86,8 +89,8 @@ class ExportDialog(QDialog):
         if [self.list.item(n).text().split()[0] for n in range(self.list.count())] != [f.id for f in self._groups()]:
             self._fill()
         words = self.words()
-        groups = {LOCAL: [f for f in self._groups() if f.attributes.get("local")],
-                  REMAINING: [f for f in self._groups() if not f.attributes.get("local")]}.get(
+        groups = {LOCAL: [f for f in self._groups() if is_local(f)],
+                  REMAINING: [f for f in self._groups() if not is_local(f)]}.get(
             words[0] if words else "", [f for f in self._groups() if f.id in words])
         self.count.setText(tr("{n} faces in {groups} groups").format(n=sum(len(f.tags) for f in groups), groups=len(groups)))
         self.list.setEnabled(self.parts[CHOSEN].isChecked())

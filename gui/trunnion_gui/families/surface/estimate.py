@@ -5,8 +5,8 @@ from __future__ import annotations
 from PySide6.QtCore import QObject, Signal
 
 from trunnion.model.session import Session
-from trunnion.report.palette import GROUP
 from trunnion_gui.document import Document
+from trunnion_gui.families.surface.groups import GROUP
 from trunnion_gui.verbs import Estimated
 from trunnion_gui.worker import Reply
 
@@ -17,8 +17,8 @@ class EstimateSource(QObject):
     arrived = Signal(object)
     """Another `Estimated`, or None."""
 
-    def __init__(self, document: Document, parent: QObject | None = None) -> None:
-        super().__init__(parent)
+    def __init__(self, document: Document) -> None:
+        super().__init__(document)
         self._document = document
         self.shown: Estimated | None = None
         self._source: tuple[object, object] = (None, None)
