@@ -39,6 +39,8 @@ class Declared:
     label: str
     help: str
     choices: tuple[str, ...]
+    catalogue: str
+    """The catalogue whose names may be given: materials, machines or tools; empty for anything else."""
 
     def allowed(self) -> str:
         """Return in words what values may be given."""
@@ -66,10 +68,13 @@ class Declared:
 
 
 def setting(default: Value, *, unit: str = "", low: float | None = None, high: float | None = None, label: str, help: str,
-            choices: tuple[str, ...] = ()) -> Any:
-    """Return the dataclass field of one setting. A number needs `unit` ("" where it counts), `low` and `high`."""
+            choices: tuple[str, ...] = (), catalogue: str = "") -> Any:
+    """Return the dataclass field of one setting. A number needs `unit` ("" where it counts), `low` and `high`.
+
+    A name of a thing in a catalogue (`materials`, `machines`, `tools`) says which, and forms offer what there is.
+    """
     return dataclasses.field(default=default, metadata={_META: {
-        "unit": unit, "low": low, "high": high, "label": label, "help": help, "choices": choices}})
+        "unit": unit, "low": low, "high": high, "label": label, "help": help, "choices": choices, "catalogue": catalogue}})
 
 
 GROUPS: dict[str, type] = {}

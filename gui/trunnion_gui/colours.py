@@ -91,7 +91,7 @@ def tool_colours() -> dict[str, str]:
 
 def tool_cycle(numbers: Sequence[int]) -> tuple[str, ...]:
     """Return a colour for each of some tools by their number, the same for the same tool."""
-    wheel = [kinds()[name] for name in ("pocket", "rib", "profile", "island", "hole", "open_pocket", "pit", "chamfer")]
+    wheel: Sequence[str] = _palette()["tools"]["wheel"]
     rows = {number: n for n, number in enumerate(dict.fromkeys(numbers))}
     return tuple(wheel[rows[number] % len(wheel)] for number in numbers)
 

@@ -28,7 +28,7 @@ from trunnion_gui.drawing import Drawing
 from trunnion_gui.edits import Edit, History
 from trunnion_gui.i18n import tr
 from trunnion_gui.steps import STEPS, TITLES, until
-from trunnion_gui.verbs import Group, Opened, State
+from trunnion_gui.verbs import Group, Opened, State, Work
 from trunnion_gui.worker import ENGINE, Reply, Worker
 
 
@@ -41,18 +41,23 @@ class Selection:
     faces: tuple[int, ...] = ()
 
 
+Finish = Callable[[Any], None]
+
+
 @dataclass(frozen=True, slots=True)
 class Job:
     """A piece of work that runs: its request number, verb, label and when it started."""
 
     number: int
-    verb: str
+    verb: str | Work
     label: str
     started: float
     path: str = ""
     is_recovery: bool = False
     project: str = ""
     """The project file that recovered work belongs to."""
+    finish: Finish | None = None
+    """What a family does with the answer to a request of its own."""
 
 
 NOTHING = Selection()
@@ -75,10 +80,8 @@ class Document(QObject):
     """A `Finding` about the program itself: a failure, a crash, a refusal."""
     opened = Signal(str)
     saved = Signal(str)
-    exported = Signal(str, int)
-    """The file that patches were written to, and how many."""
-    measured = Signal(object)
-    """An `Accuracy` of the part's patches."""
+    said = Signal(str)
+    """Words on what came of a job."""
     written = Signal(object)
     """The folder and the names of the files written there."""
 
@@ -182,34 +185,17 @@ class Document(QObject):
         if self._is_free() and self._needs_part():
             self._start("write", tr("writing files"), self.session, str(folder), path=str(folder))
 
-    # patches
-
-    def cut(self, cut: Cut) -> None:
-        """Cut a face in two; features are found anew where they had been found."""
+    def request(self, work: Work, label: str, *arguments: Any, finish: Finish) -> None:
+        """Do a family's own work on the session in the worker; `finish` gets what it returns. Refused in words while a job runs."""
         if self._is_free() and self._needs_part():
-            self._start("cut", tr("Cut face {n}").format(n=cut.face), self.session, cut)
+            self._start(work, label, self.session, *arguments, finish=finish)
 
-    def take_back(self, number: int) -> None:
-        """Take one of the cuts back, counted from 0."""
-        if self._is_free() and number < len(self.session.cuts):
-            self._start("uncut", tr("Join face {n} again").format(n=self.session.cuts[number].face), self.session, number)
-
-    def move(self, faces: tuple[int, ...], group: str = "") -> None:
-        """Move faces to a group by its id, or to a new one."""
-        if self._is_free() and faces:
-            words = ", ".join(map(str, faces[:3])) + ("…" if len(faces) > 3 else "")
-            label = tr("Move face {faces} to {group}").format(faces=words, group=group or tr("a new group"))
-            self._start("move", label, self.session, faces, group)
-
-    def measure(self) -> None:
-        """Measure how exact the patches' feature sizes are by the number of points on their edges."""
-        if self._is_free() and self._needs_part():
-            self._start("accuracy", tr("measuring patches"), self.session)
-
-    def export(self, what: tuple[str, ...], path: str) -> None:
-        """Write patches as IGES or STEP by the path's suffix: `local`, `remaining`, or groups by their ids."""
-        if self._is_free():
-            self._start("export", tr("exporting {name}").format(name=Path(path).name), self.session, what, path, path=path)
+    def keep(self, label: str, state: State, drawing: Drawing | None = None) -> None:
+        """Take a session into the history, with what is drawn of its part where its faces are others."""
+        if drawing is not None:
+            self._drawings[state.session.cuts] = drawing
+        self.history.push(label, state.session)
+        self._show(state.session, state.steps)
 
     def cancel(self) -> None:
         """Ask the running job to stop."""
@@ -354,10 +340,10 @@ class Document(QObject):
         """Whether nothing is stale up to a step; while the states of a fresh edit are still asked for, nobody knows."""
         return "states" not in self._quiet.values() and all(self.states.get(s) in ("done", "problem") for s in until(last))
 
-    def _start(self, verb: str, label: str, *arguments: Any, path: str = "", is_recovery: bool = False,
-               project: str = "") -> None:
+    def _start(self, verb: str | Work, label: str, *arguments: Any, path: str = "", is_recovery: bool = False,
+               project: str = "", finish: Finish | None = None) -> None:
         self._settled, self._doing = self.states, ""
-        self.job = Job(self.worker.ask(verb, *arguments), verb, label, time.monotonic(), path, is_recovery, project)
+        self.job = Job(self.worker.ask(verb, *arguments), verb, label, time.monotonic(), path, is_recovery, project, finish)
         self.job_changed.emit()
         self.progressed.emit(0.0, label)
 
@@ -462,25 +448,14 @@ class Document(QObject):
             self.notice(reply.text, kept if finished else "")
 
     def _finish(self, job: Job, reply: Reply) -> None:
-        if job.verb == "open":
+        if job.finish is not None:
+            job.finish(reply.value)
+        elif job.verb == "open":
             self._install(job, reply.value)
         elif job.verb == "run":
-            self.history.push(job.label, reply.value.session)
-            self._show(reply.value.session, reply.value.steps)
+            self.keep(job.label, reply.value)
             if reply.value.refusal:
                 self.notice(reply.value.refusal)
-        elif job.verb == "move":
-            self.history.push(job.label, reply.value.session)
-            self._show(reply.value.session, reply.value.steps)
-        elif job.verb in ("cut", "uncut"):
-            state = reply.value.state
-            self._drawings[state.session.cuts] = reply.value.drawing
-            self.history.push(job.label, state.session)
-            self._show(state.session, state.steps)
-        elif job.verb == "accuracy":
-            self.measured.emit(reply.value)
-        elif job.verb == "export":
-            self.exported.emit(job.path, reply.value)
         elif job.verb == "save":
             self.project = job.path
             self.history.mark_saved(self.session)

@@ -44,7 +44,7 @@ class Status(QStatusBar):
         document.progressed.connect(self._progress)
         document.changed.connect(self.refresh)
         document.saved.connect(lambda path: self._say(tr("Saved {path}").format(path=path)))
-        document.exported.connect(lambda path, n: self._say(tr("{n} faces written to {path}").format(n=n, path=path)))
+        document.said.connect(self._say)
         document.written.connect(lambda what: self._say(tr("{n} files written to {folder}").format(n=len(what[1]), folder=what[0])))
         self._job()
         self.refresh()

@@ -95,7 +95,7 @@ QLabel[verdict="bad"] {{ color: {bad}; font-weight: 600; }}
 QFrame#foldout {{ background: {panel}; border: 1px solid {line}; border-radius: 7px; }}
 QFrame#foldoutHeader {{ background: transparent; border-radius: 7px; }}
 QFrame#foldoutHeader:hover {{ background: {raised}; }}
-QFrame#group {{ background: transparent; border: none; }}
+QFrame#settingsGroup {{ background: transparent; border: none; }}
 QFrame#legend, QFrame#card, QFrame#finder {{ background: {panel}; border: 1px solid {line}; border-radius: 8px; }}
 QFrame#notice {{ background: {panel}; border: 1px solid {line}; border-radius: 7px; }}
 QFrame#notice[severity="error"] {{ border-left: 4px solid {bad}; }}

@@ -26,14 +26,13 @@ from PySide6.QtCore import QObject, QTimer, Signal
 from trunnion.findings import Cancelled, TrunnionError
 from trunnion.progress import Progress
 from trunnion_gui.parcel import packed, unpacked
-from trunnion_gui.verbs import VERBS
+from trunnion_gui.verbs import Work, is_writing, work_of
 
 ENGINE = "trunnion.pipeline:Engine"
 GRACE_S = 0.35
 """s: a person who cancels waits for half a second at most, the end of a process that hears nothing and the start of another included."""
 WRITING_GRACE_S = 5.0
 """s: half a folder of programs is worse than a late answer."""
-_WRITING = ("save", "write", "export")
 _TELL_EVERY_S, _TELL_NEWS_S = 0.05, 0.01
 """s between two reports of progress at least: the same words, and other ones, which must not be missing when the work then stands still."""
 _CRASHES_IN_A_ROW = 3
@@ -41,10 +40,10 @@ _CRASHES_IN_A_ROW = 3
 
 @dataclass(frozen=True, slots=True)
 class Request:
-    """Something to do: `verb` is a name in `VERBS`."""
+    """Something to do: `verb` is a name in `VERBS`, or a function like these."""
 
     number: int
-    verb: str
+    verb: str | Work
     arguments: tuple[Any, ...] = ()
 
 
@@ -100,7 +99,8 @@ def _fault_line(request: Request, fault: Exception) -> str:
 
     last = traceback.extract_tb(fault.__traceback__)[-1]
     where = f"{os.path.basename(last.filename)}:{last.lineno}"
-    return f"{request.verb} met a fault of the program ({type(fault).__name__} at {where}: {fault})"
+    what = request.verb if isinstance(request.verb, str) else request.verb.__name__
+    return f"{what} met a fault of the program ({type(fault).__name__} at {where}: {fault})"
 
 
 def _answer(engine: Any, request: Request, pipe: Connection, cancelled: Any) -> Reply:
@@ -121,7 +121,7 @@ def _answer(engine: Any, request: Request, pipe: Connection, cancelled: Any) -> 
 
     progress = Progress(report, lambda: cancelled.value >= request.number)
     progress.check()
-    return Reply(request.number, "done", value=VERBS[request.verb](engine, progress, tell, *request.arguments))
+    return Reply(request.number, "done", value=work_of(request.verb)(engine, progress, tell, *request.arguments))
 
 
 class Worker(QObject):
@@ -157,7 +157,7 @@ class Worker(QObject):
         """The id of the process, 0 when none runs."""
         return self._process.pid if self._process is not None else 0
 
-    def ask(self, verb: str, *arguments: Any) -> int:
+    def ask(self, verb: str | Work, *arguments: Any) -> int:
         """Send a request and return its number; starts the process again when it had given up."""
         if self._process is None:
             self._crashes = 0
@@ -175,7 +175,7 @@ class Worker(QObject):
         if self._process is None or asked is None:
             return
         self._cancelled.value = max(self._cancelled.value, number)
-        grace = WRITING_GRACE_S if asked.verb in _WRITING else GRACE_S
+        grace = WRITING_GRACE_S if is_writing(asked.verb) else GRACE_S
         QTimer.singleShot(int(grace * 1000), lambda: self._insist(number))
 
     def forget(self, number: int) -> None:

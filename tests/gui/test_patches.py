@@ -208,7 +208,7 @@ def test_a_face_moves_to_another_group_by_the_menu_of_a_right_click(shown, qtbot
 
 
 def test_faces_move_to_a_new_group(shown, qtbot):
-    shown.document.move((face_at(shown, ON_SMALL[1]),))
+    shown.views["surface"].jobs.move((face_at(shown, ON_SMALL[1]),))
     done(shown, qtbot)
     alone = group_at(shown, ON_SMALL[1])
     assert len(alone.tags) == 1 and alone.by_hand
@@ -413,7 +413,7 @@ def test_a_saved_project_opens_with_its_cuts_and_what_was_called_local(make_wind
     window.document.run("recognize", "Recognize")
     done(window, qtbot)
     window.registry.run("view.top")
-    window.document.cut(plane_cut(face_at(window, ON_TOP), (-10.0, 0.0, 0.0), (1.0, 0.0, 0.0)))
+    window.views["surface"].jobs.cut(plane_cut(face_at(window, ON_TOP), (-10.0, 0.0, 0.0), (1.0, 0.0, 0.0)))
     done(window, qtbot)
     window.views["surface"].tools.toggle_local((face_at(window, ON_TOP),))
     done(window, qtbot)

@@ -18,7 +18,7 @@ class BlankSettings:
     side: float = setting(5.0, unit="mm", low=0.0, high=500.0, label="Side allowance", help="Material on each of the four sides.")
     top: float = setting(2.0, unit="mm", low=0.0, high=500.0, label="Top allowance", help="Material over the part's top.")
     bottom: float = setting(0.0, unit="mm", low=0.0, high=500.0, label="Bottom allowance", help="Material under the part's bottom.")
-    material: str = setting("EN AW-7075", label="Material", help="Name of a material of the catalogue.")
+    material: str = setting("EN AW-7075", label="Material", catalogue="materials", help="Name of a material of the catalogue.")
 
 
 def make_blank(frame: Frame, low: Floats, high: Floats, material: Material, settings: BlankSettings) -> Blank:

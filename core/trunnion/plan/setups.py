@@ -23,7 +23,7 @@ class SetupSettings:
                           help="Place of the program's zero on the blank, seen from the spindle; corner: smallest x and y.")
     clearance: float = setting(20.0, unit="mm", low=1.0, high=500.0, label="Clearance",
                                help="Height above the blank at which the tool travels between operations.")
-    machine: str = setting("Mill 1200", label="Machine", help="Name of a machine of the catalogue.")
+    machine: str = setting("Mill 1200", label="Machine", catalogue="machines", help="Name of a machine of the catalogue.")
     work_offset: int = setting(54, unit="", low=54, high=59, label="Work offset",
                                help="G code of the first setup's work offset; the next takes the next.")
 

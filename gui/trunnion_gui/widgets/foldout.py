@@ -40,7 +40,7 @@ class Foldout(QFrame):
 
     def __init__(self, title: str, number: int = 0, *, is_open: bool = False, is_group: bool = False) -> None:
         super().__init__()
-        self.setObjectName("group" if is_group else "foldout")
+        self.setObjectName("settingsGroup" if is_group else "foldout")
         self._theme: Theme | None = None
         self.state = ""
         self._drawn: tuple[str, Theme | None] = ("", None)

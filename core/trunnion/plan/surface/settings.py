@@ -17,11 +17,12 @@ class SurfaceRouteSettings:
                         help="Roughness that the scallop height is chosen for, 2.5 um of height for each um; 0: as said by the height.")
     share: float = setting(0.97, unit="of the area", low=0.5, high=1.0, label="Reach",
                            help="Share of an area that its cutter must reach without gouging; the largest that does is taken.")
-    cutter: str = setting("", label="Cutter", help="Name of the cutter that finishes all areas but local features; empty: the largest "
-                                                   "that reaches.")
-    local_cutter: str = setting("", label="Local cutter", help="Name of the cutter that finishes local features; empty: the largest that "
-                                                               "reaches.")
-    rough_cutter: str = setting("", label="Roughing cutter", help="Name of the cutter that roughs; empty: the largest that leaves little.")
+    cutter: str = setting("", label="Cutter", catalogue="tools",
+                          help="Name of the cutter that finishes all areas but local features; empty: the largest that reaches.")
+    local_cutter: str = setting("", label="Local cutter", catalogue="tools",
+                                help="Name of the cutter that finishes local features; empty: the largest that reaches.")
+    rough_cutter: str = setting("", label="Roughing cutter", catalogue="tools",
+                                help="Name of the cutter that roughs; empty: the largest that leaves little.")
     layer: float = setting(1.5, unit="mm", low=0.05, high=50.0, label="Roughing layer",
                            help="Height of the layers that roughing goes down by: the steps it leaves are as high.")
     rough_allowance: float = setting(0.3, unit="mm", low=0.0, high=20.0, label="Roughing allowance", help="What roughing leaves all round.")

@@ -6,8 +6,9 @@ from PySide6.QtWidgets import QHBoxLayout, QLabel, QSplitter, QTableWidget, QVBo
 
 from trunnion_gui.colours import Theme
 from trunnion_gui.document import Document
+from trunnion_gui.families.surface.jobs import PatchJobs
+from trunnion_gui.families.surface.requests import Accuracy
 from trunnion_gui.i18n import tr
-from trunnion_gui.verbs import Accuracy
 from trunnion_gui.widgets import table as tables
 from trunnion_gui.widgets.chart import Chart, Curve
 from trunnion_gui.widgets.panel import rule
@@ -20,7 +21,7 @@ _REPAIR = -1
 class AccuracyDock(QWidget):
     """A table and a chart of the last measurement; empty until somebody asks for one."""
 
-    def __init__(self, document: Document) -> None:
+    def __init__(self, document: Document, jobs: PatchJobs) -> None:
         super().__init__()
         self.shown: Accuracy | None = None
         self.table: QTableWidget = tables.table([tr("Per edge"), tr("Points"), tr("Largest error"), tr("Mean error"), tr("Time")])
@@ -42,7 +43,7 @@ class AccuracyDock(QWidget):
         row = QHBoxLayout(self)
         row.setContentsMargins(0, 0, 0, 0)
         row.addWidget(split)
-        document.measured.connect(self.show_errors)
+        jobs.measured.connect(self.show_errors)
         document.mesh_changed.connect(lambda: self.show_errors(None))
         document.redrawn.connect(lambda: self.show_errors(None))
         self.show_errors(None)

@@ -5,8 +5,8 @@ from __future__ import annotations
 from PySide6.QtWidgets import QLabel, QVBoxLayout, QWidget
 
 from trunnion_gui.document import Document
+from trunnion_gui.families.surface.requests import Estimated
 from trunnion_gui.i18n import tr
-from trunnion_gui.verbs import Estimated
 from trunnion_gui.widgets import table as tables
 from trunnion_gui.words import amount, duration
 

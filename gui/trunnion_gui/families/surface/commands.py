@@ -10,7 +10,7 @@ from trunnion_gui.actions import Command
 from trunnion_gui.menus.shell import Shell
 
 if TYPE_CHECKING:
-    from trunnion_gui.families.surface import SurfaceView
+    from trunnion_gui.families.surface.view import SurfaceView
 
 
 def add_commands(view: SurfaceView, shell: Shell) -> None:
@@ -36,7 +36,7 @@ def add_commands(view: SurfaceView, shell: Shell) -> None:
         shell.centre.give_clicks_to(tools.toggle_face if on else None)
 
     def measure() -> None:
-        document.measure()
+        view.jobs.measure()
         shell.show_dock("accuracy")
 
     command("local", "Local feature, or no longer", lambda: tools.toggle_local(document.selection.faces), "local", "O",

@@ -13,6 +13,7 @@ from trunnion.geometry.cut import Cut, plane_cut, way_cut
 from trunnion_gui import icons
 from trunnion_gui.document import Document
 from trunnion_gui.drawing import box_of, plane_line, sampled
+from trunnion_gui.families.surface.jobs import PatchJobs
 from trunnion_gui.form import Number
 from trunnion_gui.i18n import tr
 from trunnion_gui.viewport.scene import Click, Scene
@@ -27,13 +28,13 @@ Place = tuple[float, float, float]
 
 
 class CutBar(QWidget):
-    """Collects what a cut needs, shows where it will run, and hands it to the document."""
+    """Collects what a cut needs, shows where it will run, and hands it over."""
 
     ended = Signal()
 
-    def __init__(self, document: Document, scene: Scene) -> None:
+    def __init__(self, document: Document, jobs: PatchJobs, scene: Scene) -> None:
         super().__init__()
-        self._document, self._scene = document, scene
+        self._document, self._jobs, self._scene = document, jobs, scene
         self.face = 0
         self.places: list[Place] = []
         self._make_widgets()
@@ -229,7 +230,7 @@ class CutBar(QWidget):
     def _cut(self) -> None:
         cut = self.cut()
         if cut is not None:
-            self._document.cut(cut)
+            self._jobs.cut(cut)
 
     def use_theme(self) -> None:
         """Draw in the colours of the theme that is used now."""

@@ -6,8 +6,8 @@ from PySide6.QtCore import QObject, Signal
 
 from trunnion.model.session import Session
 from trunnion_gui.document import Document
+from trunnion_gui.families.surface import requests
 from trunnion_gui.families.surface.groups import GROUP
-from trunnion_gui.verbs import Estimated
 from trunnion_gui.worker import Reply
 
 
@@ -20,7 +20,7 @@ class EstimateSource(QObject):
     def __init__(self, document: Document) -> None:
         super().__init__(document)
         self._document = document
-        self.shown: Estimated | None = None
+        self.shown: requests.Estimated | None = None
         self._source: tuple[object, object] = (None, None)
         self._asked = 0
         document.worker.replied.connect(self._receive)
@@ -38,7 +38,7 @@ class EstimateSource(QObject):
             return
         self._source, self._asked = source, 0
         if _has_areas(session):
-            self._asked = self._document.worker.ask("estimate", session)
+            self._asked = self._document.worker.ask(requests.estimate, session)
         else:
             self._show(None)
 
@@ -47,7 +47,7 @@ class EstimateSource(QObject):
             self._asked = 0
             self._show(reply.value if reply.kind == "done" else None)
 
-    def _show(self, found: Estimated | None) -> None:
+    def _show(self, found: requests.Estimated | None) -> None:
         if found is not self.shown:
             self.shown = found
             self.arrived.emit(found)

@@ -22,6 +22,7 @@ from PySide6.QtWidgets import (
 from trunnion_gui.colours import feature_colours
 from trunnion_gui.document import Document
 from trunnion_gui.families.surface.groups import GROUP, LOCAL, is_local
+from trunnion_gui.families.surface.jobs import PatchJobs
 from trunnion_gui.i18n import tr
 from trunnion_gui.widgets.table import colour_icon
 
@@ -31,11 +32,11 @@ _LINES = 10
 
 
 class ExportDialog(QDialog):
-    """Chooses patches and a format, asks where to, and hands it to the document."""
+    """Chooses patches and a format, asks where to, and hands it over."""
 
-    def __init__(self, document: Document, parent: QWidget) -> None:
+    def __init__(self, document: Document, jobs: PatchJobs, parent: QWidget) -> None:
         super().__init__(parent)
-        self._document = document
+        self._document, self._jobs = document, jobs
         self.setWindowTitle(tr("Export patches"))
         self.setModal(False)
         self._ticked: set[str] = set()
@@ -76,7 +77,7 @@ class ExportDialog(QDialog):
         path = self._ask_path(f"{Path(part.path).with_suffix('')}.{what}{SUFFIXES[kind][0]}", kind)
         if path:
             right = Path(path).suffix.lower() in SUFFIXES[kind]
-            self._document.export(words, path if right else path + SUFFIXES[kind][0])
+            self._jobs.export(words, path if right else path + SUFFIXES[kind][0])
 
     def _ask_path(self, proposed: str, kind: str) -> str:
         """Ask which STEP or IGES file patches are written to; empty when none was chosen. Tests replace this."""

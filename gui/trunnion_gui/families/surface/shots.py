@@ -6,8 +6,8 @@ import sys
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from trunnion_gui.families.surface import SurfaceView
 from trunnion_gui.families.surface.groups import GROUP, is_local
+from trunnion_gui.families.surface.view import SurfaceView
 from trunnion_gui.shots import opened, take
 
 if TYPE_CHECKING:

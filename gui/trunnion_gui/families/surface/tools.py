@@ -14,6 +14,7 @@ from trunnion_gui import icons
 from trunnion_gui.colours import feature_colours
 from trunnion_gui.document import Document
 from trunnion_gui.families.surface.groups import GROUP, is_local, with_local
+from trunnion_gui.families.surface.jobs import PatchJobs
 from trunnion_gui.i18n import tr
 from trunnion_gui.widgets.table import colour_icon
 
@@ -24,9 +25,9 @@ class PatchTools(QObject):
     cut_wanted = Signal(int, bool)
     """A face (0: the next one that is clicked) shall be cut: by a plane, or else by a way that is drawn."""
 
-    def __init__(self, document: Document) -> None:
+    def __init__(self, document: Document, jobs: PatchJobs) -> None:
         super().__init__(document)
-        self._document = document
+        self._document, self._jobs = document, jobs
 
     @property
     def has_groups(self) -> bool:
@@ -75,7 +76,7 @@ class PatchTools(QObject):
         if cuts:
             back = menu.addMenu(icons.icon("undo"), tr("Take back a cut"))
             for number, cut in enumerate(cuts):
-                back.addAction(cut_words(number, cut), partial(document.take_back, number))
+                back.addAction(cut_words(number, cut), partial(self._jobs.take_back, number))
 
     def _add_groups(self, menu: QMenu, tags: tuple[int, ...], own: list[Feature]) -> None:
         found = self._document.shown.recognition
@@ -84,9 +85,9 @@ class PatchTools(QObject):
         into = menu.addMenu(icons.icon("move_faces"), tr("Move to") if len(tags) == 1 else tr("Move {n} faces to").format(n=len(tags)))
         for group in found.of_kind(GROUP):
             if [group] != own:
-                into.addAction(colour_icon(colours[group.id]), group.id, partial(self._document.move, tags, group.id))
+                into.addAction(colour_icon(colours[group.id]), group.id, partial(self._jobs.move, tags, group.id))
         into.addSeparator()
-        into.addAction(tr("a new group"), lambda: self._document.move(tags))
+        into.addAction(tr("a new group"), lambda: self._jobs.move(tags))
 
 
 def cut_words(number: int, cut: Cut) -> str:

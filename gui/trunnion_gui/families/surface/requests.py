@@ -1,0 +1,125 @@
+"""What the worker computes for curved parts: cuts of faces, moved faces, exported patches, errors of sizes, times of areas. No Qt."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Any
+
+from trunnion.geometry.cut import Cut
+from trunnion.model.session import Session
+from trunnion.progress import Progress
+from trunnion_gui.drawing import Drawing, drawing_of
+from trunnion_gui.verbs import State, Tell, writes_files
+
+
+@dataclass(frozen=True, slots=True)
+class Patched:
+    """A session after its part's patches were changed, and what the window draws of the part then."""
+
+    state: State
+    drawing: Drawing
+
+
+@dataclass(frozen=True, slots=True)
+class ErrorRow:
+    """How exact the feature sizes are with so many points on each edge (-1: the paper's repair): errors as shares, wall time in s."""
+
+    on_edge: int
+    points: int
+    largest: float
+    mean: float
+    seconds: float
+
+
+@dataclass(frozen=True, slots=True)
+class Accuracy:
+    """Size errors by the number of points, and how far in mm the boundary of a face (the worst) is from its surface."""
+
+    rows: tuple[ErrorRow, ...]
+    boundary: float
+    face: int
+
+
+@dataclass(frozen=True, slots=True)
+class AreaRow:
+    """An operation that finishes an area: mm2, mm2/s, s."""
+
+    operation: str
+    tool: str
+    area: float
+    rate: float
+    seconds: float
+
+
+@dataclass(frozen=True, slots=True)
+class Estimated:
+    """The time of finishing by area rates, s; that of the slowest cutter alone, and what cutters of their own gain and save, as shares.
+
+    `is_measured`: the rates are those of toolpaths, not computed from feed and passes.
+    """
+
+    rows: tuple[AreaRow, ...]
+    seconds: float
+    alone: str
+    seconds_alone: float
+    gain: float
+    saving: float
+    is_measured: bool
+
+
+def cut(engine: Any, progress: Progress, _tell: Tell, session: Session, cut: Cut) -> Patched:
+    """Return the session after a face was cut in two."""
+    from trunnion.pipeline.patches import with_cut
+
+    return _patched(engine, session, with_cut(engine, session, cut, progress.part(0.0, 0.5)), progress.part(0.5, 1.0))
+
+
+def uncut(engine: Any, progress: Progress, _tell: Tell, session: Session, number: int) -> Patched:
+    """Return the session after a cut was taken back, counted from 0."""
+    from trunnion.pipeline.patches import without_cut
+
+    return _patched(engine, session, without_cut(engine, session, number, progress.part(0.0, 0.5)), progress.part(0.5, 1.0))
+
+
+def _patched(engine: Any, before: Session, after: Session, progress: Progress) -> Patched:
+    """Return a session whose part has other faces with its features found anew, where they had been found before."""
+    if engine.states(before)["recognize"] in ("done", "problem"):
+        after = engine.run(after, until="recognize", progress=progress)
+    return Patched(State(after, engine.states(after)), drawing_of(engine.mesh(after, progress)))
+
+
+def move(engine: Any, _progress: Progress, _tell: Tell, session: Session, faces: tuple[int, ...], group: str) -> State:
+    """Return the session after faces went to a group by its id, or to a new one."""
+    from trunnion.pipeline.patches import with_moved
+
+    after = with_moved(engine, session, faces, group)
+    return State(after, engine.states(after))
+
+
+@writes_files
+def export(engine: Any, _progress: Progress, _tell: Tell, session: Session, what: tuple[str, ...], path: str) -> int:
+    """Write `local`, `remaining` or groups by their ids as STEP or IGES; return the number of faces."""
+    from trunnion.pipeline.patches import export as export_patches
+
+    return export_patches(engine, session, what, path)
+
+
+def accuracy(engine: Any, progress: Progress, _tell: Tell, session: Session) -> Accuracy:
+    """Return how exact the feature sizes are by the number of points on each edge."""
+    from trunnion.pipeline.patches import boundary_errors, size_errors
+
+    rows = tuple(ErrorRow(r.on_edge, r.points, r.largest, r.mean, r.seconds) for r in size_errors(engine, session, progress=progress))
+    errors = boundary_errors(engine, session)
+    worst = max(errors, key=lambda tag: errors[tag])
+    return Accuracy(rows, errors[worst], worst)
+
+
+def estimate(engine: Any, _progress: Progress, _tell: Tell, session: Session) -> Estimated | None:
+    """Return the time of finishing by area rates, None where no areas are finished."""
+    from trunnion.pipeline.estimating import estimate as estimated
+
+    found = estimated(session, engine.bench_of(session))
+    if found is None:
+        return None
+    rows = tuple(AreaRow(a.operation, a.tool, a.area, a.rate, a.seconds) for a in found.areas)
+    return Estimated(rows, found.seconds, found.alone, found.seconds_alone, found.gain, found.saving, bool(session.paths))

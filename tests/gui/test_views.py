@@ -1,0 +1,175 @@
+"""What a family brings to the window is in its own package: the window names no family, and takes one up that lives elsewhere."""
+
+from __future__ import annotations
+
+import ast
+import importlib
+import sys
+from pathlib import Path
+
+import pytest
+from PySide6.QtCore import Qt
+
+import trunnion_gui
+from trunnion import registry
+from trunnion.report.palette import load_palette
+
+HOUSE = Path(trunnion_gui.__file__).parent
+GENERAL = {"other", "unexplained"}
+"""Entries of the palette that no family has for itself."""
+RIBS = '''
+from trunnion_gui.actions import Command
+from trunnion_gui.families.contract import Colouring, Column, Dock, FamilyView, FeatureClass
+from PySide6.QtWidgets import QLabel
+
+
+def count(engine, progress, tell, session, word):
+    return f"{word} {len(session.recognition.of_kind('rib'))}"
+
+
+class RibView(FamilyView):
+    kinds = ("rib",)
+
+    def __init__(self, document):
+        super().__init__(document)
+        self.clicked, self.answer, self.label, self.block = [], "", QLabel("ribs"), QLabel("strength")
+
+    def owns(self, group):
+        return group == "fake.rough"
+
+    def columns(self):
+        return (Column(title="Stiff", tip="", is_ticked=lambda f: f.id == "rib-01", click=lambda f: self.clicked.append(f.id)),
+                Column(title="Faces twice", tip="", words=lambda f: str(2 * len(f.tags))))
+
+    def classes(self, kind, features):
+        return (FeatureClass("thin", "Thin ribs", "#123456", tuple(features)),)
+
+    def remark(self, found):
+        return ", all thin"
+
+    def add_face_entries(self, menu, tags):
+        menu.addAction("Stiffen")
+
+    def add_feature_entries(self, menu, feature):
+        menu.addAction(f"Stiffen {feature.id}")
+
+    def add_commands(self, shell):
+        shell.registry.add(Command(id="rib.count", text="Count ribs", menu="Ribs", run=self.ask))
+        red = Colouring(lambda found: dict.fromkeys((t for f in found for t in f.tags), "#ff0000"), lambda: [("#ff0000", "Red", "")])
+        shell.registry.add(Command(id="rib.red", text="Red", menu="Ribs", checkable=True,
+                                   run=lambda on: shell.centre.colour_by(red if on else None)))
+
+    def ask(self):
+        self.document.request(count, "counting", "ribs:", finish=lambda answer: setattr(self, "answer", answer))
+
+    def blocks(self):
+        return {"size": self.block}
+
+    def docks(self):
+        return (Dock("ribs", "Ribs", self.label),)
+'''
+
+
+def words_of(path: Path) -> set[str]:
+    """Return the texts of a module, the first words of dotted ones, and the names it imports."""
+    tree = ast.parse(path.read_text("utf-8"))
+    texts = {n.value for n in ast.walk(tree) if isinstance(n, ast.Constant) and isinstance(n.value, str)}
+    names = {a.name for n in ast.walk(tree) if isinstance(n, ast.ImportFrom) and n.module == "trunnion.report.palette" for a in n.names}
+    return texts | {t.split(".")[0] for t in texts if "." in t and " " not in t} | names
+
+
+@pytest.mark.parametrize("path", [p for p in sorted(HOUSE.rglob("*.py")) if "families" not in p.relative_to(HOUSE).parts],
+                         ids=lambda p: str(p.relative_to(HOUSE)))
+def test_no_module_outside_a_familys_own_names_a_family_or_a_kind_of_feature(path):
+    own = {*registry.names("families"), *registry.names("part_kinds"), *registry.names("views"), *load_palette().kinds, "local", "GROUP"}
+    assert words_of(path) & (own - GENERAL) == set()
+
+
+def test_every_view_has_a_family():
+    assert set(registry.names("views")) <= set(registry.names("families"))
+
+
+@pytest.fixture
+def ribs(tmp_path, monkeypatch):
+    """A package that brings a view of ribs, installed beside the project."""
+    home = tmp_path / "site"
+    (home / "ribs-1.0.dist-info").mkdir(parents=True)
+    (home / "ribs-1.0.dist-info" / "METADATA").write_text("Metadata-Version: 2.1\nName: ribs\nVersion: 1.0\n")
+    (home / "ribs-1.0.dist-info" / "entry_points.txt").write_text("[trunnion.views]\nribs = view_of_ribs:RibView\n")
+    (home / "view_of_ribs.py").write_text(RIBS)
+    monkeypatch.syspath_prepend(str(home))
+    forget()
+    yield
+    forget()
+    sys.modules.pop("view_of_ribs", None)
+
+
+def forget() -> None:
+    """Let the registry look for packages anew."""
+    importlib.invalidate_caches()
+    registry._points.cache_clear()
+    registry.get.cache_clear()
+
+
+@pytest.fixture
+def recognized(ribs, make_window, part_file, idle):
+    """A window with that view, over the made-up plate and its two ribs."""
+    window = make_window()
+    window.document.open(part_file)
+    idle(window)
+    window.document.run("recognize", "Recognize")
+    idle(window)
+    return window
+
+
+def test_a_view_of_another_package_fills_table_legend_and_words(recognized):
+    tree, row = recognized.features.tree, recognized.features.item("rib-01")
+    titles = [tree.headerItem().text(n) for n in range(tree.columnCount())]
+    stiff, twice = titles.index("Stiff"), titles.index("Faces twice")
+    assert not tree.isColumnHidden(stiff) and tree.isColumnHidden(titles.index("Local"))
+    assert row.checkState(stiff) is Qt.CheckState.Checked and row.text(twice) == "2"
+    assert recognized.features.item("pocket-01").text(twice) == ""
+    assert row.parent().text(0) == "Thin ribs · 2"
+    assert ("#123456", "Thin ribs", "2") in recognized.centre.legend.rows
+    assert recognized.panels["recognize"].result.text().endswith(", all thin")
+
+
+def test_a_click_in_a_views_column_is_the_views(recognized):
+    tree = recognized.features.tree
+    stiff = next(n for n in range(tree.columnCount()) if tree.headerItem().text(n) == "Stiff")
+    for id in ("rib-02", "pocket-01"):
+        tree.itemClicked.emit(recognized.features.item(id), stiff)
+    assert recognized.views["ribs"].clicked == ["rib-02"]
+
+
+def test_a_view_brings_menus_docks_and_blocks(recognized):
+    document = recognized.document
+    assert [a.text() for a in recognized.views.face_menu(recognized, (1,)).actions()].count("Stiffen") == 1
+    assert recognized.features.menu(document.feature("rib-01")).actions()[0].text() == "Stiffen rib-01"
+    assert recognized.features.menu(document.feature("pocket-01")).actions()[0].text() == "Change kind"
+    menus = [a.text() for a in recognized.menuBar().actions()]
+    assert menus.index("Steps") < menus.index("Ribs") < menus.index("Playback")
+    assert recognized.arrangement.dock("ribs").widget() is recognized.views["ribs"].label
+    assert recognized.panels["size"].isAncestorOf(recognized.views["ribs"].block)
+
+
+def test_a_view_colours_the_part_and_says_what_that_means(recognized):
+    recognized.registry.run("rib.red")
+    assert recognized.centre.legend.rows == (("#ff0000", "Red", ""),)
+    recognized.registry.run("rib.red")
+    assert ("#ff0000", "Red", "") not in recognized.centre.legend.rows
+
+
+def test_the_worker_does_a_views_own_work(recognized, idle):
+    recognized.registry.run("rib.count")
+    idle(recognized)
+    assert recognized.views["ribs"].answer == "ribs: 2"
+
+
+def test_settings_that_a_view_owns_go_with_its_features(recognized):
+    views, found = recognized.views, recognized.document.shown.recognition
+    assert views.offers("fake.rough", found)
+    for id in ("rib-01", "rib-02"):
+        found = found.without(id)
+    assert not views.offers("fake.rough", found)
+    assert views.offers("fake.blank", found) and views.offers("fake.rough", None)
