@@ -33,7 +33,7 @@ def main(arguments: Sequence[str] | None = None) -> int:
     window = Window()
     window.show()
     if words:
-        window.document.open(words[0])
+        window.document.files.open(words[0])
     try:
         return QApplication.exec()
     finally:

@@ -91,7 +91,7 @@ class Centre(QWidget):
         document.mesh_changed.connect(self._show_mesh)
         document.redrawn.connect(self._redraw_mesh)
         document.changed.connect(self.refresh)
-        document.selected.connect(self._choose)
+        document.selection.changed.connect(self._choose)
         self.scene.pointed.connect(self._point)
         player.opened.connect(self._open_playback)
         player.moved.connect(self._move_tool)
@@ -108,7 +108,7 @@ class Centre(QWidget):
         self._drawn = {}
         self._show_map(self._deviation.shown if self._deviation.is_on else None)
         self.refresh()
-        self._choose(self._document.selection)
+        self._choose(self._document.selection.current)
 
     def add_bar(self, bar: QWidget) -> None:
         """Put a bar below the picture."""
@@ -155,7 +155,7 @@ class Centre(QWidget):
 
     def show_size(self, entry: SizeEntry) -> None:
         """Show where a size is: its faces and its number."""
-        self._document.select(Selection("faces", f"{kind_words(entry.name)} {entry.feature}", entry.faces))
+        self._document.selection.select(Selection("faces", f"{kind_words(entry.name)} {entry.feature}", entry.faces))
         self.scene.show_label(f"{kind_words(entry.name)} {amount(entry.value)} {entry.unit}", entry.at)
 
     def refresh(self) -> None:
@@ -164,7 +164,7 @@ class Centre(QWidget):
         self._once("frame", (session.recognition,), lambda: self._use_frame(session))
         self._once("kinds", (session.recognition, self.shows["colours"], self._colouring, self._shows_paths(session)),
                    lambda: self._paint(session))
-        self._once("ids", (session.recognition, self._document.mesh, self._document.selection, self.shows["ids"]),
+        self._once("ids", (session.recognition, self._document.mesh, self._document.selection.current, self.shows["ids"]),
                    lambda: self._write_ids(session))
         shows_blank = self.shows["blank"] and not self._shows_paths(session) and not self._plays and not self._shows_map
         self._once("blank", (session.blank, shows_blank), lambda: self.scene.show_blank(session.blank if shows_blank else None))
@@ -210,25 +210,25 @@ class Centre(QWidget):
         elif self._takes_click is not None and self._takes_click(click.face):
             return
         elif click.with_ctrl:
-            self._document.toggle_face(click.face)
+            self._document.selection.toggle_face(click.face)
         else:
-            self._document.select_face(click.face)
+            self._document.selection.select_face(click.face)
 
     def _ask(self, click: Click, at: QPoint) -> None:
         """Offer what can be done with the face that was clicked, or with all selected ones when it is among them."""
-        chosen = self._document.selection
+        chosen = self._document.selection.current
         if not click.face or self._tool_on() is not None:
             return
         if not (chosen.kind == "faces" and click.face in chosen.faces):
-            self._document.select_face_alone(click.face)
-        menu = self._views.face_menu(self, self._document.selection.faces)
+            self._document.selection.select_face_alone(click.face)
+        menu = self._views.face_menu(self, self._document.selection.current.faces)
         menu.aboutToHide.connect(menu.deleteLater)
         if menu.actions():
             menu.popup(at)
 
     def _write_ids(self, session: Session) -> None:
         """Write the ID of every feature on the part; of the faces of the selection, when there is one."""
-        mesh, found, chosen = self._document.mesh, session.recognition, self._document.selection
+        mesh, found, chosen = self._document.mesh, session.recognition, self._document.selection.current
         if not self.shows["ids"] or mesh is None:
             self.scene.show_names(())
         elif chosen.faces:
@@ -241,7 +241,7 @@ class Centre(QWidget):
             self.scene.use_frame(session.recognition.frame)
 
     def _operation(self) -> str:
-        chosen = self._document.selection
+        chosen = self._document.selection.current
         return chosen.id if chosen.kind == "operation" else ""
 
     def _shows_paths(self, session: Session) -> bool:

@@ -22,10 +22,10 @@ class DeviationSource(QObject):
         self.shown: DrawnMap | None = None
         self._verdict: object = None
         self._asked = 0
-        document.worker.replied.connect(self._receive)
-        document.worker.restarted.connect(self._restart)
+        document.jobs.worker.replied.connect(self._receive)
+        document.jobs.worker.restarted.connect(self._restart)
         document.changed.connect(self._follow)
-        document.job_changed.connect(self._follow)
+        document.jobs.changed.connect(self._follow)
 
     @property
     def can_show(self) -> bool:
@@ -49,7 +49,7 @@ class DeviationSource(QObject):
         self._verdict, self.shown, self._asked = verdict, None, 0
         self.arrived.emit(None)
         if verdict is not None:
-            self._asked = self._document.worker.ask("deviation", self._document.session)
+            self._asked = self._document.jobs.worker.ask("deviation", self._document.session)
 
     def _receive(self, reply: Reply) -> None:
         if not reply.is_last or reply.number != self._asked:

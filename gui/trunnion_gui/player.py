@@ -62,10 +62,10 @@ class Player(QObject):
         self._timer.setTimerType(Qt.TimerType.PreciseTimer)
         self._timer.setInterval(_TICK_MS)
         self._timer.timeout.connect(self._tick)
-        document.worker.replied.connect(self._receive)
-        document.worker.restarted.connect(self._restart)
+        document.jobs.worker.replied.connect(self._receive)
+        document.jobs.worker.restarted.connect(self._restart)
         document.changed.connect(self._follow)
-        document.job_changed.connect(self._follow)
+        document.jobs.changed.connect(self._follow)
 
     @property
     def is_playing(self) -> bool:
@@ -204,7 +204,7 @@ class Player(QObject):
             self.forget()
             return
         self._source = source
-        self._opening = self._document.worker.ask("playback", session)
+        self._opening = self._document.jobs.worker.ask("playback", session)
 
     def _after(self, position: float, seconds: float) -> float:
         """Return the position some of the person's seconds later."""
@@ -241,7 +241,7 @@ class Player(QObject):
         wanted = self._after(self.position, self._lead) if self.is_playing else self.position
         if wanted != self._stock_at:
             self._asked_at, self._asked_for = time.perf_counter(), wanted
-            self._asked = self._document.worker.ask("moment", self.timeline.key, wanted, _ANSWER_S)
+            self._asked = self._document.jobs.worker.ask("moment", self.timeline.key, wanted, _ANSWER_S)
 
     def _receive(self, reply: Reply) -> None:
         if not reply.is_last or reply.number not in (self._opening, self._asked):

@@ -42,8 +42,8 @@ class Recovery(QObject):
         self._soon.timeout.connect(self.keep)
         self._failed.connect(self._tell)
         document.changed.connect(self._changed)
-        document.saved.connect(lambda _: self._changed())
-        document.opened.connect(lambda _: self._changed())
+        document.files.saved.connect(lambda _: self._changed())
+        document.files.opened.connect(lambda _: self._changed())
 
     def end(self) -> None:
         """Keep nothing any more: the work was saved or given up."""
@@ -56,7 +56,8 @@ class Recovery(QObject):
         document, self._edits, self._is_kept = self._document, 0, True
         part = document.shown.part
         time = datetime.now().isoformat(timespec="seconds")
-        self.file.keep(document.shown, *document.kept, Whose(project=document.project, part=part.path if part else "", time=time))
+        whose = Whose(project=document.files.project, part=part.path if part else "", time=time)
+        self.file.keep(document.shown, *document.files.kept, whose)
 
     def offer(self) -> None:
         """Offer what an earlier program left behind, if there is something; the next one when a person throws it away."""
@@ -92,12 +93,12 @@ class Recovery(QObject):
         """Take up work that was left behind; its file becomes this program's own until the work is saved."""
 
         def taken(_path: str) -> None:
-            self._document.opened.disconnect(taken)
+            self._document.files.opened.disconnect(taken)
             take_over(left, remembered.autosave_file())
             self._is_kept = True
 
-        self._document.opened.connect(taken)
-        self._document.recover(left, whose_work(left).project)
+        self._document.files.opened.connect(taken)
+        self._document.files.recover(left, whose_work(left).project)
 
     def _discard(self, left: Path) -> None:
         remove(left)

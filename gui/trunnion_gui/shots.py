@@ -57,7 +57,7 @@ def opened(part: str | Path, *, size: tuple[int, int] = (1600, 1000), factory: s
         window.resize(*size)
         window.centre.scene.smooth()
         window.show()
-        window.document.open(str(part))
+        window.document.files.open(str(part))
         wait(lambda: not window.document.is_busy, timeout_s)
         if until:
             window.document.run(until, "Program")
@@ -104,7 +104,7 @@ def shoot_all(folder: str | Path) -> tuple[Path, ...]:
 def _show_feature(window: Window) -> None:
     window.panels["blank"].fold(False)
     window.panels["route"].fold(False)
-    window.document.select_feature(_SHOWN)
+    window.document.selection.select_feature(_SHOWN)
 
 
 def _show_operation(window: Window) -> None:
@@ -113,13 +113,13 @@ def _show_operation(window: Window) -> None:
     process = window.document.session.process
     if process is not None:
         window.show_dock("process")
-        window.document.select_operation(next(o.id for o in process.operations if o.kind.endswith("rough")))
+        window.document.selection.select_operation(next(o.id for o in process.operations if o.kind.endswith("rough")))
 
 
 def _show_playback(window: Window) -> None:
     """Stop in the middle of the last roughing operation, seen from near."""
     window.panels["generate"].fold(True)
-    window.document.select_face(0)
+    window.document.selection.select_face(0)
     window.registry.run("play.show")
     wait(lambda: window.player.timeline is not None)
     line = window.player.timeline

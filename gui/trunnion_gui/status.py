@@ -40,12 +40,12 @@ class Status(QStatusBar):
         self._clock = QTimer(self)
         self._clock.setInterval(_TICK_MS)
         self._clock.timeout.connect(self._tick)
-        document.job_changed.connect(self._job)
-        document.progressed.connect(self._progress)
+        document.jobs.changed.connect(self._job)
+        document.jobs.progressed.connect(self._progress)
         document.changed.connect(self.refresh)
-        document.saved.connect(lambda path: self._say(tr("Saved {path}").format(path=path)))
+        document.files.saved.connect(lambda path: self._say(tr("Saved {path}").format(path=path)))
         document.said.connect(self._say)
-        document.written.connect(lambda what: self._say(tr("{n} files written to {folder}").format(n=len(what[1]), folder=what[0])))
+        document.files.written.connect(lambda what: self._say(tr("{n} files written to {folder}").format(n=len(what[1]), folder=what[0])))
         self._job()
         self.refresh()
 
@@ -70,7 +70,7 @@ class Status(QStatusBar):
 
     def hint(self, words: str) -> None:
         """Say something about what is under the mouse while nothing runs."""
-        if self._document.job is None:
+        if self._document.jobs.job is None:
             self.text.setText(words)
 
     def _say(self, words: str) -> None:
@@ -79,7 +79,7 @@ class Status(QStatusBar):
         self.text.setText(words)
 
     def _job(self) -> None:
-        job = self._document.job
+        job = self._document.jobs.job
         self.bar.setVisible(job is not None)
         self.cancel.setVisible(job is not None)
         if job is not None:
@@ -102,6 +102,6 @@ class Status(QStatusBar):
         self._tick()
 
     def _tick(self) -> None:
-        job = self._document.job
+        job = self._document.jobs.job
         if job is not None:
             self.text.setText(f"{duration(round(time.monotonic() - job.started) or 0.0)} · {self._doing} · {self.bar.value() // 10} %")

@@ -25,8 +25,8 @@ class UnsavedWork(QObject):
         self._saves_when_free = False
         self.asks = True
         """Whether a person is there to be asked."""
-        document.saved.connect(self._saved)
-        document.job_changed.connect(self._job_ended)
+        document.files.saved.connect(self._saved)
+        document.jobs.changed.connect(self._job_ended)
 
     def holds(self, go_on: GoOn) -> bool:
         """Return whether there is unsaved work that a person does not give up: then `go_on` is called once it is saved, or never."""
@@ -40,10 +40,10 @@ class UnsavedWork(QObject):
 
     def ask(self) -> QMessageBox.StandardButton:
         """Ask what shall become of the work: `SAVE`, `DISCARD` or `CANCEL`. Tests answer in a person's place."""
-        job, box = self._document.job, QMessageBox(self._window)
+        job, box = self._document.jobs.job, QMessageBox(self._window)
         box.setWindowTitle("Trunnion")
         box.setIcon(QMessageBox.Icon.Warning)
-        box.setText(tr("Save the changes to {name}?").format(name=self._document.name))
+        box.setText(tr("Save the changes to {name}?").format(name=self._document.files.name))
         running = tr("{job} still runs and is cancelled.").format(job=job.label) + " " if job is not None else ""
         box.setInformativeText(running + tr("They are lost if you discard them."))
         box.setStandardButtons(SAVE | DISCARD | CANCEL)
@@ -57,7 +57,7 @@ class UnsavedWork(QObject):
         """Save, after the running job has stopped; a person who chooses no file keeps everything as it is."""
         self._saves_when_free = self._document.is_busy
         if self._saves_when_free:
-            self._document.cancel()
+            self._document.jobs.cancel()
             return
         self._save()
         if not self._document.is_busy:

@@ -83,7 +83,7 @@ class Window(QMainWindow):
                 self.panels[name].content.addWidget(block)
         self.arrangement = Arrangement(self)
         self._make_docks()
-        fill_menus(self.menuBar(), self.registry, self.document.open)
+        fill_menus(self.menuBar(), self.registry, self.document.files.open)
         self.toolbar = toolbar(self.registry)
         self.addToolBar(self.toolbar)
         self.status = Status(self.document, self.registry)
@@ -91,7 +91,7 @@ class Window(QMainWindow):
         self.finder = Finder(self.registry, self)
         self.following = Following(self.player, self.code, self.process, self)
         self.unsaved = UnsavedWork(self.document, self.save, self)
-        self.document.holds_work = self.unsaved.holds
+        self.document.files.holds_work = self.unsaved.holds
         self.recovery = Recovery(self.document, self.centre.notice, self)
         self._connect()
         self.use_theme(self.theme)
@@ -109,7 +109,7 @@ class Window(QMainWindow):
     def ask_save_path(self) -> str:
         """Ask where to save the project."""
         part = self.document.session.part
-        proposed = str(Path(self.document.path).with_suffix(PROJECT)) if part else ""
+        proposed = str(Path(self.document.files.path).with_suffix(PROJECT)) if part else ""
         return QFileDialog.getSaveFileName(self, tr("Save the project"), proposed, f"Trunnion (*{PROJECT})")[0]
 
     def ask_folder(self) -> str:
@@ -126,17 +126,17 @@ class Window(QMainWindow):
         """Choose a file and open it."""
         path = self.ask_open_path()
         if path:
-            self.document.open(path)
+            self.document.files.open(path)
 
     def open_sample(self) -> None:
         """Open the part that comes with the program."""
         self._sample = contextlib.ExitStack()
-        self.document.open(self._sample.enter_context(as_file(trunnion_resources.sample("B1"))))
+        self.document.files.open(self._sample.enter_context(as_file(trunnion_resources.sample("B1"))))
 
     def save(self) -> None:
         """Save the project where it was saved before; ask otherwise."""
-        if self.document.project:
-            self.document.save(self.document.project)
+        if self.document.files.project:
+            self.document.files.save(self.document.files.project)
         else:
             self.save_as()
 
@@ -144,13 +144,13 @@ class Window(QMainWindow):
         """Ask where to save the project."""
         path = self.ask_save_path()
         if path:
-            self.document.save(path if path.endswith(PROJECT) else path + PROJECT)
+            self.document.files.save(path if path.endswith(PROJECT) else path + PROJECT)
 
     def write(self) -> None:
         """Ask for a folder and write everything there."""
         folder = self.ask_folder()
         if folder:
-            self.document.write(folder)
+            self.document.files.write(folder)
 
     def keep_picture(self) -> None:
         """Ask for a file and write what the viewport shows."""
@@ -168,7 +168,7 @@ class Window(QMainWindow):
 
     def delete_selected(self) -> None:
         """Delete the selected feature or operation."""
-        chosen = self.document.selection
+        chosen = self.document.selection.current
         edit = edits.without_feature if chosen.kind == "feature" else edits.without_operation
         if chosen.kind in ("feature", "operation"):
             self.document.edit(tr("Delete {id}").format(id=chosen.id), edit(chosen.id))
@@ -176,11 +176,11 @@ class Window(QMainWindow):
     def leave(self) -> None:
         """Put away what is being done in the picture; else select nothing."""
         if not self.centre.end_tool():
-            self.document.select_face(0)
+            self.document.selection.select_face(0)
 
     def suppress_selected(self) -> None:
         """Suppress the selected operation, or take it up again."""
-        operation = self.document.operation(self.document.selection.id)
+        operation = self.document.operation(self.document.selection.current.id)
         if operation is not None:
             words = tr("Cut {id} again") if operation.suppressed else tr("Suppress {id}")
             self.document.edit(words.format(id=operation.id), edits.with_suppressed(operation.id, not operation.suppressed))
@@ -217,7 +217,7 @@ class Window(QMainWindow):
         paths = [u.toLocalFile() for u in event.mimeData().urls() if u.isLocalFile()]
         if paths:
             event.acceptProposedAction()
-            self.document.open(paths[0])
+            self.document.files.open(paths[0])
 
     def showEvent(self, event: QShowEvent) -> None:
         super().showEvent(event)
@@ -229,7 +229,7 @@ class Window(QMainWindow):
             return
         self.arrangement.keep()
         self.recovery.end()
-        self.document.close()
+        self.document.jobs.close()
         self.centre.scene.end()
         super().closeEvent(event)
 
@@ -280,11 +280,11 @@ class Window(QMainWindow):
     def _connect(self) -> None:
         document, messages = self.document, self.arrangement.dock("messages")
         document.changed.connect(self._refresh)
-        document.job_changed.connect(self._refresh)
-        document.selected.connect(lambda _: self.registry.refresh())
+        document.jobs.changed.connect(self._refresh)
+        document.selection.changed.connect(lambda _: self.registry.refresh())
         document.noticed.connect(self._tell)
-        document.opened.connect(self._opened)
-        document.saved.connect(remembered.add_recent)
+        document.files.opened.connect(self._opened)
+        document.files.saved.connect(remembered.add_recent)
         self.messages.counted.connect(lambda n: messages.setWindowTitle(f"{tr('Messages')} {n}" if n else tr("Messages")))
         size, generate = self.panels["size"], self.panels["generate"]
         assert isinstance(size, SizePanel)

@@ -64,7 +64,7 @@ def idle(qtbot):
     """Return a function that waits until a window's job is done."""
 
     def wait(window, timeout=30000):
-        qtbot.waitUntil(lambda: not window.document.is_busy and not window.document._quiet, timeout=timeout)
+        qtbot.waitUntil(lambda: not window.document.is_busy and not window.document.jobs.is_asking, timeout=timeout)
 
     return wait
 

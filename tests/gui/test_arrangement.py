@@ -29,7 +29,7 @@ def test_a_change_of_a_proven_plan_leaves_the_docks_as_wide_as_they_were(program
     programmed.resize(*size)
     programmed.show_dock("code")
     before = relaid(programmed, qtbot)
-    programmed.document.select_feature("rib-01")
+    programmed.document.selection.select_feature("rib-01")
     programmed.registry.run("edit.delete")
     idle(programmed)
     assert programmed.code.stale.isVisible()

@@ -18,7 +18,7 @@ SOUND = (60.0, 70.0, FLOOR)
 @pytest.fixture
 def mapped(window, part_file, idle, qtbot):
     """A window that shows the made-up part's deviation from the top."""
-    window.document.open(part_file)
+    window.document.files.open(part_file)
     idle(window)
     window.document.program()
     idle(window)
@@ -86,7 +86,7 @@ def test_the_worst_places_are_listed_and_a_click_goes_there(mapped):
 
 def test_an_empty_list_says_why(make_window, part_file, idle, qtbot):
     window = make_window("fake_engine:SoundEngine")
-    window.document.open(part_file)
+    window.document.files.open(part_file)
     idle(window)
     window.document.program()
     idle(window)
@@ -114,7 +114,7 @@ def test_map_and_playback_take_turns(mapped, qtbot):
 
 
 def test_there_is_no_map_before_a_proof(window, part_file, idle):
-    window.document.open(part_file)
+    window.document.files.open(part_file)
     idle(window)
     assert not window.registry.action("view.deviation").isEnabled()
 
@@ -123,7 +123,7 @@ def test_there_is_no_map_before_a_proof(window, part_file, idle):
 def test_the_part_does_not_lie_under_the_legend(make_window, part_file, idle, size):
     window = make_window()
     window.resize(*size)
-    window.document.open(part_file)
+    window.document.files.open(part_file)
     idle(window)
     window.document.run("toolpath", "Generate")
     idle(window)

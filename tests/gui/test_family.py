@@ -19,7 +19,7 @@ def answers(window) -> dict[str, QPushButton]:
 def stopped(make_window, part_file, idle):
     """A window whose part is taken for a casing, after a try to program it."""
     window = make_window("fake_engine:DoubtingEngine")
-    window.document.open(part_file)
+    window.document.files.open(part_file)
     idle(window)
     window.document.program()
     idle(window)
@@ -52,7 +52,7 @@ def test_a_click_goes_on_as_a_family_and_undo_takes_it_back(stopped, idle):
 
 def test_the_family_it_was_taken_for_is_offered_first(make_window, part_file, idle):
     window = make_window("fake_engine:UnsureEngine")
-    window.document.open(part_file)
+    window.document.files.open(part_file)
     idle(window)
     window.document.run("recognize", "Recognize")
     idle(window)
@@ -65,7 +65,7 @@ def test_the_family_it_was_taken_for_is_offered_first(make_window, part_file, id
 
 def test_a_sure_recognition_offers_nothing(make_window, part_file, idle):
     window = make_window()
-    window.document.open(part_file)
+    window.document.files.open(part_file)
     idle(window)
     window.document.run("recognize", "Recognize")
     idle(window)

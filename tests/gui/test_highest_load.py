@@ -14,7 +14,7 @@ PLACE = "the cutter enters at full width"
 @pytest.fixture
 def shown(window, part_file, idle):
     """Return a function that shows a peak (kW) of one operation, with what the proof measured of it (kW), in a programmed part's panel."""
-    window.document.open(part_file)
+    window.document.files.open(part_file)
     idle(window)
     window.document.program()
     idle(window)

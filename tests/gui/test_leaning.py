@@ -14,7 +14,7 @@ from trunnion_gui.colours import axis_colour, rgb, tool_colours
 def made(make_window, part_file, idle):
     """A window with toolpaths, one of which sways."""
     window = make_window("fake_engine:SwayingEngine")
-    window.document.open(part_file)
+    window.document.files.open(part_file)
     idle(window)
     window.document.run("toolpath", "Generate")
     idle(window)
@@ -22,7 +22,7 @@ def made(make_window, part_file, idle):
 
 
 def test_strokes_show_how_a_leaning_tool_stands(made):
-    made.document.select_operation("op-02")
+    made.document.selection.select_operation("op-02")
     strokes = made.centre.scene.view.actors["tool axes"].mapper.GetInput().points.reshape(-1, 2, 3)
     _, y0, _, y1 = POCKETS[0]
     assert len(strokes) > 10
@@ -40,7 +40,7 @@ def test_the_legend_explains_the_strokes(made):
 
 
 def test_an_upright_operation_has_no_strokes(made):
-    made.document.select_operation("op-03")
+    made.document.selection.select_operation("op-03")
     assert "tool axes" not in made.centre.scene.view.actors
 
 

@@ -56,7 +56,7 @@ def segmented(qapp, tmp_path_factory):
         window.unsaved.asks = False
         window.resize(1440, 900)
         window.show()
-        window.document.open(written(domed_plate(), name="domes"))
+        window.document.files.open(written(domed_plate(), name="domes"))
         until(lambda: window.document.has_part and not window.document.is_busy)
         window.document.choose("recognize.family", "Family: surface", "surface")
         window.document.run("recognize", "Recognize")
@@ -70,12 +70,12 @@ def shown(segmented, qtbot):
     """That window seen from the top, with nothing selected."""
     window, before = segmented, segmented.document.session
     window.registry.run("view.top")
-    window.document.select_face(0)
+    window.document.selection.select_face(0)
     yield window
     window.views["surface"].cutting.end()
     while window.document.session is not before and window.document.history.undo_label:
         window.registry.run("edit.undo")
-    qtbot.waitUntil(lambda: not window.document.is_busy and not window.document._quiet, timeout=30000)
+    qtbot.waitUntil(lambda: not window.document.is_busy and not window.document.jobs.is_asking, timeout=30000)
 
 
 def until(is_so, seconds=60.0) -> None:
@@ -104,7 +104,7 @@ def group_at(window, place):
 
 def done(window, qtbot) -> None:
     """Wait until a job that a click began is done."""
-    qtbot.waitUntil(lambda: not window.document.is_busy and not window.document._quiet, timeout=60000)
+    qtbot.waitUntil(lambda: not window.document.is_busy and not window.document.jobs.is_asking, timeout=60000)
 
 
 def test_equal_domes_are_one_group_and_local(shown):
@@ -160,7 +160,7 @@ def test_clicks_on_the_part_mark_local_features_while_that_is_on(shown, qtbot):
     finally:
         shown.registry.run("patch.click_local")
     click(shown, ON_LARGE)
-    assert shown.document.selection.id == group_at(shown, ON_LARGE).id
+    assert shown.document.selection.current.id == group_at(shown, ON_LARGE).id
     assert group_at(shown, ON_LARGE).attributes["local"] is False
 
 
@@ -170,7 +170,7 @@ def test_groups_are_chosen_by_id_and_marked_together(shown, qtbot):
     line.setFocus()
     QTest.keyClicks(line, f"{small.id}, {large.id}")
     QTest.keyClick(line, Qt.Key.Key_Return)
-    assert set(shown.document.selection.faces) == {*small.tags, *large.tags}
+    assert set(shown.document.selection.current.faces) == {*small.tags, *large.tags}
     assert {i.text(0) for i in shown.features.tree.selectedItems()} == {small.id, large.id}
     shown.registry.run("patch.local")
     assert not any(shown.document.feature(f.id).attributes["local"] for f in (small, large))
@@ -188,9 +188,9 @@ def test_an_id_that_is_not_there_is_told(shown):
 def test_ctrl_clicks_gather_faces_of_any_group(shown):
     for place in (ON_SMALL[0], ON_LARGE):
         click(shown, place, keys=CTRL)
-    assert set(shown.document.selection.faces) == {face_at(shown, ON_SMALL[0]), face_at(shown, ON_LARGE)}
+    assert set(shown.document.selection.current.faces) == {face_at(shown, ON_SMALL[0]), face_at(shown, ON_LARGE)}
     click(shown, ON_LARGE, keys=CTRL)
-    assert shown.document.selection.faces == (face_at(shown, ON_SMALL[0]),)
+    assert shown.document.selection.current.faces == (face_at(shown, ON_SMALL[0]),)
 
 
 def test_a_face_moves_to_another_group_by_the_menu_of_a_right_click(shown, qtbot):
@@ -218,7 +218,7 @@ def test_faces_move_to_a_new_group(shown, qtbot):
 def test_a_plane_through_a_click_cuts_a_patch_in_two(shown, qtbot):
     before, n = shown.document.mesh, shown.document.session.part.n_faces
     click(shown, ON_TOP)
-    shown.document.select_face_alone(face_at(shown, ON_TOP))
+    shown.document.selection.select_face_alone(face_at(shown, ON_TOP))
     shown.registry.run("patch.cut_plane")
     bar = shown.views["surface"].cutting
     assert bar.isVisible() and bar.manner.currentData() == "x"  # across the face's longest side
@@ -257,7 +257,7 @@ def test_three_clicks_make_a_plane(shown, qtbot):
 def test_a_line_drawn_with_clicks_cuts_a_patch_and_the_cut_can_be_taken_back(shown, qtbot):
     x, y, z = ON_LARGE
     n = shown.document.session.part.n_faces
-    shown.document.select_face_alone(face_at(shown, ON_LARGE))
+    shown.document.selection.select_face_alone(face_at(shown, ON_LARGE))
     shown.registry.run("patch.cut_way")
     bar = shown.views["surface"].cutting
     assert bar.manner.currentData() == DRAWN and not bar.apply.isEnabled()
@@ -284,15 +284,15 @@ def bar_face(window) -> int:
 
 
 def test_escape_puts_a_cut_away_and_keeps_the_selection(shown):
-    shown.document.select_face_alone(face_at(shown, ON_TOP))
+    shown.document.selection.select_face_alone(face_at(shown, ON_TOP))
     shown.registry.run("patch.cut_way")
     click(shown, ON_TOP)
     shown.registry.run("edit.none")
-    assert not shown.views["surface"].cutting.isVisible() and shown.document.selection.faces == (face_at(shown, ON_TOP),)
+    assert not shown.views["surface"].cutting.isVisible() and shown.document.selection.current.faces == (face_at(shown, ON_TOP),)
 
 
 def test_a_cut_along_its_faces_border_is_refused_in_words(shown, qtbot):
-    shown.document.select_face_alone(face_at(shown, ON_TOP))
+    shown.document.selection.select_face_alone(face_at(shown, ON_TOP))
     shown.registry.run("patch.cut_plane")
     bar = shown.views["surface"].cutting
     assert bar.manner.currentData() == "x"
@@ -407,7 +407,7 @@ def test_the_error_of_the_sizes_is_shown_by_the_number_of_points(shown, qtbot):
 
 def test_a_saved_project_opens_with_its_cuts_and_what_was_called_local(make_window, tmp_path, qtbot):
     window = make_window("trunnion.pipeline:Engine")
-    window.document.open(written(domed_plate(), name="domes"))
+    window.document.files.open(written(domed_plate(), name="domes"))
     done(window, qtbot)
     window.document.choose("recognize.family", "Family: surface", "surface")
     window.document.run("recognize", "Recognize")
@@ -419,9 +419,9 @@ def test_a_saved_project_opens_with_its_cuts_and_what_was_called_local(make_wind
     done(window, qtbot)
     faces, id = window.document.session.part.n_faces, group_at(window, ON_TOP).id
     assert window.document.feature(id).attributes["local"] is True
-    window.document.save(tmp_path / "domes.trunnion")
+    window.document.files.save(tmp_path / "domes.trunnion")
     done(window, qtbot)
-    window.document.open(tmp_path / "domes.trunnion")
+    window.document.files.open(tmp_path / "domes.trunnion")
     done(window, qtbot)
     window.registry.run("view.top")
     assert window.document.session.part.n_faces == faces

@@ -35,7 +35,7 @@ def programmed(qapp, tmp_path_factory):
         window.show()
         part = tmp_path_factory.mktemp("parts") / "tray.step"
         part.write_text("a made-up part")
-        window.document.open(part)
+        window.document.files.open(part)
         window.document.program()
         until(lambda: not window.document.is_busy and window.document.session.verdict is not None)
         yield window
@@ -139,7 +139,7 @@ def test_the_tool_stands_where_it_cuts(played, qtbot):
 
 def test_while_a_job_runs_nothing_plays_and_the_stock_follows_afterwards(played, qtbot, tmp_path):
     go(played, qtbot, 20.0)
-    played.document.save(tmp_path / "tray.trunnion")
+    played.document.files.save(tmp_path / "tray.trunnion")
     assert played.document.is_busy
     assert not played.playback.buttons["play.run"].isEnabled()
     played.player.play()
@@ -303,7 +303,7 @@ def test_the_played_operation_is_stressed_in_the_process_tree(played, qtbot):
 
 def test_an_edit_takes_the_new_plan_and_undo_the_old_one(played, qtbot, idle):
     blocks = played.player.end
-    played.document.select_operation("op-07")
+    played.document.selection.select_operation("op-07")
     played.registry.run("edit.delete")
     idle(played)
     played.document.run("verify", "Verify")
@@ -312,18 +312,18 @@ def test_an_edit_takes_the_new_plan_and_undo_the_old_one(played, qtbot, idle):
     played.registry.run("edit.undo")
     played.registry.run("edit.undo")
     qtbot.waitUntil(lambda: played.player.timeline is not None and played.player.end == blocks, timeout=20000)
-    played.document.select_face(0)
+    played.document.selection.select_face(0)
 
 
 def test_a_killed_worker_plays_on_when_it_is_back(played, qtbot):
-    played.document.worker._process.kill()
+    played.document.jobs.worker._process.kill()
     qtbot.waitUntil(lambda: played.player.timeline is None, timeout=10000)
     qtbot.waitUntil(lambda: played.player.timeline is not None, timeout=60000)
     go(played, qtbot, 20.0)
 
 
 def test_nothing_is_played_before_there_are_toolpaths(window, part_file, idle):
-    window.document.open(part_file)
+    window.document.files.open(part_file)
     idle(window)
     assert not window.registry.action("play.show").isEnabled()
     assert not window.registry.action("play.run").isEnabled()

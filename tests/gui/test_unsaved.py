@@ -86,7 +86,7 @@ def test_save_writes_the_project_first_and_then_opens_the_other_file(programmed,
     by_dialog(programmed, other_file, monkeypatch)
     qtbot.waitUntil(lambda: programmed.document.session.part.name == "other", timeout=10000)
     idle(programmed)
-    programmed.document.open(project)
+    programmed.document.files.open(project)
     idle(programmed)
     assert programmed.document.session.verdict is not None
 
@@ -145,7 +145,7 @@ def test_closing_asks_the_same(programmed, tmp_path, monkeypatch, qtbot, answer,
 
 def test_closing_while_a_run_goes_on_saves_what_was_finished(make_window, part_file, tmp_path, idle, monkeypatch, qtbot):
     window = make_window("fake_engine:SlowEngine")
-    window.document.open(part_file)
+    window.document.files.open(part_file)
     idle(window)
     project = tmp_path / "tray.trunnion"
     answering(window, monkeypatch, SAVE)
@@ -155,7 +155,7 @@ def test_closing_while_a_run_goes_on_saves_what_was_finished(make_window, part_f
     window.close()
     qtbot.waitUntil(lambda: not window.isVisible(), timeout=20000)
     again = make_window()
-    again.document.open(project)
+    again.document.files.open(project)
     idle(again)
     assert again.document.session.recognition is not None
 
@@ -202,7 +202,7 @@ def test_at_most_five_seconds_are_lost():
 
 def test_steps_that_a_run_has_finished_are_kept_while_it_goes_on(make_window, part_file, idle, qtbot):
     window = make_window("fake_engine:SlowEngine")
-    window.document.open(part_file)
+    window.document.files.open(part_file)
     idle(window)
     window.recovery._soon.setInterval(100)
     window.document.program()
@@ -245,13 +245,13 @@ def test_a_recovered_project_knows_its_file_and_still_has_to_be_saved(make_windo
     press(window, "Recover")
     idle(window)
     assert window.document.session.choices["fake.blank.side"] == 8.0
-    assert window.document.project == str(project) and window.document.history.is_dirty
+    assert window.document.files.project == str(project) and window.document.history.is_dirty
     assert not left.exists() and not notes_of(left).exists()
     window.registry.run("file.save")
     idle(window)
     assert not window.document.history.is_dirty
     again = make_window()
-    again.document.open(project)
+    again.document.files.open(project)
     idle(again)
     assert again.document.session.choices["fake.blank.side"] == 8.0
 
@@ -263,7 +263,7 @@ def test_a_recovered_part_without_a_project_is_named_by_its_file(make_window, pr
     press(window, "Recover")
     idle(window)
     assert window.document.session.verdict is not None
-    assert window.document.history.is_dirty and window.document.project == ""
+    assert window.document.history.is_dirty and window.document.files.project == ""
 
 
 def test_work_that_is_thrown_away_makes_room_for_the_next_one(make_window, programmed, monkeypatch, qtbot):  # noqa: F811

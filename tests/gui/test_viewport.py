@@ -20,7 +20,7 @@ ON_RIB = (115.0, 70.0, HEIGHT)
 @pytest.fixture
 def recognized(window, part_file, idle, qtbot):
     """A window that shows the made-up part's features from the top."""
-    window.document.open(part_file)
+    window.document.files.open(part_file)
     idle(window)
     window.document.run("recognize", "Recognize")
     idle(window)
@@ -61,7 +61,7 @@ def test_without_colours_everything_looks_like_metal(recognized):
 def test_a_click_on_the_part_selects_the_row(recognized):
     view, scene = recognized.centre.scene.view, recognized.centre.scene
     QTest.mouseClick(view, LEFT, pos=scene.where(IN_POCKET["pocket-02"]).toPoint())
-    assert recognized.document.selection.id == "pocket-02"
+    assert recognized.document.selection.current.id == "pocket-02"
     assert recognized.features.tree.currentItem().text(0) == "pocket-02"
 
 
@@ -75,9 +75,9 @@ def test_a_click_on_the_row_highlights_the_faces(recognized, qtbot):
 
 
 def test_a_click_beside_the_part_selects_nothing(recognized):
-    recognized.document.select_feature("pocket-01")
+    recognized.document.selection.select_feature("pocket-01")
     QTest.mouseClick(recognized.centre.scene.view, LEFT, pos=QPoint(recognized.centre.scene.view.width() - 4, 4))
-    assert recognized.document.selection.kind == ""
+    assert recognized.document.selection.current.kind == ""
 
 
 def test_a_drag_turns_the_part_and_selects_nothing(recognized):
@@ -87,7 +87,7 @@ def test_a_drag_turns_the_part_and_selects_nothing(recognized):
     QTest.mousePress(view, LEFT, pos=start)
     QTest.mouseMove(view, start + QPoint(60, 40))
     QTest.mouseRelease(view, LEFT, pos=start + QPoint(60, 40))
-    assert recognized.document.selection.kind == ""
+    assert recognized.document.selection.current.kind == ""
     assert view.camera.position != before
 
 
@@ -134,7 +134,7 @@ def test_the_blank_is_fitted_into_the_picture_while_it_is_shown(recognized, idle
 def test_cutting_moves_are_drawn_in_their_colour(recognized, idle, qtbot):
     recognized.document.run("toolpath", "Generate")
     idle(recognized)
-    recognized.document.select_operation("op-02")
+    recognized.document.selection.select_operation("op-02")
     qtbot.wait(20)
     picture = recognized.centre.scene.view.grab().toImage().convertToFormat(recognized.grab().toImage().format())
     wanted = np.array(rgb(motions()["cut"]))
@@ -163,7 +163,7 @@ def test_a_size_is_written_where_it_is(recognized, idle, qtbot):
     recognized.panels["size"].fold(False)
     table = recognized.panels["size"].table
     QTest.mouseClick(table.viewport(), LEFT, pos=table.visualItemRect(table.item(1, 0)).center())
-    assert recognized.document.selection.faces == recognized.document.feature("pocket-02").with_role("floor")
+    assert recognized.document.selection.current.faces == recognized.document.feature("pocket-02").with_role("floor")
     assert any(name.startswith("size") for name in recognized.centre.scene.view.actors)
 
 

@@ -115,7 +115,7 @@ def forget() -> None:
 def recognized(ribs, make_window, part_file, idle):
     """A window with that view, over the made-up plate and its two ribs."""
     window = make_window()
-    window.document.open(part_file)
+    window.document.files.open(part_file)
     idle(window)
     window.document.run("recognize", "Recognize")
     idle(window)

@@ -146,14 +146,14 @@ def test_a_click_on_a_floor_selects_its_pocket_and_the_row_its_faces(programmed,
     rows = np.flatnonzero(mesh.face == floor)
     point = mesh.corners()[rows[np.argmax(mesh.areas()[rows])]].mean(axis=0)
     programmed.clicks(window.centre.scene.view, window.centre.scene.where(point).toPoint())
-    assert window.document.selection.id == pocket.id
+    assert window.document.selection.current.id == pocket.id
     assert window.features.tree.currentItem().text(0) == pocket.id
     assert set(window.centre.scene._chosen) == set(pocket.tags)
 
 
 def test_a_pockets_floor_has_the_pockets_colour(programmed, qtbot):
     window = programmed.window
-    window.document.select_face(0)
+    window.document.selection.select_face(0)
     window.registry.action("view.paths").setChecked(False)
     window.centre.show_layer("paths", False)
     window.registry.run("view.top")
@@ -175,7 +175,7 @@ def test_the_program_and_its_listing_are_there_to_read(programmed, qtbot):
     qtbot.waitUntil(lambda: len(window.code.text.toPlainText()) > 1000)
     assert "REJECTED" not in window.code.text.toPlainText()
     operation = window.document.session.process.operations[0].id
-    window.document.select_operation(operation)
+    window.document.selection.select_operation(operation)
     window.show_dock("listing")
     qtbot.waitUntil(lambda: operation in window.listing.toPlainText())
 
@@ -183,7 +183,7 @@ def test_the_program_and_its_listing_are_there_to_read(programmed, qtbot):
 def test_a_suppressed_operation_makes_only_what_follows_stale(programmed, qtbot):
     window = programmed.window
     last = window.document.session.process.operations[-1].id
-    window.document.select_operation(last)
+    window.document.selection.select_operation(last)
     window.registry.run("edit.suppress")
     qtbot.waitUntil(lambda: window.panels["generate"].state == "stale", timeout=30000)
     assert window.panels["recognize"].state == "done"
@@ -194,9 +194,9 @@ def test_a_suppressed_operation_makes_only_what_follows_stale(programmed, qtbot)
 def test_the_saved_project_opens_as_it_was(programmed, tmp_path, qtbot):
     window = programmed.window
     before = window.document.session
-    window.document.save(tmp_path / "B1.trunnion")
+    window.document.files.save(tmp_path / "B1.trunnion")
     qtbot.waitUntil(lambda: not window.document.is_busy, timeout=60000)
-    window.document.open(tmp_path / "B1.trunnion")
+    window.document.files.open(tmp_path / "B1.trunnion")
     qtbot.waitUntil(lambda: not window.document.is_busy, timeout=120000)
     assert window.centre.notice.isHidden(), window.centre.notice.text
     after = window.document.session

@@ -32,7 +32,7 @@ def panel_button(window, panel: str, command: str) -> QPushButton:
 @pytest.fixture
 def opened(window, part_file, idle):
     """A window with the made-up part open."""
-    window.document.open(part_file)
+    window.document.files.open(part_file)
     idle(window)
     return window
 
@@ -89,7 +89,7 @@ def test_undo_takes_a_setting_back_and_redo_brings_it_again(opened, idle):
 
 
 def test_a_deleted_feature_comes_back_with_undo(programmed, idle):
-    programmed.document.select_feature("rib-01")
+    programmed.document.selection.select_feature("rib-01")
     programmed.registry.run("edit.delete")
     idle(programmed)
     assert programmed.document.feature("rib-01") is None
@@ -98,7 +98,7 @@ def test_a_deleted_feature_comes_back_with_undo(programmed, idle):
 
 
 def test_the_unexplained_share_follows_a_deletion(programmed, idle):
-    programmed.document.select_feature("profile-01")
+    programmed.document.selection.select_feature("profile-01")
     programmed.registry.run("edit.delete")
     idle(programmed)
     around = 2 * (240.0 + 140.0) * 30.0
@@ -130,7 +130,7 @@ def test_a_wrong_order_is_refused_in_a_message(programmed, idle):
 
 
 def test_an_operations_own_setting_is_an_edit_by_hand(programmed, idle):
-    programmed.document.select_operation("op-02")
+    programmed.document.selection.select_operation("op-02")
     programmed.properties.form.field("fake.rough.stepover").setValue(0.25)
     idle(programmed)
     operation = programmed.document.operation("op-02")
@@ -141,7 +141,7 @@ def test_a_click_on_a_finding_selects_what_it_names(programmed):
     table = programmed.messages.table
     row = next(r for r in range(table.rowCount()) if "leans" in table.item(r, 1).text())
     QTest.mouseClick(table.viewport(), LEFT, pos=table.visualItemRect(table.item(row, 1)).center())
-    assert programmed.document.selection.id == "pocket-01"
+    assert programmed.document.selection.current.id == "pocket-01"
 
 
 def test_a_message_about_many_faces_names_eight_and_selects_all(opened):
@@ -150,13 +150,13 @@ def test_a_message_about_many_faces_names_eight_and_selects_all(opened):
     table = opened.messages.table
     assert table.item(0, 2).text() == f"{', '.join(faces[:8])} and 7 more"
     QTest.mouseClick(table.viewport(), LEFT, pos=table.visualItemRect(table.item(0, 1)).center())
-    assert opened.document.selection.faces == tuple(range(1, 16))
+    assert opened.document.selection.current.faces == tuple(range(1, 16))
 
 
 def test_a_bad_file_is_told_with_what_to_do(window, tmp_path, idle):
     path = tmp_path / "notes.txt"
     path.write_text("nothing")
-    window.document.open(path)
+    window.document.files.open(path)
     idle(window)
     assert window.centre.notice.isVisible()
     assert "export the part as STEP" in window.centre.notice.text
@@ -176,7 +176,7 @@ def test_a_saved_project_opens_again_and_is_recent(programmed, tmp_path, idle, m
     programmed.registry.run("file.save")
     idle(programmed)
     assert not programmed.document.history.is_dirty
-    programmed.document.open(path)
+    programmed.document.files.open(path)
     idle(programmed)
     assert programmed.document.session.verdict is not None
     assert remembered.recent()[0] == str(path)
@@ -191,7 +191,7 @@ def test_programs_are_written_into_a_folder(programmed, tmp_path, idle, monkeypa
 
 def test_the_time_of_areas_stands_below_the_balance_of_operations(make_window, part_file, idle, qtbot):
     window = make_window("fake_engine:AreasEngine")
-    window.document.open(part_file)
+    window.document.files.open(part_file)
     idle(window)
     window.document.run("optimize", "Optimise")
     panel = window.panels["optimize"]
@@ -204,7 +204,7 @@ def test_the_time_of_areas_stands_below_the_balance_of_operations(make_window, p
     assert areas.table.item(0, 1).text() == f"{104 * 124 + 2 * (104 + 124) * 24}"
     assert "0.00 % of the time saved" in areas.gain.text() and "from feed and distance of passes" in areas.gain.text()
     QTest.mouseClick(areas.table.viewport(), LEFT, pos=areas.table.visualItemRect(areas.table.item(1, 0)).center())
-    assert window.document.selection.id == "op-05"
+    assert window.document.selection.current.id == "op-05"
     window.document.run("toolpath", "Generate")
     qtbot.waitUntil(lambda: "measured on the toolpaths" in areas.gain.text(), timeout=20000)
 
@@ -216,7 +216,7 @@ def test_a_panel_has_no_areas_to_be_timed(programmed):
 
 def test_a_failed_verdict_names_the_files_that_must_not_run(make_window, part_file, tmp_path, idle, monkeypatch):
     window = make_window("fake_engine:FailingEngine")
-    window.document.open(part_file)
+    window.document.files.open(part_file)
     idle(window)
     window.document.program()
     idle(window)
@@ -237,7 +237,7 @@ def test_a_passed_verdict_names_no_files(programmed):
 
 def test_a_message_keeps_the_case_of_a_files_name(make_window, part_file, idle):
     window = make_window("fake_engine:RefusingEngine")
-    window.document.open(part_file)
+    window.document.files.open(part_file)
     idle(window)
     window.document.program()
     idle(window)
@@ -247,7 +247,7 @@ def test_a_message_keeps_the_case_of_a_files_name(make_window, part_file, idle):
 def test_a_program_of_an_earlier_plan_is_marked_as_stale(programmed, idle):
     programmed.show_dock("code")
     assert not programmed.code.stale.isVisible()
-    programmed.document.select_operation("op-02")
+    programmed.document.selection.select_operation("op-02")
     programmed.registry.run("edit.suppress")
     idle(programmed)
     assert programmed.code.stale.isVisible()
@@ -316,7 +316,7 @@ def test_a_row_dragged_onto_another_moves_in_front_of_it(programmed, idle, qtbot
 
 def test_the_listing_shows_the_selected_operations_motions(programmed, qtbot):
     programmed.show_dock("listing")
-    programmed.document.select_operation("op-02")
+    programmed.document.selection.select_operation("op-02")
     qtbot.waitUntil(lambda: programmed.listing.toPlainText().startswith("setup S1"))
 
 

@@ -14,19 +14,19 @@ from trunnion_gui.worker import GRACE_S, WRITING_GRACE_S
 
 def opened(make_window, factory, part_file, idle):
     window = make_window(f"fake_engine:{factory}")
-    window.document.open(part_file)
+    window.document.files.open(part_file)
     idle(window)
     return window
 
 
 def test_a_job_that_is_cancelled_before_anything_is_finished_leaves_the_session_as_it_was(make_window, part_file, idle, qtbot):
     window = opened(make_window, "SlowEngine", part_file, idle)
-    before, pid = window.document.session, window.document.worker.pid
+    before, pid = window.document.session, window.document.jobs.worker.pid
     window.document.program()
     qtbot.waitUntil(lambda: window.document.running_step == "recognize", timeout=10000)
     window.registry.run("job.cancel")
     qtbot.waitUntil(lambda: not window.document.is_busy, timeout=10000)
-    assert window.document.worker.pid == pid  # it obeyed
+    assert window.document.jobs.worker.pid == pid  # it obeyed
     assert window.document.session is window.document.shown is before
     assert window.document.history.undo_label == ""
     assert "was cancelled at: Recognize" in window.centre.notice.text and "as it was" in window.centre.notice.remedy
@@ -35,13 +35,13 @@ def test_a_job_that_is_cancelled_before_anything_is_finished_leaves_the_session_
 @pytest.mark.parametrize("factory", ["SlowEngine", "DeafEngine"])
 def test_steps_that_were_finished_before_a_cancel_are_kept_and_the_place_is_named(make_window, part_file, idle, qtbot, factory):
     window = opened(make_window, factory, part_file, idle)
-    before, pid = window.document.session, window.document.worker.pid
+    before, pid = window.document.session, window.document.jobs.worker.pid
     window.document.program()
     last, kept = ("toolpath", "optimize") if factory == "DeafEngine" else ("size", "recognize")
     qtbot.waitUntil(lambda: window.document.running_step == last, timeout=20000)
     window.registry.run("job.cancel")
     qtbot.waitUntil(lambda: not window.document.is_busy, timeout=2000)
-    assert (window.document.worker.pid == pid) == (factory == "SlowEngine")  # one that hears nothing is ended
+    assert (window.document.jobs.worker.pid == pid) == (factory == "SlowEngine")  # one that hears nothing is ended
     idle(window)
     assert window.document.states[kept] == "done" and window.document.states[last] == "empty"
     assert f"was cancelled at: {TITLES[last]}" in window.centre.notice.text
@@ -71,12 +71,12 @@ def test_what_is_done_so_far_is_shown_while_the_rest_runs(make_window, part_file
 
 def test_a_job_that_does_not_listen_is_ended_with_its_process(make_window, part_file, idle, qtbot):
     window = opened(make_window, "DeafEngine", part_file, idle)
-    pid = window.document.worker.pid
+    pid = window.document.jobs.worker.pid
     window.document.program()
     qtbot.waitUntil(lambda: window.document.running_step == "toolpath", timeout=10000)
     window.registry.run("job.cancel")
     qtbot.waitUntil(lambda: not window.document.is_busy, timeout=8000)
-    assert window.document.worker.pid != pid
+    assert window.document.jobs.worker.pid != pid
     window.document.choose("fake.blank.side", "Allowance", 7.0)
     window.document.run("route", "Generate route")
     idle(window)
@@ -87,7 +87,7 @@ def test_a_crash_costs_the_job_and_not_the_session(make_window, part_file, idle,
     window = opened(make_window, "CrashingEngine", part_file, idle)
     window.document.run("route", "Generate route")
     idle(window)
-    before, pid = window.document.session, window.document.worker.pid
+    before, pid = window.document.session, window.document.jobs.worker.pid
     window.document.program()
     qtbot.waitUntil(lambda: not window.document.is_busy, timeout=10000)
     idle(window)
@@ -96,7 +96,7 @@ def test_a_crash_costs_the_job_and_not_the_session(make_window, part_file, idle,
     assert window.document.states["optimize"] == "done"  # finished before the crash
     window.document.undo()
     assert window.document.session is before
-    assert window.document.worker.is_alive and window.document.worker.pid != pid
+    assert window.document.jobs.worker.is_alive and window.document.jobs.worker.pid != pid
     window.document.run("optimize", "Optimise")
     idle(window)
     assert window.document.states["optimize"] == "done"
@@ -104,9 +104,9 @@ def test_a_crash_costs_the_job_and_not_the_session(make_window, part_file, idle,
 
 def test_a_killed_worker_starts_again_and_has_the_part(make_window, part_file, idle, qtbot):
     window = opened(make_window, "FakeEngine", part_file, idle)
-    pid = window.document.worker.pid
-    window.document.worker._process.kill()
-    qtbot.waitUntil(lambda: window.document.worker.pid not in (0, pid), timeout=10000)
+    pid = window.document.jobs.worker.pid
+    window.document.jobs.worker._process.kill()
+    qtbot.waitUntil(lambda: window.document.jobs.worker.pid not in (0, pid), timeout=10000)
     idle(window)
     window.document.program()
     idle(window)

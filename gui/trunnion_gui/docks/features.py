@@ -53,7 +53,7 @@ class FeatureDock(QWidget):
         self.tree.itemClicked.connect(self._click)
         self.tree.customContextMenuRequested.connect(self._offer)
         document.changed.connect(self.refresh)
-        document.selected.connect(self._follow)
+        document.selection.changed.connect(self._follow)
         self._show_columns(None)
 
     def refresh(self) -> None:
@@ -78,7 +78,7 @@ class FeatureDock(QWidget):
             item.setTextAlignment(1, RIGHT)
             self.tree.addTopLevelItem(item)
         self.tree.blockSignals(False)
-        self._follow(self._document.selection)
+        self._follow(self._document.selection.current)
 
     def item(self, id: str) -> QTreeWidgetItem:
         """Return the row of a feature."""
@@ -138,7 +138,7 @@ class FeatureDock(QWidget):
 
     def _find(self) -> None:
         words = [w for w in re.split(r"\s*[,;]\s*|(?<=\d)\s+", self.line.text().strip()) if w]
-        if not self._document.select_ids(words):
+        if not self._document.selection.select_ids(words):
             self._document.notice(tr("{words}: no feature and no face has this ID").format(words=self.line.text()),
                                   tr("write IDs as in the table, with commas between them"))
 
@@ -152,9 +152,9 @@ class FeatureDock(QWidget):
     def _choose(self) -> None:
         ids = [item.data(0, _ID) for item in self.tree.selectedItems()]
         if ids == [_UNEXPLAINED] and self._shown is not None:
-            self._document.select(Selection("faces", tr("unexplained faces"), self._shown.unexplained))
+            self._document.selection.select(Selection("faces", tr("unexplained faces"), self._shown.unexplained))
         elif ids:
-            self._document.select_ids([id for id in ids if id in self._items])
+            self._document.selection.select_ids([id for id in ids if id in self._items])
 
     def _follow(self, selection: Selection) -> None:
         self.tree.blockSignals(True)

@@ -23,11 +23,11 @@ class ListingDock(QPlainTextEdit):
         self.setLineWrapMode(QPlainTextEdit.LineWrapMode.NoWrap)
         self.setPlaceholderText(tr("Select an operation that has a toolpath."))
         document.changed.connect(self.refresh)
-        document.selected.connect(lambda _: self.refresh())
+        document.selection.changed.connect(lambda _: self.refresh())
 
     def refresh(self) -> None:
         """Show the selected operation's motions, if anybody looks."""
-        chosen, session = self._document.selection, self._document.shown
+        chosen, session = self._document.selection.current, self._document.shown
         path = session.path_of(chosen.id) if chosen.kind == "operation" else None
         if not self.isVisible() or path is self._shown:
             return

@@ -37,10 +37,10 @@ class MessagesDock(QWidget):
         column = QVBoxLayout(self)
         column.setContentsMargins(0, 0, 0, 0)
         column.addWidget(self.table)
-        self.table.cellClicked.connect(lambda row, _: document.select_where(self.findings[row].where))
+        self.table.cellClicked.connect(lambda row, _: document.selection.select_where(self.findings[row].where))
         document.changed.connect(self.refresh)
         document.noticed.connect(self._note)
-        document.opened.connect(lambda _: self._notices.clear())
+        document.files.opened.connect(lambda _: self._notices.clear())
 
     def use_theme(self, theme: Theme) -> None:
         """Draw in the colours of a theme."""

@@ -60,7 +60,7 @@ class ProcessDock(QWidget):
         self.tree.customContextMenuRequested.connect(self._offer)
         self.tree.dropped.connect(self.reorder)
         document.changed.connect(self.refresh)
-        document.selected.connect(self._follow)
+        document.selection.changed.connect(self._follow)
 
     def use_theme(self, theme: Theme) -> None:
         """Draw in the colours of a theme."""
@@ -89,7 +89,7 @@ class ProcessDock(QWidget):
         self.tree.blockSignals(False)
         marked, self._marked = self._marked, ""
         self.mark(marked)
-        self._follow(self._document.selection)
+        self._follow(self._document.selection.current)
 
     def mark(self, id: str) -> None:
         """Show which operation is being played; none for an empty id."""
@@ -154,7 +154,7 @@ class ProcessDock(QWidget):
     def _choose(self) -> None:
         chosen = self.tree.selectedItems()
         if chosen and chosen[0].data(0, _ID):
-            self._document.select_operation(chosen[0].data(0, _ID))
+            self._document.selection.select_operation(chosen[0].data(0, _ID))
 
     def _follow(self, selection: Selection) -> None:
         self.tree.blockSignals(True)

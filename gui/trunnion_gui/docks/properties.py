@@ -48,13 +48,13 @@ class PropertiesDock(QScrollArea):
         self._column.addLayout(self._forms)
         self._column.addStretch(1)
         self.setWidget(inside)
-        document.selected.connect(lambda _: self.refresh())
+        document.selection.changed.connect(lambda _: self.refresh())
         document.changed.connect(self.refresh)
         self.refresh()
 
     def refresh(self) -> None:
         """Show the properties of the selection."""
-        chosen, document = self._document.selection, self._document
+        chosen, document = self._document.selection.current, self._document
         feature, operation = document.feature(chosen.id), document.operation(chosen.id)
         if chosen.kind == "feature" and feature:
             self._show(feature.id, sentence(tr(kind_words(feature.kind))), feature_rows(feature))

@@ -36,7 +36,7 @@ def add_general_commands(shell: Shell) -> None:
         return has_part() and bool(document.session.posted)
 
     def has_chosen(*kinds: str) -> bool:
-        return is_free() and document.selection.kind in kinds
+        return is_free() and document.selection.current.kind in kinds
 
     def command(id: str, text: str, run: Callable[[], object], icon: str = "", keys: str = "", help: str = "",
                 enabled: Callable[[], bool] | None = None) -> None:
@@ -65,7 +65,7 @@ def add_general_commands(shell: Shell) -> None:
     command("run.program", "Program", shell.program, "program", "F5", "The whole line: features, route, toolpaths, proof", is_free)
     for id, text, last, icon, keys in _STEPS:
         command(id, text, partial(document.run, last, tr(text)), icon, keys, f"{text}: what is stale up to here", has_part)
-    command("job.cancel", "Cancel the running job", document.cancel, "cancel", "Ctrl+.", "", lambda: document.is_busy)
+    command("job.cancel", "Cancel the running job", document.jobs.cancel, "cancel", "Ctrl+.", "", lambda: document.is_busy)
     for number, view in enumerate(_VIEWS):
         command(f"view.{view}", f"View: {view}", lambda view=view: shell.centre.scene.look(view),  # type: ignore[misc]
                 view, f"Ctrl+{number}", "", None)

@@ -28,7 +28,7 @@ class OptimizePanel(Panel):
         tips = tr("Operation"), tr("Spindle speed, 1/min"), tr("Feed, mm/min"), tr("Share of the spindle's power, at the highest load")
         for column, words in enumerate(tips):
             self.table.model().setHeaderData(column, Qt.Orientation.Horizontal, words, Qt.ItemDataRole.ToolTipRole)
-        self.table.cellClicked.connect(lambda row, _: self.document.select_operation(self._cut[row].id))
+        self.table.cellClicked.connect(lambda row, _: self.document.selection.select_operation(self._cut[row].id))
         self.content.addWidget(self.table)
         self._shown: tuple[object, object, object] | None = None
         self._cut: list[Operation] = []

@@ -97,7 +97,7 @@ class RecognizePanel(Panel):
         """Open the file again with another solid: it is another part."""
         part = self.document.session.part
         if part is not None and part.solid != row + 1:
-            self.document.open(self.document.path, solid=row + 1)
+            self.document.files.open(self.document.files.path, solid=row + 1)
 
 
 def _taken(taken: TakenFor) -> str:

@@ -52,7 +52,7 @@ class Panel(Foldout):
         self.result.setObjectName("muted")
         self.build()
         document.changed.connect(self.refresh)
-        document.job_changed.connect(self.refresh)
+        document.jobs.changed.connect(self.refresh)
 
     def build(self) -> None:
         """Lay the panel out: settings, main button, result."""

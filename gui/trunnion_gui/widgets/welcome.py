@@ -55,7 +55,7 @@ class Welcome(QFrame):
             button.setObjectName("link")
             button.setToolTip(path)
             button.setCursor(Qt.CursorShape.PointingHandCursor)
-            button.clicked.connect(lambda _=False, p=path: self._document.open(p))
+            button.clicked.connect(lambda _=False, p=path: self._document.files.open(p))
             self._recent.addWidget(button)
         self.adjustSize()
 

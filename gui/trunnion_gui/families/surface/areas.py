@@ -20,7 +20,7 @@ class AreasBlock(QWidget):
         super().__init__()
         self._finished: list[str] = []
         self.table = tables.table([tr("Area of"), "mm²", "mm²/s", tr("Time")], has_names=True)
-        self.table.cellClicked.connect(lambda row, _: document.select_operation(self._finished[row]))
+        self.table.cellClicked.connect(lambda row, _: document.selection.select_operation(self._finished[row]))
         self.gain = QLabel()
         self.gain.setWordWrap(True)
         column = QVBoxLayout(self)

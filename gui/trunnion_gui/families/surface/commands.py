@@ -29,7 +29,7 @@ def add_commands(view: SurfaceView, shell: Shell) -> None:
                                     enabled=enabled, checkable=checkable))
 
     def begin_cut(by_plane: bool) -> None:
-        faces = document.selection.faces
+        faces = document.selection.current.faces
         view.begin_cut(faces[0] if len(faces) == 1 else 0, by_plane)
 
     def mark_local(on: bool) -> None:
@@ -39,9 +39,9 @@ def add_commands(view: SurfaceView, shell: Shell) -> None:
         view.jobs.measure()
         shell.show_dock("accuracy")
 
-    command("local", "Local feature, or no longer", lambda: tools.toggle_local(document.selection.faces), "local", "O",
+    command("local", "Local feature, or no longer", lambda: tools.toggle_local(document.selection.current.faces), "local", "O",
             "Give the selected groups a cutter of their own, or let them go with the remaining area",
-            lambda: is_free() and bool(tools.groups_of(document.selection.faces)))
+            lambda: is_free() and bool(tools.groups_of(document.selection.current.faces)))
     command("click_local", "Click local features", mark_local, "local", "Shift+O",
             "While this is on, a click on the part makes its group a local feature, or no longer", checkable=True)
     command("ids", "Show IDs", lambda on: shell.centre.show_layer("ids", on), "ids", "N",

@@ -46,7 +46,7 @@ class CutBar(QWidget):
         row.addWidget(self.words, 1)
         for button in (self.back, self.apply, self.close_button):
             row.addWidget(button)
-        document.job_changed.connect(self.refresh)
+        document.jobs.changed.connect(self.refresh)
         document.redrawn.connect(self.end)
         document.mesh_changed.connect(self.end)
         self.hide()
@@ -169,7 +169,7 @@ class CutBar(QWidget):
         self.face = face
         mesh = self._document.mesh
         if face and mesh is not None:
-            self._document.select_face_alone(face)
+            self._document.selection.select_face_alone(face)
             if self._kind() in AXES:
                 longest = int(np.argmax(np.subtract(*reversed(box_of(mesh, face)))))
                 self._take_manner(AXES[longest])

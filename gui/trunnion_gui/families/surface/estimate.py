@@ -23,10 +23,10 @@ class EstimateSource(QObject):
         self.shown: requests.Estimated | None = None
         self._source: tuple[object, object] = (None, None)
         self._asked = 0
-        document.worker.replied.connect(self._receive)
-        document.worker.restarted.connect(self._restart)
+        document.jobs.worker.replied.connect(self._receive)
+        document.jobs.worker.restarted.connect(self._restart)
         document.changed.connect(self._follow)
-        document.job_changed.connect(self._follow)
+        document.jobs.changed.connect(self._follow)
 
     def _restart(self) -> None:
         self._asked, self._source = 0, (None, None)
@@ -38,7 +38,7 @@ class EstimateSource(QObject):
             return
         self._source, self._asked = source, 0
         if _has_areas(session):
-            self._asked = self._document.worker.ask(requests.estimate, session)
+            self._asked = self._document.jobs.worker.ask(requests.estimate, session)
         else:
             self._show(None)
 

@@ -50,11 +50,11 @@ class ExportDialog(QDialog):
         self.close_button.clicked.connect(self.hide)
         self.list.itemChanged.connect(self._tick)
         document.changed.connect(self.refresh)
-        document.job_changed.connect(self.refresh)
+        document.jobs.changed.connect(self.refresh)
 
     def begin(self) -> None:
         """Show the dialog; groups that have selected faces are ticked."""
-        self._ticked = {f.id for f in self._groups() if set(f.tags) & set(self._document.selection.faces)}
+        self._ticked = {f.id for f in self._groups() if set(f.tags) & set(self._document.selection.current.faces)}
         if self._ticked:
             self.parts[CHOSEN].setChecked(True)
         self._fill()

@@ -65,7 +65,7 @@ class SurfaceView(FamilyView):
 
     def add_feature_entries(self, menu: QMenu, feature: Feature) -> None:
         self.tools.add_entries(menu, feature.tags)
-        chosen = self.document.selection
+        chosen = self.document.selection.current
         if chosen.kind == "faces" and not set(chosen.faces) <= set(feature.tags):
             menu.addAction(icons.icon("move_faces"), tr("Take the selected faces in"),
                            lambda: self.jobs.move(chosen.faces, feature.id))

@@ -1,0 +1,265 @@
+"""The session with its history, and the runs that compute its steps. Views read it and repaint.
+
+A slot builds an edit and hands it over (`edit`), or asks for a run or a family's own work (`run`, `request`); the worker computes and the
+signals tell. While a run goes on, `shown` holds what is done so far; `session` stays as it was until the run ends. Steps that a run
+finished before it was cancelled, refused or crashed are kept, as one entry of the history.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from typing import Any
+
+from PySide6.QtCore import QObject, Signal
+
+from trunnion.findings import Finding, Severity, TrunnionError
+from trunnion.geometry.cut import Cut
+from trunnion.geometry.mesh import Mesh
+from trunnion.model.feature import Feature
+from trunnion.model.operation import Operation
+from trunnion.model.session import Session
+from trunnion.settings import Value
+from trunnion_gui import edits
+from trunnion_gui.document.files import Files
+from trunnion_gui.document.jobs import Finish, Job, Jobs
+from trunnion_gui.document.selection import SelectionModel
+from trunnion_gui.drawing import Drawing
+from trunnion_gui.edits import Edit, History
+from trunnion_gui.i18n import tr
+from trunnion_gui.steps import STEPS, TITLES, until
+from trunnion_gui.verbs import Group, State, Work
+from trunnion_gui.worker import ENGINE, Reply
+
+
+class Document(QObject):
+    """The open part's session and everything that happens to it: `jobs`, `files` and `selection` are its parts."""
+
+    changed = Signal()
+    """The shown session is another one, or its states are."""
+    mesh_changed = Signal()
+    """Another part is there."""
+    redrawn = Signal()
+    """The part is the same, its faces are others: one was cut, or a cut was taken back."""
+    noticed = Signal(object)
+    """A `Finding` about the program itself: a failure, a crash, a refusal."""
+    said = Signal(str)
+    """Words on what came of a job."""
+
+    def __init__(self, factory: str = ENGINE, parent: QObject | None = None) -> None:
+        super().__init__(parent)
+        self.history = History(Session())
+        self.shown = self.history.session
+        self.states: dict[str, str] = {}
+        self.groups: Mapping[str, tuple[Group, ...]] = {}
+        self.drawing: Drawing | None = None
+        self.running_step = ""
+        self._drawings: dict[tuple[Cut, ...], Drawing] = {}
+        self._settled: dict[str, str] = {}
+        self.jobs = Jobs(factory, self.notice, self)
+        self.files, self.selection = Files(self), SelectionModel(self)
+        self.jobs.changed.connect(self._begin)
+        self.jobs.staged.connect(self._take_stage)
+        self.jobs.stopped.connect(self._stop)
+        self.jobs.worker.restarted.connect(self._attach)
+        self.jobs.ask("settings", finish=self._take_groups)
+
+    @property
+    def session(self) -> Session:
+        """The session as the history has it."""
+        return self.history.session
+
+    @property
+    def mesh(self) -> Mesh | None:
+        """The part's triangles."""
+        return self.drawing.mesh if self.drawing is not None else None
+
+    @property
+    def is_busy(self) -> bool:
+        """Whether a job runs."""
+        return self.jobs.is_busy
+
+    @property
+    def has_part(self) -> bool:
+        """Whether a part is open."""
+        return self.session.part is not None
+
+    @property
+    def has_unsaved_work(self) -> bool:
+        """Whether anything would be lost: an edit, a run, or the steps that a run has finished so far."""
+        return self.has_part and (self.history.is_dirty or self.shown is not self.session)
+
+    def is_ready(self) -> bool:
+        """Return whether there is a part and no job runs; tell a person what is in the way."""
+        return self.jobs.is_free() and self._needs_part()
+
+    def feature(self, id: str) -> Feature | None:
+        """Return the shown feature with an id, if there is one."""
+        return next((f for f in (self.shown.recognition or ()) if f.id == id), None)
+
+    def operation(self, id: str) -> Operation | None:
+        """Return the shown operation with an id, if there is one."""
+        process = self.shown.process
+        return next((o for o in (process.operations if process else ()) if o.id == id), None)
+
+    def notice(self, text: str, remedy: str = "", severity: Severity = Severity.ERROR) -> None:
+        """Tell the person something about the program itself."""
+        self.noticed.emit(Finding(severity=severity, code="window", text=text, remedy=remedy))
+
+    # runs
+
+    def run(self, last: str, label: str) -> None:
+        """Compute what is stale up to and including a step. Asked while a file is being opened, it runs right after."""
+        if self.jobs.job is not None and self.jobs.job.verb == "open":
+            self.jobs.after(lambda: self.run(last, tr("Program")))
+        elif self.is_ready():
+            if self._is_done(last):
+                self.notice(tr("{job}: everything is up to date").format(job=label), severity=Severity.INFO)
+            else:
+                self.jobs.start("run", label, self.session, last, finish=lambda state: self._finish_run(label, state))
+
+    def program(self) -> None:
+        """Do the whole line."""
+        self.run("verify", tr("Program"))
+
+    def request(self, work: Work, label: str, *arguments: Any, finish: Finish) -> None:
+        """Do a family's own work on the session in the worker; `finish` gets what it returns. Refused in words while a job runs."""
+        if self.is_ready():
+            self.jobs.start(work, label, self.session, *arguments, finish=finish)
+
+    # the session
+
+    def keep(self, label: str, state: State, drawing: Drawing | None = None) -> None:
+        """Take a session into the history, with what is drawn of its part where its faces are others."""
+        if drawing is not None:
+            self._drawings[state.session.cuts] = drawing
+        self.history.push(label, state.session)
+        self._show(state.session, state.steps)
+
+    def install(self, state: State, drawing: Drawing, is_saved: bool) -> None:
+        """Take up the session of another part, with an empty history."""
+        self.history = History(state.session)
+        if not is_saved:
+            self.history.mark_saved(None)
+        self.drawing, self._drawings = drawing, {state.session.cuts: drawing}
+        self.shown, self.states = state.session, state.steps
+        self.mesh_changed.emit()
+        self.selection.clear()
+        self.changed.emit()
+
+    def edit(self, label: str, edit: Edit, gesture: str = "") -> None:
+        """Do an undoable edit; a refusal, or a job that runs, is told in a message."""
+        if self.is_busy:
+            self.notice(tr("{label}: not while {job} runs").format(label=label, job=self.jobs.job.label if self.jobs.job else ""),
+                        tr("cancel the running job, or wait until it is done"), severity=Severity.WARNING)
+            self.changed.emit()
+            return
+        try:
+            session = edit(self.session)
+        except TrunnionError as reason:
+            self.notice(str(reason), severity=Severity.WARNING)
+            return
+        if session is not self.session:
+            self.history.push(label, session, gesture)
+            self._show(session)
+            self._ask_states()
+
+    def choose(self, key: str, label: str, value: Value, gesture: str = "") -> None:
+        """Choose a setting by its full key."""
+        self.edit(label, edits.with_choice(key, value), gesture)
+
+    def undo(self) -> None:
+        """Take the last edit or run back."""
+        if self.jobs.is_free():
+            self._show(self.history.undo())
+            self._ask_states()
+
+    def redo(self) -> None:
+        """Bring back what was undone."""
+        if self.jobs.is_free():
+            self._show(self.history.redo())
+            self._ask_states()
+
+    # inside
+
+    def _needs_part(self) -> bool:
+        if not self.has_part:
+            self.notice(tr("There is no part yet"), tr("open a STEP or IGES file first (Ctrl+O), or drop one on the window"),
+                        severity=Severity.WARNING)
+        return self.has_part
+
+    def _is_done(self, last: str) -> bool:
+        """Whether nothing is stale up to a step; while the states of a fresh edit are still asked for, nobody knows."""
+        return not self.jobs.asks("states") and all(self.states.get(s) in ("done", "problem") for s in until(last))
+
+    def _ask_states(self) -> None:
+        self.jobs.forget("states")
+        if self.has_part:
+            self.jobs.ask("states", self.session, finish=self._take_states)
+
+    def _attach(self) -> None:
+        """Give a fresh worker the part, and ask it again for what was not answered."""
+        if self.has_part:
+            self.jobs.ask("attach", self.session, *self.files.kept, finish=lambda _: None)
+        if not self.groups:
+            self.jobs.ask("settings", finish=self._take_groups)
+
+    def _take_groups(self, groups: Mapping[str, tuple[Group, ...]]) -> None:
+        self.groups = groups
+        self.changed.emit()
+
+    def _take_states(self, state: State) -> None:
+        if not self.is_busy:
+            self.states = state.steps
+            self.changed.emit()
+
+    def _show(self, session: Session, states: dict[str, str] | None = None) -> None:
+        self.shown = session
+        if states is not None:
+            self.states = states
+        drawing = self._drawings.get(session.cuts, self.drawing)
+        if drawing is not self.drawing:
+            self.drawing = drawing
+            self.redrawn.emit()
+        self.selection.follow()
+        self.changed.emit()
+
+    def _begin(self) -> None:
+        """Remember the states that a job begins with."""
+        if self.is_busy:
+            self._settled = self.states
+
+    def _take_stage(self, stage: tuple[str, State | None]) -> None:
+        step, state = stage
+        if state is None:
+            self.running_step = step
+            self.changed.emit()
+        else:
+            self._show(state.session, state.steps)
+
+    def _finish_run(self, label: str, state: State) -> None:
+        self.running_step = ""
+        self.keep(label, state)
+        if state.refusal:
+            self.notice(state.refusal)
+
+    def _stop(self, job: Job, reply: Reply, doing: str) -> None:
+        """Keep the steps that a job finished before it stopped short, and tell where it stopped and what is kept."""
+        step, self.running_step = self.running_step, ""
+        finished = [TITLES[s] for s in STEPS if s in self.shown.records and self.shown.records[s] != self.session.records.get(s)]
+        if finished:
+            self.history.push(job.label, self.shown)
+            self._show(self.shown, self.states)
+        else:
+            self._show(self.session, self._settled)
+        kept = tr("finished and kept: {steps}").format(steps=", ".join(tr(t) for t in finished)) if finished else \
+            tr("your session is as it was")
+        if reply.kind == "cancelled":
+            at = " · ".join(words for words in (tr(TITLES[step]) if step else "", doing) if words)
+            where = tr("{job} was cancelled at: {place}").format(job=job.label, place=at) if at else \
+                tr("{job} was cancelled").format(job=job.label)
+            self.notice(where, kept, severity=Severity.INFO)
+        elif reply.kind == "crashed":
+            self.notice(tr("{job} was lost: {reason}").format(job=job.label, reason=reply.text),
+                        tr("{kept}; try again, or save and report the part").format(kept=kept))
+        else:
+            self.notice(reply.text, kept if finished else "")
