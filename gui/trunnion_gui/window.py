@@ -2,37 +2,27 @@
 
 from __future__ import annotations
 
-import contextlib
-from importlib.resources import as_file
-from pathlib import Path
-
 from PySide6.QtCore import QTimer
 from PySide6.QtGui import QCloseEvent, QDragEnterEvent, QDropEvent, QShowEvent
-from PySide6.QtWidgets import QFileDialog, QMainWindow
+from PySide6.QtWidgets import QMainWindow
 
-import trunnion_resources
-from trunnion import __version__
-from trunnion.findings import Finding, Severity
-from trunnion_gui import colours, edits, i18n, icons, remembered, theme
+from trunnion.findings import Finding
+from trunnion_gui import colours, icons, remembered, theme
 from trunnion_gui.actions import Registry
-from trunnion_gui.arrangement import BELOW, LEFT, RIGHT, Arrangement, column
+from trunnion_gui.arrangement import LEFT, Arrangement, column
 from trunnion_gui.centre import Centre
 from trunnion_gui.deviation import DeviationSource
-from trunnion_gui.docks.code import CodeDock
-from trunnion_gui.docks.deviation import DeviationDock
-from trunnion_gui.docks.features import FeatureDock
-from trunnion_gui.docks.listing import ListingDock
-from trunnion_gui.docks.messages import MessagesDock
+from trunnion_gui.dialogs import FileDialogs
+from trunnion_gui.docks.layout import Docks
 from trunnion_gui.docks.playback import PlaybackBar
-from trunnion_gui.docks.process import ProcessDock
-from trunnion_gui.docks.properties import PropertiesDock
-from trunnion_gui.document import PROJECT, Document
+from trunnion_gui.document import Document
 from trunnion_gui.families.views import Views
 from trunnion_gui.finder import Finder
 from trunnion_gui.following import Following
 from trunnion_gui.i18n import tr
 from trunnion_gui.menus.bars import fill_menus, toolbar
 from trunnion_gui.menus.general import add_general_commands
+from trunnion_gui.menus.handlers import Handlers
 from trunnion_gui.menus.playing import add_playback_commands
 from trunnion_gui.panels.blank import BlankPanel
 from trunnion_gui.panels.generate import GeneratePanel
@@ -50,11 +40,10 @@ from trunnion_gui.worker import ENGINE
 
 PANELS: dict[str, type[Panel]] = {"recognize": RecognizePanel, "size": SizePanel, "blank": BlankPanel, "route": RoutePanel,
                                   "optimize": OptimizePanel, "generate": GeneratePanel}
-PART_FILES = "STEP, IGES, Trunnion (*.step *.stp *.stpz *.igs *.iges *.trunnion)"
 
 
 class Window(QMainWindow):
-    """Arranges, connects, and asks for files; what it shows is the document's."""
+    """Arranges and connects; what it shows is the document's, what its commands do is in `handlers`."""
 
     def __init__(self, factory: str = ENGINE) -> None:
         super().__init__()
@@ -69,6 +58,7 @@ class Window(QMainWindow):
         self.registry = Registry(self)
         self.player, self.deviation = Player(self.document, self), DeviationSource(self.document, self)
         self.views = Views(self.document)
+        self.dialogs, self.handlers = FileDialogs(self.document, self), Handlers(self)
         add_general_commands(self)
         for view in self.views:
             view.add_commands(self)
@@ -89,8 +79,8 @@ class Window(QMainWindow):
         self.status = Status(self.document, self.registry)
         self.setStatusBar(self.status)
         self.finder = Finder(self.registry, self)
-        self.following = Following(self.player, self.code, self.process, self)
-        self.unsaved = UnsavedWork(self.document, self.save, self)
+        self.following = Following(self.player, self.docks.code, self.docks.process, self)
+        self.unsaved = UnsavedWork(self.document, self.handlers.save, self)
         self.document.files.holds_work = self.unsaved.holds
         self.recovery = Recovery(self.document, self.centre.notice, self)
         self._connect()
@@ -99,113 +89,6 @@ class Window(QMainWindow):
         self.centre.welcome.show_recent(remembered.recent())
         self.recovery.offer()
         self._refresh()
-
-    # what a person is asked; tests replace these
-
-    def ask_open_path(self) -> str:
-        """Ask which file to open; empty when nothing was chosen."""
-        return QFileDialog.getOpenFileName(self, tr("Open a part or a project"), "", PART_FILES)[0]
-
-    def ask_save_path(self) -> str:
-        """Ask where to save the project."""
-        part = self.document.session.part
-        proposed = str(Path(self.document.files.path).with_suffix(PROJECT)) if part else ""
-        return QFileDialog.getSaveFileName(self, tr("Save the project"), proposed, f"Trunnion (*{PROJECT})")[0]
-
-    def ask_folder(self) -> str:
-        """Ask which folder the programs are written to."""
-        return QFileDialog.getExistingDirectory(self, tr("Write programs into"))
-
-    def ask_picture_path(self) -> str:
-        """Ask where to keep a picture."""
-        return QFileDialog.getSaveFileName(self, tr("Save the picture"), "", "PNG (*.png)")[0]
-
-    # what the commands do
-
-    def open(self) -> None:
-        """Choose a file and open it."""
-        path = self.ask_open_path()
-        if path:
-            self.document.files.open(path)
-
-    def open_sample(self) -> None:
-        """Open the part that comes with the program."""
-        self._sample = contextlib.ExitStack()
-        self.document.files.open(self._sample.enter_context(as_file(trunnion_resources.sample("B1"))))
-
-    def save(self) -> None:
-        """Save the project where it was saved before; ask otherwise."""
-        if self.document.files.project:
-            self.document.files.save(self.document.files.project)
-        else:
-            self.save_as()
-
-    def save_as(self) -> None:
-        """Ask where to save the project."""
-        path = self.ask_save_path()
-        if path:
-            self.document.files.save(path if path.endswith(PROJECT) else path + PROJECT)
-
-    def write(self) -> None:
-        """Ask for a folder and write everything there."""
-        folder = self.ask_folder()
-        if folder:
-            self.document.files.write(folder)
-
-    def keep_picture(self) -> None:
-        """Ask for a file and write what the viewport shows."""
-        path = self.ask_picture_path()
-        if path:
-            self.centre.scene.save_picture(path)
-
-    def program(self) -> None:
-        """Do the whole line; without a part, choose one first."""
-        if not self.document.has_part and not self.document.is_busy:
-            self.open()
-            if not self.document.is_busy:
-                return
-        self.document.program()
-
-    def delete_selected(self) -> None:
-        """Delete the selected feature or operation."""
-        chosen = self.document.selection.current
-        edit = edits.without_feature if chosen.kind == "feature" else edits.without_operation
-        if chosen.kind in ("feature", "operation"):
-            self.document.edit(tr("Delete {id}").format(id=chosen.id), edit(chosen.id))
-
-    def leave(self) -> None:
-        """Put away what is being done in the picture; else select nothing."""
-        if not self.centre.end_tool():
-            self.document.selection.select_face(0)
-
-    def suppress_selected(self) -> None:
-        """Suppress the selected operation, or take it up again."""
-        operation = self.document.operation(self.document.selection.current.id)
-        if operation is not None:
-            words = tr("Cut {id} again") if operation.suppressed else tr("Suppress {id}")
-            self.document.edit(words.format(id=operation.id), edits.with_suppressed(operation.id, not operation.suppressed))
-
-    def change_theme(self) -> None:
-        """Change between light and dark."""
-        name = "dark" if self.theme.name == "light" else "light"
-        remembered.remember("theme", name)
-        self.use_theme(colours.theme(name))
-
-    def change_language(self) -> None:
-        """Take the next language; it is spoken from the next start on."""
-        known = i18n.languages()
-        following = known[(known.index(remembered.language()) + 1) % len(known)]
-        remembered.remember("language", following)
-        self.document.notice(tr("The window speaks {language} from the next start on").format(language=following), severity=Severity.INFO)
-
-    def forget_arrangement(self) -> None:
-        """Put docks back where they were at first."""
-        self.arrangement.forget()
-
-    def about(self) -> None:
-        """Say what this is."""
-        self.document.notice(f"Trunnion {__version__}", tr("From the CAD model of an aerospace part to a proven NC program. Apache-2.0."),
-                             severity=Severity.INFO)
 
     # Qt's events
 
@@ -264,18 +147,11 @@ class Window(QMainWindow):
     # building
 
     def _make_docks(self) -> None:
-        self.features, self.process = FeatureDock(self.document, self.views), ProcessDock(self.document)
-        self.properties, self.messages = PropertiesDock(self.document), MessagesDock(self.document)
-        self.code, self.listing = CodeDock(self.document), ListingDock(self.document)
-        self.places = DeviationDock(self.document)
+        self.docks = Docks(self.document, self.views)
         self.playback = PlaybackBar(self.player, self.registry, self.theme)
         self.centre.add_bar(self.playback)
         self.arrangement.add("steps", tr("Steps"), column(list(self.panels.values())), LEFT)
-        self.arrangement.add_tabs(RIGHT, ("features", tr("Features"), self.features), ("process", tr("Process tree"), self.process))
-        self.arrangement.add("properties", tr("Properties"), self.properties, RIGHT)
-        self.arrangement.add_tabs(BELOW, ("messages", tr("Messages"), self.messages), ("code", tr("G-code"), self.code),
-                                  ("listing", tr("Listing"), self.listing), ("deviation", tr("Deviation"), self.places),
-                                  *((d.name, d.title, d.widget) for view in self.views for d in view.docks()))
+        self.docks.arrange(self.arrangement)
 
     def _connect(self) -> None:
         document, messages = self.document, self.arrangement.dock("messages")
@@ -285,15 +161,15 @@ class Window(QMainWindow):
         document.noticed.connect(self._tell)
         document.files.opened.connect(self._opened)
         document.files.saved.connect(remembered.add_recent)
-        self.messages.counted.connect(lambda n: messages.setWindowTitle(f"{tr('Messages')} {n}" if n else tr("Messages")))
+        self.docks.messages.counted.connect(lambda n: messages.setWindowTitle(f"{tr('Messages')} {n}" if n else tr("Messages")))
         size, generate = self.panels["size"], self.panels["generate"]
         assert isinstance(size, SizePanel)
         assert isinstance(generate, GeneratePanel)
         size.pointed.connect(self.centre.show_size)
         for changed in (self.player.opened, self.player.changed, self.deviation.arrived):
             changed.connect(lambda *_: self.registry.refresh())
-        self.deviation.arrived.connect(self.places.show_map)
-        self.places.chosen.connect(self.centre.look_at_place)
+        self.deviation.arrived.connect(self.docks.deviation.show_map)
+        self.docks.deviation.chosen.connect(self.centre.look_at_place)
         self.centre.hinted.connect(self.status.hint)
         generate.motions_changed.connect(self.centre.show_motions)
 
@@ -305,8 +181,8 @@ class Window(QMainWindow):
         # The main button is drawn on the accent colour, in both themes.
         self.registry.action("run.program").setIcon(icons.icon("program", chosen.accent_text))
         self.centre.use_theme(chosen)
-        for dock in (self.process, self.messages, self.code, self.places, self.playback):
-            dock.use_theme(chosen)
+        self.docks.use_theme(chosen)
+        self.playback.use_theme(chosen)
         for view in self.views:
             view.use_theme(chosen)
         for panel in self.panels.values():

@@ -32,7 +32,7 @@ def test_a_change_of_a_proven_plan_leaves_the_docks_as_wide_as_they_were(program
     programmed.document.selection.select_feature("rib-01")
     programmed.registry.run("edit.delete")
     idle(programmed)
-    assert programmed.code.stale.isVisible()
+    assert programmed.docks.code.stale.isVisible()
     assert relaid(programmed, qtbot) == before
     programmed.document.run("route", "Generate route")
     idle(programmed)

@@ -70,16 +70,16 @@ def test_the_value_under_the_mouse_is_said(mapped, qtbot):
 
 
 def test_the_worst_places_are_listed_and_a_click_goes_there(mapped):
-    table = mapped.places.table
+    table = mapped.docks.deviation.table
     assert [table.item(r, 1).text() for r in range(table.rowCount())] == ["-50 µm", "+200 µm"]
     assert [table.item(r, 3).text() for r in range(table.rowCount())] == ["pocket-02", "pocket-03"]
     QTest.mouseClick(table.viewport(), BUTTON, pos=table.visualItemRect(table.item(0, 1)).center())
     scene = mapped.centre.scene
-    at = scene.where(mapped.places.places[0].point)
+    at = scene.where(mapped.docks.deviation.places[0].point)
     assert abs(at.x() - scene.width() / 2) < 3 and abs(at.y() - scene.height() / 2) < 3
     assert scene.view.camera.parallel_scale < 50.0
     # Beside the number that is written at the place.
-    x, y, z = mapped.places.places[0].point
+    x, y, z = mapped.docks.deviation.places[0].point
     inside = np.array([GOUGE[0] - x, GOUGE[1] - y, 0.0]) * 0.8 + (x, y, z)
     assert hue(pixel(mapped, inside)) @ hue(load_palette().deviation.gouge[-1]) > 0.9
 
@@ -91,12 +91,12 @@ def test_an_empty_list_says_why(make_window, part_file, idle, qtbot):
     window.document.program()
     idle(window)
     window.show_dock("deviation")
-    qtbot.waitUntil(lambda: window.places.empty.isVisible())
-    assert "while the deviation map is shown" in window.places.empty.text()
+    qtbot.waitUntil(lambda: window.docks.deviation.empty.isVisible())
+    assert "while the deviation map is shown" in window.docks.deviation.empty.text()
     window.registry.run("view.deviation")
     qtbot.waitUntil(lambda: window.deviation.shown is not None, timeout=20000)
-    assert window.places.empty.isVisible() and not window.places.table.isVisible()
-    assert "lies between -20 µm and +20 µm" in window.places.empty.text()
+    assert window.docks.deviation.empty.isVisible() and not window.docks.deviation.table.isVisible()
+    assert "lies between -20 µm and +20 µm" in window.docks.deviation.empty.text()
 
 
 def test_the_map_goes_as_it_came(mapped):

@@ -125,29 +125,29 @@ def test_local_groups_have_warm_colours_and_the_rest_cold_ones(shown, qtbot):
 
 def test_a_row_shows_faces_size_and_the_mark(shown):
     small = group_at(shown, ON_SMALL[0])
-    row = shown.features.item(small.id)
+    row = shown.docks.features.item(small.id)
     assert (row.text(0), row.text(1), row.text(2)) == (small.id, "3", "8")
     assert row.checkState(5) is Qt.CheckState.Checked
     assert row.parent().text(0).startswith("Local features")
-    assert not shown.features.tree.isColumnHidden(5)
+    assert not shown.docks.features.tree.isColumnHidden(5)
 
 
 def test_an_id_keeps_its_number_when_there_is_little_room(shown):
-    id, tree = group_at(shown, ON_SMALL[0]).id, shown.features.tree
+    id, tree = group_at(shown, ON_SMALL[0]).id, shown.docks.features.tree
     narrow = tree.fontMetrics().elidedText(id, tree.textElideMode(), tree.fontMetrics().horizontalAdvance(id) - 10)
     assert narrow != id and narrow.endswith(id[-2:])
 
 
 def test_a_click_on_the_mark_changes_the_class_and_undo_brings_it_back(shown, qtbot):
-    id, tree = group_at(shown, ON_SMALL[0]).id, shown.features.tree
-    tree.scrollToItem(shown.features.item(id))
-    at = tree.visualItemRect(shown.features.item(id))
+    id, tree = group_at(shown, ON_SMALL[0]).id, shown.docks.features.tree
+    tree.scrollToItem(shown.docks.features.item(id))
+    at = tree.visualItemRect(shown.docks.features.item(id))
     QTest.mouseClick(tree.viewport(), LEFT, pos=QPoint(tree.columnViewportPosition(5) + tree.columnWidth(5) // 2, at.center().y()))
     qtbot.waitUntil(lambda: shown.document.feature(id).attributes["local"] is False)
-    assert shown.features.item(id).parent().text(0).startswith("Remaining area")
+    assert shown.docks.features.item(id).parent().text(0).startswith("Remaining area")
     assert shown.document.feature(id).by_hand
     shown.registry.run("edit.undo")
-    qtbot.waitUntil(lambda: shown.features.item(id).parent().text(0).startswith("Local features"))
+    qtbot.waitUntil(lambda: shown.docks.features.item(id).parent().text(0).startswith("Local features"))
 
 
 def test_clicks_on_the_part_mark_local_features_while_that_is_on(shown, qtbot):
@@ -166,22 +166,22 @@ def test_clicks_on_the_part_mark_local_features_while_that_is_on(shown, qtbot):
 
 def test_groups_are_chosen_by_id_and_marked_together(shown, qtbot):
     small, large = group_at(shown, ON_SMALL[0]), group_at(shown, ON_LARGE)
-    line = shown.features.line
+    line = shown.docks.features.line
     line.setFocus()
     QTest.keyClicks(line, f"{small.id}, {large.id}")
     QTest.keyClick(line, Qt.Key.Key_Return)
     assert set(shown.document.selection.current.faces) == {*small.tags, *large.tags}
-    assert {i.text(0) for i in shown.features.tree.selectedItems()} == {small.id, large.id}
+    assert {i.text(0) for i in shown.docks.features.tree.selectedItems()} == {small.id, large.id}
     shown.registry.run("patch.local")
     assert not any(shown.document.feature(f.id).attributes["local"] for f in (small, large))
     line.clear()
 
 
 def test_an_id_that_is_not_there_is_told(shown):
-    shown.features.line.setText("group-99")
-    QTest.keyClick(shown.features.line, Qt.Key.Key_Return)
+    shown.docks.features.line.setText("group-99")
+    QTest.keyClick(shown.docks.features.line, Qt.Key.Key_Return)
     assert shown.centre.notice.text == "group-99: no feature and no face has this ID"
-    shown.features.line.clear()
+    shown.docks.features.line.clear()
     shown.centre.notice.hide()
 
 
@@ -212,7 +212,7 @@ def test_faces_move_to_a_new_group(shown, qtbot):
     done(shown, qtbot)
     alone = group_at(shown, ON_SMALL[1])
     assert len(alone.tags) == 1 and alone.by_hand
-    assert shown.features.item(alone.id).text(1) == "1"
+    assert shown.docks.features.item(alone.id).text(1) == "1"
 
 
 def test_a_plane_through_a_click_cuts_a_patch_in_two(shown, qtbot):
@@ -344,10 +344,10 @@ def test_the_groups_of_the_selection_are_ticked_for_export(shown):
 
 def test_radii_stand_in_columns_and_as_colours(shown, qtbot):
     small, large = group_at(shown, ON_SMALL[0]), group_at(shown, ON_LARGE)
-    rows = [shown.features.item(f.id) for f in (small, large)]
+    rows = [shown.docks.features.item(f.id) for f in (small, large)]
     assert [row.text(4) for row in rows] == ["4", "7"]
     assert [row.text(3) for row in rows] == ["", ""]
-    assert shown.features.item(group_at(shown, ON_FILLET).id).text(3) == "3"
+    assert shown.docks.features.item(group_at(shown, ON_FILLET).id).text(3) == "3"
     shown.registry.run("patch.radii")
     try:
         assert shown.centre.legend.rows[0][1] == "Smallest concave radius"
@@ -381,7 +381,7 @@ def test_ids_are_written_on_the_part(shown):
 def test_the_properties_say_what_the_selected_faces_belong_to(shown):
     click(shown, ON_SMALL[0], keys=CTRL)
     click(shown, ON_LARGE, keys=CTRL)
-    table = shown.properties.table
+    table = shown.docks.properties.table
     assert [table.item(r, 0).text() for r in range(table.rowCount())] == sorted(
         {group_at(shown, ON_SMALL[0]).id, group_at(shown, ON_LARGE).id})
 

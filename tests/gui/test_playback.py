@@ -273,15 +273,15 @@ def test_the_words_say_block_line_and_operation(played, qtbot):
 
 def test_the_line_of_the_block_is_marked_in_the_program(played, qtbot):
     go(played, qtbot, 60.0)
-    assert played.code.isVisible()
-    qtbot.waitUntil(lambda: played.code.text.marked == 60 + len(HEADER))
+    assert played.docks.code.isVisible()
+    qtbot.waitUntil(lambda: played.docks.code.text.marked == 60 + len(HEADER))
     tip = played.player.timeline.pose(60.0)[0]
-    block = played.code.text.document().findBlockByNumber(60 + len(HEADER) - 1)
+    block = played.docks.code.text.document().findBlockByNumber(60 + len(HEADER) - 1)
     assert f"X{tip[0]:.3f} Y{tip[1]:.3f}" in block.text()
 
 
 def test_a_click_on_a_line_goes_to_its_block(played, qtbot):
-    text = played.code.text
+    text = played.docks.code.text
     go(played, qtbot, 60.0)
     text.mark(30)
     row = text.cursorRect(QTextCursor(text.document().findBlockByNumber(29)))
@@ -291,7 +291,7 @@ def test_a_click_on_a_line_goes_to_its_block(played, qtbot):
 
 def test_the_played_operation_is_stressed_in_the_process_tree(played, qtbot):
     def stressed():
-        return [id for id, item in played.process._items.items() if item.font(0).bold()]
+        return [id for id, item in played.docks.process._items.items() if item.font(0).bold()]
 
     go(played, qtbot, 4.0)
     qtbot.waitUntil(lambda: stressed() == ["op-01"])

@@ -28,7 +28,7 @@ def other_file(tmp_path):
 
 
 def by_dialog(window, path, monkeypatch):
-    monkeypatch.setattr(window, "ask_open_path", lambda: str(path))
+    monkeypatch.setattr(window.dialogs, "open_path", lambda: str(path))
     window.registry.run("file.open")
 
 
@@ -82,7 +82,7 @@ def test_save_writes_the_project_first_and_then_opens_the_other_file(programmed,
                                                                      qtbot):
     project = tmp_path / "tray.trunnion"
     answering(programmed, monkeypatch, SAVE)
-    monkeypatch.setattr(programmed, "ask_save_path", lambda: str(project))
+    monkeypatch.setattr(programmed.dialogs, "save_path", lambda: str(project))
     by_dialog(programmed, other_file, monkeypatch)
     qtbot.waitUntil(lambda: programmed.document.session.part.name == "other", timeout=10000)
     idle(programmed)
@@ -93,7 +93,7 @@ def test_save_writes_the_project_first_and_then_opens_the_other_file(programmed,
 
 def test_a_person_who_then_chooses_no_file_to_save_to_keeps_the_work(programmed, other_file, idle, monkeypatch):  # noqa: F811
     answering(programmed, monkeypatch, SAVE)
-    monkeypatch.setattr(programmed, "ask_save_path", lambda: "")
+    monkeypatch.setattr(programmed.dialogs, "save_path", lambda: "")
     before = programmed.document.session
     by_dialog(programmed, other_file, monkeypatch)
     idle(programmed)
@@ -102,7 +102,7 @@ def test_a_person_who_then_chooses_no_file_to_save_to_keeps_the_work(programmed,
 
 def test_a_project_that_can_not_be_written_keeps_the_work(programmed, other_file, tmp_path, idle, monkeypatch):  # noqa: F811
     answering(programmed, monkeypatch, SAVE)
-    monkeypatch.setattr(programmed, "ask_save_path", lambda: str(tmp_path / "nowhere" / "tray.trunnion"))
+    monkeypatch.setattr(programmed.dialogs, "save_path", lambda: str(tmp_path / "nowhere" / "tray.trunnion"))
     before = programmed.document.session
     by_dialog(programmed, other_file, monkeypatch)
     idle(programmed)
@@ -135,7 +135,7 @@ def test_the_dialog_offers_to_save_to_discard_and_to_go_back(programmed, qtbot):
 def test_closing_asks_the_same(programmed, tmp_path, monkeypatch, qtbot, answer, closes):  # noqa: F811
     project = tmp_path / "tray.trunnion"
     asked = answering(programmed, monkeypatch, answer)
-    monkeypatch.setattr(programmed, "ask_save_path", lambda: str(project))
+    monkeypatch.setattr(programmed.dialogs, "save_path", lambda: str(project))
     programmed.close()
     if closes:
         qtbot.waitUntil(lambda: not programmed.isVisible(), timeout=10000)
@@ -149,7 +149,7 @@ def test_closing_while_a_run_goes_on_saves_what_was_finished(make_window, part_f
     idle(window)
     project = tmp_path / "tray.trunnion"
     answering(window, monkeypatch, SAVE)
-    monkeypatch.setattr(window, "ask_save_path", lambda: str(project))
+    monkeypatch.setattr(window.dialogs, "save_path", lambda: str(project))
     window.document.program()
     qtbot.waitUntil(lambda: window.document.shown.recognition is not None, timeout=20000)
     window.close()
@@ -216,7 +216,7 @@ def test_an_explicit_save_leaves_no_autosave(programmed, tmp_path, idle, monkeyp
     programmed.recovery.keep()
     own = remembered.autosave_file()
     qtbot.waitUntil(own.exists, timeout=10000)
-    monkeypatch.setattr(programmed, "ask_save_path", lambda: str(tmp_path / "tray.trunnion"))
+    monkeypatch.setattr(programmed.dialogs, "save_path", lambda: str(tmp_path / "tray.trunnion"))
     programmed.registry.run("file.save")
     idle(programmed)
     qtbot.waitUntil(lambda: not own.exists() and not notes_of(own).exists(), timeout=10000)
@@ -234,7 +234,7 @@ def test_what_was_undone_to_the_saved_state_leaves_no_autosave(opened, idle, qtb
 def test_a_recovered_project_knows_its_file_and_still_has_to_be_saved(make_window, programmed, tmp_path, idle, monkeypatch,  # noqa: F811
                                                                       qtbot):
     project = tmp_path / "tray.trunnion"
-    monkeypatch.setattr(programmed, "ask_save_path", lambda: str(project))
+    monkeypatch.setattr(programmed.dialogs, "save_path", lambda: str(project))
     programmed.registry.run("file.save")
     idle(programmed)
     programmed.document.choose("fake.blank.side", "Allowance", 8.0)

@@ -62,13 +62,13 @@ def test_a_click_on_the_part_selects_the_row(recognized):
     view, scene = recognized.centre.scene.view, recognized.centre.scene
     QTest.mouseClick(view, LEFT, pos=scene.where(IN_POCKET["pocket-02"]).toPoint())
     assert recognized.document.selection.current.id == "pocket-02"
-    assert recognized.features.tree.currentItem().text(0) == "pocket-02"
+    assert recognized.docks.features.tree.currentItem().text(0) == "pocket-02"
 
 
 def test_a_click_on_the_row_highlights_the_faces(recognized, qtbot):
     before = pixel(recognized, IN_POCKET["pocket-03"])
-    tree = recognized.features.tree
-    QTest.mouseClick(tree.viewport(), LEFT, pos=tree.visualItemRect(recognized.features.item("pocket-03")).center())
+    tree = recognized.docks.features.tree
+    QTest.mouseClick(tree.viewport(), LEFT, pos=tree.visualItemRect(recognized.docks.features.item("pocket-03")).center())
     qtbot.wait(20)
     after = pixel(recognized, IN_POCKET["pocket-03"])
     assert hue(after) @ hue(rgb(recognized.theme.selection)) > 0.9 > hue(before) @ hue(rgb(recognized.theme.selection))
@@ -105,7 +105,7 @@ def test_the_legend_names_the_kinds_with_their_counts(recognized):
 
 
 def test_the_table_and_the_legend_have_the_same_colours(recognized):
-    top = recognized.features.tree.topLevelItem(0)
+    top = recognized.docks.features.tree.topLevelItem(0)
     image = top.icon(0).pixmap(24, 24).toImage()
     assert image.pixelColor(12, 12).name() == kind_colour("pocket") == recognized.centre.legend.rows[0][0]
 

@@ -123,30 +123,30 @@ def recognized(ribs, make_window, part_file, idle):
 
 
 def test_a_view_of_another_package_fills_table_legend_and_words(recognized):
-    tree, row = recognized.features.tree, recognized.features.item("rib-01")
+    tree, row = recognized.docks.features.tree, recognized.docks.features.item("rib-01")
     titles = [tree.headerItem().text(n) for n in range(tree.columnCount())]
     stiff, twice = titles.index("Stiff"), titles.index("Faces twice")
     assert not tree.isColumnHidden(stiff) and tree.isColumnHidden(titles.index("Local"))
     assert row.checkState(stiff) is Qt.CheckState.Checked and row.text(twice) == "2"
-    assert recognized.features.item("pocket-01").text(twice) == ""
+    assert recognized.docks.features.item("pocket-01").text(twice) == ""
     assert row.parent().text(0) == "Thin ribs · 2"
     assert ("#123456", "Thin ribs", "2") in recognized.centre.legend.rows
     assert recognized.panels["recognize"].result.text().endswith(", all thin")
 
 
 def test_a_click_in_a_views_column_is_the_views(recognized):
-    tree = recognized.features.tree
+    tree = recognized.docks.features.tree
     stiff = next(n for n in range(tree.columnCount()) if tree.headerItem().text(n) == "Stiff")
     for id in ("rib-02", "pocket-01"):
-        tree.itemClicked.emit(recognized.features.item(id), stiff)
+        tree.itemClicked.emit(recognized.docks.features.item(id), stiff)
     assert recognized.views["ribs"].clicked == ["rib-02"]
 
 
 def test_a_view_brings_menus_docks_and_blocks(recognized):
     document = recognized.document
     assert [a.text() for a in recognized.views.face_menu(recognized, (1,)).actions()].count("Stiffen") == 1
-    assert recognized.features.menu(document.feature("rib-01")).actions()[0].text() == "Stiffen rib-01"
-    assert recognized.features.menu(document.feature("pocket-01")).actions()[0].text() == "Change kind"
+    assert recognized.docks.features.menu(document.feature("rib-01")).actions()[0].text() == "Stiffen rib-01"
+    assert recognized.docks.features.menu(document.feature("pocket-01")).actions()[0].text() == "Change kind"
     menus = [a.text() for a in recognized.menuBar().actions()]
     assert menus.index("Steps") < menus.index("Ribs") < menus.index("Playback")
     assert recognized.arrangement.dock("ribs").widget() is recognized.views["ribs"].label

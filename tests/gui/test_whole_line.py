@@ -64,7 +64,7 @@ def programmed(tmp_path_factory, qapp):
         window.resize(1440, 900)
         window.show()
         person = Person(window)
-        patch.setattr(window, "ask_open_path", person.chooses(part))
+        patch.setattr(window.dialogs, "open_path", person.chooses(part))
         person.clicks(window.toolbar.widgetForAction(window.registry.action("file.open")))
         wait_for_job(window, 120.0)
         person.clicks(window.toolbar.widgetForAction(window.registry.action("run.program")))
@@ -106,12 +106,12 @@ def test_the_marked_line_is_the_tools_block(programmed, qtbot):
     window, line = programmed.window, programmed.window.player.timeline
     block = int(np.flatnonzero(~line.rapid & (line.sweep == 0.0))[500])
     window.player.go(float(block + 1))
-    qtbot.waitUntil(lambda: window.code.text.marked == line.line[block], timeout=5000)
-    text = window.code.text.document().findBlockByNumber(int(line.line[block]) - 1).text()
+    qtbot.waitUntil(lambda: window.docks.code.text.marked == line.line[block], timeout=5000)
+    text = window.docks.code.text.document().findBlockByNumber(int(line.line[block]) - 1).text()
     tip = window.document.session.setups[0].frame.to_local(line.tip[block])
     words = {w[0]: float(w[1:]) for w in text.split() if w[0] in "XYZ"}
     assert words and all(tip["XYZ".index(axis)] == pytest.approx(value, abs=1e-3) for axis, value in words.items())
-    assert window.process.item(line.passage(float(block + 1)).operation).font(0).bold()
+    assert window.docks.process.item(line.passage(float(block + 1)).operation).font(0).bold()
 
 
 def test_all_of_the_sample_is_finished_on_the_map(programmed, qtbot):
@@ -147,7 +147,7 @@ def test_a_click_on_a_floor_selects_its_pocket_and_the_row_its_faces(programmed,
     point = mesh.corners()[rows[np.argmax(mesh.areas()[rows])]].mean(axis=0)
     programmed.clicks(window.centre.scene.view, window.centre.scene.where(point).toPoint())
     assert window.document.selection.current.id == pocket.id
-    assert window.features.tree.currentItem().text(0) == pocket.id
+    assert window.docks.features.tree.currentItem().text(0) == pocket.id
     assert set(window.centre.scene._chosen) == set(pocket.tags)
 
 
@@ -172,12 +172,12 @@ def test_a_pockets_floor_has_the_pockets_colour(programmed, qtbot):
 def test_the_program_and_its_listing_are_there_to_read(programmed, qtbot):
     window = programmed.window
     window.show_dock("code")
-    qtbot.waitUntil(lambda: len(window.code.text.toPlainText()) > 1000)
-    assert "REJECTED" not in window.code.text.toPlainText()
+    qtbot.waitUntil(lambda: len(window.docks.code.text.toPlainText()) > 1000)
+    assert "REJECTED" not in window.docks.code.text.toPlainText()
     operation = window.document.session.process.operations[0].id
     window.document.selection.select_operation(operation)
     window.show_dock("listing")
-    qtbot.waitUntil(lambda: operation in window.listing.toPlainText())
+    qtbot.waitUntil(lambda: operation in window.docks.listing.toPlainText())
 
 
 def test_a_suppressed_operation_makes_only_what_follows_stale(programmed, qtbot):

@@ -46,7 +46,7 @@ def programmed(opened, idle):
 
 
 def test_a_part_is_programmed_in_three_interactions(window, part_file, idle, monkeypatch):
-    monkeypatch.setattr(window, "ask_open_path", lambda: str(part_file))  # choosing the file: one interaction
+    monkeypatch.setattr(window.dialogs, "open_path", lambda: str(part_file))  # choosing the file: one interaction
     QTest.mouseClick(tool_button(window, "file.open"), LEFT)
     idle(window)
     QTest.mouseClick(tool_button(window, "run.program"), LEFT)
@@ -56,7 +56,7 @@ def test_a_part_is_programmed_in_three_interactions(window, part_file, idle, mon
 
 
 def test_program_without_a_part_asks_for_one_and_goes_on(window, part_file, idle, monkeypatch, qtbot):
-    monkeypatch.setattr(window, "ask_open_path", lambda: str(part_file))
+    monkeypatch.setattr(window.dialogs, "open_path", lambda: str(part_file))
     QTest.mouseClick(tool_button(window, "run.program"), LEFT)
     qtbot.waitUntil(lambda: window.document.session.verdict is not None, timeout=20000)
 
@@ -108,7 +108,7 @@ def test_the_unexplained_share_follows_a_deletion(programmed, idle):
 
 def test_the_feature_menu_changes_a_kind(programmed, idle):
     feature = programmed.document.feature("rib-01")
-    change = programmed.features.menu(feature).actions()[0].menu()
+    change = programmed.docks.features.menu(feature).actions()[0].menu()
     next(a for a in change.actions() if a.text() == "Island").trigger()
     idle(programmed)
     assert programmed.document.feature("rib-01").kind == "island"
@@ -116,7 +116,7 @@ def test_the_feature_menu_changes_a_kind(programmed, idle):
 
 
 def test_an_operation_dropped_on_another_is_cut_before_it(programmed, idle):
-    programmed.process.tree.dropped.emit("op-06", "op-04")
+    programmed.docks.process.tree.dropped.emit("op-06", "op-04")
     idle(programmed)
     order = [o.id for o in programmed.document.session.process.operations]
     assert order.index("op-06") < order.index("op-04")
@@ -124,21 +124,21 @@ def test_an_operation_dropped_on_another_is_cut_before_it(programmed, idle):
 
 def test_a_wrong_order_is_refused_in_a_message(programmed, idle):
     before = programmed.document.session
-    programmed.process.tree.dropped.emit("op-03", "op-02")
+    programmed.docks.process.tree.dropped.emit("op-03", "op-02")
     assert programmed.document.session is before
     assert "op-03 must come after op-02" in programmed.centre.notice.text
 
 
 def test_an_operations_own_setting_is_an_edit_by_hand(programmed, idle):
     programmed.document.selection.select_operation("op-02")
-    programmed.properties.form.field("fake.rough.stepover").setValue(0.25)
+    programmed.docks.properties.form.field("fake.rough.stepover").setValue(0.25)
     idle(programmed)
     operation = programmed.document.operation("op-02")
     assert (operation.choices["fake.rough.stepover"], operation.by_hand) == (0.25, True)
 
 
 def test_a_click_on_a_finding_selects_what_it_names(programmed):
-    table = programmed.messages.table
+    table = programmed.docks.messages.table
     row = next(r for r in range(table.rowCount()) if "leans" in table.item(r, 1).text())
     QTest.mouseClick(table.viewport(), LEFT, pos=table.visualItemRect(table.item(row, 1)).center())
     assert programmed.document.selection.current.id == "pocket-01"
@@ -147,7 +147,7 @@ def test_a_click_on_a_finding_selects_what_it_names(programmed):
 def test_a_message_about_many_faces_names_eight_and_selects_all(opened):
     faces = face_tags(range(1, 16))
     opened.document.noticed.emit(warning("fake.many", "many faces lean", *faces))
-    table = opened.messages.table
+    table = opened.docks.messages.table
     assert table.item(0, 2).text() == f"{', '.join(faces[:8])} and 7 more"
     QTest.mouseClick(table.viewport(), LEFT, pos=table.visualItemRect(table.item(0, 1)).center())
     assert opened.document.selection.current.faces == tuple(range(1, 16))
@@ -172,7 +172,7 @@ def test_a_dropped_file_is_opened(window, part_file, idle):
 
 def test_a_saved_project_opens_again_and_is_recent(programmed, tmp_path, idle, monkeypatch):
     path = tmp_path / "tray.trunnion"
-    monkeypatch.setattr(programmed, "ask_save_path", lambda: str(path))
+    monkeypatch.setattr(programmed.dialogs, "save_path", lambda: str(path))
     programmed.registry.run("file.save")
     idle(programmed)
     assert not programmed.document.history.is_dirty
@@ -183,7 +183,7 @@ def test_a_saved_project_opens_again_and_is_recent(programmed, tmp_path, idle, m
 
 
 def test_programs_are_written_into_a_folder(programmed, tmp_path, idle, monkeypatch):
-    monkeypatch.setattr(programmed, "ask_folder", lambda: str(tmp_path / "out"))
+    monkeypatch.setattr(programmed.dialogs, "folder", lambda: str(tmp_path / "out"))
     programmed.registry.run("file.write")
     idle(programmed)
     assert [p.name for p in (tmp_path / "out").iterdir()] == ["tray.S1.nc"]
@@ -223,7 +223,7 @@ def test_a_failed_verdict_names_the_files_that_must_not_run(make_window, part_fi
     window.panels["generate"].fold(False)
     assert window.panels["generate"].rejected.isVisible()
     assert "tray.S1.REJECTED.nc" in window.panels["generate"].rejected.text()
-    monkeypatch.setattr(window, "ask_folder", lambda: str(tmp_path / "out"))
+    monkeypatch.setattr(window.dialogs, "folder", lambda: str(tmp_path / "out"))
     window.registry.run("file.write")
     idle(window)
     assert [p.name for p in (tmp_path / "out").iterdir()] == ["tray.S1.REJECTED.nc"]
@@ -246,14 +246,14 @@ def test_a_message_keeps_the_case_of_a_files_name(make_window, part_file, idle):
 
 def test_a_program_of_an_earlier_plan_is_marked_as_stale(programmed, idle):
     programmed.show_dock("code")
-    assert not programmed.code.stale.isVisible()
+    assert not programmed.docks.code.stale.isVisible()
     programmed.document.selection.select_operation("op-02")
     programmed.registry.run("edit.suppress")
     idle(programmed)
-    assert programmed.code.stale.isVisible()
+    assert programmed.docks.code.stale.isVisible()
     programmed.registry.run("edit.undo")
     idle(programmed)
-    assert not programmed.code.stale.isVisible()
+    assert not programmed.docks.code.stale.isVisible()
 
 
 def test_the_palette_runs_what_was_typed(opened, qtbot, idle):
@@ -303,10 +303,10 @@ def test_what_is_up_to_date_is_not_computed_again(programmed, idle):
 
 
 def test_a_row_dragged_onto_another_moves_in_front_of_it(programmed, idle, qtbot):
-    tree, target = programmed.process.tree, programmed.process.item("op-04")
+    tree, target = programmed.docks.process.tree, programmed.docks.process.item("op-04")
     programmed.show_dock("process")
     qtbot.waitUntil(tree.isVisible)
-    tree.setCurrentItem(programmed.process.item("op-06"))
+    tree.setCurrentItem(programmed.docks.process.item("op-06"))
     at = tree.visualItemRect(target).topLeft() + QPoint(4, 2)
     tree.dropEvent(QDropEvent(QPointF(at), Qt.DropAction.MoveAction, QMimeData(), LEFT, Qt.KeyboardModifier.NoModifier))
     idle(programmed)
@@ -317,12 +317,12 @@ def test_a_row_dragged_onto_another_moves_in_front_of_it(programmed, idle, qtbot
 def test_the_listing_shows_the_selected_operations_motions(programmed, qtbot):
     programmed.show_dock("listing")
     programmed.document.selection.select_operation("op-02")
-    qtbot.waitUntil(lambda: programmed.listing.toPlainText().startswith("setup S1"))
+    qtbot.waitUntil(lambda: programmed.docks.listing.toPlainText().startswith("setup S1"))
 
 
 def test_the_program_text_is_shown(programmed, qtbot):
-    programmed.code.parentWidget().raise_()
-    qtbot.waitUntil(lambda: "G0 X10." in programmed.code.text.toPlainText())
+    programmed.docks.code.parentWidget().raise_()
+    qtbot.waitUntil(lambda: "G0 X10." in programmed.docks.code.text.toPlainText())
 
 
 def test_a_state_of_two_steps_is_the_one_that_asks_for_attention():
@@ -370,7 +370,7 @@ def test_words_of_a_program_can_be_read_in_both_themes(window, name):
     from trunnion_gui.colours import READABLE, contrast, theme
 
     window.use_theme(theme(name))
-    looks = window.code.text._looks
+    looks = window.docks.code.text._looks
     assert {k: round(contrast(looks[k].foreground().color().name(), theme(name).panel), 1) for k in ("rapid", "cut")
             if contrast(looks[k].foreground().color().name(), theme(name).panel) < READABLE} == {}
 
@@ -379,7 +379,7 @@ def test_a_message_has_the_room_that_the_columns_beside_it_do_not_need(window, q
     window.resize(1280, 800)
     window.show_dock("messages")
     window.document.notice("a message that is long enough to be cut off where every other column takes its full width " * 2)
-    table = window.messages.table
+    table = window.docks.messages.table
     qtbot.waitUntil(lambda: table.columnWidth(1) > 0.5 * table.viewport().width())
 
 

@@ -24,7 +24,7 @@ _LAYERS = (("colours", "Show all features", "C", True), ("blank", "Show the blan
 
 def add_general_commands(shell: Shell) -> None:
     """Add them to a window's registry."""
-    document, add = shell.document, shell.registry.add
+    document, add, do = shell.document, shell.registry.add, shell.handlers
 
     def has_part() -> bool:
         return document.has_part and not document.is_busy
@@ -47,22 +47,22 @@ def add_general_commands(shell: Shell) -> None:
         add(Command(id=f"view.{id}", text=text, run=run, icon=id, keys=keys, help=help, checkable=True, checked=checked, enabled=enabled,
                     menu="View"))
 
-    command("file.open", "Open…", shell.open, "open", "Ctrl+O", "Open a STEP or IGES part, or a project", is_free)
-    command("file.sample", "Open the sample part", shell.open_sample, "sample", "", "An aircraft panel to try things with", is_free)
-    command("file.save", "Save", shell.save, "save", "Ctrl+S", "Save the project", has_part)
-    command("file.save_as", "Save as…", shell.save_as, "save_as", "Ctrl+Shift+S", "", has_part)
-    command("file.write", "Write programs…", shell.write, "write", "Ctrl+E", "Write NC, CL, tool list, XML and report into a folder",
+    command("file.open", "Open…", do.open, "open", "Ctrl+O", "Open a STEP or IGES part, or a project", is_free)
+    command("file.sample", "Open the sample part", do.open_sample, "sample", "", "An aircraft panel to try things with", is_free)
+    command("file.save", "Save", do.save, "save", "Ctrl+S", "Save the project", has_part)
+    command("file.save_as", "Save as…", do.save_as, "save_as", "Ctrl+Shift+S", "", has_part)
+    command("file.write", "Write programs…", do.write, "write", "Ctrl+E", "Write NC, CL, tool list, XML and report into a folder",
             has_program)
-    command("file.picture", "Save a picture…", shell.keep_picture, "picture", "", "Write what the viewport shows as PNG", None)
+    command("file.picture", "Save a picture…", do.keep_picture, "picture", "", "Write what the viewport shows as PNG", None)
     command("file.quit", "Quit", shell.close, "quit", "Ctrl+Q", "", None)
     command("edit.undo", "Undo", document.undo, "undo", "Ctrl+Z", "", lambda: is_free() and bool(document.history.undo_label))
     command("edit.redo", "Redo", document.redo, "redo", "Ctrl+Shift+Z", "", lambda: is_free() and bool(document.history.redo_label))
-    command("edit.delete", "Delete what is selected", shell.delete_selected, "delete", "Del", "",
+    command("edit.delete", "Delete what is selected", do.delete_selected, "delete", "Del", "",
             partial(has_chosen, "feature", "operation"))
-    command("edit.suppress", "Suppress or cut again", shell.suppress_selected, "suppress", "Ctrl+D",
+    command("edit.suppress", "Suppress or cut again", do.suppress_selected, "suppress", "Ctrl+D",
             "Keep the selected operation in the tree without cutting it", partial(has_chosen, "operation"))
-    command("edit.none", "Select nothing", shell.leave, "", "Escape", "", None)
-    command("run.program", "Program", shell.program, "program", "F5", "The whole line: features, route, toolpaths, proof", is_free)
+    command("edit.none", "Select nothing", do.leave, "", "Escape", "", None)
+    command("run.program", "Program", do.program, "program", "F5", "The whole line: features, route, toolpaths, proof", is_free)
     for id, text, last, icon, keys in _STEPS:
         command(id, text, partial(document.run, last, tr(text)), icon, keys, f"{text}: what is stale up to here", has_part)
     command("job.cancel", "Cancel the running job", document.jobs.cancel, "cancel", "Ctrl+.", "", lambda: document.is_busy)
@@ -77,7 +77,7 @@ def add_general_commands(shell: Shell) -> None:
            "Colour the part by gouges and material left, as the proof measured them",
            enabled=lambda: shell.deviation.can_show or shell.deviation.is_on)
     command("view.find", "Find a command…", lambda: shell.finder.open(), "search", "Ctrl+Shift+P", "", None)
-    command("view.theme", "Light or dark", shell.change_theme, "theme", "Ctrl+Shift+L", "", None)
-    command("view.arrangement", "Put docks back", shell.forget_arrangement, "reset", "", "", None)
-    command("view.language", "Next language", shell.change_language, "language", "", "", None)
-    command("help.about", "About Trunnion", shell.about, "help", "", "", None)
+    command("view.theme", "Light or dark", do.change_theme, "theme", "Ctrl+Shift+L", "", None)
+    command("view.arrangement", "Put docks back", do.forget_arrangement, "reset", "", "", None)
+    command("view.language", "Next language", do.change_language, "language", "", "", None)
+    command("help.about", "About Trunnion", do.about, "help", "", "", None)
