@@ -9,8 +9,8 @@ from PySide6.QtCore import QObject
 from PySide6.QtGui import QAction, QKeySequence
 from PySide6.QtWidgets import QWidget
 
-from trunnion_gui import icons
 from trunnion_gui.i18n import tr
+from trunnion_gui.look import icons
 
 SEPARATOR = "-"
 

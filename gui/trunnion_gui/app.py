@@ -19,7 +19,8 @@ def main(arguments: Sequence[str] | None = None) -> int:
     from PySide6.QtGui import QGuiApplication
     from PySide6.QtWidgets import QApplication
 
-    from trunnion_gui import i18n, remembered
+    from trunnion_gui import i18n
+    from trunnion_gui.storage import remembered
     from trunnion_gui.tidying import Tidy
     from trunnion_gui.window import Window
 

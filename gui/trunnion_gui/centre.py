@@ -15,22 +15,22 @@ from trunnion.model.session import Session, SizeEntry
 from trunnion.report.deviation import WorstPlace
 from trunnion.report.lines import leans
 from trunnion.report.palette import load_palette
-from trunnion_gui import keys
 from trunnion_gui.actions import Registry
-from trunnion_gui.colours import Theme, motions
 from trunnion_gui.deviation import DeviationSource
 from trunnion_gui.document import Document, Selection
-from trunnion_gui.drawing import DrawnMap, place_on
 from trunnion_gui.families.contract import Colouring, LegendRow
 from trunnion_gui.families.views import Views
 from trunnion_gui.i18n import tr
-from trunnion_gui.player import Player
+from trunnion_gui.look import keys
+from trunnion_gui.look.colours import Theme, motions
+from trunnion_gui.look.words import amount, fine_amount, kind_words
+from trunnion_gui.playback.player import Player
 from trunnion_gui.viewport.scene import Click, Scene
 from trunnion_gui.widgets.legend import Legend
 from trunnion_gui.widgets.notice import Notice
 from trunnion_gui.widgets.scale import Scale
 from trunnion_gui.widgets.welcome import Welcome
-from trunnion_gui.words import amount, fine_amount, kind_words
+from trunnion_gui.worker.drawing import DrawnMap, place_on
 
 _EDGE = 14
 _TIP_AWAY = 16

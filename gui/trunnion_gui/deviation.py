@@ -5,8 +5,8 @@ from __future__ import annotations
 from PySide6.QtCore import QObject, Signal
 
 from trunnion_gui.document import Document
-from trunnion_gui.drawing import DrawnMap
-from trunnion_gui.worker import Reply
+from trunnion_gui.worker.drawing import DrawnMap
+from trunnion_gui.worker.worker import Reply
 
 
 class DeviationSource(QObject):

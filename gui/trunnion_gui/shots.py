@@ -45,9 +45,9 @@ def opened(part: str | Path, *, size: tuple[int, int] = (1600, 1000), factory: s
     os.environ["TRUNNION_SETTINGS"] = settings.name
     from PySide6.QtWidgets import QApplication
 
-    from trunnion_gui import colours
+    from trunnion_gui.look import colours
     from trunnion_gui.window import Window
-    from trunnion_gui.worker import ENGINE
+    from trunnion_gui.worker.worker import ENGINE
 
     app = QApplication.instance() or QApplication(["trunnion"])
     window = Window(factory or ENGINE)

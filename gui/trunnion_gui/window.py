@@ -7,7 +7,6 @@ from PySide6.QtGui import QCloseEvent, QDragEnterEvent, QDropEvent, QShowEvent
 from PySide6.QtWidgets import QMainWindow
 
 from trunnion.findings import Finding
-from trunnion_gui import colours, icons, remembered, theme
 from trunnion_gui.actions import Registry
 from trunnion_gui.arrangement import LEFT, Arrangement, column
 from trunnion_gui.centre import Centre
@@ -17,9 +16,8 @@ from trunnion_gui.docks.layout import Docks
 from trunnion_gui.docks.playback import PlaybackBar
 from trunnion_gui.document import Document
 from trunnion_gui.families.views import Views
-from trunnion_gui.finder import Finder
-from trunnion_gui.following import Following
 from trunnion_gui.i18n import tr
+from trunnion_gui.look import colours, icons, theme
 from trunnion_gui.menus.bars import fill_menus, toolbar
 from trunnion_gui.menus.general import add_general_commands
 from trunnion_gui.menus.handlers import Handlers
@@ -30,13 +28,16 @@ from trunnion_gui.panels.optimize import OptimizePanel
 from trunnion_gui.panels.recognize import RecognizePanel
 from trunnion_gui.panels.route import RoutePanel
 from trunnion_gui.panels.size import SizePanel
-from trunnion_gui.player import Player
-from trunnion_gui.recovery import Recovery
-from trunnion_gui.status import Status
-from trunnion_gui.steps import STAGES
-from trunnion_gui.unsaved import UnsavedWork
+from trunnion_gui.playback.following import Following
+from trunnion_gui.playback.player import Player
+from trunnion_gui.storage import remembered
+from trunnion_gui.storage.recovery import Recovery
+from trunnion_gui.storage.unsaved import UnsavedWork
+from trunnion_gui.widgets.finder import Finder
 from trunnion_gui.widgets.panel import Panel
-from trunnion_gui.worker import ENGINE
+from trunnion_gui.widgets.status import Status
+from trunnion_gui.worker.steps import STAGES
+from trunnion_gui.worker.worker import ENGINE
 
 PANELS: dict[str, type[Panel]] = {"recognize": RecognizePanel, "size": SizePanel, "blank": BlankPanel, "route": RoutePanel,
                                   "optimize": OptimizePanel, "generate": GeneratePanel}

@@ -7,7 +7,7 @@ from PySide6.QtCore import Qt
 from PySide6.QtWidgets import QLabel
 from test_window import opened, programmed  # noqa: F401 - fixtures
 
-from trunnion_gui import remembered
+from trunnion_gui.storage import remembered
 
 WIDE = "a line that is much longer than any dock is wide " * 40
 

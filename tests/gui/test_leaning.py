@@ -7,7 +7,7 @@ import pytest
 from fake_engine import HEIGHT, POCKETS
 from test_viewport import hue, pixel
 
-from trunnion_gui.colours import axis_colour, rgb, tool_colours
+from trunnion_gui.look.colours import axis_colour, rgb, tool_colours
 
 
 @pytest.fixture

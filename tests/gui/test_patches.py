@@ -17,9 +17,9 @@ from test_viewport import hue, pixel
 
 from samples import written
 from trunnion.geometry.cut import plane_cut
-from trunnion_gui.colours import rgb
 from trunnion_gui.families.surface.cutting import DRAWN, THREE
 from trunnion_gui.families.surface.looks import radius_colour
+from trunnion_gui.look.colours import rgb
 
 LEFT, RIGHT = Qt.MouseButton.LeftButton, Qt.MouseButton.RightButton
 CTRL = Qt.KeyboardModifier.ControlModifier

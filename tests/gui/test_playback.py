@@ -15,7 +15,7 @@ from test_viewport import hue, pixel
 
 from leaning_tools import EVERY_FORM
 from trunnion.verify.cutter import outline_of
-from trunnion_gui.colours import rgb, tool_colours
+from trunnion_gui.look.colours import rgb, tool_colours
 from trunnion_gui.viewport.layers.tool import cutter_outline
 
 LEFT = Qt.MouseButton.LeftButton

@@ -12,9 +12,9 @@ from PySide6.QtTest import QTest
 from PySide6.QtWidgets import QApplication, QMessageBox, QPushButton
 from test_window import opened, programmed  # noqa: F401 - fixtures
 
-from trunnion_gui import recovery, remembered
-from trunnion_gui.autosave import notes_of, whose_work
-from trunnion_gui.unsaved import CANCEL, DISCARD, SAVE
+from trunnion_gui.storage import recovery, remembered
+from trunnion_gui.storage.autosave import notes_of, whose_work
+from trunnion_gui.storage.unsaved import CANCEL, DISCARD, SAVE
 
 LEFT = Qt.MouseButton.LeftButton
 

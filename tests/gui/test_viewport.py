@@ -9,8 +9,8 @@ from PySide6.QtCore import QPoint, Qt
 from PySide6.QtTest import QTest
 
 from trunnion.geometry.frame import WORLD
-from trunnion_gui.colours import kind_colour, motions, rgb
-from trunnion_gui.drawing import border_edges
+from trunnion_gui.look.colours import kind_colour, motions, rgb
+from trunnion_gui.worker.drawing import border_edges
 
 LEFT = Qt.MouseButton.LeftButton
 IN_POCKET = {"pocket-01": (60.0, 70.0, FLOOR), "pocket-02": (175.0, 37.0, FLOOR), "pocket-03": (175.0, 103.0, FLOOR)}

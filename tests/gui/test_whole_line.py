@@ -11,7 +11,7 @@ from PySide6.QtCore import QPoint, Qt, QTimer
 from PySide6.QtTest import QTest
 
 import trunnion_resources
-from trunnion_gui.colours import kind_colour, rgb
+from trunnion_gui.look.colours import kind_colour, rgb
 
 LEFT = Qt.MouseButton.LeftButton
 

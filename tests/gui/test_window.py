@@ -12,9 +12,10 @@ from PySide6.QtTest import QTest
 from PySide6.QtWidgets import QPushButton, QToolButton
 
 from trunnion.findings import face_tags, warning
-from trunnion_gui import icons, remembered
-from trunnion_gui.finder import score
-from trunnion_gui.steps import STAGES, STEPS, TITLES, joined_state
+from trunnion_gui.look import icons
+from trunnion_gui.storage import remembered
+from trunnion_gui.widgets.finder import score
+from trunnion_gui.worker.steps import STAGES, STEPS, TITLES, joined_state
 
 LEFT = Qt.MouseButton.LeftButton
 
@@ -367,7 +368,7 @@ def test_a_header_opens_and_folds_its_panel(window):
 
 @pytest.mark.parametrize("name", ["light", "dark"])
 def test_words_of_a_program_can_be_read_in_both_themes(window, name):
-    from trunnion_gui.colours import READABLE, contrast, theme
+    from trunnion_gui.look.colours import READABLE, contrast, theme
 
     window.use_theme(theme(name))
     looks = window.docks.code.text._looks

@@ -7,9 +7,9 @@ import time
 import numpy as np
 import pytest
 
-from trunnion_gui.parcel import packed, unpacked
-from trunnion_gui.steps import TITLES
-from trunnion_gui.worker import GRACE_S, WRITING_GRACE_S
+from trunnion_gui.worker.parcel import packed, unpacked
+from trunnion_gui.worker.steps import TITLES
+from trunnion_gui.worker.worker import GRACE_S, WRITING_GRACE_S
 
 
 def opened(make_window, factory, part_file, idle):

@@ -7,12 +7,12 @@ from PySide6.QtGui import QShowEvent
 from PySide6.QtWidgets import QComboBox, QHBoxLayout, QLabel, QVBoxLayout, QWidget
 
 from trunnion.model.session import PostedFile
-from trunnion_gui.colours import Theme
 from trunnion_gui.document import Document
 from trunnion_gui.i18n import tr
 from trunnion_gui.leaving import as_they_leave
+from trunnion_gui.look.colours import Theme
+from trunnion_gui.look.words import grouped
 from trunnion_gui.widgets.code import CodeView
-from trunnion_gui.words import grouped
 
 
 class CodeDock(QWidget):

@@ -6,13 +6,13 @@ from PySide6.QtCore import Qt, Signal
 from PySide6.QtWidgets import QLabel, QStackedLayout, QTableWidget, QWidget
 
 from trunnion.report.deviation import WorstPlace
-from trunnion_gui import icons
-from trunnion_gui.colours import Theme
 from trunnion_gui.document import Document
-from trunnion_gui.drawing import DrawnMap
 from trunnion_gui.i18n import tr
+from trunnion_gui.look import icons
+from trunnion_gui.look.colours import Theme
+from trunnion_gui.look.words import fine_amount
 from trunnion_gui.widgets import table as tables
-from trunnion_gui.words import fine_amount
+from trunnion_gui.worker.drawing import DrawnMap
 
 
 class DeviationDock(QWidget):

@@ -11,14 +11,15 @@ from PySide6.QtCore import QPoint, Qt
 from PySide6.QtWidgets import QAbstractItemView, QLineEdit, QMenu, QTreeWidget, QTreeWidgetItem, QVBoxLayout, QWidget
 
 from trunnion.model.feature import Feature, Recognition
-from trunnion_gui import edits, icons
-from trunnion_gui.colours import feature_colours, kind_colour, kinds
+from trunnion_gui import edits
 from trunnion_gui.document import Document, Selection
 from trunnion_gui.families.contract import Column, FeatureClass
 from trunnion_gui.families.views import Views
 from trunnion_gui.i18n import tr
+from trunnion_gui.look import icons
+from trunnion_gui.look.colours import feature_colours, kind_colour, kinds
+from trunnion_gui.look.words import kind_words, sentence
 from trunnion_gui.widgets.table import RIGHT, colour_icon, tree
-from trunnion_gui.words import kind_words, sentence
 
 _ID = Qt.ItemDataRole.UserRole
 _FIRST_OWN = 3

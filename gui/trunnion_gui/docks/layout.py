@@ -6,7 +6,6 @@ from PySide6.QtCore import Qt
 from PySide6.QtWidgets import QWidget
 
 from trunnion_gui.arrangement import BELOW, RIGHT, Arrangement
-from trunnion_gui.colours import Theme
 from trunnion_gui.docks.code import CodeDock
 from trunnion_gui.docks.deviation import DeviationDock
 from trunnion_gui.docks.features import FeatureDock
@@ -17,6 +16,7 @@ from trunnion_gui.docks.properties import PropertiesDock
 from trunnion_gui.document import Document
 from trunnion_gui.families.views import Views
 from trunnion_gui.i18n import tr
+from trunnion_gui.look.colours import Theme
 
 Tab = tuple[str, str, QWidget]
 """Name, title and what stands in a dock."""

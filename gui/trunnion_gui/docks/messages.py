@@ -7,10 +7,10 @@ from PySide6.QtGui import QResizeEvent, QShowEvent
 from PySide6.QtWidgets import QHeaderView, QTableWidget, QVBoxLayout, QWidget
 
 from trunnion.findings import Finding, Severity
-from trunnion_gui import icons
-from trunnion_gui.colours import Theme
 from trunnion_gui.document import Document
 from trunnion_gui.i18n import tr
+from trunnion_gui.look import icons
+from trunnion_gui.look.colours import Theme
 from trunnion_gui.widgets import table as tables
 
 _ORDER = (Severity.ERROR, Severity.WARNING, Severity.REMARK, Severity.INFO)

@@ -8,13 +8,13 @@ from PySide6.QtGui import QResizeEvent
 from PySide6.QtWidgets import QComboBox, QHBoxLayout, QLabel, QSizePolicy, QToolButton, QVBoxLayout, QWidget
 
 from trunnion.model.playback import Moment
-from trunnion_gui import icons
 from trunnion_gui.actions import Registry
-from trunnion_gui.colours import Theme, tool_cycle
 from trunnion_gui.i18n import tr
-from trunnion_gui.player import SPEEDS, Player
+from trunnion_gui.look import icons
+from trunnion_gui.look.colours import Theme, tool_cycle
+from trunnion_gui.look.words import amount, clock, grouped
+from trunnion_gui.playback.player import SPEEDS, Player
 from trunnion_gui.widgets.track import Track
-from trunnion_gui.words import amount, clock, grouped
 
 BUTTONS = ("play.begin", "play.previous", "play.back", "play.run", "play.forward", "play.next", "play.end")
 _WORDS_MS = 66

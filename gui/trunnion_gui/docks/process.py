@@ -9,12 +9,13 @@ from PySide6.QtWidgets import QAbstractItemView, QMenu, QTreeWidget, QTreeWidget
 from trunnion.model.operation import Operation
 from trunnion.model.session import Session
 from trunnion.model.verdict import Outcome
-from trunnion_gui import edits, icons
-from trunnion_gui.colours import Theme
+from trunnion_gui import edits
 from trunnion_gui.document import Document, Selection
 from trunnion_gui.i18n import tr
+from trunnion_gui.look import icons
+from trunnion_gui.look.colours import Theme
+from trunnion_gui.look.words import amount, kind_words, sentence
 from trunnion_gui.widgets.table import RIGHT, tree
-from trunnion_gui.words import amount, kind_words, sentence
 
 _ID = Qt.ItemDataRole.UserRole
 

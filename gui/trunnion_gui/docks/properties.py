@@ -10,8 +10,8 @@ from trunnion_gui import edits
 from trunnion_gui.document import Document
 from trunnion_gui.form import Form
 from trunnion_gui.i18n import tr
+from trunnion_gui.look.words import amount, duration, kind_words, sentence, size_unit
 from trunnion_gui.widgets import table as tables
-from trunnion_gui.words import amount, duration, kind_words, sentence, size_unit
 
 Rows = list[tuple[str, str]]
 UPRIGHT = (0.0, 0.0, 1.0)

@@ -23,12 +23,12 @@ from trunnion_gui import edits
 from trunnion_gui.document.files import Files
 from trunnion_gui.document.jobs import Finish, Job, Jobs
 from trunnion_gui.document.selection import SelectionModel
-from trunnion_gui.drawing import Drawing
 from trunnion_gui.edits import Edit, History
 from trunnion_gui.i18n import tr
-from trunnion_gui.steps import STEPS, TITLES, until
-from trunnion_gui.verbs import Group, State, Work
-from trunnion_gui.worker import ENGINE, Reply
+from trunnion_gui.worker.drawing import Drawing
+from trunnion_gui.worker.steps import STEPS, TITLES, until
+from trunnion_gui.worker.verbs import Group, State, Work
+from trunnion_gui.worker.worker import ENGINE, Reply
 
 
 class Document(QObject):

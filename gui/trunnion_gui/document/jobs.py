@@ -14,8 +14,8 @@ from PySide6.QtCore import QObject, Signal
 
 from trunnion.findings import Severity
 from trunnion_gui.i18n import tr
-from trunnion_gui.verbs import Work
-from trunnion_gui.worker import Reply, Worker
+from trunnion_gui.worker.verbs import Work
+from trunnion_gui.worker.worker import Reply, Worker
 
 Finish = Callable[[Any], None]
 """What is done with the value of a reply."""

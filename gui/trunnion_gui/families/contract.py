@@ -13,10 +13,10 @@ from typing import TYPE_CHECKING
 from PySide6.QtWidgets import QMenu, QWidget
 
 from trunnion.model.feature import Feature, Recognition
-from trunnion_gui.colours import Theme, kind_colour
 from trunnion_gui.document import Document
 from trunnion_gui.i18n import tr
-from trunnion_gui.words import amount, kind_words, sentence
+from trunnion_gui.look.colours import Theme, kind_colour
+from trunnion_gui.look.words import amount, kind_words, sentence
 
 if TYPE_CHECKING:
     from trunnion_gui.menus.shell import Shell

@@ -8,9 +8,9 @@ from pathlib import Path
 from PySide6.QtCore import QSize, Qt
 from PySide6.QtWidgets import QMenu, QMenuBar, QSizePolicy, QToolBar, QToolButton, QWidget
 
-from trunnion_gui import remembered
 from trunnion_gui.actions import Registry
 from trunnion_gui.i18n import tr
+from trunnion_gui.storage import remembered
 
 _FIRST_MENUS, _LAST_MENUS = ("File", "Edit", "Steps"), ("Playback", "View", "Help")
 """The menus of every window; those that families bring stand between them."""

@@ -9,9 +9,11 @@ from typing import TYPE_CHECKING
 import trunnion_resources
 from trunnion import __version__
 from trunnion.findings import Severity
-from trunnion_gui import colours, edits, i18n, remembered
+from trunnion_gui import edits, i18n
 from trunnion_gui.document import PROJECT
 from trunnion_gui.i18n import tr
+from trunnion_gui.look import colours
+from trunnion_gui.storage import remembered
 
 if TYPE_CHECKING:
     from trunnion_gui.menus.shell import Shell

@@ -7,13 +7,13 @@ from typing import Protocol
 from trunnion_gui.actions import Registry
 from trunnion_gui.arrangement import Arrangement
 from trunnion_gui.centre import Centre
-from trunnion_gui.colours import Theme
 from trunnion_gui.deviation import DeviationSource
 from trunnion_gui.dialogs import FileDialogs
 from trunnion_gui.document import Document
-from trunnion_gui.finder import Finder
+from trunnion_gui.look.colours import Theme
 from trunnion_gui.menus.handlers import Handlers
-from trunnion_gui.player import Player
+from trunnion_gui.playback.player import Player
+from trunnion_gui.widgets.finder import Finder
 
 
 class Shell(Protocol):

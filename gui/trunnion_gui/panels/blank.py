@@ -2,8 +2,8 @@
 
 from __future__ import annotations
 
+from trunnion_gui.look.words import amount
 from trunnion_gui.widgets.panel import Panel
-from trunnion_gui.words import amount
 
 
 class BlankPanel(Panel):

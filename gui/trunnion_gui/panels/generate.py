@@ -6,12 +6,12 @@ from PySide6.QtCore import Qt, Signal
 from PySide6.QtWidgets import QCheckBox, QGridLayout, QHBoxLayout, QLabel, QWidget
 
 from trunnion.model.verdict import Outcome
-from trunnion_gui.colours import motions
 from trunnion_gui.i18n import tr
 from trunnion_gui.leaving import rejected_names
+from trunnion_gui.look.colours import motions
+from trunnion_gui.look.words import amount, duration, share
 from trunnion_gui.widgets.layout import empty
 from trunnion_gui.widgets.panel import Panel, rule, swatch
-from trunnion_gui.words import amount, duration, share
 
 VERDICTS = {Outcome.PASSED: "good", Outcome.REMARKS: "warning", Outcome.FAILED: "bad"}
 

@@ -8,9 +8,9 @@ from PySide6.QtGui import QBrush, QColor
 from trunnion.model.load import SpindleLoad, spindle_loads
 from trunnion.model.operation import Operation
 from trunnion_gui.i18n import tr
+from trunnion_gui.look.words import amount, share
 from trunnion_gui.widgets import table as tables
 from trunnion_gui.widgets.panel import Panel
-from trunnion_gui.words import amount, share
 
 _MOST_ROWS = 8
 _POWER = 3

@@ -9,9 +9,9 @@ from PySide6.QtWidgets import QComboBox, QHBoxLayout, QLabel, QPushButton, QWidg
 from trunnion.model.feature import Recognition, TakenFor
 from trunnion.model.session import PartInfo
 from trunnion_gui.i18n import tr
+from trunnion_gui.look.words import amount, counted, share
 from trunnion_gui.widgets.layout import empty
 from trunnion_gui.widgets.panel import Panel
-from trunnion_gui.words import amount, counted, share
 
 FAMILY, AUTOMATIC = "recognize.family", "auto"
 """The setting that chooses a family, and its value that leaves the choice to the program."""

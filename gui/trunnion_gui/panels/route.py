@@ -3,8 +3,8 @@
 from __future__ import annotations
 
 from trunnion_gui.i18n import tr
+from trunnion_gui.look.words import amount, counted
 from trunnion_gui.widgets.panel import Panel
-from trunnion_gui.words import amount, counted
 
 
 class RoutePanel(Panel):

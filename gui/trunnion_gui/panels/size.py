@@ -5,9 +5,9 @@ from __future__ import annotations
 from PySide6.QtCore import Signal
 
 from trunnion_gui.i18n import tr
+from trunnion_gui.look.words import amount, kind_words
 from trunnion_gui.widgets import table as tables
 from trunnion_gui.widgets.panel import Panel
-from trunnion_gui.words import amount, kind_words
 
 _MOST_ROWS = 8
 

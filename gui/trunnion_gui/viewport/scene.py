@@ -19,8 +19,7 @@ from trunnion.model.setup import Setup
 from trunnion.model.tool import Tool
 from trunnion.model.toolpath import Toolpath
 from trunnion.report.lines import MOTIONS
-from trunnion_gui.colours import Theme, mixed, rgb
-from trunnion_gui.drawing import Drawing, DrawnMap
+from trunnion_gui.look.colours import Theme, mixed, rgb
 from trunnion_gui.viewport.layers.blank import corners, draw_blank
 from trunnion_gui.viewport.layers.cut import draw_cut
 from trunnion_gui.viewport.layers.deviation import DeviationLayer
@@ -32,6 +31,7 @@ from trunnion_gui.viewport.layers.stock import draw_stock
 from trunnion_gui.viewport.layers.tool import draw_tool, draw_trail, place_tool
 from trunnion_gui.viewport.pick import FacePicker
 from trunnion_gui.viewport.view import make_view
+from trunnion_gui.worker.drawing import Drawing, DrawnMap
 
 VIEWS: dict[str, tuple[tuple[float, float, float], tuple[float, float, float]]] = {
     "isometric": ((-0.55, -0.75, 0.75), (0.0, 0.0, 1.0)),

@@ -11,7 +11,7 @@ from PySide6.QtCore import QPointF, QRectF, QSize, Qt
 from PySide6.QtGui import QColor, QFont, QPainter, QPaintEvent, QPen, QPolygonF
 from PySide6.QtWidgets import QSizePolicy, QWidget
 
-from trunnion_gui.colours import Theme
+from trunnion_gui.look.colours import Theme
 
 _LEFT, _RIGHT, _TOP, _BELOW = 62, 62, 24, 34
 _DOT = 3.0

@@ -6,9 +6,9 @@ from PySide6.QtCore import Qt, Signal
 from PySide6.QtGui import QKeyEvent, QMouseEvent
 from PySide6.QtWidgets import QFrame, QHBoxLayout, QLabel, QVBoxLayout, QWidget
 
-from trunnion_gui import icons
-from trunnion_gui.colours import Theme
 from trunnion_gui.i18n import tr
+from trunnion_gui.look import icons
+from trunnion_gui.look.colours import Theme
 
 STATES = {"empty": "empty", "stale": "stale", "running": "running", "done": "done", "problem": "problem"}
 

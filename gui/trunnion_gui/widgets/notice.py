@@ -7,10 +7,10 @@ from collections.abc import Callable
 from PySide6.QtWidgets import QFrame, QHBoxLayout, QLabel, QPushButton, QToolButton, QVBoxLayout
 
 from trunnion.findings import Finding, Severity
-from trunnion_gui import icons
 from trunnion_gui.i18n import tr
+from trunnion_gui.look import icons
+from trunnion_gui.look.words import told
 from trunnion_gui.widgets.layout import empty
-from trunnion_gui.words import told
 
 _SIDES = {Severity.ERROR: "error", Severity.WARNING: "warning"}
 

@@ -6,17 +6,18 @@ from collections.abc import Mapping
 
 from PySide6.QtWidgets import QFrame, QHBoxLayout, QLabel, QPushButton, QVBoxLayout, QWidget
 
-from trunnion_gui import edits, icons
+from trunnion_gui import edits
 from trunnion_gui.actions import Registry
-from trunnion_gui.colours import Theme
 from trunnion_gui.document import Document
 from trunnion_gui.families.views import Views
 from trunnion_gui.form import Form
 from trunnion_gui.i18n import tr
-from trunnion_gui.steps import STEPS, Stage, joined_state
-from trunnion_gui.verbs import Group
+from trunnion_gui.look import icons
+from trunnion_gui.look.colours import Theme
+from trunnion_gui.look.words import duration
 from trunnion_gui.widgets.foldout import Foldout
-from trunnion_gui.words import duration
+from trunnion_gui.worker.steps import STEPS, Stage, joined_state
+from trunnion_gui.worker.verbs import Group
 
 _FEW = 4
 """The first group of a step is shown open when it has at most so many settings; everything else is folded."""

@@ -9,9 +9,9 @@ from PySide6.QtWidgets import QFrame, QLabel, QVBoxLayout, QWidget
 
 from trunnion.report.deviation import DeviationMap
 from trunnion.report.palette import DeviationColours
-from trunnion_gui.colours import Theme
 from trunnion_gui.i18n import tr
-from trunnion_gui.words import fine_amount
+from trunnion_gui.look.colours import Theme
+from trunnion_gui.look.words import fine_amount
 
 _BAR, _HEIGHT, _WORDS = 16, 210, 74
 _STOPS = 96

@@ -9,7 +9,7 @@ from PySide6.QtCore import QEvent, QPointF, QRectF, QSize, Qt, Signal
 from PySide6.QtGui import QColor, QHelpEvent, QKeyEvent, QMouseEvent, QPainter, QPaintEvent, QWheelEvent
 from PySide6.QtWidgets import QSizePolicy, QToolTip, QWidget
 
-from trunnion_gui.colours import Theme, mixed
+from trunnion_gui.look.colours import Theme, mixed
 
 _EDGE = 9
 _GROOVE, _MARKS, _KNOB = 5, 6, 7

@@ -4,15 +4,15 @@ from __future__ import annotations
 
 from PySide6.QtWidgets import QHBoxLayout, QLabel, QSplitter, QTableWidget, QVBoxLayout, QWidget
 
-from trunnion_gui.colours import Theme
 from trunnion_gui.document import Document
 from trunnion_gui.families.surface.jobs import PatchJobs
 from trunnion_gui.families.surface.requests import Accuracy
 from trunnion_gui.i18n import tr
+from trunnion_gui.look.colours import Theme
+from trunnion_gui.look.words import duration, grouped
 from trunnion_gui.widgets import table as tables
 from trunnion_gui.widgets.chart import Chart, Curve
 from trunnion_gui.widgets.panel import rule
-from trunnion_gui.words import duration, grouped
 
 _REPAIR = -1
 """Stands for the points that the paper's repair puts on an edge, as many as its length asks for."""

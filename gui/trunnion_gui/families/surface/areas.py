@@ -7,8 +7,8 @@ from PySide6.QtWidgets import QLabel, QVBoxLayout, QWidget
 from trunnion_gui.document import Document
 from trunnion_gui.families.surface.requests import Estimated
 from trunnion_gui.i18n import tr
+from trunnion_gui.look.words import amount, duration
 from trunnion_gui.widgets import table as tables
-from trunnion_gui.words import amount, duration
 
 _MOST_ROWS = 8
 

@@ -10,13 +10,13 @@ from PySide6.QtWidgets import QComboBox, QHBoxLayout, QLabel, QPushButton, QSize
 
 from trunnion.findings import BadInput
 from trunnion.geometry.cut import Cut, plane_cut, way_cut
-from trunnion_gui import icons
 from trunnion_gui.document import Document
-from trunnion_gui.drawing import box_of, plane_line, sampled
 from trunnion_gui.families.surface.jobs import PatchJobs
 from trunnion_gui.form import Number
 from trunnion_gui.i18n import tr
+from trunnion_gui.look import icons
 from trunnion_gui.viewport.scene import Click, Scene
+from trunnion_gui.worker.drawing import box_of, plane_line, sampled
 
 AXES = ("x", "y", "z")
 THREE, DRAWN = "three", "drawn"

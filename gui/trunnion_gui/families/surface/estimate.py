@@ -8,7 +8,7 @@ from trunnion.model.session import Session
 from trunnion_gui.document import Document
 from trunnion_gui.families.surface import requests
 from trunnion_gui.families.surface.groups import GROUP
-from trunnion_gui.worker import Reply
+from trunnion_gui.worker.worker import Reply
 
 
 class EstimateSource(QObject):

@@ -19,11 +19,11 @@ from PySide6.QtWidgets import (
     QWidget,
 )
 
-from trunnion_gui.colours import feature_colours
 from trunnion_gui.document import Document
 from trunnion_gui.families.surface.groups import GROUP, LOCAL, is_local
 from trunnion_gui.families.surface.jobs import PatchJobs
 from trunnion_gui.i18n import tr
+from trunnion_gui.look.colours import feature_colours
 from trunnion_gui.widgets.table import colour_icon
 
 REMAINING, CHOSEN = "remaining", "chosen"

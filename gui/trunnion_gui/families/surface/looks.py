@@ -5,11 +5,11 @@ from __future__ import annotations
 from collections.abc import Sequence
 
 from trunnion.model.feature import Feature, Recognition
-from trunnion_gui.colours import hexed, palette
 from trunnion_gui.families.contract import Column, FeatureClass, LegendRow
 from trunnion_gui.families.surface.groups import LOCAL, is_local
 from trunnion_gui.i18n import tr
-from trunnion_gui.words import amount
+from trunnion_gui.look.colours import hexed, palette
+from trunnion_gui.look.words import amount
 
 _LARGE = 100.0
 """mm: of larger radii nobody wants to know the decimals."""

@@ -8,8 +8,8 @@ from typing import Any
 from trunnion.geometry.cut import Cut
 from trunnion.model.session import Session
 from trunnion.progress import Progress
-from trunnion_gui.drawing import Drawing, drawing_of
-from trunnion_gui.verbs import State, Tell, writes_files
+from trunnion_gui.worker.drawing import Drawing, drawing_of
+from trunnion_gui.worker.verbs import State, Tell, writes_files
 
 
 @dataclass(frozen=True, slots=True)

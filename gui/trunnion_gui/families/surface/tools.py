@@ -10,12 +10,12 @@ from PySide6.QtWidgets import QMenu
 
 from trunnion.geometry.cut import Cut
 from trunnion.model.feature import Feature
-from trunnion_gui import icons
-from trunnion_gui.colours import feature_colours
 from trunnion_gui.document import Document
 from trunnion_gui.families.surface.groups import GROUP, is_local, with_local
 from trunnion_gui.families.surface.jobs import PatchJobs
 from trunnion_gui.i18n import tr
+from trunnion_gui.look import icons
+from trunnion_gui.look.colours import feature_colours
 from trunnion_gui.widgets.table import colour_icon
 
 

@@ -7,8 +7,6 @@ from collections.abc import Sequence
 from PySide6.QtWidgets import QMenu, QWidget
 
 from trunnion.model.feature import Feature, Recognition
-from trunnion_gui import icons
-from trunnion_gui.colours import Theme
 from trunnion_gui.document import Document
 from trunnion_gui.families.contract import Colouring, Column, Dock, FamilyView, FeatureClass, main_size
 from trunnion_gui.families.surface import looks
@@ -22,6 +20,8 @@ from trunnion_gui.families.surface.groups import GROUP, is_local
 from trunnion_gui.families.surface.jobs import PatchJobs
 from trunnion_gui.families.surface.tools import PatchTools
 from trunnion_gui.i18n import tr
+from trunnion_gui.look import icons
+from trunnion_gui.look.colours import Theme
 from trunnion_gui.menus.shell import Shell
 
 

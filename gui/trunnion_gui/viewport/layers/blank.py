@@ -8,7 +8,7 @@ import numpy as np
 import pyvista as pv
 
 from trunnion.model.blank import Blank
-from trunnion_gui.colours import Theme
+from trunnion_gui.look.colours import Theme
 
 _FACES = np.array([[0, 3, 2, 1], [4, 5, 6, 7], [0, 1, 5, 4], [1, 2, 6, 5], [2, 3, 7, 6], [3, 0, 4, 7]])
 

@@ -8,7 +8,7 @@ from typing import Any
 import numpy as np
 import pyvista as pv
 
-from trunnion_gui.colours import Theme
+from trunnion_gui.look.colours import Theme
 
 
 def draw_cut(view: Any, places: Sequence[tuple[float, float, float]], line: np.ndarray, theme: Theme) -> None:

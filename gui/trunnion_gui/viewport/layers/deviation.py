@@ -7,9 +7,9 @@ from typing import Any
 import numpy as np
 from vtkmodules.util.numpy_support import numpy_to_vtk
 
-from trunnion_gui.drawing import DrawnMap
 from trunnion_gui.viewport.layers.stock import surface_of
 from trunnion_gui.viewport.pick import FacePicker
+from trunnion_gui.worker.drawing import DrawnMap
 
 
 class DeviationLayer:

@@ -7,7 +7,7 @@ from typing import Any
 
 import numpy as np
 
-from trunnion_gui.colours import Theme
+from trunnion_gui.look.colours import Theme
 
 
 def draw_label(view: Any, text: str, at: tuple[float, ...], theme: Theme) -> None:

@@ -8,8 +8,8 @@ from typing import Any
 import numpy as np
 import pyvista as pv
 
-from trunnion_gui.colours import Theme, rgb
-from trunnion_gui.drawing import Drawing
+from trunnion_gui.look.colours import Theme, rgb
+from trunnion_gui.worker.drawing import Drawing
 
 
 class PartLayer:

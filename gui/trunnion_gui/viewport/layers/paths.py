@@ -11,7 +11,7 @@ import pyvista as pv
 from trunnion.geometry.frame import Frame
 from trunnion.model.toolpath import Toolpath
 from trunnion.report.lines import MOST_STROKES, MOTIONS, STROKE_EVERY, STROKE_LENGTH, kinds_of, opened, strokes
-from trunnion_gui.colours import axis_colour, motions, rgb
+from trunnion_gui.look.colours import axis_colour, motions, rgb
 
 AXES = "tool axes"
 

@@ -11,7 +11,7 @@ from vtkmodules.vtkCommonCore import vtkPoints
 from vtkmodules.vtkCommonDataModel import vtkCellArray
 
 from trunnion.model.playback import Moment
-from trunnion_gui.colours import Theme, rgb, stock_colours
+from trunnion_gui.look.colours import Theme, rgb, stock_colours
 
 
 def draw_stock(view: Any, moment: Moment | None, theme: Theme) -> None:

@@ -13,7 +13,7 @@ from vtkmodules.vtkCommonCore import vtkPoints
 from vtkmodules.vtkCommonDataModel import vtkCellArray
 
 from trunnion.model.tool import Tool
-from trunnion_gui.colours import Theme, rgb, tool_colours
+from trunnion_gui.look.colours import Theme, rgb, tool_colours
 
 PARTS = ("cutter", "shank", "holder")
 _AROUND = 64

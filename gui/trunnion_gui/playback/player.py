@@ -17,7 +17,7 @@ from PySide6.QtCore import QObject, Qt, QTimer, Signal
 from trunnion.model.playback import Moment, Timeline
 from trunnion.tolerance import GOUGE
 from trunnion_gui.document import Document
-from trunnion_gui.worker import Reply
+from trunnion_gui.worker.worker import Reply
 
 SPEEDS = (1, 2, 5, 10, 20, 50, 100, 200, 500, 1000)
 """How many times faster than the machine; a block at a time: blocks a second."""

@@ -8,8 +8,8 @@ from pathlib import Path
 from PySide6.QtGui import QColor, QPalette
 from PySide6.QtWidgets import QApplication
 
-from trunnion_gui import icons
-from trunnion_gui.colours import Theme, mixed
+from trunnion_gui.look import icons
+from trunnion_gui.look.colours import Theme, mixed
 
 _SHEET = """
 * {{ font-size: 13px; }}

@@ -14,8 +14,8 @@ from trunnion.findings import Cancelled, TrunnionError
 from trunnion.model.session import Session
 from trunnion.progress import Progress
 from trunnion.settings import Declared, declared
-from trunnion_gui.drawing import Drawing, drawing_of, drawn_map
-from trunnion_gui.steps import share, until
+from trunnion_gui.worker.drawing import Drawing, drawing_of, drawn_map
+from trunnion_gui.worker.steps import share, until
 
 
 @dataclass(frozen=True, slots=True)

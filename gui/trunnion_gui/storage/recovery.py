@@ -14,10 +14,10 @@ from PySide6.QtCore import QObject, QTimer, Signal
 
 from trunnion.findings import Finding, Severity
 from trunnion.model.session import Session
-from trunnion_gui import remembered
-from trunnion_gui.autosave import Autosave, Whose, remove, take_over, whose_work
 from trunnion_gui.document import Document
 from trunnion_gui.i18n import tr
+from trunnion_gui.storage import remembered
+from trunnion_gui.storage.autosave import Autosave, Whose, remove, take_over, whose_work
 from trunnion_gui.widgets.notice import Notice
 
 LATEST_MS = 4000

@@ -8,11 +8,11 @@ from PySide6.QtCore import QTimer
 from PySide6.QtWidgets import QLabel, QProgressBar, QStatusBar, QToolButton
 
 from trunnion.model.verdict import Outcome
-from trunnion_gui import icons
 from trunnion_gui.actions import Registry
 from trunnion_gui.document import Document
 from trunnion_gui.i18n import tr
-from trunnion_gui.words import duration, share
+from trunnion_gui.look import icons
+from trunnion_gui.look.words import duration, share
 
 _VERDICTS = {Outcome.PASSED: "good", Outcome.REMARKS: "warning", Outcome.FAILED: "bad"}
 _TICK_MS = 500

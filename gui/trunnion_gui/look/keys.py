@@ -5,11 +5,11 @@ from __future__ import annotations
 from collections.abc import Sequence
 
 from trunnion.model.feature import Recognition
-from trunnion_gui.colours import Theme, axis_colour, feature_colours, kind_colour, motions, stock_colours, tool_colours
 from trunnion_gui.families.contract import LegendRow
 from trunnion_gui.families.views import Views
 from trunnion_gui.i18n import tr
-from trunnion_gui.words import sentence
+from trunnion_gui.look.colours import Theme, axis_colour, feature_colours, kind_colour, motions, stock_colours, tool_colours
+from trunnion_gui.look.words import sentence
 
 GAP: LegendRow = ("", "", "")
 

@@ -8,7 +8,7 @@ from importlib.resources import files
 
 from PySide6.QtGui import QIcon, QPixmap
 
-from trunnion_gui.colours import Theme, theme
+from trunnion_gui.look.colours import Theme, theme
 
 _theme = theme("light")
 _DRAWN = 48

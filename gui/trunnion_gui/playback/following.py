@@ -6,7 +6,7 @@ from PySide6.QtCore import QObject, QTimer
 
 from trunnion_gui.docks.code import CodeDock
 from trunnion_gui.docks.process import ProcessDock
-from trunnion_gui.player import Player
+from trunnion_gui.playback.player import Player
 
 _FOLLOW_MS = 66
 """They follow the tool this often at most."""

@@ -1,0 +1,1 @@
+"""The playback: its clock, and what follows the tool."""
