@@ -40,7 +40,7 @@ class Declared:
     help: str
     choices: tuple[str, ...]
     catalogue: str
-    """The catalogue whose names may be given: materials, machines or tools; empty for anything else."""
+    """The catalogue whose names may be given: materials, machines, tools or plans; empty for anything else."""
 
     def allowed(self) -> str:
         """Return in words what values may be given."""
@@ -71,7 +71,7 @@ def setting(default: Value, *, unit: str = "", low: float | None = None, high: f
             choices: tuple[str, ...] = (), catalogue: str = "") -> Any:
     """Return the dataclass field of one setting. A number needs `unit` ("" where it counts), `low` and `high`.
 
-    A name of a thing in a catalogue (`materials`, `machines`, `tools`) says which, and forms offer what there is.
+    A name of a thing in a catalogue (`materials`, `machines`, `tools`, `plans`) says which, and forms offer what there is.
     """
     return dataclasses.field(default=default, metadata={_META: {
         "unit": unit, "low": low, "high": high, "label": label, "help": help, "choices": choices, "catalogue": catalogue}})

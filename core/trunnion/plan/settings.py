@@ -10,7 +10,7 @@ class RouteSettings:
     """What a shop may choose when operations and cutters are planned."""
 
     plan: str = setting("", label="Typical plan", help="Name of the typical plan that the route follows; empty: the family's first one, a "
-                                                       "shop's own before the program's.")
+                                                       "shop's own before the program's.", catalogue="plans")
     wall_allowance: float = setting(0.5, unit="mm", low=0.0, high=20.0, label="Wall allowance", help="What roughing leaves on walls.")
     floor_allowance: float = setting(0.3, unit="mm", low=0.0, high=20.0, label="Floor allowance", help="What roughing leaves on floors.")
     reach_clearance: float = setting(1.0, unit="mm", low=0.0, high=100.0, label="Reach clearance",
