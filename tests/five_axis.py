@@ -1,6 +1,6 @@
 """A made-up five-axis finishing job of any size: a wavy block, and a ball or bull cutter with shank and holder that turns all along.
 
-The surface is z = A sin(k x) cos(k y) over a square, so that every contact point, normal and curvature is known in closed form. Benches of
+The surface is z = A sin(k x) cos(k y) over a square, so that every contact point, normal and curvature is known in closed form. Contexts of
 contact and stock, and tests that need moves with a turning axis, take their work from here.
 """
 

@@ -20,8 +20,8 @@ def main(arguments: Sequence[str] | None = None) -> int:
     from PySide6.QtWidgets import QApplication
 
     from trunnion_gui import i18n
+    from trunnion_gui.gc_control import GcControl
     from trunnion_gui.storage import remembered
-    from trunnion_gui.tidying import Tidy
     from trunnion_gui.window import Window
 
     words = list(sys.argv[1:] if arguments is None else arguments)
@@ -30,7 +30,7 @@ def main(arguments: Sequence[str] | None = None) -> int:
     app.setApplicationName("Trunnion")
     app.setOrganizationName("Trunnion")
     i18n.use(remembered.language())
-    tidy = Tidy()
+    tidy = GcControl()
     window = Window()
     window.show()
     if words:

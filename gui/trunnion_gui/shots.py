@@ -55,7 +55,7 @@ def opened(part: str | Path, *, size: tuple[int, int] = (1600, 1000), factory: s
     try:
         window.use_theme(colours.theme(theme))
         window.resize(*size)
-        window.centre.scene.smooth()
+        window.viewport.scene.smooth()
         window.show()
         window.document.files.open(str(part))
         wait(lambda: not window.document.is_busy, timeout_s)
@@ -63,7 +63,7 @@ def opened(part: str | Path, *, size: tuple[int, int] = (1600, 1000), factory: s
             window.document.run(until, "Program")
             wait(lambda: not window.document.is_busy, timeout_s)
             if window.document.states.get(until) not in ("done", "problem"):
-                raise BadCall(f"no picture: {window.centre.notice.text or 'the part could not be worked on'}")
+                raise BadCall(f"no picture: {window.viewport.notice.text or 'the part could not be worked on'}")
         yield window
     finally:
         window.close()

@@ -9,7 +9,6 @@ from PySide6.QtWidgets import QMainWindow
 from trunnion.findings import Finding
 from trunnion_gui.actions import Registry
 from trunnion_gui.arrangement import LEFT, Arrangement, column
-from trunnion_gui.centre import Centre
 from trunnion_gui.deviation import DeviationSource
 from trunnion_gui.dialogs import FileDialogs
 from trunnion_gui.docks.layout import Docks
@@ -33,6 +32,7 @@ from trunnion_gui.playback.player import Player
 from trunnion_gui.storage import remembered
 from trunnion_gui.storage.recovery import Recovery
 from trunnion_gui.storage.unsaved import UnsavedWork
+from trunnion_gui.viewport_pane import ViewportPane
 from trunnion_gui.widgets.finder import Finder
 from trunnion_gui.widgets.panel import Panel
 from trunnion_gui.widgets.status import Status
@@ -64,8 +64,8 @@ class Window(QMainWindow):
         for view in self.views:
             view.add_commands(self)
         add_playback_commands(self)
-        self.centre = Centre(self.document, self.registry, self.theme, self.player, self.deviation, self.views)
-        self.setCentralWidget(self.centre)
+        self.viewport = ViewportPane(self.document, self.registry, self.theme, self.player, self.deviation, self.views)
+        self.setCentralWidget(self.viewport)
         for view in self.views:
             view.begin(self)
         self.panels = {s.name: PANELS[s.name](s, n, self.document, self.registry, self.views) for n, s in enumerate(STAGES, 1)}
@@ -83,11 +83,11 @@ class Window(QMainWindow):
         self.following = Following(self.player, self.docks.code, self.docks.process, self)
         self.unsaved = UnsavedWork(self.document, self.handlers.save, self)
         self.document.files.holds_work = self.unsaved.holds
-        self.recovery = Recovery(self.document, self.centre.notice, self)
+        self.recovery = Recovery(self.document, self.viewport.notice, self)
         self._connect()
         self.use_theme(self.theme)
         self.arrangement.begin()
-        self.centre.welcome.show_recent(remembered.recent())
+        self.viewport.welcome.show_recent(remembered.recent())
         self.recovery.offer()
         self._refresh()
 
@@ -114,7 +114,7 @@ class Window(QMainWindow):
         self.arrangement.keep()
         self.recovery.end()
         self.document.jobs.close()
-        self.centre.scene.end()
+        self.viewport.scene.end()
         super().closeEvent(event)
 
     def _leave(self) -> None:
@@ -150,7 +150,7 @@ class Window(QMainWindow):
     def _make_docks(self) -> None:
         self.docks = Docks(self.document, self.views)
         self.playback = PlaybackBar(self.player, self.registry, self.theme)
-        self.centre.add_bar(self.playback)
+        self.viewport.add_bar(self.playback)
         self.arrangement.add("steps", tr("Steps"), column(list(self.panels.values())), LEFT)
         self.docks.arrange(self.arrangement)
 
@@ -166,13 +166,13 @@ class Window(QMainWindow):
         size, generate = self.panels["size"], self.panels["generate"]
         assert isinstance(size, SizePanel)
         assert isinstance(generate, GeneratePanel)
-        size.pointed.connect(self.centre.show_size)
+        size.pointed.connect(self.viewport.show_size)
         for changed in (self.player.opened, self.player.changed, self.deviation.arrived):
             changed.connect(lambda *_: self.registry.refresh())
         self.deviation.arrived.connect(self.docks.deviation.show_map)
-        self.docks.deviation.chosen.connect(self.centre.look_at_place)
-        self.centre.hinted.connect(self.status.hint)
-        generate.motions_changed.connect(self.centre.show_motions)
+        self.docks.deviation.chosen.connect(self.viewport.look_at_place)
+        self.viewport.hinted.connect(self.status.hint)
+        generate.motions_changed.connect(self.viewport.show_motions)
 
     def use_theme(self, chosen: colours.Theme) -> None:
         """Give everything the look of a theme."""
@@ -181,7 +181,7 @@ class Window(QMainWindow):
         self.registry.redraw()
         # The main button is drawn on the accent colour, in both themes.
         self.registry.action("run.program").setIcon(icons.icon("program", chosen.accent_text))
-        self.centre.use_theme(chosen)
+        self.viewport.use_theme(chosen)
         self.docks.use_theme(chosen)
         self.playback.use_theme(chosen)
         for view in self.views:
@@ -201,9 +201,9 @@ class Window(QMainWindow):
         self.setWindowTitle(f"{part.name}{star} – Trunnion" if part is not None else "Trunnion")
 
     def _tell(self, finding: Finding) -> None:
-        self.centre.notice.tell(finding)
+        self.viewport.notice.tell(finding)
 
     def _opened(self, path: str) -> None:
         remembered.add_recent(path)
-        self.centre.welcome.show_recent(remembered.recent())
-        self.centre.notice.hide()
+        self.viewport.welcome.show_recent(remembered.recent())
+        self.viewport.notice.hide()

@@ -69,7 +69,7 @@ def roughing(path: Path, folder: Path, compared: Compare) -> Iterator[Any]:
     assert process is not None and session.recognition is not None and session.blank is not None
     rough = registry.get("strategies", "plane.rough")
     stock = PlanningStock.of(session.blank, setup)
-    space = Space.of(engine.bench.part, session.recognition, session.blank, setup)
+    space = Space.of(engine.context.part, session.recognition, session.blank, setup)
     jobs = [(o, drive_of(o, process, space)) for o in process.operations if o.strategy == "plane.rough"]
 
     def ours() -> list[Any]:
@@ -100,8 +100,8 @@ def contact(path: Path, folder: Path, compared: Compare) -> Iterator[Any]:
     engine, session = _programmed(path, "toolpath")
     program = program_of(session, session.setups[0])
     moves = moves_of(program.sections)
-    engine_of_contact = PartContact(surfaces_of(engine.bench.part, program.setup.frame))
-    points = program.setup.frame.to_local(engine.bench.part.mesh().points)
+    engine_of_contact = PartContact(surfaces_of(engine.context.part, program.setup.frame))
+    points = program.setup.frame.to_local(engine.context.part.mesh().points)
     starts = np.vstack([s.path.starts() for s in program.sections])
     ends = np.vstack([s.path.position for s in program.sections])
 

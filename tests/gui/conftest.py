@@ -22,9 +22,9 @@ def settings_of_their_own(tmp_path, monkeypatch):
 @pytest.fixture(autouse=True)
 def tidy(qapp):
     """Collect garbage in the window's thread only, as the program does, and all of a test's at its end."""
-    from trunnion_gui.tidying import Tidy
+    from trunnion_gui.gc_control import GcControl
 
-    made = Tidy()
+    made = GcControl()
     yield made
     gc.collect()
     made.stop()

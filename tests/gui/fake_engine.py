@@ -354,7 +354,7 @@ def swaying(box: tuple[float, float, float, float], z: float, tilt: float) -> To
 class AreasEngine(FakeEngine):
     """Takes the plate for a part of family surface: its pockets are groups, each finished as an area."""
 
-    def bench_of(self, session):
+    def context_of(self, session):
         from trunnion.shop import load_shop
 
         machine = next(iter(load_shop().machines.values()))

@@ -15,7 +15,7 @@ WIDE = "a line that is much longer than any dock is wide " * 40
 def widths(window) -> dict[str, int]:
     """Return how wide every visible dock and the picture are."""
     docks = ("steps", "features", "properties")
-    return {name: window.arrangement.dock(name).width() for name in docks} | {"centre": window.centre.width()}
+    return {name: window.arrangement.dock(name).width() for name in docks} | {"centre": window.viewport.width()}
 
 
 def relaid(window, qtbot) -> dict[str, int]:

@@ -24,7 +24,7 @@ def mapped(window, part_file, idle, qtbot):
     idle(window)
     window.registry.run("view.top")
     QTest.mouseClick(window.toolbar.widgetForAction(window.registry.action("view.deviation")), BUTTON)
-    qtbot.waitUntil(lambda: window.deviation.shown is not None and window.centre.scale.isVisible(), timeout=20000)
+    qtbot.waitUntil(lambda: window.deviation.shown is not None and window.viewport.scale.isVisible(), timeout=20000)
     return window
 
 
@@ -41,9 +41,9 @@ def test_what_is_finished_is_grey(mapped):
 
 
 def test_the_scale_stands_in_the_legends_place(mapped):
-    assert mapped.centre.scale.isVisible() and not mapped.centre.legend.isVisible()
+    assert mapped.viewport.scale.isVisible() and not mapped.viewport.legend.isVisible()
     shown = mapped.deviation.shown.map
-    bar = mapped.centre.scale.bar
+    bar = mapped.viewport.scale.bar
     picture = bar.grab().toImage()
     x = 8
     ratio = picture.height() / bar.height()
@@ -57,15 +57,15 @@ def test_the_scale_stands_in_the_legends_place(mapped):
 
 
 def test_the_value_under_the_mouse_is_said(mapped, qtbot):
-    view, scene = mapped.centre.scene.view, mapped.centre.scene
+    view, scene = mapped.viewport.scene.view, mapped.viewport.scene
     QTest.mouseMove(view, scene.where((*GOUGE, FLOOR)).toPoint())
-    qtbot.waitUntil(lambda: mapped.centre.tip.isVisible())
-    assert mapped.centre.tip.text() == "-50 µm"
+    qtbot.waitUntil(lambda: mapped.viewport.tip.isVisible())
+    assert mapped.viewport.tip.text() == "-50 µm"
     assert mapped.status.text.text().startswith("-50 µm · face 6 · pocket-02")
     QTest.mouseMove(view, scene.where(SOUND).toPoint())
-    qtbot.waitUntil(lambda: mapped.centre.tip.text() == "0 µm")
+    qtbot.waitUntil(lambda: mapped.viewport.tip.text() == "0 µm")
     QTest.mouseMove(view, QPoint(view.width() - 3, 3))
-    qtbot.waitUntil(lambda: not mapped.centre.tip.isVisible())
+    qtbot.waitUntil(lambda: not mapped.viewport.tip.isVisible())
     assert mapped.status.text.text() == ""
 
 
@@ -74,7 +74,7 @@ def test_the_worst_places_are_listed_and_a_click_goes_there(mapped):
     assert [table.item(r, 1).text() for r in range(table.rowCount())] == ["-50 µm", "+200 µm"]
     assert [table.item(r, 3).text() for r in range(table.rowCount())] == ["pocket-02", "pocket-03"]
     QTest.mouseClick(table.viewport(), BUTTON, pos=table.visualItemRect(table.item(0, 1)).center())
-    scene = mapped.centre.scene
+    scene = mapped.viewport.scene
     at = scene.where(mapped.docks.deviation.places[0].point)
     assert abs(at.x() - scene.width() / 2) < 3 and abs(at.y() - scene.height() / 2) < 3
     assert scene.view.camera.parallel_scale < 50.0
@@ -101,9 +101,9 @@ def test_an_empty_list_says_why(make_window, part_file, idle, qtbot):
 
 def test_the_map_goes_as_it_came(mapped):
     mapped.registry.run("view.deviation")
-    assert "deviation" not in mapped.centre.scene.view.actors
-    assert mapped.centre.scene.view.actors["part"].visibility
-    assert mapped.centre.legend.isVisible() and not mapped.centre.scale.isVisible()
+    assert "deviation" not in mapped.viewport.scene.view.actors
+    assert mapped.viewport.scene.view.actors["part"].visibility
+    assert mapped.viewport.legend.isVisible() and not mapped.viewport.scale.isVisible()
 
 
 def test_map_and_playback_take_turns(mapped, qtbot):
@@ -127,15 +127,15 @@ def test_the_part_does_not_lie_under_the_legend(make_window, part_file, idle, si
     idle(window)
     window.document.run("toolpath", "Generate")
     idle(window)
-    assert window.centre.legend.isVisible()
-    card = window.centre.legend.geometry()
+    assert window.viewport.legend.isVisible()
+    card = window.viewport.legend.geometry()
     corners = window.document.mesh.points
-    assert not any(card.contains(window.centre.scene.where(p).toPoint()) for p in corners)
-    assert all(window.centre.scene.rect().contains(window.centre.scene.where(p).toPoint()) for p in corners)
+    assert not any(card.contains(window.viewport.scene.where(p).toPoint()) for p in corners)
+    assert all(window.viewport.scene.rect().contains(window.viewport.scene.where(p).toPoint()) for p in corners)
 
 
 def test_a_picture_that_was_turned_is_not_fitted_again(mapped):
-    scene = mapped.centre.scene
+    scene = mapped.viewport.scene
     scene.view.camera.azimuth = 20.0
     before = scene.view.camera.position
     mapped.registry.run("view.deviation")

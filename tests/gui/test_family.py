@@ -28,7 +28,7 @@ def stopped(make_window, part_file, idle):
 
 def test_the_window_stops_and_says_what_the_part_looks_like(stopped):
     assert stopped.document.states["size"] == "empty"
-    assert stopped.centre.notice.text == "The part looks like a casing: choose recognize.family = panel or surface"
+    assert stopped.viewport.notice.text == "The part looks like a casing: choose recognize.family = panel or surface"
     said = stopped.panels["recognize"].result.text()
     assert said.startswith("Taken for a casing (0.97): 96 % of the area is of revolution, &lt;thin&gt;<br>Nothing was recognized.")
     assert [b.text() for b in answers(stopped).values()] == ["Go on as panel", "Go on as surface"]

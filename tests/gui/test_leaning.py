@@ -23,7 +23,7 @@ def made(make_window, part_file, idle):
 
 def test_strokes_show_how_a_leaning_tool_stands(made):
     made.document.selection.select_operation("op-02")
-    strokes = made.centre.scene.view.actors["tool axes"].mapper.GetInput().points.reshape(-1, 2, 3)
+    strokes = made.viewport.scene.view.actors["tool axes"].mapper.GetInput().points.reshape(-1, 2, 3)
     _, y0, _, y1 = POCKETS[0]
     assert len(strokes) > 10
     assert strokes[:, 0, 2] == pytest.approx(HEIGHT - 10.0, abs=1e-3)
@@ -36,18 +36,18 @@ def test_strokes_show_how_a_leaning_tool_stands(made):
 
 
 def test_the_legend_explains_the_strokes(made):
-    assert (axis_colour(), "Tool axis", "") in made.centre.legend.rows
+    assert (axis_colour(), "Tool axis", "") in made.viewport.legend.rows
 
 
 def test_an_upright_operation_has_no_strokes(made):
     made.document.selection.select_operation("op-03")
-    assert "tool axes" not in made.centre.scene.view.actors
+    assert "tool axes" not in made.viewport.scene.view.actors
 
 
 def test_strokes_go_with_the_cutting_moves(made):
-    made.centre.show_motions(("rapid", "link"))
-    assert "tool axes" not in made.centre.scene.view.actors
-    assert "Tool axis" not in [words for _, words, _ in made.centre.legend.rows]
+    made.viewport.show_motions(("rapid", "link"))
+    assert "tool axes" not in made.viewport.scene.view.actors
+    assert "Tool axis" not in [words for _, words, _ in made.viewport.legend.rows]
 
 
 def test_the_played_tool_leans_as_its_path_says(made, qtbot):
@@ -60,7 +60,7 @@ def test_the_played_tool_leans_as_its_path_says(made, qtbot):
         made.player.go(float(line.first[row]) + share)
         qtbot.waitUntil(lambda: made.player.is_settled, timeout=60000)
         tip, axis = line.pose(made.player.position)
-        stands = np.array(made.centre.scene.view.actors["cutter"].user_matrix)
+        stands = np.array(made.viewport.scene.view.actors["cutter"].user_matrix)
         assert stands[:3, 2] == pytest.approx(axis) and stands[:3, 3] == pytest.approx(tip)
         assert abs(np.degrees(np.arcsin(axis[0]))) > 25.0
         length = line.passages[row].tool.flute_length

@@ -88,12 +88,12 @@ def until(is_so, seconds=60.0) -> None:
 
 def click(window, place, button=LEFT, keys=Qt.KeyboardModifier.NoModifier) -> None:
     """Click the part at a place of it."""
-    QTest.mouseClick(window.centre.scene.view, button, keys, window.centre.scene.where(place).toPoint())
+    QTest.mouseClick(window.viewport.scene.view, button, keys, window.viewport.scene.where(place).toPoint())
 
 
 def face_at(window, place) -> int:
     """Return the tag of the face at a place of the picture."""
-    return window.centre.scene.face_at(window.centre.scene.where(place))
+    return window.viewport.scene.face_at(window.viewport.scene.where(place))
 
 
 def group_at(window, place):
@@ -115,7 +115,7 @@ def test_equal_domes_are_one_group_and_local(shown):
 
 
 def test_local_groups_have_warm_colours_and_the_rest_cold_ones(shown, qtbot):
-    (_, remaining, _), (_, local, _) = ((rgb(c), w, n) for c, w, n in shown.centre.legend.rows[:2])
+    (_, remaining, _), (_, local, _) = ((rgb(c), w, n) for c, w, n in shown.viewport.legend.rows[:2])
     assert (remaining, local) == ("Remaining area", "Local features")
     beside = [(x + 1.2, y - 1.2, z - 0.4) for x, y, z in ON_SMALL]  # the ball's seam runs through its pole
     cold, warm, other = (pixel(shown, place) for place in (ON_TOP, *beside[:2]))
@@ -180,9 +180,9 @@ def test_groups_are_chosen_by_id_and_marked_together(shown, qtbot):
 def test_an_id_that_is_not_there_is_told(shown):
     shown.docks.features.line.setText("group-99")
     QTest.keyClick(shown.docks.features.line, Qt.Key.Key_Return)
-    assert shown.centre.notice.text == "group-99: no feature and no face has this ID"
+    assert shown.viewport.notice.text == "group-99: no feature and no face has this ID"
     shown.docks.features.line.clear()
-    shown.centre.notice.hide()
+    shown.viewport.notice.hide()
 
 
 def test_ctrl_clicks_gather_faces_of_any_group(shown):
@@ -196,7 +196,7 @@ def test_ctrl_clicks_gather_faces_of_any_group(shown):
 def test_a_face_moves_to_another_group_by_the_menu_of_a_right_click(shown, qtbot):
     face, into = face_at(shown, ON_SMALL[1]), group_at(shown, ON_LARGE)
     click(shown, ON_SMALL[1], RIGHT)
-    menu = next(m for m in shown.centre.findChildren(QMenu) if m.isVisible())
+    menu = next(m for m in shown.viewport.findChildren(QMenu) if m.isVisible())
     groups = next(a.menu() for a in menu.actions() if a.menu() is not None and a.text() == "Move to")
     next(a for a in groups.actions() if a.text() == into.id).trigger()
     menu.close()
@@ -224,10 +224,10 @@ def test_a_plane_through_a_click_cuts_a_patch_in_two(shown, qtbot):
     assert bar.isVisible() and bar.manner.currentData() == "x"  # across the face's longest side
     click(shown, (-10.0, -14.0, TOP))
     assert bar.value.value() == pytest.approx(-10.0, abs=0.2)
-    assert "cut line" in shown.centre.scene.view.actors
+    assert "cut line" in shown.viewport.scene.view.actors
     QTest.mouseClick(bar.apply, LEFT)
     done(shown, qtbot)
-    assert not bar.isVisible() and "cut line" not in shown.centre.scene.view.actors
+    assert not bar.isVisible() and "cut line" not in shown.viewport.scene.view.actors
     assert shown.document.session.part.n_faces == n + 1
     assert face_at(shown, (-15.0, -14.0, TOP)) != face_at(shown, (-5.0, -14.0, TOP))
     assert shown.panels["recognize"].state == "done"
@@ -298,10 +298,10 @@ def test_a_cut_along_its_faces_border_is_refused_in_words(shown, qtbot):
     assert bar.manner.currentData() == "x"
     bar.value.setValue(-30.0)
     QTest.mouseClick(bar.apply, LEFT)
-    qtbot.waitUntil(lambda: shown.centre.notice.isVisible(), timeout=30000)
-    assert "doesn't divide it" in shown.centre.notice.text
+    qtbot.waitUntil(lambda: shown.viewport.notice.isVisible(), timeout=30000)
+    assert "doesn't divide it" in shown.viewport.notice.text
     assert bar.isVisible() and shown.document.session.cuts == ()
-    shown.centre.notice.hide()
+    shown.viewport.notice.hide()
 
 
 @pytest.mark.parametrize(("kind", "suffix"), [("STEP", ".step"), ("IGES", ".igs")])
@@ -350,12 +350,12 @@ def test_radii_stand_in_columns_and_as_colours(shown, qtbot):
     assert shown.docks.features.item(group_at(shown, ON_FILLET).id).text(3) == "3"
     shown.registry.run("patch.radii")
     try:
-        assert shown.centre.legend.rows[0][1] == "Smallest concave radius"
+        assert shown.viewport.legend.rows[0][1] == "Smallest concave radius"
         assert hue(pixel(shown, ON_FILLET)) @ hue(rgb(radius_colour(3.0))) > 0.95
         assert np.ptp(pixel(shown, ON_TOP)) < 25
     finally:
         shown.registry.run("patch.radii")
-    assert shown.centre.legend.rows[0][1] == "Remaining area"
+    assert shown.viewport.legend.rows[0][1] == "Remaining area"
 
 
 def test_only_the_settings_of_the_parts_own_family_are_offered(shown):
@@ -373,9 +373,9 @@ def test_a_cutter_is_found_by_letters_of_its_name(shown):
 
 def test_ids_are_written_on_the_part(shown):
     shown.registry.run("patch.ids")
-    assert any(name.startswith("names") for name in shown.centre.scene.view.actors)
+    assert any(name.startswith("names") for name in shown.viewport.scene.view.actors)
     shown.registry.run("patch.ids")
-    assert not any(name.startswith("names") for name in shown.centre.scene.view.actors)
+    assert not any(name.startswith("names") for name in shown.viewport.scene.view.actors)
 
 
 def test_the_properties_say_what_the_selected_faces_belong_to(shown):

@@ -81,17 +81,17 @@ def go(window, qtbot, position) -> None:
 
 def surface_at(window, x, y) -> float:
     """Return how high the shown stock is at a place of the plan."""
-    mesh = window.centre.scene.view.actors["stock"].mapper.GetInput()
+    mesh = window.viewport.scene.view.actors["stock"].mapper.GetInput()
     points, _ = mesh.ray_trace((x, y, 100.0), (x, y, -100.0), first_point=True)
     return float(points[2])
 
 
 def test_the_stock_takes_the_parts_place(played):
     assert played.playback.isVisible()
-    actors = played.centre.scene.view.actors
+    actors = played.viewport.scene.view.actors
     assert actors["stock"].visibility and not actors["part"].visibility and "rapids" not in actors
     played.registry.run("play.show")
-    actors = played.centre.scene.view.actors
+    actors = played.viewport.scene.view.actors
     assert "stock" not in actors and "cutter" not in actors and actors["part"].visibility
     assert not played.playback.isVisible()
 
@@ -128,7 +128,7 @@ def test_the_tool_stands_where_it_cuts(played, qtbot):
     go(played, qtbot, 40.0)
     line = played.player.timeline
     tip, axis = line.pose(played.player.position)
-    bounds = np.array(played.centre.scene.view.actors["cutter"].bounds)
+    bounds = np.array(played.viewport.scene.view.actors["cutter"].bounds)
     tool = line.passage(40.0).tool
     assert bounds[4] == pytest.approx(tip[2], abs=1e-3)
     assert bounds[5] == pytest.approx(tip[2] + tool.flute_length, abs=1e-3)
@@ -167,7 +167,7 @@ def test_each_operation_has_its_tool(played, qtbot):
     widths = []
     for row in (0, 1):
         go(played, qtbot, float(played.player.timeline.first[row]) + 4)
-        bounds = played.centre.scene.view.actors["cutter"].bounds
+        bounds = played.viewport.scene.view.actors["cutter"].bounds
         widths.append(bounds[1] - bounds[0])
     assert widths == pytest.approx([63.0, 20.0], rel=0.01)
 
@@ -332,7 +332,7 @@ def test_nothing_is_played_before_there_are_toolpaths(window, part_file, idle):
 def test_dark_shows_the_playback_too(played, qtbot):
     go(played, qtbot, 60.0)
     played.registry.run("view.theme")
-    actors = played.centre.scene.view.actors
+    actors = played.viewport.scene.view.actors
     played.registry.run("view.theme")
     assert actors["stock"].visibility and not actors["part"].visibility
 

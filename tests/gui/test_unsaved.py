@@ -46,8 +46,8 @@ def by_recent(window, path, _monkeypatch):
 
 
 def by_welcome(window, path, _monkeypatch):
-    window.centre.welcome.show_recent([str(path)])
-    next(b for b in window.centre.welcome.findChildren(QPushButton) if b.text() == path.name).click()
+    window.viewport.welcome.show_recent([str(path)])
+    next(b for b in window.viewport.welcome.findChildren(QPushButton) if b.text() == path.name).click()
 
 
 WAYS = (by_dialog, by_drop, by_recent, by_welcome)
@@ -106,7 +106,7 @@ def test_a_project_that_can_not_be_written_keeps_the_work(programmed, other_file
     before = programmed.document.session
     by_dialog(programmed, other_file, monkeypatch)
     idle(programmed)
-    assert programmed.document.session is before and "can't be written" in programmed.centre.notice.text
+    assert programmed.document.session is before and "can't be written" in programmed.viewport.notice.text
 
 
 def test_nothing_is_asked_where_nothing_would_be_lost(opened, other_file, idle, monkeypatch):  # noqa: F811
@@ -175,7 +175,7 @@ def left_behind(window, monkeypatch, qtbot):
 
 
 def press(window, words: str) -> None:
-    QTest.mouseClick(next(b for b in window.centre.notice.findChildren(QPushButton) if b.text() == words), LEFT)
+    QTest.mouseClick(next(b for b in window.viewport.notice.findChildren(QPushButton) if b.text() == words), LEFT)
 
 
 def test_steady_work_is_kept_and_does_not_put_the_keeping_off(opened, idle, qtbot):  # noqa: F811
@@ -241,7 +241,7 @@ def test_a_recovered_project_knows_its_file_and_still_has_to_be_saved(make_windo
     left = left_behind(programmed, monkeypatch, qtbot)
     window = make_window()
     told = whose_work(left)
-    assert "tray.trunnion" in window.centre.notice.text and told.time.partition("T")[2] in window.centre.notice.text
+    assert "tray.trunnion" in window.viewport.notice.text and told.time.partition("T")[2] in window.viewport.notice.text
     press(window, "Recover")
     idle(window)
     assert window.document.session.choices["fake.blank.side"] == 8.0
@@ -259,7 +259,7 @@ def test_a_recovered_project_knows_its_file_and_still_has_to_be_saved(make_windo
 def test_a_recovered_part_without_a_project_is_named_by_its_file(make_window, programmed, idle, monkeypatch, qtbot):  # noqa: F811
     left_behind(programmed, monkeypatch, qtbot)
     window = make_window()
-    assert "tray.step" in window.centre.notice.text
+    assert "tray.step" in window.viewport.notice.text
     press(window, "Recover")
     idle(window)
     assert window.document.session.verdict is not None
@@ -275,7 +275,7 @@ def test_work_that_is_thrown_away_makes_room_for_the_next_one(make_window, progr
     window = make_window()
     press(window, "Discard")
     assert not left.exists() and not notes_of(left).exists()
-    assert "older.trunnion" in window.centre.notice.text
+    assert "older.trunnion" in window.viewport.notice.text
 
 
 def test_an_autosave_with_damaged_notes_is_offered_by_its_time(make_window, monkeypatch):
@@ -283,7 +283,7 @@ def test_an_autosave_with_damaged_notes_is_offered_by_its_time(make_window, monk
     left.write_bytes(b"")
     notes_of(left).write_text("{")
     window = make_window()
-    assert "was not saved when the program ended" in window.centre.notice.text
+    assert "was not saved when the program ended" in window.viewport.notice.text
 
 
 def test_an_autosave_is_left_behind_when_another_program_got_its_number(tmp_path):
@@ -298,4 +298,4 @@ def test_work_that_can_not_be_kept_is_told(opened, monkeypatch, qtbot):  # noqa:
     opened.recovery.file._path = folder / "nowhere" / "autosave.trunnion"
     opened.document.choose("fake.blank.side", "Allowance", 8.0)
     opened.recovery.keep()
-    qtbot.waitUntil(lambda: "not kept for recovery" in opened.centre.notice.text, timeout=10000)
+    qtbot.waitUntil(lambda: "not kept for recovery" in opened.viewport.notice.text, timeout=10000)

@@ -31,9 +31,9 @@ def recognized(window, part_file, idle, qtbot):
 
 def pixel(window, point) -> np.ndarray:
     """Return the colour (3,) 0 to 255 that the viewport shows at a point of the part."""
-    view = window.centre.scene.view
+    view = window.viewport.scene.view
     image = view.grab().toImage()
-    at = window.centre.scene.where(point).toPoint()
+    at = window.viewport.scene.where(point).toPoint()
     colour = image.pixelColor(at)
     return np.array([colour.red(), colour.green(), colour.blue()], dtype=float)
 
@@ -59,7 +59,7 @@ def test_without_colours_everything_looks_like_metal(recognized):
 
 
 def test_a_click_on_the_part_selects_the_row(recognized):
-    view, scene = recognized.centre.scene.view, recognized.centre.scene
+    view, scene = recognized.viewport.scene.view, recognized.viewport.scene
     QTest.mouseClick(view, LEFT, pos=scene.where(IN_POCKET["pocket-02"]).toPoint())
     assert recognized.document.selection.current.id == "pocket-02"
     assert recognized.docks.features.tree.currentItem().text(0) == "pocket-02"
@@ -76,14 +76,14 @@ def test_a_click_on_the_row_highlights_the_faces(recognized, qtbot):
 
 def test_a_click_beside_the_part_selects_nothing(recognized):
     recognized.document.selection.select_feature("pocket-01")
-    QTest.mouseClick(recognized.centre.scene.view, LEFT, pos=QPoint(recognized.centre.scene.view.width() - 4, 4))
+    QTest.mouseClick(recognized.viewport.scene.view, LEFT, pos=QPoint(recognized.viewport.scene.view.width() - 4, 4))
     assert recognized.document.selection.current.kind == ""
 
 
 def test_a_drag_turns_the_part_and_selects_nothing(recognized):
-    view = recognized.centre.scene.view
+    view = recognized.viewport.scene.view
     before = view.camera.position
-    start = recognized.centre.scene.where(IN_POCKET["pocket-01"]).toPoint()
+    start = recognized.viewport.scene.where(IN_POCKET["pocket-01"]).toPoint()
     QTest.mousePress(view, LEFT, pos=start)
     QTest.mouseMove(view, start + QPoint(60, 40))
     QTest.mouseRelease(view, LEFT, pos=start + QPoint(60, 40))
@@ -94,31 +94,31 @@ def test_a_drag_turns_the_part_and_selects_nothing(recognized):
 @pytest.mark.parametrize(("view", "axis"), [("top", 2), ("front", 1), ("right", 0)])
 def test_a_standard_view_looks_along_its_axis(recognized, view, axis):
     recognized.registry.run(f"view.{view}")
-    away = np.subtract(recognized.centre.scene.view.camera.position, recognized.centre.scene.view.camera.focal_point)
+    away = np.subtract(recognized.viewport.scene.view.camera.position, recognized.viewport.scene.view.camera.focal_point)
     assert np.argmax(np.abs(away)) == axis
     assert np.sort(np.abs(away))[1] < 1e-6 * np.abs(away).max()
 
 
 def test_the_legend_names_the_kinds_with_their_counts(recognized):
-    rows = [(words, count) for _, words, count in recognized.centre.legend.rows]
+    rows = [(words, count) for _, words, count in recognized.viewport.legend.rows]
     assert rows == [("Pocket", "3"), ("Rib", "2"), ("Datum", "1"), ("Profile", "1")]
 
 
 def test_the_table_and_the_legend_have_the_same_colours(recognized):
     top = recognized.docks.features.tree.topLevelItem(0)
     image = top.icon(0).pixmap(24, 24).toImage()
-    assert image.pixelColor(12, 12).name() == kind_colour("pocket") == recognized.centre.legend.rows[0][0]
+    assert image.pixelColor(12, 12).name() == kind_colour("pocket") == recognized.viewport.legend.rows[0][0]
 
 
 def test_the_blank_stands_around_the_part(recognized, idle):
     recognized.document.run("blank", "Create blank")
     idle(recognized)
-    low, high = (np.array(recognized.centre.scene.view.actors["blank"].bounds)[k::2] for k in (0, 1))
+    low, high = (np.array(recognized.viewport.scene.view.actors["blank"].bounds)[k::2] for k in (0, 1))
     assert low == pytest.approx([-5, -5, 0]) and high == pytest.approx([LENGTH + 5, WIDTH + 5, HEIGHT + 2])
 
 
 def test_the_blank_is_fitted_into_the_picture_while_it_is_shown(recognized, idle):
-    scene = recognized.centre.scene
+    scene = recognized.viewport.scene
     before = scene.view.camera.parallel_scale
     recognized.document.run("blank", "Create blank")
     idle(recognized)
@@ -136,7 +136,7 @@ def test_cutting_moves_are_drawn_in_their_colour(recognized, idle, qtbot):
     idle(recognized)
     recognized.document.selection.select_operation("op-02")
     qtbot.wait(20)
-    picture = recognized.centre.scene.view.grab().toImage().convertToFormat(recognized.grab().toImage().format())
+    picture = recognized.viewport.scene.view.grab().toImage().convertToFormat(recognized.grab().toImage().format())
     wanted = np.array(rgb(motions()["cut"]))
     seen = [np.array(picture.pixelColor(x, y).toTuple()[:3]) for x in range(0, picture.width(), 2) for y in range(0, picture.height(), 2)]
     assert sum(np.abs(c - wanted).max() < 12 for c in seen) > 20
@@ -145,16 +145,16 @@ def test_cutting_moves_are_drawn_in_their_colour(recognized, idle, qtbot):
 def test_only_the_ticked_motions_are_shown(recognized, idle):
     recognized.document.run("toolpath", "Generate")
     idle(recognized)
-    assert "rapids" in recognized.centre.scene.view.actors
-    recognized.centre.show_motions(("cut",))
-    assert "rapids" not in recognized.centre.scene.view.actors
+    assert "rapids" in recognized.viewport.scene.view.actors
+    recognized.viewport.show_motions(("cut",))
+    assert "rapids" not in recognized.viewport.scene.view.actors
 
 
 def test_a_section_opens_the_part(recognized):
     recognized.registry.run("view.section")
-    assert recognized.centre.scene.view.actors["part"].mapper.GetClippingPlanes().GetNumberOfItems() == 1
+    assert recognized.viewport.scene.view.actors["part"].mapper.GetClippingPlanes().GetNumberOfItems() == 1
     recognized.registry.run("view.section")
-    assert recognized.centre.scene.view.actors["part"].mapper.GetClippingPlanes().GetNumberOfItems() == 0
+    assert recognized.viewport.scene.view.actors["part"].mapper.GetClippingPlanes().GetNumberOfItems() == 0
 
 
 def test_a_size_is_written_where_it_is(recognized, idle, qtbot):
@@ -164,7 +164,7 @@ def test_a_size_is_written_where_it_is(recognized, idle, qtbot):
     table = recognized.panels["size"].table
     QTest.mouseClick(table.viewport(), LEFT, pos=table.visualItemRect(table.item(1, 0)).center())
     assert recognized.document.selection.current.faces == recognized.document.feature("pocket-02").with_role("floor")
-    assert any(name.startswith("size") for name in recognized.centre.scene.view.actors)
+    assert any(name.startswith("size") for name in recognized.viewport.scene.view.actors)
 
 
 def test_borders_of_faces_are_the_edges_of_one_triangle():
@@ -175,7 +175,7 @@ def test_borders_of_faces_are_the_edges_of_one_triangle():
 
 
 def test_standard_views_follow_the_frame_of_the_recognition(recognized):
-    recognized.centre.scene.use_frame(WORLD.__class__(np.zeros(3), np.array([0.0, 1.0, 0.0]), np.array([1.0, 0.0, 0.0])))
+    recognized.viewport.scene.use_frame(WORLD.__class__(np.zeros(3), np.array([0.0, 1.0, 0.0]), np.array([1.0, 0.0, 0.0])))
     recognized.registry.run("view.top")
-    away = np.subtract(recognized.centre.scene.view.camera.position, recognized.centre.scene.view.camera.focal_point)
+    away = np.subtract(recognized.viewport.scene.view.camera.position, recognized.viewport.scene.view.camera.focal_point)
     assert np.argmax(away) == 0

@@ -57,7 +57,7 @@ class RibView(FamilyView):
         shell.registry.add(Command(id="rib.count", text="Count ribs", menu="Ribs", run=self.ask))
         red = Colouring(lambda found: dict.fromkeys((t for f in found for t in f.tags), "#ff0000"), lambda: [("#ff0000", "Red", "")])
         shell.registry.add(Command(id="rib.red", text="Red", menu="Ribs", checkable=True,
-                                   run=lambda on: shell.centre.colour_by(red if on else None)))
+                                   run=lambda on: shell.viewport.colour_by(red if on else None)))
 
     def ask(self):
         self.document.request(count, "counting", "ribs:", finish=lambda answer: setattr(self, "answer", answer))
@@ -130,7 +130,7 @@ def test_a_view_of_another_package_fills_table_legend_and_words(recognized):
     assert row.checkState(stiff) is Qt.CheckState.Checked and row.text(twice) == "2"
     assert recognized.docks.features.item("pocket-01").text(twice) == ""
     assert row.parent().text(0) == "Thin ribs · 2"
-    assert ("#123456", "Thin ribs", "2") in recognized.centre.legend.rows
+    assert ("#123456", "Thin ribs", "2") in recognized.viewport.legend.rows
     assert recognized.panels["recognize"].result.text().endswith(", all thin")
 
 
@@ -155,9 +155,9 @@ def test_a_view_brings_menus_docks_and_blocks(recognized):
 
 def test_a_view_colours_the_part_and_says_what_that_means(recognized):
     recognized.registry.run("rib.red")
-    assert recognized.centre.legend.rows == (("#ff0000", "Red", ""),)
+    assert recognized.viewport.legend.rows == (("#ff0000", "Red", ""),)
     recognized.registry.run("rib.red")
-    assert ("#ff0000", "Red", "") not in recognized.centre.legend.rows
+    assert ("#ff0000", "Red", "") not in recognized.viewport.legend.rows
 
 
 def test_the_worker_does_a_views_own_work(recognized, idle):

@@ -145,25 +145,25 @@ def test_a_click_on_a_floor_selects_its_pocket_and_the_row_its_faces(programmed,
     mesh = window.document.mesh
     rows = np.flatnonzero(mesh.face == floor)
     point = mesh.corners()[rows[np.argmax(mesh.areas()[rows])]].mean(axis=0)
-    programmed.clicks(window.centre.scene.view, window.centre.scene.where(point).toPoint())
+    programmed.clicks(window.viewport.scene.view, window.viewport.scene.where(point).toPoint())
     assert window.document.selection.current.id == pocket.id
     assert window.docks.features.tree.currentItem().text(0) == pocket.id
-    assert set(window.centre.scene._chosen) == set(pocket.tags)
+    assert set(window.viewport.scene._chosen) == set(pocket.tags)
 
 
 def test_a_pockets_floor_has_the_pockets_colour(programmed, qtbot):
     window = programmed.window
     window.document.selection.select_face(0)
     window.registry.action("view.paths").setChecked(False)
-    window.centre.show_layer("paths", False)
+    window.viewport.show_layer("paths", False)
     window.registry.run("view.top")
     qtbot.wait(20)
     mesh = window.document.mesh
     floor = window.document.session.recognition.of_kind("pocket")[0].with_role("floor")[0]
     rows = np.flatnonzero(mesh.face == floor)
     point = mesh.corners()[rows[np.argmax(mesh.areas()[rows])]].mean(axis=0)
-    image = window.centre.scene.view.grab().toImage()
-    seen = np.array(image.pixelColor(window.centre.scene.where(point).toPoint()).toTuple()[:3], dtype=float)
+    image = window.viewport.scene.view.grab().toImage()
+    seen = np.array(image.pixelColor(window.viewport.scene.where(point).toPoint()).toTuple()[:3], dtype=float)
     wanted = np.array(rgb(kind_colour("pocket")), dtype=float)
     seen, wanted = seen - seen.mean(), wanted - wanted.mean()
     assert seen @ wanted / np.linalg.norm(seen) / np.linalg.norm(wanted) > 0.97
@@ -198,7 +198,7 @@ def test_the_saved_project_opens_as_it_was(programmed, tmp_path, qtbot):
     qtbot.waitUntil(lambda: not window.document.is_busy, timeout=60000)
     window.document.files.open(tmp_path / "B1.trunnion")
     qtbot.waitUntil(lambda: not window.document.is_busy, timeout=120000)
-    assert window.centre.notice.isHidden(), window.centre.notice.text
+    assert window.viewport.notice.isHidden(), window.viewport.notice.text
     after = window.document.session
     assert after.recognition.counts() == before.recognition.counts()
     assert after.verdict.outcome == before.verdict.outcome

@@ -127,7 +127,7 @@ def test_a_wrong_order_is_refused_in_a_message(programmed, idle):
     before = programmed.document.session
     programmed.docks.process.tree.dropped.emit("op-03", "op-02")
     assert programmed.document.session is before
-    assert "op-03 must come after op-02" in programmed.centre.notice.text
+    assert "op-03 must come after op-02" in programmed.viewport.notice.text
 
 
 def test_an_operations_own_setting_is_an_edit_by_hand(programmed, idle):
@@ -159,8 +159,8 @@ def test_a_bad_file_is_told_with_what_to_do(window, tmp_path, idle):
     path.write_text("nothing")
     window.document.files.open(path)
     idle(window)
-    assert window.centre.notice.isVisible()
-    assert "export the part as STEP" in window.centre.notice.text
+    assert window.viewport.notice.isVisible()
+    assert "export the part as STEP" in window.viewport.notice.text
 
 
 def test_a_dropped_file_is_opened(window, part_file, idle):
@@ -228,7 +228,7 @@ def test_a_failed_verdict_names_the_files_that_must_not_run(make_window, part_fi
     window.registry.run("file.write")
     idle(window)
     assert [p.name for p in (tmp_path / "out").iterdir()] == ["tray.S1.REJECTED.nc"]
-    assert "tray.S1.REJECTED.nc" in window.centre.notice.text
+    assert "tray.S1.REJECTED.nc" in window.viewport.notice.text
 
 
 def test_a_passed_verdict_names_no_files(programmed):
@@ -242,7 +242,7 @@ def test_a_message_keeps_the_case_of_a_files_name(make_window, part_file, idle):
     idle(window)
     window.document.program()
     idle(window)
-    assert window.centre.notice.text == "tray.step: parts of this family are not planned yet"
+    assert window.viewport.notice.text == "tray.step: parts of this family are not planned yet"
 
 
 def test_a_program_of_an_earlier_plan_is_marked_as_stale(programmed, idle):
@@ -300,7 +300,7 @@ def test_what_is_up_to_date_is_not_computed_again(programmed, idle):
     before = programmed.document.session
     programmed.document.program()
     assert not programmed.document.is_busy and programmed.document.session is before
-    assert "up to date" in programmed.centre.notice.text
+    assert "up to date" in programmed.viewport.notice.text
 
 
 def test_a_row_dragged_onto_another_moves_in_front_of_it(programmed, idle, qtbot):

@@ -7,7 +7,7 @@ import time
 import numpy as np
 import pytest
 
-from trunnion_gui.worker.parcel import packed, unpacked
+from trunnion_gui.worker.shared_memory import packed, unpacked
 from trunnion_gui.worker.steps import TITLES
 from trunnion_gui.worker.worker import GRACE_S, WRITING_GRACE_S
 
@@ -29,7 +29,7 @@ def test_a_job_that_is_cancelled_before_anything_is_finished_leaves_the_session_
     assert window.document.jobs.worker.pid == pid  # it obeyed
     assert window.document.session is window.document.shown is before
     assert window.document.history.undo_label == ""
-    assert "was cancelled at: Recognize" in window.centre.notice.text and "as it was" in window.centre.notice.remedy
+    assert "was cancelled at: Recognize" in window.viewport.notice.text and "as it was" in window.viewport.notice.remedy
 
 
 @pytest.mark.parametrize("factory", ["SlowEngine", "DeafEngine"])
@@ -44,8 +44,8 @@ def test_steps_that_were_finished_before_a_cancel_are_kept_and_the_place_is_name
     assert (window.document.jobs.worker.pid == pid) == (factory == "SlowEngine")  # one that hears nothing is ended
     idle(window)
     assert window.document.states[kept] == "done" and window.document.states[last] == "empty"
-    assert f"was cancelled at: {TITLES[last]}" in window.centre.notice.text
-    assert TITLES[kept] in window.centre.notice.remedy and TITLES[last] not in window.centre.notice.remedy
+    assert f"was cancelled at: {TITLES[last]}" in window.viewport.notice.text
+    assert TITLES[kept] in window.viewport.notice.remedy and TITLES[last] not in window.viewport.notice.remedy
     window.document.undo()
     assert window.document.session is before
 
@@ -92,7 +92,7 @@ def test_a_crash_costs_the_job_and_not_the_session(make_window, part_file, idle,
     qtbot.waitUntil(lambda: not window.document.is_busy, timeout=10000)
     idle(window)
     assert window.isVisible()
-    assert "was lost" in window.centre.notice.text and "Optimize" in window.centre.notice.remedy
+    assert "was lost" in window.viewport.notice.text and "Optimize" in window.viewport.notice.remedy
     assert window.document.states["optimize"] == "done"  # finished before the crash
     window.document.undo()
     assert window.document.session is before
@@ -118,8 +118,8 @@ def test_a_fault_of_the_program_is_one_line_and_the_session_stays(make_window, p
     before = window.document.session
     window.document.program()
     idle(window)
-    assert "ZeroDivisionError" in window.centre.notice.text
-    assert "Blank" in window.centre.notice.remedy
+    assert "ZeroDivisionError" in window.viewport.notice.text
+    assert "Blank" in window.viewport.notice.remedy
     assert window.document.states["blank"] == "done" and window.document.states["route"] == "empty"
     window.document.undo()
     assert window.document.session is before
@@ -130,7 +130,7 @@ def test_what_was_done_before_a_step_refused_is_kept(make_window, part_file, idl
     before = window.document.session
     window.document.program()
     idle(window)
-    assert "not planned yet" in window.centre.notice.text
+    assert "not planned yet" in window.viewport.notice.text
     assert window.document.session.recognition is not None
     assert window.panels["recognize"].state == window.panels["blank"].state == "done"
     assert window.panels["route"].state == "empty"
@@ -142,14 +142,14 @@ def test_what_was_done_before_a_step_refused_is_kept(make_window, part_file, idl
     assert window.panels["recognize"].state == "done"
     window.document.run("route", "Generate route")
     idle(window)
-    assert "not planned yet" in window.centre.notice.text
+    assert "not planned yet" in window.viewport.notice.text
 
 
 def test_an_edit_while_a_job_runs_is_refused_in_words(make_window, part_file, idle, qtbot):
     window = opened(make_window, "SlowEngine", part_file, idle)
     window.document.program()
     window.panels["blank"].forms[0].field("fake.blank.side").setValue(9.0)
-    assert "not while Program runs" in window.centre.notice.text
+    assert "not while Program runs" in window.viewport.notice.text
     assert window.panels["blank"].forms[0].field("fake.blank.side").value() == 5.0
     window.registry.run("job.cancel")
     qtbot.waitUntil(lambda: not window.document.is_busy, timeout=5000)

@@ -17,7 +17,7 @@ from trunnion.part.facets import Facets, facets_of
 from trunnion.part.surfaces import surfaces_of
 from trunnion.verify.contact import PartContact
 from trunnion.verify.contact.facets import FacetContact
-from trunnion.verify.kernels import body, way
+from trunnion.verify.kernels import body, tool_motion
 from trunnion.verify.kernels import facets as kernel
 from trunnion.verify.motion import moves_of
 from verify_tools import FORMS, bull, flat, plain_depth, program_section, supports_of
@@ -141,16 +141,16 @@ def test_the_deepest_of_a_random_move_is_within_the_bound_of_a_far_finer_search(
 @settings(deadline=None, max_examples=60, phases=[Phase.explicit, Phase.generate])
 @given(form=st.sampled_from(sorted(FORMS)), move=ways(), triangles=TRIANGLES, room=st.integers(1, 3))
 def test_a_search_without_room_for_its_open_tasks_errs_deep(form, move, triangles, room):
-    moves, row = moves_for(FORMS[form], move), np.zeros(way.WAY_COLUMNS)
-    way.fill_way(*(a[1] for a in (moves.start, moves.end, moves.start_axis, moves.end_axis, moves.centre, moves.sweep)), row)
+    moves, row = moves_for(FORMS[form], move), np.zeros(tool_motion.WAY_COLUMNS)
+    tool_motion.fill_way(*(a[1] for a in (moves.start, moves.end, moves.start_axis, moves.end_axis, moves.centre, moves.sweep)), row)
     run = moves.bodies.piece[0, [body.CLOSED_FIRST, body.CLOSED_LAST]].astype(int)
     normal = np.cross(triangles[0][1] - triangles[0][0], triangles[0][2] - triangles[0][0])
     normal = normal / np.linalg.norm(normal) if normal.any() else np.array([0.0, 0.0, 1.0])
     deepest = []
     for rows in (room, kernel.TASKS):
         found = np.full(4, -np.inf)
-        space = [np.zeros(n) for n in (kernel.TASK_COLUMNS, (2, way.END_COLUMNS), way.SPAN_COLUMNS, (6, 3), (3, 6), (3, 3))]
-        space[2][[way.S_FROM, way.S_TO]] = -1.0
+        space = [np.zeros(n) for n in (kernel.TASK_COLUMNS, (2, tool_motion.END_COLUMNS), tool_motion.SPAN_COLUMNS, (6, 3), (3, 6), (3, 3))]
+        space[2][[tool_motion.S_FROM, tool_motion.S_TO]] = -1.0
         kernel.enter_triangle(triangles[0].ravel(), normal, row, 0.0, 1.0, moves.bodies.arc, *run, 1e-4, 1e-4, np.inf, found,
                               np.zeros((rows, kernel.TASK_COLUMNS)), *space)
         deepest.append(max(found[0], 1e-4))

@@ -11,7 +11,7 @@ import pytest
 from samples import block_with_pocket
 from trunnion.cli.main import BAD, main
 from trunnion.findings import BadInput
-from trunnion.pipeline import Engine, checking
+from trunnion.pipeline import Engine, external_nc
 
 
 @pytest.fixture(scope="module")
@@ -82,7 +82,7 @@ def test_cl_text_is_judged_in_the_same_way(programmed, tmp_path, capsys):
 
 
 def test_a_stream_without_an_end_is_refused(tmp_path, monkeypatch):
-    monkeypatch.setattr(checking, "MOST_BYTES", 1000)
+    monkeypatch.setattr(external_nc, "MOST_BYTES", 1000)
     (tmp_path / "endless.nc").write_text("G0 X1\n" * 1000)
     with pytest.raises(BadInput, match="endless.nc: is larger than 0 MB"):
-        checking.text_of(tmp_path / "endless.nc")
+        external_nc.text_of(tmp_path / "endless.nc")

@@ -39,12 +39,12 @@ def opened(engine, file):
 
 @pytest.fixture
 def found(engine, opened):
-    engine.bench_of(opened)
+    engine.context_of(opened)
     return engine.run(opened, "recognize")
 
 
 def hollow_of(engine, session) -> int:
-    graph = engine.bench_of(session).part.graph()
+    graph = engine.context_of(session).part.graph()
     return 1 + graph.surface.index("sphere")
 
 
@@ -73,7 +73,7 @@ def test_moved_faces_stay_where_they_were_put_and_every_group_is_measured_anew(e
     moved = with_moved(engine, found, [hollow], into.id)
     grown = moved.recognition.feature(into.id)
     assert set(grown.tags) == {*into.tags, hollow}
-    assert grown.sizes["area"] == pytest.approx(into.sizes["area"] + engine.bench_of(found).part.graph().area[hollow - 1])
+    assert grown.sizes["area"] == pytest.approx(into.sizes["area"] + engine.context_of(found).part.graph().area[hollow - 1])
     assert grown.sizes["concave_radius"] == pytest.approx(10.0)
     assert shared_out(moved) == list(range(1, 8))
     again = engine.run(engine.with_choices(moved, {"grouping": "aligned"}), "recognize")
@@ -132,19 +132,19 @@ def test_a_project_opens_with_its_cuts_and_what_was_done_by_hand(engine, found, 
     again = other.open(tmp_path / "bowl.trunnion")
     assert again.cuts == saved.cuts
     assert other.states(again)["recognize"] == "done"
-    assert area_of(other.bench_of(again).part.face_shape(8)) == area_of(engine.bench_of(saved).part.face_shape(8))
+    assert area_of(other.context_of(again).part.face_shape(8)) == area_of(engine.context_of(saved).part.face_shape(8))
 
 
 @pytest.mark.parametrize("suffix", [".igs", ".step"])
 def test_local_features_and_the_rest_are_exported_each_alone(engine, found, tmp_path, suffix):
     hollow = hollow_of(engine, found)
-    top = face_towards(engine.bench_of(found).part, 0, 0, 1)
+    top = face_towards(engine.context_of(found).part, 0, 0, 1)
     session = with_local(found, [f.id for f in found.recognition], False)
     session = with_local(with_moved(engine, session, [hollow, top]), ["group-01"], False)
     session = with_local(session, [group_of(session, hollow)], True)
     assert export(engine, session, ["local"], tmp_path / f"local{suffix}") == 2
     assert export(engine, session, ["remaining"], tmp_path / f"rest{suffix}") == 5
-    area = engine.bench_of(found).part.graph().area
+    area = engine.context_of(found).part.graph().area
     for name, tags in (("local", {hollow, top}), ("rest", set(range(1, 8)) - {hollow, top})):
         back = read_part(tmp_path / f"{name}{suffix}")
         assert sorted(back.graph().area) == pytest.approx(sorted(area[t - 1] for t in tags), rel=1e-4)

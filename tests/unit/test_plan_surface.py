@@ -21,7 +21,7 @@ from trunnion.model.feature import FaceRole, Feature, Recognition
 from trunnion.model.setup import Setup
 from trunnion.model.toolpath import Mark, Motion, Toolpath
 from trunnion.part.skin import skin_of
-from trunnion.pipeline.making import turned
+from trunnion.pipeline.toolpaths import turned
 from trunnion.plan.freeform.areas import areas_of, blank_faces, connected, hidden_areas, on_outline, walls_of
 from trunnion.plan.freeform.frames import corners_in, cutting_setup
 from trunnion.plan.freeform.heights import HeightMap, region_below

@@ -144,18 +144,18 @@ def speckled():
     """The hilly block with a patch of 0.3 mm cut out of its hill, which joins no group."""
     engine = Engine()
     session = engine.with_choices(engine.open(written(hilly())), CURVED)
-    hill = max((t for t in engine.bench_of(session).part.tags), key=lambda t: _round_area(engine, session, t))
+    hill = max((t for t in engine.context_of(session).part.tags), key=lambda t: _round_area(engine, session, t))
     session = with_cut(engine, session, plane_cut(hill, (34.0, 0.0, 0.0), (1.0, 0.0, 0.0)))
     for point, normal in (((34.3, 0.0, 0.0), (1.0, 0.0, 0.0)), ((0.0, 22.3, 0.0), (0.0, 1.0, 0.0)), ((0.0, 22.0, 0.0), (0.0, 1.0, 0.0))):
-        graph = engine.bench_of(session).part.graph()
-        face = next(t for t in engine.bench_of(session).part.tags if graph.surface[t - 1] == "sphere"
+        graph = engine.context_of(session).part.graph()
+        face = next(t for t in engine.context_of(session).part.tags if graph.surface[t - 1] == "sphere"
                     and _holds(graph, t, (34.15, 22.15)))
         session = with_cut(engine, session, plane_cut(face, point, normal))
     return engine.run(session, "route"), engine
 
 
 def _round_area(engine, session, tag):
-    graph = engine.bench_of(session).part.graph()
+    graph = engine.context_of(session).part.graph()
     return graph.area[tag - 1] if graph.surface[tag - 1] == "sphere" else 0.0
 
 
@@ -174,7 +174,7 @@ def test_a_speck_on_a_curved_face_joins_no_group_and_is_told(speckled):
 def test_a_speck_is_finished_with_the_area_around_it(speckled):
     session, engine = speckled
     (speck,) = session.recognition.unexplained
-    graph = engine.bench_of(session).part.graph()
+    graph = engine.context_of(session).part.graph()
     around = {row + 1 for row in graph.neighbours(speck - 1)}
     mine = [o for o in session.process.operations if speck in o.faces]
     assert {"semi", "finish"} <= {o.kind for o in mine}

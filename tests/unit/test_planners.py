@@ -10,7 +10,7 @@ from trunnion import registry
 from trunnion.findings import BadInput, Refused, Severity
 from trunnion.model.process import ProcessTree
 from trunnion.pipeline import Engine
-from trunnion.pipeline.making import make_paths
+from trunnion.pipeline.toolpaths import make_paths
 from trunnion.plan.contract import DriveNeeds, driven_by, planner_for
 from trunnion.progress import QUIET
 from trunnion.settings import declared, setting, settings
@@ -86,7 +86,7 @@ def test_a_family_without_a_planner_is_refused_with_what_to_do() -> None:
 def test_a_family_of_ones_own_is_routed_by_its_planner(measured, wedges) -> None:
     engine, session = measured
     chosen = replace(as_family(session, "wedge"), choices={"wedge.slope": 7.0})
-    assert route_step().work(chosen, engine.bench, QUIET).session.process.plan == "wedge of 7"
+    assert route_step().work(chosen, engine.context, QUIET).session.process.plan == "wedge of 7"
 
 
 def test_its_settings_can_be_chosen(wedges) -> None:
@@ -96,7 +96,7 @@ def test_its_settings_can_be_chosen(wedges) -> None:
 def test_a_drive_that_a_planner_does_not_make_is_an_error_that_names_strategy_and_family(routed, wedges) -> None:
     engine, session = routed
     first = replace(session.process, operations=session.process.operations[:1])
-    found = make_paths(as_family(replace(session, process=first, paths=()), "wedge"), engine.bench, QUIET)[0].findings
+    found = make_paths(as_family(replace(session, process=first, paths=()), "wedge"), engine.context, QUIET)[0].findings
     assert [(f.severity, f.code) for f in found] == [(Severity.ERROR, "toolpath.refused")]
     assert "plane.face is driven by a PlaneDrive, which is not made for wedges" in found[0].text
 

@@ -13,12 +13,12 @@ from leaning import FIVE_AXES, RIGHT, block_facets, lean, long_reaching, section
 from trunnion import tolerance
 from trunnion.model.program import Program
 from trunnion.model.toolpath import Motion, Toolpath
-from trunnion.pipeline.placing import place_of
+from trunnion.pipeline.work_position import place_of
 from trunnion.post.dialects.linuxcnc import LinuxCncDialect
 from trunnion.post.header import Header
 from trunnion.post.readers.linuxcnc import read_linuxcnc
 from trunnion.post.settings import PostSettings
-from trunnion.toolpath.turning import joined, swing_of
+from trunnion.toolpath.reorient import joined, swing_of
 from verify_tools import BLANK, FLOOR, SETUP, TAGS, clean_plan, pocketing, program_section, proof, tool_of
 
 FACETS = (block_facets(),)

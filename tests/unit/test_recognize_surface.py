@@ -155,7 +155,7 @@ def test_groups_are_those_of_the_truth(name: str) -> None:
 def test_radii_are_those_of_the_truth_and_fillets_have_their_nominal_one() -> None:
     truth = json.loads((PARTS / "surface" / "D2.truth.json").read_text())
     engine = Engine()
-    part = engine.bench_of(engine.open(PARTS / "surface" / "D2.step")).part
+    part = engine.context_of(engine.open(PARTS / "surface" / "D2.step")).part
     for face in truth["faces"]:
         bend = part.bend(face["step_face"])
         for wanted, curvature in ((face["smallest_concave_radius"], -bend.least), (face["smallest_convex_radius"], bend.most)):

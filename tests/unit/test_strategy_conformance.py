@@ -8,7 +8,7 @@ import pytest
 from trunnion import registry
 from trunnion.model.toolpath import Motion
 from trunnion.pipeline import Engine
-from trunnion.pipeline.making import make_paths
+from trunnion.pipeline.toolpaths import make_paths
 
 
 @pytest.fixture(scope="module")
@@ -62,7 +62,7 @@ def test_no_block_stands_still(programmed) -> None:
 def test_the_same_input_gives_the_same_bytes(programmed) -> None:
     engine, session = programmed
     from dataclasses import replace
-    again = make_paths(replace(session, paths=()), engine.bench, progress=_quiet())
+    again = make_paths(replace(session, paths=()), engine.context, progress=_quiet())
     assert [p.path.position.tobytes() for p in again] == [p.path.position.tobytes() for p in session.paths]
     assert [p.key for p in again] == [p.key for p in session.paths]
 

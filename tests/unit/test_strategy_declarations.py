@@ -10,7 +10,7 @@ from trunnion import registry
 from trunnion.findings import warning
 from trunnion.model.operation import OperationPath
 from trunnion.pipeline import Engine
-from trunnion.pipeline.making import findings_of, make_paths
+from trunnion.pipeline.toolpaths import findings_of, make_paths
 from trunnion.plan.prismatic.drive import PlaneDrive
 from trunnion.progress import QUIET
 from trunnion.settings import settings
@@ -75,7 +75,7 @@ def test_a_strategy_of_any_name_gets_the_drive_it_declares(routed, registered) -
 
     registered(skim=skim)
     first = replace(session.process.operations[0], strategy="skim")
-    make_paths(replace(session, process=replace(session.process, operations=(first,)), paths=()), engine.bench, QUIET)
+    make_paths(replace(session, process=replace(session.process, operations=(first,)), paths=()), engine.context, QUIET)
     assert got == [PlaneDrive]
 
 

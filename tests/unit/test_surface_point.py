@@ -14,11 +14,11 @@ from surface_drives import DATA, driven, grid
 from trunnion.findings import BadInput, Refused
 from trunnion.geometry.frame import WORLD, Frame
 from trunnion.model.toolpath import Motion
-from trunnion.pipeline.asking import PartAsker
+from trunnion.pipeline.clearance import PartAsker
 from trunnion.settings import choose
 from trunnion.toolpath.surface.axis import fixed, leaning
+from trunnion.toolpath.surface.axis_search import LeanLimits, roomy
 from trunnion.toolpath.surface.contacts import Contacts, slerp
-from trunnion.toolpath.surface.lean import LeanLimits, roomy
 from trunnion.toolpath.surface.passes import UPRIGHT
 from trunnion.toolpath.surface.point import PointSettings, field_of, grooving, milled, point
 

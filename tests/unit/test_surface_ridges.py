@@ -19,8 +19,8 @@ from trunnion.plan.freeform.scallop import stepover_on_plane
 from trunnion.progress import QUIET
 from trunnion.settings import choose
 from trunnion.shop import load_shop
-from trunnion.toolpath.surface.beside import Strip
 from trunnion.toolpath.surface.constant import ConstantSettings, constant
+from trunnion.toolpath.surface.overrun import Strip
 from trunnion.toolpath.surface.parallel import ParallelSettings, parallel
 from trunnion.verify.finish.fine import fine_measure
 from trunnion.verify.motion import moves_of

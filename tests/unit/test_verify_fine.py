@@ -258,7 +258,7 @@ def test_both_sides_of_a_block_are_measured_with_the_programs_of_both_setups(mon
         passes(EVERY_FORM["ball"], np.arange(-3.0, 3.5, pitch), z=-0.003 * k, x=(-9.0, 9.0), operation=f"face-{k}"),))
         for k, frame in enumerate(frames))
     monkeypatch.setattr(fine, "read_back", lambda session, posted, machines: programs)
-    bench = SimpleNamespace(bench_of=lambda session: SimpleNamespace(part=part, shop=SimpleNamespace(machines={})))
+    bench = SimpleNamespace(context_of=lambda session: SimpleNamespace(part=part, shop=SimpleNamespace(machines={})))
     session = SimpleNamespace(posted=("a program",))
     level = [tag for tag in part.tags if part.graph().box_low[tag - 1][2] == approx(part.graph().box_high[tag - 1][2], abs=1e-3)]
     for tag in level:

@@ -11,8 +11,8 @@ from pytest import approx
 
 from trunnion.model.verdict import Outcome
 from trunnion.shop import load_shop
-from trunnion.verify.judge.excess import chosen_load
 from trunnion.verify.judge.load import least_angle, load_of, mean_share, stretched
+from trunnion.verify.judge.overload import chosen_load
 from trunnion.verify.motion import moves_of
 from trunnion.verify.stock import StockRun
 from verify_tools import BLANK, MACHINE, TOP, flat, program_section, proof

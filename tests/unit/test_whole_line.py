@@ -16,7 +16,7 @@ from trunnion.cli.main import main
 from trunnion.findings import BadCall, BadInput, Cancelled
 from trunnion.model.verdict import Outcome
 from trunnion.pipeline import STEPS, Engine
-from trunnion.pipeline.checking import verify_texts
+from trunnion.pipeline.external_nc import verify_texts
 from trunnion.progress import QUIET, Progress
 from trunnion_resources import sample
 

@@ -23,7 +23,7 @@ def run(chosen: argparse.Namespace) -> int:
     """Print each operation's cutting data beside the spindle's power."""
     from trunnion.pipeline.estimating import estimate
     engine, session = open_session(chosen, "optimize")
-    process, areas = session.process, estimate(session, engine.bench_of(session))
+    process, areas = session.process, estimate(session, engine.context_of(session))
     assert process is not None
     if chosen.json:
         show_json({"operations": [{"id": o.id, "tool": o.tool.number, "data": asdict(o.data)} for o in process.operations],

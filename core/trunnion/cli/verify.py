@@ -29,12 +29,12 @@ def run(chosen: argparse.Namespace) -> int:
     if not 0.001 <= chosen.fine_spacing <= 10.0:
         raise BadCall(f"--fine-spacing {chosen.fine_spacing:g}: it must be from 0.001 to 10 mm")
     if chosen.nc:
-        from trunnion.pipeline.checking import text_of
+        from trunnion.pipeline.external_nc import text_of
         for file in chosen.nc:
             text_of(file)
     engine, session = open_session(chosen, "toolpath" if chosen.nc else "verify")
     if chosen.nc:
-        from trunnion.pipeline.checking import verify_texts
+        from trunnion.pipeline.external_nc import verify_texts
         session = verify_texts(engine, session, chosen.nc, progress_of(chosen))
     figures = fine.measure_fine(engine, session, faces, chosen.fine_spacing, progress_of(chosen)) if faces else None
     if chosen.json:

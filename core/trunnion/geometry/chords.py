@@ -15,7 +15,7 @@ import shapely
 from trunnion import tolerance
 from trunnion.geometry.arrays import Bools, Floats, Ints
 from trunnion.geometry.curve import FULL, Segments, chord_counts
-from trunnion.geometry.meeting import CLOSE, crossings, meeting_boxes
+from trunnion.geometry.intersections import CLOSE, crossings, meeting_boxes
 
 GRIDS = np.array([(0.0, 0.0), (0.5, 0.0), (0.0, 0.5), (0.5, 0.5)])
 """How far four grids are shifted, in cells: two points nearer than half a cell share a cell of at least one of them."""

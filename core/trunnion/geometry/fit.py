@@ -16,7 +16,7 @@ from trunnion import tolerance
 from trunnion.geometry.arrays import Bools, Floats, Ints
 from trunnion.geometry.chords import Chords
 from trunnion.geometry.curve import FULL, Curve, Segments, turn
-from trunnion.geometry.meeting import CLOSE, meeting
+from trunnion.geometry.intersections import CLOSE, meeting
 
 
 def restored(geometry: shapely.Geometry, chords: Chords) -> list[tuple[Curve, list[Curve]]]:

@@ -18,7 +18,7 @@ from trunnion import tolerance
 from trunnion.geometry.arrays import Bools, Floats, Ints
 from trunnion.geometry.chords import Chords, chorded
 from trunnion.geometry.curve import Curve, Segments, distance_to, join_segments, signed_distance
-from trunnion.geometry.meeting import CLOSE, crossings
+from trunnion.geometry.intersections import CLOSE, crossings
 
 MEETS = 4.0 * CLOSE
 """Pieces of a parallel that were cut at one crossing meet within this: each may have moved by the tolerance on two sides."""

@@ -13,9 +13,9 @@ from numpy.typing import ArrayLike
 from trunnion import tolerance
 from trunnion.geometry import fit
 from trunnion.geometry.arrays import Bools, Floats, Ints
+from trunnion.geometry.cache import Memo
 from trunnion.geometry.chords import Chords, chorded, polygons_of
 from trunnion.geometry.curve import Curve, Segments, distance_to, join_segments, signed_distance, winding
-from trunnion.geometry.memo import Memo
 from trunnion.geometry.offset import grown
 
 KEPT_ANSWERS = 4096

@@ -27,10 +27,10 @@ from trunnion import tolerance
 from trunnion.findings import BadInput
 from trunnion.geometry.arrays import Floats
 from trunnion.geometry.cut import Cut
+from trunnion.part.face_curve import DrawnWay
 from trunnion.part.identity import Shape, edges_of, face_index, faces_of, shells_of, solids_of
 from trunnion.part.measure import open_edges
 from trunnion.part.part import Part
-from trunnion.part.way import DrawnWay
 
 T = TypeVar("T")
 REACH = 1.0

@@ -15,7 +15,7 @@ import numpy as np
 from trunnion import tolerance
 from trunnion.geometry.arrays import Floats, Ints, floats, ints
 from trunnion.geometry.frame import Frame
-from trunnion.part.opening import opened
+from trunnion.part.refine_mesh import opened
 from trunnion.progress import QUIET, Progress
 
 if TYPE_CHECKING:

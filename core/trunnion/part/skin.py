@@ -10,7 +10,7 @@ import numpy as np
 from trunnion import tolerance
 from trunnion.geometry.frame import Frame
 from trunnion.geometry.skin import Skin
-from trunnion.part.opening import opened
+from trunnion.part.refine_mesh import opened
 from trunnion.progress import QUIET, Progress
 
 if TYPE_CHECKING:

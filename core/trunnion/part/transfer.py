@@ -17,8 +17,8 @@ from OCP.TopTools import TopTools_IndexedMapOfShape
 from trunnion.findings import BadInput, Finding, error, face_tags, warning
 from trunnion.part.heal import Body, bodies_of
 from trunnion.part.identity import Shape, face_index, faces_of
+from trunnion.part.kernel_messages import hush
 from trunnion.part.part import Part, PartFacts
-from trunnion.part.quiet import hush
 from trunnion.part.request import Request
 
 _IGES_UNITS = {1: "inch", 2: "mm", 4: "foot", 5: "mile", 6: "metre", 7: "km", 8: "mil", 9: "micrometre", 10: "cm", 11: "microinch"}

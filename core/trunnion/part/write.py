@@ -9,7 +9,7 @@ from pathlib import Path
 
 from trunnion.findings import BadInput
 from trunnion.part.identity import Shape
-from trunnion.part.quiet import hush
+from trunnion.part.kernel_messages import hush
 
 UNITS = {"mm": "MM", "inch": "INCH", "metre": "M"}
 IGES, STEP = (".igs", ".iges"), (".step", ".stp")

@@ -18,7 +18,7 @@ from trunnion.geometry.mesh import Mesh
 from trunnion.model.fixture import Fixture
 from trunnion.model.playback import Moment, Timeline
 from trunnion.model.session import Session, StepRecord
-from trunnion.pipeline.bench import Bench, Benches
+from trunnion.pipeline.context import Context, Contexts
 from trunnion.pipeline.steps import STEP_TABLE, STEPS, Step, step_named
 from trunnion.progress import QUIET, Progress
 from trunnion.settings import Value, checked, choose, declared
@@ -42,7 +42,7 @@ class Engine:
 
     def __init__(self, user_folder: Path | None = None) -> None:
         self._shop = load_shop(user_folder)
-        self._benches: Benches | None = None
+        self._contexts: Contexts | None = None
         self._file: tuple[bytes, str] = (b"", "")
         self._playback: Playback | None = None
 
@@ -56,9 +56,9 @@ class Engine:
             part = read_part(path, solid=solid, progress=progress.part(0.0, 0.7))
             with part.watched(progress.part(0.7, 1.0)):
                 part.graph()
-        self._benches = Benches(part, self._shop)
+        self._contexts = Contexts(part, self._shop)
         self._file = (path.read_bytes(), path.suffix)
-        return Session(part=self.bench.facts)
+        return Session(part=self.context.facts)
 
     def _open_project(self, path: Path, progress: Progress) -> Session:
         from trunnion.store.project import load_project
@@ -74,9 +74,9 @@ class Engine:
             part = read_part_bytes(data, session.part.name, suffix, solid=session.part.solid, progress=progress.part(0.0, 0.9))
         if part.digest != session.part.digest:
             raise BadInput(f"{session.part.name}: the part kept with the project is not the one its plan was made for; open the part anew")
-        benches = Benches(part, self._shop)
-        benches.after(session.cuts, progress.part(0.9, 1.0))
-        self._benches, self._file = benches, (data, suffix)
+        contexts = Contexts(part, self._shop)
+        contexts.after(session.cuts, progress.part(0.9, 1.0))
+        self._contexts, self._file = contexts, (data, suffix)
 
     def keep(self) -> tuple[bytes, str]:
         """Return the bytes and the suffix of the part file as it was read, so that another engine can take over with `attach`."""
@@ -94,22 +94,22 @@ class Engine:
         self._take(session, data, suffix, progress)
 
     @property
-    def bench(self) -> Bench:
+    def context(self) -> Context:
         """The part as read and the shop; raises `BadCall` while no part is open."""
-        if self._benches is None:
+        if self._contexts is None:
             raise BadCall("no part is open: open a STEP or IGES file first")
-        return self._benches.after(())
+        return self._contexts.after(())
 
-    def bench_of(self, session: Session, progress: Progress = QUIET) -> Bench:
+    def context_of(self, session: Session, progress: Progress = QUIET) -> Context:
         """Return the part after the session's cuts, and the shop; raises `BadCall` while no part is open."""
-        if self._benches is None:
-            return self.bench
-        return self._benches.after(session.cuts, progress)
+        if self._contexts is None:
+            return self.context
+        return self._contexts.after(session.cuts, progress)
 
     def mesh(self, session: Session, progress: Progress = QUIET) -> Mesh:
         """Return the triangles of the part, with the tag of each one's face."""
         progress = progress.afresh()
-        part = self.bench_of(session, progress).part
+        part = self.context_of(session, progress).part
         with part.watched(progress):
             return part.mesh()
 
@@ -137,7 +137,7 @@ class Engine:
     def with_cuts(self, session: Session, cuts: tuple[Cut, ...], progress: Progress = QUIET) -> Session:
         """Return the session with its part's faces divided by cuts, in their order; raise `BadInput` when one of them can't be made."""
         after = replace(session, cuts=cuts)
-        facts = self.bench_of(after, progress).facts
+        facts = self.context_of(after, progress).facts
         return replace(after, part=facts if session.part is None else replace(facts, path=session.part.path))
 
     def with_fixtures(self, session: Session, words: Sequence[str], progress: Progress = QUIET) -> Session:
@@ -166,7 +166,7 @@ class Engine:
         record = session.records.get(step.name)
         if record is None or not step.done(session):
             return "empty"
-        if self._benches is None or record.key != step.key(session, self.bench_of(session)):
+        if self._contexts is None or record.key != step.key(session, self.context_of(session)):
             return "stale"
         return "problem" if has_errors(record.findings) else "done"
 
@@ -184,14 +184,14 @@ class Engine:
 
     def _run_one(self, session: Session, step: Step, progress: Progress) -> Session:
         began = time.perf_counter()
-        bench = self.bench_of(session, progress)
+        context = self.context_of(session, progress)
         try:
-            with compiling(progress), bench.part.watched(progress):
-                result = step.work(session, bench, progress)
+            with compiling(progress), context.part.watched(progress):
+                result = step.work(session, context, progress)
         except TrunnionError as reason:
             raise type(reason)(_whole_line(session, str(reason))) from None
         # What a step uses may depend on its own result: the settings of the family that was recognised.
-        key = progress.aside(lambda _: step.key(result.session, bench))
+        key = progress.aside(lambda _: step.key(result.session, context))
         record = StepRecord(key=key, seconds=time.perf_counter() - began, findings=result.findings)
         kept = {name: session.records[name] for name in STEPS if name in session.records}
         return replace(result.session, records={name: record if name == step.name else kept[name]
@@ -202,7 +202,7 @@ class Engine:
         from trunnion.pipeline.playback import Playback
         progress = progress.afresh()
         with compiling(progress):
-            self._playback = Playback(session, self.bench_of(session), cell, progress)
+            self._playback = Playback(session, self.context_of(session), cell, progress)
         return self._playback.timeline
 
     def moment(self, key: str, position: float, seconds: float = float("inf"), progress: Progress = QUIET) -> Moment:
@@ -234,7 +234,7 @@ class Engine:
         from trunnion.pipeline.writing import name_of, write_documents
         if self.states(session)["verify"] not in FRESH:
             raise BadCall("something changed since the proof: verify again before anything leaves")
-        part, progress = self.bench_of(session).part, progress.afresh()
+        part, progress = self.context_of(session).part, progress.afresh()
         with compiling(progress), part.watched(progress):
             mesh = part.mesh(tolerance.PICTURE)
             files = write_documents(session, mesh, Path(folder), name=name, date=date, progress=progress.part(0.1, 0.9))

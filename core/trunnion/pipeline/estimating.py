@@ -3,22 +3,22 @@
 from __future__ import annotations
 
 from trunnion.model.session import Session
-from trunnion.pipeline.bench import Bench
+from trunnion.pipeline.context import Context
 from trunnion.plan.freeform.estimate import Estimate, estimate_of, measured
 from trunnion.toolpath.time import machining_time
 
 
-def estimate(session: Session, bench: Bench) -> Estimate | None:
+def estimate(session: Session, context: Context) -> Estimate | None:
     """Return how long each area of curved faces takes, and the gain of cutters of their own; None where the plan has no such area.
 
     The area rates are the toolpaths' own where those are there.
     """
     if session.process is None:
         return None
-    found = estimate_of(session.process, bench.part.graph().area)
+    found = estimate_of(session.process, context.part.graph().area)
     if found is None or not session.paths:
         return found
-    machines = {s.name: bench.shop.machine(s.machine) for s in session.process.setups}
+    machines = {s.name: context.shop.machine(s.machine) for s in session.process.setups}
     seconds = {}
     for area in found.areas:
         made = session.path_of(area.operation)

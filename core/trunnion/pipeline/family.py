@@ -16,7 +16,7 @@ from trunnion.findings import Finding, error, info, warning
 from trunnion.geometry.facegraph import FaceGraph
 from trunnion.model.feature import Recognition, TakenFor
 from trunnion.model.session import Session
-from trunnion.pipeline.bench import Bench
+from trunnion.pipeline.context import Context
 from trunnion.progress import Progress
 from trunnion.recognize.contract import Suitability
 from trunnion.settings import checked, choose, setting, settings
@@ -67,30 +67,30 @@ def ratings(graph: FaceGraph) -> tuple[Rated, ...]:
     return tuple(sorted((r for r in found if r.served or r.suits.score >= ENOUGH), key=lambda r: r.rank, reverse=True))
 
 
-def recognised(session: Session, bench: Bench, progress: Progress) -> Recognition:
+def recognised(session: Session, context: Context, progress: Progress) -> Recognition:
     """Return what is recognised on the part of a session as the family that it asks for, or as the one that suits it best.
 
     Raises `BadInput` when the family can't work on the part, `Cancelled` when a person asked to stop.
     """
     wanted = checked(choose(RecognizeSettings, session.choices)).family
     progress.at(0.0, "looking for the family")
-    graph = bench.part.graph()
+    graph = context.part.graph()
     rated = progress.aside(lambda _: ratings(graph))
     best = rated[0] if wanted == AUTOMATIC else next(r for r in rated if r.name == wanted and r.served)
     unserved = () if rated[0].served else (_no_family(rated[0]),)
     if not best.served:
-        return _nothing(best, bench, unserved)
+        return _nothing(best, context, unserved)
     chosen = checked(choose(best.kind.settings, session.choices))
-    found: Recognition = best.kind.recognize(graph, bench.part, chosen, progress)
+    found: Recognition = best.kind.recognize(graph, context.part, chosen, progress)
     poor = _unexplained(best, found)
     if wanted == AUTOMATIC:
         return _stopped(replace(found, taken_for=best.taken(), findings=(*found.findings, _told(best))), poor)
     return replace(found, taken_for=best.taken(), findings=(*found.findings, *(_milder(f) for f in (*unserved, *poor))))
 
 
-def _nothing(best: Rated, bench: Bench, why: Sequence[Finding]) -> Recognition:
+def _nothing(best: Rated, context: Context, why: Sequence[Finding]) -> Recognition:
     """Return the recognition of a part that no family serves: every face unexplained."""
-    found = Recognition(family=best.name, unexplained=tuple(bench.part.tags), unexplained_share=1.0, taken_for=best.taken(),
+    found = Recognition(family=best.name, unexplained=tuple(context.part.tags), unexplained_share=1.0, taken_for=best.taken(),
                         findings=(_told(best),))
     return _stopped(found, why)
 

@@ -53,14 +53,14 @@ def measure_fine(engine: Engine, session: Session, faces: Sequence[int], spacing
 
     if not session.posted:
         raise BadCall("no programs yet: prove them first")
-    machines = engine.bench_of(session).shop.machines
+    machines = engine.context_of(session).shop.machines
     programs = progress.aside(lambda _: read_back(session, session.posted, machines), "reading the text back")
     if not any(p.sections for p in programs):
         raise BadCall("the programs cut nothing: there is nothing to measure")
     home = programs[0].setup.frame
     sections = [s for p in programs for s in _seen_from(p, home)]
     moves = moves_of(sections)
-    found = fine_measure([ExactFace(engine.bench_of(session).part, tag, home) for tag in faces], moves, spacing, progress=progress)
+    found = fine_measure([ExactFace(engine.context_of(session).part, tag, home) for tag in faces], moves, spacing, progress=progress)
     lower = sections[int(moves.section[found.step.move])].operation if found.step.move >= 0 else ""
     return FineFigures(faces=tuple(faces), scallop=found.scallop.value, scallop_at=home.to_world(found.scallop.place),
                        gouge=found.gouge.value, gouge_at=home.to_world(found.gouge.place), step=found.step.value,

@@ -14,7 +14,7 @@ from trunnion.findings import BadCall, BadInput
 from trunnion.geometry.cut import Cut
 from trunnion.model.feature import FaceRole, Feature, Recognition
 from trunnion.model.session import Session
-from trunnion.pipeline.hand import free_id, without_faces
+from trunnion.pipeline.manual_edits import free_id, without_faces
 from trunnion.pipeline.steps import measured_anew
 from trunnion.progress import QUIET, Progress
 from trunnion.recognize.contract import exclusive_kinds
@@ -61,7 +61,7 @@ def with_moved(engine: Engine, session: Session, faces: Iterable[int], group: st
     or an id that no group has.
     """
     found, moved = _recognition(session), set(faces)
-    strange = sorted(moved - set(engine.bench_of(session).part.tags))
+    strange = sorted(moved - set(engine.context_of(session).part.tags))
     if strange or not moved:
         raise BadInput(f"face {strange[0]} is not a face of the chosen solid" if strange else "no faces were chosen to be moved")
     sharing = exclusive_kinds(found.family)
@@ -72,7 +72,7 @@ def with_moved(engine: Engine, session: Session, faces: Iterable[int], group: st
     features = features if into in features else (*features, into)
     loose = tuple(t for t in found.unexplained if t not in moved)
     after = replace(found.with_unexplained(loose), features=features)
-    return measured_anew(replace(session, recognition=after), engine.bench_of(session))
+    return measured_anew(replace(session, recognition=after), engine.context_of(session))
 
 
 def tags_of(session: Session, what: Sequence[str]) -> tuple[int, ...]:
@@ -99,7 +99,7 @@ def export(engine: Engine, session: Session, what: Sequence[str], path: str | Pa
     Raises `BadInput` for another suffix, and when the file can't be written.
     """
     from trunnion.part.write import write_faces
-    part, tags = engine.bench_of(session).part, tags_of(session, what)
+    part, tags = engine.context_of(session).part, tags_of(session, what)
     write_faces([part.face_shape(t) for t in tags], path)
     return len(tags)
 
@@ -107,13 +107,13 @@ def export(engine: Engine, session: Session, what: Sequence[str], path: str | Pa
 def size_errors(engine: Engine, session: Session, counts: Sequence[int] = COUNTS, progress: Progress = QUIET) -> tuple[SizeError, ...]:
     """Return how exact the feature sizes are, and what they cost, for so many points on each edge; the last is the paper's repair."""
     from trunnion.recognize.surface.accuracy import size_errors as measured
-    part = engine.bench_of(session).part
+    part = engine.context_of(session).part
     return measured(part, part.tags, counts, progress)
 
 
 def boundary_errors(engine: Engine, session: Session) -> dict[int, float]:
     """Return how far each face's boundary curves are from its surface at most, mm, by tag: what the file itself leaves open."""
-    return engine.bench_of(session).part.boundary_error()
+    return engine.context_of(session).part.boundary_error()
 
 
 def _recognition(session: Session) -> Recognition:

@@ -21,7 +21,7 @@ from trunnion.model.playback import Moment, Passage, Timeline
 from trunnion.model.program import Program
 from trunnion.model.session import PostedFile, Session
 from trunnion.model.toolpath import Mark, Motion, Toolpath
-from trunnion.pipeline.bench import Bench
+from trunnion.pipeline.context import Context
 from trunnion.pipeline.proving import programs_of, read_back
 from trunnion.post.release import release
 from trunnion.progress import QUIET, Progress
@@ -54,11 +54,11 @@ _PER_MOVE = ("start", "end", "start_axis", "end_axis", "centre", "sweep", "uprig
 class Playback:
     """A plan that can be looked at from its first block to its last. Not for several threads at a time."""
 
-    def __init__(self, session: Session, bench: Bench, cell: float = 0.0, progress: Progress = QUIET) -> None:
+    def __init__(self, session: Session, context: Context, cell: float = 0.0, progress: Progress = QUIET) -> None:
         """`cell` mm is the fineness of the stock; 0: as fine as a picture shows. Raises `BadCall` where nothing can be played."""
         if session.process is None or session.blank is None:
             raise BadCall("no toolpaths yet: generate them first")
-        programs, files = progress.aside(lambda _: played(session, bench.shop.machines), "reading the text back")
+        programs, files = progress.aside(lambda _: played(session, context.shop.machines), "reading the text back")
         if not any(p.sections for p in programs):
             raise BadCall("no toolpaths yet: generate them first")
         self.blank = session.blank
@@ -66,7 +66,7 @@ class Playback:
         self.cell = cell or float(np.max(self.blank.size)) / (FINENESS if bundles == ("z",) else COARSER)
         self._programs = programs
         self._moves = progress.aside(lambda _: [moves_of(p.sections) for p in programs], "putting the blocks in time")
-        machine = bench.shop.machines[programs[0].setup.machine]
+        machine = context.shop.machines[programs[0].setup.machine]
         self.timeline = progress.aside(lambda _: timeline_of(programs, self._moves, files, machine,
                                                              digest(self.cell, [f.text for f in files], _keys(session))))
         self._starts = np.cumsum([0, *(len(m) for m in self._moves)])

@@ -14,8 +14,8 @@ from trunnion.model.program import Program, ProgramSection
 from trunnion.model.session import PostedFile, Session
 from trunnion.model.setup import Setup
 from trunnion.model.verdict import Outcome, Verdict
-from trunnion.pipeline.bench import Bench
-from trunnion.pipeline.placing import places_of
+from trunnion.pipeline.context import Context
+from trunnion.pipeline.work_position import places_of
 from trunnion.post.header import Header
 from trunnion.post.readers import read_program
 from trunnion.post.settings import PostSettings
@@ -79,15 +79,15 @@ def with_engagement(program: Program, process: ProcessTree) -> Program:
     return replace(program, sections=sections)
 
 
-def prove_session(session: Session, bench: Bench, progress: Progress) -> tuple[Verdict, tuple[PostedFile, ...]]:
+def prove_session(session: Session, context: Context, progress: Progress) -> tuple[Verdict, tuple[PostedFile, ...]]:
     """Return the verdict on the posted text of a session, and that text."""
     if session.process is None or session.blank is None or session.part is None:
         raise BadCall("no toolpaths yet: generate them first")
     progress.at(0.0, "posting")
-    posted = progress.aside(lambda own: post_texts(session, Header.of(session), bench.shop.machines, own))
+    posted = progress.aside(lambda own: post_texts(session, Header.of(session), context.shop.machines, own))
     progress.at(0.05, "reading the text back")
-    programs = progress.aside(lambda own: read_back(session, posted, bench.shop.machines, own))
-    verdict = prove_programs(session, bench, programs, progress.part(0.1, 1.0, "proof"))
+    programs = progress.aside(lambda own: read_back(session, posted, context.shop.machines, own))
+    verdict = prove_programs(session, context, programs, progress.part(0.1, 1.0, "proof"))
     return held_back(verdict, errors_before(session)), posted
 
 
@@ -112,7 +112,7 @@ def held_back(verdict: Verdict, errors: Sequence[Finding]) -> Verdict:
     return replace(verdict, outcome=Outcome.FAILED, findings=(held, *verdict.findings))
 
 
-def prove_programs(session: Session, bench: Bench, programs: tuple[Program, ...], progress: Progress) -> Verdict:
+def prove_programs(session: Session, context: Context, programs: tuple[Program, ...], progress: Progress) -> Verdict:
     """Return the verdict on programs, wherever their motions come from."""
     if session.process is None or session.blank is None:
         raise BadCall("no blank or operations: nothing to prove against")
@@ -121,9 +121,9 @@ def prove_programs(session: Session, bench: Bench, programs: tuple[Program, ...]
     strange = next((f for f in session.fixtures if f.setup and f.setup not in names), None)
     if strange is not None:
         raise BadInput(f"fixture {strange.name} is for setup {strange.setup}; the part has {', '.join(names)}")
-    machine = bench.shop.machines[session.process.setups[0].machine]
+    machine = context.shop.machines[session.process.setups[0].machine]
     planned = {tag for operation in session.process.operations if not operation.suppressed for tag in operation.faces}
-    verdict: Verdict = prove(programs, bench.part, session.blank, bench.shop.tools, machine,
+    verdict: Verdict = prove(programs, context.part, session.blank, context.shop.tools, machine,
                              checked(choose(ProofSettings, session.choices)), progress, planned_faces=sorted(planned),
-                             material=bench.shop.materials.get(session.process.material))
+                             material=context.shop.materials.get(session.process.material))
     return verdict

@@ -16,14 +16,14 @@ from trunnion.model.process import ProcessTree
 from trunnion.model.session import Session
 from trunnion.model.setup import Setup
 from trunnion.model.tool import Tool
-from trunnion.pipeline.asking import PartSurroundings
-from trunnion.pipeline.bench import Bench
+from trunnion.pipeline.clearance import ClearanceQuery
+from trunnion.pipeline.context import Context
 from trunnion.plan.contract import PartContext
 from trunnion.progress import Progress
 from trunnion.settings import digest
+from trunnion.toolpath.reorient import Pose
 from trunnion.toolpath.sides import Sides
 from trunnion.toolpath.stock import PlanningStock
-from trunnion.toolpath.turning import Pose
 
 if TYPE_CHECKING:
     from trunnion.part.part import Part
@@ -34,23 +34,23 @@ T = TypeVar("T")
 class SessionContext:
     """The part of a session, with its skins and the clearance queries of its setups; queries are kept for each cutting frame."""
 
-    def __init__(self, bench: Bench, session: Session) -> None:
-        self.part: Part = bench.part
-        self._bench, self._session = bench, session
-        self._around: dict[tuple[str, str], PartSurroundings] = {}
+    def __init__(self, context: Context, session: Session) -> None:
+        self.part: Part = context.part
+        self._context, self._session = context, session
+        self._around: dict[tuple[str, str], ClearanceQuery] = {}
 
     def skin(self, chord: float, progress: Progress) -> Skin:
         """Return the part's skin in its own coordinates within a chord error (mm)."""
-        return self._bench.skin(chord, progress)
+        return self._context.skin(chord, progress)
 
-    def around(self, setup: Setup, cutting: Frame, skin: Skin, progress: Progress) -> PartSurroundings:
+    def around(self, setup: Setup, cutting: Frame, skin: Skin, progress: Progress) -> ClearanceQuery:
         """Return the clearance queries of a setup for a cutting frame, in which `skin` is the part's.
 
         `progress` is looked at from now on.
         """
         key = (setup.name, digest(cutting))
         if key not in self._around:
-            self._around[key] = PartSurroundings(self.part, skin, cutting, setup.frame, self._bench.shop.machine(setup.machine),
+            self._around[key] = ClearanceQuery(self.part, skin, cutting, setup.frame, self._context.shop.machine(setup.machine),
                                                  self._session.fixtures_of(setup.name))
         self._around[key].progress = progress
         return self._around[key]

@@ -15,12 +15,12 @@ from trunnion import registry
 from trunnion.findings import BadCall, BadInput, Finding
 from trunnion.model.feature import Recognition
 from trunnion.model.session import Session
-from trunnion.pipeline.bench import Bench
+from trunnion.pipeline.context import Context
 from trunnion.pipeline.family import FAMILIES, KINDS, RecognizeSettings, recognised
-from trunnion.pipeline.hand import with_features_by_hand, with_operations_by_hand
-from trunnion.pipeline.making import STRATEGIES, findings_of, make_paths, strategy_settings
+from trunnion.pipeline.manual_edits import with_features_by_hand, with_operations_by_hand
 from trunnion.pipeline.proving import prove_session
 from trunnion.pipeline.scene import SessionContext
+from trunnion.pipeline.toolpaths import STRATEGIES, findings_of, make_paths, strategy_settings
 from trunnion.plan.blank import BlankSettings, make_blank
 from trunnion.plan.contract import PLANNERS, RouteJob, planner_for
 from trunnion.plan.cutting import CuttingSettings, balance
@@ -51,17 +51,17 @@ class Step:
     title: str
     after: tuple[str, ...]
     settings: Callable[[], tuple[type, ...]]
-    reads: Callable[[Session, Bench], tuple[Any, ...]]
-    work: Callable[[Session, Bench, Progress], Result]
+    reads: Callable[[Session, Context], tuple[Any, ...]]
+    work: Callable[[Session, Context, Progress], Result]
     done: Callable[[Session], bool]
     version: int = 1
     uses: Callable[[Session], tuple[type, ...]] | None = None
 
-    def key(self, session: Session, bench: Bench) -> str:
+    def key(self, session: Session, context: Context) -> str:
         """Return the digest of everything the step would be given now."""
         used = self.settings() if self.uses is None else self.uses(session)
         chosen: tuple[Any, ...] = tuple(checked(choose(group, session.choices)) for group in used)
-        return digest(self.name, self.version, chosen, self.reads(session, bench), *session.cuts)
+        return digest(self.name, self.version, chosen, self.reads(session, context), *session.cuts)
 
 
 def _family_settings() -> tuple[type, ...]:
@@ -97,21 +97,21 @@ def _route_settings() -> tuple[type, ...]:
                                                  for group in registry.get(PLANNERS, name).settings))))
 
 
-def _recognize(session: Session, bench: Bench, progress: Progress) -> Result:
-    found = replace(recognised(session, bench, progress), face_area=bench.part.graph().area)
+def _recognize(session: Session, context: Context, progress: Progress) -> Result:
+    found = replace(recognised(session, context, progress), face_area=context.part.graph().area)
     kept = with_features_by_hand(session.recognition, found)
     after = replace(session, recognition=kept)
-    return Result(session=after if kept is found else measured_anew(after, bench), findings=kept.findings)
+    return Result(session=after if kept is found else measured_anew(after, context), findings=kept.findings)
 
 
-def measured_anew(session: Session, bench: Bench) -> Session:
+def measured_anew(session: Session, context: Context) -> Session:
     """Return the session with the sizes of features whose faces a person changed, where the family can measure them."""
     found = _recognition(session)
     family = registry.get(FAMILIES, found.family)() if found.family in registry.names(FAMILIES) else None
     if not isinstance(family, Measuring):
         return session
     chosen: Any = checked(choose(family.settings, session.choices))
-    return replace(session, recognition=family.measured(found, bench.part.graph(), bench.part, chosen))
+    return replace(session, recognition=family.measured(found, context.part.graph(), context.part, chosen))
 
 
 def _recognition(session: Session) -> Recognition:
@@ -128,55 +128,55 @@ def _certain(session: Session) -> Recognition:
     return found
 
 
-def _size(session: Session, bench: Bench, progress: Progress) -> Result:
+def _size(session: Session, context: Context, progress: Progress) -> Result:
     progress.at(0.0, "measuring")
-    return Result(session=replace(session, sizes=size_table(_certain(session), bench.part.graph())))
+    return Result(session=replace(session, sizes=size_table(_certain(session), context.part.graph())))
 
 
-def _blank(session: Session, bench: Bench, progress: Progress) -> Result:
+def _blank(session: Session, context: Context, progress: Progress) -> Result:
     progress.at(0.0, "blank")
     recognition = _certain(session)
     chosen = checked(choose(BlankSettings, session.choices))
-    if chosen.material not in bench.shop.materials:
-        raise BadInput(f"there is no material {chosen.material} in the catalogue; known: {', '.join(sorted(bench.shop.materials))}")
+    if chosen.material not in context.shop.materials:
+        raise BadInput(f"there is no material {chosen.material} in the catalogue; known: {', '.join(sorted(context.shop.materials))}")
     frame = recognition.frame
-    low, high = bench.box(frame)
-    return Result(session=replace(session, blank=make_blank(frame, low, high, bench.shop.materials[chosen.material], chosen)))
+    low, high = context.box(frame)
+    return Result(session=replace(session, blank=make_blank(frame, low, high, context.shop.materials[chosen.material], chosen)))
 
 
-def _route(session: Session, bench: Bench, progress: Progress) -> Result:
+def _route(session: Session, context: Context, progress: Progress) -> Result:
     recognition = _certain(session)
     if session.blank is None:
         raise BadCall("no blank yet: create the blank first")
     planner = planner_for(recognition.family)
     setup = checked(choose(SetupSettings, session.choices))
-    if setup.machine not in bench.shop.machines:
-        raise BadInput(f"there is no machine {setup.machine} in the catalogue; known: {', '.join(sorted(bench.shop.machines))}")
-    setups = make_setups(recognition, session.blank, bench.shop.machines[setup.machine], setup)
-    planner.can_plan(bench.part)
-    process = planner.route(RouteJob(recognition=recognition, sizes=session.sizes, blank=session.blank, setups=setups, shop=bench.shop,
-                                     context=SessionContext(bench, session), choices=session.choices, progress=progress))
+    if setup.machine not in context.shop.machines:
+        raise BadInput(f"there is no machine {setup.machine} in the catalogue; known: {', '.join(sorted(context.shop.machines))}")
+    setups = make_setups(recognition, session.blank, context.shop.machines[setup.machine], setup)
+    planner.can_plan(context.part)
+    process = planner.route(RouteJob(recognition=recognition, sizes=session.sizes, blank=session.blank, setups=setups, shop=context.shop,
+                                     context=SessionContext(context, session), choices=session.choices, progress=progress))
     process = with_operations_by_hand(session.process, process)
     return Result(session=replace(session, setups=setups, process=process), findings=process.findings)
 
 
-def _optimize(session: Session, bench: Bench, progress: Progress) -> Result:
+def _optimize(session: Session, context: Context, progress: Progress) -> Result:
     progress.at(0.0, "speeds and feeds")
     if session.process is None:
         raise BadCall("no operations yet: generate the route first")
     routed = session.process
-    balanced = balance(routed, bench.shop, checked(choose(CuttingSettings, session.choices)), session.choices)
+    balanced = balance(routed, context.shop, checked(choose(CuttingSettings, session.choices)), session.choices)
     return Result(session=replace(session, process=balanced), findings=overloads(balanced.operations))
 
 
-def _toolpath(session: Session, bench: Bench, progress: Progress) -> Result:
-    paths = make_paths(session, bench, progress)
+def _toolpath(session: Session, context: Context, progress: Progress) -> Result:
+    paths = make_paths(session, context, progress)
     found = findings_of(paths, session.process) if session.process else ()
     return Result(session=replace(session, paths=paths), findings=found)
 
 
-def _verify(session: Session, bench: Bench, progress: Progress) -> Result:
-    verdict, posted = prove_session(session, bench, progress)
+def _verify(session: Session, context: Context, progress: Progress) -> Result:
+    verdict, posted = prove_session(session, context, progress)
     return Result(session=replace(session, verdict=verdict, posted=posted), findings=verdict.findings)
 
 

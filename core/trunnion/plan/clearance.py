@@ -1,4 +1,4 @@
-"""Clearance queries: is a tool in a pose clear of part and fixtures, and can the machine hold its axis? Answered by `pipeline.asking`."""
+"""Clearance queries: is a tool in a pose clear of part and fixtures, and can the machine hold its axis? Answered by `pipeline.clearance`."""
 
 from __future__ import annotations
 

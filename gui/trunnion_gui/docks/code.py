@@ -9,9 +9,9 @@ from PySide6.QtWidgets import QComboBox, QHBoxLayout, QLabel, QVBoxLayout, QWidg
 from trunnion.model.session import PostedFile
 from trunnion_gui.document import Document
 from trunnion_gui.i18n import tr
-from trunnion_gui.leaving import as_they_leave
 from trunnion_gui.look.colours import Theme
 from trunnion_gui.look.words import grouped
+from trunnion_gui.release_preview import as_they_leave
 from trunnion_gui.widgets.code import CodeView
 
 

@@ -26,8 +26,8 @@ from trunnion_gui.document.selection import SelectionModel
 from trunnion_gui.edits import Edit, History
 from trunnion_gui.i18n import tr
 from trunnion_gui.worker.drawing import Drawing
+from trunnion_gui.worker.requests import Group, State, Work
 from trunnion_gui.worker.steps import STEPS, TITLES, until
-from trunnion_gui.worker.verbs import Group, State, Work
 from trunnion_gui.worker.worker import ENGINE, Reply
 
 

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING
 from PySide6.QtCore import QObject, Signal
 
 from trunnion_gui.i18n import tr
-from trunnion_gui.worker.verbs import Opened
+from trunnion_gui.worker.requests import Opened
 
 if TYPE_CHECKING:
     from trunnion_gui.document.document import Document

@@ -14,7 +14,7 @@ from PySide6.QtCore import QObject, Signal
 
 from trunnion.findings import Severity
 from trunnion_gui.i18n import tr
-from trunnion_gui.worker.verbs import Work
+from trunnion_gui.worker.requests import Work
 from trunnion_gui.worker.worker import Reply, Worker
 
 Finish = Callable[[Any], None]

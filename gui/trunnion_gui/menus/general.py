@@ -67,12 +67,12 @@ def add_general_commands(shell: Shell) -> None:
         command(id, text, partial(document.run, last, tr(text)), icon, keys, f"{text}: what is stale up to here", has_part)
     command("job.cancel", "Cancel the running job", document.jobs.cancel, "cancel", "Ctrl+.", "", lambda: document.is_busy)
     for number, view in enumerate(_VIEWS):
-        command(f"view.{view}", f"View: {view}", lambda view=view: shell.centre.scene.look(view),  # type: ignore[misc]
+        command(f"view.{view}", f"View: {view}", lambda view=view: shell.viewport.scene.look(view),  # type: ignore[misc]
                 view, f"Ctrl+{number}", "", None)
-    command("view.fit", "Fit", lambda: shell.centre.scene.fit(), "fit", "F", "Fit the part into the picture", None)
+    command("view.fit", "Fit", lambda: shell.viewport.scene.fit(), "fit", "F", "Fit the part into the picture", None)
     for name, text, keys, on in _LAYERS:
-        switch(name, text, lambda on, name=name: shell.centre.show_layer(name, on), keys, checked=on)  # type: ignore[misc]
-    switch("section", "Section", lambda on: shell.centre.show_section(on), "X", "Cut the part open across its height")
+        switch(name, text, lambda on, name=name: shell.viewport.show_layer(name, on), keys, checked=on)  # type: ignore[misc]
+    switch("section", "Section", lambda on: shell.viewport.show_section(on), "X", "Cut the part open across its height")
     switch("deviation", "Deviation map", shell.show_deviation, "D",
            "Colour the part by gouges and material left, as the proof measured them",
            enabled=lambda: shell.deviation.can_show or shell.deviation.is_on)

@@ -59,7 +59,7 @@ class Handlers:
         """Ask for a file and write what the viewport shows."""
         path = self._shell.dialogs.picture_path()
         if path:
-            self._shell.centre.scene.save_picture(path)
+            self._shell.viewport.scene.save_picture(path)
 
     def program(self) -> None:
         """Do the whole line; without a part, choose one first."""
@@ -78,7 +78,7 @@ class Handlers:
 
     def leave(self) -> None:
         """Put away what is being done in the picture; else select nothing."""
-        if not self._shell.centre.end_tool():
+        if not self._shell.viewport.end_tool():
             self._document.selection.select_face(0)
 
     def suppress_selected(self) -> None:

@@ -6,13 +6,13 @@ from typing import Protocol
 
 from trunnion_gui.actions import Registry
 from trunnion_gui.arrangement import Arrangement
-from trunnion_gui.centre import Centre
 from trunnion_gui.deviation import DeviationSource
 from trunnion_gui.dialogs import FileDialogs
 from trunnion_gui.document import Document
 from trunnion_gui.look.colours import Theme
 from trunnion_gui.menus.handlers import Handlers
 from trunnion_gui.playback.player import Player
+from trunnion_gui.viewport_pane import ViewportPane
 from trunnion_gui.widgets.finder import Finder
 
 
@@ -23,7 +23,7 @@ class Shell(Protocol):
     registry: Registry
     player: Player
     deviation: DeviationSource
-    centre: Centre
+    viewport: ViewportPane
     finder: Finder
     dialogs: FileDialogs
     handlers: Handlers

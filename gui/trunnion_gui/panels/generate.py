@@ -7,9 +7,9 @@ from PySide6.QtWidgets import QCheckBox, QGridLayout, QHBoxLayout, QLabel, QWidg
 
 from trunnion.model.verdict import Outcome
 from trunnion_gui.i18n import tr
-from trunnion_gui.leaving import rejected_names
 from trunnion_gui.look.colours import motions
 from trunnion_gui.look.words import amount, duration, share
+from trunnion_gui.release_preview import rejected_names
 from trunnion_gui.widgets.layout import empty
 from trunnion_gui.widgets.panel import Panel, rule, swatch
 

@@ -16,8 +16,8 @@ from trunnion_gui.look import icons
 from trunnion_gui.look.colours import Theme
 from trunnion_gui.look.words import duration
 from trunnion_gui.widgets.foldout import Foldout
+from trunnion_gui.worker.requests import Group
 from trunnion_gui.worker.steps import STEPS, Stage, joined_state
-from trunnion_gui.worker.verbs import Group
 
 _FEW = 4
 """The first group of a step is shown open when it has at most so many settings; everything else is folded."""

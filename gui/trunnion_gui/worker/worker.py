@@ -25,8 +25,8 @@ from PySide6.QtCore import QObject, QTimer, Signal
 
 from trunnion.findings import Cancelled, TrunnionError
 from trunnion.progress import Progress
-from trunnion_gui.worker.parcel import packed, unpacked
-from trunnion_gui.worker.verbs import Work, is_writing, work_of
+from trunnion_gui.worker.requests import Work, is_writing, work_of
+from trunnion_gui.worker.shared_memory import packed, unpacked
 
 ENGINE = "trunnion.pipeline:Engine"
 GRACE_S = 0.35

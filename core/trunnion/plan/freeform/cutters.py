@@ -11,9 +11,9 @@ import numpy as np
 from trunnion.findings import BadInput
 from trunnion.geometry.arrays import Bools
 from trunnion.model.tool import Tool
-from trunnion.plan.choosing import depth_reached
 from trunnion.plan.freeform.reach import Places, reached
 from trunnion.plan.freeform.space import SurfaceSpace
+from trunnion.plan.tool_choice import depth_reached
 from trunnion.progress import Progress
 from trunnion.shop import Shop
 

@@ -11,10 +11,10 @@ from trunnion import tolerance
 from trunnion.geometry.arrays import Bools
 from trunnion.geometry.region import EMPTY_REGION, Region
 from trunnion.model.tool import Tool
-from trunnion.plan.choosing import covered_by_few, depth_reached
 from trunnion.plan.freeform.areas import VERTICAL
 from trunnion.plan.freeform.lands import SIDE, SKIM, Keeping, Land, Standing, covered, stands_free, without
 from trunnion.plan.freeform.reach import Places
+from trunnion.plan.tool_choice import covered_by_few, depth_reached
 from trunnion.progress import Progress
 
 MOST = 0.9

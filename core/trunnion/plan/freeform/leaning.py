@@ -9,11 +9,11 @@ import numpy as np
 
 from trunnion.geometry.arrays import Bools, Floats
 from trunnion.model.tool import Tool
-from trunnion.plan.choosing import depth_reached
 from trunnion.plan.clearance import Asker
 from trunnion.plan.freeform.cutter import tip_at
 from trunnion.plan.freeform.cutters import LEFT, Chosen
 from trunnion.plan.freeform.reach import Places
+from trunnion.plan.tool_choice import depth_reached
 from trunnion.progress import QUIET, Progress
 
 LEANS = np.radians([25.0, 50.0, 70.0])

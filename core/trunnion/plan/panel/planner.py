@@ -10,7 +10,7 @@ from trunnion.plan.contract import Driven, DriveNeeds, RouteJob, Scene, driven_b
 from trunnion.plan.freeform.drive import SurfaceDrive
 from trunnion.plan.freeform.driving import surface_driven
 from trunnion.plan.panel.route import make_route
-from trunnion.plan.panel.wishes import WISHES
+from trunnion.plan.panel.tasks import WISHES
 from trunnion.plan.prismatic.drive import PlaneDrive, drive_of
 from trunnion.plan.prismatic.regions import Space
 from trunnion.plan.settings import RouteSettings

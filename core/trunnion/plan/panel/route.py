@@ -14,16 +14,16 @@ from trunnion.model.process import ProcessTree
 from trunnion.model.session import SizeEntry
 from trunnion.model.setup import Setup
 from trunnion.model.tool import Tool
-from trunnion.plan.choosing import candidates, covered_by_few, depth_reached
 from trunnion.plan.cutting import CuttingSettings, cutting_data, roughing_depth, roughing_width
 from trunnion.plan.feasibility import too_large, too_many_tools
-from trunnion.plan.order import Job, ordered
-from trunnion.plan.panel.left import beside, no_cutter, not_planned, plannable, without_lonely_ribs
-from trunnion.plan.panel.wishes import DEPENDENT, WISHES, Draft, Wish, catalogue, floor_distance, with_falling_sizes
+from trunnion.plan.panel.feasibility import beside, no_cutter, not_planned, plannable, without_lonely_ribs
+from trunnion.plan.panel.tasks import DEPENDENT, WISHES, Draft, OperationTask, catalogue, floor_distance, with_falling_sizes
 from trunnion.plan.prismatic.drive import FLOOR_ALLOWANCE, WALL_ALLOWANCE
 from trunnion.plan.prismatic.regions import Sections, Space, parent_of
+from trunnion.plan.sequence import Job, ordered
 from trunnion.plan.settings import RouteSettings
 from trunnion.plan.setups import from_below
+from trunnion.plan.tool_choice import candidates, covered_by_few, depth_reached
 from trunnion.plan.typical import typical_plan
 from trunnion.progress import Progress
 from trunnion.settings import Value, choose
@@ -76,88 +76,88 @@ def _from_below(feature: Feature, recognition: Recognition, part: Sections) -> b
     return bool(recognition.frame.local_direction(part.graph().normal[tags[0] - 1])[2] < 0.0)
 
 
-def _with_cutters(draft: Draft, features: Sequence[Feature], stages: Sequence[Stage], progress: Progress) -> list[Wish]:
-    """Return the wishes that have a cutter, chosen so that few cutters serve all; those that depend on another's cutter come last."""
-    wishes: list[Wish] = []
+def _with_cutters(draft: Draft, features: Sequence[Feature], stages: Sequence[Stage], progress: Progress) -> list[OperationTask]:
+    """Return the tasks that have a cutter, chosen so that few cutters serve all; those that depend on another's cutter come last."""
+    tasks: list[OperationTask] = []
     rounds = [[s for s in stages if s.cutter not in DEPENDENT], *([s] for s in stages if s.cutter in DEPENDENT)]
     for done, together in enumerate(rounds):
         fits: dict[str, Sequence[Tool]] = {}
         progress.at(done / len(rounds), "what is to be cut")
-        fresh = [wish for stage in progress.each(together) for wish in WISHES[stage.cutter](draft, stage, features)]
-        for n, wish in enumerate(fresh):
-            progress.at((done + n / len(fresh)) / len(rounds), f"cutter for {wish.id}")
-            found = candidates(wish.task, catalogue(draft, wish.stage), draft.settings.reach_clearance, progress)
+        fresh = [task for stage in progress.each(together) for task in WISHES[stage.cutter](draft, stage, features)]
+        for n, task in enumerate(fresh):
+            progress.at((done + n / len(fresh)) / len(rounds), f"cutter for {task.id}")
+            found = candidates(task.requirement, catalogue(draft, task.stage), draft.settings.reach_clearance, progress)
             if found.tools:
-                fits[wish.id] = found.tools
-            elif wish.stage.cutter != "rest":
-                draft.findings.append(no_cutter(wish, found))
+                fits[task.id] = found.tools
+            elif task.stage.cutter != "rest":
+                draft.findings.append(no_cutter(task, found))
         draft.tools |= covered_by_few(fits, [*draft.loaded, *draft.tools.values()])
-        wishes += [w for w in fresh if w.id in draft.tools]
-    return with_falling_sizes(draft, wishes)
+        tasks += [w for w in fresh if w.id in draft.tools]
+    return with_falling_sizes(draft, tasks)
 
 
-def _sequenced(draft: Draft, wishes: Sequence[Wish], stages: Sequence[Stage]) -> list[Operation]:
+def _sequenced(draft: Draft, tasks: Sequence[OperationTask], stages: Sequence[Stage]) -> list[Operation]:
     rank = {stage.name: n for n, stage in enumerate(stages)}
-    after = {w.id: _before(draft, w, wishes) for w in wishes}
-    jobs = [Job(id=w.id, tool=draft.tools[w.id].name, stage=rank[w.stage.name], place=w.place, after=after[w.id]) for w in wishes]
-    by_id = {w.id: w for w in wishes}
+    after = {w.id: _before(draft, w, tasks) for w in tasks}
+    jobs = [Job(id=w.id, tool=draft.tools[w.id].name, stage=rank[w.stage.name], place=w.place, after=after[w.id]) for w in tasks]
+    by_id = {w.id: w for w in tasks}
     return [_operation(draft, by_id[id], after[id]) for id in ordered(jobs)]
 
 
-def _before(draft: Draft, wish: Wish, wishes: Sequence[Wish]) -> frozenset[str]:
-    """Return the ids that come before a wish: earlier stages on and beside its feature, larger cutters, the pocket it is sunk in."""
+def _before(draft: Draft, task: OperationTask, tasks: Sequence[OperationTask]) -> frozenset[str]:
+    """Return the ids that come before a task: earlier stages on and beside its feature, larger cutters, the pocket it is sunk in."""
     kinds = {f.id: f.kind for f in draft.recognition}
-    near = {i for i in draft.beside.get(wish.feature, ()) if kinds[i] != kinds[wish.feature]} | {wish.feature, "blank"}
-    own = next((f for f in draft.recognition if f.id == wish.feature), None)
+    near = {i for i in draft.beside.get(task.feature, ()) if kinds[i] != kinds[task.feature]} | {task.feature, "blank"}
+    own = next((f for f in draft.recognition if f.id == task.feature), None)
     parent = parent_of(own, draft.recognition) if own else None
     found: set[str] = set()
-    for other in wishes:
-        if other.stage.name in wish.stage.after_all or (other.stage.name in wish.stage.after and other.feature in near):
+    for other in tasks:
+        if other.stage.name in task.stage.after_all or (other.stage.name in task.stage.after and other.feature in near):
             found.add(other.id)
-        if parent is not None and other.stage.name == wish.stage.name and other.feature == parent.id:
+        if parent is not None and other.stage.name == task.stage.name and other.feature == parent.id:
             found.add(other.id)
-    steps = [w.id for w in wishes if w.feature == wish.feature and w.stage.name == wish.stage.name]
-    return frozenset(found | set(steps[:steps.index(wish.id)]))
+    steps = [w.id for w in tasks if w.feature == task.feature and w.stage.name == task.stage.name]
+    return frozenset(found | set(steps[:steps.index(task.id)]))
 
 
-def _operation(draft: Draft, wish: Wish, after: frozenset[str]) -> Operation:
-    tool, stage, chosen, cutting = draft.tools[wish.id], wish.stage, draft.settings, choose(CuttingSettings, {})
-    depth, width = _engagement(draft, wish, tool, cutting)
+def _operation(draft: Draft, task: OperationTask, after: frozenset[str]) -> Operation:
+    tool, stage, chosen, cutting = draft.tools[task.id], task.stage, draft.settings, choose(CuttingSettings, {})
+    depth, width = _engagement(draft, task, tool, cutting)
     choices: dict[str, Value] = {} if stage.finish else {WALL_ALLOWANCE: chosen.wall_allowance, FLOOR_ALLOWANCE: chosen.floor_allowance}
     if stage.kind == "floor":
         choices["plane.floor.wall_distance"] = floor_distance(chosen)
-    data = cutting_data(tool, draft.material, draft.machine, stage.kind, cutting, depth, width, _widest(wish, chosen))
-    rules = (stage.rule, *_tool_rules(wish, tool, chosen))
+    data = cutting_data(tool, draft.material, draft.machine, stage.kind, cutting, depth, width, _widest(task, chosen))
+    rules = (stage.rule, *_tool_rules(task, tool, chosen))
     return Operation(
-        id=wish.id, kind=stage.kind, strategy=stage.strategy, feature=wish.feature, setup=draft.space.setup.name, tool=tool,
+        id=task.id, kind=stage.kind, strategy=stage.strategy, feature=task.feature, setup=draft.space.setup.name, tool=tool,
         group=stage.name, data=data,
-        faces=wish.faces if stage.finish else (), choices=choices, rules=rules, after=tuple(sorted(after)))
+        faces=task.faces if stage.finish else (), choices=choices, rules=rules, after=tuple(sorted(after)))
 
 
-def _engagement(draft: Draft, wish: Wish, tool: Tool, cutting: CuttingSettings) -> tuple[float, float]:
+def _engagement(draft: Draft, task: OperationTask, tool: Tool, cutting: CuttingSettings) -> tuple[float, float]:
     """Return depth ap and width ae: roughing by material, even layers; finishing takes the allowance in steps that the flutes bear."""
-    rough_depth = _even(wish.height, roughing_depth(tool, draft.material, cutting))
+    rough_depth = _even(task.height, roughing_depth(tool, draft.material, cutting))
     rough_width = roughing_width(tool, draft.material, cutting)
-    kind, allowance = wish.stage.kind, draft.settings.wall_allowance
+    kind, allowance = task.stage.kind, draft.settings.wall_allowance
     if kind == "face":
-        return _even(wish.height, min(tool.flute_length / 2, rough_depth)), min(FACE_WIDTH * tool.diameter, wish.width)
+        return _even(task.height, min(tool.flute_length / 2, rough_depth)), min(FACE_WIDTH * tool.diameter, task.width)
     if kind == "floor":
         return max(draft.settings.floor_allowance, tolerance.SEW), FLOOR_WIDTH * (tool.diameter - 2 * tool.corner_radius)
     if kind in ("wall", "corner_finish", "profile_finish"):
-        return _even(wish.height, min(tool.flute_length, WALL_STEP * tool.diameter)), max(allowance, tolerance.SEW)
+        return _even(task.height, min(tool.flute_length, WALL_STEP * tool.diameter)), max(allowance, tolerance.SEW)
     if kind in ("rib_top", "island_top"):
-        return rough_depth, min(rough_width, wish.width + 2 * allowance)
+        return rough_depth, min(rough_width, task.width + 2 * allowance)
     if kind == "profile_rough":
-        return rough_depth, min(rough_width, max(wish.width - allowance, tolerance.SEW))
+        return rough_depth, min(rough_width, max(task.width - allowance, tolerance.SEW))
     return rough_depth, rough_width
 
 
-def _widest(wish: Wish, chosen: RouteSettings) -> float:
+def _widest(task: OperationTask, chosen: RouteSettings) -> float:
     """Return how wide what stands in front of the cutter can be at once, in mm: a face's shorter side, a rib with its walls' allowance; 0
     where the area doesn't say."""
-    if wish.stage.kind == "face":
-        return wish.width
-    return wish.width + 2.0 * chosen.wall_allowance if wish.stage.kind == "rib_top" and math.isfinite(wish.width) else 0.0
+    if task.stage.kind == "face":
+        return task.width
+    return task.width + 2.0 * chosen.wall_allowance if task.stage.kind == "rib_top" and math.isfinite(task.width) else 0.0
 
 
 def _even(height: float, most: float) -> float:
@@ -169,16 +169,16 @@ def _even(height: float, most: float) -> float:
     return height / max(math.ceil(height / most - tolerance.COINCIDENT), 1)
 
 
-def _tool_rules(wish: Wish, tool: Tool, chosen: RouteSettings) -> tuple[str, ...]:
-    task = wish.task
-    said = [f"{tool.name}: reaches {trimmed(depth_reached(tool), 2)} mm, {trimmed(task.depth, 2)} mm and "
+def _tool_rules(task: OperationTask, tool: Tool, chosen: RouteSettings) -> tuple[str, ...]:
+    requirement = task.requirement
+    said = [f"{tool.name}: reaches {trimmed(depth_reached(tool), 2)} mm, {trimmed(requirement.depth, 2)} mm and "
             f"{trimmed(chosen.reach_clearance, 2)} mm clearance are needed."]
-    if task.radius:
-        said.append(f"Its radius {trimmed(tool.radius, 2)} mm is at most {trimmed(task.radius, 2)} mm, "
+    if requirement.radius:
+        said.append(f"Its radius {trimmed(tool.radius, 2)} mm is at most {trimmed(requirement.radius, 2)} mm, "
                     f"{trimmed(100 * chosen.corner_share, 0)} % of the corner's.")
-    exact = "is that of the floor fillet." if task.exact else f"is at most that of the floor fillet, {trimmed(task.corner_radius, 2)} mm."
+    exact = "is that of the floor fillet." if requirement.exact else f"is at most that of the floor fillet, {trimmed(requirement.corner_radius, 2)} mm."
     said.append(f"Its corner radius {trimmed(tool.corner_radius, 2)} mm {exact}")
-    if not wish.stage.finish:
+    if not task.stage.finish:
         said.append(f"It leaves {trimmed(chosen.wall_allowance, 2)} mm on walls and {trimmed(chosen.floor_allowance, 2)} mm on floors.")
     said.append("Among the cutters that fit it is the one that serves most operations.")
     return tuple(said)

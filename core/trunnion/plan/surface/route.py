@@ -20,7 +20,6 @@ from trunnion.model.operation import Operation
 from trunnion.model.process import ProcessTree
 from trunnion.model.setup import Setup
 from trunnion.model.tool import Tool
-from trunnion.plan.choosing import depth_reached
 from trunnion.plan.clearance import Around
 from trunnion.plan.cutting import CuttingSettings, roughing_depth, roughing_width
 from trunnion.plan.feasibility import too_large, too_many_tools
@@ -34,12 +33,13 @@ from trunnion.plan.freeform.reach import Places, clear_beside, leans, places_on,
 from trunnion.plan.freeform.scallop import stepover_on_plane
 from trunnion.plan.freeform.sides import sides_for
 from trunnion.plan.freeform.space import SurfaceSpace
-from trunnion.plan.order import Job, ordered
+from trunnion.plan.sequence import Job, ordered
 from trunnion.plan.settings import RouteSettings
 from trunnion.plan.surface.draft import Draft, face_name
 from trunnion.plan.surface.land_route import Levels, plan_lands
 from trunnion.plan.surface.settings import SurfaceRouteSettings
 from trunnion.plan.surface.slivers import slivers_of, with_slivers
+from trunnion.plan.tool_choice import depth_reached
 from trunnion.plan.typical import typical_plan
 from trunnion.progress import Progress
 from trunnion.settings import Value, choose

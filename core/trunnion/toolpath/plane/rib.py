@@ -13,8 +13,8 @@ from trunnion.model.tool import Tool
 from trunnion.plan.prismatic.drive import DriveLevel, PlaneDrive
 from trunnion.progress import Progress
 from trunnion.settings import setting, settings
+from trunnion.toolpath.area_clearing import Layer, Manner, clear
 from trunnion.toolpath.builder import PathBuilder
-from trunnion.toolpath.clear import Layer, Manner, clear
 from trunnion.toolpath.contract import Planned, strategy
 from trunnion.toolpath.engagement import top_width
 from trunnion.toolpath.levels import steps_down

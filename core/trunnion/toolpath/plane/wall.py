@@ -16,8 +16,8 @@ from trunnion.model.tool import Tool
 from trunnion.plan.prismatic.drive import Floor, PlaneDrive, WallGuide, foot_clearance
 from trunnion.progress import Progress
 from trunnion.settings import setting, settings
+from trunnion.toolpath.area_clearing import Layer, Manner, clear
 from trunnion.toolpath.builder import PathBuilder
-from trunnion.toolpath.clear import Layer, Manner, clear
 from trunnion.toolpath.contour import Approach, contour_parts, cut_parts, length_out_of_reach
 from trunnion.toolpath.contract import Planned, strategy
 from trunnion.toolpath.easing import eased_finish

@@ -16,9 +16,9 @@ from trunnion.toolpath.engagement import surface_leftovers
 from trunnion.toolpath.stock import PlanningStock
 from trunnion.toolpath.surface import choices
 from trunnion.toolpath.surface.choices import TOO_SHALLOW, TOO_STEEP
+from trunnion.toolpath.surface.fixed_axis import stood
 from trunnion.toolpath.surface.fronts import scallop_passes
 from trunnion.toolpath.surface.linking import Manner, linked
-from trunnion.toolpath.surface.upright import stood
 
 
 @settings("surface.constant")

@@ -29,10 +29,10 @@ from trunnion.settings import setting, settings
 from trunnion.toolpath.contract import Planned, lead_and_tilt, strategy
 from trunnion.toolpath.engagement import surface_leftovers
 from trunnion.toolpath.stock import PlanningStock
-from trunnion.toolpath.surface.beside import Strip
+from trunnion.toolpath.surface.axis_search import leaned_by
 from trunnion.toolpath.surface.choices import TOO_SHALLOW, TOO_STEEP
-from trunnion.toolpath.surface.lean import leaned_by
 from trunnion.toolpath.surface.linking import Manner, linked
+from trunnion.toolpath.surface.overrun import Strip
 from trunnion.toolpath.surface.passes import UPRIGHT, Pass
 from trunnion.toolpath.surface.spacing import Places, marched, places_of, strips_over, tip_spacing
 from trunnion.toolpath.surface.tracing import follow

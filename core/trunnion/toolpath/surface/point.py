@@ -33,10 +33,10 @@ from trunnion.toolpath.contract import Planned, leaning_axis, strategy
 from trunnion.toolpath.engagement import surface_leftovers
 from trunnion.toolpath.stock import PlanningStock
 from trunnion.toolpath.surface.axis import AxisField, fixed, from_point, interpolated, leaning
+from trunnion.toolpath.surface.axis_search import STEP, AxisSearch, Course, LeanLimits, free_axes, roomy
 from trunnion.toolpath.surface.contacts import Contacts, between, slerp
 from trunnion.toolpath.surface.flowlines import Crowded, Flow, flow_lines
 from trunnion.toolpath.surface.fronts import scallop_passes
-from trunnion.toolpath.surface.lean import STEP, AxisSearch, Course, LeanLimits, free_axes, roomy
 from trunnion.toolpath.surface.linking import Manner, linked
 from trunnion.toolpath.surface.passes import Pass
 from trunnion.units import trimmed

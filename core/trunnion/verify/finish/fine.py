@@ -22,8 +22,8 @@ from trunnion.part.exact import ExactPoints
 from trunnion.progress import QUIET, Progress
 from trunnion.verify.finish.sweep import flutes_of, tree_of
 from trunnion.verify.kernels import fine as kernel
-from trunnion.verify.kernels import left as left_kernel
-from trunnion.verify.kernels.left import Flutes, Tree
+from trunnion.verify.kernels import residual as left_kernel
+from trunnion.verify.kernels.residual import Flutes, Tree
 from trunnion.verify.motion import Moves
 from trunnion.verify.threads import in_parallel
 

@@ -1,7 +1,7 @@
 """The cutting moves of a setup made ready for questions about points: how near what cuts comes to each, and which move comes nearest.
 
 Level and upright moves of plain cutters are listed by plan cells; ramps, helices, other forms and leaning or turning axes are spans in a
-tree of poses (`kernels/left.py`). Distances are exact but for the bound of what has no closed form.
+tree of poses (`kernels/residual.py`). Distances are exact but for the bound of what has no closed form.
 """
 
 from __future__ import annotations
@@ -17,9 +17,9 @@ from trunnion.progress import QUIET, Progress
 from trunnion.verify.contact import Grid, grid_of
 from trunnion.verify.cutter import Bodies
 from trunnion.verify.kernels import body
-from trunnion.verify.kernels import left as kernel
+from trunnion.verify.kernels import residual as kernel
 from trunnion.verify.kernels import strips as columns
-from trunnion.verify.kernels.left import Flutes, Tree
+from trunnion.verify.kernels.residual import Flutes, Tree
 from trunnion.verify.motion import Moves
 from trunnion.verify.threads import in_parallel
 
@@ -191,7 +191,7 @@ def _cutting(bodies: Bodies, tool: int) -> list[Floats]:
 
 
 def ways_of(moves: Moves, rows: Ints) -> Floats:
-    """Return how the tool moves in space along some moves (k, 18), as `kernels/left.py` names the columns."""
+    """Return how the tool moves in space along some moves (k, 18), as `kernels/residual.py` names the columns."""
     out = np.zeros((len(rows), kernel.WAY_COLUMNS))
     a, b = moves.start_axis[rows], moves.end_axis[rows]
     a = np.where(moves.upright[rows, None], [0.0, 0.0, 1.0], a)

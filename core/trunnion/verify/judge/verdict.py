@@ -24,10 +24,10 @@ from trunnion.part.part import Part
 from trunnion.part.surfaces import Surfaces, surfaces_of
 from trunnion.progress import QUIET, Progress
 from trunnion.verify.finish.coverage import Samples, samples_of
-from trunnion.verify.judge.covered import covered
-from trunnion.verify.judge.excess import load_findings
+from trunnion.verify.judge.coverage import covered
 from trunnion.verify.judge.findings import setup_findings
 from trunnion.verify.judge.operations import block_proof, operation_proofs
+from trunnion.verify.judge.overload import load_findings
 from trunnion.verify.judge.setups import SetupProof, bundles_of, prove_setup
 from trunnion.verify.judge.sides import sides_of
 from trunnion.verify.machine.limits import limit_findings

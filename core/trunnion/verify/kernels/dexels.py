@@ -677,7 +677,7 @@ def _graze(arcs: Floats, first: int, last: int, span: Floats, ray: Floats, count
 
     Within a suspicious cell fine x fine rays are tested, and the deepest of each quarter is kept.
     ray[SMALLER] is what is allowed, so only deeper contact is listed. A suspicion:
-    `stock/closer.py` confirms it.
+    `stock/graze_check.py` confirms it.
     """
     i0, i1 = _cells(box[0] - 0.5 * pitch, box[3] + 0.5 * pitch, origin[0], pitch, 0, columns)
     j0, j1 = _cells(box[1] - 0.5 * pitch, box[4] + 0.5 * pitch, origin[1], pitch, row, end_row)

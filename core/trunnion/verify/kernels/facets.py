@@ -3,7 +3,7 @@ and bound over space and time.
 
 A task is a piece of a triangle in a piece of time, the span. In the frame that turns with the tool
 the triangle's three corners at both ends of the span are six points; all that the triangle does in
-between lies in their convex hull, up to the sag of `kernels/way.py` (angle^2 distance / 8 + angle
+between lies in their convex hull, up to the sag of `kernels/tool_motion.py` (angle^2 distance / 8 + angle
 length / 4, and an arc's own bulge). The depth D in a convex body is concave with slope 1 at most,
 so every affine function that bounds D from above bounds it over the whole hull by its values at the
 six points:
@@ -33,7 +33,7 @@ from numba import njit
 
 from trunnion.geometry.arrays import Floats, Ints
 from trunnion.verify.kernels.body import A0R, A0Z, A1R, A1Z, CLOSED_FIRST, CLOSED_LAST, CR, CZ, KIND, R_MAX, R, depth_in_body, support
-from trunnion.verify.kernels.way import (
+from trunnion.verify.kernels.tool_motion import (
     END_COLUMNS,
     FLAT,
     S_ANGLE,

@@ -12,7 +12,7 @@ A cell is a parallelogram, middle +- a +- b, and `slack`, how far the surface ma
   slope across the cell, the chord's sag and what the tool turns meanwhile.
 
 f has slope 1 at most, so the slack is added above and taken off below: both bounds are safe. mm,
-rad, the frame of the moves; ways, flutes and trees as in `kernels/left.py`.
+rad, the frame of the moves; ways, flutes and trees as in `kernels/residual.py`.
 """
 
 from __future__ import annotations
@@ -24,7 +24,7 @@ from numba import njit
 
 from trunnion.geometry.arrays import Bools, Floats, Ints
 from trunnion.verify.kernels.body import depth_in_body
-from trunnion.verify.kernels.left import (
+from trunnion.verify.kernels.residual import (
     AX,
     AY,
     AZ,
@@ -114,7 +114,7 @@ def _span_least(w: Floats, flutes: Flutes, tool: int, x: float, y: float, z: flo
         share = s1 - s0
         x0, y0, z0 = in_tool(w, x, y, z, s0)
         x1, y1, z1 = in_tool(w, x, y, z, s1)
-        # Sag of the middle's chord, as in `kernels/left.py`; a turning axis also turns the cell's
+        # Sag of the middle's chord, as in `kernels/residual.py`; a turning axis also turns the cell's
         # sides, by `turn` x size at most.
         sag = 0.0
         if w[RADIUS] > 0.0:

@@ -22,7 +22,7 @@ from numba import njit
 from trunnion.geometry.arrays import Bools, Floats, Ints
 from trunnion.verify.kernels.body import CLOSED_FIRST, CLOSED_LAST, KIND, R_MAX, Z_HIGH, Z_LOW, depth_in_body
 from trunnion.verify.kernels.facets import TASK_COLUMNS, TASKS, box_depth, enter_triangle
-from trunnion.verify.kernels.way import END_COLUMNS, S_FROM, S_TO, SPAN_COLUMNS, WAY_COLUMNS, fill_span, fill_way
+from trunnion.verify.kernels.tool_motion import END_COLUMNS, S_FROM, S_TO, SPAN_COLUMNS, WAY_COLUMNS, fill_span, fill_way
 
 
 @njit(cache=True, nogil=True)

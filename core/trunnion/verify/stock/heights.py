@@ -13,8 +13,8 @@ from trunnion.verify.kernels import field as kernel
 from trunnion.verify.kernels import strips as columns
 from trunnion.verify.motion import Moves
 from trunnion.verify.profile import cones_of, profiles_of
-from trunnion.verify.stock.closer import look_closer
 from trunnion.verify.stock.engagement import Probes
+from trunnion.verify.stock.graze_check import look_closer
 from trunnion.verify.stock.rays import Passed
 from trunnion.verify.stock.stock import Stock
 

@@ -12,8 +12,8 @@ from trunnion.geometry.frame import Frame
 from trunnion.progress import QUIET, Progress
 from trunnion.verify.finish.sweep import Sweep
 from trunnion.verify.motion import Moves, seen_from
-from trunnion.verify.stock.closer import confirm_grazed, rays_in_cell
 from trunnion.verify.stock.engagement import engagement_of, probes_of
+from trunnion.verify.stock.graze_check import confirm_grazed, rays_in_cell
 from trunnion.verify.stock.heights import run_heights
 from trunnion.verify.stock.rays import Going, Passed, run_rays
 from trunnion.verify.stock.stock import Stock

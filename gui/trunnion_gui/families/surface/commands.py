@@ -33,7 +33,7 @@ def add_commands(view: SurfaceView, shell: Shell) -> None:
         view.begin_cut(faces[0] if len(faces) == 1 else 0, by_plane)
 
     def mark_local(on: bool) -> None:
-        shell.centre.give_clicks_to(tools.toggle_face if on else None)
+        shell.viewport.give_clicks_to(tools.toggle_face if on else None)
 
     def measure() -> None:
         view.jobs.measure()
@@ -44,9 +44,9 @@ def add_commands(view: SurfaceView, shell: Shell) -> None:
             lambda: is_free() and bool(tools.groups_of(document.selection.current.faces)))
     command("click_local", "Click local features", mark_local, "local", "Shift+O",
             "While this is on, a click on the part makes its group a local feature, or no longer", checkable=True)
-    command("ids", "Show IDs", lambda on: shell.centre.show_layer("ids", on), "ids", "N",
+    command("ids", "Show IDs", lambda on: shell.viewport.show_layer("ids", on), "ids", "N",
             "Write the ID of every group on the part, or of every selected face", lambda: document.has_part, True)
-    command("radii", "Colours by radius", lambda on: shell.centre.colour_by(view.by_radius if on else None), "radii", "R",
+    command("radii", "Colours by radius", lambda on: shell.viewport.colour_by(view.by_radius if on else None), "radii", "R",
             "Colour every group by its smallest concave radius", lambda: tools.has_groups, True)
     command("cut_plane", "Cut a face by a plane…", partial(begin_cut, True), "cut_plane", "",
             "Make two patches of one, across x, y or z or through three places", can_cut)

@@ -10,7 +10,7 @@ from trunnion.geometry.cut import Cut
 from trunnion_gui.document import Document
 from trunnion_gui.families.surface import requests
 from trunnion_gui.i18n import tr
-from trunnion_gui.worker.verbs import Work
+from trunnion_gui.worker.requests import Work
 
 _MOST_NAMED = 3
 """Faces that a label names at most."""

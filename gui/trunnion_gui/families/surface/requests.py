@@ -9,7 +9,7 @@ from trunnion.geometry.cut import Cut
 from trunnion.model.session import Session
 from trunnion.progress import Progress
 from trunnion_gui.worker.drawing import Drawing, drawing_of
-from trunnion_gui.worker.verbs import State, Tell, writes_files
+from trunnion_gui.worker.requests import State, Tell, writes_files
 
 
 @dataclass(frozen=True, slots=True)
@@ -118,7 +118,7 @@ def estimate(engine: Any, _progress: Progress, _tell: Tell, session: Session) ->
     """Return the time of finishing by area rates, None where no areas are finished."""
     from trunnion.pipeline.estimating import estimate as estimated
 
-    found = estimated(session, engine.bench_of(session))
+    found = estimated(session, engine.context_of(session))
     if found is None:
         return None
     rows = tuple(AreaRow(a.operation, a.tool, a.area, a.rate, a.seconds) for a in found.areas)

@@ -74,10 +74,10 @@ class SurfaceView(FamilyView):
         add_commands(self, shell)
 
     def begin(self, shell: Shell) -> None:
-        self.cutting = CutBar(self.document, self.jobs, shell.centre.scene)
-        shell.centre.add_bar(self.cutting)
-        shell.centre.add_tool(self.cutting)
-        self.export_dialog = ExportDialog(self.document, self.jobs, shell.centre.window())
+        self.cutting = CutBar(self.document, self.jobs, shell.viewport.scene)
+        shell.viewport.add_bar(self.cutting)
+        shell.viewport.add_tool(self.cutting)
+        self.export_dialog = ExportDialog(self.document, self.jobs, shell.viewport.window())
 
     def begin_cut(self, face: int, by_plane: bool) -> None:
         """Begin to cut a face (0: the one that is clicked next), by a plane or along a line that is drawn."""

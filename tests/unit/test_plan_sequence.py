@@ -6,7 +6,7 @@ from itertools import pairwise
 
 import pytest
 
-from trunnion.plan.order import Job, ordered
+from trunnion.plan.sequence import Job, ordered
 
 
 def job(id: str, tool: str, stage: int = 0, after: str = "", x: float = 0.0) -> Job:

@@ -1,4 +1,4 @@
-"""Which cutter for what: the candidates that fit a task, and a small set of cutters that serves many tasks."""
+"""Which cutter for what: the candidates that fit a requirement, and a small set of cutters that serves many requirements."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ CUSP_SPREAD = 1.1
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class Task:
+class ToolRequirement:
     """What a cutter is wanted for.
 
     `depth`: how far below the highest surroundings its tip goes; `room`: the plane area its envelope must keep in; `wanted`: what it
@@ -25,7 +25,7 @@ class Task:
     area that may be left to smaller cutters. `spare`: how many of its radii must fit from rim to middle where the room is widest, so
     that it can enter and turn. `keep`: for floors, the distance from the finished walls beside the fillet's own; then it is the cutter's
     flat that has to cover what is wanted (below 0: the whole disc). `near`: how much smaller than the largest candidate a cutter may be,
-    as a share of its diameter, to be chosen because it serves other tasks too. `cusps`: only what stays in sharp inner edges may be
+    as a share of its diameter, to be chosen because it serves other requirements too. `cusps`: only what stays in sharp inner edges may be
     missed, where no cutter gets; a passage that smaller cutters get through may not.
     """
 
@@ -44,41 +44,41 @@ class Task:
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Candidates:
-    """The cutters that fit a task, largest first, or in words why none does."""
+    """The cutters that fit a requirement, largest first, or in words why none does."""
 
     tools: tuple[Tool, ...]
     reason: str = ""
     remedy: str = ""
 
 
-def candidates(task: Task, tools: Sequence[Tool], clearance: float, progress: Progress = QUIET) -> Candidates:
-    """Return the cutters that fit a task; each test that leaves none says what would be needed."""
+def candidates(requirement: ToolRequirement, tools: Sequence[Tool], clearance: float, progress: Progress = QUIET) -> Candidates:
+    """Return the cutters that fit a requirement; each test that leaves none says what would be needed."""
     if not tools:
         return Candidates(tools=(), reason="the catalogue has no cutter for this material", remedy="add cutters to the tools folder")
-    small = [t for t in tools if not task.radius or t.radius <= task.radius + tolerance.COINCIDENT]
+    small = [t for t in tools if not requirement.radius or t.radius <= requirement.radius + tolerance.COINCIDENT]
     if not small:
         smallest = min(t.diameter for t in tools)
         return Candidates(tools=(), remedy="add a smaller cutter to the tools folder, or machine the feature by other means",
-                          reason=f"no tool is small enough: at most D {trimmed(2 * task.radius, 3)} fits, "
+                          reason=f"no tool is small enough: at most D {trimmed(2 * requirement.radius, 3)} fits, "
                                  f"the smallest is D {trimmed(smallest, 3)}")
-    foot = [t for t in small if t.corner_radius <= task.corner_radius + tolerance.COINCIDENT]
-    if task.exact:
-        foot = [t for t in foot if abs(t.corner_radius - task.corner_radius) <= tolerance.COINCIDENT]
+    foot = [t for t in small if t.corner_radius <= requirement.corner_radius + tolerance.COINCIDENT]
+    if requirement.exact:
+        foot = [t for t in foot if abs(t.corner_radius - requirement.corner_radius) <= tolerance.COINCIDENT]
     if not foot:
         return Candidates(tools=(), remedy="add a cutter with this corner radius to the tools folder",
                           reason=f"no cutter up to D {trimmed(2 * max(t.radius for t in small), 3)} has a corner radius "
-                                 f"{'of' if task.exact else 'up to'} {trimmed(task.corner_radius, 3)} mm")
-    deep = [t for t in foot if depth_reached(t) >= task.depth + clearance]
+                                 f"{'of' if requirement.exact else 'up to'} {trimmed(requirement.corner_radius, 3)} mm")
+    deep = [t for t in foot if depth_reached(t) >= requirement.depth + clearance]
     if not deep:
         return Candidates(tools=(), remedy="add a longer cutter to the tools folder, or allow a larger one by a larger corner radius",
-                          reason=f"no tool reaches {trimmed(task.depth, 2)} mm deep with {trimmed(clearance, 2)} mm clearance; "
+                          reason=f"no tool reaches {trimmed(requirement.depth, 2)} mm deep with {trimmed(clearance, 2)} mm clearance; "
                                  f"the longest that fits reaches {trimmed(max(depth_reached(t) for t in foot), 2)} mm")
-    inside = _fitting(task, deep, progress) if task.keep < 0.0 else _fitting_floor(task, deep, progress)
+    inside = _fitting(requirement, deep, progress) if requirement.keep < 0.0 else _fitting_floor(requirement, deep, progress)
     if not inside:
         return Candidates(tools=(), remedy="add a smaller cutter to the tools folder, or machine the feature by other means",
                           reason=f"no tool is small enough: the smallest that reaches is D {trimmed(min(t.diameter for t in deep), 3)}")
     largest = max(t.diameter for t in inside)
-    near = [t for t in inside if t.diameter >= task.near * largest]
+    near = [t for t in inside if t.diameter >= requirement.near * largest]
     return Candidates(tools=tuple(sorted(near, key=lambda t: (-t.diameter, depth_reached(t), -t.corner_radius, t.name))))
 
 
@@ -87,67 +87,67 @@ def depth_reached(tool: Tool) -> float:
     return min(tool.neck_length, tool.stickout)
 
 
-def _fitting(task: Task, tools: Sequence[Tool], progress: Progress) -> list[Tool]:
+def _fitting(requirement: ToolRequirement, tools: Sequence[Tool], progress: Progress) -> list[Tool]:
     """Return the cutters that cover what is wanted without leaving the room, but for the share that may be missed.
 
     Where one fits, so do all smaller ones: the largest is looked for.
     """
-    most = _missable(task, tools)
+    most = _missable(requirement, tools)
     for tool in progress.each(sorted(tools, key=lambda t: -t.diameter)):
-        if task.spare > 1.0 and not task.room.offset(-task.spare * tool.radius):
+        if requirement.spare > 1.0 and not requirement.room.offset(-requirement.spare * tool.radius):
             continue
-        if _left(task, tool) <= most(tool):
+        if _left(requirement, tool) <= most(tool):
             return [t for t in tools if t.diameter <= tool.diameter]
     return []
 
 
-def fits_through(task: Task, tool: Tool, tools: Sequence[Tool]) -> bool:
+def fits_through(requirement: ToolRequirement, tool: Tool, tools: Sequence[Tool]) -> bool:
     """Say whether a cutter covers what is wanted, but for what may be missed, as well as the others of the catalogue would."""
-    return _left(task, tool) <= _missable(task, tools)(tool)
+    return _left(requirement, tool) <= _missable(requirement, tools)(tool)
 
 
-def _left(task: Task, tool: Tool) -> float:
+def _left(requirement: ToolRequirement, tool: Tool) -> float:
     """Return the area of what is wanted that a cutter doesn't cover."""
-    wanted, covered = task.wanted or task.room, _covered(task, tool)
+    wanted, covered = requirement.wanted or requirement.room, _covered(requirement, tool)
     return wanted.minus(covered).area if covered else wanted.area
 
 
-def _missable(task: Task, tools: Sequence[Tool]) -> Callable[[Tool], float]:
+def _missable(requirement: ToolRequirement, tools: Sequence[Tool]) -> Callable[[Tool], float]:
     """Return the area that each cutter may leave: in sharp edges it grows with the square of the cutter's radius."""
-    total = (task.wanted or task.room).area
-    most, slack = task.missable * total, tolerance.AREA * max(total, 1.0)
-    if not task.cusps:
+    total = (requirement.wanted or requirement.room).area
+    most, slack = requirement.missable * total, tolerance.AREA * max(total, 1.0)
+    if not requirement.cusps:
         return lambda tool: most + slack
     smallest = min(tools, key=lambda t: t.diameter)
-    cusps = CUSP_SPREAD * _left(task, smallest)
+    cusps = CUSP_SPREAD * _left(requirement, smallest)
     return lambda tool: min(most, cusps * (tool.radius / smallest.radius) ** 2) + slack
 
 
-def _fitting_floor(task: Task, tools: Sequence[Tool], progress: Progress) -> list[Tool]:
+def _fitting_floor(requirement: ToolRequirement, tools: Sequence[Tool], progress: Progress) -> list[Tool]:
     """Return the same for a floor, among sharp cutters and those with the largest corner radius: each radius has a flat of its own."""
     radii = {min(t.corner_radius for t in tools), max(t.corner_radius for t in tools)}
-    return [t for radius in sorted(radii) for t in _fitting(task, [t for t in tools if t.corner_radius == radius], progress)]
+    return [t for radius in sorted(radii) for t in _fitting(requirement, [t for t in tools if t.corner_radius == radius], progress)]
 
 
-def _covered(task: Task, tool: Tool) -> Region:
+def _covered(requirement: ToolRequirement, tool: Tool) -> Region:
     """Return what a cutter reaches: its disc in the room, or for a floor its flat, kept off the walls and their fillet."""
-    if task.keep < 0.0:
-        return task.room.opened(tool.radius)
+    if requirement.keep < 0.0:
+        return requirement.room.opened(tool.radius)
     flat = tool.radius - tool.corner_radius
-    return task.room.offset(-(task.keep + task.corner_radius + flat)).offset(flat)
+    return requirement.room.offset(-(requirement.keep + requirement.corner_radius + flat)).offset(flat)
 
 
 def covered_by_few(fits: Mapping[str, Sequence[Tool]], kept: Sequence[Tool] = ()) -> dict[str, Tool]:
-    """Return a cutter for every task, few cutters in all: first those that are in use anyhow, then always the one that serves most tasks.
+    """Return a cutter for every requirement, few cutters in all: first those that are in use anyhow, then always the one that serves most requirements.
 
     Among cutters that serve equally many the larger, then the shorter, then the one with the larger corner radius is taken.
     """
     chosen: dict[str, Tool] = {}
-    for task, tools in fits.items():
+    for requirement, tools in fits.items():
         own = [t for t in tools if any(t.name == k.name for k in kept)]
         if own:
-            chosen[task] = own[0]
-    left = {task: tools for task, tools in fits.items() if task not in chosen and tools}
+            chosen[requirement] = own[0]
+    left = {requirement: tools for requirement, tools in fits.items() if requirement not in chosen and tools}
     while left:
         served: dict[str, int] = {}
         named: dict[str, Tool] = {}
@@ -156,7 +156,7 @@ def covered_by_few(fits: Mapping[str, Sequence[Tool]], kept: Sequence[Tool] = ()
                 served[tool.name] = served.get(tool.name, 0) + 1
                 named[tool.name] = tool
         best = min(named.values(), key=lambda t: (-served[t.name], -t.diameter, depth_reached(t), -t.corner_radius, t.name))
-        for task in [task for task, tools in left.items() if any(t.name == best.name for t in tools)]:
-            chosen[task] = best
-            del left[task]
+        for requirement in [requirement for requirement, tools in left.items() if any(t.name == best.name for t in tools)]:
+            chosen[requirement] = best
+            del left[requirement]
     return chosen

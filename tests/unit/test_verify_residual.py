@@ -14,7 +14,7 @@ from trunnion.findings import Cancelled
 from trunnion.model.toolpath import Motion
 from trunnion.progress import Progress
 from trunnion.verify.finish.sweep import LEFT_BOUND, Sweep, flutes_of, left_by_block
-from trunnion.verify.kernels import left as kernel
+from trunnion.verify.kernels import residual as kernel
 from trunnion.verify.motion import moves_of
 from verify_tools import bull, flat, program_section
 

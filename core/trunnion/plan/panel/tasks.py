@@ -1,4 +1,4 @@
-"""What is wanted of each stage of a typical plan: for every feature the task that a cutter must fit, by the rule that the stage names."""
+"""What is wanted of each stage of a typical plan: for every feature the requirement that a cutter must fit, by the rule that the stage names."""
 
 from __future__ import annotations
 
@@ -14,9 +14,9 @@ from trunnion.geometry.region import EMPTY_REGION, Region
 from trunnion.model.feature import Feature, Recognition
 from trunnion.model.material import Machine, Material
 from trunnion.model.tool import Tool
-from trunnion.plan.choosing import Task, candidates, depth_reached, fits_through
 from trunnion.plan.prismatic.regions import Band, Space, floor_fillet, number, parent_of, touching
 from trunnion.plan.settings import RouteSettings
+from trunnion.plan.tool_choice import ToolRequirement, candidates, depth_reached, fits_through
 from trunnion.progress import QUIET, Progress
 from trunnion.shop import Shop, Stage
 from trunnion.units import trimmed
@@ -41,14 +41,14 @@ DEPENDENT = ("rest", "corner")
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class Wish:
-    """An operation that is wanted: its id, stage, feature and task; the cutter comes later. `height` is what it goes down in all."""
+class OperationTask:
+    """An operation that is wanted: its id, stage, feature and requirement; the cutter comes later. `height` is what it goes down in all."""
 
     id: str
     stage: Stage
     feature: str
     place: tuple[float, float]
-    task: Task
+    requirement: ToolRequirement
     faces: tuple[int, ...]
     height: float
     width: float
@@ -84,7 +84,7 @@ def catalogue(draft: Draft, stage: Stage) -> tuple[Tool, ...]:
     return tools if stage.cutter == "face" else tuple(t for t in tools if t.diameter <= draft.settings.largest)
 
 
-def _wishes_face(draft: Draft, stage: Stage, features: Sequence[Feature]) -> list[Wish]:
+def _wishes_face(draft: Draft, stage: Stage, features: Sequence[Feature]) -> list[OperationTask]:
     space = draft.space
     height = float(space.blank_high[2]) - space.top
     if height <= tolerance.SEW:
@@ -92,14 +92,14 @@ def _wishes_face(draft: Draft, stage: Stage, features: Sequence[Feature]) -> lis
     tops = tuple(tag for f in draft.recognition for tag in f.with_role("top", "bottom")
                  if abs(space.centre(tag)[2] - space.top) < tolerance.SEW)
     middle = 0.5 * (space.blank_low + space.blank_high)
-    task = Task(depth=0.0, room=space.around(), wanted=space.blank_area(), corner_radius=0.0, near=1.0)
-    return [Wish(id=f"face-{space.setup.name}", stage=stage, feature="blank", place=(float(middle[0]), float(middle[1])), task=task,
+    requirement = ToolRequirement(depth=0.0, room=space.around(), wanted=space.blank_area(), corner_radius=0.0, near=1.0)
+    return [OperationTask(id=f"face-{space.setup.name}", stage=stage, feature="blank", place=(float(middle[0]), float(middle[1])), requirement=requirement,
                  faces=tops, height=height, width=float(np.min(space.blank_high[:2] - space.blank_low[:2])))]
 
 
 def _pocket_wishes(draft: Draft, stage: Stage, features: Sequence[Feature],
-                   make: Callable[[Feature, tuple[Band, ...]], Wish | None]) -> list[Wish]:
-    """Return the wishes for the pockets of a stage; a pocket without free space over its floor is told of once and left out."""
+                   make: Callable[[Feature, tuple[Band, ...]], OperationTask | None]) -> list[OperationTask]:
+    """Return the tasks for the pockets of a stage; a pocket without free space over its floor is told of once and left out."""
     found = []
     for feature in draft.progress.each(features):
         if feature.kind not in stage.on:
@@ -111,40 +111,40 @@ def _pocket_wishes(draft: Draft, stage: Stage, features: Sequence[Feature],
                 draft.bands[feature.id] = ()
                 draft.findings.append(warning("route.not-planned", str(reason), feature.id, *face_tags(feature.tags)))
         if draft.bands[feature.id]:
-            wish = make(feature, draft.bands[feature.id])
-            if wish is not None:
-                found.append(wish)
+            task = make(feature, draft.bands[feature.id])
+            if task is not None:
+                found.append(task)
     return found
 
 
-def _wishes_rough(draft: Draft, stage: Stage, features: Sequence[Feature]) -> list[Wish]:
-    def make(feature: Feature, bands: tuple[Band, ...]) -> Wish:
+def _wishes_rough(draft: Draft, stage: Stage, features: Sequence[Feature]) -> list[OperationTask]:
+    def make(feature: Feature, bands: tuple[Band, ...]) -> OperationTask:
         is_open = feature.kind == "open_pocket"
-        task = Task(depth=_depth(draft, bands), room=bands[-1].boundary, wanted=bands[-1].wanted, corner_radius=floor_fillet(feature),
+        requirement = ToolRequirement(depth=_depth(draft, bands), room=bands[-1].boundary, wanted=bands[-1].wanted, corner_radius=floor_fillet(feature),
                     missable=draft.settings.missable, spare=1.0 if is_open else SPARE, near=NEAR_ROUGH)
         if not is_open and not any(bands[-1].boundary.offset(-SPARE * t.radius) for t in catalogue(draft, stage)):
-            task = replace(task, spare=1.0)
-        return _wish(stage, feature, bands, task, ())
+            requirement = replace(requirement, spare=1.0)
+        return _wish(stage, feature, bands, requirement, ())
 
     return _pocket_wishes(draft, stage, features, make)
 
 
-def _wishes_rest(draft: Draft, stage: Stage, features: Sequence[Feature]) -> list[Wish]:
-    def make(feature: Feature, bands: tuple[Band, ...]) -> Wish | None:
+def _wishes_rest(draft: Draft, stage: Stage, features: Sequence[Feature]) -> list[OperationTask]:
+    def make(feature: Feature, bands: tuple[Band, ...]) -> OperationTask | None:
         before = draft.tools.get(f"rough-{feature.id}")
         corner = number(feature, "corner_radius")
         if before is None:
             return None
-        task = replace(_wall_task(draft, feature, bands), exact=False)
-        if not 0.0 < corner < before.radius and fits_through(task, before, catalogue(draft, stage)):
+        requirement = replace(_wall_task(draft, feature, bands), exact=False)
+        if not 0.0 < corner < before.radius and fits_through(requirement, before, catalogue(draft, stage)):
             return None
-        return _wish(stage, feature, bands, task, ())
+        return _wish(stage, feature, bands, requirement, ())
 
     return _pocket_wishes(draft, stage, features, make)
 
 
-def _wishes_floor(draft: Draft, stage: Stage, features: Sequence[Feature]) -> list[Wish]:
-    def make(feature: Feature, bands: tuple[Band, ...]) -> Wish | None:
+def _wishes_floor(draft: Draft, stage: Stage, features: Sequence[Feature]) -> list[OperationTask]:
+    def make(feature: Feature, bands: tuple[Band, ...]) -> OperationTask | None:
         if not feature.with_role("floor"):
             return None
         # The wall's last pass finishes a strip of the floor as wide as its cutter's reach from the wall.
@@ -153,52 +153,52 @@ def _wishes_floor(draft: Draft, stage: Stage, features: Sequence[Feature]) -> li
         walls = (candidates(walling, tools, clearance, draft.progress).tools
                  or candidates(replace(walling, exact=False), tools, clearance, draft.progress).tools)
         inner = bands[-1].wanted.offset(STRIP_OVERLAP - min((t.diameter - t.corner_radius for t in walls), default=0.0))
-        whole = Task(depth=_depth(draft, bands), room=bands[-1].boundary, wanted=bands[-1].wanted, corner_radius=floor_fillet(feature),
+        whole = ToolRequirement(depth=_depth(draft, bands), room=bands[-1].boundary, wanted=bands[-1].wanted, corner_radius=floor_fillet(feature),
                      missable=draft.settings.missable, near=NEAR_FLOOR)
         rest = replace(whole, wanted=inner, keep=floor_distance(draft.settings), missable=0.0)
-        task = rest if inner and candidates(rest, tools, clearance, draft.progress).tools else whole
-        return _wish(stage, feature, bands, task, feature.with_role("floor"))
+        requirement = rest if inner and candidates(rest, tools, clearance, draft.progress).tools else whole
+        return _wish(stage, feature, bands, requirement, feature.with_role("floor"))
 
     return _pocket_wishes(draft, stage, features, make)
 
 
-def _wishes_wall(draft: Draft, stage: Stage, features: Sequence[Feature]) -> list[Wish]:
-    def make(feature: Feature, bands: tuple[Band, ...]) -> Wish:
+def _wishes_wall(draft: Draft, stage: Stage, features: Sequence[Feature]) -> list[OperationTask]:
+    def make(feature: Feature, bands: tuple[Band, ...]) -> OperationTask:
         islands = [tag for island in draft.space.islands_of(feature) for tag in island.with_role("wall", "corner", "floor_fillet")]
         faces = (*feature.with_role("wall", "corner", "floor_fillet"), *islands)
         if feature.sizes.get("corner_radius") == 0.0:
             draft.findings.append(warning(
                 "route.sharp-corner", f"{feature.id}: two of its walls meet in a sharp inner edge; the cutter leaves its radius there",
                 feature.id, *face_tags(feature.with_role("wall")), remedy="give the corner a radius, or finish it by other means"))
-        task = _with_known_fillet(draft, stage, feature, _wall_task(draft, feature, bands))
-        fine = candidates(task, catalogue(draft, stage), draft.settings.reach_clearance, draft.progress).tools
+        requirement = _with_known_fillet(draft, stage, feature, _wall_task(draft, feature, bands))
+        fine = candidates(requirement, catalogue(draft, stage), draft.settings.reach_clearance, draft.progress).tools
         if all(t.stickout / t.diameter > draft.settings.slender for t in fine):
-            stiff = replace(task, radius=0.0, missable=draft.settings.missable, cusps=False)
+            stiff = replace(requirement, radius=0.0, missable=draft.settings.missable, cusps=False)
             larger = candidates(stiff, catalogue(draft, stage), draft.settings.reach_clearance, draft.progress).tools
             if any(not fine or t.stickout / t.diameter <= draft.settings.slender for t in larger):
-                task = stiff
-        return _wish(stage, feature, bands, task, faces)
+                requirement = stiff
+        return _wish(stage, feature, bands, requirement, faces)
 
     return _pocket_wishes(draft, stage, features, make)
 
 
-def _wishes_corner(draft: Draft, stage: Stage, features: Sequence[Feature]) -> list[Wish]:
-    def make(feature: Feature, bands: tuple[Band, ...]) -> Wish | None:
+def _wishes_corner(draft: Draft, stage: Stage, features: Sequence[Feature]) -> list[OperationTask]:
+    def make(feature: Feature, bands: tuple[Band, ...]) -> OperationTask | None:
         wall, corner = draft.tools.get(f"wall-{feature.id}"), number(feature, "corner_radius")
         is_sharp = feature.sizes.get("corner_radius") == 0.0
         if wall is None or (corner <= 0.0 and not is_sharp) or wall.radius <= corner * draft.settings.corner_share + tolerance.COINCIDENT:
             return None
-        task = _with_known_fillet(draft, stage, feature, _wall_task(draft, feature, bands))
+        requirement = _with_known_fillet(draft, stage, feature, _wall_task(draft, feature, bands))
         if is_sharp:
-            task = replace(task, radius=_smallest(draft, stage, task))
-            if task.radius >= wall.radius:
+            requirement = replace(requirement, radius=_smallest(draft, stage, requirement))
+            if requirement.radius >= wall.radius:
                 return None
-        return _wish(stage, feature, bands, task, feature.with_role("corner"))
+        return _wish(stage, feature, bands, requirement, feature.with_role("corner"))
 
     return _pocket_wishes(draft, stage, features, make)
 
 
-def _wishes_top(draft: Draft, stage: Stage, features: Sequence[Feature]) -> list[Wish]:
+def _wishes_top(draft: Draft, stage: Stage, features: Sequence[Feature]) -> list[OperationTask]:
     found = []
     for feature in features:
         tops = feature.with_role("top")
@@ -213,9 +213,9 @@ def _wishes_top(draft: Draft, stage: Stage, features: Sequence[Feature]) -> list
             draft.findings.append(warning("route.not-planned", str(reason), feature.id, *face_tags(tops)))
             continue
         place = draft.space.centre(tops[0])
-        task = Task(depth=draft.space.top - z, room=room, wanted=wanted, corner_radius=0.0, near=NEAR_FLOOR)
-        found.append(Wish(id=f"{stage.kind}-{feature.id}", stage=stage, feature=feature.id, place=(float(place[0]), float(place[1])),
-                          task=task, faces=tops, height=draft.space.top - z, width=number(feature, "thickness", math.inf)))
+        requirement = ToolRequirement(depth=draft.space.top - z, room=room, wanted=wanted, corner_radius=0.0, near=NEAR_FLOOR)
+        found.append(OperationTask(id=f"{stage.kind}-{feature.id}", stage=stage, feature=feature.id, place=(float(place[0]), float(place[1])),
+                          requirement=requirement, faces=tops, height=draft.space.top - z, width=number(feature, "thickness", math.inf)))
     return found
 
 
@@ -233,7 +233,7 @@ def _top_room(draft: Draft, feature: Feature, z: float, tops: Sequence[int]) -> 
     return over[0].boundary, wanted
 
 
-def _wishes_profile(draft: Draft, stage: Stage, features: Sequence[Feature]) -> list[Wish]:
+def _wishes_profile(draft: Draft, stage: Stage, features: Sequence[Feature]) -> list[OperationTask]:
     found = []
     space = draft.space
     for feature in features:
@@ -242,26 +242,26 @@ def _wishes_profile(draft: Draft, stage: Stage, features: Sequence[Feature]) -> 
             wanted = space.blank_area().minus(outline)
             if not wanted:
                 continue
-            task = Task(depth=space.top - space.bottom, room=space.around().minus(outline), wanted=wanted, corner_radius=0.0,
+            requirement = ToolRequirement(depth=space.top - space.bottom, room=space.around().minus(outline), wanted=wanted, corner_radius=0.0,
                         near=NEAR_ROUGH)
             low, high = outline.box()
             side = float(np.max([low - space.blank_low[:2], space.blank_high[:2] - high]))
-            found.append(Wish(id=f"{stage.kind}-{feature.id}", stage=stage, feature=feature.id, task=task, width=side,
+            found.append(OperationTask(id=f"{stage.kind}-{feature.id}", stage=stage, feature=feature.id, requirement=requirement, width=side,
                               place=(float(space.blank_low[0]), float(space.blank_low[1])), faces=feature.with_role("wall", "corner"),
                               height=space.top - space.bottom))
     return found
 
 
-WISHES: Mapping[str, Callable[[Draft, Stage, Sequence[Feature]], list[Wish]]] = {
+WISHES: Mapping[str, Callable[[Draft, Stage, Sequence[Feature]], list[OperationTask]]] = {
     "face": _wishes_face, "rough": _wishes_rough, "rest": _wishes_rest, "top": _wishes_top, "floor": _wishes_floor, "wall": _wishes_wall,
     "corner": _wishes_corner, "profile_rough": _wishes_profile, "profile_finish": _wishes_profile}
 """The rule behind each word that a typical plan gives for its cutter."""
 
 
-def _wish(stage: Stage, feature: Feature, bands: tuple[Band, ...], task: Task, faces: tuple[int, ...]) -> Wish:
+def _wish(stage: Stage, feature: Feature, bands: tuple[Band, ...], requirement: ToolRequirement, faces: tuple[int, ...]) -> OperationTask:
     low, high = bands[-1].wanted.box()
     middle = 0.5 * (low + high)
-    return Wish(id=f"{stage.kind}-{feature.id}", stage=stage, feature=feature.id, place=(float(middle[0]), float(middle[1])), task=task,
+    return OperationTask(id=f"{stage.kind}-{feature.id}", stage=stage, feature=feature.id, place=(float(middle[0]), float(middle[1])), requirement=requirement,
                 faces=faces, height=bands[0].top - bands[-1].bottom, width=float(np.min(high - low)))
 
 
@@ -270,54 +270,54 @@ def _depth(draft: Draft, bands: tuple[Band, ...]) -> float:
     return draft.space.top - bands[-1].bottom
 
 
-def _wall_task(draft: Draft, feature: Feature, bands: tuple[Band, ...]) -> Task:
-    return Task(depth=_depth(draft, bands), room=bands[-1].boundary, wanted=bands[-1].wanted,
+def _wall_task(draft: Draft, feature: Feature, bands: tuple[Band, ...]) -> ToolRequirement:
+    return ToolRequirement(depth=_depth(draft, bands), room=bands[-1].boundary, wanted=bands[-1].wanted,
                 corner_radius=floor_fillet(feature), exact=True, radius=number(feature, "corner_radius") * draft.settings.corner_share,
                 missable=SHARP, near=NEAR_WALL, cusps=True)
 
 
-def _with_known_fillet(draft: Draft, stage: Stage, feature: Feature, task: Task) -> Task:
-    """Return a wall's task with the fillet that cutters have: when none has it exactly, the next smaller, and a finding."""
-    radii = {t.corner_radius for t in catalogue(draft, stage) if not task.radius or t.radius <= task.radius + tolerance.COINCIDENT}
-    if not radii or any(abs(r - task.corner_radius) <= tolerance.COINCIDENT for r in radii):
-        return task
-    next_smaller = max((r for r in radii if r < task.corner_radius), default=0.0)
+def _with_known_fillet(draft: Draft, stage: Stage, feature: Feature, requirement: ToolRequirement) -> ToolRequirement:
+    """Return a wall's requirement with the fillet that cutters have: when none has it exactly, the next smaller, and a finding."""
+    radii = {t.corner_radius for t in catalogue(draft, stage) if not requirement.radius or t.radius <= requirement.radius + tolerance.COINCIDENT}
+    if not radii or any(abs(r - requirement.corner_radius) <= tolerance.COINCIDENT for r in radii):
+        return requirement
+    next_smaller = max((r for r in radii if r < requirement.corner_radius), default=0.0)
     draft.findings.append(warning(
-        "route.fillet", f"{feature.id}: no cutter has a corner radius of {trimmed(task.corner_radius, 3)} mm; "
+        "route.fillet", f"{feature.id}: no cutter has a corner radius of {trimmed(requirement.corner_radius, 3)} mm; "
                         f"its floor fillet is stepped with {trimmed(next_smaller, 3)} mm", feature.id,
         *face_tags(feature.with_role("floor_fillet")),
         remedy="add a cutter with the fillet's radius to the tools folder"))
-    return replace(task, corner_radius=next_smaller)
+    return replace(requirement, corner_radius=next_smaller)
 
 
-def _smallest(draft: Draft, stage: Stage, task: Task) -> float:
+def _smallest(draft: Draft, stage: Stage, requirement: ToolRequirement) -> float:
     """Return the radius of the smallest cutter that gets to the foot of a wall."""
-    found = candidates(replace(task, missable=1.0, cusps=False, near=0.0), catalogue(draft, stage), draft.settings.reach_clearance,
+    found = candidates(replace(requirement, missable=1.0, cusps=False, near=0.0), catalogue(draft, stage), draft.settings.reach_clearance,
                        draft.progress).tools
     return min((t.radius for t in found), default=math.inf)
 
 
-def with_falling_sizes(draft: Draft, wishes: Sequence[Wish]) -> list[Wish]:
-    """Return the wishes with cutters put in where a corner's cutter is much smaller than the one that was there before."""
-    out: list[Wish] = []
-    for wish in wishes:
-        if wish.stage.cutter in ("rest", "corner"):
-            before = draft.tools.get(f"{'rough' if wish.stage.cutter == 'rest' else 'wall'}-{wish.feature}")
+def with_falling_sizes(draft: Draft, tasks: Sequence[OperationTask]) -> list[OperationTask]:
+    """Return the tasks with cutters put in where a corner's cutter is much smaller than the one that was there before."""
+    out: list[OperationTask] = []
+    for task in tasks:
+        if task.stage.cutter in ("rest", "corner"):
+            before = draft.tools.get(f"{'rough' if task.stage.cutter == 'rest' else 'wall'}-{task.feature}")
             n = 1
-            while before is not None and before.diameter > draft.settings.falling * draft.tools[wish.id].diameter:
-                step = _between(draft, wish, before)
+            while before is not None and before.diameter > draft.settings.falling * draft.tools[task.id].diameter:
+                step = _between(draft, task, before)
                 if step is None:
                     break
-                more = replace(wish, id=f"{wish.id}-{n}")
+                more = replace(task, id=f"{task.id}-{n}")
                 draft.tools[more.id] = before = step
                 out.append(more)
                 n += 1
-        out.append(wish)
+        out.append(task)
     return out
 
 
-def _between(draft: Draft, wish: Wish, before: Tool) -> Tool | None:
-    goal = draft.tools[wish.id]
-    fits = [t for t in catalogue(draft, wish.stage) if goal.diameter < t.diameter <= before.diameter / draft.settings.falling ** 0.5
-            and t.corner_radius <= goal.corner_radius and depth_reached(t) >= wish.task.depth + draft.settings.reach_clearance]
+def _between(draft: Draft, task: OperationTask, before: Tool) -> Tool | None:
+    goal = draft.tools[task.id]
+    fits = [t for t in catalogue(draft, task.stage) if goal.diameter < t.diameter <= before.diameter / draft.settings.falling ** 0.5
+            and t.corner_radius <= goal.corner_radius and depth_reached(t) >= task.requirement.depth + draft.settings.reach_clearance]
     return max(fits, key=lambda t: (t.diameter, -depth_reached(t), t.corner_radius, t.name), default=None)

@@ -21,7 +21,7 @@ from trunnion_gui.document import Document, Selection
 from trunnion_gui.families.contract import Colouring, LegendRow
 from trunnion_gui.families.views import Views
 from trunnion_gui.i18n import tr
-from trunnion_gui.look import keys
+from trunnion_gui.look import legend
 from trunnion_gui.look.colours import Theme, motions
 from trunnion_gui.look.words import amount, fine_amount, kind_words
 from trunnion_gui.playback.player import Player
@@ -52,7 +52,7 @@ class PictureTool(Protocol):
     def use_theme(self) -> None: ...
 
 
-class Centre(QWidget):
+class ViewportPane(QWidget):
     """Notice on top, picture, section slider; legend and welcome card above the picture."""
 
     hinted = Signal(str)
@@ -259,7 +259,7 @@ class Centre(QWidget):
         found = session.recognition
         colours: dict[int, str] = {}
         if found is not None:
-            colours = self._colouring.by_face(found) if self._colouring else keys.features_by_face(found) if self.shows["colours"] else {}
+            colours = self._colouring.by_face(found) if self._colouring else legend.features_by_face(found) if self.shows["colours"] else {}
         self.scene.show_kinds(colours, faded=self._shows_paths(session))
 
     def _draw_paths(self, session: Session) -> None:
@@ -272,16 +272,16 @@ class Centre(QWidget):
 
     def _legend(self, session: Session) -> list[LegendRow]:
         if self._plays:
-            return keys.playing(self._theme)
+            return legend.playing(self._theme)
         if self._shows_map:
             return []
         found, rows = session.recognition, []
         if found is not None and self._colouring is not None:
             rows = list(self._colouring.legend())
         elif found is not None and self.shows["colours"]:
-            rows = keys.features(found, self._views)
+            rows = legend.features(found, self._views)
         if self._shows_paths(session):
-            rows = [*rows, keys.GAP, *keys.paths(self.motions, any(leans(p.path) for p in session.paths))]
+            rows = [*rows, legend.GAP, *legend.paths(self.motions, any(leans(p.path) for p in session.paths))]
         return rows
 
     def _choose(self, selection: Selection) -> None:

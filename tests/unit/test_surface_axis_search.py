@@ -13,13 +13,13 @@ from leaning_tools import contact_of, cutter
 from surface_drives import DATA, driven, grid
 from trunnion.findings import Refused
 from trunnion.geometry.sphere import angle_between
-from trunnion.pipeline.asking import PartAsker
+from trunnion.pipeline.clearance import PartAsker
 from trunnion.plan.freeform.cutter import tip_at
 from trunnion.progress import QUIET
 from trunnion.settings import choose
 from trunnion.toolpath.surface.axis import fixed, leaning
+from trunnion.toolpath.surface.axis_search import AxisSearch, LeanLimits, free_axes, leaned, roomy
 from trunnion.toolpath.surface.contacts import Contacts, slerp
-from trunnion.toolpath.surface.lean import AxisSearch, LeanLimits, free_axes, leaned, roomy
 from trunnion.toolpath.surface.parallel import ParallelSettings, parallel
 from trunnion.toolpath.surface.passes import UPRIGHT, Pass
 

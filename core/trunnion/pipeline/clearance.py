@@ -22,7 +22,7 @@ from trunnion.model.material import Machine
 from trunnion.model.tool import Tool
 from trunnion.part.facets import Facets
 from trunnion.progress import QUIET, Progress
-from trunnion.toolpath.surface.lean import roomy
+from trunnion.toolpath.surface.axis_search import roomy
 
 if TYPE_CHECKING:
     from trunnion.part.part import Part
@@ -35,7 +35,7 @@ CHUNK = 128
 """Moves that one thread asks before it looks for more."""
 
 
-class PartSurroundings:
+class ClearanceQuery:
     """A part and its fixtures as they stand in a cutting frame that itself stands in a setup's frame.
 
     `skin` is the part's in the cutting frame. What cuts may touch the part (`tolerance.FINISH_GOUGE`); neck, shank and holder are asked
@@ -93,7 +93,7 @@ class PartSurroundings:
 class PartAsker:
     """Asks for one tool; a pose that the machine can't hold counts as one that isn't clear."""
 
-    def __init__(self, around: PartSurroundings, tool: Tool) -> None:
+    def __init__(self, around: ClearanceQuery, tool: Tool) -> None:
         self._around, self._tool = around, tool
 
     def __call__(self, tip: Floats, axis: Floats, *, start_tip: Floats | None = None, start_axis: Floats | None = None) -> Bools:

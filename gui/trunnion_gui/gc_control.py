@@ -10,7 +10,7 @@ OFTEN = 1000
 """ms between two looks at how much there is."""
 
 
-class Tidy(QObject):
+class GcControl(QObject):
     """Collects in the thread that it lives in, and nowhere else, until `stop`."""
 
     def __init__(self) -> None:

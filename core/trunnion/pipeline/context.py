@@ -1,4 +1,4 @@
-"""The bench a session is worked on at: what a step needs that is not plain data (the CAD part) or not the session's own (the shop)."""
+"""The context a session is worked on at: what a step needs that is not plain data (the CAD part) or not the session's own (the shop)."""
 
 from __future__ import annotations
 
@@ -26,7 +26,7 @@ DECIMALS = 7
 
 
 @dataclass(frozen=True)
-class Bench:
+class Context:
     """The part that a session programs and the shop it is programmed for."""
 
     part: Part
@@ -58,17 +58,17 @@ class Bench:
         return np.round(low, DECIMALS), np.round(high, DECIMALS)
 
 
-class Benches:
-    """The benches of one part file: of the part as read, and of what is left of it after cuts, each made once."""
+class Contexts:
+    """The contexts of one part file: of the part as read, and of what is left of it after cuts, each made once."""
 
     def __init__(self, part: Part, shop: Shop) -> None:
-        self._made: dict[tuple[Cut, ...], Bench] = {(): Bench(part, shop)}
+        self._made: dict[tuple[Cut, ...], Context] = {(): Context(part, shop)}
 
-    def after(self, cuts: tuple[Cut, ...], progress: Progress = QUIET) -> Bench:
-        """Return the bench of the part after some cuts; raise `BadInput` when one of them can't be made."""
+    def after(self, cuts: tuple[Cut, ...], progress: Progress = QUIET) -> Context:
+        """Return the context of the part after some cuts; raise `BadInput` when one of them can't be made."""
         if cuts not in self._made:
             before = self.after(cuts[:-1], progress)
             progress.at(0.0, f"cutting face {cuts[-1].face}")
             from trunnion.part.cut import divided
-            self._made[cuts] = Bench(divided(before.part, cuts[-1]), before.shop)
+            self._made[cuts] = Context(divided(before.part, cuts[-1]), before.shop)
         return self._made[cuts]

@@ -32,13 +32,13 @@ def verify_texts(engine: Engine, session: Session, files: Sequence[Path], progre
     dialect = checked(choose(PostSettings, session.choices)).dialect
     posted = [PostedFile(suffix=file.name, dialect=dialect, setup=setup.name, text=text_of(file))
               for file, setup in zip(files, session.process.setups, strict=False)]
-    machines = engine.bench_of(session).shop.machines
+    machines = engine.context_of(session).shop.machines
 
     def read(own: Progress) -> tuple[Program, ...]:
         return tuple(p for file, text in zip(files, posted, strict=True) for p in _read(session, file, text, machines, own))
 
     programs = progress.aside(read, "reading the text")
-    verdict = held_back(prove_programs(session, engine.bench_of(session), programs, progress), errors_of_part(session))
+    verdict = held_back(prove_programs(session, engine.context_of(session), programs, progress), errors_of_part(session))
     record = StepRecord(key="texts from outside", seconds=0.0, findings=verdict.findings)
     return replace(session, verdict=verdict, posted=tuple(posted), records={**session.records, "verify": record})
 

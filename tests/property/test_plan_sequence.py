@@ -7,7 +7,7 @@ from itertools import pairwise, permutations
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from trunnion.plan.order import Job, ordered
+from trunnion.plan.sequence import Job, ordered
 
 
 @st.composite

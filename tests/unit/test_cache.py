@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from pytest import approx
 
-from trunnion.geometry.memo import Memo
+from trunnion.geometry.cache import Memo
 from trunnion.geometry.region import Region
 
 

@@ -10,9 +10,9 @@ from leaning_tools import cutter
 from trunnion.geometry.frame import WORLD, Frame
 from trunnion.part.read import read_part
 from trunnion.part.skin import skin_of
-from trunnion.pipeline.asking import PartSurroundings
+from trunnion.pipeline.clearance import ClearanceQuery
 from trunnion.shop import load_shop
-from trunnion.toolpath.surface.lean import roomy
+from trunnion.toolpath.surface.axis_search import roomy
 
 BALL = cutter("ball", diameter=6.0, corner=3.0, flute=12.0)
 UP, SIDE, DOWN = np.array([[0.0, 0.0, 1.0]]), np.array([[1.0, 0.0, 0.0]]), np.array([[0.6, 0.0, -0.8]])
@@ -27,7 +27,7 @@ def block(sample_part):
 
 def around(block, machine="Trunnion 650", cutting=WORLD):
     part, skin = block
-    return PartSurroundings(part, skin.moved(WORLD, cutting), cutting, WORLD, load_shop().machines[machine])
+    return ClearanceQuery(part, skin.moved(WORLD, cutting), cutting, WORLD, load_shop().machines[machine])
 
 
 def test_a_tool_above_the_part_is_clear_and_one_in_it_is_not(block) -> None:

@@ -242,7 +242,7 @@ def _sag(w: Floats, span: float, far: float) -> float:
     over a share of the way.
 
     Arc: radius (1 - cos(turn / 2)) <= radius turn^2 / 8. Turning axis: turn (turn far / 8 + length
-    / 4), as in `kernels/way.py`.
+    / 4), as in `kernels/tool_motion.py`.
     """
     if w[RADIUS] > 0.0:
         turn = w[SWEEP] * span

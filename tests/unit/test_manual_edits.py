@@ -10,7 +10,7 @@ from programs import process_tree, recognition
 from trunnion import registry
 from trunnion.model.feature import FaceRole, Feature, Recognition
 from trunnion.pipeline.engine import Engine
-from trunnion.pipeline.hand import with_features_by_hand, with_operations_by_hand
+from trunnion.pipeline.manual_edits import with_features_by_hand, with_operations_by_hand
 from trunnion_resources import sample
 
 FOUND = replace(recognition(), features=tuple(replace(f, by_hand=False) for f in recognition()), removed=(), findings=())
@@ -46,7 +46,7 @@ def test_the_share_of_unexplained_faces_follows_a_deletion_and_a_run_after_it(ro
     found = session.recognition
     gone = next(f for f in found if f.kind == "pocket")
     loose = set(gone.tags) - {tag for f in found if f.id != gone.id for tag in f.tags}
-    area = engine.bench_of(session).part.graph().area
+    area = engine.context_of(session).part.graph().area
     expected = pytest.approx(found.unexplained_share + float(area[[t - 1 for t in loose]].sum() / area.sum()))
     deleted = found.without(gone.id)
     assert deleted.unexplained_share == expected

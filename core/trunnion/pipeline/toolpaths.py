@@ -19,13 +19,13 @@ from trunnion.model.operation import Operation, OperationPath
 from trunnion.model.process import ProcessTree
 from trunnion.model.session import Session
 from trunnion.model.toolpath import Toolpath
-from trunnion.pipeline.bench import Bench
+from trunnion.pipeline.context import Context
 from trunnion.pipeline.scene import SessionContext, SetupScene
 from trunnion.plan.contract import DriveNeeds, Planner, planner_for
 from trunnion.progress import Progress
 from trunnion.settings import checked, choose, digest
 from trunnion.toolpath.contract import ToolAxis
-from trunnion.toolpath.turning import moved_over, swing_of
+from trunnion.toolpath.reorient import moved_over, swing_of
 
 STRATEGIES = "strategies"
 """Registry of strategies."""
@@ -38,15 +38,15 @@ def strategy_settings() -> tuple[type, ...]:
     return tuple(registry.get(STRATEGIES, name).settings for name in registry.names(STRATEGIES))
 
 
-def make_paths(session: Session, bench: Bench, progress: Progress) -> tuple[OperationPath, ...]:
+def make_paths(session: Session, context: Context, progress: Progress) -> tuple[OperationPath, ...]:
     """Return the toolpath of every operation that is not suppressed, in the order they are cut."""
     if session.process is None or session.recognition is None or session.blank is None:
         raise BadCall("no operations yet: generate the route first")
     made: list[OperationPath] = []
-    planner, context = planner_for(session.recognition.family), SessionContext(bench, session)
+    planner, parts = planner_for(session.recognition.family), SessionContext(context, session)
     total = sum(len(session.process.of_setup(setup.name)) for setup in session.setups)
     for setup in session.setups:
-        scene = SetupScene(context=context, recognition=session.recognition, blank=session.blank, setup=setup, process=session.process,
+        scene = SetupScene(context=parts, recognition=session.recognition, blank=session.blank, setup=setup, process=session.process,
                            fixtures=session.fixtures_of(setup.name))
         for operation in session.process.of_setup(setup.name):
             progress.at(len(made) / max(total, 1), f"toolpath of {operation.id}")

@@ -8,9 +8,9 @@ from collections.abc import Mapping, Sequence
 from trunnion import tolerance
 from trunnion.findings import Finding, error, face_tags, warning
 from trunnion.model.feature import Feature, Recognition
-from trunnion.plan.choosing import Candidates
-from trunnion.plan.panel.wishes import Wish
+from trunnion.plan.panel.tasks import OperationTask
 from trunnion.plan.prismatic.regions import Sections, parent_of
+from trunnion.plan.tool_choice import Candidates
 from trunnion.shop import Stage
 from trunnion.units import trimmed
 
@@ -92,7 +92,7 @@ def beside(recognition: Recognition, part: Sections) -> dict[str, frozenset[str]
     return {id: frozenset(near) for id, near in found.items()}
 
 
-def no_cutter(wish: Wish, found: Candidates) -> Finding:
+def no_cutter(task: OperationTask, found: Candidates) -> Finding:
     """Return the error that no cutter of the catalogue fits an operation."""
-    return error("route.no-cutter", f"{wish.feature}: {found.reason} ({wish.stage.name})", wish.feature, *face_tags(wish.faces),
+    return error("route.no-cutter", f"{task.feature}: {found.reason} ({task.stage.name})", task.feature, *face_tags(task.faces),
                  remedy=found.remedy)
