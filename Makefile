@@ -25,6 +25,7 @@ demo: setup
 	@echo "Open $(OUT)/B1.report.html"
 
 lint: setup
+	$(BIN)/ruff format --check -q core gui resources tests
 	$(BIN)/ruff check core gui resources tests
 	$(BIN)/mypy core/trunnion gui/trunnion_gui
 	$(BIN)/lint-imports

@@ -41,15 +41,31 @@ class BlockPart:
         if not 0 <= layer < self.full.shape[2]:
             return Region()
         xs, ys, _ = self.breaks
-        cells = [shapely.box(xs[i], ys[j], xs[i + 1], ys[j + 1]) for i, j in np.argwhere(self.full[:, :, layer])]
-        rings = [r for p in shapely.get_parts(shapely.union_all(cells)) for r in (p.exterior, *p.interiors)]
-        return Region.of([Curve.polygon(self._moved(np.asarray(r.coords)[:-1], frame)) for r in rings])
+        cells = [
+            shapely.box(xs[i], ys[j], xs[i + 1], ys[j + 1])
+            for i, j in np.argwhere(self.full[:, :, layer])
+        ]
+        rings = [
+            r
+            for p in shapely.get_parts(shapely.union_all(cells))
+            for r in (p.exterior, *p.interiors)
+        ]
+        return Region.of(
+            [Curve.polygon(self._moved(np.asarray(r.coords)[:-1], frame)) for r in rings]
+        )
 
     def _moved(self, points: np.ndarray, frame: Frame) -> np.ndarray:
-        return frame.to_local(self.placed.to_world(np.column_stack([points, np.zeros(len(points))])))[:, :2]
+        return frame.to_local(
+            self.placed.to_world(np.column_stack([points, np.zeros(len(points))]))
+        )[:, :2]
 
 
-def terrace(xs: Sequence[float], ys: Sequence[float], heights: Sequence[Sequence[float]], placed: Frame = WORLD) -> BlockPart:
+def terrace(
+    xs: Sequence[float],
+    ys: Sequence[float],
+    heights: Sequence[Sequence[float]],
+    placed: Frame = WORLD,
+) -> BlockPart:
     """Return the part whose cell (i, j) is full from 0 up to `heights[j][i]`: the rows of the list run along y."""
     tops = np.array(heights, dtype=float).T
     zs = (0.0, *sorted(set(tops.ravel().tolist()) - {0.0}))
@@ -105,7 +121,11 @@ def _merged(full: np.ndarray) -> tuple[list[list[Quad]], dict[Key, list[int]]]:
         for q in group:
             for e in _borders(q):
                 for other in at[e]:
-                    if other not in face_of and other[:2] == q[:2] and other[2 + q[0]] == q[2 + q[0]]:
+                    if (
+                        other not in face_of
+                        and other[:2] == q[:2]
+                        and other[2 + q[0]] == q[2 + q[0]]
+                    ):
                         face_of[other] = len(faces)
                         group.append(other)
         faces.append(group)
@@ -126,7 +146,9 @@ def _loops(edges: list[Key]) -> dict[Key, int]:
             left.difference_update(touching)
             group.extend(touching)
         groups.append(group)
-    groups.sort(key=lambda g: -float(np.ptp(np.array([p for e in g for p in ends[e]]), axis=0).sum()))
+    groups.sort(
+        key=lambda g: -float(np.ptp(np.array([p for e in g for p in ends[e]]), axis=0).sum())
+    )
     return {e: n for n, g in enumerate(groups) for e in g}
 
 
@@ -141,30 +163,59 @@ def _graph(part: BlockPart) -> FaceGraph:
     low, high, centre, normal, area, samples, owner = [], [], [], [], [], [], []
     for row, quads in enumerate(faces):
         axis, side = quads[0][:2]
-        corners = [(place([c + (side if a == axis else 0) for a, c in enumerate(q[2:])]),
-                    place([c + (side if a == axis else 1) for a, c in enumerate(q[2:])])) for q in quads]
+        corners = [
+            (
+                place([c + (side if a == axis else 0) for a, c in enumerate(q[2:])]),
+                place([c + (side if a == axis else 1) for a, c in enumerate(q[2:])]),
+            )
+            for q in quads
+        ]
         middles = np.array([(a + b) / 2 for a, b in corners])
         low.append(np.min([a for a, _ in corners], axis=0))
         high.append(np.max([b for _, b in corners], axis=0))
-        area.append(sum(np.prod([d for a, d in enumerate(b - a0) if a != axis]) for a0, b in corners))
+        area.append(
+            sum(np.prod([d for a, d in enumerate(b - a0) if a != axis]) for a0, b in corners)
+        )
         centre.append(middles[0])
         normal.append(np.eye(3)[axis] * (2 * side - 1))
         samples.extend(middles)
         owner.extend([row] * len(quads))
     borders = {e: f for e, f in at.items() if len(f) == 2 and f[0] != f[1]}
-    loops: list[dict[Key, int]] = [_loops([e for e, f in borders.items() if row in f]) for row in range(len(faces))]
+    loops: list[dict[Key, int]] = [
+        _loops([e for e, f in borders.items() if row in f]) for row in range(len(faces))
+    ]
     start = np.array([place(e[1:]) for e in borders])
     end = np.array([place([c + (a == e[0]) for a, c in enumerate(e[1:])]) for e in borders])
     convexity = np.array([_convexity(padded, e) for e in borders])
     nothing, n, m = np.full((len(borders), 3), np.nan), len(faces), len(borders)
     return FaceGraph(
-        surface=("plane",) * n, area=np.array(area), centre=np.array(centre), normal=np.array(normal), axis_point=np.full((n, 3), np.nan),
-        axis=np.full((n, 3), np.nan), radius=np.full(n, np.nan), minor=np.full(n, np.nan), bend=np.zeros(n), box_low=np.array(low),
-        box_high=np.array(high), sample_face=np.array(owner), sample_point=np.array(samples), sample_normal=np.array(normal)[owner],
-        edge_face=np.array(list(borders.values())), convexity=convexity, dihedral=np.pi - convexity * np.pi / 2,
-        length=np.linalg.norm(end - start, axis=1), edge_loop=np.array([[loops[f][e] for f in pair] for e, pair in borders.items()]),
-        curve=("line",) * m, start=start, middle=(start + end) / 2, end=end, curve_centre=nothing, curve_axis=nothing,
-        curve_radius=np.full(m, np.nan))
+        surface=("plane",) * n,
+        area=np.array(area),
+        centre=np.array(centre),
+        normal=np.array(normal),
+        axis_point=np.full((n, 3), np.nan),
+        axis=np.full((n, 3), np.nan),
+        radius=np.full(n, np.nan),
+        minor=np.full(n, np.nan),
+        bend=np.zeros(n),
+        box_low=np.array(low),
+        box_high=np.array(high),
+        sample_face=np.array(owner),
+        sample_point=np.array(samples),
+        sample_normal=np.array(normal)[owner],
+        edge_face=np.array(list(borders.values())),
+        convexity=convexity,
+        dihedral=np.pi - convexity * np.pi / 2,
+        length=np.linalg.norm(end - start, axis=1),
+        edge_loop=np.array([[loops[f][e] for f in pair] for e, pair in borders.items()]),
+        curve=("line",) * m,
+        start=start,
+        middle=(start + end) / 2,
+        end=end,
+        curve_centre=nothing,
+        curve_axis=nothing,
+        curve_radius=np.full(m, np.nan),
+    )
 
 
 def _convexity(padded: np.ndarray, edge: Key) -> int:

@@ -39,29 +39,54 @@ class FiveAxisCase:
     blank_high: tuple[float, float, float] = (SIDE, SIDE, BLANK_TOP)
 
 
-def five_axis_case(n_blocks: int, n_triangles: int, cutter: str = "ball", deeper: float = 0.0) -> FiveAxisCase:
+def five_axis_case(
+    n_blocks: int, n_triangles: int, cutter: str = "ball", deeper: float = 0.0
+) -> FiveAxisCase:
     """Return the job with about so many blocks and triangles; `deeper` pushes the cutter into the surface along its normal, mm."""
     tool = finisher(cutter)
     points, triangles, face = wavy_block(n_triangles)
     path = finishing(tool, n_blocks, deeper)
-    return FiveAxisCase(points=points, triangles=triangles, face=face, tag=np.arange(1, PATCHES**2 + 6),
-                        section=ProgramSection(operation="five-axis", tool=tool, spindle=12000.0, path=path))
+    return FiveAxisCase(
+        points=points,
+        triangles=triangles,
+        face=face,
+        tag=np.arange(1, PATCHES**2 + 6),
+        section=ProgramSection(operation="five-axis", tool=tool, spindle=12000.0, path=path),
+    )
 
 
 def finisher(cutter: str) -> Tool:
     """Return a ball cutter of 12 mm or a bull cutter of 16 mm with corners of 3 mm, in a holder 60 mm above its tip."""
     diameter, corner = {"ball": (12.0, 6.0), "bull": (16.0, 3.0)}[cutter]
-    return Tool(number=1, name=f"{cutter} {diameter:g}", form=cutter, diameter=diameter, corner_radius=corner, flute_length=20.0,
-                neck_diameter=diameter - 1.0, neck_length=35.0, shank_diameter=diameter, stickout=60.0, gauge_length=140.0, teeth=2,
-                centre_cutting=True, helix_angle=30.0, holder=HOLDER)
+    return Tool(
+        number=1,
+        name=f"{cutter} {diameter:g}",
+        form=cutter,
+        diameter=diameter,
+        corner_radius=corner,
+        flute_length=20.0,
+        neck_diameter=diameter - 1.0,
+        neck_length=35.0,
+        shank_diameter=diameter,
+        stickout=60.0,
+        gauge_length=140.0,
+        teeth=2,
+        centre_cutting=True,
+        helix_angle=30.0,
+        holder=HOLDER,
+    )
 
 
 def surface(x: Floats, y: Floats) -> tuple[Floats, Floats]:
     """Return points and upward unit normals (…, 3) of the wavy top at places (…) in plan."""
     x, y = np.broadcast_arrays(np.asarray(x, dtype=np.float64), np.asarray(y, dtype=np.float64))
     sx, cx, sy, cy = np.sin(WAVE * x), np.cos(WAVE * x), np.sin(WAVE * y), np.cos(WAVE * y)
-    normal = np.stack([-AMPLITUDE * WAVE * cx * cy, AMPLITUDE * WAVE * sx * sy, np.ones_like(x)], axis=-1)
-    return np.stack([x, y, AMPLITUDE * sx * cy], axis=-1), normal / np.linalg.norm(normal, axis=-1, keepdims=True)
+    normal = np.stack(
+        [-AMPLITUDE * WAVE * cx * cy, AMPLITUDE * WAVE * sx * sy, np.ones_like(x)], axis=-1
+    )
+    return np.stack([x, y, AMPLITUDE * sx * cy], axis=-1), normal / np.linalg.norm(
+        normal, axis=-1, keepdims=True
+    )
 
 
 def wavy_block(n_triangles: int) -> tuple[Floats, Ints, Ints]:
@@ -80,10 +105,19 @@ def wavy_block(n_triangles: int) -> tuple[Floats, Ints, Ints]:
     after = np.roll(np.arange(len(loop)), -1)
     middle = len(top) + len(loop)
     side = PATCHES**2 + np.repeat(np.arange(4), n)
-    triangles += [np.column_stack([loop, lower, lower[after]]), np.column_stack([loop, lower[after], loop[after]]),
-                  np.column_stack([np.full(len(loop), middle), lower[after], lower])]
+    triangles += [
+        np.column_stack([loop, lower, lower[after]]),
+        np.column_stack([loop, lower[after], loop[after]]),
+        np.column_stack([np.full(len(loop), middle), lower[after], lower]),
+    ]
     face += [side, side, np.full(len(loop), PATCHES**2 + 4)]
-    points = np.vstack([top, np.column_stack([top[loop, :2], np.full(len(loop), BASE)]), [[SIDE / 2, SIDE / 2, BASE]]])
+    points = np.vstack(
+        [
+            top,
+            np.column_stack([top[loop, :2], np.full(len(loop), BASE)]),
+            [[SIDE / 2, SIDE / 2, BASE]],
+        ]
+    )
     return points, np.vstack(triangles), np.concatenate(face)
 
 
@@ -99,7 +133,10 @@ def finishing(tool: Tool, n_blocks: int, deeper: float = 0.0) -> Toolpath:
     touch, normal = surface(x, y)
     ahead = np.cross(np.array([0.0, 1.0, 0.0]), normal)
     ahead /= np.linalg.norm(ahead, axis=1, keepdims=True)
-    lead, tilt = np.radians(20.0 + 5.0 * np.sin(0.05 * x)), np.radians(6.0 * np.sin(0.04 * y + 0.07 * x))
+    lead, tilt = (
+        np.radians(20.0 + 5.0 * np.sin(0.05 * x)),
+        np.radians(6.0 * np.sin(0.04 * y + 0.07 * x)),
+    )
     axis = _leaning(normal, ahead, lead, tilt)
     out = normal - (normal * axis).sum(axis=1, keepdims=True) * axis
     out /= np.linalg.norm(out, axis=1, keepdims=True)
@@ -109,8 +146,14 @@ def finishing(tool: Tool, n_blocks: int, deeper: float = 0.0) -> Toolpath:
     n = len(tips) + 2
     motion = np.full(n, int(Motion.LINE))
     motion[[0, -1]] = int(Motion.RAPID)
-    return Toolpath(position=np.vstack([first, tips, last]), axis=np.vstack([axis[:1], axis, axis[-1:]]), motion=motion,
-                    centre=np.full((n, 3), np.nan), feed=np.where(motion == int(Motion.RAPID), 0.0, 3000.0), mark=np.zeros(n, int))
+    return Toolpath(
+        position=np.vstack([first, tips, last]),
+        axis=np.vstack([axis[:1], axis, axis[-1:]]),
+        motion=motion,
+        centre=np.full((n, 3), np.nan),
+        feed=np.where(motion == int(Motion.RAPID), 0.0, 3000.0),
+        mark=np.zeros(n, int),
+    )
 
 
 def _leaning(normal: Floats, ahead: Floats, lead: Floats, tilt: Floats) -> Floats:

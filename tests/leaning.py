@@ -13,33 +13,78 @@ from trunnion.model.toolpath import Motion, Toolpath
 from trunnion.part.facets import Facets
 from trunnion.part.surfaces import GUIDE, L_KIND, PROFILE, R_KIND, U0, U1
 from trunnion.verify.contact import guide_points
-from verify_tools import FLOOR, FORMS, MACHINE, POCKET_HIGH, block_with_pocket, plain_depth, supports_of, tool_of
+from verify_tools import (
+    FLOOR,
+    FORMS,
+    MACHINE,
+    POCKET_HIGH,
+    block_with_pocket,
+    plain_depth,
+    supports_of,
+    tool_of,
+)
 
 RIGHT = POCKET_HIGH[0]
 UP = (0.0, 0.0, 1.0)
 CHORDS = 64
 """Chords over what bends: the pocket's corners of 4 mm are 0.3 um off."""
-FIVE_AXES = replace(MACHINE, name="test five-axis mill", title="test five-axis mill", axes=(
-    *(replace(a, high=900.0) for a in MACHINE.axes),
-    Axis(name="C", kind="rotary", low=-720.0, high=720.0, rapid=14400.0, acceleration=1000.0, direction=(0.0, 0.0, 1.0), carries="tool"),
-    Axis(name="A", kind="rotary", low=-110.0, high=110.0, rapid=14400.0, acceleration=1000.0, direction=(1.0, 0.0, 0.0), carries="tool")))
+FIVE_AXES = replace(
+    MACHINE,
+    name="test five-axis mill",
+    title="test five-axis mill",
+    axes=(
+        *(replace(a, high=900.0) for a in MACHINE.axes),
+        Axis(
+            name="C",
+            kind="rotary",
+            low=-720.0,
+            high=720.0,
+            rapid=14400.0,
+            acceleration=1000.0,
+            direction=(0.0, 0.0, 1.0),
+            carries="tool",
+        ),
+        Axis(
+            name="A",
+            kind="rotary",
+            low=-110.0,
+            high=110.0,
+            rapid=14400.0,
+            acceleration=1000.0,
+            direction=(1.0, 0.0, 0.0),
+            carries="tool",
+        ),
+    ),
+)
 
 
 def block_facets():
     """Return the block's faces as triangles: many where something bends, few where nothing does."""
     surfaces = block_with_pocket()
     points, triangles, face, count = [], [], [], 0
-    for strip, row in zip(np.vstack([surfaces.strip, surfaces.level]), [*surfaces.strip_face, *surfaces.level_face], strict=True):
+    for strip, row in zip(
+        np.vstack([surfaces.strip, surfaces.level]),
+        [*surfaces.strip_face, *surfaces.level_face],
+        strict=True,
+    ):
         across = CHORDS if strip[PROFILE] or strip[L_KIND] or strip[R_KIND] else 1
         along = CHORDS if strip[GUIDE] else 1
-        grid = [guide_points(strip, u, np.linspace(0.0, 1.0, along + 1)) for u in np.linspace(strip[U0], strip[U1], across + 1)]
+        grid = [
+            guide_points(strip, u, np.linspace(0.0, 1.0, along + 1))
+            for u in np.linspace(strip[U0], strip[U1], across + 1)
+        ]
         first = (np.arange(across)[:, None] * (along + 1) + np.arange(along)).ravel() + count
         up = first + along + 1
-        triangles += [np.column_stack([first, first + 1, up + 1]), np.column_stack([first, up + 1, up])]
+        triangles += [
+            np.column_stack([first, first + 1, up + 1]),
+            np.column_stack([first, up + 1, up]),
+        ]
         points += grid
         face.append(np.full(2 * across * along, row))
         count += (along + 1) * (across + 1)
-    return Facets.of_mesh(np.vstack(points), np.vstack(triangles), np.concatenate(face), surfaces.tag)
+    return Facets.of_mesh(
+        np.vstack(points), np.vstack(triangles), np.concatenate(face), surfaces.tag
+    )
 
 
 def lean(degrees, around=180.0):
@@ -50,8 +95,14 @@ def lean(degrees, around=180.0):
 
 def long_reaching(tool):
     """Return a tool with its holder far up, clear of the block however it leans."""
-    return replace(tool, neck_diameter=min(tool.neck_diameter, tool.diameter), shank_diameter=min(tool.shank_diameter, tool.neck_diameter),
-                   neck_length=tool.flute_length + 40.0, stickout=tool.flute_length + 60.0, gauge_length=tool.flute_length + 120.0)
+    return replace(
+        tool,
+        neck_diameter=min(tool.neck_diameter, tool.diameter),
+        shank_diameter=min(tool.shank_diameter, tool.neck_diameter),
+        neck_length=tool.flute_length + 40.0,
+        stickout=tool.flute_length + 60.0,
+        gauge_length=tool.flute_length + 120.0,
+    )
 
 
 SMALL = {
@@ -59,8 +110,22 @@ SMALL = {
     "bull": tool_of("bull", diameter=6.0, corner_radius=1.0, flute_length=12.0),
     "ball": tool_of("ball", diameter=6.0, corner_radius=3.0, flute_length=12.0),
     "taper": tool_of("taper", diameter=3.0, corner_radius=1.5, taper_angle=8.0, flute_length=12.0),
-    "barrel": tool_of("barrel", diameter=6.0, corner_radius=1.0, barrel_radius=10.0, flute_length=10.0, neck_diameter=5.0),
-    "t-slot": tool_of("t-slot", diameter=8.0, corner_radius=0.5, flute_length=3.0, neck_diameter=4.0, shank_diameter=4.0),
+    "barrel": tool_of(
+        "barrel",
+        diameter=6.0,
+        corner_radius=1.0,
+        barrel_radius=10.0,
+        flute_length=10.0,
+        neck_diameter=5.0,
+    ),
+    "t-slot": tool_of(
+        "t-slot",
+        diameter=8.0,
+        corner_radius=0.5,
+        flute_length=3.0,
+        neck_diameter=4.0,
+        shank_diameter=4.0,
+    ),
     "drill": tool_of("drill", diameter=6.0, point_angle=118.0, flute_length=20.0),
     "form": FORMS["form"],
 }
@@ -90,7 +155,11 @@ def depth_in_plane(tool, axis, normal, out):
     """Return the deepest point of a plane in a cutter that stands out `out` beyond it: brute force on ever finer points of the plane."""
     axis, normal = np.asarray(axis), np.asarray(normal)
     side = np.cross(normal, axis)
-    side = side / np.linalg.norm(side) if np.linalg.norm(side) > 1e-9 else np.cross(normal, [0.3, 0.5, 0.8])
+    side = (
+        side / np.linalg.norm(side)
+        if np.linalg.norm(side) > 1e-9
+        else np.cross(normal, [0.3, 0.5, 0.8])
+    )
     side /= np.linalg.norm(side)
     forth = np.cross(side, normal)
     base = normal * (out - standing_out(tool, axis[None], normal)[0])
@@ -123,8 +192,20 @@ def poses_between(start, end, shares):
 def section_through(tool, operation, poses):
     """Return a section that comes from above the pocket with the first pose's axis, goes through the poses (tip, axis), and up again."""
     first, last = poses[0][1], poses[-1][1]
-    stops = [((2.0, 0.0, 90.0), first), ((2.0, 0.0, FLOOR + 4.5), first), *poses, ((2.0, 0.0, FLOOR + 4.5), last), ((2.0, 0.0, 90.0), last)]
+    stops = [
+        ((2.0, 0.0, 90.0), first),
+        ((2.0, 0.0, FLOOR + 4.5), first),
+        *poses,
+        ((2.0, 0.0, FLOOR + 4.5), last),
+        ((2.0, 0.0, 90.0), last),
+    ]
     n = len(stops)
-    path = Toolpath(position=[tip for tip, _ in stops], axis=[axis for _, axis in stops], motion=[Motion.RAPID] + [Motion.LINE] * (n - 1),
-                    centre=np.full((n, 3), np.nan), feed=[0.0] + [1000.0] * (n - 1), mark=[0] * n)
+    path = Toolpath(
+        position=[tip for tip, _ in stops],
+        axis=[axis for _, axis in stops],
+        motion=[Motion.RAPID] + [Motion.LINE] * (n - 1),
+        centre=np.full((n, 3), np.nan),
+        feed=[0.0] + [1000.0] * (n - 1),
+        mark=[0] * n,
+    )
     return ProgramSection(operation=operation, tool=tool, spindle=10000.0, path=path)

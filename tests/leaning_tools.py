@@ -19,9 +19,24 @@ from verify_tools import HOLDER
 
 def cutter(form, diameter=10.0, corner=0.0, flute=20.0, **more):
     """Return a tool of any form with a shank of its own diameter."""
-    return Tool(number=1, name=form, form=form, diameter=diameter, corner_radius=corner, flute_length=flute, neck_diameter=diameter,
-                neck_length=flute, shank_diameter=diameter, stickout=flute + 20.0, gauge_length=flute + 80.0, teeth=3, centre_cutting=True,
-                helix_angle=30.0, holder=HOLDER, **more)
+    return Tool(
+        number=1,
+        name=form,
+        form=form,
+        diameter=diameter,
+        corner_radius=corner,
+        flute_length=flute,
+        neck_diameter=diameter,
+        neck_length=flute,
+        shank_diameter=diameter,
+        stickout=flute + 20.0,
+        gauge_length=flute + 80.0,
+        teeth=3,
+        centre_cutting=True,
+        helix_angle=30.0,
+        holder=HOLDER,
+        **more,
+    )
 
 
 EVERY_FORM = {
@@ -32,7 +47,11 @@ EVERY_FORM = {
     "barrel": cutter("barrel", corner=2.0, flute=30.0, barrel_radius=60.0),
     "t-slot": cutter("t-slot", diameter=20.0, corner=1.0, flute=5.0),
     "drill": cutter("drill", point_angle=118.0),
-    "form": cutter("form", flute=12.0, outline=((2.0, 0.0, 0.0), (2.0, 4.0, 0.0), (4.0, 6.0, 0.3), (5.0, 12.0, 0.0))),
+    "form": cutter(
+        "form",
+        flute=12.0,
+        outline=((2.0, 0.0, 0.0), (2.0, 4.0, 0.0), (4.0, 6.0, 0.3), (5.0, 12.0, 0.0)),
+    ),
 }
 
 
@@ -43,8 +62,14 @@ def leaning_section(tool, tips, axes, centre=None, motion=Motion.LINE, operation
     centres = np.full((n, 3), np.nan)
     if centre is not None:
         centres[1:] = centre
-    path = Toolpath(position=tips, axis=axes, motion=[Motion.RAPID] + [motion] * (n - 1), centre=centres,
-                    feed=[0.0] + [1000.0] * (n - 1), mark=[0] * n)
+    path = Toolpath(
+        position=tips,
+        axis=axes,
+        motion=[Motion.RAPID] + [motion] * (n - 1),
+        centre=centres,
+        feed=[0.0] + [1000.0] * (n - 1),
+        mark=[0] * n,
+    )
     return ProgramSection(operation=operation, tool=tool, spindle=10000.0, path=path)
 
 
@@ -52,13 +77,30 @@ def contact_of(*boxes):
     """Return contact with boxes, each a low and a high corner."""
     corners = []
     for low, high in boxes:
-        c = np.array([[x, y, z] for x in (low[0], high[0]) for y in (low[1], high[1]) for z in (low[2], high[2])], dtype=np.float64)
-        for a, b, d, e in ((0, 1, 3, 2), (4, 6, 7, 5), (0, 4, 5, 1), (2, 3, 7, 6), (0, 2, 6, 4), (1, 5, 7, 3)):
+        c = np.array(
+            [
+                [x, y, z]
+                for x in (low[0], high[0])
+                for y in (low[1], high[1])
+                for z in (low[2], high[2])
+            ],
+            dtype=np.float64,
+        )
+        for a, b, d, e in (
+            (0, 1, 3, 2),
+            (4, 6, 7, 5),
+            (0, 4, 5, 1),
+            (2, 3, 7, 6),
+            (0, 2, 6, 4),
+            (1, 5, 7, 3),
+        ):
             corners += [c[[a, b, d]], c[[a, d, e]]]
     triangles, empty = np.array(corners), np.zeros((0, STRIP_COLUMNS))
     joined = Face(1, empty, empty, np.zeros((0, 4)), is_free=True)
     rows = np.arange(3 * len(triangles)).reshape(-1, 3)
-    facets = Facets.of_mesh(triangles.reshape(-1, 3), rows, np.zeros(len(rows), np.int64), np.array([1]))
+    facets = Facets.of_mesh(
+        triangles.reshape(-1, 3), rows, np.zeros(len(rows), np.int64), np.array([1])
+    )
     return PartContact(surfaces_from([joined]), facets)
 
 
@@ -70,9 +112,17 @@ class PlainCutter:
         for r0, z0, r1, z1, cr, cz, radius in outline_of(tool):
             if radius:
                 a, b = math.atan2(z0 - cz, r0 - cr), math.atan2(z1 - cz, r1 - cr)
-                turn = math.remainder(b - a, math.tau) if radius > 0.0 else math.remainder(b - a + math.pi, math.tau) - math.pi
-                angles = a + turn * np.linspace(0.0, 1.0, max(2, int(abs(turn) * math.sqrt(abs(radius) / 8e-4)) + 2))
-                right += [(cr + abs(radius) * math.cos(t), cz + abs(radius) * math.sin(t)) for t in angles]
+                turn = (
+                    math.remainder(b - a, math.tau)
+                    if radius > 0.0
+                    else math.remainder(b - a + math.pi, math.tau) - math.pi
+                )
+                angles = a + turn * np.linspace(
+                    0.0, 1.0, max(2, int(abs(turn) * math.sqrt(abs(radius) / 8e-4)) + 2)
+                )
+                right += [
+                    (cr + abs(radius) * math.cos(t), cz + abs(radius) * math.sin(t)) for t in angles
+                ]
             else:
                 right += [(r0, z0), (r1, z1)]
         right.append((0.0, tool.flute_length))
@@ -108,7 +158,12 @@ class PlainCutter:
 
 def pose_at(path, block, t):
     """Return tips and axes (k, 3) at shares t (k,) of a block, written anew."""
-    start, end, a, b = path.starts()[block], path.position[block], path.axis[block - 1], path.axis[block]
+    start, end, a, b = (
+        path.starts()[block],
+        path.position[block],
+        path.axis[block - 1],
+        path.axis[block],
+    )
     turn = math.acos(max(-1.0, min(1.0, float(a @ b))))
     t = np.asarray(t)[:, None]
     if turn < 1e-9:

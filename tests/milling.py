@@ -25,23 +25,51 @@ SETUP = Setup(name="S1", frame=WORLD, work_offset="G54", clearance=50.0, machine
 STEP = 0.2
 
 
-def mill(diameter: float, corner_radius: float = 0.0, flute_length: float = 30.0, stickout: float = 70.0) -> Tool:
+def mill(
+    diameter: float, corner_radius: float = 0.0, flute_length: float = 30.0, stickout: float = 70.0
+) -> Tool:
     """Return an end mill in a slim holder."""
-    return Tool(number=1, name=f"D{diameter:g} R{corner_radius:g}", form="bull" if corner_radius else "flat", diameter=diameter,
-                corner_radius=corner_radius, flute_length=flute_length, neck_diameter=diameter - 0.5, neck_length=flute_length + 10.0,
-                shank_diameter=diameter, stickout=stickout, gauge_length=stickout + 60.0, teeth=3, centre_cutting=True, helix_angle=40.0,
-                holder=Holder(name="slim", rows=((0.0, 15.0, 40.0, 20.0),)))
+    return Tool(
+        number=1,
+        name=f"D{diameter:g} R{corner_radius:g}",
+        form="bull" if corner_radius else "flat",
+        diameter=diameter,
+        corner_radius=corner_radius,
+        flute_length=flute_length,
+        neck_diameter=diameter - 0.5,
+        neck_length=flute_length + 10.0,
+        shank_diameter=diameter,
+        stickout=stickout,
+        gauge_length=stickout + 60.0,
+        teeth=3,
+        centre_cutting=True,
+        helix_angle=40.0,
+        holder=Holder(name="slim", rows=((0.0, 15.0, 40.0, 20.0),)),
+    )
 
 
 def cutting(depth: float, width: float, feed: float = 2400.0) -> CuttingData:
     """Return cutting data with a depth and a width of cut."""
-    return CuttingData(speed=400.0, spindle=8000.0, feed_per_tooth=0.1, feed=feed, plunge_feed=0.4 * feed, depth=depth, width=width,
-                       removal_rate=0.0, power=1.0, power_limit=10.0, torque=1.0)
+    return CuttingData(
+        speed=400.0,
+        spindle=8000.0,
+        feed_per_tooth=0.1,
+        feed=feed,
+        plunge_feed=0.4 * feed,
+        depth=depth,
+        width=width,
+        removal_rate=0.0,
+        power=1.0,
+        power_limit=10.0,
+        torque=1.0,
+    )
 
 
 def box_blank(low: tuple[float, float, float], high: tuple[float, float, float]) -> Blank:
     """Return a blank in the setup's own frame."""
-    return Blank(frame=WORLD, low=np.array(low), high=np.array(high), material="aluminium", density=2.7)
+    return Blank(
+        frame=WORLD, low=np.array(low), high=np.array(high), material="aluminium", density=2.7
+    )
 
 
 def rounded(x0: float, y0: float, x1: float, y1: float, radius: float) -> Region:
@@ -52,10 +80,19 @@ def rounded(x0: float, y0: float, x1: float, y1: float, radius: float) -> Region
 def closed_pocket(plan: Region, depth: float, fillet: float = 0.0, **changed: object) -> PlaneDrive:
     """Return the drive of a pocket with vertical walls all round, its top at 0."""
     level = DriveLevel(top=0.0, bottom=-depth, wanted=plan, boundary=plan)
-    walls = tuple(WallGuide(curve=c, top=0.0, bottom=-depth, fillet=fillet, faces=(2,)) for c in plan.curves())
+    walls = tuple(
+        WallGuide(curve=c, top=0.0, bottom=-depth, fillet=fillet, faces=(2,)) for c in plan.curves()
+    )
     floors = (Floor(z=-depth, region=plan, fillet=fillet, face=1),)
-    words: dict[str, object] = {"feature": "pocket-01", "kind": "rough", "levels": (level,), "floors": floors, "walls": walls,
-                                "fillet": fillet, "stock_top": 0.0}
+    words: dict[str, object] = {
+        "feature": "pocket-01",
+        "kind": "rough",
+        "levels": (level,),
+        "floors": floors,
+        "walls": walls,
+        "fillet": fillet,
+        "stock_top": 0.0,
+    }
     return PlaneDrive(**{**words, **changed})  # type: ignore[arg-type]
 
 
@@ -92,9 +129,14 @@ class Milled:
         """Return how deep the columns were cut below a target (nx, ny), those nearer than `margin` to a region's rim left out."""
         return float(np.where(self._off(away_from, margin), target - self.height, 0.0).max())
 
-    def area_above(self, target: np.ndarray, away_from: Region, tolerance: float = 0.02, margin: float = 0.01) -> float:
+    def area_above(
+        self, target: np.ndarray, away_from: Region, tolerance: float = 0.02, margin: float = 0.01
+    ) -> float:
         """Return the area in mm2 where more than `tolerance` stays above a target (nx, ny)."""
-        return float((self._off(away_from, margin) & (self.height - target > tolerance)).sum()) * self.cell**2
+        return (
+            float((self._off(away_from, margin) & (self.height - target > tolerance)).sum())
+            * self.cell**2
+        )
 
     def pocket_target(self, plan: Region, depth: float, fillet: float = 0.0) -> np.ndarray:
         """Return the finished heights of a pocket with a fillet all round its floor, 0 outside."""
@@ -105,31 +147,49 @@ class Milled:
     def _off(self, region: Region, margin: float) -> np.ndarray:
         return np.abs(region.signed_distance(self.points)).reshape(self.x.shape) > margin
 
-    def _pieces(self, path: Toolpath, n: int, start: np.ndarray, sweep: float) -> list[tuple[np.ndarray, np.ndarray]]:
+    def _pieces(
+        self, path: Toolpath, n: int, start: np.ndarray, sweep: float
+    ) -> list[tuple[np.ndarray, np.ndarray]]:
         end = path.position[n]
         if sweep == 0.0:
             if abs(start[2] - end[2]) < 1e-9:
                 return [(start, end)]
-            places = start + np.linspace(0.0, 1.0, max(2, int(np.linalg.norm(end - start) / STEP) + 2))[:, None] * (end - start)
+            places = start + np.linspace(
+                0.0, 1.0, max(2, int(np.linalg.norm(end - start) / STEP) + 2)
+            )[:, None] * (end - start)
             return [(p, p) for p in places]
         centre, ray = path.centre[n, :2], start[:2] - path.centre[n, :2]
         share = np.linspace(0.0, 1.0, max(9, int(abs(sweep) * math.hypot(*ray) / STEP) + 2))
         c, s = np.cos(share * sweep), np.sin(share * sweep)
-        places = np.stack([centre[0] + c * ray[0] - s * ray[1], centre[1] + s * ray[0] + c * ray[1],
-                           start[2] + share * (end[2] - start[2])], axis=1)
+        places = np.stack(
+            [
+                centre[0] + c * ray[0] - s * ray[1],
+                centre[1] + s * ray[0] + c * ray[1],
+                start[2] + share * (end[2] - start[2]),
+            ],
+            axis=1,
+        )
         return list(itertools.pairwise(places))
 
     def _sweep(self, a: np.ndarray, b: np.ndarray, tool: Tool, rapid: int | None) -> None:
         radius, corner = tool.radius, tool.corner_radius
-        first = np.maximum(np.floor((np.minimum(a, b)[:2] - radius - self.low) / self.cell).astype(int), 0)
-        last = np.maximum(np.ceil((np.maximum(a, b)[:2] + radius - self.low) / self.cell).astype(int) + 1, 0)
+        first = np.maximum(
+            np.floor((np.minimum(a, b)[:2] - radius - self.low) / self.cell).astype(int), 0
+        )
+        last = np.maximum(
+            np.ceil((np.maximum(a, b)[:2] + radius - self.low) / self.cell).astype(int) + 1, 0
+        )
         at = (slice(first[0], last[0]), slice(first[1], last[1]))
         x, y, height = self.x[at], self.y[at], self.height[at]
         if not x.size:
             return
         way = b[:2] - a[:2]
         square = float(way @ way)
-        share = np.clip(((x - a[0]) * way[0] + (y - a[1]) * way[1]) / square, 0.0, 1.0) if square else 0.0
+        share = (
+            np.clip(((x - a[0]) * way[0] + (y - a[1]) * way[1]) / square, 0.0, 1.0)
+            if square
+            else 0.0
+        )
         far = np.hypot(x - a[0] - share * way[0], y - a[1] - share * way[1])
         inner = np.clip(far - (radius - corner), 0.0, corner)
         tip = max(a[2], b[2]) + corner - np.sqrt(corner**2 - inner**2)

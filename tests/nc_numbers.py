@@ -25,10 +25,50 @@ from verify_tools import FACING, POCKETING, SETUP, clean_plan, proof
 TOOLS = (FACING, POCKETING)
 HEADER = Header(name="B1", part="B1", part_digest="ab12", plan_digest="cd34")
 DIALECTS = {"linuxcnc": LinuxCncDialect, "apt": AptDialect}
-AWKWARD = ("0", "-0", "+0", "1", "-1", "0.5", "-0.5", "0.000000000001", "-0.000000000001", "0.0004", "99999", "-99999", "100000", "100001",
-           "99999999999", "-99999999999", "9" * 309, "1" + "0" * 300, "-1" + "0" * 300, "9" * 5000, "0." + "0" * 320 + "1",
-           "1." + "3" * 400, "", ".", "-", "+", "--1", "+-1", "1.2.3", "..5", "1E300", "1e5", "1E-300", "1E400", "NAN", "INF", "-INF",
-           "1_000", "0X10", "١٢", "½", "1,5")
+AWKWARD = (
+    "0",
+    "-0",
+    "+0",
+    "1",
+    "-1",
+    "0.5",
+    "-0.5",
+    "0.000000000001",
+    "-0.000000000001",
+    "0.0004",
+    "99999",
+    "-99999",
+    "100000",
+    "100001",
+    "99999999999",
+    "-99999999999",
+    "9" * 309,
+    "1" + "0" * 300,
+    "-1" + "0" * 300,
+    "9" * 5000,
+    "0." + "0" * 320 + "1",
+    "1." + "3" * 400,
+    "",
+    ".",
+    "-",
+    "+",
+    "--1",
+    "+-1",
+    "1.2.3",
+    "..5",
+    "1E300",
+    "1e5",
+    "1E-300",
+    "1E400",
+    "NAN",
+    "INF",
+    "-INF",
+    "1_000",
+    "0X10",
+    "١٢",
+    "½",
+    "1,5",
+)
 """What a hand can leave where a number belongs."""
 
 
@@ -69,7 +109,7 @@ def after(dialect: str, place: str, new: str) -> str:
     """Return the program's text with a line put in after the last one that contains `place`."""
     lines = list(lines_of(dialect))
     row = max(n for n, line in enumerate(lines) if place in line)
-    return "\n".join([*lines[: row + 1], new, *lines[row + 1:]])
+    return "\n".join([*lines[: row + 1], new, *lines[row + 1 :]])
 
 
 def replaced(dialect: str, old: str, new: str) -> str:
@@ -82,7 +122,9 @@ def replaced(dialect: str, old: str, new: str) -> str:
 def not_finite(thing: Any, name: str = "") -> Iterator[str]:
     """Yield the names of all numbers in a verdict that are no finite numbers; what is left by a block that nothing is nearest to is NaN."""
     if isinstance(thing, BlockProof):
-        thing = {f.name: getattr(thing, f.name) for f in fields(thing) if not f.name.startswith("left_")}
+        thing = {
+            f.name: getattr(thing, f.name) for f in fields(thing) if not f.name.startswith("left_")
+        }
         yield from not_finite(tuple(thing.values()), name)
     elif is_dataclass(thing) and not isinstance(thing, type):
         for field in fields(thing):

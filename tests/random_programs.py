@@ -15,8 +15,16 @@ feeds = st.integers(1, 200_000).map(lambda n: n / 10)
 steps = st.one_of(
     st.tuples(st.just(RAPID), coordinates, coordinates, coordinates),
     st.tuples(st.just(LINE), coordinates, coordinates, coordinates, feeds),
-    st.tuples(st.sampled_from([CW, CCW]), st.integers(10, 2_000_000), st.floats(0, 2 * math.pi), st.floats(0.0, 2 * math.pi), coordinates,
-              feeds, st.booleans()))
+    st.tuples(
+        st.sampled_from([CW, CCW]),
+        st.integers(10, 2_000_000),
+        st.floats(0, 2 * math.pi),
+        st.floats(0.0, 2 * math.pi),
+        coordinates,
+        feeds,
+        st.booleans(),
+    ),
+)
 
 
 @st.composite
@@ -32,23 +40,47 @@ def paths(draw):
             motion, ticks, first, turn, z, feed, full = step
             radius, sign = ticks / 10_000, 1.0 if motion == CCW else -1.0
             centre = (at[0] - radius * math.cos(first), at[1] - radius * math.sin(first))
-            end = at[:2] if full else tuple(centre[n] + radius * f(first + sign * turn) for n, f in enumerate((math.cos, math.sin)))
+            end = (
+                at[:2]
+                if full
+                else tuple(
+                    centre[n] + radius * f(first + sign * turn)
+                    for n, f in enumerate((math.cos, math.sin))
+                )
+            )
             blocks.append((motion, *end, z, *centre, feed))
         at = blocks[-1][1:4]
     return path_of(*blocks, (RAPID, at[0], at[1], 50.0))
 
 
-operations = st.tuples(paths(), st.sampled_from([FLAT_16, BULL_10]), st.integers(1, 40_000), st.sampled_from(["flood", "mist", "off"]))
+operations = st.tuples(
+    paths(),
+    st.sampled_from([FLAT_16, BULL_10]),
+    st.integers(1, 40_000),
+    st.sampled_from(["flood", "mist", "off"]),
+)
 programs = st.lists(operations, min_size=1, max_size=3)
-spoils = st.lists(st.tuples(st.floats(0, 1, exclude_max=True), st.sampled_from(list("GMXYZIJRFSTHPN0123456789.-+ ()/,;%$#[]\n\x00éKE"))),
-                  min_size=1, max_size=6)
+spoils = st.lists(
+    st.tuples(
+        st.floats(0, 1, exclude_max=True),
+        st.sampled_from(list("GMXYZIJRFSTHPN0123456789.-+ ()/,;%$#[]\n\x00éKE")),
+    ),
+    min_size=1,
+    max_size=6,
+)
 """Places in a text, as shares of it, and what comes there instead."""
 
 
 def program_of(parts, setup=S1) -> Program:
     """Return the program of a setup whose operations were drawn from `programs`."""
-    return Program(name=f"B1.{setup.name}", setup=setup, sections=tuple(
-        section(f"op-{n}", tool, path, float(spindle), coolant) for n, (path, tool, spindle, coolant) in enumerate(parts)))
+    return Program(
+        name=f"B1.{setup.name}",
+        setup=setup,
+        sections=tuple(
+            section(f"op-{n}", tool, path, float(spindle), coolant)
+            for n, (path, tool, spindle, coolant) in enumerate(parts)
+        ),
+    )
 
 
 def track(path) -> np.ndarray:
@@ -59,8 +91,13 @@ def track(path) -> np.ndarray:
             x, y = start[:2] - path.centre[row, :2]
             for share in (0.25, 0.5, 0.75):
                 c, s = math.cos(share * sweep), math.sin(share * sweep)
-                points.append((path.centre[row, 0] + c * x - s * y, path.centre[row, 1] + s * x + c * y,
-                               start[2] + share * (path.position[row, 2] - start[2])))
+                points.append(
+                    (
+                        path.centre[row, 0] + c * x - s * y,
+                        path.centre[row, 1] + s * x + c * y,
+                        start[2] + share * (path.position[row, 2] - start[2]),
+                    )
+                )
         points.append(tuple(path.position[row]))
     return np.array(points)
 
@@ -68,8 +105,14 @@ def track(path) -> np.ndarray:
 def farthest(points: np.ndarray, line: np.ndarray) -> float:
     """Return how far the points (n, 3) lie from a polyline (m, 3) at most."""
     start, run = line[None, :-1], np.diff(line, axis=0)[None]
-    share = np.clip(((points[:, None] - start) * run).sum(axis=2) / np.maximum((run * run).sum(axis=2), 1e-30), 0.0, 1.0)
-    return float(np.linalg.norm(points[:, None] - start - share[..., None] * run, axis=2).min(axis=1).max())
+    share = np.clip(
+        ((points[:, None] - start) * run).sum(axis=2) / np.maximum((run * run).sum(axis=2), 1e-30),
+        0.0,
+        1.0,
+    )
+    return float(
+        np.linalg.norm(points[:, None] - start - share[..., None] * run, axis=2).min(axis=1).max()
+    )
 
 
 def same(first: Program, second: Program, within: float) -> None:
@@ -82,4 +125,6 @@ def same(first: Program, second: Program, within: float) -> None:
         if len(a.path) == len(b.path):
             assert np.abs(a.path.position - b.path.position).max() <= within
             cutting = a.path.motion != RAPID
-            assert not cutting.any() or np.abs(a.path.feed - b.path.feed)[cutting].max() <= 0.05 + 1e-9
+            assert (
+                not cutting.any() or np.abs(a.path.feed - b.path.feed)[cutting].max() <= 0.05 + 1e-9
+            )

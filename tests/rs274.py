@@ -29,24 +29,45 @@ Call = tuple[str, str, list[float]]
 def interpreter() -> str | None:
     """Return the path of rs274, or None."""
     beside = ROOT / ".rs274" / "rs274"
-    return os.environ.get("TRUNNION_RS274") or (str(beside) if beside.is_file() else shutil.which("rs274"))
+    return os.environ.get("TRUNNION_RS274") or (
+        str(beside) if beside.is_file() else shutil.which("rs274")
+    )
 
 
 RS274 = interpreter()
-needs_rs274 = pytest.mark.skipif(RS274 is None, reason="LinuxCNC's rs274 is not here: run installer/rs274.sh or set TRUNNION_RS274")
+needs_rs274 = pytest.mark.skipif(
+    RS274 is None,
+    reason="LinuxCNC's rs274 is not here: run installer/rs274.sh or set TRUNNION_RS274",
+)
 
 
 def run(text: str, tools: Sequence[Tool], folder: Path) -> list[Call]:
     """Return N word, canonical call and numbers of each line that rs274 prints; its exit code must be 0."""
     assert RS274 is not None
     table = folder / "tools.tbl"
-    table.write_text("".join(f"T{t.number} P{t.number} Z{t.gauge_length / 25.4:.8f} D{t.diameter / 25.4:.8f} ;{t.name}\n" for t in tools))
+    table.write_text(
+        "".join(
+            f"T{t.number} P{t.number} Z{t.gauge_length / 25.4:.8f} D{t.diameter / 25.4:.8f} ;{t.name}\n"
+            for t in tools
+        )
+    )
     (folder / "program.ngc").write_text(text)
-    done = subprocess.run([RS274, "-g", "-t", str(table), str(folder / "program.ngc")], capture_output=True, text=True, timeout=60,
-                          cwd=folder, env={**os.environ, "LD_LIBRARY_PATH": str(Path(RS274).resolve().parent)})
+    done = subprocess.run(
+        [RS274, "-g", "-t", str(table), str(folder / "program.ngc")],
+        capture_output=True,
+        text=True,
+        timeout=60,
+        cwd=folder,
+        env={**os.environ, "LD_LIBRARY_PATH": str(Path(RS274).resolve().parent)},
+    )
     assert done.returncode == 0, done.stderr
-    found = [re.match(r"\s*\d+ N(\d+|\.+)\s*([A-Z_]+)\((.*)\)", line) for line in done.stdout.splitlines()]
-    return [(m[1], m[2], [float(v) for v in re.findall(r"-?\d+\.\d+|-?\d+", m[3])]) for m in found if m]
+    found = [
+        re.match(r"\s*\d+ N(\d+|\.+)\s*([A-Z_]+)\((.*)\)", line)
+        for line in done.stdout.splitlines()
+    ]
+    return [
+        (m[1], m[2], [float(v) for v in re.findall(r"-?\d+\.\d+|-?\d+", m[3])]) for m in found if m
+    ]
 
 
 def motions_of(text: str, tools: Sequence[Tool], setup: Setup) -> list[Call]:
@@ -55,21 +76,51 @@ def motions_of(text: str, tools: Sequence[Tool], setup: Setup) -> list[Call]:
     for part in read_linuxcnc(text, tools, setup).sections:
         path, starts = part.path, part.path.starts()
         for row, line in enumerate(part.block_lines):
-            number, (x, y, z), centre = lines[line - 1].split()[0][1:], path.position[row], path.centre[row]
+            number, (x, y, z), centre = (
+                lines[line - 1].split()[0][1:],
+                path.position[row],
+                path.centre[row],
+            )
             if path.motion[row] >= Motion.ARC_CW:
-                calls.append((number, "ARC_FEED", [x, y, centre[0], centre[1], 1 if path.motion[row] == Motion.ARC_CCW else -1, z]))
+                calls.append(
+                    (
+                        number,
+                        "ARC_FEED",
+                        [
+                            x,
+                            y,
+                            centre[0],
+                            centre[1],
+                            1 if path.motion[row] == Motion.ARC_CCW else -1,
+                            z,
+                        ],
+                    )
+                )
                 assert math.dist(starts[row][:2], centre[:2]) > 0.0
             else:
-                calls.append((number, "STRAIGHT_TRAVERSE" if path.motion[row] == Motion.RAPID else "STRAIGHT_FEED", [x, y, z]))
+                calls.append(
+                    (
+                        number,
+                        "STRAIGHT_TRAVERSE"
+                        if path.motion[row] == Motion.RAPID
+                        else "STRAIGHT_FEED",
+                        [x, y, z],
+                    )
+                )
     return calls
 
 
-def compare_joints(text: str, rows: Sequence[Rows], letters: str, tools: Sequence[Tool], folder: Path) -> int:
+def compare_joints(
+    text: str, rows: Sequence[Rows], letters: str, tools: Sequence[Tool], folder: Path
+) -> int:
     """Return the number of moves after seeing that rs274's positions of all axes equal our reading of a text with rotary axes to 1e-4."""
     lines = text.split("\n")
     lifts = {line.split()[0][1:] for line in lines if "G53" in line}
-    ours = [(lines[line - 1].split()[0][1:], point, motion) for part in rows
-            for line, point, motion in zip(part.line, part.point, part.motion, strict=True)]
+    ours = [
+        (lines[line - 1].split()[0][1:], point, motion)
+        for part in rows
+        for line, point, motion in zip(part.line, part.point, part.motion, strict=True)
+    ]
     theirs: dict[str, tuple[str, list[float]]] = {}
     for number, name, numbers in run(text, tools, folder):
         if name in ("STRAIGHT_TRAVERSE", "STRAIGHT_FEED", "ARC_FEED"):
@@ -88,7 +139,9 @@ def compare_joints(text: str, rows: Sequence[Rows], letters: str, tools: Sequenc
     return compared
 
 
-def compare(text: str, tools: Sequence[Tool], setup: Setup, folder: Path, scale: float = 1.0) -> int:
+def compare(
+    text: str, tools: Sequence[Tool], setup: Setup, folder: Path, scale: float = 1.0
+) -> int:
     """Return the number of moves after seeing that rs274's canonical moves equal our reading to 1e-4 (`scale`: 25.4 for inches)."""
     ours = motions_of(text, tools, setup)
     numbers = {number for number, _, _ in ours}

@@ -39,13 +39,19 @@ class Case:
 
 def cases(parts: Path, seeds: int, folder: Path) -> Iterator[Case]:
     """Give the parts with truth that are there, and the random ones, which are written into a folder."""
-    known = [Case("B1", parts / "panel/B1.step"), Case("B4", parts / "panel/B4.step"), Case("D1", parts / "surface/D1.step"),
-             Case("D2", parts / "surface/D2.igs"), Case("D1-named", parts / "surface/D1.step", NAMED)]
+    known = [
+        Case("B1", parts / "panel/B1.step"),
+        Case("B4", parts / "panel/B4.step"),
+        Case("D1", parts / "surface/D1.step"),
+        Case("D2", parts / "surface/D2.igs"),
+        Case("D1-named", parts / "surface/D1.step", NAMED),
+    ]
     yield from (c for c in known if c.part.is_file())
     from cadquery import Shape, exporters
 
     from seeded.panels import panel_shape
     from seeded.plates import plate_shape
+
     for make in (panel_shape, plate_shape):
         for seed in range(seeds):
             path = folder / f"{make.__name__.removesuffix('_shape')}-{seed:02d}.step"
@@ -53,17 +59,42 @@ def cases(parts: Path, seeds: int, folder: Path) -> Iterator[Case]:
             yield Case(path.stem, path)
 
 
-def programmed(checkout: Path, case: Case, renamed: Mapping[str, str], folder: Path) -> dict[str, bytes]:
+def programmed(
+    checkout: Path, case: Case, renamed: Mapping[str, str], folder: Path
+) -> dict[str, bytes]:
     """Return what a checkout writes for a part, by file name, and what it prints; a refusal is its one line."""
     folder.mkdir(parents=True)
     words = [w for word in case.words for w in ("--set", _renamed(word, renamed))]
-    environment = os.environ | {"PYTHONPATH": os.pathsep.join(str(checkout / s) for s in SOURCES), "PYTHONHASHSEED": "0"}
-    done = subprocess.run([sys.executable, "-c", COMMAND, "program", str(case.part), "-o", str(folder), "--name", case.name, "--json",
-                           *words], capture_output=True, env=environment, check=False)
+    environment = os.environ | {
+        "PYTHONPATH": os.pathsep.join(str(checkout / s) for s in SOURCES),
+        "PYTHONHASHSEED": "0",
+    }
+    done = subprocess.run(
+        [
+            sys.executable,
+            "-c",
+            COMMAND,
+            "program",
+            str(case.part),
+            "-o",
+            str(folder),
+            "--name",
+            case.name,
+            "--json",
+            *words,
+        ],
+        capture_output=True,
+        env=environment,
+        check=False,
+    )
     if done.returncode not in (0, 1):
         return {"refused": done.stderr.strip().splitlines()[-1] if done.stderr.strip() else b""}
     verdict = {k: v for k, v in json.loads(done.stdout).items() if k not in UNTIMED}
-    texts = {p.name: p.read_bytes() for p in sorted(folder.iterdir()) if p.suffix in (".nc", ".cl", ".xml", ".json")}
+    texts = {
+        p.name: p.read_bytes()
+        for p in sorted(folder.iterdir())
+        if p.suffix in (".nc", ".cl", ".xml", ".json")
+    }
     return texts | {"verdict": json.dumps(verdict, indent=1, sort_keys=True).encode()}
 
 
@@ -72,17 +103,26 @@ def _renamed(word: str, renamed: Mapping[str, str]) -> str:
     return f"{renamed.get(key, key)}={value}"
 
 
-def differences(before: Mapping[str, bytes], after: Mapping[str, bytes], renamed: Mapping[str, str]) -> list[str]:
+def differences(
+    before: Mapping[str, bytes], after: Mapping[str, bytes], renamed: Mapping[str, str]
+) -> list[str]:
     """Return a line for each file that is not the same, with the first line in which it differs; renamed keys count as the same."""
-    found = [f"{name}: only {'before' if name in before else 'after'}" for name in sorted(before.keys() ^ after.keys())]
+    found = [
+        f"{name}: only {'before' if name in before else 'after'}"
+        for name in sorted(before.keys() ^ after.keys())
+    ]
     for name in sorted(before.keys() & after.keys()):
         text = before[name].decode()
         for old, new in renamed.items():
             text = text.replace(old, new)
         rows = zip(text.splitlines(), after[name].decode().splitlines(), strict=False)
         if text != after[name].decode():
-            number, (old, new) = next(((n, pair) for n, pair in enumerate(rows, 1) if pair[0] != pair[1]), (0, ("", "")))
-            found.append(f"{name}, line {number}: {old.strip()[:120]!r} became {new.strip()[:120]!r}")
+            number, (old, new) = next(
+                ((n, pair) for n, pair in enumerate(rows, 1) if pair[0] != pair[1]), (0, ("", ""))
+            )
+            found.append(
+                f"{name}, line {number}: {old.strip()[:120]!r} became {new.strip()[:120]!r}"
+            )
     return found
 
 
@@ -91,13 +131,27 @@ def main() -> int:
     made = argparse.ArgumentParser(description=__doc__.splitlines()[0])
     made.add_argument("before", type=Path)
     made.add_argument("after", type=Path)
-    made.add_argument("--parts", type=Path, default=Path(__file__).resolve().parent.parent.parent / "shared" / "parts")
+    made.add_argument(
+        "--parts",
+        type=Path,
+        default=Path(__file__).resolve().parent.parent.parent / "shared" / "parts",
+    )
     made.add_argument("--seeds", type=int, default=10, help="random parts of each family")
-    made.add_argument("--renamed", action="append", default=[], metavar="OLD=NEW", help="a key that has another name after")
+    made.add_argument(
+        "--renamed",
+        action="append",
+        default=[],
+        metavar="OLD=NEW",
+        help="a key that has another name after",
+    )
     made.add_argument("--jobs", type=int, default=2)
     chosen = made.parse_args()
     renamed = dict(word.split("=", 1) for word in chosen.renamed)
-    with tempfile.TemporaryDirectory(prefix="same-") as folder, ThreadPoolExecutor(chosen.jobs) as pool:
+    with (
+        tempfile.TemporaryDirectory(prefix="same-") as folder,
+        ThreadPoolExecutor(chosen.jobs) as pool,
+    ):
+
         def compared(case: Case) -> tuple[Case, list[str], int]:
             own = Path(folder) / "out" / case.name
             before = programmed(chosen.before.resolve(), case, {}, own / "before")
@@ -105,9 +159,16 @@ def main() -> int:
             return case, differences(before, after, renamed), len(before)
 
         different = 0
-        for case, found, count in pool.map(compared, list(cases(chosen.parts, chosen.seeds, Path(folder)))):
+        for case, found, count in pool.map(
+            compared, list(cases(chosen.parts, chosen.seeds, Path(folder)))
+        ):
             different += bool(found)
-            print(f"{case.name:12s} {count} files {'the same' if not found else 'DIFFERENT'}", *found, sep="\n    ", flush=True)
+            print(
+                f"{case.name:12s} {count} files {'the same' if not found else 'DIFFERENT'}",
+                *found,
+                sep="\n    ",
+                flush=True,
+            )
     return 1 if different else 0
 
 

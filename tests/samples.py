@@ -1,8 +1,8 @@
 """Small parts that tests use everywhere: built once a session, written as STEP or IGES, moved, mirrored, turned.
 
-    two_pockets_and_a_rib()                                          the path of its STEP file
-    read(two_pockets_and_a_rib_shape())                              the part, through STEP
-    read(turned(block_with_pocket_shape(), (1, 2, 3), 40), "igs")    turned about an axis, through IGES
+two_pockets_and_a_rib()                                          the path of its STEP file
+read(two_pockets_and_a_rib_shape())                              the part, through STEP
+read(turned(block_with_pocket_shape(), (1, 2, 3), 40), "igs")    turned about an axis, through IGES
 """
 
 from __future__ import annotations
@@ -22,10 +22,27 @@ if TYPE_CHECKING:
     from trunnion.part.part import Part
 
 Triple = Sequence[float]
-POCKET = {"length": 60.0, "width": 36.0, "height": 18.0, "pocket_length": 36.0, "pocket_width": 20.0, "depth": 10.0, "corner": 4.0,
-          "fillet": 2.0}
+POCKET = {
+    "length": 60.0,
+    "width": 36.0,
+    "height": 18.0,
+    "pocket_length": 36.0,
+    "pocket_width": 20.0,
+    "depth": 10.0,
+    "corner": 4.0,
+    "fillet": 2.0,
+}
 """Sizes of `block_with_pocket_shape`, mm."""
-PANEL = {"length": 160.0, "width": 100.0, "height": 20.0, "floor": 4.0, "corner": 8.0, "fillet": 3.0, "rib_top": 14.0, "rib": 4.0}
+PANEL = {
+    "length": 160.0,
+    "width": 100.0,
+    "height": 20.0,
+    "floor": 4.0,
+    "corner": 8.0,
+    "fillet": 3.0,
+    "rib_top": 14.0,
+    "rib": 4.0,
+}
 """Sizes of `two_pockets_and_a_rib_shape`, mm: `floor` is the height of every pocket's floor over the bottom, `rib_top` of the rib's top."""
 
 
@@ -38,7 +55,15 @@ def box_shape(length: float = 40.0, width: float = 30.0, height: float = 20.0) -
 @cache
 def drilled_block_shape() -> Any:
     """Return the plain box with a through hole of 8 mm at (20, 15)."""
-    return cq.Workplane("XY").box(40, 30, 20, centered=False).faces(">Z").workplane(origin=(20, 15, 20)).hole(8).val().wrapped
+    return (
+        cq.Workplane("XY")
+        .box(40, 30, 20, centered=False)
+        .faces(">Z")
+        .workplane(origin=(20, 15, 20))
+        .hole(8)
+        .val()
+        .wrapped
+    )
 
 
 @cache
@@ -46,8 +71,22 @@ def block_with_pocket_shape() -> Any:
     """Return a block with a rounded pocket that has a floor fillet; corner at the origin, pocket in the middle, open upward."""
     s = POCKET
     block = cq.Workplane("XY").box(s["length"], s["width"], s["height"], centered=False)
-    return block.cut(_pocket(s["length"] / 2, s["width"] / 2, s["pocket_length"], s["pocket_width"], s["height"] - s["depth"], s["height"],
-                             s["corner"], s["fillet"])).val().wrapped
+    return (
+        block.cut(
+            _pocket(
+                s["length"] / 2,
+                s["width"] / 2,
+                s["pocket_length"],
+                s["pocket_width"],
+                s["height"] - s["depth"],
+                s["height"],
+                s["corner"],
+                s["fillet"],
+            )
+        )
+        .val()
+        .wrapped
+    )
 
 
 @cache
@@ -59,35 +98,79 @@ def two_pockets_and_a_rib_shape() -> Any:
     up to 12.
     """
     s = PANEL
-    plate = cq.Workplane("XY").box(s["length"], s["width"], s["height"], centered=False).edges("|Z").fillet(10.0)
+    plate = (
+        cq.Workplane("XY")
+        .box(s["length"], s["width"], s["height"], centered=False)
+        .edges("|Z")
+        .fillet(10.0)
+    )
     left = _pocket(39.0, 50.0, 58.0, 80.0, s["floor"], s["height"], s["corner"], s["fillet"])
     right = _pocket(98.5, 50.0, 53.0, 80.0, s["floor"], s["height"], s["corner"], s["fillet"])
     island = cq.Workplane("XY").circle(8.0).extrude(12.0).translate((36.0, 50.0, 0.0))
-    left = left.cut(island).edges(cq.selectors.BoxSelector((26, 40, 3.9), (46, 60, 4.1))).fillet(s["fillet"])
-    lowered = cq.Workplane("XY").box(6.0, 64.0, 6.0, centered=False).translate((67.0, 18.0, s["rib_top"]))
-    opened = cq.Workplane("XY").box(45.0, 40.0, 16.0, centered=False).translate((135.0, 30.0, s["floor"]))
-    opened = opened.edges("|Z and <X").fillet(s["corner"]).faces("<Z").edges("not >X").fillet(s["fillet"])
+    left = (
+        left.cut(island)
+        .edges(cq.selectors.BoxSelector((26, 40, 3.9), (46, 60, 4.1)))
+        .fillet(s["fillet"])
+    )
+    lowered = (
+        cq.Workplane("XY").box(6.0, 64.0, 6.0, centered=False).translate((67.0, 18.0, s["rib_top"]))
+    )
+    opened = (
+        cq.Workplane("XY")
+        .box(45.0, 40.0, 16.0, centered=False)
+        .translate((135.0, 30.0, s["floor"]))
+    )
+    opened = (
+        opened.edges("|Z and <X")
+        .fillet(s["corner"])
+        .faces("<Z")
+        .edges("not >X")
+        .fillet(s["fillet"])
+    )
     return plate.cut(left).cut(right).cut(opened).cut(lowered).val().wrapped
 
 
 @cache
 def oblique_cylinder_shape() -> Any:
     """Return a cylinder R10, 60 long, that leans by 30 degrees about y: its sections are ellipses."""
-    return cq.Workplane("XY").circle(10.0).extrude(60.0).rotate((0, 0, 0), (0, 1, 0), 30.0).val().wrapped
+    return (
+        cq.Workplane("XY")
+        .circle(10.0)
+        .extrude(60.0)
+        .rotate((0, 0, 0), (0, 1, 0), 30.0)
+        .val()
+        .wrapped
+    )
 
 
 @cache
 def ball_shape() -> Any:
     """Return a ball R10 around the origin with a flat at z = -5."""
-    return cq.Workplane("XY").sphere(10.0).cut(cq.Workplane("XY").box(30, 30, 10).translate((0, 0, -10))).val().wrapped
+    return (
+        cq.Workplane("XY")
+        .sphere(10.0)
+        .cut(cq.Workplane("XY").box(30, 30, 10).translate((0, 0, -10)))
+        .val()
+        .wrapped
+    )
 
 
 @cache
 def dome_on_a_plate_shape() -> Any:
     """Return a plate 60 x 60 x 10 with nearly half a ball R16 on it, its foot rounded by 3."""
-    cap = cq.Workplane("XY").sphere(16.0).translate((0, 0, 7)).intersect(cq.Workplane("XY").box(60, 60, 40).translate((0, 0, 28)))
+    cap = (
+        cq.Workplane("XY")
+        .sphere(16.0)
+        .translate((0, 0, 7))
+        .intersect(cq.Workplane("XY").box(60, 60, 40).translate((0, 0, 28)))
+    )
     plate = cq.Workplane("XY").box(60, 60, 10).translate((0, 0, 5)).union(cap)
-    return plate.edges(cq.selectors.BoxSelector((-20, -20, 9.9), (20, 20, 10.1))).fillet(3.0).val().wrapped
+    return (
+        plate.edges(cq.selectors.BoxSelector((-20, -20, 9.9), (20, 20, 10.1)))
+        .fillet(3.0)
+        .val()
+        .wrapped
+    )
 
 
 @cache
@@ -104,8 +187,22 @@ def open_box_shape() -> Any:
     return cq.Shell.makeShell(faces).wrapped
 
 
-def _pocket(x: float, y: float, length: float, width: float, floor: float, top: float, corner: float, fillet: float) -> Any:
-    body = cq.Workplane("XY").box(length, width, top - floor, centered=(True, True, False)).edges("|Z").fillet(corner)
+def _pocket(
+    x: float,
+    y: float,
+    length: float,
+    width: float,
+    floor: float,
+    top: float,
+    corner: float,
+    fillet: float,
+) -> Any:
+    body = (
+        cq.Workplane("XY")
+        .box(length, width, top - floor, centered=(True, True, False))
+        .edges("|Z")
+        .fillet(corner)
+    )
     return body.faces("<Z").edges().fillet(fillet).translate((x, y, floor))
 
 
@@ -145,6 +242,7 @@ def written(shape: Any, suffix: str = "step", unit: str = "mm", name: str = "sam
     from OCP.BinTools import BinTools
 
     from trunnion.part.write import write_iges, write_step
+
     stream = io.BytesIO()
     BinTools.Write_s(shape, stream)
     key = hashlib.sha256(stream.getvalue()).digest(), suffix, unit, name
@@ -163,12 +261,20 @@ def read(shape: Any, suffix: str = "step", unit: str = "mm", solid: int | None =
     from trunnion.part.child import Request
     from trunnion.part.text import check_iges, check_step
     from trunnion.part.transfer import read_file
+
     file = written(shape, suffix, unit)
     if (file, solid) not in _PARTS:
         data = file.read_bytes()
         is_iges = suffix in ("igs", "iges")
-        request = Request(file=file.name, path=str(file), name=file.stem, digest=hashlib.sha256(data).hexdigest(),
-                          kind="iges" if is_iges else "step", listed=(check_iges if is_iges else check_step)(data, file.name),
-                          solid=solid, size=len(data))
+        request = Request(
+            file=file.name,
+            path=str(file),
+            name=file.stem,
+            digest=hashlib.sha256(data).hexdigest(),
+            kind="iges" if is_iges else "step",
+            listed=(check_iges if is_iges else check_step)(data, file.name),
+            solid=solid,
+            size=len(data),
+        )
         _PARTS[file, solid] = read_file(file, request)
     return _PARTS[file, solid]

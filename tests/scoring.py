@@ -45,6 +45,8 @@ def scored(name: str, file: Path, found: Recognition, move: Move = list) -> dict
             face["at"] = move(face["at"])
     faces = scorer.read_faces(file)
     want, lost = scorer.truth_items(truth, scorer.Locator(faces), 1e-3)
-    items, faults = scorer.result_items({"features": [f.as_dict() for f in found.features]}, len(faces))
+    items, faults = scorer.result_items(
+        {"features": [f.as_dict() for f in found.features]}, len(faces)
+    )
     assert not faults
     return dict(scorer.score(want, items, lost))

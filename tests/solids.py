@@ -27,8 +27,13 @@ def cutter_solid(tool):
         if radius:
             a, b = math.atan2(z0 - cz, r0 - cr), math.atan2(z1 - cz, r1 - cr)
             turn = math.remainder(b - a, math.tau)
-            points += [(cr + abs(radius) * math.cos(a + turn * t), cz + abs(radius) * math.sin(a + turn * t))
-                       for t in np.linspace(0.0, 1.0, 24)[1:-1]]
+            points += [
+                (
+                    cr + abs(radius) * math.cos(a + turn * t),
+                    cz + abs(radius) * math.sin(a + turn * t),
+                )
+                for t in np.linspace(0.0, 1.0, 24)[1:-1]
+            ]
         points.append((r1, z1))
     points.append((0.0, points[-1][1]))
     clean = [p for k, p in enumerate(points) if k == 0 or math.dist(p, points[k - 1]) > 1e-9]

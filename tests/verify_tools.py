@@ -41,16 +41,30 @@ def bull(diameter, corner):
     form = "flat" if corner == 0.0 else "ball" if corner == diameter / 2 else "bull"
 
     def make(flute=30.0, number=1):
-        return tool_of(form, diameter=diameter, corner_radius=corner, flute_length=flute, number=number)
+        return tool_of(
+            form, diameter=diameter, corner_radius=corner, flute_length=flute, number=number
+        )
 
     return make
 
 
 def tool_of(form, *, diameter=10.0, flute_length=30.0, **fields):
     """Return a tool of a form, with a neck 1 mm long and 1 mm thinner, a shank of 2 mm and the test holder unless fields say otherwise."""
-    plain = {"number": 1, "name": f"{form} {diameter:g}", "form": form, "corner_radius": 0.0, "neck_diameter": diameter - 1.0,
-             "neck_length": flute_length + 1.0, "shank_diameter": diameter, "stickout": flute_length + 3.0,
-             "gauge_length": flute_length + 60.0, "teeth": 3, "centre_cutting": True, "helix_angle": 30.0, "holder": HOLDER}
+    plain = {
+        "number": 1,
+        "name": f"{form} {diameter:g}",
+        "form": form,
+        "corner_radius": 0.0,
+        "neck_diameter": diameter - 1.0,
+        "neck_length": flute_length + 1.0,
+        "shank_diameter": diameter,
+        "stickout": flute_length + 3.0,
+        "gauge_length": flute_length + 60.0,
+        "teeth": 3,
+        "centre_cutting": True,
+        "helix_angle": 30.0,
+        "holder": HOLDER,
+    }
     return Tool(diameter=diameter, flute_length=flute_length, **{**plain, **fields})
 
 
@@ -58,16 +72,46 @@ FORMS = {
     "flat": tool_of("flat"),
     "bull": tool_of("bull", corner_radius=2.0),
     "ball": tool_of("ball", corner_radius=5.0, flute_length=8.0),
-    "taper": tool_of("taper", diameter=6.0, corner_radius=1.0, taper_angle=10.0, flute_length=20.0, neck_diameter=13.0,
-                     shank_diameter=13.0),
-    "taper ball": tool_of("taper", diameter=4.0, corner_radius=2.0, taper_angle=5.0, flute_length=12.0),
-    "barrel": tool_of("barrel", corner_radius=2.0, barrel_radius=60.0, flute_length=28.0, neck_diameter=9.0),
-    "t-slot": tool_of("t-slot", diameter=20.0, corner_radius=0.5, flute_length=6.0, neck_diameter=8.0, neck_length=16.0,
-                      shank_diameter=12.0, stickout=20.0),
+    "taper": tool_of(
+        "taper",
+        diameter=6.0,
+        corner_radius=1.0,
+        taper_angle=10.0,
+        flute_length=20.0,
+        neck_diameter=13.0,
+        shank_diameter=13.0,
+    ),
+    "taper ball": tool_of(
+        "taper", diameter=4.0, corner_radius=2.0, taper_angle=5.0, flute_length=12.0
+    ),
+    "barrel": tool_of(
+        "barrel", corner_radius=2.0, barrel_radius=60.0, flute_length=28.0, neck_diameter=9.0
+    ),
+    "t-slot": tool_of(
+        "t-slot",
+        diameter=20.0,
+        corner_radius=0.5,
+        flute_length=6.0,
+        neck_diameter=8.0,
+        neck_length=16.0,
+        shank_diameter=12.0,
+        stickout=20.0,
+    ),
     "drill": tool_of("drill", diameter=8.0, point_angle=120.0),
     # A cone, an arc that bends outwards, a cylinder, and a cone that goes in again.
-    "form": tool_of("form", diameter=14.0, flute_length=20.0, outline=(
-        (1.0, 0.0, 0.0), (4.0, 2.0, 0.09), (7.0, 5.0, 0.0), (7.0, 12.0, 0.0), (5.0, 20.0, 0.0)), neck_diameter=10.0),
+    "form": tool_of(
+        "form",
+        diameter=14.0,
+        flute_length=20.0,
+        outline=(
+            (1.0, 0.0, 0.0),
+            (4.0, 2.0, 0.09),
+            (7.0, 5.0, 0.0),
+            (7.0, 12.0, 0.0),
+            (5.0, 20.0, 0.0),
+        ),
+        neck_diameter=10.0,
+    ),
 }
 """One tool of every form, all short enough to touch with every part of it."""
 
@@ -79,10 +123,16 @@ def supports_of(tool):
     distance to all these lines.
     """
     parts = [_cutting(tool)]
-    parts += [([_line(math.atan2(r0 - r1, z1 - z0), r0, z0)], z0, z1, (r0, r1), 1) for z0, r0, z1, r1 in tool.profile()]
+    parts += [
+        ([_line(math.atan2(r0 - r1, z1 - z0), r0, z0)], z0, z1, (r0, r1), 1)
+        for z0, r0, z1, r1 in tool.profile()
+    ]
     found = []
     for k, (rows, low, high, (below, above), kind) in enumerate(parts):
-        under, over = (parts[k - 1][3][1] if k else 0.0), (parts[k + 1][3][0] if k + 1 < len(parts) else 0.0)
+        under, over = (
+            (parts[k - 1][3][1] if k else 0.0),
+            (parts[k + 1][3][0] if k + 1 < len(parts) else 0.0),
+        )
         if not k or below > under + 1e-9:
             rows = [(below, low, 0.0, DOWN, rows[0][3]), *rows]
         if above > over + 1e-9:
@@ -106,19 +156,35 @@ def _cutting(tool):
         rows = [(0.0, c, c, DOWN, touch), (across, height, tool.barrel_radius, touch, end)]
         return rows, 0.0, top, (0.0, across + tool.barrel_radius * math.cos(end)), 0
     if tool.form == "t-slot":
-        return [(r - c, c, c, DOWN, 0.0), (r - c, top - c, c, 0.0, -DOWN)], 0.0, top, (r - c, r - c), 0
+        return (
+            [(r - c, c, c, DOWN, 0.0), (r - c, top - c, c, 0.0, -DOWN)],
+            0.0,
+            top,
+            (r - c, r - c),
+            0,
+        )
     if tool.form == "drill":
         half = math.radians(tool.point_angle) / 2
-        return [(0.0, 0.0, 0.0, DOWN, -half), (r, r / math.tan(half), 0.0, -half, 0.0)], 0.0, top, (0.0, r), 0
+        return (
+            [(0.0, 0.0, 0.0, DOWN, -half), (r, r / math.tan(half), 0.0, -half, 0.0)],
+            0.0,
+            top,
+            (0.0, r),
+            0,
+        )
     if tool.form == "form":
         # The outline of FORMS: what a bulge of 0.09 between (4, 2) and (7, 5) is, by its half angle of 2 atan 0.09.
         half = 2.0 * math.atan(0.09)
         radius = math.hypot(3.0, 3.0) / 2.0 / math.sin(half)
         away = radius * math.cos(half) * math.sqrt(0.5)
         cone, middle, slope = -math.atan2(3.0, 2.0), -math.pi / 4, math.atan2(2.0, 8.0)
-        rows = [(1.0, 0.0, 0.0, DOWN, cone), (4.0, 2.0, 0.0, cone, middle - half),
-                (5.5 - away, 3.5 + away, radius, middle - half, middle + half), (7.0, 5.0, 0.0, middle + half, 0.0),
-                (7.0, 12.0, 0.0, 0.0, slope)]
+        rows = [
+            (1.0, 0.0, 0.0, DOWN, cone),
+            (4.0, 2.0, 0.0, cone, middle - half),
+            (5.5 - away, 3.5 + away, radius, middle - half, middle + half),
+            (7.0, 5.0, 0.0, middle + half, 0.0),
+            (7.0, 12.0, 0.0, 0.0, slope),
+        ]
         return rows, 0.0, top, (1.0, 5.0), 0
     return [(r - c, c, c, DOWN, 0.0)], 0.0, top, (r - c, r), 0
 
@@ -132,11 +198,20 @@ def plain_depth(part, rho, h, rise=0.0):
     rows, low, high, _ = part
     depth = np.full(np.shape(rho), np.inf)
     for r, z, radius, first, last in rows:
-        for a, b, at in ((first, min(last, 0.0), np.minimum(h, high)), (max(first, 0.0), last, np.maximum(h - rise, low))):
+        for a, b, at in (
+            (first, min(last, 0.0), np.minimum(h, high)),
+            (max(first, 0.0), last, np.maximum(h - rise, low)),
+        ):
             if a <= b:
                 middle, angle = (a + b) / 2, np.arctan2(at - z, rho - r)
-                nearest = middle + np.clip(np.remainder(angle - middle + math.pi, math.tau) - math.pi, a - middle, b - middle)
-                depth = np.minimum(depth, radius - np.cos(nearest) * (rho - r) - np.sin(nearest) * (at - z))
+                nearest = middle + np.clip(
+                    np.remainder(angle - middle + math.pi, math.tau) - math.pi,
+                    a - middle,
+                    b - middle,
+                )
+                depth = np.minimum(
+                    depth, radius - np.cos(nearest) * (rho - r) - np.sin(nearest) * (at - z)
+                )
     return np.where((h >= low) & (h <= high + rise), depth, -np.inf)
 
 
@@ -151,16 +226,45 @@ def program_section(tool, stops, operation="op", rapid_to=0):
         points.append(point)
         centres.append([np.nan] * 3 if centre is None else [*centre[:2], 0.0])
     n = len(points)
-    motion = [Motion.RAPID if k <= rapid_to else Motion.LINE if np.isnan(centres[k][0]) else Motion.ARC_CCW for k in range(n)]
-    path = Toolpath(position=points, axis=[[0.0, 0.0, 1.0]] * n, motion=motion, centre=centres,
-                    feed=[0.0 if m == Motion.RAPID else 1000.0 for m in motion], mark=[0] * n)
+    motion = [
+        Motion.RAPID
+        if k <= rapid_to
+        else Motion.LINE
+        if np.isnan(centres[k][0])
+        else Motion.ARC_CCW
+        for k in range(n)
+    ]
+    path = Toolpath(
+        position=points,
+        axis=[[0.0, 0.0, 1.0]] * n,
+        motion=motion,
+        centre=centres,
+        feed=[0.0 if m == Motion.RAPID else 1000.0 for m in motion],
+        mark=[0] * n,
+    )
     return ProgramSection(operation=operation, tool=tool, spindle=10000.0, path=path)
 
 
 # A block 60 x 36 x 18 with its zero in the middle of the bottom; a rounded pocket 36 x 20 about (5, 0), floor at 8, corners R4, fillet R2.
 BLOCK_LOW, BLOCK_HIGH = (-30.0, -18.0, 0.0), (30.0, 18.0, 18.0)
-POCKET_LOW, POCKET_HIGH, FLOOR, TOP, CORNER, FILLET = (-13.0, -10.0), (23.0, 10.0), 8.0, 18.0, 4.0, 2.0
-TAGS = {"top": 1, "floor": 2, "bottom": 3, "outside": 4, "wall": 8, "corner": 12, "fillet": 16, "corner fillet": 20}
+POCKET_LOW, POCKET_HIGH, FLOOR, TOP, CORNER, FILLET = (
+    (-13.0, -10.0),
+    (23.0, 10.0),
+    8.0,
+    18.0,
+    4.0,
+    2.0,
+)
+TAGS = {
+    "top": 1,
+    "floor": 2,
+    "bottom": 3,
+    "outside": 4,
+    "wall": 8,
+    "corner": 12,
+    "fillet": 16,
+    "corner fillet": 20,
+}
 """The first tag of each kind of face; four of a kind follow each other: right, upper, left, lower."""
 
 
@@ -177,41 +281,122 @@ def rounded(low, high, radius):
 def sides(low, high, radius):
     """Yield each side of a rounded rectangle anticlockwise: guide with w inwards, start, end, then the centre and angle of its corner."""
     (x0, y0), (x1, y1), r = low[:2], high[:2], radius
-    for k, (start, end, centre) in enumerate((
-            ((x1, y0 + r), (x1, y1 - r), (x1 - r, y1 - r)), ((x1 - r, y1), (x0 + r, y1), (x0 + r, y1 - r)),
-            ((x0, y1 - r), (x0, y0 + r), (x0 + r, y0 + r)), ((x0 + r, y0), (x1 - r, y0), (x1 - r, y0 + r)))):
+    for k, (start, end, centre) in enumerate(
+        (
+            ((x1, y0 + r), (x1, y1 - r), (x1 - r, y1 - r)),
+            ((x1 - r, y1), (x0 + r, y1), (x0 + r, y1 - r)),
+            ((x0, y1 - r), (x0, y0 + r), (x0 + r, y0 + r)),
+            ((x0 + r, y0), (x1 - r, y0), (x1 - r, y0 + r)),
+        )
+    ):
         dx, dy = np.sign(end[0] - start[0]), np.sign(end[1] - start[1])
         yield Guide(0, *start, dx, dy), start, end, centre, k * math.pi / 2
 
 
 def block_with_pocket():
     """Return the faces of the block."""
-    faces = [level_face(TAGS["top"], TOP, rounded(BLOCK_LOW, BLOCK_HIGH, 0.0) + rounded(POCKET_LOW, POCKET_HIGH, CORNER)),
-             level_face(TAGS["floor"], FLOOR, rounded(np.add(POCKET_LOW, FILLET), np.subtract(POCKET_HIGH, FILLET), CORNER - FILLET)),
-             level_face(TAGS["bottom"], 0.0, rounded(BLOCK_LOW, BLOCK_HIGH, 0.0), -1.0)]
+    faces = [
+        level_face(
+            TAGS["top"],
+            TOP,
+            rounded(BLOCK_LOW, BLOCK_HIGH, 0.0) + rounded(POCKET_LOW, POCKET_HIGH, CORNER),
+        ),
+        level_face(
+            TAGS["floor"],
+            FLOOR,
+            rounded(np.add(POCKET_LOW, FILLET), np.subtract(POCKET_HIGH, FILLET), CORNER - FILLET),
+        ),
+        level_face(TAGS["bottom"], 0.0, rounded(BLOCK_LOW, BLOCK_HIGH, 0.0), -1.0),
+    ]
     for k, (guide, start, end, *_) in enumerate(sides(BLOCK_LOW, BLOCK_HIGH, 0.0)):
-        faces.append(_swept(TAGS["outside"] + k, guide, Profile(0.0, 0.0, 0.0, 1.0), 0.0, TOP, 0.0, math.dist(start, end), -1.0))
+        faces.append(
+            _swept(
+                TAGS["outside"] + k,
+                guide,
+                Profile(0.0, 0.0, 0.0, 1.0),
+                0.0,
+                TOP,
+                0.0,
+                math.dist(start, end),
+                -1.0,
+            )
+        )
     for k, (guide, start, end, centre, angle) in enumerate(sides(POCKET_LOW, POCKET_HIGH, CORNER)):
         length, about, quarter = math.dist(start, end), Guide(1, *centre), angle + math.pi / 2
-        faces.append(_swept(TAGS["wall"] + k, guide, Profile(0.0, 0.0, 0.0, 1.0), FLOOR + FILLET, TOP, 0.0, length, 1.0))
-        faces.append(_swept(TAGS["corner"] + k, about, Profile(CORNER, 0.0, 0.0, 1.0), FLOOR + FILLET, TOP, angle, quarter, -1.0))
-        faces.append(_swept(TAGS["fillet"] + k, guide, Profile(FILLET, FLOOR + FILLET, radius=FILLET), math.pi, 1.5 * math.pi, 0.0, length,
-                            -1.0))
-        faces.append(_swept(TAGS["corner fillet"] + k, about, Profile(CORNER - FILLET, FLOOR + FILLET, radius=FILLET), 1.5 * math.pi,
-                            2 * math.pi, angle, quarter, -1.0))
+        faces.append(
+            _swept(
+                TAGS["wall"] + k,
+                guide,
+                Profile(0.0, 0.0, 0.0, 1.0),
+                FLOOR + FILLET,
+                TOP,
+                0.0,
+                length,
+                1.0,
+            )
+        )
+        faces.append(
+            _swept(
+                TAGS["corner"] + k,
+                about,
+                Profile(CORNER, 0.0, 0.0, 1.0),
+                FLOOR + FILLET,
+                TOP,
+                angle,
+                quarter,
+                -1.0,
+            )
+        )
+        faces.append(
+            _swept(
+                TAGS["fillet"] + k,
+                guide,
+                Profile(FILLET, FLOOR + FILLET, radius=FILLET),
+                math.pi,
+                1.5 * math.pi,
+                0.0,
+                length,
+                -1.0,
+            )
+        )
+        faces.append(
+            _swept(
+                TAGS["corner fillet"] + k,
+                about,
+                Profile(CORNER - FILLET, FLOOR + FILLET, radius=FILLET),
+                1.5 * math.pi,
+                2 * math.pi,
+                angle,
+                quarter,
+                -1.0,
+            )
+        )
     return surfaces_from(faces)
 
 
 def _swept(tag, guide, profile, u0, u1, s0, s1, side):
     edges = line_edges(np.array([[s0, u0], [s1, u0], [s1, u1], [s0, u1], [s0, u0]]))
-    return Face(tag, strips_of(guide, profile, edges, side), np.zeros((0, STRIP_COLUMNS)), np.zeros((0, 4)))
+    return Face(
+        tag, strips_of(guide, profile, edges, side), np.zeros((0, STRIP_COLUMNS)), np.zeros((0, 4))
+    )
 
 
 BLANK = Blank(frame=WORLD, low=BLOCK_LOW, high=(30.0, 18.0, 20.0), material="test", density=2.8)
 SETUP = Setup(name="S1", frame=WORLD, work_offset="G54", clearance=30.0, machine="test mill")
-MACHINE = Machine(name="test mill", title="test mill", axes=tuple(Axis(name=n, kind="linear", low=0.0, high=600.0, rapid=20000.0,
-                  acceleration=3000.0) for n in "XYZ"), spindle_low=100.0, spindle_high=20000.0, power=((100.0, 1.0), (20000.0, 20.0)),
-                  feed_max=10000.0, tool_change_s=5.0, tool_places=20)
+MACHINE = Machine(
+    name="test mill",
+    title="test mill",
+    axes=tuple(
+        Axis(name=n, kind="linear", low=0.0, high=600.0, rapid=20000.0, acceleration=3000.0)
+        for n in "XYZ"
+    ),
+    spindle_low=100.0,
+    spindle_high=20000.0,
+    power=((100.0, 1.0), (20000.0, 20.0)),
+    feed_max=10000.0,
+    tool_change_s=5.0,
+    tool_places=20,
+)
 FACING, POCKETING = flat(16.0)(number=1), bull(6.0, 2.0)(flute=8.0, number=2)
 
 
@@ -229,7 +414,9 @@ def ring(off, z, tool_radius=3.0):
     d = tool_radius + off
     radius = max(CORNER - d, 0.0)
     stops = []
-    for _, start, end, centre, _ in sides(np.add(POCKET_LOW, d), np.subtract(POCKET_HIGH, d), radius):
+    for _, start, end, centre, _ in sides(
+        np.add(POCKET_LOW, d), np.subtract(POCKET_HIGH, d), radius
+    ):
         if not stops:
             stops.append((*start, z))
         stops.append((*end, z))
@@ -251,12 +438,32 @@ def pocketing(skip_walls=False, approach=20.5):
     return [*stops, (-4.0, 0.0, 30.0)]
 
 
-def proof(*sections, blank=BLANK, tools=(POCKETING,), progress=QUIET, machine=MACHINE, material=None, setup=SETUP, facets=(), **choices):
+def proof(
+    *sections,
+    blank=BLANK,
+    tools=(POCKETING,),
+    progress=QUIET,
+    machine=MACHINE,
+    material=None,
+    setup=SETUP,
+    facets=(),
+    **choices,
+):
     """Return the verdict on sections that cut the block."""
     program = Program(name="test", setup=setup, sections=sections)
     chosen = ProofSettings(**{"cell": 0.5, "spacing": 1.0, **choices})
-    return prove_surfaces((program,), (block_with_pocket(),), blank, tools, machine, chosen, progress, planned_faces=range(1, 24),
-                          material=material, facets=facets)
+    return prove_surfaces(
+        (program,),
+        (block_with_pocket(),),
+        blank,
+        tools,
+        machine,
+        chosen,
+        progress,
+        planned_faces=range(1, 24),
+        material=material,
+        facets=facets,
+    )
 
 
 def clean_plan(pocket=None, tool=POCKETING, extra=()):

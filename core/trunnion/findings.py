@@ -1,11 +1,11 @@
 """What a person should know (`Finding`) and what stops the work (`TrunnionError` and its tree).
 
-    TrunnionError            one clear line; the command line exits with 2
-    ├── BadInput             a file or value that can't be used
-    ├── BadCall              the program was called in a way it doesn't understand
-    ├── OutOfMemory          the work would need more memory than allowed; the remedy is in the line
-    └── Refused              a release or a step that the program won't do, and why
-    Cancelled                not an error: a person asked to stop; the session stays as it was
+TrunnionError            one clear line; the command line exits with 2
+├── BadInput             a file or value that can't be used
+├── BadCall              the program was called in a way it doesn't understand
+├── OutOfMemory          the work would need more memory than allowed; the remedy is in the line
+└── Refused              a release or a step that the program won't do, and why
+Cancelled                not an error: a person asked to stop; the session stays as it was
 """
 
 from __future__ import annotations
@@ -74,7 +74,13 @@ class Finding:
 
     def as_dict(self) -> dict[str, object]:
         """Return the finding as the JSON that other programs rely on."""
-        return {"severity": self.severity.value, "code": self.code, "text": self.text, "where": list(self.where), "remedy": self.remedy}
+        return {
+            "severity": self.severity.value,
+            "code": self.code,
+            "text": self.text,
+            "where": list(self.where),
+            "remedy": self.remedy,
+        }
 
     def __str__(self) -> str:
         where = f" ({self.place})" if self.where else ""

@@ -34,8 +34,14 @@ class Progress:
     with `name` where it has one. What is told of one piece of work never goes back.
     """
 
-    def __init__(self, report: Report | None = None, cancelled: Callable[[], bool] | None = None,
-                 start: float = 0.0, end: float = 1.0, name: str = "") -> None:
+    def __init__(
+        self,
+        report: Report | None = None,
+        cancelled: Callable[[], bool] | None = None,
+        start: float = 0.0,
+        end: float = 1.0,
+        name: str = "",
+    ) -> None:
         self._report = report
         self._cancelled = cancelled
         self._start = start
@@ -46,7 +52,11 @@ class Progress:
     def check(self) -> None:
         """Raise `Cancelled` when a person asked to stop; repeat the last report when it is `BEAT_S` old."""
         self._look()
-        if self._report is not None and self._last.time and time.monotonic() - self._last.time > BEAT_S:
+        if (
+            self._report is not None
+            and self._last.time
+            and time.monotonic() - self._last.time > BEAT_S
+        ):
             self._tell(self._last.fraction, self._last.text)
 
     def at(self, fraction: float, text: str = "") -> None:
@@ -65,7 +75,13 @@ class Progress:
     def part(self, start: float, end: float, name: str = "") -> Progress:
         """Return the progress of a part of this work, from `start` to `end` of it."""
         span = self._end - self._start
-        made = Progress(self._report, self._cancelled, self._start + start * span, self._start + end * span, self._named(name))
+        made = Progress(
+            self._report,
+            self._cancelled,
+            self._start + start * span,
+            self._start + end * span,
+            self._named(name),
+        )
         made._last = self._last
         return made
 

@@ -22,7 +22,9 @@ def _points(kind: str) -> dict[str, EntryPoint]:
     found: dict[str, EntryPoint] = {}
     for point in entry_points(group=f"trunnion.{kind}"):
         if point.name in found and found[point.name].value != point.value:
-            raise BadCall(f"two packages give the {kind} name {point.name}: {found[point.name].value} and {point.value}")
+            raise BadCall(
+                f"two packages give the {kind} name {point.name}: {found[point.name].value} and {point.value}"
+            )
         found[point.name] = point
     return found
 

@@ -48,33 +48,67 @@ class Declared:
             return "one of " + ", ".join(self.choices)
         if self.kind is bool:
             return "true or false"
-        bounds = [f"from {self.low:g}" if self.low is not None else "", f"to {self.high:g}" if self.high is not None else ""]
+        bounds = [
+            f"from {self.low:g}" if self.low is not None else "",
+            f"to {self.high:g}" if self.high is not None else "",
+        ]
         words = " ".join(b for b in bounds if b)
-        return f"{words} {self.unit}".strip() if words else {float: "a number", int: "a whole number"}.get(self.kind, "a text")
+        return (
+            f"{words} {self.unit}".strip()
+            if words
+            else {float: "a number", int: "a whole number"}.get(self.kind, "a text")
+        )
 
     def parse(self, text: Value) -> Value:
         """Return the value that a text (or a value of the right type) stands for, checked; raise `BadInput` otherwise."""
         try:
             value = _read(self.kind, text)
         except (TypeError, ValueError):
-            raise BadInput(f"{self.label} ({self.key}) must be {self.allowed()}; got {text}") from None
+            raise BadInput(
+                f"{self.label} ({self.key}) must be {self.allowed()}; got {text}"
+            ) from None
         outside = (self.choices and value not in self.choices) or (
             not isinstance(value, (str, bool))
-            and ((self.low is not None and value < self.low) or (self.high is not None and value > self.high) or value != value)
+            and (
+                (self.low is not None and value < self.low)
+                or (self.high is not None and value > self.high)
+                or value != value
+            )
         )
         if outside:
             raise BadInput(f"{self.label} ({self.key}) must be {self.allowed()}; got {text}")
         return value
 
 
-def setting(default: Value, *, unit: str = "", low: float | None = None, high: float | None = None, label: str, help: str,
-            choices: tuple[str, ...] = (), catalogue: str = "") -> Any:
+def setting(
+    default: Value,
+    *,
+    unit: str = "",
+    low: float | None = None,
+    high: float | None = None,
+    label: str,
+    help: str,
+    choices: tuple[str, ...] = (),
+    catalogue: str = "",
+) -> Any:
     """Return the dataclass field of one setting. A number needs `unit` ("" where it counts), `low` and `high`.
 
     A name of a thing in a catalogue (`materials`, `machines`, `tools`, `plans`) says which, and forms offer what there is.
     """
-    return dataclasses.field(default=default, metadata={_META: {
-        "unit": unit, "low": low, "high": high, "label": label, "help": help, "choices": choices, "catalogue": catalogue}})
+    return dataclasses.field(
+        default=default,
+        metadata={
+            _META: {
+                "unit": unit,
+                "low": low,
+                "high": high,
+                "label": label,
+                "help": help,
+                "choices": choices,
+                "catalogue": catalogue,
+            }
+        },
+    )
 
 
 GROUPS: dict[str, type] = {}
@@ -90,7 +124,9 @@ def settings(group: str) -> Callable[[type[T]], type[T]]:
         made.GROUP = group  # type: ignore[attr-defined]
         known = GROUPS.get(group)
         if known is not None and known.__qualname__ != made.__qualname__:
-            raise ValueError(f"two groups of settings are named {group}: {known.__qualname__} and {made.__qualname__}")
+            raise ValueError(
+                f"two groups of settings are named {group}: {known.__qualname__} and {made.__qualname__}"
+            )
         GROUPS[group] = made
         return made
 
@@ -104,8 +140,15 @@ def declared(cls: type) -> tuple[Declared, ...]:
     for field in dataclasses.fields(cls):
         meta = field.metadata.get(_META)
         if meta is not None:
-            found.append(Declared(key=f"{cls.GROUP}.{field.name}", name=field.name, kind=kinds[field.name],  # type: ignore[attr-defined]
-                                  default=field.default, **meta))  # type: ignore[arg-type]
+            found.append(
+                Declared(
+                    key=f"{cls.GROUP}.{field.name}",  # type: ignore[attr-defined]
+                    name=field.name,
+                    kind=kinds[field.name],
+                    default=field.default,  # type: ignore[arg-type]
+                    **meta,
+                )
+            )
     return tuple(found)
 
 
@@ -135,7 +178,9 @@ def as_words(group: Any) -> dict[str, Value]:
 
 def digest(*things: Any) -> str:
     """Return a short stable digest of groups of settings, texts, numbers, and tuples and mappings of them."""
-    return hashlib.sha256(json.dumps([_plain(t) for t in things], sort_keys=True).encode()).hexdigest()[:16]
+    return hashlib.sha256(
+        json.dumps([_plain(t) for t in things], sort_keys=True).encode()
+    ).hexdigest()[:16]
 
 
 def added(default: Any) -> Any:
@@ -153,7 +198,11 @@ def _is_unused(field: Any, thing: Any) -> bool:
 def _plain(thing: Any) -> Any:
     if dataclasses.is_dataclass(thing) and not isinstance(thing, type):
         # A field that is not given at construction is a cache: it may be there or not yet.
-        own = {f.name: _plain(getattr(thing, f.name)) for f in dataclasses.fields(thing) if f.init and not _is_unused(f, thing)}
+        own = {
+            f.name: _plain(getattr(thing, f.name))
+            for f in dataclasses.fields(thing)
+            if f.init and not _is_unused(f, thing)
+        }
         return {"": type(thing).__qualname__, **own}
     if isinstance(thing, Mapping):
         return {str(k): _plain(v) for k, v in thing.items()}

@@ -51,9 +51,15 @@ class Registry(QObject):
         action.setChecked(command.checked)
         if command.keys:
             action.setShortcut(QKeySequence(command.keys))
-        keys = f" ({QKeySequence(command.keys).toString(QKeySequence.SequenceFormat.NativeText)})" if command.keys else ""
+        keys = (
+            f" ({QKeySequence(command.keys).toString(QKeySequence.SequenceFormat.NativeText)})"
+            if command.keys
+            else ""
+        )
         action.setToolTip(f"{tr(command.help or command.text)}{keys}")
-        action.triggered.connect(lambda on=False: command.run(on) if command.checkable else command.run())
+        action.triggered.connect(
+            lambda on=False: command.run(on) if command.checkable else command.run()
+        )
         parent.addAction(action)
         self._commands[command.id], self._actions[command.id] = command, action
         self._draw(command.id)

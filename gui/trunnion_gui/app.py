@@ -25,7 +25,9 @@ def main(arguments: Sequence[str] | None = None) -> int:
     from trunnion_gui.window import Window
 
     words = list(sys.argv[1:] if arguments is None else arguments)
-    QGuiApplication.setHighDpiScaleFactorRoundingPolicy(Qt.HighDpiScaleFactorRoundingPolicy.PassThrough)
+    QGuiApplication.setHighDpiScaleFactorRoundingPolicy(
+        Qt.HighDpiScaleFactorRoundingPolicy.PassThrough
+    )
     app = QApplication.instance() or QApplication(["trunnion"])
     app.setApplicationName("Trunnion")
     app.setOrganizationName("Trunnion")

@@ -6,7 +6,15 @@ from collections.abc import Sequence
 from itertools import pairwise
 
 from PySide6.QtCore import QByteArray, Qt
-from PySide6.QtWidgets import QDockWidget, QMainWindow, QScrollArea, QTabBar, QTabWidget, QVBoxLayout, QWidget
+from PySide6.QtWidgets import (
+    QDockWidget,
+    QMainWindow,
+    QScrollArea,
+    QTabBar,
+    QTabWidget,
+    QVBoxLayout,
+    QWidget,
+)
 
 from trunnion_gui.storage import remembered
 
@@ -31,7 +39,10 @@ class Arrangement:
         self._window = window
         self._docks: dict[str, QDockWidget] = {}
         self._first = QByteArray()
-        for corner, side in ((Qt.Corner.BottomLeftCorner, LEFT), (Qt.Corner.BottomRightCorner, RIGHT)):
+        for corner, side in (
+            (Qt.Corner.BottomLeftCorner, LEFT),
+            (Qt.Corner.BottomRightCorner, RIGHT),
+        ):
             window.setCorner(corner, side)
         window.setTabPosition(Qt.DockWidgetArea.AllDockWidgetAreas, QTabWidget.TabPosition.North)
 
@@ -98,7 +109,9 @@ class Arrangement:
 
     def _size(self) -> None:
         def resize(sizes: dict[str, int], way: Qt.Orientation) -> None:
-            self._window.resizeDocks([self._docks[name] for name in sizes], list(sizes.values()), way)
+            self._window.resizeDocks(
+                [self._docks[name] for name in sizes], list(sizes.values()), way
+            )
 
         resize({"steps": _LEFT_WIDTH, "features": _RIGHT_WIDTH}, Qt.Orientation.Horizontal)
         resize(_HEIGHTS, Qt.Orientation.Vertical)
@@ -109,7 +122,7 @@ class Arrangement:
         bars = self._window.findChildren(QTabBar, options=Qt.FindChildOption.FindDirectChildrenOnly)
         titles = [{bar.tabText(n) for n in range(bar.count())} for bar in bars]
         for n, bar in enumerate(bars):
-            if any(titles[n] <= later for later in titles[n + 1:]):
+            if any(titles[n] <= later for later in titles[n + 1 :]):
                 bar.hide()
 
 

@@ -20,13 +20,17 @@ class FileDialogs:
 
     def open_path(self) -> str:
         """Ask which file to open."""
-        return QFileDialog.getOpenFileName(self._window, tr("Open a part or a project"), "", PART_FILES)[0]
+        return QFileDialog.getOpenFileName(
+            self._window, tr("Open a part or a project"), "", PART_FILES
+        )[0]
 
     def save_path(self) -> str:
         """Ask where to save the project."""
         part = self._document.session.part
         proposed = str(Path(self._document.files.path).with_suffix(PROJECT)) if part else ""
-        return QFileDialog.getSaveFileName(self._window, tr("Save the project"), proposed, f"Trunnion (*{PROJECT})")[0]
+        return QFileDialog.getSaveFileName(
+            self._window, tr("Save the project"), proposed, f"Trunnion (*{PROJECT})"
+        )[0]
 
     def folder(self) -> str:
         """Ask which folder the programs are written to."""
@@ -34,4 +38,6 @@ class FileDialogs:
 
     def picture_path(self) -> str:
         """Ask where to keep a picture."""
-        return QFileDialog.getSaveFileName(self._window, tr("Save the picture"), "", "PNG (*.png)")[0]
+        return QFileDialog.getSaveFileName(self._window, tr("Save the picture"), "", "PNG (*.png)")[
+            0
+        ]

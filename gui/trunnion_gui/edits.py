@@ -59,8 +59,12 @@ class History:
         """Add a state; what could be redone is forgotten. An edit that changed nothing adds nothing."""
         if session is self.session:
             return
-        goes_on = gesture and gesture == self._entries[self._at].gesture and self._at == len(self._entries) - 1
-        del self._entries[self._at + (0 if goes_on else 1):]
+        goes_on = (
+            gesture
+            and gesture == self._entries[self._at].gesture
+            and self._at == len(self._entries) - 1
+        )
+        del self._entries[self._at + (0 if goes_on else 1) :]
         self._entries.append(Entry(label, session, gesture))
         self._at = len(self._entries) - 1
 
@@ -117,7 +121,9 @@ def with_kind(id: str, kind: str) -> Edit:
         found = recognition_of(session)
         if found.feature(id).kind == kind:
             return session
-        changed = tuple(replace(f, kind=kind, by_hand=True) if f.id == id else f for f in found.features)
+        changed = tuple(
+            replace(f, kind=kind, by_hand=True) if f.id == id else f for f in found.features
+        )
         return replace(session, recognition=replace(found, features=changed))
 
     return edit
@@ -140,7 +146,9 @@ def with_suppressed(id: str, suppressed: bool) -> Edit:
 
 def with_operation_choice(id: str, key: str, value: Value) -> Edit:
     """Return the edit that chooses a strategy's setting for one operation only."""
-    return _with_operation(id, lambda o: replace(o, choices={**o.choices, key: value}, by_hand=True))
+    return _with_operation(
+        id, lambda o: replace(o, choices={**o.choices, key: value}, by_hand=True)
+    )
 
 
 def with_operation_before(id: str, before: str | None) -> Edit:
@@ -155,7 +163,9 @@ def with_operation_before(id: str, before: str | None) -> Edit:
         if before == id:
             return session
         if before is not None and tree.operation(before).setup != moved.setup:
-            raise Refused(f"{id} is cut in setup {moved.setup} and can't be moved to {tree.operation(before).setup}")
+            raise Refused(
+                f"{id} is cut in setup {moved.setup} and can't be moved to {tree.operation(before).setup}"
+            )
         rest = [o for o in tree.operations if o.id != id]
         place = _place(rest, moved, before)
         ordered = (*rest[:place], moved, *rest[place:])
@@ -178,7 +188,9 @@ def _check_order(operations: tuple[Operation, ...]) -> None:
     for o in operations:
         for first in o.after:
             if row.get(first, -1) > row[o.id]:
-                raise Refused(f"{o.id} must come after {first}: move {first} first, or delete one of them")
+                raise Refused(
+                    f"{o.id} must come after {first}: move {first} first, or delete one of them"
+                )
 
 
 def _with_operation(id: str, change: Callable[[Operation], Operation]) -> Edit:

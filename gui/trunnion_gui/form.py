@@ -6,7 +6,18 @@ from collections.abc import Callable, Mapping, Sequence
 
 from PySide6.QtCore import QEvent, QObject, QPoint, Qt, Signal
 from PySide6.QtGui import QWheelEvent
-from PySide6.QtWidgets import QCheckBox, QComboBox, QCompleter, QDoubleSpinBox, QGridLayout, QLabel, QLineEdit, QMenu, QSpinBox, QWidget
+from PySide6.QtWidgets import (
+    QCheckBox,
+    QComboBox,
+    QCompleter,
+    QDoubleSpinBox,
+    QGridLayout,
+    QLabel,
+    QLineEdit,
+    QMenu,
+    QSpinBox,
+    QWidget,
+)
 
 from trunnion.settings import Declared, Value
 from trunnion.units import trimmed
@@ -95,7 +106,9 @@ class Form(QWidget):
         label.setWordWrap(True)
         label.setToolTip(tooltip(setting))
         label.setContextMenuPolicy(Qt.ContextMenuPolicy.CustomContextMenu)
-        label.customContextMenuRequested.connect(lambda at: self._offer_default(setting, label.mapToGlobal(at)))
+        label.customContextMenuRequested.connect(
+            lambda at: self._offer_default(setting, label.mapToGlobal(at))
+        )
         self._labels[setting.key] = label
         return label
 
@@ -114,13 +127,20 @@ class Form(QWidget):
 
     def _offer_default(self, setting: Declared, at: QPoint) -> None:
         menu = QMenu(self)
-        menu.addAction(tr("Back to the default ({value})").format(value=setting.default), lambda: self.reset.emit(setting.key))
+        menu.addAction(
+            tr("Back to the default ({value})").format(value=setting.default),
+            lambda: self.reset.emit(setting.key),
+        )
         menu.popup(at)
 
 
 def tooltip(setting: Declared) -> str:
     """Return what a setting does, what it may be, and its key for the command line."""
-    allowed = setting.allowed() if len(setting.choices) <= _LONG else tr("one of {n} names").format(n=len(setting.choices))
+    allowed = (
+        setting.allowed()
+        if len(setting.choices) <= _LONG
+        else tr("one of {n} names").format(n=len(setting.choices))
+    )
     return f"<p>{tr(setting.help)}</p><p>{allowed}<br><tt>{setting.key}</tt></p>"
 
 

@@ -12,7 +12,10 @@ _chosen = "en"
 def languages() -> tuple[str, ...]:
     """Return the languages the window speaks."""
     folder = files("trunnion_resources") / "translations"
-    return ("en", *sorted(f.name.removesuffix(".json") for f in folder.iterdir() if f.name.endswith(".json")))
+    return (
+        "en",
+        *sorted(f.name.removesuffix(".json") for f in folder.iterdir() if f.name.endswith(".json")),
+    )
 
 
 def use(language: str) -> None:
@@ -30,4 +33,6 @@ def tr(text: str) -> str:
 def _words(language: str) -> dict[str, str]:
     if language == "en":
         return {}
-    return json.loads((files("trunnion_resources") / "translations" / f"{language}.json").read_text("utf-8"))
+    return json.loads(
+        (files("trunnion_resources") / "translations" / f"{language}.json").read_text("utf-8")
+    )

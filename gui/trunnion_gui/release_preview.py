@@ -21,6 +21,12 @@ def rejected_names(session: Session) -> tuple[str, ...]:
     from trunnion.post.header import REJECTED
 
     verdict = session.verdict
-    if session.part is None or verdict is None or (verdict.releases and not has_errors(verdict.findings)):
+    if (
+        session.part is None
+        or verdict is None
+        or (verdict.releases and not has_errors(verdict.findings))
+    ):
         return ()
-    return tuple(f"{session.part.name}.{f.suffix}" for f in as_they_leave(session) if REJECTED in f.suffix)
+    return tuple(
+        f"{session.part.name}.{f.suffix}" for f in as_they_leave(session) if REJECTED in f.suffix
+    )

@@ -26,19 +26,37 @@ _SHOWN = "pocket-01"
 Prepare = Callable[["Window"], None]
 
 
-def shoot(part: str | Path, picture: str | Path, *, prepare: Prepare | None = None, size: tuple[int, int] = (1600, 1000),
-          factory: str = "", until: str = "verify", theme: str = "light", timeout_s: float = 300.0) -> None:
+def shoot(
+    part: str | Path,
+    picture: str | Path,
+    *,
+    prepare: Prepare | None = None,
+    size: tuple[int, int] = (1600, 1000),
+    factory: str = "",
+    until: str = "verify",
+    theme: str = "light",
+    timeout_s: float = 300.0,
+) -> None:
     """Open a part in a window, run up to a step, let `prepare(window)` arrange what is to be seen, and write the picture as PNG.
 
     Raises `TimeoutError` when the line takes longer than `timeout_s`.
     """
-    with opened(part, size=size, factory=factory, until=until, theme=theme, timeout_s=timeout_s) as window:
+    with opened(
+        part, size=size, factory=factory, until=until, theme=theme, timeout_s=timeout_s
+    ) as window:
         take(window, picture, prepare)
 
 
 @contextlib.contextmanager
-def opened(part: str | Path, *, size: tuple[int, int] = (1600, 1000), factory: str = "", until: str = "verify", theme: str = "light",
-           timeout_s: float = 300.0) -> Iterator[Window]:
+def opened(
+    part: str | Path,
+    *,
+    size: tuple[int, int] = (1600, 1000),
+    factory: str = "",
+    until: str = "verify",
+    theme: str = "light",
+    timeout_s: float = 300.0,
+) -> Iterator[Window]:
     """Give a window as at a first start, in which a part has been worked on up to a step; raise `BadCall` when that failed."""
     os.environ.setdefault("QT_QPA_PLATFORM", "offscreen")
     settings = tempfile.TemporaryDirectory()
@@ -63,7 +81,9 @@ def opened(part: str | Path, *, size: tuple[int, int] = (1600, 1000), factory: s
             window.document.run(until, "Program")
             wait(lambda: not window.document.is_busy, timeout_s)
             if window.document.states.get(until) not in ("done", "problem"):
-                raise BadCall(f"no picture: {window.viewport.notice.text or 'the part could not be worked on'}")
+                raise BadCall(
+                    f"no picture: {window.viewport.notice.text or 'the part could not be worked on'}"
+                )
         yield window
     finally:
         window.close()
@@ -89,8 +109,13 @@ def shoot_all(folder: str | Path) -> tuple[Path, ...]:
     folder.mkdir(parents=True, exist_ok=True)
     wanted: tuple[tuple[str, str, dict[str, Prepare]], ...] = (
         ("route", "light", {"features": _show_feature}),
-        ("verify", "light", {"window": _show_operation, "playback": _show_playback, "deviation": _show_deviation}),
-        ("verify", "dark", {"window-dark": _show_operation}))
+        (
+            "verify",
+            "light",
+            {"window": _show_operation, "playback": _show_playback, "deviation": _show_deviation},
+        ),
+        ("verify", "dark", {"window-dark": _show_operation}),
+    )
     made = []
     with as_file(trunnion_resources.sample("B1")) as part:
         for until, theme, pictures in wanted:
@@ -113,7 +138,9 @@ def _show_operation(window: Window) -> None:
     process = window.document.session.process
     if process is not None:
         window.show_dock("process")
-        window.document.selection.select_operation(next(o.id for o in process.operations if o.kind.endswith("rough")))
+        window.document.selection.select_operation(
+            next(o.id for o in process.operations if o.kind.endswith("rough"))
+        )
 
 
 def _show_playback(window: Window) -> None:
@@ -125,7 +152,9 @@ def _show_playback(window: Window) -> None:
     line = window.player.timeline
     assert line is not None
     row = max(k for k, p in enumerate(line.passages) if p.operation.startswith("rough"))
-    window.player.go(float(line.first[row] + 0.55 * (line.first[row + 1] - line.first[row])) // 1 + 0.5)
+    window.player.go(
+        float(line.first[row] + 0.55 * (line.first[row + 1] - line.first[row])) // 1 + 0.5
+    )
     wait(lambda: window.player.is_settled)
 
 
@@ -141,13 +170,20 @@ def _show_deviation(window: Window) -> None:
 
 def with_faults(session: Session) -> Session:
     """Return a session whose plan cuts one floor 45 µm too deep and one wall 40 µm too near, with paths of their own keys."""
-    floors, walls = ([p.operation for p in session.paths if p.operation.startswith(kind)] for kind in ("floor", "wall"))
+    floors, walls = (
+        [p.operation for p in session.paths if p.operation.startswith(kind)]
+        for kind in ("floor", "wall")
+    )
     moved = {floors[2]: np.array([0.0, 0.0, -0.045]), walls[-2]: np.array([0.0, -0.04, 0.0])}
     paths = []
     for made in session.paths:
         if made.operation in moved:
             path, by = made.path, moved[made.operation]
-            made = replace(made, key=f"{made.key} moved", path=replace(path, position=path.position + by, centre=path.centre + by))
+            made = replace(
+                made,
+                key=f"{made.key} moved",
+                path=replace(path, position=path.position + by, centre=path.centre + by),
+            )
         paths.append(made)
     return replace(session, paths=tuple(paths))
 

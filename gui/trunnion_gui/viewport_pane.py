@@ -58,8 +58,15 @@ class ViewportPane(QWidget):
     hinted = Signal(str)
     """Words for the status line about what is under the mouse."""
 
-    def __init__(self, document: Document, registry: Registry, theme: Theme, player: Player, deviation: DeviationSource,
-                 views: Views) -> None:
+    def __init__(
+        self,
+        document: Document,
+        registry: Registry,
+        theme: Theme,
+        player: Player,
+        deviation: DeviationSource,
+        views: Views,
+    ) -> None:
         super().__init__()
         self._document = document
         self._player, self._deviation, self._views = player, deviation, views
@@ -151,26 +158,70 @@ class ViewportPane(QWidget):
     def show_section(self, on: bool) -> None:
         """Cut the part open, or close it."""
         self.section_bar.setVisible(on)
-        self.scene.section(self.section_slider.value() / self.section_slider.maximum() if on else None)
+        self.scene.section(
+            self.section_slider.value() / self.section_slider.maximum() if on else None
+        )
 
     def show_size(self, entry: SizeEntry) -> None:
         """Show where a size is: its faces and its number."""
-        self._document.selection.select(Selection("faces", f"{kind_words(entry.name)} {entry.feature}", entry.faces))
-        self.scene.show_label(f"{kind_words(entry.name)} {amount(entry.value)} {entry.unit}", entry.at)
+        self._document.selection.select(
+            Selection("faces", f"{kind_words(entry.name)} {entry.feature}", entry.faces)
+        )
+        self.scene.show_label(
+            f"{kind_words(entry.name)} {amount(entry.value)} {entry.unit}", entry.at
+        )
 
     def refresh(self) -> None:
         """Draw what changed in the shown session."""
         session = self._document.shown
         self._once("frame", (session.recognition,), lambda: self._use_frame(session))
-        self._once("kinds", (session.recognition, self.shows["colours"], self._colouring, self._shows_paths(session)),
-                   lambda: self._paint(session))
-        self._once("ids", (session.recognition, self._document.mesh, self._document.selection.current, self.shows["ids"]),
-                   lambda: self._write_ids(session))
-        shows_blank = self.shows["blank"] and not self._shows_paths(session) and not self._plays and not self._shows_map
-        self._once("blank", (session.blank, shows_blank), lambda: self.scene.show_blank(session.blank if shows_blank else None))
-        self._once("setups", (session.setups, self._document.mesh), lambda: self.scene.show_setups(session.setups))
-        self._once("paths", (session.paths, session.process, self._shows_paths(session), self.motions, self._operation()),
-                   lambda: self._draw_paths(session))
+        self._once(
+            "kinds",
+            (
+                session.recognition,
+                self.shows["colours"],
+                self._colouring,
+                self._shows_paths(session),
+            ),
+            lambda: self._paint(session),
+        )
+        self._once(
+            "ids",
+            (
+                session.recognition,
+                self._document.mesh,
+                self._document.selection.current,
+                self.shows["ids"],
+            ),
+            lambda: self._write_ids(session),
+        )
+        shows_blank = (
+            self.shows["blank"]
+            and not self._shows_paths(session)
+            and not self._plays
+            and not self._shows_map
+        )
+        self._once(
+            "blank",
+            (session.blank, shows_blank),
+            lambda: self.scene.show_blank(session.blank if shows_blank else None),
+        )
+        self._once(
+            "setups",
+            (session.setups, self._document.mesh),
+            lambda: self.scene.show_setups(session.setups),
+        )
+        self._once(
+            "paths",
+            (
+                session.paths,
+                session.process,
+                self._shows_paths(session),
+                self.motions,
+                self._operation(),
+            ),
+            lambda: self._draw_paths(session),
+        )
         self.legend.show_rows(self._legend(session))
         self._place()
         self.welcome.setVisible(not self._document.has_part and not self._document.is_busy)
@@ -182,7 +233,11 @@ class ViewportPane(QWidget):
     def _once(self, name: str, inputs: tuple, draw: Callable[[], None]) -> None:
         """Draw a layer only when what it is drawn from is another thing than last time."""
         before = self._drawn.get(name)
-        if isinstance(before, tuple) and len(before) == len(inputs) and all(a is b or _equal(a, b) for a, b in zip(before, inputs)):
+        if (
+            isinstance(before, tuple)
+            and len(before) == len(inputs)
+            and all(a is b or _equal(a, b) for a, b in zip(before, inputs))
+        ):
             return
         self._drawn[name] = inputs
         draw()
@@ -191,8 +246,15 @@ class ViewportPane(QWidget):
         self.legend.move(_EDGE, _EDGE)
         self.scale.move(_EDGE, _EDGE)
         card = next((c for c in (self.scale, self.legend) if c.isVisible()), None)
-        self.scene.keep_clear(QRectF(card.geometry()).adjusted(-_EDGE, -_EDGE, _EDGE, _EDGE) if card is not None else QRectF())
-        self.welcome.move((self.scene.width() - self.welcome.width()) // 2, max((self.scene.height() - self.welcome.height()) // 2 - 20, 8))
+        self.scene.keep_clear(
+            QRectF(card.geometry()).adjusted(-_EDGE, -_EDGE, _EDGE, _EDGE)
+            if card is not None
+            else QRectF()
+        )
+        self.welcome.move(
+            (self.scene.width() - self.welcome.width()) // 2,
+            max((self.scene.height() - self.welcome.height()) // 2 - 20, 8),
+        )
 
     def _show_mesh(self) -> None:
         self._drawn = {}
@@ -228,13 +290,21 @@ class ViewportPane(QWidget):
 
     def _write_ids(self, session: Session) -> None:
         """Write the ID of every feature on the part; of the faces of the selection, when there is one."""
-        mesh, found, chosen = self._document.mesh, session.recognition, self._document.selection.current
+        mesh, found, chosen = (
+            self._document.mesh,
+            session.recognition,
+            self._document.selection.current,
+        )
         if not self.shows["ids"] or mesh is None:
             self.scene.show_names(())
         elif chosen.faces:
-            self.scene.show_names([(str(tag), place_on(mesh, (tag,))) for tag in chosen.faces[:_MOST_IDS]])
+            self.scene.show_names(
+                [(str(tag), place_on(mesh, (tag,))) for tag in chosen.faces[:_MOST_IDS]]
+            )
         else:
-            self.scene.show_names([(f.id, place_on(mesh, f.tags)) for f in (found or ()) if f.tags][:_MOST_IDS])
+            self.scene.show_names(
+                [(f.id, place_on(mesh, f.tags)) for f in (found or ()) if f.tags][:_MOST_IDS]
+            )
 
     def _use_frame(self, session: Session) -> None:
         if session.recognition is not None:
@@ -245,7 +315,9 @@ class ViewportPane(QWidget):
         return chosen.id if chosen.kind == "operation" else ""
 
     def _shows_paths(self, session: Session) -> bool:
-        return self.shows["paths"] and bool(session.paths) and not self._plays and not self._shows_map
+        return (
+            self.shows["paths"] and bool(session.paths) and not self._plays and not self._shows_map
+        )
 
     @property
     def _plays(self) -> bool:
@@ -259,7 +331,13 @@ class ViewportPane(QWidget):
         found = session.recognition
         colours: dict[int, str] = {}
         if found is not None:
-            colours = self._colouring.by_face(found) if self._colouring else legend.features_by_face(found) if self.shows["colours"] else {}
+            colours = (
+                self._colouring.by_face(found)
+                if self._colouring
+                else legend.features_by_face(found)
+                if self.shows["colours"]
+                else {}
+            )
         self.scene.show_kinds(colours, faded=self._shows_paths(session))
 
     def _draw_paths(self, session: Session) -> None:
@@ -267,8 +345,15 @@ class ViewportPane(QWidget):
         if process is None or not self._shows_paths(session):
             self.scene.show_paths(())
             return
-        frames = {o.id: process.setup(o.setup).frame for o in process.operations if not o.suppressed and only in ("", o.id)}
-        self.scene.show_paths([(p.path, frames[p.operation]) for p in session.paths if p.operation in frames], self.motions)
+        frames = {
+            o.id: process.setup(o.setup).frame
+            for o in process.operations
+            if not o.suppressed and only in ("", o.id)
+        }
+        self.scene.show_paths(
+            [(p.path, frames[p.operation]) for p in session.paths if p.operation in frames],
+            self.motions,
+        )
 
     def _legend(self, session: Session) -> list[LegendRow]:
         if self._plays:
@@ -281,12 +366,19 @@ class ViewportPane(QWidget):
         elif found is not None and self.shows["colours"]:
             rows = legend.features(found, self._views)
         if self._shows_paths(session):
-            rows = [*rows, legend.GAP, *legend.paths(self.motions, any(leans(p.path) for p in session.paths))]
+            rows = [
+                *rows,
+                legend.GAP,
+                *legend.paths(self.motions, any(leans(p.path) for p in session.paths)),
+            ]
         return rows
 
     def _choose(self, selection: Selection) -> None:
         self.scene.show_label("")
-        self.scene.choose(selection.faces, filled=selection.kind != "operation" or not self._shows_paths(self._document.shown))
+        self.scene.choose(
+            selection.faces,
+            filled=selection.kind != "operation" or not self._shows_paths(self._document.shown),
+        )
         self.refresh()
 
     def _hover(self, tag: int) -> None:
@@ -322,7 +414,7 @@ class ViewportPane(QWidget):
         _, points, reached = self._run
         done = int(np.searchsorted(reached, position, side="right"))
         first = max(done - _LONGEST_TRAIL, 0)
-        blocks = np.append(np.ceil(reached[first + 1:done]) - 1, line.block(position)).astype(int)
+        blocks = np.append(np.ceil(reached[first + 1 : done]) - 1, line.block(position)).astype(int)
         self.scene.show_trail(np.vstack([points[first:done], tip]), line.rapid[blocks])
         self.scene.move_tool(tip, axis)
 
@@ -343,7 +435,9 @@ class ViewportPane(QWidget):
         self.scene.look_at(place.point, place.face, _CLOSE_LOOK)
         self.scene.show_label(fine_amount(place.deviation), place.point)
 
-    def _point(self, found: tuple[int, float, tuple[float, float, float]] | None, at: QPointF) -> None:
+    def _point(
+        self, found: tuple[int, float, tuple[float, float, float]] | None, at: QPointF
+    ) -> None:
         """Say what the map shows under the mouse: in the status line, in a small tip and on the scale."""
         self.scale.point(found[1] if found else None)
         self.tip.setVisible(found is not None)
@@ -354,7 +448,9 @@ class ViewportPane(QWidget):
         owners = [f for f in self._document.shown.recognition or () if face in f.tags]
         owner = min(owners, key=lambda f: len(f.tags)).id if owners else ""
         where = "x {:.2f}  y {:.2f}  z {:.2f}".format(*place)
-        self.hinted.emit(" · ".join(w for w in (fine_amount(value), f"{tr('face')} {face}", owner, where) if w))
+        self.hinted.emit(
+            " · ".join(w for w in (fine_amount(value), f"{tr('face')} {face}", owner, where) if w)
+        )
         self.tip.setText(fine_amount(value))
         self.tip.adjustSize()
         x = min(int(at.x()) + _TIP_AWAY, self.scene.width() - self.tip.width() - 4)

@@ -39,8 +39,14 @@ from trunnion_gui.widgets.status import Status
 from trunnion_gui.worker.steps import STAGES
 from trunnion_gui.worker.worker import ENGINE
 
-PANELS: dict[str, type[Panel]] = {"recognize": RecognizePanel, "size": SizePanel, "blank": BlankPanel, "route": RoutePanel,
-                                  "optimize": OptimizePanel, "generate": GeneratePanel}
+PANELS: dict[str, type[Panel]] = {
+    "recognize": RecognizePanel,
+    "size": SizePanel,
+    "blank": BlankPanel,
+    "route": RoutePanel,
+    "optimize": OptimizePanel,
+    "generate": GeneratePanel,
+}
 
 
 class Window(QMainWindow):
@@ -57,18 +63,26 @@ class Window(QMainWindow):
         theme.apply(self.theme)
         self.document = Document(factory, self)
         self.registry = Registry(self)
-        self.player, self.deviation = Player(self.document, self), DeviationSource(self.document, self)
+        self.player, self.deviation = (
+            Player(self.document, self),
+            DeviationSource(self.document, self),
+        )
         self.views = Views(self.document)
         self.dialogs, self.handlers = FileDialogs(self.document, self), Handlers(self)
         add_general_commands(self)
         for view in self.views:
             view.add_commands(self)
         add_playback_commands(self)
-        self.viewport = ViewportPane(self.document, self.registry, self.theme, self.player, self.deviation, self.views)
+        self.viewport = ViewportPane(
+            self.document, self.registry, self.theme, self.player, self.deviation, self.views
+        )
         self.setCentralWidget(self.viewport)
         for view in self.views:
             view.begin(self)
-        self.panels = {s.name: PANELS[s.name](s, n, self.document, self.registry, self.views) for n, s in enumerate(STAGES, 1)}
+        self.panels = {
+            s.name: PANELS[s.name](s, n, self.document, self.registry, self.views)
+            for n, s in enumerate(STAGES, 1)
+        }
         for view in self.views:
             for name, block in view.blocks().items():
                 self.panels[name].content.addWidget(block)
@@ -162,7 +176,9 @@ class Window(QMainWindow):
         document.noticed.connect(self._tell)
         document.files.opened.connect(self._opened)
         document.files.saved.connect(remembered.add_recent)
-        self.docks.messages.counted.connect(lambda n: messages.setWindowTitle(f"{tr('Messages')} {n}" if n else tr("Messages")))
+        self.docks.messages.counted.connect(
+            lambda n: messages.setWindowTitle(f"{tr('Messages')} {n}" if n else tr("Messages"))
+        )
         size, generate = self.panels["size"], self.panels["generate"]
         assert isinstance(size, SizePanel)
         assert isinstance(generate, GeneratePanel)

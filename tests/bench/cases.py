@@ -26,10 +26,17 @@ def graph(path: Path, folder: Path, compared: Compare) -> Iterator[Any]:
 
     from trunnion.part.part import Part
     from trunnion.part.read import read_part
+
     part = read_part(path)
     data = part.to_bytes()
-    yield compared("face graph", "B1", lambda: Part.from_bytes(data).graph(), lambda: BRepCheck_Analyzer(part.shape).IsValid(),
-                   "the CAD kernel's validity check", "< 6")
+    yield compared(
+        "face graph",
+        "B1",
+        lambda: Part.from_bytes(data).graph(),
+        lambda: BRepCheck_Analyzer(part.shape).IsValid(),
+        "the CAD kernel's validity check",
+        "< 6",
+    )
 
 
 def recognition(path: Path, folder: Path, compared: Compare) -> Iterator[Any]:
@@ -40,6 +47,7 @@ def recognition(path: Path, folder: Path, compared: Compare) -> Iterator[Any]:
     from trunnion.part.part import Part
     from trunnion.part.read import read_part
     from trunnion.recognize.panel import PanelFamily
+
     part = read_part(path)
     face_graph = part.graph()
     family = PanelFamily()
@@ -51,10 +59,14 @@ def recognition(path: Path, folder: Path, compared: Compare) -> Iterator[Any]:
 
     def by_boolean() -> None:
         for z in range(1, 26):
-            cut = BRepAlgoAPI_Section(part.shape, gp_Pln(gp_Pnt(0, 0, z * 1.51), gp_Dir(0, 0, 1)), False)
+            cut = BRepAlgoAPI_Section(
+                part.shape, gp_Pln(gp_Pnt(0, 0, z * 1.51), gp_Dir(0, 0, 1)), False
+            )
             cut.Build()
 
-    yield compared("recognition", "B1", fresh, by_boolean, "25 sections by the CAD kernel's boolean", "< 1.5")
+    yield compared(
+        "recognition", "B1", fresh, by_boolean, "25 sections by the CAD kernel's boolean", "< 1.5"
+    )
 
 
 def roughing(path: Path, folder: Path, compared: Compare) -> Iterator[Any]:
@@ -64,31 +76,49 @@ def roughing(path: Path, folder: Path, compared: Compare) -> Iterator[Any]:
     from trunnion.plan.prismatic.regions import Space
     from trunnion.settings import choose
     from trunnion.toolpath.stock import PlanningStock
+
     engine, session = _programmed(path, "optimize")
     setup, process = session.setups[0], session.process
     assert process is not None and session.recognition is not None and session.blank is not None
     rough = registry.get("strategies", "plane.rough")
     stock = PlanningStock.of(session.blank, setup)
     space = Space.of(engine.context.part, session.recognition, session.blank, setup)
-    jobs = [(o, drive_of(o, process, space)) for o in process.operations if o.strategy == "plane.rough"]
+    jobs = [
+        (o, drive_of(o, process, space)) for o in process.operations if o.strategy == "plane.rough"
+    ]
 
     def ours() -> list[Any]:
-        return [rough(drive, o.tool, o.data, stock, setup, choose(rough.settings, dict(o.choices)), QUIET) for o, drive in jobs]
+        return [
+            rough(
+                drive, o.tool, o.data, stock, setup, choose(rough.settings, dict(o.choices)), QUIET
+            )
+            for o, drive in jobs
+        ]
 
     def offsets() -> int:
         from shapely.geometry import Polygon
+
         rings = 0
         for o, drive in jobs:
             for level in drive.levels:
                 for piece in level.boundary.intersect(level.wanted).pieces:
-                    plain = Polygon(piece.outer.sampled(0.01), [h.sampled(0.01) for h in piece.holes])
+                    plain = Polygon(
+                        piece.outer.sampled(0.01), [h.sampled(0.01) for h in piece.holes]
+                    )
                     inset = o.tool.radius
                     while not (left := plain.buffer(-inset, quad_segs=16)).is_empty:
                         rings += len(getattr(left, "geoms", [left]))
                         inset += o.data.width
         return rings
 
-    yield compared("roughing, all pockets", "B1", ours, offsets, "the same insets once a band by shapely, as chords", "< 60")
+    yield compared(
+        "roughing, all pockets",
+        "B1",
+        ours,
+        offsets,
+        "the same insets once a band by shapely, as chords",
+        "< 60",
+    )
 
 
 def contact(path: Path, folder: Path, compared: Compare) -> Iterator[Any]:
@@ -97,6 +127,7 @@ def contact(path: Path, folder: Path, compared: Compare) -> Iterator[Any]:
     from trunnion.pipeline.proving import program_of
     from trunnion.verify.contact import PartContact
     from trunnion.verify.motion import moves_of
+
     engine, session = _programmed(path, "toolpath")
     program = program_of(session, session.setups[0])
     moves = moves_of(program.sections)
@@ -110,11 +141,20 @@ def contact(path: Path, folder: Path, compared: Compare) -> Iterator[Any]:
         for a, b in zip(starts[::100, :2], ends[::100, :2], strict=True):
             along = b - a
             share = np.clip((points[:, :2] - a) @ along / max(along @ along, 1e-12), 0.0, 1.0)
-            nearest = min(nearest, float(np.linalg.norm(points[:, :2] - a - share[:, None] * along, axis=1).min()))
+            nearest = min(
+                nearest,
+                float(np.linalg.norm(points[:, :2] - a - share[:, None] * along, axis=1).min()),
+            )
         return nearest
 
-    yield compared(f"contact, {len(moves)} blocks", "B1", lambda: engine_of_contact.along(moves), sampled,
-                   f"the mesh's {len(points)} points against every hundredth block", "< 1")
+    yield compared(
+        f"contact, {len(moves)} blocks",
+        "B1",
+        lambda: engine_of_contact.along(moves),
+        sampled,
+        f"the mesh's {len(points)} points against every hundredth block",
+        "< 1",
+    )
 
 
 def whole_line(path: Path, folder: Path, compared: Compare) -> Iterator[Any]:
@@ -125,4 +165,6 @@ def whole_line(path: Path, folder: Path, compared: Compare) -> Iterator[Any]:
         engine, session = _programmed(path, "verify")
         return engine.write(session, folder / "out")
 
-    yield compared("whole line", "B1", ours, bare_reader(path), "the CAD kernel's own reader", "< 200")
+    yield compared(
+        "whole line", "B1", ours, bare_reader(path), "the CAD kernel's own reader", "< 200"
+    )

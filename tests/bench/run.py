@@ -48,14 +48,32 @@ def median_seconds(work: Callable[[], Any], rounds: int = ROUNDS) -> float:
     return statistics.median(taken)
 
 
-def noted(name: str, seconds: float, ratio_to: str, ratio: float, goal: str, part: str = "block") -> Figure:
+def noted(
+    name: str, seconds: float, ratio_to: str, ratio: float, goal: str, part: str = "block"
+) -> Figure:
     """Return a figure, and show it."""
-    figure = Figure(name=name, part=part, seconds=round(seconds, 4), ratio_to=ratio_to, ratio=float(f"{ratio:.4g}"), goal=goal)
-    print(f"{name:28s} {seconds:9.4f} s   {figure.ratio:9.4g} x {ratio_to}   goal {goal}", flush=True)
+    figure = Figure(
+        name=name,
+        part=part,
+        seconds=round(seconds, 4),
+        ratio_to=ratio_to,
+        ratio=float(f"{ratio:.4g}"),
+        goal=goal,
+    )
+    print(
+        f"{name:28s} {seconds:9.4f} s   {figure.ratio:9.4g} x {ratio_to}   goal {goal}", flush=True
+    )
     return figure
 
 
-def compared(name: str, part: str, work: Callable[[], Any], reference: Callable[[], Any], ratio_to: str, goal: str) -> Figure:
+def compared(
+    name: str,
+    part: str,
+    work: Callable[[], Any],
+    reference: Callable[[], Any],
+    ratio_to: str,
+    goal: str,
+) -> Figure:
     """Return the figure of some work beside a reference."""
     base = median_seconds(reference)
     seconds = median_seconds(work)
@@ -80,6 +98,7 @@ def unpacked(folder: Path) -> Path:
     import gzip
 
     from trunnion_resources import sample
+
     path = folder / "B1.step"
     path.write_bytes(gzip.decompress(sample("B1").read_bytes()))
     return path
@@ -88,8 +107,15 @@ def unpacked(folder: Path) -> Path:
 def reading(path: Path, folder: Path, compared: Callable[..., Figure]) -> Iterator[Figure]:
     """Reading the file with all checks, beside the CAD kernel's own reader."""
     from trunnion.part.read import read_part
-    yield compared("import", "B1", lambda: read_part(path), bare_reader(path),
-                   "the CAD kernel's own reader, no checks, no second process", "< 12")
+
+    yield compared(
+        "import",
+        "B1",
+        lambda: read_part(path),
+        bare_reader(path),
+        "the CAD kernel's own reader, no checks, no second process",
+        "< 12",
+    )
 
 
 def figures(folder: Path, only: str, quick: bool) -> Iterator[Figure]:
@@ -106,10 +132,18 @@ def cases(folder: Path, quick: bool) -> dict[str, Callable[[], Iterator[Figure]]
     from proof import PROOF
 
     path = unpacked(folder)
-    panel = {"import": reading, "graph": graph, "recognition": recognition, "roughing": roughing, "contact": contact,
-             "whole-line": whole_line}
-    return {**{name: partial(case, path, folder, compared) for name, case in panel.items()},
-            **{name: partial(_rows, case, quick) for name, case in {**PROOF, "drop": drop}.items()}}
+    panel = {
+        "import": reading,
+        "graph": graph,
+        "recognition": recognition,
+        "roughing": roughing,
+        "contact": contact,
+        "whole-line": whole_line,
+    }
+    return {
+        **{name: partial(case, path, folder, compared) for name, case in panel.items()},
+        **{name: partial(_rows, case, quick) for name, case in {**PROOF, "drop": drop}.items()},
+    }
 
 
 def _rows(case: Callable[[bool], Iterator[dict[str, Any]]], quick: bool) -> Iterator[Figure]:
@@ -130,7 +164,9 @@ def main() -> int:
         if chosen.only and chosen.only not in names:
             wanted.error(f"--only knows {', '.join(names)}")
         found = list(figures(Path(folder), chosen.only, chosen.quick))
-    chosen.output.write_text(json.dumps([asdict(f) for f in found], indent=1) + "\n", encoding="utf-8")
+    chosen.output.write_text(
+        json.dumps([asdict(f) for f in found], indent=1) + "\n", encoding="utf-8"
+    )
     print(f"{len(found)} figures in {chosen.output}")
     return 0
 

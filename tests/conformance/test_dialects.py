@@ -45,7 +45,9 @@ def written(dialect: Dialect, program: Program, places: Places = NO_PLACES, **ch
 
 
 def again(dialect: Dialect, program: Program, places: Places = NO_PLACES, **chosen) -> Program:
-    (read,) = dialect.read(written(dialect, program, places, **chosen), TOOLS, [program.setup], places)
+    (read,) = dialect.read(
+        written(dialect, program, places, **chosen), TOOLS, [program.setup], places
+    )
     return read
 
 
@@ -58,7 +60,9 @@ def test_a_dialect_of_ones_own_is_among_them():
 
 
 def test_it_has_the_name_that_it_is_registered_under():
-    assert {name: kind().name for name, kind in DIALECTS.items()} == {name: name for name in DIALECTS}
+    assert {name: kind().name for name, kind in DIALECTS.items()} == {
+        name: name for name in DIALECTS
+    }
     assert all(kind().suffix.isalnum() for kind in DIALECTS.values())
 
 
@@ -66,14 +70,24 @@ def test_what_it_writes_it_reads_as_the_same_motions(dialect):
     assert listing(again(dialect, program_1()), marks=False) == listing(program_1(), marks=False)
 
 
-@pytest.mark.parametrize(("units", "decimals"), [("mm", 3), ("mm", 4), ("mm", 6), ("inch", 4), ("inch", 6)])
+@pytest.mark.parametrize(
+    ("units", "decimals"), [("mm", 3), ("mm", 4), ("mm", 6), ("inch", 4), ("inch", 6)]
+)
 def test_what_it_writes_is_the_same_within_its_decimals(dialect, units, decimals):
     half = 0.5 * 10.0**-decimals * (MM_PER_INCH / 10.0 if units == "inch" else 1.0)
-    for first, second in zip(program_1().sections, again(dialect, program_1(), units=units, decimals=decimals).sections, strict=True):
+    for first, second in zip(
+        program_1().sections,
+        again(dialect, program_1(), units=units, decimals=decimals).sections,
+        strict=True,
+    ):
         assert np.abs(first.path.position - second.path.position).max() <= half + 1e-9
         assert list(first.path.motion) == list(second.path.motion)
         assert (first.operation, first.tool, first.spindle, first.coolant) == (
-            second.operation, second.tool, second.spindle, second.coolant)
+            second.operation,
+            second.tool,
+            second.spindle,
+            second.coolant,
+        )
 
 
 @by_name
@@ -85,7 +99,9 @@ def test_whatever_the_motions_they_are_read_as_the_same(name, parts):
 
 
 def test_it_writes_the_same_bytes_twice_and_ends_with_a_line_end(dialect):
-    first, second = (kind.write([program_1()], PASSED, PostSettings()) for kind in (dialect, type(dialect)()))
+    first, second = (
+        kind.write([program_1()], PASSED, PostSettings()) for kind in (dialect, type(dialect)())
+    )
     assert first == second
     assert first.endswith("\n")
 
@@ -97,7 +113,9 @@ def test_it_needs_no_clock(dialect, monkeypatch):
     for clock in ("time", "time_ns", "localtime", "gmtime", "strftime", "ctime"):
         monkeypatch.setattr(time, clock, refuse)
     for clock in ("datetime", "date"):
-        monkeypatch.setattr(datetime, clock, type(clock, (), {"now": refuse, "today": refuse, "utcnow": refuse}))
+        monkeypatch.setattr(
+            datetime, clock, type(clock, (), {"now": refuse, "today": refuse, "utcnow": refuse})
+        )
     assert listing(again(dialect, program_1()), marks=False) == listing(program_1(), marks=False)
 
 
@@ -111,7 +129,7 @@ def test_its_text_begins_with_its_stamp(dialect):
     text = dialect.write([program_1()], PASSED, PostSettings())
     assert len(dialect.stamp("B1", PASSED)) == STAMP_LINES
     assert text.split("\n")[1:STAMP_LINES] == list(dialect.stamp("B1", PASSED)[1:])
-    assert any("PLAN cd34" in line for line in text.split("\n")[STAMP_LINES:STAMP_LINES + 2])
+    assert any("PLAN cd34" in line for line in text.split("\n")[STAMP_LINES : STAMP_LINES + 2])
 
 
 def test_only_a_verdict_that_releases_makes_its_text_look_released(dialect):
@@ -131,8 +149,12 @@ def test_every_block_knows_a_line_of_the_text(dialect):
 
 
 def test_it_refuses_what_it_cannot_write(dialect):
-    for bad in (section("op", FLAT_16, EMPTY), section("op", FLAT_16, WALL, coolant="steam"), section("", FLAT_16, WALL),
-                section("op", FLAT_16, WALL, spindle=0.0)):
+    for bad in (
+        section("op", FLAT_16, EMPTY),
+        section("op", FLAT_16, WALL, coolant="steam"),
+        section("", FLAT_16, WALL),
+        section("op", FLAT_16, WALL, spindle=0.0),
+    ):
         with pytest.raises(Refused):
             written(dialect, one(bad))
 
@@ -161,9 +183,15 @@ def test_a_coolant_is_written_so_that_it_is_read_or_refused(dialect, coolant):
     assert [s.coolant for s in read.sections] == ["flood", coolant]
 
 
-@pytest.mark.parametrize("places", [NO_PLACES, {"S1": standing(TABLE)}], ids=["three axes", "rotary axes"])
+@pytest.mark.parametrize(
+    "places", [NO_PLACES, {"S1": standing(TABLE)}], ids=["three axes", "rotary axes"]
+)
 def test_a_leaning_tool_is_written_so_that_it_is_read_or_refused(dialect, places):
-    path = leaning_path(((0.0, 0.0, 40.0), lean(20.0, 30.0)), ((0.0, 0.0, 0.0), lean(20.0, 30.0)), ((9.0, 2.0, 0.0), lean(20.0, 30.0)))
+    path = leaning_path(
+        ((0.0, 0.0, 40.0), lean(20.0, 30.0)),
+        ((0.0, 0.0, 0.0), lean(20.0, 30.0)),
+        ((9.0, 2.0, 0.0), lean(20.0, 30.0)),
+    )
     try:
         read = again(dialect, one(section("op", FLAT_16, path)), places).sections[0].path
     except Refused as refused:

@@ -64,7 +64,10 @@ def idle(qtbot):
     """Return a function that waits until a window's job is done."""
 
     def wait(window, timeout=30000):
-        qtbot.waitUntil(lambda: not window.document.is_busy and not window.document.jobs.is_asking, timeout=timeout)
+        qtbot.waitUntil(
+            lambda: not window.document.is_busy and not window.document.jobs.is_asking,
+            timeout=timeout,
+        )
 
     return wait
 
@@ -75,3 +78,19 @@ def part_file(tmp_path):
     path = tmp_path / "tray.step"
     path.write_text("a made-up part")
     return path
+
+
+@pytest.fixture
+def opened(window, part_file, idle):
+    """A window with the made-up part open."""
+    window.document.files.open(part_file)
+    idle(window)
+    return window
+
+
+@pytest.fixture
+def programmed(opened, idle):
+    """A window with the made-up part programmed."""
+    opened.document.program()
+    idle(opened)
+    return opened

@@ -37,9 +37,18 @@ PART_BYTES = b"a made-up part"
 PART_DIGEST = hashlib.sha256(PART_BYTES).hexdigest()
 STEPS = ("recognize", "size", "blank", "route", "optimize", "toolpath", "verify")
 LENGTH, WIDTH, HEIGHT, FLOOR = 240.0, 140.0, 30.0, 6.0
-FINDINGS = {"recognize": (warning("panel.leaning-wall", "a wall leans over the floor", "pocket-01", "face 2",
-                                  remedy="machine it with five axes"),),
-            "route": (remark("fake.time", "two pockets could share a cutter", "pocket-02", "pocket-03"),)}
+FINDINGS = {
+    "recognize": (
+        warning(
+            "panel.leaning-wall",
+            "a wall leans over the floor",
+            "pocket-01",
+            "face 2",
+            remedy="machine it with five axes",
+        ),
+    ),
+    "route": (remark("fake.time", "two pockets could share a cutter", "pocket-02", "pocket-03"),),
+}
 POCKETS = ((8.0, 8.0, 112.0, 132.0), (118.0, 8.0, 232.0, 66.0), (118.0, 74.0, 232.0, 132.0))
 
 
@@ -47,16 +56,37 @@ POCKETS = ((8.0, 8.0, 112.0, 132.0), (118.0, 8.0, 232.0, 66.0), (118.0, 74.0, 23
 class BlankSettings:
     """Allowances of the made-up blank."""
 
-    side: float = setting(5.0, unit="mm", low=0.0, high=50.0, label="Allowance at the sides", help="Material around the part.")
-    top: float = setting(2.0, unit="mm", low=0.0, high=50.0, label="Allowance on top", help="Material above the part.")
-    material: str = setting("al-7075", label="Material", help="What the blank is made of.", choices=("al-7075", "ti-6al4v"))
+    side: float = setting(
+        5.0,
+        unit="mm",
+        low=0.0,
+        high=50.0,
+        label="Allowance at the sides",
+        help="Material around the part.",
+    )
+    top: float = setting(
+        2.0,
+        unit="mm",
+        low=0.0,
+        high=50.0,
+        label="Allowance on top",
+        help="Material above the part.",
+    )
+    material: str = setting(
+        "al-7075",
+        label="Material",
+        help="What the blank is made of.",
+        choices=("al-7075", "ti-6al4v"),
+    )
 
 
 @settings("fake.rough")
 class RoughSettings:
     """How the made-up pockets are roughed."""
 
-    stepover: float = setting(0.4, unit="of diameter", low=0.05, high=0.95, label="Stepover", help="Width of cut.")
+    stepover: float = setting(
+        0.4, unit="of diameter", low=0.05, high=0.95, label="Stepover", help="Width of cut."
+    )
     layers: int = setting(4, unit="", low=1, high=50, label="Layers", help="How many levels.")
     climb: bool = setting(True, label="Climb milling", help="Material on the right of the cutter.")
 
@@ -89,7 +119,12 @@ def box_mesh() -> tuple[Mesh, dict[str, list[tuple[str, int]]]]:
             quad(id, "wall", (ax, ay, FLOOR), (bx, by, FLOOR), (bx, by, HEIGHT), (ax, ay, HEIGHT))
     top_piece("rib-01", 112, 8, 118, 132)
     top_piece("rib-02", 118, 66, 232, 74)
-    for piece in ((0, 0, LENGTH, 8), (0, 132, LENGTH, WIDTH), (0, 8, 8, 132), (232, 8, LENGTH, 132)):
+    for piece in (
+        (0, 0, LENGTH, 8),
+        (0, 132, LENGTH, WIDTH),
+        (0, 8, 8, 132),
+        (232, 8, LENGTH, 132),
+    ):
         top_piece("datum-01", *piece)
     quad("datum-01", "bottom", (0, 0, 0), (0, WIDTH, 0), (LENGTH, WIDTH, 0), (LENGTH, 0, 0))
     ring = ((0.0, 0.0), (LENGTH, 0.0), (LENGTH, WIDTH), (0.0, WIDTH))
@@ -100,25 +135,55 @@ def box_mesh() -> tuple[Mesh, dict[str, list[tuple[str, int]]]]:
 
 def cutter(number: int, diameter: float) -> Tool:
     """Return a made-up end mill."""
-    return Tool(number=number, name=f"EM{diameter:g}", form="bull", diameter=diameter, corner_radius=3.0, flute_length=40,
-                neck_diameter=diameter - 1, neck_length=50, shank_diameter=diameter, stickout=60, gauge_length=130,
-                teeth=3, centre_cutting=True, helix_angle=40,
-                holder=Holder(name="SK40", rows=((0, 20, 50, 25),)), description=f"End mill D{diameter:g} R3, carbide")
+    return Tool(
+        number=number,
+        name=f"EM{diameter:g}",
+        form="bull",
+        diameter=diameter,
+        corner_radius=3.0,
+        flute_length=40,
+        neck_diameter=diameter - 1,
+        neck_length=50,
+        shank_diameter=diameter,
+        stickout=60,
+        gauge_length=130,
+        teeth=3,
+        centre_cutting=True,
+        helix_angle=40,
+        holder=Holder(name="SK40", rows=((0, 20, 50, 25),)),
+        description=f"End mill D{diameter:g} R3, carbide",
+    )
 
 
 def cutting(speed: float, diameter: float) -> CuttingData:
     """Return made-up cutting data."""
     spindle = speed * 1000 / (np.pi * diameter)
-    return CuttingData(speed=speed, spindle=spindle, feed_per_tooth=0.12, feed=spindle * 0.36, plunge_feed=spindle * 0.1, depth=6, width=8,
-                       removal_rate=120, power=7.4, power_limit=18, torque=6.1, rules=("vc from the material's table",))
+    return CuttingData(
+        speed=speed,
+        spindle=spindle,
+        feed_per_tooth=0.12,
+        feed=spindle * 0.36,
+        plunge_feed=spindle * 0.1,
+        depth=6,
+        width=8,
+        removal_rate=120,
+        power=7.4,
+        power_limit=18,
+        torque=6.1,
+        rules=("vc from the material's table",),
+    )
 
 
 def zigzag(box: tuple[float, float, float, float], z: float, step: float) -> Toolpath:
     """Return a made-up path: a helix down, loops of lines, up again."""
     x0, y0, x1, y1 = box
     cx, cy = (x0 + x1) / 2, (y0 + y1) / 2
-    rows: list[tuple[tuple[float, float, float], Motion, Mark, tuple[float, float, float] | None]] = [
-        ((cx + 5, cy, 40.0), Motion.RAPID, Mark.RETRACT, None), ((cx + 5, cy, 2.0), Motion.LINE, Mark.RETRACT, None)]
+    rows: list[
+        tuple[tuple[float, float, float], Motion, Mark, tuple[float, float, float] | None]
+    ] = [
+        ((cx + 5, cy, 40.0), Motion.RAPID, Mark.RETRACT, None),
+        ((cx + 5, cy, 2.0), Motion.LINE, Mark.RETRACT, None),
+    ]
     for turn in range(6):
         low = 2.0 + (z - 2.0) * (turn + 1) / 6
         rows.append(((cx + 5, cy, low), Motion.ARC_CCW, Mark.ENTRY, (cx, cy, low)))
@@ -129,13 +194,26 @@ def zigzag(box: tuple[float, float, float, float], z: float, step: float) -> Too
         y += step
     rows.append(((x1 - 14, y - step + 4, z), Motion.ARC_CCW, Mark.LEAD, (x1 - 14, y - step, z)))
     rows.append(((x1 - 14, y - step + 4, 40.0), Motion.RAPID, Mark.RETRACT, None))
-    return Toolpath(position=np.array([r[0] for r in rows]), axis=np.tile([0.0, 0, 1], (len(rows), 1)),
-                    motion=np.array([r[1] for r in rows]), mark=np.array([r[2] for r in rows]),
-                    centre=np.array([r[3] or (np.nan,) * 3 for r in rows]),
-                    feed=np.array([0.0 if r[1] is Motion.RAPID else 2400.0 for r in rows]))
+    return Toolpath(
+        position=np.array([r[0] for r in rows]),
+        axis=np.tile([0.0, 0, 1], (len(rows), 1)),
+        motion=np.array([r[1] for r in rows]),
+        mark=np.array([r[2] for r in rows]),
+        centre=np.array([r[3] or (np.nan,) * 3 for r in rows]),
+        feed=np.array([0.0 if r[1] is Motion.RAPID else 2400.0 for r in rows]),
+    )
 
-HEADER = ("%", "(tray)", "N10 G21 G90 G17", "N20 T1 M6", "N30 S7200 M3", "N40 G0 X10. Y20. Z40.", "N50 G1 Z-24. F800.",
-          "N60 G2 X20. Y30. I5. J5. F2400.")
+
+HEADER = (
+    "%",
+    "(tray)",
+    "N10 G21 G90 G17",
+    "N20 T1 M6",
+    "N30 S7200 M3",
+    "N40 G0 X10. Y20. Z40.",
+    "N50 G1 Z-24. F800.",
+    "N60 G2 X20. Y30. I5. J5. F2400.",
+)
 """The first lines of the made-up program; a line for each block follows."""
 GOUGE, LEFT = (175.0, 37.0), (175.0, 103.0)
 """Where the made-up proof found a gouge of 50 µm in the second pocket's floor, and 0.2 mm left in the third's."""
@@ -145,8 +223,11 @@ SPOT = 9.0
 
 def posted_text(session: Session) -> str:
     """Return the made-up program of a session."""
-    words = [f"G{min(int(m), 1)} X{x:.3f} Y{y:.3f} Z{z:.3f}" for p in session.paths
-             for m, (x, y, z) in zip(p.path.motion, p.path.position, strict=True)]
+    words = [
+        f"G{min(int(m), 1)} X{x:.3f} Y{y:.3f} Z{z:.3f}"
+        for p in session.paths
+        for m, (x, y, z) in zip(p.path.motion, p.path.position, strict=True)
+    ]
     return "\n".join([*HEADER, *words, "M30", "%", ""])
 
 
@@ -162,7 +243,9 @@ def measured(mesh: Mesh, features: dict[str, list[tuple[str, int]]]) -> Deviatio
         faces.append(np.full(len(place), floor))
         points.append(place)
         found.append(value)
-    return Deviation(face=np.concatenate(faces), point=np.vstack(points), deviation=np.concatenate(found))
+    return Deviation(
+        face=np.concatenate(faces), point=np.vstack(points), deviation=np.concatenate(found)
+    )
 
 
 class FakeEngine:
@@ -180,10 +263,15 @@ class FakeEngine:
         from trunnion.shop import load_shop
 
         machine = next(iter(load_shop().machines.values()))
-        self._playback = Playback(session, SimpleNamespace(shop=SimpleNamespace(machines={"vmc": machine})), 1.0)
+        self._playback = Playback(
+            session, SimpleNamespace(shop=SimpleNamespace(machines={"vmc": machine})), 1.0
+        )
         line = self._playback.timeline
-        return replace(line, line=np.arange(len(line)) + len(HEADER) + 1,
-                       passages=tuple(replace(p, file="S1.nc") for p in line.passages))
+        return replace(
+            line,
+            line=np.arange(len(line)) + len(HEADER) + 1,
+            passages=tuple(replace(p, file="S1.nc") for p in line.passages),
+        )
 
     def moment(self, key, position, seconds=np.inf, progress=QUIET):
         return self._playback.towards(position, seconds, progress)
@@ -204,11 +292,25 @@ class FakeEngine:
         if path.suffix == ".trunnion":
             session, _, _ = load_project(path)
         elif path.suffix not in (".step", ".igs", ".stpz"):
-            raise BadInput(f"{path.name} is neither STEP nor IGES: export the part as STEP AP214 or AP242")
+            raise BadInput(
+                f"{path.name} is neither STEP nor IGES: export the part as STEP AP214 or AP242"
+            )
         else:
-            session = Session(part=PartInfo(path=str(path), name=path.stem, digest=PART_DIGEST, unit="mm",
-                                            n_faces=int(self._mesh.face.max()), n_solids=1, solid=1, area=1e5, volume=4e5, low=np.zeros(3),
-                                            high=np.array([LENGTH, WIDTH, HEIGHT])))
+            session = Session(
+                part=PartInfo(
+                    path=str(path),
+                    name=path.stem,
+                    digest=PART_DIGEST,
+                    unit="mm",
+                    n_faces=int(self._mesh.face.max()),
+                    n_solids=1,
+                    solid=1,
+                    area=1e5,
+                    volume=4e5,
+                    low=np.zeros(3),
+                    high=np.array([LENGTH, WIDTH, HEIGHT]),
+                )
+            )
         self._attached = session.part.name
         return session
 
@@ -246,7 +348,9 @@ class FakeEngine:
                 progress.at(tick / 10, f"{step} {tick}")
                 self.work(step, tick)
             session = getattr(self, f"_{step}")(session)
-            record = StepRecord(key=self._key(session, step), seconds=0.42, findings=FINDINGS.get(step, ()))
+            record = StepRecord(
+                key=self._key(session, step), seconds=0.42, findings=FINDINGS.get(step, ())
+            )
             session = replace(session, records=dict(session.records) | {step: record})
         return session
 
@@ -255,44 +359,130 @@ class FakeEngine:
 
     def _key(self, session: Session, step: str) -> str:
         groups = [choose(c, session.choices) for c in self.settings()[step]]
-        features = [f.as_dict() for f in session.recognition] if session.recognition and step != "recognize" else []
-        tree = [(o.id, o.suppressed, dict(o.choices)) for o in (session.process.operations if session.process else ())
-                if step in ("toolpath", "verify")]
+        features = (
+            [f.as_dict() for f in session.recognition]
+            if session.recognition and step != "recognize"
+            else []
+        )
+        tree = [
+            (o.id, o.suppressed, dict(o.choices))
+            for o in (session.process.operations if session.process else ())
+            if step in ("toolpath", "verify")
+        ]
         return digest(step, *groups, json.dumps(features), tree)
 
     def _recognize(self, session: Session) -> Session:
         features = tuple(
-            Feature(id=id, kind=id[:-3], faces=tuple(FaceRole(role=r, face=t) for r, t in faces),
-                    sizes={"depth": HEIGHT - FLOOR, "floor_z": FLOOR, "top_z": HEIGHT, "corner_radius": 8.0, "leans": (0.0, 2.5)}
-                    if id.startswith("pocket") else {"thickness": 6.0})
-            for id, faces in self._features.items())
-        return replace(session, recognition=Recognition(family="panel", features=features,
-                                                        face_area=np.bincount(self._mesh.face, self._mesh.areas())[1:]))
+            Feature(
+                id=id,
+                kind=id[:-3],
+                faces=tuple(FaceRole(role=r, face=t) for r, t in faces),
+                sizes={
+                    "depth": HEIGHT - FLOOR,
+                    "floor_z": FLOOR,
+                    "top_z": HEIGHT,
+                    "corner_radius": 8.0,
+                    "leans": (0.0, 2.5),
+                }
+                if id.startswith("pocket")
+                else {"thickness": 6.0},
+            )
+            for id, faces in self._features.items()
+        )
+        return replace(
+            session,
+            recognition=Recognition(
+                family="panel",
+                features=features,
+                face_area=np.bincount(self._mesh.face, self._mesh.areas())[1:],
+            ),
+        )
 
     def _size(self, session: Session) -> Session:
-        rows = [SizeEntry(name="depth", value=HEIGHT - FLOOR, unit="mm", feature=f.id, faces=f.with_role("floor"),
-                          at=((b[0] + b[2]) / 2, (b[1] + b[3]) / 2, FLOOR)) for f, b in zip(session.recognition.of_kind("pocket"), POCKETS)]
+        rows = [
+            SizeEntry(
+                name="depth",
+                value=HEIGHT - FLOOR,
+                unit="mm",
+                feature=f.id,
+                faces=f.with_role("floor"),
+                at=((b[0] + b[2]) / 2, (b[1] + b[3]) / 2, FLOOR),
+            )
+            for f, b in zip(session.recognition.of_kind("pocket"), POCKETS)
+        ]
         return replace(session, sizes=tuple(rows))
 
     def _blank(self, session: Session) -> Session:
         chosen = choose(BlankSettings, session.choices)
         low = np.array([-chosen.side, -chosen.side, 0.0])
         high = np.array([LENGTH + chosen.side, WIDTH + chosen.side, HEIGHT + chosen.top])
-        return replace(session, blank=Blank(frame=session.recognition.frame, low=low, high=high, material=chosen.material, density=2.81))
+        return replace(
+            session,
+            blank=Blank(
+                frame=session.recognition.frame,
+                low=low,
+                high=high,
+                material=chosen.material,
+                density=2.81,
+            ),
+        )
 
     def _route(self, session: Session) -> Session:
-        setup = Setup(name="S1", frame=Frame(np.array([0, 0, HEIGHT]), np.array([1.0, 0, 0]), np.array([0, 0, 1.0])), work_offset="G54",
-                      clearance=40.0, machine="vmc")
-        operations = [Operation(id="op-01", kind="face", strategy="fake.face", feature="datum-01", setup="S1", tool=cutter(1, 63.0),
-                                data=cutting(600, 63), rules=("the top is faced first",))]
+        setup = Setup(
+            name="S1",
+            frame=Frame(np.array([0, 0, HEIGHT]), np.array([1.0, 0, 0]), np.array([0, 0, 1.0])),
+            work_offset="G54",
+            clearance=40.0,
+            machine="vmc",
+        )
+        operations = [
+            Operation(
+                id="op-01",
+                kind="face",
+                strategy="fake.face",
+                feature="datum-01",
+                setup="S1",
+                tool=cutter(1, 63.0),
+                data=cutting(600, 63),
+                rules=("the top is faced first",),
+            )
+        ]
         for n, f in enumerate(session.recognition.of_kind("pocket"), 1):
             rough = f"op-{2 * n:02d}"
-            operations += [Operation(id=rough, kind="rough", strategy="fake.rough", feature=f.id, setup="S1", tool=cutter(2, 20.0),
-                                     data=cutting(450, 20), after=("op-01",), rules=("largest cutter that fits the corners",)),
-                           Operation(id=f"op-{2 * n + 1:02d}", kind="finish", strategy="fake.rough", feature=f.id, setup="S1",
-                                     tool=cutter(3, 16.0), data=cutting(500, 16), faces=f.tags, after=(rough,))]
-        return replace(session, setups=(setup,), process=ProcessTree(plan="panel-5-side", material="al-7075", setups=(setup,),
-                                                                     operations=tuple(operations)))
+            operations += [
+                Operation(
+                    id=rough,
+                    kind="rough",
+                    strategy="fake.rough",
+                    feature=f.id,
+                    setup="S1",
+                    tool=cutter(2, 20.0),
+                    data=cutting(450, 20),
+                    after=("op-01",),
+                    rules=("largest cutter that fits the corners",),
+                ),
+                Operation(
+                    id=f"op-{2 * n + 1:02d}",
+                    kind="finish",
+                    strategy="fake.rough",
+                    feature=f.id,
+                    setup="S1",
+                    tool=cutter(3, 16.0),
+                    data=cutting(500, 16),
+                    faces=f.tags,
+                    after=(rough,),
+                ),
+            ]
+        return replace(
+            session,
+            setups=(setup,),
+            process=ProcessTree(
+                plan="panel-5-side",
+                material="al-7075",
+                setups=(setup,),
+                operations=tuple(operations),
+            ),
+        )
 
     def _optimize(self, session: Session) -> Session:
         return session
@@ -300,18 +490,50 @@ class FakeEngine:
     def _toolpath(self, session: Session) -> Session:
         boxes = dict(zip(("pocket-01", "pocket-02", "pocket-03"), POCKETS))
         paths = tuple(
-            OperationPath(operation=o.id, path=zigzag(boxes.get(o.feature, (0, 0, LENGTH, WIDTH)),
-                                                      FLOOR - HEIGHT if o.feature in boxes else 0.0, o.tool.diameter * 0.4))
-            for o in session.process.operations)
+            OperationPath(
+                operation=o.id,
+                path=zigzag(
+                    boxes.get(o.feature, (0, 0, LENGTH, WIDTH)),
+                    FLOOR - HEIGHT if o.feature in boxes else 0.0,
+                    o.tool.diameter * 0.4,
+                ),
+            )
+            for o in session.process.operations
+        )
         return replace(session, paths=paths)
 
     def _verify(self, session: Session) -> Session:
-        proofs = tuple(OperationProof(operation=o.id, setup="S1", outcome=Outcome.PASSED, gouge=0.0, collisions=0, rapids_in_stock=0,
-                                      time_s=95.0, removed=2e4, air_share=0.1) for o in session.process.operations)
-        verdict = Verdict(outcome=Outcome.PASSED, coverage=0.996, reachable=1.0, gouge=0.004, collisions=0, rapids_in_stock=0,
-                          machining_time_s=754.0, operations=proofs, deviation=measured(self._mesh, self._features))
+        proofs = tuple(
+            OperationProof(
+                operation=o.id,
+                setup="S1",
+                outcome=Outcome.PASSED,
+                gouge=0.0,
+                collisions=0,
+                rapids_in_stock=0,
+                time_s=95.0,
+                removed=2e4,
+                air_share=0.1,
+            )
+            for o in session.process.operations
+        )
+        verdict = Verdict(
+            outcome=Outcome.PASSED,
+            coverage=0.996,
+            reachable=1.0,
+            gouge=0.004,
+            collisions=0,
+            rapids_in_stock=0,
+            machining_time_s=754.0,
+            operations=proofs,
+            deviation=measured(self._mesh, self._features),
+        )
         text = posted_text(session)
-        return replace(session, verdict=verdict, posted=(PostedFile(suffix="S1.nc", dialect="linuxcnc", setup="S1", text=text),))
+        return replace(
+            session,
+            verdict=verdict,
+            posted=(PostedFile(suffix="S1.nc", dialect="linuxcnc", setup="S1", text=text),),
+        )
 
 
 class SlowEngine(FakeEngine):
@@ -345,10 +567,14 @@ def swaying(box: tuple[float, float, float, float], z: float, tilt: float) -> To
     position = np.vstack([way[:1] + (0, 0, 60.0), way, way[-1:] + (0, 0, 60.0)])
     axis = np.column_stack([np.sin(lean), np.zeros(21), np.cos(lean)])
     n = len(position)
-    return Toolpath(position=position, axis=np.vstack([axis[:1], axis, axis[-1:]]), centre=np.full((n, 3), np.nan),
-                    motion=np.array([Motion.RAPID] + [Motion.LINE] * (n - 2) + [Motion.RAPID]),
-                    mark=np.array([Mark.RETRACT] * 2 + [Mark.CUT] * (n - 3) + [Mark.RETRACT]),
-                    feed=np.array([0.0] + [900.0] * (n - 2) + [0.0]))
+    return Toolpath(
+        position=position,
+        axis=np.vstack([axis[:1], axis, axis[-1:]]),
+        centre=np.full((n, 3), np.nan),
+        motion=np.array([Motion.RAPID] + [Motion.LINE] * (n - 2) + [Motion.RAPID]),
+        mark=np.array([Mark.RETRACT] * 2 + [Mark.CUT] * (n - 3) + [Mark.RETRACT]),
+        feed=np.array([0.0] + [900.0] * (n - 2) + [0.0]),
+    )
 
 
 class AreasEngine(FakeEngine):
@@ -359,19 +585,27 @@ class AreasEngine(FakeEngine):
 
         machine = next(iter(load_shop().machines.values()))
         area = np.bincount(self._mesh.face, weights=self._mesh.areas())[1:]
-        return SimpleNamespace(part=SimpleNamespace(graph=lambda: SimpleNamespace(area=area)),
-                               shop=SimpleNamespace(machine=lambda name: machine))
+        return SimpleNamespace(
+            part=SimpleNamespace(graph=lambda: SimpleNamespace(area=area)),
+            shop=SimpleNamespace(machine=lambda name: machine),
+        )
 
     def _recognize(self, session: Session) -> Session:
         session = super()._recognize(session)
         found = session.recognition
-        groups = tuple(replace(f, kind="group", attributes={"local": f.id.startswith("rib")}) for f in found.features)
+        groups = tuple(
+            replace(f, kind="group", attributes={"local": f.id.startswith("rib")})
+            for f in found.features
+        )
         return replace(session, recognition=replace(found, family="surface", features=groups))
 
     def _route(self, session: Session) -> Session:
         found = session.recognition
         as_pockets = tuple(replace(f, kind=f.id[:-3]) for f in found.features)
-        return replace(super()._route(replace(session, recognition=replace(found, features=as_pockets))), recognition=found)
+        return replace(
+            super()._route(replace(session, recognition=replace(found, features=as_pockets))),
+            recognition=found,
+        )
 
 
 class SwayingEngine(FakeEngine):
@@ -380,7 +614,12 @@ class SwayingEngine(FakeEngine):
     def _toolpath(self, session: Session) -> Session:
         session = super()._toolpath(session)
         path = swaying(POCKETS[0], -10.0, np.radians(30.0))
-        return replace(session, paths=tuple(replace(p, path=path) if p.operation == "op-02" else p for p in session.paths))
+        return replace(
+            session,
+            paths=tuple(
+                replace(p, path=path) if p.operation == "op-02" else p for p in session.paths
+            ),
+        )
 
 
 class FailingEngine(FakeEngine):
@@ -388,9 +627,21 @@ class FailingEngine(FakeEngine):
 
     def _verify(self, session: Session) -> Session:
         session = super()._verify(session)
-        text = "\n".join([*("(stamp)" for _ in range(STAMP_LINES)), f"(PLAN {plan_digest(session)})", *HEADER, "M30", "%", ""])
-        return replace(session, verdict=replace(session.verdict, outcome=Outcome.FAILED, gouge=0.05),
-                       posted=(PostedFile(suffix="S1.nc", dialect="linuxcnc", setup="S1", text=text),))
+        text = "\n".join(
+            [
+                *("(stamp)" for _ in range(STAMP_LINES)),
+                f"(PLAN {plan_digest(session)})",
+                *HEADER,
+                "M30",
+                "%",
+                "",
+            ]
+        )
+        return replace(
+            session,
+            verdict=replace(session.verdict, outcome=Outcome.FAILED, gouge=0.05),
+            posted=(PostedFile(suffix="S1.nc", dialect="linuxcnc", setup="S1", text=text),),
+        )
 
     def write(self, session, folder, *, name="", date="", progress=QUIET) -> tuple[str, ...]:
         return super().write(replace(session, posted=release(session)), folder)
@@ -402,7 +653,12 @@ class SoundEngine(FakeEngine):
     def _verify(self, session: Session) -> Session:
         session = super()._verify(session)
         measured = session.verdict.deviation
-        return replace(session, verdict=replace(session.verdict, deviation=replace(measured, deviation=np.zeros(len(measured.face)))))
+        return replace(
+            session,
+            verdict=replace(
+                session.verdict, deviation=replace(measured, deviation=np.zeros(len(measured.face)))
+            ),
+        )
 
 
 class FaultyEngine(FakeEngine):
@@ -431,12 +687,33 @@ class DoubtingEngine(FakeEngine):
         session = super()._recognize(session)
         chosen = session.choices.get("recognize.family", "auto")
         if chosen != "auto":
-            taken = TakenFor(kind=str(chosen), noun=f"a {chosen}", score=0.12, reason="12 % of the area level or upright")
-            return replace(session, recognition=replace(session.recognition, family=str(chosen), taken_for=taken))
-        taken = TakenFor(kind="casing", noun="a casing", score=0.97, reason="96 % of the area is of revolution, <thin>")
+            taken = TakenFor(
+                kind=str(chosen),
+                noun=f"a {chosen}",
+                score=0.12,
+                reason="12 % of the area level or upright",
+            )
+            return replace(
+                session,
+                recognition=replace(session.recognition, family=str(chosen), taken_for=taken),
+            )
+        taken = TakenFor(
+            kind="casing",
+            noun="a casing",
+            score=0.97,
+            reason="96 % of the area is of revolution, <thin>",
+        )
         tags = tuple(range(1, session.part.n_faces + 1))
-        return replace(session, recognition=Recognition(family="casing", unexplained=tags, unexplained_share=1.0, taken_for=taken,
-                                                        doubt="the part looks like a casing: choose recognize.family = panel or surface"))
+        return replace(
+            session,
+            recognition=Recognition(
+                family="casing",
+                unexplained=tags,
+                unexplained_share=1.0,
+                taken_for=taken,
+                doubt="the part looks like a casing: choose recognize.family = panel or surface",
+            ),
+        )
 
     def _size(self, session: Session) -> Session:
         if session.recognition.doubt:
@@ -448,7 +725,18 @@ class UnsureEngine(DoubtingEngine):
     """Takes the plate for a panel, and explains little of it."""
 
     def _recognize(self, session: Session) -> Session:
-        found = super()._recognize(replace(session, choices={**session.choices, "recognize.family": "panel"}))
-        doubt = "" if session.choices.get("recognize.family", "auto") != "auto" else "88 % of the area is explained by no feature"
-        return replace(found, choices=session.choices,
-                       recognition=replace(found.recognition, family="surface", unexplained_share=0.88, doubt=doubt))
+        found = super()._recognize(
+            replace(session, choices={**session.choices, "recognize.family": "panel"})
+        )
+        doubt = (
+            ""
+            if session.choices.get("recognize.family", "auto") != "auto"
+            else "88 % of the area is explained by no feature"
+        )
+        return replace(
+            found,
+            choices=session.choices,
+            recognition=replace(
+                found.recognition, family="surface", unexplained_share=0.88, doubt=doubt
+            ),
+        )

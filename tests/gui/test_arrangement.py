@@ -5,7 +5,6 @@ from __future__ import annotations
 import pytest
 from PySide6.QtCore import Qt
 from PySide6.QtWidgets import QLabel
-from test_window import opened, programmed  # noqa: F401 - fixtures
 
 from trunnion_gui.storage import remembered
 
@@ -15,7 +14,9 @@ WIDE = "a line that is much longer than any dock is wide " * 40
 def widths(window) -> dict[str, int]:
     """Return how wide every visible dock and the picture are."""
     docks = ("steps", "features", "properties")
-    return {name: window.arrangement.dock(name).width() for name in docks} | {"centre": window.viewport.width()}
+    return {name: window.arrangement.dock(name).width() for name in docks} | {
+        "centre": window.viewport.width()
+    }
 
 
 def relaid(window, qtbot) -> dict[str, int]:
@@ -25,7 +26,9 @@ def relaid(window, qtbot) -> dict[str, int]:
 
 
 @pytest.mark.parametrize("size", [(1280, 800), (1440, 900)])
-def test_a_change_of_a_proven_plan_leaves_the_docks_as_wide_as_they_were(programmed, idle, qtbot, size):  # noqa: F811
+def test_a_change_of_a_proven_plan_leaves_the_docks_as_wide_as_they_were(
+    programmed, idle, qtbot, size
+):
     programmed.resize(*size)
     programmed.show_dock("code")
     before = relaid(programmed, qtbot)
@@ -40,7 +43,7 @@ def test_a_change_of_a_proven_plan_leaves_the_docks_as_wide_as_they_were(program
 
 
 @pytest.mark.parametrize("size", [(1280, 800), (1440, 900)])
-def test_bars_below_the_picture_take_no_width_from_the_docks(programmed, idle, qtbot, size):  # noqa: F811
+def test_bars_below_the_picture_take_no_width_from_the_docks(programmed, idle, qtbot, size):
     programmed.resize(*size)
     before = relaid(programmed, qtbot)
     programmed.show_playback(True)

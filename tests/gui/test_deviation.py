@@ -23,8 +23,13 @@ def mapped(window, part_file, idle, qtbot):
     window.document.program()
     idle(window)
     window.registry.run("view.top")
-    QTest.mouseClick(window.toolbar.widgetForAction(window.registry.action("view.deviation")), BUTTON)
-    qtbot.waitUntil(lambda: window.deviation.shown is not None and window.viewport.scale.isVisible(), timeout=20000)
+    QTest.mouseClick(
+        window.toolbar.widgetForAction(window.registry.action("view.deviation")), BUTTON
+    )
+    qtbot.waitUntil(
+        lambda: window.deviation.shown is not None and window.viewport.scale.isVisible(),
+        timeout=20000,
+    )
     return window
 
 
@@ -49,7 +54,10 @@ def test_the_scale_stands_in_the_legends_place(mapped):
     ratio = picture.height() / bar.height()
 
     def colour(value):
-        return np.array(picture.pixelColor(round(x * ratio), round(bar.y_of(value) * ratio)).toTuple()[:3], dtype=float)
+        return np.array(
+            picture.pixelColor(round(x * ratio), round(bar.y_of(value) * ratio)).toTuple()[:3],
+            dtype=float,
+        )
 
     assert hue(colour(-0.9 * shown.limit)) @ hue(load_palette().deviation.gouge[-1]) > 0.9
     assert hue(colour(0.9 * shown.limit)) @ hue(load_palette().deviation.left[-1]) > 0.9
@@ -131,7 +139,10 @@ def test_the_part_does_not_lie_under_the_legend(make_window, part_file, idle, si
     card = window.viewport.legend.geometry()
     corners = window.document.mesh.points
     assert not any(card.contains(window.viewport.scene.where(p).toPoint()) for p in corners)
-    assert all(window.viewport.scene.rect().contains(window.viewport.scene.where(p).toPoint()) for p in corners)
+    assert all(
+        window.viewport.scene.rect().contains(window.viewport.scene.where(p).toPoint())
+        for p in corners
+    )
 
 
 def test_a_picture_that_was_turned_is_not_fitted_again(mapped):

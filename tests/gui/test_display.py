@@ -20,7 +20,11 @@ FROM_OTHERS = {"libxcb.so.1", "libxcb-util.so.1"}
 
 
 def test_setup_installs_every_library_that_a_window_needs():
-    named = set(re.findall(r"[a-z0-9.+-]+", (ROOT / "installer" / "debian.sh").read_text().split("[ \"${1")[0]))
+    named = set(
+        re.findall(
+            r"[a-z0-9.+-]+", (ROOT / "installer" / "debian.sh").read_text().split('[ "${1')[0]
+        )
+    )
     assert set(DRAWING.values()) | set(XCB.values()) <= named
 
 
@@ -32,7 +36,11 @@ def test_a_window_started_by_make_has_its_packages_looked_at():
 
 def test_every_library_of_qts_xcb_plugin_is_looked_for():
     listed = subprocess.run(["ldd", str(PLUGIN)], capture_output=True, text=True, check=True).stdout
-    linked = {name for name in re.findall(r"^\s*(\S+) =>", listed, re.M) if name.startswith(("libxcb", "libX11-xcb", "libxkbcommon-x11"))}
+    linked = {
+        name
+        for name in re.findall(r"^\s*(\S+) =>", listed, re.M)
+        if name.startswith(("libxcb", "libX11-xcb", "libxkbcommon-x11"))
+    }
     assert linked - FROM_OTHERS <= set(XCB)
 
 
@@ -40,7 +48,9 @@ def test_a_library_that_is_missing_is_named_with_its_package(monkeypatch):
     monkeypatch.setitem(display.XCB, "libtrunnion-nowhere.so.7", "libtrunnion-nowhere7")
     with pytest.raises(BadCall) as told:
         check_display({"DISPLAY": ":0"})
-    assert "libtrunnion-nowhere.so.7" in str(told.value) and "libtrunnion-nowhere7" in str(told.value)
+    assert "libtrunnion-nowhere.so.7" in str(told.value) and "libtrunnion-nowhere7" in str(
+        told.value
+    )
     assert "\n" not in str(told.value)
 
 
@@ -56,4 +66,6 @@ def test_no_screen_at_all_is_told():
 
 
 def test_libraries_are_told_apart():
-    assert missing_libraries(["libc.so.6", "libtrunnion-nowhere.so.7"]) == ["libtrunnion-nowhere.so.7"]
+    assert missing_libraries(["libc.so.6", "libtrunnion-nowhere.so.7"]) == [
+        "libtrunnion-nowhere.so.7"
+    ]

@@ -28,9 +28,14 @@ def stopped(make_window, part_file, idle):
 
 def test_the_window_stops_and_says_what_the_part_looks_like(stopped):
     assert stopped.document.states["size"] == "empty"
-    assert stopped.viewport.notice.text == "The part looks like a casing: choose recognize.family = panel or surface"
+    assert (
+        stopped.viewport.notice.text
+        == "The part looks like a casing: choose recognize.family = panel or surface"
+    )
     said = stopped.panels["recognize"].result.text()
-    assert said.startswith("Taken for a casing (0.97): 96 % of the area is of revolution, &lt;thin&gt;<br>Nothing was recognized.")
+    assert said.startswith(
+        "Taken for a casing (0.97): 96 % of the area is of revolution, &lt;thin&gt;<br>Nothing was recognized."
+    )
     assert [b.text() for b in answers(stopped).values()] == ["Go on as panel", "Go on as surface"]
 
 
@@ -42,7 +47,11 @@ def test_a_click_goes_on_as_a_family_and_undo_takes_it_back(stopped, idle):
     assert document.session.recognition.family == "panel" and not document.session.recognition.doubt
     assert document.states["recognize"] == "done"
     assert answers(stopped) == {}
-    assert stopped.panels["recognize"].result.text().startswith("Taken for a panel (0.12): 12 % of the area")
+    assert (
+        stopped.panels["recognize"]
+        .result.text()
+        .startswith("Taken for a panel (0.12): 12 % of the area")
+    )
     document.undo()
     document.undo()
     idle(stopped)

@@ -25,7 +25,15 @@ def test_a_form_of_every_group_gives_values_that_are_allowed(qtbot, group):
     form = Form(declared(group))
     qtbot.addWidget(form)
     for d in declared(group):
-        other = d.choices[-1] if d.choices else d.high if d.high is not None else not d.default if d.kind is bool else d.default
+        other = (
+            d.choices[-1]
+            if d.choices
+            else d.high
+            if d.high is not None
+            else not d.default
+            if d.kind is bool
+            else d.default
+        )
         show(form.field(d.key), other)
         assert d.parse(read(form.field(d.key))) == other
 
@@ -51,4 +59,7 @@ def test_every_field_says_what_it_does(qtbot):
     for _, group in GROUPS:
         form = Form(declared(group))
         qtbot.addWidget(form)
-        assert all(d.help in form.field(d.key).toolTip() and d.key in form.field(d.key).toolTip() for d in declared(group))
+        assert all(
+            d.help in form.field(d.key).toolTip() and d.key in form.field(d.key).toolTip()
+            for d in declared(group)
+        )

@@ -23,10 +23,19 @@ def shown(window, part_file, idle):
         document, panel = window.document, window.panels["optimize"]
         session = document.shown
         first, *others = session.process.operations
-        first = replace(first, data=replace(first.data, power=9.8, power_limit=28.0, peak_power=peak, peak_at=PLACE))
-        proofs = tuple(replace(p, power=measured if measured and p.operation == first.id else 0.1) for p in session.verdict.operations)
-        document.shown = replace(session, process=replace(session.process, operations=(first, *others)),
-                                 verdict=replace(session.verdict, operations=proofs) if measured else None)
+        first = replace(
+            first,
+            data=replace(first.data, power=9.8, power_limit=28.0, peak_power=peak, peak_at=PLACE),
+        )
+        proofs = tuple(
+            replace(p, power=measured if measured and p.operation == first.id else 0.1)
+            for p in session.verdict.operations
+        )
+        document.shown = replace(
+            session,
+            process=replace(session.process, operations=(first, *others)),
+            verdict=replace(session.verdict, operations=proofs) if measured else None,
+        )
         document.states = {**document.states, "verify": state}
         panel.fill()
         return panel
@@ -43,7 +52,10 @@ def test_before_the_proof_the_highest_load_is_the_peak_and_where_it_is(shown):
 
 def test_after_the_proof_it_is_what_that_measured(shown):
     panel = shown(15.0, measured=19.8)
-    assert panel.result.text() == f"highest load: {panel.table.item(0, 0).text()}, 19.8 of 28 kW as the proof measured (9.8 kW steady)"
+    assert (
+        panel.result.text()
+        == f"highest load: {panel.table.item(0, 0).text()}, 19.8 of 28 kW as the proof measured (9.8 kW steady)"
+    )
 
 
 def test_a_proof_of_an_earlier_plan_counts_no_more(shown):
@@ -62,9 +74,15 @@ def test_more_than_the_limit_has_the_colour_of_what_is_wrong(shown):
 def test_where_strategies_meet_most_is_translated():
     from trunnion.toolpath import engagement
     from trunnion.toolpath.plane import face
+
     i18n.use("zh_CN")
     try:
-        for words in (engagement.FULL_WIDTH, engagement.INNER_CORNER, engagement.LEFTOVERS, face.ONE_ROW):
+        for words in (
+            engagement.FULL_WIDTH,
+            engagement.INNER_CORNER,
+            engagement.LEFTOVERS,
+            face.ONE_ROW,
+        ):
             assert i18n.tr(words) != words
     finally:
         i18n.use("en")

@@ -91,7 +91,15 @@ def test_a_deletion_is_undone_as_if_it_had_never_been(programmed):
 
 def test_an_operation_moves_in_front_of_another_and_is_marked(programmed):
     after = edits.with_operation_before("op-06", "op-04")(programmed)
-    assert [o.id for o in after.process.operations] == ["op-01", "op-02", "op-03", "op-06", "op-04", "op-05", "op-07"]
+    assert [o.id for o in after.process.operations] == [
+        "op-01",
+        "op-02",
+        "op-03",
+        "op-06",
+        "op-04",
+        "op-05",
+        "op-07",
+    ]
     assert after.process.operation("op-06").by_hand
 
 

@@ -23,14 +23,24 @@ def words_in_the_code() -> set[str]:
     found = set()
     for path in Path(trunnion_gui.__file__).parent.rglob("*.py"):
         for node in ast.walk(ast.parse(path.read_text("utf-8"))):
-            if isinstance(node, ast.Call) and isinstance(node.func, ast.Name) and node.func.id in CALLS:
+            if (
+                isinstance(node, ast.Call)
+                and isinstance(node.func, ast.Name)
+                and node.func.id in CALLS
+            ):
                 arguments = [node.args[n] for n in CALLS[node.func.id] if n < len(node.args)]
-                found |= {a.value for a in arguments if isinstance(a, ast.Constant) and isinstance(a.value, str) and a.value}
+                found |= {
+                    a.value
+                    for a in arguments
+                    if isinstance(a, ast.Constant) and isinstance(a.value, str) and a.value
+                }
     return found
 
 
 def table(language: str) -> dict[str, str]:
-    return json.loads((trunnion_resources.folder("translations") / f"{language}.json").read_text("utf-8"))
+    return json.loads(
+        (trunnion_resources.folder("translations") / f"{language}.json").read_text("utf-8")
+    )
 
 
 @pytest.mark.parametrize("language", LANGUAGES)

@@ -23,7 +23,9 @@ def made(make_window, part_file, idle):
 
 def test_strokes_show_how_a_leaning_tool_stands(made):
     made.document.selection.select_operation("op-02")
-    strokes = made.viewport.scene.view.actors["tool axes"].mapper.GetInput().points.reshape(-1, 2, 3)
+    strokes = (
+        made.viewport.scene.view.actors["tool axes"].mapper.GetInput().points.reshape(-1, 2, 3)
+    )
     _, y0, _, y1 = POCKETS[0]
     assert len(strokes) > 10
     assert strokes[:, 0, 2] == pytest.approx(HEIGHT - 10.0, abs=1e-3)

@@ -38,7 +38,11 @@ def domed_plate():
     import cadquery as cq
 
     body = cq.Workplane("XY").box(60.0, 40.0, TOP, centered=(True, True, False))
-    body = body.union(cq.Workplane("XY").box(60.0, 4.0, 16.0, centered=(True, True, False)).translate((0.0, 22.0, 0.0)))
+    body = body.union(
+        cq.Workplane("XY")
+        .box(60.0, 4.0, 16.0, centered=(True, True, False))
+        .translate((0.0, 22.0, 0.0))
+    )
     body = body.edges(cq.selectors.NearestToPointSelector((0.0, 20.0, TOP))).fillet(FILLET)
     for (x, y), radius in (*((at, SMALL_RADIUS) for at in SMALL), (LARGE, LARGE_RADIUS)):
         body = body.union(cq.Workplane("XY").sphere(radius).translate((x, y, TOP)))
@@ -60,7 +64,9 @@ def segmented(qapp, tmp_path_factory):
         until(lambda: window.document.has_part and not window.document.is_busy)
         window.document.choose("recognize.family", "Family: surface", "surface")
         window.document.run("recognize", "Recognize")
-        until(lambda: window.document.session.recognition is not None and not window.document.is_busy)
+        until(
+            lambda: window.document.session.recognition is not None and not window.document.is_busy
+        )
         yield window
         window.close()
 
@@ -75,7 +81,9 @@ def shown(segmented, qtbot):
     window.views["surface"].cutting.end()
     while window.document.session is not before and window.document.history.undo_label:
         window.registry.run("edit.undo")
-    qtbot.waitUntil(lambda: not window.document.is_busy and not window.document.jobs.is_asking, timeout=30000)
+    qtbot.waitUntil(
+        lambda: not window.document.is_busy and not window.document.jobs.is_asking, timeout=30000
+    )
 
 
 def until(is_so, seconds=60.0) -> None:
@@ -88,7 +96,9 @@ def until(is_so, seconds=60.0) -> None:
 
 def click(window, place, button=LEFT, keys=Qt.KeyboardModifier.NoModifier) -> None:
     """Click the part at a place of it."""
-    QTest.mouseClick(window.viewport.scene.view, button, keys, window.viewport.scene.where(place).toPoint())
+    QTest.mouseClick(
+        window.viewport.scene.view, button, keys, window.viewport.scene.where(place).toPoint()
+    )
 
 
 def face_at(window, place) -> int:
@@ -104,7 +114,9 @@ def group_at(window, place):
 
 def done(window, qtbot) -> None:
     """Wait until a job that a click began is done."""
-    qtbot.waitUntil(lambda: not window.document.is_busy and not window.document.jobs.is_asking, timeout=60000)
+    qtbot.waitUntil(
+        lambda: not window.document.is_busy and not window.document.jobs.is_asking, timeout=60000
+    )
 
 
 def test_equal_domes_are_one_group_and_local(shown):
@@ -115,9 +127,13 @@ def test_equal_domes_are_one_group_and_local(shown):
 
 
 def test_local_groups_have_warm_colours_and_the_rest_cold_ones(shown, qtbot):
-    (_, remaining, _), (_, local, _) = ((rgb(c), w, n) for c, w, n in shown.viewport.legend.rows[:2])
+    (_, remaining, _), (_, local, _) = (
+        (rgb(c), w, n) for c, w, n in shown.viewport.legend.rows[:2]
+    )
     assert (remaining, local) == ("Remaining area", "Local features")
-    beside = [(x + 1.2, y - 1.2, z - 0.4) for x, y, z in ON_SMALL]  # the ball's seam runs through its pole
+    beside = [
+        (x + 1.2, y - 1.2, z - 0.4) for x, y, z in ON_SMALL
+    ]  # the ball's seam runs through its pole
     cold, warm, other = (pixel(shown, place) for place in (ON_TOP, *beside[:2]))
     assert cold[2] > cold[0] + 20 and warm[0] > warm[2] + 20
     assert hue(other) @ hue(warm) > 0.97
@@ -134,7 +150,9 @@ def test_a_row_shows_faces_size_and_the_mark(shown):
 
 def test_an_id_keeps_its_number_when_there_is_little_room(shown):
     id, tree = group_at(shown, ON_SMALL[0]).id, shown.docks.features.tree
-    narrow = tree.fontMetrics().elidedText(id, tree.textElideMode(), tree.fontMetrics().horizontalAdvance(id) - 10)
+    narrow = tree.fontMetrics().elidedText(
+        id, tree.textElideMode(), tree.fontMetrics().horizontalAdvance(id) - 10
+    )
     assert narrow != id and narrow.endswith(id[-2:])
 
 
@@ -142,12 +160,18 @@ def test_a_click_on_the_mark_changes_the_class_and_undo_brings_it_back(shown, qt
     id, tree = group_at(shown, ON_SMALL[0]).id, shown.docks.features.tree
     tree.scrollToItem(shown.docks.features.item(id))
     at = tree.visualItemRect(shown.docks.features.item(id))
-    QTest.mouseClick(tree.viewport(), LEFT, pos=QPoint(tree.columnViewportPosition(5) + tree.columnWidth(5) // 2, at.center().y()))
+    QTest.mouseClick(
+        tree.viewport(),
+        LEFT,
+        pos=QPoint(tree.columnViewportPosition(5) + tree.columnWidth(5) // 2, at.center().y()),
+    )
     qtbot.waitUntil(lambda: shown.document.feature(id).attributes["local"] is False)
     assert shown.docks.features.item(id).parent().text(0).startswith("Remaining area")
     assert shown.document.feature(id).by_hand
     shown.registry.run("edit.undo")
-    qtbot.waitUntil(lambda: shown.docks.features.item(id).parent().text(0).startswith("Local features"))
+    qtbot.waitUntil(
+        lambda: shown.docks.features.item(id).parent().text(0).startswith("Local features")
+    )
 
 
 def test_clicks_on_the_part_mark_local_features_while_that_is_on(shown, qtbot):
@@ -188,7 +212,10 @@ def test_an_id_that_is_not_there_is_told(shown):
 def test_ctrl_clicks_gather_faces_of_any_group(shown):
     for place in (ON_SMALL[0], ON_LARGE):
         click(shown, place, keys=CTRL)
-    assert set(shown.document.selection.current.faces) == {face_at(shown, ON_SMALL[0]), face_at(shown, ON_LARGE)}
+    assert set(shown.document.selection.current.faces) == {
+        face_at(shown, ON_SMALL[0]),
+        face_at(shown, ON_LARGE),
+    }
     click(shown, ON_LARGE, keys=CTRL)
     assert shown.document.selection.current.faces == (face_at(shown, ON_SMALL[0]),)
 
@@ -197,7 +224,9 @@ def test_a_face_moves_to_another_group_by_the_menu_of_a_right_click(shown, qtbot
     face, into = face_at(shown, ON_SMALL[1]), group_at(shown, ON_LARGE)
     click(shown, ON_SMALL[1], RIGHT)
     menu = next(m for m in shown.viewport.findChildren(QMenu) if m.isVisible())
-    groups = next(a.menu() for a in menu.actions() if a.menu() is not None and a.text() == "Move to")
+    groups = next(
+        a.menu() for a in menu.actions() if a.menu() is not None and a.text() == "Move to"
+    )
     next(a for a in groups.actions() if a.text() == into.id).trigger()
     menu.close()
     done(shown, qtbot)
@@ -250,7 +279,9 @@ def test_three_clicks_make_a_plane(shown, qtbot):
     assert bar.face == face_at(shown, ON_SMALL[2])
     QTest.mouseClick(bar.apply, LEFT)
     done(shown, qtbot)
-    assert shown.document.session.part.n_faces > n  # the seam of the ball divides one side once more
+    assert (
+        shown.document.session.part.n_faces > n
+    )  # the seam of the ball divides one side once more
     assert face_at(shown, (x + 2.0, y - 2.0, z)) != face_at(shown, (x - 2.0, y + 2.0, z))
 
 
@@ -288,7 +319,9 @@ def test_escape_puts_a_cut_away_and_keeps_the_selection(shown):
     shown.registry.run("patch.cut_way")
     click(shown, ON_TOP)
     shown.registry.run("edit.none")
-    assert not shown.views["surface"].cutting.isVisible() and shown.document.selection.current.faces == (face_at(shown, ON_TOP),)
+    assert not shown.views[
+        "surface"
+    ].cutting.isVisible() and shown.document.selection.current.faces == (face_at(shown, ON_TOP),)
 
 
 def test_a_cut_along_its_faces_border_is_refused_in_words(shown, qtbot):
@@ -361,11 +394,18 @@ def test_radii_stand_in_columns_and_as_colours(shown, qtbot):
 def test_only_the_settings_of_the_parts_own_family_are_offered(shown):
     panel = shown.panels["recognize"]
     panel.fold(False)
-    assert panel._by_name["recognize.surface"].isVisible() and not panel._by_name["recognize.panel"].isVisible()
+    assert (
+        panel._by_name["recognize.surface"].isVisible()
+        and not panel._by_name["recognize.panel"].isVisible()
+    )
 
 
 def test_a_cutter_is_found_by_letters_of_its_name(shown):
-    field = next(f.field("surface.cutter") for f in shown.panels["route"].forms if "surface.cutter" in f.values())
+    field = next(
+        f.field("surface.cutter")
+        for f in shown.panels["route"].forms
+        if "surface.cutter" in f.values()
+    )
     finder = field.completer()
     finder.setCompletionPrefix("ball d6")
     assert finder.completionCount() > 0 and "ball D6" in finder.currentCompletion()
@@ -383,7 +423,8 @@ def test_the_properties_say_what_the_selected_faces_belong_to(shown):
     click(shown, ON_LARGE, keys=CTRL)
     table = shown.docks.properties.table
     assert [table.item(r, 0).text() for r in range(table.rowCount())] == sorted(
-        {group_at(shown, ON_SMALL[0]).id, group_at(shown, ON_LARGE).id})
+        {group_at(shown, ON_SMALL[0]).id, group_at(shown, ON_LARGE).id}
+    )
 
 
 def test_a_plate_seen_from_the_top_shows_what_was_built(shown):
@@ -405,7 +446,9 @@ def test_the_error_of_the_sizes_is_shown_by_the_number_of_points(shown, qtbot):
     assert hue(picture.pixelColor(at.toPoint()).toTuple()[:3]) @ hue(rgb(shown.theme.accent)) > 0.9
 
 
-def test_a_saved_project_opens_with_its_cuts_and_what_was_called_local(make_window, tmp_path, qtbot):
+def test_a_saved_project_opens_with_its_cuts_and_what_was_called_local(
+    make_window, tmp_path, qtbot
+):
     window = make_window("trunnion.pipeline:Engine")
     window.document.files.open(written(domed_plate(), name="domes"))
     done(window, qtbot)
@@ -413,7 +456,9 @@ def test_a_saved_project_opens_with_its_cuts_and_what_was_called_local(make_wind
     window.document.run("recognize", "Recognize")
     done(window, qtbot)
     window.registry.run("view.top")
-    window.views["surface"].jobs.cut(plane_cut(face_at(window, ON_TOP), (-10.0, 0.0, 0.0), (1.0, 0.0, 0.0)))
+    window.views["surface"].jobs.cut(
+        plane_cut(face_at(window, ON_TOP), (-10.0, 0.0, 0.0), (1.0, 0.0, 0.0))
+    )
     done(window, qtbot)
     window.views["surface"].tools.toggle_local((face_at(window, ON_TOP),))
     done(window, qtbot)
@@ -426,5 +471,7 @@ def test_a_saved_project_opens_with_its_cuts_and_what_was_called_local(make_wind
     window.registry.run("view.top")
     assert window.document.session.part.n_faces == faces
     assert face_at(window, (-15.0, -14.0, TOP)) != face_at(window, (-5.0, -14.0, TOP))
-    assert group_at(window, ON_TOP).id == id and group_at(window, ON_TOP).attributes["local"] is True
+    assert (
+        group_at(window, ON_TOP).id == id and group_at(window, ON_TOP).attributes["local"] is True
+    )
     assert window.document.states["recognize"] == "done"

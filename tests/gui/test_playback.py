@@ -19,7 +19,9 @@ from trunnion_gui.look.colours import rgb, tool_colours
 from trunnion_gui.viewport.layers.tool import cutter_outline
 
 LEFT = Qt.MouseButton.LeftButton
-MIDDLES = {f"pocket-{n:02d}": ((b[0] + b[2]) / 2, (b[1] + b[3]) / 2) for n, b in enumerate(POCKETS, 1)}
+MIDDLES = {
+    f"pocket-{n:02d}": ((b[0] + b[2]) / 2, (b[1] + b[3]) / 2) for n, b in enumerate(POCKETS, 1)
+}
 
 
 @pytest.fixture(scope="module")
@@ -69,7 +71,10 @@ def until(is_so, seconds=60.0) -> None:
 def settled(window, qtbot) -> None:
     """Wait until the stock is where the tool is, and words and program follow."""
     followers = (window.playback._soon, window.following.soon)
-    qtbot.waitUntil(lambda: window.player.is_settled and not any(timer.isActive() for timer in followers), timeout=60000)
+    qtbot.waitUntil(
+        lambda: window.player.is_settled and not any(timer.isActive() for timer in followers),
+        timeout=60000,
+    )
 
 
 def go(window, qtbot, position) -> None:
@@ -144,7 +149,9 @@ def test_while_a_job_runs_nothing_plays_and_the_stock_follows_afterwards(played,
     assert not played.playback.buttons["play.run"].isEnabled()
     played.player.play()
     assert not played.player.is_playing
-    QTest.mouseClick(played.playback.track, LEFT, pos=QPoint(round(played.playback.track.x_of(60.0)), 10))
+    QTest.mouseClick(
+        played.playback.track, LEFT, pos=QPoint(round(played.playback.track.x_of(60.0)), 10)
+    )
     qtbot.waitUntil(lambda: not played.document.is_busy, timeout=30000)
     settled(played, qtbot)
     assert played.player.position == pytest.approx(60.0, abs=1.0)
@@ -202,7 +209,9 @@ def test_play_runs_the_tool_and_pause_stops_it(played, qtbot):
 def test_the_tool_never_runs_ahead_of_the_stock_that_was_asked_for(played, qtbot):
     ahead = []
     played.player.set_speed(1000)
-    played.player.moved.connect(lambda p: ahead.append(p - max(played.player._asked_for, played.player._stock_at)))
+    played.player.moved.connect(
+        lambda p: ahead.append(p - max(played.player._asked_for, played.player._stock_at))
+    )
     played.player.play()
     qtbot.waitUntil(lambda: not played.player.is_playing, timeout=60000)
     assert max(ahead) <= 1e-9
@@ -268,7 +277,10 @@ def test_load_and_blocks_at_fault_stand_below_the_operations(played, qtbot):
 def test_the_words_say_block_line_and_operation(played, qtbot):
     go(played, qtbot, 60.0)
     passage = played.player.timeline.passage(60.0)
-    assert played.playback.place.text() == f"block 60 of {int(played.player.end)} · line {60 + len(HEADER)} · {passage.operation}"
+    assert (
+        played.playback.place.text()
+        == f"block 60 of {int(played.player.end)} · line {60 + len(HEADER)} · {passage.operation}"
+    )
 
 
 def test_the_line_of_the_block_is_marked_in_the_program(played, qtbot):
@@ -308,10 +320,14 @@ def test_an_edit_takes_the_new_plan_and_undo_the_old_one(played, qtbot, idle):
     idle(played)
     played.document.run("verify", "Verify")
     idle(played)
-    qtbot.waitUntil(lambda: played.player.timeline is not None and played.player.end < blocks, timeout=20000)
+    qtbot.waitUntil(
+        lambda: played.player.timeline is not None and played.player.end < blocks, timeout=20000
+    )
     played.registry.run("edit.undo")
     played.registry.run("edit.undo")
-    qtbot.waitUntil(lambda: played.player.timeline is not None and played.player.end == blocks, timeout=20000)
+    qtbot.waitUntil(
+        lambda: played.player.timeline is not None and played.player.end == blocks, timeout=20000
+    )
     played.document.selection.select_face(0)
 
 
@@ -352,4 +368,6 @@ def distance(span, point) -> float:
     r0, z0, r1, z1, cr, cz, radius = span
     if radius:
         return abs(math.dist(point, (cr, cz)) - abs(radius))
-    return abs((r1 - r0) * (point[1] - z0) - (z1 - z0) * (point[0] - r0)) / math.dist((r0, z0), (r1, z1))
+    return abs((r1 - r0) * (point[1] - z0) - (z1 - z0) * (point[0] - r0)) / math.dist(
+        (r0, z0), (r1, z1)
+    )

@@ -10,7 +10,6 @@ from PySide6.QtCore import QMimeData, QPointF, Qt, QTimer, QUrl
 from PySide6.QtGui import QDropEvent
 from PySide6.QtTest import QTest
 from PySide6.QtWidgets import QApplication, QMessageBox, QPushButton
-from test_window import opened, programmed  # noqa: F401 - fixtures
 
 from trunnion_gui.storage import recovery, remembered
 from trunnion_gui.storage.autosave import notes_of, whose_work
@@ -35,19 +34,30 @@ def by_dialog(window, path, monkeypatch):
 def by_drop(window, path, _monkeypatch):
     data = QMimeData()
     data.setUrls([QUrl.fromLocalFile(str(path))])
-    window.dropEvent(QDropEvent(QPointF(10, 10), Qt.DropAction.CopyAction, data, LEFT, Qt.KeyboardModifier.NoModifier))
+    window.dropEvent(
+        QDropEvent(
+            QPointF(10, 10), Qt.DropAction.CopyAction, data, LEFT, Qt.KeyboardModifier.NoModifier
+        )
+    )
 
 
 def by_recent(window, path, _monkeypatch):
     remembered.add_recent(str(path))
-    menu = next(a.menu() for m in window.menuBar().actions() for a in m.menu().actions() if a.text() == "Open recent")
+    menu = next(
+        a.menu()
+        for m in window.menuBar().actions()
+        for a in m.menu().actions()
+        if a.text() == "Open recent"
+    )
     menu.aboutToShow.emit()
     next(a for a in menu.actions() if a.text() == path.name).trigger()
 
 
 def by_welcome(window, path, _monkeypatch):
     window.viewport.welcome.show_recent([str(path)])
-    next(b for b in window.viewport.welcome.findChildren(QPushButton) if b.text() == path.name).click()
+    next(
+        b for b in window.viewport.welcome.findChildren(QPushButton) if b.text() == path.name
+    ).click()
 
 
 WAYS = (by_dialog, by_drop, by_recent, by_welcome)
@@ -62,24 +72,35 @@ def answering(window, monkeypatch, answer) -> list[int]:
 
 
 @pytest.mark.parametrize("way", WAYS)
-def test_cancel_keeps_the_work_whichever_way_another_file_is_opened(programmed, other_file, idle, monkeypatch, way):  # noqa: F811
+def test_cancel_keeps_the_work_whichever_way_another_file_is_opened(
+    programmed, other_file, idle, monkeypatch, way
+):
     asked, before = answering(programmed, monkeypatch, CANCEL), programmed.document.session
     way(programmed, other_file, monkeypatch)
     idle(programmed)
     assert len(asked) == 1
-    assert programmed.document.session is before and programmed.document.history.undo_label == "Program"
+    assert (
+        programmed.document.session is before
+        and programmed.document.history.undo_label == "Program"
+    )
 
 
 @pytest.mark.parametrize("way", WAYS)
-def test_discard_opens_the_other_file(programmed, other_file, idle, monkeypatch, way):  # noqa: F811
+def test_discard_opens_the_other_file(programmed, other_file, idle, monkeypatch, way):
     answering(programmed, monkeypatch, DISCARD)
     way(programmed, other_file, monkeypatch)
     idle(programmed)
     assert programmed.document.session.part.name == "other"
 
 
-def test_save_writes_the_project_first_and_then_opens_the_other_file(programmed, other_file, tmp_path, idle, monkeypatch,  # noqa: F811
-                                                                     qtbot):
+def test_save_writes_the_project_first_and_then_opens_the_other_file(
+    programmed,
+    other_file,
+    tmp_path,
+    idle,
+    monkeypatch,
+    qtbot,
+):
     project = tmp_path / "tray.trunnion"
     answering(programmed, monkeypatch, SAVE)
     monkeypatch.setattr(programmed.dialogs, "save_path", lambda: str(project))
@@ -91,7 +112,9 @@ def test_save_writes_the_project_first_and_then_opens_the_other_file(programmed,
     assert programmed.document.session.verdict is not None
 
 
-def test_a_person_who_then_chooses_no_file_to_save_to_keeps_the_work(programmed, other_file, idle, monkeypatch):  # noqa: F811
+def test_a_person_who_then_chooses_no_file_to_save_to_keeps_the_work(
+    programmed, other_file, idle, monkeypatch
+):
     answering(programmed, monkeypatch, SAVE)
     monkeypatch.setattr(programmed.dialogs, "save_path", lambda: "")
     before = programmed.document.session
@@ -100,23 +123,30 @@ def test_a_person_who_then_chooses_no_file_to_save_to_keeps_the_work(programmed,
     assert programmed.document.session is before
 
 
-def test_a_project_that_can_not_be_written_keeps_the_work(programmed, other_file, tmp_path, idle, monkeypatch):  # noqa: F811
+def test_a_project_that_can_not_be_written_keeps_the_work(
+    programmed, other_file, tmp_path, idle, monkeypatch
+):
     answering(programmed, monkeypatch, SAVE)
-    monkeypatch.setattr(programmed.dialogs, "save_path", lambda: str(tmp_path / "nowhere" / "tray.trunnion"))
+    monkeypatch.setattr(
+        programmed.dialogs, "save_path", lambda: str(tmp_path / "nowhere" / "tray.trunnion")
+    )
     before = programmed.document.session
     by_dialog(programmed, other_file, monkeypatch)
     idle(programmed)
-    assert programmed.document.session is before and "can't be written" in programmed.viewport.notice.text
+    assert (
+        programmed.document.session is before
+        and "can't be written" in programmed.viewport.notice.text
+    )
 
 
-def test_nothing_is_asked_where_nothing_would_be_lost(opened, other_file, idle, monkeypatch):  # noqa: F811
+def test_nothing_is_asked_where_nothing_would_be_lost(opened, other_file, idle, monkeypatch):
     asked = answering(opened, monkeypatch, CANCEL)
     by_dialog(opened, other_file, monkeypatch)
     idle(opened)
     assert asked == [] and opened.document.session.part.name == "other"
 
 
-def test_the_dialog_offers_to_save_to_discard_and_to_go_back(programmed, qtbot):  # noqa: F811
+def test_the_dialog_offers_to_save_to_discard_and_to_go_back(programmed, qtbot):
     seen = []
 
     def look() -> None:
@@ -132,18 +162,24 @@ def test_the_dialog_offers_to_save_to_discard_and_to_go_back(programmed, qtbot):
 
 
 @pytest.mark.parametrize(("answer", "closes"), [(CANCEL, False), (DISCARD, True), (SAVE, True)])
-def test_closing_asks_the_same(programmed, tmp_path, monkeypatch, qtbot, answer, closes):  # noqa: F811
+def test_closing_asks_the_same(programmed, tmp_path, monkeypatch, qtbot, answer, closes):
     project = tmp_path / "tray.trunnion"
     asked = answering(programmed, monkeypatch, answer)
     monkeypatch.setattr(programmed.dialogs, "save_path", lambda: str(project))
     programmed.close()
     if closes:
         qtbot.waitUntil(lambda: not programmed.isVisible(), timeout=10000)
-    assert len(asked) == 1 and programmed.isVisible() != closes and project.exists() == (answer == SAVE)
+    assert (
+        len(asked) == 1
+        and programmed.isVisible() != closes
+        and project.exists() == (answer == SAVE)
+    )
     programmed.unsaved.asks = False
 
 
-def test_closing_while_a_run_goes_on_saves_what_was_finished(make_window, part_file, tmp_path, idle, monkeypatch, qtbot):
+def test_closing_while_a_run_goes_on_saves_what_was_finished(
+    make_window, part_file, tmp_path, idle, monkeypatch, qtbot
+):
     window = make_window("fake_engine:SlowEngine")
     window.document.files.open(part_file)
     idle(window)
@@ -175,10 +211,12 @@ def left_behind(window, monkeypatch, qtbot):
 
 
 def press(window, words: str) -> None:
-    QTest.mouseClick(next(b for b in window.viewport.notice.findChildren(QPushButton) if b.text() == words), LEFT)
+    QTest.mouseClick(
+        next(b for b in window.viewport.notice.findChildren(QPushButton) if b.text() == words), LEFT
+    )
 
 
-def test_steady_work_is_kept_and_does_not_put_the_keeping_off(opened, idle, qtbot):  # noqa: F811
+def test_steady_work_is_kept_and_does_not_put_the_keeping_off(opened, idle, qtbot):
     opened.recovery._soon.setInterval(300)
     for n in range(8):  # an edit every 100 ms: a timer that begins anew would never fire
         opened.document.choose("fake.blank.side", "Allowance", 6.0 + n)
@@ -186,7 +224,7 @@ def test_steady_work_is_kept_and_does_not_put_the_keeping_off(opened, idle, qtbo
     assert remembered.autosave_file().exists()
 
 
-def test_ten_edits_are_kept_at_once(opened, idle, qtbot):  # noqa: F811
+def test_ten_edits_are_kept_at_once(opened, idle, qtbot):
     opened.recovery._soon.setInterval(600_000)
     for n in range(recovery.MOST_EDITS - 1):
         opened.document.choose("fake.blank.side", "Allowance", 6.0 + n)
@@ -200,7 +238,9 @@ def test_at_most_five_seconds_are_lost():
     assert recovery.LATEST_MS <= 4500
 
 
-def test_steps_that_a_run_has_finished_are_kept_while_it_goes_on(make_window, part_file, idle, qtbot):
+def test_steps_that_a_run_has_finished_are_kept_while_it_goes_on(
+    make_window, part_file, idle, qtbot
+):
     window = make_window("fake_engine:SlowEngine")
     window.document.files.open(part_file)
     idle(window)
@@ -212,7 +252,7 @@ def test_steps_that_a_run_has_finished_are_kept_while_it_goes_on(make_window, pa
     idle(window)
 
 
-def test_an_explicit_save_leaves_no_autosave(programmed, tmp_path, idle, monkeypatch, qtbot):  # noqa: F811
+def test_an_explicit_save_leaves_no_autosave(programmed, tmp_path, idle, monkeypatch, qtbot):
     programmed.recovery.keep()
     own = remembered.autosave_file()
     qtbot.waitUntil(own.exists, timeout=10000)
@@ -222,7 +262,7 @@ def test_an_explicit_save_leaves_no_autosave(programmed, tmp_path, idle, monkeyp
     qtbot.waitUntil(lambda: not own.exists() and not notes_of(own).exists(), timeout=10000)
 
 
-def test_what_was_undone_to_the_saved_state_leaves_no_autosave(opened, idle, qtbot):  # noqa: F811
+def test_what_was_undone_to_the_saved_state_leaves_no_autosave(opened, idle, qtbot):
     opened.document.choose("fake.blank.side", "Allowance", 8.0)
     opened.recovery.keep()
     qtbot.waitUntil(remembered.autosave_file().exists, timeout=10000)
@@ -231,8 +271,14 @@ def test_what_was_undone_to_the_saved_state_leaves_no_autosave(opened, idle, qtb
     qtbot.waitUntil(lambda: not remembered.autosave_file().exists(), timeout=10000)
 
 
-def test_a_recovered_project_knows_its_file_and_still_has_to_be_saved(make_window, programmed, tmp_path, idle, monkeypatch,  # noqa: F811
-                                                                      qtbot):
+def test_a_recovered_project_knows_its_file_and_still_has_to_be_saved(
+    make_window,
+    programmed,
+    tmp_path,
+    idle,
+    monkeypatch,
+    qtbot,
+):
     project = tmp_path / "tray.trunnion"
     monkeypatch.setattr(programmed.dialogs, "save_path", lambda: str(project))
     programmed.registry.run("file.save")
@@ -241,7 +287,10 @@ def test_a_recovered_project_knows_its_file_and_still_has_to_be_saved(make_windo
     left = left_behind(programmed, monkeypatch, qtbot)
     window = make_window()
     told = whose_work(left)
-    assert "tray.trunnion" in window.viewport.notice.text and told.time.partition("T")[2] in window.viewport.notice.text
+    assert (
+        "tray.trunnion" in window.viewport.notice.text
+        and told.time.partition("T")[2] in window.viewport.notice.text
+    )
     press(window, "Recover")
     idle(window)
     assert window.document.session.choices["fake.blank.side"] == 8.0
@@ -256,7 +305,9 @@ def test_a_recovered_project_knows_its_file_and_still_has_to_be_saved(make_windo
     assert again.document.session.choices["fake.blank.side"] == 8.0
 
 
-def test_a_recovered_part_without_a_project_is_named_by_its_file(make_window, programmed, idle, monkeypatch, qtbot):  # noqa: F811
+def test_a_recovered_part_without_a_project_is_named_by_its_file(
+    make_window, programmed, idle, monkeypatch, qtbot
+):
     left_behind(programmed, monkeypatch, qtbot)
     window = make_window()
     assert "tray.step" in window.viewport.notice.text
@@ -266,7 +317,9 @@ def test_a_recovered_part_without_a_project_is_named_by_its_file(make_window, pr
     assert window.document.history.is_dirty and window.document.files.project == ""
 
 
-def test_work_that_is_thrown_away_makes_room_for_the_next_one(make_window, programmed, monkeypatch, qtbot):  # noqa: F811
+def test_work_that_is_thrown_away_makes_room_for_the_next_one(
+    make_window, programmed, monkeypatch, qtbot
+):
     left = left_behind(programmed, monkeypatch, qtbot)
     older = left.with_name("autosave-999999998.trunnion")
     older.write_bytes(left.read_bytes())
@@ -293,7 +346,7 @@ def test_an_autosave_is_left_behind_when_another_program_got_its_number(tmp_path
     assert remembered.left_behind() == left
 
 
-def test_work_that_can_not_be_kept_is_told(opened, monkeypatch, qtbot):  # noqa: F811
+def test_work_that_can_not_be_kept_is_told(opened, monkeypatch, qtbot):
     folder = remembered.autosave_file().parent
     opened.recovery.file._path = folder / "nowhere" / "autosave.trunnion"
     opened.document.choose("fake.blank.side", "Allowance", 8.0)

@@ -13,7 +13,11 @@ from trunnion_gui.look.colours import kind_colour, motions, rgb
 from trunnion_gui.worker.drawing import border_edges
 
 LEFT = Qt.MouseButton.LeftButton
-IN_POCKET = {"pocket-01": (60.0, 70.0, FLOOR), "pocket-02": (175.0, 37.0, FLOOR), "pocket-03": (175.0, 103.0, FLOOR)}
+IN_POCKET = {
+    "pocket-01": (60.0, 70.0, FLOOR),
+    "pocket-02": (175.0, 37.0, FLOOR),
+    "pocket-03": (175.0, 103.0, FLOOR),
+}
 ON_RIB = (115.0, 70.0, HEIGHT)
 
 
@@ -68,15 +72,27 @@ def test_a_click_on_the_part_selects_the_row(recognized):
 def test_a_click_on_the_row_highlights_the_faces(recognized, qtbot):
     before = pixel(recognized, IN_POCKET["pocket-03"])
     tree = recognized.docks.features.tree
-    QTest.mouseClick(tree.viewport(), LEFT, pos=tree.visualItemRect(recognized.docks.features.item("pocket-03")).center())
+    QTest.mouseClick(
+        tree.viewport(),
+        LEFT,
+        pos=tree.visualItemRect(recognized.docks.features.item("pocket-03")).center(),
+    )
     qtbot.wait(20)
     after = pixel(recognized, IN_POCKET["pocket-03"])
-    assert hue(after) @ hue(rgb(recognized.theme.selection)) > 0.9 > hue(before) @ hue(rgb(recognized.theme.selection))
+    assert (
+        hue(after) @ hue(rgb(recognized.theme.selection))
+        > 0.9
+        > hue(before) @ hue(rgb(recognized.theme.selection))
+    )
 
 
 def test_a_click_beside_the_part_selects_nothing(recognized):
     recognized.document.selection.select_feature("pocket-01")
-    QTest.mouseClick(recognized.viewport.scene.view, LEFT, pos=QPoint(recognized.viewport.scene.view.width() - 4, 4))
+    QTest.mouseClick(
+        recognized.viewport.scene.view,
+        LEFT,
+        pos=QPoint(recognized.viewport.scene.view.width() - 4, 4),
+    )
     assert recognized.document.selection.current.kind == ""
 
 
@@ -94,7 +110,10 @@ def test_a_drag_turns_the_part_and_selects_nothing(recognized):
 @pytest.mark.parametrize(("view", "axis"), [("top", 2), ("front", 1), ("right", 0)])
 def test_a_standard_view_looks_along_its_axis(recognized, view, axis):
     recognized.registry.run(f"view.{view}")
-    away = np.subtract(recognized.viewport.scene.view.camera.position, recognized.viewport.scene.view.camera.focal_point)
+    away = np.subtract(
+        recognized.viewport.scene.view.camera.position,
+        recognized.viewport.scene.view.camera.focal_point,
+    )
     assert np.argmax(np.abs(away)) == axis
     assert np.sort(np.abs(away))[1] < 1e-6 * np.abs(away).max()
 
@@ -107,14 +126,22 @@ def test_the_legend_names_the_kinds_with_their_counts(recognized):
 def test_the_table_and_the_legend_have_the_same_colours(recognized):
     top = recognized.docks.features.tree.topLevelItem(0)
     image = top.icon(0).pixmap(24, 24).toImage()
-    assert image.pixelColor(12, 12).name() == kind_colour("pocket") == recognized.viewport.legend.rows[0][0]
+    assert (
+        image.pixelColor(12, 12).name()
+        == kind_colour("pocket")
+        == recognized.viewport.legend.rows[0][0]
+    )
 
 
 def test_the_blank_stands_around_the_part(recognized, idle):
     recognized.document.run("blank", "Create blank")
     idle(recognized)
-    low, high = (np.array(recognized.viewport.scene.view.actors["blank"].bounds)[k::2] for k in (0, 1))
-    assert low == pytest.approx([-5, -5, 0]) and high == pytest.approx([LENGTH + 5, WIDTH + 5, HEIGHT + 2])
+    low, high = (
+        np.array(recognized.viewport.scene.view.actors["blank"].bounds)[k::2] for k in (0, 1)
+    )
+    assert low == pytest.approx([-5, -5, 0]) and high == pytest.approx(
+        [LENGTH + 5, WIDTH + 5, HEIGHT + 2]
+    )
 
 
 def test_the_blank_is_fitted_into_the_picture_while_it_is_shown(recognized, idle):
@@ -136,9 +163,17 @@ def test_cutting_moves_are_drawn_in_their_colour(recognized, idle, qtbot):
     idle(recognized)
     recognized.document.selection.select_operation("op-02")
     qtbot.wait(20)
-    picture = recognized.viewport.scene.view.grab().toImage().convertToFormat(recognized.grab().toImage().format())
+    picture = (
+        recognized.viewport.scene.view.grab()
+        .toImage()
+        .convertToFormat(recognized.grab().toImage().format())
+    )
     wanted = np.array(rgb(motions()["cut"]))
-    seen = [np.array(picture.pixelColor(x, y).toTuple()[:3]) for x in range(0, picture.width(), 2) for y in range(0, picture.height(), 2)]
+    seen = [
+        np.array(picture.pixelColor(x, y).toTuple()[:3])
+        for x in range(0, picture.width(), 2)
+        for y in range(0, picture.height(), 2)
+    ]
     assert sum(np.abs(c - wanted).max() < 12 for c in seen) > 20
 
 
@@ -152,9 +187,15 @@ def test_only_the_ticked_motions_are_shown(recognized, idle):
 
 def test_a_section_opens_the_part(recognized):
     recognized.registry.run("view.section")
-    assert recognized.viewport.scene.view.actors["part"].mapper.GetClippingPlanes().GetNumberOfItems() == 1
+    assert (
+        recognized.viewport.scene.view.actors["part"].mapper.GetClippingPlanes().GetNumberOfItems()
+        == 1
+    )
     recognized.registry.run("view.section")
-    assert recognized.viewport.scene.view.actors["part"].mapper.GetClippingPlanes().GetNumberOfItems() == 0
+    assert (
+        recognized.viewport.scene.view.actors["part"].mapper.GetClippingPlanes().GetNumberOfItems()
+        == 0
+    )
 
 
 def test_a_size_is_written_where_it_is(recognized, idle, qtbot):
@@ -163,19 +204,28 @@ def test_a_size_is_written_where_it_is(recognized, idle, qtbot):
     recognized.panels["size"].fold(False)
     table = recognized.panels["size"].table
     QTest.mouseClick(table.viewport(), LEFT, pos=table.visualItemRect(table.item(1, 0)).center())
-    assert recognized.document.selection.current.faces == recognized.document.feature("pocket-02").with_role("floor")
+    assert recognized.document.selection.current.faces == recognized.document.feature(
+        "pocket-02"
+    ).with_role("floor")
     assert any(name.startswith("size") for name in recognized.viewport.scene.view.actors)
 
 
 def test_borders_of_faces_are_the_edges_of_one_triangle():
     mesh, _ = box_mesh()
     ends, owners = border_edges(mesh)
-    assert len(ends) == 4 * mesh.face.max()  # every face of the made-up part is a rectangle of two triangles
+    assert (
+        len(ends) == 4 * mesh.face.max()
+    )  # every face of the made-up part is a rectangle of two triangles
     assert sorted(set(owners)) == sorted(set(mesh.face))
 
 
 def test_standard_views_follow_the_frame_of_the_recognition(recognized):
-    recognized.viewport.scene.use_frame(WORLD.__class__(np.zeros(3), np.array([0.0, 1.0, 0.0]), np.array([1.0, 0.0, 0.0])))
+    recognized.viewport.scene.use_frame(
+        WORLD.__class__(np.zeros(3), np.array([0.0, 1.0, 0.0]), np.array([1.0, 0.0, 0.0]))
+    )
     recognized.registry.run("view.top")
-    away = np.subtract(recognized.viewport.scene.view.camera.position, recognized.viewport.scene.view.camera.focal_point)
+    away = np.subtract(
+        recognized.viewport.scene.view.camera.position,
+        recognized.viewport.scene.view.camera.focal_point,
+    )
     assert np.argmax(away) == 0

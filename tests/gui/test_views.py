@@ -17,7 +17,7 @@ from trunnion.report.palette import load_palette
 HOUSE = Path(trunnion_gui.__file__).parent
 GENERAL = {"other", "unexplained"}
 """Entries of the palette that no family has for itself."""
-RIBS = '''
+RIBS = """
 from trunnion_gui.actions import Command
 from trunnion_gui.families.contract import Colouring, Column, Dock, FamilyView, FeatureClass
 from PySide6.QtWidgets import QLabel
@@ -67,21 +67,38 @@ class RibView(FamilyView):
 
     def docks(self):
         return (Dock("ribs", "Ribs", self.label),)
-'''
+"""
 
 
 def words_of(path: Path) -> set[str]:
     """Return the texts of a module, the first words of dotted ones, and the names it imports."""
     tree = ast.parse(path.read_text("utf-8"))
-    texts = {n.value for n in ast.walk(tree) if isinstance(n, ast.Constant) and isinstance(n.value, str)}
-    names = {a.name for n in ast.walk(tree) if isinstance(n, ast.ImportFrom) and n.module == "trunnion.report.palette" for a in n.names}
+    texts = {
+        n.value for n in ast.walk(tree) if isinstance(n, ast.Constant) and isinstance(n.value, str)
+    }
+    names = {
+        a.name
+        for n in ast.walk(tree)
+        if isinstance(n, ast.ImportFrom) and n.module == "trunnion.report.palette"
+        for a in n.names
+    }
     return texts | {t.split(".")[0] for t in texts if "." in t and " " not in t} | names
 
 
-@pytest.mark.parametrize("path", [p for p in sorted(HOUSE.rglob("*.py")) if "families" not in p.relative_to(HOUSE).parts],
-                         ids=lambda p: str(p.relative_to(HOUSE)))
+@pytest.mark.parametrize(
+    "path",
+    [p for p in sorted(HOUSE.rglob("*.py")) if "families" not in p.relative_to(HOUSE).parts],
+    ids=lambda p: str(p.relative_to(HOUSE)),
+)
 def test_no_module_outside_a_familys_own_names_a_family_or_a_kind_of_feature(path):
-    own = {*registry.names("families"), *registry.names("part_kinds"), *registry.names("views"), *load_palette().kinds, "local", "GROUP"}
+    own = {
+        *registry.names("families"),
+        *registry.names("part_kinds"),
+        *registry.names("views"),
+        *load_palette().kinds,
+        "local",
+        "GROUP",
+    }
     assert words_of(path) & (own - GENERAL) == set()
 
 
@@ -94,8 +111,12 @@ def ribs(tmp_path, monkeypatch):
     """A package that brings a view of ribs, installed beside the project."""
     home = tmp_path / "site"
     (home / "ribs-1.0.dist-info").mkdir(parents=True)
-    (home / "ribs-1.0.dist-info" / "METADATA").write_text("Metadata-Version: 2.1\nName: ribs\nVersion: 1.0\n")
-    (home / "ribs-1.0.dist-info" / "entry_points.txt").write_text("[trunnion.views]\nribs = view_of_ribs:RibView\n")
+    (home / "ribs-1.0.dist-info" / "METADATA").write_text(
+        "Metadata-Version: 2.1\nName: ribs\nVersion: 1.0\n"
+    )
+    (home / "ribs-1.0.dist-info" / "entry_points.txt").write_text(
+        "[trunnion.views]\nribs = view_of_ribs:RibView\n"
+    )
     (home / "view_of_ribs.py").write_text(RIBS)
     monkeypatch.syspath_prepend(str(home))
     forget()
@@ -144,9 +165,17 @@ def test_a_click_in_a_views_column_is_the_views(recognized):
 
 def test_a_view_brings_menus_docks_and_blocks(recognized):
     document = recognized.document
-    assert [a.text() for a in recognized.views.face_menu(recognized, (1,)).actions()].count("Stiffen") == 1
-    assert recognized.docks.features.menu(document.feature("rib-01")).actions()[0].text() == "Stiffen rib-01"
-    assert recognized.docks.features.menu(document.feature("pocket-01")).actions()[0].text() == "Change kind"
+    assert [a.text() for a in recognized.views.face_menu(recognized, (1,)).actions()].count(
+        "Stiffen"
+    ) == 1
+    assert (
+        recognized.docks.features.menu(document.feature("rib-01")).actions()[0].text()
+        == "Stiffen rib-01"
+    )
+    assert (
+        recognized.docks.features.menu(document.feature("pocket-01")).actions()[0].text()
+        == "Change kind"
+    )
     menus = [a.text() for a in recognized.menuBar().actions()]
     assert menus.index("Steps") < menus.index("Ribs") < menus.index("Playback")
     assert recognized.arrangement.dock("ribs").widget() is recognized.views["ribs"].label

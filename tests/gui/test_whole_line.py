@@ -94,11 +94,13 @@ def test_the_program_is_played_to_its_end(programmed, qtbot):
     window.player.cut.connect(lambda moment: removed.append(moment.removed))
     for share in (0.25, 0.5, 1.0):
         position = float(round(share * len(line)))
-        QTest.mouseClick(window.playback.track, LEFT, pos=QPoint(round(window.playback.track.x_of(position)), 10))
+        QTest.mouseClick(
+            window.playback.track, LEFT, pos=QPoint(round(window.playback.track.x_of(position)), 10)
+        )
         qtbot.waitUntil(lambda: window.player.is_settled, timeout=60000)
     assert removed == sorted(removed)
     session = window.document.session
-    outside = (session.blank.volume - session.part.volume)
+    outside = session.blank.volume - session.part.volume
     assert 0.6 * outside < removed[-1] < outside
 
 
@@ -110,7 +112,9 @@ def test_the_marked_line_is_the_tools_block(programmed, qtbot):
     text = window.docks.code.text.document().findBlockByNumber(int(line.line[block]) - 1).text()
     tip = window.document.session.setups[0].frame.to_local(line.tip[block])
     words = {w[0]: float(w[1:]) for w in text.split() if w[0] in "XYZ"}
-    assert words and all(tip["XYZ".index(axis)] == pytest.approx(value, abs=1e-3) for axis, value in words.items())
+    assert words and all(
+        tip["XYZ".index(axis)] == pytest.approx(value, abs=1e-3) for axis, value in words.items()
+    )
     assert window.docks.process.item(line.passage(float(block + 1)).operation).font(0).bold()
 
 
@@ -133,7 +137,9 @@ def test_the_verdict_is_what_the_demo_promises(programmed):
 
 
 def test_every_panel_says_done(programmed):
-    assert {name: panel.state for name, panel in programmed.window.panels.items()} == dict.fromkeys(programmed.window.panels, "done")
+    assert {name: panel.state for name, panel in programmed.window.panels.items()} == dict.fromkeys(
+        programmed.window.panels, "done"
+    )
 
 
 def test_a_click_on_a_floor_selects_its_pocket_and_the_row_its_faces(programmed, qtbot):
@@ -163,7 +169,9 @@ def test_a_pockets_floor_has_the_pockets_colour(programmed, qtbot):
     rows = np.flatnonzero(mesh.face == floor)
     point = mesh.corners()[rows[np.argmax(mesh.areas()[rows])]].mean(axis=0)
     image = window.viewport.scene.view.grab().toImage()
-    seen = np.array(image.pixelColor(window.viewport.scene.where(point).toPoint()).toTuple()[:3], dtype=float)
+    seen = np.array(
+        image.pixelColor(window.viewport.scene.where(point).toPoint()).toTuple()[:3], dtype=float
+    )
     wanted = np.array(rgb(kind_colour("pocket")), dtype=float)
     seen, wanted = seen - seen.mean(), wanted - wanted.mean()
     assert seen @ wanted / np.linalg.norm(seen) / np.linalg.norm(wanted) > 0.97

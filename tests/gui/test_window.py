@@ -27,27 +27,17 @@ def tool_button(window, command: str) -> QToolButton:
 
 def panel_button(window, panel: str, command: str) -> QPushButton:
     """Return a panel's button of a command."""
-    return next(b for b in window.panels[panel].findChildren(QPushButton) if b.property("command") == command)
-
-
-@pytest.fixture
-def opened(window, part_file, idle):
-    """A window with the made-up part open."""
-    window.document.files.open(part_file)
-    idle(window)
-    return window
-
-
-@pytest.fixture
-def programmed(opened, idle):
-    """A window with the made-up part programmed."""
-    opened.document.program()
-    idle(opened)
-    return opened
+    return next(
+        b
+        for b in window.panels[panel].findChildren(QPushButton)
+        if b.property("command") == command
+    )
 
 
 def test_a_part_is_programmed_in_three_interactions(window, part_file, idle, monkeypatch):
-    monkeypatch.setattr(window.dialogs, "open_path", lambda: str(part_file))  # choosing the file: one interaction
+    monkeypatch.setattr(
+        window.dialogs, "open_path", lambda: str(part_file)
+    )  # choosing the file: one interaction
     QTest.mouseClick(tool_button(window, "file.open"), LEFT)
     idle(window)
     QTest.mouseClick(tool_button(window, "run.program"), LEFT)
@@ -56,15 +46,23 @@ def test_a_part_is_programmed_in_three_interactions(window, part_file, idle, mon
     assert "coverage 99.6 %" in window.status.verdict.text()
 
 
-def test_program_without_a_part_asks_for_one_and_goes_on(window, part_file, idle, monkeypatch, qtbot):
+def test_program_without_a_part_asks_for_one_and_goes_on(
+    window, part_file, idle, monkeypatch, qtbot
+):
     monkeypatch.setattr(window.dialogs, "open_path", lambda: str(part_file))
     QTest.mouseClick(tool_button(window, "run.program"), LEFT)
     qtbot.waitUntil(lambda: window.document.session.verdict is not None, timeout=20000)
 
 
 def test_every_panel_runs_its_step(opened, idle):
-    for panel, command in (("recognize", "step.recognize"), ("size", "step.size"), ("blank", "step.blank"), ("route", "step.route"),
-                           ("optimize", "step.optimize"), ("generate", "step.verify")):
+    for panel, command in (
+        ("recognize", "step.recognize"),
+        ("size", "step.size"),
+        ("blank", "step.blank"),
+        ("route", "step.route"),
+        ("optimize", "step.optimize"),
+        ("generate", "step.verify"),
+    ):
         opened.panels[panel].fold(False)
         QTest.mouseClick(panel_button(opened, panel, command), LEFT)
         idle(opened)
@@ -76,7 +74,12 @@ def test_a_setting_makes_its_step_and_all_after_it_stale(programmed, idle):
     field.setValue(8.0)
     idle(programmed)
     assert programmed.document.session.choices["fake.blank.side"] == 8.0
-    assert [programmed.panels[n].state for n in ("recognize", "size", "blank", "route")] == ["done", "done", "stale", "stale"]
+    assert [programmed.panels[n].state for n in ("recognize", "size", "blank", "route")] == [
+        "done",
+        "done",
+        "stale",
+        "stale",
+    ]
 
 
 def test_undo_takes_a_setting_back_and_redo_brings_it_again(opened, idle):
@@ -104,7 +107,10 @@ def test_the_unexplained_share_follows_a_deletion(programmed, idle):
     idle(programmed)
     around = 2 * (240.0 + 140.0) * 30.0
     share = 100.0 * around / programmed.document.session.recognition.face_area.sum()
-    assert f"4 faces unexplained ({share:.1f} % of the area)" in programmed.panels["recognize"].result.text()
+    assert (
+        f"4 faces unexplained ({share:.1f} % of the area)"
+        in programmed.panels["recognize"].result.text()
+    )
 
 
 def test_the_feature_menu_changes_a_kind(programmed, idle):
@@ -166,7 +172,11 @@ def test_a_bad_file_is_told_with_what_to_do(window, tmp_path, idle):
 def test_a_dropped_file_is_opened(window, part_file, idle):
     data = QMimeData()
     data.setUrls([QUrl.fromLocalFile(str(part_file))])
-    window.dropEvent(QDropEvent(QPointF(10, 10), Qt.DropAction.CopyAction, data, LEFT, Qt.KeyboardModifier.NoModifier))
+    window.dropEvent(
+        QDropEvent(
+            QPointF(10, 10), Qt.DropAction.CopyAction, data, LEFT, Qt.KeyboardModifier.NoModifier
+        )
+    )
     idle(window)
     assert window.document.session.part.name == "tray"
 
@@ -190,7 +200,9 @@ def test_programs_are_written_into_a_folder(programmed, tmp_path, idle, monkeypa
     assert [p.name for p in (tmp_path / "out").iterdir()] == ["tray.S1.nc"]
 
 
-def test_the_time_of_areas_stands_below_the_balance_of_operations(make_window, part_file, idle, qtbot):
+def test_the_time_of_areas_stands_below_the_balance_of_operations(
+    make_window, part_file, idle, qtbot
+):
     window = make_window("fake_engine:AreasEngine")
     window.document.files.open(part_file)
     idle(window)
@@ -200,11 +212,22 @@ def test_the_time_of_areas_stands_below_the_balance_of_operations(make_window, p
     areas = window.views["surface"].areas
     assert panel.isAncestorOf(areas)
     qtbot.waitUntil(areas.isVisible, timeout=20000)
-    assert [areas.table.item(r, 0).text() for r in range(areas.table.rowCount())] == ["op-03", "op-05", "op-07"]
+    assert [areas.table.item(r, 0).text() for r in range(areas.table.rowCount())] == [
+        "op-03",
+        "op-05",
+        "op-07",
+    ]
     # The floor of 104 x 124 and four walls 24 high.
     assert areas.table.item(0, 1).text() == f"{104 * 124 + 2 * (104 + 124) * 24}"
-    assert "0.00 % of the time saved" in areas.gain.text() and "from feed and distance of passes" in areas.gain.text()
-    QTest.mouseClick(areas.table.viewport(), LEFT, pos=areas.table.visualItemRect(areas.table.item(1, 0)).center())
+    assert (
+        "0.00 % of the time saved" in areas.gain.text()
+        and "from feed and distance of passes" in areas.gain.text()
+    )
+    QTest.mouseClick(
+        areas.table.viewport(),
+        LEFT,
+        pos=areas.table.visualItemRect(areas.table.item(1, 0)).center(),
+    )
     assert window.document.selection.current.id == "op-05"
     window.document.run("toolpath", "Generate")
     qtbot.waitUntil(lambda: "measured on the toolpaths" in areas.gain.text(), timeout=20000)
@@ -215,7 +238,9 @@ def test_a_panel_has_no_areas_to_be_timed(programmed):
     assert not programmed.views["surface"].areas.isVisible()
 
 
-def test_a_failed_verdict_names_the_files_that_must_not_run(make_window, part_file, tmp_path, idle, monkeypatch):
+def test_a_failed_verdict_names_the_files_that_must_not_run(
+    make_window, part_file, tmp_path, idle, monkeypatch
+):
     window = make_window("fake_engine:FailingEngine")
     window.document.files.open(part_file)
     idle(window)
@@ -259,7 +284,11 @@ def test_a_program_of_an_earlier_plan_is_marked_as_stale(programmed, idle):
 
 def test_the_palette_runs_what_was_typed(opened, qtbot, idle):
     qtbot.waitUntil(opened.isActiveWindow)  # a window that is not active yet has no shortcuts
-    QTest.keyClick(opened, Qt.Key.Key_P, Qt.KeyboardModifier.ControlModifier | Qt.KeyboardModifier.ShiftModifier)
+    QTest.keyClick(
+        opened,
+        Qt.Key.Key_P,
+        Qt.KeyboardModifier.ControlModifier | Qt.KeyboardModifier.ShiftModifier,
+    )
     qtbot.waitUntil(opened.finder.isVisible)
     QTest.keyClicks(opened.finder.line, "recog")
     QTest.keyClick(opened.finder.line, Qt.Key.Key_Return)
@@ -309,7 +338,11 @@ def test_a_row_dragged_onto_another_moves_in_front_of_it(programmed, idle, qtbot
     qtbot.waitUntil(tree.isVisible)
     tree.setCurrentItem(programmed.docks.process.item("op-06"))
     at = tree.visualItemRect(target).topLeft() + QPoint(4, 2)
-    tree.dropEvent(QDropEvent(QPointF(at), Qt.DropAction.MoveAction, QMimeData(), LEFT, Qt.KeyboardModifier.NoModifier))
+    tree.dropEvent(
+        QDropEvent(
+            QPointF(at), Qt.DropAction.MoveAction, QMimeData(), LEFT, Qt.KeyboardModifier.NoModifier
+        )
+    )
     idle(programmed)
     order = [o.id for o in programmed.document.session.process.operations]
     assert order.index("op-06") == order.index("op-04") - 1
@@ -352,9 +385,13 @@ def test_calls_that_return_nothing_keep_the_count_of_none():
 def test_the_frame_of_the_window_does_not_import_cad():
     import subprocess
 
-    code = ("import os, sys; os.environ['QT_QPA_PLATFORM'] = 'offscreen'; import trunnion_gui.window; "
-            "bad = {'OCP', 'cadquery', 'numba', 'trunnion.pipeline'} & set(sys.modules); sys.exit(' '.join(bad) or 0)")
-    done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, cwd=Path(__file__).parent)
+    code = (
+        "import os, sys; os.environ['QT_QPA_PLATFORM'] = 'offscreen'; import trunnion_gui.window; "
+        "bad = {'OCP', 'cadquery', 'numba', 'trunnion.pipeline'} & set(sys.modules); sys.exit(' '.join(bad) or 0)"
+    )
+    done = subprocess.run(
+        [sys.executable, "-c", code], capture_output=True, text=True, cwd=Path(__file__).parent
+    )
     assert done.returncode == 0, done.stderr
 
 
@@ -372,27 +409,47 @@ def test_words_of_a_program_can_be_read_in_both_themes(window, name):
 
     window.use_theme(theme(name))
     looks = window.docks.code.text._looks
-    assert {k: round(contrast(looks[k].foreground().color().name(), theme(name).panel), 1) for k in ("rapid", "cut")
-            if contrast(looks[k].foreground().color().name(), theme(name).panel) < READABLE} == {}
+    assert {
+        k: round(contrast(looks[k].foreground().color().name(), theme(name).panel), 1)
+        for k in ("rapid", "cut")
+        if contrast(looks[k].foreground().color().name(), theme(name).panel) < READABLE
+    } == {}
 
 
 def test_a_message_has_the_room_that_the_columns_beside_it_do_not_need(window, qtbot):
     window.resize(1280, 800)
     window.show_dock("messages")
-    window.document.notice("a message that is long enough to be cut off where every other column takes its full width " * 2)
+    window.document.notice(
+        "a message that is long enough to be cut off where every other column takes its full width "
+        * 2
+    )
     table = window.docks.messages.table
     qtbot.waitUntil(lambda: table.columnWidth(1) > 0.5 * table.viewport().width())
 
 
-@pytest.mark.parametrize(("id", "kind", "words"), [("profile-finish-face-2", "profile_finish", "Profile finish face-2"),
-                                                   ("semi-local-01", "semi", "Semi local-01"), ("floor-pocket-03", "floor", "Floor")])
+@pytest.mark.parametrize(
+    ("id", "kind", "words"),
+    [
+        ("profile-finish-face-2", "profile_finish", "Profile finish face-2"),
+        ("semi-local-01", "semi", "Semi local-01"),
+        ("floor-pocket-03", "floor", "Floor"),
+    ],
+)
 def test_an_operations_label_says_nothing_twice(id, kind, words):
     from fake_engine import cutter, cutting
 
     from trunnion.model.operation import Operation
     from trunnion_gui.docks.process import label
 
-    made = Operation(id=id, kind=kind, strategy="fake", feature="pocket-03", setup="S1", tool=cutter(1, 10.0), data=cutting(300, 10))
+    made = Operation(
+        id=id,
+        kind=kind,
+        strategy="fake",
+        feature="pocket-03",
+        setup="S1",
+        tool=cutter(1, 10.0),
+        data=cutting(300, 10),
+    )
     assert label(made) == words
 
 
@@ -400,6 +457,9 @@ def test_operations_that_differ_at_their_ends_are_told_apart_in_the_panel(progra
     table = programmed.panels["optimize"].table
     metrics = table.fontMetrics()
     room = metrics.horizontalAdvance("finish-local") - 1
-    shown = {metrics.elidedText(id, table.textElideMode(), room) for id in ("finish-local-01", "finish-local-02", "finish-local-01-steep")}
+    shown = {
+        metrics.elidedText(id, table.textElideMode(), room)
+        for id in ("finish-local-01", "finish-local-02", "finish-local-01-steep")
+    }
     assert len(shown) == 3
     assert "mm/min" in table.horizontalHeaderItem(2).toolTip()

@@ -19,7 +19,9 @@ def opened(make_window, factory, part_file, idle):
     return window
 
 
-def test_a_job_that_is_cancelled_before_anything_is_finished_leaves_the_session_as_it_was(make_window, part_file, idle, qtbot):
+def test_a_job_that_is_cancelled_before_anything_is_finished_leaves_the_session_as_it_was(
+    make_window, part_file, idle, qtbot
+):
     window = opened(make_window, "SlowEngine", part_file, idle)
     before, pid = window.document.session, window.document.jobs.worker.pid
     window.document.program()
@@ -29,11 +31,16 @@ def test_a_job_that_is_cancelled_before_anything_is_finished_leaves_the_session_
     assert window.document.jobs.worker.pid == pid  # it obeyed
     assert window.document.session is window.document.shown is before
     assert window.document.history.undo_label == ""
-    assert "was cancelled at: Recognize" in window.viewport.notice.text and "as it was" in window.viewport.notice.remedy
+    assert (
+        "was cancelled at: Recognize" in window.viewport.notice.text
+        and "as it was" in window.viewport.notice.remedy
+    )
 
 
 @pytest.mark.parametrize("factory", ["SlowEngine", "DeafEngine"])
-def test_steps_that_were_finished_before_a_cancel_are_kept_and_the_place_is_named(make_window, part_file, idle, qtbot, factory):
+def test_steps_that_were_finished_before_a_cancel_are_kept_and_the_place_is_named(
+    make_window, part_file, idle, qtbot, factory
+):
     window = opened(make_window, factory, part_file, idle)
     before, pid = window.document.session, window.document.jobs.worker.pid
     window.document.program()
@@ -41,11 +48,16 @@ def test_steps_that_were_finished_before_a_cancel_are_kept_and_the_place_is_name
     qtbot.waitUntil(lambda: window.document.running_step == last, timeout=20000)
     window.registry.run("job.cancel")
     qtbot.waitUntil(lambda: not window.document.is_busy, timeout=2000)
-    assert (window.document.jobs.worker.pid == pid) == (factory == "SlowEngine")  # one that hears nothing is ended
+    assert (window.document.jobs.worker.pid == pid) == (
+        factory == "SlowEngine"
+    )  # one that hears nothing is ended
     idle(window)
     assert window.document.states[kept] == "done" and window.document.states[last] == "empty"
     assert f"was cancelled at: {TITLES[last]}" in window.viewport.notice.text
-    assert TITLES[kept] in window.viewport.notice.remedy and TITLES[last] not in window.viewport.notice.remedy
+    assert (
+        TITLES[kept] in window.viewport.notice.remedy
+        and TITLES[last] not in window.viewport.notice.remedy
+    )
     window.document.undo()
     assert window.document.session is before
 

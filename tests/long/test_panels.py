@@ -40,9 +40,12 @@ def test_b1_is_proven_however_it_lies(tmp_path):
     from OCP.STEPControl import STEPControl_Reader
 
     from samples import turned, written
+
     reader = STEPControl_Reader()
     reader.ReadFile(str(PARTS / "panel" / "B1.step"))
     reader.TransferRoots()
-    verdict = programmed(written(turned(reader.OneShape(), (1.0, -2.0, 0.7), 77.0, (3000.0, -200.0, 50.0)))).verdict
+    verdict = programmed(
+        written(turned(reader.OneShape(), (1.0, -2.0, 0.7), 77.0, (3000.0, -200.0, 50.0)))
+    ).verdict
     assert verdict.outcome is Outcome.PASSED and verdict.coverage >= 0.99
     assert np.isfinite(verdict.machining_time_s)

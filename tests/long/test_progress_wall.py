@@ -32,10 +32,15 @@ class Clock:
     def longest(self) -> tuple[float, float]:
         """Return the longest gaps between looks and between reports."""
         now = time.perf_counter()
-        return tuple(max(b - a for a, b in zip(times, [*times[1:], now], strict=True)) for times in (self.looks, self.reports))
+        return tuple(
+            max(b - a for a, b in zip(times, [*times[1:], now], strict=True))
+            for times in (self.looks, self.reports)
+        )
 
 
-@pytest.mark.parametrize("name", ["panel/B1.step", "panel/B2.step", "surface/D2.step", "surface/D1.igs"])
+@pytest.mark.parametrize(
+    "name", ["panel/B1.step", "panel/B2.step", "surface/D2.step", "surface/D1.igs"]
+)
 def test_no_step_stands_still(name):
     engine = Engine()
     session = engine.open(PARTS / name)

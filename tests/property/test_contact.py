@@ -11,12 +11,30 @@ from pytest import approx
 
 from trunnion import tolerance
 from trunnion.part import surfaces
-from trunnion.part.surfaces import STRIP_COLUMNS, Edge, Face, Guide, Profile, circle_edges, level_face, line_edges, strip_row, surfaces_from
+from trunnion.part.surfaces import (
+    STRIP_COLUMNS,
+    Edge,
+    Face,
+    Guide,
+    Profile,
+    circle_edges,
+    level_face,
+    line_edges,
+    strip_row,
+    surfaces_from,
+)
 from trunnion.verify.contact import PartContact, grid_of
 from trunnion.verify.contact.strips import StripContact
 from trunnion.verify.kernels import strips as kernel
 from trunnion.verify.motion import moves_of, poses_of
-from verify_tools import FORMS, block_with_pocket, plain_depth, program_section, rounded, supports_of
+from verify_tools import (
+    FORMS,
+    block_with_pocket,
+    plain_depth,
+    program_section,
+    rounded,
+    supports_of,
+)
 
 NUMBER = st.integers(-1000, 1000).map(lambda n: n / 50)
 
@@ -24,7 +42,9 @@ NUMBER = st.integers(-1000, 1000).map(lambda n: n / 50)
 def sampled_depth(strip, move, part, rounds=9, grid=41, kept=6):
     """Return the deepest that a part of a tool enters a strip, by samples of move and profile that close in on the best places."""
     boxes = [np.array([[0.0, 1.0]] * 2)]
-    shares = np.stack(np.meshgrid(*[np.linspace(0.0, 1.0, grid)] * 2, indexing="ij"), axis=-1).reshape(-1, 2)
+    shares = np.stack(
+        np.meshgrid(*[np.linspace(0.0, 1.0, grid)] * 2, indexing="ij"), axis=-1
+    ).reshape(-1, 2)
     size, best = 1.0, (-np.inf, np.zeros(2))
     for _ in range(rounds):
         places = np.vstack([box[:, 0] + shares * (box[:, 1] - box[:, 0]) for box in boxes])
@@ -34,7 +54,9 @@ def sampled_depth(strip, move, part, rounds=9, grid=41, kept=6):
         boxes = []
         for k in np.argsort(-depth)[:200]:
             if all((np.abs(places[k] - box.mean(axis=1)) > size / 2).any() for box in boxes):
-                boxes.append(np.clip(np.column_stack([places[k] - size / 2, places[k] + size / 2]), 0.0, 1.0))
+                boxes.append(
+                    np.clip(np.column_stack([places[k] - size / 2, places[k] + size / 2]), 0.0, 1.0)
+                )
             if len(boxes) == kept:
                 break
     return _climbed(strip, move, part, *best)
@@ -65,12 +87,22 @@ def _tips(move, t):
     """Return the tips (n,) of a move at shares (n,) of it: x, y, z, and how far they are swept upwards."""
     tip = move[kernel.Z_START] + t * (move[kernel.Z_END] - move[kernel.Z_START])
     if move[kernel.KIND] == 0.0:
-        px, py = move[kernel.X0] + t * (move[kernel.X1] - move[kernel.X0]), move[kernel.Y0] + t * (move[kernel.Y1] - move[kernel.Y0])
+        px, py = (
+            move[kernel.X0] + t * (move[kernel.X1] - move[kernel.X0]),
+            move[kernel.Y0] + t * (move[kernel.Y1] - move[kernel.Y0]),
+        )
     else:
         angle = move[kernel.START_ANGLE] + t * move[kernel.SWEEP]
-        px, py = move[kernel.CX] + move[kernel.RADIUS] * np.cos(angle), move[kernel.CY] + move[kernel.RADIUS] * np.sin(angle)
+        px, py = (
+            move[kernel.CX] + move[kernel.RADIUS] * np.cos(angle),
+            move[kernel.CY] + move[kernel.RADIUS] * np.sin(angle),
+        )
     # Upright, a move is one body, swept from its lowest to its highest place.
-    upright = move[kernel.KIND] == 0.0 and move[kernel.X0] == move[kernel.X1] and move[kernel.Y0] == move[kernel.Y1]
+    upright = (
+        move[kernel.KIND] == 0.0
+        and move[kernel.X0] == move[kernel.X1]
+        and move[kernel.Y0] == move[kernel.Y1]
+    )
     ends = move[[kernel.Z_START, kernel.Z_END]]
     return px, py, *((ends.min(), np.ptp(ends)) if upright else (tip, 0.0))
 
@@ -81,17 +113,25 @@ def nearest_of_guide(strip, px, py, share):
     left = strip[surfaces.LA] + strip[surfaces.LB] * (u - strip[surfaces.U0])
     right = strip[surfaces.RA] + strip[surfaces.RB] * (u - strip[surfaces.U0])
     if strip[surfaces.PROFILE]:
-        w, z = strip[surfaces.PW0] + strip[surfaces.PW1] * np.cos(u), strip[surfaces.PZ0] + strip[surfaces.PW1] * np.sin(u)
+        w, z = (
+            strip[surfaces.PW0] + strip[surfaces.PW1] * np.cos(u),
+            strip[surfaces.PZ0] + strip[surfaces.PW1] * np.sin(u),
+        )
     else:
         w = strip[surfaces.PW0] + share * (strip[surfaces.PW1] - strip[surfaces.PW0])
         z = strip[surfaces.PZ0] + share * (strip[surfaces.PZ1] - strip[surfaces.PZ0])
     x, y = px - strip[surfaces.OX], py - strip[surfaces.OY]
     if strip[surfaces.GUIDE]:
         middle, half = 0.5 * (left + right), np.maximum(0.5 * (right - left), 0.0)
-        off = np.clip(np.remainder(np.arctan2(y, x) - middle + math.pi, math.tau) - math.pi, -half, half)
+        off = np.clip(
+            np.remainder(np.arctan2(y, x) - middle + math.pi, math.tau) - math.pi, -half, half
+        )
         return np.hypot(x - w * np.cos(middle + off), y - w * np.sin(middle + off)), z
     along = np.clip(x * strip[surfaces.DX] + y * strip[surfaces.DY], left, right)
-    return np.hypot(x + w * strip[surfaces.DY] - along * strip[surfaces.DX], y - w * strip[surfaces.DX] - along * strip[surfaces.DY]), z
+    return np.hypot(
+        x + w * strip[surfaces.DY] - along * strip[surfaces.DX],
+        y - w * strip[surfaces.DX] - along * strip[surfaces.DY],
+    ), z
 
 
 @st.composite
@@ -101,14 +141,26 @@ def strips(draw):
     low = draw(st.floats(-3.0, 3.0)) if turning else draw(st.floats(-20.0, 0.0))
     high = low + (draw(st.floats(0.2, 6.0)) if turning else draw(st.floats(0.5, 30.0)))
     angle = draw(st.floats(0.0, 6.28))
-    guide = Guide(1, draw(NUMBER), draw(NUMBER)) if turning else Guide(0, draw(NUMBER), draw(NUMBER), math.cos(angle), math.sin(angle))
+    guide = (
+        Guide(1, draw(NUMBER), draw(NUMBER))
+        if turning
+        else Guide(0, draw(NUMBER), draw(NUMBER), math.cos(angle), math.sin(angle))
+    )
     w, z = (draw(st.floats(8.0, 15.0)) if turning else 0.0), draw(st.floats(-2.0, 6.0))
     if draw(st.booleans()):
         quarter = draw(st.integers(0, 3)) * math.pi / 2
-        profile, u0, u1 = Profile(w, z, radius=draw(st.floats(0.5, 6.0))), quarter + 0.05, quarter + draw(st.floats(0.3, 1.5))
+        profile, u0, u1 = (
+            Profile(w, z, radius=draw(st.floats(0.5, 6.0))),
+            quarter + 0.05,
+            quarter + draw(st.floats(0.3, 1.5)),
+        )
     else:
         lean = draw(st.sampled_from([0.0, 0.3, 1.0, -0.7]))
-        profile, u0, u1 = Profile(w, z, math.sin(lean), math.cos(lean)), 0.0, draw(st.floats(0.2, 6.0))
+        profile, u0, u1 = (
+            Profile(w, z, math.sin(lean), math.cos(lean)),
+            0.0,
+            draw(st.floats(0.2, 6.0)),
+        )
     lean = draw(st.sampled_from([0.0, 0.0, 0.05]))
     left, right = Edge(low, u0, low + lean, u1), Edge(high, u0, high - lean, u1)
     return strip_row(guide, profile, u0, u1, left, right)
@@ -120,7 +172,11 @@ def paths(draw):
     start = [draw(NUMBER), draw(NUMBER), draw(st.floats(-2.0, 3.0))]
     z = start[2] + draw(st.sampled_from([0.0, 0.0, -1.5, 0.7]))
     if draw(st.booleans()):
-        end = [start[0], start[1], z] if draw(st.integers(0, 4)) == 0 else [draw(NUMBER), draw(NUMBER), z]
+        end = (
+            [start[0], start[1], z]
+            if draw(st.integers(0, 4)) == 0
+            else [draw(NUMBER), draw(NUMBER), z]
+        )
         return start, end, None
     centre, turn = [draw(NUMBER), draw(NUMBER)], draw(st.floats(0.2, 6.2))
     away = np.array(start[:2]) - centre
@@ -128,7 +184,11 @@ def paths(draw):
         centre[0] += 2.0
         away = np.array(start[:2]) - centre
     c, s = math.cos(turn), math.sin(turn)
-    return start, [centre[0] + c * away[0] - s * away[1], centre[1] + s * away[0] + c * away[1], z], centre
+    return (
+        start,
+        [centre[0] + c * away[0] - s * away[1], centre[1] + s * away[0] + c * away[1], z],
+        centre,
+    )
 
 
 @settings(deadline=None, max_examples=40, phases=[Phase.explicit, Phase.generate])
@@ -136,22 +196,47 @@ def paths(draw):
 def test_the_deepest_of_a_random_block_is_within_the_bound_of_a_far_finer_search(strip, form, path):
     moves = moves_of([program_section(FORMS[form], [path[0], path[1:]])])
     empty = np.zeros((0, STRIP_COLUMNS))
-    contact = PartContact(surfaces_from([Face(1, strip[None], empty, np.zeros((0, 4)))])).along(moves)
+    contact = PartContact(surfaces_from([Face(1, strip[None], empty, np.zeros((0, 4)))])).along(
+        moves
+    )
     parts = supports_of(FORMS[form])
     for kind in (0, 1):
         measured = contact.depth[1, kind]
-        expected = _deepest(strip, moves.row[1], [part for part in parts if part[3] == kind], measured)
+        expected = _deepest(
+            strip, moves.row[1], [part for part in parts if part[3] == kind], measured
+        )
         assert measured == approx(expected, abs=tolerance.CONTACT_BOUND)
 
 
 @settings(deadline=None, max_examples=40, phases=[Phase.explicit, Phase.generate])
-@given(form=st.sampled_from(sorted(FORMS)), path=paths(), z=st.floats(-2.0, 40.0), looks_down=st.booleans())
-def test_the_deepest_in_a_level_face_with_a_hole_is_within_the_bound_of_a_far_finer_search(form, path, z, looks_down):
+@given(
+    form=st.sampled_from(sorted(FORMS)),
+    path=paths(),
+    z=st.floats(-2.0, 40.0),
+    looks_down=st.booleans(),
+)
+def test_the_deepest_in_a_level_face_with_a_hole_is_within_the_bound_of_a_far_finer_search(
+    form, path, z, looks_down
+):
     moves = moves_of([program_section(FORMS[form], [path[0], path[1:]])])
-    rings = [line_edges(np.array([[x0, y0], [x1, y0], [x1, y1], [x0, y1], [x0, y0]])) for (x0, y0), (x1, y1) in (FACE, HOLE)]
-    contact = PartContact(surfaces_from([level_face(1, z, rings[0] + rings[1], -1.0 if looks_down else 1.0)])).along(moves)
+    rings = [
+        line_edges(np.array([[x0, y0], [x1, y0], [x1, y1], [x0, y1], [x0, y0]]))
+        for (x0, y0), (x1, y1) in (FACE, HOLE)
+    ]
+    contact = PartContact(
+        surfaces_from([level_face(1, z, rings[0] + rings[1], -1.0 if looks_down else 1.0)])
+    ).along(moves)
     for kind in (0, 1):
-        expected = max([0.0, *(_level_depth(z, moves.row[1], part) for part in supports_of(FORMS[form]) if part[3] == kind)])
+        expected = max(
+            [
+                0.0,
+                *(
+                    _level_depth(z, moves.row[1], part)
+                    for part in supports_of(FORMS[form])
+                    if part[3] == kind
+                ),
+            ]
+        )
         assert contact.depth[1, kind] == approx(expected, abs=tolerance.CONTACT_BOUND)
 
 
@@ -166,14 +251,19 @@ def _level_depth(z, move, part):
         px, py, tip, rise = _tips(move, t)
         depth = plain_depth(part, _level_distance(px, py), z - tip, rise)
         best, step = max(best, float(depth.max())), (spans[0][1] - spans[0][0]) / 2000.0
-        spans = [(max(t[k] - 2.0 * step, 0.0), min(t[k] + 2.0 * step, 1.0)) for k in np.argsort(-depth)[:5]]
+        spans = [
+            (max(t[k] - 2.0 * step, 0.0), min(t[k] + 2.0 * step, 1.0))
+            for k in np.argsort(-depth)[:5]
+        ]
     return best
 
 
 def _level_distance(x, y):
     """Return how far points (n,) in plan are from the face; 0 on it."""
     (x0, y0), (x1, y1) = FACE
-    out = np.hypot(np.maximum(np.maximum(x0 - x, x - x1), 0.0), np.maximum(np.maximum(y0 - y, y - y1), 0.0))
+    out = np.hypot(
+        np.maximum(np.maximum(x0 - x, x - x1), 0.0), np.maximum(np.maximum(y0 - y, y - y1), 0.0)
+    )
     (x0, y0), (x1, y1) = HOLE
     return np.maximum(out, np.minimum(np.minimum(x - x0, x1 - x), np.minimum(y - y0, y1 - y)))
 
@@ -198,16 +288,22 @@ def test_cells_that_are_passed_over_hide_no_contact(form, seed):
     # Cells that reach from the deepest to the highest are passed over for their place in plan alone; of one cell nothing is.
     engine._cell_z = np.tile([-np.inf, np.inf], (len(engine._cell_z), 1))
     higher = engine.along(moves, rows, threads=1)
-    engine._grid = grid_of(engine.surfaces.strip[:, surfaces.BX0:surfaces.BY1 + 1], 1000.0)
+    engine._grid = grid_of(engine.surfaces.strip[:, surfaces.BX0 : surfaces.BY1 + 1], 1000.0)
     every = engine.along(moves, rows, threads=1)
     for other in (higher, every):
-        assert np.array_equal(found.depth, other.depth) and np.array_equal(found.face_depth, other.face_depth)
+        assert np.array_equal(found.depth, other.depth) and np.array_equal(
+            found.face_depth, other.face_depth
+        )
 
 
 def from_rounded(x, y, half_x, half_y, radius):
     """Return how far points (n,) are outside of a rectangle about the origin with rounded corners; negative inside."""
     dx, dy = np.abs(x) - half_x + radius, np.abs(y) - half_y + radius
-    return np.hypot(np.maximum(dx, 0.0), np.maximum(dy, 0.0)) + np.minimum(np.maximum(dx, dy), 0.0) - radius
+    return (
+        np.hypot(np.maximum(dx, 0.0), np.maximum(dy, 0.0))
+        + np.minimum(np.maximum(dx, dy), 0.0)
+        - radius
+    )
 
 
 @st.composite
@@ -219,23 +315,57 @@ def curved_outlines(draw):
         turn = draw(st.floats(0.0, 1.5))
         edges = circle_edges(0.0, 0.0, size, turn, turn + math.tau)
         edges += circle_edges(0.0, 0.0, hole, turn, turn + math.tau) if hole else []
-        return edges, [size, hole] if hole else [size], lambda x, y: np.maximum(np.hypot(x, y) - size, hole - np.hypot(x, y))
-    half, inner = np.array([size, size * draw(st.floats(0.3, 3.0))]), draw(st.sampled_from([0.0, 0.4]))
+        return (
+            edges,
+            [size, hole] if hole else [size],
+            lambda x, y: np.maximum(np.hypot(x, y) - size, hole - np.hypot(x, y)),
+        )
+    half, inner = (
+        np.array([size, size * draw(st.floats(0.3, 3.0))]),
+        draw(st.sampled_from([0.0, 0.4])),
+    )
     corner = float(half.min()) * draw(st.sampled_from([0.01, 0.3, 0.99]))
-    edges = rounded(-half, half, corner) + (rounded(-inner * half, inner * half, inner * corner) if inner else [])
-    return edges, [], lambda x, y: np.maximum(from_rounded(x, y, *half, corner),
-                                              -from_rounded(x, y, *(inner * half), inner * corner) if inner else -np.inf)
+    edges = rounded(-half, half, corner) + (
+        rounded(-inner * half, inner * half, inner * corner) if inner else []
+    )
+    return (
+        edges,
+        [],
+        lambda x, y: np.maximum(
+            from_rounded(x, y, *half, corner),
+            -from_rounded(x, y, *(inner * half), inner * corner) if inner else -np.inf,
+        ),
+    )
 
 
 @settings(deadline=None, max_examples=150, phases=[Phase.explicit, Phase.generate])
-@given(outline=curved_outlines(), form=st.sampled_from(sorted(FORMS)), plunge=st.floats(0.002, 2.0), seed=st.integers(0, 2**32 - 1))
-def test_an_axis_beside_the_arc_of_a_level_face_is_as_deep_as_its_distance_makes_it(outline, form, plunge, seed):
+@given(
+    outline=curved_outlines(),
+    form=st.sampled_from(sorted(FORMS)),
+    plunge=st.floats(0.002, 2.0),
+    seed=st.integers(0, 2**32 - 1),
+)
+def test_an_axis_beside_the_arc_of_a_level_face_is_as_deep_as_its_distance_makes_it(
+    outline, form, plunge, seed
+):
     edges, circles, away = outline
-    tips = np.column_stack([_beside_edges(edges, circles, np.random.default_rng(seed), 60), np.full(60, -plunge)])
-    depth = PartContact(surfaces_from([level_face(1, 0.0, edges)])).along(poses_of(FORMS[form], tips)).depth
+    tips = np.column_stack(
+        [_beside_edges(edges, circles, np.random.default_rng(seed), 60), np.full(60, -plunge)]
+    )
+    depth = (
+        PartContact(surfaces_from([level_face(1, 0.0, edges)]))
+        .along(poses_of(FORMS[form], tips))
+        .depth
+    )
     for kind in (0, 1):
-        expected = np.max([plain_depth(part, np.maximum(away(*tips[:, :2].T), 0.0), np.full(60, plunge))
-                           for part in supports_of(FORMS[form]) if part[3] == kind], axis=0)
+        expected = np.max(
+            [
+                plain_depth(part, np.maximum(away(*tips[:, :2].T), 0.0), np.full(60, plunge))
+                for part in supports_of(FORMS[form])
+                if part[3] == kind
+            ],
+            axis=0,
+        )
         told = expected > tolerance.CONTACT_BOUND / 2
         assert (depth[told, kind] >= expected[told] - 1e-6).all()
         assert (depth[:, kind] <= np.maximum(expected, 0.0) + tolerance.CONTACT_BOUND).all()
@@ -265,7 +395,19 @@ def test_a_search_without_room_for_its_open_intervals_errs_deep(strip, form, pat
     row, guide = move.row[1].copy(), np.zeros(kernel.MOVE_COLUMNS)
     row[kernel.Z_END] = row[kernel.Z_START]
     for piece in move.bodies.piece:
+
         def searched(rows, row=row, piece=piece):
-            return kernel.strip_depth(strip, row, row[kernel.Z_START], 0.0, move.bodies.arc, piece, 1e-5, 1e-5, guide,
-                                      np.zeros((rows, 2)))[0]
+            return kernel.strip_depth(
+                strip,
+                row,
+                row[kernel.Z_START],
+                0.0,
+                move.bodies.arc,
+                piece,
+                1e-5,
+                1e-5,
+                guide,
+                np.zeros((rows, 2)),
+            )[0]
+
         assert max(searched(room), 1e-5) >= searched(400) - 1e-5

@@ -43,14 +43,23 @@ def poses(moves, steps):
     a, b = moves.start_axis[-1], moves.end_axis[-1]
     t = np.linspace(0.0, 1.0, steps)[:, None]
     theta = np.arccos(np.clip(a @ b, -1.0, 1.0))
-    axes = np.tile(a, (steps, 1)) if theta < 1e-9 else (np.sin((1 - t) * theta) * a + np.sin(t * theta) * b) / np.sin(theta)
+    axes = (
+        np.tile(a, (steps, 1))
+        if theta < 1e-9
+        else (np.sin((1 - t) * theta) * a + np.sin(t * theta) * b) / np.sin(theta)
+    )
     tips = moves.start[-1] + t * (moves.end[-1] - moves.start[-1])
     if moves.sweep[-1]:
         arm = moves.start[-1] - moves.centre[-1]
         along = arm @ a
         arm, angle = arm - along * a, t * moves.sweep[-1]
         climb = (moves.end[-1] - moves.start[-1]) @ a
-        tips = moves.centre[-1] + np.cos(angle) * arm + np.sin(angle) * np.cross(a, arm) + (along + t * climb) * a
+        tips = (
+            moves.centre[-1]
+            + np.cos(angle) * arm
+            + np.sin(angle) * np.cross(a, arm)
+            + (along + t * climb) * a
+        )
     return tips, axes
 
 
@@ -73,7 +82,11 @@ def random_ends(seed, lean, aligned=True):
     if aligned and seed % 4 == 0:
         axis = np.eye(3)[rng.integers(3)] * rng.choice([-1.0, 1.0])
     middle, way = rng.uniform(LOW + 4.0, HIGH - 4.0), rng.normal(size=3) * 3.0
-    return np.array([middle - way / 2, middle + way / 2]), np.array([axis, axis + lean * rng.normal(size=3)]), rng
+    return (
+        np.array([middle - way / 2, middle + way / 2]),
+        np.array([axis, axis + lean * rng.normal(size=3)]),
+        rng,
+    )
 
 
 @given(TOOLS, seeds, st.sampled_from([0.0, 0.02, 0.4]))
@@ -90,8 +103,16 @@ def test_arcs_and_helices_about_any_axis_cut_what_they_pass(form, seed):
     arm = np.cross(axis, rng.normal(size=3))
     arm *= rng.uniform(1.0, 5.0) / np.linalg.norm(arm)
     turn = rng.uniform(0.3, 6.0)
-    end = start - arm + np.cos(turn) * arm + np.sin(turn) * np.cross(axis, arm) + rng.choice([0.0, 2.0]) * axis
-    section = leaning_section(FORMS[form], [start, end], [axis, axis], centre=start - arm, motion=Motion.ARC_CCW)
+    end = (
+        start
+        - arm
+        + np.cos(turn) * arm
+        + np.sin(turn) * np.cross(axis, arm)
+        + rng.choice([0.0, 2.0]) * axis
+    )
+    section = leaning_section(
+        FORMS[form], [start, end], [axis, axis], centre=start - arm, motion=Motion.ARC_CCW
+    )
     check_rays(FORMS[form], section, rng)
 
 
@@ -107,7 +128,10 @@ def test_a_tool_that_swings_within_a_span_takes_nothing_from_beyond_its_sweep(fo
     tilt = 0.1 * rng.normal() * lean + rng.choice([-0.5, 0.5]) * np.array([1.0, -1.0]) * lean
     axes = np.array([np.sin(k) * ahead + np.cos(k) * np.array([0.0, 0.0, 1.0]) for k in tilt])
     stock, _, moves = cut([leaning_section(tool, pivot - height * axes, axes)], 1.0)
-    column, w = np.stack(np.meshgrid([-1.0, 0.0, 1.0], [-1.0, 0.0, 1.0])).reshape(2, -1).T + (12.5, 10.5), np.linspace(0.01, 15.99, 200)
+    column, w = (
+        np.stack(np.meshgrid([-1.0, 0.0, 1.0], [-1.0, 0.0, 1.0])).reshape(2, -1).T + (12.5, 10.5),
+        np.linspace(0.01, 15.99, 200),
+    )
     points = np.column_stack([np.repeat(column, len(w), axis=0), np.tile(w, len(column))])
     gone, depth = ~bundles_of(stock)["z"].contains(points), closed_depth(tool, moves, points, 400)
     steps = lean * tool.flute_length / 400.0
@@ -121,9 +145,17 @@ def closed_depth(tool, moves, points, steps):
     for tip, axis in zip(*poses(moves, steps), strict=True):
         away = points - tip
         h = away @ axis
-        rho, beyond = np.linalg.norm(away - h[:, None] * axis, axis=1), np.maximum(part[1] - h, h - part[2])
+        rho, beyond = (
+            np.linalg.norm(away - h[:, None] * axis, axis=1),
+            np.maximum(part[1] - h, h - part[2]),
+        )
         depth = plain_depth(part, rho, np.clip(h, part[1], part[2]))
-        best = np.maximum(best, np.where(beyond > 0.0, -np.hypot(np.minimum(depth, 0.0), beyond), np.minimum(depth, -beyond)))
+        best = np.maximum(
+            best,
+            np.where(
+                beyond > 0.0, -np.hypot(np.minimum(depth, 0.0), beyond), np.minimum(depth, -beyond)
+            ),
+        )
     return best
 
 
@@ -137,9 +169,16 @@ def test_the_deepest_of_a_ray_in_a_swinging_body_is_found_wherever_it_is(form, s
     moves = moves_of([leaning_section(tool, [10.0, 10.0, 8.0] - height * axes, axes)])
     span = spans_of(moves, np.array([1]), np.array([1]), np.zeros(1, bool)).row[0]
     piece, ray = moves.bodies.piece[0], np.zeros(kernel.RAY_COLUMNS)
-    body = (moves.bodies.arc, int(piece[kernel.CLOSED_FIRST]), int(piece[kernel.CLOSED_LAST]), np.inf)
+    body = (
+        moves.bodies.arc,
+        int(piece[kernel.CLOSED_FIRST]),
+        int(piece[kernel.CLOSED_LAST]),
+        np.inf,
+    )
     ray[kernel.TWIST] = kernel._motion(span)
-    kernel._aim(ray, span, 10.0 + tool.radius + rng.uniform(-0.5, 0.3) * lean * tool.flute_length, 10.0)
+    kernel._aim(
+        ray, span, 10.0 + tool.radius + rng.uniform(-0.5, 0.3) * lean * tool.flute_length, 10.0
+    )
     low, high = np.sort(rng.uniform(8.0 - height - 2.0, 8.0 - height + tool.flute_length + 2.0, 2))
     deepest = max(kernel._over_time(*body, ray, w)[0] for w in np.linspace(low, high, 600))
     found, place = kernel._highest(*body, ray, low, high, -0.05)
@@ -153,8 +192,15 @@ def check_rays(tool, section, rng):
     for name, bundle in bundles_of(stock).items():
         axis = "xyz".index(name)
         cell = rng.integers(0, len(bundle.count), 400)
-        local = np.column_stack([*(bundle.origin + (np.column_stack([cell % bundle.columns, cell // bundle.columns]) + 0.5)).T,
-                                 rng.uniform(LOW[axis], HIGH[axis], len(cell))])
+        local = np.column_stack(
+            [
+                *(
+                    bundle.origin
+                    + (np.column_stack([cell % bundle.columns, cell // bundle.columns]) + 0.5)
+                ).T,
+                rng.uniform(LOW[axis], HIGH[axis], len(cell)),
+            ]
+        )
         own = np.empty_like(local)
         own[:, cycle(axis)] = local
         points.append(own)

@@ -33,13 +33,21 @@ def poses(move, share):
     if turn:
         across = start - centre - ((start - centre) @ axis) * axis
         climb = ((end - start) @ axis) * axis
-        tips = start - across + np.cos(turn * share) * across + np.sin(turn * share) * np.cross(axis, across) + share * climb
+        tips = (
+            start
+            - across
+            + np.cos(turn * share) * across
+            + np.sin(turn * share) * np.cross(axis, across)
+            + share * climb
+        )
         return tips, np.broadcast_to(axis, tips.shape)
     angle = math.atan2(np.linalg.norm(np.cross(axis, end_axis)), axis @ end_axis)
     if angle < 1e-12:
         return start + share * (end - start), np.broadcast_to(axis, (len(share), 3))
-    return (start + share * (end - start),
-            (np.sin((1 - share) * angle) * axis + np.sin(share * angle) * end_axis) / math.sin(angle))
+    return (
+        start + share * (end - start),
+        (np.sin((1 - share) * angle) * axis + np.sin(share * angle) * end_axis) / math.sin(angle),
+    )
 
 
 def depths(part, move, share, points):
@@ -52,17 +60,26 @@ def depths(part, move, share, points):
 
 def sampled_depth(part, move, corners, rounds=9, grid=(11, 7, 7), kept=5):
     """Return the deepest that a part of a tool enters a triangle (3, 3), by samples that close in on the best few places."""
-    shares = np.stack(np.meshgrid(*(np.linspace(0.0, 1.0, n) for n in grid), indexing="ij"), axis=-1).reshape(-1, 3)
+    shares = np.stack(
+        np.meshgrid(*(np.linspace(0.0, 1.0, n) for n in grid), indexing="ij"), axis=-1
+    ).reshape(-1, 3)
     best, boxes, size = -np.inf, [np.array([[0.0, 1.0]] * 3)], 1.0
     for _ in range(rounds):
         places = np.vstack([box[:, 0] + shares * (box[:, 1] - box[:, 0]) for box in boxes])
         t, root, v = places[:, 0], np.sqrt(places[:, 1])[:, None], places[:, 2][:, None]
-        depth = depths(part, move, t, (1 - root) * corners[0] + root * (1 - v) * corners[1] + root * v * corners[2])
+        depth = depths(
+            part,
+            move,
+            t,
+            (1 - root) * corners[0] + root * (1 - v) * corners[1] + root * v * corners[2],
+        )
         best = max(best, float(depth.max()))
         size, boxes = size * 0.4, []
         for k in np.argsort(-depth)[:200]:
             if all((np.abs(places[k] - box.mean(axis=1)) > size / 2).any() for box in boxes):
-                boxes.append(np.clip(np.column_stack([places[k] - size / 2, places[k] + size / 2]), 0.0, 1.0))
+                boxes.append(
+                    np.clip(np.column_stack([places[k] - size / 2, places[k] + size / 2]), 0.0, 1.0)
+                )
             if len(boxes) == kept:
                 break
     return best
@@ -78,7 +95,10 @@ def attained(moves, kind, move, place):
             tips, axes = poses(move, share)
             h = ((place - tips) * axes).sum(axis=1)
             rho = np.linalg.norm(place - tips - h[:, None] * axes, axis=1)
-            depth = [body.depth_in_body(moves.bodies.arc, *run, r, z)[0] for r, z in zip(rho, h, strict=True)]
+            depth = [
+                body.depth_in_body(moves.bodies.arc, *run, r, z)[0]
+                for r, z in zip(rho, h, strict=True)
+            ]
             k = int(np.argmax(depth))
             best, low, high = max(best, depth[k]), share[max(k - 2, 0)], share[min(k + 2, 40)]
     return best
@@ -87,14 +107,24 @@ def attained(moves, kind, move, place):
 def moves_for(tool, move):
     start, end, axis, end_axis, centre, turn = move
     motion = Motion.LINE if not turn else Motion.ARC_CCW if turn > 0 else Motion.ARC_CW
-    path = Toolpath(position=[start, end], axis=[axis, end_axis], motion=[Motion.RAPID, motion],
-                    centre=[[np.nan] * 3, [np.nan] * 3 if centre is None else centre], feed=[0.0, 1000.0], mark=[0, 0])
+    path = Toolpath(
+        position=[start, end],
+        axis=[axis, end_axis],
+        motion=[Motion.RAPID, motion],
+        centre=[[np.nan] * 3, [np.nan] * 3 if centre is None else centre],
+        feed=[0.0, 1000.0],
+        mark=[0, 0],
+    )
     return moves_of([ProgramSection(operation="op", tool=tool, spindle=10000.0, path=path)])
 
 
 def facets(triangles):
-    return Facets.of_mesh(np.reshape(triangles, (-1, 3)), np.arange(3 * len(triangles)).reshape(-1, 3), np.arange(len(triangles)),
-                          np.arange(1, len(triangles) + 1))
+    return Facets.of_mesh(
+        np.reshape(triangles, (-1, 3)),
+        np.arange(3 * len(triangles)).reshape(-1, 3),
+        np.arange(len(triangles)),
+        np.arange(1, len(triangles) + 1),
+    )
 
 
 NEAR = st.tuples(*[st.integers(-300, 300).map(lambda n: n / 50)] * 3).map(np.array)
@@ -108,57 +138,121 @@ def unit(vector):
 @st.composite
 def ways(draw):
     """A move near the origin: a pose, a plunge, a line, a line on which the axis turns a little or much, an arc or a helix."""
-    kind = draw(st.sampled_from(["pose", "plunge", "line", "turning", "turning far", "arc", "helix"]))
+    kind = draw(
+        st.sampled_from(["pose", "plunge", "line", "turning", "turning far", "arc", "helix"])
+    )
     start, axis = draw(NEAR), unit(np.array([0.0, 0.0, 1.0]) + 0.6 * draw(SMALL) + [0.0, 0.0, 0.01])
     if kind in ("arc", "helix"):
         across = np.cross(axis, unit(draw(SMALL) + [1.5, 0.0, 0.0])) * draw(st.floats(0.5, 8.0))
         turn = draw(st.floats(0.1, 6.0)) * draw(st.sampled_from([-1.0, 1.0]))
         end = start - across + math.cos(turn) * across + math.sin(turn) * np.cross(axis, across)
-        return start, end + axis * (draw(st.floats(-3.0, 3.0)) if kind == "helix" else 0.0), axis, axis, start - across, turn
-    way = {"pose": 0.0 * axis, "plunge": -draw(st.floats(0.1, 6.0)) * axis}.get(kind, draw(st.sampled_from([0.3, 3.0])) * draw(SMALL))
+        return (
+            start,
+            end + axis * (draw(st.floats(-3.0, 3.0)) if kind == "helix" else 0.0),
+            axis,
+            axis,
+            start - across,
+            turn,
+        )
+    way = {"pose": 0.0 * axis, "plunge": -draw(st.floats(0.1, 6.0)) * axis}.get(
+        kind, draw(st.sampled_from([0.3, 3.0])) * draw(SMALL)
+    )
     turned = {"turning": 0.05, "turning far": 1.0}.get(kind, 0.0) * draw(SMALL)
     return start, start + way, axis, unit(axis + turned) if turned.any() else axis, None, 0.0
 
 
-TRIANGLES = st.lists(st.tuples(NEAR, SMALL, SMALL, SMALL, st.sampled_from([0.5, 5.0, 30.0])), min_size=1, max_size=3).map(
-    lambda rows: np.array([[1.5 * at + size * corner for corner in corners] for at, *corners, size in rows]))
+TRIANGLES = st.lists(
+    st.tuples(NEAR, SMALL, SMALL, SMALL, st.sampled_from([0.5, 5.0, 30.0])), min_size=1, max_size=3
+).map(
+    lambda rows: np.array(
+        [[1.5 * at + size * corner for corner in corners] for at, *corners, size in rows]
+    )
+)
 
 
 @settings(deadline=None, max_examples=40, phases=[Phase.explicit, Phase.generate])
 @given(form=st.sampled_from(sorted(FORMS)), move=ways(), triangles=TRIANGLES)
-def test_the_deepest_of_a_random_move_is_within_the_bound_of_a_far_finer_search(form, move, triangles):
+def test_the_deepest_of_a_random_move_is_within_the_bound_of_a_far_finer_search(
+    form, move, triangles
+):
     tool, moves = FORMS[form], moves_for(FORMS[form], move)
     parts = supports_of(tool)
     touch = FacetContact(facets(triangles)).along(moves, np.array([1]), threads=1)
     bound = tolerance.TURNING_BOUND if moves.turning[1] else tolerance.CONTACT_BOUND
     for kind in (0, 1):
-        deepest, measured = (max(sampled_depth(p, move, t) for p in parts if p[3] == kind for t in triangles), touch.depth[0, kind])
+        deepest, measured = (
+            max(sampled_depth(p, move, t) for p in parts if p[3] == kind for t in triangles),
+            touch.depth[0, kind],
+        )
         assert min(deepest, DEEP) <= max(measured, 0.0) + bound
         if measured > -np.inf:
             assert min(measured, DEEP) <= attained(moves, kind, move, touch.place[0, kind]) + 1e-5
 
 
 @settings(deadline=None, max_examples=60, phases=[Phase.explicit, Phase.generate])
-@given(form=st.sampled_from(sorted(FORMS)), move=ways(), triangles=TRIANGLES, room=st.integers(1, 3))
+@given(
+    form=st.sampled_from(sorted(FORMS)), move=ways(), triangles=TRIANGLES, room=st.integers(1, 3)
+)
 def test_a_search_without_room_for_its_open_tasks_errs_deep(form, move, triangles, room):
     moves, row = moves_for(FORMS[form], move), np.zeros(tool_motion.WAY_COLUMNS)
-    tool_motion.fill_way(*(a[1] for a in (moves.start, moves.end, moves.start_axis, moves.end_axis, moves.centre, moves.sweep)), row)
+    tool_motion.fill_way(
+        *(
+            a[1]
+            for a in (
+                moves.start,
+                moves.end,
+                moves.start_axis,
+                moves.end_axis,
+                moves.centre,
+                moves.sweep,
+            )
+        ),
+        row,
+    )
     run = moves.bodies.piece[0, [body.CLOSED_FIRST, body.CLOSED_LAST]].astype(int)
     normal = np.cross(triangles[0][1] - triangles[0][0], triangles[0][2] - triangles[0][0])
     normal = normal / np.linalg.norm(normal) if normal.any() else np.array([0.0, 0.0, 1.0])
     deepest = []
     for rows in (room, kernel.TASKS):
         found = np.full(4, -np.inf)
-        space = [np.zeros(n) for n in (kernel.TASK_COLUMNS, (2, tool_motion.END_COLUMNS), tool_motion.SPAN_COLUMNS, (6, 3), (3, 6), (3, 3))]
+        space = [
+            np.zeros(n)
+            for n in (
+                kernel.TASK_COLUMNS,
+                (2, tool_motion.END_COLUMNS),
+                tool_motion.SPAN_COLUMNS,
+                (6, 3),
+                (3, 6),
+                (3, 3),
+            )
+        ]
         space[2][[tool_motion.S_FROM, tool_motion.S_TO]] = -1.0
-        kernel.enter_triangle(triangles[0].ravel(), normal, row, 0.0, 1.0, moves.bodies.arc, *run, 1e-4, 1e-4, np.inf, found,
-                              np.zeros((rows, kernel.TASK_COLUMNS)), *space)
+        kernel.enter_triangle(
+            triangles[0].ravel(),
+            normal,
+            row,
+            0.0,
+            1.0,
+            moves.bodies.arc,
+            *run,
+            1e-4,
+            1e-4,
+            np.inf,
+            found,
+            np.zeros((rows, kernel.TASK_COLUMNS)),
+            *space,
+        )
         deepest.append(max(found[0], 1e-4))
     assert deepest[0] >= deepest[1] - 1e-4
 
 
 @settings(deadline=None, max_examples=25, phases=[Phase.explicit, Phase.generate])
-@given(form=st.sampled_from(sorted(FORMS)), move=ways(), triangles=TRIANGLES, allowed=st.sampled_from([0.005, 0.02, 0.5]))
+@given(
+    form=st.sampled_from(sorted(FORMS)),
+    move=ways(),
+    triangles=TRIANGLES,
+    allowed=st.sampled_from([0.005, 0.02, 0.5]),
+)
 def test_a_move_is_clear_when_it_is_measured_no_deeper(form, move, triangles, allowed):
     engine, moves = FacetContact(facets(triangles)), moves_for(FORMS[form], move)
     depth = float(engine.along(moves, np.array([1]), threads=1).depth.max())
@@ -171,12 +265,18 @@ BOTH = PartContact(surfaces_of(POCKET, WORLD)), FacetContact(facets_of(POCKET, W
 
 
 @settings(deadline=None, max_examples=25, phases=[Phase.explicit, Phase.generate])
-@given(start=st.tuples(st.floats(12.0, 48.0), st.floats(8.0, 28.0), st.floats(7.9, 9.5)), way=SMALL,
-       tool=st.sampled_from([flat(6.0)(), bull(6.0, 1.0)(), bull(6.0, 3.0)(flute=4.0)]))
+@given(
+    start=st.tuples(st.floats(12.0, 48.0), st.floats(8.0, 28.0), st.floats(7.9, 9.5)),
+    way=SMALL,
+    tool=st.sampled_from([flat(6.0)(), bull(6.0, 1.0)(), bull(6.0, 3.0)(flute=4.0)]),
+)
 def test_an_upright_tool_is_as_deep_in_triangles_as_in_closed_forms(start, way, tool):
     end = np.array(start) + 8.0 * way * [1.0, 1.0, 0.05] + [0.01, 0.0, 0.0]
     moves = moves_of([program_section(tool, [start, end])])
     strips, triangles = BOTH
-    exact, found = strips.along(moves).depth[1], np.maximum(triangles.along(moves, np.array([1]), threads=1).depth[0], 0.0)
+    exact, found = (
+        strips.along(moves).depth[1],
+        np.maximum(triangles.along(moves, np.array([1]), threads=1).depth[0], 0.0),
+    )
     bound = 2 * tolerance.CONTACT_BOUND + triangles.facets.bound
     assert np.abs(np.minimum(exact, DEEP) - np.minimum(found, DEEP)).max() <= bound

@@ -32,7 +32,11 @@ def programmed(seed: int) -> Session:
 def ratios(session: Session) -> dict[str, float]:
     """Return foreseen over measured power of every operation that cuts."""
     proofs = {p.operation: p for p in session.verdict.operations}
-    return {o.id: o.data.highest_power / proofs[o.id].power for o in session.process.operations if o.id in proofs and proofs[o.id].power}
+    return {
+        o.id: o.data.highest_power / proofs[o.id].power
+        for o in session.process.operations
+        if o.id in proofs and proofs[o.id].power
+    }
 
 
 @pytest.mark.parametrize("seed", SEEDS)
@@ -49,7 +53,12 @@ def test_no_panel_passes_the_spindles_power_without_a_word(seed):
 
 
 def test_what_is_foreseen_at_full_width_is_near_what_is_measured():
-    found = [ratio for seed in SEEDS for id, ratio in ratios(programmed(seed)).items() if id.startswith("rough-")]
+    found = [
+        ratio
+        for seed in SEEDS
+        for id, ratio in ratios(programmed(seed)).items()
+        if id.startswith("rough-")
+    ]
     assert len(found) >= len(SEEDS)
     assert float(np.mean(found)) <= NOT_MUCH_MORE
 
@@ -75,6 +84,11 @@ def test_roughing_of_a_curved_part_is_foreseen_too(shape):
 
 @pytest.mark.timeout(600)
 def test_what_is_foreseen_of_curved_parts_at_full_width_is_near_what_is_measured():
-    found = [ratios(session)[p.operation] for session in map(roughed, CURVED) for p in session.verdict.operations if p.engaged > FULL_TURN]
+    found = [
+        ratios(session)[p.operation]
+        for session in map(roughed, CURVED)
+        for p in session.verdict.operations
+        if p.engaged > FULL_TURN
+    ]
     assert len(found) >= len(CURVED)
     assert float(np.mean(found)) <= NOT_MUCH_MORE

@@ -14,8 +14,16 @@ from trunnion.plan.sequence import Job, ordered
 def job_lists(draw) -> list[Job]:
     count = draw(st.integers(1, 6))
     waits = [draw(st.sets(st.integers(0, n - 1), max_size=2)) if n else set() for n in range(count)]
-    return [Job(id=f"op-{n}", tool=draw(st.sampled_from("ABC")), stage=draw(st.integers(0, 3)), place=(draw(st.floats(-9, 9)), 0.0),
-                after=frozenset(f"op-{w}" for w in waits[n])) for n in range(count)]
+    return [
+        Job(
+            id=f"op-{n}",
+            tool=draw(st.sampled_from("ABC")),
+            stage=draw(st.integers(0, 3)),
+            place=(draw(st.floats(-9, 9)), 0.0),
+            after=frozenset(f"op-{w}" for w in waits[n]),
+        )
+        for n in range(count)
+    ]
 
 
 def changes(order: tuple[str, ...], tools: dict[str, str]) -> int:

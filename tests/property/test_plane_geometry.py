@@ -20,7 +20,9 @@ def outline(centre: tuple[float, float], size: float, rays: list[float], radius:
     """A star-shaped outline with one corner a ray, rounded where the sides have room for it."""
     n = len(rays)
     angle = 2.0 * math.pi * np.arange(n) / n
-    corners = np.array(centre) + size * np.array(rays)[:, None] * np.stack([np.cos(angle), np.sin(angle)], axis=1)
+    corners = np.array(centre) + size * np.array(rays)[:, None] * np.stack(
+        [np.cos(angle), np.sin(angle)], axis=1
+    )
     points: list[np.ndarray] = []
     bulges: list[float] = []
     for i in range(n):
@@ -42,8 +44,10 @@ rays = st.lists(st.integers(10, 20).map(lambda k: k / 20.0), min_size=4, max_siz
 corner = st.sampled_from([0.0, 1.0, 2.0, 3.0])
 place = st.tuples(st.integers(-20, 20).map(float), st.integers(-20, 20).map(float))
 outers = st.builds(outline, st.just((0.0, 0.0)), st.just(50.0), rays, corner)
-islands = st.one_of(st.builds(outline, place, st.sampled_from([5.0, 8.0]), rays, corner),
-                    st.builds(Curve.circle, place, st.sampled_from([2.0, 5.0])))
+islands = st.one_of(
+    st.builds(outline, place, st.sampled_from([5.0, 8.0]), rays, corner),
+    st.builds(Curve.circle, place, st.sampled_from([2.0, 5.0])),
+)
 
 
 @st.composite
@@ -57,7 +61,12 @@ def regions(draw: st.DrawFn) -> Region:
 
 def as_shapely(region: Region) -> shapely.MultiPolygon:
     chord = 1e-4
-    return shapely.MultiPolygon([shapely.Polygon(p.outer.sampled(chord), [h.sampled(chord) for h in p.holes]) for p in region.pieces])
+    return shapely.MultiPolygon(
+        [
+            shapely.Polygon(p.outer.sampled(chord), [h.sampled(chord) for h in p.holes])
+            for p in region.pieces
+        ]
+    )
 
 
 def probes(region: Region, margin: float) -> np.ndarray:
@@ -108,7 +117,9 @@ def test_an_offset_holds_exactly_the_points_that_are_near_enough(region, distanc
 @given(regions(), st.sampled_from([-3.0, -1.0, 2.0]))
 def test_arcs_of_an_offset_have_exact_radii(region, distance):
     own = region.segments().radius
-    known = np.concatenate([[abs(distance)], own[~np.isnan(own)] + distance, own[~np.isnan(own)] - distance])
+    known = np.concatenate(
+        [[abs(distance)], own[~np.isnan(own)] + distance, own[~np.isnan(own)] - distance]
+    )
     found = region.offset(distance).segments().radius
     found = found[~np.isnan(found)]
     assert all(np.abs(known - r).min() < 1e-9 for r in found)

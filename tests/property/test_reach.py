@@ -25,13 +25,22 @@ CLOSED = PartContact(SURFACES, FACETS)
 SAMPLES = samples_of(SURFACES, 2.0, facets=FACETS)
 PLAIN = [FORMS["flat"], FORMS["bull"], FORMS["ball"]]
 ALLOWED = 0.02
-PLACES = st.lists(st.integers(0, len(SAMPLES) - 1), min_size=1, max_size=20, unique=True).map(np.array)
+PLACES = st.lists(st.integers(0, len(SAMPLES) - 1), min_size=1, max_size=20, unique=True).map(
+    np.array
+)
 
 
 def plainly(contact, tool, tips, axes, wanted):
     """Say for k places whether one of the poses (k, a, 3) that are wanted is clear: each is asked alone."""
-    return np.array([any(contact.clear(poses_of(tool, tips[k, n:n + 1], axes[k, n:n + 1]), ALLOWED)[0] for n in np.flatnonzero(wanted[k]))
-                     for k in range(len(tips))])
+    return np.array(
+        [
+            any(
+                contact.clear(poses_of(tool, tips[k, n : n + 1], axes[k, n : n + 1]), ALLOWED)[0]
+                for n in np.flatnonzero(wanted[k])
+            )
+            for k in range(len(tips))
+        ]
+    )
 
 
 @settings(deadline=None, max_examples=15, phases=[Phase.explicit, Phase.generate])
@@ -41,8 +50,11 @@ def test_what_obstacles_remember_changes_no_answer(rows, tools, leans):
     axes = np.stack(list(leaning_axes(normal)), axis=1)[:, ::4]
     every, obstacles = np.arange(len(rows)), Obstacles.none(len(rows))
     for tool in tools:
-        tips, axis, wanted = (leaning_poses(point, normal, axes, np.ones(axes.shape[:2], bool), tool, every) if leans
-                              else upright_poses(point, normal, tool, every))
+        tips, axis, wanted = (
+            leaning_poses(point, normal, axes, np.ones(axes.shape[:2], bool), tool, every)
+            if leans
+            else upright_poses(point, normal, tool, every)
+        )
         found = CLOSED.any_clear(tool, tips, axis, wanted, ALLOWED, obstacles, threads=2)
         assert found.tolist() == plainly(CLOSED, tool, tips, axis, wanted).tolist()
 
@@ -52,7 +64,10 @@ def test_what_obstacles_remember_changes_no_answer(rows, tools, leans):
 def test_an_obstacle_stops_just_the_tools_that_it_is_deep_in(form, seed):
     random, tool = np.random.default_rng(seed), FORMS[form]
     place = random.uniform(-8.0, 8.0, (6, 3))
-    tips, axes = random.uniform(-12.0, 12.0, (30, 3)) - [0.0, 0.0, 10.0], random.normal(size=(30, 3))
+    tips, axes = (
+        random.uniform(-12.0, 12.0, (30, 3)) - [0.0, 0.0, 10.0],
+        random.normal(size=(30, 3)),
+    )
     axes /= np.linalg.norm(axes, axis=1, keepdims=True)
     obstacles = Obstacles.none(1)
     obstacles.add(place, np.zeros(6, np.int64))
@@ -63,8 +78,14 @@ def test_an_obstacle_stops_just_the_tools_that_it_is_deep_in(form, seed):
         deepest = max(float(plain_depth(part, rho, h).max()) for part in supports_of(tool))
         # Near a joint of two parts a depth counts for both of them.
         assert not said or deepest > ALLOWED + tolerance.CONTACT_BOUND - 1e-9
-        middle = [(h > part[1]) & (h < part[2]) & (plain_depth(part, rho, h) > ALLOWED + tolerance.CONTACT_BOUND)
-                  & (h - part[1] > 20.0 * ALLOWED) & (part[2] - h > 20.0 * ALLOWED) for part in supports_of(tool)]
+        middle = [
+            (h > part[1])
+            & (h < part[2])
+            & (plain_depth(part, rho, h) > ALLOWED + tolerance.CONTACT_BOUND)
+            & (h - part[1] > 20.0 * ALLOWED)
+            & (part[2] - h > 20.0 * ALLOWED)
+            for part in supports_of(tool)
+        ]
         assert said or not any(m.any() for m in middle)
 
 
@@ -80,11 +101,16 @@ def test_of_more_obstacles_than_are_kept_the_last_ones_are():
 
 
 def test_a_pit_that_no_tool_enters_is_known_after_the_first_poses():
-    pit = contact_of(*(((x, y, 0.0), (x + 40.0, y + 40.0, 40.0)) for x in (-41.0, 1.0) for y in (-41.0, 1.0)),
-                     ((-1.0, -41.0, 0.0), (1.0, 41.0, 1.0)), ((-41.0, -1.0, 0.0), (41.0, 1.0, 1.0)))
+    pit = contact_of(
+        *(((x, y, 0.0), (x + 40.0, y + 40.0, 40.0)) for x in (-41.0, 1.0) for y in (-41.0, 1.0)),
+        ((-1.0, -41.0, 0.0), (1.0, 41.0, 1.0)),
+        ((-41.0, -1.0, 0.0), (41.0, 1.0, 1.0)),
+    )
     point, normal = np.array([[0.0, 0.0, 1.0]]), np.array([[0.0, 0.0, 1.0]])
     axes, tool = np.stack(list(leaning_axes(normal)), axis=1), FORMS["ball"]
-    tips, axis, wanted = leaning_poses(point, normal, axes, np.ones(axes.shape[:2], bool), tool, np.array([0]))
+    tips, axis, wanted = leaning_poses(
+        point, normal, axes, np.ones(axes.shape[:2], bool), tool, np.array([0])
+    )
     obstacles = Obstacles.none(1)
     assert not pit.any_clear(tool, tips, axis, wanted, ALLOWED, obstacles).any()
     assert 0 < obstacles.count[0] < wanted.sum() / 4

@@ -19,22 +19,91 @@ from trunnion.units import FARTHEST, FASTEST, LONGEST_BLOCK, MM_PER_INCH
 
 LONGEST_LINE = 200
 """Characters of a refusal that a person still reads."""
-BLOCKS = ("G0", "G1", "G1 F500", "G2", "G2 I5", "G3", "G3 R5", "G4", "G43", "G64 P0.005", "M3", "M6", "G53 G0", "G20", "G93", "")
-CL_BLOCKS = ("GOTO/{0},0,30", "GOTO/0,{0},30", "GOTO/0,0,{0}", "GOTO/0,0,30,{0},0,1", "CIRCLE/{0},0,30,0,0,1,5", "CIRCLE/0,0,30,0,0,1,{0}",
-             "CIRCLE/0,0,30,0,0,{0},5\nGOTO/0,5,30", "SPINDL/RPM,{0},CLW", "FEDRAT/{0},MMPM", "LOADTL/{0}", "LOADTL/2,LENGTH,{0}",
-             "CUTTER/{0},2", "CUTTER/6,{0}", "UNITS/{0}", "MULTAX/{0}", "COOLNT/{0}", "RAPID/{0}", "END/{0}",
-             "PPRINT/SETUP {0} WORK OFFSET G54")
-JUDGED = ("G1 X{0} Y{1}", "G1 X{0} Z{1} F{2}", "G0 X{0} Y{1}", "G0 Z{0}", "G2 I{0} J{1} Z{2}", "G3 X{0} Y{1} R{2}", "G3 X{0} Y{1} I{2} J0",
-          "G1 F{0}\nX{1}", "S{0}", "S{0} M3", "M5\nS{0} M3", "G4 P{0}", "G64 P{0} Q{1}", "T1 M6\nS{0} M3\nG0 X{1} Y0\nG43 H1 Z{2}")
+BLOCKS = (
+    "G0",
+    "G1",
+    "G1 F500",
+    "G2",
+    "G2 I5",
+    "G3",
+    "G3 R5",
+    "G4",
+    "G43",
+    "G64 P0.005",
+    "M3",
+    "M6",
+    "G53 G0",
+    "G20",
+    "G93",
+    "",
+)
+CL_BLOCKS = (
+    "GOTO/{0},0,30",
+    "GOTO/0,{0},30",
+    "GOTO/0,0,{0}",
+    "GOTO/0,0,30,{0},0,1",
+    "CIRCLE/{0},0,30,0,0,1,5",
+    "CIRCLE/0,0,30,0,0,1,{0}",
+    "CIRCLE/0,0,30,0,0,{0},5\nGOTO/0,5,30",
+    "SPINDL/RPM,{0},CLW",
+    "FEDRAT/{0},MMPM",
+    "LOADTL/{0}",
+    "LOADTL/2,LENGTH,{0}",
+    "CUTTER/{0},2",
+    "CUTTER/6,{0}",
+    "UNITS/{0}",
+    "MULTAX/{0}",
+    "COOLNT/{0}",
+    "RAPID/{0}",
+    "END/{0}",
+    "PPRINT/SETUP {0} WORK OFFSET G54",
+)
+JUDGED = (
+    "G1 X{0} Y{1}",
+    "G1 X{0} Z{1} F{2}",
+    "G0 X{0} Y{1}",
+    "G0 Z{0}",
+    "G2 I{0} J{1} Z{2}",
+    "G3 X{0} Y{1} R{2}",
+    "G3 X{0} Y{1} I{2} J0",
+    "G1 F{0}\nX{1}",
+    "S{0}",
+    "S{0} M3",
+    "M5\nS{0} M3",
+    "G4 P{0}",
+    "G64 P{0} Q{1}",
+    "T1 M6\nS{0} M3\nG0 X{1} Y0\nG43 H1 Z{2}",
+)
 """Lines that leave much to the proof: what stands in them is mostly read."""
 TURNED = "G21 G90 G17 G94\nG54\nT1 M6\nS9000 M3\nG0 A0 C0\nG0 X0 Y0\nG43 H1 Z50\nG1 Z30 F500\n"
 
 plain = st.floats(-1e12, 1e12).map(lambda v: f"{v:.12f}".rstrip("0"))
-numbers = st.one_of(st.sampled_from(AWKWARD), plain, st.floats(-100.0, 100.0).map(lambda v: f"{v:.4f}"))
+numbers = st.one_of(
+    st.sampled_from(AWKWARD), plain, st.floats(-100.0, 100.0).map(lambda v: f"{v:.4f}")
+)
 words = st.tuples(st.sampled_from(string.ascii_uppercase), numbers).map("".join)
-fair = st.one_of(st.sampled_from(("0", "-0", "0.0004", "0.000000000001", "1", "-1", "100000", "-100000", "99999", "500000", "0.001",
-                                  "10.0001", "-10.000000000000000000001", "3600", "0.02")),
-                 st.floats(-200.0, 200.0).map(lambda v: f"{v:.4f}"))
+fair = st.one_of(
+    st.sampled_from(
+        (
+            "0",
+            "-0",
+            "0.0004",
+            "0.000000000001",
+            "1",
+            "-1",
+            "100000",
+            "-100000",
+            "99999",
+            "500000",
+            "0.001",
+            "10.0001",
+            "-10.000000000000000000001",
+            "3600",
+            "0.02",
+        )
+    ),
+    st.floats(-200.0, 200.0).map(lambda v: f"{v:.4f}"),
+)
 shares = st.floats(0.0, 1.0, exclude_max=True)
 kept = settings(deadline=None, derandomize=True, database=None)
 
@@ -52,7 +121,12 @@ def inserted(draw):
 def replaced(draw):
     """Return the LinuxCNC text with the numbers of one to three words replaced."""
     lines = [line.split(" ") for line in lines_of("linuxcnc")]
-    places = [(r, c) for r, line in enumerate(lines) for c, w in enumerate(line) if w[:1].isalpha() and not line[0].startswith("(")]
+    places = [
+        (r, c)
+        for r, line in enumerate(lines)
+        for c, w in enumerate(line)
+        if w[:1].isalpha() and not line[0].startswith("(")
+    ]
     for _ in range(draw(st.integers(1, 3))):
         row, column = places[int(draw(shares) * len(places))]
         lines[row][column] = lines[row][column][0] + draw(numbers)
@@ -75,7 +149,9 @@ def cl_texts(draw):
     """Return the CL text with one statement more."""
     lines = list(lines_of("apt"))
     row = int(draw(shares) * len(lines))
-    return "\n".join([*lines[:row], draw(st.sampled_from(CL_BLOCKS)).replace("{0}", draw(numbers)), *lines[row:]])
+    return "\n".join(
+        [*lines[:row], draw(st.sampled_from(CL_BLOCKS)).replace("{0}", draw(numbers)), *lines[row:]]
+    )
 
 
 def understood(dialect: str, text: str) -> Program | None:
@@ -99,7 +175,10 @@ def check_finite(program: Program) -> None:
     for section in program.sections:
         path = section.path
         assert np.abs(path.position).max() <= FARTHEST * MM_PER_INCH
-        assert all(np.isfinite(values).all() for values in (path.position, path.axis, path.feed, path.sweeps(), path.lengths()))
+        assert all(
+            np.isfinite(values).all()
+            for values in (path.position, path.axis, path.feed, path.sweeps(), path.lengths())
+        )
         assert 0.0 <= section.spindle <= FASTEST and path.feed.max() <= FASTEST * MM_PER_INCH
         assert 0.0 <= section.dwell < math.inf and section.block_lines[-1] > 0
 
@@ -107,7 +186,9 @@ def check_finite(program: Program) -> None:
 def check_judged(program: Program) -> None:
     verdict = judged(program)
     assert not list(not_finite(verdict))
-    stands = any(s.spindle_stands and (s.path.motion != Motion.RAPID).any() for s in program.sections)
+    stands = any(
+        s.spindle_stands and (s.path.motion != Motion.RAPID).any() for s in program.sections
+    )
     slow = any(b.time.max(initial=0.0) > LONGEST_BLOCK for b in verdict.blocks)
     far = any(np.ptp(s.path.position, axis=0).max() > 600.0 for s in program.sections)
     assert verdict.outcome is Outcome.FAILED or not (stands or slow or far)
@@ -140,7 +221,10 @@ def test_what_is_read_of_a_cl_text_is_judged_in_finite_numbers(text):
 
 
 @settings(kept, max_examples=200)
-@given(st.sampled_from(("G0", "G1", "G1 F500", "G93 G1 F9", "G2 I5 F100", "G53 G0 Z0\nG0")), st.lists(words, min_size=1, max_size=2))
+@given(
+    st.sampled_from(("G0", "G1", "G1 F500", "G93 G1 F9", "G2 I5 F100", "G53 G0 Z0\nG0")),
+    st.lists(words, min_size=1, max_size=2),
+)
 def test_positions_of_rotary_axes_are_read_in_finite_numbers_or_refused(block, said):
     try:
         program = again(TURNED + " ".join([block, *said]) + "\nG0 Z60\nM30\n", standing(TABLE))

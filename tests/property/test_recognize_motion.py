@@ -53,11 +53,16 @@ def test_a_moved_part_has_the_same_features(placed: Frame) -> None:
 @settings(deadline=None, max_examples=5)
 @given(frames())
 def test_a_mirrored_part_has_as_many_features_of_the_same_sizes(placed: Frame) -> None:
-    mirrored = BlockPart((tuple(120 - x for x in reversed(XS)), *STILL.breaks[1:]), STILL.full[::-1].copy(), placed)
+    mirrored = BlockPart(
+        (tuple(120 - x for x in reversed(XS)), *STILL.breaks[1:]), STILL.full[::-1].copy(), placed
+    )
     still, turned = AS_DRAWN, recognized(mirrored)
     assert turned.counts() == still.counts()
     for kind in still.counts():
-        depths = [sorted(float(f.sizes.get("depth", 0.0)) for f in r.of_kind(kind)) for r in (still, turned)]  # type: ignore[arg-type]
+        depths = [
+            sorted(float(f.sizes.get("depth", 0.0)) for f in r.of_kind(kind))
+            for r in (still, turned)
+        ]  # type: ignore[arg-type]
         assert depths[0] == pytest.approx(depths[1], abs=1e-3)
 
 
@@ -66,6 +71,9 @@ def test_a_mirrored_part_has_as_many_features_of_the_same_sizes(placed: Frame) -
 def test_a_scaled_part_has_the_same_features(factor: float) -> None:
     breaks = tuple(tuple(factor * b for b in axis) for axis in STILL.breaks)
     part = BlockPart(breaks, STILL.full)  # type: ignore[arg-type]
-    words = choose(PanelFamily.settings, {"rib_width": 12.0 * factor if factor < 16.0 else 200.0, "hole_diameter": 30.0})
+    words = choose(
+        PanelFamily.settings,
+        {"rib_width": 12.0 * factor if factor < 16.0 else 200.0, "hole_diameter": 30.0},
+    )
     found = PanelFamily().recognize(part.graph(), part, words, QUIET)
     assert summary(found) == summary(AS_DRAWN)

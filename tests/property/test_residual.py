@@ -26,7 +26,9 @@ def axes(draw):
     if draw(st.integers(0, 2)) == 0:
         return np.array([0.0, 0.0, 1.0])
     lean, about = draw(st.floats(0.0, 2.0)), draw(st.floats(0.0, 6.28))
-    return np.array([math.sin(lean) * math.cos(about), math.sin(lean) * math.sin(about), math.cos(lean)])
+    return np.array(
+        [math.sin(lean) * math.cos(about), math.sin(lean) * math.sin(about), math.cos(lean)]
+    )
 
 
 @st.composite
@@ -47,35 +49,82 @@ def agrees(form, section, points, bound):
 
 
 @QUICK
-@given(form=st.sampled_from(sorted(EVERY_FORM)), start=tips(), end=tips(), axis=axes(), points=POINTS)
+@given(
+    form=st.sampled_from(sorted(EVERY_FORM)), start=tips(), end=tips(), axis=axes(), points=POINTS
+)
 def test_lines_come_as_near_as_a_finer_search_finds(form, start, end, axis, points):
     agrees(form, leaning_section(EVERY_FORM[form], [start, end], [axis, axis]), points, FIXED)
 
 
 @QUICK
-@given(form=st.sampled_from(sorted(EVERY_FORM)), start=tips(), depth=st.floats(0.1, 40.0), axis=axes(), points=POINTS)
+@given(
+    form=st.sampled_from(sorted(EVERY_FORM)),
+    start=tips(),
+    depth=st.floats(0.1, 40.0),
+    axis=axes(),
+    points=POINTS,
+)
 def test_plunges_come_as_near_as_a_finer_search_finds(form, start, depth, axis, points):
-    agrees(form, leaning_section(EVERY_FORM[form], [start, start - depth * axis], [axis, axis]), points, FIXED)
+    agrees(
+        form,
+        leaning_section(EVERY_FORM[form], [start, start - depth * axis], [axis, axis]),
+        points,
+        FIXED,
+    )
 
 
 @QUICK
-@given(form=st.sampled_from(sorted(EVERY_FORM)), start=tips(), axis=axes(), radius=st.floats(0.5, 30.0), turn=st.floats(0.1, 6.2),
-       climb=st.sampled_from([0.0, 0.5, -4.0]), clockwise=st.booleans(), points=POINTS)
-def test_arcs_and_helices_come_as_near_as_a_finer_search_finds(form, start, axis, radius, turn, climb, clockwise, points):
+@given(
+    form=st.sampled_from(sorted(EVERY_FORM)),
+    start=tips(),
+    axis=axes(),
+    radius=st.floats(0.5, 30.0),
+    turn=st.floats(0.1, 6.2),
+    climb=st.sampled_from([0.0, 0.5, -4.0]),
+    clockwise=st.booleans(),
+    points=POINTS,
+)
+def test_arcs_and_helices_come_as_near_as_a_finer_search_finds(
+    form, start, axis, radius, turn, climb, clockwise, points
+):
     aside = np.cross(axis, [0.3, 0.5, 0.81])
     aside = radius * aside / np.linalg.norm(aside)
     angle = -turn if clockwise else turn
-    end = start + aside - (math.cos(angle) * aside + math.sin(angle) * np.cross(axis, aside)) + climb * axis
-    section = leaning_section(EVERY_FORM[form], [start, end], [axis, axis], centre=start + aside,
-                              motion=Motion.ARC_CW if clockwise else Motion.ARC_CCW)
+    end = (
+        start
+        + aside
+        - (math.cos(angle) * aside + math.sin(angle) * np.cross(axis, aside))
+        + climb * axis
+    )
+    section = leaning_section(
+        EVERY_FORM[form],
+        [start, end],
+        [axis, axis],
+        centre=start + aside,
+        motion=Motion.ARC_CW if clockwise else Motion.ARC_CCW,
+    )
     agrees(form, section, points, FIXED)
 
 
 @QUICK
-@given(form=st.sampled_from(sorted(EVERY_FORM)), start=tips(), end=tips(), first=axes(), last=axes(), share=st.floats(0.02, 1.0),
-       points=POINTS)
-def test_turning_axes_come_as_near_as_a_finer_search_finds(form, start, end, first, last, share, points):
+@given(
+    form=st.sampled_from(sorted(EVERY_FORM)),
+    start=tips(),
+    end=tips(),
+    first=axes(),
+    last=axes(),
+    share=st.floats(0.02, 1.0),
+    points=POINTS,
+)
+def test_turning_axes_come_as_near_as_a_finer_search_finds(
+    form, start, end, first, last, share, points
+):
     last = first + share * (last - first)
     if np.linalg.norm(last) < 0.1:
         last = first
-    agrees(form, leaning_section(EVERY_FORM[form], [start, start + share * (end - start)], [first, last]), points, TURNING)
+    agrees(
+        form,
+        leaning_section(EVERY_FORM[form], [start, start + share * (end - start)], [first, last]),
+        points,
+        TURNING,
+    )

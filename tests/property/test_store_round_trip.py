@@ -22,13 +22,39 @@ from trunnion.store.project import load_project, project_bytes
 texts = st.text(st.characters(), max_size=40)
 keys = st.text(st.characters(codec="ascii", exclude_categories=("C",)), min_size=1, max_size=20)
 numbers = st.floats(allow_nan=False)
-sizes = st.one_of(numbers, st.integers(-2**53, 2**53), st.booleans(), texts, st.lists(numbers, max_size=4).map(tuple))
-findings = st.builds(Finding, severity=st.sampled_from(Severity), code=texts, text=texts, where=st.lists(texts, max_size=3).map(tuple),
-                     remedy=texts)
-features = st.builds(Feature, id=texts, kind=texts, by_hand=st.booleans(), sizes=st.dictionaries(keys, sizes, max_size=4),
-                     attributes=st.dictionaries(keys, sizes, max_size=4),
-                     faces=st.lists(st.builds(FaceRole, role=texts, face=st.integers(1, 10**6)), max_size=4).map(tuple))
-files = st.builds(PostedFile, suffix=texts, dialect=texts, setup=texts, text=st.one_of(texts, texts.map(lambda t: t * 200)))
+sizes = st.one_of(
+    numbers,
+    st.integers(-(2**53), 2**53),
+    st.booleans(),
+    texts,
+    st.lists(numbers, max_size=4).map(tuple),
+)
+findings = st.builds(
+    Finding,
+    severity=st.sampled_from(Severity),
+    code=texts,
+    text=texts,
+    where=st.lists(texts, max_size=3).map(tuple),
+    remedy=texts,
+)
+features = st.builds(
+    Feature,
+    id=texts,
+    kind=texts,
+    by_hand=st.booleans(),
+    sizes=st.dictionaries(keys, sizes, max_size=4),
+    attributes=st.dictionaries(keys, sizes, max_size=4),
+    faces=st.lists(st.builds(FaceRole, role=texts, face=st.integers(1, 10**6)), max_size=4).map(
+        tuple
+    ),
+)
+files = st.builds(
+    PostedFile,
+    suffix=texts,
+    dialect=texts,
+    setup=texts,
+    text=st.one_of(texts, texts.map(lambda t: t * 200)),
+)
 
 
 @st.composite
@@ -38,19 +64,45 @@ def operation_paths(draw):
     motion = rng.integers(0, 4, n)
     motion[:1] = 0
     centre = np.where((motion >= 2)[:, None], rng.normal(size=(n, 3)), np.nan)
-    keeps = np.maximum.accumulate(np.where(motion >= 2, 0, np.arange(n))) if n else motion  # an arc keeps the axis of the block before
-    path = Toolpath(position=rng.normal(size=(n, 3)) * 10.0 ** rng.integers(-9, 9), axis=rng.normal(size=(n, 3))[keeps], motion=motion,
-                    centre=centre, feed=np.where(motion == 0, 0.0, rng.uniform(1, 9000, n)), mark=rng.integers(0, 5, n))
-    return OperationPath(operation=draw(texts), path=path, findings=tuple(draw(st.lists(findings, max_size=2))), key=draw(texts))
+    keeps = (
+        np.maximum.accumulate(np.where(motion >= 2, 0, np.arange(n))) if n else motion
+    )  # an arc keeps the axis of the block before
+    path = Toolpath(
+        position=rng.normal(size=(n, 3)) * 10.0 ** rng.integers(-9, 9),
+        axis=rng.normal(size=(n, 3))[keeps],
+        motion=motion,
+        centre=centre,
+        feed=np.where(motion == 0, 0.0, rng.uniform(1, 9000, n)),
+        mark=rng.integers(0, 5, n),
+    )
+    return OperationPath(
+        operation=draw(texts),
+        path=path,
+        findings=tuple(draw(st.lists(findings, max_size=2))),
+        key=draw(texts),
+    )
 
 
 @st.composite
 def sessions(draw) -> Session:
-    recognition = replace(programs.recognition(), features=tuple(draw(st.lists(features, max_size=3))),
-                          findings=tuple(draw(st.lists(findings, max_size=3))))
-    return replace(programs.session(), recognition=draw(st.sampled_from([None, recognition])),
-                   choices=draw(st.dictionaries(keys, st.one_of(numbers, st.integers(-10**9, 10**9), st.booleans(), texts), max_size=5)),
-                   paths=tuple(draw(st.lists(operation_paths(), max_size=3))), posted=tuple(draw(st.lists(files, max_size=2))))
+    recognition = replace(
+        programs.recognition(),
+        features=tuple(draw(st.lists(features, max_size=3))),
+        findings=tuple(draw(st.lists(findings, max_size=3))),
+    )
+    return replace(
+        programs.session(),
+        recognition=draw(st.sampled_from([None, recognition])),
+        choices=draw(
+            st.dictionaries(
+                keys,
+                st.one_of(numbers, st.integers(-(10**9), 10**9), st.booleans(), texts),
+                max_size=5,
+            )
+        ),
+        paths=tuple(draw(st.lists(operation_paths(), max_size=3))),
+        posted=tuple(draw(st.lists(files, max_size=2))),
+    )
 
 
 @settings(deadline=None, max_examples=60)
@@ -71,5 +123,8 @@ def test_a_session_comes_back_from_its_file_as_it_was(session, part):
 def digest_or_same(first: Session, second: Session) -> bool:
     """Compare by digest, texts that have no digest (lone surrogates) by themselves."""
     return digest(repr(first.choices), repr(first.recognition), repr(first.posted)) == digest(
-        repr(second.choices), repr(second.recognition), repr(second.posted)) and all(
-        a.operation == b.operation and digest(a.path) == digest(b.path) for a, b in zip(first.paths, second.paths, strict=True))
+        repr(second.choices), repr(second.recognition), repr(second.posted)
+    ) and all(
+        a.operation == b.operation and digest(a.path) == digest(b.path)
+        for a, b in zip(first.paths, second.paths, strict=True)
+    )

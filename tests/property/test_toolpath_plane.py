@@ -26,7 +26,9 @@ def pockets(draw: st.DrawFn) -> Region:
     corner = draw(st.floats(3.0, 9.0))
     first = Region.rectangle(0, 0, draw(st.floats(30, 70)), draw(st.floats(25, 50)))
     x, y = draw(st.floats(0, 30)), draw(st.floats(0, 20))
-    second = Region.rectangle(x, y, min(x + draw(st.floats(25, 60)), 70), min(y + draw(st.floats(25, 45)), 50))
+    second = Region.rectangle(
+        x, y, min(x + draw(st.floats(25, 60)), 70), min(y + draw(st.floats(25, 45)), 50)
+    )
     plan = first.union(second).opened(corner)
     if draw(st.booleans()):
         at = (draw(st.floats(15, 40)), draw(st.floats(12, 30)))
@@ -48,8 +50,9 @@ def lowered(path: Toolpath) -> np.ndarray:
 
 @FEW
 @given(pockets(), cutters, st.floats(2.0, 12.0))
-def test_roughing_stays_in_its_room_clears_it_and_never_crosses_material_at_rapid(plan: Region, cutter: tuple[float, float],
-                                                                                width: float) -> None:
+def test_roughing_stays_in_its_room_clears_it_and_never_crosses_material_at_rapid(
+    plan: Region, cutter: tuple[float, float], width: float
+) -> None:
     tool = mill(*cutter)
     room = plan.offset(-tool.radius - 0.3)
     assume(bool(room))
@@ -59,7 +62,9 @@ def test_roughing_stays_in_its_room_clears_it_and_never_crosses_material_at_rapi
     milled = Milled((-5, -5), (75, 55), 0.0, cell=1.0).cut(path, tool)
     flat = room.offset(tool.radius - tool.corner_radius - 0.05)
     inside = flat.signed_distance(milled.points).reshape(milled.x.shape) > 0.0
-    assert milled.height[inside].max(initial=-8.0) < -7.7 + (0.3 if tool.corner_radius else 0.0) + 1e-6
+    assert (
+        milled.height[inside].max(initial=-8.0) < -7.7 + (0.3 if tool.corner_radius else 0.0) + 1e-6
+    )
     assert milled.crashes == []
 
 
@@ -77,13 +82,18 @@ def test_floor_and_wall_stay_in_their_room(plan: Region, cutter: tuple[float, fl
 
 @FEW
 @given(pockets(), cutters)
-def test_arcs_keep_their_radius_and_no_block_goes_nowhere(plan: Region, cutter: tuple[float, float]) -> None:
+def test_arcs_keep_their_radius_and_no_block_goes_nowhere(
+    plan: Region, cutter: tuple[float, float]
+) -> None:
     tool = mill(*cutter)
     assume(bool(plan.offset(-tool.radius - 0.3)))
     drive = closed_pocket(plan, 8.0, cutter[1], wall_allowance=0.3)
     path = rough(drive, tool, cutting(5.0, 4.0), STOCK, SETUP, RoughSettings(), QUIET).path
     arcs = path.motion >= Motion.ARC_CW
-    radii = [np.linalg.norm(p[arcs, :2] - path.centre[arcs, :2], axis=1) for p in (path.starts(), path.position)]
+    radii = [
+        np.linalg.norm(p[arcs, :2] - path.centre[arcs, :2], axis=1)
+        for p in (path.starts(), path.position)
+    ]
     assert np.abs(radii[0] - radii[1]).max(initial=0.0) < 1e-6
     assert path.lengths()[1:].min() >= 1e-4
     assert np.abs(path.sweeps()).max() < 3.6

@@ -17,10 +17,19 @@ def panel_shape(seed: int) -> Any:
     """Return the solid of a panel (OCP shape, mm, bottom at z 0, open upward) of 1 to 6 pockets."""
     draw = Random(f"panel {seed}")
     columns, rows = draw.randint(1, 3), draw.randint(1, 2)
-    height, corner, fillet = draw.choice((16.0, 20.0, 25.0, 32.0)), draw.choice(CORNERS), draw.choice(FILLETS)
+    height, corner, fillet = (
+        draw.choice((16.0, 20.0, 25.0, 32.0)),
+        draw.choice(CORNERS),
+        draw.choice(FILLETS),
+    )
     wall, cell = draw.choice((3.0, 4.0, 6.0)), (draw.uniform(45.0, 70.0), draw.uniform(45.0, 70.0))
     length, width = columns * (cell[0] + wall) + wall, rows * (cell[1] + wall) + wall
-    plate = cq.Workplane("XY").box(length, width, height, centered=False).edges("|Z").fillet(draw.choice((4.0, 8.0)))
+    plate = (
+        cq.Workplane("XY")
+        .box(length, width, height, centered=False)
+        .edges("|Z")
+        .fillet(draw.choice((4.0, 8.0)))
+    )
     for column in range(columns):
         for row in range(rows):
             low = wall + column * (cell[0] + wall), wall + row * (cell[1] + wall)
@@ -29,8 +38,16 @@ def panel_shape(seed: int) -> Any:
     return plate.val().wrapped
 
 
-def _pocket(draw: Random, low: tuple[float, float], size: tuple[float, float], height: float, corner: float, fillet: float, opens: bool,
-            wall: float) -> cq.Workplane:
+def _pocket(
+    draw: Random,
+    low: tuple[float, float],
+    size: tuple[float, float],
+    height: float,
+    corner: float,
+    fillet: float,
+    opens: bool,
+    wall: float,
+) -> cq.Workplane:
     """Return what is cut out of a cell: a rounded box, longer than its cell where it opens to the side, without its island."""
     floor = draw.choice((3.0, 4.0, 6.0))
     length = size[0] + (wall + corner if opens else 0.0)
@@ -40,6 +57,11 @@ def _pocket(draw: Random, low: tuple[float, float], size: tuple[float, float], h
         body = body.faces("<Z").edges("not >X" if opens else None).fillet(fillet)
     if not opens and draw.random() < 0.3:
         middle = size[0] / 2.0, size[1] / 2.0
-        island = cq.Workplane("XY").center(*middle).circle(draw.uniform(5.0, 8.0)).extrude(draw.uniform(0.4, 0.8) * (height - floor))
+        island = (
+            cq.Workplane("XY")
+            .center(*middle)
+            .circle(draw.uniform(5.0, 8.0))
+            .extrude(draw.uniform(0.4, 0.8) * (height - floor))
+        )
         body = body.cut(island)
     return body.translate((*low, floor))

@@ -29,26 +29,47 @@ def _one(r: random.Random, length: float, width: float, height: float) -> list[A
 
 def _two(r: random.Random, length: float, width: float, height: float) -> list[Any]:
     rim, middle = r.uniform(3.0, 8.0), r.uniform(0.4, 0.6) * length
-    return [_pocket(r, rim, middle - 2.0, rim, width - rim, height), _pocket(r, middle + 2.0, length - rim, rim, width - rim, height)]
+    return [
+        _pocket(r, rim, middle - 2.0, rim, width - rim, height),
+        _pocket(r, middle + 2.0, length - rim, rim, width - rim, height),
+    ]
 
 
 def _opened(r: random.Random, length: float, width: float, height: float) -> list[Any]:
     wide = r.uniform(0.4, 0.8) * width
-    box = cq.Workplane("XY").box(length, wide, height, centered=False).edges("|Z and <X").fillet(r.choice(CORNERS))
+    box = (
+        cq.Workplane("XY")
+        .box(length, wide, height, centered=False)
+        .edges("|Z and <X")
+        .fillet(r.choice(CORNERS))
+    )
     return [box.translate((r.uniform(10.0, 30.0), 0.5 * (width - wide), r.uniform(2.5, 6.0)))]
 
 
 def _through(r: random.Random, length: float, width: float, height: float) -> list[Any]:
     wide = r.uniform(28.0, 0.7 * width)
-    return [cq.Workplane("XY").box(length + 2.0, wide, height, centered=False).translate((-1.0, 0.5 * (width - wide), r.uniform(2.5, 6.0)))]
+    return [
+        cq.Workplane("XY")
+        .box(length + 2.0, wide, height, centered=False)
+        .translate((-1.0, 0.5 * (width - wide), r.uniform(2.5, 6.0)))
+    ]
 
 
 def _pocket(r: random.Random, x0: float, x1: float, y0: float, y1: float, height: float) -> Any:
     fillet = r.choice(FILLETS)
-    body = cq.Workplane("XY").box(x1 - x0, y1 - y0, height, centered=False).edges("|Z").fillet(r.choice(CORNERS))
+    body = (
+        cq.Workplane("XY")
+        .box(x1 - x0, y1 - y0, height, centered=False)
+        .edges("|Z")
+        .fillet(r.choice(CORNERS))
+    )
     body = body.faces("<Z").edges().fillet(fillet) if fillet else body
     return body.translate((x0, y0, r.uniform(2.5, 6.0)))
 
 
 _KINDS: dict[str, Callable[[random.Random, float, float, float], list[Any]]] = {
-    "one": _one, "two": _two, "opened": _opened, "through": _through}
+    "one": _one,
+    "two": _two,
+    "opened": _opened,
+    "through": _through,
+}

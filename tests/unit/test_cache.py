@@ -29,7 +29,11 @@ def test_the_longest_unused_answer_is_forgotten_first() -> None:
 
 
 def test_equal_regions_give_the_very_same_offset_and_others_do_not() -> None:
-    one, same, other = Region.rectangle(0, 0, 4, 3), Region.rectangle(0, 0, 4, 3), Region.rectangle(0, 0, 4, 3.5)
+    one, same, other = (
+        Region.rectangle(0, 0, 4, 3),
+        Region.rectangle(0, 0, 4, 3),
+        Region.rectangle(0, 0, 4, 3.5),
+    )
     assert one.digest() == same.digest() != other.digest()
     assert one.offset(1.0) is same.offset(1.0)
     assert one.offset(1.0) is not other.offset(1.0)

@@ -15,7 +15,11 @@ from trunnion.shop import load_shop
 from trunnion.toolpath.surface.axis_search import roomy
 
 BALL = cutter("ball", diameter=6.0, corner=3.0, flute=12.0)
-UP, SIDE, DOWN = np.array([[0.0, 0.0, 1.0]]), np.array([[1.0, 0.0, 0.0]]), np.array([[0.6, 0.0, -0.8]])
+UP, SIDE, DOWN = (
+    np.array([[0.0, 0.0, 1.0]]),
+    np.array([[1.0, 0.0, 0.0]]),
+    np.array([[0.6, 0.0, -0.8]]),
+)
 
 
 @pytest.fixture(scope="module")
@@ -27,7 +31,9 @@ def block(sample_part):
 
 def around(block, machine="Trunnion 650", cutting=WORLD):
     part, skin = block
-    return ClearanceQuery(part, skin.moved(WORLD, cutting), cutting, WORLD, load_shop().machines[machine])
+    return ClearanceQuery(
+        part, skin.moved(WORLD, cutting), cutting, WORLD, load_shop().machines[machine]
+    )
 
 
 def test_a_tool_above_the_part_is_clear_and_one_in_it_is_not(block) -> None:
@@ -45,7 +51,9 @@ def test_a_move_is_asked_all_along_its_way(block) -> None:
     left, right = (np.array([[x, y, z]]) for x in (part.low[0] - 50.0, part.high[0] + 50.0))
     assert ask(left, UP).all() and ask(right, UP).all()
     assert not ask(right, UP, start_tip=left, start_axis=UP).any()
-    assert ask(right + [0.0, 0.0, 90.0], UP, start_tip=left + [0.0, 0.0, 90.0], start_axis=SIDE).all()
+    assert ask(
+        right + [0.0, 0.0, 90.0], UP, start_tip=left + [0.0, 0.0, 90.0], start_axis=SIDE
+    ).all()
 
 
 def test_an_axis_beyond_the_machine_s_limits_is_not_clear_wherever_the_tool_is(block) -> None:
@@ -68,4 +76,6 @@ def test_neck_shank_and_holder_are_asked_for_thicker_than_they_are() -> None:
     thick = roomy(BALL, 0.25)
     assert (thick.diameter, thick.corner_radius) == (BALL.diameter, BALL.corner_radius)
     assert thick.shank_diameter == approx(BALL.shank_diameter + 0.5)
-    assert [row[1] for row in thick.holder.rows] == approx([row[1] + 0.25 for row in BALL.holder.rows])
+    assert [row[1] for row in thick.holder.rows] == approx(
+        [row[1] + 0.25 for row in BALL.holder.rows]
+    )

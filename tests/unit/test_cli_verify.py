@@ -21,7 +21,11 @@ def programmed(tmp_path_factory) -> tuple[Path, str, float]:
     engine = Engine()
     session = engine.run(engine.open(block_with_pocket()))
     engine.write(session, folder, name="block")
-    return folder / "block.trunnion", (folder / "block.S1.nc").read_text(), session.verdict.machining_time_s
+    return (
+        folder / "block.trunnion",
+        (folder / "block.S1.nc").read_text(),
+        session.verdict.machining_time_s,
+    )
 
 
 def verify(project: Path, file: Path, capsys, *more: str) -> tuple[int, str, str]:
@@ -41,9 +45,17 @@ def finite_json(text: str) -> dict:
     return json.loads(text, parse_constant=lambda word: pytest.fail(f"{word} is no number of JSON"))
 
 
-@pytest.mark.parametrize(("new", "code"), [("S0", "verify.spindle-stands"), ("G1 X30 F0.001", "verify.endless"),
-                                           ("G0 X99999", "verify.travel")])
-def test_what_no_machine_should_run_is_a_failed_verdict_and_exit_1(programmed, tmp_path, capsys, new, code):
+@pytest.mark.parametrize(
+    ("new", "code"),
+    [
+        ("S0", "verify.spindle-stands"),
+        ("G1 X30 F0.001", "verify.endless"),
+        ("G0 X99999", "verify.travel"),
+    ],
+)
+def test_what_no_machine_should_run_is_a_failed_verdict_and_exit_1(
+    programmed, tmp_path, capsys, new, code
+):
     project, text, _ = programmed
     (tmp_path / "edited.nc").write_text(with_line(text, new))
     left, out, _ = verify(project, tmp_path / "edited.nc", capsys)
@@ -52,10 +64,18 @@ def test_what_no_machine_should_run_is_a_failed_verdict_and_exit_1(programmed, t
     assert code in {f["code"] for f in said["findings"] if f["severity"] == "error"}
 
 
-@pytest.mark.parametrize(("new", "words"), [("G1 X" + "9" * 400, "Xinf is out of range"),
-                                            ("G4 P99999999999", "P99999999999 is out of range"),
-                                            ("G3 I0 F100", "an arc without a radius"), ("F0", "the feed F must be above zero")])
-def test_what_cannot_be_read_is_one_line_that_names_the_file_and_exit_2(programmed, tmp_path, capsys, new, words):
+@pytest.mark.parametrize(
+    ("new", "words"),
+    [
+        ("G1 X" + "9" * 400, "Xinf is out of range"),
+        ("G4 P99999999999", "P99999999999 is out of range"),
+        ("G3 I0 F100", "an arc without a radius"),
+        ("F0", "the feed F must be above zero"),
+    ],
+)
+def test_what_cannot_be_read_is_one_line_that_names_the_file_and_exit_2(
+    programmed, tmp_path, capsys, new, words
+):
     project, text, _ = programmed
     (tmp_path / "edited.nc").write_text(with_line(text, new))
     left, out, err = verify(project, tmp_path / "edited.nc", capsys)
@@ -74,11 +94,15 @@ def test_a_dwell_is_in_the_machining_time(programmed, tmp_path, capsys):
 
 def test_cl_text_is_judged_in_the_same_way(programmed, tmp_path, capsys):
     project = programmed[0]
-    text = re.sub("SPINDL/RPM,[0-9]+", "SPINDL/RPM,0", project.with_suffix(".cl").read_text(), count=1)
+    text = re.sub(
+        "SPINDL/RPM,[0-9]+", "SPINDL/RPM,0", project.with_suffix(".cl").read_text(), count=1
+    )
     (tmp_path / "edited.cl").write_text(text)
     left, out, _ = verify(project, tmp_path / "edited.cl", capsys, "--set", "post.dialect=apt")
     assert left == 1
-    assert [f["code"] for f in finite_json(out)["findings"] if f["severity"] == "error"] == ["verify.spindle-stands"]
+    assert [f["code"] for f in finite_json(out)["findings"] if f["severity"] == "error"] == [
+        "verify.spindle-stands"
+    ]
 
 
 def test_a_stream_without_an_end_is_refused(tmp_path, monkeypatch):

@@ -25,7 +25,9 @@ def test_a_course_goes_where_it_is_cheapest() -> None:
 
 
 def test_a_course_goes_round_what_is_forbidden() -> None:
-    cost = np.array([[0.0, 5.0, 9.0, 9.0], [INF, 5.0, 9.0, 9.0], [INF, 5.0, 9.0, 9.0], [0.0, 5.0, 9.0, 9.0]])
+    cost = np.array(
+        [[0.0, 5.0, 9.0, 9.0], [INF, 5.0, 9.0, 9.0], [INF, 5.0, 9.0, 9.0], [0.0, 5.0, 9.0, 9.0]]
+    )
     assert course(cost, LINE, FREE, 99.0)[0].tolist() == [0, 1, 1, 0]
 
 
@@ -56,7 +58,9 @@ def test_the_compiled_loop_answers_as_the_plain_one(k: int, m: int, seed: int) -
     column = np.arange(m)
     near = np.column_stack([column, (column + 1) % m, np.where(column > 0, column - 1, -1)])
     turn = some.integers(0, 3, (m, 3)).astype(float)
-    for mine, theirs in zip(course(cost, near, turn, 3.0), plain.course(cost, near, turn, 3.0), strict=True):
+    for mine, theirs in zip(
+        course(cost, near, turn, 3.0), plain.course(cost, near, turn, 3.0), strict=True
+    ):
         assert (mine == theirs).all()
 
 

@@ -18,12 +18,20 @@ QUARTER = math.tan(math.pi / 8.0)
 
 def slot() -> Curve:
     """A slot 30 long and 10 wide: two lines of 20 and two half circles of radius 5."""
-    return Curve(np.array([[0.0, 0.0], [20.0, 0.0], [20.0, 10.0], [0.0, 10.0]]), np.array([0.0, HALF, 0.0, HALF]), True)
+    return Curve(
+        np.array([[0.0, 0.0], [20.0, 0.0], [20.0, 10.0], [0.0, 10.0]]),
+        np.array([0.0, HALF, 0.0, HALF]),
+        True,
+    )
 
 
 def hook() -> Curve:
     """A line of 10, a quarter circle of radius 5 to the left, a line of 10."""
-    return Curve(np.array([[0.0, 0.0], [10.0, 0.0], [15.0, 5.0], [15.0, 15.0]]), np.array([0.0, QUARTER, 0.0, 0.0]), False)
+    return Curve(
+        np.array([[0.0, 0.0], [10.0, 0.0], [15.0, 5.0], [15.0, 15.0]]),
+        np.array([0.0, QUARTER, 0.0, 0.0]),
+        False,
+    )
 
 
 def test_a_slot_has_the_length_and_area_worked_out_by_hand():
@@ -153,13 +161,16 @@ def test_turning_and_mirroring_keep_lengths():
     assert slot().mirrored().area == approx(-slot().area)
 
 
-@pytest.mark.parametrize(("points", "bulges", "closed", "message"), [
-    ([[0.0, 0.0]], [0.0], False, "too few"),
-    ([[0.0, 0.0], [1.0, 0.0]], [0.0, 0.0], True, "too few"),
-    ([[0.0, 0.0], [1.0, 0.0]], [0.0, 1.0], False, "must be 0"),
-    ([[0.0, 0.0], [math.nan, 0.0]], [0.0, 0.0], False, "finite"),
-    ([[0.0, 0.0], [1.0, 0.0]], [0.0], False, "shape"),
-])
+@pytest.mark.parametrize(
+    ("points", "bulges", "closed", "message"),
+    [
+        ([[0.0, 0.0]], [0.0], False, "too few"),
+        ([[0.0, 0.0], [1.0, 0.0]], [0.0, 0.0], True, "too few"),
+        ([[0.0, 0.0], [1.0, 0.0]], [0.0, 1.0], False, "must be 0"),
+        ([[0.0, 0.0], [math.nan, 0.0]], [0.0, 0.0], False, "finite"),
+        ([[0.0, 0.0], [1.0, 0.0]], [0.0], False, "shape"),
+    ],
+)
 def test_curves_that_are_none_are_refused(points, bulges, closed, message):
     with pytest.raises(ValueError, match=message):
         Curve(np.array(points), np.array(bulges), closed)
@@ -175,10 +186,20 @@ def test_a_circle_without_radius_and_a_flat_rectangle_are_refused():
 @pytest.mark.parametrize("seed", [1, 2, 3])
 def test_compiled_loops_give_what_the_plain_ones_give(seed):
     numbers = np.random.default_rng(seed)
-    curve = Curve(numbers.integers(-9, 9, (40, 2)).astype(float), numbers.choice([0.0, 0.0, 0.4, -0.7, 1.0, -2.0], 40), True)
+    curve = Curve(
+        numbers.integers(-9, 9, (40, 2)).astype(float),
+        numbers.choice([0.0, 0.0, 0.4, -0.7, 1.0, -2.0], 40),
+        True,
+    )
     s = curve.segments()
     rows = (s.start, s.end, s.centre, s.radius, s.sweep)
-    points = np.concatenate([numbers.uniform(-12.0, 12.0, (500, 2)), numbers.integers(-9, 9, (500, 2)).astype(float), s.start])
+    points = np.concatenate(
+        [
+            numbers.uniform(-12.0, 12.0, (500, 2)),
+            numbers.integers(-9, 9, (500, 2)).astype(float),
+            s.start,
+        ]
+    )
     away, nearest = plain.nearest_segment(points, *rows)
     compiled_away, compiled_nearest = compiled.nearest_segment(points, *rows)
     assert (compiled_away == away).all()

@@ -15,7 +15,9 @@ def test_the_settings_page_is_what_the_declarations_say(capsys):
     assert capsys.readouterr().out == (ROOT / "docs" / "settings.md").read_text(), "run `make docs`"
 
 
-@pytest.mark.parametrize("page", ["README.md", "CONTRIBUTING.md", "docs/index.md", "docs/verification.md"])
+@pytest.mark.parametrize(
+    "page", ["README.md", "CONTRIBUTING.md", "docs/index.md", "docs/verification.md"]
+)
 def test_every_file_that_a_page_links_to_is_there(page):
     folder = (ROOT / page).parent
     for target in re.findall(r"\]\(([^)#:]+)\)", (ROOT / page).read_text()):

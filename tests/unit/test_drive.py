@@ -8,7 +8,17 @@ import numpy as np
 import pytest
 from pytest import approx
 
-from flat_parts import FlatPart, Prism, blank_of, open_panel, open_panel_with_island, operation, panel, rounded, stepped_panel
+from flat_parts import (
+    FlatPart,
+    Prism,
+    blank_of,
+    open_panel,
+    open_panel_with_island,
+    operation,
+    panel,
+    rounded,
+    stepped_panel,
+)
 from trunnion.findings import Refused
 from trunnion.geometry.frame import WORLD
 from trunnion.model.feature import FaceRole, Feature, Recognition
@@ -27,7 +37,9 @@ CORNERS = (4 - math.pi) * 64
 
 def drive(made, kind, feature, earlier=(), choices=None):
     part, recognition = made
-    (setup,) = make_setups(recognition, blank_of(part), SHOP.machine("Mill 1200"), choose(SetupSettings, {}))
+    (setup,) = make_setups(
+        recognition, blank_of(part), SHOP.machine("Mill 1200"), choose(SetupSettings, {})
+    )
     one = operation(kind, feature, D10, choices)
     process = ProcessTree(plan="", material="", setups=(setup,), operations=(*earlier, one))
     return drive_of(one, process, Space.of(part, recognition, blank_of(part), setup))
@@ -72,7 +84,9 @@ def test_a_ribs_top_may_be_cut_from_both_pockets_and_ends_at_the_walls():
 
 
 def test_the_wall_at_a_ribs_end_has_the_material_on_its_right():
-    low = min((w.curve for w in drive(panel(), "rib_top", "rib-01").walls), key=lambda c: c.points[0, 1])
+    low = min(
+        (w.curve for w in drive(panel(), "rib_top", "rib-01").walls), key=lambda c: c.points[0, 1]
+    )
     assert low.end[0] > low.start[0]
 
 
@@ -117,7 +131,10 @@ def test_an_open_pockets_wall_is_one_guide_past_the_top_of_its_island():
 def test_a_step_gives_two_levels_and_two_floors():
     stepped = drive(stepped_panel(), "floor", "pocket-01")
     assert [f.region.area for f in stepped.floors] == approx([40 * 40, 40 * 40 - CORNERS])
-    assert [(level.top, level.bottom) for level in stepped.levels] == [approx((-2, -17)), approx((-17, -27))]
+    assert [(level.top, level.bottom) for level in stepped.levels] == [
+        approx((-2, -17)),
+        approx((-17, -27)),
+    ]
 
 
 def test_the_upper_guide_of_a_step_is_closed_over_it():
@@ -128,18 +145,35 @@ def test_the_upper_guide_of_a_step_is_closed_over_it():
 
 def test_a_corner_knows_the_cutter_that_was_there_before():
     before = operation("rough", "pocket-01", D20, {"route.wall_allowance": 0.4})
-    corner = drive(panel(), "corner", "pocket-01", (before,), {"route.wall_allowance": 0.5, "route.floor_allowance": 0.3})
+    corner = drive(
+        panel(),
+        "corner",
+        "pocket-01",
+        (before,),
+        {"route.wall_allowance": 0.5, "route.floor_allowance": 0.3},
+    )
     assert (corner.earlier_radius, corner.earlier_allowance) == (10.0, 0.4)
     assert (corner.wall_allowance, corner.floor_allowance) == (0.5, 0.3)
 
 
 def test_the_same_drive_comes_out_in_a_setup_from_below():
     area = rounded(20, 10, 80, 40, 8)
-    part = FlatPart(outline=rounded(0, 0, 100, 50, 10), height=20.0, cuts=(Prism(area=area, low=-1, high=12, face=2, side=3, at=(50, 25)),))
-    pocket = Feature(id="pocket-01", kind="pocket", faces=(FaceRole(role="floor", face=2),), sizes={"corner_radius": 8.0},
-                     attributes={"direction": (0.0, 0.0, -1.0)})
+    part = FlatPart(
+        outline=rounded(0, 0, 100, 50, 10),
+        height=20.0,
+        cuts=(Prism(area=area, low=-1, high=12, face=2, side=3, at=(50, 25)),),
+    )
+    pocket = Feature(
+        id="pocket-01",
+        kind="pocket",
+        faces=(FaceRole(role="floor", face=2),),
+        sizes={"corner_radius": 8.0},
+        attributes={"direction": (0.0, 0.0, -1.0)},
+    )
     recognition = Recognition(family="panel", frame=WORLD, features=(pocket,))
-    _, below = make_setups(recognition, blank_of(part), SHOP.machine("Mill 1200"), choose(SetupSettings, {}))
+    _, below = make_setups(
+        recognition, blank_of(part), SHOP.machine("Mill 1200"), choose(SetupSettings, {})
+    )
     process = ProcessTree(plan="", material="", setups=(below,))
     space = Space.of(part, recognition, blank_of(part), below)
     (level,) = drive_of(operation("rough", "pocket-01", D10), process, space).levels
@@ -150,7 +184,12 @@ def test_the_same_drive_comes_out_in_a_setup_from_below():
 
 def test_a_pocket_that_the_sections_do_not_show_is_refused_by_name():
     part, _ = panel()
-    ghost = Feature(id="pocket-07", kind="pocket", faces=(FaceRole(role="floor", face=1),), sizes={"floor_z": 30.0})
+    ghost = Feature(
+        id="pocket-07",
+        kind="pocket",
+        faces=(FaceRole(role="floor", face=1),),
+        sizes={"floor_z": 30.0},
+    )
     with pytest.raises(Refused, match="pocket-07"):
         drive((part, Recognition(family="panel", features=(ghost,))), "rough", "pocket-07")
 

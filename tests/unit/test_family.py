@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+from collections.abc import Sequence
 from dataclasses import dataclass, field
 from pathlib import Path
 from types import SimpleNamespace
@@ -44,15 +45,23 @@ class Kind:
         return f"a {self.name}"
 
     def suits(self, graph) -> Suitability:
-        return Suitability(score=self.score, explained=1.0 - self.left, reason=f"{self.name} through and through")
+        return Suitability(
+            score=self.score, explained=1.0 - self.left, reason=f"{self.name} through and through"
+        )
 
     def recognize(self, graph, slicer, settings, progress) -> Recognition:
         self.asked.append(self.name)
-        return Recognition(family=self.name, features=(Feature(id="a-01", kind="a", faces=(FaceRole(role="face", face=1),)),),
-                           unexplained=(2,), unexplained_share=self.left)
+        return Recognition(
+            family=self.name,
+            features=(Feature(id="a-01", kind="a", faces=(FaceRole(role="face", face=1),)),),
+            unexplained=(2,),
+            unexplained_share=self.left,
+        )
 
 
-def recognised(monkeypatch, families: list[Kind], kinds: list[Kind] = [], wanted: str = "auto") -> Recognition:  # noqa: B006
+def recognised(
+    monkeypatch, families: list[Kind], kinds: Sequence[Kind] = (), wanted: str = "auto"
+) -> Recognition:
     by_group = {"families": {k.name: k for k in families}, "part_kinds": {k.name: k for k in kinds}}
     monkeypatch.setattr(family.registry, "names", lambda group: tuple(sorted(by_group[group])))
     monkeypatch.setattr(family.registry, "get", lambda group, name: lambda: by_group[group][name])
@@ -69,7 +78,9 @@ def severities(found: Recognition) -> dict[str, Severity]:
 def test_the_best_family_is_told_with_how_sure_and_why(monkeypatch) -> None:
     found = recognised(monkeypatch, [Kind("cow", 0.7), Kind("dog", 0.9)])
     assert found.family == "dog" and not found.doubt
-    assert found.taken_for == TakenFor(kind="dog", noun="a dog", score=0.9, reason="dog through and through")
+    assert found.taken_for == TakenFor(
+        kind="dog", noun="a dog", score=0.9, reason="dog through and through"
+    )
     assert severities(found) == {"recognize.family": Severity.INFO}
     assert found.findings[-1].text == "taken for a dog (0.90): dog through and through"
 
@@ -77,9 +88,20 @@ def test_the_best_family_is_told_with_how_sure_and_why(monkeypatch) -> None:
 def test_a_kind_that_no_family_serves_stops_with_nothing_recognised(monkeypatch) -> None:
     cow = Kind("cow", 0.7)
     found = recognised(monkeypatch, [cow, Kind("dog", 0.6)], [Kind("emu", 0.95)])
-    assert (found.family, found.features, found.unexplained, found.unexplained_share) == ("emu", (), (1, 2, 3), 1.0)
-    assert severities(found) == {"recognize.family": Severity.INFO, "recognize.no-family": Severity.ERROR}
-    assert found.findings[-1].remedy == "choose recognize.family = cow or dog to go on with one of the families there are"
+    assert (found.family, found.features, found.unexplained, found.unexplained_share) == (
+        "emu",
+        (),
+        (1, 2, 3),
+        1.0,
+    )
+    assert severities(found) == {
+        "recognize.family": Severity.INFO,
+        "recognize.no-family": Severity.ERROR,
+    }
+    assert (
+        found.findings[-1].remedy
+        == "choose recognize.family = cow or dog to go on with one of the families there are"
+    )
     assert found.doubt == f"{found.findings[-1].text}: {found.findings[-1].remedy}"
     assert not cow.asked
 
@@ -89,12 +111,19 @@ def test_a_kind_that_no_family_serves_and_that_is_unlikely_stops_nothing(monkeyp
     assert found.family == "cow" and not found.doubt
 
 
-def test_a_family_that_explains_less_than_half_of_the_area_stops_and_keeps_its_features(monkeypatch) -> None:
+def test_a_family_that_explains_less_than_half_of_the_area_stops_and_keeps_its_features(
+    monkeypatch,
+) -> None:
     found = recognised(monkeypatch, [Kind("cow", 0.9, left=0.88), Kind("dog", 0.2)])
     assert [f.id for f in found] == ["a-01"]
     assert severities(found)["recognize.unexplained"] is Severity.ERROR
-    assert "88 % of the area is explained by no feature; the part was taken for a cow (0.90)" in found.doubt
-    assert found.doubt.endswith("choose recognize.family = cow to go on with it, or dog to try another one")
+    assert (
+        "88 % of the area is explained by no feature; the part was taken for a cow (0.90)"
+        in found.doubt
+    )
+    assert found.doubt.endswith(
+        "choose recognize.family = cow to go on with it, or dog to try another one"
+    )
 
 
 def test_half_of_the_area_is_enough(monkeypatch) -> None:
@@ -102,9 +131,22 @@ def test_half_of_the_area_is_enough(monkeypatch) -> None:
 
 
 def test_a_chosen_family_is_never_stopped_but_told(monkeypatch) -> None:
-    found = recognised(monkeypatch, [Kind("cow", 0.1, left=0.88), Kind("dog", 0.9)], [Kind("emu", 0.95)], wanted="cow")
-    assert found.family == "cow" and not found.doubt and found.taken_for is not None and found.taken_for.kind == "cow"
-    assert severities(found) == {"recognize.no-family": Severity.WARNING, "recognize.unexplained": Severity.WARNING}
+    found = recognised(
+        monkeypatch,
+        [Kind("cow", 0.1, left=0.88), Kind("dog", 0.9)],
+        [Kind("emu", 0.95)],
+        wanted="cow",
+    )
+    assert (
+        found.family == "cow"
+        and not found.doubt
+        and found.taken_for is not None
+        and found.taken_for.kind == "cow"
+    )
+    assert severities(found) == {
+        "recognize.no-family": Severity.WARNING,
+        "recognize.unexplained": Severity.WARNING,
+    }
 
 
 @pytest.fixture(scope="module")
@@ -112,11 +154,18 @@ def shell() -> Path:
     return samples.written(round_parts.shell(4).shape, name="shell")
 
 
-def test_program_refuses_a_casing_in_one_line_before_anything_is_planned(shell, tmp_path, capsys) -> None:
+def test_program_refuses_a_casing_in_one_line_before_anything_is_planned(
+    shell, tmp_path, capsys
+) -> None:
     assert main(["program", str(shell), "-o", str(tmp_path / "out")]) == BAD
     said = capsys.readouterr().err
-    assert said.startswith("trunnion: shell.step: the part looks like a casing (1.00): ") and len(said.splitlines()) == 1
-    assert said.endswith("choose recognize.family = panel or surface to go on with one of the families there are\n")
+    assert (
+        said.startswith("trunnion: shell.step: the part looks like a casing (1.00): ")
+        and len(said.splitlines()) == 1
+    )
+    assert said.endswith(
+        "choose recognize.family = panel or surface to go on with one of the families there are\n"
+    )
     assert not (tmp_path / "out").exists()
 
 
@@ -134,14 +183,25 @@ def test_recognize_says_what_it_takes_a_casing_for_and_exits_with_1(shell, capsy
     assert "error recognize.no-family: the part looks like a casing" in said.err
     assert main(["recognize", str(shell), "--json"]) == PROBLEMS
     data = json.loads(capsys.readouterr().out)
-    assert data["family"] == "casing" and data["features"] == [] and data["unexplained"]["area_share"] == 1.0
-    assert data["taken_for"]["kind"] == "casing" and data["taken_for"]["score"] > 0.95 and "bore" in data["taken_for"]["reason"]
+    assert (
+        data["family"] == "casing"
+        and data["features"] == []
+        and data["unexplained"]["area_share"] == 1.0
+    )
+    assert (
+        data["taken_for"]["kind"] == "casing"
+        and data["taken_for"]["score"] > 0.95
+        and "bore" in data["taken_for"]["reason"]
+    )
 
 
 def test_a_casing_is_recognised_as_the_family_that_a_person_chooses(shell, capsys) -> None:
     assert main(["recognize", str(shell), "--set", "recognize.family=surface"]) == DONE
     said = capsys.readouterr()
-    assert said.out.startswith("taken for a part of curved surfaces ") and "warning recognize.no-family" in said.err
+    assert (
+        said.out.startswith("taken for a part of curved surfaces ")
+        and "warning recognize.no-family" in said.err
+    )
     engine = Engine()
     session = engine.with_choices(engine.open(shell), {"recognize.family": "surface"})
     assert engine.run(session, "blank").blank is not None
@@ -153,7 +213,9 @@ def test_a_panel_is_told_as_one(sample_panel, capsys) -> None:
 
 
 def test_a_person_s_edit_of_what_was_recognised_changes_no_doubt() -> None:
-    found = Recognition(family="cow", features=(Feature(id="a-01", kind="a", faces=()),), doubt="choose a family")
+    found = Recognition(
+        family="cow", features=(Feature(id="a-01", kind="a", faces=()),), doubt="choose a family"
+    )
     assert found.without("a-01").doubt == "choose a family"
 
 
@@ -162,11 +224,17 @@ DOUBTED = TakenFor(kind="casing", noun="a casing", score=0.875, reason="96 % of 
 
 def test_features_xml_and_the_project_keep_what_a_part_was_taken_for(tmp_path) -> None:
     from dataclasses import replace
+
     found = replace(programs.recognition(), taken_for=DOUBTED, doubt="no family: choose one")
     (tmp_path / "a.xml").write_bytes(features_xml(found, programs.part_info()))
     again = read_features(tmp_path / "a.xml")
     assert (again.taken_for, again.doubt) == (DOUBTED, "no family: choose one")
-    save_project(replace(programs.session(), recognition=found), tmp_path / "a.trunnion", programs.PART_BYTES, ".step")
+    save_project(
+        replace(programs.session(), recognition=found),
+        tmp_path / "a.trunnion",
+        programs.PART_BYTES,
+        ".step",
+    )
     kept = load_project(tmp_path / "a.trunnion")[0].recognition
     assert kept is not None and (kept.taken_for, kept.doubt) == (DOUBTED, "no family: choose one")
 
@@ -174,6 +242,7 @@ def test_features_xml_and_the_project_keep_what_a_part_was_taken_for(tmp_path) -
 def test_a_project_from_before_it_was_kept_still_opens(tmp_path) -> None:
     import re
     import zipfile
+
     save_project(programs.session(), tmp_path / "a.trunnion", programs.PART_BYTES, ".step")
     with zipfile.ZipFile(tmp_path / "a.trunnion") as archive:
         members = {name: archive.read(name) for name in archive.namelist()}

@@ -11,8 +11,12 @@ from trunnion.units import trimmed
 
 
 def test_a_finding_says_what_where_and_what_to_do() -> None:
-    found = findings.warning("panel.leaning-wall", "the wall leans", "face 12", remedy="use a swarf strategy")
-    assert str(found) == "warning panel.leaning-wall: the wall leans (face 12): use a swarf strategy"
+    found = findings.warning(
+        "panel.leaning-wall", "the wall leans", "face 12", remedy="use a swarf strategy"
+    )
+    assert (
+        str(found) == "warning panel.leaning-wall: the wall leans (face 12): use a swarf strategy"
+    )
     assert found.as_dict()["where"] == ["face 12"]
 
 
@@ -22,8 +26,12 @@ def test_only_errors_count_as_errors() -> None:
 
 
 def test_a_line_names_eight_places_and_json_all_of_them() -> None:
-    found = findings.warning("a.b", "they lean", "pocket-01", *face_tags(range(200, 0, -1)), remedy="tilt")
-    assert str(found).endswith("(pocket-01, face 1, face 2, face 3, face 4, face 5, face 6, face 7 and 193 more): tilt")
+    found = findings.warning(
+        "a.b", "they lean", "pocket-01", *face_tags(range(200, 0, -1)), remedy="tilt"
+    )
+    assert str(found).endswith(
+        "(pocket-01, face 1, face 2, face 3, face 4, face 5, face 6, face 7 and 193 more): tilt"
+    )
     assert found.as_dict()["where"] == ["pocket-01", *(f"face {n}" for n in range(1, 201))]
 
 
@@ -51,6 +59,8 @@ def test_an_unknown_name_is_refused_with_the_known_ones() -> None:
         registry.get("dialects", "klingon")
 
 
-@pytest.mark.parametrize(("value", "text"), [(12.5, "12.5"), (-0.00001, "0"), (40.0, "40"), (-3.25, "-3.25")])
+@pytest.mark.parametrize(
+    ("value", "text"), [(12.5, "12.5"), (-0.00001, "0"), (40.0, "40"), (-3.25, "-3.25")]
+)
 def test_numbers_are_written_without_trailing_zeros(value: float, text: str) -> None:
     assert trimmed(value, 3) == text

@@ -16,7 +16,7 @@ def test_the_step_reader_drops_a_damaged_face_in_silence(tmp_path: Path) -> None
     file = tmp_path / "dangling.step"
     text = samples.written(samples.box_shape()).read_bytes()
     start = text.index(b"PLANE('',#")
-    file.write_bytes(text[:start] + b"PLANE('',#999999" + text[text.index(b")", start):])
+    file.write_bytes(text[:start] + b"PLANE('',#999999" + text[text.index(b")", start) :])
     reader = STEPControl_Reader()
     reader.ReadFile(str(file))
     reader.TransferRoots()
@@ -26,6 +26,7 @@ def test_the_step_reader_drops_a_damaged_face_in_silence(tmp_path: Path) -> None
 def test_the_iges_reader_gives_surfaces_of_revolution_for_cylinders() -> None:
     from OCP.BRepAdaptor import BRepAdaptor_Surface
     from OCP.GeomAbs import GeomAbs_SurfaceOfRevolution
+
     reader = IGESControl_Reader()
     reader.ReadFile(str(samples.written(samples.drilled_block_shape(), "igs")))
     reader.TransferRoots()
@@ -35,6 +36,7 @@ def test_the_iges_reader_gives_surfaces_of_revolution_for_cylinders() -> None:
 
 def test_sewing_does_not_follow_faces_by_the_call_that_should() -> None:
     from OCP.BRepBuilderAPI import BRepBuilderAPI_Sewing
+
     reader = IGESControl_Reader()
     reader.ReadFile(str(samples.written(samples.box_shape(), "igs")))
     reader.TransferRoots()
@@ -60,4 +62,6 @@ def test_the_reader_with_names_and_colours_keeps_the_order_of_faces(suffix: str)
         BRepGProp.SurfaceProperties_s(face, found)
         return tuple(round(c, 6) for c in found.CentreOfMass().Coord())
 
-    assert [place(f) for f in faces_of(reader.OneShape())] == [place(f) for f in faces_of(part.as_read)]
+    assert [place(f) for f in faces_of(reader.OneShape())] == [
+        place(f) for f in faces_of(part.as_read)
+    ]

@@ -77,7 +77,11 @@ def work_on(file, folder, steps) -> dict[str, tuple[int, list[float]]]:
     return found
 
 
-@pytest.fixture(scope="module", params=[(block_with_pocket_shape, STEPS), (dome_on_a_plate_shape, STEPS[:4])], ids=["panel", "surface"])
+@pytest.fixture(
+    scope="module",
+    params=[(block_with_pocket_shape, STEPS), (dome_on_a_plate_shape, STEPS[:4])],
+    ids=["panel", "surface"],
+)
 def worked(request, tmp_path_factory):
     """What is counted on a small part of a family; the first time, when all is imported and compiled, doesn't count."""
     shape, steps = request.param
@@ -111,7 +115,13 @@ def _has_come(looks, last) -> bool:
 
 
 def test_a_stock_lowered_slice_by_slice_is_the_same_to_the_last_bit(monkeypatch):
-    builder = PathBuilder(mill(10), cutting(4, 4), PlanningStock.of(box_blank((0, 0, -20), (60, 40, 2)), SETUP), SETUP, 2.0)
+    builder = PathBuilder(
+        mill(10),
+        cutting(4, 4),
+        PlanningStock.of(box_blank((0, 0, -20), (60, 40, 2)), SETUP),
+        SETUP,
+        2.0,
+    )
     builder.rapid((-10, 5, 50))
     for k in range(30):
         builder.line((-10 + 2.7 * k, 5 + k, -0.2 * k), 500.0)

@@ -13,8 +13,17 @@ from trunnion.pipeline.engine import Engine
 from trunnion.pipeline.manual_edits import with_features_by_hand, with_operations_by_hand
 from trunnion_resources import sample
 
-FOUND = replace(recognition(), features=tuple(replace(f, by_hand=False) for f in recognition()), removed=(), findings=())
-MADE = replace(process_tree(), operations=tuple(replace(o, by_hand=False) for o in process_tree().operations), removed=())
+FOUND = replace(
+    recognition(),
+    features=tuple(replace(f, by_hand=False) for f in recognition()),
+    removed=(),
+    findings=(),
+)
+MADE = replace(
+    process_tree(),
+    operations=tuple(replace(o, by_hand=False) for o in process_tree().operations),
+    removed=(),
+)
 
 
 @pytest.fixture(scope="module")
@@ -47,27 +56,49 @@ def test_the_share_of_unexplained_faces_follows_a_deletion_and_a_run_after_it(ro
     gone = next(f for f in found if f.kind == "pocket")
     loose = set(gone.tags) - {tag for f in found if f.id != gone.id for tag in f.tags}
     area = engine.context_of(session).part.graph().area
-    expected = pytest.approx(found.unexplained_share + float(area[[t - 1 for t in loose]].sum() / area.sum()))
+    expected = pytest.approx(
+        found.unexplained_share + float(area[[t - 1 for t in loose]].sum() / area.sum())
+    )
     deleted = found.without(gone.id)
     assert deleted.unexplained_share == expected
     assert deleted.unexplained_share > found.unexplained_share
-    again = engine.run(replace(session, recognition=deleted, choices={"recognize.panel.rib_width": 12.5}), "recognize")
+    again = engine.run(
+        replace(session, recognition=deleted, choices={"recognize.panel.rib_width": 12.5}),
+        "recognize",
+    )
     assert again.recognition.unexplained_share == expected
 
 
 def test_a_deleted_feature_is_known_by_its_faces_when_numbers_change():
-    renumbered = replace(FOUND, features=tuple(replace(f, id=f.id.replace("01", "09")) for f in FOUND))
-    assert ids(with_features_by_hand(FOUND.without("pocket-01"), renumbered)) == ["pocket-02", "island-09", "rib-09"]
+    renumbered = replace(
+        FOUND, features=tuple(replace(f, id=f.id.replace("01", "09")) for f in FOUND)
+    )
+    assert ids(with_features_by_hand(FOUND.without("pocket-01"), renumbered)) == [
+        "pocket-02",
+        "island-09",
+        "rib-09",
+    ]
 
 
 def test_a_feature_that_shares_few_faces_with_a_deleted_one_is_taken_up():
-    other = Feature(id="pocket-03", kind="pocket", faces=tuple(FaceRole(role="wall", face=n) for n in (3, 4, 30, 31)))
-    assert "pocket-03" in ids(with_features_by_hand(FOUND.without("pocket-01"), replace(FOUND, features=(other,))))
+    other = Feature(
+        id="pocket-03",
+        kind="pocket",
+        faces=tuple(FaceRole(role="wall", face=n) for n in (3, 4, 30, 31)),
+    )
+    assert "pocket-03" in ids(
+        with_features_by_hand(FOUND.without("pocket-01"), replace(FOUND, features=(other,)))
+    )
 
 
 def test_a_feature_made_by_hand_where_one_was_deleted_stays():
     before = FOUND.without("pocket-01")
-    mine = Feature(id="mine", kind="island", by_hand=True, faces=(FaceRole(role="wall", face=4), FaceRole(role="top", face=3)))
+    mine = Feature(
+        id="mine",
+        kind="island",
+        by_hand=True,
+        faces=(FaceRole(role="wall", face=4), FaceRole(role="top", face=3)),
+    )
     after = with_features_by_hand(replace(before, features=(*before.features, mine)), FOUND)
     assert ids(after) == ["pocket-02", "island-01", "rib-01", "mine"]
     assert after.unexplained == (5, 6, 40, 41)
@@ -112,13 +143,22 @@ def test_kinds_that_share_out_faces_are_what_the_family_says(monkeypatch):
         exclusive = ("wedge",)
 
     known, names = registry.get, registry.names
-    monkeypatch.setattr(registry, "get", lambda kind, name: Wedges if name == "wedges" else known(kind, name))
+    monkeypatch.setattr(
+        registry, "get", lambda kind, name: Wedges if name == "wedges" else known(kind, name)
+    )
     monkeypatch.setattr(registry, "names", lambda kind: (*names(kind), "wedges"))
 
     def wedge(id, *tags, by_hand=False):
-        return Feature(id=id, kind="wedge", faces=tuple(FaceRole(role="face", face=t) for t in tags), by_hand=by_hand)
+        return Feature(
+            id=id,
+            kind="wedge",
+            faces=tuple(FaceRole(role="face", face=t) for t in tags),
+            by_hand=by_hand,
+        )
 
-    found = Recognition(family="wedges", features=(wedge("wedge-01", 1, 2, 3, 4), wedge("wedge-02", 5, 6)))
+    found = Recognition(
+        family="wedges", features=(wedge("wedge-01", 1, 2, 3, 4), wedge("wedge-02", 5, 6))
+    )
     before = replace(found, features=(wedge("wedge-01", 4, 5, 6, by_hand=True),))
     after = with_features_by_hand(before, found)
     assert {f.id: f.tags for f in after} == {"wedge-01": (4, 5, 6), "wedge-02": (1, 2, 3)}

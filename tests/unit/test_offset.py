@@ -17,13 +17,28 @@ QUARTER = math.tan(math.pi / 8.0)
 
 def rounded(x0: float, y0: float, x1: float, y1: float, r: float) -> Curve:
     """An anticlockwise rectangle with corners of radius r."""
-    points = [[x0 + r, y0], [x1 - r, y0], [x1, y0 + r], [x1, y1 - r], [x1 - r, y1], [x0 + r, y1], [x0, y1 - r], [x0, y0 + r]]
+    points = [
+        [x0 + r, y0],
+        [x1 - r, y0],
+        [x1, y0 + r],
+        [x1, y1 - r],
+        [x1 - r, y1],
+        [x0 + r, y1],
+        [x0, y1 - r],
+        [x0, y0 + r],
+    ]
     return Curve(np.array(points), np.array([0.0, QUARTER] * 4), True)
 
 
 def pocket() -> Region:
     """A pocket 100 by 60 with corners of 8, a round island of 10 and a rounded square one."""
-    return Region.of([rounded(0.0, 0.0, 100.0, 60.0, 8.0), Curve.circle((30.0, 30.0), 10.0), rounded(60.0, 20.0, 80.0, 40.0, 3.0)])
+    return Region.of(
+        [
+            rounded(0.0, 0.0, 100.0, 60.0, 8.0),
+            Curve.circle((30.0, 30.0), 10.0),
+            rounded(60.0, 20.0, 80.0, 40.0, 3.0),
+        ]
+    )
 
 
 def radii(region: Region) -> list[float]:
@@ -38,14 +53,23 @@ def worst_kink(region: Region) -> float:
         s = curve.segments()
         rows = np.arange(len(s))
         u, v = s.directions(rows, s.length), np.roll(s.directions(rows, 0.0 * s.length), -1, axis=0)
-        worst = max(worst, float(np.degrees(np.abs(np.arctan2(u[:, 0] * v[:, 1] - u[:, 1] * v[:, 0], (u * v).sum(axis=1)))).max()))
+        worst = max(
+            worst,
+            float(
+                np.degrees(
+                    np.abs(np.arctan2(u[:, 0] * v[:, 1] - u[:, 1] * v[:, 0], (u * v).sum(axis=1)))
+                ).max()
+            ),
+        )
     return worst
 
 
 def test_shrinking_moves_every_wall_and_radius_by_the_distance():
     small = pocket().offset(-5.0)
     assert radii(small) == approx([3.0] * 4 + [8.0] * 4 + [15.0] * 2, abs=1e-12)
-    assert small.area == approx(90.0 * 50.0 - (4.0 - math.pi) * 9.0 - 225.0 * math.pi - (900.0 - (4.0 - math.pi) * 64.0))
+    assert small.area == approx(
+        90.0 * 50.0 - (4.0 - math.pi) * 9.0 - 225.0 * math.pi - (900.0 - (4.0 - math.pi) * 64.0)
+    )
 
 
 def test_shrinking_and_growing_back_gives_the_rounded_pocket():
@@ -69,7 +93,12 @@ def test_an_offset_of_exactly_the_corner_radius_gives_sharp_corners():
 
 def test_an_offset_beyond_the_corner_radius_keeps_sharp_corners():
     inner = Region.of([rounded(0.0, 0.0, 100.0, 60.0, 8.0)]).offset(-20.0)
-    assert sorted(map(tuple, inner.pieces[0].outer.points.round(9).tolist())) == [(20.0, 20.0), (20.0, 40.0), (80.0, 20.0), (80.0, 40.0)]
+    assert sorted(map(tuple, inner.pieces[0].outer.points.round(9).tolist())) == [
+        (20.0, 20.0),
+        (20.0, 40.0),
+        (80.0, 20.0),
+        (80.0, 40.0),
+    ]
 
 
 def test_growing_a_rectangle_rounds_its_corners():
@@ -160,11 +189,16 @@ def test_many_small_steps_inward_come_to_the_same_as_one():
 
 
 def test_walls_that_are_tangent_only_to_a_thousandth_are_followed():
-    points = rounded(0.0, 0.0, 100.0, 60.0, 8.0).points + np.random.default_rng(1).uniform(-1e-3, 1e-3, (8, 2))
+    points = rounded(0.0, 0.0, 100.0, 60.0, 8.0).points + np.random.default_rng(1).uniform(
+        -1e-3, 1e-3, (8, 2)
+    )
     rough = Region.of([Curve(points, np.array([0.0, QUARTER] * 4), True)])
     for distance in (-12.0, -8.0, -3.0, 3.0):
         s = rough.offset(distance).segments()
-        assert np.abs(-rough.signed_distance(s.at(np.arange(len(s)), 0.5 * s.length)) - distance).max() < 2e-6
+        assert (
+            np.abs(-rough.signed_distance(s.at(np.arange(len(s)), 0.5 * s.length)) - distance).max()
+            < 2e-6
+        )
 
 
 def test_a_straight_parallel_lies_to_the_left():
@@ -192,18 +226,35 @@ def test_a_closed_parallel_is_closed():
     (inside,) = parallel_curves(Curve.rectangle(0.0, 0.0, 10.0, 10.0), 2.0)
     assert inside.closed
     assert inside.area == approx(36.0)
-    assert parallel_curves(Curve.rectangle(0.0, 0.0, 10.0, 10.0), -2.0)[0].area == approx(100.0 + 80.0 + 4.0 * math.pi)
+    assert parallel_curves(Curve.rectangle(0.0, 0.0, 10.0, 10.0), -2.0)[0].area == approx(
+        100.0 + 80.0 + 4.0 * math.pi
+    )
 
 
 def test_a_parallel_into_a_narrow_groove_leaves_the_groove_out():
-    groove = Curve.polyline([[0.0, 0.0], [10.0, 0.0], [10.0, -8.0], [13.0, -8.0], [13.0, 0.0], [23.0, 0.0]])
+    groove = Curve.polyline(
+        [[0.0, 0.0], [10.0, 0.0], [10.0, -8.0], [13.0, -8.0], [13.0, 0.0], [23.0, 0.0]]
+    )
     (beside,) = parallel_curves(groove, 2.0)
     assert beside.box()[0][1] > 1.0
     assert groove.distance(beside.sampled(0.01)).min() > 2.0 - 1e-6
 
 
 def test_a_closed_parallel_of_a_dumbbell_falls_into_two():
-    points = [[0, 0], [20, 0], [20, 8], [40, 8], [40, 0], [60, 0], [60, 20], [40, 20], [40, 12], [20, 12], [20, 20], [0, 20]]
+    points = [
+        [0, 0],
+        [20, 0],
+        [20, 8],
+        [40, 8],
+        [40, 0],
+        [60, 0],
+        [60, 20],
+        [40, 20],
+        [40, 12],
+        [20, 12],
+        [20, 20],
+        [0, 20],
+    ]
     halves = parallel_curves(Curve.polygon(points), 3.0)
     assert [c.closed for c in halves] == [True, True]
     into_the_neck = 2.0 * (3.0 * 2.0 - (math.sqrt(5.0) + 4.5 * math.asin(2.0 / 3.0)))

@@ -22,7 +22,9 @@ def areas(part: Part, *tags: int) -> list[float]:
     return [area_of(part.face_shape(t)) for t in tags]
 
 
-def on_cylinder(radius: float, *places: tuple[float, float]) -> tuple[tuple[float, float, float], ...]:
+def on_cylinder(
+    radius: float, *places: tuple[float, float]
+) -> tuple[tuple[float, float, float], ...]:
     return tuple((radius * math.cos(a), radius * math.sin(a), z) for a, z in places)
 
 
@@ -38,7 +40,12 @@ def test_the_part_stays_closed_and_as_large_and_the_faces_around_keep_their_tags
     part = plate(30.0, 20.0, 5.0)
     top = face_towards(part, 0, 0, 1)
     cut = divided(part, plane_cut(top, (10.0, 0.0, 0.0), (1.0, 0.3, 0.0)))
-    assert (cut.n_faces, cut.tags, cut.is_closed, cut.graph().open_edges) == (7, (1, 2, 3, 4, 5, 6, 7), True, 0)
+    assert (cut.n_faces, cut.tags, cut.is_closed, cut.graph().open_edges) == (
+        7,
+        (1, 2, 3, 4, 5, 6, 7),
+        True,
+        0,
+    )
     others = [t for t in part.tags if t != top]
     assert areas(cut, *others) == pytest.approx(areas(part, *others))
     assert cut.volume == part.volume
@@ -104,21 +111,32 @@ def test_left_is_as_seen_from_outside_below_too():
 def test_a_closed_way_cuts_an_area_out():
     part = plate(60.0, 60.0, 5.0)
     top = face_towards(part, 0, 0, 1)
-    circle = [(30.0 + 10.0 * math.cos(a), 30.0 + 10.0 * math.sin(a), 5.0) for a in np.linspace(0.0, 2.0 * math.pi, 33)[:-1]]
+    circle = [
+        (30.0 + 10.0 * math.cos(a), 30.0 + 10.0 * math.sin(a), 5.0)
+        for a in np.linspace(0.0, 2.0 * math.pi, 33)[:-1]
+    ]
     cut = divided(part, way_cut(top, (*circle, circle[0])))
-    assert areas(cut, top, 7) == pytest.approx([100.0 * math.pi, 3600.0 - 100.0 * math.pi], abs=0.01)
+    assert areas(cut, top, 7) == pytest.approx(
+        [100.0 * math.pi, 3600.0 - 100.0 * math.pi], abs=0.01
+    )
 
 
 @pytest.mark.parametrize("start", [0.0, 1.0, 4.0])
 def test_a_way_round_a_cylinder_closes_over_its_seam(start):
-    ring = on_cylinder(5.0, *((a, 8.0 + math.sin(2.0 * a)) for a in np.linspace(start, start + 2.0 * math.pi, 25)[:-1]))
+    ring = on_cylinder(
+        5.0,
+        *((a, 8.0 + math.sin(2.0 * a)) for a in np.linspace(start, start + 2.0 * math.pi, 25)[:-1]),
+    )
     cut = divided(cylinder(5.0, 20.0), way_cut(1, (*ring, ring[0])))
     assert areas(cut, 1, 4) == pytest.approx([120.0 * math.pi, 80.0 * math.pi], abs=1e-3)
 
 
 def test_places_of_a_click_need_not_lie_on_the_face():
     part = sphere(10.0)
-    ring = tuple((10.05 * math.cos(a) * 0.8, 10.05 * math.sin(a) * 0.8, 6.03) for a in np.linspace(0.0, 2.0 * math.pi, 25)[:-1])
+    ring = tuple(
+        (10.05 * math.cos(a) * 0.8, 10.05 * math.sin(a) * 0.8, 6.03)
+        for a in np.linspace(0.0, 2.0 * math.pi, 25)[:-1]
+    )
     cut = divided(part, way_cut(1, (*ring, ring[0])))
     assert areas(cut, 1, 2) == pytest.approx([80.0 * math.pi, 320.0 * math.pi], abs=0.01)
 
@@ -128,26 +146,41 @@ def test_the_faces_as_read_are_cut_with_the_part():
     hollow = next(t for t in part.tags if part.graph().surface[t - 1] == "sphere")
     cut = divided(part, plane_cut(hollow, (15.0, 15.0, 8.0), (0.0, 0.0, 1.0)))
     read = faces_of(cut.as_read)
-    assert [area_of(read[t - 1]) for t in (hollow, cut.n_faces)] == pytest.approx([120.0 * math.pi, 80.0 * math.pi], rel=1e-5)
-    assert cut.boundary().length_of(hollow) == pytest.approx(2.0 * math.pi * math.sqrt(84.0), rel=1e-5)
+    assert [area_of(read[t - 1]) for t in (hollow, cut.n_faces)] == pytest.approx(
+        [120.0 * math.pi, 80.0 * math.pi], rel=1e-5
+    )
+    assert cut.boundary().length_of(hollow) == pytest.approx(
+        2.0 * math.pi * math.sqrt(84.0), rel=1e-5
+    )
 
 
 def test_names_and_colours_of_a_face_are_those_of_its_pieces():
     from dataclasses import replace
+
     plain = plate(30.0, 20.0, 5.0)
     top = face_towards(plain, 0, 0, 1)
-    part = Part(replace(plain.facts, names={top: "gas side"}, colours={top: (1.0, 0.0, 0.0)}), plain.shape, plain.as_read)
+    part = Part(
+        replace(plain.facts, names={top: "gas side"}, colours={top: (1.0, 0.0, 0.0)}),
+        plain.shape,
+        plain.as_read,
+    )
     cut = divided(part, plane_cut(top, (10.0, 0.0, 0.0), (1.0, 0.0, 0.0)))
     assert (cut.names[7], cut.colours[7]) == ("gas side", (1.0, 0.0, 0.0))
 
 
-@pytest.mark.parametrize(("cut", "words"), [
-    (plane_cut(9, (0.0, 0.0, 0.0), (1.0, 0.0, 0.0)), "no such face; its faces are 1 to 3"),
-    (plane_cut(1, (0.0, 0.0, 99.0), (0.0, 0.0, 1.0)), "doesn't divide it"),
-    (way_cut(1, ((0.0, 0.0, 5.0), (0.0, 0.1, 5.0))), "away from the face"),
-    (way_cut(1, ((8.0, 0.0, 5.0), (0.0, 5.0, 5.0))), "3 mm away from the face; .* nearest place is 5.000 0.000 5.000"),
-    (way_cut(1, ((5.0, 0.0, 5.0), (5.0, 0.0, 5.0))), "fall together"),
-])
+@pytest.mark.parametrize(
+    ("cut", "words"),
+    [
+        (plane_cut(9, (0.0, 0.0, 0.0), (1.0, 0.0, 0.0)), "no such face; its faces are 1 to 3"),
+        (plane_cut(1, (0.0, 0.0, 99.0), (0.0, 0.0, 1.0)), "doesn't divide it"),
+        (way_cut(1, ((0.0, 0.0, 5.0), (0.0, 0.1, 5.0))), "away from the face"),
+        (
+            way_cut(1, ((8.0, 0.0, 5.0), (0.0, 5.0, 5.0))),
+            "3 mm away from the face; .* nearest place is 5.000 0.000 5.000",
+        ),
+        (way_cut(1, ((5.0, 0.0, 5.0), (5.0, 0.0, 5.0))), "fall together"),
+    ],
+)
 def test_a_cut_that_can_not_be_made_is_refused_in_one_line(cut, words):
     with pytest.raises(BadInput, match=words) as refused:
         divided(cylinder(5.0, 20.0), cut)

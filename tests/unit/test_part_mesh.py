@@ -39,7 +39,9 @@ def test_a_blank_lies_in_its_frame(tmp_path: Path) -> None:
 
 def test_a_blank_without_height_is_refused() -> None:
     with pytest.raises(BadInput, match="50 x 20 x 0 mm is not a box"):
-        box_blank(Frame(np.zeros(3), np.array([1.0, 0, 0]), np.array([0, 0, 1.0])), (0, 0, 0), (50, 20, 0))
+        box_blank(
+            Frame(np.zeros(3), np.array([1.0, 0, 0]), np.array([0, 0, 1.0])), (0, 0, 0), (50, 20, 0)
+        )
 
 
 @pytest.mark.parametrize("write", [write_step, write_iges])

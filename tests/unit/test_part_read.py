@@ -93,15 +93,23 @@ def test_bytes_that_hold_no_part_are_refused() -> None:
         Part.from_bytes(b"nothing")
 
 
-@pytest.mark.parametrize(("make", "words"), [
-    (lambda f: f.mkdir(), "is a folder"),
-    (lambda f: None, "no such file"),
-    (lambda f: f.symlink_to(f), "Too many levels of symbolic links"),
-    (lambda f: os.mkfifo(f), "not a plain file"),
-    (lambda f: f.write_bytes(b"\x1f\x8b damaged"), "gzipped file is damaged"),
-    (lambda f: f.write_bytes(gzip.compress(b"x" * (3 << 20))), "larger than the limit of 2 MB when unpacked"),
-])
-def test_what_can_not_be_read_is_refused_in_one_line(make: object, words: str, tmp_path: Path) -> None:
+@pytest.mark.parametrize(
+    ("make", "words"),
+    [
+        (lambda f: f.mkdir(), "is a folder"),
+        (lambda f: None, "no such file"),
+        (lambda f: f.symlink_to(f), "Too many levels of symbolic links"),
+        (lambda f: os.mkfifo(f), "not a plain file"),
+        (lambda f: f.write_bytes(b"\x1f\x8b damaged"), "gzipped file is damaged"),
+        (
+            lambda f: f.write_bytes(gzip.compress(b"x" * (3 << 20))),
+            "larger than the limit of 2 MB when unpacked",
+        ),
+    ],
+)
+def test_what_can_not_be_read_is_refused_in_one_line(
+    make: object, words: str, tmp_path: Path
+) -> None:
     file = tmp_path / "part.step"
     make(file)  # type: ignore[operator]
     with pytest.raises(BadInput, match=words) as refusal:
@@ -132,15 +140,41 @@ def test_reading_that_needs_too_much_memory_says_so() -> None:
 def test_reading_can_be_cancelled() -> None:
     asked = []
     with pytest.raises(Cancelled):
-        read_part(samples.block_with_pocket(), progress=Progress(cancelled=lambda: len(asked) > 1 or bool(asked.append(1))))
+        read_part(
+            samples.block_with_pocket(),
+            progress=Progress(cancelled=lambda: len(asked) > 1 or bool(asked.append(1))),
+        )
 
 
-REFUSED = ("empty.step", "garbage_text.step", "binary_garbage.step", "binary_garbage.igs", "truncated.step", "header_only.step",
-           "dangling_reference.step", "not_a_number.step", "curves_only.step", "cut_in_p_section.igs", "part.step")
-READ = {"open_shell.step": ["part.open"], "two_solids.step": ["part.several-solids"], "assembly_twice.step": ["part.several-solids"],
-        "sliver_faces.step": [], "zero_thickness.step": ["part.loose-faces"], "tiny_half_millimetre.step": [], "huge_20_metres.step": [],
-        "inch_box.step": [], "metre_box.step": [], "self_intersecting.step": ["part.split-faces"], "not_sewn.igs": ["part.sewn"],
-        "iges_inside.step": [], "Träger 部品 n°1 (copy).step": [], "crlf.step": []}
+REFUSED = (
+    "empty.step",
+    "garbage_text.step",
+    "binary_garbage.step",
+    "binary_garbage.igs",
+    "truncated.step",
+    "header_only.step",
+    "dangling_reference.step",
+    "not_a_number.step",
+    "curves_only.step",
+    "cut_in_p_section.igs",
+    "part.step",
+)
+READ = {
+    "open_shell.step": ["part.open"],
+    "two_solids.step": ["part.several-solids"],
+    "assembly_twice.step": ["part.several-solids"],
+    "sliver_faces.step": [],
+    "zero_thickness.step": ["part.loose-faces"],
+    "tiny_half_millimetre.step": [],
+    "huge_20_metres.step": [],
+    "inch_box.step": [],
+    "metre_box.step": [],
+    "self_intersecting.step": ["part.split-faces"],
+    "not_sewn.igs": ["part.sewn"],
+    "iges_inside.step": [],
+    "Träger 部品 n°1 (copy).step": [],
+    "crlf.step": [],
+}
 
 
 @needs_parts
@@ -184,5 +218,9 @@ def test_face_tags_are_those_of_the_plain_reader(name: str) -> None:
     assert np.allclose(wanted, [mark(f) for f in faces_of(part.as_read)])
     own = {tag: mark(part.face_shape(tag)) for tag in part.tags}
     # Faces of surfaces of revolution lie against their surface in IGES: the kernel's area is then of the other sign.
-    assert np.allclose([np.abs(wanted[tag - 1][0]) for tag in own], [abs(m[0]) for m in own.values()], rtol=1e-3)
-    assert np.allclose([wanted[tag - 1][1:] for tag in own], [m[1:] for m in own.values()], atol=0.05)
+    assert np.allclose(
+        [np.abs(wanted[tag - 1][0]) for tag in own], [abs(m[0]) for m in own.values()], rtol=1e-3
+    )
+    assert np.allclose(
+        [wanted[tag - 1][1:] for tag in own], [m[1:] for m in own.values()], atol=0.05
+    )

@@ -31,8 +31,11 @@ def test_surfaces_that_nothing_trims_are_faces(tmp_path) -> None:
     from OCP.BRep import BRep_Tool
     from OCP.GeomToIGES import GeomToIGES_GeomSurface
     from OCP.IGESControl import IGESControl_Writer
+
     writer = IGESControl_Writer("MM", 0)
-    sheet = cq.Face.makeSplineApprox([[cq.Vector(x, y, 0.02 * x * y) for y in range(0, 30, 5)] for x in range(0, 30, 5)])
+    sheet = cq.Face.makeSplineApprox(
+        [[cq.Vector(x, y, 0.02 * x * y) for y in range(0, 30, 5)] for x in range(0, 30, 5)]
+    )
     surface = BRep_Tool.Surface_s(sheet.wrapped)
     maker = GeomToIGES_GeomSurface()
     maker.SetModel(writer.Model())
@@ -46,6 +49,7 @@ def test_surfaces_that_nothing_trims_are_faces(tmp_path) -> None:
 
 def test_a_file_of_curves_alone_is_refused(tmp_path) -> None:
     from OCP.IGESControl import IGESControl_Writer
+
     writer = IGESControl_Writer("MM", 0)
     writer.AddShape(cq.Edge.makeLine(cq.Vector(0, 0, 0), cq.Vector(1, 2, 3)).wrapped)
     file = tmp_path / "curve.igs"

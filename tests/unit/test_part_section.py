@@ -73,11 +73,20 @@ def test_a_ball_is_cut_to_a_circle(suffix: str) -> None:
 
 
 @BOTH
-@pytest.mark.parametrize(("axis", "degrees"), [((1, 2, 3), 40.0), ((0, 1, 0), 90.0), ((1, 0, 0), 180.0)])
-def test_a_turned_part_is_cut_the_same_in_its_own_frame(suffix: str, axis: tuple[float, ...], degrees: float) -> None:
-    part = samples.read(samples.turned(samples.block_with_pocket_shape(), axis, degrees, (5.0, 7.0, 9.0)), suffix)
+@pytest.mark.parametrize(
+    ("axis", "degrees"), [((1, 2, 3), 40.0), ((0, 1, 0), 90.0), ((1, 0, 0), 180.0)]
+)
+def test_a_turned_part_is_cut_the_same_in_its_own_frame(
+    suffix: str, axis: tuple[float, ...], degrees: float
+) -> None:
+    part = samples.read(
+        samples.turned(samples.block_with_pocket_shape(), axis, degrees, (5.0, 7.0, 9.0)), suffix
+    )
     from scipy.spatial.transform import Rotation
-    turn = Rotation.from_rotvec(np.radians(degrees) * np.array(axis) / np.linalg.norm(axis)).as_matrix()
+
+    turn = Rotation.from_rotvec(
+        np.radians(degrees) * np.array(axis) / np.linalg.norm(axis)
+    ).as_matrix()
     about = np.array([5.0, 7.0, 9.0])
     frame = Frame(about - turn @ about, turn[:, 0], turn[:, 2])
     assert part.section(frame, 15.0).area == pytest.approx(TOP, abs=1e-4)
@@ -88,7 +97,9 @@ def test_a_turned_part_is_cut_the_same_in_its_own_frame(suffix: str, axis: tuple
 def test_sections_added_up_are_the_volume(suffix: str) -> None:
     part = samples.read(samples.two_pockets_and_a_rib_shape(), suffix)
     heights = (np.arange(200) + 0.5) * 0.1
-    assert sum(part.section(WORLD, float(z)).area for z in heights) * 0.1 == pytest.approx(part.volume, rel=1e-4)
+    assert sum(part.section(WORLD, float(z)).area for z in heights) * 0.1 == pytest.approx(
+        part.volume, rel=1e-4
+    )
 
 
 def test_a_section_is_computed_once() -> None:
@@ -100,7 +111,11 @@ def test_a_section_is_computed_once() -> None:
 def test_a_level_face_has_its_outline_with_arcs_and_holes(suffix: str) -> None:
     part = samples.read(samples.block_with_pocket_shape(), suffix)
     graph = part.graph()
-    top = next(t for t in part.tags if graph.normal[t - 1][2] > 0.99 and graph.centre[t - 1][2] == pytest.approx(18.0))
+    top = next(
+        t
+        for t in part.tags
+        if graph.normal[t - 1][2] > 0.99 and graph.centre[t - 1][2] == pytest.approx(18.0)
+    )
     region = part.face_outline(WORLD, top)
     assert region.area == pytest.approx(TOP, abs=1e-5)
     assert len(region.pieces[0].holes) == 1

@@ -44,13 +44,19 @@ def test_a_reference_to_nothing_is_refused() -> None:
 
 
 def test_a_reference_inside_a_text_is_no_reference() -> None:
-    assert check_step(STEP.replace(b"PLANE('',", b"PLANE('see #999999 /* not a remark',", 1), "a.step") == 6
+    assert (
+        check_step(STEP.replace(b"PLANE('',", b"PLANE('see #999999 /* not a remark',", 1), "a.step")
+        == 6
+    )
 
 
 @pytest.mark.parametrize("word", [b"NaN", b"inf", b"-1.#IND"])
 def test_a_coordinate_that_is_no_number_is_refused_with_its_line(word: bytes) -> None:
     with pytest.raises(BadInput, match=r"in line \d+ is not a number"):
-        check_step(STEP.replace(b"CARTESIAN_POINT('',(0.,", b"CARTESIAN_POINT('',(" + word + b",", 1), "a.step")
+        check_step(
+            STEP.replace(b"CARTESIAN_POINT('',(0.,", b"CARTESIAN_POINT('',(" + word + b",", 1),
+            "a.step",
+        )
 
 
 def test_an_iges_file_without_its_last_section_is_refused() -> None:

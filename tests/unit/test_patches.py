@@ -15,7 +15,16 @@ from trunnion.part.measure import area_of
 from trunnion.part.read import read_part
 from trunnion.part.write import write_faces, write_step
 from trunnion.pipeline import Engine
-from trunnion.pipeline.patches import boundary_errors, export, size_errors, tags_of, with_cut, with_local, with_moved, without_cut
+from trunnion.pipeline.patches import (
+    boundary_errors,
+    export,
+    size_errors,
+    tags_of,
+    with_cut,
+    with_local,
+    with_moved,
+    without_cut,
+)
 
 SURFACE = {"recognize.family": "surface"}
 
@@ -61,7 +70,9 @@ def test_groups_called_local_by_hand_stay_so_when_recognition_runs_again(engine,
     largest = found.recognition.features[0]
     assert not largest.attributes["local"]
     local = with_local(found, [largest.id], True)
-    again = engine.run(engine.with_choices(local, {"recognize.surface.tolerance": 0.04}), "recognize")
+    again = engine.run(
+        engine.with_choices(local, {"recognize.surface.tolerance": 0.04}), "recognize"
+    )
     assert again.records["recognize"].key != found.records["recognize"].key
     assert again.recognition.feature(largest.id).attributes["local"]
     assert shared_out(again) == list(range(1, 8))
@@ -73,7 +84,9 @@ def test_moved_faces_stay_where_they_were_put_and_every_group_is_measured_anew(e
     moved = with_moved(engine, found, [hollow], into.id)
     grown = moved.recognition.feature(into.id)
     assert set(grown.tags) == {*into.tags, hollow}
-    assert grown.sizes["area"] == pytest.approx(into.sizes["area"] + engine.context_of(found).part.graph().area[hollow - 1])
+    assert grown.sizes["area"] == pytest.approx(
+        into.sizes["area"] + engine.context_of(found).part.graph().area[hollow - 1]
+    )
     assert grown.sizes["concave_radius"] == pytest.approx(10.0)
     assert shared_out(moved) == list(range(1, 8))
     again = engine.run(engine.with_choices(moved, {"grouping": "aligned"}), "recognize")
@@ -108,7 +121,9 @@ def test_a_cut_makes_recognition_stale_and_its_pieces_are_found_as_patches(engin
 
 
 def test_undoing_a_cut_needs_no_reading(engine, found):
-    cut = with_cut(engine, found, plane_cut(hollow_of(engine, found), (20.0, 15.0, 8.0), (0.0, 0.0, 1.0)))
+    cut = with_cut(
+        engine, found, plane_cut(hollow_of(engine, found), (20.0, 15.0, 8.0), (0.0, 0.0, 1.0))
+    )
     engine.run(cut, "recognize")
     assert engine.states(found)["recognize"] == "done"
     assert set(engine.mesh(found).face.tolist()) == set(range(1, 8))
@@ -116,7 +131,9 @@ def test_undoing_a_cut_needs_no_reading(engine, found):
 
 def test_faces_of_a_cut_that_is_taken_back_leave_the_groups_made_by_hand(engine, found):
     hollow = hollow_of(engine, found)
-    cut = engine.run(with_cut(engine, found, plane_cut(hollow, (20.0, 15.0, 8.0), (0.0, 0.0, 1.0))), "recognize")
+    cut = engine.run(
+        with_cut(engine, found, plane_cut(hollow, (20.0, 15.0, 8.0), (0.0, 0.0, 1.0))), "recognize"
+    )
     by_hand = with_local(cut, [group_of(cut, 8)], True)
     back = engine.run(without_cut(engine, by_hand, 0), "recognize")
     assert (back.cuts, back.part.n_faces) == ((), 7)
@@ -125,14 +142,18 @@ def test_faces_of_a_cut_that_is_taken_back_leave_the_groups_made_by_hand(engine,
 
 def test_a_project_opens_with_its_cuts_and_what_was_done_by_hand(engine, found, tmp_path):
     hollow = hollow_of(engine, found)
-    cut = engine.run(with_cut(engine, found, plane_cut(hollow, (20.0, 15.0, 8.0), (0.0, 0.0, 1.0))), "recognize")
+    cut = engine.run(
+        with_cut(engine, found, plane_cut(hollow, (20.0, 15.0, 8.0), (0.0, 0.0, 1.0))), "recognize"
+    )
     saved = with_local(cut, [group_of(cut, 8)], False)
     engine.save(saved, tmp_path / "bowl.trunnion")
     other = Engine()
     again = other.open(tmp_path / "bowl.trunnion")
     assert again.cuts == saved.cuts
     assert other.states(again)["recognize"] == "done"
-    assert area_of(other.context_of(again).part.face_shape(8)) == area_of(engine.context_of(saved).part.face_shape(8))
+    assert area_of(other.context_of(again).part.face_shape(8)) == area_of(
+        engine.context_of(saved).part.face_shape(8)
+    )
 
 
 @pytest.mark.parametrize("suffix", [".igs", ".step"])
@@ -147,14 +168,20 @@ def test_local_features_and_the_rest_are_exported_each_alone(engine, found, tmp_
     area = engine.context_of(found).part.graph().area
     for name, tags in (("local", {hollow, top}), ("rest", set(range(1, 8)) - {hollow, top})):
         back = read_part(tmp_path / f"{name}{suffix}")
-        assert sorted(back.graph().area) == pytest.approx(sorted(area[t - 1] for t in tags), rel=1e-4)
+        assert sorted(back.graph().area) == pytest.approx(
+            sorted(area[t - 1] for t in tags), rel=1e-4
+        )
         assert not back.is_closed
 
 
 def test_faces_go_to_iges_without_surfaces_of_revolution(tmp_path):
     part = bowl(40.0, 30.0, 12.0, 10.0)
     write_faces([part.face_shape(t) for t in part.tags], tmp_path / "bowl.igs")
-    entities = {line[:8].strip() for line in (tmp_path / "bowl.igs").read_text().splitlines() if line[72:73] == "D"}
+    entities = {
+        line[:8].strip()
+        for line in (tmp_path / "bowl.igs").read_text().splitlines()
+        if line[72:73] == "D"
+    }
     assert {"144", "128", "108"} <= entities
     assert "120" not in entities
     assert read_part(tmp_path / "bowl.igs").is_closed
@@ -162,7 +189,9 @@ def test_faces_go_to_iges_without_surfaces_of_revolution(tmp_path):
 
 def test_words_that_mean_no_face_are_refused(engine, opened, found):
     none = with_local(found, [f.id for f in found.recognition], False)
-    with pytest.raises(BadInput, match="local: no face of the part belongs to it; name other groups"):
+    with pytest.raises(
+        BadInput, match="local: no face of the part belongs to it; name other groups"
+    ):
         tags_of(none, ["local"])
     with pytest.raises(BadInput, match="no faces were chosen; name local, remaining"):
         tags_of(found, [])
@@ -204,12 +233,44 @@ def test_the_command_line_cuts_regroups_exports_and_measures(file, tmp_path, cap
     project, kept = tmp_path / "cut.trunnion", tmp_path / "kept.trunnion"
     hollow = bowl(40.0, 30.0, 12.0, 10.0).graph().surface.index("sphere") + 1
     plane = ["--plane", "20", "15", "8", "0", "0", "1"]
-    assert main(["cut", str(file), "--face", str(hollow), *plane, "--out", str(project), "--json"]) == DONE
+    assert (
+        main(["cut", str(file), "--face", str(hollow), *plane, "--out", str(project), "--json"])
+        == DONE
+    )
     assert json.loads(capsys.readouterr().out)["faces"] == [hollow, 8]
-    words = ["recognize", str(project), "--set", "family=surface", "--move", f"8,{hollow}=new", "--save", str(kept), "--json"]
+    words = [
+        "recognize",
+        str(project),
+        "--set",
+        "family=surface",
+        "--move",
+        f"8,{hollow}=new",
+        "--save",
+        str(kept),
+        "--json",
+    ]
     assert main(words) == DONE
-    made = next(f for f in json.loads(capsys.readouterr().out)["features"] if {r["face"] for r in f["faces"]} == {8, hollow})
-    assert main(["export", str(kept), "--local", made["id"], "--groups", made["id"], "--out", str(tmp_path / "a.igs"), "--json"]) == DONE
+    made = next(
+        f
+        for f in json.loads(capsys.readouterr().out)["features"]
+        if {r["face"] for r in f["faces"]} == {8, hollow}
+    )
+    assert (
+        main(
+            [
+                "export",
+                str(kept),
+                "--local",
+                made["id"],
+                "--groups",
+                made["id"],
+                "--out",
+                str(tmp_path / "a.igs"),
+                "--json",
+            ]
+        )
+        == DONE
+    )
     assert json.loads(capsys.readouterr().out)["faces"] == sorted([8, hollow])
     assert main(["patches", str(kept), "--points", "0,3", "--json"]) == DONE
     told = json.loads(capsys.readouterr().out)
@@ -217,7 +278,9 @@ def test_the_command_line_cuts_regroups_exports_and_measures(file, tmp_path, cap
     assert told["boundary_error"]["mm"] < 1e-3
 
 
-@pytest.mark.parametrize("words", [["--out", "a.trunnion"], ["--plane", "0", "0", "0", "0", "0", "1", "--out", "a.step"]])
+@pytest.mark.parametrize(
+    "words", [["--out", "a.trunnion"], ["--plane", "0", "0", "0", "0", "0", "1", "--out", "a.step"]]
+)
 def test_a_cut_that_lacks_its_plane_or_its_project_is_one_line(file, words, capsys):
     assert main(["cut", str(file), "--face", "1", *words]) == BAD
     assert capsys.readouterr().err.count("\n") == 1

@@ -12,13 +12,24 @@ from flat_parts import operation
 from trunnion.geometry.frame import WORLD
 from trunnion.model.process import ProcessTree
 from trunnion.model.setup import Setup
-from trunnion.plan.cutting import CuttingSettings, balance, chip_thinning, cutting_data, slenderness, table_feed
+from trunnion.plan.cutting import (
+    CuttingSettings,
+    balance,
+    chip_thinning,
+    cutting_data,
+    slenderness,
+    table_feed,
+)
 from trunnion.plan.power import cutting_power
 from trunnion.settings import choose
 from trunnion.shop import load_shop
 
 SHOP = load_shop()
-ALUMINIUM, MACHINE, DEFAULT = SHOP.material("EN AW-7075"), SHOP.machine("Mill 1200"), choose(CuttingSettings, {})
+ALUMINIUM, MACHINE, DEFAULT = (
+    SHOP.material("EN AW-7075"),
+    SHOP.machine("Mill 1200"),
+    choose(CuttingSettings, {}),
+)
 
 
 def tool(name: str):
@@ -40,7 +51,9 @@ def test_the_feed_per_tooth_lies_on_the_materials_table():
 
 
 def test_the_spindle_follows_from_speed_and_diameter():
-    data = cutting_data(tool("AL3-regular D20 R3"), ALUMINIUM, MACHINE, "rough", DEFAULT, 12.0, 10.0)
+    data = cutting_data(
+        tool("AL3-regular D20 R3"), ALUMINIUM, MACHINE, "rough", DEFAULT, 12.0, 10.0
+    )
     assert data.spindle == approx(700_000 / (math.pi * 20))
     assert data.feed == approx(data.spindle * 3 * 0.1525)
 
@@ -55,7 +68,9 @@ def test_a_small_cutter_is_bound_by_the_spindle_and_says_so():
 def test_power_by_kienzle_at_half_the_width():
     # ae = D / 2: the arc is 90 degrees, the mean chip 0.1 * 2 * 0.5 / (pi / 2).
     chip = 0.1 / (math.pi / 2)
-    assert cutting_power(ALUMINIUM, 20.0, 0.1, 5.0, 10.0, 3000.0) == approx(5 * 10 * 3000 * 700 * chip**-0.25 / 60e6)
+    assert cutting_power(ALUMINIUM, 20.0, 0.1, 5.0, 10.0, 3000.0) == approx(
+        5 * 10 * 3000 * 700 * chip**-0.25 / 60e6
+    )
 
 
 def test_the_spindles_power_slows_the_feed():
@@ -67,7 +82,10 @@ def test_the_spindles_power_slows_the_feed():
 
 def test_the_machines_feed_is_never_passed():
     slow = replace(MACHINE, feed_max=500.0)
-    assert cutting_data(tool("AL3-regular D20 R3"), ALUMINIUM, slow, "wall", DEFAULT, 5.0, 0.5).feed == 500.0
+    assert (
+        cutting_data(tool("AL3-regular D20 R3"), ALUMINIUM, slow, "wall", DEFAULT, 5.0, 0.5).feed
+        == 500.0
+    )
 
 
 def test_a_long_cutter_loses_feed():
@@ -93,12 +111,20 @@ def test_balance_computes_every_operation_again():
 
 
 def test_balance_leaves_what_a_person_set():
-    assert balance(process("wall", by_hand=True), SHOP, DEFAULT, {}).operations[0].data.spindle == 1000
+    assert (
+        balance(process("wall", by_hand=True), SHOP, DEFAULT, {}).operations[0].data.spindle == 1000
+    )
 
 
 @pytest.mark.parametrize("material", sorted(SHOP.materials))
 def test_data_of_every_material_keep_the_machines_limits(material):
     group = SHOP.material(material)
     for cutter in SHOP.tools_for(group.iso_group, "rough"):
-        data = cutting_data(cutter, group, MACHINE, "rough", DEFAULT, cutter.diameter, cutter.diameter / 4)
-        assert 0 < data.feed <= MACHINE.feed_max and data.power <= data.power_limit * 1.000001 and data.spindle <= 24000
+        data = cutting_data(
+            cutter, group, MACHINE, "rough", DEFAULT, cutter.diameter, cutter.diameter / 4
+        )
+        assert (
+            0 < data.feed <= MACHINE.feed_max
+            and data.power <= data.power_limit * 1.000001
+            and data.spindle <= 24000
+        )

@@ -49,7 +49,9 @@ def grooved(height=8.0):
 
 def boss():
     """Return a plate with a round boss of radius 6 in its middle, a fillet of 3 mm at its foot."""
-    plate = box(0, 0, 0, 40, 30, 6).union(cq.Workplane("XY").circle(6).extrude(12).translate((20, 15, 0)))
+    plate = box(0, 0, 0, 40, 30, 6).union(
+        cq.Workplane("XY").circle(6).extrude(12).translate((20, 15, 0))
+    )
     foot = [e for e in plate.edges("%CIRCLE").vals() if abs(e.Center().z - 6.0) < 1e-6]
     return plate.newObject(foot).fillet(3.0)
 
@@ -57,9 +59,18 @@ def boss():
 def spaced(work):
     part = read(work.val().wrapped)
     high = np.ceil(part.high)
-    blank = Blank(frame=WORLD, low=np.floor(part.low), high=high, material="EN AW-7075", density=2.8)
-    return SurfaceSpace(part=part, blank=blank, setup=SETUP, direction=(0.0, 0.0, 1.0), skin=skin_of(part, WORLD, tolerance.CHORD),
-                        low=blank.low, high=blank.high)
+    blank = Blank(
+        frame=WORLD, low=np.floor(part.low), high=high, material="EN AW-7075", density=2.8
+    )
+    return SurfaceSpace(
+        part=part,
+        blank=blank,
+        setup=SETUP,
+        direction=(0.0, 0.0, 1.0),
+        skin=skin_of(part, WORLD, tolerance.CHORD),
+        low=blank.low,
+        high=blank.high,
+    )
 
 
 def lands(space):
@@ -102,7 +113,9 @@ def test_what_hangs_over_a_land_is_in_the_way() -> None:
 
 def test_an_end_mill_goes_up_to_a_wall_and_hardly_over_the_rim_of_a_fillet() -> None:
     land = lands(spaced(walled()))[1]
-    assert covered(land, Standing(spaced(walled())).free(land.z, MILLS[2], BARE), MILLS[2]).area == pytest.approx(35.0 * 30.0, abs=1e-3)
+    assert covered(
+        land, Standing(spaced(walled())).free(land.z, MILLS[2], BARE), MILLS[2]
+    ).area == pytest.approx(35.0 * 30.0, abs=1e-3)
     space = spaced(boss())
     free = Standing(space).free(6.0, MILLS[2], BARE)
     rim = 9.0 - math.sqrt(2.0 * 3.0 * SKIM)
@@ -112,28 +125,49 @@ def test_an_end_mill_goes_up_to_a_wall_and_hardly_over_the_rim_of_a_fillet() -> 
 
 def test_it_keeps_off_sides_that_are_not_finished_yet_but_not_off_a_fillet() -> None:
     space = spaced(walled())
-    assert covered(lands(space)[1], Standing(space).free(6.0, MILLS[2], KEEPING), MILLS[2]).area == pytest.approx(34.6 * 30.0, abs=1e-3)
+    assert covered(
+        lands(space)[1], Standing(space).free(6.0, MILLS[2], KEEPING), MILLS[2]
+    ).area == pytest.approx(34.6 * 30.0, abs=1e-3)
     space = spaced(boss())
     whole = lands(space)[-1]
-    assert without(whole.region, covered(whole, Standing(space).free(6.0, MILLS[2], KEEPING), MILLS[2])).area < 1e-3
+    assert (
+        without(
+            whole.region, covered(whole, Standing(space).free(6.0, MILLS[2], KEEPING), MILLS[2])
+        ).area
+        < 1e-3
+    )
 
 
 def test_it_keeps_farther_off_an_unfinished_side_that_is_higher_than_its_flutes() -> None:
     space, low = spaced(walled()), replace(mill(8.0), flute_length=8.0)
-    rims = [Standing(space).free(6.0, low, keeping).signed_distance([[10.0, 15.0]])[0] for keeping in (BARE, KEEPING)]
+    rims = [
+        Standing(space).free(6.0, low, keeping).signed_distance([[10.0, 15.0]])[0]
+        for keeping in (BARE, KEEPING)
+    ]
     assert rims == pytest.approx([5.0, 4.0], abs=1e-3)
 
 
 def test_a_shank_as_thick_as_the_cutter_keeps_off_a_taller_wall() -> None:
-    short = replace(mill(8.0), flute_length=8.0, neck_length=10.0, neck_diameter=7.6, shank_diameter=8.0, stickout=60.0)
+    short = replace(
+        mill(8.0),
+        flute_length=8.0,
+        neck_length=10.0,
+        neck_diameter=7.6,
+        shank_diameter=8.0,
+        stickout=60.0,
+    )
     space = spaced(walled(30.0))
-    assert Standing(space).free(6.0, short, BARE).signed_distance([[5.5, 15.0]])[0] == pytest.approx(0.0, abs=1e-3)
+    assert Standing(space).free(6.0, short, BARE).signed_distance([[5.5, 15.0]])[
+        0
+    ] == pytest.approx(0.0, abs=1e-3)
 
 
 # which is taken
 
 
-def test_the_largest_that_covers_nearly_all_is_taken_and_comes_back_to_the_foot_of_the_wall() -> None:
+def test_the_largest_that_covers_nearly_all_is_taken_and_comes_back_to_the_foot_of_the_wall() -> (
+    None
+):
     found = at(chosen(spaced(walled())), 6.0)
     assert found.tool.diameter == 16.0
     assert found.rest.diameter == 16.0
@@ -143,7 +177,12 @@ def test_the_largest_that_covers_nearly_all_is_taken_and_comes_back_to_the_foot_
 def test_a_narrow_passage_asks_for_a_smaller_one() -> None:
     # 8.9 mm between two walls: with 0.4 mm kept on both sides 8 mm go in, 12 mm don't.
     wide = box(5, 0, 0, 13.9, 30, 6)
-    assert at(chosen(spaced(walled().union(wide).union(box(13.9, 0, 0, 40, 30, 21)))), 6.0).tool.diameter == 8.0
+    assert (
+        at(
+            chosen(spaced(walled().union(wide).union(box(13.9, 0, 0, 40, 30, 21)))), 6.0
+        ).tool.diameter
+        == 8.0
+    )
 
 
 def test_small_lands_that_balls_finish_too_stay_with_them() -> None:
@@ -184,7 +223,9 @@ def test_the_foot_of_the_wall_is_finished_with_the_land_and_no_more_of_it() -> N
 
 def routed(shape, **words):
     engine = Engine()
-    return engine, engine.run(engine.with_choices(engine.open(written(shape.val().wrapped)), {**CURVED, **words}), "route")
+    return engine, engine.run(
+        engine.with_choices(engine.open(written(shape.val().wrapped)), {**CURVED, **words}), "route"
+    )
 
 
 @pytest.fixture(scope="module")
@@ -194,7 +235,12 @@ def line():
 
 def test_lands_come_before_curved_faces_and_their_corners_last(line) -> None:
     kinds = [o.kind for o in line[1].process.operations]
-    assert kinds.index("rough") < kinds.index("land") < kinds.index("finish") < kinds.index("rest_land")
+    assert (
+        kinds.index("rough")
+        < kinds.index("land")
+        < kinds.index("finish")
+        < kinds.index("rest_land")
+    )
 
 
 def test_no_ball_cuts_a_land_and_the_wall_beside_asks_for_no_small_one(line) -> None:
@@ -227,9 +273,15 @@ def test_thick_stock_comes_off_a_land_in_steps() -> None:
     land = next(o for o in session.process.operations if o.kind == "land")
     assert land.data.depth == pytest.approx(0.4)
     stock = PlanningStock.of(session.blank, session.setups[0])
-    space = SurfaceSpace.of(read(grooved().val().wrapped), spaced(grooved()).skin, session.blank, session.setups[0])
+    space = SurfaceSpace.of(
+        read(grooved().val().wrapped), spaced(grooved()).skin, session.blank, session.setups[0]
+    )
     floors = plane_drive_of(land, space, stock, QUIET).floors
-    assert [round(f.z - min(g.z for g in floors if g.face == f.face), 6) for f in floors if f.face == floors[-1].face] == [0.4, 0.0]
+    assert [
+        round(f.z - min(g.z for g in floors if g.face == f.face), 6)
+        for f in floors
+        if f.face == floors[-1].face
+    ] == [0.4, 0.0]
 
 
 def test_the_whole_line_passes_with_every_land_finished(line) -> None:

@@ -67,7 +67,10 @@ def test_roughing_foresees_a_full_slot_at_its_slot_feed():
     assert data.power == approx(7.65, rel=1e-3) and data.highest_power == data.peak_power
     assert data.peak_torque == approx(data.peak_power * 60_000.0 / (2.0 * math.pi * data.spindle))
     assert data.peak_at == "the cutter enters at full width"
-    assert "peak 19.4 kW where the cutter enters at full width: ae 20, ap 12 at 0.6 of the feed" in data.rules
+    assert (
+        "peak 19.4 kW where the cutter enters at full width: ae 20, ap 12 at 0.6 of the feed"
+        in data.rules
+    )
 
 
 def test_the_strategys_own_slot_feed_is_the_one_that_is_foreseen():
@@ -102,8 +105,15 @@ def test_the_depth_of_cut_is_lowered_next_and_comes_back():
 def test_what_feed_and_depth_can_not_bring_below_the_limit_is_told():
     finish = one("profile_finish", D10, 20.0, 0.5, strategy="plane.profile_finish", faces=(3,))
     (finding,) = overloads(balanced(one(), finish, power_share=0.05))
-    assert (finding.code, finding.severity, finding.where) == ("optimize.load", Severity.WARNING, ("profile_finish-pocket-01",))
-    assert "where it meets what roughing left, 1.5 kW are allowed at" in finding.text and "smaller depth" in finding.remedy
+    assert (finding.code, finding.severity, finding.where) == (
+        "optimize.load",
+        Severity.WARNING,
+        ("profile_finish-pocket-01",),
+    )
+    assert (
+        "where it meets what roughing left, 1.5 kW are allowed at" in finding.text
+        and "smaller depth" in finding.remedy
+    )
 
 
 def test_data_set_by_hand_are_foreseen_and_told_but_not_changed():
@@ -118,21 +128,27 @@ def test_data_set_by_hand_are_foreseen_and_told_but_not_changed():
 
 def test_a_wall_after_a_larger_cutter_meets_what_that_left_in_corners():
     wall = one("wall", D10, 12.0, 0.5, strategy="plane.wall", faces=(3,))
-    alone, after_small, after_large = (balanced(*before, wall)[-1].data for before in ((), (one(cutter=D10),), (one(),)))
+    alone, after_small, after_large = (
+        balanced(*before, wall)[-1].data for before in ((), (one(cutter=D10),), (one(),))
+    )
     assert alone.peak_power == after_small.peak_power < after_large.peak_power
     assert after_large.peak_at == "it meets what roughing left"
 
 
 def test_a_rib_wider_than_the_width_of_cut_is_met_in_one():
     rib = one("rib_top", depth=6.0, strategy="plane.rib_top")
-    narrow, wide = (balanced(replace(rib, data=replace(rib.data, widest=w)))[0].data for w in (4.0, 14.0))
+    narrow, wide = (
+        balanced(replace(rib, data=replace(rib.data, widest=w)))[0].data for w in (4.0, 14.0)
+    )
     assert narrow.peak_power == approx(narrow.power) and wide.peak_power > 1.5 * wide.power
 
 
 def test_a_top_that_one_row_takes_is_as_wide_as_it_is():
     mill = tool("FM-AL D63 Z5")
     face = one("face", mill, 2.0, 44.1, strategy="plane.face")
-    narrow, wide = (balanced(replace(face, data=replace(face.data, widest=w)))[0].data for w in (55.0, 200.0))
+    narrow, wide = (
+        balanced(replace(face, data=replace(face.data, widest=w)))[0].data for w in (55.0, 200.0)
+    )
     assert wide.peak_power == approx(wide.power) and narrow.peak_power > narrow.power
 
 
@@ -164,9 +180,18 @@ def test_the_lower_feed_is_in_the_path():
     session = engine.open(two_pockets_and_a_rib())
     feeds = []
     for share in (0.8, 0.2):
-        done = engine.run(engine.with_choices(session, {"cutting.power_share": share}), until="toolpath")
+        done = engine.run(
+            engine.with_choices(session, {"cutting.power_share": share}), until="toolpath"
+        )
         rough = next(o for o in done.process.operations if o.strategy == "plane.rough")
-        feeds.append((rough.data.slot_share, float(done.path_of(rough.id).path.feed[done.path_of(rough.id).path.mark == 0].min())))
+        feeds.append(
+            (
+                rough.data.slot_share,
+                float(
+                    done.path_of(rough.id).path.feed[done.path_of(rough.id).path.mark == 0].min()
+                ),
+            )
+        )
         assert rough.data.peak_power <= rough.data.power_limit * 1.000001
     (_, easy), (share, slow) = feeds
     assert share < 1.0 and slow < easy
@@ -176,24 +201,55 @@ def test_another_slot_feed_makes_the_balance_stale():
     engine = Engine()
     session = engine.run(engine.open(two_pockets_and_a_rib()), until="optimize")
     again = engine.with_choices(session, {"plane.rough.slot_feed": 0.9})
-    assert engine.states(session)["optimize"] == "done" and engine.states(again)["optimize"] == "stale"
-    before, after = (next(o for o in s.process.operations if o.strategy == "plane.rough").data.peak_power
-                     for s in (session, engine.run(again, until="optimize")))
+    assert (
+        engine.states(session)["optimize"] == "done" and engine.states(again)["optimize"] == "stale"
+    )
+    before, after = (
+        next(o for o in s.process.operations if o.strategy == "plane.rough").data.peak_power
+        for s in (session, engine.run(again, until="optimize"))
+    )
     assert after > before
 
 
 def proof(power: float) -> Verdict:
-    measured = OperationProof(operation="rough-pocket-01", setup="S1", outcome=Outcome.PASSED, gouge=0.0, collisions=0, rapids_in_stock=0,
-                              time_s=1.0, removed=1.0, air_share=0.0, power=power)
-    return Verdict(outcome=Outcome.PASSED, coverage=1.0, reachable=1.0, gouge=0.0, collisions=0, rapids_in_stock=0, machining_time_s=1.0,
-                   operations=(measured,))
+    measured = OperationProof(
+        operation="rough-pocket-01",
+        setup="S1",
+        outcome=Outcome.PASSED,
+        gouge=0.0,
+        collisions=0,
+        rapids_in_stock=0,
+        time_s=1.0,
+        removed=1.0,
+        air_share=0.0,
+        power=power,
+    )
+    return Verdict(
+        outcome=Outcome.PASSED,
+        coverage=1.0,
+        reachable=1.0,
+        gouge=0.0,
+        collisions=0,
+        rapids_in_stock=0,
+        machining_time_s=1.0,
+        operations=(measured,),
+    )
 
 
 def test_the_highest_load_is_the_peak_and_after_the_proof_what_that_measured():
     operations = balanced(one())
-    (foreseen,), (measured,), (idle,) = (spindle_loads(operations, v) for v in (None, proof(19.8), proof(0.1)))
-    assert (foreseen.highest, foreseen.at) == (operations[0].data.peak_power, "the cutter enters at full width")
-    assert (measured.highest, measured.measured, measured.share) == (19.8, True, approx(19.8 / 28.0))
+    (foreseen,), (measured,), (idle,) = (
+        spindle_loads(operations, v) for v in (None, proof(19.8), proof(0.1))
+    )
+    assert (foreseen.highest, foreseen.at) == (
+        operations[0].data.peak_power,
+        "the cutter enters at full width",
+    )
+    assert (measured.highest, measured.measured, measured.share) == (
+        19.8,
+        True,
+        approx(19.8 / 28.0),
+    )
     assert (idle.highest, idle.measured) == (operations[0].data.power, False)
 
 

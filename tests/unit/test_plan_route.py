@@ -24,12 +24,16 @@ def route(made, *, blank=None, **words):
     part, recognition = made
     blank = blank or blank_of(part)
     setups = make_setups(recognition, blank, SHOP.machine("Mill 1200"), choose(SetupSettings, {}))
-    return make_route(recognition, (), blank, setups, SHOP, part, choose(RouteSettings, words), QUIET)
+    return make_route(
+        recognition, (), blank, setups, SHOP, part, choose(RouteSettings, words), QUIET
+    )
 
 
 def with_sizes(made, id, **sizes):
     part, recognition = made
-    changed = tuple(replace(f, sizes={**f.sizes, **sizes}) if f.id == id else f for f in recognition)
+    changed = tuple(
+        replace(f, sizes={**f.sizes, **sizes}) if f.id == id else f for f in recognition
+    )
     return part, replace(recognition, features=changed)
 
 
@@ -50,7 +54,12 @@ def test_the_top_is_faced_first_and_the_outline_finished_last():
 
 
 def test_ribs_are_cut_between_roughing_and_finishing_of_the_pockets_beside_them():
-    assert place("rough-pocket-01") < place("rib_top-rib-01") < place("floor-pocket-01") < place("wall-pocket-01")
+    assert (
+        place("rough-pocket-01")
+        < place("rib_top-rib-01")
+        < place("floor-pocket-01")
+        < place("wall-pocket-01")
+    )
     assert place("rough-pocket-02") < place("rib_top-rib-01") < place("floor-pocket-02")
 
 
@@ -66,7 +75,9 @@ def test_a_walls_cutter_has_the_fillets_radius_and_passes_through_the_corners(id
 
 
 def test_every_cutter_reaches_its_floor_with_clearance():
-    assert all(o.tool.neck_length >= 25.0 + 1.0 for o in TREE.operations if o.feature == "pocket-01")
+    assert all(
+        o.tool.neck_length >= 25.0 + 1.0 for o in TREE.operations if o.feature == "pocket-01"
+    )
 
 
 def test_a_corner_is_roughed_again_where_the_first_cutter_did_not_fit():
@@ -77,7 +88,11 @@ def test_a_corner_is_roughed_again_where_the_first_cutter_did_not_fit():
 def test_a_walls_cutter_passes_between_an_island_and_the_wall():
     tree = route(narrow_panel())
     assert tree.operation("wall-pocket-01").tool.diameter <= 12.0
-    assert tree.operation("corner-pocket-01").tool.diameter <= 12.0 < tree.operation("rough-pocket-01").tool.diameter
+    assert (
+        tree.operation("corner-pocket-01").tool.diameter
+        <= 12.0
+        < tree.operation("rough-pocket-01").tool.diameter
+    )
 
 
 def test_roughing_leaves_allowances_and_finishing_none():
@@ -97,7 +112,9 @@ def test_every_choice_keeps_its_rule_in_words():
 
 def test_the_same_part_gives_the_same_route():
     again = route(panel())
-    assert [(o.id, o.tool, o.data) for o in again.operations] == [(o.id, o.tool, o.data) for o in TREE.operations]
+    assert [(o.id, o.tool, o.data) for o in again.operations] == [
+        (o.id, o.tool, o.data) for o in TREE.operations
+    ]
 
 
 def test_an_open_pocket_is_roughed_after_the_outline():
@@ -122,15 +139,24 @@ def test_leaning_walls_are_named_and_left_with_their_rib():
 
 def test_a_refused_pocket_takes_its_island_with_it():
     part, recognition = panel()
-    refused = tuple(replace(f, attributes={"refused": "its walls lean"}) if f.id == "pocket-02" else f for f in recognition)
+    refused = tuple(
+        replace(f, attributes={"refused": "its walls lean"}) if f.id == "pocket-02" else f
+        for f in recognition
+    )
     tree = route((part, replace(recognition, features=refused)))
     told = {f.text for f in tree.findings}
-    assert told >= {"pocket-02 not planned: its walls lean", "island-01 not planned: it stands in pocket-02, which is not planned"}
+    assert told >= {
+        "pocket-02 not planned: its walls lean",
+        "island-01 not planned: it stands in pocket-02, which is not planned",
+    }
 
 
 def test_holes_are_named_together():
     part, recognition = panel()
-    holes = tuple(Feature(id=f"hole-0{n}", kind="hole", faces=(FaceRole(role="side", face=7),)) for n in (1, 2))
+    holes = tuple(
+        Feature(id=f"hole-0{n}", kind="hole", faces=(FaceRole(role="side", face=7),))
+        for n in (1, 2)
+    )
     (told,) = route((part, replace(recognition, features=(*recognition.features, *holes)))).findings
     assert told.text == "hole-01, hole-02 not planned: the typical plan has no operation for a hole"
 
@@ -151,7 +177,11 @@ def test_a_sharp_inner_corner_is_cut_as_far_as_cutters_go_and_told():
     tree = route(with_sizes(panel(), "pocket-01", corner_radius=0.0))
     assert [f.code for f in tree.findings] == ["route.sharp-corner"]
     assert any(o.id == "wall-pocket-01" for o in tree.operations)
-    fillets = [t.diameter for t in SHOP.tools_for("N", "finish") if t.corner_radius == 3.0 and t.neck_length >= 26.0]
+    fillets = [
+        t.diameter
+        for t in SHOP.tools_for("N", "finish")
+        if t.corner_radius == 3.0 and t.neck_length >= 26.0
+    ]
     assert tree.operation("corner_finish-pocket-01").tool.diameter == min(fillets)
 
 
@@ -164,7 +194,13 @@ def test_a_fillet_no_cutter_has_is_stepped_and_told():
 def test_a_blank_larger_than_the_machine_is_an_error_and_nothing_is_planned():
     part, _ = panel()
     box = blank_of(part)
-    huge = Blank(frame=box.frame, low=box.low, high=box.high + np.array([20000.0, 0, 0]), material=box.material, density=1)
+    huge = Blank(
+        frame=box.frame,
+        low=box.low,
+        high=box.high + np.array([20000.0, 0, 0]),
+        material=box.material,
+        density=1,
+    )
     tree = route(panel(), blank=huge)
     assert [f.code for f in tree.findings] == ["route.travel"]
     assert "exceeds the machine's travel" in tree.findings[0].text and tree.operations == ()

@@ -23,7 +23,12 @@ def test_what_must_come_before_is_done_before():
 
 
 def test_one_tool_does_all_it_can_before_the_next_comes():
-    jobs = [job("a", "T1"), job("b", "T2", 1, after="a"), job("c", "T1", 2), job("d", "T2", 3, after="c")]
+    jobs = [
+        job("a", "T1"),
+        job("b", "T2", 1, after="a"),
+        job("c", "T1", 2),
+        job("d", "T2", 3, after="c"),
+    ]
     order = ordered(jobs)
     assert changes(order, jobs) == 1
 

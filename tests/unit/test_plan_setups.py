@@ -21,7 +21,13 @@ BELOW = Feature(id="pocket-09", kind="pocket", faces=(), attributes={"direction"
 
 
 def test_the_blank_is_larger_than_the_part_by_its_allowances():
-    blank = make_blank(WORLD, np.zeros(3), np.array([100.0, 50.0, 20.0]), SHOP.material("C45"), choose(BlankSettings, {"blank.top": 3}))
+    blank = make_blank(
+        WORLD,
+        np.zeros(3),
+        np.array([100.0, 50.0, 20.0]),
+        SHOP.material("C45"),
+        choose(BlankSettings, {"blank.top": 3}),
+    )
     assert blank.low.tolist() == [-5, -5, 0] and blank.high.tolist() == [105, 55, 23]
     assert blank.mass == approx(110 * 60 * 23 * 7.85e-6)
 
@@ -35,7 +41,9 @@ def test_zero_lies_on_the_blanks_top_corner_and_the_clearance_above_it():
 
 def test_zero_may_lie_in_the_middle_of_the_bottom():
     part, recognition = panel()
-    (setup,) = make_setups(recognition, blank_of(part), MACHINE, choose(SetupSettings, {"origin": "centre bottom"}))
+    (setup,) = make_setups(
+        recognition, blank_of(part), MACHINE, choose(SetupSettings, {"origin": "centre bottom"})
+    )
     assert setup.frame.origin == approx([100, 50, 0])
     assert setup.clearance == 52.0
 
@@ -51,5 +59,11 @@ def test_a_feature_reached_from_below_gets_a_setup_turned_about_x():
 
 def test_a_turned_part_has_its_blank_in_its_own_frame():
     frame = Frame(np.array([10.0, 0.0, 0.0]), np.array([0.0, 1.0, 0.0]), np.array([1.0, 0.0, 0.0]))
-    blank = make_blank(frame, np.zeros(3), np.array([100.0, 50.0, 20.0]), SHOP.material("C45"), choose(BlankSettings, {}))
+    blank = make_blank(
+        frame,
+        np.zeros(3),
+        np.array([100.0, 50.0, 20.0]),
+        SHOP.material("C45"),
+        choose(BlankSettings, {}),
+    )
     assert box_in(frame, blank)[1] == approx([105, 55, 22])

@@ -14,8 +14,16 @@ AREAS = np.array([735.836, 737.478])
 
 
 def finishing(id, tag, tool, kind="finish"):
-    return Operation(id=id, kind=kind, strategy="surface.parallel", feature="group-01", setup="S1", tool=tool, faces=(tag,),
-                     data=cutting(0.1, 0.3, feed=3000.0))
+    return Operation(
+        id=id,
+        kind=kind,
+        strategy="surface.parallel",
+        feature="group-01",
+        setup="S1",
+        tool=tool,
+        faces=(tag,),
+        data=cutting(0.1, 0.3, feed=3000.0),
+    )
 
 
 def plan(*operations):
@@ -30,7 +38,9 @@ def test_an_area_takes_its_size_over_feed_times_stepover():
 
 
 def test_rates_of_toolpaths_give_the_papers_gain_on_the_blade():
-    found = estimate_of(plan(finishing("finish-a", 1, mill(8.0)), finishing("finish-b", 2, mill(6.0))), AREAS)
+    found = estimate_of(
+        plan(finishing("finish-a", 1, mill(8.0)), finishing("finish-b", 2, mill(6.0))), AREAS
+    )
     seconds = {"finish-a": 735.836 / (1440.73 / 8162.0), "finish-b": 737.478 / (1440.73 / 10462.0)}
     known = measured(found, seconds)
     assert known.alone == "D6 R0"

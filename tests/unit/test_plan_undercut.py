@@ -13,7 +13,12 @@ from trunnion.pipeline import Engine
 def programmed():
     """A block 120 x 90 x 30 with a pocket 60 x 40 x 20 in its middle and a recess 4 mm deep in one wall, from 14 to 25 over the bottom."""
     block = cq.Workplane("XY").box(120, 90, 30, centered=(True, True, False))
-    pocket = cq.Workplane("XY", origin=(0, 0, 10)).box(60, 40, 20, centered=(True, True, False)).edges("|Z").fillet(8)
+    pocket = (
+        cq.Workplane("XY", origin=(0, 0, 10))
+        .box(60, 40, 20, centered=(True, True, False))
+        .edges("|Z")
+        .fillet(8)
+    )
     recess = cq.Workplane("XY", origin=(20, 0, 14)).box(28, 16, 11, centered=(True, True, False))
     return (lambda e: e.run(e.open(written(block.cut(pocket).cut(recess).val().wrapped))))(Engine())
 

@@ -20,7 +20,9 @@ from trunnion.settings import declared, setting, settings
 class WedgeSettings:
     """What a shop may choose about wedges."""
 
-    slope: float = setting(3.0, unit="deg", low=0.0, high=30.0, label="Slope", help="How much a wedge leans.")
+    slope: float = setting(
+        3.0, unit="deg", low=0.0, high=30.0, label="Slope", help="How much a wedge leans."
+    )
 
 
 class WedgePlanner:
@@ -34,7 +36,9 @@ class WedgePlanner:
     def route(self, job):
         """Return a process without operations, named by the slope."""
         slope = job.chosen(WedgeSettings).slope
-        return ProcessTree(plan=f"wedge of {slope:g}", material=job.blank.material, setups=job.setups)
+        return ProcessTree(
+            plan=f"wedge of {slope:g}", material=job.blank.material, setups=job.setups
+        )
 
     def drive(self, operation, needs, scene, progress):
         """Make no drive."""
@@ -45,8 +49,18 @@ class WedgePlanner:
 def wedges(monkeypatch):
     """Registers the planner of wedges for one test."""
     known, names = registry.get, registry.names
-    monkeypatch.setattr(registry, "get", lambda kind, name: WedgePlanner if (kind, name) == ("planners", "wedge") else known(kind, name))
-    monkeypatch.setattr(registry, "names", lambda kind: (*names(kind), "wedge") if kind == "planners" else names(kind))
+    monkeypatch.setattr(
+        registry,
+        "get",
+        lambda kind, name: (
+            WedgePlanner if (kind, name) == ("planners", "wedge") else known(kind, name)
+        ),
+    )
+    monkeypatch.setattr(
+        registry,
+        "names",
+        lambda kind: (*names(kind), "wedge") if kind == "planners" else names(kind),
+    )
 
 
 @pytest.fixture(scope="module")
@@ -69,17 +83,23 @@ def as_family(session, family):
 
 def route_step():
     from trunnion.pipeline.steps import step_named
+
     return step_named("route")
 
 
 def test_every_family_of_ours_has_a_planner_of_its_name() -> None:
     assert registry.names("planners") == registry.names("families")
-    assert [planner_for(name).name for name in registry.names("planners")] == list(registry.names("planners"))
+    assert [planner_for(name).name for name in registry.names("planners")] == list(
+        registry.names("planners")
+    )
 
 
 def test_a_family_without_a_planner_is_refused_with_what_to_do() -> None:
-    with pytest.raises(BadInput, match="parts of the family casing are segmented and measured, but not planned yet; for flat pockets and "
-                                       "outlines choose recognize.family = panel or surface"):
+    with pytest.raises(
+        BadInput,
+        match="parts of the family casing are segmented and measured, but not planned yet; for flat pockets and "
+        "outlines choose recognize.family = panel or surface",
+    ):
         planner_for("casing")
 
 
@@ -90,13 +110,19 @@ def test_a_family_of_ones_own_is_routed_by_its_planner(measured, wedges) -> None
 
 
 def test_its_settings_can_be_chosen(wedges) -> None:
-    assert "wedge.slope" in {d.key for group in Engine().settings()["route"] for d in declared(group)}
+    assert "wedge.slope" in {
+        d.key for group in Engine().settings()["route"] for d in declared(group)
+    }
 
 
-def test_a_drive_that_a_planner_does_not_make_is_an_error_that_names_strategy_and_family(routed, wedges) -> None:
+def test_a_drive_that_a_planner_does_not_make_is_an_error_that_names_strategy_and_family(
+    routed, wedges
+) -> None:
     engine, session = routed
     first = replace(session.process, operations=session.process.operations[:1])
-    found = make_paths(as_family(replace(session, process=first, paths=()), "wedge"), engine.context, QUIET)[0].findings
+    found = make_paths(
+        as_family(replace(session, process=first, paths=()), "wedge"), engine.context, QUIET
+    )[0].findings
     assert [(f.severity, f.code) for f in found] == [(Severity.ERROR, "toolpath.refused")]
     assert "plane.face is driven by a PlaneDrive, which is not made for wedges" in found[0].text
 
@@ -108,7 +134,7 @@ def test_our_planners_drive_every_strategy_that_is_there(routed, family) -> None
         planner_for(family).drive(operation, DriveNeeds(drive=int), None, QUIET)
     made = {registry.get("strategies", name).drive for name in registry.names("strategies")}
     for drive in made:
-        with pytest.raises(AttributeError):     # it goes for the scene: a drive of this class is made
+        with pytest.raises(AttributeError):  # it goes for the scene: a drive of this class is made
             planner_for(family).drive(operation, DriveNeeds(drive=drive), None, QUIET)
 
 

@@ -54,33 +54,52 @@ def excursion(kind, depth):
     if kind == "edge":
         # The cutter's corner, radius 2, meets the pocket's upper rim from below at 45 degrees.
         off = (2.0 - depth) * DIAGONAL
-        return [(RIGHT - 1.0 - off, -along, TOP - 2.0 + off), (RIGHT - 1.0 - off, along, TOP - 2.0 + off)]
+        return [
+            (RIGHT - 1.0 - off, -along, TOP - 2.0 + off),
+            (RIGHT - 1.0 - off, along, TOP - 2.0 + off),
+        ]
     # A corner of 0.5 reaches into the fillet of 2: its centre moves along the fillet's own diagonal.
     off = FILLET - (FILLET - 0.5 + depth) * DIAGONAL
-    return [(RIGHT - off - 2.5, -along, FLOOR + off - 0.5), (RIGHT - off - 2.5, along, FLOOR + off - 0.5)]
+    return [
+        (RIGHT - off - 2.5, -along, FLOOR + off - 0.5),
+        (RIGHT - off - 2.5, along, FLOOR + off - 0.5),
+    ]
 
 
 @pytest.mark.parametrize("kind", ["floor", "wall", "fillet", "edge"])
 def test_a_gouge_of_50_micrometres_fails_by_contact_at_its_face(kind):
     tool = SHARP if kind == "fillet" else POCKETING
-    verdict = proof(*clean_plan(), program_section(tool, [(4.0, 0.0, 30.0), *excursion(kind, 0.05), (4.0, 0.0, 30.0)]))
+    verdict = proof(
+        *clean_plan(),
+        program_section(tool, [(4.0, 0.0, 30.0), *excursion(kind, 0.05), (4.0, 0.0, 30.0)]),
+    )
     assert verdict.outcome is Outcome.FAILED
     assert "verify.gouge" in codes(verdict)
-    assert face(verdict, "wall" if kind == "edge" else kind).gouge == approx(0.05, abs=tolerance.CONTACT_BOUND)
+    assert face(verdict, "wall" if kind == "edge" else kind).gouge == approx(
+        0.05, abs=tolerance.CONTACT_BOUND
+    )
 
 
 @pytest.mark.parametrize("kind", ["floor", "wall", "fillet", "edge"])
 def test_a_gouge_of_5_micrometres_is_measured_within_the_bound_and_passes(kind):
     tool = SHARP if kind == "fillet" else POCKETING
-    verdict = proof(*clean_plan(), program_section(tool, [(4.0, 0.0, 30.0), *excursion(kind, 0.005), (4.0, 0.0, 30.0)]))
-    assert face(verdict, "wall" if kind == "edge" else kind).gouge == approx(0.005, abs=tolerance.CONTACT_BOUND)
+    verdict = proof(
+        *clean_plan(),
+        program_section(tool, [(4.0, 0.0, 30.0), *excursion(kind, 0.005), (4.0, 0.0, 30.0)]),
+    )
+    assert face(verdict, "wall" if kind == "edge" else kind).gouge == approx(
+        0.005, abs=tolerance.CONTACT_BOUND
+    )
     assert verdict.outcome is Outcome.PASSED
 
 
 @pytest.mark.parametrize("kind", ["floor", "wall", "fillet", "edge"])
 def test_the_clean_twin_touches_and_does_not_gouge(kind):
     tool = SHARP if kind == "fillet" else POCKETING
-    verdict = proof(*clean_plan(), program_section(tool, [(4.0, 0.0, 30.0), *excursion(kind, 0.0), (4.0, 0.0, 30.0)]))
+    verdict = proof(
+        *clean_plan(),
+        program_section(tool, [(4.0, 0.0, 30.0), *excursion(kind, 0.0), (4.0, 0.0, 30.0)]),
+    )
     assert verdict.outcome is Outcome.PASSED
     assert verdict.gouge < tolerance.CONTACT_BOUND
 
@@ -118,33 +137,76 @@ def test_a_rapid_down_to_the_stock_is_clean():
 def test_a_rapid_along_a_wall_is_seen_when_it_enters_it_between_two_columns(into, seen):
     # The walls stand at x = 23, between the columns at 22.75 and 23.25: no column's centre is inside the strip that is entered.
     x = RIGHT - POCKETING.radius + into
-    section = program_section(POCKETING, [(x - 3, 0.0, 30.0), (x - 3, -1.0, 12.0), (x, -1.0, 12.0), (x, 1.0, 12.0), (x - 3, 1.0, 12.0),
-                                          (x - 3, 1.0, 30.0)], rapid_to=5)
+    section = program_section(
+        POCKETING,
+        [
+            (x - 3, 0.0, 30.0),
+            (x - 3, -1.0, 12.0),
+            (x, -1.0, 12.0),
+            (x, 1.0, 12.0),
+            (x - 3, 1.0, 12.0),
+            (x - 3, 1.0, 30.0),
+        ],
+        rapid_to=5,
+    )
     assert min(proof(*clean_plan(), section).rapids_in_stock, 1) == seen
 
 
-@pytest.mark.parametrize(("thick", "height", "seen"), [(0.3, 12.0, 1), (0.3, TOP + 0.1, 0), (-0.3, 12.0, 0)])
+@pytest.mark.parametrize(
+    ("thick", "height", "seen"), [(0.3, 12.0, 1), (0.3, TOP + 0.1, 0), (-0.3, 12.0, 0)]
+)
 def test_a_rapid_through_a_fin_that_stands_between_two_columns_is_seen(thick, height, seen):
     # Two passes with a fin about x = 0 between them, where the columns stand at -0.25 and 0.25; below 0 the passes overlap.
     tool, away = flat(6.0)(flute=20.0, number=4), 3.0 + thick / 2
-    slots = [stop for x in (-away, away) for stop in ((x, -30.0, 30.0), (x, -30.0, 11.0), (x, 30.0, 11.0), (x, 30.0, 30.0))]
-    across = program_section(tool, [(-away, 0.0, 30.0), (-away, 0.0, height), (away, 0.0, height), (away, 0.0, 30.0)], rapid_to=3)
-    assert proof(program_section(FACING, facing(), rapid_to=1), program_section(tool, slots), across).rapids_in_stock == seen
+    slots = [
+        stop
+        for x in (-away, away)
+        for stop in ((x, -30.0, 30.0), (x, -30.0, 11.0), (x, 30.0, 11.0), (x, 30.0, 30.0))
+    ]
+    across = program_section(
+        tool,
+        [(-away, 0.0, 30.0), (-away, 0.0, height), (away, 0.0, height), (away, 0.0, 30.0)],
+        rapid_to=3,
+    )
+    assert (
+        proof(
+            program_section(FACING, facing(), rapid_to=1), program_section(tool, slots), across
+        ).rapids_in_stock
+        == seen
+    )
 
 
 def test_a_rapid_down_a_slope_is_seen_where_it_is_lowest_over_a_fin():
     tool = flat(6.0)(flute=20.0, number=4)
-    slots = [stop for x in (-3.15, 3.15) for stop in ((x, -30.0, 30.0), (x, -30.0, 11.0), (x, 30.0, 11.0), (x, 30.0, 30.0))]
+    slots = [
+        stop
+        for x in (-3.15, 3.15)
+        for stop in ((x, -30.0, 30.0), (x, -30.0, 11.0), (x, 30.0, 11.0), (x, 30.0, 30.0))
+    ]
     # Where its axis passes the fin the tip is 2 mm above the top, and when it leaves the fin 1 mm below.
-    down = program_section(tool, [(-6.0, 0.0, 26.0), (3.15, 0.0, 16.85), (3.15, 0.0, 30.0)], rapid_to=2)
-    assert proof(program_section(FACING, facing(), rapid_to=1), program_section(tool, slots), down).rapids_in_stock == 1
+    down = program_section(
+        tool, [(-6.0, 0.0, 26.0), (3.15, 0.0, 16.85), (3.15, 0.0, 30.0)], rapid_to=2
+    )
+    assert (
+        proof(
+            program_section(FACING, facing(), rapid_to=1), program_section(tool, slots), down
+        ).rapids_in_stock
+        == 1
+    )
 
 
 @pytest.mark.parametrize(("number", "seen"), [(1, 1), (5, 0)])
-def test_a_rapid_from_where_the_section_before_has_left_the_same_tool_is_judged_all_the_way(number, seen):
+def test_a_rapid_from_where_the_section_before_has_left_the_same_tool_is_judged_all_the_way(
+    number, seen
+):
     # From one side of the block to the other at half its height; another tool comes from its change.
     left = program_section(FACING, [*facing(), (-45.0, 0.0, 30.0), (-45.0, 0.0, 9.0)], rapid_to=1)
-    right = program_section(flat(16.0)(number=number), [(45.0, 0.0, 9.0), (45.0, 0.0, 30.0)], operation="next", rapid_to=1)
+    right = program_section(
+        flat(16.0)(number=number),
+        [(45.0, 0.0, 9.0), (45.0, 0.0, 30.0)],
+        operation="next",
+        rapid_to=1,
+    )
     assert proof(left, right).rapids_in_stock == seen
 
 
@@ -171,8 +233,12 @@ def test_a_tool_smaller_than_programmed_is_seen_by_coverage():
 def test_a_swapped_axis_sign_is_seen_by_contact_and_by_coverage():
     face_section, pocket = clean_plan()
     flip = [-1.0, 1.0, 1.0]
-    path = replace(pocket.path, position=pocket.path.position * flip, centre=pocket.path.centre * flip,
-                   motion=[{2: 3, 3: 2}.get(int(m), int(m)) for m in pocket.path.motion])
+    path = replace(
+        pocket.path,
+        position=pocket.path.position * flip,
+        centre=pocket.path.centre * flip,
+        motion=[{2: 3, 3: 2}.get(int(m), int(m)) for m in pocket.path.motion],
+    )
     verdict = proof(face_section, replace(pocket, path=path))
     assert {"verify.gouge", "verify.coverage"} <= codes(verdict)
     # The pocket lies 5 mm right of the middle; mirrored, its cutter runs through 10 mm of part: its own radius is the depth.

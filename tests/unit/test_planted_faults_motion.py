@@ -31,9 +31,22 @@ from verify_tools import FILLET, FLOOR, TAGS, TOP, clean_plan, proof, tool_of
 DEPTHS = {"clean": 0.0, "5 um": 0.005, "50 um": 0.05}
 PLANES = {"floor": ((0.0, 0.0, 1.0), FLOOR), "wall": ((-1.0, 0.0, 0.0), -RIGHT)}
 """Normal of a plane of the pocket, and how far along it the plane lies."""
-AXES = {"floor": {"upright": (UP, UP), "leaning": (lean(15.0),) * 2, "turning": (lean(5.0), lean(25.0, 175.0))},
-        "wall": {"upright": (UP, UP), "leaning": (lean(15.0),) * 2, "turning": (lean(10.0), lean(25.0, 160.0))}}
-WAYS = {"floor": ((2.0, 0.0, 0.0), (5.0, 1.0, 0.0)), "wall": ((0.0, -1.5, FLOOR + 2.5), (0.0, 1.5, FLOOR + 3.0))}
+AXES = {
+    "floor": {
+        "upright": (UP, UP),
+        "leaning": (lean(15.0),) * 2,
+        "turning": (lean(5.0), lean(25.0, 175.0)),
+    },
+    "wall": {
+        "upright": (UP, UP),
+        "leaning": (lean(15.0),) * 2,
+        "turning": (lean(10.0), lean(25.0, 160.0)),
+    },
+}
+WAYS = {
+    "floor": ((2.0, 0.0, 0.0), (5.0, 1.0, 0.0)),
+    "wall": ((0.0, -1.5, FLOOR + 2.5), (0.0, 1.5, FLOOR + 3.0)),
+}
 SHARES = np.linspace(0.0, 1.0, 401)
 BALL = long_reaching(tool_of("ball", diameter=3.0, corner_radius=1.5, flute_length=12.0))
 
@@ -58,13 +71,22 @@ def planned():
                     continue  # Its flank leans out: upright it meets the wall's edge first.
                 for name, depth in DEPTHS.items():
                     poses = touching(tool, kind, axes, depth)
-                    faults.append(Fault(f"{form} {kind} {motion} {name}", kind, plain(tool, kind, poses), motion == "turning"))
+                    faults.append(
+                        Fault(
+                            f"{form} {kind} {motion} {name}",
+                            kind,
+                            plain(tool, kind, poses),
+                            motion == "turning",
+                        )
+                    )
                     sections.append(section_through(tool, faults[-1].operation, poses))
     for kind, touch in (("fillet", in_fillet), ("edge", on_edge)):
         for motion, axes in AXES["wall"].items():
             for name, depth in DEPTHS.items():
                 poses = touch(axes, depth)
-                faults.append(Fault(f"ball {kind} {motion} {name}", kind, depth, motion == "turning"))
+                faults.append(
+                    Fault(f"ball {kind} {motion} {name}", kind, depth, motion == "turning")
+                )
                 sections.append(section_through(BALL, faults[-1].operation, poses))
     return faults, sections
 
@@ -72,8 +94,11 @@ def planned():
 def touching(tool, kind, axes, depth):
     """Return two poses between which a cutter reaches just `depth` beyond a plane at its deepest."""
     normal, at = np.array(PLANES[kind][0]), PLANES[kind][1]
-    ends = [np.array(tip) + normal * (at + standing_out(tool, np.array([axis]), normal)[0] - np.array(tip) @ normal)
-            for tip, axis in zip(WAYS[kind], axes, strict=True)]
+    ends = [
+        np.array(tip)
+        + normal * (at + standing_out(tool, np.array([axis]), normal)[0] - np.array(tip) @ normal)
+        for tip, axis in zip(WAYS[kind], axes, strict=True)
+    ]
     poses = list(zip(ends, axes, strict=True))
     beyond = float(reaching(tool, kind, poses).max())
     return [(tip + normal * (beyond - depth), axis) for tip, axis in poses]
@@ -92,12 +117,17 @@ def plain(tool, kind, poses):
     if beyond.max() <= 1e-9:
         return 0.0
     tried = np.unique(np.concatenate([[0, len(SHARES) - 1], np.argsort(-beyond)[:5]]))
-    return max(depth_in_plane(tool, axes[k], PLANES[kind][0], beyond[k]) for k in tried if beyond[k] > 0.0)
+    return max(
+        depth_in_plane(tool, axes[k], PLANES[kind][0], beyond[k]) for k in tried if beyond[k] > 0.0
+    )
 
 
 def ball_along(axes, centre):
     """Return two poses whose ball's centre, mid between them at the latest, is at a place (x, z), and passes it in y."""
-    tips = [np.array([centre[0], y, centre[1]]) - BALL.radius * np.array(axis) for y, axis in zip((-1.5, 1.5), axes, strict=True)]
+    tips = [
+        np.array([centre[0], y, centre[1]]) - BALL.radius * np.array(axis)
+        for y, axis in zip((-1.5, 1.5), axes, strict=True)
+    ]
     return list(zip(tips, axes, strict=True))
 
 
@@ -116,14 +146,25 @@ def shifted(axes, centre, depth_at, depth, way):
 def in_fillet(axes, depth):
     """The fillet between floor and right wall: its axis is 2 mm from both."""
     middle, way = np.array([RIGHT - FILLET, FLOOR + FILLET]), np.array([0.8, -0.6])
-    return shifted(axes, middle + 0.5 * way, lambda c: np.hypot(c[:, 0] - middle[0], c[:, 2] - middle[1]) + BALL.radius - FILLET, depth,
-                   way)
+    return shifted(
+        axes,
+        middle + 0.5 * way,
+        lambda c: np.hypot(c[:, 0] - middle[0], c[:, 2] - middle[1]) + BALL.radius - FILLET,
+        depth,
+        way,
+    )
 
 
 def on_edge(axes, depth):
     """The pocket's upper rim at the right."""
     edge, way = np.array([RIGHT, TOP]), np.array([0.6, -0.8])
-    return shifted(axes, edge - BALL.radius * way, lambda c: BALL.radius - np.hypot(c[:, 0] - edge[0], c[:, 2] - edge[1]), depth, way)
+    return shifted(
+        axes,
+        edge - BALL.radius * way,
+        lambda c: BALL.radius - np.hypot(c[:, 0] - edge[0], c[:, 2] - edge[1]),
+        depth,
+        way,
+    )
 
 
 FAULTS, SECTIONS = planned()
@@ -132,7 +173,9 @@ FAULTS, SECTIONS = planned()
 @pytest.fixture(scope="module")
 def judged():
     """What the verdict says of every operation, and its errors by operation."""
-    verdict = proof(*clean_plan(), *SECTIONS, machine=FIVE_AXES, facets=(block_facets(),), bundles="z", cell=1.0)
+    verdict = proof(
+        *clean_plan(), *SECTIONS, machine=FIVE_AXES, facets=(block_facets(),), bundles="z", cell=1.0
+    )
     errors = {}
     for f in verdict.findings:
         if f.severity == "error":
@@ -147,7 +190,12 @@ def test_contact_measures_a_gouge_of_every_form_and_motion_within_its_bound(judg
     bound = (tolerance.TURNING_BOUND if fault.turning else tolerance.CONTACT_BOUND) + 1e-3
     assert found.gouge == approx(fault.depth, abs=bound)
     if fault.depth > 0.02:
-        faces = {TAGS["floor"], *range(TAGS["wall"], TAGS["wall"] + 4), *range(TAGS["fillet"], TAGS["fillet"] + 4), TAGS["top"]}
+        faces = {
+            TAGS["floor"],
+            *range(TAGS["wall"], TAGS["wall"] + 4),
+            *range(TAGS["fillet"], TAGS["fillet"] + 4),
+            TAGS["top"],
+        }
         assert found.outcome is Outcome.FAILED
         assert "verify.gouge" in errors[fault.operation]
         assert found.gouges[0][0] in faces

@@ -24,10 +24,37 @@ from trunnion.progress import Progress
 from trunnion.shop import load_shop
 
 HOLDER = Holder(name="H", rows=((0, 20, 50, 25),))
-FLAT = Tool(number=1, name="D10", form="flat", diameter=10.0, corner_radius=0.0, flute_length=30, neck_diameter=10, neck_length=30,
-            shank_diameter=10, stickout=50, gauge_length=100, teeth=2, centre_cutting=True, helix_angle=30, holder=HOLDER)
-DATA = CuttingData(speed=300, spindle=8000, feed_per_tooth=0.1, feed=1200, plunge_feed=400, depth=2, width=8, removal_rate=20, power=1,
-                   power_limit=10, torque=1, rules=())
+FLAT = Tool(
+    number=1,
+    name="D10",
+    form="flat",
+    diameter=10.0,
+    corner_radius=0.0,
+    flute_length=30,
+    neck_diameter=10,
+    neck_length=30,
+    shank_diameter=10,
+    stickout=50,
+    gauge_length=100,
+    teeth=2,
+    centre_cutting=True,
+    helix_angle=30,
+    holder=HOLDER,
+)
+DATA = CuttingData(
+    speed=300,
+    spindle=8000,
+    feed_per_tooth=0.1,
+    feed=1200,
+    plunge_feed=400,
+    depth=2,
+    width=8,
+    removal_rate=20,
+    power=1,
+    power_limit=10,
+    torque=1,
+    rules=(),
+)
 UP = np.array([0.0, 0.0, 1.0])
 
 
@@ -39,24 +66,63 @@ def path(*rows) -> Toolpath:
         if len(row) > 4:
             centre[k] = (*row[4:6], row[3])
     motion = np.array([r[0] for r in rows])
-    return Toolpath(position=np.array([r[1:4] for r in rows], dtype=float), axis=np.tile(UP, (n, 1)), motion=motion, centre=centre,
-                    feed=np.where(motion == Motion.RAPID, 0.0, 1200.0), mark=np.full(n, int(Mark.CUT)))
+    return Toolpath(
+        position=np.array([r[1:4] for r in rows], dtype=float),
+        axis=np.tile(UP, (n, 1)),
+        motion=motion,
+        centre=centre,
+        feed=np.where(motion == Motion.RAPID, 0.0, 1200.0),
+        mark=np.full(n, int(Mark.CUT)),
+    )
 
 
-SLOT = path((Motion.RAPID, -10, 10, 20), (Motion.RAPID, -10, 10, -2), (Motion.LINE, 50, 10, -2), (Motion.LINE, 50, 10, 20))
-BOW = path((Motion.RAPID, 20, 40, 20), (Motion.LINE, 20, 40, -3), (Motion.ARC_CCW, 40, 40, -3, 30, 40), (Motion.LINE, 40, 40, 20))
+SLOT = path(
+    (Motion.RAPID, -10, 10, 20),
+    (Motion.RAPID, -10, 10, -2),
+    (Motion.LINE, 50, 10, -2),
+    (Motion.LINE, 50, 10, 20),
+)
+BOW = path(
+    (Motion.RAPID, 20, 40, 20),
+    (Motion.LINE, 20, 40, -3),
+    (Motion.ARC_CCW, 40, 40, -3, 30, 40),
+    (Motion.LINE, 40, 40, 20),
+)
 
 
 @pytest.fixture
 def session():
     """A block of 60 x 50 x 10 mm with a slot and a half circle cut into its top, two operations of one tool."""
-    setup = Setup(name="S1", frame=Frame(np.array([0.0, 0.0, 10.0]), np.array([1.0, 0, 0]), UP), work_offset="G54", clearance=20.0,
-                  machine=next(iter(load_shop().machines)))
-    operations = tuple(Operation(id=id, kind="rough", strategy="made.up", feature="f", setup="S1", tool=FLAT, data=DATA) for id in "ab")
-    blank = Blank(frame=WORLD, low=np.zeros(3), high=np.array([60.0, 50.0, 10.0]), material="al-7075", density=2.81)
-    return Session(part=SimpleNamespace(name="block"), blank=blank, setups=(setup,),
-                   process=ProcessTree(plan="p", material="al-7075", setups=(setup,), operations=operations),
-                   paths=(OperationPath(operation="a", path=SLOT, key="1"), OperationPath(operation="b", path=BOW, key="2")))
+    setup = Setup(
+        name="S1",
+        frame=Frame(np.array([0.0, 0.0, 10.0]), np.array([1.0, 0, 0]), UP),
+        work_offset="G54",
+        clearance=20.0,
+        machine=next(iter(load_shop().machines)),
+    )
+    operations = tuple(
+        Operation(
+            id=id, kind="rough", strategy="made.up", feature="f", setup="S1", tool=FLAT, data=DATA
+        )
+        for id in "ab"
+    )
+    blank = Blank(
+        frame=WORLD,
+        low=np.zeros(3),
+        high=np.array([60.0, 50.0, 10.0]),
+        material="al-7075",
+        density=2.81,
+    )
+    return Session(
+        part=SimpleNamespace(name="block"),
+        blank=blank,
+        setups=(setup,),
+        process=ProcessTree(plan="p", material="al-7075", setups=(setup,), operations=operations),
+        paths=(
+            OperationPath(operation="a", path=SLOT, key="1"),
+            OperationPath(operation="b", path=BOW, key="2"),
+        ),
+    )
 
 
 @pytest.fixture
@@ -98,7 +164,9 @@ def test_going_back_shows_the_same_stock_as_going_there_directly(playback):
     there = playback.at(3)
     playback.at(8)
     back = playback.at(3)
-    assert np.array_equal(there.points, back.points) and np.array_equal(there.triangles, back.triangles)
+    assert np.array_equal(there.points, back.points) and np.array_equal(
+        there.triangles, back.triangles
+    )
     assert there.removed == back.removed
 
 
@@ -107,7 +175,10 @@ def test_a_part_of_a_block_is_cut_as_far_as_the_tool_is(playback, session):
     assert moment.tip == pytest.approx([20.0, 10.0, 8.0])
     # Half of the 60 mm: 20 mm inside the blank, and the half circle before it.
     assert moment.removed == pytest.approx(2 * (20 * 10 + np.pi * 25 / 2), rel=0.02)
-    stopped, whole = playback.at(3), Playback(session, SimpleNamespace(shop=load_shop()), cell=0.5).at(3)
+    stopped, whole = (
+        playback.at(3),
+        Playback(session, SimpleNamespace(shop=load_shop()), cell=0.5).at(3),
+    )
     assert np.array_equal(stopped.points, whole.points)
     assert stopped.removed == pytest.approx(whole.removed)
 
@@ -150,7 +221,10 @@ def test_nothing_to_play_is_said(session):
 
 def test_a_triangle_in_a_side_of_the_blank_is_not_fresh(session):
     points = np.array([[0.0, 0, 0], [0, 50, 0], [0, 50, 10], [1, 50, 10]])
-    assert list(fresh_of(points, np.array([[0, 1, 2], [0, 2, 3]]), session.blank, 1e-6)) == [False, True]
+    assert list(fresh_of(points, np.array([[0, 1, 2], [0, 2, 3]]), session.blank, 1e-6)) == [
+        False,
+        True,
+    ]
 
 
 # the timeline
@@ -162,11 +236,18 @@ def line():
     nowhere = np.full(3, np.nan)
     lean = np.array([0.0, 1.0, 0.0])
     return Timeline(
-        key="k", passages=tuple(Passage(operation=id, setup="S1", tool=FLAT, file="S1.nc") for id in "ab"),
-        first=np.array([0, 3, 5]), tip=np.array([[0.0, 0, 0], [10, 0, 0], [10, 10, 2], [50, 0, 0], [50, 4, 0]]),
-        axis=np.array([UP, UP, UP, UP, lean]), centre=np.array([nowhere, nowhere, [10, 5, 0], nowhere, nowhere]),
-        sweep=np.array([0, 0, np.pi, 0, 0]), rapid=np.array([True, False, False, True, False]), mark=np.zeros(5, int),
-        line=np.array([4, 5, 7, 20, 21]), time=np.array([0.0, 0.0, 2.0, 5.0, 9.0, 10.0]))
+        key="k",
+        passages=tuple(Passage(operation=id, setup="S1", tool=FLAT, file="S1.nc") for id in "ab"),
+        first=np.array([0, 3, 5]),
+        tip=np.array([[0.0, 0, 0], [10, 0, 0], [10, 10, 2], [50, 0, 0], [50, 4, 0]]),
+        axis=np.array([UP, UP, UP, UP, lean]),
+        centre=np.array([nowhere, nowhere, [10, 5, 0], nowhere, nowhere]),
+        sweep=np.array([0, 0, np.pi, 0, 0]),
+        rapid=np.array([True, False, False, True, False]),
+        mark=np.zeros(5, int),
+        line=np.array([4, 5, 7, 20, 21]),
+        time=np.array([0.0, 0.0, 2.0, 5.0, 9.0, 10.0]),
+    )
 
 
 def test_the_tool_runs_straight_along_a_line(line):
@@ -225,15 +306,22 @@ def test_the_way_is_opened_into_chords_on_the_arc(line):
 def leaning(session):
     """The same block with one straight cut by a tool that leans 30 degrees, and turns upright on the way."""
     lean = np.array([0.5, 0.0, np.sqrt(0.75)])
-    made = Toolpath(position=np.array([[5.0, 25, 20], [5, 25, -3], [45, 25, -3], [45, 25, 20]]), axis=np.array([lean, lean, UP, UP]),
-                    motion=np.array([Motion.RAPID, Motion.LINE, Motion.LINE, Motion.LINE]), centre=np.full((4, 3), np.nan),
-                    feed=np.array([0.0, 400, 1200, 1200]), mark=np.zeros(4, int))
+    made = Toolpath(
+        position=np.array([[5.0, 25, 20], [5, 25, -3], [45, 25, -3], [45, 25, 20]]),
+        axis=np.array([lean, lean, UP, UP]),
+        motion=np.array([Motion.RAPID, Motion.LINE, Motion.LINE, Motion.LINE]),
+        centre=np.full((4, 3), np.nan),
+        feed=np.array([0.0, 400, 1200, 1200]),
+        mark=np.zeros(4, int),
+    )
     return replace(session, paths=(OperationPath(operation="a", path=made, key="3"),))
 
 
 def test_a_turning_tool_cuts_on_its_way(leaning):
     playback = Playback(leaning, SimpleNamespace(shop=load_shop()), cell=1.0)
-    assert playback.at(2.5).axis == pytest.approx([np.sin(np.radians(15)), 0.0, np.cos(np.radians(15))])
+    assert playback.at(2.5).axis == pytest.approx(
+        [np.sin(np.radians(15)), 0.0, np.cos(np.radians(15))]
+    )
     removed = [playback.at(p).removed for p in (0.0, 1.0, 2.0, 2.25, 2.5, 2.75, 3.0, 4.0)]
     assert removed == sorted(removed) and len(set(removed)) >= 6
     end = playback.at(4.0)

@@ -6,7 +6,19 @@ from dataclasses import replace
 
 import pytest
 
-from programs import BULL_10, CCW, FLAT_16, LINE, RAPID, S1, S2, path_of, program_1, program_2, section
+from programs import (
+    BULL_10,
+    CCW,
+    FLAT_16,
+    LINE,
+    RAPID,
+    S1,
+    S2,
+    path_of,
+    program_1,
+    program_2,
+    section,
+)
 from trunnion.findings import BadCall, BadInput
 from trunnion.model.listing import listing
 from trunnion.model.program import Program
@@ -38,9 +50,11 @@ def test_programs_read_again_move_the_same(units):
 
 def test_an_arc_is_a_circle_with_its_sense_and_the_goto_that_ends_it():
     path = path_of((RAPID, 10, 0, 5), (CCW, 0, 10, 4, 0, 0, 100))
-    lines = text_of(Program(name="B1.S1", setup=S1, sections=(section("a", FLAT_16, path),))).split("\n")
+    lines = text_of(Program(name="B1.S1", setup=S1, sections=(section("a", FLAT_16, path),))).split(
+        "\n"
+    )
     at = lines.index("FEDRAT/100,MMPM")
-    assert lines[at + 1:at + 3] == ["CIRCLE/0,0,5,0,0,1,10", "GOTO/0,10,4"]
+    assert lines[at + 1 : at + 3] == ["CIRCLE/0,0,5,0,0,1,10", "GOTO/0,10,4"]
 
 
 def test_a_circle_back_to_its_start_is_a_full_turn():
@@ -61,7 +75,7 @@ def test_one_setup_needs_no_name_in_the_text():
 
 def test_the_same_setup_twice_is_refused():
     text = "\n".join(line for line in text_of(program_1()).split("\n"))
-    body = text[text.index("PPRINT/SETUP S1 WORK"):text.index("SPINDL/OFF")]
+    body = text[text.index("PPRINT/SETUP S1 WORK") : text.index("SPINDL/OFF")]
     with pytest.raises(BadInput, match="setup S1 comes twice; put its operations together"):
         read_apt("UNITS/MM\n" + body + body + "FINI\n", TOOLS, [S1])
 
@@ -77,6 +91,15 @@ def test_nothing_to_write_is_a_bad_call():
 
 
 def test_feeds_stand_only_where_they_change():
-    path = path_of((RAPID, 0, 0, 5), (LINE, 1, 0, 5, 100), (LINE, 2, 0, 5, 100), (LINE, 3, 0, 5, 200.04), (RAPID, 0, 0, 5))
+    path = path_of(
+        (RAPID, 0, 0, 5),
+        (LINE, 1, 0, 5, 100),
+        (LINE, 2, 0, 5, 100),
+        (LINE, 3, 0, 5, 200.04),
+        (RAPID, 0, 0, 5),
+    )
     text = text_of(Program(name="B1.S1", setup=S1, sections=(section("a", FLAT_16, path),)))
-    assert [line for line in text.split("\n") if line.startswith("FEDRAT")] == ["FEDRAT/100,MMPM", "FEDRAT/200,MMPM"]
+    assert [line for line in text.split("\n") if line.startswith("FEDRAT")] == [
+        "FEDRAT/100,MMPM",
+        "FEDRAT/200,MMPM",
+    ]

@@ -62,11 +62,15 @@ def test_both_ways_to_stand_bring_the_tool_where_the_words_mean(machine):
 
 
 @ALL
-def test_the_words_differ_from_the_proofs_own_positions_by_the_work_offset_and_the_length_alone(machine):
+def test_the_words_differ_from_the_proofs_own_positions_by_the_work_offset_and_the_length_alone(
+    machine,
+):
     place, tip = standing(machine), np.random.default_rng(3).normal(size=(200, 3)) * 50.0
     angle = stands_of(machine, axes(200))[0][:, 0]
     own = linear_positions(tip - place.foot, np.full(200, 140.0), angle, machine)
-    assert own - words_of(place, tip, angle, 140.0) == approx(np.tile([0.0, 0.0, 140.0] - place.foot, (200, 1)), abs=1e-9)
+    assert own - words_of(place, tip, angle, 140.0) == approx(
+        np.tile([0.0, 0.0, 140.0] - place.foot, (200, 1)), abs=1e-9
+    )
 
 
 def test_a_table_that_leans_swings_the_tip_about_its_axis():
@@ -86,18 +90,26 @@ def test_a_fork_that_leans_takes_its_arm_along():
 def test_the_compiled_winding_is_the_plain_one():
     rng = np.random.default_rng(5)
     for n in range(40):
-        angle = rng.uniform(-math.pi, math.pi, (30, 2, 2)) if n % 2 else np.cumsum(rng.normal(0.0, 0.4, (30, 2, 2)), axis=0)
+        angle = (
+            rng.uniform(-math.pi, math.pi, (30, 2, 2))
+            if n % 2
+            else np.cumsum(rng.normal(0.0, 0.4, (30, 2, 2)), axis=0)
+        )
         free, through = rng.uniform(size=(30, 2, 2)) < 0.1, rng.uniform(size=30) < 0.3
         low, high, start = np.array([-2.0, -7.0]), np.array([3.0, 7.0]), rng.uniform(-1.0, 1.0, 2)
         plain, fast = np.zeros((30, 2)), np.zeros((30, 2))
         said = winding.follow(angle, free, through, low, high, SLACK, start, plain)
-        assert winding_compiled.follow(angle, free, through, low, high, SLACK, start, fast) == approx(said)
+        assert winding_compiled.follow(
+            angle, free, through, low, high, SLACK, start, fast
+        ) == approx(said)
         assert fast == approx(plain)
 
 
 def test_the_winding_keeps_its_way_where_the_other_would_end_at_a_limit():
     # Over the pole to the other side: A may go to 30 only, so C turns half round there and A goes on below 0.
-    path = path_of(*[((0.0, 0.0, 10.0), lean(abs(t), 90.0 if t < 0 else -90.0)) for t in range(-60, 61, 5)])
+    path = path_of(
+        *[((0.0, 0.0, 10.0), lean(abs(t), 90.0 if t < 0 else -90.0)) for t in range(-60, 61, 5)]
+    )
     joints = joint_path(path, FLAT_16, standing(TABLE), None, Straying(feed=0.002, rapid=0.5), "op")
     angle = np.degrees(joints.angle)
     assert angle[:, 0].min() == approx(-60.0)
@@ -107,9 +119,14 @@ def test_the_winding_keeps_its_way_where_the_other_would_end_at_a_limit():
 
 def test_an_axis_that_may_turn_for_ever_winds_up_and_one_that_may_not_is_refused():
     turns = path_of(*[((20.0, 0.0, 5.0), lean(25.0, 10.0 * k)) for k in range(109)])
-    endless = joint_path(turns, FLAT_16, standing(TABLE), None, Straying(feed=0.01, rapid=0.5), "op")
+    endless = joint_path(
+        turns, FLAT_16, standing(TABLE), None, Straying(feed=0.01, rapid=0.5), "op"
+    )
     assert math.degrees(np.ptp(endless.angle[:, 1])) == approx(1080.0)
-    with pytest.raises(Refused, match=r"operation op, block \d+: its tool axis needs .* has C -360 to 360, A -110 to 110"):
+    with pytest.raises(
+        Refused,
+        match=r"operation op, block \d+: its tool axis needs .* has C -360 to 360, A -110 to 110",
+    ):
         joint_path(turns, FLAT_16, standing(FORK), None, Straying(feed=0.01, rapid=0.5), "op")
 
 
@@ -123,15 +140,23 @@ def test_a_way_begins_where_its_turns_fit_between_the_limits():
 
 def test_an_axis_that_the_machine_can_not_hold_is_refused_in_words():
     below = path_of(((0.0, 0.0, 50.0), lean(125.0)), ((0.0, 0.0, 0.0), lean(125.0)))
-    with pytest.raises(Refused, match=r"operation op-1, block 1: its tool axis needs A-125.0 C-90.0 or A125.0 C90.0, .* A -120 to 30"):
+    with pytest.raises(
+        Refused,
+        match=r"operation op-1, block 1: its tool axis needs A-125.0 C-90.0 or A125.0 C90.0, .* A -120 to 30",
+    ):
         text_of(program(below), standing(TABLE))
 
 
 @ALL
 def test_between_two_blocks_the_tool_stays_within_the_tolerance_of_its_way(machine):
     place = standing(machine)
-    path = path_of(((30.0, 10.0, 40.0), lean(10.0, 20.0)), ((30.0, 10.0, 2.0), lean(10.0, 20.0)), ((50.0, 20.0, 0.0), lean(35.0, 130.0)),
-                   ((20.0, -30.0, 5.0), lean(3.0, -120.0)), ((25.0, -25.0, 5.0), lean(3.0, 100.0)))
+    path = path_of(
+        ((30.0, 10.0, 40.0), lean(10.0, 20.0)),
+        ((30.0, 10.0, 2.0), lean(10.0, 20.0)),
+        ((50.0, 20.0, 0.0), lean(35.0, 130.0)),
+        ((20.0, -30.0, 5.0), lean(3.0, -120.0)),
+        ((25.0, -25.0, 5.0), lean(3.0, 100.0)),
+    )
     straying = Straying(feed=0.002, rapid=0.5)
     joints = joint_path(path, FLAT_16, place, None, straying, "op")
     tip, axis = swept(place, joints.words, joints.angle, FLAT_16.gauge_length)
@@ -160,20 +185,29 @@ def way_of(path, blocks, parts, reach):
     share = np.tile(np.linspace(0.0, 1.0, parts), len(blocks))
     row = np.repeat(blocks, parts)
     axis = even_turn(path.axis[row - 1], path.axis[row], share)
-    return path.position[row - 1] + share[:, None] * (path.position[row] - path.position[row - 1]) + reach * axis
+    return (
+        path.position[row - 1]
+        + share[:, None] * (path.position[row] - path.position[row - 1])
+        + reach * axis
+    )
 
 
 def off_line(points, line):
     """Return how far points are from a line of points that nowhere turns sharply back."""
     line = line[np.concatenate([[True], np.linalg.norm(np.diff(line, axis=0), axis=1) > 1e-9])]
     near = np.clip(cKDTree(line).query(points)[1], 1, len(line) - 2)
-    return np.minimum(off_segment(points, line[near - 1], line[near]), off_segment(points, line[near], line[near + 1]))
+    return np.minimum(
+        off_segment(points, line[near - 1], line[near]),
+        off_segment(points, line[near], line[near + 1]),
+    )
 
 
 def off_segment(points, a, b):
     """Return how far points (k, 3) are from segments (k, 3) each."""
     run = b - a
-    share = np.clip(((points - a) * run).sum(axis=1) / np.maximum((run * run).sum(axis=1), 1e-30), 0.0, 1.0)
+    share = np.clip(
+        ((points - a) * run).sum(axis=1) / np.maximum((run * run).sum(axis=1), 1e-30), 0.0, 1.0
+    )
     return np.linalg.norm(points - a - share[:, None] * run, axis=1)
 
 
@@ -182,9 +216,14 @@ def test_what_is_read_back_is_what_the_machine_does_between_the_blocks(machine):
     place, case = standing(machine, foot=(100.0, 100.0, -30.0)), five_axis_case(20, 500)
     made = program(case.section.path, tool=case.section.tool)
     text = text_of(made, place)
-    (rows,), (section,) = joint_rows(text, place, (case.section.tool,)), again(text, place, (case.section.tool,)).sections
+    (rows,), (section,) = (
+        joint_rows(text, place, (case.section.tool,)),
+        again(text, place, (case.section.tool,)).sections,
+    )
     points = np.array(rows.point)[3:-2]
-    tip, axis = swept(place, points[:, :3], np.radians(points[:, 3:]), case.section.tool.gauge_length)
+    tip, axis = swept(
+        place, points[:, :3], np.radians(points[:, 3:]), case.section.tool.gauge_length
+    )
     for reach in (0.0, case.section.tool.flute_length):
         way = way_of(section.path, np.arange(3, len(section.path) - 2), 3, reach)
         assert off_line(tip + reach * axis, way).max() <= 0.0011
@@ -213,9 +252,17 @@ def test_an_upright_program_on_a_machine_with_rotary_axes_says_that_they_stand_a
     text = text_of(program_1(), place)
     plain = LinuxCncDialect().write([program_1()], HEADER, PostSettings())
     assert "G0 A0 C0" in text
-    assert listing(again(text, place, (FLAT_16, BULL_10)), marks=False) == listing(program_1(), marks=False)
-    moves = [[w for w in line.split()[1:] if w not in ("A0", "C0")] for line in text.splitlines() if line.startswith("N")]
-    assert [m for m in moves if m != ["G0"]] == [line.split()[1:] for line in plain.splitlines() if line.startswith("N")]
+    assert listing(again(text, place, (FLAT_16, BULL_10)), marks=False) == listing(
+        program_1(), marks=False
+    )
+    moves = [
+        [w for w in line.split()[1:] if w not in ("A0", "C0")]
+        for line in text.splitlines()
+        if line.startswith("N")
+    ]
+    assert [m for m in moves if m != ["G0"]] == [
+        line.split()[1:] for line in plain.splitlines() if line.startswith("N")
+    ]
 
 
 def test_where_no_rotary_axis_turns_the_feed_is_in_mm_a_minute_and_arcs_stay_arcs():
@@ -224,9 +271,14 @@ def test_where_no_rotary_axis_turns_the_feed_is_in_mm_a_minute_and_arcs_stay_arc
     across /= np.linalg.norm(across)
     ahead, centre = np.cross(tilt, across), np.array([10.0, 5.0, 0.0])
     around = [centre + 8.0 * (math.cos(a) * across + math.sin(a) * ahead) for a in (0.0, 0.7, 2.5)]
-    path = Toolpath(position=[around[0] + 30.0 * tilt, around[0], around[1], around[2]], axis=[tilt] * 4,
-                    motion=[Motion.RAPID, Motion.LINE, Motion.ARC_CCW, Motion.ARC_CCW], feed=[0.0, 500.0, 800.0, 800.0], mark=[0] * 4,
-                    centre=[[np.nan] * 3, [np.nan] * 3, centre, centre])
+    path = Toolpath(
+        position=[around[0] + 30.0 * tilt, around[0], around[1], around[2]],
+        axis=[tilt] * 4,
+        motion=[Motion.RAPID, Motion.LINE, Motion.ARC_CCW, Motion.ARC_CCW],
+        feed=[0.0, 500.0, 800.0, 800.0],
+        mark=[0] * 4,
+        centre=[[np.nan] * 3, [np.nan] * 3, centre, centre],
+    )
     text = text_of(program(path), standing(TABLE))
     assert text.count(" G3 ") == 1
     assert "G93" not in text
@@ -240,8 +292,14 @@ def test_where_no_rotary_axis_turns_the_feed_is_in_mm_a_minute_and_arcs_stay_arc
 def test_a_fork_that_leans_cuts_an_arc_in_lines():
     tilt = lean(30.0)
     start, end = np.array([0.0, 5.0, 0.0]), np.array([0.0, -5.0, 0.0])
-    path = Toolpath(position=[start + 20.0 * tilt, start, end], axis=[tilt] * 3, motion=[Motion.RAPID, Motion.LINE, Motion.ARC_CW],
-                    centre=[[np.nan] * 3, [np.nan] * 3, [0.0, 0.0, 0.0]], feed=[0.0, 500.0, 500.0], mark=[0] * 3)
+    path = Toolpath(
+        position=[start + 20.0 * tilt, start, end],
+        axis=[tilt] * 3,
+        motion=[Motion.RAPID, Motion.LINE, Motion.ARC_CW],
+        centre=[[np.nan] * 3, [np.nan] * 3, [0.0, 0.0, 0.0]],
+        feed=[0.0, 500.0, 500.0],
+        mark=[0] * 3,
+    )
     text = text_of(program(path), standing(FORK))
     read = again(text, standing(FORK)).sections[0].path
     assert " G2" not in text.split("OPERATION")[1]
@@ -260,13 +318,17 @@ def test_a_block_that_turns_takes_the_time_that_its_tip_needs_at_its_feed():
 
 def test_a_block_is_never_faster_than_its_axes():
     # The tip moves 0.1 mm while C turns by 90 degrees: 18000 degrees a minute are its most.
-    path = path_of(((0.0, 0.0, 10.0), lean(20.0, 0.0)), ((0.1, 0.0, 10.0), lean(20.0, 90.0)), feed=5000.0)
+    path = path_of(
+        ((0.0, 0.0, 10.0), lean(20.0, 0.0)), ((0.1, 0.0, 10.0), lean(20.0, 90.0)), feed=5000.0
+    )
     (rows,) = joint_rows(text_of(program(path), standing(TABLE)), standing(TABLE))
     assert sum(rows.minutes) >= 90.0 / 18000.0 - 1e-9
 
 
 def test_an_operation_that_begins_in_another_direction_is_refused_unless_it_was_led_there():
-    first, second = (path_of(((0.0, 0.0, 40.0), lean(a)), ((0.0, 0.0, 0.0), lean(a))) for a in (10.0, 50.0))
+    first, second = (
+        path_of(((0.0, 0.0, 40.0), lean(a)), ((0.0, 0.0, 0.0), lean(a))) for a in (10.0, 50.0)
+    )
     with pytest.raises(Refused, match="op-2 begins with the tool in another direction"):
         text_of(program(first, second), standing(TABLE))
 
@@ -283,30 +345,49 @@ def test_axes_that_must_unwind_between_two_operations_do_so_at_the_top_of_the_ma
 
 def test_an_axis_wound_up_to_its_limit_begins_again_near_home():
     turns = np.array([lean(25.0, 10.0 * k) for k in range(181)])
-    short = replace(TABLE, axes=(*TABLE.axes[:4], replace(TABLE.axes[4], low=-36000.0, high=36000.0)))
+    short = replace(
+        TABLE, axes=(*TABLE.axes[:4], replace(TABLE.axes[4], low=-36000.0, high=36000.0))
+    )
     wound = followed(turns, standing(short), np.radians([-25.0, 35990.0]), 1e-4, "op")
     assert np.abs(np.degrees(wound[0, 1])) < 1500.0
     assert math.degrees(np.ptp(wound[:, 1])) == approx(1800.0)
 
 
 def test_a_text_is_not_read_for_work_that_stands_elsewhere():
-    text = text_of(program(path_of(((0.0, 0.0, 40.0), lean(10.0)), ((0.0, 0.0, 0.0), lean(10.0)))), standing(TABLE))
-    with pytest.raises(BadInput, match=r"line \d+: the text was made for work that stands elsewhere"):
+    text = text_of(
+        program(path_of(((0.0, 0.0, 40.0), lean(10.0)), ((0.0, 0.0, 0.0), lean(10.0)))),
+        standing(TABLE),
+    )
+    with pytest.raises(
+        BadInput, match=r"line \d+: the text was made for work that stands elsewhere"
+    ):
         again(text, standing(TABLE, foot=(10.0, 5.0, -41.0)))
 
 
 START = "G21 G90 G17 G94 G64 P0.005\nG54\nT1 M6\nS9000 M3\n"
 
 
-@pytest.mark.parametrize(("body", "message"), [
-    ("G0 X0 Y0\nG43 H1 Z50\n", "line 6: it is not known where A and C stand"),
-    ("G0 X0 Y0\nG43 H1 Z50 A0 C0\n", "line 6: turn A and C at the top of the machine"),
-    ("G0 A0 C0\nG0 X0 Y0\nG43 H1 Z50\nG93 G1 X5\n", "line 8: a feed move without a feed"),
-    ("G0 A0 C0\nG0 X0 Y0\nG43 H1 Z50\nG93 G1 X5 F100\nX6\n", r"line 9: a feed move in inverse time \(G93\) needs an F word"),
-    ("G0 A0 C0\nG0 X0 Y0\nG43 H1 Z50\nG1 X5 B3 F100\n", "line 8: the word B is not understood by a program for the axes XYZAC"),
-    ("G0 A0 C0\nG0 X0 Y0\nG43 H1 Z50\nG2 X5 Y0 I2.5 J0 C10 F100\n", "line 8: an arc in which a rotary axis turns"),
-    ("G0 A0 C0\nG0 X0 Y0\nG43 H1 Z50\nG53 G0 Z0 A0\n", "line 8: of G53 only G53 G0 Z0"),
-])
+@pytest.mark.parametrize(
+    ("body", "message"),
+    [
+        ("G0 X0 Y0\nG43 H1 Z50\n", "line 6: it is not known where A and C stand"),
+        ("G0 X0 Y0\nG43 H1 Z50 A0 C0\n", "line 6: turn A and C at the top of the machine"),
+        ("G0 A0 C0\nG0 X0 Y0\nG43 H1 Z50\nG93 G1 X5\n", "line 8: a feed move without a feed"),
+        (
+            "G0 A0 C0\nG0 X0 Y0\nG43 H1 Z50\nG93 G1 X5 F100\nX6\n",
+            r"line 9: a feed move in inverse time \(G93\) needs an F word",
+        ),
+        (
+            "G0 A0 C0\nG0 X0 Y0\nG43 H1 Z50\nG1 X5 B3 F100\n",
+            "line 8: the word B is not understood by a program for the axes XYZAC",
+        ),
+        (
+            "G0 A0 C0\nG0 X0 Y0\nG43 H1 Z50\nG2 X5 Y0 I2.5 J0 C10 F100\n",
+            "line 8: an arc in which a rotary axis turns",
+        ),
+        ("G0 A0 C0\nG0 X0 Y0\nG43 H1 Z50\nG53 G0 Z0 A0\n", "line 8: of G53 only G53 G0 Z0"),
+    ],
+)
 def test_what_is_not_clear_is_refused_with_its_line(body, message):
     with pytest.raises(BadInput, match=message):
         again(START + body + "M30\n", standing(TABLE))

@@ -22,7 +22,14 @@ from trunnion.post.settings import PostSettings
 GOLDEN = Path(__file__).resolve().parent.parent / "golden"
 CASES = sorted((GOLDEN / "post").iterdir())
 REFUSED = sorted((GOLDEN / "refused").glob("*.[nc][cl]"))
-HEADER = Header(name="B1", part="B1", part_digest="ab12", plan_digest="cd34", material="al-7075", date="2026-01-02")
+HEADER = Header(
+    name="B1",
+    part="B1",
+    part_digest="ab12",
+    plan_digest="cd34",
+    material="al-7075",
+    date="2026-01-02",
+)
 DIALECTS = {".nc": "linuxcnc", ".cl": "apt"}
 
 
@@ -31,7 +38,10 @@ def made(case: Path, expected: Path) -> str:
     if sources[0].suffix != ".motions":
         dialect = registry.get("dialects", DIALECTS[sources[0].suffix])()
         setups = [S1, S2] if sources[0].suffix == ".cl" else [S1]
-        return "".join(listing(p, marks=False) for p in dialect.read(sources[0].read_text(), (FLAT_16, BULL_10), setups))
+        return "".join(
+            listing(p, marks=False)
+            for p in dialect.read(sources[0].read_text(), (FLAT_16, BULL_10), setups)
+        )
     settings = PostSettings(units="inch" if "inch" in case.name else "mm")
     programs = [program_from(source.read_text()) for source in sources]
     return registry.get("dialects", DIALECTS[expected.suffix])().write(programs, HEADER, settings)

@@ -19,7 +19,14 @@ from trunnion.post.header import STAMP_LINES, Header
 from trunnion.post.readers.linuxcnc import read_linuxcnc
 from trunnion.post.settings import PostSettings
 
-HEADER = Header(name="B1", part="B1", part_digest="ab12", plan_digest="cd34", material="al-7075", date="2026-01-02")
+HEADER = Header(
+    name="B1",
+    part="B1",
+    part_digest="ab12",
+    plan_digest="cd34",
+    material="al-7075",
+    date="2026-01-02",
+)
 TOOLS = (FLAT_16, BULL_10)
 START = "G21 G90 G17 G40 G94 G54\nT1 M6\nS9000 M3\nG0 G43 H1 X0 Y0 Z50\n"
 END = "\nM30\n"
@@ -38,11 +45,17 @@ def read(body: str) -> Program:
 
 
 def blocks(program: Program) -> list[str]:
-    return [line for line in listing(program, marks=False).splitlines() if not line.startswith(("setup", "operation"))]
+    return [
+        line
+        for line in listing(program, marks=False).splitlines()
+        if not line.startswith(("setup", "operation"))
+    ]
 
 
 def test_a_program_read_again_moves_the_same():
-    assert listing(read_linuxcnc(text_of(program_1()), TOOLS, S1), marks=False) == listing(program_1(), marks=False)
+    assert listing(read_linuxcnc(text_of(program_1()), TOOLS, S1), marks=False) == listing(
+        program_1(), marks=False
+    )
 
 
 def test_a_program_in_inches_read_again_moves_the_same_within_its_decimals():
@@ -65,10 +78,20 @@ def test_each_block_knows_its_line():
 
 def test_the_text_begins_with_the_stamp_and_a_safe_start():
     lines = text_of(program_1()).split("\n")
-    assert lines[:STAMP_LINES] == ["(TRUNNION PROGRAM B1.S1)", "(REJECTED: DO NOT RUN)", "(VERDICT: NONE)", "(REASON: not proven)",
-                                   "(DATE: 2026-01-02)"]
+    assert lines[:STAMP_LINES] == [
+        "(TRUNNION PROGRAM B1.S1)",
+        "(REJECTED: DO NOT RUN)",
+        "(VERDICT: NONE)",
+        "(REASON: not proven)",
+        "(DATE: 2026-01-02)",
+    ]
     numbered = [line for line in lines if line.startswith("N")]
-    assert numbered[:4] == ["N10 G21", "N20 G90 G91.1 G17 G40 G49 G80 G94", "N30 G64 P0.005", "N40 G54"]
+    assert numbered[:4] == [
+        "N10 G21",
+        "N20 G90 G91.1 G17 G40 G49 G80 G94",
+        "N30 G64 P0.005",
+        "N40 G54",
+    ]
     assert numbered[-1].endswith("M30")
 
 
@@ -77,39 +100,57 @@ def test_every_operation_is_a_restart_point_with_its_whole_state():
     lines = text.split("\n")
     at = lines.index("(OPERATION wall-01)")
     assert lines[at + 1] == "(RESTART POINT N220 TOOL 1 flat 16)"
-    assert [line.split(" ", 1)[1] for line in lines[at + 2:at + 7]] == [
-        "G90 G91.1 G17 G40 G94 G54", "S14000 M3", "M8", "G43 H1", "G0 X0 Y0 Z50"]
+    assert [line.split(" ", 1)[1] for line in lines[at + 2 : at + 7]] == [
+        "G90 G91.1 G17 G40 G94 G54",
+        "S14000 M3",
+        "M8",
+        "G43 H1",
+        "G0 X0 Y0 Z50",
+    ]
 
 
 def test_after_a_tool_change_the_tool_goes_over_the_start_before_it_goes_down():
     text = text_of(program_1())
-    after = text[text.index("T7 M6"):].split("\n")
+    after = text[text.index("T7 M6") :].split("\n")
     assert [line.split(" ", 1)[1] for line in after[4:6]] == ["G0 X0 Y0", "G0 G43 H7 Z50"]
 
 
 def test_mist_is_off_before_flood_when_the_tool_stays():
     wall = programs.WALL
-    program = Program(name="B1.S1", setup=S1, sections=(section("a", FLAT_16, wall, coolant="mist"), section("b", FLAT_16, wall)))
+    program = Program(
+        name="B1.S1",
+        setup=S1,
+        sections=(section("a", FLAT_16, wall, coolant="mist"), section("b", FLAT_16, wall)),
+    )
     text = text_of(program)
     assert text.index("M7") < text.index(" M9\n", text.index("M7")) < text.index("M8")
 
 
 def test_a_full_turn_ends_where_the_text_says_it_starts():
-    path = path_of((RAPID, 10.00005, 0, 50), (LINE, 10.00005, 0, -1, 100), (CCW, 10.00005, 0, -1, 0, 0, 100), (RAPID, 10, 0, 50))
+    path = path_of(
+        (RAPID, 10.00005, 0, 50),
+        (LINE, 10.00005, 0, -1, 100),
+        (CCW, 10.00005, 0, -1, 0, 0, 100),
+        (RAPID, 10, 0, 50),
+    )
     again = read_linuxcnc(text_of(one(path)), TOOLS, S1)
     assert again.sections[0].path.sweeps()[2] == pytest.approx(2 * np.pi)
 
 
 def test_an_arc_shorter_than_a_decimal_never_becomes_a_full_turn():
     start, end = (10.0, 0.00001), (10.0, 0.00004)
-    path = path_of((RAPID, *start, 50), (LINE, *start, -1, 100), (CCW, *end, -2, 0, 0, 100), (RAPID, *end, 50))
+    path = path_of(
+        (RAPID, *start, 50), (LINE, *start, -1, 100), (CCW, *end, -2, 0, 0, 100), (RAPID, *end, 50)
+    )
     again = read_linuxcnc(text_of(one(path)), TOOLS, S1)
     assert list(again.sections[0].path.motion) == [RAPID, LINE, LINE, RAPID]
 
 
 def test_an_arc_that_nearly_closes_stays_nearly_a_full_turn():
     end = (10.0, -0.00004)
-    path = path_of((RAPID, 10, 0, 50), (LINE, 10, 0, -1, 100), (CCW, *end, -1, 0, 0, 100), (RAPID, *end, 50))
+    path = path_of(
+        (RAPID, 10, 0, 50), (LINE, 10, 0, -1, 100), (CCW, *end, -1, 0, 0, 100), (RAPID, *end, 50)
+    )
     again = read_linuxcnc(text_of(one(path)), TOOLS, S1)
     assert again.sections[0].path.sweeps()[2] == pytest.approx(2 * np.pi, abs=1e-4)
 
@@ -141,21 +182,31 @@ def test_an_unknown_work_offset_is_refused():
 
 def test_an_id_that_no_comment_holds_is_refused():
     with pytest.raises(Refused, match="its id can't stand in a comment"):
-        text_of(Program(name="B1.S1", setup=S1, sections=(section("a (b)", FLAT_16, programs.WALL),)))
+        text_of(
+            Program(name="B1.S1", setup=S1, sections=(section("a (b)", FLAT_16, programs.WALL),))
+        )
 
 
 def test_hand_edited_text_may_be_lower_case_spaced_and_commented():
     again = read("g 1 x 1 0.5 (to the right) f 2 00 ; slowly\n  y5 (op) z-1")
-    assert blocks(again)[1:] == ["line    x 10.5000 y 0.0000 z 50.0000 feed 200.0", "line    x 10.5000 y 5.0000 z -1.0000 feed 200.0"]
+    assert blocks(again)[1:] == [
+        "line    x 10.5000 y 0.0000 z 50.0000 feed 200.0",
+        "line    x 10.5000 y 5.0000 z -1.0000 feed 200.0",
+    ]
 
 
 def test_line_ends_of_another_system_are_read():
-    assert blocks(read_linuxcnc(text_of(program_1()).replace("\n", "\r\n"), TOOLS, S1)) == blocks(program_1())
+    assert blocks(read_linuxcnc(text_of(program_1()).replace("\n", "\r\n"), TOOLS, S1)) == blocks(
+        program_1()
+    )
 
 
 def test_an_arc_by_radius_has_the_centre_of_the_shorter_way():
     again = read("G1 X0 Y0 F100\nG2 X10 Y10 R10")
-    assert blocks(again)[2] == "arc-cw  x 10.0000 y 10.0000 z 50.0000 centre x 10.0000 y 0.0000 feed 100.0"
+    assert (
+        blocks(again)[2]
+        == "arc-cw  x 10.0000 y 10.0000 z 50.0000 centre x 10.0000 y 0.0000 feed 100.0"
+    )
 
 
 def test_a_negative_radius_goes_the_longer_way():
@@ -188,7 +239,11 @@ def test_going_up_for_a_tool_change_is_a_rapid_like_any_other():
 
 def test_another_spindle_speed_begins_a_section_of_the_same_operation():
     again = read("(OPERATION a)\nG1 Z-5 F100\nS4000\nG1 X9")
-    assert [(s.operation, s.spindle) for s in again.sections] == [("line 4", 9000.0), ("a", 9000.0), ("a", 4000.0)]
+    assert [(s.operation, s.spindle) for s in again.sections] == [
+        ("line 4", 9000.0),
+        ("a", 9000.0),
+        ("a", 4000.0),
+    ]
     assert again.sections[2].path.position.tolist() == [[0.0, 0.0, -5.0], [9.0, 0.0, -5.0]]
 
 
@@ -208,13 +263,24 @@ def test_a_hundred_thousand_lines_are_read_in_less_than_two_seconds():
     assert again.n_blocks() == 100_001
 
 
-@pytest.mark.parametrize(("old", "new", "words"), [
-    ("Z-5 I-5", "Z-5 I-6", "line 31: the arc starts at radius 6.0000 and ends at 4.0000 mm; check its end or its centre"),
-    ("T7 M6", "T8 M6", "T8 is not in the tool list; it has 1, 7"),
-    ("G43 H7 Z50", "G43 H1 Z50", "H1 is the length of another tool than T7 in the spindle; use H7"),
-    ("S18000 M3", "S18000", "a feed move while the spindle stands"),
-    ("N430 G49\nN440 M30", "", r"no end \(M30 or M2\): is the text complete"),
-])
+@pytest.mark.parametrize(
+    ("old", "new", "words"),
+    [
+        (
+            "Z-5 I-5",
+            "Z-5 I-6",
+            "line 31: the arc starts at radius 6.0000 and ends at 4.0000 mm; check its end or its centre",
+        ),
+        ("T7 M6", "T8 M6", "T8 is not in the tool list; it has 1, 7"),
+        (
+            "G43 H7 Z50",
+            "G43 H1 Z50",
+            "H1 is the length of another tool than T7 in the spindle; use H7",
+        ),
+        ("S18000 M3", "S18000", "a feed move while the spindle stands"),
+        ("N430 G49\nN440 M30", "", r"no end \(M30 or M2\): is the text complete"),
+    ],
+)
 def test_damage_by_hand_is_refused_in_words(old, new, words):
     text = text_of(program_1())
     assert old in text
@@ -225,25 +291,36 @@ def test_damage_by_hand_is_refused_in_words(old, new, words):
 def test_five_lines_out_of_order_are_refused():
     lines = text_of(program_1()).split("\n")
     at = next(n for n, line in enumerate(lines) if line.startswith("N170"))
-    moved = lines[:at] + lines[at + 4:at + 5] + lines[at:at + 4] + lines[at + 5:]
+    moved = lines[:at] + lines[at + 4 : at + 5] + lines[at : at + 4] + lines[at + 5 :]
     with pytest.raises(BadInput, match=r"line \d+: N170 comes after N\d+: lines are out of order"):
         read_linuxcnc("\n".join(moved), TOOLS, S1)
 
 
 def test_a_text_made_for_another_tool_of_the_number_is_refused():
     other = replace(FLAT_16, diameter=15.0)
-    with pytest.raises(BadInput, match="line 12: the text was made for another tool 1 than the tool list has; post the program anew"):
+    with pytest.raises(
+        BadInput,
+        match="line 12: the text was made for another tool 1 than the tool list has; post the program anew",
+    ):
         read_linuxcnc(text_of(program_1()), (other, BULL_10), S1)
 
 
 def test_an_operation_that_goes_up_before_its_tool_comes_keeps_its_name():
-    again = read("G1 Z-5 F100\n(OPERATION next)\nG53 G0 Z0\nT7 M6\nS9000 M3\nG0 G43 H7 X1 Y1 Z50\nG1 Z-1")
-    assert [(s.operation, s.tool.number) for s in again.sections] == [("line 4", 1), ("next", 1), ("next", 7)]
+    again = read(
+        "G1 Z-5 F100\n(OPERATION next)\nG53 G0 Z0\nT7 M6\nS9000 M3\nG0 G43 H7 X1 Y1 Z50\nG1 Z-1"
+    )
+    assert [(s.operation, s.tool.number) for s in again.sections] == [
+        ("line 4", 1),
+        ("next", 1),
+        ("next", 7),
+    ]
 
 
 def test_a_spindle_that_stands_is_not_written():
     with pytest.raises(Refused, match="operation a: a spindle speed of 0 turns nothing"):
-        text_of(Program(name="B1.S1", setup=S1, sections=(section("a", FLAT_16, programs.WALL, 0.0),)))
+        text_of(
+            Program(name="B1.S1", setup=S1, sections=(section("a", FLAT_16, programs.WALL, 0.0),))
+        )
 
 
 def test_motions_are_the_ones_the_words_name():

@@ -23,7 +23,8 @@ def test_every_block_says_all_its_words():
         "operation op-1 tool 1 spindle 12000 coolant flood\n"
         "rapid   x 1.0000 y 2.0000 z 50.0000 retract\n"
         "line    x 1.0000 y 2.0000 z 0.0000 feed 100.0 cut\n"
-        "arc-ccw x 3.0000 y 2.0000 z -1.0000 centre x 2.0000 y 2.0000 feed 1200.0 cut\n")
+        "arc-ccw x 3.0000 y 2.0000 z -1.0000 centre x 2.0000 y 2.0000 feed 1200.0 cut\n"
+    )
 
 
 def test_marks_may_be_left_out():
@@ -32,7 +33,10 @@ def test_marks_may_be_left_out():
 
 def test_a_tilted_axis_is_said():
     tilted = replace(PATH, axis=np.array([[0.0, 0.0, 1.0], [0.6, 0.0, 0.8], [0.6, 0.0, 0.8]]))
-    assert listing(one(tilted)).splitlines()[3] == "line    x 1.0000 y 2.0000 z 0.0000 i 0.6000 j 0.0000 k 0.8000 feed 100.0 cut"
+    assert (
+        listing(one(tilted)).splitlines()[3]
+        == "line    x 1.0000 y 2.0000 z 0.0000 i 0.6000 j 0.0000 k 0.8000 feed 100.0 cut"
+    )
 
 
 def test_the_listing_of_what_a_listing_says_is_the_same():

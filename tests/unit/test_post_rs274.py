@@ -31,7 +31,9 @@ def run(text: str, folder: Path) -> list[rs274.Call]:
 
 def compare(program: Program, folder: Path, **settings) -> int:
     text = LinuxCncDialect().write([program], HEADER, PostSettings(**settings))
-    return rs274.compare(text, TOOLS, S1, folder, scale=25.4 if settings.get("units") == "inch" else 1.0)
+    return rs274.compare(
+        text, TOOLS, S1, folder, scale=25.4 if settings.get("units") == "inch" else 1.0
+    )
 
 
 def test_rs274_moves_as_we_mean(tmp_path):
@@ -45,20 +47,30 @@ def test_rs274_moves_as_we_mean_in_inches(tmp_path):
 def test_rs274_takes_each_tool_with_its_length(tmp_path):
     calls = run(LinuxCncDialect().write([program_1()], HEADER, PostSettings()), tmp_path)
     changes = [int(numbers[0]) for _, name, numbers in calls if name == "SELECT_TOOL"]
-    lengths = [numbers[2] for _, name, numbers in calls if name == "USE_TOOL_LENGTH_OFFSET" and any(numbers)]
+    lengths = [
+        numbers[2]
+        for _, name, numbers in calls
+        if name == "USE_TOOL_LENGTH_OFFSET" and any(numbers)
+    ]
     assert changes == [1, 7]
     assert lengths == [140.5, 140.5, 120.25]
 
 
 def test_rs274_turns_the_spindle_as_we_mean(tmp_path):
     calls = run(LinuxCncDialect().write([program_1()], HEADER, PostSettings()), tmp_path)
-    assert [numbers[-1] for _, name, numbers in calls if name == "SET_SPINDLE_SPEED"] == [12000.0, 14000.0, 18000.0]
+    assert [numbers[-1] for _, name, numbers in calls if name == "SET_SPINDLE_SPEED"] == [
+        12000.0,
+        14000.0,
+        18000.0,
+    ]
     assert sum(name == "START_SPINDLE_CLOCKWISE" for _, name, _ in calls) == 3
 
 
 def test_rs274_feeds_as_we_mean(tmp_path):
     calls = run(LinuxCncDialect().write([program_1()], HEADER, PostSettings()), tmp_path)
-    feeds = [numbers[-1] for _, name, numbers in calls if name == "SET_FEED_RATE" and numbers[-1] > 0.0]
+    feeds = [
+        numbers[-1] for _, name, numbers in calls if name == "SET_FEED_RATE" and numbers[-1] > 0.0
+    ]
     assert feeds == [300.0, 600.0, 1200.0, 900.5, 800.0, 800.0]
 
 
@@ -66,18 +78,35 @@ def test_rs274_feeds_as_we_mean(tmp_path):
 def test_rs274_moves_five_axes_as_we_mean(machine, tmp_path):
     place, case = standing(machine, foot=(100.0, 100.0, -30.0)), five_axis_case(60, 500)
     tilt = lean(35.0, 50.0)
-    path = leaning_path(((20.0, 10.0, 60.0), tilt), ((20.0, 10.0, 5.0), tilt), ((60.0, -20.0, 5.0), tilt))
-    made = leaning_program(case.section.path, moved_over(path, (case.section.path.position[-1], case.section.path.axis[-1]),
-                                                         Swing(centre=place.centre, radius=250.0)), tool=case.section.tool)
+    path = leaning_path(
+        ((20.0, 10.0, 60.0), tilt), ((20.0, 10.0, 5.0), tilt), ((60.0, -20.0, 5.0), tilt)
+    )
+    made = leaning_program(
+        case.section.path,
+        moved_over(
+            path,
+            (case.section.path.position[-1], case.section.path.axis[-1]),
+            Swing(centre=place.centre, radius=250.0),
+        ),
+        tool=case.section.tool,
+    )
     text, tools = text_of(made, place), (case.section.tool,)
     assert text.count("G93") > 0 and text.count("G94") > 2
-    assert rs274.compare_joints(text, joint_rows(text, place, tools), place.names, tools, tmp_path) > 1000
+    assert (
+        rs274.compare_joints(text, joint_rows(text, place, tools), place.names, tools, tmp_path)
+        > 1000
+    )
 
 
 def test_rs274_takes_inverse_time_as_we_mean(tmp_path):
     # It tells mm a minute along X, Y and Z: over the way of the axes that is the time that we have said.
     place = standing(TABLE)
-    text = text_of(leaning_program(leaning_path(((0.0, 0.0, 10.0), lean(5.0)), ((40.0, 0.0, 10.0), lean(25.0)), feed=600.0)), place)
+    text = text_of(
+        leaning_program(
+            leaning_path(((0.0, 0.0, 10.0), lean(5.0)), ((40.0, 0.0, 10.0), lean(25.0)), feed=600.0)
+        ),
+        place,
+    )
     (rows,) = joint_rows(text, place)
     calls, minutes, at = rs274.run(text, TOOLS, tmp_path), [], None
     for _, name, numbers in calls:
@@ -91,18 +120,34 @@ def test_rs274_takes_inverse_time_as_we_mean(tmp_path):
 
 
 def test_rs274_takes_random_arcs_lines_and_helices(tmp_path):
-    rng, at, blocks = np.random.default_rng(11), np.array([0.0, 0.0, 0.0]), [(RAPID, 0, 0, 50), (LINE, 0, 0, 0, 500)]
+    rng, at, blocks = (
+        np.random.default_rng(11),
+        np.array([0.0, 0.0, 0.0]),
+        [(RAPID, 0, 0, 50), (LINE, 0, 0, 0, 500)],
+    )
     for _ in range(3000):
         kind = rng.integers(0, 4)
         if kind < 2:
             at = at + rng.normal(size=3) * 10.0 ** rng.uniform(-4, 2)
-            blocks.append(((RAPID, LINE)[kind], *at) + (() if kind == 0 else (rng.uniform(1, 9000),)))
+            blocks.append(
+                ((RAPID, LINE)[kind], *at) + (() if kind == 0 else (rng.uniform(1, 9000),))
+            )
             continue
-        radius, first, turn = 10.0 ** rng.uniform(-1, 3), rng.uniform(0, 2 * np.pi), rng.choice([1e-7, 1e-3, 1.0, 3.0, 6.0, 2 * np.pi])
+        radius, first, turn = (
+            10.0 ** rng.uniform(-1, 3),
+            rng.uniform(0, 2 * np.pi),
+            rng.choice([1e-7, 1e-3, 1.0, 3.0, 6.0, 2 * np.pi]),
+        )
         sign = 1.0 if kind == 3 else -1.0
         centre = at[:2] - radius * np.array([math.cos(first), math.sin(first)])
-        end = centre + radius * np.array([math.cos(first + sign * turn), math.sin(first + sign * turn)])
+        end = centre + radius * np.array(
+            [math.cos(first + sign * turn), math.sin(first + sign * turn)]
+        )
         at = np.array([*(at[:2] if turn == 2 * np.pi else end), at[2] + rng.choice([0.0, -1.0])])
         blocks.append((CCW if kind == 3 else CW, *at, *centre, rng.uniform(1, 9000)))
-    program = Program(name="B1.S1", setup=S1, sections=(section("random", FLAT_16, path_of(*blocks, (RAPID, *at[:2], 50.0))),))
+    program = Program(
+        name="B1.S1",
+        setup=S1,
+        sections=(section("random", FLAT_16, path_of(*blocks, (RAPID, *at[:2], 50.0))),),
+    )
     assert compare(program, tmp_path) > 2800

@@ -19,15 +19,21 @@ from trunnion.post.words import checked_words, dialect_words, plain
 TABLE = tomllib.loads((files("trunnion_resources") / "dialects" / "linuxcnc.toml").read_text())
 
 
-@pytest.mark.parametrize(("change", "message"), [
-    ({"colour": "red"}, "dialect x: unknown word colour; known: title, suffix, comment"),
-    ({"suffix": None}, "dialect x: the word suffix is missing"),
-    ({"suffix": 3}, "dialect x: suffix must be a text; got 3"),
-    ({"feed_decimals": True}, "dialect x: feed_decimals must be a whole number; got True"),
-    ({"motions": ["G0", "G1"]}, r"dialect x: motions must be a list of texts; got \['G0', 'G1'\]"),
-    ({"units": {"mm": 21}}, "dialect x: units must be a table of texts"),
-    ({"title": ""}, "dialect x: title must be a text; got ''"),
-])
+@pytest.mark.parametrize(
+    ("change", "message"),
+    [
+        ({"colour": "red"}, "dialect x: unknown word colour; known: title, suffix, comment"),
+        ({"suffix": None}, "dialect x: the word suffix is missing"),
+        ({"suffix": 3}, "dialect x: suffix must be a text; got 3"),
+        ({"feed_decimals": True}, "dialect x: feed_decimals must be a whole number; got True"),
+        (
+            {"motions": ["G0", "G1"]},
+            r"dialect x: motions must be a list of texts; got \['G0', 'G1'\]",
+        ),
+        ({"units": {"mm": 21}}, "dialect x: units must be a table of texts"),
+        ({"title": ""}, "dialect x: title must be a text; got ''"),
+    ],
+)
 def test_wrong_words_are_refused(change, message):
     table = {k: v for k, v in {**TABLE, **change}.items() if v is not None}
     with pytest.raises(BadInput, match=message):
@@ -35,30 +41,53 @@ def test_wrong_words_are_refused(change, message):
 
 
 def test_a_word_that_has_a_default_may_be_missing():
-    table = {k: v for k, v in TABLE.items() if k not in ("inverse_time", "per_minute", "angle_decimals")}
+    table = {
+        k: v for k, v in TABLE.items() if k not in ("inverse_time", "per_minute", "angle_decimals")
+    }
     assert checked_words(IsoWords, "x", table).inverse_time == ""
 
 
-@pytest.mark.parametrize(("change", "message"), [
-    ({"centres": "end"}, "dialect x: centres must be one of start, absolute; got 'end'"),
-    ({"units": {"mm": "G21"}}, "dialect x: units needs an entry inch"),
-    ({"coolant": {"flood": "M8"}}, "dialect x: coolant needs an entry off"),
-    ({"letters": {"length": "H"}}, "dialect x: letters needs an entry radius"),
-    ({"letters": {"radius": "CR"}}, "dialect x: letters must be one letter each for some of radius, .*; got radius = 'CR'"),
-    ({"letters": {"radius": "R", "colour": "Q"}}, "dialect x: letters must be .*; got colour = 'Q'"),
-    ({"start": ("{unit}",)}, r"dialect x: start: \{unit\} is not known; known: units, tolerance, offset"),
-    ({"end": ("M30 {}",)}, r"dialect x: end: \{\} is not known; known: none"),
-    ({"restart": "G90 {offset"}, "dialect x: restart: expected '}' before end of string; write braces as {{ and }}"),
-])
+@pytest.mark.parametrize(
+    ("change", "message"),
+    [
+        ({"centres": "end"}, "dialect x: centres must be one of start, absolute; got 'end'"),
+        ({"units": {"mm": "G21"}}, "dialect x: units needs an entry inch"),
+        ({"coolant": {"flood": "M8"}}, "dialect x: coolant needs an entry off"),
+        ({"letters": {"length": "H"}}, "dialect x: letters needs an entry radius"),
+        (
+            {"letters": {"radius": "CR"}},
+            "dialect x: letters must be one letter each for some of radius, .*; got radius = 'CR'",
+        ),
+        (
+            {"letters": {"radius": "R", "colour": "Q"}},
+            "dialect x: letters must be .*; got colour = 'Q'",
+        ),
+        (
+            {"start": ("{unit}",)},
+            r"dialect x: start: \{unit\} is not known; known: units, tolerance, offset",
+        ),
+        ({"end": ("M30 {}",)}, r"dialect x: end: \{\} is not known; known: none"),
+        (
+            {"restart": "G90 {offset"},
+            "dialect x: restart: expected '}' before end of string; write braces as {{ and }}",
+        ),
+    ],
+)
 def test_words_that_no_control_can_use_are_refused(change, message):
     with pytest.raises(BadInput, match=message):
         checked_iso_words("x", replace(iso_words("linuxcnc"), **change))
 
 
-@pytest.mark.parametrize(("change", "message"), [
-    ({"codes": {"M30": "stop"}}, "dialect LinuxCNC: M30: 'stop' is no meaning of a code; known: units, "),
-    ({"letters": {"radius": "R"}}, "dialect LinuxCNC: letters needs an entry dwell for G4"),
-])
+@pytest.mark.parametrize(
+    ("change", "message"),
+    [
+        (
+            {"codes": {"M30": "stop"}},
+            "dialect LinuxCNC: M30: 'stop' is no meaning of a code; known: units, ",
+        ),
+        ({"letters": {"radius": "R"}}, "dialect LinuxCNC: letters needs an entry dwell for G4"),
+    ],
+)
 def test_codes_that_the_reader_cannot_follow_are_refused(change, message):
     with pytest.raises(BadInput, match=message):
         Language(replace(iso_words("linuxcnc"), **change), None, MEANINGS)
@@ -69,13 +98,23 @@ def test_a_dialect_without_words_is_refused():
         dialect_words(IsoWords, "nobody")
 
 
-@pytest.mark.parametrize(("text", "said"), [("Träger (links)", "Trager [links]"), ("a;b$c\nd", "abc d"), ("x" * 20, "xxxxxx ..."),
-                                            ("日本", "")])
+@pytest.mark.parametrize(
+    ("text", "said"),
+    [
+        ("Träger (links)", "Trager [links]"),
+        ("a;b$c\nd", "abc d"),
+        ("x" * 20, "xxxxxx ..."),
+        ("日本", ""),
+    ],
+)
 def test_a_comment_is_one_plain_line(text, said):
     assert plain(text, 10 if text[0] == "x" else 40) == said
 
 
-@pytest.mark.parametrize(("ticks", "said"), [(0, "0"), (1, "0.0001"), (-1, "-0.0001"), (125000, "12.5"), (-400000, "-40")])
+@pytest.mark.parametrize(
+    ("ticks", "said"),
+    [(0, "0"), (1, "0.0001"), (-1, "-0.0001"), (125000, "12.5"), (-400000, "-40")],
+)
 def test_ticks_are_written_without_trailing_zeros(ticks, said):
     assert Scale.of(PostSettings(), 1, 1).text(ticks) == said
 

@@ -74,13 +74,20 @@ def test_what_the_work_does_now_is_told_as_far_as_it_was() -> None:
 
 def test_slices_cover_all_rows_and_tell_how_far_they_are() -> None:
     watch = Watch()
-    assert [list(range(10))[some] for some in watch.progress().slices(10, 4, "rows")] == [[0, 1, 2, 3], [4, 5, 6, 7], [8, 9]]
+    assert [list(range(10))[some] for some in watch.progress().slices(10, 4, "rows")] == [
+        [0, 1, 2, 3],
+        [4, 5, 6, 7],
+        [8, 9],
+    ]
     assert watch.reports == [(0.0, "rows"), (0.4, "rows"), (0.8, "rows")]
 
 
 def test_work_in_a_thread_of_its_own_is_looked_at_and_answers() -> None:
     watch = Watch()
-    assert watch.progress().aside(lambda own: (time.sleep(0.3), threading.current_thread().name)[1]) == "trunnion-aside"
+    assert (
+        watch.progress().aside(lambda own: (time.sleep(0.3), threading.current_thread().name)[1])
+        == "trunnion-aside"
+    )
     assert watch.looks >= 3
     assert QUIET.aside(lambda own: threading.current_thread() is threading.main_thread())
 
@@ -88,6 +95,7 @@ def test_work_in_a_thread_of_its_own_is_looked_at_and_answers() -> None:
 def test_work_in_a_thread_of_its_own_raises_its_own_errors() -> None:
     def work(own: Progress) -> None:
         raise ValueError("no")
+
     with pytest.raises(ValueError, match="no"):
         Watch().progress().aside(work)
 
@@ -123,6 +131,7 @@ def test_rows_done_in_parallel_are_told_while_the_last_of_them_run(threads) -> N
 
 def fresh_kernel():
     """Return a kernel that nobody has compiled yet."""
+
     @njit
     def inner(x):
         return x * x + 1.0

@@ -88,7 +88,7 @@ title = "Wedges"
 family = "wedge"
 stage = [{ name = "split", kind = "split", strategy = "plane.engrave", on = ["wedge"], cutter = "CUTTER", finish = true, rule = "first" }]
 """
-ENTRY_POINTS = '''[trunnion.strategies]
+ENTRY_POINTS = """[trunnion.strategies]
 plane.engrave = shop_extra:engrave
 
 [trunnion.families]
@@ -99,10 +99,10 @@ wedge = shop_extra:WedgePlanner
 
 [trunnion.dialects]
 murmur = shop_extra:MurmurDialect
-'''
+"""
 
 
-ROUND_TRIP = '''
+ROUND_TRIP = """
 from programs import BULL_10, FLAT_16, S1, program_1
 from trunnion import registry
 from trunnion.model.listing import listing
@@ -114,7 +114,7 @@ text = dialect.write([program_1()], Header(name="B1", part="B1", part_digest="ab
 (again,) = dialect.read(text, (FLAT_16, BULL_10), [S1])
 print(text, end="")
 print(dialect.suffix, listing(again, marks=False) == listing(program_1(), marks=False))
-'''
+"""
 
 
 @pytest.fixture
@@ -124,7 +124,9 @@ def own_package(tmp_path):
     package.mkdir()
     (package / "__init__.py").write_text(MODULE + recipe("A dialect"))
     words = (files("trunnion_resources") / "dialects" / "linuxcnc.toml").read_text()
-    (package / "murmur.toml").write_text(words.replace('"LinuxCNC"', '"Murmur 4"').replace('"nc"', '"mur"').replace('"G21"', '"G71"'))
+    (package / "murmur.toml").write_text(
+        words.replace('"LinuxCNC"', '"Murmur 4"').replace('"nc"', '"mur"').replace('"G21"', '"G71"')
+    )
     info = tmp_path / "shop_extra-1.0.dist-info"
     info.mkdir()
     (info / "METADATA").write_text("Metadata-Version: 2.1\nName: shop-extra\nVersion: 1.0\n")
@@ -138,9 +140,16 @@ def recipe(name: str) -> str:
     after = (ROOT / "CONTRIBUTING.md").read_text().split(f"**{name}.**")[1].split("\n**")[0]
     return textwrap.dedent(after.split("```python\n")[1].split("```")[0])
 
+
 def test_a_strategy_of_ones_own_brings_its_settings_to_the_command_line(own_package):
     code = "from trunnion.cli.main import run; run()"
-    said = subprocess.run([sys.executable, "-c", code, "settings", "--json"], capture_output=True, text=True, env=own_package, check=True)
+    said = subprocess.run(
+        [sys.executable, "-c", code, "settings", "--json"],
+        capture_output=True,
+        text=True,
+        env=own_package,
+        check=True,
+    )
     listed = {entry["key"]: entry for entry in json.loads(said.stdout)}
     assert listed["plane.engrave.depth"]["unit"] == "mm"
     assert "murmur" in listed["post.dialect"]["choices"]
@@ -148,14 +157,28 @@ def test_a_strategy_of_ones_own_brings_its_settings_to_the_command_line(own_pack
 
 def test_its_values_are_checked_like_ours(own_package, sample_part):
     code = "from trunnion.cli.main import run; run()"
-    said = subprocess.run([sys.executable, "-c", code, "info", str(sample_part), "--set", "plane.engrave.depth=9"], capture_output=True,
-                          text=True, env=own_package, check=False)
+    said = subprocess.run(
+        [sys.executable, "-c", code, "info", str(sample_part), "--set", "plane.engrave.depth=9"],
+        capture_output=True,
+        text=True,
+        env=own_package,
+        check=False,
+    )
     assert said.returncode == 2
-    assert said.stderr.strip() == "trunnion: Depth (plane.engrave.depth) must be from 0.01 to 2 mm; got 9"
+    assert (
+        said.stderr.strip()
+        == "trunnion: Depth (plane.engrave.depth) must be from 0.01 to 2 mm; got 9"
+    )
 
 
 def test_a_dialect_of_ones_own_writes_and_reads_with_its_words(own_package):
-    said = subprocess.run([sys.executable, "-c", ROUND_TRIP], capture_output=True, text=True, env=own_package, check=True)
+    said = subprocess.run(
+        [sys.executable, "-c", ROUND_TRIP],
+        capture_output=True,
+        text=True,
+        env=own_package,
+        check=True,
+    )
     text, same = said.stdout.rsplit("\n", 2)[:2]
     assert "N10 G71\n" in text
     assert "G21" not in text
@@ -167,9 +190,26 @@ def routed(own_package, tmp_path, part, cutter):
     (tmp_path / "user" / "plans").mkdir(parents=True)
     (tmp_path / "user" / "plans" / "wedges.toml").write_text(PLAN.replace("CUTTER", cutter))
     code = "from trunnion.cli.main import run; run()"
-    return subprocess.run([sys.executable, "-c", code, "route", str(part), "--json", "--set", "recognize.family=wedge", "--set",
-                           "wedge.slope=7", "--user-folder", str(tmp_path / "user")], capture_output=True, text=True, env=own_package,
-                          check=False)
+    return subprocess.run(
+        [
+            sys.executable,
+            "-c",
+            code,
+            "route",
+            str(part),
+            "--json",
+            "--set",
+            "recognize.family=wedge",
+            "--set",
+            "wedge.slope=7",
+            "--user-folder",
+            str(tmp_path / "user"),
+        ],
+        capture_output=True,
+        text=True,
+        env=own_package,
+        check=False,
+    )
 
 
 def test_a_family_of_ones_own_is_recognised_and_planned(own_package, tmp_path, sample_panel):
@@ -178,13 +218,25 @@ def test_a_family_of_ones_own_is_recognised_and_planned(own_package, tmp_path, s
     assert json.loads(said.stdout)["plan"] == "Wedges, by hand, 7 degrees"
 
 
-def test_its_planner_checks_the_cutter_rules_of_its_typical_plan(own_package, tmp_path, sample_panel):
+def test_its_planner_checks_the_cutter_rules_of_its_typical_plan(
+    own_package, tmp_path, sample_panel
+):
     said = routed(own_package, tmp_path, sample_panel, "laser")
     assert said.returncode == 2
-    assert "typical plan Wedges, by hand, stage split: cutter must be one of chisel; got 'laser'" in said.stderr
+    assert (
+        "typical plan Wedges, by hand, stage split: cutter must be one of chisel; got 'laser'"
+        in said.stderr
+    )
 
 
 def test_the_recipes_name_what_the_example_does():
     recipes = (ROOT / "CONTRIBUTING.md").read_text()
-    for word in ("@strategy(settings=", "trunnion.strategies", "trunnion.families", "trunnion.planners", "suffix", "entry-point"):
+    for word in (
+        "@strategy(settings=",
+        "trunnion.strategies",
+        "trunnion.families",
+        "trunnion.planners",
+        "suffix",
+        "entry-point",
+    ):
         assert word in recipes

@@ -27,7 +27,9 @@ def ringed(inner: list[list[float]]) -> list[list[float]]:
 
 
 def roles(feature: Feature) -> dict[str, int]:
-    return {role: len(feature.with_role(role)) for role in dict.fromkeys(f.role for f in feature.faces)}
+    return {
+        role: len(feature.with_role(role)) for role in dict.fromkeys(f.role for f in feature.faces)
+    }
 
 
 def codes(found: Recognition) -> set[str]:
@@ -38,7 +40,11 @@ def test_a_pocket_has_its_floor_and_the_walls_around_it() -> None:
     found = recognized(terrace((0, 10, 90, 100), (0, 10, 50, 60), ringed([[8]])))
     pocket = found.feature("pocket-01")
     assert roles(pocket) == {"floor": 1, "wall": 4}
-    assert (pocket.sizes["depth"], pocket.sizes["floor_z"], pocket.sizes["top_z"]) == (32.0, 8.0, 40.0)
+    assert (pocket.sizes["depth"], pocket.sizes["floor_z"], pocket.sizes["top_z"]) == (
+        32.0,
+        8.0,
+        40.0,
+    )
 
 
 def test_every_face_of_a_plain_panel_is_explained() -> None:
@@ -58,7 +64,14 @@ def test_a_low_wall_between_two_pockets_is_a_rib_and_its_outer_walls_belong_to_b
 def test_the_sizes_of_a_rib_are_measured_at_its_top() -> None:
     found = recognized(terrace((0, 10, 50, 54, 90, 100), (0, 10, 50, 60), ringed([[5, 30, 8]])))
     sizes = found.feature("rib-01").sizes
-    assert sizes == {"top_z": 30.0, "below_top": 10.0, "thickness": 4.0, "height": 25.0, "lower_height": 22.0, "length": 40.0}
+    assert sizes == {
+        "top_z": 30.0,
+        "below_top": 10.0,
+        "thickness": 4.0,
+        "height": 25.0,
+        "lower_height": 22.0,
+        "length": 40.0,
+    }
 
 
 def test_a_wall_as_high_as_the_part_is_no_rib() -> None:
@@ -67,14 +80,28 @@ def test_a_wall_as_high_as_the_part_is_no_rib() -> None:
 
 
 def test_crossing_ribs_of_one_height_are_one_compound_rib() -> None:
-    found = recognized(terrace((0, 10, 40, 43, 80, 90), (0, 10, 40, 43, 90, 100), ringed([[5, 30, 8], [30, 30, 30], [9, 30, 7]])))
+    found = recognized(
+        terrace(
+            (0, 10, 40, 43, 80, 90),
+            (0, 10, 40, 43, 90, 100),
+            ringed([[5, 30, 8], [30, 30, 30], [9, 30, 7]]),
+        )
+    )
     assert found.counts()["pocket"] == 4 and found.counts()["rib"] == 1
     assert found.feature("rib-01").sizes["compound"] is True
 
 
 def test_a_rib_crossed_by_a_higher_one_is_two() -> None:
-    found = recognized(terrace((0, 10, 40, 43, 80, 90), (0, 10, 40, 43, 90, 100), ringed([[5, 30, 8], [35, 35, 35], [9, 30, 7]])))
-    assert [r.sizes["top_z"] for r in found.of_kind("rib")].count(30.0) == 2 and found.counts()["rib"] == 3
+    found = recognized(
+        terrace(
+            (0, 10, 40, 43, 80, 90),
+            (0, 10, 40, 43, 90, 100),
+            ringed([[5, 30, 8], [35, 35, 35], [9, 30, 7]]),
+        )
+    )
+    assert [r.sizes["top_z"] for r in found.of_kind("rib")].count(30.0) == 2 and found.counts()[
+        "rib"
+    ] == 3
 
 
 def test_a_wide_low_top_between_two_floors_is_a_floor() -> None:
@@ -133,8 +160,12 @@ def test_a_pocket_on_the_other_side_has_a_direction_and_is_refused() -> None:
     full[1, 1, 2] = full[1, 1, 0] = False
     found = recognized(BlockPart(((0, 10, 50, 60), (0, 10, 40, 50), (0, 10, 14, 30)), full))
     below = found.feature("pocket-02")
-    assert below.attributes["direction"] == (0.0, 0.0, -1.0) and "below" in str(below.attributes["refused"])
-    assert (below.sizes["floor_z"], below.sizes["top_z"]) == (10.0, 0.0) and codes(found) == {"panel.below"}
+    assert below.attributes["direction"] == (0.0, 0.0, -1.0) and "below" in str(
+        below.attributes["refused"]
+    )
+    assert (below.sizes["floor_z"], below.sizes["top_z"]) == (10.0, 0.0) and codes(found) == {
+        "panel.below"
+    }
 
 
 def test_a_pocket_under_a_lip_is_refused() -> None:
@@ -154,13 +185,18 @@ def test_a_recess_in_a_wall_is_named_and_not_taken_for_a_pocket() -> None:
 
 
 def test_a_step_around_a_boss_is_an_open_pocket_and_the_boss_keeps_its_top() -> None:
-    found = recognized(terrace((0, 10, 90, 100), (0, 10, 50, 60), [[10] * 3, [10, H, 10], [10] * 3]))
+    found = recognized(
+        terrace((0, 10, 90, 100), (0, 10, 50, 60), [[10] * 3, [10, H, 10], [10] * 3])
+    )
     assert found.counts() == {"open_pocket": 1, "profile": 1, "datum": 1} and found.findings == ()
 
 
 def test_pockets_are_numbered_by_rows_from_the_front() -> None:
-    part = terrace((0, 10, 30, 40, 80, 90), (0, 10, 30, 40, 70, 80),
-                   [[H] * 5, [H, 5, H, 6, H], [H] * 5, [H, 7, H, 8, H], [H] * 5])
+    part = terrace(
+        (0, 10, 30, 40, 80, 90),
+        (0, 10, 30, 40, 70, 80),
+        [[H] * 5, [H, 5, H, 6, H], [H] * 5, [H, 7, H, 8, H], [H] * 5],
+    )
     centres = [p.attributes["centre"] for p in recognized(part).of_kind("pocket")]
     rows = [c[1] for c in centres]  # type: ignore[index]
     assert rows == sorted(rows) and centres[0][0] < centres[1][0] and centres[2][0] < centres[3][0]  # type: ignore[index]
@@ -169,7 +205,9 @@ def test_pockets_are_numbered_by_rows_from_the_front() -> None:
 def test_cancelling_stops_the_recognition() -> None:
     part = terrace((0, 10, 90, 100), (0, 10, 50, 60), ringed([[8]]))
     with pytest.raises(Cancelled):
-        PanelFamily().recognize(part.graph(), part, choose(PanelFamily.settings, {}), Progress(cancelled=lambda: True))
+        PanelFamily().recognize(
+            part.graph(), part, choose(PanelFamily.settings, {}), Progress(cancelled=lambda: True)
+        )
 
 
 class Torn:

@@ -51,13 +51,18 @@ def test_all_of_the_first_panel_is_found(name: str) -> None:
 
 def test_the_first_panel_lies_in_the_frame_that_a_programmer_would_choose() -> None:
     frame, truth = part_of("B1.step")[1].frame, truth_of("B1")["frame"]
-    assert (frame.origin.tolist(), frame.x.tolist(), frame.z.tolist()) == (truth["origin"], truth["x"], truth["z"])
+    assert (frame.origin.tolist(), frame.x.tolist(), frame.z.tolist()) == (
+        truth["origin"],
+        truth["x"],
+        truth["z"],
+    )
 
 
 def moved(part: Part, kind: str) -> tuple[Any, Callable[[list[float]], list[float]]]:
     """Return the part's shape moved, and where a point of it is then."""
     from OCP.BRepBuilderAPI import BRepBuilderAPI_Transform
     from OCP.gp import gp_Ax1, gp_Ax2, gp_Dir, gp_Pnt, gp_Trsf, gp_Vec
+
     way = gp_Trsf()
     if kind == "turned":
         way.SetRotation(gp_Ax1(gp_Pnt(10, 20, 30), gp_Dir(1, 2, 3)), 1.234)
@@ -72,10 +77,21 @@ def moved(part: Part, kind: str) -> tuple[Any, Callable[[list[float]], list[floa
     return BRepBuilderAPI_Transform(part.as_read, way, True).Shape(), move
 
 
-@pytest.mark.parametrize(("kind", "unit", "suffix"), [
-    ("turned", "mm", "step"), ("mirrored", "mm", "igs"), ("far away", "mm", "step"), ("", "inch", "step"), ("turned", "inch", "igs")])
-def test_the_first_panel_is_found_wherever_it_lies_and_in_inches(kind: str, unit: str, suffix: str, tmp_path: Path) -> None:
+@pytest.mark.parametrize(
+    ("kind", "unit", "suffix"),
+    [
+        ("turned", "mm", "step"),
+        ("mirrored", "mm", "igs"),
+        ("far away", "mm", "step"),
+        ("", "inch", "step"),
+        ("turned", "inch", "igs"),
+    ],
+)
+def test_the_first_panel_is_found_wherever_it_lies_and_in_inches(
+    kind: str, unit: str, suffix: str, tmp_path: Path
+) -> None:
     from trunnion.part.write import write_iges, write_step
+
     shape, move = moved(part_of("B1.step")[0], kind)
     file = tmp_path / f"B1.{suffix}"
     (write_step if suffix == "step" else write_iges)(shape, file, unit=unit)
@@ -90,13 +106,22 @@ def test_harder_panels_keep_their_pockets_and_name_the_rest(name: str) -> None:
         wanted, printed, matched = score["kinds"].get(kind, (0, 0, 0))
         assert wanted == printed == matched, kind
     explained = {tag for f in found.features for tag in f.tags}
-    assert explained | set(found.unexplained) == set(part.tags) and not explained & set(found.unexplained)
+    assert explained | set(found.unexplained) == set(part.tags) and not explained & set(
+        found.unexplained
+    )
     assert 0.0 < found.unexplained_share < 0.06
 
 
-@pytest.mark.parametrize(("name", "code"), [
-    ("B2.step", "panel.leaning-wall"), ("B3.step", "panel.curved-floor"), ("B3.step", "panel.undercut"), ("B4.step", "panel.hole"),
-    ("B5.step", "panel.below")])
+@pytest.mark.parametrize(
+    ("name", "code"),
+    [
+        ("B2.step", "panel.leaning-wall"),
+        ("B3.step", "panel.curved-floor"),
+        ("B3.step", "panel.undercut"),
+        ("B4.step", "panel.hole"),
+        ("B5.step", "panel.below"),
+    ],
+)
 def test_what_is_not_handled_yet_is_a_finding(name: str, code: str) -> None:
     assert code in {f.code for f in part_of(name)[1].findings}
 
@@ -112,7 +137,10 @@ def test_the_sizes_of_the_first_panel_are_the_truths() -> None:
         sizes = found.features[j].sizes
         for name, value in truth[i]["sizes"].items():
             wanted = tuple(value) if isinstance(value, list) else value
-            assert name == "in" or sizes[name] == pytest.approx(wanted, abs=2e-3), (truth[i]["id"], name)
+            assert name == "in" or sizes[name] == pytest.approx(wanted, abs=2e-3), (
+                truth[i]["id"],
+                name,
+            )
 
 
 def test_the_size_table_of_the_first_panel_holds_the_planners_sizes() -> None:
@@ -120,5 +148,9 @@ def test_the_size_table_of_the_first_panel_holds_the_planners_sizes() -> None:
     planning, table = truth_of("B1")["planning"], size_table(found, part.graph())
     sizes = {e.name: e.value for e in table if e.feature == "part"}
     assert sizes["smallest_corner_radius"] == planning["smallest_corner_radius"]
-    assert [sizes[f"stock_box_{n}"] for n in ("length", "width", "height")] == pytest.approx(planning["stock_box"]["size"], abs=1e-3)
-    assert sorted(e.value for e in table if e.name == "depth") == sorted(p["depth"] for p in planning["pockets"])
+    assert [sizes[f"stock_box_{n}"] for n in ("length", "width", "height")] == pytest.approx(
+        planning["stock_box"]["size"], abs=1e-3
+    )
+    assert sorted(e.value for e in table if e.name == "depth") == sorted(
+        p["depth"] for p in planning["pockets"]
+    )

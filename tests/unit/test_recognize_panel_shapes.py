@@ -20,7 +20,9 @@ def recognized(shape: Any, suffix: str = "step") -> Recognition:
 
 
 @pytest.mark.parametrize("degrees", [10.0, 37.3, 45.0])
-def test_nothing_stands_over_the_pockets_of_a_panel_turned_about_its_own_axis(degrees: float) -> None:
+def test_nothing_stands_over_the_pockets_of_a_panel_turned_about_its_own_axis(
+    degrees: float,
+) -> None:
     still = recognized(samples.two_pockets_and_a_rib_shape())
     found = recognized(samples.turned(samples.two_pockets_and_a_rib_shape(), (0, 0, 1), degrees))
     assert found.counts() == still.counts()
@@ -34,13 +36,17 @@ def test_a_dome_on_a_plate_is_no_fillet_and_nothing_is_planned_beside_it() -> No
     found = recognized(shape)
     assert dome not in {tag for f in found for tag in f.tags} and dome in found.unexplained
     assert ["lean" in str(f.attributes["refused"]) for f in found.of_kind("open_pocket")] == [True]
-    assert "recognize.family=surface" in next(f.remedy for f in found.findings if f.code == "panel.leaning-wall")
+    assert "recognize.family=surface" in next(
+        f.remedy for f in found.findings if f.code == "panel.leaning-wall"
+    )
 
 
 def test_a_dome_on_a_plate_is_taken_for_a_curved_part_and_a_panel_is_not() -> None:
     def best(shape) -> str:
         graph = samples.read(shape).graph()
-        return max((PanelFamily(), SurfaceFamily()), key=lambda family: family.suits(graph).score).name
+        return max(
+            (PanelFamily(), SurfaceFamily()), key=lambda family: family.suits(graph).score
+        ).name
 
     assert best(samples.dome_on_a_plate_shape()) == "surface"
     assert best(samples.two_pockets_and_a_rib_shape()) == "panel"

@@ -19,7 +19,16 @@ QUARTER = math.tan(math.pi / 8.0)
 
 def rounded(x0: float, y0: float, x1: float, y1: float, r: float) -> Curve:
     """An anticlockwise rectangle with corners of radius r."""
-    points = [[x0 + r, y0], [x1 - r, y0], [x1, y0 + r], [x1, y1 - r], [x1 - r, y1], [x0 + r, y1], [x0, y1 - r], [x0, y0 + r]]
+    points = [
+        [x0 + r, y0],
+        [x1 - r, y0],
+        [x1, y0 + r],
+        [x1, y1 - r],
+        [x1 - r, y1],
+        [x0 + r, y1],
+        [x0, y1 - r],
+        [x0, y0 + r],
+    ]
     return Curve(np.array(points), np.array([0.0, QUARTER] * 4), True)
 
 
@@ -56,17 +65,31 @@ def test_material_is_on_the_left_of_every_loop():
 
 
 def test_distances_are_positive_inside():
-    assert ring().signed_distance([[7.0, 0.0], [0.0, 0.0], [0.0, 12.0]]) == approx([2.0, -5.0, -2.0])
+    assert ring().signed_distance([[7.0, 0.0], [0.0, 0.0], [0.0, 12.0]]) == approx(
+        [2.0, -5.0, -2.0]
+    )
 
 
 def test_containing_asks_for_a_margin():
     assert ring().contains([[7.0, 0.0], [5.5, 0.0], [1.0, 0.0]]).tolist() == [True, True, False]
-    assert ring().contains([[7.0, 0.0], [5.5, 0.0], [4.8, 0.0]], margin=1.0).tolist() == [True, False, False]
+    assert ring().contains([[7.0, 0.0], [5.5, 0.0], [4.8, 0.0]], margin=1.0).tolist() == [
+        True,
+        False,
+        False,
+    ]
     assert ring().contains([[4.8, 0.0], [4.0, 0.0]], margin=-0.5).tolist() == [True, False]
 
 
 def test_a_point_level_with_corners_and_on_chords_of_arcs_is_placed_right():
-    slot = Region.of([Curve(np.array([[0.0, 0.0], [20.0, 0.0], [20.0, 10.0], [0.0, 10.0]]), np.array([0.0, 1.0, 0.0, 1.0]), True)])
+    slot = Region.of(
+        [
+            Curve(
+                np.array([[0.0, 0.0], [20.0, 0.0], [20.0, 10.0], [0.0, 10.0]]),
+                np.array([0.0, 1.0, 0.0, 1.0]),
+                True,
+            )
+        ]
+    )
     assert slot.contains([[20.0, 5.0], [0.0, 5.0], [24.0, 5.0], [-4.0, 5.0]]).all()
     disc = Region.circle((0.0, 0.0), 2.0)
     assert disc.contains([[0.0, 0.0], [1.0, 0.0], [-1.0, 0.0]]).all()
@@ -103,7 +126,10 @@ def test_a_bar_and_a_disc_meet_at_exact_points():
 
 def test_two_discs_meet_at_exact_points():
     lens = Region.circle((0.0, 0.0), 5.0).intersect(Region.circle((6.0, 0.0), 5.0))
-    assert sorted(map(tuple, lens.pieces[0].outer.points.round(12).tolist())) == [(3.0, -4.0), (3.0, 4.0)]
+    assert sorted(map(tuple, lens.pieces[0].outer.points.round(12).tolist())) == [
+        (3.0, -4.0),
+        (3.0, 4.0),
+    ]
 
 
 def test_rectangles_that_share_a_wall_become_one_without_a_seam():
@@ -161,18 +187,33 @@ def test_filled_holes_swallow_the_pieces_inside_them():
 
 
 def test_split_gives_a_region_a_piece():
-    parts = Region.of([Curve.rectangle(0.0, 0.0, 1.0, 1.0), Curve.rectangle(2.0, 0.0, 5.0, 1.0)]).split()
+    parts = Region.of(
+        [Curve.rectangle(0.0, 0.0, 1.0, 1.0), Curve.rectangle(2.0, 0.0, 5.0, 1.0)]
+    ).split()
     assert sorted(p.area for p in parts) == approx([1.0, 3.0])
 
 
 def test_motions_keep_the_area_and_the_direction_of_loops():
-    for moved in (ring().moved(3.0, 4.0), ring().rotated(0.7, (1.0, 2.0)), ring().mirrored(), ring().mirrored(1)):
+    for moved in (
+        ring().moved(3.0, 4.0),
+        ring().rotated(0.7, (1.0, 2.0)),
+        ring().mirrored(),
+        ring().mirrored(1),
+    ):
         assert moved.area == approx(ring().area)
         assert moved.curves()[0].area > 0.0 > moved.curves()[1].area
 
 
 def test_simplifying_joins_lines_and_arcs_in_a_row_and_drops_specks():
-    points = [[0.0, 0.0], [4.0, 0.0], [10.0, 0.0], [10.0, 1e-7], [10.0, 5.0], [5.0, 10.0], [0.0, 5.0]]
+    points = [
+        [0.0, 0.0],
+        [4.0, 0.0],
+        [10.0, 0.0],
+        [10.0, 1e-7],
+        [10.0, 5.0],
+        [5.0, 10.0],
+        [0.0, 5.0],
+    ]
     bulges = [0.0, 0.0, 0.0, 0.0, QUARTER, QUARTER, 0.0]
     simple = Region.of([Curve(np.array(points), np.array(bulges), True)]).simplified()
     assert simple.pieces[0].outer.n_segments == 4
@@ -188,7 +229,10 @@ def test_gaps_below_a_point_between_ends_do_no_harm():
 def test_a_hole_that_touches_the_wall_stays_a_hole_in_later_operations():
     plate = Region.rectangle(0.0, 0.0, 40.0, 40.0).minus(Region.circle((5.0, 20.0), 5.0))
     assert plate.area == approx(1600.0 - 25.0 * math.pi, abs=1e-6)
-    left, right = plate.intersect(Region.rectangle(0.0, 0.0, 20.0, 40.0)), plate.minus(Region.rectangle(0.0, 0.0, 20.0, 40.0))
+    left, right = (
+        plate.intersect(Region.rectangle(0.0, 0.0, 20.0, 40.0)),
+        plate.minus(Region.rectangle(0.0, 0.0, 20.0, 40.0)),
+    )
     assert left.area + right.area == approx(plate.area, abs=1e-6)
 
 
@@ -199,6 +243,8 @@ def test_a_region_survives_the_way_to_another_process():
 
 
 def test_plane_geometry_does_without_the_compiler_until_it_pays():
-    code = ("import sys; from trunnion.geometry.region import Region; Region.circle((0, 0), 5).offset(-1).contains([[0, 0]]); "
-            "sys.exit(any(m in sys.modules for m in ('numba', 'scipy')))")
+    code = (
+        "import sys; from trunnion.geometry.region import Region; Region.circle((0, 0), 5).offset(-1).contains([[0, 0]]); "
+        "sys.exit(any(m in sys.modules for m in ('numba', 'scipy')))"
+    )
     assert subprocess.run([sys.executable, "-c", code], check=False).returncode == 0

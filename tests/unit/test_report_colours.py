@@ -12,12 +12,20 @@ PALETTE = load_palette()
 
 
 def group(number: int, local: bool) -> Feature:
-    return Feature(id=f"group-{number:02}", kind="group", faces=(FaceRole(role="face", face=number),), attributes={"local": local})
+    return Feature(
+        id=f"group-{number:02}",
+        kind="group",
+        faces=(FaceRole(role="face", face=number),),
+        attributes={"local": local},
+    )
 
 
 def test_local_groups_are_warm_and_the_others_cold():
     colours = PALETTE.features([group(1, False), group(2, True), group(3, False)])
-    assert colours["group-01"][2] > colours["group-01"][0] and colours["group-03"][2] > colours["group-03"][0]
+    assert (
+        colours["group-01"][2] > colours["group-01"][0]
+        and colours["group-03"][2] > colours["group-03"][0]
+    )
     assert colours["group-02"][0] > colours["group-02"][2]
 
 
@@ -42,6 +50,13 @@ def test_there_is_one_colour_more_than_limits_of_radii():
 
 
 def test_the_legend_counts_groups_by_class():
-    found = Recognition(family="surface", features=(group(1, False), group(2, True), group(3, True)))
-    assert list(feature_legend(found, PALETTE)) == ["groups of the remaining area 1", "groups of local features 2"]
-    assert list(feature_legend(Recognition(family="surface", features=(group(1, False),)), PALETTE)) == ["groups of the remaining area 1"]
+    found = Recognition(
+        family="surface", features=(group(1, False), group(2, True), group(3, True))
+    )
+    assert list(feature_legend(found, PALETTE)) == [
+        "groups of the remaining area 1",
+        "groups of local features 2",
+    ]
+    assert list(
+        feature_legend(Recognition(family="surface", features=(group(1, False),)), PALETTE)
+    ) == ["groups of the remaining area 1"]

@@ -17,13 +17,23 @@ SIDE, APART = 60.0, 3.0
 @pytest.fixture
 def mesh():
     """Two squares of 60 mm side by side, faces 1 and 2, two triangles each."""
-    points = [(x, y, 0.0) for left in (0.0, SIDE) for x, y in ((left, 0), (left + SIDE, 0), (left + SIDE, SIDE), (left, SIDE))]
-    return Mesh(np.array(points), np.array([[0, 1, 2], [0, 2, 3], [4, 5, 6], [4, 6, 7]]), np.array([1, 1, 2, 2]))
+    points = [
+        (x, y, 0.0)
+        for left in (0.0, SIDE)
+        for x, y in ((left, 0), (left + SIDE, 0), (left + SIDE, SIDE), (left, SIDE))
+    ]
+    return Mesh(
+        np.array(points),
+        np.array([[0, 1, 2], [0, 2, 3], [4, 5, 6], [4, 6, 7]]),
+        np.array([1, 1, 2, 2]),
+    )
 
 
 def samples(gouge=(), left=()) -> Deviation:
     """Return samples 3 mm apart on both faces: finished, but 50 µm too deep or 30 µm too high at the samples nearest to some places."""
-    x, y = (a.ravel() for a in np.meshgrid(np.arange(1.5, 2 * SIDE, APART), np.arange(1.5, SIDE, APART)))
+    x, y = (
+        a.ravel() for a in np.meshgrid(np.arange(1.5, 2 * SIDE, APART), np.arange(1.5, SIDE, APART))
+    )
     point = np.column_stack([x, y, np.zeros(x.size)])
     value = np.zeros(x.size)
     for places, depth in ((gouge, -0.05), (left, 0.03)):
@@ -64,7 +74,9 @@ def test_a_gouge_of_one_sample_is_on_the_map_where_it_is(mesh):
 
 
 def test_a_gouge_is_not_painted_over_by_what_is_left_beside_it(mesh):
-    shown = deviation_map(mesh, samples(gouge=[(30, 30)], left=[(33, 30), (27, 30), (30, 33), (30, 27)]), 0.02)
+    shown = deviation_map(
+        mesh, samples(gouge=[(30, 30)], left=[(33, 30), (27, 30), (30, 33), (30, 27)]), 0.02
+    )
     assert (shown.value == -0.05).any() and (shown.value == 0.03).any()
 
 
@@ -90,7 +102,9 @@ def test_an_allowance_is_no_deviation(mesh):
 
 def test_gouges_are_red_what_is_left_is_blue_and_the_finished_is_grey():
     colours = load_palette().deviation
-    deep, gouge, finished, left, much = colours.at(np.array([-0.06, -0.021, 0.0, 0.021, 0.06]), -0.02, 0.02, 0.05).astype(int)
+    deep, gouge, finished, left, much = colours.at(
+        np.array([-0.06, -0.021, 0.0, 0.021, 0.06]), -0.02, 0.02, 0.05
+    ).astype(int)
     assert gouge[0] > gouge[2] + 40 and deep[0] > deep[2] + 40
     assert left[2] > left[0] + 40 and much[2] > much[0] + 40
     assert np.ptp(finished) < 10
@@ -104,9 +118,19 @@ def test_within_the_tolerance_there_is_one_colour():
 
 def test_the_legend_of_the_picture_says_where_the_colours_begin_and_end(mesh):
     words = list(deviation_legend(deviation_map(mesh, samples(), 0.02), load_palette()))
-    assert words == ["+50 µm or more left", "+35 µm", "+20 µm left", "finished", "-20 µm gouge", "-35 µm", "-50 µm or deeper"]
+    assert words == [
+        "+50 µm or more left",
+        "+35 µm",
+        "+20 µm left",
+        "finished",
+        "-20 µm gouge",
+        "-35 µm",
+        "-50 µm or deeper",
+    ]
 
 
-@pytest.mark.parametrize(("value", "words"), [(-0.05, "-50 µm"), (0.0123, "+12 µm"), (1.5, "+1.50 mm")])
+@pytest.mark.parametrize(
+    ("value", "words"), [(-0.05, "-50 µm"), (0.0123, "+12 µm"), (1.5, "+1.50 mm")]
+)
 def test_small_lengths_are_in_microns(value, words):
     assert fine_length(value) == words

@@ -25,7 +25,12 @@ def test_the_axis_goes_straight_on_to_where_both_passes_meet():
 def programmed():
     """A block 160 x 120 x 30, a pocket 120 x 80 x 20 with corners R8, a sharp nose 30 wide reaching 25 into it, floor fillets R3."""
     block = cq.Workplane("XY").box(160, 120, 30, centered=(True, True, False))
-    pocket = cq.Workplane("XY", origin=(0, 0, 10)).box(120, 80, 20, centered=(True, True, False)).edges("|Z").fillet(8)
+    pocket = (
+        cq.Workplane("XY", origin=(0, 0, 10))
+        .box(120, 80, 20, centered=(True, True, False))
+        .edges("|Z")
+        .fillet(8)
+    )
     nose = cq.Workplane("XY", origin=(0, 30, 10)).box(30, 30, 20, centered=(True, True, False))
     body = pocket.cut(nose).faces("<Z").edges().fillet(3)
     engine = Engine()

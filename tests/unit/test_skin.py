@@ -46,10 +46,14 @@ def test_a_ball_is_within_its_bound_everywhere_and_has_radial_normals_at_its_pol
     skin = skin_of(read(ball_shape()), WORLD, CHORD)
     ball = skin.of((int(np.bincount(skin.face).argmax()),))
     round_ = np.unique(skin.triangles[ball])
-    assert np.linalg.norm(skin.points[round_], axis=1) == approx(np.full(len(round_), 10.0), abs=1e-6)
+    assert np.linalg.norm(skin.points[round_], axis=1) == approx(
+        np.full(len(round_), 10.0), abs=1e-6
+    )
     assert np.abs(skin.normals[round_] - skin.points[round_] / 10.0).max() < 2e-3
     shares = np.random.default_rng(0).dirichlet([1.0, 1.0, 1.0], 30)
-    off = 10.0 - np.linalg.norm(np.einsum("sk,tkc->tsc", shares, skin.points[skin.triangles[ball]]), axis=2)
+    off = 10.0 - np.linalg.norm(
+        np.einsum("sk,tkc->tsc", shares, skin.points[skin.triangles[ball]]), axis=2
+    )
     assert off.min() > -1e-9 and CHORD / 3 < off.max() <= skin.bound < 1.1 * CHORD
     assert unpaired(skin) == 0
     assert (across(skin) * skin.normals[skin.triangles].mean(axis=1)).sum(axis=1).min() > 0.0
@@ -70,8 +74,15 @@ def test_only_the_faces_that_were_asked_for_are_fine_and_their_neighbours_meet_t
 
 def vase_shape():
     """Return a hollow vase turned from curves: inside and outside have seams, and the outside's bottom a pole."""
+
     def turned(low, curve, high):
-        profile = cq.Workplane("XZ").moveTo(0.0, low).spline(curve, includeCurrent=True).lineTo(0.0, high).close()
+        profile = (
+            cq.Workplane("XZ")
+            .moveTo(0.0, low)
+            .spline(curve, includeCurrent=True)
+            .lineTo(0.0, high)
+            .close()
+        )
         return profile.revolve(360, (0, 0, 0), (0, 1, 0))
 
     body = turned(0.0, [(12.0, 3.0), (8.0, 15.0), (14.0, 30.0)], 30.0)
@@ -88,7 +99,10 @@ def test_faces_that_meet_themselves_in_a_seam_are_closed_there(suffix):
 
 
 def test_a_skin_lies_in_the_frame_it_is_asked_for():
-    part, frame = read(block_with_pocket_shape()), Frame(np.array([1.0, 2.0, 3.0]), np.array([0.0, 1.0, 0.0]), np.array([1.0, 0.0, 0.0]))
+    part, frame = (
+        read(block_with_pocket_shape()),
+        Frame(np.array([1.0, 2.0, 3.0]), np.array([0.0, 1.0, 0.0]), np.array([1.0, 0.0, 0.0])),
+    )
     here, there = skin_of(part, WORLD, 0.01), skin_of(part, frame, 0.01)
     assert here.moved(WORLD, frame).points == approx(there.points)
     assert here.moved(WORLD, frame).normals == approx(there.normals)
@@ -96,7 +110,10 @@ def test_a_skin_lies_in_the_frame_it_is_asked_for():
 
 def test_the_same_part_gives_the_same_bytes():
     first, second = (skin_of(read(ball_shape()), WORLD, 0.002) for _ in range(2))
-    assert all(getattr(first, name).tobytes() == getattr(second, name).tobytes() for name in ("points", "normals", "triangles", "face"))
+    assert all(
+        getattr(first, name).tobytes() == getattr(second, name).tobytes()
+        for name in ("points", "normals", "triangles", "face")
+    )
 
 
 def test_it_stops_when_asked():

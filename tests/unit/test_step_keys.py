@@ -16,7 +16,11 @@ def programmed(sample_panel):
 
 def stale(programmed, **words):
     engine, session = programmed
-    changed = engine.states(engine.with_choices(session, {key.replace("__", "."): value for key, value in words.items()}))
+    changed = engine.states(
+        engine.with_choices(
+            session, {key.replace("__", "."): value for key, value in words.items()}
+        )
+    )
     return [name for name, state in changed.items() if state == "stale"]
 
 

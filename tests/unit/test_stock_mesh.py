@@ -55,7 +55,10 @@ def of_solid(depth, size=20.0, bundles=("x", "y", "z")):
         for _ in range(30):
             middle = 0.5 * (low + high)
             found = (depth(middle) > 0.0) == upwards
-            low, high = np.where(found[:, None], low, middle), np.where(found[:, None], middle, high)
+            low, high = (
+                np.where(found[:, None], low, middle),
+                np.where(found[:, None], middle, high),
+            )
         for r, up, end in zip(ray, upwards, high[:, w], strict=True):
             (bundle.low if up else bundle.high)[r, bundle.count[r]] = end
             bundle.count[r] += not up
@@ -66,7 +69,10 @@ def is_closed(mesh):
     """Say whether every edge of a triangle is the reverse of as many others'."""
     t = mesh.triangles
     edges = np.vstack([t[:, [0, 1]], t[:, [1, 2]], t[:, [2, 0]]])
-    there, back = edges[:, 0] * len(mesh.points) + edges[:, 1], edges[:, 1] * len(mesh.points) + edges[:, 0]
+    there, back = (
+        edges[:, 0] * len(mesh.points) + edges[:, 1],
+        edges[:, 1] * len(mesh.points) + edges[:, 0],
+    )
     return np.array_equal(np.sort(there), np.sort(back))
 
 
@@ -108,7 +114,9 @@ def test_columns_cut_through_are_holes_in_top_and_bottom():
     top[20:40, 20:40] = 0.0
     stock, mesh = of_heights(top)
     assert is_closed(mesh) and volume(mesh) == approx(stock.volume)
-    inside = ((mesh.corners().mean(axis=1)[:, :2] > 10.5) & (mesh.corners().mean(axis=1)[:, :2] < 19.5)).all(axis=1)
+    inside = (
+        (mesh.corners().mean(axis=1)[:, :2] > 10.5) & (mesh.corners().mean(axis=1)[:, :2] < 19.5)
+    ).all(axis=1)
     assert not inside.any()
 
 
@@ -142,7 +150,11 @@ def test_rough_heights_are_merged_until_there_are_few_enough_triangles():
     stock.field.top[:] = 20.0 + 0.05 * rng.random(stock.field.top.shape)
     assert len(mesh_of(stock, most=200_000).triangles) > 20_000
     few = mesh_of(stock, most=20_000)
-    assert len(few.triangles) <= 20_000 and is_closed(few) and volume(few) == approx(stock.volume, rel=5e-3)
+    assert (
+        len(few.triangles) <= 20_000
+        and is_closed(few)
+        and volume(few) == approx(stock.volume, rel=5e-3)
+    )
 
 
 def test_a_leaning_box_in_three_bundles_keeps_its_edges():
@@ -165,7 +177,13 @@ def test_a_ball_in_three_bundles_is_as_large_as_a_ball():
 
 
 def test_the_blanks_own_faces_are_where_they_are():
-    mesh = mesh_of(of_solid(lambda points: np.where((np.abs(points[:, 0] - 9.7) < 4.6) & (points[:, 2] > 7.7), -1.0, 1.0)))
+    mesh = mesh_of(
+        of_solid(
+            lambda points: np.where(
+                (np.abs(points[:, 0] - 9.7) < 4.6) & (points[:, 2] > 7.7), -1.0, 1.0
+            )
+        )
+    )
     low, high = mesh.box()
     assert (low, high) == (approx(np.zeros(3), abs=1e-9), approx(np.full(3, 20.0), abs=1e-9))
     assert volume(mesh) == approx(20.0**3 - 9.2 * 20.0 * 12.3, rel=1e-3)
@@ -174,7 +192,11 @@ def test_the_blanks_own_faces_are_where_they_are():
 def test_three_bundles_are_seen_coarser_when_they_would_make_too_many_triangles():
     stock = of_solid(leaning_box)
     few = mesh_of(stock, most=1500)
-    assert len(few.triangles) <= 1500 and is_closed(few) and volume(few) == approx(stock.volume, rel=0.02)
+    assert (
+        len(few.triangles) <= 1500
+        and is_closed(few)
+        and volume(few) == approx(stock.volume, rel=0.02)
+    )
 
 
 def test_what_moves_have_cut_is_meshed_at_any_moment():
@@ -182,7 +204,11 @@ def test_what_moves_have_cut_is_meshed_at_any_moment():
     stock, before = Stock.of(blank(60.0, 40.0, 20.0), 1.0, ("x", "y", "z")), math.inf
     for lean in (0.0, 0.4, -0.7):
         axes = [(0.0, lean, 1.0)] * 3
-        run_stock(stock, moves_of([leaning_section(ball, [(10, 20, 30), (10, 20, 12), (50, 22, 10)], axes)]), WORLD)
+        run_stock(
+            stock,
+            moves_of([leaning_section(ball, [(10, 20, 30), (10, 20, 12), (50, 22, 10)], axes)]),
+            WORLD,
+        )
         mesh = mesh_of(stock)
         assert is_closed(mesh) and volume(mesh) == approx(stock.volume, rel=5e-3)
         assert volume(mesh) < before

@@ -29,7 +29,10 @@ def test_a_failure_in_the_middle_leaves_the_old_file_and_nothing_else(tmp_path):
         file.write(b"half")
         raise OSError(28, "No space left on device")
 
-    with pytest.raises(BadInput, match=r"a\.txt: can't be written: No space left on device; the file there is as it was"):
+    with pytest.raises(
+        BadInput,
+        match=r"a\.txt: can't be written: No space left on device; the file there is as it was",
+    ):
         write_with(tmp_path / "a.txt", fail)
     assert (tmp_path / "a.txt").read_text() == "good"
     assert [p.name for p in tmp_path.iterdir()] == ["a.txt"]

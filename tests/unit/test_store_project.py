@@ -54,16 +54,24 @@ def test_a_session_comes_back_as_it_was(saved):
     session, part, suffix = load_project(saved)
     assert (part, suffix) == (PART_BYTES, ".step")
     for field in fields(Session):
-        assert digest(getattr(session, field.name)) == digest(getattr(programs.session(), field.name)), field.name
+        assert digest(getattr(session, field.name)) == digest(
+            getattr(programs.session(), field.name)
+        ), field.name
 
 
 def test_a_session_saved_again_has_the_same_bytes(saved):
     session, part, suffix = load_project(saved)
-    assert project_bytes(session, part, suffix) == saved.read_bytes() == project_bytes(programs.session(), PART_BYTES, ".step")
+    assert (
+        project_bytes(session, part, suffix)
+        == saved.read_bytes()
+        == project_bytes(programs.session(), PART_BYTES, ".step")
+    )
 
 
 def test_a_session_in_which_every_field_holds_something_is_what_these_tests_use():
-    assert all(getattr(programs.session(), field.name) not in (None, (), {}) for field in fields(Session))
+    assert all(
+        getattr(programs.session(), field.name) not in (None, (), {}) for field in fields(Session)
+    )
 
 
 def test_an_empty_session_comes_back_empty(tmp_path):
@@ -80,7 +88,19 @@ def test_whole_numbers_where_decimals_may_stand_stay_whole_numbers(tmp_path):
     assert (type(again.area), again.volume) == (int, 0.1 + 0.2)
 
 
-TEXTS = ["", " ", "\n", "a\r\nb", "tab\tin", "\x00\x1f", "5° < & > \"'", "\ud800", "ü" * 5000, "back\\slash", "\ufffe"]
+TEXTS = [
+    "",
+    " ",
+    "\n",
+    "a\r\nb",
+    "tab\tin",
+    "\x00\x1f",
+    "5° < & > \"'",
+    "\ud800",
+    "ü" * 5000,
+    "back\\slash",
+    "\ufffe",
+]
 
 
 @pytest.mark.parametrize("text", TEXTS)
@@ -112,20 +132,47 @@ def test_a_value_that_its_hint_forbids_is_not_saved():
         project_bytes(Session(sizes="wrong"), b"", "")
 
 
-@pytest.mark.parametrize(("old", "new", "message"), [
-    (b'version="1"', b'version="7"', "written in format 7; this Trunnion reads format 1: use the Trunnion that wrote it"),
-    (b"<trunnion-project", b"<!DOCTYPE a [<!ENTITY b 'c'>]><trunnion-project", "holds a document type or entities, which are never read"),
-    (b"<n-faces>42</n-faces>", b"<n-faces>many</n-faces>", r"session.xml, line 9: <n-faces> can't be read: invalid literal"),
-    (b"<n-faces>42</n-faces>", b"<colour>red</colour>", r"session.xml, line \d+: <colour> is not known in <part>"),
-    (b"<n-faces>42</n-faces>", b"", r"session.xml, line \d+: <part> can't be used: .*missing 1 required keyword-only argument: 'n_faces'"),
-    (b"<severity>info</severity>", b"<severity>loud</severity>", "'loud' is not a valid Severity"),
-    (b'part="part.step"', b'part="part.iges"', "the part file is missing in it"),
-    (b"arrays/00", b"arrays/99", r"line \d+: the archive has no member arrays/99"),
-    (b"</session>", b"", "damaged XML: Opening and ending tag mismatch"),
-    (b"encoding='UTF-8'", b"encoding='ISO-8859-1'", "must be UTF-8 text, not ISO-8859-1"),
-    (b'type="int">5<', b'type="tuple">5<', "says type tuple, which doesn't belong there"),
-    (b"<trunnion-project", b"<other", "damaged XML"),
-])
+@pytest.mark.parametrize(
+    ("old", "new", "message"),
+    [
+        (
+            b'version="1"',
+            b'version="7"',
+            "written in format 7; this Trunnion reads format 1: use the Trunnion that wrote it",
+        ),
+        (
+            b"<trunnion-project",
+            b"<!DOCTYPE a [<!ENTITY b 'c'>]><trunnion-project",
+            "holds a document type or entities, which are never read",
+        ),
+        (
+            b"<n-faces>42</n-faces>",
+            b"<n-faces>many</n-faces>",
+            r"session.xml, line 9: <n-faces> can't be read: invalid literal",
+        ),
+        (
+            b"<n-faces>42</n-faces>",
+            b"<colour>red</colour>",
+            r"session.xml, line \d+: <colour> is not known in <part>",
+        ),
+        (
+            b"<n-faces>42</n-faces>",
+            b"",
+            r"session.xml, line \d+: <part> can't be used: .*missing 1 required keyword-only argument: 'n_faces'",
+        ),
+        (
+            b"<severity>info</severity>",
+            b"<severity>loud</severity>",
+            "'loud' is not a valid Severity",
+        ),
+        (b'part="part.step"', b'part="part.iges"', "the part file is missing in it"),
+        (b"arrays/00", b"arrays/99", r"line \d+: the archive has no member arrays/99"),
+        (b"</session>", b"", "damaged XML: Opening and ending tag mismatch"),
+        (b"encoding='UTF-8'", b"encoding='ISO-8859-1'", "must be UTF-8 text, not ISO-8859-1"),
+        (b'type="int">5<', b'type="tuple">5<', "says type tuple, which doesn't belong there"),
+        (b"<trunnion-project", b"<other", "damaged XML"),
+    ],
+)
 def test_a_spoiled_session_is_refused_in_one_line(saved, old, new, message):
     edited(saved, old, new)
     with pytest.raises(BadInput, match=message) as refused:
@@ -133,7 +180,18 @@ def test_a_spoiled_session_is_refused_in_one_line(saved, old, new, message):
     assert "\n" not in str(refused.value)
 
 
-@pytest.mark.parametrize("name", ["../evil.txt", "/etc/passwd", "arrays/../../x.npy", "..\\evil", "C:evil", "arrays/00001.npy/x", "run.py"])
+@pytest.mark.parametrize(
+    "name",
+    [
+        "../evil.txt",
+        "/etc/passwd",
+        "arrays/../../x.npy",
+        "..\\evil",
+        "C:evil",
+        "arrays/00001.npy/x",
+        "run.py",
+    ],
+)
 def test_names_that_leave_the_archive_or_do_not_belong_are_refused(saved, name):
     pack(saved, {**members_of(saved), name: b"x"})
     with pytest.raises(BadInput, match="which no project has; it is not opened"):
@@ -149,7 +207,9 @@ def test_a_member_that_stands_twice_is_refused(saved):
 
 def test_a_member_that_would_open_too_large_is_refused(saved, monkeypatch):
     monkeypatch.setattr(project, "LARGEST_MEMBER", 1000)
-    with pytest.raises(BadInput, match=r"session\.xml would open to \d+ bytes; at most 1000 are read"):
+    with pytest.raises(
+        BadInput, match=r"session\.xml would open to \d+ bytes; at most 1000 are read"
+    ):
         load_project(saved)
 
 
@@ -164,8 +224,8 @@ def test_a_member_that_lies_about_its_size_is_refused(saved):
     with zipfile.ZipFile(io.BytesIO(bytes(data))) as archive:
         size = archive.getinfo("part.step").file_size
     at = data.rindex(b"part.step") - 46 + 24
-    assert int.from_bytes(data[at:at + 4], "little") == size
-    data[at:at + 4] = (size - 5).to_bytes(4, "little")
+    assert int.from_bytes(data[at : at + 4], "little") == size
+    data[at : at + 4] = (size - 5).to_bytes(4, "little")
     saved.write_bytes(bytes(data))
     with pytest.raises(BadInput, match="damaged, or not a project file"):
         load_project(saved)
@@ -173,7 +233,9 @@ def test_a_member_that_lies_about_its_size_is_refused(saved):
 
 def test_another_part_file_is_noticed(saved):
     pack(saved, {**members_of(saved), "part.step": b"another part"})
-    with pytest.raises(BadInput, match="the part file in it is not the one that its plan was made for"):
+    with pytest.raises(
+        BadInput, match="the part file in it is not the one that its plan was made for"
+    ):
         load_project(saved)
 
 
@@ -224,14 +286,18 @@ def test_an_array_that_was_not_written_here_is_refused(data):
 
 def test_an_array_that_claims_more_than_it_has_is_refused():
     file = io.BytesIO()
-    np.lib.format.write_array_header_1_0(file, {"descr": "<f8", "fortran_order": False, "shape": (10**12,)})
+    np.lib.format.write_array_header_1_0(
+        file, {"descr": "<f8", "fortran_order": False, "shape": (10**12,)}
+    )
     with pytest.raises(BadInput, match="the array's header doesn't fit its 0 bytes"):
         load_array(file.getvalue(), "arrays/00001.npy")
 
 
 def test_an_array_of_objects_is_refused():
     file = io.BytesIO()
-    np.lib.format.write_array_header_1_0(file, {"descr": "|O", "fortran_order": False, "shape": (1,)})
+    np.lib.format.write_array_header_1_0(
+        file, {"descr": "|O", "fortran_order": False, "shape": (1,)}
+    )
     with pytest.raises(BadInput, match="the array's header doesn't fit"):
         load_array(file.getvalue() + b"x" * 8, "arrays/00001.npy")
 
@@ -258,7 +324,10 @@ while True:
 def test_killing_the_program_while_it_saves_never_loses_the_last_good_file(tmp_path):
     path, rng, turns = tmp_path / "B1.trunnion", random.Random(9), []
     for _ in range(8):
-        with subprocess.Popen([sys.executable, "-c", SAVER, str(Path(__file__).parent.parent), str(path)], stdout=subprocess.PIPE) as child:
+        with subprocess.Popen(
+            [sys.executable, "-c", SAVER, str(Path(__file__).parent.parent), str(path)],
+            stdout=subprocess.PIPE,
+        ) as child:
             assert child.stdout is not None and child.stdout.readline() == b"ready\n"
             while not path.exists():
                 time.sleep(0.001)
@@ -275,4 +344,6 @@ def test_killing_the_program_while_it_saves_never_loses_the_last_good_file(tmp_p
 
 def test_what_a_session_keeps_of_its_part_has_no_field_that_is_not_saved(saved):
     again, before = load_project(saved)[0].part, programs.part_info()
-    assert [digest(getattr(again, f.name)) for f in fields(PartInfo)] == [digest(getattr(before, f.name)) for f in fields(PartInfo)]
+    assert [digest(getattr(again, f.name)) for f in fields(PartInfo)] == [
+        digest(getattr(before, f.name)) for f in fields(PartInfo)
+    ]

@@ -27,16 +27,21 @@ def test_a_process_tree_comes_back_as_it_was(tmp_path):
     assert (again.plan, again.material) == (before.plan, before.material)
     assert (again.operations, again.findings) == (before.operations, before.findings)
     assert [(s.name, s.work_offset, s.clearance, s.machine) for s in again.setups] == [
-        (s.name, s.work_offset, s.clearance, s.machine) for s in before.setups]
-    assert all(np.allclose(a.frame.axes, b.frame.axes) and np.allclose(a.frame.origin, b.frame.origin)
-               for a, b in zip(again.setups, before.setups, strict=True))
+        (s.name, s.work_offset, s.clearance, s.machine) for s in before.setups
+    ]
+    assert all(
+        np.allclose(a.frame.axes, b.frame.axes) and np.allclose(a.frame.origin, b.frame.origin)
+        for a, b in zip(again.setups, before.setups, strict=True)
+    )
 
 
 @pytest.mark.parametrize("form", FORMS)
 def test_a_tool_of_every_form_comes_back_as_it_was(tmp_path, form):
     tree = programs.process_tree()
     operation = replace(tree.operations[0], tool=FORMS[form])
-    (tmp_path / "a.xml").write_bytes(process_xml(replace(tree, operations=(operation,)), programs.part_info()))
+    (tmp_path / "a.xml").write_bytes(
+        process_xml(replace(tree, operations=(operation,)), programs.part_info())
+    )
     assert read_process(tmp_path / "a.xml").operations[0].tool == FORMS[form]
     members = Members()
     assert from_xml(to_xml(FORMS[form], Tool, "tool", members), Tool, members) == FORMS[form]
@@ -46,7 +51,11 @@ def test_features_come_back_as_they_were(tmp_path):
     write_features(SESSION, tmp_path / "a.xml")
     again, before = read_features(tmp_path / "a.xml"), programs.recognition()
     assert (again.family, again.features, again.unexplained, again.findings) == (
-        before.family, before.features, before.unexplained, before.findings)
+        before.family,
+        before.features,
+        before.unexplained,
+        before.findings,
+    )
     assert again.unexplained_share == before.unexplained_share
 
 
@@ -74,14 +83,40 @@ def test_a_pocket_without_a_floor_is_through():
 
 def test_features_name_faces_by_tag_and_copy_no_geometry():
     root = etree.fromstring(features_xml(programs.recognition(), programs.part_info()))
-    assert {e.tag for e in root.iter()} == {"features", "part", "frame", "origin", "x", "z", "feature", "face", "size", "attribute",
-                                            "generalized-pocket", "centre", "top", "bottom", "guide-profile", "guide-line", "island",
-                                            "auxiliary", "unexplained", "removed", "finding", "text", "where", "remedy"}
+    assert {e.tag for e in root.iter()} == {
+        "features",
+        "part",
+        "frame",
+        "origin",
+        "x",
+        "z",
+        "feature",
+        "face",
+        "size",
+        "attribute",
+        "generalized-pocket",
+        "centre",
+        "top",
+        "bottom",
+        "guide-profile",
+        "guide-line",
+        "island",
+        "auxiliary",
+        "unexplained",
+        "removed",
+        "finding",
+        "text",
+        "where",
+        "remedy",
+    }
 
 
 def test_a_name_that_xml_cannot_hold_is_written_with_a_mark():
     part = replace(programs.part_info(), name="B\udc801\x01")
-    assert etree.fromstring(process_xml(programs.process_tree(), part)).find("part").get("name") == "B\ufffd1\ufffd"
+    assert (
+        etree.fromstring(process_xml(programs.process_tree(), part)).find("part").get("name")
+        == "B\ufffd1\ufffd"
+    )
 
 
 def test_two_tools_of_one_number_are_refused():
@@ -98,19 +133,38 @@ def test_an_empty_session_has_nothing_to_write(tmp_path):
         write_process(Session(), tmp_path / "a.xml")
 
 
-@pytest.mark.parametrize(("old", "new", "message"), [
-    ('tool="7"', 'tool="9"', r"line \d+: .*No match found for key-sequence \['9'\]"),
-    ('setup="S2"', 'setup="S3"', r"line \d+: .*No match found for key-sequence \['S3'\]"),
-    ('teeth="3"', 'teeth="-3"', r"line \d+: .*'-3' is not a valid value"),
-    ('form="bull"', 'form="saw"', r"line \d+: .*'saw'"),
-    ('form="bull"', 'form="drill"', "can't be used: tool bull 10 R1: a drill needs a point angle up to 180 degrees and no corner radius"),
-    ("<cutting", "<cuting", r"damaged XML: Opening and ending tag mismatch: cuting"),
-    ('<operation id="wall-01"', '<operation id="pocket-01.rough"', r"line \d+: .*Duplicate key-sequence \['pocket-01.rough'\]"),
-    ('version="1"', 'version="2"', "written in format 2; this Trunnion reads format 1"),
-    ("<process-tree", "<!DOCTYPE x><process-tree", "holds a document type or entities"),
-    ('corner-radius="1.0"', 'corner-radius="99.0"', "can't be used: tool bull 10 R1: corner radius 99.0 does not fit"),
-    ('type="truth">true', 'type="list">true', "can't be used: could not convert string to float"),
-])
+@pytest.mark.parametrize(
+    ("old", "new", "message"),
+    [
+        ('tool="7"', 'tool="9"', r"line \d+: .*No match found for key-sequence \['9'\]"),
+        ('setup="S2"', 'setup="S3"', r"line \d+: .*No match found for key-sequence \['S3'\]"),
+        ('teeth="3"', 'teeth="-3"', r"line \d+: .*'-3' is not a valid value"),
+        ('form="bull"', 'form="saw"', r"line \d+: .*'saw'"),
+        (
+            'form="bull"',
+            'form="drill"',
+            "can't be used: tool bull 10 R1: a drill needs a point angle up to 180 degrees and no corner radius",
+        ),
+        ("<cutting", "<cuting", r"damaged XML: Opening and ending tag mismatch: cuting"),
+        (
+            '<operation id="wall-01"',
+            '<operation id="pocket-01.rough"',
+            r"line \d+: .*Duplicate key-sequence \['pocket-01.rough'\]",
+        ),
+        ('version="1"', 'version="2"', "written in format 2; this Trunnion reads format 1"),
+        ("<process-tree", "<!DOCTYPE x><process-tree", "holds a document type or entities"),
+        (
+            'corner-radius="1.0"',
+            'corner-radius="99.0"',
+            "can't be used: tool bull 10 R1: corner radius 99.0 does not fit",
+        ),
+        (
+            'type="truth">true',
+            'type="list">true',
+            "can't be used: could not convert string to float",
+        ),
+    ],
+)
 def test_a_wrong_process_tree_is_refused_with_its_line(tmp_path, old, new, message):
     text = process_xml(programs.process_tree(), programs.part_info()).decode()
     assert old in text
@@ -120,10 +174,19 @@ def test_a_wrong_process_tree_is_refused_with_its_line(tmp_path, old, new, messa
     assert "\n" not in str(refused.value)
 
 
-@pytest.mark.parametrize(("old", "new", "message"), [
-    ('tag="3"', 'tag="0"', r"line 10: .*'0'"), ('feature="island-01"', 'feature="nobody"', r"No match found for key-sequence \['nobody'\]"),
-    ('<z x="0.1', '<z x="zero', r"is not a valid value of the atomic type 'xs:double'"), ("<features", "<feature-list", "damaged XML"),
-])
+@pytest.mark.parametrize(
+    ("old", "new", "message"),
+    [
+        ('tag="3"', 'tag="0"', r"line 10: .*'0'"),
+        (
+            'feature="island-01"',
+            'feature="nobody"',
+            r"No match found for key-sequence \['nobody'\]",
+        ),
+        ('<z x="0.1', '<z x="zero', r"is not a valid value of the atomic type 'xs:double'"),
+        ("<features", "<feature-list", "damaged XML"),
+    ],
+)
 def test_wrong_features_are_refused_with_their_line(tmp_path, old, new, message):
     text = features_xml(programs.recognition(), programs.part_info()).decode()
     assert old in text
@@ -132,11 +195,17 @@ def test_wrong_features_are_refused_with_their_line(tmp_path, old, new, message)
         read_features(tmp_path / "a.xml")
 
 
-@pytest.mark.parametrize(("data", "message"), [
-    (b"", "damaged XML"), (b"<a>&b;</a>", "damaged XML"), ("<a/>".encode("utf-16"), "must be UTF-8"),
-    (b'<!DOCTYPE a [<!ENTITY x "y">]><a>&x;</a>', "holds a document type"),
-    (b'<!DOCTYPE a SYSTEM "file:///etc/passwd"><a/>', "holds a document type"), (b"<a>" * 300, "damaged XML"),
-])
+@pytest.mark.parametrize(
+    ("data", "message"),
+    [
+        (b"", "damaged XML"),
+        (b"<a>&b;</a>", "damaged XML"),
+        ("<a/>".encode("utf-16"), "must be UTF-8"),
+        (b'<!DOCTYPE a [<!ENTITY x "y">]><a>&x;</a>', "holds a document type"),
+        (b'<!DOCTYPE a SYSTEM "file:///etc/passwd"><a/>', "holds a document type"),
+        (b"<a>" * 300, "damaged XML"),
+    ],
+)
 def test_hostile_xml_is_refused(data, message):
     with pytest.raises(BadInput, match=f"x.xml: {message}"):
         xml.parse(data, "x.xml")

@@ -62,11 +62,15 @@ def test_no_block_stands_still(programmed) -> None:
 def test_the_same_input_gives_the_same_bytes(programmed) -> None:
     engine, session = programmed
     from dataclasses import replace
+
     again = make_paths(replace(session, paths=()), engine.context, progress=_quiet())
-    assert [p.path.position.tobytes() for p in again] == [p.path.position.tobytes() for p in session.paths]
+    assert [p.path.position.tobytes() for p in again] == [
+        p.path.position.tobytes() for p in session.paths
+    ]
     assert [p.key for p in again] == [p.key for p in session.paths]
 
 
 def _quiet():
     from trunnion.progress import QUIET
+
     return QUIET

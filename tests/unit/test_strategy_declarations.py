@@ -14,7 +14,14 @@ from trunnion.pipeline.toolpaths import findings_of, make_paths
 from trunnion.plan.prismatic.drive import PlaneDrive
 from trunnion.progress import QUIET
 from trunnion.settings import settings
-from trunnion.toolpath.contract import Planned, ToolAxis, fixed_axis, lead_and_tilt, leaning_axis, strategy
+from trunnion.toolpath.contract import (
+    Planned,
+    ToolAxis,
+    fixed_axis,
+    lead_and_tilt,
+    leaning_axis,
+    strategy,
+)
 
 
 @settings("shop.test")
@@ -54,8 +61,10 @@ def routed(sample_panel):
 
 def on_one_face(session, *strategies):
     """Return the process with its last operations by other strategies, all on face 1."""
-    own = [replace(o, id=f"own-{n}", strategy=name, faces=(1,)) for n, (o, name) in
-           enumerate(zip(session.process.operations, strategies, strict=False))]
+    own = [
+        replace(o, id=f"own-{n}", strategy=name, faces=(1,))
+        for n, (o, name) in enumerate(zip(session.process.operations, strategies, strict=False))
+    ]
     return replace(session.process, operations=tuple(own))
 
 
@@ -75,7 +84,11 @@ def test_a_strategy_of_any_name_gets_the_drive_it_declares(routed, registered) -
 
     registered(skim=skim)
     first = replace(session.process.operations[0], strategy="skim")
-    make_paths(replace(session, process=replace(session.process, operations=(first,)), paths=()), engine.context, QUIET)
+    make_paths(
+        replace(session, process=replace(session.process, operations=(first,)), paths=()),
+        engine.context,
+        QUIET,
+    )
     assert got == [PlaneDrive]
 
 

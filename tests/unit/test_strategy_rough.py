@@ -19,8 +19,18 @@ BLANK = box_blank((-20, -20, -40), (100, 70, 0))
 PLAN = rounded(0, 0, 80, 50, 10)
 
 
-def cut(drive: PlaneDrive, tool: object, depth: float = 6.0, width: float = 6.0) -> tuple[Planned, Milled]:
-    planned = rough(drive, tool, cutting(depth, width), PlanningStock.of(BLANK, SETUP), SETUP, RoughSettings(), QUIET)
+def cut(
+    drive: PlaneDrive, tool: object, depth: float = 6.0, width: float = 6.0
+) -> tuple[Planned, Milled]:
+    planned = rough(
+        drive,
+        tool,
+        cutting(depth, width),
+        PlanningStock.of(BLANK, SETUP),
+        SETUP,
+        RoughSettings(),
+        QUIET,
+    )
     return planned, Milled((-20, -20), (100, 70), 0.0).cut(planned.path, tool)
 
 
@@ -49,7 +59,9 @@ def test_no_rapid_goes_through_material() -> None:
 @pytest.mark.parametrize("corner", [0.0, 3.0])
 def test_no_post_stays_whatever_the_step(width: float, corner: float) -> None:
     _, milled = cut(with_allowances(PLAN, 10.0, corner), mill(16, corner), width=width)
-    inside = PLAN.offset(-0.35 - corner).signed_distance(milled.points).reshape(milled.x.shape) > 0.0
+    inside = (
+        PLAN.offset(-0.35 - corner).signed_distance(milled.points).reshape(milled.x.shape) > 0.0
+    )
     # A rounded end may leave ridges of 0.3 mm, which the floor's finish takes away.
     assert milled.height[inside].max() <= -9.7 + (0.3 if corner else 0.0) + 1e-9
 
@@ -58,15 +70,23 @@ def test_an_island_stands_untouched_and_all_round_it_is_cleared() -> None:
     island = Region.circle((40, 25), 6)
     _, milled = cut(with_allowances(PLAN.minus(island), 12.0), mill(10))
     stands = island.signed_distance(milled.points).reshape(milled.x.shape) > 0.0
-    ring = island.offset(5).minus(island.offset(0.35)).signed_distance(milled.points).reshape(milled.x.shape) > 0.0
+    ring = (
+        island.offset(5)
+        .minus(island.offset(0.35))
+        .signed_distance(milled.points)
+        .reshape(milled.x.shape)
+        > 0.0
+    )
     assert (milled.height[stands] == 0.0).all()
     assert milled.height[ring].max() == pytest.approx(-11.7)
 
 
 def test_an_island_lower_than_the_rim_keeps_the_floors_allowance_on_its_top() -> None:
     island = Region.circle((40, 25), 8)
-    levels = (DriveLevel(top=0.0, bottom=-5.0, wanted=PLAN, boundary=PLAN),
-              DriveLevel(top=-5.0, bottom=-15.0, wanted=PLAN.minus(island), boundary=PLAN.minus(island)))
+    levels = (
+        DriveLevel(top=0.0, bottom=-5.0, wanted=PLAN, boundary=PLAN),
+        DriveLevel(top=-5.0, bottom=-15.0, wanted=PLAN.minus(island), boundary=PLAN.minus(island)),
+    )
     drive = closed_pocket(PLAN, 15.0, levels=levels, wall_allowance=0.3, floor_allowance=0.3)
     _, milled = cut(drive, mill(10))
     stands = island.signed_distance(milled.points).reshape(milled.x.shape) > 0.0
@@ -83,7 +103,9 @@ def test_full_material_is_entered_by_a_helix_of_falling_arcs() -> None:
 def test_a_pocket_too_narrow_for_a_helix_is_entered_by_a_ramp() -> None:
     planned, milled = cut(with_allowances(rounded(0, 0, 80, 12.9, 6.4), 8.0), mill(12))
     path = planned.path
-    slope = np.diff(path.position[:, 2], prepend=path.position[0, 2]) / np.maximum(path.lengths(), 1e-9)
+    slope = np.diff(path.position[:, 2], prepend=path.position[0, 2]) / np.maximum(
+        path.lengths(), 1e-9
+    )
     down = (path.mark == Mark.ENTRY) & (slope < -1e-6)
     assert down.any()
     assert slope[down].min() >= -np.sin(np.radians(3.01))
@@ -130,8 +152,17 @@ def test_an_open_pocket_is_cut_from_outside_without_a_helix() -> None:
     boundary = Region.rectangle(-200, -200, 300, 300).minus(part.minus(pocket))
     wanted = part.intersect(pocket)
     level = DriveLevel(top=0.0, bottom=-8.0, wanted=wanted, boundary=boundary)
-    planned, milled = cut(closed_pocket(wanted, 8.0, levels=(level,), wall_allowance=0.3, floor_allowance=0.3), mill(12))
-    inside = boundary.offset(-0.35).intersect(wanted).signed_distance(milled.points).reshape(milled.x.shape) > 0.0
+    planned, milled = cut(
+        closed_pocket(wanted, 8.0, levels=(level,), wall_allowance=0.3, floor_allowance=0.3),
+        mill(12),
+    )
+    inside = (
+        boundary.offset(-0.35)
+        .intersect(wanted)
+        .signed_distance(milled.points)
+        .reshape(milled.x.shape)
+        > 0.0
+    )
     assert not (planned.path.mark == Mark.ENTRY).any()
     assert milled.height[inside].max() == pytest.approx(-7.7)
     assert milled.crashes == []
@@ -156,15 +187,26 @@ def test_a_rapid_changes_the_height_or_the_place_never_both() -> None:
 
 def test_it_stops_when_a_person_asks() -> None:
     with pytest.raises(Cancelled):
-        rough(with_allowances(PLAN, 12.0), mill(16), cutting(6, 6), PlanningStock.of(BLANK, SETUP), SETUP, RoughSettings(),
-              Progress(cancelled=lambda: True))
+        rough(
+            with_allowances(PLAN, 12.0),
+            mill(16),
+            cutting(6, 6),
+            PlanningStock.of(BLANK, SETUP),
+            SETUP,
+            RoughSettings(),
+            Progress(cancelled=lambda: True),
+        )
 
 
 def test_a_closed_space_beside_an_open_one_is_cleared_too() -> None:
     bowl = Region.rectangle(25, 15, 55, 35)
     block, around = Region.rectangle(0, 0, 80, 50), Region.rectangle(-60, -60, 140, 110)
-    level = DriveLevel(top=0.0, bottom=-10.0, wanted=Region.rectangle(-20, -20, 100, 70).minus(block).union(bowl),
-                       boundary=around.minus(block).union(bowl))
+    level = DriveLevel(
+        top=0.0,
+        bottom=-10.0,
+        wanted=Region.rectangle(-20, -20, 100, 70).minus(block).union(bowl),
+        boundary=around.minus(block).union(bowl),
+    )
     drive = PlaneDrive(feature="part", kind="rough", levels=(level,), stock_top=0.0)
     _, milled = cut(drive, mill(10))
     stands = block.minus(bowl).signed_distance(milled.points).reshape(milled.x.shape) > 0.05

@@ -91,7 +91,9 @@ def test_faces_that_enclose_no_material_are_only_grouped() -> None:
 def test_a_kind_does_not_depend_on_place_and_size(kind, make) -> None:
     still, _ = graph_of(0, make)
     pick = np.random.default_rng(11)
-    moved = still.in_frame(Frame(pick.uniform(-1000.0, 1000.0, 3), pick.normal(size=3), pick.normal(size=3)))
+    moved = still.in_frame(
+        Frame(pick.uniform(-1000.0, 1000.0, 3), pick.normal(size=3), pick.normal(size=3))
+    )
     assert kind.suits(moved).score == pytest.approx(kind.suits(still).score, abs=1e-3)
 
 
@@ -102,9 +104,14 @@ def test_the_main_axis_is_the_one_that_most_area_turns_about() -> None:
     assert axis is not None
     turned = of_revolution(graph, axis)
     assert float(graph.area[turned].sum() / graph.area.sum()) > 0.9
-    across = Axis(point=axis.point, direction=np.cross(axis.direction, [0.6, 0.0, 0.8]) / np.linalg.norm(
-        np.cross(axis.direction, [0.6, 0.0, 0.8])))
-    assert float(graph.area[of_revolution(graph, across)].sum()) < 0.1 * float(graph.area[turned].sum())
+    across = Axis(
+        point=axis.point,
+        direction=np.cross(axis.direction, [0.6, 0.0, 0.8])
+        / np.linalg.norm(np.cross(axis.direction, [0.6, 0.0, 0.8])),
+    )
+    assert float(graph.area[of_revolution(graph, across)].sum()) < 0.1 * float(
+        graph.area[turned].sum()
+    )
 
 
 def test_angles_share_a_circle_evenly_though_one_copy_is_missing() -> None:
@@ -129,10 +136,17 @@ def test_the_patterns_of_a_wheel_have_its_blades() -> None:
 
 
 def rated(name: str, score: float, explained: float, served: bool = True) -> Rated:
-    return Rated(name=name, kind=None, served=served, suits=Suitability(score=score, explained=explained, reason=""))
+    return Rated(
+        name=name,
+        kind=None,
+        served=served,
+        suits=Suitability(score=score, explained=explained, reason=""),
+    )
 
 
-def test_equal_scores_are_decided_by_explained_area_then_by_a_family_that_serves_the_part_never_by_the_alphabet_first() -> None:
+def test_equal_scores_are_decided_by_explained_area_then_by_a_family_that_serves_the_part_never_by_the_alphabet_first() -> (
+    None
+):
     assert rated("panel", 0.8, 0.9).rank > rated("zeppelin", 0.8, 0.7).rank
     assert rated("panel", 0.8, 0.9).rank > rated("zeppelin", 0.8, 0.9, served=False).rank
     assert rated("zeppelin", 0.8, 0.9).rank > rated("panel", 0.7, 1.0).rank
@@ -145,16 +159,39 @@ def test_a_suitability_is_a_share(word: str) -> None:
         Suitability(**{"score": 0.5, "explained": 0.5, "reason": "", word: 1.5})
 
 
-SHARED = (("panel/B3.step", "panel"), ("surface/D1.igs", "surface"), ("surface/D2.step", "surface"), ("casing/A1.step", "casing"),
-          ("public/casing/conical_casing_solid_56.step", "casing"), ("public/impeller/laufrad_1000.stp", "impeller"),
-          ("public/prismatic/control_arm.step", "panel"), ("public/surface/fuselage_fuse.igs", "surface"),
-          ("public/surface/fillet_patch_buc50025.igs", "surface"))
+SHARED = (
+    ("panel/B3.step", "panel"),
+    ("surface/D1.igs", "surface"),
+    ("surface/D2.step", "surface"),
+    ("casing/A1.step", "casing"),
+    ("public/casing/conical_casing_solid_56.step", "casing"),
+    ("public/impeller/laufrad_1000.stp", "impeller"),
+    ("public/prismatic/control_arm.step", "panel"),
+    ("public/surface/fuselage_fuse.igs", "surface"),
+    ("public/surface/fillet_patch_buc50025.igs", "surface"),
+)
 
 
 @needs_parts
-@pytest.mark.parametrize(("file", "kind"), [*SHARED, *(pytest.param(f, k, marks=pytest.mark.long) for f, k in (
-    ("impeller/C1.step", "impeller"), ("impeller/C2.igs", "impeller"), ("impeller/C3.step", "impeller"), ("casing/A4.igs", "casing"),
-    ("casing/A5.step", "casing"), ("public/impeller/impeller.igs", "impeller"), ("surface/D3.step", "surface")))])
+@pytest.mark.parametrize(
+    ("file", "kind"),
+    [
+        *SHARED,
+        *(
+            pytest.param(f, k, marks=pytest.mark.long)
+            for f, k in (
+                ("impeller/C1.step", "impeller"),
+                ("impeller/C2.igs", "impeller"),
+                ("impeller/C3.step", "impeller"),
+                ("casing/A4.igs", "casing"),
+                ("casing/A5.step", "casing"),
+                ("public/impeller/impeller.igs", "impeller"),
+                ("surface/D3.step", "surface"),
+            )
+        ),
+    ],
+)
 def test_shared_parts_are_taken_for_what_they_are(file: str, kind: str) -> None:
     from trunnion.part.read import read_part
+
     assert best(read_part(PARTS / file).graph()).name == kind

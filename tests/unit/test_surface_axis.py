@@ -10,10 +10,21 @@ from pytest import approx
 
 from trunnion.findings import BadInput
 from trunnion.geometry.sphere import angle_between
-from trunnion.toolpath.surface.axis import eased, fixed, from_curve, from_point, interpolated, leaning
+from trunnion.toolpath.surface.axis import (
+    eased,
+    fixed,
+    from_curve,
+    from_point,
+    interpolated,
+    leaning,
+)
 from trunnion.toolpath.surface.contacts import Contacts, axis_between, between
 
-POINT, UP, FEED = np.array([[5.0, 0.0, 0.0]]), np.array([[0.0, 0.0, 1.0]]), np.array([[1.0, 0.0, 0.0]])
+POINT, UP, FEED = (
+    np.array([[5.0, 0.0, 0.0]]),
+    np.array([[0.0, 0.0, 1.0]]),
+    np.array([[1.0, 0.0, 0.0]]),
+)
 
 
 def axis_of(field, point=POINT):
@@ -27,7 +38,9 @@ def test_a_lead_leans_towards_the_feed_and_a_tilt_to_the_left_of_it() -> None:
 
 
 def test_a_fixed_axis_is_the_same_everywhere_and_of_length_one() -> None:
-    assert axis_of(fixed([0.0, 3.0, 4.0]), np.zeros((2, 3))) == approx(np.array([[0.0, 0.6, 0.8]] * 2))
+    assert axis_of(fixed([0.0, 3.0, 4.0]), np.zeros((2, 3))) == approx(
+        np.array([[0.0, 0.6, 0.8]] * 2)
+    )
 
 
 def test_axes_point_away_from_a_place_or_towards_it() -> None:
@@ -38,7 +51,9 @@ def test_axes_point_away_from_a_place_or_towards_it() -> None:
 def test_axes_point_away_from_the_nearest_place_of_a_curve() -> None:
     spine = [[-10.0, 0.0, -3.0], [5.0, 0.0, -3.0], [5.0, 90.0, -3.0]]
     field = from_curve(spine)
-    assert axis_of(field, np.array([[0.0, 4.0, 0.0], [9.0, 40.0, 0.0]])) == approx(np.array([[0.0, 0.8, 0.6], [0.8, 0.0, 0.6]]))
+    assert axis_of(field, np.array([[0.0, 4.0, 0.0], [9.0, 40.0, 0.0]])) == approx(
+        np.array([[0.0, 0.8, 0.6], [0.8, 0.0, 0.6]])
+    )
 
 
 def test_a_place_on_the_faces_gives_no_axis_and_says_so() -> None:
@@ -49,7 +64,9 @@ def test_a_place_on_the_faces_gives_no_axis_and_says_so() -> None:
 def test_axes_between_vectors_are_those_at_their_places_and_halfway_in_between() -> None:
     field = interpolated([[0.0, 0.0, 0.0], [10.0, 0.0, 0.0]], [[0.0, 0.0, 2.0], [0.0, 5.0, 0.0]])
     found = axis_of(field, np.array([[0.0, 0.0, 0.0], [5.0, 0.0, 0.0], [10.0, 0.0, 0.0]]))
-    assert found == approx(np.array([[0.0, 0.0, 1.0], [0.0, math.sqrt(0.5), math.sqrt(0.5)], [0.0, 1.0, 0.0]]))
+    assert found == approx(
+        np.array([[0.0, 0.0, 1.0], [0.0, math.sqrt(0.5), math.sqrt(0.5)], [0.0, 1.0, 0.0]])
+    )
 
 
 def turning(angles):
@@ -88,7 +105,9 @@ def test_the_feed_runs_along_the_face_and_round_a_closed_way() -> None:
     angle = np.linspace(0.0, 2.0 * np.pi, 37)
     out = np.column_stack([np.cos(angle), np.sin(angle), np.zeros(37)])
     closed = Contacts(point=3.0 * out, normal=out, closed=True)
-    assert closed.feed == approx(np.column_stack([-np.sin(angle), np.cos(angle), np.zeros(37)]), abs=1e-9)
+    assert closed.feed == approx(
+        np.column_stack([-np.sin(angle), np.cos(angle), np.zeros(37)]), abs=1e-9
+    )
     assert round_way(3.0, 0.1, 5).feed[2] == approx([-math.sin(0.2), math.cos(0.2), 0.0])
 
 

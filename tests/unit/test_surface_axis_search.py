@@ -47,7 +47,9 @@ def asker(*boxes, tool=BALL, lowest=-1.0):
 
 def straight(length=30.0, n=61, y=0.0):
     x = np.linspace(0.0, length, n)
-    return Contacts(point=np.column_stack([x, np.full(n, y), np.zeros(n)]), normal=np.tile(UPRIGHT, (n, 1)))
+    return Contacts(
+        point=np.column_stack([x, np.full(n, y), np.zeros(n)]), normal=np.tile(UPRIGHT, (n, 1))
+    )
 
 
 def edge(radius=0.5, length=15.0, n=60):
@@ -56,8 +58,12 @@ def edge(radius=0.5, length=15.0, n=60):
     out = np.column_stack([np.sin(angle), np.zeros(n), np.cos(angle)])
     flat = np.linspace(-length, 0.0, n)[:-1]
     above = np.column_stack([flat, np.zeros(n - 1), np.full(n - 1, radius)])
-    normal = np.vstack([np.tile([0.0, 0.0, 1.0], (n - 1, 1)), out, np.tile([0.0, 0.0, -1.0], (n - 1, 1))])
-    return Contacts(point=np.vstack([above, radius * out, above[::-1] * [1.0, 1.0, -1.0]]), normal=normal)
+    normal = np.vstack(
+        [np.tile([0.0, 0.0, 1.0], (n - 1, 1)), out, np.tile([0.0, 0.0, -1.0], (n - 1, 1))]
+    )
+    return Contacts(
+        point=np.vstack([above, radius * out, above[::-1] * [1.0, 1.0, -1.0]]), normal=normal
+    )
 
 
 WALL = ((-50.0, 4.0, -5.0), (90.0, 20.0, 60.0))
@@ -71,9 +77,15 @@ def poses(way, course, tool=BALL):
 
 def test_without_anything_in_the_way_axes_are_as_wanted() -> None:
     way = straight()
-    (course,) = free_axes([way], WANTED, BALL, asker(((-99.0, -99.0, -9.0), (99.0, 99.0, 0.0))), LeanLimits())
+    (course,) = free_axes(
+        [way], WANTED, BALL, asker(((-99.0, -99.0, -9.0), (99.0, 99.0, 0.0))), LeanLimits()
+    )
     assert course.free.all() and not course.leap[1:].any()
-    assert course.axis == approx(np.tile([math.sin(math.radians(10.0)), 0.0, math.cos(math.radians(10.0))], (len(course.axis), 1)))
+    assert course.axis == approx(
+        np.tile(
+            [math.sin(math.radians(10.0)), 0.0, math.cos(math.radians(10.0))], (len(course.axis), 1)
+        )
+    )
 
 
 def test_beside_a_wall_the_tool_leans_away_from_it_and_no_further_than_needed() -> None:
@@ -87,7 +99,13 @@ def test_beside_a_wall_the_tool_leans_away_from_it_and_no_further_than_needed() 
 
 def test_in_a_deep_slot_no_axis_is_free_and_the_pass_has_a_gap() -> None:
     slot = (((40.0, 4.0, -5.0), (60.0, 20.0, 60.0)), ((40.0, -20.0, -5.0), (60.0, -4.0, 60.0)))
-    (course,) = free_axes([straight(length=100.0, n=101)], WANTED, BALL, asker(*slot), LeanLimits(steepest=math.radians(30.0)))
+    (course,) = free_axes(
+        [straight(length=100.0, n=101)],
+        WANTED,
+        BALL,
+        asker(*slot),
+        LeanLimits(steepest=math.radians(30.0)),
+    )
     gone = course.place[~course.free]
     assert 20.0 < gone.min() < 45.0 and 55.0 < gone.max() < 80.0
     assert len(course.runs()) == 2
@@ -96,7 +114,13 @@ def test_in_a_deep_slot_no_axis_is_free_and_the_pass_has_a_gap() -> None:
 
 def test_an_axis_that_the_machine_cannot_hold_is_never_chosen() -> None:
     way = edge()
-    (course,) = free_axes([way], WANTED, BALL, asker(((90.0, 90.0, 90.0), (91.0, 91.0, 91.0)), lowest=0.0), LeanLimits())
+    (course,) = free_axes(
+        [way],
+        WANTED,
+        BALL,
+        asker(((90.0, 90.0, 90.0), (91.0, 91.0, 91.0)), lowest=0.0),
+        LeanLimits(),
+    )
     assert (course.axis[course.free, 2] >= -1e-9).all()
     # Under the edge, where the face looks straight down, nothing from above reaches.
     assert not course.free[-3:].any()
@@ -122,7 +146,9 @@ def test_what_lies_alike_is_asked_once() -> None:
 
 
 def test_a_move_that_touches_makes_the_search_choose_others() -> None:
-    search = AxisSearch([straight()], WANTED, BALL, asker(((-99.0, -99.0, -9.0), (99.0, 99.0, 0.0))), LeanLimits())
+    search = AxisSearch(
+        [straight()], WANTED, BALL, asker(((-99.0, -99.0, -9.0), (99.0, 99.0, 0.0))), LeanLimits()
+    )
     (before,) = search.courses()
     for _ in range(4):
         search.met(0, np.array([30.5]))
@@ -131,8 +157,13 @@ def test_a_move_that_touches_makes_the_search_choose_others() -> None:
 
 
 def test_the_same_question_gives_the_same_axes() -> None:
-    first, second = (free_axes([edge()], WANTED, BALL, asker(WALL), LeanLimits())[0] for _ in range(2))
-    assert first.axis.tobytes() == second.axis.tobytes() and first.free.tobytes() == second.free.tobytes()
+    first, second = (
+        free_axes([edge()], WANTED, BALL, asker(WALL), LeanLimits())[0] for _ in range(2)
+    )
+    assert (
+        first.axis.tobytes() == second.axis.tobytes()
+        and first.free.tobytes() == second.free.tobytes()
+    )
 
 
 def test_leaned_passes_of_a_ball_keep_its_centre_on_its_way() -> None:
@@ -148,14 +179,20 @@ def test_leaned_passes_of_a_ball_keep_its_centre_on_its_way() -> None:
         axis = slerp(np.tile(one.axis[k], (11, 1)), np.tile(one.axis[k + 1], (11, 1)), share)
         centre = one.tip[k] + share[:, None] * (one.tip[k + 1] - one.tip[k]) + 3.0 * axis
         height = np.interp(centre[:, 0], tip[:, 0], tip[:, 2] + 3.0)
-        assert np.abs(centre[:, 2] - height).max() < 1.1 * chord and np.abs(centre[:, 1]).max() < 1.1 * chord
+        assert (
+            np.abs(centre[:, 2] - height).max() < 1.1 * chord
+            and np.abs(centre[:, 1]).max() < 1.1 * chord
+        )
     assert one.tip[0] + 3.0 * one.axis[0] == approx(tip[0] + [0.0, 0.0, 3.0])
 
 
 def test_leaned_passes_reach_beside_a_wall_where_upright_ones_touch() -> None:
     x = np.linspace(0.0, 20.0, 21)
-    upright = Pass(tip=np.column_stack([x, np.zeros(21), np.zeros(21)]), axis=np.tile(UPRIGHT, (21, 1)),
-                   normal=np.tile(UPRIGHT, (21, 1)))
+    upright = Pass(
+        tip=np.column_stack([x, np.zeros(21), np.zeros(21)]),
+        axis=np.tile(UPRIGHT, (21, 1)),
+        normal=np.tile(UPRIGHT, (21, 1)),
+    )
     ask = asker(WALL)
     assert not ask(upright.tip, upright.axis).any()
     (one,) = leaned([upright], BALL, fixed([0.0, 0.0, 1.0]), ask, LeanLimits(), 0.001)
@@ -164,16 +201,22 @@ def test_leaned_passes_reach_beside_a_wall_where_upright_ones_touch() -> None:
 
 def over_a_floor(ask=None, tool=BALL, **chosen):
     drive, setup, stock = driven(grid(lambda x, y: 0.0 * x, n=8, high=(20.0, 6.0)), height=0.1)
-    return parallel(replace(drive, ask=ask), tool, DATA, stock, setup, choose(ParallelSettings, chosen), QUIET)
+    return parallel(
+        replace(drive, ask=ask), tool, DATA, stock, setup, choose(ParallelSettings, chosen), QUIET
+    )
 
 
 def test_parallel_passes_of_a_ball_lean_by_a_tilt_and_keep_their_centre() -> None:
     floor = ((0.0, 0.0, -9.0), (20.0, 6.0, 0.0))
     upright, plan = over_a_floor(), over_a_floor(lambda tool: asker(floor, tool=tool), tilt=20.0)
     cut, before = plan.path.mark == 0, upright.path.mark == 0
-    assert np.degrees(np.arccos(plan.path.axis[cut, 2])) == approx(np.full(cut.sum(), 20.0), abs=0.01)
+    assert np.degrees(np.arccos(plan.path.axis[cut, 2])) == approx(
+        np.full(cut.sum(), 20.0), abs=0.01
+    )
     centre = plan.path.position[cut] + 3.0 * plan.path.axis[cut]
-    assert centre.min(axis=0) == approx(upright.path.position[before].min(axis=0) + [0.0, 0.0, 3.0], abs=0.002)
+    assert centre.min(axis=0) == approx(
+        upright.path.position[before].min(axis=0) + [0.0, 0.0, 3.0], abs=0.002
+    )
     assert not plan.findings
 
 

@@ -21,8 +21,17 @@ UP = np.array([[0.0, 0.0, 1.0]])
 def tilted_plane(angle: float):
     """A plane through the origin that falls along x, and its normal (1, 3)."""
     fall = math.tan(angle)
-    points = np.array([[-90.0, -90.0, 90.0 * fall], [90.0, -90.0, -90.0 * fall], [90.0, 90.0, -90.0 * fall], [-90.0, 90.0, 90.0 * fall]])
-    return DropSurface.of(points, np.array([[0, 1, 2], [0, 2, 3]])), np.array([[math.sin(angle), 0.0, math.cos(angle)]])
+    points = np.array(
+        [
+            [-90.0, -90.0, 90.0 * fall],
+            [90.0, -90.0, -90.0 * fall],
+            [90.0, 90.0, -90.0 * fall],
+            [-90.0, 90.0, 90.0 * fall],
+        ]
+    )
+    return DropSurface.of(points, np.array([[0, 1, 2], [0, 2, 3]])), np.array(
+        [[math.sin(angle), 0.0, math.cos(angle)]]
+    )
 
 
 @pytest.mark.parametrize("form", SURFACE_FORMS)

@@ -25,7 +25,9 @@ def in_mm(a, a_normal, b, b_normal):
 
 def plain(sheet) -> Metric:
     ends, _ = sheet.edges()
-    return Metric.of(sheet, np.linalg.norm(sheet.points[ends[:, 0]] - sheet.points[ends[:, 1]], axis=1))
+    return Metric.of(
+        sheet, np.linalg.norm(sheet.points[ends[:, 0]] - sheet.points[ends[:, 1]], axis=1)
+    )
 
 
 def fine(skin, size=0.2, faces=(1,)):
@@ -38,8 +40,13 @@ def test_smooth_neighbours_become_one_sheet() -> None:
 
 
 def test_a_sharp_edge_parts_a_sheet() -> None:
-    wall = grid(lambda u, v: np.column_stack([0 * u, v, u]), lambda u, v: np.column_stack([0 * u + 1.0, 0 * u, 0 * u]),
-                np.linspace(0.0, 3.0, 2), np.linspace(0.0, 4.0, 2), 2)
+    wall = grid(
+        lambda u, v: np.column_stack([0 * u, v, u]),
+        lambda u, v: np.column_stack([0 * u + 1.0, 0 * u, 0 * u]),
+        np.linspace(0.0, 3.0, 2),
+        np.linspace(0.0, 4.0, 2),
+        2,
+    )
     assert len(sheet_of(joined(plane(), wall), (1, 2)).components()) == 2
 
 
@@ -49,9 +56,13 @@ def test_splitting_keeps_area_and_rim_and_stays_on_a_sphere() -> None:
     ends, side = sheet.edges()
     assert np.linalg.norm(np.diff(sheet.points[ends], axis=1)[:, 0], axis=1).max() < 0.4
     assert (np.bincount(side.ravel()) <= 2).all()
-    assert sheet.area().sum() == approx(2.0 * math.pi * 100.0 * (math.cos(0.2) - math.cos(0.5)), rel=5e-3)
+    assert sheet.area().sum() == approx(
+        2.0 * math.pi * 100.0 * (math.cos(0.2) - math.cos(0.5)), rel=5e-3
+    )
     # Edges of 0.8 mm, a turn of 0.08: their cubics leave the sphere by less than a hundredth of a micron a halving.
-    assert np.linalg.norm(sheet.points, axis=1) == approx(np.full(len(sheet.points), 10.0), abs=1e-4)
+    assert np.linalg.norm(sheet.points, axis=1) == approx(
+        np.full(len(sheet.points), 10.0), abs=1e-4
+    )
 
 
 def test_long_triangles_are_split_into_round_ones() -> None:
@@ -83,8 +94,12 @@ def test_a_distance_from_all_rims_of_a_rectangle() -> None:
 
 def test_a_distance_down_a_sphere_is_its_arc() -> None:
     sheet = fine(zone(), 0.2)
-    time, _ = distances(plain(sheet), np.flatnonzero(sheet.points[:, 2] > 10.0 * math.cos(0.2) - 1e-6))
-    arc = 10.0 * (np.arctan2(np.hypot(sheet.points[:, 0], sheet.points[:, 1]), sheet.points[:, 2]) - 0.2)
+    time, _ = distances(
+        plain(sheet), np.flatnonzero(sheet.points[:, 2] > 10.0 * math.cos(0.2) - 1e-6)
+    )
+    arc = 10.0 * (
+        np.arctan2(np.hypot(sheet.points[:, 0], sheet.points[:, 1]), sheet.points[:, 2]) - 0.2
+    )
     assert np.abs(time - arc).max() < 0.03
 
 
@@ -98,28 +113,44 @@ def test_nothing_is_reached_beyond_the_farthest() -> None:
 def test_compiled_marching_does_what_the_plain_one_does(skin) -> None:
     sheet = split_finely(sheet_of(skin, (1,)), in_mm, 0.6)
     metric, across = plain(sheet), beyond(sheet)
-    found = [module.stencils(sheet.triangles, metric.lengths, across) for module in (marching, marching_compiled)]
+    found = [
+        module.stencils(sheet.triangles, metric.lengths, across)
+        for module in (marching, marching_compiled)
+    ]
     assert (found[0][0] == found[1][0]).all() and found[0][1] == approx(found[1][1])
     points, sizes = found[0]
     order = np.argsort(points[:, 1:].ravel(), kind="stable")
-    start = np.concatenate([[0], np.cumsum(np.bincount(points[:, 1:].ravel(), minlength=len(sheet.points)))])
+    start = np.concatenate(
+        [[0], np.cumsum(np.bincount(points[:, 1:].ravel(), minlength=len(sheet.points)))]
+    )
     times = []
     for module in (marching, marching_compiled):
         time, foot = np.full(len(sheet.points), np.inf), sheet.points.copy()
         time[[0, 5]] = 0.0, 0.3
         module.march(points, sizes, start, order // 2, time, foot, np.inf)
         times.append((time, foot))
-    assert times[0][0] == approx(times[1][0], abs=1e-12) and times[0][1] == approx(times[1][1], abs=1e-9)
+    assert times[0][0] == approx(times[1][0], abs=1e-12) and times[0][1] == approx(
+        times[1][1], abs=1e-9
+    )
 
 
 def test_chains_plain_and_compiled() -> None:
     follows = np.array([3, 2, 1, -1, 4, 6, 7, 5])
     order, start, closed = chains(follows)
-    plain_order, plain_start, plain_closed = np.empty(16, np.int64), np.zeros(9, np.int64), np.zeros(8, bool)
+    plain_order, plain_start, plain_closed = (
+        np.empty(16, np.int64),
+        np.zeros(9, np.int64),
+        np.zeros(8, bool),
+    )
     count = marching.chain_loop(follows, plain_order, plain_start, plain_closed)
-    assert [order[a:b].tolist() for a, b in pairwise(start)] == [[0, 3], [1, 2, 1], [4, 4], [5, 6, 7, 5]]
+    assert [order[a:b].tolist() for a, b in pairwise(start)] == [
+        [0, 3],
+        [1, 2, 1],
+        [4, 4],
+        [5, 6, 7, 5],
+    ]
     assert closed.tolist() == plain_closed[:count].tolist() == [False, True, True, True]
-    assert order.tolist() == plain_order[:start[-1]].tolist()
+    assert order.tolist() == plain_order[: start[-1]].tolist()
 
 
 def test_level_lines_have_the_greater_values_on_their_left() -> None:
@@ -127,7 +158,9 @@ def test_level_lines_have_the_greater_values_on_their_left() -> None:
     lines = whole_levels(sheet, sheet.points[:, 0].copy())
     assert [line.level for line in lines] == [0, 1, 2, 3, 4, 5]
     points, normals = sheet.on_edges(lines[2].ends, lines[2].share)
-    assert points[:, 0] == approx(np.full(len(points), 2.0)) and normals[:, 2] == approx(np.ones(len(points)))
+    assert points[:, 0] == approx(np.full(len(points), 2.0)) and normals[:, 2] == approx(
+        np.ones(len(points))
+    )
     assert points[0, 1] == approx(4.0) and points[-1, 1] == approx(0.0) and not lines[2].closed
 
 
@@ -141,7 +174,9 @@ def test_ridges_of_a_rectangle_are_its_roof() -> None:
     second = np.sort(np.column_stack([x, 6.0 - x, y, 4.0 - y]), axis=1)[:, 1]
     assert np.abs(near - second).max() < 0.05
     assert found.sheet.area().sum() == approx(24.0) and found.time.max() == approx(2.0, abs=0.02)
-    size = sum(np.linalg.norm(np.diff(found.sheet.points[r], axis=0), axis=1).sum() for r in found.ridges)
+    size = sum(
+        np.linalg.norm(np.diff(found.sheet.points[r], axis=0), axis=1).sum() for r in found.ridges
+    )
     assert size == approx(4.0 * 2.0 * math.sqrt(2.0) + 2.0, rel=0.03)
 
 

@@ -21,10 +21,19 @@ LARGE = AreaRate(area=1440.73, time=2 * 3600 + 16 * 60 + 2)
 SMALL = AreaRate(area=1440.73, time=2 * 3600 + 54 * 60 + 22)
 
 
-@pytest.mark.parametrize(("large", "small", "gained", "saved"), [
-    ((1440.73,), (), 28.18, 21.98), ((3391.81, 5432.81), (2746.51,), 20.14, 16.77), ((735.836,), (737.478,), 12.33, 10.98)])
+@pytest.mark.parametrize(
+    ("large", "small", "gained", "saved"),
+    [
+        ((1440.73,), (), 28.18, 21.98),
+        ((3391.81, 5432.81), (2746.51,), 20.14, 16.77),
+        ((735.836,), (737.478,), 12.33, 10.98),
+    ],
+)
 def test_the_three_gains_of_the_paper(large, small, gained, saved) -> None:
-    old, new = mixed_time((), (*large, *small), LARGE, SMALL), mixed_time(large, small, LARGE, SMALL)
+    old, new = (
+        mixed_time((), (*large, *small), LARGE, SMALL),
+        mixed_time(large, small, LARGE, SMALL),
+    )
     assert (round(100 * gain(old, new), 2), round(100 * saving(old, new), 2)) == (gained, saved)
 
 
@@ -33,12 +42,16 @@ def test_a_stepover_leaves_the_scallop_it_was_chosen_for() -> None:
 
 
 def test_equal_scallops_of_a_wider_cutter_gain_the_root_of_the_radii() -> None:
-    assert stepover_on_plane(4.0, 0.004) / stepover_on_plane(3.0, 0.004) == pytest.approx(math.sqrt(8 / 6), rel=1e-3)
+    assert stepover_on_plane(4.0, 0.004) / stepover_on_plane(3.0, 0.004) == pytest.approx(
+        math.sqrt(8 / 6), rel=1e-3
+    )
 
 
 def test_hollows_allow_wider_steps_than_bosses() -> None:
     boss, plane, hollow, fit = stepover_on_curve(5.0, 0.01, np.array([0.1, 0.0, -0.1, -0.2]))
-    assert (boss, plane, hollow, fit) == pytest.approx((math.sqrt(0.4 / 1.5), math.sqrt(0.4), math.sqrt(0.8), math.inf))
+    assert (boss, plane, hollow, fit) == pytest.approx(
+        (math.sqrt(0.4 / 1.5), math.sqrt(0.4), math.sqrt(0.8), math.inf)
+    )
 
 
 def test_roughness_of_parabolic_grooves_by_integration() -> None:

@@ -48,7 +48,10 @@ def over_saddle(n=181):
     """Across the ruled saddle z = x y / 20."""
     x = np.linspace(-12.0, 12.0, n)
     y = 6.0 * np.sin(0.3 * x) + 0.4 * x
-    return Contacts(point=np.column_stack([x, y, x * y / 20.0]), normal=unit(np.column_stack([-y / 20.0, -x / 20.0, np.ones(n)])))
+    return Contacts(
+        point=np.column_stack([x, y, x * y / 20.0]),
+        normal=unit(np.column_stack([-y / 20.0, -x / 20.0, np.ones(n)])),
+    )
 
 
 def to_saddle(points):
@@ -59,7 +62,10 @@ def to_saddle(points):
         z = x * y / 20.0 - points[:, 2]
         g = np.column_stack([x - points[:, 0] + z * y / 20.0, y - points[:, 1] + z * x / 20.0])
         a, b, d = 1.0 + (y / 20.0) ** 2, z / 20.0 + x * y / 400.0, 1.0 + (x / 20.0) ** 2
-        foot -= np.column_stack([d * g[:, 0] - b * g[:, 1], a * g[:, 1] - b * g[:, 0]]) / (a * d - b * b)[:, None]
+        foot -= (
+            np.column_stack([d * g[:, 0] - b * g[:, 1], a * g[:, 1] - b * g[:, 0]])
+            / (a * d - b * b)[:, None]
+        )
     return np.linalg.norm(points - np.column_stack([foot, foot[:, 0] * foot[:, 1] / 20.0]), axis=1)
 
 
@@ -72,10 +78,12 @@ def centres(one, radius, shares=9):
     return np.vstack(found)
 
 
-FACES = {"cylinder": (helix(8.0), lambda p: np.hypot(p[:, 0], p[:, 1]) - 8.0),
-         "blade's edge": (helix(0.5), lambda p: np.hypot(p[:, 0], p[:, 1]) - 0.5),
-         "sphere": (over_sphere(20.0), lambda p: np.linalg.norm(p, axis=1) - 20.0),
-         "ruled saddle": (over_saddle(), to_saddle)}
+FACES = {
+    "cylinder": (helix(8.0), lambda p: np.hypot(p[:, 0], p[:, 1]) - 8.0),
+    "blade's edge": (helix(0.5), lambda p: np.hypot(p[:, 0], p[:, 1]) - 0.5),
+    "sphere": (over_sphere(20.0), lambda p: np.linalg.norm(p, axis=1) - 20.0),
+    "ruled saddle": (over_saddle(), to_saddle),
+}
 
 
 @pytest.mark.parametrize("face", FACES)
@@ -98,8 +106,17 @@ def test_any_form_of_cutter_touches_a_cylinder_within_the_chord_error(form: str)
         # The cylinder's points about the middle of the block: none deeper than the chord error, and the nearest touched.
         middle = 0.5 * (one.tip[block] + one.tip[block - 1])
         angle = math.atan2(middle[1], middle[0])
-        near = [plain.nearest(section, block, np.array([radius * math.cos(a), radius * math.sin(a), z]), rounds=3, steps=40)
-                for a in angle + np.linspace(-0.12, 0.12, 9) for z in way.point[:, 2].mean() + np.linspace(-1.0, 1.0, 5)]
+        near = [
+            plain.nearest(
+                section,
+                block,
+                np.array([radius * math.cos(a), radius * math.sin(a), z]),
+                rounds=3,
+                steps=40,
+            )
+            for a in angle + np.linspace(-0.12, 0.12, 9)
+            for z in way.point[:, 2].mean() + np.linspace(-1.0, 1.0, 5)
+        ]
         assert min(near) > -1.5 * chord
     assert np.abs(np.linalg.norm(one.axis, axis=1) - 1.0).max() < 1e-12
 
@@ -113,7 +130,9 @@ def test_an_allowance_is_kept() -> None:
 
 def test_blocks_are_no_shorter_than_they_need_be() -> None:
     way = helix(8.0)
-    (one,) = milled([way], BALL, fixed([0.0, 0.0, 1.0]), None, LeanLimits(steepest=math.radians(95.0)), CHORD).passes
+    (one,) = milled(
+        [way], BALL, fixed([0.0, 0.0, 1.0]), None, LeanLimits(steepest=math.radians(95.0)), CHORD
+    ).passes
     # Chords of a circle of 8 + 3 mm that leave it by the chord error.
     fewest = 2.0 * math.pi * 2.0 / (2.0 * math.acos(1.0 - CHORD / 11.0))
     assert fewest <= len(one) < 2.5 * fewest
@@ -155,7 +174,9 @@ def strip(high=8.0):
 
 def planned(ask, tool=BALL, high=8.0, **chosen):
     drive, setup, stock = strip(high)
-    return point(replace(drive, ask=ask), tool, DATA, stock, setup, choose(PointSettings, chosen)), setup
+    return point(
+        replace(drive, ask=ask), tool, DATA, stock, setup, choose(PointSettings, chosen)
+    ), setup
 
 
 def test_a_path_begins_with_a_rapid_and_begins_and_ends_above_everything() -> None:
@@ -170,7 +191,9 @@ def test_beside_a_wall_everything_is_cut_and_nothing_touched() -> None:
     ask = Boxes(FLOOR, WALL)
     plan, _ = planned(ask, tool=LONG, high=6.0)
     path = plan.path
-    assert ask(LONG)(path.position[1:], path.axis[1:], start_tip=path.position[:-1], start_axis=path.axis[:-1]).all()
+    assert ask(LONG)(
+        path.position[1:], path.axis[1:], start_tip=path.position[:-1], start_axis=path.axis[:-1]
+    ).all()
     assert not [f for f in plan.findings if f.code != "point.low"]
     # Close to the wall the tool leans away from it.
     beside = path.position[:, 1] > 5.0
@@ -195,12 +218,18 @@ def test_axes_are_asked_for_in_the_part_s_coordinates() -> None:
     at, up = np.zeros((1, 3)), UPRIGHT[None]
 
     def axis(frame=WORLD, **chosen):
-        return field_of(choose(PointSettings, chosen), frame)(at, up, np.array([[1.0, 0.0, 0.0]]))[0]
+        return field_of(choose(PointSettings, chosen), frame)(at, up, np.array([[1.0, 0.0, 0.0]]))[
+            0
+        ]
 
-    assert axis(axis="fixed", axis_from="0 0 2", frame=tilted) == approx(tilted.local_direction(np.array([0.0, 0.0, 1.0])))
+    assert axis(axis="fixed", axis_from="0 0 2", frame=tilted) == approx(
+        tilted.local_direction(np.array([0.0, 0.0, 1.0]))
+    )
     assert axis(axis="away", axis_from="0, 0, -3") == approx([0.0, 0.0, 1.0])
     assert axis(axis="towards", axis_from="0 4 3") == approx([0.0, 0.8, 0.6])
-    assert axis(axis="vectors", axis_from="1 0 0 > 1 0 0; -1 0 0 > 0 0 1") == approx([math.sqrt(0.5), 0.0, math.sqrt(0.5)])
+    assert axis(axis="vectors", axis_from="1 0 0 > 1 0 0; -1 0 0 > 0 0 1") == approx(
+        [math.sqrt(0.5), 0.0, math.sqrt(0.5)]
+    )
     with pytest.raises(BadInput, match="three numbers"):
         axis(axis="fixed", axis_from="up")
     with pytest.raises(BadInput, match="vectors as"):
@@ -211,7 +240,9 @@ def test_passes_of_constant_scallop_are_milled_by_points_too() -> None:
     ask = Boxes(FLOOR, WALL)
     plan, _ = planned(ask, tool=LONG, high=6.0, pattern="constant")
     path = plan.path
-    assert ask(LONG)(path.position[1:], path.axis[1:], start_tip=path.position[:-1], start_axis=path.axis[:-1]).all()
+    assert ask(LONG)(
+        path.position[1:], path.axis[1:], start_tip=path.position[:-1], start_axis=path.axis[:-1]
+    ).all()
     cut = path.position[path.mark == 0]
     assert np.ptp(cut[:, 0]) > 19.0 and np.ptp(cut[:, 1]) > 4.5
 
@@ -219,17 +250,33 @@ def test_passes_of_constant_scallop_are_milled_by_points_too() -> None:
 def test_after_an_earlier_cutter_only_what_it_left_is_milled() -> None:
     # Beside the wall a ball of 12 mm comes no nearer than 6 mm, one of 6 mm comes to 3 mm.
     drive, setup, stock = strip(high=7.0)
-    ask, large = Boxes(FLOOR, WALL), replace(cutter("ball", diameter=12.0, corner=6.0, flute=12.0), stickout=90.0, gauge_length=150.0)
-    plan = point(replace(drive, ask=ask, earlier=large), LONG, DATA, stock, setup, choose(PointSettings, {}))
+    ask, large = (
+        Boxes(FLOOR, WALL),
+        replace(
+            cutter("ball", diameter=12.0, corner=6.0, flute=12.0), stickout=90.0, gauge_length=150.0
+        ),
+    )
+    plan = point(
+        replace(drive, ask=ask, earlier=large), LONG, DATA, stock, setup, choose(PointSettings, {})
+    )
     cut = plan.path.position[plan.path.mark == 0] + 3.0 * plan.path.axis[plan.path.mark == 0]
     # The earlier cutter had come to y = 4: passes are 1 mm apart, and one more overlaps what it did.
-    assert cut[:, 1].max() == approx(6.5) and 1.0 < cut[:, 1].min() < 4.0 and np.ptp(cut[:, 0]) > 18.9
+    assert (
+        cut[:, 1].max() == approx(6.5) and 1.0 < cut[:, 1].min() < 4.0 and np.ptp(cut[:, 0]) > 18.9
+    )
     assert not [f for f in plan.findings if f.code == "point.left"]
 
 
 def test_where_an_earlier_cutter_left_nothing_there_is_nothing_to_do() -> None:
     drive, setup, stock = strip(high=4.0)
-    plan = point(replace(drive, ask=Boxes(FLOOR), earlier=BALL), BALL, DATA, stock, setup, choose(PointSettings, {}))
+    plan = point(
+        replace(drive, ask=Boxes(FLOOR), earlier=BALL),
+        BALL,
+        DATA,
+        stock,
+        setup,
+        choose(PointSettings, {}),
+    )
     assert not len(plan.path) and [f.code for f in plan.findings] == ["point.nothing-left"]
 
 

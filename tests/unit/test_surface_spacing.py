@@ -31,7 +31,9 @@ def test_planes_are_nearer_to_each_other_where_something_between_demands_it() ->
 
 @settings(deadline=None, max_examples=60)
 @given(st.floats(1e-6, 4.0), st.sampled_from([0.002, 0.004, 0.05]))
-def test_ridges_in_a_hollow_stay_low_however_nearly_it_is_as_round_as_the_cutter(wider: float, height: float) -> None:
+def test_ridges_in_a_hollow_stay_low_however_nearly_it_is_as_round_as_the_cutter(
+    wider: float, height: float
+) -> None:
     radius = 3.0
     hollow = radius + wider
     turn = np.array([0.0, 1e-3])
@@ -40,9 +42,17 @@ def test_ridges_in_a_hollow_stay_low_however_nearly_it_is_as_round_as_the_cutter
     normals = -ring / hollow
     corners = np.array([[ring[0], ring[1], ring[0] + [0.0, 1e-3, 0.0]]])
     facing = np.array([[normals[0], normals[1], normals[0]]])
-    places = Places(row=np.array([0]), normal=facing.mean(axis=1), area=np.ones(1), tips=corners + radius * facing,
-                    edges=corners[:, 1:] - corners[:, :1], turns=facing[:, 1:] - facing[:, :1])
-    step = float(tip_spacing(places, mill(2.0 * radius, radius), height, np.array([1.0, 0.0, 0.0]))[0])
+    places = Places(
+        row=np.array([0]),
+        normal=facing.mean(axis=1),
+        area=np.ones(1),
+        tips=corners + radius * facing,
+        edges=corners[:, 1:] - corners[:, :1],
+        turns=facing[:, 1:] - facing[:, :1],
+    )
+    step = float(
+        tip_spacing(places, mill(2.0 * radius, radius), height, np.array([1.0, 0.0, 0.0]))[0]
+    )
     # Centres of the cutter go round the axis of the hollow, `wider` from it.
     half = min(0.5 * step / wider, 0.5 * np.pi)
     middle = wider * np.cos(half) + np.sqrt(radius**2 - (wider * np.sin(half)) ** 2)

@@ -23,7 +23,9 @@ def grid(height, n=60, size=30.0):
     """Return the drop surface of z = height(x, y) over a square."""
     x, y = np.meshgrid(*[np.linspace(0.0, size, n + 1)] * 2, indexing="ij")
     a = np.arange(n * (n + 1)).reshape(n, n + 1)[:, :-1].ravel()
-    triangles = np.vstack([np.column_stack([a, a + n + 1, a + n + 2]), np.column_stack([a, a + n + 2, a + 1])])
+    triangles = np.vstack(
+        [np.column_stack([a, a + n + 1, a + n + 2]), np.column_stack([a, a + n + 2, a + 1])]
+    )
     return DropSurface.of(np.column_stack([x.ravel(), y.ravel(), height(x, y).ravel()]), triangles)
 
 
@@ -38,16 +40,30 @@ def farthest(surface, pieces, path, shares=7):
 
 
 def test_on_a_plane_only_the_ends_are_written() -> None:
-    path, = follow(grid(lambda x, y: 0.25 * x + 0.1 * y), BALL, [np.array([[5.0, 5.0], [25.0, 20.0]])], CHORD, LOWEST)
+    (path,) = follow(
+        grid(lambda x, y: 0.25 * x + 0.1 * y),
+        BALL,
+        [np.array([[5.0, 5.0], [25.0, 20.0]])],
+        CHORD,
+        LOWEST,
+    )
     lift = 3.0 * math.sqrt(1.0 + 0.25**2 + 0.1**2) - 3.0
     assert path == pytest.approx(np.array([[5.0, 5.0, 1.75 + lift], [25.0, 20.0, 8.25 + lift]]))
 
 
 def test_the_valley_between_two_slopes_is_a_kink_of_the_path_and_stays() -> None:
-    path, = follow(grid(lambda x, y: np.abs(x - 15.0)), BALL, [np.array([[8.0, 9.0], [22.0, 9.0]])], CHORD, LOWEST)
+    (path,) = follow(
+        grid(lambda x, y: np.abs(x - 15.0)),
+        BALL,
+        [np.array([[8.0, 9.0], [22.0, 9.0]])],
+        CHORD,
+        LOWEST,
+    )
     # A ball of 3 mm on slopes of 45 degrees: its tip stands 3 (sqrt 2 - 1) above the lowest point.
     lowest = path[np.argmin(path[:, 2])]
-    assert lowest == pytest.approx(np.array([15.0, 9.0, 3.0 * (math.sqrt(2.0) - 1.0)]), abs=2 * CHORD)
+    assert lowest == pytest.approx(
+        np.array([15.0, 9.0, 3.0 * (math.sqrt(2.0) - 1.0)]), abs=2 * CHORD
+    )
     assert len(path) <= 5
 
 
@@ -67,20 +83,47 @@ def test_no_chord_leaves_the_way_of_the_cutter(seed: int, pieces: np.ndarray) ->
 
 
 def test_a_thin_rib_across_the_way_is_not_overlooked() -> None:
-    surface = DropSurface.of(np.array([[0, 0, 0], [30, 0, 0], [30, 30, 0], [0, 30, 0], [14.9, 0, 0], [15, 0, 2], [15, 30, 2.0]]),
-                             np.array([[0, 1, 2], [0, 2, 3], [4, 5, 6]]))
-    path, = follow(surface, BALL, [np.array([[5.0, 15.0], [25.0, 15.0]])], CHORD, LOWEST)
+    surface = DropSurface.of(
+        np.array(
+            [
+                [0, 0, 0],
+                [30, 0, 0],
+                [30, 30, 0],
+                [0, 30, 0],
+                [14.9, 0, 0],
+                [15, 0, 2],
+                [15, 30, 2.0],
+            ]
+        ),
+        np.array([[0, 1, 2], [0, 2, 3], [4, 5, 6]]),
+    )
+    (path,) = follow(surface, BALL, [np.array([[5.0, 15.0], [25.0, 15.0]])], CHORD, LOWEST)
     assert path[:, 2].max() == pytest.approx(2.0, abs=CHORD)
     assert farthest(surface, BALL, path) < CHORD
 
 
 def test_thinning_keeps_the_ends_of_every_line_and_what_is_needed() -> None:
-    points = np.array([[0, 0, 0], [1, 0, 0.001], [2, 0, 0], [0, 5, 0], [1, 5, 1.0], [2, 5, 0]], dtype=float)
-    assert thinned(points, np.array([0, 0, 0, 1, 1, 1]), 0.01).tolist() == [True, False, True, True, True, True]
+    points = np.array(
+        [[0, 0, 0], [1, 0, 0.001], [2, 0, 0], [0, 5, 0], [1, 5, 1.0], [2, 5, 0]], dtype=float
+    )
+    assert thinned(points, np.array([0, 0, 0, 1, 1, 1]), 0.01).tolist() == [
+        True,
+        False,
+        True,
+        True,
+        True,
+        True,
+    ]
 
 
 def test_following_looks_at_cancel() -> None:
     asked = []
     with pytest.raises(Cancelled):
-        follow(grid(lambda x, y: 0.0 * x), BALL, [np.array([[1.0, 1.0], [29.0, 1.0]])], CHORD, LOWEST,
-               Progress(cancelled=lambda: asked.append(1) or len(asked) > 1))
+        follow(
+            grid(lambda x, y: 0.0 * x),
+            BALL,
+            [np.array([[1.0, 1.0], [29.0, 1.0]])],
+            CHORD,
+            LOWEST,
+            Progress(cancelled=lambda: asked.append(1) or len(asked) > 1),
+        )

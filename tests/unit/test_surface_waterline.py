@@ -24,14 +24,29 @@ def round_wall(radius, foot, top, n=90, lean=0.0, tag=1):
     turn = np.linspace(0.0, 2 * math.pi, n, endpoint=False)
     rows, width = [], [radius, radius - (top - foot) * math.tan(lean)]
     for z, r in zip((foot, top), width, strict=True):
-        rows.append(np.column_stack([15.0 + r * np.cos(turn), 15.0 + r * np.sin(turn), np.full(n, z)]))
+        rows.append(
+            np.column_stack([15.0 + r * np.cos(turn), 15.0 + r * np.sin(turn), np.full(n, z)])
+        )
     points = np.vstack([*rows, rows[1], [[15.0, 15.0, top]]])
-    out = np.column_stack([math.cos(lean) * np.cos(turn), math.cos(lean) * np.sin(turn), np.full(n, math.sin(lean))])
+    out = np.column_stack(
+        [math.cos(lean) * np.cos(turn), math.cos(lean) * np.sin(turn), np.full(n, math.sin(lean))]
+    )
     normals = np.vstack([out, out, np.tile([0.0, 0.0, 1.0], (n + 1, 1))])
     a, b = np.arange(n), (np.arange(n) + 1) % n
-    triangles = np.vstack([np.column_stack([a, b, b + n]), np.column_stack([a, b + n, a + n]),
-                           np.column_stack([2 * n + a, 2 * n + b, np.full(n, 3 * n)])])
-    return Skin(points=points, normals=normals, triangles=triangles, face=np.repeat([tag, tag + 1], [2 * n, n]), bound=0.0)
+    triangles = np.vstack(
+        [
+            np.column_stack([a, b, b + n]),
+            np.column_stack([a, b + n, a + n]),
+            np.column_stack([2 * n + a, 2 * n + b, np.full(n, 3 * n)]),
+        ]
+    )
+    return Skin(
+        points=points,
+        normals=normals,
+        triangles=triangles,
+        face=np.repeat([tag, tag + 1], [2 * n, n]),
+        bound=0.0,
+    )
 
 
 def planned(skin, tool, faces=(1,), allowance=0.0, height=0.01, **chosen):
@@ -54,7 +69,9 @@ def test_an_upright_wall_is_cut_once_at_its_foot_with_the_flank() -> None:
 
 def test_a_ball_goes_down_an_upright_wall_to_the_floor_it_stands_on() -> None:
     skin = joined(round_wall(8.0, 0.0, 10.0), grid(lambda x, y: 0.0 * x, tag=3))
-    levels = np.unique(cut_tips(planned(skin, bull(6.0, 3.0)(flute=8.0), chord=0.005)[0].path)[:, 2].round(4))
+    levels = np.unique(
+        cut_tips(planned(skin, bull(6.0, 3.0)(flute=8.0), chord=0.005)[0].path)[:, 2].round(4)
+    )
     assert levels[0] == pytest.approx(0.0, abs=1e-3)
 
 
@@ -99,10 +116,18 @@ def test_nothing_is_gouged_and_the_tips_touch() -> None:
     assert (moves[:, 2] - drive.skin.drop.drop(moves[:, :2], lower_side(BALL), -9.0)).min() > -1e-3
 
 
-@pytest.mark.parametrize(("skin", "tool"), [(round_wall(9.0, 0.0, 5.0, lean=math.radians(30.0)), BALL), (round_wall(8.0, 0.0, 10.0), FLAT),
-                                            (round_wall(8.0, 0.0, 5.0, n=7), BALL),
-                                            (grid(lambda x, y: 4.0 * np.sin(0.4 * x) * np.cos(0.3 * y)), BALL)])
-def test_no_chord_leaves_the_rim_of_what_is_blocked_by_more_than_the_chord_error(skin, tool) -> None:
+@pytest.mark.parametrize(
+    ("skin", "tool"),
+    [
+        (round_wall(9.0, 0.0, 5.0, lean=math.radians(30.0)), BALL),
+        (round_wall(8.0, 0.0, 10.0), FLAT),
+        (round_wall(8.0, 0.0, 5.0, n=7), BALL),
+        (grid(lambda x, y: 4.0 * np.sin(0.4 * x) * np.cos(0.3 * y)), BALL),
+    ],
+)
+def test_no_chord_leaves_the_rim_of_what_is_blocked_by_more_than_the_chord_error(
+    skin, tool
+) -> None:
     chord = 0.002
     made, drive = planned(skin, tool, step=1.0, chord=chord)
     tips, cut = made.path.position, made.path.mark == Mark.CUT
@@ -111,7 +136,11 @@ def test_no_chord_leaves_the_rim_of_what_is_blocked_by_more_than_the_chord_error
     left = np.column_stack([-way[:, 1], way[:, 0]]) / np.hypot(way[:, 0], way[:, 1])[:, None]
     for share in (0.2, 0.5, 0.8):
         place = start + share * way
-        over = [drive.skin.drop.drop(place[:, :2] + side * chord * left, lower_side(tool), -9.0) - place[:, 2] for side in (-1.0, 1.0)]
+        over = [
+            drive.skin.drop.drop(place[:, :2] + side * chord * left, lower_side(tool), -9.0)
+            - place[:, 2]
+            for side in (-1.0, 1.0)
+        ]
         assert (over[1] <= 1e-9).all() and (over[0] > -1e-9).all()
 
 
@@ -121,18 +150,24 @@ def test_an_allowance_keeps_the_cutter_off_the_wall() -> None:
 
 
 def test_a_set_step_is_kept() -> None:
-    levels = np.unique(cut_tips(planned(round_wall(8.0, 0.0, 10.0), FLAT, step=2.5, chord=0.01)[0].path)[:, 2].round(6))
+    levels = np.unique(
+        cut_tips(planned(round_wall(8.0, 0.0, 10.0), FLAT, step=2.5, chord=0.01)[0].path)[
+            :, 2
+        ].round(6)
+    )
     assert levels.tolist() == [0.0, 2.5, 5.0, 7.5]
 
 
 def test_levels_are_cut_downwards() -> None:
-    heights = cut_tips(planned(round_wall(8.0, 0.0, 10.0), FLAT, step=2.5, chord=0.01)[0].path)[:, 2]
+    heights = cut_tips(planned(round_wall(8.0, 0.0, 10.0), FLAT, step=2.5, chord=0.01)[0].path)[
+        :, 2
+    ]
     assert (np.diff(heights) <= 1e-9).all()
 
 
 def test_what_is_shallow_is_left_and_said() -> None:
     made, _ = planned(round_wall(8.0, 0.0, 10.0), FLAT, faces=(1, 2), chord=0.01)
-    finding, = made.findings
+    (finding,) = made.findings
     assert finding.code == "surface.too-shallow" and finding.text.startswith("20")
 
 
@@ -159,8 +194,13 @@ def block(low, high):
     points += [[*p, z1] for p in ring]
     normals += [[0.0, 0.0, 1.0]] * 4
     triangles += [[16, 17, 18], [16, 18, 19]]
-    return Skin(points=np.array(points, dtype=float), normals=np.array(normals, dtype=float), triangles=np.array(triangles),
-                face=np.repeat([1, 2], [8, 2]), bound=0.0)
+    return Skin(
+        points=np.array(points, dtype=float),
+        normals=np.array(normals, dtype=float),
+        triangles=np.array(triangles),
+        face=np.repeat([1, 2], [8, 2]),
+        bound=0.0,
+    )
 
 
 def test_the_cutter_rolls_round_the_corners_of_a_block_in_one_closed_pass() -> None:

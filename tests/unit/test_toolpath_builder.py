@@ -58,7 +58,9 @@ def test_both_ends_of_an_arc_are_equally_far_from_its_centre(builder: PathBuilde
 
 
 def test_a_curve_keeps_its_arcs(builder: PathBuilder) -> None:
-    slot = Curve(np.array([[10.0, 10.0], [20.0, 10.0], [20.0, 20.0]]), np.array([0.0, 1.0, 0.0]), False)
+    slot = Curve(
+        np.array([[10.0, 10.0], [20.0, 10.0], [20.0, 20.0]]), np.array([0.0, 1.0, 0.0]), False
+    )
     builder.curve(slot, 50.0, 600.0)
     path = builder.finished()
     assert path.motion.tolist() == [Motion.RAPID, Motion.LINE, Motion.ARC_CCW]

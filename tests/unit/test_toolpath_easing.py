@@ -16,9 +16,14 @@ STOCK = PlanningStock.of(box_blank((0.0, 0.0, -20.0), (100.0, 60.0, 0.0)), SETUP
 
 def path_through(*points, feed=1000.0, mark=Mark.CUT):
     n = len(points)
-    return Toolpath(position=np.array(points, dtype=float), axis=np.tile([0.0, 0.0, 1.0], (n, 1)),
-                    motion=np.array([Motion.RAPID] + [Motion.LINE] * (n - 1)), centre=np.full((n, 3), np.nan),
-                    feed=np.array([0.0] + [feed] * (n - 1)), mark=np.full(n, int(mark)))
+    return Toolpath(
+        position=np.array(points, dtype=float),
+        axis=np.tile([0.0, 0.0, 1.0], (n, 1)),
+        motion=np.array([Motion.RAPID] + [Motion.LINE] * (n - 1)),
+        centre=np.full((n, 3), np.nan),
+        feed=np.array([0.0] + [feed] * (n - 1)),
+        mark=np.full(n, int(mark)),
+    )
 
 
 def test_a_full_slot_goes_at_the_slot_feed_and_a_quarter_of_it_at_the_feed() -> None:
@@ -41,7 +46,9 @@ def test_a_block_is_cut_where_the_load_changes_and_ends_where_it_did() -> None:
 
 
 def test_a_shallow_slot_needs_no_easing() -> None:
-    assert eased(path_through((-20, 30, -1), (120, 30, -1)), TOOL, DATA, STOCK, 0.6).feed.tolist() == [0.0, 1000.0]
+    assert eased(
+        path_through((-20, 30, -1), (120, 30, -1)), TOOL, DATA, STOCK, 0.6
+    ).feed.tolist() == [0.0, 1000.0]
 
 
 def test_entries_and_feeds_that_are_slower_already_stay() -> None:
@@ -52,10 +59,17 @@ def test_entries_and_feeds_that_are_slower_already_stay() -> None:
 
 
 def test_arcs_keep_their_centre_and_turn_as_far_as_before() -> None:
-    half = Toolpath(position=np.array([[30.0, 30, -5], [70.0, 30, -5]]), axis=np.tile([0.0, 0.0, 1.0], (2, 1)),
-                    motion=np.array([Motion.RAPID, Motion.ARC_CCW]), centre=np.array([[np.nan] * 3, [50.0, 30, -5]]),
-                    feed=np.array([0.0, 1000.0]), mark=np.zeros(2, int))
+    half = Toolpath(
+        position=np.array([[30.0, 30, -5], [70.0, 30, -5]]),
+        axis=np.tile([0.0, 0.0, 1.0], (2, 1)),
+        motion=np.array([Motion.RAPID, Motion.ARC_CCW]),
+        centre=np.array([[np.nan] * 3, [50.0, 30, -5]]),
+        feed=np.array([0.0, 1000.0]),
+        mark=np.zeros(2, int),
+    )
     found = eased(half, TOOL, DATA, STOCK, 0.6)
     assert len(found) > 2
     assert found.sweeps().sum() == pytest.approx(np.pi)
-    assert np.linalg.norm(found.position[1:, :2] - [50.0, 30.0], axis=1) == pytest.approx(np.full(len(found) - 1, 20.0))
+    assert np.linalg.norm(found.position[1:, :2] - [50.0, 30.0], axis=1) == pytest.approx(
+        np.full(len(found) - 1, 20.0)
+    )

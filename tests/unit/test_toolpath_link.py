@@ -19,7 +19,9 @@ BLANK = box_blank((0, 0, -60), (100, 60, 0))
 
 
 def at_the_bottom_of_a_slot() -> PathBuilder:
-    builder = PathBuilder(mill(10, stickout=200.0), cutting(4, 4), PlanningStock.of(BLANK, SETUP), SETUP, 2.0)
+    builder = PathBuilder(
+        mill(10, stickout=200.0), cutting(4, 4), PlanningStock.of(BLANK, SETUP), SETUP, 2.0
+    )
     builder.rapid((-20, 30, 50))
     builder.line((-20, 30, -30), 500.0)
     builder.line((120, 30, -30), 500.0)
@@ -59,7 +61,9 @@ def test_a_way_through_air_beside_the_blank_stays_low() -> None:
 
 def test_a_holder_that_would_touch_lifts_the_way() -> None:
     # The holder's nose hangs 45 mm above the tip and is wider than the slot: with 2 mm of safety the tip stays above -43, and 2 more.
-    builder = PathBuilder(mill(10, stickout=45.0), cutting(4, 4), PlanningStock.of(BLANK, SETUP), SETUP, 2.0)
+    builder = PathBuilder(
+        mill(10, stickout=45.0), cutting(4, 4), PlanningStock.of(BLANK, SETUP), SETUP, 2.0
+    )
     builder.rapid((-20, 24, 50))
     for place in ((-20, 24), (120, 24), (120, 30), (-20, 30), (-20, 36), (120, 36)):
         builder.line((*place, -50), 500.0)
@@ -88,12 +92,27 @@ def test_a_lead_is_a_quarter_circle_from_the_left() -> None:
 
 
 def test_a_lead_shrinks_until_it_fits() -> None:
-    lead = fitting_lead(np.array([10.0, 0.0]), np.array([1.0, 0.0]), 10.0, Room(Region.rectangle(0, 0, 20, 4)), leaves=False)
+    lead = fitting_lead(
+        np.array([10.0, 0.0]),
+        np.array([1.0, 0.0]),
+        10.0,
+        Room(Region.rectangle(0, 0, 20, 4)),
+        leaves=False,
+    )
     assert lead is not None and lead.radius == pytest.approx(3.5)
 
 
 def test_no_lead_fits_where_there_is_no_room_at_all() -> None:
-    assert fitting_lead(np.array([10.0, 0.0]), np.array([1.0, 0.0]), 10.0, Room(Region.rectangle(0, 0, 20, 1)), leaves=False) is None
+    assert (
+        fitting_lead(
+            np.array([10.0, 0.0]),
+            np.array([1.0, 0.0]),
+            10.0,
+            Room(Region.rectangle(0, 0, 20, 1)),
+            leaves=False,
+        )
+        is None
+    )
 
 
 def test_the_parts_of_a_closed_curve_wrap_over_its_start() -> None:

@@ -22,8 +22,14 @@ def lean(degrees: float, around: float = 0.0) -> np.ndarray:
 
 def standing(axis, tip=(5.0, 0.0, 20.0)) -> Toolpath:
     """Return a path of one rapid and a line, the axis held."""
-    return Toolpath(position=[tip, (0.0, 0.0, -2.0)], axis=[axis, axis], motion=[Motion.RAPID, Motion.LINE], centre=np.full((2, 3), np.nan),
-                    feed=[0.0, 500.0], mark=[Mark.RETRACT, Mark.CUT])
+    return Toolpath(
+        position=[tip, (0.0, 0.0, -2.0)],
+        axis=[axis, axis],
+        motion=[Motion.RAPID, Motion.LINE],
+        centre=np.full((2, 3), np.nan),
+        feed=[0.0, 500.0],
+        mark=[Mark.RETRACT, Mark.CUT],
+    )
 
 
 def test_the_sphere_holds_the_blank_with_the_clearance_round_it():
@@ -73,7 +79,11 @@ def test_a_turn_straight_back_goes_over_the_top():
 
 
 def test_paths_one_after_the_other_are_led_only_where_the_direction_changes():
-    led = joined([standing(UP), standing(UP), standing(lean(45)), standing(lean(45))], [True, False, False, True], SWING)
+    led = joined(
+        [standing(UP), standing(UP), standing(lean(45)), standing(lean(45))],
+        [True, False, False, True],
+        SWING,
+    )
     assert [len(p) > 2 for p in led] == [False, False, True, True]
     assert led[2].position[0] == approx([0.0, 0.0, SWING.centre[2] + SWING.radius])
 

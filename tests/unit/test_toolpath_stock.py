@@ -27,8 +27,13 @@ def test_there_is_nothing_outside_the_blank() -> None:
 
 
 def test_a_blank_turned_over_is_measured_in_the_setup() -> None:
-    under = Setup(name="S2", frame=Frame(np.zeros(3), np.array([1.0, 0, 0]), np.array([0, 0, -1.0])), work_offset="G55", clearance=60.0,
-                  machine="Mill")
+    under = Setup(
+        name="S2",
+        frame=Frame(np.zeros(3), np.array([1.0, 0, 0]), np.array([0, 0, -1.0])),
+        work_offset="G55",
+        clearance=60.0,
+        machine="Mill",
+    )
     assert PlanningStock.of(BLANK, under).heights.max() == 20.0
 
 
@@ -68,7 +73,9 @@ def test_places_that_are_higher_are_found_in_an_area_only() -> None:
 def test_the_compiled_field_is_lowered_as_its_plain_form(corner: float) -> None:
     random = np.random.default_rng(7)
     starts = random.uniform((-5, -5, -9), (45, 35, 0), (20, 3))
-    ends = np.where(random.random((20, 1)) < 0.3, starts, random.uniform((-5, -5, -9), (45, 35, 0), (20, 3)))
+    ends = np.where(
+        random.random((20, 1)) < 0.3, starts, random.uniform((-5, -5, -9), (45, 35, 0), (20, 3))
+    )
     fast, plain = np.zeros((80, 60)), np.zeros((80, 60))
     gone, plainly_gone = np.zeros(20), np.zeros(20)
     heightfield.lower(fast, 0.0, 0.0, 0.5, starts, ends, 6.0, corner, gone)
@@ -79,13 +86,27 @@ def test_the_compiled_field_is_lowered_as_its_plain_form(corner: float) -> None:
 def test_the_compiled_greatest_height_is_that_of_its_plain_form() -> None:
     random = np.random.default_rng(8)
     heights = random.random((50, 40))
-    for a, b, radius in zip(random.uniform(-5, 30, (50, 2)), random.uniform(-5, 30, (50, 2)), random.uniform(0.1, 8, 50), strict=True):
+    for a, b, radius in zip(
+        random.uniform(-5, 30, (50, 2)),
+        random.uniform(-5, 30, (50, 2)),
+        random.uniform(0.1, 8, 50),
+        strict=True,
+    ):
         asked = (heights, 0.0, 0.0, 0.5, a, b, radius)
         assert heightfield.highest(*asked) == heightfield.highest_reference(*asked)
 
 
 def test_a_cutter_smaller_than_a_cell_removes_nothing_for_certain() -> None:
     heights = np.zeros((10, 10))
-    heightfield.lower(heights, 0.0, 0.0, 1.0, np.array([[5.0, 5.0, -1.0]]), np.array([[6.0, 5.0, -1.0]]), 0.4, 0.0,
-                      np.zeros(1))
+    heightfield.lower(
+        heights,
+        0.0,
+        0.0,
+        1.0,
+        np.array([[5.0, 5.0, -1.0]]),
+        np.array([[6.0, 5.0, -1.0]]),
+        0.4,
+        0.0,
+        np.zeros(1),
+    )
     assert not heights.any()

@@ -15,14 +15,31 @@ from trunnion.toolpath.builder import PathBuilder
 from trunnion.toolpath.stock import PlanningStock
 from trunnion.toolpath.time import block_times, machining_time
 
-AXES = tuple(Axis(name=n, kind="linear", low=0, high=1000, rapid=30000, acceleration=1000) for n in "XYZ")
-MACHINE = Machine(name="M", title="M", axes=AXES, spindle_low=0, spindle_high=20000, power=((100, 10),), feed_max=10000, tool_change_s=5,
-                  tool_places=10)
+AXES = tuple(
+    Axis(name=n, kind="linear", low=0, high=1000, rapid=30000, acceleration=1000) for n in "XYZ"
+)
+MACHINE = Machine(
+    name="M",
+    title="M",
+    axes=AXES,
+    spindle_low=0,
+    spindle_high=20000,
+    power=((100, 10),),
+    feed_max=10000,
+    tool_change_s=5,
+    tool_places=10,
+)
 
 
 @pytest.fixture
 def builder() -> PathBuilder:
-    made = PathBuilder(mill(10), cutting(4, 4), PlanningStock.of(box_blank((0, 0, -20), (600, 40, 0)), SETUP), SETUP, 2.0)
+    made = PathBuilder(
+        mill(10),
+        cutting(4, 4),
+        PlanningStock.of(box_blank((0, 0, -20), (600, 40, 0)), SETUP),
+        SETUP,
+        2.0,
+    )
     made.rapid((0.0, 0.0, 50.0))
     return made
 
@@ -31,7 +48,9 @@ def test_no_path_takes_no_time() -> None:
     assert machining_time(EMPTY, MACHINE) == 0.0
 
 
-def test_a_long_line_takes_its_length_over_the_feed_and_once_the_time_to_speed_up(builder: PathBuilder) -> None:
+def test_a_long_line_takes_its_length_over_the_feed_and_once_the_time_to_speed_up(
+    builder: PathBuilder,
+) -> None:
     builder.line((500, 0, 50), 6000.0)
     # 100 mm/s at 1000 mm/s2: 0.1 s up and 0.1 s down, each over 5 mm.
     assert machining_time(builder.finished(), MACHINE) == pytest.approx(490 / 100 + 0.2)
@@ -51,7 +70,9 @@ def test_a_line_in_two_blocks_takes_as_long_as_in_one(builder: PathBuilder) -> N
 def test_a_sharp_corner_costs_time(builder: PathBuilder) -> None:
     builder.line((250, 0, 50), 6000.0)
     builder.line((0, 0, 50), 6000.0)
-    assert machining_time(builder.finished(), MACHINE) == pytest.approx(2 * (240 / 100 + 0.2), rel=1e-3)
+    assert machining_time(builder.finished(), MACHINE) == pytest.approx(
+        2 * (240 / 100 + 0.2), rel=1e-3
+    )
 
 
 def test_a_rapid_is_bounded_by_the_axis_that_moves(builder: PathBuilder) -> None:
@@ -64,17 +85,28 @@ def test_a_small_arc_is_bounded_by_the_centripetal_acceleration(builder: PathBui
     for _ in range(10):
         builder.arc((0, 0, 50), (2.5, 0), 2 * math.pi, 6000.0)
     # sqrt(1000 * 2.5) = 50 mm/s round ten circles of 2.5 mm.
-    assert machining_time(builder.finished(), MACHINE) == pytest.approx(10 * math.tau * 2.5 / 50 + 50 / 1000, rel=0.01)
+    assert machining_time(builder.finished(), MACHINE) == pytest.approx(
+        10 * math.tau * 2.5 / 50 + 50 / 1000, rel=0.01
+    )
 
 
 def test_a_table_that_turns_under_a_tip_that_stands_takes_its_own_time() -> None:
     # C turns 90 degrees at 300 a second and 1000 a second squared under a tip over its middle: 0.3 s up and down, 45 degrees each.
-    path = path_of(((10.0, 5.0, 5.0), UP), ((10.0, 5.0, 5.0), lean(1e-4, 0.0)), ((10.0, 5.0, 5.0), lean(1e-4, 90.0)), feed=1000.0)
-    assert block_times(path, TABLE, standing(TABLE))[2] == pytest.approx(2 * math.sqrt(90 / 1000), rel=0.02)
+    path = path_of(
+        ((10.0, 5.0, 5.0), UP),
+        ((10.0, 5.0, 5.0), lean(1e-4, 0.0)),
+        ((10.0, 5.0, 5.0), lean(1e-4, 90.0)),
+        feed=1000.0,
+    )
+    assert block_times(path, TABLE, standing(TABLE))[2] == pytest.approx(
+        2 * math.sqrt(90 / 1000), rel=0.02
+    )
 
 
 def test_a_tip_that_goes_on_while_the_tool_leans_slowly_keeps_its_feed() -> None:
-    path = path_of(*[((10.0 + k, 5.0, 5.0), lean(10.0 + 0.01 * k, 90.0)) for k in range(101)], feed=600.0)
+    path = path_of(
+        *[((10.0 + k, 5.0, 5.0), lean(10.0 + 0.01 * k, 90.0)) for k in range(101)], feed=600.0
+    )
     assert machining_time(path, TABLE, standing(TABLE), 140.0) == pytest.approx(10.0, rel=0.01)
 
 
@@ -91,9 +123,18 @@ def test_an_arc_of_a_leaning_tool_takes_as_long_as_one_that_stands() -> None:
         a = np.cross(axis, [0.0, 1.0, 0.0])
         a /= np.linalg.norm(a)
         ends = [5.0 * (math.cos(t) * a + math.sin(t) * np.cross(axis, a)) for t in (0.0, 3.0)]
-        return Toolpath(position=ends, axis=[axis, axis], motion=[Motion.RAPID, Motion.ARC_CCW], centre=[[np.nan] * 3, [0.0] * 3],
-                        feed=[0.0, 2000.0], mark=[0, 0])
-    assert machining_time(around(lean(40.0)), TABLE, standing(TABLE)) == pytest.approx(machining_time(around(UP), TABLE), rel=1e-6)
+        return Toolpath(
+            position=ends,
+            axis=[axis, axis],
+            motion=[Motion.RAPID, Motion.ARC_CCW],
+            centre=[[np.nan] * 3, [0.0] * 3],
+            feed=[0.0, 2000.0],
+            mark=[0, 0],
+        )
+
+    assert machining_time(around(lean(40.0)), TABLE, standing(TABLE)) == pytest.approx(
+        machining_time(around(UP), TABLE), rel=1e-6
+    )
 
 
 def test_the_first_block_takes_no_time_because_its_start_is_unknown(builder: PathBuilder) -> None:

@@ -20,8 +20,15 @@ def closed(corners):
 
 
 def test_a_hole_in_a_square_is_outside_and_beside_a_rim_nothing_is_told() -> None:
-    outlines = Outlines.of(np.vstack([closed([(0, 0), (9, 0), (9, 9), (0, 9)]), closed([(3, 3), (6, 3), (6, 6), (3, 6)])]), 0.1)
-    places = np.array([(1, 1), (4.5, 4.5), (8.95, 4), (6.05, 5), (-3, 4), (4, 20), (3, 7)], dtype=float)
+    outlines = Outlines.of(
+        np.vstack(
+            [closed([(0, 0), (9, 0), (9, 9), (0, 9)]), closed([(3, 3), (6, 3), (6, 6), (3, 6)])]
+        ),
+        0.1,
+    )
+    places = np.array(
+        [(1, 1), (4.5, 4.5), (8.95, 4), (6.05, 5), (-3, 4), (4, 20), (3, 7)], dtype=float
+    )
     assert outlines.within(places).tolist() == [IN, OUT, NEAR, NEAR, OUT, OUT, IN]
 
 
@@ -40,6 +47,9 @@ def test_many_places_at_once_are_told_as_the_kernel_tells_each(shape) -> None:
     for tag in part.tags:
         face = ExactFace(part, tag, WORLD)
         u0, u1, v0, v1 = face.bounds()
-        places = np.random.default_rng(tag).uniform(-0.05, 1.05, (200, 2)) * [u1 - u0, v1 - v0] + [u0, v0]
+        places = np.random.default_rng(tag).uniform(-0.05, 1.05, (200, 2)) * [u1 - u0, v1 - v0] + [
+            u0,
+            v0,
+        ]
         places[:20, 0], places[20:40, 1] = u0, v1
         assert (face.inside(places) == [face.inside(p[None])[0] for p in places]).all()

@@ -41,7 +41,9 @@ def cut(section, cell=0.25, stock=None, frame=WORLD, **options):
 
 def gone(stock):
     """Return what each bundle has lost, mm3."""
-    return [BOX.volume - b.volume for b in stock.rays.values()] + ([BOX.volume - stock.field.volume] if stock.field is not None else [])
+    return [BOX.volume - b.volume for b in stock.rays.values()] + (
+        [BOX.volume - stock.field.volume] if stock.field is not None else []
+    )
 
 
 def ends_of(stock, name, *at):
@@ -49,7 +51,12 @@ def ends_of(stock, name, *at):
     b = stock.rays[name]
     column, row = np.floor((np.array(at) - b.origin) / b.pitch).astype(int)
     cell = row * b.columns + column
-    return [(float(low), float(high)) for low, high in zip(b.low[cell, :b.count[cell]], b.high[cell, :b.count[cell]], strict=True)]
+    return [
+        (float(low), float(high))
+        for low, high in zip(
+            b.low[cell, : b.count[cell]], b.high[cell, : b.count[cell]], strict=True
+        )
+    ]
 
 
 def cap(radius, height):
@@ -58,11 +65,17 @@ def cap(radius, height):
 
 PLUNGES = {
     "flat": 6 * math.pi * 25,
-    "bull": 4 * math.pi * 25 + 2 * math.pi * 3**2 + math.pi**2 / 2 * 3 * 2**2 + 2 / 3 * math.pi * 2**3,
+    "bull": 4 * math.pi * 25
+    + 2 * math.pi * 3**2
+    + math.pi**2 / 2 * 3 * 2**2
+    + 2 / 3 * math.pi * 2**3,
     "ball": math.pi * 25 + 2 / 3 * math.pi * 125,
     # A disc 20 wide, rounded by 0.5, comes down from above through all of it.
-    "t-slot": math.pi * (5.5 * 10**2 + 0.5 * 9.5**2) + math.pi**2 / 2 * 9.5 * 0.5**2 + 2 / 3 * math.pi * 0.5**3,
-    "drill": math.pi * 16 * (6 - 4 / math.tan(math.radians(60.0))) + math.pi * 16 / 3 * 4 / math.tan(math.radians(60.0)),
+    "t-slot": math.pi * (5.5 * 10**2 + 0.5 * 9.5**2)
+    + math.pi**2 / 2 * 9.5 * 0.5**2
+    + 2 / 3 * math.pi * 0.5**3,
+    "drill": math.pi * 16 * (6 - 4 / math.tan(math.radians(60.0)))
+    + math.pi * 16 / 3 * 4 / math.tan(math.radians(60.0)),
 }
 
 
@@ -88,7 +101,9 @@ def test_a_slot_through_the_block_is_as_wide_and_deep_from_every_side(axis):
 def test_a_slot_across_a_leaning_tool_is_as_deep_on_average_as_its_axis():
     lean = math.radians(30.0)
     axis = [math.sin(lean), 0.0, math.cos(lean)]
-    stock, _ = cut(leaning_section(flat(8.0)(), [(18, -30, 14), (18, 60, 14)], [axis, axis]), cell=0.125)
+    stock, _ = cut(
+        leaning_section(flat(8.0)(), [(18, -30, 14), (18, 60, 14)], [axis, axis]), cell=0.125
+    )
     assert gone(stock) == approx([8 * 6 / math.cos(lean) * 32] * 3, rel=2e-3)
 
 
@@ -100,18 +115,39 @@ def test_a_ramp_leaves_a_slope_under_a_flat_end_as_it_comes_along():
 
 
 def test_an_arc_takes_off_a_bent_slot_in_every_bundle():
-    stock, _ = cut(program_section(flat(8.0)(), [(30, 16, 25), (30, 16, 15), ((10, 16, 15), (20, 16))]), cell=0.125)
+    stock, _ = cut(
+        program_section(flat(8.0)(), [(30, 16, 25), (30, 16, 15), ((10, 16, 15), (20, 16))]),
+        cell=0.125,
+    )
     assert gone(stock) == approx([(math.pi * 16 + math.pi * 10 * 8) * 5] * 3, rel=2e-3)
 
 
 @pytest.mark.parametrize("axis", [0, 1, 2])
 def test_arcs_about_every_axis_of_the_blank_are_as_their_chords(axis):
     unit = np.roll(np.eye(3), axis, axis=0)
-    centre, tip = np.array([20.0, 16.0, 10.0]), np.array([20.0, 16.0, 10.0]) + 3.0 * unit[0] + 4.0 * unit[1] - 4.0 * unit[2]
+    centre, tip = (
+        np.array([20.0, 16.0, 10.0]),
+        np.array([20.0, 16.0, 10.0]) + 3.0 * unit[0] + 4.0 * unit[1] - 4.0 * unit[2],
+    )
     angles = np.linspace(0.0, 4.0, 400)
     arm = tip - centre
-    ways = [centre + math.cos(a) * (arm + 4.0 * unit[2]) + math.sin(a) * np.cross(unit[2], arm) - 4.0 * unit[2] for a in angles]
-    bent, _ = cut(leaning_section(bull(8.0, 2.0)(flute=6.0), [ways[0], ways[-1]], [unit[2]] * 2, centre=centre, motion=Motion.ARC_CCW), 0.5)
+    ways = [
+        centre
+        + math.cos(a) * (arm + 4.0 * unit[2])
+        + math.sin(a) * np.cross(unit[2], arm)
+        - 4.0 * unit[2]
+        for a in angles
+    ]
+    bent, _ = cut(
+        leaning_section(
+            bull(8.0, 2.0)(flute=6.0),
+            [ways[0], ways[-1]],
+            [unit[2]] * 2,
+            centre=centre,
+            motion=Motion.ARC_CCW,
+        ),
+        0.5,
+    )
     chords, _ = cut(leaning_section(bull(8.0, 2.0)(flute=6.0), ways, [unit[2]] * 400), 0.5)
     assert gone(bent) == approx(gone(chords), rel=2e-4)
     for one, other in zip(bent.rays.values(), chords.rays.values(), strict=True):
@@ -120,7 +156,9 @@ def test_arcs_about_every_axis_of_the_blank_are_as_their_chords(axis):
 
 def test_an_arc_of_more_than_a_turn_takes_off_all_of_its_ring():
     def ring_of(sweep):
-        moves = moves_of([program_section(flat(8.0)(), [(30, 16, 15), ((10, 16, 15), (20, 16))], rapid_to=0)])
+        moves = moves_of(
+            [program_section(flat(8.0)(), [(30, 16, 15), ((10, 16, 15), (20, 16))], rapid_to=0)]
+        )
         stock = whole(0.5)
         run_stock(stock, replace(moves, sweep=np.array([0.0, sweep])), WORLD)
         return gone(stock)
@@ -129,13 +167,24 @@ def test_an_arc_of_more_than_a_turn_takes_off_all_of_its_ring():
 
 
 def test_a_helix_leaves_its_lowest_turn():
-    stops = [(25, 16, 22), *(((x, 16, z), (20, 16)) for x, z in ((15, 19), (25, 16), (15, 13), (25, 13), (15, 13)))]
+    stops = [
+        (25, 16, 22),
+        *(((x, 16, z), (20, 16)) for x, z in ((15, 19), (25, 16), (15, 13), (25, 13), (15, 13))),
+    ]
     stock, _ = cut(program_section(flat(10.0)(), stops), cell=0.125)
     assert gone(stock) == approx([math.pi * 100 * 7] * 3, rel=2e-3)
 
 
 def test_a_t_slot_undercut_leaves_a_roof():
-    tool = tool_of("t-slot", diameter=16.0, flute_length=4.0, neck_diameter=6.0, neck_length=20.0, shank_diameter=6.0, stickout=40.0)
+    tool = tool_of(
+        "t-slot",
+        diameter=16.0,
+        flute_length=4.0,
+        neck_diameter=6.0,
+        neck_length=20.0,
+        shank_diameter=6.0,
+        stickout=40.0,
+    )
     slot = leaning_section(flat(8.0)(), [(20, -20, 6), (20, 60, 6)], [UP, UP])
     undercut = leaning_section(tool, [(20, -20, 6), (20, 60, 6)], [UP, UP])
     stock, _ = cut(slot)
@@ -146,24 +195,42 @@ def test_a_t_slot_undercut_leaves_a_roof():
 
 
 def test_a_flip_goes_on_with_what_the_first_side_has_left():
-    stock, first = cut(leaning_section(flat(10.0)(), [(20, -20, 8), (20, 60, 8)], [UP, UP]), stock=whole(opened=False))
+    stock, first = cut(
+        leaning_section(flat(10.0)(), [(20, -20, 8), (20, 60, 8)], [UP, UP]),
+        stock=whole(opened=False),
+    )
     assert stock.field is not None
-    flipped = Frame(np.array([40.0, 0.0, 20.0]), np.array([-1.0, 0.0, 0.0]), np.array([0.0, 0.0, -1.0]))
+    flipped = Frame(
+        np.array([40.0, 0.0, 20.0]), np.array([-1.0, 0.0, 0.0]), np.array([0.0, 0.0, -1.0])
+    )
     # The same slot from below, 10 deep: 8 of it were left.
-    _, second = cut(leaning_section(flat(10.0)(), [(20, -20, 10), (20, 60, 10)], [UP, UP]), stock=stock, frame=flipped)
-    assert (first.removed.sum(), second.removed.sum()) == (approx(10 * 12 * 32), approx(10 * 8 * 32))
+    _, second = cut(
+        leaning_section(flat(10.0)(), [(20, -20, 10), (20, 60, 10)], [UP, UP]),
+        stock=stock,
+        frame=flipped,
+    )
+    assert (first.removed.sum(), second.removed.sum()) == (
+        approx(10 * 12 * 32),
+        approx(10 * 8 * 32),
+    )
     assert ends_of(stock, "x", 16.125, 10.125) == [(0.0, approx(15.0)), (approx(25.0), 40.0)]
     assert not stock.contains(np.array([[20.0, 16.0, 4.0]]))[0]
 
 
 def test_a_setup_on_its_side_drills_across_the_slot_of_the_first():
-    stock, _ = cut(leaning_section(flat(10.0)(), [(20, -20, 8), (20, 60, 8)], [UP, UP]), stock=whole(0.125, opened=False))
+    stock, _ = cut(
+        leaning_section(flat(10.0)(), [(20, -20, 8), (20, 60, 8)], [UP, UP]),
+        stock=whole(0.125, opened=False),
+    )
     side = Frame(np.array([40.0, 0.0, 0.0]), np.array([0.0, 1.0, 0.0]), np.array([1.0, 0.0, 0.0]))
     hole = program_section(flat(6.0)(flute=45.0), [(16, 14, 5), (16, 14, -41)])
     _, run = cut(hole, stock=stock, frame=side)
     assert run.removed.sum() == approx(math.pi * 9 * 30, rel=3e-3)
     # The hole's crown is at 17, its middle at 14.
-    assert ends_of(stock, "z", 5.0, 16.0) == [(0.0, approx(11.0, abs=2e-3)), (approx(17.0, abs=2e-3), 20.0)]
+    assert ends_of(stock, "z", 5.0, 16.0) == [
+        (0.0, approx(11.0, abs=2e-3)),
+        (approx(17.0, abs=2e-3), 20.0),
+    ]
 
 
 def test_a_tool_that_turns_about_its_ball_centre_removes_just_the_ball():
@@ -195,20 +262,30 @@ def test_a_tool_that_swings_by_little_about_a_point_of_its_axis_leaves_what_is_b
     ends = [np.array([s * math.sin(lean), 0.0, math.cos(lean)]) for s in (-1.0, 1.0)]
     # A ray of the z bundle stands `beside` off the flank of the upright tool, whose pivot is half way up its flutes.
     pivot = np.array([22.3125 - 2.0 - beside, 16.0625, z])
-    stock, _ = cut(leaning_section(flat(4.0)(flute=40.0), [pivot - 20.0 * e for e in ends], ends), cell=0.125)
+    stock, _ = cut(
+        leaning_section(flat(4.0)(flute=40.0), [pivot - 20.0 * e for e in ends], ends), cell=0.125
+    )
     waist = (2.0 + beside - 2.0 / math.cos(lean)) / math.tan(lean)
     left = [p for p in ends_of(stock, "z", 22.3125, 16.0625) if p[0] < z < p[1]]
     assert left == [(approx(z - waist, abs=0.05), approx(z + waist, abs=0.05))]
 
 
 def test_a_cutter_that_leaves_the_blank_or_never_meets_it_takes_off_nothing_else():
-    _, run = cut(leaning_section(flat(10.0)(), [(20, 16, 25), (20, 16, 20), (60, 16, 20), (60, 16, 0), (20, 16, 40)], [UP] * 5))
+    _, run = cut(
+        leaning_section(
+            flat(10.0)(),
+            [(20, 16, 25), (20, 16, 20), (60, 16, 20), (60, 16, 0), (20, 16, 40)],
+            [UP] * 5,
+        )
+    )
     assert run.removed[:4].max() == 0.0
     assert run.removed[4] > 0.0
 
 
 def test_rays_cut_again_by_the_same_move_lose_nothing():
-    section = leaning_section(bull(10.0, 2.0)(), [(5, 5, 12), (30, 20, 10)], [(0.2, 0.1, 1.0), (0.1, 0.3, 1.0)])
+    section = leaning_section(
+        bull(10.0, 2.0)(), [(5, 5, 12), (30, 20, 10)], [(0.2, 0.1, 1.0), (0.1, 0.3, 1.0)]
+    )
     stock, first = cut(section)
     _, again = cut(section, stock=stock)
     assert first.removed.sum() > 1000.0
@@ -251,7 +328,9 @@ def test_a_rapid_in_a_leaning_slot_that_was_just_cut_is_clear():
 def test_a_holder_that_leans_into_standing_stock_is_seen():
     # Nose radius 12 and 9 above the tip; leaning by 60 degrees, 2 deep, it meets the top.
     axis = np.array([math.sin(math.pi / 3), 0.0, 0.5])
-    _, run = cut(leaning_section(bull(10.0, 5.0)(flute=6.0), [(10, -30, 18), (10, 60, 18)], [axis, axis]))
+    _, run = cut(
+        leaning_section(bull(10.0, 5.0)(flute=6.0), [(10, -30, 18), (10, 60, 18)], [axis, axis])
+    )
     assert run.body_depth[1] > 3.0
     assert run.body_depth[0] == 0.0
 
@@ -260,19 +339,36 @@ def test_a_holder_that_leans_into_standing_stock_is_seen():
 
 
 def test_every_number_of_threads_leaves_the_same_bytes():
-    section = leaning_section(bull(10.0, 2.0)(), np.random.default_rng(3).uniform(2, 18, (40, 3)),
-                              UP + 0.4 * np.random.default_rng(4).normal(size=(40, 3)))
+    section = leaning_section(
+        bull(10.0, 2.0)(),
+        np.random.default_rng(3).uniform(2, 18, (40, 3)),
+        UP + 0.4 * np.random.default_rng(4).normal(size=(40, 3)),
+    )
     results = []
     for threads in (1, 2, 5):
         stock, run = cut(section, cell=0.5, threads=threads)
-        results.append([run.removed.tobytes(), run.engagement.tobytes(), run.body_depth.tobytes(),
-                        *(part.tobytes() for b in stock.rays.values() for tile in b.parts() for part in tile)])
+        results.append(
+            [
+                run.removed.tobytes(),
+                run.engagement.tobytes(),
+                run.body_depth.tobytes(),
+                *(
+                    part.tobytes()
+                    for b in stock.rays.values()
+                    for tile in b.parts()
+                    for part in tile
+                ),
+            ]
+        )
     assert results[0] == results[1] == results[2]
 
 
 def test_where_the_work_is_cut_in_chunks_changes_nothing(monkeypatch):
-    section = leaning_section(bull(10.0, 2.0)(), np.random.default_rng(3).uniform(2, 18, (20, 3)),
-                              UP + 0.4 * np.random.default_rng(4).normal(size=(20, 3)))
+    section = leaning_section(
+        bull(10.0, 2.0)(),
+        np.random.default_rng(3).uniform(2, 18, (20, 3)),
+        UP + 0.4 * np.random.default_rng(4).normal(size=(20, 3)),
+    )
     _, run = cut(section, cell=0.5)
     monkeypatch.setattr("trunnion.verify.stock.rays.LOOKS", 1)
     monkeypatch.setattr("trunnion.verify.stock.rays.SPANS", 10)
@@ -282,22 +378,40 @@ def test_where_the_work_is_cut_in_chunks_changes_nothing(monkeypatch):
 def test_a_snapshot_brings_back_every_interval_and_shares_what_has_not_changed():
     stock, _ = cut(leaning_section(flat(10.0)(), [(10, -20, 8), (10, 60, 8)], [UP, UP]), cell=0.5)
     first = stock.snapshot()
-    cut(leaning_section(flat(4.0)(), [(20, 3, 15), (30, 3, 15)], [(0.1, 0.0, 1.0)] * 2), stock=stock)
+    cut(
+        leaning_section(flat(4.0)(), [(20, 3, 15), (30, 3, 15)], [(0.1, 0.0, 1.0)] * 2), stock=stock
+    )
     second = stock.snapshot()
-    shared = [a is b for name in first.parts for a, b in zip(first.parts[name], second.parts[name], strict=True)]
+    shared = [
+        a is b
+        for name in first.parts
+        for a, b in zip(first.parts[name], second.parts[name], strict=True)
+    ]
     assert 0.5 < np.mean(shared) < 1.0
-    bytes_after = [a.tobytes() for name in second.parts for tile in second.parts[name] for a in tile]
+    bytes_after = [
+        a.tobytes() for name in second.parts for tile in second.parts[name] for a in tile
+    ]
     stock.restore(first)
     assert [a.tobytes() for b in stock.rays.values() for tile in b.parts() for a in tile] == [
-        a.tobytes() for name in first.parts for tile in first.parts[name] for a in tile]
-    cut(leaning_section(flat(4.0)(), [(20, 3, 15), (30, 3, 15)], [(0.1, 0.0, 1.0)] * 2), stock=stock)
-    assert [a.tobytes() for b in stock.rays.values() for tile in b.parts() for a in tile] == bytes_after
+        a.tobytes() for name in first.parts for tile in first.parts[name] for a in tile
+    ]
+    cut(
+        leaning_section(flat(4.0)(), [(20, 3, 15), (30, 3, 15)], [(0.1, 0.0, 1.0)] * 2), stock=stock
+    )
+    assert [
+        a.tobytes() for b in stock.rays.values() for tile in b.parts() for a in tile
+    ] == bytes_after
 
 
 def test_a_snapshot_of_heights_is_gone_back_to_after_a_cut_from_the_side():
-    stock, _ = cut(leaning_section(flat(10.0)(), [(10, -20, 8), (10, 60, 8)], [UP, UP]), stock=whole(0.5, opened=False))
+    stock, _ = cut(
+        leaning_section(flat(10.0)(), [(10, -20, 8), (10, 60, 8)], [UP, UP]),
+        stock=whole(0.5, opened=False),
+    )
     kept, volume = stock.snapshot(), stock.volume
-    cut(leaning_section(flat(4.0)(), [(20, 3, 15), (30, 3, 15)], [(0.1, 0.0, 1.0)] * 2), stock=stock)
+    cut(
+        leaning_section(flat(4.0)(), [(20, 3, 15), (30, 3, 15)], [(0.1, 0.0, 1.0)] * 2), stock=stock
+    )
     assert stock.field is None
     stock.restore(kept)
     assert stock.field is not None
@@ -316,14 +430,20 @@ def test_memory_is_known_before_and_refused_with_a_remedy():
 
 def test_stock_that_grows_too_ragged_is_refused_with_a_remedy(monkeypatch):
     monkeypatch.setattr("trunnion.verify.stock.rays.MOST_BYTES", Stock.need(BOX, 0.5, XYZ) + 1)
-    tips = [p for x in range(2, 40, 4) for p in ((x, -20, 10), (x, 60, 10), (x + 2, 60, 30), (x + 4, -20, 30))]
+    tips = [
+        p
+        for x in range(2, 40, 4)
+        for p in ((x, -20, 10), (x, 60, 10), (x + 2, 60, 30), (x + 4, -20, 30))
+    ]
     with pytest.raises(OutOfMemory, match="coarser"):
         cut(leaning_section(flat(2.0)(), tips, [UP] * len(tips)), cell=0.5)
 
 
 def test_cancel_is_heard_within_a_fifth_of_a_second():
     rng = np.random.default_rng(1)
-    section = leaning_section(flat(16.0)(), rng.uniform(0, 30, (3000, 3)), UP + 0.3 * rng.normal(size=(3000, 3)))
+    section = leaning_section(
+        flat(16.0)(), rng.uniform(0, 30, (3000, 3)), UP + 0.3 * rng.normal(size=(3000, 3))
+    )
     moves, stock, asked = moves_of([section]), whole(), []
 
     def cancelled():
@@ -331,7 +451,12 @@ def test_cancel_is_heard_within_a_fifth_of_a_second():
             asked.append(time.perf_counter())
         return bool(asked)
 
-    run_stock(whole(5.0), moves_of([leaning_section(flat(16.0)(), [(0, 0, 0), (1, 1, 1)], [UP, UP])]), WORLD, progress=QUIET)
+    run_stock(
+        whole(5.0),
+        moves_of([leaning_section(flat(16.0)(), [(0, 0, 0), (1, 1, 1)], [UP, UP])]),
+        WORLD,
+        progress=QUIET,
+    )
     began = time.perf_counter()
     with pytest.raises(Cancelled):
         run_stock(stock, moves, WORLD, progress=Progress(cancelled=cancelled))
@@ -339,7 +464,9 @@ def test_cancel_is_heard_within_a_fifth_of_a_second():
 
 
 def test_a_patch_shows_a_place_more_finely():
-    section = leaning_section(bull(10.0, 5.0)(), [(20, -20, 15), (20, 60, 15)], [(0.3, 0.0, 1.0)] * 2)
+    section = leaning_section(
+        bull(10.0, 5.0)(), [(20, -20, 15), (20, 60, 15)], [(0.3, 0.0, 1.0)] * 2
+    )
     stock, _ = cut(section, cell=1.0)
     patch = stock.patch((15.0, 10.0, 12.0), (25.0, 12.0, 20.0), 0.1)
     run_stock(patch, moves_of([section]), WORLD)
@@ -357,17 +484,32 @@ def test_a_patch_shows_a_place_more_finely():
 
 def test_engagement_of_a_leaning_slot_is_half_its_circumference():
     axis = np.array([0.0, math.sin(0.2), math.cos(0.2)])
-    _, run = cut(leaning_section(flat(10.0)(), [(0, 16, 12), (20, 16, 12), (30, 16, 12)], [axis] * 3))
+    _, run = cut(
+        leaning_section(flat(10.0)(), [(0, 16, 12), (20, 16, 12), (30, 16, 12)], [axis] * 3)
+    )
     assert run.engagement[2] == approx(math.pi, abs=0.2)
     assert run.depth_of_cut[2] == approx(8.0 / math.cos(0.2), abs=1.5)
 
 
 @pytest.mark.parametrize("name", [("z",), XYZ])
 def test_a_rapid_straight_up_is_seen_in_what_a_t_slot_cutter_has_left_over_its_slot(name):
-    tool = tool_of("t-slot", diameter=20.0, corner_radius=0.5, flute_length=6.0, neck_diameter=8.0, neck_length=26.0, shank_diameter=8.0,
-                   stickout=30.0)
-    section = _rapid_at_the_end(program_section(tool, [(-15.0, 16.0, 30.0), (-15.0, 16.0, 8.0), (-6.0, 16.0, 8.0), (-6.0, 16.0, 30.0)],
-                                                rapid_to=1))
+    tool = tool_of(
+        "t-slot",
+        diameter=20.0,
+        corner_radius=0.5,
+        flute_length=6.0,
+        neck_diameter=8.0,
+        neck_length=26.0,
+        shank_diameter=8.0,
+        stickout=30.0,
+    )
+    section = _rapid_at_the_end(
+        program_section(
+            tool,
+            [(-15.0, 16.0, 30.0), (-15.0, 16.0, 8.0), (-6.0, 16.0, 8.0), (-6.0, 16.0, 30.0)],
+            rapid_to=1,
+        )
+    )
     moves = moves_of([section])
     run = run_stock(Stock.of(BOX, 0.5, name), moves, WORLD, Sweep.of(moves, 2.0))
     assert run.rapid_depth[:3].max() == 0.0 and run.rapid_depth[3] > 1.0
@@ -375,7 +517,9 @@ def test_a_rapid_straight_up_is_seen_in_what_a_t_slot_cutter_has_left_over_its_s
 
 @pytest.mark.parametrize("form", sorted(set(FORMS) - {"t-slot"}))
 def test_a_rapid_straight_up_out_of_what_was_just_plunged_is_clear(form):
-    section = _rapid_at_the_end(program_section(FORMS[form], [(20.1, 16.2, 60.0), (20.1, 16.2, 13.0), (20.1, 16.2, 60.0)]))
+    section = _rapid_at_the_end(
+        program_section(FORMS[form], [(20.1, 16.2, 60.0), (20.1, 16.2, 13.0), (20.1, 16.2, 60.0)])
+    )
     moves = moves_of([section])
     run = run_stock(whole(0.5), moves, WORLD, Sweep.of(moves, 2.0))
     assert run.rapid_depth.max() == 0.0 and run.body_depth.max() <= tolerance.CONTACT_BOUND

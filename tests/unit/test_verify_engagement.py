@@ -14,11 +14,20 @@ from trunnion.model.blank import Blank
 from trunnion.verify.kernels.engagement import look_in_field
 from trunnion.verify.motion import moves_of
 from trunnion.verify.stock import Stock, run_stock
-from trunnion.verify.stock.engagement import MOST_PROBES, Tally, engagement_of, flute_of, probes_of, rings_of
+from trunnion.verify.stock.engagement import (
+    MOST_PROBES,
+    Tally,
+    engagement_of,
+    flute_of,
+    probes_of,
+    rings_of,
+)
 from verify_tools import FORMS, bull, flat, program_section
 
 PITCH = 0.25
-BOX = Blank(frame=WORLD, low=(0.0, 0.0, 0.0), high=(100.0, 60.0, 20.0), material="test", density=2.8)
+BOX = Blank(
+    frame=WORLD, low=(0.0, 0.0, 0.0), high=(100.0, 60.0, 20.0), material="test", density=2.8
+)
 FLAT = flat(10.0)()
 STEP = 4.0
 """Degrees between two directions looked at."""
@@ -32,8 +41,19 @@ def seen(tool, heights, start, end, bands=1):
     edges = np.linspace(0, len(heights), bands + 1).astype(int)
     for a, b in pairwise(edges):
         tally = Tally.empty(int(probes.start[-1]))
-        look_in_field(heights[a:b], np.array([0.0, a * PITCH]), PITCH, 0.0, moves.row[1], probes.rings[0], probes.circle, 0,
-                      int(probes.start[-1]), tally.counted, tally.spans)
+        look_in_field(
+            heights[a:b],
+            np.array([0.0, a * PITCH]),
+            PITCH,
+            0.0,
+            moves.row[1],
+            probes.rings[0],
+            probes.circle,
+            0,
+            int(probes.start[-1]),
+            tally.counted,
+            tally.spans,
+        )
         found = found.plus(tally)
     whole = engagement_of(probes, found, moves)
     return math.degrees(whole.largest[1]), math.degrees(whole.mean[1]), whole.depth[1]
@@ -59,7 +79,9 @@ def run(tool, stops, intervals=False, **more):
 
 @pytest.mark.parametrize("intervals", [False, True])
 def test_a_slot_takes_half_the_circle_and_a_plunge_all_of_it(intervals):
-    found = run(FLAT, [(20, 30, 25), (20, 30, 15), (60, 30, 15), (21.1, 30, 25), (21.1, 30, 25)], intervals)
+    found = run(
+        FLAT, [(20, 30, 25), (20, 30, 15), (60, 30, 15), (21.1, 30, 25), (21.1, 30, 25)], intervals
+    )
     assert np.degrees(found.engagement[:3]) == approx([0.0, 360.0, 180.0], abs=STEP)
     assert found.depth_of_cut[:3] == approx([0.0, 5.0, 5.0], abs=0.5 if intervals else 1e-9)
 
@@ -68,14 +90,18 @@ def test_a_slot_takes_half_the_circle_and_a_plunge_all_of_it(intervals):
 @pytest.mark.parametrize("ae", [0.5, 1.0, 2.5, 5.0, 8.0])
 def test_beside_an_edge_it_is_as_the_width_of_cut_says(ae, intervals):
     stops = [(-20, ae - 5.0, 12), (120, ae - 5.0, 12)]
-    assert math.degrees(run(FLAT, stops, intervals).engagement[1]) == approx(width(ae), abs=STEP + 2.0)
+    assert math.degrees(run(FLAT, stops, intervals).engagement[1]) == approx(
+        width(ae), abs=STEP + 2.0
+    )
 
 
 @pytest.mark.parametrize("form", ["flat", "bull", "ball"])
 def test_short_moves_see_the_same_as_a_long_one(form):
     tool = {"flat": FLAT, "bull": bull(10.0, 2.0)(), "ball": bull(10.0, 5.0)()}[form]
     stops = [(-20, -3.0, 4.0), *((x, -3.0, 4.0) for x in np.arange(-19.0, 50.0, 0.7))]
-    assert np.median(np.degrees(run(tool, stops).engagement[50:])) == approx(width(2.0), abs=STEP + 2.0)
+    assert np.median(np.degrees(run(tool, stops).engagement[50:])) == approx(
+        width(2.0), abs=STEP + 2.0
+    )
 
 
 def test_climb_and_conventional_see_the_same_angle():
@@ -144,12 +170,15 @@ def test_a_shallow_ball_is_seen_where_it_cuts():
 def test_what_tiles_see_adds_up_to_what_the_whole_sees():
     rough = heights(lambda x, y: np.sin(x / 3.0) + np.cos(y / 4.0) > 0.3, cleared=16.0)
     for tool in (FLAT, bull(10.0, 5.0)()):
-        assert seen(tool, rough, (20, 20, 14), (70, 33, 14), bands=7) == seen(tool, rough, (20, 20, 14), (70, 33, 14))
+        assert seen(tool, rough, (20, 20, 14), (70, 33, 14), bands=7) == seen(
+            tool, rough, (20, 20, 14), (70, 33, 14)
+        )
 
 
 def test_a_cutter_lying_beside_the_top_is_in_by_its_flank():
     # Its axis along x, 4 mm above the top: 1 mm of its radius of 5 is in, over the 20 mm that its flutes are over the block.
     from leaning_tools import leaning_section
+
     moves = moves_of([leaning_section(FLAT, [(80, -20, 24), (80, 80, 24)], [(1, 0, 0), (1, 0, 0)])])
     stock = Stock.of(BOX, PITCH, ("x", "y", "z"))
     found = run_stock(stock, moves, WORLD)
@@ -159,7 +188,16 @@ def test_a_cutter_lying_beside_the_top_is_in_by_its_flank():
 
 def test_a_leaning_cutter_in_solid_material_is_in_by_half_its_circle():
     from leaning_tools import leaning_section
-    moves = moves_of([leaning_section(FLAT, [(30, 30, 25), (30, 30, 4), (70, 30, 4)], [(0, 0.3, 1), (0, 0.3, 1), (0, 0.3, 1)])])
+
+    moves = moves_of(
+        [
+            leaning_section(
+                FLAT,
+                [(30, 30, 25), (30, 30, 4), (70, 30, 4)],
+                [(0, 0.3, 1), (0, 0.3, 1), (0, 0.3, 1)],
+            )
+        ]
+    )
     found = run_stock(Stock.of(BOX, 0.5), moves, WORLD)
     assert math.degrees(found.engagement[2]) == approx(180.0, abs=2 * STEP)
     assert found.depth_of_cut[2] == approx(16.0 * math.hypot(1.0, 0.3), abs=2.0)

@@ -26,14 +26,26 @@ from trunnion.verify.motion import moves_of, poses_of
 from verify_tools import FORMS, bull, flat, tool_of
 
 FIXED, TURNING = tolerance.CONTACT_BOUND, tolerance.TURNING_BOUND
-FLOOR = np.array([[[-200, -200, 0], [200, -200, 0], [200, 200, 0]], [[-200, -200, 0], [200, 200, 0], [-200, 200, 0]]], dtype=float)
+FLOOR = np.array(
+    [
+        [[-200, -200, 0], [200, -200, 0], [200, 200, 0]],
+        [[-200, -200, 0], [200, 200, 0], [-200, 200, 0]],
+    ],
+    dtype=float,
+)
 """A level floor, its diagonal through the origin."""
 
 
 def contact(triangles, face=None):
     face = np.zeros(len(triangles), int) if face is None else np.asarray(face)
-    return FacetContact(Facets.of_mesh(np.reshape(triangles, (-1, 3)), np.arange(3 * len(triangles)).reshape(-1, 3), face,
-                                       np.arange(1, face.max() + 2)))
+    return FacetContact(
+        Facets.of_mesh(
+            np.reshape(triangles, (-1, 3)),
+            np.arange(3 * len(triangles)).reshape(-1, 3),
+            face,
+            np.arange(1, face.max() + 2),
+        )
+    )
 
 
 def leaning(degrees, about="y"):
@@ -46,8 +58,14 @@ def going(tool, *stops):
     """Return moves through stops (tip, axis) or (tip, axis, centre of an anticlockwise arc); the first is a rapid."""
     n = len(stops)
     motion = [Motion.RAPID, *(Motion.LINE if len(s) == 2 else Motion.ARC_CCW for s in stops[1:])]
-    path = Toolpath(position=[s[0] for s in stops], axis=[s[1] for s in stops], motion=motion,
-                    centre=[s[2] if len(s) == 3 else [np.nan] * 3 for s in stops], feed=[0.0] + [1000.0] * (n - 1), mark=[0] * n)
+    path = Toolpath(
+        position=[s[0] for s in stops],
+        axis=[s[1] for s in stops],
+        motion=motion,
+        centre=[s[2] if len(s) == 3 else [np.nan] * 3 for s in stops],
+        feed=[0.0] + [1000.0] * (n - 1),
+        mark=[0] * n,
+    )
     return moves_of([ProgramSection(operation="op", tool=tool, spindle=10000.0, path=path)])
 
 
@@ -77,7 +95,12 @@ def test_a_flat_end_that_leans_enters_a_floor_with_its_rim(below, lean):
 
 def test_a_sharp_rim_is_found_on_a_narrow_strip_between_two_places():
     # The strip is 0.02 mm wide and lies across the way, 11.37 mm from its start.
-    strip = np.array([[[11.37, -3, 0], [11.39, -3, 0], [11.39, 3, 0]], [[11.37, -3, 0], [11.39, 3, 0], [11.37, 3, 0]]])
+    strip = np.array(
+        [
+            [[11.37, -3, 0], [11.39, -3, 0], [11.39, 3, 0]],
+            [[11.37, -3, 0], [11.39, 3, 0], [11.37, 3, 0]],
+        ]
+    )
     tip = 5.0 * math.sin(math.radians(10.0)) - 0.03
     stops = ((0, 0, tip), leaning(10.0)), ((40, 0, tip), leaning(10.0))
     assert depth(strip, flat(10.0)(), *stops) == approx(rim_depth(0.03, 10.0), abs=FIXED)
@@ -111,7 +134,9 @@ def test_a_t_slot_cutter_enters_the_underside_of_a_shelf(below):
     tool = FORMS["t-slot"]
     shelf = np.array([[[5, -50, 0], [5, 50, 0], [80, 0, 0]]], dtype=float)
     z = below - tool.flute_length
-    assert depth(shelf, tool, ((0, -5, z), leaning(0)), ((0, 5, z), leaning(0))) == approx(below, abs=FIXED)
+    assert depth(shelf, tool, ((0, -5, z), leaning(0)), ((0, 5, z), leaning(0))) == approx(
+        below, abs=FIXED
+    )
 
 
 @pytest.mark.parametrize("below", [0.02, 0.4])
@@ -129,8 +154,21 @@ def test_a_holder_that_turns_towards_a_wall_enters_it_at_the_end(below):
 def test_a_wall_touched_by_the_flank_while_the_tool_swings_along_it_is_clean():
     wall = np.array([[[5, -300, -300], [5, 300, -300], [5, 0, 600]]], dtype=float)
     stops = ((0, -20, 0), leaning(-20, "x")), ((0, 20, 3), leaning(30, "x"))
-    assert depth(wall, tool_of("flat", holder=FORMS["flat"].holder, stickout=90.0, neck_length=90.0, flute_length=80.0, gauge_length=150.0),
-                 *stops) == 0.0
+    assert (
+        depth(
+            wall,
+            tool_of(
+                "flat",
+                holder=FORMS["flat"].holder,
+                stickout=90.0,
+                neck_length=90.0,
+                flute_length=80.0,
+                gauge_length=150.0,
+            ),
+            *stops,
+        )
+        == 0.0
+    )
 
 
 def test_a_floor_touched_by_a_flat_end_a_bull_and_a_ball_is_clean():
@@ -152,7 +190,10 @@ def test_an_arc_about_a_leaning_axis_is_as_deep_as_its_circle_runs_below_a_leani
 def test_a_helix_and_a_plunge_are_as_deep_as_they_end():
     tool, axis = bull(10.0, 2.0)(), np.array(leaning(20))
     floor = FLOOR @ np.stack([leaning(110), (0.0, 1.0, 0.0), axis])
-    helix = (8.0 * np.array(leaning(110)) + 2.0 * axis, axis), (np.array([0.0, 8.0, 0.0]) - 0.3 * axis, axis, (0.0, 0.0, 0.0))
+    helix = (
+        (8.0 * np.array(leaning(110)) + 2.0 * axis, axis),
+        (np.array([0.0, 8.0, 0.0]) - 0.3 * axis, axis, (0.0, 0.0, 0.0)),
+    )
     assert depth(floor, tool, *helix) == approx(0.3, abs=FIXED)
     assert depth(floor, tool, (5.0 * axis, axis), (-0.3 * axis, axis)) == approx(0.3, abs=FIXED)
 
@@ -163,8 +204,15 @@ def test_deeper_than_a_millimetre_is_only_known_to_be_so():
 
 def test_of_two_faces_touched_alike_the_first_counts_and_each_has_its_depth():
     lower = FLOOR - [0.0, 0.0, 0.2]
-    moves = going(flat(10.0)(), ((0, 0, -0.5), leaning(0)), ((20, 0, -0.5), leaning(0)), ((30, 0, -0.5), leaning(0)))
-    found = contact(np.vstack([lower, FLOOR, FLOOR]), [2, 2, 1, 1, 0, 0]).along(moves, np.array([1, 2]), threads=1)
+    moves = going(
+        flat(10.0)(),
+        ((0, 0, -0.5), leaning(0)),
+        ((20, 0, -0.5), leaning(0)),
+        ((30, 0, -0.5), leaning(0)),
+    )
+    found = contact(np.vstack([lower, FLOOR, FLOOR]), [2, 2, 1, 1, 0, 0]).along(
+        moves, np.array([1, 2]), threads=1
+    )
     assert found.face[:, 0].tolist() == [0, 0]
     assert found.face_depth[:, 0] == approx([0.5, 0.5, 0.3], abs=FIXED)
     assert found.face_move[:, 0].tolist() == [1, 1, 1]
@@ -174,7 +222,12 @@ def test_of_two_faces_touched_alike_the_first_counts_and_each_has_its_depth():
 def test_a_pose_is_clear_up_to_what_is_allowed():
     tips = np.array([[0.0, 0.0, z] for z in (0.0, -0.015, -0.025, -3.0)])
     poses = poses_of(flat(10.0)(), tips, np.tile(leaning(0), (4, 1)))
-    assert np.isnan(contact(FLOOR).stopped(poses, np.arange(4), 0.02)[:, 0]).tolist() == [True, True, False, False]
+    assert np.isnan(contact(FLOOR).stopped(poses, np.arange(4), 0.02)[:, 0]).tolist() == [
+        True,
+        True,
+        False,
+        False,
+    ]
 
 
 CASE = five_axis_case(1600, 3000, "bull", deeper=0.02)
@@ -198,7 +251,9 @@ def test_cancel_is_heard_within_a_fifth_of_a_second():
         return len(asked) > 4
 
     with pytest.raises(Cancelled):
-        JOB.along(moves, np.tile(np.arange(len(moves)), 40), Progress(cancelled=cancelled), threads=1)
+        JOB.along(
+            moves, np.tile(np.arange(len(moves)), 40), Progress(cancelled=cancelled), threads=1
+        )
     assert max(np.diff(asked)) < 0.2
 
 
@@ -206,9 +261,11 @@ def test_the_tree_holds_every_triangle_once_inside_its_boxes():
     points, triangles, face = wavy_block(3000)
     tree = FacetContact(Facets.of_mesh(points, triangles, face, np.arange(1, face.max() + 2))).tree
     first, count = tree.leaves[tree.leaves[:, 1] > 0].T
-    assert sorted(np.concatenate([np.arange(a, a + n) for a, n in zip(first, count, strict=True)])) == list(range(len(triangles)))
+    assert sorted(
+        np.concatenate([np.arange(a, a + n) for a, n in zip(first, count, strict=True)])
+    ) == list(range(len(triangles)))
     for node in range(0, len(tree.boxes), 97):
-        rows = [np.arange(a, a + n) for a, n in tree.leaves[node:tree.skip[node]] if n]
+        rows = [np.arange(a, a + n) for a, n in tree.leaves[node : tree.skip[node]] if n]
         corners = tree.corners[np.concatenate(rows)].reshape(-1, 3)
         assert (np.abs(corners - tree.boxes[node, :3]) <= tree.boxes[node, 3:] + 1e-9).all()
         assert tree.node_face[node] in (-1, *tree.face[np.concatenate(rows)])
@@ -238,7 +295,9 @@ def test_curved_faces_stay_within_their_measured_bound(chord):
     facets = facets_of(part, WORLD, chord)
     hole = int(np.argmax(np.bincount(facets.face)))
     corners = facets.points[facets.triangles[facets.face == hole]]
-    middles = np.vstack([corners.mean(axis=1), 0.5 * (corners + np.roll(corners, -1, axis=1)).reshape(-1, 3)])
+    middles = np.vstack(
+        [corners.mean(axis=1), 0.5 * (corners + np.roll(corners, -1, axis=1)).reshape(-1, 3)]
+    )
     off = np.abs(np.hypot(middles[:, 0] - 20.0, middles[:, 1] - 15.0) - 4.0).max()
     assert 0.0 < off <= chord
     assert off <= facets.bound <= 1.25 * chord
@@ -254,7 +313,10 @@ def test_facets_look_out_and_have_the_rows_of_the_exact_faces():
 
 
 def test_facets_of_some_faces_leave_the_others_empty_and_move_with_their_frame():
-    part, frame = read(drilled_block_shape()), Frame(np.array([1.0, 2.0, 3.0]), np.array([0.0, 1.0, 0.0]), np.array([1.0, 0.0, 0.0]))
+    part, frame = (
+        read(drilled_block_shape()),
+        Frame(np.array([1.0, 2.0, 3.0]), np.array([0.0, 1.0, 0.0]), np.array([1.0, 0.0, 0.0])),
+    )
     some = facets_of(part, WORLD, only=[2, 5])
     assert set(some.tag[some.face]) == {2, 5}
     assert not some.whole
@@ -270,4 +332,6 @@ def test_more_triangles_than_fit_are_refused_with_what_to_do(monkeypatch):
 def test_triangles_without_area_count_as_the_line_or_point_they_are():
     line, point = np.array([[[0, -9, 0], [0, -9, 0], [0, 9, 0]]], dtype=float), np.zeros((1, 3, 3))
     for thin in (line, line[:, ::-1], line[:, [0, 2, 1]], point):
-        assert depth(thin, flat(10.0)(), ((-20, 0, -0.3), leaning(0)), ((20, 3, -0.3), leaning(0))) == approx(0.3, abs=FIXED)
+        assert depth(
+            thin, flat(10.0)(), ((-20, 0, -0.3), leaning(0)), ((20, 3, -0.3), leaning(0))
+        ) == approx(0.3, abs=FIXED)

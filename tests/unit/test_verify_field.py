@@ -29,8 +29,20 @@ def cut(tool, stops, *, joined=True, floor=0.0, size=(60, 80), top=TOP):
     done = []
     for k in np.flatnonzero(~moves.rapid):
         goes_on = joined and kernel.joins(moves.row, moves.rapid, moves.tool, k)
-        done.append(kernel.cut_move(heights, np.zeros(2), PITCH, floor, moves.row[k], goes_on, profile, moves.bodies.arc,
-                                    moves.bodies.piece, CHORD))
+        done.append(
+            kernel.cut_move(
+                heights,
+                np.zeros(2),
+                PITCH,
+                floor,
+                moves.row[k],
+                goes_on,
+                profile,
+                moves.bodies.arc,
+                moves.bodies.piece,
+                CHORD,
+            )
+        )
     return heights, np.array([r for r, _ in done]), np.array([s for _, s in done])
 
 
@@ -55,7 +67,9 @@ def plain(tool, stops, size=(60, 80), top=TOP):
 
 def distance_to_line(x, y, a, b):
     along = (b - a)[:2]
-    share = np.clip(((x - a[0]) * along[0] + (y - a[1]) * along[1]) / max(along @ along, 1e-30), 0.0, 1.0)
+    share = np.clip(
+        ((x - a[0]) * along[0] + (y - a[1]) * along[1]) / max(along @ along, 1e-30), 0.0, 1.0
+    )
     return np.hypot(x - a[0] - share * along[0], y - a[1] - share * along[1])
 
 
@@ -64,12 +78,20 @@ def distance_to_arc(x, y, a, b, centre):
     sweep = (math.atan2(b[1] - centre[1], b[0] - centre[0]) - start) % math.tau
     angle = (np.arctan2(y - centre[1], x - centre[0]) - start) % math.tau
     ends = np.minimum(np.hypot(x - a[0], y - a[1]), np.hypot(x - b[0], y - b[1]))
-    return np.where(angle <= sweep, abs(np.hypot(x - centre[0], y - centre[1]) - math.hypot(*(a[:2] - centre))), ends)
+    return np.where(
+        angle <= sweep,
+        abs(np.hypot(x - centre[0], y - centre[1]) - math.hypot(*(a[:2] - centre))),
+        ends,
+    )
 
 
 def lowest_on_slope(tool, x, y, a, b):
     """Search where a column meets the tool lowest: in the covered part of the way, on a grid, then by thirds around the best of it."""
-    along, length, widest = b - a, math.hypot(*(b - a)[:2]), bodies_of((tool,)).widest(cutting=True)[0]
+    along, length, widest = (
+        b - a,
+        math.hypot(*(b - a)[:2]),
+        bodies_of((tool,)).widest(cutting=True)[0],
+    )
     foot = ((x - a[0]) * along[0] + (y - a[1]) * along[1]) / length**2
     beside = np.hypot(x - a[0] - foot * along[0], y - a[1] - foot * along[1])
     half = np.sqrt(np.clip(widest**2 - beside**2, 0.0, None)) / length
@@ -91,12 +113,27 @@ def lowest_on_slope(tool, x, y, a, b):
     return np.where(covered, found, np.inf)
 
 
-LEVEL = [(8, 8, 15), (8, 8, 13), (12.3, 9.1, 13), (13.2, 9.7, 13), (20, 20, 13), (19, 25, 13), (30, 25, 13), ((22, 25, 13), (26, 25))]
+LEVEL = [
+    (8, 8, 15),
+    (8, 8, 13),
+    (12.3, 9.1, 13),
+    (13.2, 9.7, 13),
+    (20, 20, 13),
+    (19, 25, 13),
+    (30, 25, 13),
+    ((22, 25, 13), (26, 25)),
+]
 
 
 @pytest.mark.parametrize("form", sorted(FORMS))
 def test_level_lines_and_arcs_leave_what_a_formula_says_for_every_form(form):
-    tool, stops = FORMS[form], [(*stop[:2], stop[2] + 3.0) if len(stop) == 3 else ((*stop[0][:2], 16.0), stop[1]) for stop in LEVEL]
+    tool, stops = (
+        FORMS[form],
+        [
+            (*stop[:2], stop[2] + 3.0) if len(stop) == 3 else ((*stop[0][:2], 16.0), stop[1])
+            for stop in LEVEL
+        ],
+    )
     heights, _, stands = cut(tool, stops)
     assert not stands.any()
     assert heights == approx(plain(tool, stops), abs=1e-9)
@@ -106,7 +143,11 @@ def test_level_lines_and_arcs_leave_what_a_formula_says_for_every_form(form):
 def test_the_cells_that_the_move_before_has_cut_are_left_out_and_nothing_else(form):
     rng = np.random.default_rng(5)
     steps = rng.normal(0.0, 1.2, (200, 2)).cumsum(axis=0)
-    stops = [(20, 15, 25), (20, 15, 14), *((20 + abs(x) % 15, 15 + abs(y) % 10, 14.0) for x, y in steps)]
+    stops = [
+        (20, 15, 25),
+        (20, 15, 14),
+        *((20 + abs(x) % 15, 15 + abs(y) % 10, 14.0) for x, y in steps),
+    ]
     quick, all_of_it = cut(PLAIN[form], stops), cut(PLAIN[form], stops, joined=False)
     assert quick[0] == approx(all_of_it[0], abs=1e-9)
     assert quick[1] == approx(all_of_it[1], abs=1e-6)
@@ -116,7 +157,14 @@ def test_the_cells_that_the_move_before_has_cut_are_left_out_and_nothing_else(fo
 @pytest.mark.parametrize("form", ["flat", "bull", "ball", "taper", "taper ball", "drill", "form"])
 def test_slopes_up_and_down_leave_what_a_search_finds(form):
     tool = {**FORMS, **PLAIN}[form]
-    stops = [(8, 8, 18), (20, 9, 16.5), (21.1, 9.4, 16.6), (28, 20, 19), (15, 22, 15.5), (15.5, 21, 12.0)]
+    stops = [
+        (8, 8, 18),
+        (20, 9, 16.5),
+        (21.1, 9.4, 16.6),
+        (28, 20, 19),
+        (15, 22, 15.5),
+        (15.5, 21, 12.0),
+    ]
     heights, _, stands = cut(tool, stops)
     assert not stands.any()
     assert heights == approx(np.minimum(plain(tool, stops), TOP), abs=1e-7)
@@ -129,17 +177,39 @@ def test_a_helix_of_a_flat_cutter_is_exact(sweep, rise, clockwise):
     turn = -sweep if clockwise else sweep
     moves = moves_of([program_section(PLAIN["flat"], [(25, 15, 16), ((25, 15, 14), (20, 15))])])
     row = moves.row[1].copy()
-    row[[kernel.START_ANGLE, kernel.SWEEP, kernel.Z_START, kernel.Z_END]] = 0.3, turn, 14.0, 14.0 + rise
-    row[[kernel.MX, kernel.MY, kernel.COS_HALF]] = math.cos(0.3 + turn / 2), math.sin(0.3 + turn / 2), math.cos(min(sweep / 2, math.pi))
+    row[[kernel.START_ANGLE, kernel.SWEEP, kernel.Z_START, kernel.Z_END]] = (
+        0.3,
+        turn,
+        14.0,
+        14.0 + rise,
+    )
+    row[[kernel.MX, kernel.MY, kernel.COS_HALF]] = (
+        math.cos(0.3 + turn / 2),
+        math.sin(0.3 + turn / 2),
+        math.cos(min(sweep / 2, math.pi)),
+    )
     row[[kernel.X0, kernel.Y0]] = 20 + 5 * math.cos(0.3), 15 + 5 * math.sin(0.3)
     row[[kernel.X1, kernel.Y1]] = 20 + 5 * math.cos(0.3 + turn), 15 + 5 * math.sin(0.3 + turn)
     heights = np.full((60, 80), TOP)
-    took, _ = kernel.cut_move(heights, np.zeros(2), PITCH, 0.0, row, False, profiles_of(moves.tools, moves.bodies)[0], moves.bodies.arc,
-                              moves.bodies.piece, CHORD)
+    took, _ = kernel.cut_move(
+        heights,
+        np.zeros(2),
+        PITCH,
+        0.0,
+        row,
+        False,
+        profiles_of(moves.tools, moves.bodies)[0],
+        moves.bodies.arc,
+        moves.bodies.piece,
+        CHORD,
+    )
     y, x = (np.indices(heights.shape) + 0.5) * PITCH
     finest = np.full(heights.shape, TOP)
     for t in np.linspace(0.0, 1.0, 4001):
-        inside = np.hypot(x - 20 - 5 * math.cos(0.3 + t * turn), y - 15 - 5 * math.sin(0.3 + t * turn)) < 5.0
+        inside = (
+            np.hypot(x - 20 - 5 * math.cos(0.3 + t * turn), y - 15 - 5 * math.sin(0.3 + t * turn))
+            < 5.0
+        )
         finest = np.where(inside, np.minimum(finest, 14.0 + t * rise), finest)
     # Between two moments that were looked at a column may be covered a little longer, or for the first time.
     assert (heights <= finest + 1e-9).all() and took == approx((TOP - heights).sum())
@@ -209,4 +279,4 @@ def test_profiles_name_the_bodies_that_cut():
     profiles, bodies = profiles_of(tools, bodies_of(tools)), bodies_of(tools)
     assert profiles[:, kernel.RADIUS] == approx(bodies.widest(cutting=True))
     for row in profiles:
-        assert (bodies.piece[int(row[kernel.FIRST]):int(row[kernel.LAST]), KIND] == 0.0).all()
+        assert (bodies.piece[int(row[kernel.FIRST]) : int(row[kernel.LAST]), KIND] == 0.0).all()

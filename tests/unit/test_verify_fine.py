@@ -42,9 +42,15 @@ class Plane:
 
     def at(self, places):
         flat, ones = np.zeros((len(places), 1)), np.ones((len(places), 1))
-        return ExactPoints(point=np.hstack([places, flat + self.height]), normal=np.hstack([flat, flat, ones]),
-                           du=np.hstack([ones, flat, flat]), dv=np.hstack([flat, ones, flat]), normal_du=np.zeros((len(places), 3)),
-                           normal_dv=np.zeros((len(places), 3)), bend=np.zeros((len(places), 3)))
+        return ExactPoints(
+            point=np.hstack([places, flat + self.height]),
+            normal=np.hstack([flat, flat, ones]),
+            du=np.hstack([ones, flat, flat]),
+            dv=np.hstack([flat, ones, flat]),
+            normal_du=np.zeros((len(places), 3)),
+            normal_dv=np.zeros((len(places), 3)),
+            bend=np.zeros((len(places), 3)),
+        )
 
 
 class Cylinder:
@@ -62,10 +68,19 @@ class Cylinder:
     def at(self, places):
         x, angle = places.T
         flat, ones = np.zeros_like(x), np.ones_like(x)
-        normal, along = np.column_stack([flat, np.sin(angle), np.cos(angle)]), np.column_stack([flat, np.cos(angle), -np.sin(angle)])
-        return ExactPoints(point=np.column_stack([x, flat, flat]) + self.radius * normal, normal=normal,
-                           du=np.column_stack([ones, flat, flat]), dv=self.radius * along, normal_du=np.zeros((len(x), 3)), normal_dv=along,
-                           bend=np.column_stack([flat, flat, self.radius * ones]))
+        normal, along = (
+            np.column_stack([flat, np.sin(angle), np.cos(angle)]),
+            np.column_stack([flat, np.cos(angle), -np.sin(angle)]),
+        )
+        return ExactPoints(
+            point=np.column_stack([x, flat, flat]) + self.radius * normal,
+            normal=normal,
+            du=np.column_stack([ones, flat, flat]),
+            dv=self.radius * along,
+            normal_du=np.zeros((len(x), 3)),
+            normal_dv=along,
+            bend=np.column_stack([flat, flat, self.radius * ones]),
+        )
 
 
 def passes(tool, ys, z=0.0, x=(-10.0, 20.0), operation="op"):
@@ -83,7 +98,9 @@ def scallop(radius, pitch):
 
 @pytest.mark.parametrize("pitch", [0.4, 1.0])
 def test_parallel_ball_passes_leave_their_scallop_on_a_plane(pitch):
-    found = fine_measure([Plane()], moves_of([passes(EVERY_FORM["ball"], np.arange(-2.0, 7.0, pitch))]), 0.2)
+    found = fine_measure(
+        [Plane()], moves_of([passes(EVERY_FORM["ball"], np.arange(-2.0, 7.0, pitch))]), 0.2
+    )
     assert found.scallop.value == approx(scallop(5.0, pitch), abs=FINE_BOUND)
     assert found.scallop.value <= scallop(5.0, pitch) + 1e-9
     assert found.gouge.value == approx(0.0, abs=FINE_BOUND) and found.step.value == 0.0
@@ -95,12 +112,24 @@ def test_ball_passes_along_a_cylinder_leave_the_scallop_of_their_centres():
     tips, tool = [[-10.0, 0.0, 90.0]], EVERY_FORM["ball"]
     for a in np.arange(-0.1, 0.45, angle):
         centre = (big + ball) * np.array([0.0, math.sin(a), math.cos(a)])
-        tips += [[-10.0, centre[1], 90.0], [-10.0, centre[1], centre[2] - ball], [13.0, centre[1], centre[2] - ball],
-                 [13.0, centre[1], 90.0]]
-    found = fine_measure([Cylinder(big)], moves_of([leaning_section(tool, tips, [UP] * len(tips))]), 0.2)
+        tips += [
+            [-10.0, centre[1], 90.0],
+            [-10.0, centre[1], centre[2] - ball],
+            [13.0, centre[1], centre[2] - ball],
+            [13.0, centre[1], 90.0],
+        ]
+    found = fine_measure(
+        [Cylinder(big)], moves_of([leaning_section(tool, tips, [UP] * len(tips))]), 0.2
+    )
     half = angle / 2
-    true = (big + ball) * math.cos(half) - math.sqrt(ball**2 - ((big + ball) * math.sin(half)) ** 2) - big
-    assert found.scallop.value == approx(true, abs=FINE_BOUND) and found.gouge.value == approx(0.0, abs=FINE_BOUND)
+    true = (
+        (big + ball) * math.cos(half)
+        - math.sqrt(ball**2 - ((big + ball) * math.sin(half)) ** 2)
+        - big
+    )
+    assert found.scallop.value == approx(true, abs=FINE_BOUND) and found.gouge.value == approx(
+        0.0, abs=FINE_BOUND
+    )
 
 
 def test_a_leaning_bull_leaves_the_scallop_of_its_corner():
@@ -113,11 +142,17 @@ def test_a_leaning_bull_leaves_the_scallop_of_its_corner():
     tips = [[-30.0, 0.0, 50.0]]
     for y in np.arange(-3.0, 7.0, pitch):
         tips += [[-30.0, y, 50.0], [-30.0, y, height], [30.0, y, height], [30.0, y, 50.0]]
-    found = fine_measure([Plane(end=(2.0, 2.0))], moves_of([leaning_section(tool, tips, [axis] * len(tips))]), 0.1)
+    found = fine_measure(
+        [Plane(end=(2.0, 2.0))], moves_of([leaning_section(tool, tips, [axis] * len(tips))]), 0.1
+    )
     # The torus is all points 2 from its circle of radius 3: what a point beside has left is its distance to the swept circle.
     turn = np.linspace(0.0, 2.0 * math.pi, 400_001)
     across, level = np.cross(axis, [0.0, 1.0, 0.0]), np.array([0.0, 1.0, 0.0])
-    circle = 2.0 * axis + 3.0 * (np.cos(turn)[:, None] * across + np.sin(turn)[:, None] * level) + [0.0, 0.0, height]
+    circle = (
+        2.0 * axis
+        + 3.0 * (np.cos(turn)[:, None] * across + np.sin(turn)[:, None] * level)
+        + [0.0, 0.0, height]
+    )
     assert drop == approx(3.0 * math.sin(lean))
     true = np.hypot(circle[:, 1] - pitch / 2, circle[:, 2]).min() - 2.0
     assert found.scallop.value == approx(true, abs=FINE_BOUND)
@@ -126,16 +161,24 @@ def test_a_leaning_bull_leaves_the_scallop_of_its_corner():
 
 def test_two_operations_5_microns_apart_make_a_step_of_5_microns():
     flat = EVERY_FORM["flat"]
-    sections = [passes(flat, [2.0], operation="first"), passes(flat, [10.0], z=-0.005, operation="second")]
+    sections = [
+        passes(flat, [2.0], operation="first"),
+        passes(flat, [10.0], z=-0.005, operation="second"),
+    ]
     found = fine_measure([Plane(end=(4.0, 9.0))], moves_of(sections), 0.2)
     assert found.step.value == approx(0.005, abs=FINE_BOUND)
-    assert found.step.place[1] == approx(5.0, abs=0.3) and found.gouge.value == approx(0.005, abs=FINE_BOUND)
+    assert found.step.place[1] == approx(5.0, abs=0.3) and found.gouge.value == approx(
+        0.005, abs=FINE_BOUND
+    )
     assert found.scallop.value == approx(0.0, abs=FINE_BOUND)
 
 
 def test_ball_passes_of_two_operations_5_microns_apart_are_told_by_their_valleys():
     ball = EVERY_FORM["ball"]
-    sections = [passes(ball, np.arange(-1.0, 2.1, 0.5)), passes(ball, np.arange(2.5, 6.0, 0.5), z=-0.005)]
+    sections = [
+        passes(ball, np.arange(-1.0, 2.1, 0.5)),
+        passes(ball, np.arange(2.5, 6.0, 0.5), z=-0.005),
+    ]
     found = fine_measure([Plane(end=(1.0, 4.0))], moves_of(sections), 0.05)
     assert found.step.value == approx(0.005, abs=FINE_BOUND)
 
@@ -152,7 +195,9 @@ def test_a_dip_between_the_samples_of_its_map_is_found(tilt):
     tool = EVERY_FORM["ball" if tilt == 0.0 else "flat"]
     axis = np.array([math.sin(tilt), 0.0, math.cos(tilt)])
     # The rim's lowest place comes to where the ball's tip does.
-    tip = np.array([1.234, 2.345, -0.004]) + (5.0 * np.array([-math.cos(tilt), 0.0, math.sin(tilt)]) if tilt else 0.0)
+    tip = np.array([1.234, 2.345, -0.004]) + (
+        5.0 * np.array([-math.cos(tilt), 0.0, math.sin(tilt)]) if tilt else 0.0
+    )
     section = leaning_section(tool, [tip + 20.0 * axis, tip, tip + 20.0 * axis], [axis] * 3)
     found = fine_measure([Plane()], moves_of([section]), 1.0)
     # What enters by the rim is as deep as it is far from end and flank at once.
@@ -169,17 +214,38 @@ def test_an_axis_that_turns_keeps_its_ball_on_the_plane():
             a = axes[0] + (x + 2.0) / 6.0 * (axes[1] - axes[0])
             a /= np.linalg.norm(a)
             tips.append((np.array([x, y, 5.0]) - 5.0 * a, a))
-        tips += [(tips[-1][0] + 30.0 * tips[-1][1], tips[-1][1]), (np.array([-2.0, y, 40.0]), axes[0])]
+        tips += [
+            (tips[-1][0] + 30.0 * tips[-1][1], tips[-1][1]),
+            (np.array([-2.0, y, 40.0]), axes[0]),
+        ]
     tips = [(tips[0][0] + [0, 0, 40.0], axes[0]), *tips]
-    found = fine_measure([Plane(end=(2.0, 2.0))], moves_of([leaning_section(tool, [t for t, _ in tips], [a for _, a in tips])]), 0.2)
-    assert found.scallop.value == approx(scallop(5.0, 0.5), abs=2 * FINE_BOUND) and found.gouge.value < 2 * FINE_BOUND
+    found = fine_measure(
+        [Plane(end=(2.0, 2.0))],
+        moves_of([leaning_section(tool, [t for t, _ in tips], [a for _, a in tips])]),
+        0.2,
+    )
+    assert (
+        found.scallop.value == approx(scallop(5.0, 0.5), abs=2 * FINE_BOUND)
+        and found.gouge.value < 2 * FINE_BOUND
+    )
 
 
 def test_a_box_keeps_the_rest_of_a_face_out():
-    found = fine_measure([Plane()], moves_of([passes(EVERY_FORM["flat"], [1.0])]), 0.2, low=[0.0, 0.0, -1.0], high=[4.0, 2.0, 1.0])
+    found = fine_measure(
+        [Plane()],
+        moves_of([passes(EVERY_FORM["flat"], [1.0])]),
+        0.2,
+        low=[0.0, 0.0, -1.0],
+        high=[4.0, 2.0, 1.0],
+    )
     assert found.point[:, 1].max() < 2.0 and found.scallop.value == approx(0.0, abs=1e-9)
     with pytest.raises(BadInput, match="nothing to measure"):
-        fine_measure([Plane()], moves_of([passes(EVERY_FORM["flat"], [1.0])]), low=[9.0, 9.0, 9.0], high=[10.0, 10.0, 10.0])
+        fine_measure(
+            [Plane()],
+            moves_of([passes(EVERY_FORM["flat"], [1.0])]),
+            low=[9.0, 9.0, 9.0],
+            high=[10.0, 10.0, 10.0],
+        )
 
 
 def test_rings_leave_the_scallop_of_their_pitch():
@@ -188,7 +254,9 @@ def test_rings_leave_the_scallop_of_their_pitch():
     sections = []
     for r in np.arange(15.0, 22.0, pitch):
         ends = [[20.0 - r * math.cos(turn), sign * r * math.sin(turn), 0.0] for sign in (1.0, -1.0)]
-        sections.append(leaning_section(tool, ends, [UP] * 2, centre=[20.0, 0.0, 0.0], motion=Motion.ARC_CCW))
+        sections.append(
+            leaning_section(tool, ends, [UP] * 2, centre=[20.0, 0.0, 0.0], motion=Motion.ARC_CCW)
+        )
     found = fine_measure([Plane(start=(0.0, -0.05), end=(3.0, 0.05))], moves_of(sections), 0.1)
     assert found.scallop.value == approx(scallop(5.0, pitch), abs=FINE_BOUND)
 
@@ -210,11 +278,16 @@ def test_an_exact_face_knows_its_surface_in_any_frame():
     at = side.at(np.random.default_rng(0).uniform([u0, v0], [u1, v1], (50, 2)))
     points, normals = frame.to_world(at.point), frame.world_direction(at.normal)
     out = points - (points @ axis)[:, None] * axis
-    assert np.linalg.norm(out, axis=1) == approx(np.full(50, 10.0)) and normals == approx(out / 10.0)
+    assert np.linalg.norm(out, axis=1) == approx(np.full(50, 10.0)) and normals == approx(
+        out / 10.0
+    )
     assert at.bend.max(axis=1) == approx(np.full(50, 11.0))
     # On a cylinder of radius 10 the normal turns by a tenth of what the point moves about the axis.
     assert at.normal_du == approx(at.du / 10.0) and at.normal_dv == approx(np.zeros((50, 3)))
-    assert side.inside(np.array([[u0 + 0.1, v0 + 1.0], [u0 + 0.1, v1 + 1.0]])).tolist() == [True, False]
+    assert side.inside(np.array([[u0 + 0.1, v0 + 1.0], [u0 + 0.1, v1 + 1.0]])).tolist() == [
+        True,
+        False,
+    ]
 
 
 def test_a_pole_has_the_normal_beside_it():
@@ -228,12 +301,34 @@ def test_a_pole_has_the_normal_beside_it():
 
 def test_the_top_of_a_block_is_measured_on_its_own_face():
     part = read(box_shape())
-    top = next(tag for tag in part.tags if part.graph().box_low[tag - 1][2] > 19.0 or part.graph().box_low[tag - 1][2] == part.high[2])
+    top = next(
+        tag
+        for tag in part.tags
+        if part.graph().box_low[tag - 1][2] > 19.0
+        or part.graph().box_low[tag - 1][2] == part.high[2]
+    )
     z, pitch = float(part.high[2]), 0.8
     middle = 0.5 * (part.low + part.high)
-    moves = moves_of([passes(EVERY_FORM["ball"], np.arange(part.low[1] - 1.0, part.high[1] + 2.0, pitch), z=z, x=(-60.0, 60.0))])
-    found = fine_measure([ExactFace(part, top, WORLD)], moves, 0.2, low=middle - [1.0, 1.0, 50.0], high=middle + [1.0, 1.0, 50.0])
-    assert found.scallop.value == approx(scallop(5.0, pitch), abs=FINE_BOUND) and set(found.face) == {top}
+    moves = moves_of(
+        [
+            passes(
+                EVERY_FORM["ball"],
+                np.arange(part.low[1] - 1.0, part.high[1] + 2.0, pitch),
+                z=z,
+                x=(-60.0, 60.0),
+            )
+        ]
+    )
+    found = fine_measure(
+        [ExactFace(part, top, WORLD)],
+        moves,
+        0.2,
+        low=middle - [1.0, 1.0, 50.0],
+        high=middle + [1.0, 1.0, 50.0],
+    )
+    assert found.scallop.value == approx(scallop(5.0, pitch), abs=FINE_BOUND) and set(
+        found.face
+    ) == {top}
     with pytest.raises(BadInput, match="face 99"):
         ExactFace(part, 99, WORLD)
 
@@ -243,24 +338,66 @@ def test_faces_are_named_by_their_tags_and_figures_told_with_their_places():
     with pytest.raises(BadCall, match="name faces by their tags"):
         faces_named("the floor")
     nowhere = np.full(3, np.nan)
-    figures = FineFigures(faces=(12,), scallop=0.0123, scallop_at=np.array([1.0, 2.0, 3.0]), gouge=0.0, gouge_at=nowhere, step=0.005,
-                          step_at=np.zeros(3), lower="floor-1", bound=0.0002)
-    assert fine_dict(figures)["gouge_at"] is None and fine_dict(figures)["scallop_at"] == [1.0, 2.0, 3.0]
+    figures = FineFigures(
+        faces=(12,),
+        scallop=0.0123,
+        scallop_at=np.array([1.0, 2.0, 3.0]),
+        gouge=0.0,
+        gouge_at=nowhere,
+        step=0.005,
+        step_at=np.zeros(3),
+        lower="floor-1",
+        bound=0.0002,
+    )
+    assert fine_dict(figures)["gouge_at"] is None and fine_dict(figures)["scallop_at"] == [
+        1.0,
+        2.0,
+        3.0,
+    ]
     assert "highest scallop  0.0123 mm at x 1.000 y 2.000 z 3.000" in fine_text(figures)
 
 
 def test_both_sides_of_a_block_are_measured_with_the_programs_of_both_setups(monkeypatch):
     part, pitch = read(box_shape(4.0, 3.0, 2.0)), 0.8
     middle = 0.5 * (part.low + part.high)
-    frames = [Frame(np.array([*middle[:2], part.high[2]]), np.array([1.0, 0.0, 0.0]), np.array([0.0, 0.0, 1.0])),
-              Frame(np.array([*middle[:2], part.low[2]]), np.array([1.0, 0.0, 0.0]), np.array([0.0, 0.0, -1.0]))]
-    programs = tuple(Program(name=f"S{k}", setup=replace(SETUP, name=f"S{k}", frame=frame), sections=(
-        passes(EVERY_FORM["ball"], np.arange(-3.0, 3.5, pitch), z=-0.003 * k, x=(-9.0, 9.0), operation=f"face-{k}"),))
-        for k, frame in enumerate(frames))
+    frames = [
+        Frame(
+            np.array([*middle[:2], part.high[2]]),
+            np.array([1.0, 0.0, 0.0]),
+            np.array([0.0, 0.0, 1.0]),
+        ),
+        Frame(
+            np.array([*middle[:2], part.low[2]]),
+            np.array([1.0, 0.0, 0.0]),
+            np.array([0.0, 0.0, -1.0]),
+        ),
+    ]
+    programs = tuple(
+        Program(
+            name=f"S{k}",
+            setup=replace(SETUP, name=f"S{k}", frame=frame),
+            sections=(
+                passes(
+                    EVERY_FORM["ball"],
+                    np.arange(-3.0, 3.5, pitch),
+                    z=-0.003 * k,
+                    x=(-9.0, 9.0),
+                    operation=f"face-{k}",
+                ),
+            ),
+        )
+        for k, frame in enumerate(frames)
+    )
     monkeypatch.setattr(fine, "read_back", lambda session, posted, machines: programs)
-    bench = SimpleNamespace(context_of=lambda session: SimpleNamespace(part=part, shop=SimpleNamespace(machines={})))
+    bench = SimpleNamespace(
+        context_of=lambda session: SimpleNamespace(part=part, shop=SimpleNamespace(machines={}))
+    )
     session = SimpleNamespace(posted=("a program",))
-    level = [tag for tag in part.tags if part.graph().box_low[tag - 1][2] == approx(part.graph().box_high[tag - 1][2], abs=1e-3)]
+    level = [
+        tag
+        for tag in part.tags
+        if part.graph().box_low[tag - 1][2] == approx(part.graph().box_high[tag - 1][2], abs=1e-3)
+    ]
     for tag in level:
         found = measure_fine(bench, session, [tag], 0.5)
         below = bool(found.scallop_at[2] == approx(part.low[2]))

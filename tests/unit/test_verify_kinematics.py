@@ -16,7 +16,15 @@ from trunnion.model.toolpath import Motion, Toolpath
 from trunnion.shop import load_shop
 from trunnion.verify.kernels.rotary import follow
 from trunnion.verify.kernels.timing import block_times
-from trunnion.verify.machine.kinematics import UP, linear_positions, poses_of, rotary_angles, stands_of, turned, turned_axes
+from trunnion.verify.machine.kinematics import (
+    UP,
+    linear_positions,
+    poses_of,
+    rotary_angles,
+    stands_of,
+    turned,
+    turned_axes,
+)
 from trunnion.verify.machine.limits import limit_findings
 from trunnion.verify.machine.times import times_of
 from trunnion.verify.motion import moves_of
@@ -24,19 +32,46 @@ from verify_tools import MACHINE, flat
 
 SHOP = load_shop()
 TABLE, FORK = SHOP.machine("Trunnion 650"), SHOP.machine("Gantry 6000 fork")
-HEAD_AND_TABLE = replace(MACHINE, axes=(
-    *MACHINE.axes,
-    Axis(name="B", kind="rotary", low=-100.0, high=100.0, rapid=9000.0, acceleration=600.0, direction=(0.0, 1.0, 0.0), carries="tool"),
-    Axis(name="C", kind="rotary", low=-720.0, high=720.0, rapid=9000.0, acceleration=600.0, direction=(0.0, 0.0, -1.0), carries="work")))
+HEAD_AND_TABLE = replace(
+    MACHINE,
+    axes=(
+        *MACHINE.axes,
+        Axis(
+            name="B",
+            kind="rotary",
+            low=-100.0,
+            high=100.0,
+            rapid=9000.0,
+            acceleration=600.0,
+            direction=(0.0, 1.0, 0.0),
+            carries="tool",
+        ),
+        Axis(
+            name="C",
+            kind="rotary",
+            low=-720.0,
+            high=720.0,
+            rapid=9000.0,
+            acceleration=600.0,
+            direction=(0.0, 0.0, -1.0),
+            carries="work",
+        ),
+    ),
+)
 
 
 def leaning(*stops, feed=1000.0, spindle=10000.0):
     """Return a section of (tip, axis) stops, the first a rapid."""
     n = len(stops)
     axis = np.array([s[1] for s in stops], dtype=float)
-    path = Toolpath(position=[s[0] for s in stops], axis=axis / np.linalg.norm(axis, axis=1, keepdims=True),
-                    motion=[Motion.RAPID, *[Motion.LINE] * (n - 1)], centre=np.full((n, 3), np.nan), feed=[0.0, *[feed] * (n - 1)],
-                    mark=[0] * n)
+    path = Toolpath(
+        position=[s[0] for s in stops],
+        axis=axis / np.linalg.norm(axis, axis=1, keepdims=True),
+        motion=[Motion.RAPID, *[Motion.LINE] * (n - 1)],
+        centre=np.full((n, 3), np.nan),
+        feed=[0.0, *[feed] * (n - 1)],
+        mark=[0] * n,
+    )
     return ProgramSection(operation="op", tool=flat(10.0)(flute=25.0), spindle=spindle, path=path)
 
 
@@ -101,13 +136,24 @@ def test_a_fork_swings_its_pivot_around_a_tip_that_stands():
 
 def test_a_table_swings_the_tip_around_its_pivot():
     # The tip stands 50 above the table's A axis, which lies 50 above the table: at A 90 about -x it comes to y + 50, z - 50.
-    place = linear_positions(np.array([[0.0, 0.0, 100.0]] * 2), np.zeros(2), np.array([[0.0, 0.0], [math.pi / 2, 0.0]]), TABLE)
+    place = linear_positions(
+        np.array([[0.0, 0.0, 100.0]] * 2),
+        np.zeros(2),
+        np.array([[0.0, 0.0], [math.pi / 2, 0.0]]),
+        TABLE,
+    )
     assert place[1] - place[0] == approx([0.0, 50.0, -50.0])
 
 
 def test_poses_along_an_arc_lie_on_its_circle():
-    path = Toolpath(position=[(10.0, 0.0, 0.0), (0.0, 10.0, 4.0)], axis=[UP, UP], motion=[Motion.RAPID, Motion.ARC_CCW],
-                    centre=[(np.nan,) * 3, (0.0, 0.0, 0.0)], feed=[0.0, 100.0], mark=[0, 0])
+    path = Toolpath(
+        position=[(10.0, 0.0, 0.0), (0.0, 10.0, 4.0)],
+        axis=[UP, UP],
+        motion=[Motion.RAPID, Motion.ARC_CCW],
+        centre=[(np.nan,) * 3, (0.0, 0.0, 0.0)],
+        feed=[0.0, 100.0],
+        mark=[0, 0],
+    )
     _, tip, _ = poses_of(moves_of((replace(leaning(((0, 0, 0), UP)), path=path),)))
     assert len(tip) > 40
     assert np.hypot(tip[:, 0], tip[:, 1]) == approx(10.0)
@@ -116,7 +162,9 @@ def test_poses_along_an_arc_lie_on_its_circle():
 
 def test_the_axis_turns_evenly_in_the_plane_of_both_ends():
     start, end = np.array([lean(0.0)]), np.array([lean(60.0)])
-    assert turned_axes(start, end, np.array([math.pi / 3]), np.array([0.25]))[0] == approx(lean(15.0))
+    assert turned_axes(start, end, np.array([math.pi / 3]), np.array([0.25]))[0] == approx(
+        lean(15.0)
+    )
 
 
 def test_turning_about_the_tip_takes_what_the_rotary_axis_needs():
@@ -137,10 +185,18 @@ def test_a_long_cut_takes_its_length_over_the_feed_and_the_ramps():
 
 def test_an_arc_is_no_faster_than_its_radius_allows():
     # Radius 1 mm at 3000 mm/s2: sqrt(3000) mm/s at most, though the feed asks for 200.
-    path = Toolpath(position=[(1.0, 0.0, 0.0), (1.0, 0.0, 0.0)], axis=[UP, UP], motion=[Motion.RAPID, Motion.ARC_CCW],
-                    centre=[(np.nan,) * 3, (0.0, 0.0, 0.0)], feed=[0.0, 12000.0], mark=[0, 0])
+    path = Toolpath(
+        position=[(1.0, 0.0, 0.0), (1.0, 0.0, 0.0)],
+        axis=[UP, UP],
+        motion=[Motion.RAPID, Motion.ARC_CCW],
+        centre=[(np.nan,) * 3, (0.0, 0.0, 0.0)],
+        feed=[0.0, 12000.0],
+        mark=[0, 0],
+    )
     moves = moves_of((replace(leaning(((0, 0, 0), UP)), path=path),))
-    assert times_of(moves, stands_of(moves, MACHINE, np.zeros(3)), MACHINE).speed.max() == approx(math.sqrt(3000.0))
+    assert times_of(moves, stands_of(moves, MACHINE, np.zeros(3)), MACHINE).speed.max() == approx(
+        math.sqrt(3000.0)
+    )
 
 
 def test_three_axes_refuse_a_leaning_tool_in_words():
@@ -150,9 +206,16 @@ def test_three_axes_refuse_a_leaning_tool_in_words():
 
 
 def test_a_lean_beyond_the_rotary_axis_is_an_error_and_one_within_it_is_not():
-    short = replace(TABLE, axes=tuple(replace(a, low=-20.0, high=20.0) if a.name == "A" else a for a in TABLE.axes))
+    short = replace(
+        TABLE,
+        axes=tuple(replace(a, low=-20.0, high=20.0) if a.name == "A" else a for a in TABLE.axes),
+    )
     (finding,) = said(leaning(((0, 0, 0), lean(0.0)), ((5, 0, 0), lean(25.0, 90.0))), short)
-    assert finding.code == "verify.rotary" and "needs A" in finding.text and "has -20 to 20" in finding.text
+    assert (
+        finding.code == "verify.rotary"
+        and "needs A" in finding.text
+        and "has -20 to 20" in finding.text
+    )
     assert not said(leaning(((0, 0, 0), lean(0.0)), ((5, 0, 0), lean(15.0, 90.0))), short)
 
 
@@ -175,13 +238,31 @@ def test_each_pose_takes_the_nearer_of_both_ways_as_a_plain_search_does():
     for k in range(60):
         tried = []
         for way in (0, 1) if k else (1,):
-            turns = [[before[a]] if free[k, way, a] else angles[k, way, a] + 2 * math.pi * np.arange(-9, 10) for a in (0, 1)]
-            best = [min(t, key=lambda v, a=a: (max(low[a] - v, v - high[a], 0.0) > 1e-9, abs(v - before[a]))) for a, t in enumerate(turns)]
+            turns = [
+                [before[a]]
+                if free[k, way, a]
+                else angles[k, way, a] + 2 * math.pi * np.arange(-9, 10)
+                for a in (0, 1)
+            ]
+            best = [
+                min(
+                    t,
+                    key=lambda v, a=a: (
+                        max(low[a] - v, v - high[a], 0.0) > 1e-9,
+                        abs(v - before[a]),
+                    ),
+                )
+                for a, t in enumerate(turns)
+            ]
             out = sum(not low[a] - 1e-9 <= best[a] <= high[a] + 1e-9 for a in (0, 1))
             tried.append((out, sum(abs(b - p) for b, p in zip(best, before, strict=True)), best))
         out, cost, best = min(tried, key=lambda t: t[:2])
         assert out or chosen[k] == approx(best)
-        before, turned_plain, outside_plain = chosen[k].copy(), turned_plain + cost, outside_plain + (out > 0)
+        before, turned_plain, outside_plain = (
+            chosen[k].copy(),
+            turned_plain + cost,
+            outside_plain + (out > 0),
+        )
     assert outside == outside_plain
     assert outside or turned_by == approx(turned_plain)
 

@@ -34,7 +34,9 @@ def slot(feed=3000.0, width=10.0, depth=DEPTH, chosen=3000.0, spindle=10000.0):
 
 def judged(section, machine=MACHINE, material=MATERIAL, **choices):
     """Return the verdict on a section in a blank that stands 6 mm over the part; coverage is not its subject."""
-    return proof(section, blank=HIGH_BLANK, machine=machine, material=material, coverage=0.0, **choices)
+    return proof(
+        section, blank=HIGH_BLANK, machine=machine, material=material, coverage=0.0, **choices
+    )
 
 
 def codes(verdict):
@@ -45,9 +47,16 @@ def test_a_full_slot_has_the_chips_and_the_power_of_the_formula():
     # fz = 3000 / (3 * 10000) = 0.1; h = 0.1 * 2 / pi; k_c = 700 h^-0.25; Q = 10 * 6 * 3000 = 180 cm3/min.
     section = slot()
     moves = moves_of((section,))
-    run = StockRun(removed=np.where(moves.rapid, 0.0, 60.0 * moves.length), rapid_depth=np.zeros(4), rapid_place=np.zeros((4, 3)),
-                   body_depth=np.zeros(4), engagement=np.full(4, math.pi), depth_of_cut=np.full(4, 6.0), widest=np.full(4, 10.0),
-                   peak=np.ones(4))
+    run = StockRun(
+        removed=np.where(moves.rapid, 0.0, 60.0 * moves.length),
+        rapid_depth=np.zeros(4),
+        rapid_place=np.zeros((4, 3)),
+        body_depth=np.zeros(4),
+        engagement=np.full(4, math.pi),
+        depth_of_cut=np.full(4, 6.0),
+        widest=np.full(4, 10.0),
+        peak=np.ones(4),
+    )
     speed = np.where(moves.rapid, 0.0, 50.0)
     load = load_of(moves, run, speed, (section,), 0.5, MATERIAL)
     force = 700.0 * (0.2 / math.pi) ** -0.25
@@ -63,7 +72,9 @@ def test_a_move_through_the_air_beside_a_cut_has_no_load():
     # Down beside the blank at more than three times the slot's feed: it takes nothing, though the stretch about it reaches into the slot.
     stops = [(-35.5, 0.0, 30.0), (-35.5, 0.0, TOP + 2.0), (-35.5, 0.0, TOP), *SLOT[2:]]
     section = program_section(SLOTTER, stops, operation="slot", rapid_to=1)
-    fast = replace(slot(), path=replace(section.path, feed=np.array([0.0, 0.0, 10_000.0, 3000.0, 3000.0])))
+    fast = replace(
+        slot(), path=replace(section.path, feed=np.array([0.0, 0.0, 10_000.0, 3000.0, 3000.0]))
+    )
     measured = judged(fast).operations[0]
     assert measured.power == approx(4.2, rel=0.05)
     assert measured.rate == approx(180.0, rel=0.02)
@@ -73,7 +84,10 @@ def test_a_cut_narrower_than_the_cells_has_about_the_power_of_the_formula():
     # ae 0.3 at D 10: 0.348 rad, of which the chip's mean is a share of 0.172; k_c = 700 (0.1 * 0.172)^-0.25; Q = 5.4 cm3/min. The stock
     # has columns 0.5 mm apart, and gives one of them.
     beside = [(x, 22.7, z) for x, _, z in SLOT]
-    section = replace(slot(), path=replace(program_section(SLOTTER, beside, rapid_to=1).path, feed=slot().path.feed))
+    section = replace(
+        slot(),
+        path=replace(program_section(SLOTTER, beside, rapid_to=1).path, feed=slot().path.feed),
+    )
     power = 5.4 * 700.0 * (0.1 * 0.1725) ** -0.25 / 60_000.0
     measured = judged(section).operations[0]
     assert measured.engaged == 0.0
@@ -82,25 +96,40 @@ def test_a_cut_narrower_than_the_cells_has_about_the_power_of_the_formula():
 
 def test_the_least_angle_is_that_of_a_cut_all_along_the_flutes():
     # 50 mm2 along 20 mm of flutes: 2.5 wide, a quarter of the diameter.
-    assert least_angle(np.array([50.0, 0.0]), np.full(2, 5.0), np.full(2, 20.0)) == approx([math.pi / 3.0, 0.0])
+    assert least_angle(np.array([50.0, 0.0]), np.full(2, 5.0), np.full(2, 20.0)) == approx(
+        [math.pi / 3.0, 0.0]
+    )
 
 
 def test_a_short_widening_counts_for_no_more_than_its_own_section():
     # 94 mm with 3.4 mm2 on the mean; over a diameter 2.9 mm wide and 6.5 deep, eight times the mean of the widths that were seen.
     moves = moves_of((slot(),))
-    run = StockRun(removed=np.where(moves.rapid, 0.0, 3.4 * moves.length), rapid_depth=np.zeros(4), rapid_place=np.zeros((4, 3)),
-                   body_depth=np.zeros(4), engagement=np.full(4, 2.0), depth_of_cut=np.full(4, 6.5), widest=np.full(4, 2.9),
-                   peak=np.full(4, 8.0))
-    assert load_of(moves, run, np.where(moves.rapid, 0.0, 50.0), (slot(),), 0.5, MATERIAL).rate[2] == approx(2.9 * 6.5 * 3.0)
+    run = StockRun(
+        removed=np.where(moves.rapid, 0.0, 3.4 * moves.length),
+        rapid_depth=np.zeros(4),
+        rapid_place=np.zeros((4, 3)),
+        body_depth=np.zeros(4),
+        engagement=np.full(4, 2.0),
+        depth_of_cut=np.full(4, 6.5),
+        widest=np.full(4, 2.9),
+        peak=np.full(4, 8.0),
+    )
+    assert load_of(moves, run, np.where(moves.rapid, 0.0, 50.0), (slot(),), 0.5, MATERIAL).rate[
+        2
+    ] == approx(2.9 * 6.5 * 3.0)
 
 
 def test_the_mean_chip_over_half_a_turn_is_two_over_pi():
-    assert mean_share(np.array([math.pi, math.pi / 2, 0.0])) == approx([2 / math.pi, 2 / math.pi, 0.0])
+    assert mean_share(np.array([math.pi, math.pi / 2, 0.0])) == approx(
+        [2 / math.pi, 2 / math.pi, 0.0]
+    )
 
 
 def test_volumes_that_come_in_steps_are_spread_over_the_stretch():
     # A hundred blocks of 0.1 mm; every fifth takes a column that the others only pass: 2 mm2 on the mean.
-    section = program_section(SLOTTER, [(0.0, 0.0, 0.0), *((0.1 * k, 0.0, 0.0) for k in range(1, 101))])
+    section = program_section(
+        SLOTTER, [(0.0, 0.0, 0.0), *((0.1 * k, 0.0, 0.0) for k in range(1, 101))]
+    )
     moves = moves_of((section,))
     removed = np.where(np.arange(101) % 5 == 0, 1.0, 0.0)
     removed[0] = 0.0
@@ -110,9 +139,13 @@ def test_volumes_that_come_in_steps_are_spread_over_the_stretch():
 def test_a_stretch_ends_at_a_rapid():
     stops = [(0.0, 0.0, 0.0), (1.0, 0.0, 0.0), (2.0, 0.0, 0.0), (3.0, 0.0, 0.0)]
     section = program_section(SLOTTER, stops, rapid_to=0)
-    middle = replace(section, path=replace(section.path, motion=[0, 1, 0, 1], feed=[0.0, 100.0, 0.0, 100.0]))
+    middle = replace(
+        section, path=replace(section.path, motion=[0, 1, 0, 1], feed=[0.0, 100.0, 0.0, 100.0])
+    )
     moves = moves_of((middle,))
-    assert stretched(moves, np.array([0.0, 5.0, 0.0, 1.0]), np.full(4, 50.0)) == approx([0.0, 5.0, 0.0, 1.0])
+    assert stretched(moves, np.array([0.0, 5.0, 0.0, 1.0]), np.full(4, 50.0)) == approx(
+        [0.0, 5.0, 0.0, 1.0]
+    )
 
 
 def test_the_proof_measures_a_slot_as_what_it_is():
@@ -178,7 +211,12 @@ def test_nothing_is_said_of_loads_where_nothing_is_known():
 @pytest.mark.parametrize(("passes", "remarked"), [(1, False), (12, True)])
 def test_cutting_air_for_long_is_remarked_and_a_rest_operation_offered(passes, remarked):
     stops = [*SLOT[:2], *[SLOT[2], SLOT[1]] * passes, SLOT[3]]
-    section = replace(program_section(SLOTTER, stops, operation="slot", rapid_to=1), width=10.0, depth=6.0, feed=1000.0)
+    section = replace(
+        program_section(SLOTTER, stops, operation="slot", rapid_to=1),
+        width=10.0,
+        depth=6.0,
+        feed=1000.0,
+    )
     verdict = judged(section)
     assert ("verify.air" in codes(verdict)) is remarked
     assert [o.kind for o in verdict.offers] == (["rest"] if remarked else [])
@@ -188,5 +226,9 @@ def test_blocks_keep_what_was_measured_of_them():
     verdict = judged(slot())
     (blocks,) = verdict.blocks
     assert len(blocks.time) == len(SLOT) and blocks.rate.dtype == np.float32
-    assert np.isnan(blocks.left_min[0]) and blocks.left_min[2] == approx(0.0, abs=1e-3) and blocks.left_max[2] >= blocks.left_mean[2]
+    assert (
+        np.isnan(blocks.left_min[0])
+        and blocks.left_min[2] == approx(0.0, abs=1e-3)
+        and blocks.left_max[2] >= blocks.left_mean[2]
+    )
     assert float(blocks.removed.sum()) == approx(verdict.operations[0].removed, rel=1e-5)

@@ -18,7 +18,9 @@ from trunnion.verify.motion import moves_of
 from trunnion.verify.stock import Stock, blank_box, run_stock
 from verify_tools import bull, flat, program_section
 
-BOX = Blank(frame=WORLD, low=(0.0, 0.0, 0.0), high=(100.0, 60.0, 20.0), material="test", density=2.8)
+BOX = Blank(
+    frame=WORLD, low=(0.0, 0.0, 0.0), high=(100.0, 60.0, 20.0), material="test", density=2.8
+)
 
 
 def cut(tool, stops, cell=0.25, rapid_to=0):
@@ -51,14 +53,20 @@ def test_a_ramp_leaves_the_lowest_that_its_sweep_reaches():
 
 
 def test_every_column_is_as_a_plain_loop_says():
-    tool, stops = bull(12.0, 3.0)(), [(10, 10, 25), (30, 20, 15), (55, 41.3, 13), ((35.0, 41.3, 13.0), (45.0, 41.3))]
+    tool, stops = (
+        bull(12.0, 3.0)(),
+        [(10, 10, 25), (30, 20, 15), (55, 41.3, 13), ((35.0, 41.3, 13.0), (45.0, 41.3))],
+    )
     stock = cut(tool, stops, cell=2.0)[0]
     y, x = (np.indices(stock.field.top.shape) + 0.5) * 2.0
     top = np.full(x.shape, 20.0)
     for t in np.linspace(0.0, 1.0, 4001):
         angle = t * math.pi
-        for tip in ([10 + 20 * t, 10 + 10 * t, 25 - 10 * t], [30 + 25 * t, 20 + 21.3 * t, 15 - 2 * t],
-                    [45 + 10 * math.cos(angle), 41.3 + 10 * math.sin(angle), 13.0]):
+        for tip in (
+            [10 + 20 * t, 10 + 10 * t, 25 - 10 * t],
+            [30 + 25 * t, 20 + 21.3 * t, 15 - 2 * t],
+            [45 + 10 * math.cos(angle), 41.3 + 10 * math.sin(angle), 13.0],
+        ):
             top = np.minimum(top, tip[2] + lowest_height(tool, np.hypot(x - tip[0], y - tip[1])))
     # Samples along the moves stay short of the sweep's very rim, where a column falls from the blank's top at once.
     assert (stock.field.top <= top + tolerance.COINCIDENT).all()
@@ -76,11 +84,15 @@ def test_a_rapid_back_over_a_fresh_floor_is_clear():
     there = program_section(flat(10.0)(), stops)
     back = program_section(flat(10.0)(), [(80, 30, 15), (20, 30, 15), (20, 30, 25)], rapid_to=3)
     moves = moves_of([there, back])
-    assert run_stock(Stock.of(BOX, 0.5), moves, WORLD, Sweep.of(moves, 2.0)).rapid_depth.max() == 0.0
+    assert (
+        run_stock(Stock.of(BOX, 0.5), moves, WORLD, Sweep.of(moves, 2.0)).rapid_depth.max() == 0.0
+    )
 
 
 def test_a_sloped_rapid_is_judged_at_the_height_it_has():
-    run = cut(flat(10.0)(), [(-20, 30, 15), (-20, 30, 15), (-6.5, 30, 19.0), (50, 30, 60)], rapid_to=4)[1]
+    run = cut(
+        flat(10.0)(), [(-20, 30, 15), (-20, 30, 15), (-6.5, 30, 19.0), (50, 30, 60)], rapid_to=4
+    )[1]
     assert run.rapid_depth.max() == 0.0
 
 
@@ -88,7 +100,9 @@ def test_a_holder_beside_standing_stock_is_seen():
     # Stickout 8, nose radius 12: a slot 9 deep, cut in two levels, leaves stock 1 mm into the holder.
     stops = [(20, 30, 25), (20, 30, 15), (80, 30, 15), (80, 30, 11), (20, 30, 11)]
     assert cut(flat(10.0)(flute=5.0), stops)[1].body_depth[4] == approx(1.0, abs=0.1)
-    assert cut(flat(10.0)(flute=8.0), stops)[1].body_depth.max() == approx(0.0, abs=tolerance.COINCIDENT)
+    assert cut(flat(10.0)(flute=8.0), stops)[1].body_depth.max() == approx(
+        0.0, abs=tolerance.COINCIDENT
+    )
 
 
 def test_what_short_flutes_leave_above_them_is_met_by_the_shank():
@@ -103,7 +117,9 @@ def test_a_field_too_large_is_refused_with_what_to_do():
 
 
 def test_a_blank_is_found_in_a_turned_setup():
-    turned = Frame(np.array([100.0, 0.0, 20.0]), np.array([-1.0, 0.0, 0.0]), np.array([0.0, 0.0, -1.0]))
+    turned = Frame(
+        np.array([100.0, 0.0, 20.0]), np.array([-1.0, 0.0, 0.0]), np.array([0.0, 0.0, -1.0])
+    )
     low, high = blank_box(BOX, turned)
     assert (low, high) == (approx([0.0, 0.0, 0.0]), approx([100.0, 60.0, 20.0]))
 

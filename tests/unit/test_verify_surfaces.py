@@ -8,7 +8,14 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from pytest import approx
 
-from samples import block_with_pocket_shape, drilled_block_shape, moved, read, turned, two_pockets_and_a_rib_shape
+from samples import (
+    block_with_pocket_shape,
+    drilled_block_shape,
+    moved,
+    read,
+    turned,
+    two_pockets_and_a_rib_shape,
+)
 from trunnion.findings import BadInput
 from trunnion.geometry.frame import WORLD, Frame
 from trunnion.part import surfaces as strips
@@ -17,7 +24,11 @@ from trunnion.part.surfaces import Guide, Profile, level_face, line_edges, strip
 from trunnion.verify.contact import PartContact
 from trunnion.verify.finish.coverage import samples_of
 
-SHAPES = {"pocket": block_with_pocket_shape, "hole": drilled_block_shape, "panel": two_pockets_and_a_rib_shape}
+SHAPES = {
+    "pocket": block_with_pocket_shape,
+    "hole": drilled_block_shape,
+    "panel": two_pockets_and_a_rib_shape,
+}
 
 
 @pytest.mark.parametrize("name", SHAPES)
@@ -37,12 +48,18 @@ def test_the_flow_through_the_samples_is_the_parts_volume(name):
 
 
 def test_faces_are_exact_strips_in_a_turned_part_and_its_own_frame():
-    part = read(turned(moved(block_with_pocket_shape(), (1000.0, 200.0, 0.0)), (1.0, 2.0, 3.0), 40.0))
+    part = read(
+        turned(moved(block_with_pocket_shape(), (1000.0, 200.0, 0.0)), (1.0, 2.0, 3.0), 40.0)
+    )
     half = np.radians(40.0) / 2
     w, (x, y, z) = np.cos(half), np.sin(half) * np.array([1.0, 2.0, 3.0]) / np.sqrt(14.0)
-    turn = np.array([[1 - 2 * (y * y + z * z), 2 * (x * y - z * w), 2 * (x * z + y * w)],
-                     [2 * (x * y + z * w), 1 - 2 * (x * x + z * z), 2 * (y * z - x * w)],
-                     [2 * (x * z - y * w), 2 * (y * z + x * w), 1 - 2 * (x * x + y * y)]])
+    turn = np.array(
+        [
+            [1 - 2 * (y * y + z * z), 2 * (x * y - z * w), 2 * (x * z + y * w)],
+            [2 * (x * y + z * w), 1 - 2 * (x * x + z * z), 2 * (y * z - x * w)],
+            [2 * (x * z - y * w), 2 * (y * z + x * w), 1 - 2 * (x * x + y * y)],
+        ]
+    )
     surfaces = surfaces_of(part, Frame(turn @ [1000.0, 200.0, 0.0], turn[:, 0], turn[:, 2]))
     assert not len(surfaces.free)
     assert sorted(surfaces.region_z.round(6)) == approx([0.0, 8.0, 18.0])
@@ -68,7 +85,12 @@ def test_contact_with_a_face_without_closed_form_is_refused_without_its_facets()
 
 
 def test_an_outline_with_a_gap_of_one_rounding_error_is_closed() -> None:
-    sides = ((0.0, 0.0, 4.0, 0.0), (4.0, 0.0, 4.0, 3.0), (4.0, 3.0000000000000004, 0.0, 3.0), (0.0, 3.0, 0.0, 0.0))
+    sides = (
+        (0.0, 0.0, 4.0, 0.0),
+        (4.0, 0.0, 4.0, 3.0),
+        (4.0, 3.0000000000000004, 0.0, 3.0),
+        (0.0, 3.0, 0.0, 0.0),
+    )
     edges = [e for side in sides for e in line_edges(np.array(side).reshape(2, 2))]
     ends = [tuple(end) for end in level_face(1, 0.0, edges).outline[:, :4].reshape(-1, 2)]
     assert sorted(ends.count(end) for end in set(ends)) == [2, 2, 2, 2]
@@ -77,14 +99,21 @@ def test_an_outline_with_a_gap_of_one_rounding_error_is_closed() -> None:
 def wall_under(tops: list[tuple[float, float]]) -> np.ndarray:
     """Return the strips of an upright wall from s = 0 and u = 0 up to a chain of points (s, u)."""
     outline = np.array([(tops[0][0], 0.0), *tops, (tops[-1][0], 0.0), (tops[0][0], 0.0)])
-    made = strips_of(Guide(0, 0.0, 0.0, 1.0, 0.0), Profile(0.0, 0.0, 0.0, 1.0), line_edges(outline), 1.0)
+    made = strips_of(
+        Guide(0, 0.0, 0.0, 1.0, 0.0), Profile(0.0, 0.0, 0.0, 1.0), line_edges(outline), 1.0
+    )
     assert made is not None
     return made
 
 
 def area_of(rows: np.ndarray) -> float:
     half = 0.5 * (rows[:, strips.U1] - rows[:, strips.U0])
-    width = rows[:, strips.RA] + rows[:, strips.RB] * half - rows[:, strips.LA] - rows[:, strips.LB] * half
+    width = (
+        rows[:, strips.RA]
+        + rows[:, strips.RB] * half
+        - rows[:, strips.LA]
+        - rows[:, strips.LB] * half
+    )
     return float((width * 2.0 * half).sum())
 
 
@@ -97,7 +126,13 @@ def test_a_dip_in_a_walls_rim_stays_open_though_its_sides_differ_by_a_rounding(o
 
 
 @settings(deadline=None)
-@given(st.lists(st.sampled_from([3.0, 4.0, 5.0, 5.0 + 1.1e-6, 5.0 + 2.3e-6, 4.0 - 1.5e-6]), min_size=2, max_size=9))
+@given(
+    st.lists(
+        st.sampled_from([3.0, 4.0, 5.0, 5.0 + 1.1e-6, 5.0 + 2.3e-6, 4.0 - 1.5e-6]),
+        min_size=2,
+        max_size=9,
+    )
+)
 def test_a_walls_strips_cover_what_lies_under_its_rim(heights: list[float]) -> None:
     rows = wall_under([(2.0 * k, u) for k, u in enumerate(heights)])
     assert area_of(rows) == approx(float(np.trapezoid(heights, dx=2.0)), abs=1e-4)

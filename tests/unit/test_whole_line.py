@@ -45,8 +45,21 @@ def test_every_operation_of_b1_passes(line):
 
 def test_everything_is_written(line):
     names = {path.name for path in line[2].iterdir()}
-    assert names == {f"B1.{end}" for end in ("S1.nc", "cl", "tools.json", "features.xml", "process.xml", "features.png", "toolpaths.png",
-                                             "deviation.png", "report.html", "trunnion")}
+    assert names == {
+        f"B1.{end}"
+        for end in (
+            "S1.nc",
+            "cl",
+            "tools.json",
+            "features.xml",
+            "process.xml",
+            "features.png",
+            "toolpaths.png",
+            "deviation.png",
+            "report.html",
+            "trunnion",
+        )
+    }
 
 
 def test_arcs_stay_arcs(line):
@@ -63,8 +76,17 @@ def test_linuxcnc_moves_as_we_mean(line, tmp_path):
 
 def test_the_tool_list_has_the_documented_keys(line):
     tools = json.loads((line[2] / "B1.tools.json").read_text())
-    assert {"number", "form", "diameter", "corner_radius", "taper_deg", "flute_length", "stickout", "gauge_length",
-            "holder"} <= tools[0].keys()
+    assert {
+        "number",
+        "form",
+        "diameter",
+        "corner_radius",
+        "taper_deg",
+        "flute_length",
+        "stickout",
+        "gauge_length",
+        "holder",
+    } <= tools[0].keys()
 
 
 def test_the_report_names_the_verdict_and_shows_pictures(line):
@@ -75,7 +97,12 @@ def test_the_report_names_the_verdict_and_shows_pictures(line):
 
 def test_the_features_picture_shows_each_kind_in_its_colour(line):
     from trunnion.report.palette import load_palette
-    pixels = np.asarray(Image.open(line[2] / "B1.features.png").convert("RGB")).reshape(-1, 3).astype(float)
+
+    pixels = (
+        np.asarray(Image.open(line[2] / "B1.features.png").convert("RGB"))
+        .reshape(-1, 3)
+        .astype(float)
+    )
     hues = pixels / np.maximum(np.linalg.norm(pixels, axis=1, keepdims=True), 1.0)
     for kind in line[1].recognition.counts():
         colour = np.array(load_palette().kind(kind), dtype=float)
@@ -93,7 +120,15 @@ def test_the_same_part_gives_the_same_bytes(line, tmp_path):
     engine = Engine()
     session = engine.run(engine.open(Path(str(sample("B1")))))
     engine.write(session, tmp_path, name="B1")
-    for name in ("B1.S1.nc", "B1.cl", "B1.tools.json", "B1.features.xml", "B1.process.xml", "B1.deviation.png", "B1.report.html"):
+    for name in (
+        "B1.S1.nc",
+        "B1.cl",
+        "B1.tools.json",
+        "B1.features.xml",
+        "B1.process.xml",
+        "B1.deviation.png",
+        "B1.report.html",
+    ):
         assert (tmp_path / name).read_bytes() == (line[2] / name).read_bytes(), name
 
 
@@ -122,7 +157,9 @@ def test_an_operation_whose_inputs_are_the_same_keeps_its_toolpath(line):
     engine, session, _ = line
     last = session.process.operations[-1]
     slower = replace(last, data=replace(last.data, feed=last.data.feed / 2), by_hand=True)
-    changed = engine.run(replace(session, process=session.process.with_operation(slower)), until="toolpath")
+    changed = engine.run(
+        replace(session, process=session.process.with_operation(slower)), until="toolpath"
+    )
     same = [a.operation for a, b in zip(session.paths, changed.paths, strict=True) if a is b]
     assert same == [o.id for o in session.process.operations[:-1]]
     assert changed.process.operation(last.id).data.feed == slower.data.feed
@@ -156,7 +193,12 @@ def test_a_clamp_in_the_way_fails_the_proof_and_leaves_the_plan_as_it_is(line, t
     low = session.part.low
     corners = [low + [x, y, z] for z in (0.0, 60.0) for y in (60.0, 100.0) for x in (-30.0, 5.0)]
     quads = [(0, 2, 3, 1), (4, 5, 7, 6), (0, 1, 5, 4), (2, 6, 7, 3), (0, 4, 6, 2), (1, 3, 7, 5)]
-    rows = [f"vertex {x} {y} {z}" for a, b, c, d in quads for n in (a, b, c, a, c, d) for x, y, z in [corners[n]]]
+    rows = [
+        f"vertex {x} {y} {z}"
+        for a, b, c, d in quads
+        for n in (a, b, c, a, c, d)
+        for x, y, z in [corners[n]]
+    ]
     (tmp_path / "clamp.stl").write_text("solid clamp\n" + "\n".join(rows))
     clamped = engine.with_fixtures(session, [str(tmp_path / "clamp.stl")])
     assert [name for name, state in engine.states(clamped).items() if state != "done"] == ["verify"]
@@ -175,7 +217,10 @@ def test_a_program_that_fails_is_written_as_rejected_and_the_released_one_goes(l
     names = engine.write(failed, tmp_path / "out", name="B1")
     assert failed.verdict.outcome is Outcome.FAILED and failed.verdict.coverage < 0.99
     assert "B1.S1.REJECTED.nc" in names and not (tmp_path / "out" / "B1.S1.nc").exists()
-    assert "REJECTED: DO NOT RUN" in (tmp_path / "out" / "B1.S1.REJECTED.nc").read_text().splitlines()[1]
+    assert (
+        "REJECTED: DO NOT RUN"
+        in (tmp_path / "out" / "B1.S1.REJECTED.nc").read_text().splitlines()[1]
+    )
     assert "REJECTED" in (tmp_path / "out" / "B1.cl").read_text()
     assert "REJECTED" in (tmp_path / "out" / "B1.report.html").read_text()
 
@@ -184,29 +229,71 @@ def test_the_command_line_prints_the_documented_keys(tmp_path, capsys, sample_pa
     code = main(["program", str(sample_panel), "-o", str(tmp_path), "--json"])
     said = json.loads(capsys.readouterr().out)
     assert code == (0 if said["verdict"].startswith("passed") else 1)
-    assert {"verdict", "coverage", "reachable", "gouge_mm", "collisions", "rapids_in_stock", "machining_time_s", "seconds", "setups",
-            "operations", "offers", "files", "findings"} <= said.keys()
+    assert {
+        "verdict",
+        "coverage",
+        "reachable",
+        "gouge_mm",
+        "collisions",
+        "rapids_in_stock",
+        "machining_time_s",
+        "seconds",
+        "setups",
+        "operations",
+        "offers",
+        "files",
+        "findings",
+    } <= said.keys()
     assert {"name", "nc", "frame", "blank"} <= said["setups"][0].keys()
-    assert {"id", "kind", "feature", "tool", "verdict", "gouges", "left_mm", "engaged_deg", "depth_of_cut_mm", "removal_cm3_min", "chip_mm",
-            "power_kw", "power_limit_kw", "torque_nm", "air_share"} <= said["operations"][0].keys()
+    assert {
+        "id",
+        "kind",
+        "feature",
+        "tool",
+        "verdict",
+        "gouges",
+        "left_mm",
+        "engaged_deg",
+        "depth_of_cut_mm",
+        "removal_cm3_min",
+        "chip_mm",
+        "power_kw",
+        "power_limit_kw",
+        "torque_nm",
+        "air_share",
+    } <= said["operations"][0].keys()
     assert sorted(said["files"]) == sorted(path.name for path in tmp_path.iterdir())
 
 
 def test_a_plan_with_errors_is_not_released_however_well_the_rest_is_cut(line):
     from trunnion.findings import error
     from trunnion.pipeline.proving import held_back
-    verdict = held_back(line[1].verdict, [error("route.no-cutter", "no tool is small enough", "pocket-01", remedy="choose another")])
+
+    verdict = held_back(
+        line[1].verdict,
+        [error("route.no-cutter", "no tool is small enough", "pocket-01", remedy="choose another")],
+    )
     assert verdict.outcome is Outcome.FAILED
-    assert verdict.findings[0].code == "verify.errors-before" and "no tool is small enough" in verdict.findings[0].text
+    assert (
+        verdict.findings[0].code == "verify.errors-before"
+        and "no tool is small enough" in verdict.findings[0].text
+    )
 
 
 def test_a_text_from_outside_is_held_back_by_errors_of_the_part_but_not_of_the_plan(line):
     from trunnion.findings import error
     from trunnion.model.session import StepRecord
     from trunnion.pipeline.proving import errors_before, errors_of_part
+
     told = error("part.open", "the part is not closed", remedy="sew it")
-    planned = StepRecord(key="x", seconds=0.0, findings=(error("route.no-cutter", "no tool is small enough", remedy="choose another"),))
-    session = replace(line[1], part=replace(line[1].part, findings=(told,)), records={"route": planned})
+    planned = StepRecord(
+        key="x",
+        seconds=0.0,
+        findings=(error("route.no-cutter", "no tool is small enough", remedy="choose another"),),
+    )
+    session = replace(
+        line[1], part=replace(line[1].part, findings=(told,)), records={"route": planned}
+    )
     assert errors_of_part(session) == (told,)
     assert [f.code for f in errors_before(session)] == ["part.open", "route.no-cutter"]
 
@@ -215,7 +302,21 @@ def test_the_window_without_a_screen_is_one_line_and_exit_2():
     import os
     import subprocess
     import sys
-    bare = {k: v for k, v in os.environ.items() if k not in ("DISPLAY", "WAYLAND_DISPLAY", "QT_QPA_PLATFORM")}
-    said = subprocess.run([sys.executable, "-m", "trunnion_gui.app"], capture_output=True, text=True, env=bare, check=False)
+
+    bare = {
+        k: v
+        for k, v in os.environ.items()
+        if k not in ("DISPLAY", "WAYLAND_DISPLAY", "QT_QPA_PLATFORM")
+    }
+    said = subprocess.run(
+        [sys.executable, "-m", "trunnion_gui.app"],
+        capture_output=True,
+        text=True,
+        env=bare,
+        check=False,
+    )
     assert said.returncode == 2
-    assert said.stderr.startswith("trunnion-gui: no screen") and len(said.stderr.strip().splitlines()) == 1
+    assert (
+        said.stderr.startswith("trunnion-gui: no screen")
+        and len(said.stderr.strip().splitlines()) == 1
+    )

@@ -18,8 +18,13 @@ TRUNNION = load_shop().machines["Trunnion 650"]
 
 def place(turns):
     """A place on a trunnion whose table turns so many times each way."""
-    axes = tuple(replace(a, low=-360.0 * turns, high=360.0 * turns) if a.name == "C" else a for a in TRUNNION.axes)
-    return Place(machine=replace(TRUNNION, axes=axes), foot=np.zeros(3), centre=np.zeros(3), radius=60.0)
+    axes = tuple(
+        replace(a, low=-360.0 * turns, high=360.0 * turns) if a.name == "C" else a
+        for a in TRUNNION.axes
+    )
+    return Place(
+        machine=replace(TRUNNION, axes=axes), foot=np.zeros(3), centre=np.zeros(3), radius=60.0
+    )
 
 
 def spiral(turns):
@@ -31,7 +36,9 @@ def spiral(turns):
 def test_a_spiral_goes_on_from_where_the_one_before_ended() -> None:
     first = followed(spiral(4), place(20), None, 1e-3, "one")
     second = followed(spiral(4), place(20), first[-1], 1e-3, "two")
-    assert second[0] == approx(first[-1]) and abs(second[-1, 1] - first[0, 1]) == approx(np.radians(8 * 360.0))
+    assert second[0] == approx(first[-1]) and abs(second[-1, 1] - first[0, 1]) == approx(
+        np.radians(8 * 360.0)
+    )
 
 
 def test_where_an_axis_has_no_turns_left_it_begins_near_the_middle() -> None:

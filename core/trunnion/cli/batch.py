@@ -7,14 +7,26 @@ import sys
 from pathlib import Path
 from typing import Any
 
-from trunnion.cli.common import add_options, add_output, check_output, open_session, progress_of, show_json, table
+from trunnion.cli.common import (
+    add_options,
+    add_output,
+    check_output,
+    open_session,
+    progress_of,
+    show_json,
+    table,
+)
 from trunnion.cli.proof import verdict_code
 from trunnion.findings import TrunnionError
 
 
 def add(commands: Any) -> None:
     """Add the command to the command line."""
-    made = commands.add_parser("batch", help="program many parts", description="Programs many parts, each into a folder named after it.")
+    made = commands.add_parser(
+        "batch",
+        help="program many parts",
+        description="Programs many parts, each into a folder named after it.",
+    )
     made.add_argument("parts", nargs="+", metavar="PART", help="part files")
     add_output(made)
     add_options(made)
@@ -30,7 +42,14 @@ def run(chosen: argparse.Namespace) -> int:
         worst = max(worst, code)
         results.append((part, *words))
     if chosen.json:
-        show_json({"parts": [{"part": p, "verdict": v, "coverage": c, "gouge_mm": g} for p, v, c, g in results]})
+        show_json(
+            {
+                "parts": [
+                    {"part": p, "verdict": v, "coverage": c, "gouge_mm": g}
+                    for p, v, c, g in results
+                ]
+            }
+        )
     else:
         print(table([("part", "verdict", "coverage", "gouge mm"), *results], right=(2, 3)))
     return worst
@@ -46,4 +65,8 @@ def _one(chosen: argparse.Namespace, part: str) -> tuple[int, tuple[str, str, st
         return 2, ("refused", "", "")
     verdict = session.verdict
     assert verdict is not None
-    return verdict_code(session), (str(verdict.outcome), f"{verdict.coverage:.4f}", f"{verdict.gouge:.4f}")
+    return verdict_code(session), (
+        str(verdict.outcome),
+        f"{verdict.coverage:.4f}",
+        f"{verdict.gouge:.4f}",
+    )

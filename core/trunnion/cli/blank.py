@@ -23,13 +23,25 @@ def run(chosen: argparse.Namespace) -> int:
     if chosen.step:
         from trunnion.part.build import box_blank
         from trunnion.part.write import write_step
+
         write_step(box_blank(blank.frame, blank.low, blank.high), chosen.step)
     if chosen.json:
-        show_json({"kind": blank.kind, "material": blank.material, "frame": blank.frame.as_dict(), "min": list(map(float, blank.low)),
-                   "max": list(map(float, blank.high)), "volume": blank.volume, "mass_kg": blank.mass,
-                   "findings": [f.as_dict() for f in session.findings()]})
+        show_json(
+            {
+                "kind": blank.kind,
+                "material": blank.material,
+                "frame": blank.frame.as_dict(),
+                "min": list(map(float, blank.low)),
+                "max": list(map(float, blank.high)),
+                "volume": blank.volume,
+                "mass_kg": blank.mass,
+                "findings": [f.as_dict() for f in session.findings()],
+            }
+        )
     else:
         a, b, c = blank.size
-        print(f"{blank.kind} {a:.3f} x {b:.3f} x {c:.3f} mm of {blank.material}, {blank.volume / 1e3:.1f} cm3, {blank.mass:.2f} kg")
+        print(
+            f"{blank.kind} {a:.3f} x {b:.3f} x {c:.3f} mm of {blank.material}, {blank.volume / 1e3:.1f} cm3, {blank.mass:.2f} kg"
+        )
     show_findings(chosen, session.findings())
     return exit_code(session.findings())

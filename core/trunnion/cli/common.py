@@ -18,25 +18,58 @@ if TYPE_CHECKING:
     from trunnion.pipeline import Engine
 
 
-def part_command(commands: Any, name: str, help: str, description: str = "") -> argparse.ArgumentParser:
+def part_command(
+    commands: Any, name: str, help: str, description: str = ""
+) -> argparse.ArgumentParser:
     """Return the parser of a command that works on one part or project, with the options all of them have."""
-    made: argparse.ArgumentParser = commands.add_parser(name, help=help, description=description or help)
-    made.add_argument("part", metavar="PART", help="part file (.step, .stp, .stpz, .igs, .iges) or project (.trunnion)")
+    made: argparse.ArgumentParser = commands.add_parser(
+        name, help=help, description=description or help
+    )
+    made.add_argument(
+        "part",
+        metavar="PART",
+        help="part file (.step, .stp, .stpz, .igs, .iges) or project (.trunnion)",
+    )
     add_options(made)
     return made
 
 
 def add_options(made: argparse.ArgumentParser) -> None:
     """Add the options that every command has."""
-    made.add_argument("--set", action="append", default=[], metavar="KEY=VALUE", dest="words",
-                      help="change a setting (`trunnion settings` lists them); may be repeated")
-    made.add_argument("--solid", type=int, default=None, metavar="N", help="which solid of a file with several (1-based)")
-    made.add_argument("--fixture", action="append", default=[], metavar="[SETUP=]FILE", dest="fixtures",
-                      help="STEP, IGES or STL file of what holds the part, in the part's coordinates; may be repeated")
-    made.add_argument("--user-folder", type=folder_named, default=None, metavar="DIR",
-                      help="a shop's own tools, materials, machines and plans")
+    made.add_argument(
+        "--set",
+        action="append",
+        default=[],
+        metavar="KEY=VALUE",
+        dest="words",
+        help="change a setting (`trunnion settings` lists them); may be repeated",
+    )
+    made.add_argument(
+        "--solid",
+        type=int,
+        default=None,
+        metavar="N",
+        help="which solid of a file with several (1-based)",
+    )
+    made.add_argument(
+        "--fixture",
+        action="append",
+        default=[],
+        metavar="[SETUP=]FILE",
+        dest="fixtures",
+        help="STEP, IGES or STL file of what holds the part, in the part's coordinates; may be repeated",
+    )
+    made.add_argument(
+        "--user-folder",
+        type=folder_named,
+        default=None,
+        metavar="DIR",
+        help="a shop's own tools, materials, machines and plans",
+    )
     made.add_argument("--json", action="store_true", help="print the result as JSON")
-    made.add_argument("--quiet", action="store_true", help="print results only, no progress and no findings")
+    made.add_argument(
+        "--quiet", action="store_true", help="print results only, no progress and no findings"
+    )
 
 
 def folder_named(word: str) -> Path:
@@ -48,7 +81,14 @@ def folder_named(word: str) -> Path:
 
 def add_output(made: argparse.ArgumentParser) -> None:
     """Add the option that says where to write."""
-    made.add_argument("-o", "--output", type=folder_named, required=True, metavar="DIR", help="folder to write to (made when missing)")
+    made.add_argument(
+        "-o",
+        "--output",
+        type=folder_named,
+        required=True,
+        metavar="DIR",
+        help="folder to write to (made when missing)",
+    )
 
 
 def check_output(folder: Path) -> None:
@@ -86,8 +126,11 @@ def progress_of(chosen: argparse.Namespace) -> Progress:
 def open_session(chosen: argparse.Namespace, until: str | None) -> tuple[Engine, Session]:
     """Return the engine and the session of the part, with every step up to `until` done."""
     from trunnion.pipeline import Engine
+
     if chosen.user_folder is not None and not chosen.user_folder.is_dir():
-        raise BadInput(f"{chosen.user_folder}: no such folder of tools, materials, machines and plans")
+        raise BadInput(
+            f"{chosen.user_folder}: no such folder of tools, materials, machines and plans"
+        )
     engine = Engine(chosen.user_folder)
     progress = progress_of(chosen)
     session = engine.open(chosen.part, solid=chosen.solid, progress=progress.part(0.0, 0.1))
@@ -101,20 +144,34 @@ def open_session(chosen: argparse.Namespace, until: str | None) -> tuple[Engine,
 
 def add_by_hand(made: argparse.ArgumentParser) -> None:
     """Add the options that change groups of patches by hand."""
-    made.add_argument("--local", metavar="ID,...", default="", help="groups that are local features (group-05,group-06)")
+    made.add_argument(
+        "--local",
+        metavar="ID,...",
+        default="",
+        help="groups that are local features (group-05,group-06)",
+    )
     made.add_argument("--not-local", metavar="ID,...", default="", help="groups that are none")
-    made.add_argument("--move", metavar="FACE,...=ID", action="append", default=[], dest="moves",
-                      help="move faces to a group, or with =new to a new one; may be repeated")
+    made.add_argument(
+        "--move",
+        metavar="FACE,...=ID",
+        action="append",
+        default=[],
+        dest="moves",
+        help="move faces to a group, or with =new to a new one; may be repeated",
+    )
 
 
 def with_by_hand(chosen: argparse.Namespace, engine: Engine, session: Session) -> Session:
     """Return the session with the changes that the options of `add_by_hand` say."""
     from trunnion.pipeline.patches import with_local, with_moved
+
     for word in chosen.moves:
         faces, equals, group = word.partition("=")
         if not equals or not all(f.isdecimal() for f in listed(faces)):
             raise BadCall(f"--move wants FACE,...=ID, not {word}")
-        session = with_moved(engine, session, map(int, listed(faces)), "" if group == "new" else group)
+        session = with_moved(
+            engine, session, map(int, listed(faces)), "" if group == "new" else group
+        )
     for ids, value in ((chosen.local, True), (chosen.not_local, False)):
         session = with_local(session, listed(ids), value) if ids else session
     return session
@@ -145,15 +202,24 @@ def show_findings(chosen: argparse.Namespace, findings: Iterable[Finding]) -> No
         else:
             print(str(finding), file=sys.stderr)
     if notes:
-        words = "1 note that asks for nothing stands" if notes == 1 else f"{notes} notes that ask for nothing stand"
+        words = (
+            "1 note that asks for nothing stands"
+            if notes == 1
+            else f"{notes} notes that ask for nothing stand"
+        )
         print(f"{words} in --json and in the report", file=sys.stderr)
 
 
 def table(rows: Sequence[tuple[str, ...]], right: tuple[int, ...] = ()) -> str:
     """Return rows (the first one is the head) as aligned text; the columns in `right` are set flush right."""
     widths = [max(len(row[n]) for row in rows) for n in range(len(rows[0]))]
-    lines = ["  ".join(c.rjust(w) if n in right else c.ljust(w) for n, (c, w) in enumerate(zip(row, widths, strict=True))).rstrip()
-             for row in rows]
+    lines = [
+        "  ".join(
+            c.rjust(w) if n in right else c.ljust(w)
+            for n, (c, w) in enumerate(zip(row, widths, strict=True))
+        ).rstrip()
+        for row in rows
+    ]
     return "\n".join(lines)
 
 

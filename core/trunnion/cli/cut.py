@@ -13,12 +13,33 @@ from trunnion.findings import BadCall, BadInput
 def add(commands: Any) -> None:
     """Add the command to the command line."""
     made = part_command(commands, "cut", "cut one face in two, by a plane or by a drawn way")
-    made.add_argument("--face", type=int, required=True, metavar="N", help="which face (1-based, in the shape as read)")
-    made.add_argument("--plane", type=float, nargs=6, metavar=("X", "Y", "Z", "NX", "NY", "NZ"), default=None,
-                      help="a point of the plane and its normal; what lies behind it keeps the face's number")
-    made.add_argument("--place", type=float, nargs=3, metavar=("X", "Y", "Z"), action="append", default=[],
-                      help="a place of the way, near the face; repeat it in order. The first once more at the end closes the way")
-    made.add_argument("--out", type=Path, required=True, metavar="FILE", help="project to write (.trunnion)")
+    made.add_argument(
+        "--face",
+        type=int,
+        required=True,
+        metavar="N",
+        help="which face (1-based, in the shape as read)",
+    )
+    made.add_argument(
+        "--plane",
+        type=float,
+        nargs=6,
+        metavar=("X", "Y", "Z", "NX", "NY", "NZ"),
+        default=None,
+        help="a point of the plane and its normal; what lies behind it keeps the face's number",
+    )
+    made.add_argument(
+        "--place",
+        type=float,
+        nargs=3,
+        metavar=("X", "Y", "Z"),
+        action="append",
+        default=[],
+        help="a place of the way, near the face; repeat it in order. The first once more at the end closes the way",
+    )
+    made.add_argument(
+        "--out", type=Path, required=True, metavar="FILE", help="project to write (.trunnion)"
+    )
     made.set_defaults(run=run)
 
 
@@ -27,15 +48,21 @@ def run(chosen: argparse.Namespace) -> int:
     from trunnion.geometry.cut import plane_cut, way_cut
     from trunnion.pipeline.engine import PROJECT_SUFFIX
     from trunnion.pipeline.patches import with_cut
+
     if (chosen.plane is None) == (not chosen.place):
         raise BadCall("a cut wants --plane, or --place twice or more; not both")
     if chosen.out.suffix.lower() != PROJECT_SUFFIX:
-        raise BadInput(f"{chosen.out}: a cut is kept in a project; name it {chosen.out.stem}{PROJECT_SUFFIX}")
+        raise BadInput(
+            f"{chosen.out}: a cut is kept in a project; name it {chosen.out.stem}{PROJECT_SUFFIX}"
+        )
     check_output(chosen.out.parent)
     engine, session = open_session(chosen, None)
     assert session.part is not None
-    cut = plane_cut(chosen.face, tuple(chosen.plane[:3]), tuple(chosen.plane[3:])) if chosen.plane \
+    cut = (
+        plane_cut(chosen.face, tuple(chosen.plane[:3]), tuple(chosen.plane[3:]))
+        if chosen.plane
         else way_cut(chosen.face, tuple(tuple(p) for p in chosen.place))
+    )
     after = with_cut(engine, session, cut)
     assert after.part is not None
     made = [chosen.face, *range(session.part.n_faces + 1, after.part.n_faces + 1)]
@@ -43,5 +70,7 @@ def run(chosen: argparse.Namespace) -> int:
     if chosen.json:
         show_json({"file": str(chosen.out), "faces": made})
     else:
-        print(f"face {chosen.face} is now {' and '.join(f'face {n}' for n in made)}; kept in {chosen.out}")
+        print(
+            f"face {chosen.face} is now {' and '.join(f'face {n}' for n in made)}; kept in {chosen.out}"
+        )
     return 0

@@ -22,9 +22,24 @@ from trunnion.findings import BadInput
 
 def add(commands: Any) -> None:
     """Add the command to the command line."""
-    made = part_command(commands, "export", "write groups of patches, local features or the remaining area as IGES or STEP")
-    made.add_argument("--groups", metavar="WORD,...", default="local", help="local, remaining, or ids such as group-03 (default: local)")
-    made.add_argument("--out", type=Path, required=True, metavar="FILE", help="file to write (.igs, .iges, .step, .stp)")
+    made = part_command(
+        commands,
+        "export",
+        "write groups of patches, local features or the remaining area as IGES or STEP",
+    )
+    made.add_argument(
+        "--groups",
+        metavar="WORD,...",
+        default="local",
+        help="local, remaining, or ids such as group-03 (default: local)",
+    )
+    made.add_argument(
+        "--out",
+        type=Path,
+        required=True,
+        metavar="FILE",
+        help="file to write (.igs, .iges, .step, .stp)",
+    )
     add_by_hand(made)
     made.set_defaults(run=run)
 
@@ -32,6 +47,7 @@ def add(commands: Any) -> None:
 def run(chosen: argparse.Namespace) -> int:
     """Write the faces and say how many they are."""
     from trunnion.pipeline.patches import export, tags_of
+
     if not chosen.out.parent.is_dir():
         raise BadInput(f"{chosen.out}: there is no folder {chosen.out.parent}")
     check_output(chosen.out.parent)

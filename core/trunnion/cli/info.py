@@ -20,11 +20,26 @@ def run(chosen: argparse.Namespace) -> int:
     assert part is not None
     size = [float(h - l) for l, h in zip(part.low, part.high, strict=True)]
     if chosen.json:
-        show_json({"part": part.name, "digest": part.digest, "unit": part.unit, "faces": part.n_faces, "solids": part.n_solids,
-                   "solid": part.solid, "area": part.area, "volume": part.volume, "low": list(map(float, part.low)),
-                   "high": list(map(float, part.high)), "size": size, "findings": [f.as_dict() for f in part.findings]})
+        show_json(
+            {
+                "part": part.name,
+                "digest": part.digest,
+                "unit": part.unit,
+                "faces": part.n_faces,
+                "solids": part.n_solids,
+                "solid": part.solid,
+                "area": part.area,
+                "volume": part.volume,
+                "low": list(map(float, part.low)),
+                "high": list(map(float, part.high)),
+                "size": size,
+                "findings": [f.as_dict() for f in part.findings],
+            }
+        )
     else:
-        print(f"{part.name}: {part.n_faces} faces, solid {part.solid} of {part.n_solids}, file in {part.unit}")
+        print(
+            f"{part.name}: {part.n_faces} faces, solid {part.solid} of {part.n_solids}, file in {part.unit}"
+        )
         print(f"size    {size[0]:.3f} x {size[1]:.3f} x {size[2]:.3f} mm")
         print(f"area    {part.area:.1f} mm2")
         print(f"volume  {part.volume:.1f} mm3")

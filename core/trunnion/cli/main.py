@@ -16,8 +16,23 @@ from trunnion.findings import Cancelled, TrunnionError
 
 DONE, PROBLEMS, BAD, CANCELLED = 0, 1, 2, 130
 
-COMMANDS = ("info", "recognize", "size", "blank", "route", "optimize", "program", "verify", "post", "batch", "patches", "cut", "export",
-            "settings", "gui")
+COMMANDS = (
+    "info",
+    "recognize",
+    "size",
+    "blank",
+    "route",
+    "optimize",
+    "program",
+    "verify",
+    "post",
+    "batch",
+    "patches",
+    "cut",
+    "export",
+    "settings",
+    "gui",
+)
 
 
 class OneLineParser(argparse.ArgumentParser):
@@ -30,7 +45,9 @@ class OneLineParser(argparse.ArgumentParser):
 
 def parser() -> argparse.ArgumentParser:
     """Return the parser of the whole command line."""
-    top = OneLineParser(prog="trunnion", description="Writes proven NC programs for aerospace parts.")
+    top = OneLineParser(
+        prog="trunnion", description="Writes proven NC programs for aerospace parts."
+    )
     top.add_argument("--version", action="version", version=f"trunnion {__version__}")
     commands = top.add_subparsers(dest="command", metavar="COMMAND", parser_class=OneLineParser)
     for name in COMMANDS:

@@ -12,18 +12,42 @@ from trunnion.model.operation import Operation
 
 def operation_dict(operation: Operation) -> dict[str, Any]:
     """Return an operation as JSON data."""
-    return {"id": operation.id, "kind": operation.kind, "strategy": operation.strategy, "feature": operation.feature,
-            "setup": operation.setup, "direction": list(operation.direction), "tool": operation.tool.number,
-            "faces": list(operation.faces), "data": asdict(operation.data),
-            "choices": dict(operation.choices), "rules": list(operation.rules), "after": list(operation.after),
-            "by_hand": operation.by_hand, "suppressed": operation.suppressed}
+    return {
+        "id": operation.id,
+        "kind": operation.kind,
+        "strategy": operation.strategy,
+        "feature": operation.feature,
+        "setup": operation.setup,
+        "direction": list(operation.direction),
+        "tool": operation.tool.number,
+        "faces": list(operation.faces),
+        "data": asdict(operation.data),
+        "choices": dict(operation.choices),
+        "rules": list(operation.rules),
+        "after": list(operation.after),
+        "by_hand": operation.by_hand,
+        "suppressed": operation.suppressed,
+    }
 
 
 def operation_table(operations: Iterable[Operation]) -> str:
     """Return operations as aligned text."""
-    rows = [("operation", "kind", "feature", "tool", "n 1/min", "vf mm/min", "ap mm", "ae mm", "kW")]
+    rows = [
+        ("operation", "kind", "feature", "tool", "n 1/min", "vf mm/min", "ap mm", "ae mm", "kW")
+    ]
     for o in operations:
         d = o.data
-        rows.append((o.id, o.kind, o.feature, f"T{o.tool.number} {o.tool.name}", f"{d.spindle:.0f}", f"{d.feed:.0f}", f"{d.depth:.2f}",
-                     f"{d.width:.2f}", f"{d.power:.2f}"))
+        rows.append(
+            (
+                o.id,
+                o.kind,
+                o.feature,
+                f"T{o.tool.number} {o.tool.name}",
+                f"{d.spindle:.0f}",
+                f"{d.feed:.0f}",
+                f"{d.depth:.2f}",
+                f"{d.width:.2f}",
+                f"{d.power:.2f}",
+            )
+        )
     return table(rows, right=(4, 5, 6, 7, 8))

@@ -11,41 +11,102 @@ from trunnion.model.session import Session
 from trunnion.model.verdict import Offer, OperationProof
 
 
-def proof_dict(session: Session, files: tuple[str, ...], seconds: Mapping[str, float]) -> dict[str, Any]:
+def proof_dict(
+    session: Session, files: tuple[str, ...], seconds: Mapping[str, float]
+) -> dict[str, Any]:
     """Return the verdict as JSON data; every figure is the proof's own."""
     verdict, process, blank = session.verdict, session.process, session.blank
     assert verdict is not None and process is not None and blank is not None
     proofs = {p.operation: p for p in verdict.operations}
-    box = {"min": [float(v) for v in blank.low], "max": [float(v) for v in blank.high], "frame": blank.frame.as_dict()}
+    box = {
+        "min": [float(v) for v in blank.low],
+        "max": [float(v) for v in blank.high],
+        "frame": blank.frame.as_dict(),
+    }
     operations = []
     for o in process.operations:
         p = proofs.get(o.id)
-        measured = operation_dict(p) if p else {"verdict": "not cut", "gouge_mm": 0.0, "time_s": 0.0, "removed_mm3": 0.0, "air_share": 0.0}
-        operations.append({"id": o.id, "kind": o.kind, "feature": o.feature, "tool": o.tool.number, "setup": o.setup, **measured})
-    return {"verdict": str(verdict.outcome), "coverage": verdict.coverage, "reachable": verdict.reachable, "gouge_mm": verdict.gouge,
-            "collisions": verdict.collisions, "rapids_in_stock": verdict.rapids_in_stock, "machining_time_s": verdict.machining_time_s,
-            "seconds": dict(seconds),
-            "setups": [{"name": s.name, "nc": next((f for f in files if f".{s.name}." in f), ""), "frame": s.frame.as_dict(),
-                        "work_offset": s.work_offset, "blank": box} for s in process.setups],
-            "operations": operations, "offers": [offer_dict(o) for o in verdict.offers], "files": list(files),
-            "findings": [f.as_dict() for f in session.findings()]}
+        measured = (
+            operation_dict(p)
+            if p
+            else {
+                "verdict": "not cut",
+                "gouge_mm": 0.0,
+                "time_s": 0.0,
+                "removed_mm3": 0.0,
+                "air_share": 0.0,
+            }
+        )
+        operations.append(
+            {
+                "id": o.id,
+                "kind": o.kind,
+                "feature": o.feature,
+                "tool": o.tool.number,
+                "setup": o.setup,
+                **measured,
+            }
+        )
+    return {
+        "verdict": str(verdict.outcome),
+        "coverage": verdict.coverage,
+        "reachable": verdict.reachable,
+        "gouge_mm": verdict.gouge,
+        "collisions": verdict.collisions,
+        "rapids_in_stock": verdict.rapids_in_stock,
+        "machining_time_s": verdict.machining_time_s,
+        "seconds": dict(seconds),
+        "setups": [
+            {
+                "name": s.name,
+                "nc": next((f for f in files if f".{s.name}." in f), ""),
+                "frame": s.frame.as_dict(),
+                "work_offset": s.work_offset,
+                "blank": box,
+            }
+            for s in process.setups
+        ],
+        "operations": operations,
+        "offers": [offer_dict(o) for o in verdict.offers],
+        "files": list(files),
+        "findings": [f.as_dict() for f in session.findings()],
+    }
 
 
 def operation_dict(p: OperationProof) -> dict[str, Any]:
     """Return what was measured on one operation as JSON data."""
     gouges = [{"face": f"face {tag}", "depth_mm": depth} for tag, depth in p.gouges]
-    return {"verdict": str(p.outcome), "gouge_mm": p.gouge, "gouges": gouges, "collisions": p.collisions,
-            "rapids_in_stock": p.rapids_in_stock, "time_s": p.time_s, "removed_mm3": p.removed, "air_share": p.air_share,
-            "left_mm": {"min": p.left_min, "mean": p.left_mean, "max": p.left_max},
-            "engaged_deg": {"mean": math.degrees(p.engaged_mean), "max": math.degrees(p.engaged)}, "depth_of_cut_mm": p.depth,
-            "removal_cm3_min": {"mean": p.rate_mean, "max": p.rate}, "chip_mm": p.chip, "power_kw": p.power,
-            "power_limit_kw": p.power_limit, "torque_nm": p.torque}
+    return {
+        "verdict": str(p.outcome),
+        "gouge_mm": p.gouge,
+        "gouges": gouges,
+        "collisions": p.collisions,
+        "rapids_in_stock": p.rapids_in_stock,
+        "time_s": p.time_s,
+        "removed_mm3": p.removed,
+        "air_share": p.air_share,
+        "left_mm": {"min": p.left_min, "mean": p.left_mean, "max": p.left_max},
+        "engaged_deg": {"mean": math.degrees(p.engaged_mean), "max": math.degrees(p.engaged)},
+        "depth_of_cut_mm": p.depth,
+        "removal_cm3_min": {"mean": p.rate_mean, "max": p.rate},
+        "chip_mm": p.chip,
+        "power_kw": p.power,
+        "power_limit_kw": p.power_limit,
+        "torque_nm": p.torque,
+    }
 
 
 def offer_dict(offer: Offer) -> dict[str, Any]:
     """Return what the proof offers for a finding as JSON data."""
-    return {"kind": offer.kind, "operation": offer.operation, "setup": offer.setup, "reason": offer.reason, "first_block": offer.first,
-            "last_block": offer.last, "feed_mm_min": offer.feed}
+    return {
+        "kind": offer.kind,
+        "operation": offer.operation,
+        "setup": offer.setup,
+        "reason": offer.reason,
+        "first_block": offer.first,
+        "last_block": offer.last,
+        "feed_mm_min": offer.feed,
+    }
 
 
 def proof_text(session: Session) -> str:
@@ -53,14 +114,16 @@ def proof_text(session: Session) -> str:
     v = session.verdict
     assert v is not None
     minutes, seconds = divmod(round(v.machining_time_s), 60)
-    return "\n".join([
-        f"verdict            {v.outcome}",
-        f"coverage           {100 * v.coverage:.2f} % ({100 * v.reachable:.2f} % of what can be reached)",
-        f"greatest gouge     {v.gouge:.4f} mm",
-        f"collisions         {v.collisions}",
-        f"rapids in stock    {v.rapids_in_stock}",
-        f"time at the machine {minutes} min {seconds:02d} s in {len(v.operations)} operations",
-    ])
+    return "\n".join(
+        [
+            f"verdict            {v.outcome}",
+            f"coverage           {100 * v.coverage:.2f} % ({100 * v.reachable:.2f} % of what can be reached)",
+            f"greatest gouge     {v.gouge:.4f} mm",
+            f"collisions         {v.collisions}",
+            f"rapids in stock    {v.rapids_in_stock}",
+            f"time at the machine {minutes} min {seconds:02d} s in {len(v.operations)} operations",
+        ]
+    )
 
 
 def verdict_code(session: Session) -> int:

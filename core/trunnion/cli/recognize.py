@@ -6,7 +6,16 @@ import argparse
 from collections.abc import Iterable
 from typing import TYPE_CHECKING, Any
 
-from trunnion.cli.common import add_by_hand, exit_code, open_session, part_command, show_findings, show_json, table, with_by_hand
+from trunnion.cli.common import (
+    add_by_hand,
+    exit_code,
+    open_session,
+    part_command,
+    show_findings,
+    show_json,
+    table,
+    with_by_hand,
+)
 
 if TYPE_CHECKING:
     from trunnion.model.feature import Recognition
@@ -19,7 +28,11 @@ def add(commands: Any) -> None:
     """Add the command to the command line."""
     made = part_command(commands, "recognize", "recognise the machining features of a part")
     made.add_argument("--xml", metavar="FILE", help="write the features as XML as well")
-    made.add_argument("--save", metavar="FILE", help="write a project with the features, those changed by hand among them, as well")
+    made.add_argument(
+        "--save",
+        metavar="FILE",
+        help="write a project with the features, those changed by hand among them, as well",
+    )
     add_by_hand(made)
     made.set_defaults(run=run)
 
@@ -32,21 +45,34 @@ def run(chosen: argparse.Namespace) -> int:
     assert part is not None and found is not None
     if chosen.xml:
         from trunnion.store.features import write_features
+
         write_features(session, chosen.xml)
     if chosen.save:
         engine.save(session, chosen.save)
     if chosen.json:
-        show_json({"part": part.name, "digest": part.digest, "family": found.family,
-                   "taken_for": found.taken_for.as_dict() if found.taken_for else None, "frame": found.frame.as_dict(),
-                   "features": [f.as_dict() for f in found.features],
-                   "unexplained": {"faces": list(found.unexplained), "area_share": found.unexplained_share},
-                   "findings": [f.as_dict() for f in session.findings()]})
+        show_json(
+            {
+                "part": part.name,
+                "digest": part.digest,
+                "family": found.family,
+                "taken_for": found.taken_for.as_dict() if found.taken_for else None,
+                "frame": found.frame.as_dict(),
+                "features": [f.as_dict() for f in found.features],
+                "unexplained": {
+                    "faces": list(found.unexplained),
+                    "area_share": found.unexplained_share,
+                },
+                "findings": [f.as_dict() for f in session.findings()],
+            }
+        )
     else:
         if found.taken_for:
             print(f"taken for {found.taken_for}")
         if found.features:
             print(_feature_table(found))
-        print(f"unexplained: {len(found.unexplained)} faces, {100 * found.unexplained_share:.2f} % of the area")
+        print(
+            f"unexplained: {len(found.unexplained)} faces, {100 * found.unexplained_share:.2f} % of the area"
+        )
     show_findings(chosen, session.findings())
     return exit_code(session.findings())
 
@@ -55,12 +81,30 @@ def _feature_table(found: Recognition) -> str:
     """Return a row a feature, and a line with the number of each kind."""
     rows = [("feature", "kind", "n", "faces", "sizes")]
     for f in found.features:
-        sizes = "  ".join(f"{k} {v:g}" for k, v in f.sizes.items() if isinstance(v, (int, float)) and not isinstance(v, bool))
-        rows.append((f.id, f"{f.kind}, local" if f.attributes.get("local") else f.kind, str(len(f.faces)), _numbers(f.tags), sizes))
-    return table(rows, right=(2,)) + "\n" + "  ".join(f"{n} {kind}{'s' if n > 1 else ''}" for kind, n in found.counts().items())
+        sizes = "  ".join(
+            f"{k} {v:g}"
+            for k, v in f.sizes.items()
+            if isinstance(v, (int, float)) and not isinstance(v, bool)
+        )
+        rows.append(
+            (
+                f.id,
+                f"{f.kind}, local" if f.attributes.get("local") else f.kind,
+                str(len(f.faces)),
+                _numbers(f.tags),
+                sizes,
+            )
+        )
+    return (
+        table(rows, right=(2,))
+        + "\n"
+        + "  ".join(f"{n} {kind}{'s' if n > 1 else ''}" for kind, n in found.counts().items())
+    )
 
 
 def _numbers(tags: Iterable[int]) -> str:
     """Return the numbers of faces as `--move` takes them, cut short where they are many."""
     listed = sorted(set(tags))
-    return ",".join(map(str, listed[:MOST_NUMBERS])) + (",..." if len(listed) > MOST_NUMBERS else "")
+    return ",".join(map(str, listed[:MOST_NUMBERS])) + (
+        ",..." if len(listed) > MOST_NUMBERS else ""
+    )

@@ -22,8 +22,15 @@ def run(chosen: argparse.Namespace) -> int:
     process = session.process
     assert process is not None
     if chosen.json:
-        show_json({"plan": process.plan, "material": process.material, "operations": [operation_dict(o) for o in process.operations],
-                   "tools": [t.as_dict() for t in process.tools()], "findings": [f.as_dict() for f in session.findings()]})
+        show_json(
+            {
+                "plan": process.plan,
+                "material": process.material,
+                "operations": [operation_dict(o) for o in process.operations],
+                "tools": [t.as_dict() for t in process.tools()],
+                "findings": [f.as_dict() for f in session.findings()],
+            }
+        )
     else:
         print(operation_table(process.operations))
         if chosen.rules:

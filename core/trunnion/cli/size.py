@@ -5,7 +5,14 @@ from __future__ import annotations
 import argparse
 from typing import Any
 
-from trunnion.cli.common import exit_code, open_session, part_command, show_findings, show_json, table
+from trunnion.cli.common import (
+    exit_code,
+    open_session,
+    part_command,
+    show_findings,
+    show_json,
+    table,
+)
 
 
 def add(commands: Any) -> None:
@@ -17,9 +24,17 @@ def run(chosen: argparse.Namespace) -> int:
     """Print the size table."""
     _, session = open_session(chosen, "size")
     if chosen.json:
-        show_json({"sizes": [s.as_dict() for s in session.sizes], "findings": [f.as_dict() for f in session.findings()]})
+        show_json(
+            {
+                "sizes": [s.as_dict() for s in session.sizes],
+                "findings": [f.as_dict() for f in session.findings()],
+            }
+        )
     else:
-        rows = [("size", "value", "unit", "feature"), *((s.name, f"{s.value:.3f}", s.unit, s.feature) for s in session.sizes)]
+        rows = [
+            ("size", "value", "unit", "feature"),
+            *((s.name, f"{s.value:.3f}", s.unit, s.feature) for s in session.sizes),
+        ]
         print(table(rows, right=(1,)))
     show_findings(chosen, session.findings())
     return exit_code(session.findings())

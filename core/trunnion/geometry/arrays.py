@@ -12,7 +12,9 @@ Ints = NDArray[np.int64]
 Bools = NDArray[np.bool_]
 
 
-def floats(values: ArrayLike, shape: Sequence[int | None], name: str, *, may_be_nan: bool = False) -> Floats:
+def floats(
+    values: ArrayLike, shape: Sequence[int | None], name: str, *, may_be_nan: bool = False
+) -> Floats:
     """Return a read-only float64 array of a shape (`None`: any length); raise `ValueError` naming the array otherwise."""
     array = _fixed(np.array(values, dtype=np.float64), shape, name)
     if not may_be_nan and not np.isfinite(array).all():
@@ -28,7 +30,9 @@ def ints(values: ArrayLike, shape: Sequence[int | None], name: str) -> Ints:
 def _fixed(array: NDArray, shape: Sequence[int | None], name: str) -> NDArray:
     if array.size == 0 and len(shape) != array.ndim:
         array = array.reshape([0 if n is None else n for n in shape])
-    if array.ndim != len(shape) or any(want is not None and want != got for want, got in zip(shape, array.shape, strict=True)):
+    if array.ndim != len(shape) or any(
+        want is not None and want != got for want, got in zip(shape, array.shape, strict=True)
+    ):
         wanted = ", ".join("n" if n is None else str(n) for n in shape)
         raise ValueError(f"{name}: expected shape ({wanted}), got {array.shape}")
     array.setflags(write=False)

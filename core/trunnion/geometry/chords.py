@@ -37,7 +37,9 @@ class Chords:
     is_bridge: Bools
 
 
-def chorded(source: Segments, is_bridge: Bools | None = None, chord: float = tolerance.PLANE_REGION) -> Chords:
+def chorded(
+    source: Segments, is_bridge: Bools | None = None, chord: float = tolerance.PLANE_REGION
+) -> Chords:
     """Return segments opened into chords so that places where they lie on each other get the same chords."""
     m = len(source)
     ends = pulled_together(np.concatenate([source.start, source.end]))
@@ -52,9 +54,13 @@ def chorded(source: Segments, is_bridge: Bools | None = None, chord: float = tol
     row = np.concatenate([np.arange(m), np.arange(m), inner_row, meet_row])
     key = np.concatenate([np.zeros(m), np.ones(m), inner_key, meet_key])
     exact = pulled_together(np.concatenate([ends, meet_point]))
-    point = np.concatenate([exact[:2 * m], inner_point, exact[2 * m:]])
+    point = np.concatenate([exact[: 2 * m], inner_point, exact[2 * m :]])
     order = np.lexsort([key, row])
-    row, point, is_inner = row[order], point[order], (order >= 2 * m) & (order < 2 * m + len(inner_row))
+    row, point, is_inner = (
+        row[order],
+        point[order],
+        (order >= 2 * m) & (order < 2 * m + len(inner_row)),
+    )
     # A chord point on a circle gives way to a vertex, and of equal vertices one is enough.
     close = (row[1:] == row[:-1]) & (np.abs(point[1:] - point[:-1]).max(axis=1) <= CLOSE)
     same = close & (point[1:] == point[:-1]).all(axis=1)
@@ -68,7 +74,9 @@ def chorded(source: Segments, is_bridge: Bools | None = None, chord: float = tol
 
 def pulled_together(points: Floats) -> Floats:
     """Return points (n, 2) in which those that are one point within the coincidence tolerance have the coordinates of the first."""
-    _, first, back = np.unique(points[:, 0] + 1j * points[:, 1], return_index=True, return_inverse=True)
+    _, first, back = np.unique(
+        points[:, 0] + 1j * points[:, 1], return_index=True, return_inverse=True
+    )
     apart = points[first]
     free = _crowded(apart)
     free = free[np.argsort(first[free])]
@@ -94,13 +102,17 @@ def _crowded(points: Floats) -> Ints:
     return np.flatnonzero(crowded)
 
 
-def _shared_carriers(start: Floats, end: Floats, s: Segments, pairs: tuple[Ints, Ints]) -> tuple[Floats, Floats, Ints]:
+def _shared_carriers(
+    start: Floats, end: Floats, s: Segments, pairs: tuple[Ints, Ints]
+) -> tuple[Floats, Floats, Ints]:
     """Number the carriers, and give arcs that lie on the same circle within the coincidence tolerance its centre and radius."""
     centre, radius = s.centre.copy(), s.radius.copy()
     carrier = np.arange(len(s))
     i, j = pairs
     with np.errstate(invalid="ignore"):
-        arcs = (np.abs(radius[i] - radius[j]) <= CLOSE) & (np.abs(centre[i] - centre[j]).max(axis=1) <= CLOSE)
+        arcs = (np.abs(radius[i] - radius[j]) <= CLOSE) & (
+            np.abs(centre[i] - centre[j]).max(axis=1) <= CLOSE
+        )
     line = s.sweep == 0.0
     along = end - start
     size = np.hypot(along[:, 0], along[:, 1])
@@ -121,7 +133,9 @@ def _inner_points(s: Segments, chord: float) -> tuple[Ints, Floats, Floats]:
     if len(arcs) == 0:
         return np.empty(0, dtype=np.int64), np.empty(0), np.empty((0, 2))
     radius, sweep = s.radius[arcs], s.sweep[arcs]
-    around = Segments(s.start[arcs], s.end[arcs], s.centre[arcs], radius, np.full(len(arcs), FULL), radius)
+    around = Segments(
+        s.start[arcs], s.end[arcs], s.centre[arcs], radius, np.full(len(arcs), FULL), radius
+    )
     parts = np.maximum(8, chord_counts(around, chord))
     step = FULL / parts
     ray = s.start[arcs] - s.centre[arcs]
@@ -134,7 +148,9 @@ def _inner_points(s: Segments, chord: float) -> tuple[Ints, Floats, Floats]:
     row = np.repeat(np.arange(len(arcs)), count)
     number = first[row] + np.arange(len(row)) - np.repeat(np.cumsum(count) - count, count)
     angle = (number % parts[row]) * step[row]
-    point = s.centre[arcs][row] + radius[row, None] * np.stack([np.cos(angle), np.sin(angle)], axis=1)
+    point = s.centre[arcs][row] + radius[row, None] * np.stack(
+        [np.cos(angle), np.sin(angle)], axis=1
+    )
     key = (number * step[row] - begin[row]) / sweep[row]
     return arcs[row], key, point
 
@@ -143,9 +159,16 @@ def polygons_of(chords: Chords, loops: Sequence[Sequence[range]]) -> shapely.Geo
     """Return the shapely area of pieces given as rows of the chords' segments: for each piece its outer loop, then its holes."""
     polygons = []
     for piece in loops:
-        rings = [np.concatenate([chords.points[chords.first[i]: chords.first[i + 1] - 1] for i in loop]) for loop in piece]
+        rings = [
+            np.concatenate([chords.points[chords.first[i] : chords.first[i + 1] - 1] for i in loop])
+            for loop in piece
+        ]
         rings = [ring for ring in rings if len(ring) >= 3]
         if rings:
             polygons.append(shapely.Polygon(rings[0], rings[1:]))
     area = shapely.MultiPolygon(polygons)
-    return area if area.is_valid else shapely.make_valid(area, method="structure", keep_collapsed=False)
+    return (
+        area
+        if area.is_valid
+        else shapely.make_valid(area, method="structure", keep_collapsed=False)
+    )

@@ -42,13 +42,25 @@ class SheetLine:
         if self.closed:
             first = int(np.flatnonzero(~on)[0])
             rows = np.append(np.roll(rows[:-1], -first), first)
-        edges = np.flatnonzero(np.diff(on[rows].astype(np.int8), prepend=0, append=0)).reshape(-1, 2)
-        return [SheetLine(ends=self.ends[rows[a:b]], share=self.share[rows[a:b]], closed=False, level=self.level)
-                for a, b in edges.tolist() if b - a > 1]
+        edges = np.flatnonzero(np.diff(on[rows].astype(np.int8), prepend=0, append=0)).reshape(
+            -1, 2
+        )
+        return [
+            SheetLine(
+                ends=self.ends[rows[a:b]],
+                share=self.share[rows[a:b]],
+                closed=False,
+                level=self.level,
+            )
+            for a, b in edges.tolist()
+            if b - a > 1
+        ]
 
     def of(self, rows: Bools | slice) -> SheetLine:
         """Return a part of the line, open."""
-        return SheetLine(ends=self.ends[rows], share=self.share[rows], closed=False, level=self.level)
+        return SheetLine(
+            ends=self.ends[rows], share=self.share[rows], closed=False, level=self.level
+        )
 
 
 def whole_levels(sheet: Sheet, field: Floats, turns: Ints | None = None) -> list[SheetLine]:
@@ -75,24 +87,49 @@ def whole_levels(sheet: Sheet, field: Floats, turns: Ints | None = None) -> list
         forth = np.where(triangles[:, k] == ends[side[:, k], 0], 1.0, -1.0)
         rise[side[:, k]] = forth * (value[:, (k + 1) % 3] - value[:, k])
     # A crossing is known by its edge and its level as seen from the edge's lower end, whatever turns the triangles beside it add.
-    node = [np.column_stack([side[row, k], level - np.where(triangles[row, k] == ends[side[row, k], 0], turns[row, k],
-                                                            turns[row, (k + 1) % 3])]) for k in (falls, climbs)]
-    nodes, first, number = np.unique(np.concatenate(node), axis=0, return_index=True, return_inverse=True)
+    node = [
+        np.column_stack(
+            [
+                side[row, k],
+                level
+                - np.where(
+                    triangles[row, k] == ends[side[row, k], 0],
+                    turns[row, k],
+                    turns[row, (k + 1) % 3],
+                ),
+            ]
+        )
+        for k in (falls, climbs)
+    ]
+    nodes, first, number = np.unique(
+        np.concatenate(node), axis=0, return_index=True, return_inverse=True
+    )
     follows = np.full(len(nodes), -1)
-    follows[number.ravel()[:len(row)]] = number.ravel()[len(row):]
+    follows[number.ravel()[: len(row)]] = number.ravel()[len(row) :]
     edge, seen = nodes.T
     share = np.clip((seen - field[ends[edge, 0]]) / rise[edge], 0.0, 1.0)
     order, start, closed = chains(follows)
     lines = []
     for begin, end, is_closed in zip(start[:-1], start[1:], closed):
         at = order[begin:end]
-        lines.append(SheetLine(ends=ends[edge[at]], share=share[at], closed=bool(is_closed), level=int(level[first[at[0]] % len(row)])))
+        lines.append(
+            SheetLine(
+                ends=ends[edge[at]],
+                share=share[at],
+                closed=bool(is_closed),
+                level=int(level[first[at[0]] % len(row)]),
+            )
+        )
     return sorted(lines, key=lambda line: line.level)
 
 
 def chains(follows: Ints) -> tuple[Ints, Ints, Bools]:
     """Return the chains of nodes of which each names the one that follows it (n,), -1: none: nodes in order, where each chain starts
     (c + 1,), and whether it is closed (c,): then its last node is its first one again. No node follows two others."""
-    order, start, closed = np.empty(2 * len(follows), np.int64), np.zeros(len(follows) + 1, np.int64), np.zeros(len(follows), np.bool_)
+    order, start, closed = (
+        np.empty(2 * len(follows), np.int64),
+        np.zeros(len(follows) + 1, np.int64),
+        np.zeros(len(follows), np.bool_),
+    )
     count = chain_loop(np.ascontiguousarray(follows), order, start, closed)
-    return order[:start[count]], start[:count + 1], closed[:count]
+    return order[: start[count]], start[: count + 1], closed[:count]

@@ -47,7 +47,14 @@ class Segments:
         return len(self.start)
 
     def __getitem__(self, rows: slice | Ints) -> Segments:
-        return Segments(self.start[rows], self.end[rows], self.centre[rows], self.radius[rows], self.sweep[rows], self.length[rows])
+        return Segments(
+            self.start[rows],
+            self.end[rows],
+            self.centre[rows],
+            self.radius[rows],
+            self.sweep[rows],
+            self.length[rows],
+        )
 
     def at(self, rows: Ints, s: Floats) -> Floats:
         """Return the points (k, 2) at arc lengths `s` (k,) from the start of the segments `rows` (k,)."""
@@ -97,7 +104,10 @@ def join_segments(parts: Iterable[Segments]) -> Segments:
 def turn(vectors: Floats, angles: Floats | float) -> Floats:
     """Return vectors (k, 2) turned anticlockwise by angles (k,) in radians."""
     c, s = np.cos(angles), np.sin(angles)
-    return np.stack([c * vectors[..., 0] - s * vectors[..., 1], s * vectors[..., 0] + c * vectors[..., 1]], axis=-1)
+    return np.stack(
+        [c * vectors[..., 0] - s * vectors[..., 1], s * vectors[..., 0] + c * vectors[..., 1]],
+        axis=-1,
+    )
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -120,9 +130,13 @@ class Curve:
         points = floats(self.points, (None, 2), "curve points")
         bulges = floats(self.bulges, (len(points),), "curve bulges")
         if len(points) < 2 or (self.closed and len(points) < 3 and not bulges.any()):
-            raise ValueError(f"curve points: {len(points)} are too few for {'a closed' if self.closed else 'an open'} curve")
+            raise ValueError(
+                f"curve points: {len(points)} are too few for {'a closed' if self.closed else 'an open'} curve"
+            )
         if not self.closed and bulges[-1] != 0.0:
-            raise ValueError("curve bulges: the last one of an open curve belongs to no segment and must be 0")
+            raise ValueError(
+                "curve bulges: the last one of an open curve belongs to no segment and must be 0"
+            )
         object.__setattr__(self, "points", points)
         object.__setattr__(self, "bulges", bulges)
 
@@ -138,7 +152,9 @@ class Curve:
     def rectangle(x0: float, y0: float, x1: float, y1: float) -> Curve:
         """Return a rectangle, anticlockwise from its lowest corner."""
         if not (x1 > x0 and y1 > y0):
-            raise ValueError(f"rectangle: the second corner must be above and right of the first, got ({x0}, {y0}) and ({x1}, {y1})")
+            raise ValueError(
+                f"rectangle: the second corner must be above and right of the first, got ({x0}, {y0}) and ({x1}, {y1})"
+            )
         return Curve.polygon([[x0, y0], [x1, y0], [x1, y1], [x0, y1]])
 
     @staticmethod
@@ -188,14 +204,18 @@ class Curve:
         a, b = s.start - self.points[0], s.end - self.points[0]
         straight = 0.5 * float(np.sum(a[:, 0] * b[:, 1] - a[:, 1] * b[:, 0]))
         arcs = s.sweep != 0.0
-        return straight + 0.5 * float(np.sum(s.radius[arcs] ** 2 * (s.sweep[arcs] - np.sin(s.sweep[arcs]))))
+        return straight + 0.5 * float(
+            np.sum(s.radius[arcs] ** 2 * (s.sweep[arcs] - np.sin(s.sweep[arcs])))
+        )
 
     def segments(self) -> Segments:
         """Return the lines and arcs as arrays."""
         if not self._segments:
             p, b = self.points, self.bulges
             last = np.roll(p, -1, axis=0) if self.closed else p[1:]
-            self._segments.append(segments_of(p if self.closed else p[:-1], last, b if self.closed else b[:-1]))
+            self._segments.append(
+                segments_of(p if self.closed else p[:-1], last, b if self.closed else b[:-1])
+            )
         return self._segments[0]
 
     def box(self) -> tuple[Floats, Floats]:
@@ -231,7 +251,9 @@ class Curve:
         row, rest = self._locate(s)
         rows = np.array([row])
         segments = self.segments()
-        return segments.at(rows, np.array([rest]))[0], segments.directions(rows, np.array([rest]))[0]
+        return segments.at(rows, np.array([rest]))[0], segments.directions(rows, np.array([rest]))[
+            0
+        ]
 
     def split(self, s0: float, s1: float) -> Curve:
         """Return the open piece from arc length `s0` to `s1`.
@@ -256,15 +278,24 @@ class Curve:
         starts = np.concatenate([[0.0], np.cumsum(seg.length)])
         total = starts[-1]
         twice = np.concatenate([starts[:-1], starts[:-1] + total]) if self.closed else starts[:-1]
-        low, high = np.maximum(twice, s0), np.minimum(twice + np.tile(seg.length, len(twice) // len(seg)), s0 + span)
+        low, high = (
+            np.maximum(twice, s0),
+            np.minimum(twice + np.tile(seg.length, len(twice) // len(seg)), s0 + span),
+        )
         kept = np.flatnonzero(high - low > tolerance.PARAMETRIC)
         if len(kept) == 0:
             raise ValueError(f"split: the piece of {span} mm is too short")
         rows = kept % len(seg)
         first, last = low[kept] - twice[kept], high[kept] - twice[kept]
         whole = (first <= tolerance.PARAMETRIC) & (last >= seg.length[rows] - tolerance.PARAMETRIC)
-        begin = np.where((first <= tolerance.PARAMETRIC)[:, None], seg.start[rows], seg.at(rows, first))
-        end = np.where((last >= seg.length[rows] - tolerance.PARAMETRIC)[:, None], seg.end[rows], seg.at(rows, last))
+        begin = np.where(
+            (first <= tolerance.PARAMETRIC)[:, None], seg.start[rows], seg.at(rows, first)
+        )
+        end = np.where(
+            (last >= seg.length[rows] - tolerance.PARAMETRIC)[:, None],
+            seg.end[rows],
+            seg.at(rows, last),
+        )
         share = np.where(whole, 1.0, (last - first) / seg.length[rows])
         bulges = np.tan(0.25 * share * seg.sweep[rows])
         return Curve(np.concatenate([begin, end[-1:]]), np.append(bulges, 0.0), False)
@@ -297,9 +328,13 @@ class Curve:
             along = (seg.end[row] - start) / max(length, tolerance.PARAMETRIC)
             return before + min(max(float((p - start) @ along), 0.0), length)
         a, b = start - seg.centre[row], p - seg.centre[row]
-        angle = math.copysign(1.0, sweep) * math.atan2(a[0] * b[1] - a[1] * b[0], float(a @ b)) % FULL
+        angle = (
+            math.copysign(1.0, sweep) * math.atan2(a[0] * b[1] - a[1] * b[0], float(a @ b)) % FULL
+        )
         if angle > abs(sweep):
-            return before + (length if np.hypot(*(p - seg.end[row])) < np.hypot(*(p - start)) else 0.0)
+            return before + (
+                length if np.hypot(*(p - seg.end[row])) < np.hypot(*(p - start)) else 0.0
+            )
         return before + angle * float(seg.radius[row])
 
     def _locate(self, s: float) -> tuple[int, float]:
@@ -385,7 +420,9 @@ def joined(curves: Sequence[Curve]) -> Curve:
         raise ValueError("joined: there is no curve to join")
     for n, (a, b) in enumerate(pairwise(curves)):
         if a.closed or b.closed or np.hypot(*(a.end - b.start)) > tolerance.COINCIDENT:
-            raise ValueError(f"joined: the end of curve {n + 1} does not meet the start of the next one")
+            raise ValueError(
+                f"joined: the end of curve {n + 1} does not meet the start of the next one"
+            )
     if len(curves) == 1 and curves[0].closed:
         return curves[0]
     points = np.concatenate([c.points[:-1] for c in curves] + [curves[-1].points[-1:]])

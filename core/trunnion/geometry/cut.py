@@ -31,7 +31,9 @@ class Cut:
 def plane_cut(face: int, place: Place, normal: Place) -> Cut:
     """Return the cut of a face by the plane through a place; raise `BadInput` when the normal has no length or a number is none."""
     if not all(map(math.isfinite, (*place, *normal))):
-        raise BadInput(f"the plane of a cut needs numbers; got {' '.join(f'{v:g}' for v in (*place, *normal))}")
+        raise BadInput(
+            f"the plane of a cut needs numbers; got {' '.join(f'{v:g}' for v in (*place, *normal))}"
+        )
     if not sum(v * v for v in normal) > 0.0:
         raise BadInput("the plane of a cut needs a normal with a length")
     return Cut(face=face, places=(place,), normal=normal)

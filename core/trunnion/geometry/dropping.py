@@ -56,14 +56,23 @@ class DropSurface:
         sort_loop(corners.mean(axis=1), start, row)
         facets = _facets(corners[row], _owned(triangles, len(points))[row])
         own = np.column_stack([facets[:, kernel.GX], facets[:, kernel.GY], np.zeros(len(facets))])
-        own[:, 2] = np.where(facets[:, kernel.TURN] == 0.0, np.inf, (facets[:, [2, 5, 8]] - own[:, :1] * facets[:, [0, 3, 6]]
-                                                                     - own[:, 1:2] * facets[:, [1, 4, 7]]).max(axis=1))
+        own[:, 2] = np.where(
+            facets[:, kernel.TURN] == 0.0,
+            np.inf,
+            (
+                facets[:, [2, 5, 8]]
+                - own[:, :1] * facets[:, [0, 3, 6]]
+                - own[:, 1:2] * facets[:, [1, 4, 7]]
+            ).max(axis=1),
+        )
         boxes, planes = np.empty((2 * leaves - 1, BOX_COLUMNS)), np.zeros((2 * leaves - 1, 3))
         planes[:, :2] = _slopes(facets, start)
         cover_loop(facets[:, :9], start, boxes, planes)
         return DropSurface(facets=facets, row=row, start=start, boxes=boxes, planes=(planes, own))
 
-    def drop(self, points: Floats, pieces: Floats, lowest: float | Floats, progress: Progress = QUIET) -> Floats:
+    def drop(
+        self, points: Floats, pieces: Floats, lowest: float | Floats, progress: Progress = QUIET
+    ) -> Floats:
         """Return the height (n,) of a cutter's tip over plan points (n, 2) when it comes down and touches, at least `lowest`, a height for
         all or for each (n,).
 
@@ -71,7 +80,9 @@ class DropSurface:
         """
         return self.touch(points, pieces, lowest, progress)[0]
 
-    def touch(self, points: Floats, pieces: Floats, lowest: float | Floats, progress: Progress = QUIET) -> tuple[Floats, Ints, Floats]:
+    def touch(
+        self, points: Floats, pieces: Floats, lowest: float | Floats, progress: Progress = QUIET
+    ) -> tuple[Floats, Ints, Floats]:
         """Return what `drop` does, the triangle (n,) that is touched at each point, and where (n, 3).
 
         Where two triangles meet it is one of them; over nothing that is higher than `lowest`, -1 and NaN.
@@ -82,11 +93,26 @@ class DropSurface:
         floor = np.ascontiguousarray(np.broadcast_to(np.asarray(lowest, dtype=np.float64), (n,)))
         for first in range(0, n, CHUNK):
             progress.at(first / n, "Dropping the cutter")
-            kernel.touch_loop(first, min(first + CHUNK, n), points, self.facets, self.start, self.boxes, *lifts, pieces, _ball(pieces),
-                              floor, out, facet, contact)
+            kernel.touch_loop(
+                first,
+                min(first + CHUNK, n),
+                points,
+                self.facets,
+                self.start,
+                self.boxes,
+                *lifts,
+                pieces,
+                _ball(pieces),
+                floor,
+                out,
+                facet,
+                contact,
+            )
         return out, np.where(facet >= 0, self.row[facet], -1), contact
 
-    def push(self, lines: Floats, pieces: Floats, progress: Progress = QUIET) -> tuple[Ints, Floats]:
+    def push(
+        self, lines: Floats, pieces: Floats, progress: Progress = QUIET
+    ) -> tuple[Ints, Floats]:
         """Return where the tip is blocked along lines (n, 2), each along x at a y and a z: start (n + 1,) into spans (k, 2) from x to x.
 
         The spans of a line are apart from each other and ascend. `pieces` as for `drop`.
@@ -98,17 +124,35 @@ class DropSurface:
             last = min(first + LINES, len(lines))
             count = np.zeros(len(lines), np.int64)
             spans = np.empty((last - first, room, 2))
-            while not push_loop(first, last, lines, self.facets, g.low, g.pitch, g.shape, g.start, g.rows, pieces, count, spans):
+            while not push_loop(
+                first,
+                last,
+                lines,
+                self.facets,
+                g.low,
+                g.pitch,
+                g.shape,
+                g.start,
+                g.rows,
+                pieces,
+                count,
+                spans,
+            ):
                 room *= 2
                 spans = np.empty((last - first, room, 2))
-            found += [_merged(spans[k, :count[first + k]]) for k in range(last - first)]
+            found += [_merged(spans[k, : count[first + k]]) for k in range(last - first)]
         return np.cumsum([0, *(len(f) for f in found)]), np.vstack([np.zeros((0, 2)), *found])
 
     def _cells(self) -> Lattice:
         """Return the lattice over the facets' boxes; made when it is first asked for."""
         if not self._lattice:
-            low, high = self.facets[:, kernel.LOW_X:kernel.LOW_Y + 1], self.facets[:, kernel.HIGH_X:kernel.HIGH_Y + 1]
-            pitch = float(np.sqrt(np.prod(high.max(axis=0) - low.min(axis=0)) * FACETS_A_CELL / len(low)))
+            low, high = (
+                self.facets[:, kernel.LOW_X : kernel.LOW_Y + 1],
+                self.facets[:, kernel.HIGH_X : kernel.HIGH_Y + 1],
+            )
+            pitch = float(
+                np.sqrt(np.prod(high.max(axis=0) - low.min(axis=0)) * FACETS_A_CELL / len(low))
+            )
             self._lattice.append(lattice_of(low, high, max(pitch, tolerance.PLANE_REGION)))
         return self._lattice[0]
 
@@ -127,7 +171,11 @@ class DropSurface:
 
 def _ball(pieces: Floats) -> float:
     """Return the radius of a lower side that is a ball's; 0 for others."""
-    return float(pieces[0, C]) if len(pieces) == 1 and pieces[0, ROUND] != 0.0 and pieces[0, A] == 0.0 else 0.0
+    return (
+        float(pieces[0, C])
+        if len(pieces) == 1 and pieces[0, ROUND] != 0.0 and pieces[0, A] == 0.0
+        else 0.0
+    )
 
 
 def _facets(corners: Floats, owned: Ints) -> Floats:
@@ -136,10 +184,13 @@ def _facets(corners: Floats, owned: Ints) -> Floats:
     facets[:, :9] = corners.reshape(-1, 9)
     normal = np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0])
     up = normal[:, 2] != 0.0
-    facets[up, kernel.GX:kernel.GY + 1] = -normal[up, :2] / normal[up, 2:]
+    facets[up, kernel.GX : kernel.GY + 1] = -normal[up, :2] / normal[up, 2:]
     facets[:, kernel.STEEP] = np.hypot(facets[:, kernel.GX], facets[:, kernel.GY])
     facets[:, kernel.TURN] = normal[:, 2]
-    facets[:, kernel.LOW_X:kernel.LOW_Y + 1], facets[:, kernel.HIGH_X:kernel.HIGH_Z + 1] = corners.min(axis=1)[:, :2], corners.max(axis=1)
+    facets[:, kernel.LOW_X : kernel.LOW_Y + 1], facets[:, kernel.HIGH_X : kernel.HIGH_Z + 1] = (
+        corners.min(axis=1)[:, :2],
+        corners.max(axis=1),
+    )
     facets[:, kernel.OWNS] = owned
     return facets
 
@@ -147,14 +198,26 @@ def _facets(corners: Floats, owned: Ints) -> Floats:
 def _slopes(facets: Floats, start: Ints) -> Floats:
     """Return the slopes (nodes, 2) along x and y of a tree's nodes: those of their facets in the mean, seen from above."""
     # What looks down, the other side of a part, says nothing of how steep the side is that a cutter comes to, large as it may be.
-    weight = np.maximum(facets[:, kernel.TURN], np.finfo(float).eps * np.abs(facets[:, kernel.TURN]))
-    sums = [np.add.reduceat(weight[:, None] * np.column_stack([np.ones(len(facets)), facets[:, kernel.GX:kernel.GY + 1]]), start[:-1])]
+    weight = np.maximum(
+        facets[:, kernel.TURN], np.finfo(float).eps * np.abs(facets[:, kernel.TURN])
+    )
+    sums = [
+        np.add.reduceat(
+            weight[:, None]
+            * np.column_stack([np.ones(len(facets)), facets[:, kernel.GX : kernel.GY + 1]]),
+            start[:-1],
+        )
+    ]
     while len(sums[-1]) > 1:
         sums.append(sums[-1][::2] + sums[-1][1::2])
     total = np.concatenate(sums[::-1])
-    slopes = np.divide(total[:, 1:], total[:, :1], out=np.zeros((len(total), 2)), where=total[:, :1] > 0.0)
+    slopes = np.divide(
+        total[:, 1:], total[:, :1], out=np.zeros((len(total), 2)), where=total[:, :1] > 0.0
+    )
     size = np.hypot(slopes[:, 0], slopes[:, 1])[:, None]
-    return np.asarray(slopes * np.divide(STEEPEST, size, out=np.ones_like(size), where=size > STEEPEST))
+    return np.asarray(
+        slopes * np.divide(STEEPEST, size, out=np.ones_like(size), where=size > STEEPEST)
+    )
 
 
 def _merged(spans: Floats) -> Floats:

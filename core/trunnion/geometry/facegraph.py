@@ -17,7 +17,17 @@ from trunnion.findings import BadInput
 from trunnion.geometry.arrays import Floats, Ints, floats, ints
 from trunnion.geometry.frame import Frame
 
-SURFACES = ("plane", "cylinder", "cone", "sphere", "torus", "revolution", "extrusion", "spline", "other")
+SURFACES = (
+    "plane",
+    "cylinder",
+    "cone",
+    "sphere",
+    "torus",
+    "revolution",
+    "extrusion",
+    "spline",
+    "other",
+)
 CURVES = ("line", "circle", "ellipse", "spline", "other")
 CONCAVE, SMOOTH, CONVEX = -1, 0, 1
 
@@ -74,9 +84,17 @@ class FaceGraph:
         for name in ("area", "radius", "minor"):
             object.__setattr__(self, name, floats(getattr(self, name), (n,), name, may_be_nan=True))
         for name in ("centre", "normal", "axis_point", "axis", "box_low", "box_high"):
-            object.__setattr__(self, name, floats(getattr(self, name), (n, 3), name, may_be_nan=name.startswith("axis")))
+            object.__setattr__(
+                self,
+                name,
+                floats(getattr(self, name), (n, 3), name, may_be_nan=name.startswith("axis")),
+            )
         for name in ("start", "middle", "end", "curve_centre", "curve_axis"):
-            object.__setattr__(self, name, floats(getattr(self, name), (m, 3), name, may_be_nan=name.startswith("curve")))
+            object.__setattr__(
+                self,
+                name,
+                floats(getattr(self, name), (m, 3), name, may_be_nan=name.startswith("curve")),
+            )
         for name in ("dihedral", "length", "curve_radius"):
             object.__setattr__(self, name, floats(getattr(self, name), (m,), name, may_be_nan=True))
         for name in ("sample_point", "sample_normal"):
@@ -110,22 +128,47 @@ class FaceGraph:
 
     def neighbours(self, face: int, convexity: int | None = None) -> tuple[int, ...]:
         """Return the rows of the faces beside a face, each once, across edges of one convexity when given."""
-        found = {self.across(e, face): None for e in self.edges_of[face] if convexity is None or self.convexity[e] == convexity}
+        found = {
+            self.across(e, face): None
+            for e in self.edges_of[face]
+            if convexity is None or self.convexity[e] == convexity
+        }
         return tuple(found)
 
     def in_frame(self, frame: Frame) -> FaceGraph:
         """Return the same graph with every point and direction in a frame (boxes are those of the samples and edge points)."""
-        moved = {n: frame.to_local(getattr(self, n)) for n in ("centre", "axis_point", "sample_point", "start", "middle", "end",
-        "curve_centre")}
-        turned = {n: frame.local_direction(getattr(self, n)) for n in ("normal", "axis", "sample_normal", "curve_axis")}
+        moved = {
+            n: frame.to_local(getattr(self, n))
+            for n in (
+                "centre",
+                "axis_point",
+                "sample_point",
+                "start",
+                "middle",
+                "end",
+                "curve_centre",
+            )
+        }
+        turned = {
+            n: frame.local_direction(getattr(self, n))
+            for n in ("normal", "axis", "sample_normal", "curve_axis")
+        }
         low, high = np.full((len(self), 3), np.inf), np.full((len(self), 3), -np.inf)
-        points = [moved["sample_point"], *(moved[n] for n in ("start", "middle", "end") for _ in (0, 1))]
+        points = [
+            moved["sample_point"],
+            *(moved[n] for n in ("start", "middle", "end") for _ in (0, 1)),
+        ]
         owners = [self.sample_face, *(self.edge_face[:, side] for _ in range(3) for side in (0, 1))]
         for point, owner in zip(points, owners, strict=True):
             np.minimum.at(low, owner, point)
             np.maximum.at(high, owner, point)
-        return replace(self, **moved, **turned,  # type: ignore[arg-type]
-                       box_low=np.minimum(low, moved["centre"]), box_high=np.maximum(high, moved["centre"]))
+        return replace(
+            self,
+            **moved,  # type: ignore[arg-type]
+            **turned,  # type: ignore[arg-type]
+            box_low=np.minimum(low, moved["centre"]),
+            box_high=np.maximum(high, moved["centre"]),
+        )
 
     def to_json(self) -> str:
         """Return the graph as JSON text; NaN is written as null."""
@@ -137,7 +180,9 @@ class FaceGraph:
         """Return the graph that `to_json` wrote; raise `BadInput` when it is not one."""
         try:
             data = json.loads(text)
-            ready = {k: tuple(v) if k in ("surface", "curve") else _filled(v) for k, v in data.items()}
+            ready = {
+                k: tuple(v) if k in ("surface", "curve") else _filled(v) for k, v in data.items()
+            }
             return FaceGraph(**ready)  # type: ignore[arg-type]
         except (ValueError, TypeError, KeyError) as reason:
             raise BadInput(f"not a face graph: {reason}") from None
@@ -145,7 +190,11 @@ class FaceGraph:
 
 def _plain(value: object) -> object:
     if isinstance(value, np.ndarray):
-        return [_plain(row) for row in value] if value.ndim > 1 else [None if v != v else v for v in value.tolist()]
+        return (
+            [_plain(row) for row in value]
+            if value.ndim > 1
+            else [None if v != v else v for v in value.tolist()]
+        )
     return list(value) if isinstance(value, tuple) else value
 
 

@@ -63,13 +63,17 @@ class Metric:
         """Return the matrix (v, v) whose quadratic form is the energy of slopes with weights (t,)."""
         cot = 0.5 * weight[:, None] * self._cotangents()[0]
         a, b = self.sheet.triangles, self.sheet.triangles[:, [1, 2, 0]]
-        rows, columns = (np.concatenate([x.ravel() for x in p]) for p in ((a, b, a, b), (b, a, a, b)))
+        rows, columns = (
+            np.concatenate([x.ravel() for x in p]) for p in ((a, b, a, b), (b, a, a, b))
+        )
         values = np.concatenate([-cot.ravel(), -cot.ravel(), cot.ravel(), cot.ravel()])
         n = len(self.sheet.points)
         return coo_matrix((values, (rows, columns)), shape=(n, n)).tocsr()
 
 
-def distances(metric: Metric, rows: Ints, times: Floats | float = 0.0, farthest: float = np.inf) -> tuple[Floats, Floats]:
+def distances(
+    metric: Metric, rows: Ints, times: Floats | float = 0.0, farthest: float = np.inf
+) -> tuple[Floats, Floats]:
     """Return how far all points are from some, by rows, that have distances of their own: (v,), and the place (v, 3) each came from.
 
     Distances are true along the surface to a few hundredths of an edge; farther than `farthest` they are infinite.
@@ -105,11 +109,15 @@ def blend(metric: Metric, zero: Ints, one: Ints, progress: Progress = QUIET) -> 
     for turn, power in enumerate(POWERS if len(free) else ()):
         progress.at(turn / len(POWERS), "Laying flow lines")
         matrix = metric.stiffness(weight)[free]
-        wanted = factorized(matrix[:, free].tocsc())(-(matrix[:, np.flatnonzero(fixed)] @ field[fixed]))
+        wanted = factorized(matrix[:, free].tocsc())(
+            -(matrix[:, np.flatnonzero(fixed)] @ field[fixed])
+        )
         field[free] += (wanted - field[free]) / (power - 1.0)
         slope = metric.slope(field)
         middle = float(np.median(slope))
-        weight = np.maximum(slope / middle, FLATTEST) ** (POWERS[min(turn + 1, len(POWERS) - 1)] - 2.0)
+        weight = np.maximum(slope / middle, FLATTEST) ** (
+            POWERS[min(turn + 1, len(POWERS) - 1)] - 2.0
+        )
     return field
 
 
@@ -138,7 +146,9 @@ def _way_between(sheet: Sheet, first: Ints, second: Ints) -> list[int]:
     ends, _ = sheet.edges()
     size = np.linalg.norm(sheet.points[ends[:, 0]] - sheet.points[ends[:, 1]], axis=1)
     graph = coo_matrix((size, ends.T), shape=(len(sheet.points),) * 2).tocsr()
-    away, before, _ = dijkstra(graph, directed=False, indices=first, min_only=True, return_predecessors=True)
+    away, before, _ = dijkstra(
+        graph, directed=False, indices=first, min_only=True, return_predecessors=True
+    )
     way = [int(second[np.argmin(away[second])])]
     while before[way[-1]] >= 0:
         way.append(int(before[way[-1]]))
@@ -154,7 +164,12 @@ def _left_of(sheet: Sheet, way: list[int]) -> Ints:
     for v in way:
         # Around a point, what hangs together with a triangle on the left without crossing the way is on the left.
         mine, left = touching[v], set()
-        sides = {t: [(int(sheet.triangles[t, k]), int(sheet.triangles[t, (k + 1) % 3])) for k in range(3)] for t in mine}
+        sides = {
+            t: [
+                (int(sheet.triangles[t, k]), int(sheet.triangles[t, (k + 1) % 3])) for k in range(3)
+            ]
+            for t in mine
+        }
         todo = [t for t in mine if any(side in steps and v in side for side in sides[t])]
         while todo:
             t = todo.pop()
@@ -163,7 +178,12 @@ def _left_of(sheet: Sheet, way: list[int]) -> Ints:
             left.add(t)
             for k, (a, b) in enumerate(sides[t]):
                 other = int(across[t, k]) // 3
-                if v in (a, b) and across[t, k] >= 0 and (a, b) not in steps and (b, a) not in steps:
+                if (
+                    v in (a, b)
+                    and across[t, k] >= 0
+                    and (a, b) not in steps
+                    and (b, a) not in steps
+                ):
                     todo.append(other)
         rows = np.array(sorted(left), dtype=np.int64)
         turns[rows] |= (sheet.triangles[rows] == v) & on_way[rows]

@@ -24,7 +24,9 @@ def restored(geometry: shapely.Geometry, chords: Chords) -> list[tuple[Curve, li
 
     Pieces and holes that are too small or too narrow to be more than noise are left out.
     """
-    polygons = [p for p in shapely.get_parts(geometry) if p.geom_type == "Polygon" and not p.is_empty]
+    polygons = [
+        p for p in shapely.get_parts(geometry) if p.geom_type == "Polygon" and not p.is_empty
+    ]
     if not polygons:
         return []
     rings, owner = shapely.get_rings(polygons, return_index=True)
@@ -53,7 +55,9 @@ def joined_runs(chords: Chords) -> Curve | None:
     change = _changes(chords.carrier, turned)
     if len(change) == 0:
         return _round(source, 0, int(turned[0]), source.start[0]) if turned[0] else None
-    return _closed_curve(chords, [_Run(int(rows[k]), int(turned[k]), source.start[k], True) for k in change])
+    return _closed_curve(
+        chords, [_Run(int(rows[k]), int(turned[k]), source.start[k], True) for k in change]
+    )
 
 
 class _Edges:
@@ -65,7 +69,9 @@ class _Edges:
         bounds = np.flatnonzero(np.diff(ring)) + 1
         self.begin = np.concatenate([[0], bounds])
         self.stop = np.concatenate([bounds, [len(coords)]])
-        table, place = np.unique(chords.points[:, 0] + 1j * chords.points[:, 1], return_inverse=True)
+        table, place = np.unique(
+            chords.points[:, 0] + 1j * chords.points[:, 1], return_inverse=True
+        )
         z = coords[:, 0] + 1j * coords[:, 1]
         at = np.minimum(np.searchsorted(table, z), len(table) - 1)
         self.is_old: Bools = table[at] == z
@@ -77,7 +83,9 @@ class _Edges:
         is_edge = np.ones(len(coords), dtype=bool)
         is_edge[self.stop - 1] = False
         edge = np.flatnonzero(is_edge)
-        known = np.minimum(place[head], place[head + 1]) * len(table) + np.maximum(place[head], place[head + 1])
+        known = np.minimum(place[head], place[head + 1]) * len(table) + np.maximum(
+            place[head], place[head + 1]
+        )
         # A bridge that lies on a real chord must not hide it.
         order = np.lexsort([chords.is_bridge[rows[head]], known])
         known = known[order]
@@ -89,7 +97,11 @@ class _Edges:
         if not hit.all():
             lost = edge[~hit]
             real = head[np.argsort(chords.is_bridge[rows[head]], kind="stable")]
-            chord[~hit] = real[_nearest_chord(coords[lost], coords[lost + 1], chords.points[real], chords.points[real + 1])]
+            chord[~hit] = real[
+                _nearest_chord(
+                    coords[lost], coords[lost + 1], chords.points[real], chords.points[real + 1]
+                )
+            ]
         along = coords[edge + 1] - coords[edge]
         source = chords.points[chord + 1] - chords.points[chord]
         sign = np.where((along * source).sum(axis=1) >= 0.0, 1, -1)
@@ -107,17 +119,23 @@ class _Edges:
         area, around = _ring_size(points)
         if area < tolerance.AREA or 2.0 * area < tolerance.SLIVER * around:
             return None
-        carrier, turned = self.carrier[begin:stop - 1], self.turn[begin:stop - 1]
+        carrier, turned = self.carrier[begin : stop - 1], self.turn[begin : stop - 1]
         change = _changes(carrier, turned)
         if len(change) == 0:
             return _round(self.chords.source, int(self.row[begin]), int(turned[0]), points[0])
-        runs = [_Run(int(self.row[begin + k]), int(turned[k]), points[k], bool(self.is_old[begin + k])) for k in change]
+        runs = [
+            _Run(int(self.row[begin + k]), int(turned[k]), points[k], bool(self.is_old[begin + k]))
+            for k in change
+        ]
         return _closed_curve(self.chords, runs)
 
 
 def _changes(carrier: Ints, turned: Ints) -> Ints:
     """Return the places in a ring where another carrier, or the same one in the other direction, begins."""
-    before_carrier, before_turned = np.concatenate([carrier[-1:], carrier[:-1]]), np.concatenate([turned[-1:], turned[:-1]])
+    before_carrier, before_turned = (
+        np.concatenate([carrier[-1:], carrier[:-1]]),
+        np.concatenate([turned[-1:], turned[:-1]]),
+    )
     return np.flatnonzero((carrier != before_carrier) | (turned != before_turned))
 
 
@@ -168,8 +186,10 @@ def _closed_curve(chords: Chords, runs: list[_Run]) -> Curve | None:
     runs = _without_specks(chords, runs)
     starts = [run.start for run in runs]
     while len(runs) > 1:
-        starts = [run.start if run.is_exact else meeting(source, before.row, run.row, run.start)
-                  for before, run in zip([runs[-1], *runs[:-1]], runs, strict=True)]
+        starts = [
+            run.start if run.is_exact else meeting(source, before.row, run.row, run.start)
+            for before, run in zip([runs[-1], *runs[:-1]], runs, strict=True)
+        ]
         turned_back = _turned_back(source, runs, starts)
         if turned_back < 0:
             break
@@ -195,7 +215,9 @@ def _without_specks(chords: Chords, runs: list[_Run]) -> list[_Run]:
     kept: list[_Run] = []
     for n, run in enumerate(runs):
         after = runs[(n + 1) % len(runs)]
-        is_speck = math.dist(after.start, run.start) <= CLOSE and not _goes_round(chords.source, run, after)
+        is_speck = math.dist(after.start, run.start) <= CLOSE and not _goes_round(
+            chords.source, run, after
+        )
         if is_speck or chords.is_bridge[run.row]:
             after.is_exact = False
         else:
@@ -208,9 +230,17 @@ def _joined(chords: Chords, runs: list[_Run]) -> list[_Run]:
     carrier = chords.carrier
     joined: list[_Run] = []
     for run in runs:
-        if not joined or carrier[joined[-1].row] != carrier[run.row] or joined[-1].turned != run.turned:
+        if (
+            not joined
+            or carrier[joined[-1].row] != carrier[run.row]
+            or joined[-1].turned != run.turned
+        ):
             joined.append(run)
-    while len(joined) > 1 and carrier[joined[0].row] == carrier[joined[-1].row] and joined[0].turned == joined[-1].turned:
+    while (
+        len(joined) > 1
+        and carrier[joined[0].row] == carrier[joined[-1].row]
+        and joined[0].turned == joined[-1].turned
+    ):
         joined.pop(0)
     return joined
 
@@ -223,7 +253,10 @@ def _turned_back(source: Segments, runs: list[_Run], starts: list[Floats]) -> in
             continue
         if run.turned:
             wide = abs(_sweep(source, run, starts[n], starts[after]))
-            if wide > math.pi and wide > abs(_sweep(source, run, run.start, runs[after].start)) + math.pi:
+            if (
+                wide > math.pi
+                and wide > abs(_sweep(source, run, run.start, runs[after].start)) + math.pi
+            ):
                 return n
         elif (starts[after] - starts[n]) @ (runs[after].start - run.start) <= 0.0:
             return n
@@ -242,7 +275,9 @@ def _sweep(source: Segments, run: _Run, start: Floats, end: Floats) -> float:
     return run.turned * (angle % FULL)
 
 
-def _arc_or_line(source: Segments, run: _Run, start: Floats, end: Floats) -> tuple[list[Floats], list[float]]:
+def _arc_or_line(
+    source: Segments, run: _Run, start: Floats, end: Floats
+) -> tuple[list[Floats], list[float]]:
     if not run.turned:
         return [start], [0.0]
     sweep = _sweep(source, run, start, end)

@@ -38,7 +38,9 @@ class Frame:
     def axes(self) -> Floats:
         """The three axes as rows (3, 3): local = axes @ (world - origin)."""
         if not self._axes:
-            self._axes.append(floats(np.stack([self.x, np.cross(self.z, self.x), self.z]), (3, 3), "frame axes"))
+            self._axes.append(
+                floats(np.stack([self.x, np.cross(self.z, self.x), self.z]), (3, 3), "frame axes")
+            )
         return self._axes[0]
 
     def to_local(self, points: Floats) -> Floats:
@@ -63,7 +65,9 @@ class Frame:
 
     def as_dict(self) -> dict[str, list[float]]:
         """Return the frame as the JSON that other programs rely on."""
-        return {name: [float(v) + 0.0 for v in getattr(self, name)] for name in ("origin", "x", "z")}
+        return {
+            name: [float(v) + 0.0 for v in getattr(self, name)] for name in ("origin", "x", "z")
+        }
 
 
 WORLD = Frame(np.zeros(3), np.array([1.0, 0.0, 0.0]), np.array([0.0, 0.0, 1.0]))

@@ -23,14 +23,21 @@ def crossings(s: Segments, pairs: tuple[Ints, Ints] | None = None) -> tuple[Ints
     i, j = meeting_boxes(s) if pairs is None else pairs
     line = s.sweep == 0.0
     rows, points = [], []
-    for kind, solve in ((line[i] & line[j], _lines_meet), (line[i] & ~line[j], _line_meets_circle),
-                        (~line[i] & line[j], _circle_meets_line), (~line[i] & ~line[j], _circles_meet)):
+    for kind, solve in (
+        (line[i] & line[j], _lines_meet),
+        (line[i] & ~line[j], _line_meets_circle),
+        (~line[i] & line[j], _circle_meets_line),
+        (~line[i] & ~line[j], _circles_meet),
+    ):
         a, b = i[kind], j[kind]
         for point in solve(s, a, b) if len(a) else ():
             rows += [a, b]
             points += [point, point]
     # Ends that lie on another segment cut it too, which also covers segments that lie on each other.
-    row, point = np.concatenate([i, i, j, j]), np.concatenate([s.start[j], s.end[j], s.start[i], s.end[i]])
+    row, point = (
+        np.concatenate([i, i, j, j]),
+        np.concatenate([s.start[j], s.end[j], s.start[i], s.end[i]]),
+    )
     touches = _off_carrier(s, row, point) <= CLOSE
     row, point = np.concatenate([*rows, row[touches]]), np.concatenate([*points, point[touches]])
     key = place_on(s, row, point)
@@ -61,7 +68,9 @@ def _off_carrier(s: Segments, rows: Ints, points: Floats) -> Floats:
     to = points - s.start[rows]
     off = np.abs(along[:, 0] * to[:, 1] - along[:, 1] * to[:, 0]) / np.where(size > 0.0, size, 1.0)
     ray = points - s.centre[rows]
-    return np.where(s.sweep[rows] == 0.0, off, np.abs(np.hypot(ray[:, 0], ray[:, 1]) - s.radius[rows]))
+    return np.where(
+        s.sweep[rows] == 0.0, off, np.abs(np.hypot(ray[:, 0], ray[:, 1]) - s.radius[rows])
+    )
 
 
 def place_on(s: Segments, rows: Ints, points: Floats) -> Floats:
@@ -74,7 +83,11 @@ def place_on(s: Segments, rows: Ints, points: Floats) -> Floats:
     a = rows[~line]
     if len(a):
         ray, q = s.start[a] - s.centre[a], points[~line] - s.centre[a]
-        angle = np.sign(s.sweep[a]) * np.arctan2(ray[:, 0] * q[:, 1] - ray[:, 1] * q[:, 0], (ray * q).sum(axis=1)) % FULL
+        angle = (
+            np.sign(s.sweep[a])
+            * np.arctan2(ray[:, 0] * q[:, 1] - ray[:, 1] * q[:, 0], (ray * q).sum(axis=1))
+            % FULL
+        )
         place[~line] = angle * s.radius[a]
     length = s.length[rows]
     with np.errstate(invalid="ignore"):
@@ -87,7 +100,9 @@ def _lines_meet(s: Segments, a: Ints, b: Ints) -> list[Floats]:
     across = d[:, 0] * e[:, 1] - d[:, 1] * e[:, 0]
     to = s.start[b] - s.start[a]
     ok = np.abs(across) > tolerance.COINCIDENT * s.length[a] * s.length[b]
-    share = np.divide(to[:, 0] * e[:, 1] - to[:, 1] * e[:, 0], across, out=np.full(len(a), np.nan), where=ok)
+    share = np.divide(
+        to[:, 0] * e[:, 1] - to[:, 1] * e[:, 0], across, out=np.full(len(a), np.nan), where=ok
+    )
     return [s.start[a] + share[:, None] * d]
 
 
@@ -110,7 +125,9 @@ def _circles_meet(s: Segments, a: Ints, b: Ints) -> list[Floats]:
     ra, rb = s.radius[a], s.radius[b]
     ok = (apart > CLOSE) & (apart <= ra + rb + CLOSE) & (apart >= np.abs(ra - rb) - CLOSE)
     d = np.divide(d, apart[:, None], out=np.full_like(d, np.nan), where=ok[:, None])
-    along = 0.5 * (apart + np.divide((ra - rb) * (ra + rb), apart, out=np.zeros_like(apart), where=ok))
+    along = 0.5 * (
+        apart + np.divide((ra - rb) * (ra + rb), apart, out=np.zeros_like(apart), where=ok)
+    )
     half = np.sqrt(np.maximum((ra - along) * (ra + along), 0.0))[:, None]
     middle = s.centre[a] + np.clip(along, -ra, ra)[:, None] * d
     across = np.stack([-d[:, 1], d[:, 0]], axis=1)
@@ -125,10 +142,16 @@ def meeting(source: Segments, a: int, b: int, near: Floats) -> Floats:
     if source.sweep[a] == 0.0 and source.sweep[b] == 0.0:
         return _line_line(source, a, b, near)
     if source.sweep[a] == 0.0:
-        return _line_circle(source.start[a], source.end[a], source.centre[b], float(source.radius[b]), near)
+        return _line_circle(
+            source.start[a], source.end[a], source.centre[b], float(source.radius[b]), near
+        )
     if source.sweep[b] == 0.0:
-        return _line_circle(source.start[b], source.end[b], source.centre[a], float(source.radius[a]), near)
-    return _circle_circle(source.centre[a], float(source.radius[a]), source.centre[b], float(source.radius[b]), near)
+        return _line_circle(
+            source.start[b], source.end[b], source.centre[a], float(source.radius[a]), near
+        )
+    return _circle_circle(
+        source.centre[a], float(source.radius[a]), source.centre[b], float(source.radius[b]), near
+    )
 
 
 def _line_line(source: Segments, a: int, b: int, near: Floats) -> Floats:

@@ -27,14 +27,22 @@ class Lattice:
 def lattice_of(low: Floats, high: Floats, pitch: float) -> Lattice:
     """Return the lattice over boxes given by corners (n, 2)."""
     corner, end = low.min(axis=0), high.max(axis=0)
-    pitch = max(pitch, float(np.sqrt(np.prod(end - corner) / MOST_CELLS)), float((end - corner).max() / MOST_CELLS))
+    pitch = max(
+        pitch,
+        float(np.sqrt(np.prod(end - corner) / MOST_CELLS)),
+        float((end - corner).max() / MOST_CELLS),
+    )
     shape = np.floor((end - corner) / pitch).astype(np.int64) + 1
     first, last = (np.floor((at - corner) / pitch).astype(np.int64) for at in (low, high))
     wide = last - first + 1
     count = wide.prod(axis=1)
     box = np.repeat(np.arange(len(low)), count)
     within = np.arange(len(box)) - np.repeat(np.cumsum(count) - count, count)
-    cell = (first[box, 1] + within // wide[box, 0]) * shape[0] + first[box, 0] + within % wide[box, 0]
+    cell = (
+        (first[box, 1] + within // wide[box, 0]) * shape[0] + first[box, 0] + within % wide[box, 0]
+    )
     order = np.argsort(cell, kind="stable")
     start = np.concatenate([[0], np.cumsum(np.bincount(cell, minlength=int(shape.prod())))])
-    return Lattice(low=corner, pitch=pitch, shape=shape, start=start.astype(np.int64), rows=box[order])
+    return Lattice(
+        low=corner, pitch=pitch, shape=shape, start=start.astype(np.int64), rows=box[order]
+    )

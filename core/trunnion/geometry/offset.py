@@ -44,7 +44,9 @@ def grown(boundary: Segments, loops: Ints, distance: float) -> tuple[shapely.Geo
     real = count[owner] > 1
     _, line = np.unique(owner[real], return_inverse=True)
     lines = np.asarray(shapely.linestrings(chords.points[real], indices=line))
-    faces = shapely.get_parts(shapely.polygonize(np.asarray([shapely.node(shapely.multilinestrings(lines))])))
+    faces = shapely.get_parts(
+        shapely.polygonize(np.asarray([shapely.node(shapely.multilinestrings(lines))]))
+    )
     if len(faces) == 0:
         return shapely.MultiPolygon(), chords
     return shapely.union_all(faces[_margin(boundary, distance, faces) > 0.0]), chords
@@ -52,9 +54,14 @@ def grown(boundary: Segments, loops: Ints, distance: float) -> tuple[shapely.Geo
 
 def _margin(boundary: Segments, distance: float, faces: NDArray[np.object_]) -> Floats:
     """Return how much deeper than asked a point inside each face lies, the most telling of several points where one says little."""
-    margin = signed_distance(boundary, shapely.get_coordinates(shapely.point_on_surface(faces))) + distance
+    margin = (
+        signed_distance(boundary, shapely.get_coordinates(shapely.point_on_surface(faces)))
+        + distance
+    )
     # A point may lie on the ridge of the distances, such as the middle of a groove, where a whole face seems to be an edge.
-    for n in np.flatnonzero((np.abs(margin) < tolerance.SLIVER) & (shapely.area(faces) > tolerance.AREA)):
+    for n in np.flatnonzero(
+        (np.abs(margin) < tolerance.SLIVER) & (shapely.area(faces) > tolerance.AREA)
+    ):
         triangles = shapely.get_parts(shapely.constrained_delaunay_triangles(faces[n]))
         probes = shapely.get_coordinates(shapely.centroid(triangles))
         found = signed_distance(boundary, probes) + distance
@@ -80,16 +87,30 @@ def raw_parallel(s: Segments, loop: Ints, distance: float, closed: bool = True) 
     is_arc = s.sweep != 0.0
     gone = is_arc & (radius <= tolerance.COINCIDENT)
     stays_arc = is_arc & ~gone
-    main = Segments(start, end, np.where(stays_arc[:, None], s.centre, np.nan), np.where(stays_arc, radius, np.nan),
-                    np.where(stays_arc, s.sweep, 0.0), np.where(stays_arc, radius * np.abs(s.sweep), _apart(start, end)))
+    main = Segments(
+        start,
+        end,
+        np.where(stays_arc[:, None], s.centre, np.nan),
+        np.where(stays_arc, radius, np.nan),
+        np.where(stays_arc, s.sweep, 0.0),
+        np.where(stays_arc, radius * np.abs(s.sweep), _apart(start, end)),
+    )
     bend = _bends(s, before, after, finish[before], begin[after])
     convex = bend * distance < 0.0
     size = abs(distance)
-    joins = Segments(end[before], start[after], np.where(convex[:, None], s.end[before], np.nan), np.where(convex, size, np.nan),
-                     np.where(convex, bend, 0.0), np.where(convex, size * np.abs(bend), _apart(end[before], start[after])))
+    joins = Segments(
+        end[before],
+        start[after],
+        np.where(convex[:, None], s.end[before], np.nan),
+        np.where(convex, size, np.nan),
+        np.where(convex, bend, 0.0),
+        np.where(convex, size * np.abs(bend), _apart(end[before], start[after])),
+    )
     order = np.argsort(np.concatenate([2 * np.arange(len(s)), 2 * before[open_joint] + 1]))
-    return RawCurve(join_segments([main, joins[np.flatnonzero(open_joint)]])[order],
-                    np.concatenate([gone, ~convex[open_joint]])[order])
+    return RawCurve(
+        join_segments([main, joins[np.flatnonzero(open_joint)]])[order],
+        np.concatenate([gone, ~convex[open_joint]])[order],
+    )
 
 
 def _apart(a: Floats, b: Floats) -> Floats:
@@ -132,7 +153,9 @@ def parallel_curves(curve: Curve, distance: float) -> list[Curve]:
     """
     if abs(distance) <= tolerance.PARAMETRIC:
         return [curve]
-    raw = raw_parallel(curve.segments(), np.zeros(curve.n_segments, dtype=np.int64), distance, curve.closed)
+    raw = raw_parallel(
+        curve.segments(), np.zeros(curve.n_segments, dtype=np.int64), distance, curve.closed
+    )
     real = raw.segments[np.flatnonzero(~raw.is_bridge)]
     # What lies round the end of an open curve is nearer to it than the distance and cuts too.
     ends = () if curve.closed else (curve.start, curve.end)
@@ -150,7 +173,7 @@ def cut_at_crossings(s: Segments) -> tuple[Ints, Floats, Floats]:
     row, share, _ = crossings(s)
     m = len(s)
     row = np.concatenate([np.arange(m), np.arange(m), row])
-    place = np.concatenate([np.zeros(m), s.length, share * s.length[row[2 * m:]]])
+    place = np.concatenate([np.zeros(m), s.length, share * s.length[row[2 * m :]]])
     order = np.lexsort([place, row])
     row, place = row[order], place[order]
     real = (row[1:] == row[:-1]) & (place[1:] - place[:-1] > CLOSE)
@@ -166,8 +189,13 @@ def _strung(s: Segments, rows: Ints, low: Floats, high: Floats) -> list[Curve]:
     breaks = np.flatnonzero(np.abs(end[:-1] - start[1:]).max(axis=1) > MEETS) + 1
     curves = []
     for chain in _chains(np.split(np.arange(len(rows)), breaks), start, end):
-        points, bulges = np.concatenate([start[chain], end[chain[-1:]]]), np.append(bulge[chain], 0.0)
-        if np.abs(points[-1] - points[0]).max() <= MEETS and (len(chain) > 2 or (len(chain) == 2 and bulges.any())):
+        points, bulges = (
+            np.concatenate([start[chain], end[chain[-1:]]]),
+            np.append(bulge[chain], 0.0),
+        )
+        if np.abs(points[-1] - points[0]).max() <= MEETS and (
+            len(chain) > 2 or (len(chain) == 2 and bulges.any())
+        ):
             curves.append(Curve(points[:-1], bulges[:-1], True))
         else:
             curves.append(Curve(points, bulges, False))

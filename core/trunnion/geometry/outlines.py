@@ -30,14 +30,27 @@ class Outlines:
         pitch = max(float(top.max()) - low, near) / count * (1.0 + 1e-9)
         first, last = (np.floor((y - low) / pitch).astype(np.int64) for y in (bottom, top))
         times = last - first + 1
-        strip = np.repeat(first, times) + np.arange(times.sum()) - np.repeat(np.cumsum(times) - times, times)
+        strip = (
+            np.repeat(first, times)
+            + np.arange(times.sum())
+            - np.repeat(np.cumsum(times) - times, times)
+        )
         order = np.argsort(strip, kind="stable")
         start = np.searchsorted(strip[order], np.arange(count + 1))
-        return Outlines(pieces=pieces, near=near, low=low, pitch=pitch, start=start, rows=np.repeat(np.arange(len(pieces)), times)[order])
+        return Outlines(
+            pieces=pieces,
+            near=near,
+            low=low,
+            pitch=pitch,
+            start=start,
+            rows=np.repeat(np.arange(len(pieces)), times)[order],
+        )
 
     def within(self, places: Floats) -> Ints:
         """Return `OUT`, `IN` or `NEAR` of `kernels.outline` (k,) for places (k, 2)."""
         out = np.empty(len(places), np.int64)
         places = np.ascontiguousarray(places, dtype=np.float64)
-        within_loop(places, self.pieces, self.near, self.low, self.pitch, self.start, self.rows, out)
+        within_loop(
+            places, self.pieces, self.near, self.low, self.pitch, self.start, self.rows, out
+        )
         return out

@@ -15,7 +15,14 @@ from trunnion.geometry import fit
 from trunnion.geometry.arrays import Bools, Floats, Ints
 from trunnion.geometry.cache import Memo
 from trunnion.geometry.chords import Chords, chorded, polygons_of
-from trunnion.geometry.curve import Curve, Segments, distance_to, join_segments, signed_distance, winding
+from trunnion.geometry.curve import (
+    Curve,
+    Segments,
+    distance_to,
+    join_segments,
+    signed_distance,
+    winding,
+)
 from trunnion.geometry.offset import grown
 
 KEPT_ANSWERS = 4096
@@ -144,7 +151,10 @@ class Region:
         low, high = self.box()
         if distance < 0.0 and 2.0 * -distance >= (high - low).min():
             return EMPTY_REGION
-        return _OFFSETS.answer((self.digest(), distance), lambda: restored_region(*grown(self.segments(), self.loops(), distance)))
+        return _OFFSETS.answer(
+            (self.digest(), distance),
+            lambda: restored_region(*grown(self.segments(), self.loops(), distance)),
+        )
 
     def opened(self, radius: float) -> Region:
         """Return what a disc of this radius covers when it rolls inside the region: no neck narrower than it is left."""
@@ -179,8 +189,16 @@ class Region:
         outers = [p.outer for p in self.pieces]
         if len(outers) < 2:
             return Region(tuple(Piece(c) for c in outers))
-        inside = [any(o is not c and winding(o.segments(), c.points[:1])[0] > 0 and o.area > c.area for o in outers) for c in outers]
-        return Region(tuple(Piece(c) for c, swallowed in zip(outers, inside, strict=True) if not swallowed))
+        inside = [
+            any(
+                o is not c and winding(o.segments(), c.points[:1])[0] > 0 and o.area > c.area
+                for o in outers
+            )
+            for c in outers
+        ]
+        return Region(
+            tuple(Piece(c) for c, swallowed in zip(outers, inside, strict=True) if not swallowed)
+        )
 
     def split(self) -> tuple[Region, ...]:
         """Return one region a piece."""
@@ -203,13 +221,17 @@ class Region:
         pieces = []
         for p in self.pieces:
             outer = simplified_curve(p.outer)
-            holes = [h for h in (simplified_curve(h) for h in p.holes) if h is not None and h.area < 0.0]
+            holes = [
+                h for h in (simplified_curve(h) for h in p.holes) if h is not None and h.area < 0.0
+            ]
             if outer is not None and outer.area > 0.0:
                 pieces.append(Piece(outer, tuple(holes)))
         return Region(tuple(pieces))
 
     def _mapped(self, change: Callable[[Curve], Curve]) -> Region:
-        return Region(tuple(Piece(change(p.outer), tuple(change(h) for h in p.holes)) for p in self.pieces))
+        return Region(
+            tuple(Piece(change(p.outer), tuple(change(h) for h in p.holes)) for p in self.pieces)
+        )
 
 
 EMPTY_REGION = Region()
@@ -230,6 +252,7 @@ def union_all(regions: Sequence[Region]) -> Region:
 
 def overlay(a: Region, b: Region, operation: Callable[..., shapely.Geometry]) -> Region:
     """Return what a set operation of shapely makes of two regions, with exact lines and arcs."""
+
     def work_out() -> Region:
         chords, (first, second) = _opened_into_chords([a, b])
         return restored_region(operation(first, second), chords)
@@ -270,6 +293,7 @@ def _opened_into_chords(regions: Sequence[Region]) -> tuple[Chords, list[shapely
 
 def _beside(region: Region, low: Floats, high: Floats) -> Region:
     """Return a region without the pieces and islands that lie wholly outside a box: what is asked there doesn't hang on them."""
+
     def near(curve: Curve) -> bool:
         first, last = curve.box()
         return bool((first <= high).all() and (last >= low).all())
@@ -303,7 +327,12 @@ def _boxed(boxes: Floats, n: int) -> list[int]:
     """Return which of the boxes (low x, low y, high x, high y) before row n hold box n."""
     slack = tolerance.COINCIDENT
     low, high = boxes[:n, :2] - slack, boxes[:n, 2:] + slack
-    return [int(k) for k in np.flatnonzero((boxes[n, :2] >= low).all(axis=1) & (boxes[n, 2:] <= high).all(axis=1))]
+    return [
+        int(k)
+        for k in np.flatnonzero(
+            (boxes[n, :2] >= low).all(axis=1) & (boxes[n, 2:] <= high).all(axis=1)
+        )
+    ]
 
 
 def _is_inside(inner: Curve, outer: Curve) -> bool:

@@ -54,8 +54,15 @@ def ridged(metric: Metric, time: Floats, foot: Floats, gap: float) -> Ridged:
     # In a triangle where three ridges meet, both lower points are joined to the highest one.
     stars = number[side][split.all(axis=1)]
     high = np.argmax(time[stars], axis=1) if len(stars) else np.zeros(0, np.int64)
-    pairs += [np.column_stack([stars[np.arange(len(stars)), high], stars[np.arange(len(stars)), (high + k) % 3]]) for k in (1, 2)]
-    return Ridged(sheet=parted, time=time, ridges=_chained(parted.points, _lines(np.concatenate(pairs)), gap))
+    pairs += [
+        np.column_stack(
+            [stars[np.arange(len(stars)), high], stars[np.arange(len(stars)), (high + k) % 3]]
+        )
+        for k in (1, 2)
+    ]
+    return Ridged(
+        sheet=parted, time=time, ridges=_chained(parted.points, _lines(np.concatenate(pairs)), gap)
+    )
 
 
 def opened(sheet: Sheet) -> Sheet:
@@ -77,7 +84,15 @@ def _chained(points: Floats, lines: list[Ints], gap: float) -> list[Ints]:
         return lines
     tips = points[np.concatenate([line[[0, -1]] for line in open_lines])]
     pairs = cKDTree(tips).query_pairs(gap, output_type="ndarray")
-    pairs = pairs[np.lexsort((pairs[:, 1], pairs[:, 0], np.linalg.norm(tips[pairs[:, 0]] - tips[pairs[:, 1]], axis=1)))]
+    pairs = pairs[
+        np.lexsort(
+            (
+                pairs[:, 1],
+                pairs[:, 0],
+                np.linalg.norm(tips[pairs[:, 0]] - tips[pairs[:, 1]], axis=1),
+            )
+        )
+    ]
     partner = np.full(len(tips), -1)
     for a, b in pairs.tolist():
         if partner[a] < 0 and partner[b] < 0 and a // 2 != b // 2:
@@ -100,7 +115,9 @@ def _chained(points: Floats, lines: list[Ints], gap: float) -> list[Ints]:
     return [line for line in lines if line[0] == line[-1]] + made
 
 
-def _meeting(metric: Metric, ends: Ints, side: Ints, time: Floats, foot: Floats) -> tuple[Floats, Floats, Bools]:
+def _meeting(
+    metric: Metric, ends: Ints, side: Ints, time: Floats, foot: Floats
+) -> tuple[Floats, Floats, Bools]:
     """Return where on each edge (e,) fronts from both ends meet, as a share of its way, when, and whether they do."""
     sheet = metric.sheet
     length = np.empty(len(ends))
@@ -108,7 +125,11 @@ def _meeting(metric: Metric, ends: Ints, side: Ints, time: Floats, foot: Floats)
     a, b = ends.T
     edge, came = _unit(sheet.points[b] - sheet.points[a]), _unit(sheet.points - foot)
     forth, back = (came[a] * edge).sum(axis=1), -(came[b] * edge).sum(axis=1)
-    meets = ((came[a] * came[b]).sum(axis=1) < MEETING) & (forth + back > 0.0) & np.isfinite(time[ends]).all(axis=1)
+    meets = (
+        ((came[a] * came[b]).sum(axis=1) < MEETING)
+        & (forth + back > 0.0)
+        & np.isfinite(time[ends]).all(axis=1)
+    )
     meets &= (np.linalg.norm(came[ends], axis=2) > 0.5).all(axis=1)
     closing = np.maximum((forth + back) * length, tolerance.PARAMETRIC)
     share = (time[b] - time[a] + back * length) / closing

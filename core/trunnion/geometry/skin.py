@@ -29,7 +29,9 @@ class Skin:
 
     def __post_init__(self) -> None:
         object.__setattr__(self, "points", floats(self.points, (None, 3), "skin points"))
-        object.__setattr__(self, "normals", floats(self.normals, (len(self.points), 3), "skin normals"))
+        object.__setattr__(
+            self, "normals", floats(self.normals, (len(self.points), 3), "skin normals")
+        )
         object.__setattr__(self, "triangles", ints(self.triangles, (None, 3), "skin triangles"))
         object.__setattr__(self, "face", ints(self.face, (len(self.triangles),), "skin face"))
 
@@ -48,8 +50,11 @@ class Skin:
         """Return the same skin, given in one frame, in another one."""
         if frame is other:
             return self
-        return replace(self, points=other.to_local(frame.to_world(self.points)),
-                       normals=other.local_direction(frame.world_direction(self.normals)))
+        return replace(
+            self,
+            points=other.to_local(frame.to_world(self.points)),
+            normals=other.local_direction(frame.world_direction(self.normals)),
+        )
 
     def box(self) -> tuple[Floats, Floats]:
         """Return the lowest and highest corner (3,)."""

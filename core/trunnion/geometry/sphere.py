@@ -16,22 +16,52 @@ def directions(halvings: int) -> tuple[Floats, Ints]:
     63, 34, 18, 9 degrees apart.
     """
     g = _GOLDEN
-    point = np.array([[0, 1, g], [0, -1, g], [0, 1, -g], [0, -1, -g], [1, g, 0], [-1, g, 0], [1, -g, 0], [-1, -g, 0],
-                      [g, 0, 1], [g, 0, -1], [-g, 0, 1], [-g, 0, -1]], dtype=np.float64) / np.sqrt(1.0 + g * g)
+    point = np.array(
+        [
+            [0, 1, g],
+            [0, -1, g],
+            [0, 1, -g],
+            [0, -1, -g],
+            [1, g, 0],
+            [-1, g, 0],
+            [1, -g, 0],
+            [-1, -g, 0],
+            [g, 0, 1],
+            [g, 0, -1],
+            [-g, 0, 1],
+            [-g, 0, -1],
+        ],
+        dtype=np.float64,
+    ) / np.sqrt(1.0 + g * g)
     parents = np.repeat(np.arange(12)[:, None], 2, axis=1)
     away = np.linalg.norm(point[:, None] - point[None], axis=2)
     near = (away > 0.0) & (away < 1.1)
-    faces = np.array([(a, b, c) for a in range(12) for b in range(a + 1, 12) for c in range(b + 1, 12)
-                      if near[a, b] and near[b, c] and near[a, c]])
+    faces = np.array(
+        [
+            (a, b, c)
+            for a in range(12)
+            for b in range(a + 1, 12)
+            for c in range(b + 1, 12)
+            if near[a, b] and near[b, c] and near[a, c]
+        ]
+    )
     for _ in range(halvings):
-        edges = np.sort(np.stack([faces[:, [0, 1]], faces[:, [1, 2]], faces[:, [2, 0]]], axis=1), axis=2)
+        edges = np.sort(
+            np.stack([faces[:, [0, 1]], faces[:, [1, 2]], faces[:, [2, 0]]], axis=1), axis=2
+        )
         unique, row = np.unique(edges.reshape(-1, 2), axis=0, return_inverse=True)
         middle = point[unique].sum(axis=1)
         new = row.reshape(-1, 3) + len(point)
         point = np.vstack([point, middle / np.linalg.norm(middle, axis=1, keepdims=True)])
         parents = np.vstack([parents, unique])
-        faces = np.vstack([np.column_stack([faces[:, 0], new[:, 0], new[:, 2]]), np.column_stack([faces[:, 1], new[:, 1], new[:, 0]]),
-                           np.column_stack([faces[:, 2], new[:, 2], new[:, 1]]), new])
+        faces = np.vstack(
+            [
+                np.column_stack([faces[:, 0], new[:, 0], new[:, 2]]),
+                np.column_stack([faces[:, 1], new[:, 1], new[:, 0]]),
+                np.column_stack([faces[:, 2], new[:, 2], new[:, 1]]),
+                new,
+            ]
+        )
     return point, parents
 
 
@@ -48,4 +78,6 @@ def neighbours(point: Floats, reach: float) -> tuple[Ints, Floats]:
 
 def angle_between(a: Floats, b: Floats) -> Floats:
     """Return the angle (k,) rad between unit directions (k, 3); exact for small ones too."""
-    return np.asarray(2.0 * np.arctan2(np.linalg.norm(a - b, axis=-1), np.linalg.norm(a + b, axis=-1)))
+    return np.asarray(
+        2.0 * np.arctan2(np.linalg.norm(a - b, axis=-1), np.linalg.norm(a + b, axis=-1))
+    )

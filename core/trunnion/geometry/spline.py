@@ -12,8 +12,8 @@ from trunnion.geometry.kernels.spline_compiled import surface_loop
 
 @dataclass(frozen=True, slots=True, eq=False, kw_only=True)
 class SplineSurface:
-    """Knots along u and v, each as often as it counts; degrees; poles (m, n, 4) as x w, y w, z w, w; period (2,) along u and v, 0 for none.
-    """
+    """Knots along u and v, each as often as it counts; degrees; poles (m, n, 4) as x w, y w, z w, w;
+    period (2,) along u and v, 0 for none."""
 
     knots_u: Floats
     knots_v: Floats
@@ -31,11 +31,25 @@ class SplineSurface:
     def at(self, places: Floats) -> Floats:
         """Return points and derivatives (k, 6, 3) at places (k, 2): point, by u, by v, by u twice, by both, by v twice."""
         places = np.array(places, dtype=np.float64)
-        for axis, (knots, degree, period) in enumerate(((self.knots_u, self.degree_u, self.period[0]),
-                                                        (self.knots_v, self.degree_v, self.period[1]))):
+        for axis, (knots, degree, period) in enumerate(
+            (
+                (self.knots_u, self.degree_u, self.period[0]),
+                (self.knots_v, self.degree_v, self.period[1]),
+            )
+        ):
             if period:
                 low, high, t = knots[degree], knots[-degree - 1], places[:, axis]
                 places[:, axis] = np.where((t < low) | (t > high), low + np.mod(t - low, period), t)
         out = np.empty((len(places), 6, 3))
-        surface_loop(0, len(places), places, self.knots_u, self.knots_v, self.degree_u, self.degree_v, self.poles, out)
+        surface_loop(
+            0,
+            len(places),
+            places,
+            self.knots_u,
+            self.knots_v,
+            self.degree_u,
+            self.degree_v,
+            self.poles,
+            out,
+        )
         return out

@@ -51,7 +51,13 @@ class Feature:
         """Return the feature as the JSON that other programs rely on."""
         sizes = {k: list(v) if isinstance(v, tuple) else v for k, v in self.sizes.items()}
         extra = {k: list(v) if isinstance(v, tuple) else v for k, v in self.attributes.items()}
-        return {"id": self.id, "kind": self.kind, "faces": [{"role": f.role, "face": f.face} for f in self.faces], "sizes": sizes, **extra}
+        return {
+            "id": self.id,
+            "kind": self.kind,
+            "faces": [{"role": f.role, "face": f.face} for f in self.faces],
+            "sizes": sizes,
+            **extra,
+        }
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -111,13 +117,19 @@ class Recognition:
         gone = self.feature(id)
         kept = tuple(f for f in self.features if f.id != id)
         loose = {*self.unexplained, *gone.tags} - {tag for f in kept for tag in f.tags}
-        return replace(self.with_unexplained(loose), features=kept, removed=(*self.removed, gone.tags))
+        return replace(
+            self.with_unexplained(loose), features=kept, removed=(*self.removed, gone.tags)
+        )
 
     def with_unexplained(self, tags: Iterable[int]) -> Recognition:
         """Return the recognition with these faces unexplained, and their share of the area as far as areas are known."""
         loose = tuple(sorted(tags))
         total = float(self.face_area.sum())
-        share = float(self.face_area[np.array(loose, dtype=int) - 1].sum()) / total if total > 0.0 else self.unexplained_share
+        share = (
+            float(self.face_area[np.array(loose, dtype=int) - 1].sum()) / total
+            if total > 0.0
+            else self.unexplained_share
+        )
         return replace(self, unexplained=loose, unexplained_share=share)
 
     def counts(self) -> dict[str, int]:

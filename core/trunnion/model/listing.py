@@ -11,7 +11,12 @@ from trunnion.model.program import Program, ProgramSection
 from trunnion.model.toolpath import Mark, Motion
 from trunnion.units import trimmed
 
-_MOTIONS = {Motion.RAPID: "rapid", Motion.LINE: "line", Motion.ARC_CW: "arc-cw", Motion.ARC_CCW: "arc-ccw"}
+_MOTIONS = {
+    Motion.RAPID: "rapid",
+    Motion.LINE: "line",
+    Motion.ARC_CW: "arc-cw",
+    Motion.ARC_CCW: "arc-ccw",
+}
 _MARKS = {mark.value: mark.name.lower() for mark in Mark}
 
 
@@ -20,8 +25,10 @@ def listing(program: Program, *, marks: bool = True) -> str:
     setup = program.setup
     lines = [f"setup {setup.name} {setup.work_offset}"]
     for section in program.sections:
-        lines.append(f"operation {section.operation} tool {section.tool.number} spindle {trimmed(section.spindle, 0)} "
-                     f"coolant {section.coolant}")
+        lines.append(
+            f"operation {section.operation} tool {section.tool.number} spindle {trimmed(section.spindle, 0)} "
+            f"coolant {section.coolant}"
+        )
         lines += _blocks(section, marks)
     return "\n".join(lines) + "\n"
 
@@ -29,8 +36,16 @@ def listing(program: Program, *, marks: bool = True) -> str:
 def _blocks(section: ProgramSection, marks: bool) -> Iterator[str]:
     path = section.path
     tilted = path.axis[:, 2] < np.cos(tolerance.ANGLE)
-    rows = zip(path.motion.tolist(), path.position.tolist(), path.axis.tolist(), path.centre.tolist(), path.feed.tolist(),
-               path.mark.tolist(), tilted.tolist(), strict=True)
+    rows = zip(
+        path.motion.tolist(),
+        path.position.tolist(),
+        path.axis.tolist(),
+        path.centre.tolist(),
+        path.feed.tolist(),
+        path.mark.tolist(),
+        tilted.tolist(),
+        strict=True,
+    )
     for motion, position, axis, centre, feed, mark, leans in rows:
         words = [f"{_MOTIONS[Motion(motion)]:7}", *_numbers("xyz", position)]
         if leans:
@@ -46,4 +61,7 @@ def _blocks(section: ProgramSection, marks: bool) -> Iterator[str]:
 
 def _numbers(letters: str, values: list[float]) -> list[str]:
     """Return numbers with four decimals and their letters, without negative zeros."""
-    return [f"{letter} {round(value, 4) + 0.0:.4f}" for letter, value in zip(letters, values, strict=True)]
+    return [
+        f"{letter} {round(value, 4) + 0.0:.4f}"
+        for letter, value in zip(letters, values, strict=True)
+    ]

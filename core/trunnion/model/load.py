@@ -29,7 +29,9 @@ class SpindleLoad:
         return self.highest / self.limit
 
 
-def spindle_loads(operations: Iterable[Operation], verdict: Verdict | None = None) -> tuple[SpindleLoad, ...]:
+def spindle_loads(
+    operations: Iterable[Operation], verdict: Verdict | None = None
+) -> tuple[SpindleLoad, ...]:
     """Return the load of every operation that is not suppressed; what a verdict has measured stands in place of what was foreseen, but
     for steady cutting, which it is never below."""
     proofs = {p.operation: p for p in verdict.operations} if verdict is not None else {}
@@ -40,6 +42,14 @@ def spindle_loads(operations: Iterable[Operation], verdict: Verdict | None = Non
         proof = proofs.get(o.id)
         peak, at = (proof.power, "") if proof is not None else (o.data.peak_power, o.data.peak_at)
         is_peak = peak > o.data.power
-        found.append(SpindleLoad(operation=o.id, highest=max(peak, o.data.power), steady=o.data.power, limit=o.data.power_limit,
-                                 at=at if is_peak else "", measured=proof is not None and is_peak))
+        found.append(
+            SpindleLoad(
+                operation=o.id,
+                highest=max(peak, o.data.power),
+                steady=o.data.power,
+                limit=o.data.power_limit,
+                at=at if is_peak else "",
+                measured=proof is not None and is_peak,
+            )
+        )
     return tuple(found)

@@ -82,12 +82,14 @@ class Timeline:
         if done >= len(self):
             return float(len(self))
         span = self.time[done + 1] - self.time[done]
-        return max(done, 0) + (float((seconds - self.time[done]) / span) if span > 0.0 and done >= 0 else 0.0)
+        return max(done, 0) + (
+            float((seconds - self.time[done]) / span) if span > 0.0 and done >= 0 else 0.0
+        )
 
     def position_of(self, file: str, line: int) -> float | None:
         """Return the position at which the first block at or after a line of a posted file is done; None when no such block follows."""
         for k, passage in enumerate(self.passages):
-            lines = self.line[self.first[k]:self.first[k + 1]]
+            lines = self.line[self.first[k] : self.first[k + 1]]
             found = np.flatnonzero((lines >= line) & (passage.file == file))
             if len(found):
                 return float(self.first[k] + found[0] + 1)
@@ -112,7 +114,13 @@ class Timeline:
             arm -= (arm * about).sum(axis=1, keepdims=True) * about
             climb = ((end[arc] - start[arc]) * about).sum(axis=1, keepdims=True) * about
             angle = (self.sweep[block[arc]] * share[arc])[:, None]
-            tips[arc] = start[arc] - arm + np.cos(angle) * arm + np.sin(angle) * np.cross(about, arm) + part[arc] * climb
+            tips[arc] = (
+                start[arc]
+                - arm
+                + np.cos(angle) * arm
+                + np.sin(angle) * np.cross(about, arm)
+                + part[arc] * climb
+            )
         return tips, axis
 
     def run(self, passage: int) -> tuple[Floats, Floats]:

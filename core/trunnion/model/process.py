@@ -44,13 +44,24 @@ class ProcessTree:
 
     def tools(self) -> tuple[Tool, ...]:
         """Return the tools in use, each once, by number."""
-        return tuple(sorted({o.tool.number: o.tool for o in self.operations if not o.suppressed}.values(), key=lambda t: t.number))
+        return tuple(
+            sorted(
+                {o.tool.number: o.tool for o in self.operations if not o.suppressed}.values(),
+                key=lambda t: t.number,
+            )
+        )
 
     def with_operation(self, changed: Operation) -> ProcessTree:
         """Return the tree with the operation of the same id replaced."""
-        return replace(self, operations=tuple(changed if o.id == changed.id else o for o in self.operations))
+        return replace(
+            self, operations=tuple(changed if o.id == changed.id else o for o in self.operations)
+        )
 
     def without(self, *ids: str) -> ProcessTree:
         """Return the tree after a person deleted operations; what had to come after them need not any more."""
-        kept = tuple(replace(o, after=tuple(a for a in o.after if a not in ids)) for o in self.operations if o.id not in ids)
+        kept = tuple(
+            replace(o, after=tuple(a for a in o.after if a not in ids))
+            for o in self.operations
+            if o.id not in ids
+        )
         return replace(self, operations=kept, removed=tuple(dict.fromkeys((*self.removed, *ids))))

@@ -52,8 +52,14 @@ class SizeEntry:
 
     def as_dict(self) -> dict[str, object]:
         """Return the entry as the JSON that other programs rely on."""
-        return {"name": self.name, "value": self.value, "unit": self.unit, "feature": self.feature, "faces": list(self.faces),
-                "at": list(self.at)}
+        return {
+            "name": self.name,
+            "value": self.value,
+            "unit": self.unit,
+            "feature": self.feature,
+            "faces": list(self.faces),
+            "at": list(self.at),
+        }
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)

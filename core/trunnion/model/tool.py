@@ -74,9 +74,13 @@ class Tool:
         if self.form not in FORMS:
             raise ValueError(f"tool {self.name}: form {self.form} is none of {', '.join(FORMS)}")
         if not 0.0 <= self.corner_radius <= self.diameter / 2:
-            raise ValueError(f"tool {self.name}: corner radius {self.corner_radius} does not fit diameter {self.diameter}")
+            raise ValueError(
+                f"tool {self.name}: corner radius {self.corner_radius} does not fit diameter {self.diameter}"
+            )
         if not 0.0 < self.flute_length <= self.neck_length <= self.stickout <= self.gauge_length:
-            raise ValueError(f"tool {self.name}: flute, neck, stickout and gauge length must grow in this order")
+            raise ValueError(
+                f"tool {self.name}: flute, neck, stickout and gauge length must grow in this order"
+            )
         wrong = self._wrong_form()
         if wrong:
             raise ValueError(f"tool {self.name}: {wrong}")
@@ -90,14 +94,18 @@ class Tool:
             return f"its flutes must reach up to where the corner ends, {c:.3f} mm"
         if self.form == "taper" and not 0.0 < self.taper_angle < 90.0:
             return "a taper needs a taper angle between 0 and 90 degrees"
-        if self.form == "taper" and self.flute_length < c * (1.0 - math.sin(math.radians(self.taper_angle))):
+        if self.form == "taper" and self.flute_length < c * (
+            1.0 - math.sin(math.radians(self.taper_angle))
+        ):
             return "a taper's flutes must reach up to its flank"
         if self.form == "barrel":
             if not 0.0 < c < r < self.barrel_radius:
                 return "a barrel's tip radius, radius and barrel radius must grow in this order"
             if self.flute_length <= self.widest_height:
                 return f"a barrel's flutes must reach above its widest circle, {self.widest_height:.3f} mm"
-            if self.flute_length >= self.widest_height + math.sqrt(self.barrel_radius**2 - (self.barrel_radius - r) ** 2):
+            if self.flute_length >= self.widest_height + math.sqrt(
+                self.barrel_radius**2 - (self.barrel_radius - r) ** 2
+            ):
                 return "a barrel's flutes must end before its flank comes to the axis"
         if self.form == "t-slot" and 2 * c > self.flute_length:
             return "a T-slot cutter must be thicker than both its corner radii"
@@ -108,16 +116,27 @@ class Tool:
                 return f"a drill's flutes must be longer than its point, {self.point_length:.3f} mm"
         if self.form == "form":
             rows = self.outline
-            if len(rows) < 2 or rows[0][1] != 0.0 or rows[-1][1] != self.flute_length or any(b[1] < a[1] for a, b in pairwise(rows)):
+            if (
+                len(rows) < 2
+                or rows[0][1] != 0.0
+                or rows[-1][1] != self.flute_length
+                or any(b[1] < a[1] for a, b in pairwise(rows))
+            ):
                 return "the outline must rise from 0 to the flute length"
-            if not all(0.0 <= row[0] <= r * (1.0 + _ROUNDING) and abs(row[2]) <= 1.0 for row in rows):
+            if not all(
+                0.0 <= row[0] <= r * (1.0 + _ROUNDING) and abs(row[2]) <= 1.0 for row in rows
+            ):
                 return "the outline must stay between the axis and the radius, with arcs up to half a circle"
         return ""
 
     @property
     def point_length(self) -> float:
         """Height of a drill's point; 0 for other forms."""
-        return self.radius / math.tan(math.radians(self.point_angle / 2)) if self.form == "drill" else 0.0
+        return (
+            self.radius / math.tan(math.radians(self.point_angle / 2))
+            if self.form == "drill"
+            else 0.0
+        )
 
     @property
     def widest_height(self) -> float:
@@ -143,10 +162,21 @@ class Tool:
         """Return what is above the flutes (neck, shank, holder) as truncated cones (z0, r0, z1, r1) from the tip."""
         rows = []
         if self.neck_length > self.flute_length:
-            rows.append((self.flute_length, self.neck_diameter / 2, self.neck_length, self.neck_diameter / 2))
+            rows.append(
+                (
+                    self.flute_length,
+                    self.neck_diameter / 2,
+                    self.neck_length,
+                    self.neck_diameter / 2,
+                )
+            )
         if self.stickout > self.neck_length:
-            rows.append((self.neck_length, self.shank_diameter / 2, self.stickout, self.shank_diameter / 2))
-        rows += [(self.stickout + z0, r0, self.stickout + z1, r1) for z0, r0, z1, r1 in self.holder.rows]
+            rows.append(
+                (self.neck_length, self.shank_diameter / 2, self.stickout, self.shank_diameter / 2)
+            )
+        rows += [
+            (self.stickout + z0, r0, self.stickout + z1, r1) for z0, r0, z1, r1 in self.holder.rows
+        ]
         return tuple(rows)
 
     def radius_at(self, height: float) -> float:
@@ -154,13 +184,30 @@ class Tool:
         if height >= self.corner_radius:
             return self.radius
         depth = self.corner_radius - max(height, 0.0)
-        return self.radius - self.corner_radius + math.sqrt(max(self.corner_radius**2 - depth**2, 0.0))
+        return (
+            self.radius - self.corner_radius + math.sqrt(max(self.corner_radius**2 - depth**2, 0.0))
+        )
 
     def as_dict(self) -> dict[str, Any]:
         """Return the tool as `NAME.tools.json` has it."""
-        return {"number": self.number, "name": self.name, "form": self.form, "diameter": self.diameter, "corner_radius": self.corner_radius,
-                "taper_deg": self.taper_angle, "barrel_radius": self.barrel_radius, "point_deg": self.point_angle,
-                "outline": [list(row) for row in self.outline], "flute_length": self.flute_length,
-                "neck_diameter": self.neck_diameter, "neck_length": self.neck_length,
-                "shank_diameter": self.shank_diameter, "stickout": self.stickout, "gauge_length": self.gauge_length, "teeth": self.teeth,
-                "holder": [list(row) for row in self.holder.rows], "holder_name": self.holder.name, "description": self.description}
+        return {
+            "number": self.number,
+            "name": self.name,
+            "form": self.form,
+            "diameter": self.diameter,
+            "corner_radius": self.corner_radius,
+            "taper_deg": self.taper_angle,
+            "barrel_radius": self.barrel_radius,
+            "point_deg": self.point_angle,
+            "outline": [list(row) for row in self.outline],
+            "flute_length": self.flute_length,
+            "neck_diameter": self.neck_diameter,
+            "neck_length": self.neck_length,
+            "shank_diameter": self.shank_diameter,
+            "stickout": self.stickout,
+            "gauge_length": self.gauge_length,
+            "teeth": self.teeth,
+            "holder": [list(row) for row in self.holder.rows],
+            "holder_name": self.holder.name,
+            "description": self.description,
+        }

@@ -12,6 +12,7 @@ from trunnion.geometry.arrays import Floats, Ints, floats, ints
 _SAME_AXIS = 1e-9
 """Two axes that differ by less are written the same."""
 
+
 class Motion(IntEnum):
     """How a block moves from the end of the block before it."""
 
@@ -60,7 +61,9 @@ class Toolpath:
         object.__setattr__(self, "position", floats(self.position, (n, 3), "toolpath position"))
         object.__setattr__(self, "axis", floats(self.axis, (n, 3), "toolpath axis"))
         object.__setattr__(self, "motion", ints(self.motion, (n,), "toolpath motion"))
-        object.__setattr__(self, "centre", floats(self.centre, (n, 3), "toolpath centre", may_be_nan=True))
+        object.__setattr__(
+            self, "centre", floats(self.centre, (n, 3), "toolpath centre", may_be_nan=True)
+        )
         object.__setattr__(self, "feed", floats(self.feed, (n,), "toolpath feed"))
         object.__setattr__(self, "mark", ints(self.mark, (n,), "toolpath mark"))
         if n and self.motion[0] != Motion.RAPID:
@@ -109,17 +112,29 @@ class Toolpath:
         """Return from centre to start and to end of arcs (k, 3), across their axis."""
         axis, centre = self.axis[rows], self.centre[rows]
         start, end = self.starts()[rows] - centre, self.position[rows] - centre
-        return start - (start * axis).sum(axis=1, keepdims=True) * axis, end - (end * axis).sum(axis=1, keepdims=True) * axis
+        return start - (start * axis).sum(axis=1, keepdims=True) * axis, end - (end * axis).sum(
+            axis=1, keepdims=True
+        ) * axis
 
     @staticmethod
     def join(paths: list[Toolpath]) -> Toolpath:
         """Return the paths one after the other."""
         if not paths:
             return EMPTY
-        return Toolpath(**{n: np.concatenate([getattr(p, n) for p in paths])
-                           for n in ("position", "axis", "motion", "centre", "feed", "mark")})
+        return Toolpath(
+            **{
+                n: np.concatenate([getattr(p, n) for p in paths])
+                for n in ("position", "axis", "motion", "centre", "feed", "mark")
+            }
+        )
 
 
-EMPTY = Toolpath(position=np.zeros((0, 3)), axis=np.zeros((0, 3)), motion=np.zeros(0, int), centre=np.zeros((0, 3)), feed=np.zeros(0),
-mark=np.zeros(0, int))
+EMPTY = Toolpath(
+    position=np.zeros((0, 3)),
+    axis=np.zeros((0, 3)),
+    motion=np.zeros(0, int),
+    centre=np.zeros((0, 3)),
+    feed=np.zeros(0),
+    mark=np.zeros(0, int),
+)
 """No motion at all."""

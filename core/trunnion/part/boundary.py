@@ -46,9 +46,15 @@ class Bounding:
         if parts is None:
             points = _farthest(self.curves, self.owner)
         else:
-            points = [_spread(c, int(n)) for c, n in zip(self.curves, parts(self.length), strict=True)]
-        return Boundary(face=self.owner, length=self.length, edge=np.repeat(np.arange(len(points)), [len(p) for p in points]),
-                        point=np.vstack([np.zeros((0, 3)), *points]))
+            points = [
+                _spread(c, int(n)) for c, n in zip(self.curves, parts(self.length), strict=True)
+            ]
+        return Boundary(
+            face=self.owner,
+            length=self.length,
+            edge=np.repeat(np.arange(len(points)), [len(p) for p in points]),
+            point=np.vstack([np.zeros((0, 3)), *points]),
+        )
 
 
 def bounding_of(faces: Iterable[tuple[int, Shape]]) -> Bounding:
@@ -63,7 +69,9 @@ def bounding_of(faces: Iterable[tuple[int, Shape]]) -> Bounding:
     return Bounding(owner=np.array(owner, dtype=np.int64), curves=curves, length=length)
 
 
-def boundary_of(faces: Iterable[tuple[int, Shape]], parts: Callable[[Floats], Ints] | None) -> Boundary:
+def boundary_of(
+    faces: Iterable[tuple[int, Shape]], parts: Callable[[Floats], Ints] | None
+) -> Boundary:
     """Return points on the boundary of trimmed faces, given with their tags, as `Bounding.points` does."""
     return bounding_of(faces).points(parts)
 
@@ -80,7 +88,9 @@ def approximation_of(face: Shape) -> float:
         trim, curve = BRepAdaptor_Curve2d(edge, TopoDS.Face_s(face)), BRepAdaptor_Curve(edge)
         for t in np.linspace(trim.FirstParameter(), trim.LastParameter(), _NODES).tolist():
             place = trim.Value(t)
-            most = max(most, _distance(curve, np.array(surface.Value(place.X(), place.Y()).Coord()), t))
+            most = max(
+                most, _distance(curve, np.array(surface.Value(place.X(), place.Y()).Coord()), t)
+            )
     return most
 
 
@@ -101,13 +111,32 @@ def _distance(curve: BRepAdaptor_Curve, node: Floats, t: float) -> float:
 
 def _bounding(face: Shape) -> list[BRepAdaptor_Curve]:
     """Return the curves that bound a face, without its seams: one edge that is there twice, or (in IGES) two edges in the same place."""
-    curves = [BRepAdaptor_Curve(e) for e in edges_of(face)
-              if not BRep_Tool.Degenerated_s(e) and not BRep_Tool.IsClosed_s(e, TopoDS.Face_s(face))]
-    places = np.array([[c.Value(c.FirstParameter() + share * (c.LastParameter() - c.FirstParameter())).Coord() for share in _PLACES]
-                       for c in curves]).reshape(-1, len(_PLACES), 3)
+    curves = [
+        BRepAdaptor_Curve(e)
+        for e in edges_of(face)
+        if not BRep_Tool.Degenerated_s(e) and not BRep_Tool.IsClosed_s(e, TopoDS.Face_s(face))
+    ]
+    places = np.array(
+        [
+            [
+                c.Value(
+                    c.FirstParameter() + share * (c.LastParameter() - c.FirstParameter())
+                ).Coord()
+                for share in _PLACES
+            ]
+            for c in curves
+        ]
+    ).reshape(-1, len(_PLACES), 3)
     seam = set()
-    for a, b in cKDTree(places[:, len(_PLACES) // 2]).query_pairs(tolerance.SLIVER) if len(curves) > 1 else ():
-        if min(np.abs(places[a] - places[b]).max(), np.abs(places[a] - places[b][::-1]).max()) < tolerance.SLIVER:
+    for a, b in (
+        cKDTree(places[:, len(_PLACES) // 2]).query_pairs(tolerance.SLIVER)
+        if len(curves) > 1
+        else ()
+    ):
+        if (
+            min(np.abs(places[a] - places[b]).max(), np.abs(places[a] - places[b][::-1]).max())
+            < tolerance.SLIVER
+        ):
             seam |= {a, b}
     return [c for k, c in enumerate(curves) if k not in seam]
 
@@ -115,14 +144,23 @@ def _bounding(face: Shape) -> list[BRepAdaptor_Curve]:
 def _spread(curve: BRepAdaptor_Curve, parts: int) -> Floats:
     """Return the ends of an edge and the points that cut it into parts of equal length."""
     if parts <= 1:
-        return np.array([curve.Value(t).Coord() for t in (curve.FirstParameter(), curve.LastParameter())])
+        return np.array(
+            [curve.Value(t).Coord() for t in (curve.FirstParameter(), curve.LastParameter())]
+        )
     found = GCPnts_QuasiUniformAbscissa(curve, parts + 1)
-    return np.array([curve.Value(found.Parameter(k)).Coord() for k in range(1, found.NbPoints() + 1)])
+    return np.array(
+        [curve.Value(found.Parameter(k)).Coord() for k in range(1, found.NbPoints() + 1)]
+    )
 
 
 def _farthest(curves: list[BRepAdaptor_Curve], owner: Ints) -> list[Floats]:
     """Return points of every curve; where a face may reach farther between them, the farthest point too."""
-    at = [np.linspace(c.FirstParameter(), c.LastParameter(), 2 if c.GetType() == GeomAbs_Line else _SAMPLES) for c in curves]
+    at = [
+        np.linspace(
+            c.FirstParameter(), c.LastParameter(), 2 if c.GetType() == GeomAbs_Line else _SAMPLES
+        )
+        for c in curves
+    ]
     points = [np.array([c.Value(t).Coord() for t in ts]) for c, ts in zip(curves, at, strict=True)]
     # Between two points a curve is hardly longer than twice their distance: it can't reach farther than that.
     slack = np.array([np.abs(np.diff(p, axis=0)).max() if len(p) > 2 else 0.0 for p in points])
@@ -133,12 +171,16 @@ def _farthest(curves: list[BRepAdaptor_Curve], owner: Ints) -> list[Floats]:
             np.maximum.at(best, owner, most)
             for k in np.flatnonzero((slack > 0.0) & (most + slack > best[owner])):
                 n = int(np.argmax(sign * points[k][:_SAMPLES, axis]))
-                found = _closer(curves[k], at[k][max(n - 1, 0)], at[k][min(n + 1, _SAMPLES - 1)], axis, sign)
+                found = _closer(
+                    curves[k], at[k][max(n - 1, 0)], at[k][min(n + 1, _SAMPLES - 1)], axis, sign
+                )
                 points[k] = np.vstack([points[k], found])
     return points
 
 
-def _closer(curve: BRepAdaptor_Curve, low: float, high: float, axis: int, sign: float) -> tuple[float, float, float]:
+def _closer(
+    curve: BRepAdaptor_Curve, low: float, high: float, axis: int, sign: float
+) -> tuple[float, float, float]:
     """Return the farthest point of a span that holds one extreme: there the curve runs across the axis (Newton, kept between halvings)."""
     point, along, bend = gp_Pnt(), gp_Vec(), gp_Vec()
     t = 0.5 * (low + high)

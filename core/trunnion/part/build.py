@@ -17,8 +17,18 @@ def box_blank(frame: Frame, low: ArrayLike, high: ArrayLike) -> Shape:
     """
     from OCP.BRepPrimAPI import BRepPrimAPI_MakeBox
     from OCP.gp import gp_Ax2, gp_Dir, gp_Pnt
-    low, size = np.asarray(low, dtype=np.float64), np.asarray(high, dtype=np.float64) - np.asarray(low, dtype=np.float64)
+
+    low, size = (
+        np.asarray(low, dtype=np.float64),
+        np.asarray(high, dtype=np.float64) - np.asarray(low, dtype=np.float64),
+    )
     if not (size > 0.0).all():
-        raise BadInput("a blank needs length, width and height: " + " x ".join(f"{s:g}" for s in size) + " mm is not a box")
-    corner = gp_Ax2(gp_Pnt(*frame.to_world(low).tolist()), gp_Dir(*frame.z.tolist()), gp_Dir(*frame.x.tolist()))
+        raise BadInput(
+            "a blank needs length, width and height: "
+            + " x ".join(f"{s:g}" for s in size)
+            + " mm is not a box"
+        )
+    corner = gp_Ax2(
+        gp_Pnt(*frame.to_world(low).tolist()), gp_Dir(*frame.z.tolist()), gp_Dir(*frame.x.tolist())
+    )
     return BRepPrimAPI_MakeBox(corner, *size.tolist()).Solid()

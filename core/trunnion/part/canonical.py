@@ -62,15 +62,25 @@ def recognised(adaptor: Any, samples: Callable[[], tuple[Floats, Floats]]) -> Su
         return _cone(adaptor.Cone())
     if kind == GeomAbs_Sphere:
         found = adaptor.Sphere()
-        return Surface(kind="sphere", axis_point=_xyz(found.Location()), axis=NOWHERE, radius=found.Radius())
+        return Surface(
+            kind="sphere", axis_point=_xyz(found.Location()), axis=NOWHERE, radius=found.Radius()
+        )
     if kind == GeomAbs_Torus:
         found = adaptor.Torus()
-        return Surface(kind="torus", **_axis(found), radius=found.MajorRadius(), minor=found.MinorRadius())
+        return Surface(
+            kind="torus", **_axis(found), radius=found.MajorRadius(), minor=found.MinorRadius()
+        )
     if kind == GeomAbs_SurfaceOfRevolution:
         found = adaptor.AxeOfRevolution()
         point, axis = _xyz(found.Location()), _xyz(found.Direction())
-        return _of_meridian(samples()[0], point, axis) or Surface(kind="revolution", axis_point=point, axis=axis)
-    fallback = Surface(kind="extrusion" if kind == GeomAbs_SurfaceOfExtrusion else "spline", axis_point=NOWHERE, axis=NOWHERE)
+        return _of_meridian(samples()[0], point, axis) or Surface(
+            kind="revolution", axis_point=point, axis=axis
+        )
+    fallback = Surface(
+        kind="extrusion" if kind == GeomAbs_SurfaceOfExtrusion else "spline",
+        axis_point=NOWHERE,
+        axis=NOWHERE,
+    )
     return fitted_surface(*samples()) or fallback
 
 
@@ -85,7 +95,10 @@ def fitted_surface(points: Floats, normals: Floats) -> Surface | None:
 
 def _sphere(points: Floats) -> Surface | None:
     centre, radius = _ball(points)
-    if not np.isfinite(radius) or np.abs(np.linalg.norm(points - centre, axis=1) - radius).max() > tolerance.FITTED:
+    if (
+        not np.isfinite(radius)
+        or np.abs(np.linalg.norm(points - centre, axis=1) - radius).max() > tolerance.FITTED
+    ):
         return None
     return Surface(kind="sphere", axis_point=centre, axis=NOWHERE, radius=radius)
 
@@ -130,10 +143,19 @@ def _of_meridian(points: Floats, foot: Floats, axis: Floats) -> Surface | None:
     slope, start = np.polyfit(height, rho, 1)
     if np.abs(rho - start - slope * height).max() < tolerance.FITTED:
         way = 1.0 if slope > 0.0 else -1.0
-        return Surface(kind="cone", axis_point=foot, axis=way * axis, radius=float(start), minor=math.atan(abs(slope)))
+        return Surface(
+            kind="cone",
+            axis_point=foot,
+            axis=way * axis,
+            radius=float(start),
+            minor=math.atan(abs(slope)),
+        )
     profile = np.stack([rho, height], axis=1)
     centre, radius = _ball(profile)
-    if not np.isfinite(radius) or np.abs(np.linalg.norm(profile - centre, axis=1) - radius).max() > tolerance.FITTED:
+    if (
+        not np.isfinite(radius)
+        or np.abs(np.linalg.norm(profile - centre, axis=1) - radius).max() > tolerance.FITTED
+    ):
         return None
     at = foot + centre[1] * axis
     if abs(centre[0]) < tolerance.FITTED:
@@ -151,7 +173,9 @@ def _ball(points: Floats) -> tuple[Floats, float]:
     solved, _, rank, _ = np.linalg.lstsq(matrix, (p * p).sum(axis=1), rcond=tolerance.PARAMETRIC)
     if rank < matrix.shape[1]:
         return middle, math.inf
-    return middle + size * solved[:-1], size * math.sqrt(max(float(solved[-1] + solved[:-1] @ solved[:-1]), 0.0))
+    return middle + size * solved[:-1], size * math.sqrt(
+        max(float(solved[-1] + solved[:-1] @ solved[:-1]), 0.0)
+    )
 
 
 @dataclass(frozen=True, slots=True, eq=False, kw_only=True)
@@ -174,11 +198,18 @@ def recognised_curve(adaptor: Any) -> EdgeCurve:
         return _LINE
     if kind == GeomAbs_Circle:
         found = adaptor.Circle()
-        return EdgeCurve(kind="circle", centre=_xyz(found.Location()), axis=_xyz(found.Axis().Direction()), radius=found.Radius())
+        return EdgeCurve(
+            kind="circle",
+            centre=_xyz(found.Location()),
+            axis=_xyz(found.Axis().Direction()),
+            radius=found.Radius(),
+        )
     if kind == GeomAbs_Ellipse:
         return EdgeCurve(kind="ellipse", centre=NOWHERE, axis=NOWHERE)
     first, last = adaptor.FirstParameter(), adaptor.LastParameter()
-    return fitted_curve(np.array([adaptor.Value(t).Coord() for t in np.linspace(first, last, _STEPS)]))
+    return fitted_curve(
+        np.array([adaptor.Value(t).Coord() for t in np.linspace(first, last, _STEPS)])
+    )
 
 
 def fitted_curve(points: Floats) -> EdgeCurve:
@@ -195,15 +226,29 @@ def fitted_curve(points: Floats) -> EdgeCurve:
     if np.abs((points - middle) @ axis).max() < tolerance.FITTED:
         flat = np.stack([(points - middle) @ x, (points - middle) @ y], axis=1)
         centre, radius = _ball(flat)
-        if np.isfinite(radius) and np.abs(np.linalg.norm(flat - centre, axis=1) - radius).max() < tolerance.FITTED:
-            return EdgeCurve(kind="circle", centre=middle + centre[0] * x + centre[1] * y, axis=axis, radius=radius)
+        if (
+            np.isfinite(radius)
+            and np.abs(np.linalg.norm(flat - centre, axis=1) - radius).max() < tolerance.FITTED
+        ):
+            return EdgeCurve(
+                kind="circle",
+                centre=middle + centre[0] * x + centre[1] * y,
+                axis=axis,
+                radius=radius,
+            )
     return EdgeCurve(kind="spline", centre=NOWHERE, axis=NOWHERE)
 
 
 def _cone(found: Any) -> Surface:
     angle, axes = found.SemiAngle(), _axis(found)
     way = 1.0 if angle > 0.0 else -1.0
-    return Surface(kind="cone", axis_point=axes["axis_point"], axis=way * axes["axis"], radius=found.RefRadius(), minor=abs(angle))
+    return Surface(
+        kind="cone",
+        axis_point=axes["axis_point"],
+        axis=way * axes["axis"],
+        radius=found.RefRadius(),
+        minor=abs(angle),
+    )
 
 
 def _axis(found: Any) -> dict[str, Any]:

@@ -33,11 +33,18 @@ def run(request: Request, data: bytes, limits: ReadLimits, progress: Progress) -
     with tempfile.TemporaryDirectory(prefix="trunnion-read-") as folder:
         place = Path(folder)
         (place / "part").write_bytes(data)
-        (place / "request.json").write_text(json.dumps({"request": asdict(request), "memory": limits.memory}), encoding="utf-8")
+        (place / "request.json").write_text(
+            json.dumps({"request": asdict(request), "memory": limits.memory}), encoding="utf-8"
+        )
         with (place / "words").open("wb") as words:
             # -P: nothing is imported from the folder that the program happens to be started in.
-            child = subprocess.Popen([sys.executable, "-P", "-m", "trunnion.part.child", folder], stdin=subprocess.DEVNULL,
-                                     stdout=words, stderr=words, env=os.environ | {"PYTHONIOENCODING": "utf-8"})
+            child = subprocess.Popen(
+                [sys.executable, "-P", "-m", "trunnion.part.child", folder],
+                stdin=subprocess.DEVNULL,
+                stdout=words,
+                stderr=words,
+                env=os.environ | {"PYTHONIOENCODING": "utf-8"},
+            )
             try:
                 _wait(child, request, limits, progress)
             finally:
@@ -46,13 +53,17 @@ def run(request: Request, data: bytes, limits: ReadLimits, progress: Progress) -
         return _answer(child.returncode, place, request, limits)
 
 
-def _wait(child: subprocess.Popen[bytes], request: Request, limits: ReadLimits, progress: Progress) -> None:
+def _wait(
+    child: subprocess.Popen[bytes], request: Request, limits: ReadLimits, progress: Progress
+) -> None:
     start = looked = time.monotonic()
     progress.aside(lambda _: _load(), f"reading {request.file}")
     while child.poll() is None:
         now = time.monotonic()
         if now - start > limits.seconds:
-            raise BadInput(f"{request.file}: reading took longer than {limits.seconds:g} s and was stopped; export the part again")
+            raise BadInput(
+                f"{request.file}: reading took longer than {limits.seconds:g} s and was stopped; export the part again"
+            )
         if now - looked > _CHECK:
             progress.at(min(0.9, (now - start) / limits.seconds), f"reading {request.file}")
             looked = now
@@ -63,8 +74,14 @@ def _load() -> None:
     """Load what the part is wanted with next: that costs no time now, the other process is at work."""
     import trunnion.part.boundary  # noqa: F401
     from trunnion.geometry.spline import SplineSurface
-    flat = SplineSurface(knots_u=np.array([0.0, 0.0, 1.0, 1.0]), knots_v=np.array([0.0, 0.0, 1.0, 1.0]), degree_u=1, degree_v=1,
-                         poles=np.ones((2, 2, 4)))
+
+    flat = SplineSurface(
+        knots_u=np.array([0.0, 0.0, 1.0, 1.0]),
+        knots_v=np.array([0.0, 0.0, 1.0, 1.0]),
+        degree_u=1,
+        degree_v=1,
+        poles=np.ones((2, 2, 4)),
+    )
     flat.at(np.zeros((1, 2)))
 
 
@@ -76,8 +93,12 @@ def _answer(code: int, place: Path, request: Request, limits: ReadLimits) -> byt
         raise BadInput(refusal.read_text(encoding="utf-8"))
     last = (place / "words").read_bytes()[-4096:]
     if code == _NO_MEMORY or b"bad_alloc" in last or b"MemoryError" in last:
-        raise OutOfMemory(f"{request.file}: reading it needs more than {limits.memory} MB of memory; raise the limit or split the part")
-    raise BadInput(f"{request.file}: the CAD kernel failed on this file (exit code {code}); export it again, as STEP AP214 if possible")
+        raise OutOfMemory(
+            f"{request.file}: reading it needs more than {limits.memory} MB of memory; raise the limit or split the part"
+        )
+    raise BadInput(
+        f"{request.file}: the CAD kernel failed on this file (exit code {code}); export it again, as STEP AP214 if possible"
+    )
 
 
 def main(folder: str) -> int:
@@ -87,6 +108,7 @@ def main(folder: str) -> int:
     limit_memory(told["memory"])
     try:
         from trunnion.part.transfer import read_file
+
         part = read_file(place / "part", Request(**told["request"]))
         (place / "answer").write_bytes(part.to_bytes())
     except TrunnionError as reason:
@@ -105,7 +127,9 @@ def limit_memory(megabytes: int) -> None:
         return
     most = megabytes * _MEGA
     hard = resource.getrlimit(resource.RLIMIT_AS)[1]
-    resource.setrlimit(resource.RLIMIT_AS, (most if hard == resource.RLIM_INFINITY else min(most, hard), hard))
+    resource.setrlimit(
+        resource.RLIMIT_AS, (most if hard == resource.RLIM_INFINITY else min(most, hard), hard)
+    )
 
 
 if __name__ == "__main__":

@@ -34,7 +34,10 @@ class _Bending:
 
     def inside(self, places: Floats) -> Bools:
         """Say which places (k, 2) lie inside the trim."""
-        return np.array([self._trim.Perform(gp_Pnt2d(u, v)) == TopAbs_IN for u, v in places.tolist()], dtype=bool)
+        return np.array(
+            [self._trim.Perform(gp_Pnt2d(u, v)) == TopAbs_IN for u, v in places.tolist()],
+            dtype=bool,
+        )
 
     def at(self, places: Floats) -> Floats:
         """Return the lesser and the greater principal curvature (k, 2) at places (k, 2)."""
@@ -48,7 +51,9 @@ class _Bending:
         low = np.array([a.FirstUParameter(), a.FirstVParameter()])
         step = (np.array([a.LastUParameter(), a.LastVParameter()]) - low) / _GRID
         share = np.arange(_GRID) + 0.5
-        return low + step * np.stack(np.meshgrid(share, share, indexing="ij"), axis=-1).reshape(-1, 2), step
+        return low + step * np.stack(np.meshgrid(share, share, indexing="ij"), axis=-1).reshape(
+            -1, 2
+        ), step
 
 
 def bend_of(face: Shape) -> FaceBend:
@@ -64,7 +69,7 @@ def bend_of(face: Shape) -> FaceBend:
     known = np.asarray(np.isfinite(bends).all(axis=1))
     if not known.any():
         return FaceBend(spread=np.zeros((0, 2)), least=0.0, most=0.0)
-    within = bends[:len(inside)][known[:len(inside)]]
+    within = bends[: len(inside)][known[: len(inside)]]
     least, most = _extremes(bending, places[known], bends[known], step)
     return FaceBend(spread=within if len(within) else bends[known], least=least, most=most)
 
@@ -74,11 +79,16 @@ def _along_edges(shape: Shape) -> Floats:
     found = []
     for edge in edges_of(shape):
         curve = BRepAdaptor_Curve2d(edge, TopoDS.Face_s(shape))
-        found += [curve.Value(t).Coord() for t in np.linspace(curve.FirstParameter(), curve.LastParameter(), _ALONG).tolist()]
+        found += [
+            curve.Value(t).Coord()
+            for t in np.linspace(curve.FirstParameter(), curve.LastParameter(), _ALONG).tolist()
+        ]
     return np.array(found).reshape(-1, 2)
 
 
-def _extremes(bending: _Bending, places: Floats, bends: Floats, reach: Floats) -> tuple[float, float]:
+def _extremes(
+    bending: _Bending, places: Floats, bends: Floats, reach: Floats
+) -> tuple[float, float]:
     """Return the least and the greatest curvature at places (k, 2) and around the best of them, in smaller and smaller steps."""
     best = np.array([-bends[:, 0].min(), bends[:, 1].max()])
     centre = places[[int(bends[:, 0].argmin()), int(bends[:, 1].argmax())]]

@@ -46,23 +46,38 @@ def divided(part: Part, cut: Cut) -> Part:
     where = f"face {cut.face} of {part.name}"
     face = part.face_shape(cut.face)
     if face is None:
-        raise BadInput(f"{where}: the chosen solid has no such face; its faces are {min(part.tags)} to {max(part.tags)}")
+        raise BadInput(
+            f"{where}: the chosen solid has no such face; its faces are {min(part.tags)} to {max(part.tags)}"
+        )
     try:
         as_read = faces_of(part.as_read)
         read_pieces = _pieces(as_read[cut.face - 1], cut, where)
         own_pieces = _matching(read_pieces, _pieces(face, cut, where), where)
-        shape, images = _with_edges(part.shape, _common_edges(own_pieces), [part.face_shape(t) for t in part.tags])
+        shape, images = _with_edges(
+            part.shape, _common_edges(own_pieces), [part.face_shape(t) for t in part.tags]
+        )
     except Standard_Failure as reason:
-        raise BadInput(f"{where}: the CAD kernel can't make this cut ({type(reason).__name__}); move it a little") from None
+        raise BadInput(
+            f"{where}: the CAD kernel can't make this cut ({type(reason).__name__}); move it a little"
+        ) from None
     new_tags = [cut.face, *range(part.n_faces + 1, part.n_faces + len(read_pieces))]
     pieces = _matching(own_pieces, images[part.tags.index(cut.face)], where)
-    tagged = {t: found[0] for t, found in zip(part.tags, images, strict=True)} | dict(zip(new_tags, pieces, strict=True))
+    tagged = {t: found[0] for t, found in zip(part.tags, images, strict=True)} | dict(
+        zip(new_tags, pieces, strict=True)
+    )
     tags = _tags(shape, tagged)
-    if len(tags) != len(tagged) or (part.is_closed and (open_edges(shape) or not BRepCheck_Analyzer(shape).IsValid())):
+    if len(tags) != len(tagged) or (
+        part.is_closed and (open_edges(shape) or not BRepCheck_Analyzer(shape).IsValid())
+    ):
         raise BadInput(f"{where}: the part would not be whole after this cut; move it a little")
     facts = part.facts
-    after = replace(facts, n_faces=facts.n_faces + len(new_tags) - 1, tags=tags, names=_inherited(facts.names, new_tags),
-                    colours=_inherited(facts.colours, new_tags))
+    after = replace(
+        facts,
+        n_faces=facts.n_faces + len(new_tags) - 1,
+        tags=tags,
+        names=_inherited(facts.names, new_tags),
+        colours=_inherited(facts.colours, new_tags),
+    )
     as_read[cut.face - 1] = read_pieces[0]
     return Part(after, shape, _compound([*as_read, *read_pieces[1:]]))
 
@@ -74,14 +89,23 @@ def _pieces(face: Shape, cut: Cut, where: str) -> list[Shape]:
     tool = _plane(face, places[0], np.array(cut.normal)) if way is None else way.edge()
     pieces = faces_of(_split(face, [tool]).Shape())
     if len(pieces) < 2:
-        raise BadInput(f"{where}: the cut doesn't divide it; " + ("move or turn the plane" if cut.is_plane
-                                                                  else "draw it from edge to edge, or closed"))
+        raise BadInput(
+            f"{where}: the cut doesn't divide it; "
+            + ("move or turn the plane" if cut.is_plane else "draw it from edge to edge, or closed")
+        )
     measured = [_measured(p) for p in pieces]
     if way is None:
         stays = [float((centre - places[0]) @ np.array(cut.normal)) < 0.0 for _, centre in measured]
     else:
         stays = [way.is_left(p) for p in pieces]
-    order = sorted(range(len(pieces)), key=lambda k: (not stays[k], -round(measured[k][0], 6), *np.round(measured[k][1], 6).tolist()))
+    order = sorted(
+        range(len(pieces)),
+        key=lambda k: (
+            not stays[k],
+            -round(measured[k][0], 6),
+            *np.round(measured[k][1], 6).tolist(),
+        ),
+    )
     return [pieces[k] for k in order]
 
 
@@ -110,7 +134,9 @@ def _split(shape: Shape, tools: Iterable[Shape]) -> BRepAlgoAPI_Splitter:
     return made
 
 
-def _with_edges(shape: Shape, edges: list[Shape], own: list[Shape]) -> tuple[Shape, list[list[Shape]]]:
+def _with_edges(
+    shape: Shape, edges: list[Shape], own: list[Shape]
+) -> tuple[Shape, list[list[Shape]]]:
     """Return a part's shape cut by edges on its faces, and what each of its faces has become."""
     made = _split(shape, edges)
     images = []

@@ -24,6 +24,7 @@ def evaluator_of(adaptor: Any) -> Evaluator:
         return spline_of(adaptor.BSpline()).at
     if kind == Kind.GeomAbs_BezierSurface:
         from OCP.GeomConvert import GeomConvert
+
         return spline_of(GeomConvert.SurfaceToBSplineSurface_s(adaptor.Bezier())).at
     return _one_by_one(adaptor)
 
@@ -31,7 +32,10 @@ def evaluator_of(adaptor: Any) -> Evaluator:
 def spline_of(surface: Any) -> SplineSurface:
     """Return a `Geom_BSplineSurface` as arrays."""
     spans = surface.Bounds()
-    period = (spans[1] - spans[0] if surface.IsUPeriodic() else 0.0, spans[3] - spans[2] if surface.IsVPeriodic() else 0.0)
+    period = (
+        spans[1] - spans[0] if surface.IsUPeriodic() else 0.0,
+        spans[3] - spans[2] if surface.IsVPeriodic() else 0.0,
+    )
     if any(period):
         surface = surface.Copy()
         if period[0]:
@@ -39,20 +43,41 @@ def spline_of(surface: Any) -> SplineSurface:
         if period[1]:
             surface.SetVNotPeriodic()
     rational = surface.IsURational() or surface.IsVRational()
-    poles = np.array([[(*surface.Pole(i, j).Coord(), surface.Weight(i, j) if rational else 1.0) for j in range(1, surface.NbVPoles() + 1)]
-                      for i in range(1, surface.NbUPoles() + 1)])
+    poles = np.array(
+        [
+            [
+                (*surface.Pole(i, j).Coord(), surface.Weight(i, j) if rational else 1.0)
+                for j in range(1, surface.NbVPoles() + 1)
+            ]
+            for i in range(1, surface.NbUPoles() + 1)
+        ]
+    )
     poles[..., :3] *= poles[..., 3:]
-    knots = [np.repeat([knot(k) for k in range(1, count + 1)], [times(k) for k in range(1, count + 1)])
-             for knot, times, count in ((surface.UKnot, surface.UMultiplicity, surface.NbUKnots()),
-                                        (surface.VKnot, surface.VMultiplicity, surface.NbVKnots()))]
-    return SplineSurface(knots_u=knots[0], knots_v=knots[1], degree_u=surface.UDegree(), degree_v=surface.VDegree(), poles=poles,
-                         period=period)
+    knots = [
+        np.repeat([knot(k) for k in range(1, count + 1)], [times(k) for k in range(1, count + 1)])
+        for knot, times, count in (
+            (surface.UKnot, surface.UMultiplicity, surface.NbUKnots()),
+            (surface.VKnot, surface.VMultiplicity, surface.NbVKnots()),
+        )
+    ]
+    return SplineSurface(
+        knots_u=knots[0],
+        knots_v=knots[1],
+        degree_u=surface.UDegree(),
+        degree_v=surface.VDegree(),
+        poles=poles,
+        period=period,
+    )
 
 
 def _axes(position: Any) -> tuple[Floats, Floats, Floats, Floats]:
     """Return origin, x, y and z of a surface's own axes; they may be left-handed."""
-    return (np.array(position.Location().Coord()), np.array(position.XDirection().Coord()), np.array(position.YDirection().Coord()),
-            np.array(position.Direction().Coord()))
+    return (
+        np.array(position.Location().Coord()),
+        np.array(position.XDirection().Coord()),
+        np.array(position.YDirection().Coord()),
+        np.array(position.Direction().Coord()),
+    )
 
 
 def _plane(adaptor: Any) -> Evaluator:
@@ -67,13 +92,27 @@ def _plane(adaptor: Any) -> Evaluator:
     return at
 
 
-def _turned(origin: Floats, x: Floats, y: Floats, z: Floats, u: Floats, out_: Floats, up: Floats) -> Floats:
+def _turned(
+    origin: Floats, x: Floats, y: Floats, z: Floats, u: Floats, out_: Floats, up: Floats
+) -> Floats:
     """Return a surface of revolution: out_, up (k, 3) are the distance from the axis and the height along it with their first and second
     derivatives by v."""
-    outward, around = np.cos(u)[:, None] * x + np.sin(u)[:, None] * y, np.cos(u)[:, None] * y - np.sin(u)[:, None] * x
+    outward, around = (
+        np.cos(u)[:, None] * x + np.sin(u)[:, None] * y,
+        np.cos(u)[:, None] * y - np.sin(u)[:, None] * x,
+    )
     r, h = out_[:, :, None], up[:, :, None]
-    return np.stack([origin + r[:, 0] * outward + h[:, 0] * z, r[:, 0] * around, r[:, 1] * outward + h[:, 1] * z, -r[:, 0] * outward,
-                     r[:, 1] * around, r[:, 2] * outward + h[:, 2] * z], axis=1)
+    return np.stack(
+        [
+            origin + r[:, 0] * outward + h[:, 0] * z,
+            r[:, 0] * around,
+            r[:, 1] * outward + h[:, 1] * z,
+            -r[:, 0] * outward,
+            r[:, 1] * around,
+            r[:, 2] * outward + h[:, 2] * z,
+        ],
+        axis=1,
+    )
 
 
 def _cylinder(adaptor: Any) -> Evaluator:
@@ -82,19 +121,31 @@ def _cylinder(adaptor: Any) -> Evaluator:
     def at(places: Floats) -> Floats:
         u, v = places.T
         zero, one = np.zeros_like(v), np.ones_like(v)
-        return _turned(*axes, u, np.column_stack([radius * one, zero, zero]), np.column_stack([v, one, zero]))
+        return _turned(
+            *axes, u, np.column_stack([radius * one, zero, zero]), np.column_stack([v, one, zero])
+        )
 
     return at
 
 
 def _cone(adaptor: Any) -> Evaluator:
     cone = adaptor.Cone()
-    axes, radius, sine, cosine = _axes(cone.Position()), cone.RefRadius(), np.sin(cone.SemiAngle()), np.cos(cone.SemiAngle())
+    axes, radius, sine, cosine = (
+        _axes(cone.Position()),
+        cone.RefRadius(),
+        np.sin(cone.SemiAngle()),
+        np.cos(cone.SemiAngle()),
+    )
 
     def at(places: Floats) -> Floats:
         u, v = places.T
         zero, one = np.zeros_like(v), np.ones_like(v)
-        return _turned(*axes, u, np.column_stack([radius + v * sine, sine * one, zero]), np.column_stack([v * cosine, cosine * one, zero]))
+        return _turned(
+            *axes,
+            u,
+            np.column_stack([radius + v * sine, sine * one, zero]),
+            np.column_stack([v * cosine, cosine * one, zero]),
+        )
 
     return at
 
@@ -118,19 +169,31 @@ def _torus(adaptor: Any) -> Evaluator:
 
 
 _PLAIN: dict[Any, Callable[[Any], Evaluator]] = {
-    Kind.GeomAbs_Plane: _plane, Kind.GeomAbs_Cylinder: _cylinder, Kind.GeomAbs_Cone: _cone, Kind.GeomAbs_Sphere: _sphere,
-    Kind.GeomAbs_Torus: _torus}
+    Kind.GeomAbs_Plane: _plane,
+    Kind.GeomAbs_Cylinder: _cylinder,
+    Kind.GeomAbs_Cone: _cone,
+    Kind.GeomAbs_Sphere: _sphere,
+    Kind.GeomAbs_Torus: _torus,
+}
 
 
 def _one_by_one(adaptor: Any) -> Evaluator:
     from OCP.gp import gp_Pnt, gp_Vec
+
     point, du, dv, duu, dvv, duv = gp_Pnt(), gp_Vec(), gp_Vec(), gp_Vec(), gp_Vec(), gp_Vec()
 
     def at(places: Floats) -> Floats:
         rows = np.empty((len(places), 18))
         for k, (u, v) in enumerate(places.tolist()):
             adaptor.D2(u, v, point, du, dv, duu, dvv, duv)
-            rows[k] = *point.Coord(), *du.Coord(), *dv.Coord(), *duu.Coord(), *duv.Coord(), *dvv.Coord()
+            rows[k] = (
+                *point.Coord(),
+                *du.Coord(),
+                *dv.Coord(),
+                *duu.Coord(),
+                *duv.Coord(),
+                *dvv.Coord(),
+            )
         return rows.reshape(-1, 6, 3)
 
     return at

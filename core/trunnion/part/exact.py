@@ -51,7 +51,13 @@ class ExactFace:
         self.tag, self._frame, self._view = tag, frame, FaceView(shape, tag - 1)
         self._evaluate, self._trim = evaluator_of(self._view.adaptor), Trim(self._view)
         kind = self._view.adaptor.GetType()
-        known = (Kind.GeomAbs_Plane, Kind.GeomAbs_Cylinder, Kind.GeomAbs_Sphere, Kind.GeomAbs_Cone, Kind.GeomAbs_Torus)
+        known = (
+            Kind.GeomAbs_Plane,
+            Kind.GeomAbs_Cylinder,
+            Kind.GeomAbs_Sphere,
+            Kind.GeomAbs_Cone,
+            Kind.GeomAbs_Torus,
+        )
         self._growth = ROUND if kind in known else FREE_FORM
 
     def bounds(self) -> tuple[float, float, float, float]:
@@ -65,16 +71,31 @@ class ExactFace:
     def at(self, places: Floats) -> ExactPoints:
         """Return the surface at places (k, 2)."""
         rows = self._evaluate(np.asarray(places, dtype=np.float64)).reshape(-1, 18)
-        along, across, twice_u, both, twice_v = (self._frame.local_direction(rows[:, c:c + 3]) for c in range(3, 18, 3))
+        along, across, twice_u, both, twice_v = (
+            self._frame.local_direction(rows[:, c : c + 3]) for c in range(3, 18, 3)
+        )
         # Frames keep hands, so the normal's side is the same in all of them.
         normal, size = _scaled(self._view.side * np.cross(along, across))
         for row in np.flatnonzero(size[:, 0] <= 0.0).tolist():
             normal[row] = self._frame.local_direction(self._view.at(*places[row])[1])
-        turns = (np.cross(twice_u, across) + np.cross(along, both), np.cross(both, across) + np.cross(along, twice_v))
-        turned = [_over(self._view.side * (t - (t * normal).sum(axis=1, keepdims=True) * normal), size) for t in turns]
+        turns = (
+            np.cross(twice_u, across) + np.cross(along, both),
+            np.cross(both, across) + np.cross(along, twice_v),
+        )
+        turned = [
+            _over(self._view.side * (t - (t * normal).sum(axis=1, keepdims=True) * normal), size)
+            for t in turns
+        ]
         bend = np.column_stack([np.linalg.norm(d, axis=1) for d in (twice_u, both, twice_v)])
-        return ExactPoints(point=self._frame.to_local(rows[:, :3]), normal=normal, du=along, dv=across, normal_du=turned[0],
-                           normal_dv=turned[1], bend=self._growth * bend)
+        return ExactPoints(
+            point=self._frame.to_local(rows[:, :3]),
+            normal=normal,
+            du=along,
+            dv=across,
+            normal_du=turned[0],
+            normal_dv=turned[1],
+            bend=self._growth * bend,
+        )
 
 
 def _scaled(vectors: Floats) -> tuple[Floats, Floats]:

@@ -33,12 +33,17 @@ def edge_extremes(adaptor: Any, points: Floats) -> Floats:
     if kind != GeomAbs_Circle:
         return np.array([adaptor.Value(t).Coord() for t in np.linspace(first, last, _STEPS)])
     circle = adaptor.Circle()
-    x, y = np.array(circle.XAxis().Direction().Coord()), np.array(circle.YAxis().Direction().Coord())
+    x, y = (
+        np.array(circle.XAxis().Direction().Coord()),
+        np.array(circle.YAxis().Direction().Coord()),
+    )
     angle = np.arctan2(y, x)
     angle = np.concatenate([angle, angle + math.pi])
     angle = first + np.mod(angle - first, 2.0 * math.pi)
     angle = angle[angle < last, None]
-    round_points = np.array(circle.Location().Coord()) + circle.Radius() * (np.cos(angle) * x + np.sin(angle) * y)
+    round_points = np.array(circle.Location().Coord()) + circle.Radius() * (
+        np.cos(angle) * x + np.sin(angle) * y
+    )
     return np.concatenate([points[[0, -1]], round_points])
 
 
@@ -66,13 +71,19 @@ def _candidates(surface: Surface) -> Iterator[Floats]:
             across = np.cross(surface.axis, np.eye(3)[np.argmin(np.abs(surface.axis))])
             size = float(np.linalg.norm(across))
         for way in (1.0, -1.0):
-            yield surface.axis_point + way * surface.radius * across / size + surface.minor * direction
+            yield (
+                surface.axis_point
+                + way * surface.radius * across / size
+                + surface.minor * direction
+            )
 
 
 def _with_candidates(view: FaceView, boundary: Floats, points: Floats) -> Box:
     low = boundary.min(axis=0) if len(boundary) else np.full(3, np.inf)
     high = boundary.max(axis=0) if len(boundary) else np.full(3, -np.inf)
-    beyond = ((points < low - tolerance.COINCIDENT) | (points > high + tolerance.COINCIDENT)).any(axis=1)
+    beyond = ((points < low - tolerance.COINCIDENT) | (points > high + tolerance.COINCIDENT)).any(
+        axis=1
+    )
     if beyond.any():
         places = ShapeAnalysis_Surface(BRep_Tool.Surface_s(view.face))
         for point in points[beyond]:
@@ -107,5 +118,7 @@ def _searched(view: FaceView, boundary: Floats, progress: Progress) -> Box:
                     break
                 found.append(best)
                 reach = reach * (2.0 / _ZOOM)
-    cloud = np.concatenate([f for f in found if len(f)] or [np.array([view.at(0.5 * (u0 + u1), 0.5 * (v0 + v1))[0]])])
+    cloud = np.concatenate(
+        [f for f in found if len(f)] or [np.array([view.at(0.5 * (u0 + u1), 0.5 * (v0 + v1))[0]])]
+    )
     return cloud.min(axis=0), cloud.max(axis=0)

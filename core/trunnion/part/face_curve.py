@@ -54,13 +54,19 @@ class DrawnWay:
         if len(at) < 2:
             raise BadInput(f"{where}: the places of a drawn cut fall together")
         is_back = bool(np.linalg.norm(places[-1] - places[0]) < tolerance.COINCIDENT)
-        is_loop = is_back and bool(np.abs(at[-1] - at[0]).max() < tolerance.PARAMETRIC * self._size.max())
+        is_loop = is_back and bool(
+            np.abs(at[-1] - at[0]).max() < tolerance.PARAMETRIC * self._size.max()
+        )
         if not is_back:
             at, steps = self._led_out(at, steps)
         along = np.concatenate([[0.0], np.cumsum(steps)])
-        self._curve = _around(at, along) if is_back and not is_loop else _through(at, along, is_loop)
+        self._curve = (
+            _around(at, along) if is_back and not is_loop else _through(at, along, is_loop)
+        )
         if self._curve is None:
-            raise BadInput(f"{where}: no smooth curve goes through the places of the drawn cut; draw it with fewer places")
+            raise BadInput(
+                f"{where}: no smooth curve goes through the places of the drawn cut; draw it with fewer places"
+            )
 
     def edge(self) -> Shape:
         """Return the way as an edge on the face's surface."""
@@ -76,10 +82,17 @@ class DrawnWay:
         inside = BRepTopAdaptor_FClass2d(piece, tolerance.COINCIDENT)
         votes = 0
         for share in (np.arange(_ASKED) + 0.5) / _ASKED:
-            t = self._curve.FirstParameter() + share * (self._curve.LastParameter() - self._curve.FirstParameter())
+            t = self._curve.FirstParameter() + share * (
+                self._curve.LastParameter() - self._curve.FirstParameter()
+            )
             point, along = gp_Pnt2d(), gp_Vec2d()
             self._curve.D1(t, point, along)
-            left = self._turned * np.array([-along.Y() * self._size[0] / self._size[1], along.X() * self._size[1] / self._size[0]])
+            left = self._turned * np.array(
+                [
+                    -along.Y() * self._size[0] / self._size[1],
+                    along.X() * self._size[1] / self._size[0],
+                ]
+            )
             left *= _BESIDE / max(np.abs(left / self._size).max(), tolerance.PARAMETRIC)
             votes += inside.Perform(gp_Pnt2d(point.X() + left[0], point.Y() + left[1])) == TopAbs_IN
             votes -= inside.Perform(gp_Pnt2d(point.X() - left[0], point.Y() - left[1])) == TopAbs_IN
@@ -93,14 +106,18 @@ class DrawnWay:
             found = nearest.ValueOfUV(gp_Pnt(*place), tolerance.COINCIDENT)
             if nearest.Gap() > reach:
                 gap, there = nearest.Gap(), nearest.Value(found)
-                raise BadInput(f"{where}: place {k + 1} of the drawn cut is {gap:.3g} mm away from the face; {reach:g} mm are allowed, "
-                               f"and its nearest place is {there.X():.3f} {there.Y():.3f} {there.Z():.3f}")
+                raise BadInput(
+                    f"{where}: place {k + 1} of the drawn cut is {gap:.3g} mm away from the face; {reach:g} mm are allowed, "
+                    f"and its nearest place is {there.X():.3f} {there.Y():.3f} {there.Z():.3f}"
+                )
             at[k] = found.X(), found.Y()
         for column, period in enumerate(self._periods()):
             if period:
                 jumps = np.round(np.diff(at[:, column]) / period)
                 at[1:, column] -= period * np.cumsum(jumps)
-                at[:, column] -= period * np.round((at[:, column].mean() - self._low[column] - 0.5 * self._size[column]) / period)
+                at[:, column] -= period * np.round(
+                    (at[:, column].mean() - self._low[column] - 0.5 * self._size[column]) / period
+                )
         return at
 
     def _periods(self) -> tuple[float, float]:
@@ -112,8 +129,13 @@ class DrawnWay:
         for _ in range(2):
             end = self._outside(at[-1], at[-1] - at[-2])
             if end is not None:
-                share = np.linalg.norm((end - at[-1]) / self._size) / np.linalg.norm((at[-1] - at[-2]) / self._size)
-                at, steps = np.vstack([at, end]), np.append(steps, max(share, tolerance.ANGLE) * steps[-1])
+                share = np.linalg.norm((end - at[-1]) / self._size) / np.linalg.norm(
+                    (at[-1] - at[-2]) / self._size
+                )
+                at, steps = (
+                    np.vstack([at, end]),
+                    np.append(steps, max(share, tolerance.ANGLE) * steps[-1]),
+                )
             at, steps = at[::-1], steps[::-1]
         return at, steps
 
@@ -139,7 +161,9 @@ class DrawnWay:
         period = np.array(self._periods())
         low = np.where(period > 0.0, -np.inf, [u0, v0])
         high = np.where(period > 0.0, np.inf, [u1, v1])
-        return np.maximum(low, self._low - self._size), np.minimum(high, self._low + 2.0 * self._size)
+        return np.maximum(low, self._low - self._size), np.minimum(
+            high, self._low + 2.0 * self._size
+        )
 
 
 def _onto(at: Floats, step: Floats, limits: tuple[Floats, Floats]) -> Floats:
@@ -153,8 +177,8 @@ def _around(at: Floats, along: Floats) -> Any:
     """Return the plane curve through places (k, 2) that come back to the first one round a surface that closes on itself, or None."""
     round_trip, length = at[-1] - at[0], along[-1]
     more = min(_MORE, len(at) - 1)
-    at = np.vstack([at[-1 - more:-1] - round_trip, at, at[1:1 + more] + round_trip])
-    along = np.concatenate([along[-1 - more:-1] - length, along, along[1:1 + more] + length])
+    at = np.vstack([at[-1 - more : -1] - round_trip, at, at[1 : 1 + more] + round_trip])
+    along = np.concatenate([along[-1 - more : -1] - length, along, along[1 : 1 + more] + length])
     curve = _through(at, along, False)
     return None if curve is None else Geom2d_TrimmedCurve(curve, 0.0, length)
 

@@ -33,7 +33,11 @@ class FaceView:
         self.side = -1.0 if self.face.Orientation() == TopAbs_REVERSED else 1.0
         self.inside = BRepTopAdaptor_FClass2d(self.face, tolerance.COINCIDENT)
         is_plane = self.adaptor.GetType() == GeomAbs_Plane
-        self.plane_normal = self.at(self.adaptor.FirstUParameter(), self.adaptor.FirstVParameter())[1] if is_plane else None
+        self.plane_normal = (
+            self.at(self.adaptor.FirstUParameter(), self.adaptor.FirstVParameter())[1]
+            if is_plane
+            else None
+        )
 
     def bounds(self) -> tuple[float, float, float, float]:
         """Return the least and greatest u and v of the trimmed area."""
@@ -52,7 +56,10 @@ class FaceView:
         size = normal.Magnitude()
         if size <= tolerance.PARAMETRIC * max(du.Magnitude(), dv.Magnitude(), tolerance.COINCIDENT):
             u0, u1, v0, v1 = self.bounds()
-            beside = u + tolerance.ANGLE * (0.5 * (u0 + u1) - u), v + tolerance.ANGLE * (0.5 * (v0 + v1) - v)
+            beside = (
+                u + tolerance.ANGLE * (0.5 * (u0 + u1) - u),
+                v + tolerance.ANGLE * (0.5 * (v0 + v1) - v),
+            )
             self.adaptor.D1(*beside, gp_Pnt(), du, dv)
             normal = du.Crossed(dv)
             size = normal.Magnitude() or 1.0
@@ -61,7 +68,9 @@ class FaceView:
     def evaluated(self, places: list[tuple[float, float]]) -> tuple[Floats, Floats]:
         """Return points and outward unit normals (k, 3) at places (u, v)."""
         if self.plane_normal is not None:
-            return np.array([self.adaptor.Value(u, v).Coord() for u, v in places]), np.tile(self.plane_normal, (len(places), 1))
+            return np.array([self.adaptor.Value(u, v).Coord() for u, v in places]), np.tile(
+                self.plane_normal, (len(places), 1)
+            )
         both = [self.at(u, v) for u, v in places]
         return np.array([p for p, _ in both]), np.array([n for _, n in both])
 
@@ -69,4 +78,6 @@ class FaceView:
         """Return (u, v) at the middles of steps x steps cells of the bounds."""
         u0, u1, v0, v1 = self.bounds()
         share = (np.arange(steps) + 0.5) / steps
-        return [(float(u), float(v)) for u in u0 + share * (u1 - u0) for v in v0 + share * (v1 - v0)]
+        return [
+            (float(u), float(v)) for u in u0 + share * (u1 - u0) for v in v0 + share * (v1 - v0)
+        ]

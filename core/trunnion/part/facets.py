@@ -44,7 +44,9 @@ class Facets:
         object.__setattr__(self, "face", ints(self.face, (len(self.triangles),), "facets face"))
 
     @staticmethod
-    def of_mesh(points: Floats, triangles: Ints, face: Ints, tag: Ints, bound: float = 0.0) -> Facets:
+    def of_mesh(
+        points: Floats, triangles: Ints, face: Ints, tag: Ints, bound: float = 0.0
+    ) -> Facets:
         """Return facets of a mesh, as of fixtures: points (v, 3), triangles (t, 3), face (t,) rows of tag (f,)."""
         return Facets(tag=tag, points=points, triangles=triangles, face=face, bound=bound)
 
@@ -58,8 +60,13 @@ class Facets:
         return replace(self, triangles=self.triangles[keep], face=self.face[keep], whole=False)
 
 
-def facets_of(part: Part, frame: Frame, chord: float = tolerance.FACET_CHORD, progress: Progress = QUIET,
-              only: Collection[int] | None = None) -> Facets:
+def facets_of(
+    part: Part,
+    frame: Frame,
+    chord: float = tolerance.FACET_CHORD,
+    progress: Progress = QUIET,
+    only: Collection[int] | None = None,
+) -> Facets:
     """Return a part's faces as triangles in a frame, curved ones within a chord error (mm).
 
     Rows are those of `Surfaces.tag`; with `only`, faces of other tags come without triangles. Raises `BadInput` for a face that the mesher
@@ -67,18 +74,27 @@ def facets_of(part: Part, frame: Frame, chord: float = tolerance.FACET_CHORD, pr
     """
     wanted = [tag for tag in part.tags if only is None or tag in only]
     made = opened(part, dict.fromkeys(wanted, chord), progress)
-    return Facets(tag=np.array(part.tags), points=frame.to_local(made.points), triangles=made.triangles,
-                  face=np.searchsorted(part.tags, made.tag)[made.face], bound=float(made.bound.max(initial=0.0)),
-                  whole=len(wanted) == len(part.tags))
+    return Facets(
+        tag=np.array(part.tags),
+        points=frame.to_local(made.points),
+        triangles=made.triangles,
+        face=np.searchsorted(part.tags, made.tag)[made.face],
+        bound=float(made.bound.max(initial=0.0)),
+        whole=len(wanted) == len(part.tags),
+    )
 
 
-def facet_samples(facets: Facets, rows: Ints, spacing: float, progress: Progress = QUIET) -> tuple[Ints, Floats, Floats, Floats]:
+def facet_samples(
+    facets: Facets, rows: Ints, spacing: float, progress: Progress = QUIET
+) -> tuple[Ints, Floats, Floats, Floats]:
     """Return samples of some faces about `spacing` mm apart: face (s,) rows, point and outward normal (s, 3), area (s,) mm2.
 
     Triangles wider than that are cut into equal ones; of those that share a cell of a grid one stands for all.
     """
-    found = [_face_samples(facets, int(row), spacing, progress)
-             for row in progress.each(np.intersect1d(rows, facets.face))] or [_none_sampled()]
+    found = [
+        _face_samples(facets, int(row), spacing, progress)
+        for row in progress.each(np.intersect1d(rows, facets.face))
+    ] or [_none_sampled()]
     face, point, normal, area = (np.concatenate(columns) for columns in zip(*found, strict=True))
     return face, point, normal, area
 
@@ -87,7 +103,9 @@ def _none_sampled() -> tuple[Ints, Floats, Floats, Floats]:
     return np.zeros(0, np.int64), np.zeros((0, 3)), np.zeros((0, 3)), np.zeros(0)
 
 
-def _face_samples(facets: Facets, row: int, spacing: float, progress: Progress) -> tuple[Ints, Floats, Floats, Floats]:
+def _face_samples(
+    facets: Facets, row: int, spacing: float, progress: Progress
+) -> tuple[Ints, Floats, Floats, Floats]:
     """Return the samples of one face."""
     chosen = facets.face == row
     corners, face = facets.points[facets.triangles[chosen]], facets.face[chosen]
@@ -95,13 +113,20 @@ def _face_samples(facets: Facets, row: int, spacing: float, progress: Progress) 
     width = np.linalg.norm(np.roll(corners, -1, axis=1) - corners, axis=2).max(axis=1, initial=0.0)
     cuts = np.maximum(np.ceil(width / spacing), 1.0).astype(np.int64)
     parts = [_middles(corners[cuts == n], int(n)) for n in progress.each(np.unique(cuts))]
-    owner = np.concatenate([np.zeros(0, np.int64), *(np.repeat(np.flatnonzero(cuts == n), n * n) for n in np.unique(cuts))])
+    owner = np.concatenate(
+        [
+            np.zeros(0, np.int64),
+            *(np.repeat(np.flatnonzero(cuts == n), n * n) for n in np.unique(cuts)),
+        ]
+    )
     point, share = np.vstack([np.zeros((0, 3)), *parts]), (area / cuts**2)[owner]
     progress.check()
     group = grouped(np.floor(point / spacing).astype(np.int64))
     progress.check()
     total: Floats = np.bincount(group, share).astype(np.float64)
-    middle = np.column_stack([np.bincount(group, share * point[:, k]).astype(np.float64) for k in range(3)])
+    middle = np.column_stack(
+        [np.bincount(group, share * point[:, k]).astype(np.float64) for k in range(3)]
+    )
     middle = middle / np.maximum(total, tolerance.COINCIDENT**2)[:, None]
     away = np.linalg.norm(point - middle[group], axis=1)
     order = np.lexsort((away, group))

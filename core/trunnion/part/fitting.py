@@ -22,10 +22,16 @@ def along_arcs(points: Floats, headings: Floats) -> Floats:
     half = 0.5 * (first + last)[:, None]
     share = _BETWEEN[None, :]
     # A point at a share of an arc with half sweep h, seen from its start: the chord to it is shorter by sin(share h) / sin(h) and turned.
-    length = np.where(np.abs(half) > tolerance.PARAMETRIC, np.sin(share * half) / np.where(half == 0.0, 1.0, np.sin(half)), share)
+    length = np.where(
+        np.abs(half) > tolerance.PARAMETRIC,
+        np.sin(share * half) / np.where(half == 0.0, 1.0, np.sin(half)),
+        share,
+    )
     angle = (share - 1.0) * half
     x, y = length * np.cos(angle), length * np.sin(angle)
-    on = np.stack([x * chord[:, :1] - y * chord[:, 1:], y * chord[:, :1] + x * chord[:, 1:]], axis=-1)
+    on = np.stack(
+        [x * chord[:, :1] - y * chord[:, 1:], y * chord[:, :1] + x * chord[:, 1:]], axis=-1
+    )
     return np.concatenate([(points[:-1, None] + on).reshape(-1, 2), points[-1:]])
 
 
@@ -43,7 +49,7 @@ def arcs_through(points: Floats, within: float = tolerance.FITTED) -> tuple[Floa
         best, bulge, step = at + 1, 0.0, 2
         while True:
             end = min(at + step, len(points) - 1)
-            found = _arc(points[at:end + 1], within) if end > at + 1 else None
+            found = _arc(points[at : end + 1], within) if end > at + 1 else None
             if found is None:
                 break
             best, bulge = end, found
@@ -53,7 +59,7 @@ def arcs_through(points: Floats, within: float = tolerance.FITTED) -> tuple[Floa
         low, high = best, min(at + step, len(points) - 1)
         while high - low > 1:
             middle = (low + high) // 2
-            found = _arc(points[at:middle + 1], within)
+            found = _arc(points[at : middle + 1], within)
             if found is None:
                 high = middle
             else:

@@ -25,7 +25,9 @@ _RECORD = np.dtype([("normal", "<f4", 3), ("corners", "<f4", (3, 3)), ("attribut
 _VERTEX = re.compile(rb"\bvertex\s+(\S+)\s+(\S+)\s+(\S+)", re.IGNORECASE)
 
 
-def read_fixture(path: str | Path, *, limits: ReadLimits | None = None, progress: Progress = QUIET) -> Mesh:
+def read_fixture(
+    path: str | Path, *, limits: ReadLimits | None = None, progress: Progress = QUIET
+) -> Mesh:
     """Return the triangles of a fixture's file in its own coordinates, mm; all solids of a STEP or IGES file together.
 
     Raises `BadInput` with one line for a file that can't be used, `Cancelled` on request.
@@ -37,6 +39,7 @@ def read_fixture(path: str | Path, *, limits: ReadLimits | None = None, progress
     from trunnion.part.identity import faces_of
     from trunnion.part.read import read_part
     from trunnion.part.tessellate import tessellated
+
     part = read_part(file, limits=limits, progress=progress)
     mesh = tessellated(part.as_read, dict(enumerate(faces_of(part.as_read), 1)), CHORD, ANGLE)
     if not len(mesh.triangles):
@@ -53,12 +56,18 @@ def stl_mesh(data: bytes, name: str) -> Mesh:
     if not len(corners):
         raise BadInput(f"{name}: not an STL file with triangles")
     if len(corners) > MOST_TRIANGLES:
-        raise BadInput(f"{name}: {len(corners)} triangles are more than the {MOST_TRIANGLES} that are read; make the mesh coarser")
+        raise BadInput(
+            f"{name}: {len(corners)} triangles are more than the {MOST_TRIANGLES} that are read; make the mesh coarser"
+        )
     if not np.isfinite(corners).all():
         raise BadInput(f"{name}: holds numbers that are not finite")
     points, rows = np.unique(corners.reshape(-1, 3), axis=0, return_inverse=True)
     triangles = rows.reshape(-1, 3)
-    flat = (triangles[:, 0] == triangles[:, 1]) | (triangles[:, 1] == triangles[:, 2]) | (triangles[:, 2] == triangles[:, 0])
+    flat = (
+        (triangles[:, 0] == triangles[:, 1])
+        | (triangles[:, 1] == triangles[:, 2])
+        | (triangles[:, 2] == triangles[:, 0])
+    )
     triangles = triangles[~flat]
     a, b, c = np.moveaxis(points[triangles], 1, 0)
     if float((a * np.cross(b, c)).sum()) < 0.0:
@@ -68,7 +77,11 @@ def stl_mesh(data: bytes, name: str) -> Mesh:
 
 def _is_binary(data: bytes) -> bool:
     """Say whether the length of a file is what its count of triangles asks for: text may begin with any word, also with `solid`."""
-    return len(data) >= _HEADER and len(data) == _HEADER + int.from_bytes(data[_HEADER - 4:_HEADER], "little") * _RECORD.itemsize
+    return (
+        len(data) >= _HEADER
+        and len(data)
+        == _HEADER + int.from_bytes(data[_HEADER - 4 : _HEADER], "little") * _RECORD.itemsize
+    )
 
 
 def _binary(data: bytes) -> Floats:

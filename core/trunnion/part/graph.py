@@ -61,11 +61,15 @@ class EdgeView:
         self.adaptor = BRepAdaptor_Curve(self.edge)
         first, last = self.adaptor.FirstParameter(), self.adaptor.LastParameter()
         self.middle = 0.5 * (first + last)
-        self.points = np.array([self.adaptor.Value(t).Coord() for t in np.linspace(first, last, _ALONG_EDGE)])
+        self.points = np.array(
+            [self.adaptor.Value(t).Coord() for t in np.linspace(first, last, _ALONG_EDGE)]
+        )
         self.extremes = edge_extremes(self.adaptor, self.points)
 
 
-def face_graph(shape: Shape, faces: Mapping[int, Shape], n_faces: int, progress: Progress = QUIET) -> FaceGraph:
+def face_graph(
+    shape: Shape, faces: Mapping[int, Shape], n_faces: int, progress: Progress = QUIET
+) -> FaceGraph:
     """Return the graph of a solid's faces (by tag); rows of tags that aren't there have area 0, no samples and no edges.
 
     The normal bend of a torus is that of its tube; of a free-form face the one that is at least twice as sharp as the other.
@@ -73,7 +77,10 @@ def face_graph(shape: Shape, faces: Mapping[int, Shape], n_faces: int, progress:
     progress.doing("looking at faces and edges")
     views = {tag: FaceView(face, tag - 1) for tag, face in progress.each(sorted(faces.items()))}
     edges, rims = _edges(shape, views, progress)
-    rows = {tag - 1: _face_row(view, rims[tag - 1], progress) for tag, view in progress.each(views.items())}
+    rows = {
+        tag - 1: _face_row(view, rims[tag - 1], progress)
+        for tag, view in progress.each(views.items())
+    }
     columns = [rows.get(n, _ABSENT) for n in range(n_faces)]
     joints = [joint for edge in progress.each(edges) for joint in _joints(edge)]
     samples = [(n, c) for n, c in enumerate(columns) if len(c.points)]
@@ -88,17 +95,34 @@ def face_graph(shape: Shape, faces: Mapping[int, Shape], n_faces: int, progress:
         return np.array([getattr(j, name) for j in joints])
 
     return FaceGraph(
-        surface=tuple(c.surface.kind for c in columns), area=column("area"), centre=column("centre"), normal=column("normal"),
-        axis_point=of_surface("axis_point"), axis=of_surface("axis"), radius=of_surface("radius"), minor=of_surface("minor"),
-        bend=column("bend"), box_low=column("low"), box_high=column("high"),
+        surface=tuple(c.surface.kind for c in columns),
+        area=column("area"),
+        centre=column("centre"),
+        normal=column("normal"),
+        axis_point=of_surface("axis_point"),
+        axis=of_surface("axis"),
+        radius=of_surface("radius"),
+        minor=of_surface("minor"),
+        bend=column("bend"),
+        box_low=column("low"),
+        box_high=column("high"),
         sample_face=np.concatenate([np.full(len(c.points), n) for n, c in samples]),
-        sample_point=np.concatenate([c.points for _, c in samples]), sample_normal=np.concatenate([c.normals for _, c in samples]),
-        edge_face=of_joint("faces").reshape(-1, 2), convexity=of_joint("convexity"), dihedral=of_joint("dihedral"),
-        length=of_joint("length"), edge_loop=of_joint("loops").reshape(-1, 2), curve=tuple(j.curve.kind for j in joints),
-        start=_points(j.view.points[0] for j in joints), middle=_points(j.view.points[_ALONG_EDGE // 2] for j in joints),
-        end=_points(j.view.points[-1] for j in joints), curve_centre=_points(j.curve.centre for j in joints),
-        curve_axis=_points(j.curve.axis for j in joints), curve_radius=np.array([j.curve.radius for j in joints]),
-        open_edges=sum(len(e.users) == 1 for e in edges))
+        sample_point=np.concatenate([c.points for _, c in samples]),
+        sample_normal=np.concatenate([c.normals for _, c in samples]),
+        edge_face=of_joint("faces").reshape(-1, 2),
+        convexity=of_joint("convexity"),
+        dihedral=of_joint("dihedral"),
+        length=of_joint("length"),
+        edge_loop=of_joint("loops").reshape(-1, 2),
+        curve=tuple(j.curve.kind for j in joints),
+        start=_points(j.view.points[0] for j in joints),
+        middle=_points(j.view.points[_ALONG_EDGE // 2] for j in joints),
+        end=_points(j.view.points[-1] for j in joints),
+        curve_centre=_points(j.curve.centre for j in joints),
+        curve_axis=_points(j.curve.axis for j in joints),
+        curve_radius=np.array([j.curve.radius for j in joints]),
+        open_edges=sum(len(e.users) == 1 for e in edges),
+    )
 
 
 def _points(rows: Any) -> Floats:
@@ -107,12 +131,18 @@ def _points(rows: Any) -> Floats:
 
 # Edges
 
-def _edges(shape: Shape, views: Mapping[int, FaceView], progress: Progress) -> tuple[list[EdgeView], dict[int, list[EdgeView]]]:
+
+def _edges(
+    shape: Shape, views: Mapping[int, FaceView], progress: Progress
+) -> tuple[list[EdgeView], dict[int, list[EdgeView]]]:
     """Return the edges with their users (a seam has its face twice), and by face row the edges around it."""
     index = TopTools_IndexedMapOfShape()
     TopExp.MapShapes_s(shape, TopAbs_EDGE, index)
-    edges = {n: EdgeView(edge) for n in progress.each(range(1, index.Extent() + 1))
-             if not BRep_Tool.Degenerated_s(edge := TopoDS.Edge_s(index.FindKey(n)))}
+    edges = {
+        n: EdgeView(edge)
+        for n in progress.each(range(1, index.Extent() + 1))
+        if not BRep_Tool.Degenerated_s(edge := TopoDS.Edge_s(index.FindKey(n)))
+    }
     rims: dict[int, list[EdgeView]] = {}
     for view in progress.each(views.values()):
         rim = rims.setdefault(view.row, [])
@@ -137,7 +167,13 @@ def coedges(face: Shape, index: TopTools_IndexedMapOfShape) -> list[Coedge]:
         around = TopExp_Explorer(wire, TopAbs_EDGE)
         while around.More():
             edge = around.Current()
-            found.append(Coedge(index.FindIndex(edge), -1.0 if edge.Orientation() == TopAbs_REVERSED else 1.0, loop))
+            found.append(
+                Coedge(
+                    index.FindIndex(edge),
+                    -1.0 if edge.Orientation() == TopAbs_REVERSED else 1.0,
+                    loop,
+                )
+            )
             around.Next()
         wires.Next()
     return found
@@ -157,7 +193,9 @@ class Joint:
 
 
 def _joints(edge: EdgeView) -> list[Joint]:
-    pairs = [(a, b) for n, a in enumerate(edge.users) for b in edge.users[n + 1:] if a[0] is not b[0]]
+    pairs = [
+        (a, b) for n, a in enumerate(edge.users) for b in edge.users[n + 1 :] if a[0] is not b[0]
+    ]
     if not pairs:
         return []
     curve, tangent = recognised_curve(edge.adaptor), _tangent(edge)
@@ -165,10 +203,21 @@ def _joints(edge: EdgeView) -> list[Joint]:
     found = []
     for (a, way, loop_a), (b, _, loop_b) in pairs:
         normal_a, normal_b = _normal_beside(edge, a), _normal_beside(edge, b)
-        turn = math.atan2(float(np.cross(normal_a, normal_b) @ tangent) * way, float(normal_a @ normal_b))
+        turn = math.atan2(
+            float(np.cross(normal_a, normal_b) @ tangent) * way, float(normal_a @ normal_b)
+        )
         convexity = SMOOTH if abs(turn) < tolerance.TANGENT else CONVEX if turn > 0.0 else CONCAVE
-        found.append(Joint(view=edge, faces=(a.row, b.row), loops=(loop_a, loop_b), convexity=convexity, dihedral=math.pi - turn,
-                           length=length, curve=curve))
+        found.append(
+            Joint(
+                view=edge,
+                faces=(a.row, b.row),
+                loops=(loop_a, loop_b),
+                convexity=convexity,
+                dihedral=math.pi - turn,
+                length=length,
+                curve=curve,
+            )
+        )
     return found
 
 
@@ -199,6 +248,7 @@ def _length(edge: EdgeView, curve: EdgeCurve) -> float:
 
 # Faces
 
+
 @dataclass(frozen=True, slots=True, eq=False, kw_only=True)
 class FaceRow:
     """What the graph says of one face."""
@@ -215,18 +265,41 @@ class FaceRow:
 
 
 _ORIGIN = np.zeros(3)
-_ABSENT = FaceRow(surface=replace(PLAIN, kind="other"), area=0.0, centre=_ORIGIN, normal=_ORIGIN, bend=0, low=_ORIGIN, high=_ORIGIN,
-                  points=np.empty((0, 3)), normals=np.empty((0, 3)))
+_ABSENT = FaceRow(
+    surface=replace(PLAIN, kind="other"),
+    area=0.0,
+    centre=_ORIGIN,
+    normal=_ORIGIN,
+    bend=0,
+    low=_ORIGIN,
+    high=_ORIGIN,
+    points=np.empty((0, 3)),
+    normals=np.empty((0, 3)),
+)
 
 
 def _face_row(view: FaceView, rim: list[EdgeView], progress: Progress) -> FaceRow:
     points, normals = _samples(view, progress)
     surface = recognised(view.adaptor, lambda: view.evaluated(view.grid(_GRIDS[0])))
     best = _deepest(points, np.concatenate([e.points for e in rim]) if rim else np.empty((0, 3)))
-    low, high = face_box(view, surface, np.concatenate([e.extremes for e in rim]) if rim else np.empty((0, 3)), progress)
+    low, high = face_box(
+        view,
+        surface,
+        np.concatenate([e.extremes for e in rim]) if rim else np.empty((0, 3)),
+        progress,
+    )
     surface = _beside(surface, points[best])
-    return FaceRow(surface=surface, area=_area(view), centre=points[best], normal=normals[best],
-                   bend=_bend(surface, points, normals, best), low=low, high=high, points=points, normals=normals)
+    return FaceRow(
+        surface=surface,
+        area=_area(view),
+        centre=points[best],
+        normal=normals[best],
+        bend=_bend(surface, points, normals, best),
+        low=low,
+        high=high,
+        points=points,
+        normals=normals,
+    )
 
 
 def _samples(view: FaceView, progress: Progress) -> tuple[Floats, Floats]:
@@ -293,7 +366,11 @@ def _beside(surface: Surface, near: Floats) -> Surface:
     if surface.kind not in ("cylinder", "cone"):
         return surface
     along = float((near - surface.axis_point) @ surface.axis)
-    radius = surface.radius + along * math.tan(surface.minor) if surface.kind == "cone" else surface.radius
+    radius = (
+        surface.radius + along * math.tan(surface.minor)
+        if surface.kind == "cone"
+        else surface.radius
+    )
     return replace(surface, axis_point=surface.axis_point + along * surface.axis, radius=radius)
 
 
@@ -311,7 +388,9 @@ def _bend(surface: Surface, points: Floats, normals: Floats, best: int) -> int:
     step = points[:, None] - points[None]
     square = (step * step).sum(axis=2)
     turn = ((normals[:, None] - normals[None]) * step).sum(axis=2)
-    curvature = np.divide(turn, square, out=np.zeros_like(turn), where=square > tolerance.COINCIDENT**2)
+    curvature = np.divide(
+        turn, square, out=np.zeros_like(turn), where=square > tolerance.COINCIDENT**2
+    )
     out, hollow = max(float(curvature.max()), 0.0), max(-float(curvature.min()), 0.0)
     if max(out, hollow) * math.sqrt(float(square.max())) < tolerance.ANGLE:
         return 0

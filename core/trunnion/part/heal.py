@@ -53,7 +53,9 @@ def bodies_of(as_read: Shape) -> tuple[list[Body], list[Finding]]:
         return [_body(solid, tagged, _same) for solid in solids], []
     sewn, image, findings = _sewn(as_read)
     bodies = [_body(_solid(shell), tagged, image) for shell in shells_of(sewn)]
-    if not any(body.is_closed for body in bodies) and sum(len(body.tags) for body in bodies) < len(tagged):
+    if not any(body.is_closed for body in bodies) and sum(len(body.tags) for body in bodies) < len(
+        tagged
+    ):
         bodies = [_body(sewn, tagged, image)]
     return [body for body in bodies if body.tags], findings
 
@@ -78,7 +80,12 @@ def _sewn(as_read: Shape) -> tuple[Shape, Image, list[Finding]]:
     gap = max((BRep_Tool.Tolerance_s(edge) for edge in edges_of(sewn)), default=0.0)
     findings = []
     if gap > tolerance.COINCIDENT and tool.NbContigousEdges() > 0 and tolerated > _SEW_STEPS[0]:
-        findings.append(info("part.sewn", f"surfaces with gaps of up to {gap:.4f} mm between them were sewn together"))
+        findings.append(
+            info(
+                "part.sewn",
+                f"surfaces with gaps of up to {gap:.4f} mm between them were sewn together",
+            )
+        )
     return sewn, image, findings
 
 
@@ -98,7 +105,14 @@ def _body(shape: Shape, tagged: list[Shape], image: Image) -> Body:
     volume = volume_of(shape)
     if volume < 0.0:
         shape, volume = shape.Reversed(), -volume
-    return Body(shape=shape, tags=tags, area=area_of(shape), volume=volume, open_edges=open_edges(shape), findings=findings)
+    return Body(
+        shape=shape,
+        tags=tags,
+        area=area_of(shape),
+        volume=volume,
+        open_edges=open_edges(shape),
+        findings=findings,
+    )
 
 
 def _tags(shape: Shape, tagged: list[Shape], image: Image) -> tuple[int, ...]:
@@ -113,7 +127,9 @@ def _tags(shape: Shape, tagged: list[Shape], image: Image) -> tuple[int, ...]:
     return tuple(found[n] for n in sorted(found)) if len(found) == index.Extent() else ()
 
 
-def _repaired(shape: Shape, tagged: list[Shape], image: Image, tags: tuple[int, ...]) -> tuple[Shape, tuple[int, ...], tuple[Finding, ...]]:
+def _repaired(
+    shape: Shape, tagged: list[Shape], image: Image, tags: tuple[int, ...]
+) -> tuple[Shape, tuple[int, ...], tuple[Finding, ...]]:
     changes = ShapeBuild_ReShape()
     tool = ShapeFix_Shape(shape)
     tool.SetContext(changes)
@@ -123,6 +139,15 @@ def _repaired(shape: Shape, tagged: list[Shape], image: Image, tags: tuple[int, 
     if len(inside) == 1 and BRepCheck_Analyzer(inside[0]).IsValid():
         new = _tags(inside[0], tagged, lambda face: changes.Apply(image(face)))
         if sorted(new) == sorted(tags):
-            return inside[0], new, (info("part.healed", "the solid had faults in its edges or tolerances that were repaired"),)
+            return (
+                inside[0],
+                new,
+                (
+                    info(
+                        "part.healed",
+                        "the solid had faults in its edges or tolerances that were repaired",
+                    ),
+                ),
+            )
     text = "the CAD kernel finds faults in this solid that can't be repaired without changing its faces"
     return shape, tags, (warning("part.invalid", text, remedy="check the solid in the CAD system"),)

@@ -66,6 +66,8 @@ def _piece(adaptor: object, frame: Frame) -> tuple[Floats, Floats]:
     if curve.kind == "circle":
         centre = frame.to_local(curve.centre)[:2]
         angles = np.unwrap(np.arctan2(flat[:, 1] - centre[1], flat[:, 0] - centre[0]))
-        halves = [0, _STEPS // 2, _STEPS - 1] if abs(angles[-1] - angles[0]) > np.pi else [0, _STEPS - 1]
+        halves = (
+            [0, _STEPS // 2, _STEPS - 1] if abs(angles[-1] - angles[0]) > np.pi else [0, _STEPS - 1]
+        )
         return flat[halves], np.tan(0.25 * np.diff(angles[halves]))
     return arcs_through(flat)

@@ -61,7 +61,10 @@ class PartFacts:
     def from_json(text: str) -> PartFacts:
         """Return the facts that `to_json` wrote."""
         data = json.loads(text)
-        data["findings"] = tuple(Finding(**f | {"severity": Severity(f["severity"]), "where": tuple(f["where"])}) for f in data["findings"])
+        data["findings"] = tuple(
+            Finding(**f | {"severity": Severity(f["severity"]), "where": tuple(f["where"])})
+            for f in data["findings"]
+        )
         data["names"] = {int(k): v for k, v in data["names"].items()}
         data["colours"] = {int(k): tuple(v) for k, v in data["colours"].items()}
         data["tags"] = tuple(data["tags"])
@@ -81,7 +84,9 @@ class Part:
         self.as_read = as_read
         own = faces_of(shape)
         if len(own) != len(facts.tags):
-            raise BadInput(f"{facts.name}: the part's {len(own)} faces don't fit its {len(facts.tags)} face tags; read the part anew")
+            raise BadInput(
+                f"{facts.name}: the part's {len(own)} faces don't fit its {len(facts.tags)} face tags; read the part anew"
+            )
         self._faces = dict(zip(facts.tags, own, strict=True))
         self._graph: FaceGraph | None = None
         self._meshes: dict[tuple[float, float], Mesh] = {}
@@ -94,16 +99,26 @@ class Part:
     path = property(lambda self: self.facts.path, doc="Where the part was read from.")
     name = property(lambda self: self.facts.name, doc="The file's name without its suffix.")
     digest = property(lambda self: self.facts.digest, doc="SHA-256 of the file's bytes.")
-    unit = property(lambda self: self.facts.unit, doc="The file's own unit; everything here is in mm.")
+    unit = property(
+        lambda self: self.facts.unit, doc="The file's own unit; everything here is in mm."
+    )
     n_faces = property(lambda self: self.facts.n_faces, doc="How many faces the file holds.")
     n_solids = property(lambda self: self.facts.n_solids, doc="How many solids the file holds.")
     solid = property(lambda self: self.facts.solid, doc="Which of them this is, from 1.")
-    is_closed = property(lambda self: self.facts.is_closed, doc="Whether the faces enclose material without a gap.")
+    is_closed = property(
+        lambda self: self.facts.is_closed, doc="Whether the faces enclose material without a gap."
+    )
     area = property(lambda self: self.facts.area, doc="Area of the solid's faces in mm2.")
     volume = property(lambda self: self.facts.volume, doc="Volume in mm3.")
-    names = property(lambda self: self.facts.names, doc="Names of faces by tag, where the file gives them.")
-    colours = property(lambda self: self.facts.colours, doc="Colours of faces by tag, where the file gives them.")
-    findings = property(lambda self: self.facts.findings, doc="What a person should know about the file.")
+    names = property(
+        lambda self: self.facts.names, doc="Names of faces by tag, where the file gives them."
+    )
+    colours = property(
+        lambda self: self.facts.colours, doc="Colours of faces by tag, where the file gives them."
+    )
+    findings = property(
+        lambda self: self.facts.findings, doc="What a person should know about the file."
+    )
 
     @property
     def tags(self) -> tuple[int, ...]:
@@ -137,6 +152,7 @@ class Part:
         """Return the attributed face graph; row = tag - 1, faces of other solids have area 0, no samples and no edges."""
         if self._graph is None:
             from trunnion.part.graph import face_graph
+
             self._graph = face_graph(self.shape, self._faces, self.n_faces, self._progress)
         return self._graph
 
@@ -144,7 +160,10 @@ class Part:
         """Return triangles of the solid within a chord error (mm) and an angle between neighbouring chords (radians)."""
         if (chord, angle) not in self._meshes:
             from trunnion.part.tessellate import tessellated
-            self._meshes[chord, angle] = tessellated(self.shape, self._faces, chord, angle, self._progress)
+
+            self._meshes[chord, angle] = tessellated(
+                self.shape, self._faces, chord, angle, self._progress
+            )
         return self._meshes[chord, angle]
 
     def section(self, frame: Frame, z: float) -> Region:
@@ -158,6 +177,7 @@ class Part:
         if key not in self._sections:
             if self._slicer is None:
                 from trunnion.part.section import SolidSlicer
+
                 self._slicer = SolidSlicer(self.shape, list(self._faces.values()), self._progress)
             self._sections[key] = self._slicer.section(frame, float(z), self._progress)
         return self._sections[key]
@@ -167,12 +187,16 @@ class Part:
         or with the points that are farthest along x, y and z."""
         if self._bounding is None:
             from trunnion.part.boundary import bounding_of
-            self._bounding = bounding_of((tag, face) for tag, face in self._as_read() if tag in self._faces)
+
+            self._bounding = bounding_of(
+                (tag, face) for tag, face in self._as_read() if tag in self._faces
+            )
         return self._bounding.points(parts)
 
     def boundary_error(self) -> dict[int, float]:
         """Return how far each face's boundary curves, as read, are from its surface at most, mm, by tag."""
         from trunnion.part.boundary import approximation_of
+
         return {tag: approximation_of(face) for tag, face in self._as_read() if tag in self._faces}
 
     def _as_read(self) -> Iterator[tuple[int, Shape]]:
@@ -185,6 +209,7 @@ class Part:
         """Return how a face bends; raise `BadInput` when it is not of the chosen solid."""
         if tag not in self._bends:
             from trunnion.part.curvature import bend_of
+
             self._progress.check()
             face = self.face_shape(tag)
             if face is None:
@@ -195,6 +220,7 @@ class Part:
     def face_outline(self, frame: Frame, tag: int) -> Region:
         """Return the plan projection, in the frame's x and y, of a plane face that is level or nearly so; raise `BadInput` otherwise."""
         from trunnion.part.outline import outline
+
         face = self.face_shape(tag)
         if face is None:
             raise BadInput(f"face {tag} is not a face of the chosen solid of {self.name}")
@@ -207,7 +233,9 @@ class Part:
     def to_bytes(self) -> bytes:
         """Return the part as bytes for another process; what was computed from it stays behind."""
         facts = self.facts.to_json().encode()
-        return b"".join([_MAGIC, len(facts).to_bytes(8, "little"), facts, shape_bytes(self.shape, self.as_read)])
+        return b"".join(
+            [_MAGIC, len(facts).to_bytes(8, "little"), facts, shape_bytes(self.shape, self.as_read)]
+        )
 
     @staticmethod
     def from_bytes(data: bytes) -> Part:
@@ -215,7 +243,7 @@ class Part:
         if not data.startswith(_MAGIC):
             raise BadInput("these bytes don't hold a part: read the part file again")
         at = len(_MAGIC) + 8
-        end = at + int.from_bytes(data[len(_MAGIC):at], "little")
+        end = at + int.from_bytes(data[len(_MAGIC) : at], "little")
         shape, as_read = shapes_from(data[end:])
         return Part(PartFacts.from_json(data[at:end].decode()), shape, as_read)
 
@@ -225,12 +253,15 @@ def shape_bytes(shape: Shape, as_read: Shape) -> bytes:
     from OCP.BinTools import BinTools, BinTools_FormatVersion
     from OCP.BRep import BRep_Builder
     from OCP.TopoDS import TopoDS_Compound
+
     both, builder = TopoDS_Compound(), BRep_Builder()
     builder.MakeCompound(both)
     builder.Add(both, shape)
     builder.Add(both, as_read)
     stream = io.BytesIO()
-    BinTools.Write_s(both, stream, False, False, BinTools_FormatVersion.BinTools_FormatVersion_CURRENT)
+    BinTools.Write_s(
+        both, stream, False, False, BinTools_FormatVersion.BinTools_FormatVersion_CURRENT
+    )
     return stream.getvalue()
 
 
@@ -238,6 +269,7 @@ def shapes_from(data: bytes) -> tuple[Shape, Shape]:
     """Return the chosen solid and everything read from what `shape_bytes` wrote."""
     from OCP.BinTools import BinTools
     from OCP.TopoDS import TopoDS_Compound, TopoDS_Iterator
+
     both = TopoDS_Compound()
     BinTools.Read_s(both, io.BytesIO(data))
     if both.IsNull():
@@ -246,5 +278,3 @@ def shapes_from(data: bytes) -> tuple[Shape, Shape]:
     shape = inside.Value()
     inside.Next()
     return shape, inside.Value()
-
-

@@ -19,8 +19,13 @@ _GZIP = b"\x1f\x8b"
 _MEGA = 1 << 20
 
 
-def read_part(path: str | os.PathLike[str], *, solid: int | None = None, limits: ReadLimits | None = None,
-              progress: Progress = QUIET) -> Part:
+def read_part(
+    path: str | os.PathLike[str],
+    *,
+    solid: int | None = None,
+    limits: ReadLimits | None = None,
+    progress: Progress = QUIET,
+) -> Part:
     """Return the part of a STEP, gzipped STEP or IGES file, told by its content.
 
     `solid` chooses one of several solids, from 1; without it the largest is taken and a finding names the others. Raises `BadInput`
@@ -31,22 +36,40 @@ def read_part(path: str | os.PathLike[str], *, solid: int | None = None, limits:
     return _read(_bytes_of(file, limits), file.name, str(file), solid, limits, progress)
 
 
-def read_part_bytes(data: bytes, name: str, suffix: str, *, solid: int | None = None, limits: ReadLimits | None = None,
-                    progress: Progress = QUIET) -> Part:
+def read_part_bytes(
+    data: bytes,
+    name: str,
+    suffix: str,
+    *,
+    solid: int | None = None,
+    limits: ReadLimits | None = None,
+    progress: Progress = QUIET,
+) -> Part:
     """Return the part of a file's bytes, as `read_part` does; `name` and `suffix` are the file's."""
     file = name if name.endswith(suffix) else name + suffix
     return _read(data, file, file, solid, limits or ReadLimits(), progress)
 
 
-def _read(data: bytes, file: str, path: str, solid: int | None, limits: ReadLimits, progress: Progress) -> Part:
+def _read(
+    data: bytes, file: str, path: str, solid: int | None, limits: ReadLimits, progress: Progress
+) -> Part:
     from trunnion.part.child import run
     from trunnion.part.request import Request
+
     progress.at(0.0, "reading")
     plain = _unpacked(data, file, limits)
     kind = kind_of(plain, file)
     listed = check_step(plain, file) if kind == "step" else check_iges(plain, file)
-    request = Request(file=file, path=path, name=_stem(file), digest=hashlib.sha256(data).hexdigest(), kind=kind, listed=listed,
-                      solid=solid, size=len(plain))
+    request = Request(
+        file=file,
+        path=path,
+        name=_stem(file),
+        digest=hashlib.sha256(data).hexdigest(),
+        kind=kind,
+        listed=listed,
+        solid=solid,
+        size=len(plain),
+    )
     return Part.from_bytes(run(request, plain, limits, progress))
 
 

@@ -70,8 +70,14 @@ def opened(part: Part, chords: Mapping[int, float], progress: Progress = QUIET) 
     tags = sorted(chords)
     if not tags:
         none = np.zeros((0, 3))
-        return Opened(tag=np.zeros(0, np.int64), points=none, normals=none, triangles=none.astype(np.int64), face=np.zeros(0, np.int64),
-                      bound=np.zeros(0))
+        return Opened(
+            tag=np.zeros(0, np.int64),
+            points=none,
+            normals=none,
+            triangles=none.astype(np.int64),
+            face=np.zeros(0, np.int64),
+            bound=np.zeros(0),
+        )
     BRepTools.Clean_s(part.shape)
     try:
         net = _coarse(part, tags, np.array([chords[tag] for tag in tags]), progress.part(0.0, 0.3))
@@ -102,8 +108,22 @@ class _Border:
     def halves(self, middle: Ints) -> tuple[_Border, _Border]:
         """Return both halves of every piece, given the nodes (b,) in their middles."""
         t, number = self.t.mean(axis=1), self.piece + self.piece % PIECES
-        return (_Border(np.column_stack([self.nodes[:, 0], middle]), self.curve, self.line, np.column_stack([self.t[:, 0], t]), number),
-                _Border(np.column_stack([middle, self.nodes[:, 1]]), self.curve, self.line, np.column_stack([t, self.t[:, 1]]), number + 1))
+        return (
+            _Border(
+                np.column_stack([self.nodes[:, 0], middle]),
+                self.curve,
+                self.line,
+                np.column_stack([self.t[:, 0], t]),
+                number,
+            ),
+            _Border(
+                np.column_stack([middle, self.nodes[:, 1]]),
+                self.curve,
+                self.line,
+                np.column_stack([t, self.t[:, 1]]),
+                number + 1,
+            ),
+        )
 
 
 def _key(pairs: Ints) -> Ints:
@@ -138,7 +158,9 @@ class _Net:
     def join_poles(self) -> None:
         """Make one point of all that lie in the same pole, and leave out the triangles between them, which have no area."""
         poles = np.flatnonzero(~self.fixed.all(axis=1))
-        where = np.column_stack([self.owner[poles], np.round(self.points[poles] / tolerance.COINCIDENT)])
+        where = np.column_stack(
+            [self.owner[poles], np.round(self.points[poles] / tolerance.COINCIDENT)]
+        )
         _, first, back = np.unique(where, axis=0, return_index=True, return_inverse=True)
         one = np.arange(len(self.points))
         one[poles] = poles[first[back.ravel()]]
@@ -151,7 +173,9 @@ class _Net:
         """Return points and derivatives (k, 6, 3) of faces, by row (k,), at places (k, 2)."""
         out = np.empty((len(places), 6, 3))
         order = np.argsort(owner, kind="stable")
-        for rows in np.split(order, np.flatnonzero(np.diff(owner[order])) + 1) if len(order) else []:
+        for rows in (
+            np.split(order, np.flatnonzero(np.diff(owner[order])) + 1) if len(order) else []
+        ):
             for some in np.split(rows, range(MANY, len(rows), MANY)):
                 self.progress.check()
                 out[some] = self.evaluators[int(owner[rows[0]])](places[some])
@@ -183,7 +207,9 @@ class _Net:
         size = np.linalg.norm(normal, axis=1)
         lengths = np.linalg.norm(at[:, 1:3], axis=2).max(axis=1)
         there = size > tolerance.PARAMETRIC * np.maximum(lengths, tolerance.COINCIDENT)
-        return np.divide(normal, size[:, None], out=np.zeros_like(normal), where=there[:, None]), there
+        return np.divide(
+            normal, size[:, None], out=np.zeros_like(normal), where=there[:, None]
+        ), there
 
     def refine(self) -> None:
         """Halve edges until every edge and every triangle is within its face's limit."""
@@ -210,17 +236,26 @@ class _Net:
             self._agree(split, border)
             known, known_off = keys[~split], off[~split]
             middle = self._halve(edges, edge, split, keys, middle)
-        np.maximum.at(self.bound, self.face, BETWEEN * np.maximum(np.nan_to_num(middle), off[edge].max(axis=1)))
+        np.maximum.at(
+            self.bound,
+            self.face,
+            BETWEEN * np.maximum(np.nan_to_num(middle), off[edge].max(axis=1)),
+        )
 
     def _distinct(self, keys: Ints) -> tuple[Ints, Ints, Ints]:
         """Return the distinct ones of some keys, the first row of each, and which of them each key is."""
-        return self.progress.aside(lambda _: np.unique(keys, return_index=True, return_inverse=True)) if len(keys) > MANY else \
-            np.unique(keys, return_index=True, return_inverse=True)
+        return (
+            self.progress.aside(lambda _: np.unique(keys, return_index=True, return_inverse=True))
+            if len(keys) > MANY
+            else np.unique(keys, return_index=True, return_inverse=True)
+        )
 
     def bounded(self) -> Floats:
         """Add to the bounds how far points on edges are from the faces' surfaces; return the normals (v, 3) at all points."""
         normals, beside = self.normals(), np.zeros(len(self.bound))
-        np.maximum.at(beside, self.owner, np.abs(((self.points - self.surface) * normals).sum(axis=1)))
+        np.maximum.at(
+            beside, self.owner, np.abs(((self.points - self.surface) * normals).sum(axis=1))
+        )
         self.bound += beside
         return normals
 
@@ -237,7 +272,9 @@ class _Net:
         rows = np.flatnonzero(np.isnan(middle) & ~split[edge].any(axis=1))
         middle[rows] = self.off(self.triangles[rows], WITHIN)
 
-    def _edges_off(self, keys: Ints, edges: Ints, known: Ints, known_off: Floats) -> tuple[Floats, Ints]:
+    def _edges_off(
+        self, keys: Ints, edges: Ints, known: Ints, known_off: Floats
+    ) -> tuple[Floats, Ints]:
         """Return how far off edges are, and for each piece of the border which edge it is (-1: none)."""
         off = np.full(len(keys), np.nan)
         at = np.searchsorted(keys, known)
@@ -255,8 +292,14 @@ class _Net:
         """Return the points (b, 3) at a share (2,) between the ends of pieces of the border, the same for all faces that meet there."""
         _, first, back = self._distinct(pieces.piece)
         middle = pieces.t[first] @ share
-        points = np.array([self.curves[c].Value(t).Coord()
-                           for c, t in self.progress.each(zip(pieces.curve[first].tolist(), middle.tolist(), strict=True))])
+        points = np.array(
+            [
+                self.curves[c].Value(t).Coord()
+                for c, t in self.progress.each(
+                    zip(pieces.curve[first].tolist(), middle.tolist(), strict=True)
+                )
+            ]
+        )
         return np.asarray(points.reshape(-1, 3)[back])
 
     def _border_off(self, pieces: _Border) -> Floats:
@@ -265,7 +308,9 @@ class _Net:
         square = (along * along).sum(axis=1)
         for share in ALONG:
             away = self._border_at(pieces, share) - start
-            at = np.divide((away * along).sum(axis=1), square, out=np.zeros(len(away)), where=square > 0.0)
+            at = np.divide(
+                (away * along).sum(axis=1), square, out=np.zeros(len(away)), where=square > 0.0
+            )
             worst = np.maximum(worst, np.linalg.norm(away - at[:, None] * along, axis=1))
         return worst
 
@@ -289,12 +334,19 @@ class _Net:
         pieces, new = self.border.some(cut), node[at[cut]]
         t = pieces.t.mean(axis=1)
         middles = self.progress.each(zip(pieces.line.tolist(), t.tolist(), strict=True))
-        places[new - len(self.points)] = np.array([self.lines[k].Value(m).Coord() for k, m in middles]).reshape(-1, 2)
+        places[new - len(self.points)] = np.array(
+            [self.lines[k].Value(m).Coord() for k, m in middles]
+        ).reshape(-1, 2)
         surface = self.on(owner, places)[:, 0]
         points = surface.copy()
         points[new - len(self.points)] = self._border_at(pieces, ALONG[0])
         kept = self.border.some(~cut)
-        self.border = _Border(*(np.concatenate([getattr(b, name) for b in (kept, *pieces.halves(new))]) for name in _Border.__slots__))
+        self.border = _Border(
+            *(
+                np.concatenate([getattr(b, name) for b in (kept, *pieces.halves(new))])
+                for name in _Border.__slots__
+            )
+        )
         self.place, self.points = np.vstack([self.place, places]), np.vstack([self.points, points])
         self.surface = np.vstack([self.surface, surface])
         self.owner = np.concatenate([self.owner, owner])
@@ -309,15 +361,25 @@ class _Net:
         for n in (1, 2, 3):
             rows = np.flatnonzero(count == n)
             # Turn each so that a lone new node is on the first edge, or that the third edge is the one without.
-            lead = np.argmax(new[rows] >= 0, axis=1) if n == 1 else (np.argmin(new[rows], axis=1) + 1) % 3
+            lead = (
+                np.argmax(new[rows] >= 0, axis=1)
+                if n == 1
+                else (np.argmin(new[rows], axis=1) + 1) % 3
+            )
             turn = (lead[:, None] + np.arange(3)) % 3
             a, b, c = np.take_along_axis(self.triangles[rows], turn, axis=1).T
             m, k, s = np.take_along_axis(new[rows], turn, axis=1).T
             if n == 1:
                 parts = [(a, m, c), (m, b, c)]
             elif n == 2:
-                shorter = np.linalg.norm(self.points[a] - self.points[k], axis=1) <= np.linalg.norm(self.points[m] - self.points[c], axis=1)
-                parts = [(m, b, k), (a, m, np.where(shorter, k, c)), (np.where(shorter, a, m), k, c)]
+                shorter = np.linalg.norm(self.points[a] - self.points[k], axis=1) <= np.linalg.norm(
+                    self.points[m] - self.points[c], axis=1
+                )
+                parts = [
+                    (m, b, k),
+                    (a, m, np.where(shorter, k, c)),
+                    (np.where(shorter, a, m), k, c),
+                ]
             else:
                 parts = [(a, m, s), (m, b, k), (s, k, c), (m, k, s)]
             made += [np.column_stack(p) for p in parts]
@@ -325,8 +387,10 @@ class _Net:
         kept = int(whole.sum())
         self.triangles, self.face = np.vstack(made), np.concatenate(owners)
         if len(self.triangles) > MOST_TRIANGLES:
-            raise OutOfMemory(f"{self.name} needs more than {MOST_TRIANGLES} triangles at a chord error of {self.limits.min():g} mm: "
-                              "allow a larger one")
+            raise OutOfMemory(
+                f"{self.name} needs more than {MOST_TRIANGLES} triangles at a chord error of {self.limits.min():g} mm: "
+                "allow a larger one"
+            )
         return np.concatenate([middle[whole], np.full(len(self.triangles) - kept, np.nan)])
 
     def normals(self) -> Floats:
@@ -335,15 +399,23 @@ class _Net:
         lost = np.flatnonzero(~there)
         if len(lost):
             # Beside a pole, where the surface has no normal, the one next to it.
-            beside = self.place[lost] + tolerance.ANGLE * (self.middles[self.owner[lost]] - self.place[lost])
+            beside = self.place[lost] + tolerance.ANGLE * (
+                self.middles[self.owner[lost]] - self.place[lost]
+            )
             normals[lost] = self.normal(self.on(self.owner[lost], beside))[0]
         return np.asarray(normals * self.sides[self.owner][:, None])
 
     def result(self, tags: list[int], normals: Floats) -> Opened:
         """Return what was made, in the order of the faces."""
         order = np.argsort(self.face, kind="stable")
-        return Opened(tag=np.array(tags, dtype=np.int64), points=self.points, normals=normals, triangles=self.triangles[order],
-                      face=self.face[order], bound=self.bound)
+        return Opened(
+            tag=np.array(tags, dtype=np.int64),
+            points=self.points,
+            normals=normals,
+            triangles=self.triangles[order],
+            face=self.face[order],
+            bound=self.bound,
+        )
 
 
 def _coarse(part: Part, tags: list[int], limits: Floats, progress: Progress) -> _Net:
@@ -356,7 +428,11 @@ def _coarse(part: Part, tags: list[int], limits: Floats, progress: Progress) -> 
     from trunnion.part.evaluate import evaluator_of
 
     how = IMeshTools_Parameters()
-    how.Deflection, how.Angle, how.Relative = max(COARSE, float(limits.min(initial=np.inf))), np.pi, False
+    how.Deflection, how.Angle, how.Relative = (
+        max(COARSE, float(limits.min(initial=np.inf))),
+        np.pi,
+        False,
+    )
     index = TopTools_IndexedMapOfShape()
     curves: list[Any] = []
     lines: list[Any] = []
@@ -370,12 +446,18 @@ def _coarse(part: Part, tags: list[int], limits: Floats, progress: Progress) -> 
         evaluators.append(evaluator_of(adaptor))
         uv, p, t, net = _net_of(shape)
         if not len(t):
-            raise BadInput(f"face {tag} of {part.name} can't be opened into triangles: heal the part, or leave the face out of the solid")
+            raise BadInput(
+                f"face {tag} of {part.name} can't be opened into triangles: heal the part, or leave the face out of the solid"
+            )
         sides.append(_side(shape))
         if not _looks_out(evaluators[-1], sides[-1], uv, p, t):
             t = t[:, ::-1]
-        middles.append((0.5 * (adaptor.FirstUParameter() + adaptor.LastUParameter()),
-                        0.5 * (adaptor.FirstVParameter() + adaptor.LastVParameter())))
+        middles.append(
+            (
+                0.5 * (adaptor.FirstUParameter() + adaptor.LastUParameter()),
+                0.5 * (adaptor.FirstVParameter() + adaptor.LastVParameter()),
+            )
+        )
         borders += _border_of(shape, net, uv, index, curves, lines, count)
         places.append(uv)
         points.append(p)
@@ -383,21 +465,41 @@ def _coarse(part: Part, tags: list[int], limits: Floats, progress: Progress) -> 
         triangles.append(t + count)
         faces.append(np.full(len(t), row))
         count += len(p)
-    border = _Border(*(np.concatenate([getattr(b, name) for b in borders]) for name in _Border.__slots__))
+    border = _Border(
+        *(np.concatenate([getattr(b, name) for b in borders]) for name in _Border.__slots__)
+    )
     _, alike = np.unique(np.column_stack([border.curve, border.t]), axis=0, return_inverse=True)
     border.piece = alike.ravel() * PIECES + 1
-    net = _Net(part.name, evaluators, np.array(sides), limits, np.array(middles), np.concatenate(places), np.concatenate(points),
-               np.zeros((count, 3)), np.concatenate(owners), np.concatenate(triangles), np.concatenate(faces), border, curves, lines,
-               np.ones((count, 2), bool), np.zeros(len(tags)))
+    net = _Net(
+        part.name,
+        evaluators,
+        np.array(sides),
+        limits,
+        np.array(middles),
+        np.concatenate(places),
+        np.concatenate(points),
+        np.zeros((count, 3)),
+        np.concatenate(owners),
+        np.concatenate(triangles),
+        np.concatenate(faces),
+        border,
+        curves,
+        lines,
+        np.ones((count, 2), bool),
+        np.zeros(len(tags)),
+    )
     at = net.on(net.owner, net.place)
     net.surface, lengths = at[:, 0], np.linalg.norm(at[:, 1:3], axis=2)
-    net.fixed = lengths > tolerance.PARAMETRIC * np.maximum(lengths.max(axis=1, keepdims=True), tolerance.COINCIDENT)
+    net.fixed = lengths > tolerance.PARAMETRIC * np.maximum(
+        lengths.max(axis=1, keepdims=True), tolerance.COINCIDENT
+    )
     net.join_poles()
     return net
 
 
 def _side(shape: Any) -> float:
     from OCP.TopAbs import TopAbs_REVERSED
+
     return -1.0 if shape.Orientation() == TopAbs_REVERSED else 1.0
 
 
@@ -412,7 +514,10 @@ def _net_of(shape: Any) -> tuple[Floats, Floats, Ints, Any]:
         return np.zeros((0, 2)), np.zeros((0, 3)), np.zeros((0, 3), np.int64), net
     points = np.array([net.Node(n).Coord() for n in range(1, net.NbNodes() + 1)])
     places = np.array([net.UVNode(n).Coord() for n in range(1, net.NbNodes() + 1)])
-    triangles = np.array([net.Triangle(n).Get() for n in range(1, net.NbTriangles() + 1)], dtype=np.int64) - 1
+    triangles = (
+        np.array([net.Triangle(n).Get() for n in range(1, net.NbTriangles() + 1)], dtype=np.int64)
+        - 1
+    )
     if not where.IsIdentity():
         move = where.Transformation()
         turn = np.array([[move.Value(r, c) for c in range(1, 5)] for r in range(1, 4)])
@@ -420,7 +525,9 @@ def _net_of(shape: Any) -> tuple[Floats, Floats, Ints, Any]:
     return places, points, triangles, net
 
 
-def _looks_out(evaluate: Evaluator, side: float, places: Floats, points: Floats, triangles: Ints) -> bool:
+def _looks_out(
+    evaluate: Evaluator, side: float, places: Floats, points: Floats, triangles: Ints
+) -> bool:
     """Say whether triangles run anticlockwise seen from outside: on surfaces of revolution the mesher's order doesn't tell (measured)."""
     corners = points[triangles]
     across = np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0])
@@ -429,7 +536,15 @@ def _looks_out(evaluate: Evaluator, side: float, places: Floats, points: Floats,
     return float((np.cross(at[:, 1], at[:, 2]) * across[largest]).sum()) * side > 0.0
 
 
-def _border_of(shape: Any, net: Any, places: Floats, index: Any, curves: list[Any], lines: list[Any], first: int) -> list[_Border]:
+def _border_of(
+    shape: Any,
+    net: Any,
+    places: Floats,
+    index: Any,
+    curves: list[Any],
+    lines: list[Any],
+    first: int,
+) -> list[_Border]:
     """Return the pieces of a face's boundary edges, its nodes counted from `first`; adds to the curves and to their lines in faces."""
     from OCP.BRep import BRep_Tool
     from OCP.BRepAdaptor import BRepAdaptor_Curve, BRepAdaptor_Curve2d
@@ -455,10 +570,24 @@ def _border_of(shape: Any, net: Any, places: Floats, index: Any, curves: list[An
         nodes = np.array([chain.Node(k) for k in range(1, chain.NbNodes() + 1)], dtype=np.int64) - 1
         t = np.array([chain.Parameter(k) for k in range(1, chain.NbNodes() + 1)])
         # A seam has two lines, and which one goes with the net's own nodes isn't told.
-        sides = [edge, TopoDS.Edge_s(edge.Reversed())] if BRep_Tool.IsClosed_s(edge, shape) else [edge]
+        sides = (
+            [edge, TopoDS.Edge_s(edge.Reversed())] if BRep_Tool.IsClosed_s(edge, shape) else [edge]
+        )
         both = [BRepAdaptor_Curve2d(side, shape) for side in sides]
-        lines.append(min(both, key=lambda line: np.hypot(*(np.array(line.Value(t[0]).Coord()) - places[nodes[0]]))))
+        lines.append(
+            min(
+                both,
+                key=lambda line: np.hypot(*(np.array(line.Value(t[0]).Coord()) - places[nodes[0]])),
+            )
+        )
         n, nodes = len(nodes) - 1, nodes + first
-        found.append(_Border(np.column_stack([nodes[:-1], nodes[1:]]), np.full(n, curve), np.full(n, len(lines) - 1),
-                             np.column_stack([t[:-1], t[1:]]), np.zeros(n, np.int64)))
+        found.append(
+            _Border(
+                np.column_stack([nodes[:-1], nodes[1:]]),
+                np.full(n, curve),
+                np.full(n, len(lines) - 1),
+                np.column_stack([t[:-1], t[1:]]),
+                np.zeros(n, np.int64),
+            )
+        )
     return found

@@ -131,8 +131,12 @@ class SolidSlicer:
         self._low = np.array([f.low for f in self.faces])
         self._high = np.array([f.high for f in self.faces])
         self._corners = np.concatenate([e.points[[0, -1]] for e in self.edges.values()])
-        self._lines = np.array([n for n, e in self.edges.items() if e.kind == GeomAbs_Line], dtype=np.int64)
-        self._line_ends = np.array([self.edges[n].points[[0, -1]] for n in self._lines]).reshape(-1, 2, 3)
+        self._lines = np.array(
+            [n for n, e in self.edges.items() if e.kind == GeomAbs_Line], dtype=np.int64
+        )
+        self._line_ends = np.array([self.edges[n].points[[0, -1]] for n in self._lines]).reshape(
+            -1, 2, 3
+        )
         self._others = [n for n, e in self.edges.items() if e.kind != GeomAbs_Line]
 
     def section(self, frame: Frame, z: float, progress: Progress = QUIET) -> Region:
@@ -144,7 +148,9 @@ class SolidSlicer:
         loops: list[Curve] = []
         for face in self._crossed(plane):
             progress.check()
-            own = [(node, point) for n in dict.fromkeys(face.edges) for node, point in nodes.get(n, ())]
+            own = [
+                (node, point) for n in dict.fromkeys(face.edges) for node, point in nodes.get(n, ())
+            ]
             seams = {n for n in face.edges if face.edges.count(n) > 1}
             found, closed = _cut(face, plane, own, seams)
             links += found
@@ -156,7 +162,9 @@ class SolidSlicer:
         view = FaceView(face, 0)
         own = tuple(c.edge for c in coedges(face, index) if c.edge in self.edges)
         surface = recognised(view.adaptor, lambda: view.evaluated(view.grid(5)))
-        boundary = np.concatenate([self.edges[n].extremes for n in own]) if own else np.empty((0, 3))
+        boundary = (
+            np.concatenate([self.edges[n].extremes for n in own]) if own else np.empty((0, 3))
+        )
         low, high = face_box(view, surface, boundary, progress)
         return Face(view, surface, own, low, high)
 
@@ -166,10 +174,12 @@ class SolidSlicer:
         for n in range(_TRIES):
             plane = Plane.at(frame, z + n * tolerance.SECTION_STEP)
             near = np.searchsorted(heights, plane.offset)
-            beside = heights[max(near - 1, 0):near + 1]
+            beside = heights[max(near - 1, 0) : near + 1]
             if not (np.abs(beside - plane.offset) < 2.0 * tolerance.COINCIDENT).any():
                 return plane
-        raise BadInput(f"no section at z = {z:g}: the part has corners at every height there; choose another height")
+        raise BadInput(
+            f"no section at z = {z:g}: the part has corners at every height there; choose another height"
+        )
 
     def _crossed(self, plane: Plane) -> list[Face]:
         middle, half = 0.5 * (self._low + self._high), 0.5 * (self._high - self._low)
@@ -184,13 +194,25 @@ class SolidSlicer:
             for k in np.nonzero((heights[:, 0] > 0.0) != (heights[:, 1] > 0.0))[0]:
                 share = heights[k, 0] / (heights[k, 0] - heights[k, 1])
                 n = int(self._lines[k])
-                found[n] = [((n, 0), self._line_ends[k, 0] + share * (self._line_ends[k, 1] - self._line_ends[k, 0]))]
+                found[n] = [
+                    (
+                        (n, 0),
+                        self._line_ends[k, 0]
+                        + share * (self._line_ends[k, 1] - self._line_ends[k, 0]),
+                    )
+                ]
         for n in self._others:
             edge = self.edges[n]
             heights = plane.above(edge.extremes)
             if heights.min() < 0.0 < heights.max():
-                places = _on_circle(edge, plane) if edge.kind == GeomAbs_Circle else _on_curve(edge, plane)
-                found[n] = [((n, k), np.array(edge.adaptor.Value(t).Coord())) for k, t in enumerate(places)]
+                places = (
+                    _on_circle(edge, plane)
+                    if edge.kind == GeomAbs_Circle
+                    else _on_curve(edge, plane)
+                )
+                found[n] = [
+                    ((n, k), np.array(edge.adaptor.Value(t).Coord())) for k, t in enumerate(places)
+                ]
         return found
 
 
@@ -205,13 +227,18 @@ def _edge(shape: Shape) -> Edge:
 def _on_circle(edge: Edge, plane: Plane) -> list[float]:
     """Return the parameters where a circular edge meets the plane, ascending."""
     circle = edge.adaptor.Circle()
-    x, y = np.array(circle.XAxis().Direction().Coord()), np.array(circle.YAxis().Direction().Coord())
+    x, y = (
+        np.array(circle.XAxis().Direction().Coord()),
+        np.array(circle.YAxis().Direction().Coord()),
+    )
     a, b = circle.Radius() * float(x @ plane.normal), circle.Radius() * float(y @ plane.normal)
     height, swing = float(plane.above(np.array(circle.Location().Coord()))), math.hypot(a, b)
     if abs(height) >= swing:
         return []
     middle, half = math.atan2(b, a), math.acos(-height / swing)
-    turns = [edge.first + (t - edge.first) % (2.0 * math.pi) for t in (middle - half, middle + half)]
+    turns = [
+        edge.first + (t - edge.first) % (2.0 * math.pi) for t in (middle - half, middle + half)
+    ]
     return sorted(t for t in turns if t < edge.last)
 
 
@@ -238,25 +265,39 @@ Nodes = list[tuple[Node, Floats]]
 def _cut(face: Face, plane: Plane, own: Nodes, seams: set[int]) -> tuple[list[Link], list[Curve]]:
     """Return the pieces and the whole loops in which a plane meets a face."""
     surface, normal = face.surface, plane.normal
-    level = abs(float(normal @ surface.axis)) if surface.axis is not None and np.isfinite(surface.axis).all() else math.nan
+    level = (
+        abs(float(normal @ surface.axis))
+        if surface.axis is not None and np.isfinite(surface.axis).all()
+        else math.nan
+    )
     if surface.kind == "plane":
-        return (_on_line(face, plane, own, np.cross(_plane_normal(face), normal)) if own else []), []
+        return (
+            _on_line(face, plane, own, np.cross(_plane_normal(face), normal)) if own else []
+        ), []
     if surface.kind == "cylinder" and level < tolerance.COINCIDENT:
         return (_on_line(face, plane, own, surface.axis) if own else []), []
-    if surface.kind == "sphere" or (surface.kind in ("cylinder", "cone", "torus") and abs(level - 1.0) < tolerance.PARAMETRIC):
+    if surface.kind == "sphere" or (
+        surface.kind in ("cylinder", "cone", "torus") and abs(level - 1.0) < tolerance.PARAMETRIC
+    ):
         return _on_circles(face, plane, own, seams)
     return _traced(face, plane, own, seams)
 
 
 def _plane_normal(face: Face) -> Floats:
-    return face.view.plane_normal if face.view.plane_normal is not None else face.view.at(*face.view.grid(1)[0])[1]
+    return (
+        face.view.plane_normal
+        if face.view.plane_normal is not None
+        else face.view.at(*face.view.grid(1)[0])[1]
+    )
 
 
 def _on_line(face: Face, plane: Plane, own: Nodes, along: Floats) -> list[Link]:
     """Return the pieces of a line across a face, or of two parallel ones (a cylinder's)."""
     along = along / np.linalg.norm(along)
     across = np.cross(plane.normal, along)
-    middle = float(face.surface.axis_point @ across) if face.surface.kind == "cylinder" else -math.inf
+    middle = (
+        float(face.surface.axis_point @ across) if face.surface.kind == "cylinder" else -math.inf
+    )
     tracks: tuple[Nodes, Nodes] = ([], [])
     for node, point in own:
         tracks[float(point @ across) > middle].append((node, point))
@@ -287,7 +328,9 @@ def _circles(surface: Surface, plane: Plane) -> list[tuple[Floats, float]]:
     return [(centre, abs(r)) for r in radii if abs(r) > tolerance.COINCIDENT]
 
 
-def _on_circles(face: Face, plane: Plane, own: Nodes, seams: set[int]) -> tuple[list[Link], list[Curve]]:
+def _on_circles(
+    face: Face, plane: Plane, own: Nodes, seams: set[int]
+) -> tuple[list[Link], list[Curve]]:
     links: list[Link] = []
     loops: list[Curve] = []
     circles = _circles(face.surface, plane)
@@ -297,7 +340,10 @@ def _on_circles(face: Face, plane: Plane, own: Nodes, seams: set[int]) -> tuple[
         parts[int(np.argmin(gaps))].append((node, point)) if gaps else None
     for n, (centre, radius) in enumerate(circles):
         middle = plane.flat(centre)
-        track = sorted(((_angle(plane.flat(point) - middle), node, point) for node, point in parts[n]), key=lambda item: item[0])
+        track = sorted(
+            ((_angle(plane.flat(point) - middle), node, point) for node, point in parts[n]),
+            key=lambda item: item[0],
+        )
         if not [t for t in track if t[1][0] not in seams]:
             if face.holds(_on(plane, centre, radius, track[0][0] + math.pi if track else 0.5)):
                 loops.append(Curve.circle(middle, radius))
@@ -308,7 +354,18 @@ def _on_circles(face: Face, plane: Plane, own: Nodes, seams: set[int]) -> tuple[
             after, other, target = track[(k + 1) % len(track)]
             sweep = after - angle + (2.0 * math.pi if k + 1 == len(track) else 0.0)
             if face.holds(_on(plane, centre, radius, angle + 0.5 * sweep)):
-                links.append(_arc(node, other, plane.flat(point), plane.flat(target), middle, radius, angle, sweep))
+                links.append(
+                    _arc(
+                        node,
+                        other,
+                        plane.flat(point),
+                        plane.flat(target),
+                        middle,
+                        radius,
+                        angle,
+                        sweep,
+                    )
+                )
     return links, loops
 
 
@@ -320,15 +377,28 @@ def _on(plane: Plane, centre: Floats, radius: float, angle: float) -> Floats:
     return centre + radius * (math.cos(angle) * plane.frame.x + math.sin(angle) * plane.frame.y)
 
 
-def _arc(a: Node, b: Node, start: Floats, end: Floats, centre: Floats, radius: float, angle: float, sweep: float) -> Link:
+def _arc(
+    a: Node,
+    b: Node,
+    start: Floats,
+    end: Floats,
+    centre: Floats,
+    radius: float,
+    angle: float,
+    sweep: float,
+) -> Link:
     """Return an anticlockwise arc, in two pieces when it is more than half a circle, because its bulge would grow without bound."""
     if sweep <= math.pi:
         return Link(a, b, np.stack([start, end]), np.array([math.tan(0.25 * sweep)]))
-    half = centre + radius * np.array([math.cos(angle + 0.5 * sweep), math.sin(angle + 0.5 * sweep)])
+    half = centre + radius * np.array(
+        [math.cos(angle + 0.5 * sweep), math.sin(angle + 0.5 * sweep)]
+    )
     return Link(a, b, np.stack([start, half, end]), np.full(2, math.tan(0.125 * sweep)))
 
 
-def _traced(face: Face, plane: Plane, own: Nodes, seams: set[int]) -> tuple[list[Link], list[Curve]]:
+def _traced(
+    face: Face, plane: Plane, own: Nodes, seams: set[int]
+) -> tuple[list[Link], list[Curve]]:
     """Return the pieces of a general curve, followed over the surface and fitted by arcs."""
     links: list[Link] = []
     loops: list[Curve] = []
@@ -349,7 +419,9 @@ def _chained(links: list[Link], where: str) -> list[Curve]:
         at[link.start].append(n)
         at[link.end].append(n)
     if any(len(ends) != 2 for ends in at.values()):
-        raise BadInput(f"the section at {where} does not close: the part has a gap or a fault there; heal it in the CAD system")
+        raise BadInput(
+            f"the section at {where} does not close: the part has a gap or a fault there; heal it in the CAD system"
+        )
     curves, used = [], [False] * len(links)
     for first, link in enumerate(links):
         if used[first]:

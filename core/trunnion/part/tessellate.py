@@ -20,7 +20,9 @@ MANY = 2000
 """Points or triangles taken from the kernel between two looks at cancel: some milliseconds."""
 
 
-def tessellated(shape: Shape, faces: Mapping[int, Shape], chord: float, angle: float, progress: Progress = QUIET) -> Mesh:
+def tessellated(
+    shape: Shape, faces: Mapping[int, Shape], chord: float, angle: float, progress: Progress = QUIET
+) -> Mesh:
     """Return the triangles of a solid's faces (by tag), anticlockwise seen from outside.
 
     `chord` (mm) and `angle` (radians) bound the distance from the surface and the turn from chord to chord. A face that the mesher
@@ -48,7 +50,13 @@ def face_triangles(face: Shape, progress: Progress = QUIET) -> tuple[np.ndarray,
     if found is None or not found.NbTriangles():
         return np.empty((0, 3)), np.empty((0, 3), dtype=np.int64)
     points = np.array([found.Node(n).Coord() for n in _numbers(found.NbNodes(), progress)])
-    rows = np.array([found.Triangle(n).Get() for n in _numbers(found.NbTriangles(), progress)], dtype=np.int64) - 1
+    rows = (
+        np.array(
+            [found.Triangle(n).Get() for n in _numbers(found.NbTriangles(), progress)],
+            dtype=np.int64,
+        )
+        - 1
+    )
     if not place.IsIdentity():
         move = place.Transformation()
         turn = np.array([[move.Value(r, c) for c in range(1, 5)] for r in range(1, 4)])

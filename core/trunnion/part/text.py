@@ -14,8 +14,13 @@ _REMARK = re.compile(rb"/\*.*?\*/", re.DOTALL)
 _DEFINED = re.compile(rb"(?:^|;)\s*#(\d+)\s*=", re.MULTILINE)
 _USED = re.compile(rb"#(\d+)")
 _STEP_FACE = re.compile(rb"=\s*(?:ADVANCED_FACE|FACE_SURFACE)\s*\(")
-_STEP_SHAPE = re.compile(rb"=\s*\(?\s*(?:MANIFOLD_SOLID_BREP|BREP_WITH_VOIDS|FACETED_BREP|OPEN_SHELL|CLOSED_SHELL)\b")
-_NO_NUMBER = re.compile(rb"(?<![A-Z0-9_#.'$])[-+]?(?:NAN|INF(?:INITY)?|1\.#(?:IND|INF|QNAN)\w*)(?![A-Z0-9_])", re.IGNORECASE)
+_STEP_SHAPE = re.compile(
+    rb"=\s*\(?\s*(?:MANIFOLD_SOLID_BREP|BREP_WITH_VOIDS|FACETED_BREP|OPEN_SHELL|CLOSED_SHELL)\b"
+)
+_NO_NUMBER = re.compile(
+    rb"(?<![A-Z0-9_#.'$])[-+]?(?:NAN|INF(?:INITY)?|1\.#(?:IND|INF|QNAN)\w*)(?![A-Z0-9_])",
+    re.IGNORECASE,
+)
 _IGES_LINE = re.compile(rb"[SGDPT][ 0-9]{7}$")
 IGES_COLUMNS = 72
 IGES_FACES = (144, 143, 510)
@@ -32,30 +37,42 @@ def kind_of(data: bytes, name: str) -> str:
     first = next((line for line in re.split(rb"\r\n|\n|\r", data[:4096]) if line.strip()), b"")
     if _IGES_LINE.match(first[IGES_COLUMNS:].rstrip()):
         return "iges"
-    raise BadInput(f"{name}: neither a STEP nor an IGES file; export the part as STEP (AP203, AP214, AP242) or IGES 5.3")
+    raise BadInput(
+        f"{name}: neither a STEP nor an IGES file; export the part as STEP (AP203, AP214, AP242) or IGES 5.3"
+    )
 
 
 def check_step(data: bytes, name: str) -> int:
     """Return how many faces a STEP text lists; raise `BadInput` when it is cut off, damaged or holds no shape."""
     plain = _REMARK.sub(b" ", _STRING.sub(b"''", data))
     if b"END-ISO-10303-21" not in plain[-4096:]:
-        raise BadInput(f"{name}: the STEP file is cut off (its end mark END-ISO-10303-21 is missing); export or copy it again")
+        raise BadInput(
+            f"{name}: the STEP file is cut off (its end mark END-ISO-10303-21 is missing); export or copy it again"
+        )
     start = plain.find(b"DATA")
     body = plain[start:] if start >= 0 else b""
     defined = set(map(int, _DEFINED.findall(body)))
     if not defined:
-        raise BadInput(f"{name}: no shape in the file (its DATA section is empty); export the part again with its solid")
+        raise BadInput(
+            f"{name}: no shape in the file (its DATA section is empty); export the part again with its solid"
+        )
     wrong = _NO_NUMBER.search(body)
     if wrong:
-        line = plain[:start + wrong.start()].count(b"\n") + 1
-        raise BadInput(f"{name}: {wrong.group().decode('ascii')} in line {line} is not a number; export the part again")
+        line = plain[: start + wrong.start()].count(b"\n") + 1
+        raise BadInput(
+            f"{name}: {wrong.group().decode('ascii')} in line {line} is not a number; export the part again"
+        )
     missing = sorted(set(map(int, _USED.findall(body))) - defined)
     if missing:
         more = f" and {len(missing) - 1} more" if len(missing) > 1 else ""
-        raise BadInput(f"{name}: #{missing[0]}{more} is referred to but not in the file: faces would be lost; export the part again")
+        raise BadInput(
+            f"{name}: #{missing[0]}{more} is referred to but not in the file: faces would be lost; export the part again"
+        )
     faces = len(_STEP_FACE.findall(body))
     if not faces and not _STEP_SHAPE.search(body):
-        raise BadInput(f"{name}: the file holds curves or points only, no faces; export the part as a solid")
+        raise BadInput(
+            f"{name}: the file holds curves or points only, no faces; export the part as a solid"
+        )
     return faces
 
 
@@ -64,26 +81,45 @@ def check_iges(data: bytes, name: str) -> int:
     lines = [line for line in re.split(rb"\r\n|\n|\r", data) if line.strip(b" \x00\x1a")]
     for n, line in enumerate(lines, start=1):
         if not _IGES_LINE.match(line[IGES_COLUMNS:].rstrip()):
-            raise BadInput(f"{name}: line {n} of the IGES file is cut off or damaged; export or copy it again")
-    counts = {letter: sum(line[IGES_COLUMNS:IGES_COLUMNS + 1] == letter for line in lines) for letter in (b"S", b"G", b"D", b"P")}
+            raise BadInput(
+                f"{name}: line {n} of the IGES file is cut off or damaged; export or copy it again"
+            )
+    counts = {
+        letter: sum(line[IGES_COLUMNS : IGES_COLUMNS + 1] == letter for line in lines)
+        for letter in (b"S", b"G", b"D", b"P")
+    }
     last = lines[-1]
-    if last[IGES_COLUMNS:IGES_COLUMNS + 1] != b"T":
-        raise BadInput(f"{name}: the IGES file is cut off (its T section is missing); export or copy it again")
+    if last[IGES_COLUMNS : IGES_COLUMNS + 1] != b"T":
+        raise BadInput(
+            f"{name}: the IGES file is cut off (its T section is missing); export or copy it again"
+        )
     for at, letter in zip((0, 8, 16, 24), counts, strict=True):
-        told = last[at + 1:at + 8].strip()
-        if last[at:at + 1] == letter and told.isdigit() and int(told) != counts[letter]:
-            raise BadInput(f"{name}: section {letter.decode()} of the IGES file has {counts[letter]} of {int(told)} lines; copy it again")
-    numbers = b"".join(line[:64] for line in lines if line[IGES_COLUMNS:IGES_COLUMNS + 1] == b"P")
+        told = last[at + 1 : at + 8].strip()
+        if last[at : at + 1] == letter and told.isdigit() and int(told) != counts[letter]:
+            raise BadInput(
+                f"{name}: section {letter.decode()} of the IGES file has {counts[letter]} of {int(told)} lines; copy it again"
+            )
+    numbers = b"".join(line[:64] for line in lines if line[IGES_COLUMNS : IGES_COLUMNS + 1] == b"P")
     wrong = re.search(rb"(?<=[,;])\s*[-+]?(?:NAN|INF(?:INITY)?)\s*(?=[,;])", numbers, re.IGNORECASE)
     if wrong:
-        raise BadInput(f"{name}: {wrong.group().strip().decode('ascii')} among the parameters is not a number; export the part again")
-    directory = [line for line in lines if line[IGES_COLUMNS:IGES_COLUMNS + 1] == b"D"][::2]
+        raise BadInput(
+            f"{name}: {wrong.group().strip().decode('ascii')} among the parameters is not a number; export the part again"
+        )
+    directory = [line for line in lines if line[IGES_COLUMNS : IGES_COLUMNS + 1] == b"D"][::2]
     kinds = [int(line[:8]) for line in directory if line[:8].strip().isdigit()]
     faces = sum(kind in IGES_FACES for kind in kinds)
     if not faces:
         # Surfaces that stand alone have no trim: they end where their knots do.
-        faces = sum(kind in IGES_SURFACES and line[66:68].strip() in (b"", b"0", b"00")
-                    for kind, line in zip(kinds, directory, strict=True)) if len(kinds) == len(directory) else 0
+        faces = (
+            sum(
+                kind in IGES_SURFACES and line[66:68].strip() in (b"", b"0", b"00")
+                for kind, line in zip(kinds, directory, strict=True)
+            )
+            if len(kinds) == len(directory)
+            else 0
+        )
     if not faces:
-        raise BadInput(f"{name}: the IGES file holds no trimmed surfaces (entities 144, 143 or 510); export the part's faces too")
+        raise BadInput(
+            f"{name}: the IGES file holds no trimmed surfaces (entities 144, 143 or 510); export the part's faces too"
+        )
     return faces

@@ -49,7 +49,10 @@ class Tracer:
     def __post_init__(self) -> None:
         surface = self.view.adaptor
         self.bounds = self.view.bounds()
-        self.wraps = (_wrap(surface.IsUPeriodic(), surface.IsUClosed()), _wrap(surface.IsVPeriodic(), surface.IsVClosed()))
+        self.wraps = (
+            _wrap(surface.IsUPeriodic(), surface.IsUClosed()),
+            _wrap(surface.IsVPeriodic(), surface.IsVClosed()),
+        )
         self._places = ShapeAnalysis_Surface(BRep_Tool.Surface_s(self.view.face))
         self._held = (gp_Pnt(), gp_Vec(), gp_Vec())
 
@@ -92,7 +95,9 @@ class Tracer:
             steep = 1.0 - lean * lean
             if steep < tolerance.PARAMETRIC:
                 break
-            a, b = _solved(du, dv, _scaled(_less(self.normal, _scaled(across, lean)), -miss / steep))
+            a, b = _solved(
+                du, dv, _scaled(_less(self.normal, _scaled(across, lean)), -miss / steep)
+            )
             place = (place[0] + a, place[1] + b)
         return self._bounded(*place)
 
@@ -100,16 +105,25 @@ class Tracer:
         u0, u1, v0, v1 = self.bounds
         return _bounded(u, u0, u1, self.wraps[0]), _bounded(v, v0, v1, self.wraps[1])
 
-    def follow(self, start: Place, way: float, targets: list[tuple[Node, Triple, Place]]) -> tuple[Node | None, Floats, Floats] | None:
+    def follow(
+        self, start: Place, way: float, targets: list[tuple[Node, Triple, Place]]
+    ) -> tuple[Node | None, Floats, Floats] | None:
         """Return the node where the curve ends (None: where it began, when there are no targets), points to it and directions, or None."""
         place, (point, _, _), step = start, self.at(start), self.size * _LONGEST
         home, heading = point, _scaled(self.direction(start), way)
         points, headings, travelled = [point], [heading], 0.0
         for _ in range(_MOST_STEPS):
             end = self._end(point, heading, step, targets)
-            if end is None and not targets and travelled > 0.25 * self.size and _ahead(point, home, heading, step):
+            if (
+                end is None
+                and not targets
+                and travelled > 0.25 * self.size
+                and _ahead(point, home, heading, step)
+            ):
                 return None, np.array([*points, home]), np.array([*headings, headings[0]])
-            after = targets[end][2] if end is not None else self.stepped(place, _scaled(heading, step))
+            after = (
+                targets[end][2] if end is not None else self.stepped(place, _scaled(heading, step))
+            )
             there = targets[end][1] if end is not None else self.at(after)[0]
             towards = _scaled(self.direction(after), way)
             if not _follows(point, heading, there, towards) and step > self.size * _SHORTEST:
@@ -128,12 +142,20 @@ class Tracer:
         return None
 
     @staticmethod
-    def _end(point: Triple, heading: Triple, step: float, targets: list[tuple[Node, Triple, Place]]) -> int | None:
-        near = [(math.dist(point, p), n) for n, (_, p, _) in enumerate(targets) if _ahead(point, p, heading, step)]
+    def _end(
+        point: Triple, heading: Triple, step: float, targets: list[tuple[Node, Triple, Place]]
+    ) -> int | None:
+        near = [
+            (math.dist(point, p), n)
+            for n, (_, p, _) in enumerate(targets)
+            if _ahead(point, p, heading, step)
+        ]
         return min(near)[1] if near else None
 
 
-def trace(view: FaceView, plane: Any, own: Nodes, seams: set[int], low: Floats, high: Floats) -> Iterator[Piece]:
+def trace(
+    view: FaceView, plane: Any, own: Nodes, seams: set[int], low: Floats, high: Floats
+) -> Iterator[Piece]:
     """Yield the pieces of the curve in which a plane meets a trimmed face: nodes at both ends (None: a closed loop),
     points (k, 3) from one to the other and the unit directions (k, 3) there.
 
@@ -142,17 +164,37 @@ def trace(view: FaceView, plane: Any, own: Nodes, seams: set[int], low: Floats, 
     """
     size = max(float(np.linalg.norm(high - low)), tolerance.COINCIDENT)
     tracer = Tracer(view, tuple(plane.normal.tolist()), plane.offset, size)
-    left = [(node, tuple(point.tolist()), tracer.place(point)) for node, point in own if node[0] not in seams]
+    left = [
+        (node, tuple(point.tolist()), tracer.place(point))
+        for node, point in own
+        if node[0] not in seams
+    ]
     if not left:
         yield from _loops(tracer)
     while left:
         node, point, place = left.pop(0)
         nearest = min((math.dist(p, point) for _, p, _ in left), default=size)
         nudge = 0.02 * min(size, nearest)
-        ways = sorted((1.0, -1.0), key=lambda way: not view.holds(*tracer.stepped(place, _scaled(tracer.direction(place), way * nudge))))
-        found = next((f for f in (tracer.follow(place, way, left) for way in ways) if f is not None), None) if left else None
+        ways = sorted(
+            (1.0, -1.0),
+            key=lambda way: (
+                not view.holds(
+                    *tracer.stepped(place, _scaled(tracer.direction(place), way * nudge))
+                )
+            ),
+        )
+        found = (
+            next(
+                (f for f in (tracer.follow(place, way, left) for way in ways) if f is not None),
+                None,
+            )
+            if left
+            else None
+        )
         if found is None:
-            raise BadInput("a section curve ends inside a free-form face; heal the part in the CAD system")
+            raise BadInput(
+                "a section curve ends inside a free-form face; heal the part in the CAD system"
+            )
         left = [item for item in left if item[0] != found[0]]
         yield node, *found
 
@@ -160,7 +202,9 @@ def trace(view: FaceView, plane: Any, own: Nodes, seams: set[int], low: Floats, 
 def _loops(tracer: Tracer) -> Iterator[Piece]:
     """Yield the closed curves of a plane that meets a face but none of its edges, from places where samples change side."""
     places = np.array(tracer.view.grid(_SEEDS)).reshape(_SEEDS, _SEEDS, 2)
-    heights = np.array([[tracer.above(tracer.at((u, v))[0]) for u, v in row] for row in places.tolist()])
+    heights = np.array(
+        [[tracer.above(tracer.at((u, v))[0]) for u, v in row] for row in places.tolist()]
+    )
     done: list[Floats] = []
     for k, m in zip(*np.nonzero((heights[:, :-1] > 0.0) != (heights[:, 1:] > 0.0)), strict=True):
         share = heights[k, m] / (heights[k, m] - heights[k, m + 1])
@@ -171,7 +215,9 @@ def _loops(tracer: Tracer) -> Iterator[Piece]:
             continue
         found = tracer.follow(place, 1.0, [])
         if found is None:
-            raise BadInput("a closed section curve can't be followed over a free-form face; heal the part in the CAD system")
+            raise BadInput(
+                "a closed section curve can't be followed over a free-form face; heal the part in the CAD system"
+            )
         done.append(found[1])
         yield None, *found
 
@@ -180,7 +226,11 @@ def _beside(points: Floats, point: Floats) -> bool:
     """Say whether a point lies on a curve that was followed already: nearer to a chord than a tenth of its length."""
     start, chord = points[:-1], np.diff(points, axis=0)
     square = (chord * chord).sum(axis=1)
-    share = np.clip(((point - start) * chord).sum(axis=1) / np.maximum(square, tolerance.PARAMETRIC**2), 0.0, 1.0)
+    share = np.clip(
+        ((point - start) * chord).sum(axis=1) / np.maximum(square, tolerance.PARAMETRIC**2),
+        0.0,
+        1.0,
+    )
     away = np.linalg.norm(start + share[:, None] * chord - point, axis=1)
     return bool((away < 0.15 * np.sqrt(square)).any())
 

@@ -21,8 +21,26 @@ from trunnion.part.kernel_messages import hush
 from trunnion.part.part import Part, PartFacts
 from trunnion.part.request import Request
 
-_IGES_UNITS = {1: "inch", 2: "mm", 4: "foot", 5: "mile", 6: "metre", 7: "km", 8: "mil", 9: "micrometre", 10: "cm", 11: "microinch"}
-_UNIT_WORDS = {"millimetre": "mm", "millimeter": "mm", "centimetre": "cm", "centimeter": "cm", "metre": "metre", "meter": "metre"}
+_IGES_UNITS = {
+    1: "inch",
+    2: "mm",
+    4: "foot",
+    5: "mile",
+    6: "metre",
+    7: "km",
+    8: "mil",
+    9: "micrometre",
+    10: "cm",
+    11: "microinch",
+}
+_UNIT_WORDS = {
+    "millimetre": "mm",
+    "millimeter": "mm",
+    "centimetre": "cm",
+    "centimeter": "cm",
+    "metre": "metre",
+    "meter": "metre",
+}
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -43,13 +61,16 @@ def read_file(file: Path, request: Request) -> Part:
         return _part(read, request)
     except Standard_Failure as reason:
         words = " ".join(str(reason).split())[:120]
-        raise BadInput(f"{request.file}: the CAD kernel can't use this file ({type(reason).__name__}: {words}); export it again") from None
+        raise BadInput(
+            f"{request.file}: the CAD kernel can't use this file ({type(reason).__name__}: {words}); export it again"
+        ) from None
 
 
 def _read_step(file: Path, request: Request) -> Read:
     from OCP.IFSelect import IFSelect_RetDone
     from OCP.STEPCAFControl import STEPCAFControl_Reader
     from OCP.TColStd import TColStd_SequenceOfAsciiString
+
     reader = STEPCAFControl_Reader()
     reader.SetNameMode(True)
     reader.SetColorMode(True)
@@ -64,6 +85,7 @@ def _read_step(file: Path, request: Request) -> Read:
 def _read_iges(file: Path, request: Request) -> Read:
     from OCP.IFSelect import IFSelect_RetDone
     from OCP.IGESCAFControl import IGESCAFControl_Reader
+
     reader = IGESCAFControl_Reader()
     reader.SetNameMode(True)
     reader.SetColorMode(True)
@@ -76,20 +98,28 @@ def _read_iges(file: Path, request: Request) -> Read:
 def _with_document(reader: Any, plain: Any, request: Request, unit: str) -> Read:
     from OCP.TCollection import TCollection_ExtendedString
     from OCP.TDocStd import TDocStd_Document
+
     document = TDocStd_Document(TCollection_ExtendedString("part"))
     if not reader.Transfer(document):
-        raise BadInput(f"{request.file}: no shape could be made from the file; export the part again as a solid")
+        raise BadInput(
+            f"{request.file}: no shape could be made from the file; export the part again as a solid"
+        )
     shape = plain.OneShape()
     if shape is None or shape.IsNull() or not faces_of(shape):
-        raise BadInput(f"{request.file}: the file holds no faces (curves or points only); export the part as a solid")
+        raise BadInput(
+            f"{request.file}: the file holds no faces (curves or points only); export the part as a solid"
+        )
     faces = faces_of(shape)
-    return Read(shape=shape, unit=unit, names=_names(document, shape), colours=_colours(document, faces))
+    return Read(
+        shape=shape, unit=unit, names=_names(document, shape), colours=_colours(document, faces)
+    )
 
 
 def _names(document: Any, shape: Shape) -> dict[int, str]:
     from OCP.TDataStd import TDataStd_Name
     from OCP.TDF import TDF_LabelSequence
     from OCP.XCAFDoc import XCAFDoc_DocumentTool, XCAFDoc_ShapeTool
+
     index, found = face_index(shape), {}
     tool = XCAFDoc_DocumentTool.ShapeTool_s(document.Main())
     labels, inside = TDF_LabelSequence(), TDF_LabelSequence()
@@ -111,6 +141,7 @@ def _names(document: Any, shape: Shape) -> dict[int, str]:
 def _colours(document: Any, faces: list[Shape]) -> dict[int, tuple[float, float, float]]:
     from OCP.Quantity import Quantity_Color
     from OCP.XCAFDoc import XCAFDoc_ColorSurf, XCAFDoc_DocumentTool
+
     tool, colour = XCAFDoc_DocumentTool.ColorTool_s(document.Main()), Quantity_Color()
     found = {}
     for tag, face in enumerate(faces, start=1):
@@ -123,26 +154,57 @@ def _part(read: Read, request: Request) -> Part:
     tagged = faces_of(read.shape)
     bodies, findings = bodies_of(read.shape)
     if not bodies:
-        raise BadInput(f"{request.file}: no solid and no shell could be made of its {len(tagged)} faces; export the part as a solid")
+        raise BadInput(
+            f"{request.file}: no solid and no shell could be made of its {len(tagged)} faces; export the part as a solid"
+        )
     chosen = _chosen(bodies, request)
     body = bodies[chosen - 1]
-    notes = [*findings, *body.findings, *_count_findings(tagged, request), *_other_solids(bodies, chosen, request)]
+    notes = [
+        *findings,
+        *body.findings,
+        *_count_findings(tagged, request),
+        *_other_solids(bodies, chosen, request),
+    ]
     notes += _loose(bodies, len(tagged), request)
     if not body.is_closed:
-        notes.append(error("part.open", f"the part is not closed: {body.open_edges} edges have a face on one side only, so there is no "
-                           "telling where material is", request.file, remedy="close the gaps in the CAD system and export the solid again"))
-    facts = PartFacts(path=request.path, name=request.name, digest=request.digest, unit=read.unit, n_faces=len(tagged),
-                      n_solids=len(bodies), solid=chosen, is_closed=body.is_closed, area=body.area, volume=body.volume,
-                      tags=body.tags, names=read.names, colours=read.colours, findings=tuple(notes))
+        notes.append(
+            error(
+                "part.open",
+                f"the part is not closed: {body.open_edges} edges have a face on one side only, so there is no "
+                "telling where material is",
+                request.file,
+                remedy="close the gaps in the CAD system and export the solid again",
+            )
+        )
+    facts = PartFacts(
+        path=request.path,
+        name=request.name,
+        digest=request.digest,
+        unit=read.unit,
+        n_faces=len(tagged),
+        n_solids=len(bodies),
+        solid=chosen,
+        is_closed=body.is_closed,
+        area=body.area,
+        volume=body.volume,
+        tags=body.tags,
+        names=read.names,
+        colours=read.colours,
+        findings=tuple(notes),
+    )
     return Part(facts, body.shape, read.shape)
 
 
 def _chosen(bodies: list[Body], request: Request) -> int:
     if request.solid is None:
-        return max(range(len(bodies)), key=lambda n: (bodies[n].is_closed, *_size(bodies[n]), -n)) + 1
+        return (
+            max(range(len(bodies)), key=lambda n: (bodies[n].is_closed, *_size(bodies[n]), -n)) + 1
+        )
     if not 1 <= request.solid <= len(bodies):
         have = "one solid" if len(bodies) == 1 else f"{len(bodies)} solids"
-        raise BadInput(f"{request.file}: there is no solid {request.solid}; the file holds {have}, counted from 1")
+        raise BadInput(
+            f"{request.file}: there is no solid {request.solid}; the file holds {have}, counted from 1"
+        )
     return request.solid
 
 
@@ -154,16 +216,29 @@ def _size(body: Body) -> tuple[float, float]:
 def _other_solids(bodies: list[Body], chosen: int, request: Request) -> list[Finding]:
     if len(bodies) == 1 or request.solid is not None:
         return []
-    others = ", ".join(f"{n} ({len(b.tags)} faces, {b.volume:.0f} mm3)" for n, b in enumerate(bodies, start=1) if n != chosen)
+    others = ", ".join(
+        f"{n} ({len(b.tags)} faces, {b.volume:.0f} mm3)"
+        for n, b in enumerate(bodies, start=1)
+        if n != chosen
+    )
     text = f"the file holds {len(bodies)} solids; solid {chosen}, the largest, is taken; the others: {others}"
-    return [warning("part.several-solids", text, request.file, remedy="choose one with --solid N, or export the part alone")]
+    return [
+        warning(
+            "part.several-solids",
+            text,
+            request.file,
+            remedy="choose one with --solid N, or export the part alone",
+        )
+    ]
 
 
 def _loose(bodies: list[Body], count: int, request: Request) -> list[Finding]:
     loose = set(range(1, count + 1)) - {tag for body in bodies for tag in body.tags}
     if not loose:
         return []
-    text = f"{len(loose)} of {count} faces belong to no solid and are left out; nothing is cut on them"
+    text = (
+        f"{len(loose)} of {count} faces belong to no solid and are left out; nothing is cut on them"
+    )
     remedy = "remove them in the CAD system, or make them part of the solid"
     return [warning("part.loose-faces", text, request.file, *face_tags(loose), remedy=remedy)]
 
@@ -176,8 +251,22 @@ def _count_findings(tagged: list[Shape], request: Request) -> list[Finding]:
     unlike = alone.Extent()
     if unlike < request.listed:
         text = f"the file lists {request.listed} faces, only {unlike} could be read"
-        return [error("part.lost-faces", text, request.file, remedy="export the part again; don't trust a plan for this one")]
+        return [
+            error(
+                "part.lost-faces",
+                text,
+                request.file,
+                remedy="export the part again; don't trust a plan for this one",
+            )
+        ]
     if unlike > request.listed > 0:
         text = f"the file lists {request.listed} faces, the reader split them into {unlike}, as it does where an outline crosses itself"
-        return [warning("part.split-faces", text, request.file, remedy="look at the outline in the CAD system")]
+        return [
+            warning(
+                "part.split-faces",
+                text,
+                request.file,
+                remedy="look at the outline in the CAD system",
+            )
+        ]
     return []

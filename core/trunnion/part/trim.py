@@ -80,7 +80,11 @@ class Trim:
         grid = np.stack(np.meshgrid(share, share), axis=-1).reshape(-1, 2)
         told = made.within(grid)
         sure = told != NEAR
-        return made if ((told[sure] == IN) == self._by_kernel(self._low + grid[sure] * self._size)).all() else None
+        return (
+            made
+            if ((told[sure] == IN) == self._by_kernel(self._low + grid[sure] * self._size)).all()
+            else None
+        )
 
     def _chain(self, wire: Any) -> Floats | None:
         """Return the points (k, 2) along a wire, or None when its edges don't follow each other."""
@@ -98,7 +102,9 @@ class Trim:
 
     def _along(self, line: Any) -> Floats:
         """Return points (k, 2) along an edge in shares of the face's size, so near that pieces between them follow it."""
-        t = np.linspace(line.FirstParameter(), line.LastParameter(), 2 if line.GetType() == GeomAbs_Line else 17)
+        t = np.linspace(
+            line.FirstParameter(), line.LastParameter(), 2 if line.GetType() == GeomAbs_Line else 17
+        )
         at = self._at(line, t)
         for _ in range(HALVINGS if len(t) > 2 else 0):
             middle = 0.5 * (t[:-1] + t[1:])
@@ -111,4 +117,6 @@ class Trim:
         return at
 
     def _at(self, line: Any, t: Floats) -> Floats:
-        return (np.array([line.Value(s).Coord() for s in t.tolist()]).reshape(-1, 2) - self._low) / self._size
+        return (
+            np.array([line.Value(s).Coord() for s in t.tolist()]).reshape(-1, 2) - self._low
+        ) / self._size

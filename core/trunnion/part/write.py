@@ -20,6 +20,7 @@ def write_step(shape: Shape, path: str | os.PathLike[str], *, unit: str = "mm") 
     from OCP.IFSelect import IFSelect_RetDone
     from OCP.Interface import Interface_Static
     from OCP.STEPControl import STEPControl_AsIs, STEPControl_Writer
+
     hush()
     # A writer must exist before the kernel's settings have any effect.
     STEPControl_Writer()
@@ -33,6 +34,7 @@ def write_step(shape: Shape, path: str | os.PathLike[str], *, unit: str = "mm") 
 def write_iges(shape: Shape, path: str | os.PathLike[str], *, unit: str = "mm") -> None:
     """Write a shape (mm) as IGES trimmed surfaces in a unit of `UNITS`; the file is either whole or absent."""
     from OCP.IGESControl import IGESControl_Controller, IGESControl_Writer
+
     hush()
     IGESControl_Controller.Init_s()
     writer = IGESControl_Writer(UNITS[unit], 0)
@@ -61,8 +63,14 @@ def _as_splines(faces: Sequence[Shape]) -> list[Shape]:
     from OCP.BRepBuilderAPI import BRepBuilderAPI_NurbsConvert
     from OCP.GeomAbs import GeomAbs_BSplineSurface, GeomAbs_Plane
     from OCP.TopoDS import TopoDS
+
     plain = (GeomAbs_Plane, GeomAbs_BSplineSurface)
-    return [f if BRepAdaptor_Surface(f).GetType() in plain else TopoDS.Face_s(BRepBuilderAPI_NurbsConvert(f, True).Shape()) for f in faces]
+    return [
+        f
+        if BRepAdaptor_Surface(f).GetType() in plain
+        else TopoDS.Face_s(BRepBuilderAPI_NurbsConvert(f, True).Shape())
+        for f in faces
+    ]
 
 
 def _shells(faces: Sequence[Shape]) -> list[Shape]:
@@ -73,11 +81,12 @@ def _shells(faces: Sequence[Shape]) -> list[Shape]:
     from scipy.sparse.csgraph import connected_components
 
     from trunnion.part.identity import edge_index, edges_of
+
     index = edge_index(_compound(faces))
     pairs = [(k, len(faces) + index.FindIndex(e)) for k, f in enumerate(faces) for e in edges_of(f)]
     count = len(faces) + index.Extent() + 1
     links = coo_array(([1] * len(pairs), tuple(zip(*pairs, strict=True))), shape=(count, count))
-    owner = connected_components(links, directed=False)[1][:len(faces)].tolist()
+    owner = connected_components(links, directed=False)[1][: len(faces)].tolist()
     builder, shells = BRep_Builder(), {}
     for face, number in zip(faces, owner, strict=True):
         if number not in shells:
@@ -90,6 +99,7 @@ def _shells(faces: Sequence[Shape]) -> list[Shape]:
 def _compound(shapes: Sequence[Shape]) -> Shape:
     from OCP.BRep import BRep_Builder
     from OCP.TopoDS import TopoDS_Compound
+
     made, builder = TopoDS_Compound(), BRep_Builder()
     builder.MakeCompound(made)
     for shape in shapes:

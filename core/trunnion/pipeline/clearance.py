@@ -42,8 +42,16 @@ class ClearanceQuery:
     for thicker by `tolerance.HOLDER_ROOM`. `progress` is looked at for cancel while something is asked.
     """
 
-    def __init__(self, part: Part, skin: Skin, cutting: Frame, setup: Frame, machine: Machine, fixtures: Sequence[Fixture] = (),
-                 progress: Progress = QUIET) -> None:
+    def __init__(
+        self,
+        part: Part,
+        skin: Skin,
+        cutting: Frame,
+        setup: Frame,
+        machine: Machine,
+        fixtures: Sequence[Fixture] = (),
+        progress: Progress = QUIET,
+    ) -> None:
         self._part, self._skin, self._cutting, self._setup = part, skin, cutting, setup
         self._machine, self._fixtures, self.progress = machine, tuple(fixtures), progress
 
@@ -55,7 +63,9 @@ class ClearanceQuery:
         """Say which tool axes (k, 3), in the cutting frame, the machine can hold within the limits of its rotary axes."""
         from trunnion.verify.machine.kinematics import can_hold
 
-        return can_hold(self._setup.local_direction(self._cutting.world_direction(axis)), self._machine)
+        return can_hold(
+            self._setup.local_direction(self._cutting.world_direction(axis)), self._machine
+        )
 
     def clear(self, moves: Moves) -> Bools:
         """Say which moves (k,) enter nothing deeper than a finishing cutter may."""
@@ -72,7 +82,9 @@ class ClearanceQuery:
         clear, contact = np.zeros(len(moves), dtype=bool), self._contact
 
         def work(first: int, last: int) -> None:
-            clear[first:last] = contact.clear(_rows(moves, slice(first, last)), tolerance.FINISH_GOUGE)
+            clear[first:last] = contact.clear(
+                _rows(moves, slice(first, last)), tolerance.FINISH_GOUGE
+            )
 
         in_parallel(work, len(moves), CHUNK, QUIET, "Looking for room for a leaning tool")
         return clear
@@ -85,9 +97,16 @@ class ClearanceQuery:
 
         surfaces = surfaces_of(self._part, self._cutting)
         skin = self._skin
-        facets = Facets(tag=surfaces.tag, points=skin.points, triangles=skin.triangles, face=np.searchsorted(surfaces.tag, skin.face),
-                        bound=skin.bound)
-        return PartContact(surfaces, facets, [fixture_facets(f, self._cutting) for f in self._fixtures])
+        facets = Facets(
+            tag=surfaces.tag,
+            points=skin.points,
+            triangles=skin.triangles,
+            face=np.searchsorted(surfaces.tag, skin.face),
+            bound=skin.bound,
+        )
+        return PartContact(
+            surfaces, facets, [fixture_facets(f, self._cutting) for f in self._fixtures]
+        )
 
 
 class PartAsker:
@@ -96,7 +115,14 @@ class PartAsker:
     def __init__(self, around: ClearanceQuery, tool: Tool) -> None:
         self._around, self._tool = around, tool
 
-    def __call__(self, tip: Floats, axis: Floats, *, start_tip: Floats | None = None, start_axis: Floats | None = None) -> Bools:
+    def __call__(
+        self,
+        tip: Floats,
+        axis: Floats,
+        *,
+        start_tip: Floats | None = None,
+        start_axis: Floats | None = None,
+    ) -> Bools:
         """Say for tips (k, 3) with unit axes (k, 3), or for moves that begin at others, which are clear."""
         from trunnion.verify.kernels.strips import X0, Y0, Z_START
         from trunnion.verify.motion import poses_of
@@ -106,16 +132,38 @@ class PartAsker:
         rows = np.flatnonzero(clear)
         moves = poses_of(self._tool, tip[rows], axis[rows])
         if start_tip is not None:
-            begin = poses_of(self._tool, start_tip[rows], (axis if start_axis is None else start_axis)[rows])
+            begin = poses_of(
+                self._tool, start_tip[rows], (axis if start_axis is None else start_axis)[rows]
+            )
             row = moves.row.copy()
             row[:, [X0, Y0, Z_START]] = begin.start
-            moves = replace(moves, start=begin.start, start_axis=begin.start_axis, upright=moves.upright & begin.upright, row=row,
-                            length=np.linalg.norm(moves.end - begin.start, axis=1))
+            moves = replace(
+                moves,
+                start=begin.start,
+                start_axis=begin.start_axis,
+                upright=moves.upright & begin.upright,
+                row=row,
+                length=np.linalg.norm(moves.end - begin.start, axis=1),
+            )
         clear[rows] = self._around.clear(moves)
         return clear
 
 
 def _rows(moves: Moves, rows: slice) -> Moves:
-    names = ("start", "end", "start_axis", "end_axis", "centre", "sweep", "upright", "row", "section", "block", "rapid", "feed", "length",
-             "tool")
+    names = (
+        "start",
+        "end",
+        "start_axis",
+        "end_axis",
+        "centre",
+        "sweep",
+        "upright",
+        "row",
+        "section",
+        "block",
+        "rapid",
+        "feed",
+        "length",
+        "tool",
+    )
     return replace(moves, **{name: getattr(moves, name)[rows] for name in names})

@@ -37,13 +37,26 @@ class Context:
     def facts(self) -> PartInfo:
         """What a session keeps of the part."""
         p = self.part
-        return PartInfo(path=str(p.path), name=p.name, digest=p.digest, unit=p.unit, n_faces=p.n_faces, n_solids=p.n_solids, solid=p.solid,
-                        area=p.area, volume=p.volume, low=p.low, high=p.high, findings=tuple(p.findings))
+        return PartInfo(
+            path=str(p.path),
+            name=p.name,
+            digest=p.digest,
+            unit=p.unit,
+            n_faces=p.n_faces,
+            n_solids=p.n_solids,
+            solid=p.solid,
+            area=p.area,
+            volume=p.volume,
+            low=p.low,
+            high=p.high,
+            findings=tuple(p.findings),
+        )
 
     def skin(self, chord: float = tolerance.SKIN_CHORD, progress: Progress = QUIET) -> Skin:
         """Return the part's skin in its own coordinates within a chord error (mm), as fine as finishing needs it unless said; kept."""
         if chord not in self._skins:
             from trunnion.part.skin import skin_of
+
             self._skins[chord] = skin_of(self.part, WORLD, chord, progress)
         return self._skins[chord]
 
@@ -70,5 +83,6 @@ class Contexts:
             before = self.after(cuts[:-1], progress)
             progress.at(0.0, f"cutting face {cuts[-1].face}")
             from trunnion.part.cut import divided
+
             self._made[cuts] = Context(divided(before.part, cuts[-1]), before.shop)
         return self._made[cuts]

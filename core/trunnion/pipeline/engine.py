@@ -46,12 +46,15 @@ class Engine:
         self._file: tuple[bytes, str] = (b"", "")
         self._playback: Playback | None = None
 
-    def open(self, path: str | Path, *, solid: int | None = None, progress: Progress = QUIET) -> Session:
+    def open(
+        self, path: str | Path, *, solid: int | None = None, progress: Progress = QUIET
+    ) -> Session:
         """Return a new session of a part file (STEP, IGES, gzipped STEP) or the saved session of a project file."""
         path, progress = Path(path), progress.afresh()
         if path.suffix.lower() == PROJECT_SUFFIX:
             return self._open_project(path, progress)
         from trunnion.part.read import read_part
+
         with compiling(progress):
             part = read_part(path, solid=solid, progress=progress.part(0.0, 0.7))
             with part.watched(progress.part(0.7, 1.0)):
@@ -62,18 +65,28 @@ class Engine:
 
     def _open_project(self, path: Path, progress: Progress) -> Session:
         from trunnion.store.project import load_project
+
         session, data, suffix = load_project(path, progress.part(0.0, 0.3))
         self._take(session, data, suffix, progress.part(0.3, 1.0))
         return session
 
     def _take(self, session: Session, data: bytes, suffix: str, progress: Progress) -> None:
         from trunnion.part.read import read_part_bytes
+
         if session.part is None:
             raise BadInput("the project holds no part: open the part file instead")
         with compiling(progress):
-            part = read_part_bytes(data, session.part.name, suffix, solid=session.part.solid, progress=progress.part(0.0, 0.9))
+            part = read_part_bytes(
+                data,
+                session.part.name,
+                suffix,
+                solid=session.part.solid,
+                progress=progress.part(0.0, 0.9),
+            )
         if part.digest != session.part.digest:
-            raise BadInput(f"{session.part.name}: the part kept with the project is not the one its plan was made for; open the part anew")
+            raise BadInput(
+                f"{session.part.name}: the part kept with the project is not the one its plan was made for; open the part anew"
+            )
         contexts = Contexts(part, self._shop)
         contexts.after(session.cuts, progress.part(0.9, 1.0))
         self._contexts, self._file = contexts, (data, suffix)
@@ -82,7 +95,9 @@ class Engine:
         """Return the bytes and the suffix of the part file as it was read, so that another engine can take over with `attach`."""
         return self._file
 
-    def attach(self, session: Session, data: bytes = b"", suffix: str = "", progress: Progress = QUIET) -> None:
+    def attach(
+        self, session: Session, data: bytes = b"", suffix: str = "", progress: Progress = QUIET
+    ) -> None:
         """Take over a session after a restart: from the part file's bytes when given, else from where the part was read."""
         if session.part is None:
             return
@@ -122,30 +137,46 @@ class Engine:
 
         Raises `BadInput` for a wrong key or value.
         """
-        known = {d.key: d for groups in self.settings().values() for group in groups for d in declared(group)}
+        known = {
+            d.key: d
+            for groups in self.settings().values()
+            for group in groups
+            for d in declared(group)
+        }
         chosen: dict[str, Value] = {}
         for key, value in words.items():
             if key not in known:
                 near = [k for k in known if k.rsplit(".", 1)[-1] == key.rsplit(".", 1)[-1]]
                 if len(near) != 1 or "." in key:
-                    advice = f"did you mean {' or '.join(near)}?" if near else "`trunnion settings` lists them"
+                    advice = (
+                        f"did you mean {' or '.join(near)}?"
+                        if near
+                        else "`trunnion settings` lists them"
+                    )
                     raise BadInput(f"unknown setting {key}; {advice}")
                 key = near[0]
             chosen[key] = known[key].parse(value)
         return replace(session, choices={**session.choices, **chosen})
 
-    def with_cuts(self, session: Session, cuts: tuple[Cut, ...], progress: Progress = QUIET) -> Session:
+    def with_cuts(
+        self, session: Session, cuts: tuple[Cut, ...], progress: Progress = QUIET
+    ) -> Session:
         """Return the session with its part's faces divided by cuts, in their order; raise `BadInput` when one of them can't be made."""
         after = replace(session, cuts=cuts)
         facts = self.context_of(after, progress).facts
-        return replace(after, part=facts if session.part is None else replace(facts, path=session.part.path))
+        return replace(
+            after, part=facts if session.part is None else replace(facts, path=session.part.path)
+        )
 
-    def with_fixtures(self, session: Session, words: Sequence[str], progress: Progress = QUIET) -> Session:
+    def with_fixtures(
+        self, session: Session, words: Sequence[str], progress: Progress = QUIET
+    ) -> Session:
         """Return the session with the fixtures of some files (`FILE`, or `SETUP=FILE` for one setup) in place of those it had.
 
         The files' coordinates are the part's. Raises `BadInput` for a file that can't be read.
         """
         from trunnion.part.fixture import read_fixture
+
         found = []
         for n, word in enumerate(words):
             setup, file = fixture_word(word)
@@ -194,18 +225,27 @@ class Engine:
         key = progress.aside(lambda _: step.key(result.session, context))
         record = StepRecord(key=key, seconds=time.perf_counter() - began, findings=result.findings)
         kept = {name: session.records[name] for name in STEPS if name in session.records}
-        return replace(result.session, records={name: record if name == step.name else kept[name]
-                                                for name in STEPS if name == step.name or name in kept})
+        return replace(
+            result.session,
+            records={
+                name: record if name == step.name else kept[name]
+                for name in STEPS
+                if name == step.name or name in kept
+            },
+        )
 
     def playback(self, session: Session, cell: float = 0.0, progress: Progress = QUIET) -> Timeline:
         """Take up a plan for playback and return its blocks over time; `moment` then shows its stock."""
         from trunnion.pipeline.playback import Playback
+
         progress = progress.afresh()
         with compiling(progress):
             self._playback = Playback(session, self.context_of(session), cell, progress)
         return self._playback.timeline
 
-    def moment(self, key: str, position: float, seconds: float = float("inf"), progress: Progress = QUIET) -> Moment:
+    def moment(
+        self, key: str, position: float, seconds: float = float("inf"), progress: Progress = QUIET
+    ) -> Moment:
         """Return the stock of the plan that is played (by its timeline's key) at a position, or on the way there after some seconds."""
         if self._playback is None or self._playback.timeline.key != key:
             raise BadCall("this plan is not played any more: start the playback again")
@@ -216,28 +256,47 @@ class Engine:
     def deviation_map(self, session: Session, progress: Progress = QUIET) -> DeviationMap:
         """Return the deviation of the finished part as triangles to be drawn; raise `BadCall` before a proof."""
         from trunnion.report.deviation import deviation_map
+
         if session.verdict is None:
             raise BadCall("nothing is proven yet: verify first")
         chosen = checked(choose(ProofSettings, session.choices))
         progress = progress.afresh()
         mesh = self.mesh(session, progress.part(0.0, 0.2))
-        return deviation_map(mesh, session.verdict.deviation, chosen.tolerance, chosen.allowance, progress.part(0.2, 1.0))
+        return deviation_map(
+            mesh,
+            session.verdict.deviation,
+            chosen.tolerance,
+            chosen.allowance,
+            progress.part(0.2, 1.0),
+        )
 
     def save(self, session: Session, path: str | Path, progress: Progress = QUIET) -> None:
         """Write the project file, whole or not at all."""
         from trunnion.store.project import save_project
+
         data, suffix = self._file
         save_project(session, Path(path), data, suffix, progress)
 
-    def write(self, session: Session, folder: str | Path, *, name: str = "", date: str = "", progress: Progress = QUIET) -> tuple[str, ...]:
+    def write(
+        self,
+        session: Session,
+        folder: str | Path,
+        *,
+        name: str = "",
+        date: str = "",
+        progress: Progress = QUIET,
+    ) -> tuple[str, ...]:
         """Write everything of a proven session into a folder (NC, CL, XML, tool list, report, project); return the file names."""
         from trunnion.pipeline.writing import name_of, write_documents
+
         if self.states(session)["verify"] not in FRESH:
             raise BadCall("something changed since the proof: verify again before anything leaves")
         part, progress = self.context_of(session).part, progress.afresh()
         with compiling(progress), part.watched(progress):
             mesh = part.mesh(tolerance.PICTURE)
-            files = write_documents(session, mesh, Path(folder), name=name, date=date, progress=progress.part(0.1, 0.9))
+            files = write_documents(
+                session, mesh, Path(folder), name=name, date=date, progress=progress.part(0.1, 0.9)
+            )
         project = f"{name_of(session, name)}{PROJECT_SUFFIX}"
         progress.at(0.9, "saving the project")
         self.save(session, Path(folder) / project, progress.part(0.9, 1.0))
@@ -260,5 +319,7 @@ def _whole_line(session: Session, reason: str) -> str:
     """Return why a step stopped, with the part's file named and the errors found before it, which are the likely cause."""
     file = Path(session.part.path).name if session.part else ""
     line = reason if not file or file in reason else f"{file}: {reason}"
-    before = [f.text for f in session.findings() if f.severity is Severity.ERROR and f.text not in line]
+    before = [
+        f.text for f in session.findings() if f.severity is Severity.ERROR and f.text not in line
+    ]
     return f"{line}; found before: {'; '.join(before)}" if before else line

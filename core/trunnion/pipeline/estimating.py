@@ -23,5 +23,7 @@ def estimate(session: Session, context: Context) -> Estimate | None:
     for area in found.areas:
         made = session.path_of(area.operation)
         if made is not None and len(made.path):
-            seconds[area.operation] = machining_time(made.path, machines[session.process.operation(area.operation).setup])
+            seconds[area.operation] = machining_time(
+                made.path, machines[session.process.operation(area.operation).setup]
+            )
     return measured(found, seconds)

@@ -20,7 +20,9 @@ MOST_BYTES = 200_000_000
 """Size of an NC file that is read: about ten million blocks; more is a file of another kind, or a stream without an end."""
 
 
-def verify_texts(engine: Engine, session: Session, files: Sequence[Path], progress: Progress) -> Session:
+def verify_texts(
+    engine: Engine, session: Session, files: Sequence[Path], progress: Progress
+) -> Session:
     """Return the session with the verdict on the texts of the files, one for each setup in order.
 
     What the plan could not make is no matter here, a part that is not closed is.
@@ -28,22 +30,44 @@ def verify_texts(engine: Engine, session: Session, files: Sequence[Path], progre
     if session.process is None:
         raise BadCall("no operations yet: generate the route first")
     if len(files) > len(session.process.setups):
-        raise BadCall(f"{len(files)} programs given, but the part has {len(session.process.setups)} setups")
+        raise BadCall(
+            f"{len(files)} programs given, but the part has {len(session.process.setups)} setups"
+        )
     dialect = checked(choose(PostSettings, session.choices)).dialect
-    posted = [PostedFile(suffix=file.name, dialect=dialect, setup=setup.name, text=text_of(file))
-              for file, setup in zip(files, session.process.setups, strict=False)]
+    posted = [
+        PostedFile(suffix=file.name, dialect=dialect, setup=setup.name, text=text_of(file))
+        for file, setup in zip(files, session.process.setups, strict=False)
+    ]
     machines = engine.context_of(session).shop.machines
 
     def read(own: Progress) -> tuple[Program, ...]:
-        return tuple(p for file, text in zip(files, posted, strict=True) for p in _read(session, file, text, machines, own))
+        return tuple(
+            p
+            for file, text in zip(files, posted, strict=True)
+            for p in _read(session, file, text, machines, own)
+        )
 
     programs = progress.aside(read, "reading the text")
-    verdict = held_back(prove_programs(session, engine.context_of(session), programs, progress), errors_of_part(session))
+    verdict = held_back(
+        prove_programs(session, engine.context_of(session), programs, progress),
+        errors_of_part(session),
+    )
     record = StepRecord(key="texts from outside", seconds=0.0, findings=verdict.findings)
-    return replace(session, verdict=verdict, posted=tuple(posted), records={**session.records, "verify": record})
+    return replace(
+        session,
+        verdict=verdict,
+        posted=tuple(posted),
+        records={**session.records, "verify": record},
+    )
 
 
-def _read(session: Session, file: Path, text: PostedFile, machines: Mapping[str, Machine], progress: Progress) -> tuple[Program, ...]:
+def _read(
+    session: Session,
+    file: Path,
+    text: PostedFile,
+    machines: Mapping[str, Machine],
+    progress: Progress,
+) -> tuple[Program, ...]:
     """Return what a file's text says; a refusal names the file before the line."""
     try:
         return read_back(session, (text,), machines, progress)
@@ -57,7 +81,9 @@ def text_of(file: Path) -> str:
         with file.open("rb") as stream:
             data = stream.read(MOST_BYTES + 1)
         if len(data) > MOST_BYTES:
-            raise BadInput(f"{file}: is larger than {MOST_BYTES // 1_000_000} MB; give the NC file to be proven")
+            raise BadInput(
+                f"{file}: is larger than {MOST_BYTES // 1_000_000} MB; give the NC file to be proven"
+            )
         return data.decode("utf-8").replace("\r\n", "\n").replace("\r", "\n")
     except OSError as reason:
         why = (reason.strerror or "the system refuses").lower()

@@ -35,9 +35,13 @@ SCORE_DECIMALS = 3
 class RecognizeSettings:
     """Which family of parts the recogniser looks for."""
 
-    family: str = setting(AUTOMATIC, label="Family", help="Family of parts, or auto: the one that suits the part best. Where that explains "
-                          "less than half of the part, auto stops after recognition, a chosen family doesn't.",
-                          choices=(AUTOMATIC, *registry.names(FAMILIES)))
+    family: str = setting(
+        AUTOMATIC,
+        label="Family",
+        help="Family of parts, or auto: the one that suits the part best. Where that explains "
+        "less than half of the part, auto stops after recognition, a chosen family doesn't.",
+        choices=(AUTOMATIC, *registry.names(FAMILIES)),
+    )
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -52,19 +56,40 @@ class Rated:
     @property
     def rank(self) -> tuple[float, float, bool, str]:
         """What better kinds have more of: score, explained area, a family that serves them, and at last the name, to be the same always."""
-        return round(self.suits.score, SCORE_DECIMALS), round(self.suits.explained, SCORE_DECIMALS), self.served, self.name
+        return (
+            round(self.suits.score, SCORE_DECIMALS),
+            round(self.suits.explained, SCORE_DECIMALS),
+            self.served,
+            self.name,
+        )
 
     def taken(self) -> TakenFor:
         """Return the kind as what a part is taken for."""
-        return TakenFor(kind=self.name, noun=self.kind.noun, score=self.suits.score, reason=self.suits.reason)
+        return TakenFor(
+            kind=self.name, noun=self.kind.noun, score=self.suits.score, reason=self.suits.reason
+        )
 
 
 def ratings(graph: FaceGraph) -> tuple[Rated, ...]:
     """Return all registered kinds of part with how well they suit a part, the best first. A kind that no family serves is among them when
     it is likely."""
-    found = [Rated(name=name, kind=(kind := registry.get(group, name)()), served=group == FAMILIES, suits=kind.suits(graph))
-             for group in (FAMILIES, KINDS) for name in registry.names(group)]
-    return tuple(sorted((r for r in found if r.served or r.suits.score >= ENOUGH), key=lambda r: r.rank, reverse=True))
+    found = [
+        Rated(
+            name=name,
+            kind=(kind := registry.get(group, name)()),
+            served=group == FAMILIES,
+            suits=kind.suits(graph),
+        )
+        for group in (FAMILIES, KINDS)
+        for name in registry.names(group)
+    ]
+    return tuple(
+        sorted(
+            (r for r in found if r.served or r.suits.score >= ENOUGH),
+            key=lambda r: r.rank,
+            reverse=True,
+        )
+    )
 
 
 def recognised(session: Session, context: Context, progress: Progress) -> Recognition:
@@ -76,7 +101,9 @@ def recognised(session: Session, context: Context, progress: Progress) -> Recogn
     progress.at(0.0, "looking for the family")
     graph = context.part.graph()
     rated = progress.aside(lambda _: ratings(graph))
-    best = rated[0] if wanted == AUTOMATIC else next(r for r in rated if r.name == wanted and r.served)
+    best = (
+        rated[0] if wanted == AUTOMATIC else next(r for r in rated if r.name == wanted and r.served)
+    )
     unserved = () if rated[0].served else (_no_family(rated[0]),)
     if not best.served:
         return _nothing(best, context, unserved)
@@ -84,20 +111,35 @@ def recognised(session: Session, context: Context, progress: Progress) -> Recogn
     found: Recognition = best.kind.recognize(graph, context.part, chosen, progress)
     poor = _unexplained(best, found)
     if wanted == AUTOMATIC:
-        return _stopped(replace(found, taken_for=best.taken(), findings=(*found.findings, _told(best))), poor)
-    return replace(found, taken_for=best.taken(), findings=(*found.findings, *(_milder(f) for f in (*unserved, *poor))))
+        return _stopped(
+            replace(found, taken_for=best.taken(), findings=(*found.findings, _told(best))), poor
+        )
+    return replace(
+        found,
+        taken_for=best.taken(),
+        findings=(*found.findings, *(_milder(f) for f in (*unserved, *poor))),
+    )
 
 
 def _nothing(best: Rated, context: Context, why: Sequence[Finding]) -> Recognition:
     """Return the recognition of a part that no family serves: every face unexplained."""
-    found = Recognition(family=best.name, unexplained=tuple(context.part.tags), unexplained_share=1.0, taken_for=best.taken(),
-                        findings=(_told(best),))
+    found = Recognition(
+        family=best.name,
+        unexplained=tuple(context.part.tags),
+        unexplained_share=1.0,
+        taken_for=best.taken(),
+        findings=(_told(best),),
+    )
     return _stopped(found, why)
 
 
 def _stopped(found: Recognition, why: Sequence[Finding]) -> Recognition:
     """Return a recognition that keeps the steps after it from going on for some reasons, as it was when there are none."""
-    return replace(found, findings=(*found.findings, *why), doubt="; ".join(f"{f.text}: {f.remedy}" for f in why))
+    return replace(
+        found,
+        findings=(*found.findings, *why),
+        doubt="; ".join(f"{f.text}: {f.remedy}" for f in why),
+    )
 
 
 def _told(best: Rated) -> Finding:
@@ -105,8 +147,11 @@ def _told(best: Rated) -> Finding:
 
 
 def _no_family(best: Rated) -> Finding:
-    return error("recognize.no-family", f"the part looks like {best.taken()}; no family of parts serves these yet",
-                 remedy=f"choose recognize.family = {' or '.join(registry.names(FAMILIES))} to go on with one of the families there are")
+    return error(
+        "recognize.no-family",
+        f"the part looks like {best.taken()}; no family of parts serves these yet",
+        remedy=f"choose recognize.family = {' or '.join(registry.names(FAMILIES))} to go on with one of the families there are",
+    )
 
 
 def _unexplained(best: Rated, found: Recognition) -> tuple[Finding, ...]:
@@ -115,10 +160,21 @@ def _unexplained(best: Rated, found: Recognition) -> tuple[Finding, ...]:
         return ()
     others = [name for name in registry.names(FAMILIES) if name != best.name]
     instead = f", or {' or '.join(others)} to try another one" if others else ""
-    return (error("recognize.unexplained", f"{percent(found.unexplained_share)} of the area is explained by no feature; the part was taken "
-                  f"for {best.taken()}", remedy=f"choose recognize.family = {best.name} to go on with it{instead}"),)
+    return (
+        error(
+            "recognize.unexplained",
+            f"{percent(found.unexplained_share)} of the area is explained by no feature; the part was taken "
+            f"for {best.taken()}",
+            remedy=f"choose recognize.family = {best.name} to go on with it{instead}",
+        ),
+    )
 
 
 def _milder(finding: Finding) -> Finding:
     """Return an error as the warning that it is to who chose the family."""
-    return warning(finding.code, finding.text, *finding.where, remedy="check what was recognised; the family was chosen by hand")
+    return warning(
+        finding.code,
+        finding.text,
+        *finding.where,
+        remedy="check what was recognised; the family was chosen by hand",
+    )

@@ -45,7 +45,13 @@ def faces_named(text: str) -> tuple[int, ...]:
     return tuple(dict.fromkeys(int(w) for w in words))
 
 
-def measure_fine(engine: Engine, session: Session, faces: Sequence[int], spacing: float, progress: Progress = QUIET) -> FineFigures:
+def measure_fine(
+    engine: Engine,
+    session: Session,
+    faces: Sequence[int],
+    spacing: float,
+    progress: Progress = QUIET,
+) -> FineFigures:
     """Return what the posted programs of a session leave on faces; `spacing` mm is how far apart it begins to look."""
     from trunnion.part.exact import ExactFace
     from trunnion.verify.finish.fine import fine_measure
@@ -54,17 +60,32 @@ def measure_fine(engine: Engine, session: Session, faces: Sequence[int], spacing
     if not session.posted:
         raise BadCall("no programs yet: prove them first")
     machines = engine.context_of(session).shop.machines
-    programs = progress.aside(lambda _: read_back(session, session.posted, machines), "reading the text back")
+    programs = progress.aside(
+        lambda _: read_back(session, session.posted, machines), "reading the text back"
+    )
     if not any(p.sections for p in programs):
         raise BadCall("the programs cut nothing: there is nothing to measure")
     home = programs[0].setup.frame
     sections = [s for p in programs for s in _seen_from(p, home)]
     moves = moves_of(sections)
-    found = fine_measure([ExactFace(engine.context_of(session).part, tag, home) for tag in faces], moves, spacing, progress=progress)
+    found = fine_measure(
+        [ExactFace(engine.context_of(session).part, tag, home) for tag in faces],
+        moves,
+        spacing,
+        progress=progress,
+    )
     lower = sections[int(moves.section[found.step.move])].operation if found.step.move >= 0 else ""
-    return FineFigures(faces=tuple(faces), scallop=found.scallop.value, scallop_at=home.to_world(found.scallop.place),
-                       gouge=found.gouge.value, gouge_at=home.to_world(found.gouge.place), step=found.step.value,
-                       step_at=home.to_world(found.step.place), lower=lower, bound=found.bound)
+    return FineFigures(
+        faces=tuple(faces),
+        scallop=found.scallop.value,
+        scallop_at=home.to_world(found.scallop.place),
+        gouge=found.gouge.value,
+        gouge_at=home.to_world(found.gouge.place),
+        step=found.step.value,
+        step_at=home.to_world(found.step.place),
+        lower=lower,
+        bound=found.bound,
+    )
 
 
 def _seen_from(program: Program, home: Frame) -> tuple[ProgramSection, ...]:
@@ -72,9 +93,18 @@ def _seen_from(program: Program, home: Frame) -> tuple[ProgramSection, ...]:
     own = program.setup.frame
     if own is home:
         return program.sections
-    return tuple(replace(s, path=replace(s.path, position=home.to_local(own.to_world(s.path.position)),
-                                         axis=_unit(home.local_direction(own.world_direction(s.path.axis))),
-                                         centre=home.to_local(own.to_world(s.path.centre)))) for s in program.sections)
+    return tuple(
+        replace(
+            s,
+            path=replace(
+                s.path,
+                position=home.to_local(own.to_world(s.path.position)),
+                axis=_unit(home.local_direction(own.world_direction(s.path.axis))),
+                centre=home.to_local(own.to_world(s.path.centre)),
+            ),
+        )
+        for s in program.sections
+    )
 
 
 def _unit(axes: Floats) -> Floats:
@@ -83,20 +113,39 @@ def _unit(axes: Floats) -> Floats:
 
 def fine_dict(found: FineFigures) -> dict[str, object]:
     """Return the figures as JSON data."""
+
     def place(at: Floats) -> list[float] | None:
         return [float(v) + 0.0 for v in at] if np.isfinite(at).all() else None
 
-    return {"faces": [f"face {tag}" for tag in found.faces], "bound_mm": found.bound,
-            "scallop_mm": found.scallop, "scallop_at": place(found.scallop_at), "gouge_mm": found.gouge, "gouge_at": place(found.gouge_at),
-            "step_mm": found.step, "step_at": place(found.step_at), "step_below": found.lower}
+    return {
+        "faces": [f"face {tag}" for tag in found.faces],
+        "bound_mm": found.bound,
+        "scallop_mm": found.scallop,
+        "scallop_at": place(found.scallop_at),
+        "gouge_mm": found.gouge,
+        "gouge_at": place(found.gouge_at),
+        "step_mm": found.step,
+        "step_at": place(found.step_at),
+        "step_below": found.lower,
+    }
 
 
 def fine_text(found: FineFigures) -> str:
     """Return the figures in a few lines."""
+
     def line(name: str, value: float, at: Floats) -> str:
-        where = " at x {:.3f} y {:.3f} z {:.3f}".format(*(float(v) + 0.0 for v in at)) if value and np.isfinite(at).all() else ""
+        where = (
+            " at x {:.3f} y {:.3f} z {:.3f}".format(*(float(v) + 0.0 for v in at))
+            if value and np.isfinite(at).all()
+            else ""
+        )
         return f"{name:<18} {value:.4f} mm{where}"
 
-    return "\n".join([f"fine, on {', '.join(f'face {tag}' for tag in found.faces)}, within {1000 * found.bound:g} um",
-                      line("  highest scallop", found.scallop, found.scallop_at), line("  deepest gouge", found.gouge, found.gouge_at),
-                      line("  largest step", found.step, found.step_at)])
+    return "\n".join(
+        [
+            f"fine, on {', '.join(f'face {tag}' for tag in found.faces)}, within {1000 * found.bound:g} um",
+            line("  highest scallop", found.scallop, found.scallop_at),
+            line("  deepest gouge", found.gouge, found.gouge_at),
+            line("  largest step", found.step, found.step_at),
+        ]
+    )

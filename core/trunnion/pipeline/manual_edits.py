@@ -22,17 +22,37 @@ def with_features_by_hand(before: Recognition | None, found: Recognition) -> Rec
         return found
     sharing = frozenset((*exclusive_kinds(before.family), *exclusive_kinds(found.family)))
     there = {*found.unexplained, *(tag for f in found.features for tag in f.tags)}
-    by_hand = tuple(kept for f in before.features if f.by_hand for kept in _within(f, there, sharing))
-    taken = [set(f.tags) for f in by_hand if f.kind not in sharing] + [set(tags) for tags in before.removed]
-    others = [f for f in _renamed(_shared_out(found.features, by_hand, sharing), by_hand, sharing) if not _claims_most(f, taken)]
+    by_hand = tuple(
+        kept for f in before.features if f.by_hand for kept in _within(f, there, sharing)
+    )
+    taken = [set(f.tags) for f in by_hand if f.kind not in sharing] + [
+        set(tags) for tags in before.removed
+    ]
+    others = [
+        f
+        for f in _renamed(_shared_out(found.features, by_hand, sharing), by_hand, sharing)
+        if not _claims_most(f, taken)
+    ]
     kept = (*others, *by_hand)
     if any(f.kind in sharing for f in kept):
         kept = tuple(sorted(kept, key=lambda f: f.id))
     loose = there - {tag for f in kept for tag in f.tags}
     deleted = [f for f in found.features if _claims_most(f, [set(tags) for tags in before.removed])]
-    told = [info("recognize.deleted", f"{f.id} was deleted by hand and is not taken up again", *face_tags(f.tags),
-                 remedy="undo the deletion, or open the part anew, to have it back") for f in deleted]
-    return replace(found.with_unexplained(loose), features=kept, findings=(*found.findings, *told), removed=before.removed)
+    told = [
+        info(
+            "recognize.deleted",
+            f"{f.id} was deleted by hand and is not taken up again",
+            *face_tags(f.tags),
+            remedy="undo the deletion, or open the part anew, to have it back",
+        )
+        for f in deleted
+    ]
+    return replace(
+        found.with_unexplained(loose),
+        features=kept,
+        findings=(*found.findings, *told),
+        removed=before.removed,
+    )
 
 
 def _within(feature: Feature, there: set[int], sharing: Collection[str]) -> tuple[Feature, ...]:
@@ -42,13 +62,21 @@ def _within(feature: Feature, there: set[int], sharing: Collection[str]) -> tupl
     return tuple(f for f in (without_faces(feature, set(feature.tags) - there),) if f.faces)
 
 
-def _shared_out(features: Iterable[Feature], by_hand: Iterable[Feature], sharing: Collection[str]) -> tuple[Feature, ...]:
+def _shared_out(
+    features: Iterable[Feature], by_hand: Iterable[Feature], sharing: Collection[str]
+) -> tuple[Feature, ...]:
     """Return features, those that share out faces without what a person has put in another one; empty ones of them go."""
     taken = {tag for f in by_hand if f.kind in sharing for tag in f.tags}
-    return tuple(f for f in (without_faces(f, taken) if f.kind in sharing else f for f in features) if f.faces or f.kind not in sharing)
+    return tuple(
+        f
+        for f in (without_faces(f, taken) if f.kind in sharing else f for f in features)
+        if f.faces or f.kind not in sharing
+    )
 
 
-def _renamed(features: tuple[Feature, ...], by_hand: Iterable[Feature], sharing: Collection[str]) -> tuple[Feature, ...]:
+def _renamed(
+    features: tuple[Feature, ...], by_hand: Iterable[Feature], sharing: Collection[str]
+) -> tuple[Feature, ...]:
     """Return features without those that bear a name of one made by hand; those that share out faces get a free name instead."""
     names = {f.id for f in by_hand}
     kept = []
@@ -63,7 +91,11 @@ def _renamed(features: tuple[Feature, ...], by_hand: Iterable[Feature], sharing:
 
 def without_faces(feature: Feature, tags: set[int]) -> Feature:
     """Return a feature without some of its faces."""
-    return replace(feature, faces=tuple(f for f in feature.faces if f.face not in tags)) if tags & set(feature.tags) else feature
+    return (
+        replace(feature, faces=tuple(f for f in feature.faces if f.face not in tags))
+        if tags & set(feature.tags)
+        else feature
+    )
 
 
 def free_id(kind: str, taken: set[str]) -> str:

@@ -39,18 +39,25 @@ def with_cut(engine: Engine, session: Session, cut: Cut, progress: Progress = QU
     return engine.with_cuts(session, (*session.cuts, cut), progress)
 
 
-def without_cut(engine: Engine, session: Session, number: int, progress: Progress = QUIET) -> Session:
+def without_cut(
+    engine: Engine, session: Session, number: int, progress: Progress = QUIET
+) -> Session:
     """Return the session without one of its cuts, counted from 0; raise `BadInput` when a later cut needs it."""
     if not 0 <= number < len(session.cuts):
         raise BadInput(f"there is no cut {number + 1}; the part has {len(session.cuts)}")
-    return engine.with_cuts(session, session.cuts[:number] + session.cuts[number + 1:], progress)
+    return engine.with_cuts(session, session.cuts[:number] + session.cuts[number + 1 :], progress)
 
 
 def with_local(session: Session, ids: Iterable[str], value: bool) -> Session:
     """Return the session with groups called local features by hand, or not; raise `BadInput` for an id that no group has."""
     found = _recognition(session)
     wanted = {_group(found, id).id for id in ids}
-    changed = tuple(replace(f, attributes={**f.attributes, "local": value}, by_hand=True) if f.id in wanted else f for f in found.features)
+    changed = tuple(
+        replace(f, attributes={**f.attributes, "local": value}, by_hand=True)
+        if f.id in wanted
+        else f
+        for f in found.features
+    )
     return replace(session, recognition=replace(found, features=changed))
 
 
@@ -63,10 +70,17 @@ def with_moved(engine: Engine, session: Session, faces: Iterable[int], group: st
     found, moved = _recognition(session), set(faces)
     strange = sorted(moved - set(engine.context_of(session).part.tags))
     if strange or not moved:
-        raise BadInput(f"face {strange[0]} is not a face of the chosen solid" if strange else "no faces were chosen to be moved")
+        raise BadInput(
+            f"face {strange[0]} is not a face of the chosen solid"
+            if strange
+            else "no faces were chosen to be moved"
+        )
     sharing = exclusive_kinds(found.family)
     into = _group(found, group) if group else _new_group(found, min(moved))
-    features = tuple(f if f.id == into.id or f.kind not in sharing else without_faces(f, moved) for f in found.features)
+    features = tuple(
+        f if f.id == into.id or f.kind not in sharing else without_faces(f, moved)
+        for f in found.features
+    )
     into = replace(into, faces=_faces(moved.union(into.tags)), by_hand=True)
     features = tuple(into if f.id == into.id else f for f in features if f.faces)
     features = features if into in features else (*features, into)
@@ -83,13 +97,17 @@ def tags_of(session: Session, what: Sequence[str]) -> tuple[int, ...]:
         if word == LOCAL:
             tags.update(_local(found))
         elif word == REMAINING:
-            tags.update({*found.unexplained, *(t for f in found.features for t in f.tags)} - _local(found))
+            tags.update(
+                {*found.unexplained, *(t for f in found.features for t in f.tags)} - _local(found)
+            )
         else:
             tags.update(_group(found, word).tags)
     if not what:
         raise BadInput(f"no faces were chosen; name {LOCAL}, {REMAINING} or groups by their ids")
     if not tags:
-        raise BadInput(f"{' and '.join(what)}: no face of the part belongs to it; name other groups, or call some local features")
+        raise BadInput(
+            f"{' and '.join(what)}: no face of the part belongs to it; name other groups, or call some local features"
+        )
     return tuple(sorted(tags))
 
 
@@ -99,14 +117,18 @@ def export(engine: Engine, session: Session, what: Sequence[str], path: str | Pa
     Raises `BadInput` for another suffix, and when the file can't be written.
     """
     from trunnion.part.write import write_faces
+
     part, tags = engine.context_of(session).part, tags_of(session, what)
     write_faces([part.face_shape(t) for t in tags], path)
     return len(tags)
 
 
-def size_errors(engine: Engine, session: Session, counts: Sequence[int] = COUNTS, progress: Progress = QUIET) -> tuple[SizeError, ...]:
+def size_errors(
+    engine: Engine, session: Session, counts: Sequence[int] = COUNTS, progress: Progress = QUIET
+) -> tuple[SizeError, ...]:
     """Return how exact the feature sizes are, and what they cost, for so many points on each edge; the last is the paper's repair."""
     from trunnion.recognize.surface.accuracy import size_errors as measured
+
     part = engine.context_of(session).part
     return measured(part, part.tags, counts, progress)
 
@@ -128,7 +150,9 @@ def _group(found: Recognition, id: str) -> Feature:
         if f.id == id:
             return f
     known = [f.id for f in groups]
-    raise BadInput(f"there is no group {id}; " + (f"known: {known[0]} to {known[-1]}" if known else NO_GROUPS))
+    raise BadInput(
+        f"there is no group {id}; " + (f"known: {known[0]} to {known[-1]}" if known else NO_GROUPS)
+    )
 
 
 def _groups(found: Recognition) -> tuple[Feature, ...]:
@@ -141,7 +165,12 @@ def _new_group(found: Recognition, face: int) -> Feature:
         raise BadInput(NO_GROUPS)
     kind = exclusive_kinds(found.family)[0]
     local = from_group is not None and bool(from_group.attributes.get("local"))
-    return Feature(id=free_id(kind, {f.id for f in found.features}), kind=kind, faces=(), attributes={"local": local})
+    return Feature(
+        id=free_id(kind, {f.id for f in found.features}),
+        kind=kind,
+        faces=(),
+        attributes={"local": local},
+    )
 
 
 def _faces(tags: Iterable[int]) -> tuple[FaceRole, ...]:

@@ -47,28 +47,57 @@ _FIRST_CHUNK = 256
 _TOGETHER_S = 0.1
 """Time that blocks cut together should take."""
 _MOST_TOGETHER = 20_000
-_PER_MOVE = ("start", "end", "start_axis", "end_axis", "centre", "sweep", "upright", "row", "section", "block", "rapid", "feed", "length",
-             "tool")
+_PER_MOVE = (
+    "start",
+    "end",
+    "start_axis",
+    "end_axis",
+    "centre",
+    "sweep",
+    "upright",
+    "row",
+    "section",
+    "block",
+    "rapid",
+    "feed",
+    "length",
+    "tool",
+)
 
 
 class Playback:
     """A plan that can be looked at from its first block to its last. Not for several threads at a time."""
 
-    def __init__(self, session: Session, context: Context, cell: float = 0.0, progress: Progress = QUIET) -> None:
+    def __init__(
+        self, session: Session, context: Context, cell: float = 0.0, progress: Progress = QUIET
+    ) -> None:
         """`cell` mm is the fineness of the stock; 0: as fine as a picture shows. Raises `BadCall` where nothing can be played."""
         if session.process is None or session.blank is None:
             raise BadCall("no toolpaths yet: generate them first")
-        programs, files = progress.aside(lambda _: played(session, context.shop.machines), "reading the text back")
+        programs, files = progress.aside(
+            lambda _: played(session, context.shop.machines), "reading the text back"
+        )
         if not any(p.sections for p in programs):
             raise BadCall("no toolpaths yet: generate them first")
         self.blank = session.blank
         bundles = bundles_of(programs, self.blank, checked(choose(ProofSettings, session.choices)))
-        self.cell = cell or float(np.max(self.blank.size)) / (FINENESS if bundles == ("z",) else COARSER)
+        self.cell = cell or float(np.max(self.blank.size)) / (
+            FINENESS if bundles == ("z",) else COARSER
+        )
         self._programs = programs
-        self._moves = progress.aside(lambda _: [moves_of(p.sections) for p in programs], "putting the blocks in time")
+        self._moves = progress.aside(
+            lambda _: [moves_of(p.sections) for p in programs], "putting the blocks in time"
+        )
         machine = context.shop.machines[programs[0].setup.machine]
-        self.timeline = progress.aside(lambda _: timeline_of(programs, self._moves, files, machine,
-                                                             digest(self.cell, [f.text for f in files], _keys(session))))
+        self.timeline = progress.aside(
+            lambda _: timeline_of(
+                programs,
+                self._moves,
+                files,
+                machine,
+                digest(self.cell, [f.text for f in files], _keys(session)),
+            )
+        )
         self._starts = np.cumsum([0, *(len(m) for m in self._moves)])
         self._every = max(1, -(-len(self.timeline) // SNAPSHOTS))
         self._chunk = _FIRST_CHUNK
@@ -97,7 +126,13 @@ class Playback:
             self._step(wanted, progress.part(done, done))
             now = time.perf_counter()
             # A block may take a thousand times as long as another: the chunk at most doubles.
-            self._chunk = int(np.clip(self._chunk * _TOGETHER_S / max(now - start, 1e-6), 16, min(2 * self._chunk, _MOST_TOGETHER)))
+            self._chunk = int(
+                np.clip(
+                    self._chunk * _TOGETHER_S / max(now - start, 1e-6),
+                    16,
+                    min(2 * self._chunk, _MOST_TOGETHER),
+                )
+            )
             start = now
             if now >= end:
                 break
@@ -107,7 +142,12 @@ class Playback:
         """Cut some blocks: not beyond the position wanted, the next snapshot or the end of a program."""
         first = int(self._position)
         program = int(np.searchsorted(self._starts, first, side="right")) - 1
-        stop = min(wanted, first + self._chunk, (first // self._every + 1) * self._every, self._starts[program + 1])
+        stop = min(
+            wanted,
+            first + self._chunk,
+            (first // self._every + 1) * self._every,
+            self._starts[program + 1],
+        )
         last = int(stop)
         own = self._moves[program]
         rows = np.arange(first, last) - self._starts[program]
@@ -117,7 +157,9 @@ class Playback:
         try:
             for moves in pieces:
                 if len(moves):
-                    run = run_stock(self._stock, moves, self._programs[program].setup.frame, progress=progress)
+                    run = run_stock(
+                        self._stock, moves, self._programs[program].setup.frame, progress=progress
+                    )
                     self._removed += float(run.removed.sum())
         except (TrunnionError, Cancelled):
             self._go_back(self._position)  # a stock that was not cut whole is of no use
@@ -136,9 +178,14 @@ class Playback:
         frame = self._programs[program].setup.frame
         tip, axis = self.timeline.pose(block + share)
         k = int(own.block[row])
-        path = Toolpath(position=np.stack([own.start[row], frame.to_local(tip)]), centre=np.stack([np.full(3, np.nan), own.centre[row]]),
-                        axis=np.stack([own.start_axis[row], frame.local_direction(axis)]), feed=np.array([0.0, own.feed[row]]),
-                        motion=np.array([Motion.RAPID, section.path.motion[k]]), mark=np.array([Mark.RETRACT, section.path.mark[k]]))
+        path = Toolpath(
+            position=np.stack([own.start[row], frame.to_local(tip)]),
+            centre=np.stack([np.full(3, np.nan), own.centre[row]]),
+            axis=np.stack([own.start_axis[row], frame.local_direction(axis)]),
+            feed=np.array([0.0, own.feed[row]]),
+            motion=np.array([Motion.RAPID, section.path.motion[k]]),
+            mark=np.array([Mark.RETRACT, section.path.mark[k]]),
+        )
         return taken(moves_of([replace(section, path=path)]), np.array([1]))
 
     def _go_back(self, wanted: float) -> None:
@@ -150,16 +197,28 @@ class Playback:
     def _moment(self, progress: Progress) -> Moment:
         line = self.timeline
         progress.doing("making the picture of the stock")
-        mesh = mesh_of(self._stock)  # not aside: cancelled, it would go on reading a stock that is cut again
+        mesh = mesh_of(
+            self._stock
+        )  # not aside: cancelled, it would go on reading a stock that is cut again
         points, triangles = mesh.points, mesh.triangles
         tip, axis = line.pose(self._position)
-        return Moment(position=self._position, points=self.blank.frame.to_world(points).astype(np.float32),
-                      triangles=triangles.astype(np.int32), fresh=fresh_of(points, triangles, self.blank, 1e-4 * self.cell), tip=tip,
-                      axis=axis, operation=line.passage(self._position).operation, line=int(line.line[line.block(self._position)]),
-                      removed=self._removed, time=line.seconds_at(self._position))
+        return Moment(
+            position=self._position,
+            points=self.blank.frame.to_world(points).astype(np.float32),
+            triangles=triangles.astype(np.int32),
+            fresh=fresh_of(points, triangles, self.blank, 1e-4 * self.cell),
+            tip=tip,
+            axis=axis,
+            operation=line.passage(self._position).operation,
+            line=int(line.line[line.block(self._position)]),
+            removed=self._removed,
+            time=line.seconds_at(self._position),
+        )
 
 
-def played(session: Session, machines: Mapping[str, Machine]) -> tuple[tuple[Program, ...], tuple[PostedFile, ...]]:
+def played(
+    session: Session, machines: Mapping[str, Machine]
+) -> tuple[tuple[Program, ...], tuple[PostedFile, ...]]:
     """Return the programs to play, and the posted file of each: of the text that belongs to the plan, else of the toolpaths, without."""
     try:
         files = tuple(f for f in release(session) if f.setup)
@@ -172,7 +231,13 @@ def _keys(session: Session) -> tuple[str, ...]:
     return tuple(p.key for p in session.paths)
 
 
-def timeline_of(programs: tuple[Program, ...], moves: list[Moves], files: tuple[PostedFile, ...], machine: Machine, key: str) -> Timeline:
+def timeline_of(
+    programs: tuple[Program, ...],
+    moves: list[Moves],
+    files: tuple[PostedFile, ...],
+    machine: Machine,
+    key: str,
+) -> Timeline:
     """Return all blocks of some programs over time; a change of the tool counts to the first block after it."""
     passages: list[Passage] = []
     spans: list[Floats] = []
@@ -183,18 +248,32 @@ def timeline_of(programs: tuple[Program, ...], moves: list[Moves], files: tuple[
         for n, section in enumerate(program.sections):
             if n == 0 or program.sections[n - 1].tool.number != section.tool.number:
                 span[begins[n]] += machine.tool_change_s
-            passages.append(Passage(operation=section.operation, setup=program.setup.name, tool=section.tool,
-                                    file=files[k].suffix if files else ""))
-            lines.append(np.array(section.block_lines or np.zeros(len(section.path)), dtype=np.int64))
+            passages.append(
+                Passage(
+                    operation=section.operation,
+                    setup=program.setup.name,
+                    tool=section.tool,
+                    file=files[k].suffix if files else "",
+                )
+            )
+            lines.append(
+                np.array(section.block_lines or np.zeros(len(section.path)), dtype=np.int64)
+            )
         spans.append(span)
     sections = [(p.setup.frame, s) for p in programs for s in p.sections]
     return Timeline(
-        key=key, passages=tuple(passages), first=np.cumsum([0, *(len(s.path) for _, s in sections)]),
+        key=key,
+        passages=tuple(passages),
+        first=np.cumsum([0, *(len(s.path) for _, s in sections)]),
         tip=np.vstack([f.to_world(s.path.position) for f, s in sections]),
         axis=np.vstack([f.world_direction(s.path.axis) for f, s in sections]),
-        centre=np.vstack([f.to_world(s.path.centre) for f, s in sections]), sweep=np.concatenate([s.path.sweeps() for _, s in sections]),
-        rapid=np.concatenate([s.path.motion == Motion.RAPID for _, s in sections]), mark=np.concatenate([s.path.mark for _, s in sections]),
-        line=np.concatenate(lines), time=np.concatenate([[0.0], np.cumsum(np.concatenate(spans))]))
+        centre=np.vstack([f.to_world(s.path.centre) for f, s in sections]),
+        sweep=np.concatenate([s.path.sweeps() for _, s in sections]),
+        rapid=np.concatenate([s.path.motion == Motion.RAPID for _, s in sections]),
+        mark=np.concatenate([s.path.mark for _, s in sections]),
+        line=np.concatenate(lines),
+        time=np.concatenate([[0.0], np.cumsum(np.concatenate(spans))]),
+    )
 
 
 def taken(moves: Moves, rows: Ints) -> Moves:

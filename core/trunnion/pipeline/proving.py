@@ -32,9 +32,22 @@ def program_of(session: Session, setup: Setup) -> Program:
     for operation in session.process.of_setup(setup.name):
         made = session.path_of(operation.id)
         if made is not None and len(made.path):
-            sections.append(ProgramSection(operation=operation.id, tool=operation.tool, spindle=operation.data.spindle, path=made.path,
-                                           width=operation.data.width, depth=operation.data.depth, feed=operation.data.feed))
-    return Program(name=f"{session.part.name}.{setup.name}", setup=held(session, setup), sections=tuple(sections))
+            sections.append(
+                ProgramSection(
+                    operation=operation.id,
+                    tool=operation.tool,
+                    spindle=operation.data.spindle,
+                    path=made.path,
+                    width=operation.data.width,
+                    depth=operation.data.depth,
+                    feed=operation.data.feed,
+                )
+            )
+    return Program(
+        name=f"{session.part.name}.{setup.name}",
+        setup=held(session, setup),
+        sections=tuple(sections),
+    )
 
 
 def held(session: Session, setup: Setup) -> Setup:
@@ -47,44 +60,82 @@ def programs_of(session: Session) -> tuple[Program, ...]:
     return tuple(p for p in (program_of(session, s) for s in session.setups) if p.sections)
 
 
-def post_texts(session: Session, header: Header, machines: Mapping[str, Machine], progress: Progress = QUIET) -> tuple[PostedFile, ...]:
+def post_texts(
+    session: Session, header: Header, machines: Mapping[str, Machine], progress: Progress = QUIET
+) -> tuple[PostedFile, ...]:
     """Return the texts of every program: one for each setup in the control's dialect, and the CL of all setups."""
     chosen = checked(choose(PostSettings, session.choices))
     dialect, cl = registry.get("dialects", chosen.dialect)(), registry.get("dialects", "apt")()
     programs, places = programs_of(session), places_of(session, machines)
-    posted = [PostedFile(suffix=f"{p.setup.name}.{dialect.suffix}", dialect=dialect.name, setup=p.setup.name,
-                         text=dialect.write((p,), header, chosen, places)) for p in progress.each(programs)]
+    posted = [
+        PostedFile(
+            suffix=f"{p.setup.name}.{dialect.suffix}",
+            dialect=dialect.name,
+            setup=p.setup.name,
+            text=dialect.write((p,), header, chosen, places),
+        )
+        for p in progress.each(programs)
+    ]
     progress.check()
     if programs:
-        posted.append(PostedFile(suffix=cl.suffix, dialect=cl.name, setup="", text=cl.write(programs, header, chosen, places)))
+        posted.append(
+            PostedFile(
+                suffix=cl.suffix,
+                dialect=cl.name,
+                setup="",
+                text=cl.write(programs, header, chosen, places),
+            )
+        )
     return tuple(posted)
 
 
-def read_back(session: Session, posted: tuple[PostedFile, ...], machines: Mapping[str, Machine],
-              progress: Progress = QUIET) -> tuple[Program, ...]:
+def read_back(
+    session: Session,
+    posted: tuple[PostedFile, ...],
+    machines: Mapping[str, Machine],
+    progress: Progress = QUIET,
+) -> tuple[Program, ...]:
     """Return the motions that the posted texts of the control's dialect say, setup by setup."""
     if session.process is None:
         raise BadCall("no operations yet: generate the route first")
     tools, places = session.process.tools(), places_of(session, machines)
-    read = (read_program(f.dialect, f.text, tools, held(session, session.process.setup(f.setup)), places)
-            for f in progress.each(posted) if f.setup)
+    read = (
+        read_program(
+            f.dialect, f.text, tools, held(session, session.process.setup(f.setup)), places
+        )
+        for f in progress.each(posted)
+        if f.setup
+    )
     return tuple(with_engagement(p, session.process) for p in read)
 
 
 def with_engagement(program: Program, process: ProcessTree) -> Program:
     """Return a program whose sections know the engagement that their operations' feeds were chosen for: no text says that."""
     known = {o.id: o.data for o in process.operations}
-    sections = tuple(replace(s, width=known[s.operation].width, depth=known[s.operation].depth, feed=known[s.operation].feed)
-                     if s.operation in known else s for s in program.sections)
+    sections = tuple(
+        replace(
+            s,
+            width=known[s.operation].width,
+            depth=known[s.operation].depth,
+            feed=known[s.operation].feed,
+        )
+        if s.operation in known
+        else s
+        for s in program.sections
+    )
     return replace(program, sections=sections)
 
 
-def prove_session(session: Session, context: Context, progress: Progress) -> tuple[Verdict, tuple[PostedFile, ...]]:
+def prove_session(
+    session: Session, context: Context, progress: Progress
+) -> tuple[Verdict, tuple[PostedFile, ...]]:
     """Return the verdict on the posted text of a session, and that text."""
     if session.process is None or session.blank is None or session.part is None:
         raise BadCall("no toolpaths yet: generate them first")
     progress.at(0.0, "posting")
-    posted = progress.aside(lambda own: post_texts(session, Header.of(session), context.shop.machines, own))
+    posted = progress.aside(
+        lambda own: post_texts(session, Header.of(session), context.shop.machines, own)
+    )
     progress.at(0.05, "reading the text back")
     programs = progress.aside(lambda own: read_back(session, posted, context.shop.machines, own))
     verdict = prove_programs(session, context, programs, progress.part(0.1, 1.0, "proof"))
@@ -93,12 +144,16 @@ def prove_session(session: Session, context: Context, progress: Progress) -> tup
 
 def errors_of_part(session: Session) -> tuple[Finding, ...]:
     """Return the errors of the part itself: what they name can't be proven against."""
-    return tuple(f for f in (session.part.findings if session.part else ()) if f.severity is Severity.ERROR)
+    return tuple(
+        f for f in (session.part.findings if session.part else ()) if f.severity is Severity.ERROR
+    )
 
 
 def errors_before(session: Session) -> tuple[Finding, ...]:
     """Return the errors that the part and the steps before the proof have told."""
-    told = (f for step, record in session.records.items() if step != "verify" for f in record.findings)
+    told = (
+        f for step, record in session.records.items() if step != "verify" for f in record.findings
+    )
     return errors_of_part(session) + tuple(f for f in told if f.severity is Severity.ERROR)
 
 
@@ -107,12 +162,18 @@ def held_back(verdict: Verdict, errors: Sequence[Finding]) -> Verdict:
     if not errors:
         return verdict
     codes = ", ".join(dict.fromkeys(f.code for f in errors))
-    held = error("verify.errors-before", f"{len(errors)} errors were told before the proof ({codes}): {errors[0].text}", *errors[0].where,
-                 remedy="mend what they name, then program the part again")
+    held = error(
+        "verify.errors-before",
+        f"{len(errors)} errors were told before the proof ({codes}): {errors[0].text}",
+        *errors[0].where,
+        remedy="mend what they name, then program the part again",
+    )
     return replace(verdict, outcome=Outcome.FAILED, findings=(held, *verdict.findings))
 
 
-def prove_programs(session: Session, context: Context, programs: tuple[Program, ...], progress: Progress) -> Verdict:
+def prove_programs(
+    session: Session, context: Context, programs: tuple[Program, ...], progress: Progress
+) -> Verdict:
     """Return the verdict on programs, wherever their motions come from."""
     if session.process is None or session.blank is None:
         raise BadCall("no blank or operations: nothing to prove against")
@@ -120,10 +181,25 @@ def prove_programs(session: Session, context: Context, programs: tuple[Program, 
     names = [s.name for s in session.process.setups]
     strange = next((f for f in session.fixtures if f.setup and f.setup not in names), None)
     if strange is not None:
-        raise BadInput(f"fixture {strange.name} is for setup {strange.setup}; the part has {', '.join(names)}")
+        raise BadInput(
+            f"fixture {strange.name} is for setup {strange.setup}; the part has {', '.join(names)}"
+        )
     machine = context.shop.machines[session.process.setups[0].machine]
-    planned = {tag for operation in session.process.operations if not operation.suppressed for tag in operation.faces}
-    verdict: Verdict = prove(programs, context.part, session.blank, context.shop.tools, machine,
-                             checked(choose(ProofSettings, session.choices)), progress, planned_faces=sorted(planned),
-                             material=context.shop.materials.get(session.process.material))
+    planned = {
+        tag
+        for operation in session.process.operations
+        if not operation.suppressed
+        for tag in operation.faces
+    }
+    verdict: Verdict = prove(
+        programs,
+        context.part,
+        session.blank,
+        context.shop.tools,
+        machine,
+        checked(choose(ProofSettings, session.choices)),
+        progress,
+        planned_faces=sorted(planned),
+        material=context.shop.materials.get(session.process.material),
+    )
     return verdict

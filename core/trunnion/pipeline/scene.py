@@ -43,15 +43,23 @@ class SessionContext:
         """Return the part's skin in its own coordinates within a chord error (mm)."""
         return self._context.skin(chord, progress)
 
-    def around(self, setup: Setup, cutting: Frame, skin: Skin, progress: Progress) -> ClearanceQuery:
+    def around(
+        self, setup: Setup, cutting: Frame, skin: Skin, progress: Progress
+    ) -> ClearanceQuery:
         """Return the clearance queries of a setup for a cutting frame, in which `skin` is the part's.
 
         `progress` is looked at from now on.
         """
         key = (setup.name, digest(cutting))
         if key not in self._around:
-            self._around[key] = ClearanceQuery(self.part, skin, cutting, setup.frame, self._context.shop.machine(setup.machine),
-                                                 self._session.fixtures_of(setup.name))
+            self._around[key] = ClearanceQuery(
+                self.part,
+                skin,
+                cutting,
+                setup.frame,
+                self._context.shop.machine(setup.machine),
+                self._session.fixtures_of(setup.name),
+            )
         self._around[key].progress = progress
         return self._around[key]
 

@@ -65,13 +65,20 @@ class Step:
 
 
 def _family_settings() -> tuple[type, ...]:
-    return (RecognizeSettings, *(registry.get(FAMILIES, name).settings for name in registry.names(FAMILIES)))
+    return (
+        RecognizeSettings,
+        *(registry.get(FAMILIES, name).settings for name in registry.names(FAMILIES)),
+    )
 
 
 def _used_to_recognize(session: Session) -> tuple[type, ...]:
     """Return the settings of recognition and of the family that was recognised: which one that is depends on no family's settings."""
     known = _served(session, FAMILIES)
-    return (RecognizeSettings, registry.get(FAMILIES, known).settings) if known else (RecognizeSettings,)
+    return (
+        (RecognizeSettings, registry.get(FAMILIES, known).settings)
+        if known
+        else (RecognizeSettings,)
+    )
 
 
 def _used_to_route(session: Session) -> tuple[type, ...]:
@@ -93,25 +100,41 @@ def _strategies_used(session: Session) -> tuple[type, ...]:
 
 def _route_settings() -> tuple[type, ...]:
     """Return the settings of setups and of every planner, each group once."""
-    return tuple(dict.fromkeys((SetupSettings, *(group for name in registry.names(PLANNERS)
-                                                 for group in registry.get(PLANNERS, name).settings))))
+    return tuple(
+        dict.fromkeys(
+            (
+                SetupSettings,
+                *(
+                    group
+                    for name in registry.names(PLANNERS)
+                    for group in registry.get(PLANNERS, name).settings
+                ),
+            )
+        )
+    )
 
 
 def _recognize(session: Session, context: Context, progress: Progress) -> Result:
     found = replace(recognised(session, context, progress), face_area=context.part.graph().area)
     kept = with_features_by_hand(session.recognition, found)
     after = replace(session, recognition=kept)
-    return Result(session=after if kept is found else measured_anew(after, context), findings=kept.findings)
+    return Result(
+        session=after if kept is found else measured_anew(after, context), findings=kept.findings
+    )
 
 
 def measured_anew(session: Session, context: Context) -> Session:
     """Return the session with the sizes of features whose faces a person changed, where the family can measure them."""
     found = _recognition(session)
-    family = registry.get(FAMILIES, found.family)() if found.family in registry.names(FAMILIES) else None
+    family = (
+        registry.get(FAMILIES, found.family)() if found.family in registry.names(FAMILIES) else None
+    )
     if not isinstance(family, Measuring):
         return session
     chosen: Any = checked(choose(family.settings, session.choices))
-    return replace(session, recognition=family.measured(found, context.part.graph(), context.part, chosen))
+    return replace(
+        session, recognition=family.measured(found, context.part.graph(), context.part, chosen)
+    )
 
 
 def _recognition(session: Session) -> Recognition:
@@ -130,7 +153,9 @@ def _certain(session: Session) -> Recognition:
 
 def _size(session: Session, context: Context, progress: Progress) -> Result:
     progress.at(0.0, "measuring")
-    return Result(session=replace(session, sizes=size_table(_certain(session), context.part.graph())))
+    return Result(
+        session=replace(session, sizes=size_table(_certain(session), context.part.graph()))
+    )
 
 
 def _blank(session: Session, context: Context, progress: Progress) -> Result:
@@ -138,10 +163,17 @@ def _blank(session: Session, context: Context, progress: Progress) -> Result:
     recognition = _certain(session)
     chosen = checked(choose(BlankSettings, session.choices))
     if chosen.material not in context.shop.materials:
-        raise BadInput(f"there is no material {chosen.material} in the catalogue; known: {', '.join(sorted(context.shop.materials))}")
+        raise BadInput(
+            f"there is no material {chosen.material} in the catalogue; known: {', '.join(sorted(context.shop.materials))}"
+        )
     frame = recognition.frame
     low, high = context.box(frame)
-    return Result(session=replace(session, blank=make_blank(frame, low, high, context.shop.materials[chosen.material], chosen)))
+    return Result(
+        session=replace(
+            session,
+            blank=make_blank(frame, low, high, context.shop.materials[chosen.material], chosen),
+        )
+    )
 
 
 def _route(session: Session, context: Context, progress: Progress) -> Result:
@@ -151,13 +183,27 @@ def _route(session: Session, context: Context, progress: Progress) -> Result:
     planner = planner_for(recognition.family)
     setup = checked(choose(SetupSettings, session.choices))
     if setup.machine not in context.shop.machines:
-        raise BadInput(f"there is no machine {setup.machine} in the catalogue; known: {', '.join(sorted(context.shop.machines))}")
+        raise BadInput(
+            f"there is no machine {setup.machine} in the catalogue; known: {', '.join(sorted(context.shop.machines))}"
+        )
     setups = make_setups(recognition, session.blank, context.shop.machines[setup.machine], setup)
     planner.can_plan(context.part)
-    process = planner.route(RouteJob(recognition=recognition, sizes=session.sizes, blank=session.blank, setups=setups, shop=context.shop,
-                                     context=SessionContext(context, session), choices=session.choices, progress=progress))
+    process = planner.route(
+        RouteJob(
+            recognition=recognition,
+            sizes=session.sizes,
+            blank=session.blank,
+            setups=setups,
+            shop=context.shop,
+            context=SessionContext(context, session),
+            choices=session.choices,
+            progress=progress,
+        )
+    )
     process = with_operations_by_hand(session.process, process)
-    return Result(session=replace(session, setups=setups, process=process), findings=process.findings)
+    return Result(
+        session=replace(session, setups=setups, process=process), findings=process.findings
+    )
 
 
 def _optimize(session: Session, context: Context, progress: Progress) -> Result:
@@ -165,8 +211,12 @@ def _optimize(session: Session, context: Context, progress: Progress) -> Result:
     if session.process is None:
         raise BadCall("no operations yet: generate the route first")
     routed = session.process
-    balanced = balance(routed, context.shop, checked(choose(CuttingSettings, session.choices)), session.choices)
-    return Result(session=replace(session, process=balanced), findings=overloads(balanced.operations))
+    balanced = balance(
+        routed, context.shop, checked(choose(CuttingSettings, session.choices)), session.choices
+    )
+    return Result(
+        session=replace(session, process=balanced), findings=overloads(balanced.operations)
+    )
 
 
 def _toolpath(session: Session, context: Context, progress: Progress) -> Result:
@@ -177,7 +227,9 @@ def _toolpath(session: Session, context: Context, progress: Progress) -> Result:
 
 def _verify(session: Session, context: Context, progress: Progress) -> Result:
     verdict, posted = prove_session(session, context, progress)
-    return Result(session=replace(session, verdict=verdict, posted=posted), findings=verdict.findings)
+    return Result(
+        session=replace(session, verdict=verdict, posted=posted), findings=verdict.findings
+    )
 
 
 def _record_key(session: Session, step: str) -> str:
@@ -188,7 +240,10 @@ def _record_key(session: Session, step: str) -> str:
 def _operations_without_data(session: Session) -> tuple[Any, ...]:
     if session.process is None:
         return ()
-    return tuple((o.id, o.strategy, o.feature, o.tool, dict(o.choices), o.by_hand, o.suppressed) for o in session.process.operations)
+    return tuple(
+        (o.id, o.strategy, o.feature, o.tool, dict(o.choices), o.by_hand, o.suppressed)
+        for o in session.process.operations
+    )
 
 
 def _strategies_chosen(session: Session) -> tuple[Any, ...]:
@@ -197,27 +252,96 @@ def _strategies_chosen(session: Session) -> tuple[Any, ...]:
 
 
 STEP_TABLE: tuple[Step, ...] = (
-    Step(name="recognize", title="Recognize", after=(), settings=_family_settings, uses=_used_to_recognize, work=_recognize,
-         reads=lambda s, b: (b.part.digest, b.part.solid, registry.names(FAMILIES), registry.names(KINDS)),
-         done=lambda s: s.recognition is not None, version=2),
-    Step(name="size", title="Size analysis", after=("recognize",), settings=lambda: (), work=_size,
-         reads=lambda s, b: (s.recognition,), done=lambda s: "size" in s.records),
-    Step(name="blank", title="Blank", after=("recognize",), settings=lambda: (BlankSettings,), work=_blank,
-         reads=lambda s, b: (b.part.digest, s.recognition.frame if s.recognition else None, b.shop.digest),
-         done=lambda s: s.blank is not None),
-    Step(name="route", title="Process route", after=("size", "blank"), work=_route,
-         settings=_route_settings, uses=_used_to_route,
-         reads=lambda s, b: (b.part.digest, s.recognition, s.blank, b.shop.digest), done=lambda s: s.process is not None),
-    Step(name="optimize", title="Optimize", after=("route",), settings=lambda: (CuttingSettings,), work=_optimize,
-         reads=lambda s, b: (_record_key(s, "route"), _operations_without_data(s), _strategies_chosen(s), b.shop.digest),
-         done=lambda s: s.process is not None, version=2),
-    Step(name="toolpath", title="Toolpaths", after=("optimize",), settings=strategy_settings, uses=_strategies_used,
-         work=_toolpath,
-         reads=lambda s, b: (b.part.digest, s.recognition, s.blank, s.setups, s.process), done=lambda s: "toolpath" in s.records),
-    Step(name="verify", title="Verify and post", after=("toolpath",), settings=lambda: (PostSettings, ProofSettings), work=_verify,
-         reads=lambda s, b: (b.part.digest, s.blank, s.setups, s.process, tuple(p.key for p in s.paths),
-                             s.fixtures),
-         done=lambda s: s.verdict is not None, version=2),
+    Step(
+        name="recognize",
+        title="Recognize",
+        after=(),
+        settings=_family_settings,
+        uses=_used_to_recognize,
+        work=_recognize,
+        reads=lambda s, b: (
+            b.part.digest,
+            b.part.solid,
+            registry.names(FAMILIES),
+            registry.names(KINDS),
+        ),
+        done=lambda s: s.recognition is not None,
+        version=2,
+    ),
+    Step(
+        name="size",
+        title="Size analysis",
+        after=("recognize",),
+        settings=lambda: (),
+        work=_size,
+        reads=lambda s, b: (s.recognition,),
+        done=lambda s: "size" in s.records,
+    ),
+    Step(
+        name="blank",
+        title="Blank",
+        after=("recognize",),
+        settings=lambda: (BlankSettings,),
+        work=_blank,
+        reads=lambda s, b: (
+            b.part.digest,
+            s.recognition.frame if s.recognition else None,
+            b.shop.digest,
+        ),
+        done=lambda s: s.blank is not None,
+    ),
+    Step(
+        name="route",
+        title="Process route",
+        after=("size", "blank"),
+        work=_route,
+        settings=_route_settings,
+        uses=_used_to_route,
+        reads=lambda s, b: (b.part.digest, s.recognition, s.blank, b.shop.digest),
+        done=lambda s: s.process is not None,
+    ),
+    Step(
+        name="optimize",
+        title="Optimize",
+        after=("route",),
+        settings=lambda: (CuttingSettings,),
+        work=_optimize,
+        reads=lambda s, b: (
+            _record_key(s, "route"),
+            _operations_without_data(s),
+            _strategies_chosen(s),
+            b.shop.digest,
+        ),
+        done=lambda s: s.process is not None,
+        version=2,
+    ),
+    Step(
+        name="toolpath",
+        title="Toolpaths",
+        after=("optimize",),
+        settings=strategy_settings,
+        uses=_strategies_used,
+        work=_toolpath,
+        reads=lambda s, b: (b.part.digest, s.recognition, s.blank, s.setups, s.process),
+        done=lambda s: "toolpath" in s.records,
+    ),
+    Step(
+        name="verify",
+        title="Verify and post",
+        after=("toolpath",),
+        settings=lambda: (PostSettings, ProofSettings),
+        work=_verify,
+        reads=lambda s, b: (
+            b.part.digest,
+            s.blank,
+            s.setups,
+            s.process,
+            tuple(p.key for p in s.paths),
+            s.fixtures,
+        ),
+        done=lambda s: s.verdict is not None,
+        version=2,
+    ),
 )
 
 STEPS: tuple[str, ...] = tuple(step.name for step in STEP_TABLE)

@@ -46,50 +46,107 @@ def make_paths(session: Session, context: Context, progress: Progress) -> tuple[
     planner, parts = planner_for(session.recognition.family), SessionContext(context, session)
     total = sum(len(session.process.of_setup(setup.name)) for setup in session.setups)
     for setup in session.setups:
-        scene = SetupScene(context=parts, recognition=session.recognition, blank=session.blank, setup=setup, process=session.process,
-                           fixtures=session.fixtures_of(setup.name))
+        scene = SetupScene(
+            context=parts,
+            recognition=session.recognition,
+            blank=session.blank,
+            setup=setup,
+            process=session.process,
+            fixtures=session.fixtures_of(setup.name),
+        )
         for operation in session.process.of_setup(setup.name):
             progress.at(len(made) / max(total, 1), f"toolpath of {operation.id}")
-            here = progress.part(len(made) / max(total, 1), (len(made) + 1) / max(total, 1), f"toolpath of {operation.id}")
+            here = progress.part(
+                len(made) / max(total, 1),
+                (len(made) + 1) / max(total, 1),
+                f"toolpath of {operation.id}",
+            )
             made.append(_make_one(session, planner, scene, operation, here))
     return tuple(made)
 
 
 def findings_of(paths: Sequence[OperationPath], process: ProcessTree) -> tuple[Finding, ...]:
     """Return what toolpaths have told, without what is said of slopes and corners that another operation on the same faces is there for."""
-    return tuple(f for path in paths for f in path.findings if not _settled(f, process.operation(path.operation), process))
+    return tuple(
+        f
+        for path in paths
+        for f in path.findings
+        if not _settled(f, process.operation(path.operation), process)
+    )
 
 
 def _settled(finding: Finding, own: Operation, process: ProcessTree) -> bool:
     """Say whether a finding is of what its strategy leaves to others, and another operation on the same faces is there for it."""
     return finding.code in registry.get(STRATEGIES, own.strategy).leaves and any(
-        finding.code in registry.get(STRATEGIES, o.strategy).settles and set(o.faces) & set(own.faces)
-        for o in process.operations if o.id != own.id and not o.suppressed)
+        finding.code in registry.get(STRATEGIES, o.strategy).settles
+        and set(o.faces) & set(own.faces)
+        for o in process.operations
+        if o.id != own.id and not o.suppressed
+    )
 
 
-def _make_one(session: Session, planner: Planner, scene: SetupScene, operation: Operation, progress: Progress) -> OperationPath:
+def _make_one(
+    session: Session, planner: Planner, scene: SetupScene, operation: Operation, progress: Progress
+) -> OperationPath:
     strategy = registry.get(STRATEGIES, operation.strategy)
     chosen = checked(choose(strategy.settings, {**session.choices, **operation.choices}))
-    needs = DriveNeeds(drive=strategy.drive, leans=strategy.tool_axis(chosen) is ToolAxis.LEANING, finds_rest=strategy.finds_rest)
+    needs = DriveNeeds(
+        drive=strategy.drive,
+        leans=strategy.tool_axis(chosen) is ToolAxis.LEANING,
+        finds_rest=strategy.finds_rest,
+    )
     try:
         driven = planner.drive(operation, needs, scene, progress.part(0.0, DRIVEN))
-        setup, drive, stock, before = driven.setup, driven.drive, scene.stock(driven.setup), scene.before(operation.tool)
-        key = digest(operation.strategy, driven.told, operation.tool, operation.data, chosen, stock.digest, setup, before)
+        setup, drive, stock, before = (
+            driven.setup,
+            driven.drive,
+            scene.stock(driven.setup),
+            scene.before(operation.tool),
+        )
+        key = digest(
+            operation.strategy,
+            driven.told,
+            operation.tool,
+            operation.data,
+            chosen,
+            stock.digest,
+            setup,
+            before,
+        )
         kept = session.path_of(operation.id)
         if drive.is_empty:
-            nothing = info("toolpath.nothing-left", f"{operation.id}: nothing stands there any more that it could cut", operation.id,
-                           remedy="suppress it")
+            nothing = info(
+                "toolpath.nothing-left",
+                f"{operation.id}: nothing stands there any more that it could cut",
+                operation.id,
+                remedy="suppress it",
+            )
             kept = OperationPath(operation=operation.id, findings=(nothing,), key=key)
         if kept is None or kept.key != key:
-            planned: Any = strategy(drive, operation.tool, operation.data, stock, setup, chosen, progress.part(DRIVEN, 1.0))
+            planned: Any = strategy(
+                drive,
+                operation.tool,
+                operation.data,
+                stock,
+                setup,
+                chosen,
+                progress.part(DRIVEN, 1.0),
+            )
             swing = swing_of(scene.blank, replace(scene.setup, fixtures=scene.fixtures))
             path = moved_over(turned(planned.path, setup.frame, scene.setup.frame), before, swing)
-            kept = OperationPath(operation=operation.id, path=path, findings=tuple(planned.findings), key=key)
+            kept = OperationPath(
+                operation=operation.id, path=path, findings=tuple(planned.findings), key=key
+            )
     except Refused as reason:
         left = error("toolpath.refused", str(reason), operation.id, operation.feature)
         return OperationPath(operation=operation.id, findings=(left,))
     if len(kept.path):
-        scene.sides.cut(setup, turned(kept.path, scene.setup.frame, setup.frame), operation.tool, progress.part(1.0, 1.0))
+        scene.sides.cut(
+            setup,
+            turned(kept.path, scene.setup.frame, setup.frame),
+            operation.tool,
+            progress.part(1.0, 1.0),
+        )
         scene.last, scene.tool = kept, operation.tool
     return kept
 
@@ -101,5 +158,9 @@ def turned(path: Toolpath, frame: Frame, other: Frame) -> Toolpath:
     arcs = np.isfinite(path.centre).all(axis=1)
     centre = path.centre.copy()
     centre[arcs] = other.to_local(frame.to_world(path.centre[arcs]))
-    return replace(path, position=other.to_local(frame.to_world(path.position)), centre=centre,
-                   axis=other.local_direction(frame.world_direction(path.axis)))
+    return replace(
+        path,
+        position=other.to_local(frame.to_world(path.position)),
+        centre=centre,
+        axis=other.local_direction(frame.world_direction(path.axis)),
+    )

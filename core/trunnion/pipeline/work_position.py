@@ -20,7 +20,11 @@ def places_of(session: Session, machines: Mapping[str, Machine]) -> Places:
     if session.blank is None:
         return {}
     held = (replace(s, fixtures=session.fixtures_of(s.name)) for s in session.setups)
-    return {s.name: place_of(session.blank, s, machines[s.machine]) for s in held if s.machine in machines}
+    return {
+        s.name: place_of(session.blank, s, machines[s.machine])
+        for s in held
+        if s.machine in machines
+    }
 
 
 def place_of(blank: Blank, setup: Setup, machine: Machine) -> Place:

@@ -14,26 +14,35 @@ from trunnion.store.atomic import write_text
 from trunnion.store.programs import write_programs as write_texts
 
 
-def write_programs(session: Session, folder: Path, *, name: str = "", date: str = "", progress: Progress) -> tuple[str, ...]:
+def write_programs(
+    session: Session, folder: Path, *, name: str = "", date: str = "", progress: Progress
+) -> tuple[str, ...]:
     """Write the programs of a proven session as their verdict allows and return the file names."""
     progress.at(0.0, "writing programs")
     return write_texts(folder, name_of(session, name), release(session, name=name, date=date))
 
 
-def write_documents(session: Session, mesh: Mesh, folder: Path, *, name: str, date: str, progress: Progress) -> tuple[str, ...]:
+def write_documents(
+    session: Session, mesh: Mesh, folder: Path, *, name: str, date: str, progress: Progress
+) -> tuple[str, ...]:
     """Write programs, tool list, XML, pictures and report of a proven session and return the file names."""
     from trunnion.report.html import report_html
     from trunnion.report.palette import load_palette
     from trunnion.report.pictures import write_pictures
     from trunnion.store.features import write_features
     from trunnion.store.process import write_process
+
     if session.process is None:
         raise BadCall("nothing is programmed yet: run the whole line first")
     stem = name_of(session, name)
-    files = list(write_programs(session, folder, name=stem, date=date, progress=progress.part(0.0, 0.1)))
+    files = list(
+        write_programs(session, folder, name=stem, date=date, progress=progress.part(0.0, 0.1))
+    )
     progress.at(0.1, "writing XML and tool list")
     tools = [t.as_dict() for t in session.process.tools()]
-    write_text(folder / f"{stem}.tools.json", json.dumps(tools, indent=1, ensure_ascii=False) + "\n")
+    write_text(
+        folder / f"{stem}.tools.json", json.dumps(tools, indent=1, ensure_ascii=False) + "\n"
+    )
     progress.at(0.15, "writing the features")
     write_features(session, folder / f"{stem}.features.xml")
     progress.at(0.2, "writing the process")
@@ -42,7 +51,14 @@ def write_documents(session: Session, mesh: Mesh, folder: Path, *, name: str, da
     progress.at(0.9, "writing the report")
     write_text(folder / f"{stem}.report.html", report_html(session, stem, pictures, folder, date))
     progress.at(1.0, "report written")
-    return (*files, f"{stem}.tools.json", f"{stem}.features.xml", f"{stem}.process.xml", *(p.file for p in pictures), f"{stem}.report.html")
+    return (
+        *files,
+        f"{stem}.tools.json",
+        f"{stem}.features.xml",
+        f"{stem}.process.xml",
+        *(p.file for p in pictures),
+        f"{stem}.report.html",
+    )
 
 
 def name_of(session: Session, name: str) -> str:
@@ -55,4 +71,3 @@ def checked_name(name: str) -> str:
     if not name or name in (".", "..") or any(c in name for c in "/\\\0\n"):
         raise BadInput(f"{name!r} can't be the name of files: choose one without slashes")
     return name
-

@@ -1,4 +1,7 @@
-"""Clearance queries: is a tool in a pose clear of part and fixtures, and can the machine hold its axis? Answered by `pipeline.clearance`."""
+"""Clearance queries: is a tool in a pose clear of part and fixtures, and can the machine hold its axis?
+
+Answered by `pipeline.clearance`.
+"""
 
 from __future__ import annotations
 
@@ -11,7 +14,14 @@ from trunnion.model.tool import Tool
 class Asker(Protocol):
     """Asks whether a tool is clear of part and fixtures; poses are in the cutting frame."""
 
-    def __call__(self, tip: Floats, axis: Floats, *, start_tip: Floats | None = None, start_axis: Floats | None = None) -> Bools:
+    def __call__(
+        self,
+        tip: Floats,
+        axis: Floats,
+        *,
+        start_tip: Floats | None = None,
+        start_axis: Floats | None = None,
+    ) -> Bools:
         """Say for tips (k, 3) with unit axes (k, 3) which poses (or moves from a start) enter nothing deeper than the tolerance."""
 
 

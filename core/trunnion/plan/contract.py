@@ -147,7 +147,9 @@ class Planner(Protocol):
         Raises `BadInput` for settings or a typical plan that can't be followed, `Cancelled` when a person asked to stop.
         """
 
-    def drive(self, operation: Operation, needs: DriveNeeds, scene: Scene, progress: Progress) -> Driven:
+    def drive(
+        self, operation: Operation, needs: DriveNeeds, scene: Scene, progress: Progress
+    ) -> Driven:
         """Return the drive of an operation; raise `Refused` where the part does not bear the feature out."""
 
 
@@ -159,16 +161,26 @@ def planner_for(family: str) -> Planner:
     """Return the planner of a family; raise `BadInput` where it has none."""
     known = registry.names(PLANNERS)
     if family not in known:
-        raise BadInput(f"parts of the family {family} are segmented and measured, but not planned yet; for flat pockets and "
-                       f"outlines choose recognize.family = {' or '.join(known)}")
+        raise BadInput(
+            f"parts of the family {family} are segmented and measured, but not planned yet; for flat pockets and "
+            f"outlines choose recognize.family = {' or '.join(known)}"
+        )
     planner: Planner = registry.get(PLANNERS, family)()
     return planner
 
 
-def driven_by(makers: Mapping[type, DriveMaker], planner: Planner, operation: Operation, needs: DriveNeeds, scene: Scene,
-              progress: Progress) -> Driven:
+def driven_by(
+    makers: Mapping[type, DriveMaker],
+    planner: Planner,
+    operation: Operation,
+    needs: DriveNeeds,
+    scene: Scene,
+    progress: Progress,
+) -> Driven:
     """Return the drive of an operation by the maker for the class that its strategy needs; raise `Refused` where there is none."""
     if needs.drive not in makers:
-        raise Refused(f"{operation.id}: {operation.strategy} is driven by a {needs.drive.__name__}, which is not made for {planner.noun}; "
-                      "choose another strategy")
+        raise Refused(
+            f"{operation.id}: {operation.strategy} is driven by a {needs.drive.__name__}, which is not made for {planner.noun}; "
+            "choose another strategy"
+        )
     return makers[needs.drive](operation, needs, scene, progress)

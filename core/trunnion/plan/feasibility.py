@@ -19,21 +19,40 @@ def too_large(blank: Blank, setups: Sequence[Setup], shop: Shop) -> list[Finding
     for setup in setups:
         machine = shop.machine(setup.machine)
         low, high = box_in(setup.frame, blank)
-        need = dict(zip("XYZ", (high[0] - low[0], high[1] - low[1], setup.clearance - low[2]), strict=True))
-        short = [f"{name} needs {trimmed(float(span), 1)} of {trimmed(axis.high - axis.low, 1)} mm"
-                 for name, span in need.items() if span > (axis := machine.axis(name)).high - axis.low]
+        need = dict(
+            zip("XYZ", (high[0] - low[0], high[1] - low[1], setup.clearance - low[2]), strict=True)
+        )
+        short = [
+            f"{name} needs {trimmed(float(span), 1)} of {trimmed(axis.high - axis.low, 1)} mm"
+            for name, span in need.items()
+            if span > (axis := machine.axis(name)).high - axis.low
+        ]
         if short:
-            found.append(error("route.travel", f"the blank exceeds the machine's travel ({machine.name}): {', '.join(short)}", setup.name,
-                               remedy="choose a larger machine"))
+            found.append(
+                error(
+                    "route.travel",
+                    f"the blank exceeds the machine's travel ({machine.name}): {', '.join(short)}",
+                    setup.name,
+                    remedy="choose a larger machine",
+                )
+            )
     return found
 
 
-def too_many_tools(operations: Sequence[Operation], setups: Sequence[Setup], shop: Shop) -> list[Finding]:
+def too_many_tools(
+    operations: Sequence[Operation], setups: Sequence[Setup], shop: Shop
+) -> list[Finding]:
     """Return a warning for each machine whose magazine does not take the tools of the plan."""
     count, found = len({o.tool.name for o in operations}), []
     for setup in setups:
         machine = shop.machine(setup.machine)
         if count > machine.tool_places:
-            found.append(warning("route.tool-places", f"{count} tools are planned, {machine.name} has {machine.tool_places} places",
-                                 setup.name, remedy="load tools by hand or choose another machine"))
+            found.append(
+                warning(
+                    "route.tool-places",
+                    f"{count} tools are planned, {machine.name} has {machine.tool_places} places",
+                    setup.name,
+                    remedy="load tools by hand or choose another machine",
+                )
+            )
     return found

@@ -11,9 +11,18 @@ NEWTON_METRES = SECONDS_PER_MINUTE * WATTS_PER_KILOWATT / (2.0 * math.pi)
 """Torque in Nm of one kW at one turn a minute."""
 
 
-def cutting_power(material: Material, diameter: float, feed_per_tooth: float, depth: float, width: float, feed: float) -> float:
+def cutting_power(
+    material: Material,
+    diameter: float,
+    feed_per_tooth: float,
+    depth: float,
+    width: float,
+    feed: float,
+) -> float:
     """Return the power at the cutter in kW by Kienzle: k_c = k_c1.1 h^-m_c with the mean chip thickness over the arc of contact."""
     arc = math.acos(max(1.0 - 2.0 * min(width, diameter) / diameter, -1.0))
     chip = feed_per_tooth * 2.0 * (min(width, diameter) / diameter) / arc
     specific = material.force * chip**-material.force_exponent
-    return depth * width * feed * specific / (SECONDS_PER_MINUTE * MM_PER_METRE * WATTS_PER_KILOWATT)
+    return (
+        depth * width * feed * specific / (SECONDS_PER_MINUTE * MM_PER_METRE * WATTS_PER_KILOWATT)
+    )

@@ -25,7 +25,9 @@ def ordered(jobs: Sequence[Job]) -> tuple[str, ...]:
     for each other in a circle or for one that isn't there.
     """
     by_id = {j.id: j for j in jobs}
-    tools = sorted({j.tool for j in jobs}, key=lambda t: (min(j.stage for j in jobs if j.tool == t), t))
+    tools = sorted(
+        {j.tool for j in jobs}, key=lambda t: (min(j.stage for j in jobs if j.tool == t), t)
+    )
     layer: dict[frozenset[str], tuple[str, ...]] = {frozenset(): ()}
     seen: set[frozenset[str]] = {frozenset()}
     while layer:
@@ -64,7 +66,14 @@ def _walked(jobs: Mapping[str, Job], tools: Sequence[str]) -> tuple[str, ...]:
         while left:
             ready = [jobs[i] for i in left if jobs[i].after <= set(order)]
             here = at
-            chosen = min(ready, key=lambda j: (j.stage, (j.place[0] - here[0]) ** 2 + (j.place[1] - here[1]) ** 2, j.id))
+            chosen = min(
+                ready,
+                key=lambda j: (
+                    j.stage,
+                    (j.place[0] - here[0]) ** 2 + (j.place[1] - here[1]) ** 2,
+                    j.id,
+                ),
+            )
             order.append(chosen.id)
             at, left = chosen.place, left - {chosen.id}
     return tuple(order)

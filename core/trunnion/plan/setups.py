@@ -19,16 +19,39 @@ ORIGINS = ("corner top", "centre top", "corner bottom", "centre bottom")
 class SetupSettings:
     """Where the work offset lies, how high the tool travels, and on which machine."""
 
-    origin: str = setting("corner top", choices=ORIGINS, label="Origin",
-                          help="Place of the program's zero on the blank, seen from the spindle; corner: smallest x and y.")
-    clearance: float = setting(20.0, unit="mm", low=1.0, high=500.0, label="Clearance",
-                               help="Height above the blank at which the tool travels between operations.")
-    machine: str = setting("Mill 1200", label="Machine", catalogue="machines", help="Name of a machine of the catalogue.")
-    work_offset: int = setting(54, unit="", low=54, high=59, label="Work offset",
-                               help="G code of the first setup's work offset; the next takes the next.")
+    origin: str = setting(
+        "corner top",
+        choices=ORIGINS,
+        label="Origin",
+        help="Place of the program's zero on the blank, seen from the spindle; corner: smallest x and y.",
+    )
+    clearance: float = setting(
+        20.0,
+        unit="mm",
+        low=1.0,
+        high=500.0,
+        label="Clearance",
+        help="Height above the blank at which the tool travels between operations.",
+    )
+    machine: str = setting(
+        "Mill 1200",
+        label="Machine",
+        catalogue="machines",
+        help="Name of a machine of the catalogue.",
+    )
+    work_offset: int = setting(
+        54,
+        unit="",
+        low=54,
+        high=59,
+        label="Work offset",
+        help="G code of the first setup's work offset; the next takes the next.",
+    )
 
 
-def make_setups(recognition: Recognition, blank: Blank, machine: Machine, settings: SetupSettings) -> tuple[Setup, ...]:
+def make_setups(
+    recognition: Recognition, blank: Blank, machine: Machine, settings: SetupSettings
+) -> tuple[Setup, ...]:
     """Return one setup from above, and a second from below when a feature is reached only from there.
 
     The second one is the first turned about its x axis. Frames are the work offsets' (`Setup.frame`).
@@ -57,5 +80,10 @@ def _setup(n: int, frame: Frame, blank: Blank, machine: Machine, settings: Setup
     origin = low if place == "corner" else 0.5 * (low + high)
     z = high[2] if height == "top" else low[2]
     offset = frame.moved(np.array([origin[0], origin[1], z]))
-    return Setup(name=f"S{n + 1}", frame=offset, work_offset=f"G{min(settings.work_offset + n, 59)}",
-                 clearance=float(high[2] - z + settings.clearance), machine=machine.name)
+    return Setup(
+        name=f"S{n + 1}",
+        frame=offset,
+        work_offset=f"G{min(settings.work_offset + n, 59)}",
+        clearance=float(high[2] - z + settings.clearance),
+        machine=machine.name,
+    )

@@ -18,10 +18,20 @@ from trunnion.recognize.grow import bend_radius
 
 PART = "part"
 ROLES = {
-    "depth": ("floor", "wall"), "floor_z": ("floor",), "floors_z": ("floor",), "top_z": ("top", "wall"), "bottom_z": ("bottom",),
-    "lowest_rim_z": ("wall",), "corner_radius": ("corner", "wall"), "floor_fillet": ("floor_fillet", "floor"),
-    "leans": ("inner_convergence", "outer_convergence", "wall"), "thickness": ("top",), "length": ("top",), "height": ("top", "wall"),
-    "lower_height": ("top",), "below_top": ("top",),
+    "depth": ("floor", "wall"),
+    "floor_z": ("floor",),
+    "floors_z": ("floor",),
+    "top_z": ("top", "wall"),
+    "bottom_z": ("bottom",),
+    "lowest_rim_z": ("wall",),
+    "corner_radius": ("corner", "wall"),
+    "floor_fillet": ("floor_fillet", "floor"),
+    "leans": ("inner_convergence", "outer_convergence", "wall"),
+    "thickness": ("top",),
+    "length": ("top",),
+    "height": ("top", "wall"),
+    "lower_height": ("top",),
+    "below_top": ("top",),
 }
 """The roles that a size is measured at: the first that the feature has."""
 SINGULAR = {"floors_z": "floor_z", "leans": "lean"}
@@ -40,7 +50,9 @@ def size_table(recognition: Recognition, graph: FaceGraph) -> tuple[SizeEntry, .
                 continue
             faces = measured_at(feature, name, graph)
             if isinstance(value, tuple):
-                entries.extend(_entry(SINGULAR.get(name, name), v, feature.id, faces, graph) for v in value)
+                entries.extend(
+                    _entry(SINGULAR.get(name, name), v, feature.id, faces, graph) for v in value
+                )
             else:
                 entries.append(_entry(name, value, feature.id, faces, graph))
     return tuple(entries)
@@ -52,7 +64,9 @@ def measured_at(feature: Feature, name: str, graph: FaceGraph) -> tuple[int, ...
     for role in ROLES.get(name, ()):
         tags = feature.with_role(role)
         if name in ("corner_radius", "floor_fillet") and isinstance(value, (int, float)):
-            tags = tuple(t for t in tags if abs(bend_radius(graph, t - 1) - value) < 10.0**-DECIMALS)
+            tags = tuple(
+                t for t in tags if abs(bend_radius(graph, t - 1) - value) < 10.0**-DECIMALS
+            )
         if tags:
             return tags
     return feature.tags
@@ -62,19 +76,38 @@ def _part_sizes(recognition: Recognition, graph: FaceGraph) -> Iterable[SizeEntr
     low, high = box(graph.in_frame(recognition.frame))
     for name, value in zip(("length", "width", "height"), (high - low).tolist(), strict=True):
         yield _entry(name, value, PART, (), graph)
-    for name, value in zip(("stock_box_length", "stock_box_width", "stock_box_height"), (high - low).tolist(), strict=True):
+    for name, value in zip(
+        ("stock_box_length", "stock_box_width", "stock_box_height"),
+        (high - low).tolist(),
+        strict=True,
+    ):
         yield _entry(name, value, PART, (), graph)
     for rule in smallest_sizes(recognition.family):
         holders = [f for f in recognition.of_kind(*rule.kinds) if _positive(f, rule.size)]
         if holders:
             smallest = min(holders, key=lambda f: (_number(f, rule.size), f.id))
-            yield _entry(rule.name, _number(smallest, rule.size), PART, measured_at(smallest, rule.size, graph), graph)
+            yield _entry(
+                rule.name,
+                _number(smallest, rule.size),
+                PART,
+                measured_at(smallest, rule.size, graph),
+                graph,
+            )
 
 
-def _entry(name: str, value: float, feature: str, faces: Sequence[int], graph: FaceGraph) -> SizeEntry:
+def _entry(
+    name: str, value: float, feature: str, faces: Sequence[int], graph: FaceGraph
+) -> SizeEntry:
     at = tuple(np.round(graph.centre[faces[0] - 1], DECIMALS).tolist()) if faces else ()
     unit = next((u for end, u in UNITS if name.endswith(end)), "mm")
-    return SizeEntry(name=name, value=round(float(value), DECIMALS) + 0.0, unit=unit, feature=feature, faces=tuple(faces), at=at)
+    return SizeEntry(
+        name=name,
+        value=round(float(value), DECIMALS) + 0.0,
+        unit=unit,
+        feature=feature,
+        faces=tuple(faces),
+        at=at,
+    )
 
 
 def _positive(feature: Feature, size: str) -> bool:

@@ -51,35 +51,72 @@ class Candidates:
     remedy: str = ""
 
 
-def candidates(requirement: ToolRequirement, tools: Sequence[Tool], clearance: float, progress: Progress = QUIET) -> Candidates:
+def candidates(
+    requirement: ToolRequirement,
+    tools: Sequence[Tool],
+    clearance: float,
+    progress: Progress = QUIET,
+) -> Candidates:
     """Return the cutters that fit a requirement; each test that leaves none says what would be needed."""
     if not tools:
-        return Candidates(tools=(), reason="the catalogue has no cutter for this material", remedy="add cutters to the tools folder")
-    small = [t for t in tools if not requirement.radius or t.radius <= requirement.radius + tolerance.COINCIDENT]
+        return Candidates(
+            tools=(),
+            reason="the catalogue has no cutter for this material",
+            remedy="add cutters to the tools folder",
+        )
+    small = [
+        t
+        for t in tools
+        if not requirement.radius or t.radius <= requirement.radius + tolerance.COINCIDENT
+    ]
     if not small:
         smallest = min(t.diameter for t in tools)
-        return Candidates(tools=(), remedy="add a smaller cutter to the tools folder, or machine the feature by other means",
-                          reason=f"no tool is small enough: at most D {trimmed(2 * requirement.radius, 3)} fits, "
-                                 f"the smallest is D {trimmed(smallest, 3)}")
+        return Candidates(
+            tools=(),
+            remedy="add a smaller cutter to the tools folder, or machine the feature by other means",
+            reason=f"no tool is small enough: at most D {trimmed(2 * requirement.radius, 3)} fits, "
+            f"the smallest is D {trimmed(smallest, 3)}",
+        )
     foot = [t for t in small if t.corner_radius <= requirement.corner_radius + tolerance.COINCIDENT]
     if requirement.exact:
-        foot = [t for t in foot if abs(t.corner_radius - requirement.corner_radius) <= tolerance.COINCIDENT]
+        foot = [
+            t
+            for t in foot
+            if abs(t.corner_radius - requirement.corner_radius) <= tolerance.COINCIDENT
+        ]
     if not foot:
-        return Candidates(tools=(), remedy="add a cutter with this corner radius to the tools folder",
-                          reason=f"no cutter up to D {trimmed(2 * max(t.radius for t in small), 3)} has a corner radius "
-                                 f"{'of' if requirement.exact else 'up to'} {trimmed(requirement.corner_radius, 3)} mm")
+        return Candidates(
+            tools=(),
+            remedy="add a cutter with this corner radius to the tools folder",
+            reason=f"no cutter up to D {trimmed(2 * max(t.radius for t in small), 3)} has a corner radius "
+            f"{'of' if requirement.exact else 'up to'} {trimmed(requirement.corner_radius, 3)} mm",
+        )
     deep = [t for t in foot if depth_reached(t) >= requirement.depth + clearance]
     if not deep:
-        return Candidates(tools=(), remedy="add a longer cutter to the tools folder, or allow a larger one by a larger corner radius",
-                          reason=f"no tool reaches {trimmed(requirement.depth, 2)} mm deep with {trimmed(clearance, 2)} mm clearance; "
-                                 f"the longest that fits reaches {trimmed(max(depth_reached(t) for t in foot), 2)} mm")
-    inside = _fitting(requirement, deep, progress) if requirement.keep < 0.0 else _fitting_floor(requirement, deep, progress)
+        return Candidates(
+            tools=(),
+            remedy="add a longer cutter to the tools folder, or allow a larger one by a larger corner radius",
+            reason=f"no tool reaches {trimmed(requirement.depth, 2)} mm deep with {trimmed(clearance, 2)} mm clearance; "
+            f"the longest that fits reaches {trimmed(max(depth_reached(t) for t in foot), 2)} mm",
+        )
+    inside = (
+        _fitting(requirement, deep, progress)
+        if requirement.keep < 0.0
+        else _fitting_floor(requirement, deep, progress)
+    )
     if not inside:
-        return Candidates(tools=(), remedy="add a smaller cutter to the tools folder, or machine the feature by other means",
-                          reason=f"no tool is small enough: the smallest that reaches is D {trimmed(min(t.diameter for t in deep), 3)}")
+        return Candidates(
+            tools=(),
+            remedy="add a smaller cutter to the tools folder, or machine the feature by other means",
+            reason=f"no tool is small enough: the smallest that reaches is D {trimmed(min(t.diameter for t in deep), 3)}",
+        )
     largest = max(t.diameter for t in inside)
     near = [t for t in inside if t.diameter >= requirement.near * largest]
-    return Candidates(tools=tuple(sorted(near, key=lambda t: (-t.diameter, depth_reached(t), -t.corner_radius, t.name))))
+    return Candidates(
+        tools=tuple(
+            sorted(near, key=lambda t: (-t.diameter, depth_reached(t), -t.corner_radius, t.name))
+        )
+    )
 
 
 def depth_reached(tool: Tool) -> float:
@@ -94,7 +131,9 @@ def _fitting(requirement: ToolRequirement, tools: Sequence[Tool], progress: Prog
     """
     most = _missable(requirement, tools)
     for tool in progress.each(sorted(tools, key=lambda t: -t.diameter)):
-        if requirement.spare > 1.0 and not requirement.room.offset(-requirement.spare * tool.radius):
+        if requirement.spare > 1.0 and not requirement.room.offset(
+            -requirement.spare * tool.radius
+        ):
             continue
         if _left(requirement, tool) <= most(tool):
             return [t for t in tools if t.diameter <= tool.diameter]
@@ -123,10 +162,16 @@ def _missable(requirement: ToolRequirement, tools: Sequence[Tool]) -> Callable[[
     return lambda tool: min(most, cusps * (tool.radius / smallest.radius) ** 2) + slack
 
 
-def _fitting_floor(requirement: ToolRequirement, tools: Sequence[Tool], progress: Progress) -> list[Tool]:
+def _fitting_floor(
+    requirement: ToolRequirement, tools: Sequence[Tool], progress: Progress
+) -> list[Tool]:
     """Return the same for a floor, among sharp cutters and those with the largest corner radius: each radius has a flat of its own."""
     radii = {min(t.corner_radius for t in tools), max(t.corner_radius for t in tools)}
-    return [t for radius in sorted(radii) for t in _fitting(requirement, [t for t in tools if t.corner_radius == radius], progress)]
+    return [
+        t
+        for radius in sorted(radii)
+        for t in _fitting(requirement, [t for t in tools if t.corner_radius == radius], progress)
+    ]
 
 
 def _covered(requirement: ToolRequirement, tool: Tool) -> Region:
@@ -134,11 +179,16 @@ def _covered(requirement: ToolRequirement, tool: Tool) -> Region:
     if requirement.keep < 0.0:
         return requirement.room.opened(tool.radius)
     flat = tool.radius - tool.corner_radius
-    return requirement.room.offset(-(requirement.keep + requirement.corner_radius + flat)).offset(flat)
+    return requirement.room.offset(-(requirement.keep + requirement.corner_radius + flat)).offset(
+        flat
+    )
 
 
-def covered_by_few(fits: Mapping[str, Sequence[Tool]], kept: Sequence[Tool] = ()) -> dict[str, Tool]:
-    """Return a cutter for every requirement, few cutters in all: first those that are in use anyhow, then always the one that serves most requirements.
+def covered_by_few(
+    fits: Mapping[str, Sequence[Tool]], kept: Sequence[Tool] = ()
+) -> dict[str, Tool]:
+    """Return a cutter for every requirement, few cutters in all: first those that are in use anyhow,
+    then always the one that serves most requirements.
 
     Among cutters that serve equally many the larger, then the shorter, then the one with the larger corner radius is taken.
     """
@@ -147,7 +197,11 @@ def covered_by_few(fits: Mapping[str, Sequence[Tool]], kept: Sequence[Tool] = ()
         own = [t for t in tools if any(t.name == k.name for k in kept)]
         if own:
             chosen[requirement] = own[0]
-    left = {requirement: tools for requirement, tools in fits.items() if requirement not in chosen and tools}
+    left = {
+        requirement: tools
+        for requirement, tools in fits.items()
+        if requirement not in chosen and tools
+    }
     while left:
         served: dict[str, int] = {}
         named: dict[str, Tool] = {}
@@ -155,8 +209,21 @@ def covered_by_few(fits: Mapping[str, Sequence[Tool]], kept: Sequence[Tool] = ()
             for tool in tools:
                 served[tool.name] = served.get(tool.name, 0) + 1
                 named[tool.name] = tool
-        best = min(named.values(), key=lambda t: (-served[t.name], -t.diameter, depth_reached(t), -t.corner_radius, t.name))
-        for requirement in [requirement for requirement, tools in left.items() if any(t.name == best.name for t in tools)]:
+        best = min(
+            named.values(),
+            key=lambda t: (
+                -served[t.name],
+                -t.diameter,
+                depth_reached(t),
+                -t.corner_radius,
+                t.name,
+            ),
+        )
+        for requirement in [
+            requirement
+            for requirement, tools in left.items()
+            if any(t.name == best.name for t in tools)
+        ]:
             chosen[requirement] = best
             del left[requirement]
     return chosen

@@ -16,5 +16,7 @@ def typical_plan(shop: Shop, family: str, named: str, rules: Sequence[str]) -> T
     plan = shop.plan_for(family, named)
     for stage in plan.stages:
         if stage.cutter not in rules:
-            raise BadInput(f"typical plan {plan.name}, stage {stage.name}: cutter must be one of {', '.join(rules)}; got {stage.cutter!r}")
+            raise BadInput(
+                f"typical plan {plan.name}, stage {stage.name}: cutter must be one of {', '.join(rules)}; got {stage.cutter!r}"
+            )
     return plan

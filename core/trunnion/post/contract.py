@@ -23,7 +23,13 @@ class Dialect(Protocol):
     name: str
     suffix: str
 
-    def write(self, programs: Sequence[Program], header: Header, settings: PostSettings, places: Places = NO_PLACES) -> str:
+    def write(
+        self,
+        programs: Sequence[Program],
+        header: Header,
+        settings: PostSettings,
+        places: Places = NO_PLACES,
+    ) -> str:
         """Return the text; raise `Refused` for what the control can't do."""
         ...
 
@@ -31,6 +37,8 @@ class Dialect(Protocol):
         """Return the stamp's lines as this dialect writes them."""
         ...
 
-    def read(self, text: str, tools: Sequence[Tool], setups: Sequence[Setup], places: Places = NO_PLACES) -> tuple[Program, ...]:
+    def read(
+        self, text: str, tools: Sequence[Tool], setups: Sequence[Setup], places: Places = NO_PLACES
+    ) -> tuple[Program, ...]:
         """Return the programs that a text says; raise `BadInput` with the line of anything that isn't understood."""
         ...

@@ -36,25 +36,41 @@ class IsoDialect:
         self.words = iso_words(self.name, self.package)
         self.suffix = self.words.suffix
 
-    def write(self, programs: Sequence[Program], header: Header, settings: PostSettings, places: Places = NO_PLACES) -> str:
+    def write(
+        self,
+        programs: Sequence[Program],
+        header: Header,
+        settings: PostSettings,
+        places: Places = NO_PLACES,
+    ) -> str:
         """Return the text of one setup's program."""
         self._check_one(programs)
-        writer = ProgramWriter(self.words, programs[0], settings, places.get(programs[0].setup.name))
+        writer = ProgramWriter(
+            self.words, programs[0], settings, places.get(programs[0].setup.name)
+        )
         return "\n".join(writer.lines(header)) + "\n"
 
     def stamp(self, program: str, header: Header) -> tuple[str, ...]:
         """Return the stamp's lines as comments."""
         return tuple(comment(self.words, line) for line in header.stamp(program))
 
-    def read(self, text: str, tools: Sequence[Tool], setups: Sequence[Setup], places: Places = NO_PLACES) -> tuple[Program, ...]:
+    def read(
+        self, text: str, tools: Sequence[Tool], setups: Sequence[Setup], places: Places = NO_PLACES
+    ) -> tuple[Program, ...]:
         """Return the program of the one setup."""
         from trunnion.post.readers.iso import read_iso
+
         self._check_one(setups)
-        return (read_iso(text, tools, setups[0], places.get(setups[0].name), self.words, self.control()),)
+        return (
+            read_iso(
+                text, tools, setups[0], places.get(setups[0].name), self.words, self.control()
+            ),
+        )
 
     def control(self) -> type[Control]:
         """Return the control that reads the dialect's texts."""
         from trunnion.post.readers.control import Control
+
         return Control
 
     def _check_one(self, given: Sequence[Program] | Sequence[Setup]) -> None:

@@ -13,8 +13,16 @@ CENTRES = ("start", "absolute")
 """Where I and J of an arc count from: its start, or the zero of the work offset."""
 ROLES = ("radius", "length", "dwell", "turns", "tolerance", "joining")
 """What a control may have letters for, beside N, F, S, T, X, Y, Z, I and J which are the same on all."""
-_PLACEHOLDERS = {"opening": ("program",), "start": ("units", "tolerance", "offset"), "restart": ("offset",), "tool_change": ("tool",),
-                 "tool_length": ("tool",), "spindle": ("spindle",), "top": (), "end": ()}
+_PLACEHOLDERS = {
+    "opening": ("program",),
+    "start": ("units", "tolerance", "offset"),
+    "restart": ("offset",),
+    "tool_change": ("tool",),
+    "tool_length": ("tool",),
+    "spindle": ("spindle",),
+    "top": (),
+    "end": (),
+}
 """What may stand in braces in the lines of a word."""
 _KEYS = {"units": ("mm", "inch"), "coolant": ("off",), "letters": ("radius",)}
 """Entries that a table must have."""
@@ -66,7 +74,9 @@ def iso_words(name: str, package: str = "") -> IsoWords:
 def checked_iso_words(name: str, words: IsoWords) -> IsoWords:
     """Return the words of a control; raise `BadInput` where they miss an entry, or name a place or a role that is not known."""
     if words.centres not in CENTRES:
-        raise BadInput(f"dialect {name}: centres must be one of {', '.join(CENTRES)}; got {words.centres!r}")
+        raise BadInput(
+            f"dialect {name}: centres must be one of {', '.join(CENTRES)}; got {words.centres!r}"
+        )
     for word in (f.name for f in fields(IsoWords)):
         value = getattr(words, word)
         if word in _KEYS:
@@ -75,7 +85,9 @@ def checked_iso_words(name: str, words: IsoWords) -> IsoWords:
             _check_placeholders(name, word, (value,) if isinstance(value, str) else value)
     for role, letter in words.letters.items():
         if role not in ROLES or len(letter) != 1:
-            raise BadInput(f"dialect {name}: letters must be one letter each for some of {', '.join(ROLES)}; got {role} = {letter!r}")
+            raise BadInput(
+                f"dialect {name}: letters must be one letter each for some of {', '.join(ROLES)}; got {role} = {letter!r}"
+            )
     return words
 
 
@@ -96,7 +108,12 @@ def _check_keys(name: str, word: str, table: Mapping[str, str]) -> None:
 
 def _check_placeholders(name: str, word: str, lines: tuple[str, ...]) -> None:
     try:
-        places = [place for line in lines for _, place, _, _ in Formatter().parse(line) if place is not None]
+        places = [
+            place
+            for line in lines
+            for _, place, _, _ in Formatter().parse(line)
+            if place is not None
+        ]
     except ValueError as reason:
         raise BadInput(f"dialect {name}: {word}: {reason}; write braces as {{{{ and }}}}") from None
     for place in places:

@@ -16,7 +16,16 @@ from trunnion.findings import Refused
 from trunnion.geometry.arrays import Bools, Floats, Ints
 from trunnion.model.tool import Tool
 from trunnion.model.toolpath import Motion, Toolpath
-from trunnion.shop.kinematics import SLACK, UPRIGHT, Place, axes_of, poses_of, spindle_of, stands_of, words_of
+from trunnion.shop.kinematics import (
+    SLACK,
+    UPRIGHT,
+    Place,
+    axes_of,
+    poses_of,
+    spindle_of,
+    stands_of,
+    words_of,
+)
 from trunnion.shop.winding import TURN, beyond, followed
 
 HALVINGS = 40
@@ -50,7 +59,14 @@ class JointPath:
     feed: Floats
 
 
-def joint_path(path: Toolpath, tool: Tool, place: Place, stand: Floats | None, straying: Straying, operation: str) -> JointPath:
+def joint_path(
+    path: Toolpath,
+    tool: Tool,
+    place: Place,
+    stand: Floats | None,
+    straying: Straying,
+    operation: str,
+) -> JointPath:
     """Return the positions of the axes along a path.
 
     `stand` (a,) rad are the angles that the rotary axes have; the path goes on from there when it can, else it begins with others. None:
@@ -74,7 +90,13 @@ def arc_points(path: Toolpath, rows: Ints, within: float) -> tuple[Ints, Floats]
     climb = ((end - start)[owner] * axis).sum(axis=1, keepdims=True) * axis
     out = out - height
     turn = (share * sweep[owner])[:, None]
-    points = centre[owner] + height + share[:, None] * climb + np.cos(turn) * out + np.sin(turn) * np.cross(axis, out)
+    points = (
+        centre[owner]
+        + height
+        + share[:, None] * climb
+        + np.cos(turn) * out
+        + np.sin(turn) * np.cross(axis, out)
+    )
     points[share == 1.0] = end
     return np.repeat(rows, n), points
 
@@ -89,13 +111,26 @@ def lines_for_arcs(path: Toolpath, rows: Ints, within: float) -> tuple[Toolpath,
     row = np.repeat(np.arange(len(path)), count)
     opened = np.zeros(len(path), bool)
     opened[rows] = True
-    position, motion, centre = path.position[row], np.array(path.motion[row]), np.array(path.centre[row])
+    position, motion, centre = (
+        path.position[row],
+        np.array(path.motion[row]),
+        np.array(path.centre[row]),
+    )
     position[opened[row]] = points
     motion[opened[row]], centre[opened[row]] = Motion.LINE, np.nan
-    return Toolpath(position=position, axis=path.axis[row], motion=motion, centre=centre, feed=path.feed[row], mark=path.mark[row]), row
+    return Toolpath(
+        position=position,
+        axis=path.axis[row],
+        motion=motion,
+        centre=centre,
+        feed=path.feed[row],
+        mark=path.mark[row],
+    ), row
 
 
-def _arcs_opened(path: Toolpath, angle: Floats, place: Place, straying: Straying) -> tuple[Toolpath, Floats]:
+def _arcs_opened(
+    path: Toolpath, angle: Floats, place: Place, straying: Straying
+) -> tuple[Toolpath, Floats]:
     """Return a path without the arcs that don't lie across the machine's Z, and its angles."""
     arcs = np.flatnonzero(path.motion >= Motion.ARC_CW)
     if not len(arcs):
@@ -117,10 +152,14 @@ class _Pieces:
     last: Floats
 
     def of(self, keep: Bools | Ints) -> _Pieces:
-        return _Pieces(self.block[keep], self.start[keep], self.end[keep], self.first[keep], self.last[keep])
+        return _Pieces(
+            self.block[keep], self.start[keep], self.end[keep], self.first[keep], self.last[keep]
+        )
 
 
-def _between(path: Toolpath, angle: Floats, tool: Tool, place: Place, straying: Straying, operation: str) -> JointPath:
+def _between(
+    path: Toolpath, angle: Floats, tool: Tool, place: Place, straying: Straying, operation: str
+) -> JointPath:
     """Return the positions of the axes at a path's poses and at those that must come between them."""
     turning = np.zeros(len(path), bool)
     turning[1:] = np.abs(np.diff(angle, axis=0)).max(axis=1, initial=0.0) > 0.0
@@ -128,7 +167,9 @@ def _between(path: Toolpath, angle: Floats, tool: Tool, place: Place, straying: 
     allowed = np.where(rapid, straying.rapid, straying.feed)
     reach = np.where(rapid, tool.gauge_length, tool.flute_length)
     block = np.flatnonzero(turning)
-    pieces = _Pieces(block, np.zeros(len(block)), np.ones(len(block)), angle[block - 1], angle[block])
+    pieces = _Pieces(
+        block, np.zeros(len(block)), np.ones(len(block)), angle[block - 1], angle[block]
+    )
     pieces = _axis_held(path, pieces, allowed / reach, place, operation)
     still = np.flatnonzero(~turning)
     row, share, inner = _tip_held(path, pieces, allowed, tool.gauge_length, place)
@@ -141,10 +182,14 @@ def _between(path: Toolpath, angle: Floats, tool: Tool, place: Place, straying: 
     arcs = np.flatnonzero(path.motion[row] >= Motion.ARC_CW)
     if len(arcs):
         centre[arcs] = words_of(place, path.centre[row[arcs]], angle[arcs], tool.gauge_length)
-    return JointPath(words=words, angle=angle, motion=path.motion[row], centre=centre, feed=path.feed[row])
+    return JointPath(
+        words=words, angle=angle, motion=path.motion[row], centre=centre, feed=path.feed[row]
+    )
 
 
-def _axis_held(path: Toolpath, pieces: _Pieces, allowed: Floats, place: Place, operation: str) -> _Pieces:
+def _axis_held(
+    path: Toolpath, pieces: _Pieces, allowed: Floats, place: Place, operation: str
+) -> _Pieces:
     """Return pieces halved until the tool axis stays within `allowed` (n,) rad of its even turn; mid poses take the way that is nearer."""
     done: list[_Pieces] = []
     for _ in range(HALVINGS):
@@ -158,13 +203,22 @@ def _axis_held(path: Toolpath, pieces: _Pieces, allowed: Floats, place: Place, o
         outside = ((pieces.first < low - SLACK) | (pieces.first > high + SLACK)).any(axis=1)
         if outside.any():
             k = int(np.argmax(outside))
-            raise Refused(f"operation {operation}, block {pieces.block[k] + 1}: {beyond(pieces.first[k:k + 1], place)}")
-    raise Refused(f"operation {operation}, block {pieces.block[0] + 1}: {place.machine.title} must turn back {place.names} here because of "
-                  "their limits, and can't while it moves; part the operation or choose another machine")
+            raise Refused(
+                f"operation {operation}, block {pieces.block[k] + 1}: {beyond(pieces.first[k : k + 1], place)}"
+            )
+    raise Refused(
+        f"operation {operation}, block {pieces.block[0] + 1}: {place.machine.title} must turn back {place.names} here because of "
+        "their limits, and can't while it moves; part the operation or choose another machine"
+    )
 
 
 def _ordered(parts: list[_Pieces]) -> _Pieces:
-    whole = _Pieces(*(np.concatenate([getattr(p, name) for p in parts]) for name in ("block", "start", "end", "first", "last")))
+    whole = _Pieces(
+        *(
+            np.concatenate([getattr(p, name) for p in parts])
+            for name in ("block", "start", "end", "first", "last")
+        )
+    )
     return whole.of(np.lexsort((whole.start, whole.block)))
 
 
@@ -186,11 +240,17 @@ def _halved(path: Toolpath, pieces: _Pieces, place: Place) -> _Pieces:
     angles = np.where(free, between[:, None], angles)
     way = np.abs(angles - between[:, None]).sum(axis=2).argmin(axis=1)
     chosen = angles[np.arange(len(way)), way]
-    return _ordered([_Pieces(pieces.block, pieces.start, middle, pieces.first, chosen),
-                     _Pieces(pieces.block, middle, pieces.end, chosen, pieces.last)])
+    return _ordered(
+        [
+            _Pieces(pieces.block, pieces.start, middle, pieces.first, chosen),
+            _Pieces(pieces.block, middle, pieces.end, chosen, pieces.last),
+        ]
+    )
 
 
-def _tip_held(path: Toolpath, pieces: _Pieces, allowed: Floats, gauge: float, place: Place) -> tuple[Ints, Floats, Floats]:
+def _tip_held(
+    path: Toolpath, pieces: _Pieces, allowed: Floats, gauge: float, place: Place
+) -> tuple[Ints, Floats, Floats]:
     """Return the ends of blocks (row, share of it, angles) along which the tip stays within `allowed` (n,) mm of its straight way."""
     turn = np.abs(pieces.last - pieces.first).max(axis=1, initial=0.0)
     pieces = _parted(pieces, np.maximum(1, np.ceil(turn / MOST_TURN - SLACK)).astype(np.int64))
@@ -212,7 +272,9 @@ def _parted(pieces: _Pieces, n: Ints) -> _Pieces:
     run, turn = whole.end - whole.start, whole.last - whole.first
     last = np.where((share == 1.0)[:, None], whole.last, whole.first + share[:, None] * turn)
     end = np.where(share == 1.0, whole.end, whole.start + share * run)
-    return _Pieces(whole.block, whole.start + before * run, end, whole.first + before[:, None] * turn, last)
+    return _Pieces(
+        whole.block, whole.start + before * run, end, whole.first + before[:, None] * turn, last
+    )
 
 
 def _tip_strays(path: Toolpath, pieces: _Pieces, gauge: float, place: Place) -> Floats:
@@ -221,7 +283,12 @@ def _tip_strays(path: Toolpath, pieces: _Pieces, gauge: float, place: Place) -> 
     last = words_of(place, _tips(path, pieces.block, pieces.end), pieces.last, gauge)
     most = np.zeros(len(first))
     for share in SHARES:
-        done, _ = poses_of(place, first + share * (last - first), pieces.first + share * (pieces.last - pieces.first), gauge)
+        done, _ = poses_of(
+            place,
+            first + share * (last - first),
+            pieces.first + share * (pieces.last - pieces.first),
+            gauge,
+        )
         planned = _tips(path, pieces.block, pieces.start + share * (pieces.end - pieces.start))
         most = np.maximum(most, np.linalg.norm(done - planned, axis=1))
     return most
@@ -230,7 +297,11 @@ def _tip_strays(path: Toolpath, pieces: _Pieces, gauge: float, place: Place) -> 
 def _tips(path: Toolpath, block: Ints, share: Floats) -> Floats:
     """Return the tips (k, 3) at shares (k,) of straight blocks."""
     start = path.starts()[block]
-    return np.where((share == 1.0)[:, None], path.position[block], start + share[:, None] * (path.position[block] - start))
+    return np.where(
+        (share == 1.0)[:, None],
+        path.position[block],
+        start + share[:, None] * (path.position[block] - start),
+    )
 
 
 def turned(path: Toolpath, block: Ints, share: Floats) -> Floats:
@@ -240,7 +311,9 @@ def turned(path: Toolpath, block: Ints, share: Floats) -> Floats:
 
 def even_turn(first: Floats, last: Floats, share: Floats) -> Floats:
     """Return the directions (k, 3) at shares (k,) of the even turn from first to last (k, 3)."""
-    angle = 2.0 * np.arctan2(np.linalg.norm(first - last, axis=1), np.linalg.norm(first + last, axis=1))
+    angle = 2.0 * np.arctan2(
+        np.linalg.norm(first - last, axis=1), np.linalg.norm(first + last, axis=1)
+    )
     still = angle < UPRIGHT
     sine = np.where(still, 1.0, np.sin(angle))
     a = np.where(still, 1.0 - share, np.sin((1.0 - share) * angle) / sine)

@@ -33,8 +33,10 @@ def release(session: Session, *, name: str = "", date: str = "") -> tuple[Posted
 def _stamped(posted: PostedFile, header: Header, plan: str) -> PostedFile:
     dialect = registry.get("dialects", posted.dialect)()
     lines = posted.text.split("\n")
-    if not any(f"PLAN {plan}" in line for line in lines[STAMP_LINES:STAMP_LINES + 2]):
-        raise Refused(f"{posted.suffix}: not the text of this session's plan; it leaves only after post and proof of the plan as it is now")
+    if not any(f"PLAN {plan}" in line for line in lines[STAMP_LINES : STAMP_LINES + 2]):
+        raise Refused(
+            f"{posted.suffix}: not the text of this session's plan; it leaves only after post and proof of the plan as it is now"
+        )
     stamp = dialect.stamp(f"{header.name}.{posted.setup}" if posted.setup else header.name, header)
     before = f"{posted.setup}.{REJECTED}." if header.rejected else f"{posted.setup}."
     suffix = before + dialect.suffix if posted.setup else dialect.suffix
@@ -54,7 +56,9 @@ def checked_files(posted: Iterable[PostedFile]) -> tuple[PostedFile, ...]:
         if file.setup and is_released(file.text) == (REJECTED in file.suffix):
             raise Refused(f"{file.suffix}: its name and its stamp differ on whether it may run")
     if len({is_released(file.text) for file in files}) > 1:
-        raise Refused("some programs are released and some rejected: a plan leaves whole or not at all")
+        raise Refused(
+            "some programs are released and some rejected: a plan leaves whole or not at all"
+        )
     return files
 
 
@@ -64,5 +68,14 @@ def is_program_of(name: str, file_name: str) -> bool:
     >>> is_program_of("B1", "B1.S2.REJECTED.nc"), is_program_of("B1", "B1.cl"), is_program_of("B1", "B12.S1.nc")
     (True, True, False)
     """
-    suffixes = "|".join(sorted({re.escape(registry.get("dialects", d)().suffix) for d in registry.names("dialects")}))
-    return re.fullmatch(rf"{re.escape(name)}\.((S[0-9A-Za-z_-]+)(\.{REJECTED})?\.)?({suffixes})", file_name) is not None
+    suffixes = "|".join(
+        sorted(
+            {re.escape(registry.get("dialects", d)().suffix) for d in registry.names("dialects")}
+        )
+    )
+    return (
+        re.fullmatch(
+            rf"{re.escape(name)}\.((S[0-9A-Za-z_-]+)(\.{REJECTED})?\.)?({suffixes})", file_name
+        )
+        is not None
+    )

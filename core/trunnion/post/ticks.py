@@ -28,7 +28,11 @@ class Scale:
         """Return the scale that the settings ask for."""
         inch = settings.units == "inch"
         extra = extra_inch if inch else 0
-        return cls(unit=MM_PER_INCH if inch else 1.0, decimals=settings.decimals + extra, feed_decimals=feed_decimals + extra)
+        return cls(
+            unit=MM_PER_INCH if inch else 1.0,
+            decimals=settings.decimals + extra,
+            feed_decimals=feed_decimals + extra,
+        )
 
     def ticks(self, lengths: Floats) -> Ints:
         """Return lengths in mm as whole numbers of the last decimal."""
@@ -68,14 +72,22 @@ class WrittenPath:
 
     def blocks(self) -> Iterator[tuple[list[int], list[int], int, float]]:
         """Yield end point, centre, motion and feed of each row."""
-        return zip(self.point.tolist(), self.centre.tolist(), self.motion.tolist(), self.feed.tolist(), strict=True)
+        return zip(
+            self.point.tolist(),
+            self.centre.tolist(),
+            self.motion.tolist(),
+            self.feed.tolist(),
+            strict=True,
+        )
 
 
 def upright(path: Toolpath, operation: str) -> Toolpath:
     """Return a path whose tool axis is z all along; raise `Refused` for another."""
     tilted = np.flatnonzero(path.axis[:, 2] < np.cos(tolerance.ANGLE))
     if len(tilted):
-        raise Refused(f"operation {operation}, block {tilted[0] + 1}: a tilted tool axis; this dialect has three axes")
+        raise Refused(
+            f"operation {operation}, block {tilted[0] + 1}: a tilted tool axis; this dialect has three axes"
+        )
     return path
 
 
@@ -99,8 +111,18 @@ def written(path: Toolpath, scale: Scale, operation: str, more: Ints | None = No
         point[row, :2] = point[row - 1, :2]
     kept = np.ones(len(motion), dtype=bool)
     if len(motion):
-        kept[1:] = (motion[1:] >= Motion.ARC_CW) | (point[1:] != point[:-1]).any(axis=1) | (more[1:] != more[:-1]).any(axis=1)
-    return WrittenPath(point=point[kept], centre=centre[kept], motion=motion[kept], feed=path.feed[kept], more=more[kept])
+        kept[1:] = (
+            (motion[1:] >= Motion.ARC_CW)
+            | (point[1:] != point[:-1]).any(axis=1)
+            | (more[1:] != more[:-1]).any(axis=1)
+        )
+    return WrittenPath(
+        point=point[kept],
+        centre=centre[kept],
+        motion=motion[kept],
+        feed=path.feed[kept],
+        more=more[kept],
+    )
 
 
 def _refuse_bad_arcs(path: Toolpath, arcs: Ints, operation: str) -> None:
@@ -108,12 +130,17 @@ def _refuse_bad_arcs(path: Toolpath, arcs: Ints, operation: str) -> None:
     apart = np.abs(np.linalg.norm(start - centre, axis=1) - np.linalg.norm(end - centre, axis=1))
     bad = np.flatnonzero(apart > tolerance.ARC_RADIUS)
     if len(bad):
-        raise Refused(f"operation {operation}, block {arcs[bad[0]] + 1}: the arc's ends lie at radii {apart[bad[0]]:.4f} mm apart")
+        raise Refused(
+            f"operation {operation}, block {arcs[bad[0]] + 1}: the arc's ends lie at radii {apart[bad[0]]:.4f} mm apart"
+        )
 
 
 def _written_sweeps(point: Ints, centre: Ints, motion: Ints, arcs: Ints) -> Floats:
     """Return the turn (k,) in radians, 0 to a full turn, that the written numbers say."""
-    a, b = (point[arcs - 1, :2] - centre[arcs, :2]).astype(float), (point[arcs, :2] - centre[arcs, :2]).astype(float)
+    a, b = (
+        (point[arcs - 1, :2] - centre[arcs, :2]).astype(float),
+        (point[arcs, :2] - centre[arcs, :2]).astype(float),
+    )
     turn = np.arctan2(a[:, 0] * b[:, 1] - a[:, 1] * b[:, 0], (a * b).sum(axis=1))
     turn = np.mod(np.where(motion[arcs] == Motion.ARC_CCW, turn, -turn), 2 * np.pi)
     same = (point[arcs - 1, :2] == point[arcs, :2]).all(axis=1)

@@ -52,14 +52,29 @@ def checked_words(cls: type[T], name: str, table: dict[str, Any]) -> T:
 
 def _checked(kind: Any, value: Any, what: str) -> Any:
     shape = get_origin(kind) or kind
-    if shape is tuple and isinstance(value, list) and value and all(isinstance(v, str) for v in value):
+    if (
+        shape is tuple
+        and isinstance(value, list)
+        and value
+        and all(isinstance(v, str) for v in value)
+    ):
         fixed = [k for k in get_args(kind) if k is not Ellipsis]
         if Ellipsis in get_args(kind) or len(fixed) == len(value):
             return tuple(value)
-    is_table = shape is dict and isinstance(value, dict) and value and all(isinstance(v, str) for v in value.values())
+    is_table = (
+        shape is dict
+        and isinstance(value, dict)
+        and value
+        and all(isinstance(v, str) for v in value.values())
+    )
     if is_table or (shape in (str, int) and type(value) is shape and value != ""):
         return value
-    words = {str: "a text", int: "a whole number", tuple: "a list of texts", dict: "a table of texts"}[shape]
+    words = {
+        str: "a text",
+        int: "a whole number",
+        tuple: "a list of texts",
+        dict: "a table of texts",
+    }[shape]
     raise BadInput(f"{what} must be {words}; got {value!r}")
 
 
@@ -79,7 +94,9 @@ def refuse_unwritable(section: ProgramSection, title: str, coolant: Container[st
     """Raise `Refused` for an operation that can't be written: an id that no comment holds, coolant or speed, no motion."""
     id = section.operation
     if not id or id != plain(id, len(id)) or " " in id:
-        raise Refused(f"operation {id}: its id can't stand in a comment; use letters, digits, points and dashes")
+        raise Refused(
+            f"operation {id}: its id can't stand in a comment; use letters, digits, points and dashes"
+        )
     if section.coolant not in coolant:
         raise Refused(f"operation {id}: {title} has no coolant {section.coolant}")
     if section.spindle_stands:

@@ -78,7 +78,9 @@ class Family(PartKind, Protocol):
 
     settings: type
 
-    def recognize(self, graph: FaceGraph, slicer: Any, settings: Any, progress: Progress) -> Recognition:
+    def recognize(
+        self, graph: FaceGraph, slicer: Any, settings: Any, progress: Progress
+    ) -> Recognition:
         """Return the features of a part, given as a face graph and as what may be asked of it (`Slicer`, `Bounded`).
 
         Every face is in a feature or in `unexplained`, with a finding that names it.
@@ -94,7 +96,9 @@ class Measuring(Protocol):
 
     settings: type
 
-    def measured(self, found: Recognition, graph: FaceGraph, part: Any, settings: Any) -> Recognition:
+    def measured(
+        self, found: Recognition, graph: FaceGraph, part: Any, settings: Any
+    ) -> Recognition:
         """Return what was found with sizes and automatic attributes that fit the faces; what was set by hand stays."""
         ...
 

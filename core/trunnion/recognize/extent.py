@@ -21,7 +21,10 @@ def box(graph: FaceGraph) -> tuple[Floats, Floats]:
         along = np.eye(3)[axis] - graph.curve_axis[arcs, axis, None] * graph.curve_axis[arcs]
         length = np.linalg.norm(along, axis=1)
         turns = length > ANGLE
-        rows, reach = arcs[turns], (graph.curve_radius[arcs, None] * along)[turns] / length[turns, None]
+        rows, reach = (
+            arcs[turns],
+            (graph.curve_radius[arcs, None] * along)[turns] / length[turns, None],
+        )
         for side in (-reach, reach):
             tips = graph.curve_centre[rows] + side
             tips = tips[_on_arc(graph, rows, tips), axis]
@@ -36,7 +39,9 @@ def outline_points(graph: FaceGraph) -> Floats:
     u = graph.start[arcs, None] - centre
     turn = (_sweep(graph, arcs)[:, None] * np.linspace(0.0, 1.0, ARC_PIECES + 1))[..., None]
     points = centre + np.cos(turn) * u + np.sin(turn) * np.cross(axis, u)
-    return np.concatenate([graph.start, graph.end, graph.middle, graph.sample_point, points.reshape(-1, 3)])[:, :2]
+    return np.concatenate(
+        [graph.start, graph.end, graph.middle, graph.sample_point, points.reshape(-1, 3)]
+    )[:, :2]
 
 
 def _arcs(graph: FaceGraph) -> Ints:
@@ -45,9 +50,14 @@ def _arcs(graph: FaceGraph) -> Ints:
 
 def _sweep(graph: FaceGraph, arcs: Ints) -> Floats:
     """Return the turn (k,) of arcs (radians, signed about `curve_axis`) from their start to their end over their middle."""
-    to_end, to_middle = _angle(graph, arcs, graph.end[arcs]), _angle(graph, arcs, graph.middle[arcs])
+    to_end, to_middle = (
+        _angle(graph, arcs, graph.end[arcs]),
+        _angle(graph, arcs, graph.middle[arcs]),
+    )
     closed = np.linalg.norm(graph.end[arcs] - graph.start[arcs], axis=1) < COINCIDENT
-    return np.where(closed, 2.0 * np.pi, np.where(to_middle <= to_end, to_end, to_end - 2.0 * np.pi))
+    return np.where(
+        closed, 2.0 * np.pi, np.where(to_middle <= to_end, to_end, to_end - 2.0 * np.pi)
+    )
 
 
 def _angle(graph: FaceGraph, arcs: Ints, points: Floats) -> Floats:

@@ -73,7 +73,13 @@ def same_surface(graph: FaceGraph, a: int, b: int, distance: float, angle: float
         return False
     away = graph.axis_point[b] - graph.axis_point[a]
     if graph.surface[a] == "plane":
-        return bool(graph.normal[a] @ graph.normal[b] > np.cos(angle)
-                    and abs((graph.centre[b] - graph.centre[a]) @ graph.normal[a]) < distance)
-    return bool(abs(graph.axis[a] @ graph.axis[b]) > np.cos(angle) and abs(graph.radius[a] - graph.radius[b]) < distance
-                and np.linalg.norm(away - (away @ graph.axis[a]) * graph.axis[a]) < distance and graph.bend[a] == graph.bend[b])
+        return bool(
+            graph.normal[a] @ graph.normal[b] > np.cos(angle)
+            and abs((graph.centre[b] - graph.centre[a]) @ graph.normal[a]) < distance
+        )
+    return bool(
+        abs(graph.axis[a] @ graph.axis[b]) > np.cos(angle)
+        and abs(graph.radius[a] - graph.radius[b]) < distance
+        and np.linalg.norm(away - (away @ graph.axis[a]) * graph.axis[a]) < distance
+        and graph.bend[a] == graph.bend[b]
+    )

@@ -43,13 +43,17 @@ class Axis:
 def reach(graph: FaceGraph) -> float:
     """Return the diagonal of the part's box in mm, the length that tolerances on lines are relative to."""
     present = graph.area > 0.0
-    return float(np.linalg.norm(graph.box_high[present].max(axis=0) - graph.box_low[present].min(axis=0)))
+    return float(
+        np.linalg.norm(graph.box_high[present].max(axis=0) - graph.box_low[present].min(axis=0))
+    )
 
 
 def main_axis(graph: FaceGraph) -> Axis | None:
     """Return the axis that the most area is of revolution about, None for a part without round faces and round edges."""
     found = _lines(graph)
-    return max(found, key=lambda axis: float(graph.area[of_revolution(graph, axis)].sum()), default=None)
+    return max(
+        found, key=lambda axis: float(graph.area[of_revolution(graph, axis)].sum()), default=None
+    )
 
 
 def of_revolution(graph: FaceGraph, axis: Axis) -> Bools:
@@ -68,7 +72,9 @@ def of_revolution(graph: FaceGraph, axis: Axis) -> Bools:
 
 def _lines(graph: FaceGraph) -> list[Axis]:
     """Return the lines that most of the round faces and edges share, the heaviest first."""
-    faces = np.flatnonzero(np.isin(graph.surface, ROUND) & np.isfinite(graph.axis).all(axis=1) & (graph.area > 0.0))
+    faces = np.flatnonzero(
+        np.isin(graph.surface, ROUND) & np.isfinite(graph.axis).all(axis=1) & (graph.area > 0.0)
+    )
     edges = np.flatnonzero(np.isfinite(graph.curve_radius))
     point = np.vstack([graph.axis_point[faces], graph.curve_centre[edges]])
     direction = np.vstack([graph.axis[faces], graph.curve_axis[edges]])
@@ -82,14 +88,18 @@ def _lines(graph: FaceGraph) -> list[Axis]:
     while left.any() and len(found) < CANDIDATES:
         most = int(np.argmax(np.where(left, weight, -1.0)))
         same = left & _same(foot, direction, most, near)
-        found.append(Axis(point=foot[most], direction=direction[most] / np.linalg.norm(direction[most])))
+        found.append(
+            Axis(point=foot[most], direction=direction[most] / np.linalg.norm(direction[most]))
+        )
         left &= ~same
     return found
 
 
 def _same(foot: Floats, direction: Floats, row: int, near: float) -> Bools:
     along = np.abs(direction @ direction[row])
-    return np.asarray((along > np.cos(SAME_DIRECTION)) & (np.linalg.norm(foot - foot[row], axis=1) < near))
+    return np.asarray(
+        (along > np.cos(SAME_DIRECTION)) & (np.linalg.norm(foot - foot[row], axis=1) < near)
+    )
 
 
 def _middle(graph: FaceGraph) -> Floats:

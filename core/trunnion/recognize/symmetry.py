@@ -44,7 +44,9 @@ def patterns(graph: FaceGraph, axis: Axis) -> tuple[Pattern, ...]:
     left = np.ones(len(rows), dtype=bool)
     for k in np.argsort(-place[:, 0], kind="stable"):
         if left[k]:
-            allowed = np.array([SAME_AREA * place[k, 0], near, near, SAME_NORMAL, SAME_NORMAL, SAME_NORMAL])
+            allowed = np.array(
+                [SAME_AREA * place[k, 0], near, near, SAME_NORMAL, SAME_NORMAL, SAME_NORMAL]
+            )
             alike = left & (np.abs(place - place[k]) <= allowed).all(axis=1)
             left &= ~alike
             count = fold(angle[alike])
@@ -80,11 +82,20 @@ def _signatures(graph: FaceGraph, axis: Axis) -> tuple[Ints, Floats, Floats]:
     out = axis.away(graph.sample_point)
     out /= np.maximum(np.linalg.norm(out, axis=1), 1e-12)[:, None]
     around = np.cross(axis.direction, out)
-    normal = [np.einsum("ij,ij->i", graph.sample_normal, way) for way in (out, around)] + [graph.sample_normal @ axis.direction]
-    middle = np.column_stack([np.bincount(of, graph.sample_point[:, k], len(graph)) for k in range(3)])[rows] / number[rows, None]
+    normal = [np.einsum("ij,ij->i", graph.sample_normal, way) for way in (out, around)] + [
+        graph.sample_normal @ axis.direction
+    ]
+    middle = (
+        np.column_stack([np.bincount(of, graph.sample_point[:, k], len(graph)) for k in range(3)])[
+            rows
+        ]
+        / number[rows, None]
+    )
     means = [np.bincount(of, n, len(graph))[rows] / number[rows] for n in normal]
     away = axis.away(middle)
-    place = np.column_stack([graph.area[rows], np.linalg.norm(away, axis=1), axis.height(middle), *means])
+    place = np.column_stack(
+        [graph.area[rows], np.linalg.norm(away, axis=1), axis.height(middle), *means]
+    )
     x = np.eye(3)[int(np.argmin(np.abs(axis.direction)))]
     x = x - (x @ axis.direction) * axis.direction
     x = x / np.linalg.norm(x)

@@ -52,20 +52,39 @@ class DeviationMap:
     worst: tuple[WorstPlace, ...] = ()
 
 
-def deviation_map(mesh: Mesh, deviation: Deviation, tolerance: float, allowance: float = 0.0, progress: Progress = QUIET) -> DeviationMap:
+def deviation_map(
+    mesh: Mesh,
+    deviation: Deviation,
+    tolerance: float,
+    allowance: float = 0.0,
+    progress: Progress = QUIET,
+) -> DeviationMap:
     """Return the map of a part's mesh; faces without a sample count as finished."""
     low, high, limit = -tolerance, tolerance + allowance, RANGE * tolerance + allowance
-    return progress.aside(lambda own: _deviation_map(mesh, deviation, low, high, limit, own), "spreading the deviation over the faces")
+    return progress.aside(
+        lambda own: _deviation_map(mesh, deviation, low, high, limit, own),
+        "spreading the deviation over the faces",
+    )
 
 
-def _deviation_map(mesh: Mesh, deviation: Deviation, low: float, high: float, limit: float, progress: Progress) -> DeviationMap:
+def _deviation_map(
+    mesh: Mesh, deviation: Deviation, low: float, high: float, limit: float, progress: Progress
+) -> DeviationMap:
     uneven, apart = uneven_faces(deviation, int(mesh.face.max(initial=0)))
     points, triangles, face = divided(mesh, uneven, apart, progress)
     progress.check()
     value = values_at(points, triangles, face, deviation, low, high)
     progress.check()
-    return DeviationMap(points=points, triangles=triangles, face=face, value=value, low=low, high=high, limit=limit,
-                        worst=worst_places(deviation, low, high))
+    return DeviationMap(
+        points=points,
+        triangles=triangles,
+        face=face,
+        value=value,
+        low=low,
+        high=high,
+        limit=limit,
+        worst=worst_places(deviation, low, high),
+    )
 
 
 def uneven_faces(deviation: Deviation, last: int) -> tuple[Bools, float]:
@@ -84,14 +103,21 @@ def _spacing(deviation: Deviation) -> float:
     if len(deviation.face) < 2:
         return np.inf
     from scipy.spatial import cKDTree
+
     some = deviation.point[:: max(1, len(deviation.point) // 2000)]
     near, _ = cKDTree(deviation.point).query(some, k=2)
     return float(np.quantile(np.asarray(near)[:, 1], 0.9))
 
 
-def divided(mesh: Mesh, uneven: Bools, apart: float, progress: Progress = QUIET) -> tuple[Floats, Ints, Ints]:
+def divided(
+    mesh: Mesh, uneven: Bools, apart: float, progress: Progress = QUIET
+) -> tuple[Floats, Ints, Ints]:
     """Return points, triangles and faces of a mesh whose chosen faces (by tag) have no edge longer than `apart` mm."""
-    points, triangles, face = np.asarray(mesh.points), np.asarray(mesh.triangles), np.asarray(mesh.face)
+    points, triangles, face = (
+        np.asarray(mesh.points),
+        np.asarray(mesh.triangles),
+        np.asarray(mesh.face),
+    )
     fine = uneven[face]
     kept, kept_face = triangles[~fine], face[~fine]
     triangles, face = triangles[fine], face[fine]
@@ -102,10 +128,14 @@ def divided(mesh: Mesh, uneven: Bools, apart: float, progress: Progress = QUIET)
     return points, np.concatenate([kept, triangles]), np.concatenate([kept_face, face])
 
 
-def _halved(points: Floats, triangles: Ints, face: Ints, apart: float) -> tuple[Floats, Ints, Ints, bool]:
+def _halved(
+    points: Floats, triangles: Ints, face: Ints, apart: float
+) -> tuple[Floats, Ints, Ints, bool]:
     """Split every edge that is too long at its middle, once; both triangles beside an edge split it alike."""
     sides = np.sort(triangles[:, [[0, 1], [1, 2], [2, 0]]], axis=2)
-    keys, inverse = np.unique(sides.reshape(-1, 2)[:, 0] * len(points) + sides.reshape(-1, 2)[:, 1], return_inverse=True)
+    keys, inverse = np.unique(
+        sides.reshape(-1, 2)[:, 0] * len(points) + sides.reshape(-1, 2)[:, 1], return_inverse=True
+    )
     a, b = np.divmod(keys, len(points))
     long = np.linalg.norm(points[a] - points[b], axis=1) > apart
     if not long.any():
@@ -120,9 +150,13 @@ def _halved(points: Floats, triangles: Ints, face: Ints, apart: float) -> tuple[
         split = n >= 0
         one = split[:, 0] & ~split[:, 1] & ~split[:, 2]
         two = split[:, 0] & split[:, 1] & ~split[:, 2]
-        made += [np.column_stack([t[one, 0], n[one, 0], t[one, 2]]), np.column_stack([n[one, 0], t[one, 1], t[one, 2]]),
-                 np.column_stack([n[two, 0], t[two, 1], n[two, 1]]), np.column_stack([t[two, 0], n[two, 0], n[two, 1]]),
-                 np.column_stack([t[two, 0], n[two, 1], t[two, 2]])]
+        made += [
+            np.column_stack([t[one, 0], n[one, 0], t[one, 2]]),
+            np.column_stack([n[one, 0], t[one, 1], t[one, 2]]),
+            np.column_stack([n[two, 0], t[two, 1], n[two, 1]]),
+            np.column_stack([t[two, 0], n[two, 0], n[two, 1]]),
+            np.column_stack([t[two, 0], n[two, 1], t[two, 2]]),
+        ]
         faces += [face[one]] * 2 + [face[two]] * 3
     three = (m >= 0).all(axis=1)
     t, n = triangles[three], m[three]
@@ -131,16 +165,22 @@ def _halved(points: Floats, triangles: Ints, face: Ints, apart: float) -> tuple[
     return points, np.concatenate(made), np.concatenate(faces), False
 
 
-def values_at(points: Floats, triangles: Ints, face: Ints, deviation: Deviation, low: float, high: float) -> Floats:
+def values_at(
+    points: Floats, triangles: Ints, face: Ints, deviation: Deviation, low: float, high: float
+) -> Floats:
     """Return the deviation at every point (v,) of a divided mesh."""
     value = np.zeros(len(points))
     if not len(deviation.face):
         return value
     from scipy.spatial import cKDTree
+
     owner = np.zeros(len(points), np.int64)
     owner[triangles.ravel()] = np.repeat(face, 3)
     known = np.isin(owner, deviation.face)
-    samples, places = (np.column_stack([p, tags * _APART]) for p, tags in ((deviation.point, deviation.face), (points, owner)))
+    samples, places = (
+        np.column_stack([p, tags * _APART])
+        for p, tags in ((deviation.point, deviation.face), (points, owner))
+    )
     _, nearest = cKDTree(samples).query(places[known])
     value[known] = deviation.deviation[nearest]
     bad = np.flatnonzero((deviation.deviation < low) | (deviation.deviation > high))
@@ -166,5 +206,11 @@ def worst_places(deviation: Deviation, low: float, high: float) -> tuple[WorstPl
         _, first = np.unique(deviation.face[rows], return_index=True)
         for row in rows[np.sort(first)]:
             x, y, z = (float(v) for v in deviation.point[row])
-            found.append(WorstPlace(face=int(deviation.face[row]), point=(x, y, z), deviation=float(deviation.deviation[row])))
+            found.append(
+                WorstPlace(
+                    face=int(deviation.face[row]),
+                    point=(x, y, z),
+                    deviation=float(deviation.deviation[row]),
+                )
+            )
     return tuple(found[:MOST_PLACES])

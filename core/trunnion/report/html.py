@@ -16,15 +16,32 @@ ROUNDING = 1e-6
 """What sums of thousands of areas may be short of a whole, in hundredths of a per cent."""
 
 
-def report_html(session: Session, name: str, pictures: Sequence[Picture], folder: Path, date: str = "") -> str:
+def report_html(
+    session: Session, name: str, pictures: Sequence[Picture], folder: Path, date: str = ""
+) -> str:
     """Return the report of a session, the same bytes for the same session; the pictures are read from the folder and stand in the text."""
     from jinja2 import Environment, StrictUndefined
+
     template = (resource_folder("report") / "report.html").read_text(encoding="utf-8")
-    page = Environment(autoescape=True, undefined=StrictUndefined, trim_blocks=True, lstrip_blocks=True).from_string(template)
-    shown = [(p.caption, base64.b64encode((folder / p.file).read_bytes()).decode("ascii")) for p in pictures]
+    page = Environment(
+        autoescape=True, undefined=StrictUndefined, trim_blocks=True, lstrip_blocks=True
+    ).from_string(template)
+    shown = [
+        (p.caption, base64.b64encode((folder / p.file).read_bytes()).decode("ascii"))
+        for p in pictures
+    ]
     proofs = {p.operation: p for p in session.verdict.operations} if session.verdict else {}
-    return page.render(name=name, date=date, session=session, pictures=shown, proofs=proofs, duration=duration, share=share,
-                       degrees=degrees, left_faces=left_faces(session))
+    return page.render(
+        name=name,
+        date=date,
+        session=session,
+        pictures=shown,
+        proofs=proofs,
+        duration=duration,
+        share=share,
+        degrees=degrees,
+        left_faces=left_faces(session),
+    )
 
 
 def duration(seconds: float) -> str:
@@ -43,6 +60,9 @@ def left_faces(session: Session) -> list[tuple[int, float, float, bool, bool]]:
     """Return the faces that are not finished whole: (tag, unfinished mm2, most material left mm, planned, reachable), most first."""
     if session.verdict is None:
         return []
-    rows = [(f.face, f.area - f.finished, f.left_max, f.planned, f.reachable) for f in session.verdict.faces
-            if not f.blank_surface and f.area - f.finished > 0.0]
+    rows = [
+        (f.face, f.area - f.finished, f.left_max, f.planned, f.reachable)
+        for f in session.verdict.faces
+        if not f.blank_surface and f.area - f.finished > 0.0
+    ]
     return sorted(rows, key=lambda r: (-r[1], r[0]))

@@ -20,7 +20,9 @@ _UPRIGHT = 1e-6
 
 def kinds_of(path: Toolpath) -> Ints:
     """Return for each block (n,) the row of its kind in `MOTIONS`."""
-    return np.asarray(np.where(path.motion == Motion.RAPID, MOTIONS.index("rapid"), path.mark), dtype=np.int64)
+    return np.asarray(
+        np.where(path.motion == Motion.RAPID, MOTIONS.index("rapid"), path.mark), dtype=np.int64
+    )
 
 
 def opened(path: Toolpath) -> tuple[Floats, Ints]:
@@ -44,7 +46,13 @@ def opened(path: Toolpath) -> tuple[Floats, Ints]:
         arm = start[rows] - path.centre[rows]
         arm -= (arm * about).sum(axis=1, keepdims=True) * about
         rise = ((path.position[rows] - start[rows]) * about).sum(axis=1, keepdims=True) * about
-        points[turned] = start[rows] - arm + np.cos(angle) * arm + np.sin(angle) * np.cross(about, arm) + share[turned, None] * rise
+        points[turned] = (
+            start[rows]
+            - arm
+            + np.cos(angle) * arm
+            + np.sin(angle) * np.cross(about, arm)
+            + share[turned, None] * rise
+        )
     return np.vstack([path.position[:1], points]), row
 
 
@@ -73,4 +81,3 @@ def strokes(path: Toolpath, every: float, length: float, most: int) -> Floats:
     tip = path.position[before] + share[:, None] * (path.position[row] - path.position[before])
     axis = turned_axes(path.axis[before], path.axis[row], share)
     return np.stack([tip, tip + length * axis], axis=1)
-

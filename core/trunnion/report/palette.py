@@ -32,8 +32,10 @@ class DeviationColours:
         """Return the colour (v, 3) of deviations (v,) mm: gouge below `low`, left above `high`, both ending at `limit` from 0."""
         value = np.asarray(value, dtype=np.float64)
         found = np.tile(np.array(self.finished, np.float64), (len(value), 1))
-        for colours, bad, share in ((self.gouge, value < low, (low - value) / (limit + low)),
-                                    (self.left, value > high, (value - high) / (limit - high))):
+        for colours, bad, share in (
+            (self.gouge, value < low, (low - value) / (limit + low)),
+            (self.left, value > high, (value - high) / (limit - high)),
+        ):
             steps = np.linspace(0.0, 1.0, len(colours))
             for channel in range(3):
                 found[bad, channel] = np.interp(share[bad], steps, [c[channel] for c in colours])
@@ -89,10 +91,25 @@ class Palette:
 def load_palette() -> Palette:
     """Return the palette that is shipped; raise `BadInput` when a colour is not written as `#rrggbb`."""
     data = tomllib.loads((folder("palette") / "palette.toml").read_text(encoding="utf-8"))
-    kinds, motions = ({k: _colour(k, v) for k, v in data[table].items()} for table in ("kinds", "motions"))
-    remaining, local = (tuple(_colour(name, text) for text in data["groups"][name]) for name in ("remaining", "local"))
-    radius = RadiusColours(limits=tuple(data["radius"]["limits"]), colours=tuple(_colour("radius", c) for c in data["radius"]["colours"]))
-    return Palette(kinds=kinds, remaining=remaining, local=local, radius=radius, motions=motions, deviation=_deviation(data["deviation"]))
+    kinds, motions = (
+        {k: _colour(k, v) for k, v in data[table].items()} for table in ("kinds", "motions")
+    )
+    remaining, local = (
+        tuple(_colour(name, text) for text in data["groups"][name])
+        for name in ("remaining", "local")
+    )
+    radius = RadiusColours(
+        limits=tuple(data["radius"]["limits"]),
+        colours=tuple(_colour("radius", c) for c in data["radius"]["colours"]),
+    )
+    return Palette(
+        kinds=kinds,
+        remaining=remaining,
+        local=local,
+        radius=radius,
+        motions=motions,
+        deviation=_deviation(data["deviation"]),
+    )
 
 
 def _deviation(data: dict[str, Any]) -> DeviationColours:

@@ -24,7 +24,16 @@ from trunnion.model.setup import Setup
 from trunnion.model.toolpath import Toolpath
 from trunnion.progress import QUIET, Progress
 from trunnion.report.deviation import DeviationMap, deviation_map
-from trunnion.report.lines import AXIS, MOST_STROKES, MOTIONS, STROKE_EVERY, STROKE_LENGTH, kinds_of, opened, strokes
+from trunnion.report.lines import (
+    AXIS,
+    MOST_STROKES,
+    MOTIONS,
+    STROKE_EVERY,
+    STROKE_LENGTH,
+    kinds_of,
+    opened,
+    strokes,
+)
 from trunnion.report.palette import GROUP, Colour, Palette
 from trunnion.settings import checked, choose
 from trunnion.verify.settings import ProofSettings
@@ -47,15 +56,25 @@ class Picture:
     caption: str
 
 
-def write_pictures(session: Session, mesh: Mesh, folder: Path, name: str, palette: Palette,
-                   progress: Progress = QUIET) -> tuple[Picture, ...]:
+def write_pictures(
+    session: Session,
+    mesh: Mesh,
+    folder: Path,
+    name: str,
+    palette: Palette,
+    progress: Progress = QUIET,
+) -> tuple[Picture, ...]:
     """Write the pictures of a session as PNG files `NAME.*.png` into a folder and return them in the order of the work."""
     made = []
-    progress.aside(lambda _: importlib.import_module("pyvista.plotting.plotter"), "drawing pictures")
+    progress.aside(
+        lambda _: importlib.import_module("pyvista.plotting.plotter"), "drawing pictures"
+    )
     if session.recognition is not None:
         progress.at(0.1, "drawing the features")
         _shoot(_features(session, mesh, palette), folder / f"{name}.features.png", progress)
-        words = "Groups of equal patches" if session.recognition.of_kind(GROUP) else "Features by kind"
+        words = (
+            "Groups of equal patches" if session.recognition.of_kind(GROUP) else "Features by kind"
+        )
         made.append(Picture(file=f"{name}.features.png", caption=words))
     if any(len(p.path) for p in session.paths):
         progress.at(0.3, "drawing the toolpaths")
@@ -63,8 +82,15 @@ def write_pictures(session: Session, mesh: Mesh, folder: Path, name: str, palett
         made.append(Picture(file=f"{name}.toolpaths.png", caption="Toolpaths by kind of motion"))
     if session.verdict is not None and len(session.verdict.deviation.face):
         progress.at(0.6, "drawing the deviation")
-        _shoot(_deviation(session, mesh, palette, progress), folder / f"{name}.deviation.png", progress)
-        made.append(Picture(file=f"{name}.deviation.png", caption="Deviation of the finished part: + is material left, - is gouge"))
+        _shoot(
+            _deviation(session, mesh, palette, progress), folder / f"{name}.deviation.png", progress
+        )
+        made.append(
+            Picture(
+                file=f"{name}.deviation.png",
+                caption="Deviation of the finished part: + is material left, - is gouge",
+            )
+        )
     return tuple(made)
 
 
@@ -74,6 +100,7 @@ def _plotter() -> Plotter:
         # Without it pyvista asks an X server and opens a window on trial, for a warning that a window without a screen does not need.
         os.environ.setdefault("ALLOW_PLOTTING", "true")
     import pyvista
+
     made = pyvista.Plotter(off_screen=True, window_size=list(SIZE))
     made.set_background("white")
     made.render_window.SetMultiSamples(0)
@@ -83,6 +110,7 @@ def _plotter() -> Plotter:
 
 def _shoot(plotter: Plotter, file: Path, progress: Progress) -> None:
     from PIL import Image
+
     progress.check()
     drawn = np.asarray(plotter.screenshot(return_img=True))
     plotter.close()
@@ -91,6 +119,7 @@ def _shoot(plotter: Plotter, file: Path, progress: Progress) -> None:
 
 def _surface(points: Floats, triangles: Ints) -> Any:
     import pyvista
+
     cells = np.column_stack([np.full(len(triangles), 3), triangles]).ravel()
     return pyvista.PolyData(np.asarray(points), cells)
 
@@ -111,7 +140,9 @@ def _reach(plotter: Plotter) -> float:
     bounds = np.reshape(plotter.bounds, (3, 2))
     corners = np.array([(*corner, 1.0) for corner in product(*bounds)])
     seen = plotter.camera.GetCompositeProjectionTransformMatrix(SIZE[0] / SIZE[1], -1.0, 1.0)
-    places = corners @ np.array([[seen.GetElement(row, column) for row in range(4)] for column in range(4)])
+    places = corners @ np.array(
+        [[seen.GetElement(row, column) for row in range(4)] for column in range(4)]
+    )
     return float(np.abs(places[:, :2] / places[:, 3:]).max())
 
 
@@ -121,7 +152,9 @@ def _legend(plotter: Plotter, entries: Mapping[str, Colour]) -> None:
         # VTK's built-in font has no filled square: two letters on a ground of their own colour make one.
         key = plotter.add_text("MM", position=(left, top - n * line), font_size=9, color=colour)
         key.prop.background_color, key.prop.background_opacity = colour, 1.0
-        plotter.add_text(word, position=(left + 50, top - n * line - 4), font_size=12, color="black")
+        plotter.add_text(
+            word, position=(left + 50, top - n * line - 4), font_size=12, color="black"
+        )
 
 
 def _colours(mesh: Mesh, by_face: Mapping[int, Colour], rest: Colour) -> Any:
@@ -147,15 +180,25 @@ def _features(session: Session, mesh: Mesh, palette: Palette) -> Plotter:
 def feature_legend(recognition: Recognition, palette: Palette) -> dict[str, Colour]:
     """Return what the colours of features mean: kinds with their number, or, of groups of equal patches, both classes with theirs."""
     groups = [bool(f.attributes.get("local")) for f in recognition.of_kind(GROUP)]
-    words = {f"{kind.replace('_', ' ')} {n}": palette.kind(kind) for kind, n in recognition.counts().items() if kind != GROUP}
+    words = {
+        f"{kind.replace('_', ' ')} {n}": palette.kind(kind)
+        for kind, n in recognition.counts().items()
+        if kind != GROUP
+    }
     if groups:
         words |= {f"groups of the remaining area {groups.count(False)}": palette.remaining[0]}
-        words |= {f"groups of local features {groups.count(True)}": palette.local[0]} if any(groups) else {}
+        words |= (
+            {f"groups of local features {groups.count(True)}": palette.local[0]}
+            if any(groups)
+            else {}
+        )
     return words
 
 
 def _outline(plotter: Plotter, surface: Any) -> None:
-    edges = surface.clean().extract_feature_edges(feature_angle=25, boundary_edges=False, non_manifold_edges=False)
+    edges = surface.clean().extract_feature_edges(
+        feature_angle=25, boundary_edges=False, non_manifold_edges=False
+    )
     if edges.n_cells:
         plotter.add_mesh(edges, color=(60, 66, 74), line_width=1.2)
 
@@ -171,7 +214,9 @@ def _toolpaths(session: Session, mesh: Mesh, palette: Palette) -> Plotter:
         if len(made.path) and made.operation in operations:
             _gather(gathered, made.path, setups[operations[made.operation].setup], size)
     for word, pieces in gathered.items():
-        plotter.add_mesh(_segments(pieces), color=palette.motion(word), line_width=1.0, lighting=False)
+        plotter.add_mesh(
+            _segments(pieces), color=palette.motion(word), line_width=1.0, lighting=False
+        )
     _legend(plotter, {word.replace("_", " "): palette.motion(word) for word in gathered})
     return _look(plotter, session)
 
@@ -185,32 +230,51 @@ def _gather(gathered: dict[str, list[Floats]], path: Toolpath, setup: Setup, siz
         gathered.setdefault(MOTIONS[row], []).append(ends[kind == row])
     standing = strokes(path, STROKE_EVERY * size, STROKE_LENGTH * size, MOST_STROKES)
     if len(standing):
-        gathered.setdefault(AXIS, []).append(setup.frame.to_world(standing.reshape(-1, 3)).reshape(-1, 2, 3))
+        gathered.setdefault(AXIS, []).append(
+            setup.frame.to_world(standing.reshape(-1, 3)).reshape(-1, 2, 3)
+        )
 
 
 def _segments(pieces: Iterable[Floats]) -> Any:
     import pyvista
+
     ends = np.concatenate(list(pieces))
-    lines = np.column_stack([np.full(len(ends), 2), np.arange(2 * len(ends)).reshape(-1, 2)]).ravel()
+    lines = np.column_stack(
+        [np.full(len(ends), 2), np.arange(2 * len(ends)).reshape(-1, 2)]
+    ).ravel()
     return pyvista.PolyData(ends.reshape(-1, 3), lines=lines)
 
 
 def _deviation(session: Session, mesh: Mesh, palette: Palette, progress: Progress) -> Plotter:
     assert session.verdict is not None
     chosen = checked(choose(ProofSettings, session.choices))
-    shown = deviation_map(mesh, session.verdict.deviation, chosen.tolerance, chosen.allowance, progress)
+    shown = deviation_map(
+        mesh, session.verdict.deviation, chosen.tolerance, chosen.allowance, progress
+    )
     progress.check()
     plotter = _plotter()
     surface = _surface(shown.points, shown.triangles)
-    surface.point_data["colour"] = palette.deviation.at(shown.value, shown.low, shown.high, shown.limit)
+    surface.point_data["colour"] = palette.deviation.at(
+        shown.value, shown.low, shown.high, shown.limit
+    )
     plotter.add_mesh(surface, scalars="colour", rgb=True, ambient=0.35, diffuse=0.7)
     _outline(plotter, _surface(mesh.points, mesh.triangles))
     _legend(plotter, deviation_legend(shown, palette))
     worst = shown.worst[:_NAMED_PLACES]
     if worst:
-        plotter.add_point_labels(np.array([w.point for w in worst]), [fine_length(w.deviation) for w in worst], font_size=15,
-                                 text_color="black", shape_color="white", shape_opacity=0.85, point_color="black", point_size=8,
-                                 always_visible=True, shape="rounded_rect", margin=4)
+        plotter.add_point_labels(
+            np.array([w.point for w in worst]),
+            [fine_length(w.deviation) for w in worst],
+            font_size=15,
+            text_color="black",
+            shape_color="white",
+            shape_opacity=0.85,
+            point_color="black",
+            point_size=8,
+            always_visible=True,
+            shape="rounded_rect",
+            margin=4,
+        )
     return _look(plotter, session)
 
 
@@ -219,8 +283,17 @@ def deviation_legend(shown: DeviationMap, palette: Palette) -> dict[str, Colour]
     above = (shown.limit, 0.5 * (shown.limit + shown.high), np.nextafter(shown.high, np.inf))
     below = (np.nextafter(shown.low, -np.inf), 0.5 * (shown.low - shown.limit), -shown.limit)
     values = np.array([*above, 0.0, *below])
-    words = [f"{fine_length(v)}{more}" for v, more in zip(above, (" or more left", "", " left"), strict=True)]
-    words += ["finished", *(f"{fine_length(v)}{more}" for v, more in zip(below, (" gouge", "", " or deeper"), strict=True))]
+    words = [
+        f"{fine_length(v)}{more}"
+        for v, more in zip(above, (" or more left", "", " left"), strict=True)
+    ]
+    words += [
+        "finished",
+        *(
+            f"{fine_length(v)}{more}"
+            for v, more in zip(below, (" gouge", "", " or deeper"), strict=True)
+        ),
+    ]
     colours = palette.deviation.at(values, shown.low, shown.high, shown.limit)
     return {word: (int(r), int(g), int(b)) for word, (r, g, b) in zip(words, colours, strict=True)}
 

@@ -55,8 +55,14 @@ class Shop:
         """Return the typical plan of a family that is named, or (empty) its first; raise `BadInput` when there is none."""
         known = {name: plan for name, plan in self.plans.items() if plan.family == family}
         if not known:
-            raise BadInput(f"there is no typical plan for the family {family}; add one to the plans folder")
-        return _named(known, named, f"typical plan for the family {family},") if named else next(iter(known.values()))
+            raise BadInput(
+                f"there is no typical plan for the family {family}; add one to the plans folder"
+            )
+        return (
+            _named(known, named, f"typical plan for the family {family},")
+            if named
+            else next(iter(known.values()))
+        )
 
 
 def load_shop(user_folder: Path | None = None) -> Shop:
@@ -65,8 +71,12 @@ def load_shop(user_folder: Path | None = None) -> Shop:
     `user_folder` has the shape of the program's own (`tools`, `holders`, `materials`, `machines`, `plans`, each with TOML files) and adds
     entries or replaces those of the same name. What is missing there is not asked for.
     """
-    return Shop(cutters=load_cutters(load_holders(user_folder), user_folder), materials=load_materials(user_folder),
-                machines=load_machines(user_folder), plans=load_plans(user_folder))
+    return Shop(
+        cutters=load_cutters(load_holders(user_folder), user_folder),
+        materials=load_materials(user_folder),
+        machines=load_machines(user_folder),
+        plans=load_plans(user_folder),
+    )
 
 
 def _named(things: Mapping[str, T], name: str, kind: str) -> T:

@@ -40,7 +40,9 @@ class Cutter:
 
 def load_holders(user_folder: Path | None) -> dict[str, Holder]:
     """Return the holders by name."""
-    return {name: _holder(entry) for name, entry in by_name(entries("holders", user_folder)).items()}
+    return {
+        name: _holder(entry) for name, entry in by_name(entries("holders", user_folder)).items()
+    }
 
 
 def load_cutters(holders: Mapping[str, Holder], user_folder: Path | None) -> tuple[Cutter, ...]:
@@ -57,23 +59,38 @@ def load_cutters(holders: Mapping[str, Holder], user_folder: Path | None) -> tup
             raise group.wrong("tables are named [tool.NAME] or [series.NAME]")
         for name in group.fields:
             inner = group.table(name)
-            found.append((layer, Entry(file=inner.file, name=f"{group.name} {name}", fields=inner.fields)))
+            found.append(
+                (layer, Entry(file=inner.file, name=f"{group.name} {name}", fields=inner.fields))
+            )
     cutters: dict[str, Cutter] = {}
     for full, entry in by_name(found).items():
         kind, name = full.split(" ", 1)
-        for cutter in [_single(entry, name, holders)] if kind == "tool" else _series(entry, name, holders):
+        for cutter in (
+            [_single(entry, name, holders)] if kind == "tool" else _series(entry, name, holders)
+        ):
             if cutter.tool.name in cutters:
                 raise entry.wrong(f"the cutter {cutter.tool.name} is given twice")
             cutters[cutter.tool.name] = cutter
-    return tuple(sorted(cutters.values(), key=lambda c: (c.tool.diameter, c.tool.corner_radius, c.tool.reach, c.tool.name)))
+    return tuple(
+        sorted(
+            cutters.values(),
+            key=lambda c: (c.tool.diameter, c.tool.corner_radius, c.tool.reach, c.tool.name),
+        )
+    )
 
 
 def _holder(entry: Entry) -> Holder:
     entry.text("title")
     rows = entry.rows("rows", 4, 0.0, _LARGEST)
     entry.done()
-    if rows[0][0] != 0.0 or any(row[2] <= row[0] for row in rows) or any(a[2] != b[0] for a, b in pairwise(rows)):
-        raise entry.wrong("rows must start at the nose (0) and follow each other upwards without a gap")
+    if (
+        rows[0][0] != 0.0
+        or any(row[2] <= row[0] for row in rows)
+        or any(a[2] != b[0] for a, b in pairwise(rows))
+    ):
+        raise entry.wrong(
+            "rows must start at the nose (0) and follow each other upwards without a gap"
+        )
     return Holder(name=entry.name, rows=tuple((z0, r0, z1, r1) for z0, r0, z1, r1 in rows))
 
 
@@ -81,7 +98,11 @@ def _single(entry: Entry, name: str, holders: Mapping[str, Holder]) -> Cutter:
     kind = _kind(entry, END_MILL)
     corner = 0.0 if kind in ("drill", "form") else entry.number("corner_radius", 0.0, _LARGEST)
     tool = _tool(entry, entry, kind, name, corner, holders)
-    cutter = Cutter(tool=tool, suits=_suits(entry), use=entry.texts("use", _USE.get(kind, ("face", "rough", "finish")), USES))
+    cutter = Cutter(
+        tool=tool,
+        suits=_suits(entry),
+        use=entry.texts("use", _USE.get(kind, ("face", "rough", "finish")), USES),
+    )
     entry.done()
     return cutter
 
@@ -92,10 +113,14 @@ def _series(entry: Entry, name: str, holders: Mapping[str, Holder]) -> list[Cutt
     made = []
     for size in entry.tables("sizes"):
         diameter = size.number("diameter", 0.0, _LARGEST)
-        corners = (0.0,) if kind in ("drill", "form") else size.numbers("corner_radii", 0.0, _LARGEST)
+        corners = (
+            (0.0,) if kind in ("drill", "form") else size.numbers("corner_radii", 0.0, _LARGEST)
+        )
         for corner in corners:
             tool = _tool(entry, size, kind, f"{name} D{trimmed(diameter, 3)}", corner, holders)
-            made.append(Cutter(tool=replace(tool, name=tool.name + _size_name(tool)), suits=suits, use=use))
+            made.append(
+                Cutter(tool=replace(tool, name=tool.name + _size_name(tool)), suits=suits, use=use)
+            )
         size.done()
     entry.done()
     return made
@@ -111,15 +136,22 @@ def _kind(entry: Entry, default: str | None = None) -> str:
 def _size_name(tool: Tool) -> str:
     """Return what tells a size apart from others of its series and diameter."""
     corner = f" R{trimmed(tool.corner_radius, 3)}"
-    return {"taper": f"{corner} A{trimmed(tool.taper_angle, 3)}", "barrel": f"{corner} B{trimmed(tool.barrel_radius, 3)}",
-            "t-slot": f"{corner} H{trimmed(tool.flute_length, 3)}", "drill": "", "form": ""}.get(tool.form, corner)
+    return {
+        "taper": f"{corner} A{trimmed(tool.taper_angle, 3)}",
+        "barrel": f"{corner} B{trimmed(tool.barrel_radius, 3)}",
+        "t-slot": f"{corner} H{trimmed(tool.flute_length, 3)}",
+        "drill": "",
+        "form": "",
+    }.get(tool.form, corner)
 
 
 def _suits(entry: Entry) -> tuple[str, ...]:
     return entry.texts("suits", ISO_GROUPS, ISO_GROUPS)
 
 
-def _tool(series: Entry, size: Entry, kind: str, name: str, corner: float, holders: Mapping[str, Holder]) -> Tool:
+def _tool(
+    series: Entry, size: Entry, kind: str, name: str, corner: float, holders: Mapping[str, Holder]
+) -> Tool:
     """Return one cutter: what all sizes share from `series`, its lengths from `size`."""
     holder_name = size.text("holder")
     if holder_name not in holders:
@@ -128,12 +160,25 @@ def _tool(series: Entry, size: Entry, kind: str, name: str, corner: float, holde
     diameter = size.number("diameter", 0.0, _LARGEST)
     end = "flat" if corner == 0.0 else "ball" if 2 * corner == diameter else "bull"
     try:
-        return Tool(number=0, name=name, form=end if kind == END_MILL else kind, diameter=diameter, corner_radius=corner,
-                    flute_length=size.number("flute_length", 0.0, _LARGEST), neck_diameter=size.number("neck_diameter", 0.0, _LARGEST),
-                    neck_length=size.number("neck_length", 0.0, _LARGEST), shank_diameter=size.number("shank_diameter", 0.0, _LARGEST),
-                    stickout=stickout, gauge_length=stickout + holder.length, teeth=series.count("teeth", _FEWEST, _MOST_TEETH),
-                    centre_cutting=series.flag("centre_cutting"), helix_angle=series.number("helix_angle", 0.0, _STEEPEST_HELIX),
-                    holder=holder, description=series.text("title"), **_shape(series, size, kind))
+        return Tool(
+            number=0,
+            name=name,
+            form=end if kind == END_MILL else kind,
+            diameter=diameter,
+            corner_radius=corner,
+            flute_length=size.number("flute_length", 0.0, _LARGEST),
+            neck_diameter=size.number("neck_diameter", 0.0, _LARGEST),
+            neck_length=size.number("neck_length", 0.0, _LARGEST),
+            shank_diameter=size.number("shank_diameter", 0.0, _LARGEST),
+            stickout=stickout,
+            gauge_length=stickout + holder.length,
+            teeth=series.count("teeth", _FEWEST, _MOST_TEETH),
+            centre_cutting=series.flag("centre_cutting"),
+            helix_angle=series.number("helix_angle", 0.0, _STEEPEST_HELIX),
+            holder=holder,
+            description=series.text("title"),
+            **_shape(series, size, kind),
+        )
     except ValueError as reason:
         raise size.wrong(str(reason)) from None
 
@@ -141,11 +186,23 @@ def _tool(series: Entry, size: Entry, kind: str, name: str, corner: float, holde
 def _shape(series: Entry, size: Entry, kind: str) -> dict[str, Any]:
     """Return the fields that only one form has; a size's own go before those of its series."""
     if kind == "taper":
-        return {"taper_angle": _given(series, size, "taper_angle").number("taper_angle", 0.0, _QUARTER_TURN)}
+        return {
+            "taper_angle": _given(series, size, "taper_angle").number(
+                "taper_angle", 0.0, _QUARTER_TURN
+            )
+        }
     if kind == "barrel":
-        return {"barrel_radius": _given(series, size, "barrel_radius").number("barrel_radius", 0.0, _LARGEST)}
+        return {
+            "barrel_radius": _given(series, size, "barrel_radius").number(
+                "barrel_radius", 0.0, _LARGEST
+            )
+        }
     if kind == "drill":
-        return {"point_angle": _given(series, size, "point_angle").number("point_angle", 0.0, _HALF_TURN)}
+        return {
+            "point_angle": _given(series, size, "point_angle").number(
+                "point_angle", 0.0, _HALF_TURN
+            )
+        }
     if kind == "form":
         return {"outline": size.rows("outline", 3, -1.0, _LARGEST)}
     return {}

@@ -45,7 +45,9 @@ class Place:
     @property
     def limits(self) -> tuple[Floats, Floats]:
         """Lowest and highest angle (a,) of the rotary axes in rad."""
-        return tuple(np.radians([getattr(a, end) for a in self.machine.rotary]) for end in ("low", "high"))  # type: ignore[return-value]
+        return tuple(
+            np.radians([getattr(a, end) for a in self.machine.rotary]) for end in ("low", "high")
+        )  # type: ignore[return-value]
 
 
 Places = Mapping[str, Place]
@@ -96,7 +98,7 @@ def lift_of(place: Place, angle: Floats) -> Floats:
     up = UP[None]
     for k, rotary in enumerate(place.machine.rotary):
         if rotary.carries == "work":
-            up = _turned(rotations(rotary, -angle[k:k + 1]), up)
+            up = _turned(rotations(rotary, -angle[k : k + 1]), up)
     return np.asarray(up[0])
 
 
@@ -112,7 +114,11 @@ def stands_of(machine: Machine, axis: Floats) -> tuple[Floats, Bools, Bools]:
         v, w = (axis, up) if axes[0].carries == "work" else (up, axis)
         angle, is_free = _about(np.array(axes[0].direction), v, w)
         held = np.linalg.norm(_turned(rotations(axes[0], angle), v) - w, axis=1) < POLE
-        return (np.repeat(angle[:, None, None], 2, axis=1), np.repeat(is_free[:, None, None], 2, axis=1), held)
+        return (
+            np.repeat(angle[:, None, None], 2, axis=1),
+            np.repeat(is_free[:, None, None], 2, axis=1),
+            held,
+        )
     one, two = axes
     if one.carries == two.carries:
         v, w = (axis, up) if one.carries == "work" else (up, axis)
@@ -163,7 +169,9 @@ def _both(one: Axis, two: Axis, v: Floats, w: Floats, sign: float) -> tuple[Floa
     size = np.hypot(p, q)
     is_free = size < POLE
     ratio = s / np.where(is_free, 1.0, size)
-    beside = np.where(is_free, 0.0, np.arctan2(np.sqrt(np.maximum((1.0 - ratio) * (1.0 + ratio), 0.0)), ratio))
+    beside = np.where(
+        is_free, 0.0, np.arctan2(np.sqrt(np.maximum((1.0 - ratio) * (1.0 + ratio), 0.0)), ratio)
+    )
     middle = np.where(is_free, 0.0, np.arctan2(-q, p))
     held = np.where(is_free, np.abs(s) < POLE, np.abs(ratio) < 1.0 + POLE)
     angle, free = np.zeros((len(v), 2, 2)), np.zeros((len(v), 2, 2), bool)
@@ -178,4 +186,6 @@ def _about(u: Floats, v: Floats, w: Floats) -> tuple[Floats, Bools]:
     """Return the angles (k,) about u that bring v to w (k, 3), and where any does because v lies along u."""
     a, b = v - np.outer(v @ u, u), w - np.outer(w @ u, u)
     angle = np.arctan2(np.cross(a, b) @ u, (a * b).sum(axis=1))
-    return np.asarray(angle), np.asarray(np.minimum(np.linalg.norm(a, axis=1), np.linalg.norm(b, axis=1)) < POLE)
+    return np.asarray(angle), np.asarray(
+        np.minimum(np.linalg.norm(a, axis=1), np.linalg.norm(b, axis=1)) < POLE
+    )

@@ -21,24 +21,40 @@ _STRONGEST = 1_000.0
 
 def load_machines(user_folder: Path | None) -> dict[str, Machine]:
     """Return the machines by name; a user's replaces the program's of the same name as a whole."""
-    return {name: _machine(entry) for name, entry in by_name(entries("machines", user_folder)).items()}
+    return {
+        name: _machine(entry) for name, entry in by_name(entries("machines", user_folder)).items()
+    }
 
 
 def _machine(entry: Entry) -> Machine:
     spindle = entry.table("spindle")
     low, high = spindle.number("low", 0.0, FASTEST), spindle.number("high", 1.0, FASTEST)
     power = tuple((n, kw) for n, kw in spindle.rows("power", 2, 0.0, FASTEST))
-    if low >= high or any(a[0] >= b[0] for a, b in pairwise(power)) or not all(n > 0.0 and 0.0 < kw <= _STRONGEST for n, kw in power):
-        raise spindle.wrong("low must be below high, and the power curve rows [1/min, kW] must grow in speed")
+    if (
+        low >= high
+        or any(a[0] >= b[0] for a, b in pairwise(power))
+        or not all(n > 0.0 and 0.0 < kw <= _STRONGEST for n, kw in power)
+    ):
+        raise spindle.wrong(
+            "low must be below high, and the power curve rows [1/min, kW] must grow in speed"
+        )
     spindle.done()
     axes = tuple(_axis(table) for table in entry.tables("axes"))
     missing = {"X", "Y", "Z"} - {a.name for a in axes}
     if missing or len({a.name for a in axes}) < len(axes):
         raise entry.wrong("axes must name X, Y and Z, each once")
     _check_rotary(entry, axes)
-    machine = Machine(name=entry.name, title=entry.text("title"), axes=axes, spindle_low=low, spindle_high=high, power=power,
-                      feed_max=entry.number("feed_max", 1.0, FASTEST), tool_change_s=entry.number("tool_change_s", 0.0, FASTEST),
-                      tool_places=entry.count("tool_places", 1, 10_000))
+    machine = Machine(
+        name=entry.name,
+        title=entry.text("title"),
+        axes=axes,
+        spindle_low=low,
+        spindle_high=high,
+        power=power,
+        feed_max=entry.number("feed_max", 1.0, FASTEST),
+        tool_change_s=entry.number("tool_change_s", 0.0, FASTEST),
+        tool_places=entry.count("tool_places", 1, 10_000),
+    )
     entry.done()
     return machine
 
@@ -49,8 +65,15 @@ def _axis(entry: Entry) -> Axis:
         raise entry.wrong(f"kind must be one of {', '.join(AXIS_KINDS)}; got {kind!r}")
     turning = _turning(entry) if kind == "rotary" else {}
     low, high = (entry.number(end, -FARTHEST, FARTHEST) for end in ("low", "high"))
-    axis = Axis(name=entry.text("name"), kind=kind, low=low, high=high,
-                rapid=entry.number("rapid", 1.0, FASTEST), acceleration=entry.number("acceleration", 1.0, FASTEST), **turning)
+    axis = Axis(
+        name=entry.text("name"),
+        kind=kind,
+        low=low,
+        high=high,
+        rapid=entry.number("rapid", 1.0, FASTEST),
+        acceleration=entry.number("acceleration", 1.0, FASTEST),
+        **turning,
+    )
     if axis.low >= axis.high or (kind == "rotary" and not axis.low <= 0.0 <= axis.high):
         raise entry.wrong("low must be below high, and a rotary axis must be able to stand at 0")
     entry.done()
@@ -62,10 +85,15 @@ def _turning(entry: Entry) -> dict[str, Any]:
     carries = entry.text("carries")
     if carries not in CARRIES:
         raise entry.wrong(f"carries must be one of {', '.join(CARRIES)}; got {carries!r}")
-    direction, point = entry.numbers("direction", -1.0, 1.0), entry.numbers("point", -FARTHEST, FARTHEST)
+    direction, point = (
+        entry.numbers("direction", -1.0, 1.0),
+        entry.numbers("point", -FARTHEST, FARTHEST),
+    )
     length = math.hypot(*direction)
     if len(direction) != 3 or len(point) != 3 or length < _SHORTEST:
-        raise entry.wrong("direction and point must be three numbers each, and a direction must not be 0")
+        raise entry.wrong(
+            "direction and point must be three numbers each, and a direction must not be 0"
+        )
     return {"carries": carries, "direction": tuple(v / length for v in direction), "point": point}
 
 
@@ -76,4 +104,6 @@ def _check_rotary(entry: Entry, axes: tuple[Axis, ...]) -> None:
     if len(turning) == MOST_ROTARY:
         (ax, ay, az), (bx, by, bz) = (a.direction for a in turning)
         if math.hypot(ay * bz - az * by, az * bx - ax * bz, ax * by - ay * bx) < _LEAST_BETWEEN:
-            raise entry.wrong(f"rotary axes {turning[0].name} and {turning[1].name} must not be parallel")
+            raise entry.wrong(
+                f"rotary axes {turning[0].name} and {turning[1].name} must not be parallel"
+            )

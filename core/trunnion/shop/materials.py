@@ -17,7 +17,9 @@ _STRONGEST = 10000.0
 
 def load_materials(user_folder: Path | None) -> dict[str, Material]:
     """Return the materials by name; a user's replaces the program's of the same name as a whole."""
-    return {name: _material(entry) for name, entry in by_name(entries("materials", user_folder)).items()}
+    return {
+        name: _material(entry) for name, entry in by_name(entries("materials", user_folder)).items()
+    }
 
 
 def _material(entry: Entry) -> Material:
@@ -48,10 +50,19 @@ def _material(entry: Entry) -> Material:
     strength, exponent = force.number("value", 1.0, _STRONGEST), force.number("exponent", 0.0, 1.0)
     force.done()
     material = Material(
-        name=entry.name, title=title, iso_group=group, density=value("density", 0.1, _DENSEST),
-        speed_rough=value("speed_rough", 1.0, _FASTEST), speed_finish=value("speed_finish", 1.0, _FASTEST),
-        feeds=rows, feed_share=share, force=strength, force_exponent=exponent,
-        depth_factor=value("depth_factor", 0.01, 5.0), width_factor=value("width_factor", 0.01, 1.0),
-        source="; ".join(f"{name}: {words}" for name, words in sources.items()))
+        name=entry.name,
+        title=title,
+        iso_group=group,
+        density=value("density", 0.1, _DENSEST),
+        speed_rough=value("speed_rough", 1.0, _FASTEST),
+        speed_finish=value("speed_finish", 1.0, _FASTEST),
+        feeds=rows,
+        feed_share=share,
+        force=strength,
+        force_exponent=exponent,
+        depth_factor=value("depth_factor", 0.01, 5.0),
+        width_factor=value("width_factor", 0.01, 1.0),
+        source="; ".join(f"{name}: {words}" for name, words in sources.items()),
+    )
     entry.done()
     return material

@@ -52,7 +52,11 @@ def _plan(entry: Entry) -> TypicalPlan:
     stages: list[Stage] = []
     for table in entry.tables("stage"):
         stage = _stage(table)
-        unknown = [name for name in (*stage.after, *stage.after_all) if name not in {s.name for s in stages}]
+        unknown = [
+            name
+            for name in (*stage.after, *stage.after_all)
+            if name not in {s.name for s in stages}
+        ]
         if unknown:
             raise table.wrong(f"after names {unknown[0]!r}, which is no earlier stage")
         if stage.name in {s.name for s in stages}:
@@ -63,8 +67,16 @@ def _plan(entry: Entry) -> TypicalPlan:
 
 
 def _stage(entry: Entry) -> Stage:
-    stage = Stage(name=entry.text("name"), kind=entry.text("kind"), strategy=entry.text("strategy"), on=entry.texts("on"),
-                  cutter=entry.text("cutter"), finish=entry.flag("finish"), after=entry.texts("after", ()),
-                  after_all=entry.texts("after_all", ()), rule=entry.text("rule"))
+    stage = Stage(
+        name=entry.text("name"),
+        kind=entry.text("kind"),
+        strategy=entry.text("strategy"),
+        on=entry.texts("on"),
+        cutter=entry.text("cutter"),
+        finish=entry.flag("finish"),
+        after=entry.texts("after", ()),
+        after_all=entry.texts("after_all", ()),
+        rule=entry.text("rule"),
+    )
     entry.done()
     return stage

@@ -58,7 +58,9 @@ class Entry:
             raise self.wrong(f"{name} must be a whole number from {low} to {high}; got {value!r}")
         return value
 
-    def texts(self, name: str, default: tuple[str, ...] | None = None, known: tuple[str, ...] = ()) -> tuple[str, ...]:
+    def texts(
+        self, name: str, default: tuple[str, ...] | None = None, known: tuple[str, ...] = ()
+    ) -> tuple[str, ...]:
         """Return a list of texts, each one of `known` when that is given."""
         value = self._get(name, default)
         if not isinstance(value, (list, tuple)) or not all(isinstance(v, str) for v in value):
@@ -78,7 +80,11 @@ class Entry:
     def rows(self, name: str, width: int, low: float, high: float) -> tuple[tuple[float, ...], ...]:
         """Return rows of `width` numbers within bounds, at least one row."""
         value = self._get(name, None)
-        if not isinstance(value, list) or not value or not all(isinstance(row, list) and len(row) == width for row in value):
+        if (
+            not isinstance(value, list)
+            or not value
+            or not all(isinstance(row, list) and len(row) == width for row in value)
+        ):
             raise self.wrong(f"{name} must be rows of {width} numbers; got {value!r}")
         return tuple(tuple(self._number(name, v, low, high) for v in row) for row in value)
 
@@ -94,13 +100,18 @@ class Entry:
         value = self._get(name, None)
         if not isinstance(value, list) or not value or not all(isinstance(v, dict) for v in value):
             raise self.wrong(f"{name} must be a list of tables; got {value!r}")
-        return tuple(Entry(file=self.file, name=f"{self.name}: {name} {n}", fields=v) for n, v in enumerate(value, 1))
+        return tuple(
+            Entry(file=self.file, name=f"{self.name}: {name} {n}", fields=v)
+            for n, v in enumerate(value, 1)
+        )
 
     def done(self) -> None:
         """Raise `BadInput` when a field is given that nobody asked for: mostly a misspelt one."""
         strange = sorted(set(self.fields) - self._asked)
         if strange:
-            raise self.wrong(f"{strange[0]} is not a field here; known: {', '.join(sorted(self._asked))}")
+            raise self.wrong(
+                f"{strange[0]} is not a field here; known: {', '.join(sorted(self._asked))}"
+            )
 
     def _get(self, name: str, default: Any) -> Any:
         self._asked.add(name)
@@ -111,7 +122,12 @@ class Entry:
         return self.fields[name]
 
     def _number(self, name: str, value: Any, low: float, high: float) -> float:
-        if isinstance(value, bool) or not isinstance(value, (int, float)) or not math.isfinite(value) or not low <= value <= high:
+        if (
+            isinstance(value, bool)
+            or not isinstance(value, (int, float))
+            or not math.isfinite(value)
+            or not low <= value <= high
+        ):
             raise self.wrong(f"{name} must be a number from {low:g} to {high:g}; got {value!r}")
         return float(value)
 
@@ -126,7 +142,9 @@ def entries(kind: str, user_folder: Path | None) -> Iterator[tuple[int, Entry]]:
     """Yield the top tables of every file of a kind in the order of file names, with 0 for the program's folder and 1 for the user's."""
     for layer, folder in enumerate(folders(kind, user_folder)):
         if folder.is_dir():
-            for path in sorted((p for p in folder.iterdir() if p.name.endswith(SUFFIX)), key=lambda p: p.name):
+            for path in sorted(
+                (p for p in folder.iterdir() if p.name.endswith(SUFFIX)), key=lambda p: p.name
+            ):
                 label = f"{kind}/{path.name}" if layer == 0 else str(path)
                 for name, table in _parsed(path, label).items():
                     if not isinstance(table, dict):

@@ -45,7 +45,9 @@ def _write(target: Path, fill: Callable[[BinaryIO], object]) -> None:
         _sync_folder(target.parent)
     except OSError as reason:
         _forget(beside)
-        raise BadInput(f"{target}: can't be written: {reason.strerror or reason}; the file there is as it was") from None
+        raise BadInput(
+            f"{target}: can't be written: {reason.strerror or reason}; the file there is as it was"
+        ) from None
     except BaseException:
         _forget(beside)
         raise

@@ -16,7 +16,17 @@ from trunnion.model.feature import FaceRole, Feature, Recognition, TakenFor
 from trunnion.model.session import PartInfo, Session
 from trunnion.store import xml
 from trunnion.store.atomic import write_bytes
-from trunnion.store.pieces import add, add_findings, add_frame, add_values, findings_of, frame_of, made, text_of, values_of
+from trunnion.store.pieces import (
+    add,
+    add_findings,
+    add_frame,
+    add_values,
+    findings_of,
+    frame_of,
+    made,
+    text_of,
+    values_of,
+)
 
 FORMAT = 1
 _POCKETS = {"pocket": "pocket", "open_pocket": "open pocket"}
@@ -33,7 +43,15 @@ def write_features(session: Session, path: str | Path) -> None:
 def features_xml(recognition: Recognition, part: PartInfo) -> bytes:
     """Return the XML of what was recognised on a part."""
     root = etree.Element("features", version=str(FORMAT), family=recognition.family)
-    add(root, "part", name=part.name, digest=part.digest, unit=part.unit, faces=str(part.n_faces), solid=str(part.solid))
+    add(
+        root,
+        "part",
+        name=part.name,
+        digest=part.digest,
+        unit=part.unit,
+        faces=str(part.n_faces),
+        solid=str(part.solid),
+    )
     _add_taken_for(root, recognition)
     add_frame(root, recognition.frame)
     for feature in recognition.features:
@@ -58,11 +76,19 @@ def read_features(path: str | Path) -> Recognition:
         raise BadInput(f"{path}: can't be read: {reason.strerror or reason}") from None
     root = xml.versioned(xml.parse(data, str(path)), "features", FORMAT, str(path))
     try:
-        return Recognition(family=root.get("family"), frame=frame_of(root), features=tuple(_feature(e) for e in root.findall("feature")),
-                           unexplained=tuple(int(e.get("tag")) for e in root.findall("unexplained/face")),
-                           unexplained_share=float(root.find("unexplained").get("area-share")), findings=tuple(findings_of(root)),
-                           removed=tuple(tuple(int(f.get("tag")) for f in e.findall("face")) for e in root.findall("removed")),
-                           taken_for=_taken_for(root), doubt=root.findtext("doubt") or "")
+        return Recognition(
+            family=root.get("family"),
+            frame=frame_of(root),
+            features=tuple(_feature(e) for e in root.findall("feature")),
+            unexplained=tuple(int(e.get("tag")) for e in root.findall("unexplained/face")),
+            unexplained_share=float(root.find("unexplained").get("area-share")),
+            findings=tuple(findings_of(root)),
+            removed=tuple(
+                tuple(int(f.get("tag")) for f in e.findall("face")) for e in root.findall("removed")
+            ),
+            taken_for=_taken_for(root),
+            doubt=root.findtext("doubt") or "",
+        )
     except ValueError as reason:
         raise BadInput(f"{path}: can't be used: {reason}") from None
 
@@ -70,7 +96,14 @@ def read_features(path: str | Path) -> Recognition:
 def _add_taken_for(root: Any, recognition: Recognition) -> None:
     """Add what kind of part it was taken for, and why the steps after recognition wait for a person, where that is known."""
     if (taken := recognition.taken_for) is not None:
-        add(root, "taken-for", taken.reason, kind=taken.kind, noun=taken.noun, score=text_of(float(taken.score)))
+        add(
+            root,
+            "taken-for",
+            taken.reason,
+            kind=taken.kind,
+            noun=taken.noun,
+            score=text_of(float(taken.score)),
+        )
     if recognition.doubt:
         add(root, "doubt", recognition.doubt)
 
@@ -81,7 +114,9 @@ def _taken_for(root: Any) -> TakenFor | None:
 
 
 def _add_feature(root: Any, feature: Feature, recognition: Recognition) -> None:
-    element = add(root, "feature", id=feature.id, kind=feature.kind, by_hand=text_of(feature.by_hand))
+    element = add(
+        root, "feature", id=feature.id, kind=feature.kind, by_hand=text_of(feature.by_hand)
+    )
     for face in feature.faces:
         add(element, "face", tag=str(face.face), role=face.role)
     add_values(element, "size", "name", feature.sizes)
@@ -92,11 +127,19 @@ def _add_feature(root: Any, feature: Feature, recognition: Recognition) -> None:
 
 def _add_pocket(element: Any, feature: Feature, recognition: Recognition) -> None:
     """Add the paper's model of a pocket, made from what the feature already says."""
-    pocket = add(element, "generalized-pocket", identification=str(feature.attributes.get("identification", _POCKETS[feature.kind])),
-                 through=text_of(bool(feature.attributes.get("through", not feature.with_role("floor")))))
+    pocket = add(
+        element,
+        "generalized-pocket",
+        identification=str(feature.attributes.get("identification", _POCKETS[feature.kind])),
+        through=text_of(bool(feature.attributes.get("through", not feature.with_role("floor")))),
+    )
     centre = feature.attributes.get("centre")
     if isinstance(centre, (tuple, list)) and len(centre) in (2, 3):
-        add(pocket, "centre", **{axis: text_of(float(v)) for axis, v in zip("xyz", centre, strict=False)})
+        add(
+            pocket,
+            "centre",
+            **{axis: text_of(float(v)) for axis, v in zip("xyz", centre, strict=False)},
+        )
     for tag, size in (("top", "top_z"), ("bottom", "floor_z")):
         if isinstance(z := feature.sizes.get(size), (int, float)):
             add(pocket, tag, z=text_of(float(z)))
@@ -106,9 +149,22 @@ def _add_pocket(element: Any, feature: Feature, recognition: Recognition) -> Non
             add(guide, "guide-line", face=str(face.face), role=face.role)
     for other in recognition.features:
         if feature.id in (other.attributes.get("in"), other.attributes.get("nested_in")):
-            add(pocket, "island" if other.kind == "island" else "auxiliary", feature=other.id, kind=other.kind)
+            add(
+                pocket,
+                "island" if other.kind == "island" else "auxiliary",
+                feature=other.id,
+                kind=other.kind,
+            )
 
 
 def _feature(element: Any) -> Feature:
-    faces = tuple(FaceRole(role=f.get("role"), face=int(f.get("tag"))) for f in element.findall("face"))
-    return made(Feature, element, faces=faces, sizes=values_of(element, "size", "name"), attributes=values_of(element, "attribute", "name"))
+    faces = tuple(
+        FaceRole(role=f.get("role"), face=int(f.get("tag"))) for f in element.findall("face")
+    )
+    return made(
+        Feature,
+        element,
+        faces=faces,
+        sizes=values_of(element, "size", "name"),
+        attributes=values_of(element, "attribute", "name"),
+    )

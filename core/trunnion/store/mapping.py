@@ -59,7 +59,9 @@ def from_xml(element: etree._Element, hint: Any, members: Members) -> Any:
     try:
         return _read(element, hint, members)
     except (ValueError, KeyError) as reason:
-        raise BadInput(f"line {element.sourceline}: <{element.tag}> can't be read: {reason}") from None
+        raise BadInput(
+            f"line {element.sourceline}: <{element.tag}> can't be read: {reason}"
+        ) from None
 
 
 def hints_of(cls: Any) -> dict[str, Any]:
@@ -92,6 +94,7 @@ def _kind(hint: Any) -> Any:
 
 # ------------------------------------------------------------------------------------------------------------------ writing
 
+
 def _write(element: etree._Element, value: Any, hint: Any, members: Members) -> None:
     choices = _choices(hint)
     if value is None and type(None) in choices:
@@ -108,7 +111,12 @@ def _write(element: etree._Element, value: Any, hint: Any, members: Members) -> 
         _write_array(element, value, members)
     elif dataclasses.is_dataclass(value):
         for name, own in hints_of(picked).items():
-            _write(etree.SubElement(element, name.replace("_", "-")), getattr(value, name), own, members)
+            _write(
+                etree.SubElement(element, name.replace("_", "-")),
+                getattr(value, name),
+                own,
+                members,
+            )
     else:
         if len(choices) > 1:
             element.set("type", "tuple" if isinstance(value, (tuple, list)) else "mapping")
@@ -125,11 +133,17 @@ def _pick(value: Any, choices: tuple[Any, ...]) -> Any:
         kind = _kind(choice)
         if kind is tuple and isinstance(value, (tuple, list)):
             return choice
-        if isinstance(kind, type) and isinstance(value, kind) and not (kind is int and isinstance(value, bool)):
+        if (
+            isinstance(kind, type)
+            and isinstance(value, kind)
+            and not (kind is int and isinstance(value, bool))
+        ):
             return choice
     if float in choices and type(value) in (int, bool):
         return float
-    raise TypeError(f"a {type(value).__name__} stands where {' or '.join(str(c) for c in choices)} belongs")
+    raise TypeError(
+        f"a {type(value).__name__} stands where {' or '.join(str(c) for c in choices)} belongs"
+    )
 
 
 def _items(value: Any, hint: Any) -> Iterator[tuple[str | None, Any, Any]]:
@@ -157,7 +171,9 @@ def _write_scalar(element: etree._Element, value: Any, hint: Any, members: Membe
 
 
 def _xml_safe(text: str) -> bool:
-    return text == text.strip() and all(c >= " " and not "\ud800" <= c <= "\udfff" and c not in "\ufffe\uffff" for c in text)
+    return text == text.strip() and all(
+        c >= " " and not "\ud800" <= c <= "\udfff" and c not in "\ufffe\uffff" for c in text
+    )
 
 
 def _write_array(element: etree._Element, value: np.ndarray, members: Members) -> None:
@@ -175,6 +191,7 @@ def _write_array(element: etree._Element, value: np.ndarray, members: Members) -
 
 # ------------------------------------------------------------------------------------------------------------------ reading
 
+
 def _read(element: etree._Element, hint: Any, members: Members) -> Any:
     choices = _choices(hint)
     said = element.get("type")
@@ -184,10 +201,14 @@ def _read(element: etree._Element, hint: Any, members: Members) -> Any:
         _allow(element, _BY_NAME[said], choices)
         return _read_scalar(element, _BY_NAME[said], members)
     wanted = {"tuple": tuple, "mapping": Mapping}.get(said or "")
-    picked = next((c for c in choices if c is not type(None) and (wanted is None or _kind(c) is wanted)), None)
+    picked = next(
+        (c for c in choices if c is not type(None) and (wanted is None or _kind(c) is wanted)), None
+    )
     kind = _kind(picked)
     if picked is None:
-        raise BadInput(f"line {element.sourceline}: <{element.tag}> says type {said}, which doesn't belong there")
+        raise BadInput(
+            f"line {element.sourceline}: <{element.tag}> says type {said}, which doesn't belong there"
+        )
     if kind in _SCALARS:
         return _read_scalar(element, kind, members)
     if kind is np.ndarray:
@@ -203,7 +224,9 @@ def _read(element: etree._Element, hint: Any, members: Members) -> Any:
 
 def _allow(element: etree._Element, kind: type, choices: tuple[Any, ...]) -> None:
     if kind not in choices and not (float in choices and kind in (int, bool)):
-        raise BadInput(f"line {element.sourceline}: <{element.tag}> holds a {_SCALARS[kind]}, which doesn't belong there")
+        raise BadInput(
+            f"line {element.sourceline}: <{element.tag}> holds a {_SCALARS[kind]}, which doesn't belong there"
+        )
 
 
 def _read_scalar(element: etree._Element, kind: type, members: Members) -> Any:
@@ -211,7 +234,11 @@ def _read_scalar(element: etree._Element, kind: type, members: Members) -> Any:
     if kind is str:
         if (name := element.get("member")) is not None:
             return members.get(name, f"line {element.sourceline}").decode("utf-8", "surrogatepass")
-        return text.encode("ascii").decode("unicode_escape") if element.get("escaped") == "true" else text
+        return (
+            text.encode("ascii").decode("unicode_escape")
+            if element.get("escaped") == "true"
+            else text
+        )
     if kind is bool:
         return {"true": True, "false": False}[text.strip()]
     return kind(text)
@@ -226,11 +253,18 @@ def _read_array(element: etree._Element, members: Members) -> np.ndarray:
     if (name := element.get("member")) is not None:
         array = load_array(members.get(name, f"line {element.sourceline}"), name)
     else:
-        dtype, shape = element.get("dtype", ""), tuple(int(n) for n in element.get("shape", "").split())
+        dtype, shape = (
+            element.get("dtype", ""),
+            tuple(int(n) for n in element.get("shape", "").split()),
+        )
         if dtype not in _ARRAY_TYPES:
             raise ValueError(f"an array of {dtype or 'no type'} is not known")
         words = (element.text or "").split()
-        values: list[Any] = [w == "True" for w in words] if dtype == "|b1" else [float(w) if "f" in dtype else int(w) for w in words]
+        values: list[Any] = (
+            [w == "True" for w in words]
+            if dtype == "|b1"
+            else [float(w) if "f" in dtype else int(w) for w in words]
+        )
         array = np.array(values, dtype=dtype).reshape(shape)
     array.setflags(write=False)
     return array
@@ -257,12 +291,16 @@ def _read_mapping(element: etree._Element, hint: Any, members: Members) -> dict[
     for child in element:
         key = child.get("key")
         if key is None or key in found:
-            raise BadInput(f"line {child.sourceline}: an item without a key, or with one that stands twice")
+            raise BadInput(
+                f"line {child.sourceline}: an item without a key, or with one that stands twice"
+            )
         found[key] = from_xml(child, hint, members)
     return found
 
 
-def _read_tuple(element: etree._Element, args: tuple[Any, ...], members: Members) -> tuple[Any, ...]:
+def _read_tuple(
+    element: etree._Element, args: tuple[Any, ...], members: Members
+) -> tuple[Any, ...]:
     if Ellipsis in args:
         return tuple(from_xml(child, args[0], members) for child in element)
     return tuple(from_xml(child, own, members) for child, own in zip(element, args, strict=True))
@@ -274,13 +312,19 @@ def _read_data(element: etree._Element, cls: type, members: Members) -> Any:
     for child in element:
         name = str(child.tag).replace("-", "_")
         if name not in hints or name in values:
-            raise BadInput(f"line {child.sourceline}: <{child.tag}> is not known in <{element.tag}>, or stands twice")
+            raise BadInput(
+                f"line {child.sourceline}: <{child.tag}> is not known in <{element.tag}>, or stands twice"
+            )
         values[name] = from_xml(child, hints[name], members)
     try:
         made = cls(**values)
     except (ValueError, TypeError) as reason:
-        raise BadInput(f"line {element.sourceline}: <{element.tag}> can't be used: {reason}") from None
+        raise BadInput(
+            f"line {element.sourceline}: <{element.tag}> can't be used: {reason}"
+        ) from None
     for name, value in values.items():
-        if isinstance(value, np.ndarray):  # a constructor may make a unit vector again and move its last digit: keep what was saved
+        if isinstance(
+            value, np.ndarray
+        ):  # a constructor may make a unit vector again and move its last digit: keep what was saved
             object.__setattr__(made, name, value)
     return made

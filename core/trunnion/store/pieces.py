@@ -36,20 +36,30 @@ def value_of(text: str, kind: type) -> Any:
 def attributes(data: Any) -> dict[str, str]:
     """Return the scalar fields of a dataclass as XML attributes."""
     hints = hints_of(type(data))
-    return {name.replace("_", "-"): xml_text(text_of(hint(getattr(data, name)))) for name, hint in hints.items() if hint in _SCALARS}
+    return {
+        name.replace("_", "-"): xml_text(text_of(hint(getattr(data, name))))
+        for name, hint in hints.items()
+        if hint in _SCALARS
+    }
 
 
 def made(cls: type[T], element: Any, **others: Any) -> T:
     """Return a dataclass from the attributes of an element (absent: the default) and the fields that are not scalars."""
     hints = hints_of(cls)
     names = [name for name, hint in hints.items() if name not in others and hint in _SCALARS]
-    values = {n: value_of(element.get(n.replace("_", "-")), hints[n]) for n in names if element.get(n.replace("_", "-")) is not None}
+    values = {
+        n: value_of(element.get(n.replace("_", "-")), hints[n])
+        for n in names
+        if element.get(n.replace("_", "-")) is not None
+    }
     return cls(**values, **others)
 
 
 def add(parent: Any, tag: str, text: str = "", /, **words: str) -> Any:
     """Add a child with attributes (`_` becomes `-`) and a text; return it."""
-    child = etree.SubElement(parent, tag, {name.replace("_", "-"): xml_text(word) for name, word in words.items()})
+    child = etree.SubElement(
+        parent, tag, {name.replace("_", "-"): xml_text(word) for name, word in words.items()}
+    )
     if text:
         child.text = xml_text(text)
     return child
@@ -64,12 +74,21 @@ def add_frame(parent: Any, frame: Frame) -> None:
     """Add a frame as three points or directions."""
     element = add(parent, "frame")
     for name, vector in (("origin", frame.origin), ("x", frame.x), ("z", frame.z)):
-        add(element, name, x=text_of(float(vector[0])), y=text_of(float(vector[1])), z=text_of(float(vector[2])))
+        add(
+            element,
+            name,
+            x=text_of(float(vector[0])),
+            y=text_of(float(vector[1])),
+            z=text_of(float(vector[2])),
+        )
 
 
 def frame_of(parent: Any) -> Frame:
     """Return the frame that stands in an element."""
-    origin, x, z = (np.array([float(parent.find(f"frame/{name}").get(axis)) for axis in "xyz"]) for name in ("origin", "x", "z"))
+    origin, x, z = (
+        np.array([float(parent.find(f"frame/{name}").get(axis)) for axis in "xyz"])
+        for name in ("origin", "x", "z")
+    )
     return Frame(origin, x, z)
 
 
@@ -87,15 +106,30 @@ def add_findings(parent: Any, findings: Iterable[Finding]) -> None:
 def findings_of(parent: Any) -> Iterator[Finding]:
     """Yield the findings that stand in an element."""
     for element in parent.findall("finding"):
-        yield Finding(severity=Severity(element.get("severity")), code=element.get("code"), text=element.findtext("text") or "",
-                      where=tuple(w.text or "" for w in element.findall("where")), remedy=element.findtext("remedy") or "")
+        yield Finding(
+            severity=Severity(element.get("severity")),
+            code=element.get("code"),
+            text=element.findtext("text") or "",
+            where=tuple(w.text or "" for w in element.findall("where")),
+            remedy=element.findtext("remedy") or "",
+        )
 
 
 def add_values(parent: Any, tag: str, key: str, values: Mapping[str, Any]) -> None:
     """Add a mapping, an element a value: `<size name="depth" type="number">20.0</size>`."""
     for name, value in values.items():
-        plain = value.item() if isinstance(value, np.generic) else tuple(value) if isinstance(value, list) else value
-        text = " ".join(text_of(float(v)) for v in plain) if isinstance(plain, tuple) else text_of(plain)
+        plain = (
+            value.item()
+            if isinstance(value, np.generic)
+            else tuple(value)
+            if isinstance(value, list)
+            else value
+        )
+        text = (
+            " ".join(text_of(float(v)) for v in plain)
+            if isinstance(plain, tuple)
+            else text_of(plain)
+        )
         add(parent, tag, text, **{key: name, "type": _TYPES[type(plain)]})
 
 
@@ -105,5 +139,7 @@ def values_of(parent: Any, tag: str, key: str) -> dict[str, Any]:
     found: dict[str, Any] = {}
     for element in parent.findall(tag):
         kind, text = kinds[element.get("type")], element.text or ""
-        found[element.get(key)] = tuple(float(v) for v in text.split()) if kind is tuple else value_of(text, kind)
+        found[element.get(key)] = (
+            tuple(float(v) for v in text.split()) if kind is tuple else value_of(text, kind)
+        )
     return found

@@ -15,7 +15,18 @@ from trunnion.model.setup import Setup
 from trunnion.model.tool import Holder, Tool
 from trunnion.store import xml
 from trunnion.store.atomic import write_bytes
-from trunnion.store.pieces import add, add_findings, add_frame, add_values, attributes, findings_of, frame_of, made, text_of, values_of
+from trunnion.store.pieces import (
+    add,
+    add_findings,
+    add_frame,
+    add_values,
+    attributes,
+    findings_of,
+    frame_of,
+    made,
+    text_of,
+    values_of,
+)
 
 FORMAT = 1
 UPRIGHT = (0.0, 0.0, 1.0)
@@ -31,7 +42,9 @@ def write_process(session: Session, path: str | Path) -> None:
 
 def process_xml(process: ProcessTree, part: PartInfo) -> bytes:
     """Return the XML of a process tree made for a part."""
-    root = etree.Element("process-tree", version=str(FORMAT), plan=process.plan, material=process.material)
+    root = etree.Element(
+        "process-tree", version=str(FORMAT), plan=process.plan, material=process.material
+    )
     add(root, "part", name=part.name, digest=part.digest)
     for setup in process.setups:
         element = etree.SubElement(root, "setup", attributes(setup))
@@ -56,10 +69,14 @@ def read_process(path: str | Path) -> ProcessTree:
     root = xml.versioned(xml.parse(data, str(path)), "process", FORMAT, str(path))
     try:
         tools = {int(e.get("number")): _tool(e) for e in root.findall("tool")}
-        return ProcessTree(plan=root.get("plan"), material=root.get("material"), findings=tuple(findings_of(root)),
-                           setups=tuple(made(Setup, e, frame=frame_of(e)) for e in root.findall("setup")),
-                           operations=tuple(_operation(e, tools) for e in root.findall("operation")),
-                           removed=tuple(e.get("operation") for e in root.findall("removed")))
+        return ProcessTree(
+            plan=root.get("plan"),
+            material=root.get("material"),
+            findings=tuple(findings_of(root)),
+            setups=tuple(made(Setup, e, frame=frame_of(e)) for e in root.findall("setup")),
+            operations=tuple(_operation(e, tools) for e in root.findall("operation")),
+            removed=tuple(e.get("operation") for e in root.findall("removed")),
+        )
     except ValueError as reason:
         raise BadInput(f"{path}: can't be used: {reason}") from None
 
@@ -69,7 +86,9 @@ def _tools(process: ProcessTree) -> dict[int, Tool]:
     for operation in process.operations:
         tool = operation.tool
         if found.setdefault(tool.number, tool) != tool:
-            raise BadInput(f"operation {operation.id}: two tools have the number {tool.number}: {found[tool.number].name} and {tool.name}")
+            raise BadInput(
+                f"operation {operation.id}: two tools have the number {tool.number}: {found[tool.number].name} and {tool.name}"
+            )
     return dict(sorted(found.items()))
 
 
@@ -79,18 +98,33 @@ def _add_tool(root: Any, tool: Tool) -> None:
         add(element, "point", r=text_of(float(r)), z=text_of(float(z)), bulge=text_of(float(bulge)))
     holder = add(element, "holder", name=tool.holder.name)
     for z0, r0, z1, r1 in tool.holder.rows:
-        add(holder, "cone", z0=text_of(float(z0)), r0=text_of(float(r0)), z1=text_of(float(z1)), r1=text_of(float(r1)))
+        add(
+            holder,
+            "cone",
+            z0=text_of(float(z0)),
+            r0=text_of(float(r0)),
+            z1=text_of(float(z1)),
+            r1=text_of(float(r1)),
+        )
 
 
 def _tool(element: Any) -> Tool:
     holder = element.find("holder")
-    rows = tuple((float(c.get("z0")), float(c.get("r0")), float(c.get("z1")), float(c.get("r1"))) for c in holder.findall("cone"))
-    outline = tuple((float(p.get("r")), float(p.get("z")), float(p.get("bulge"))) for p in element.findall("point"))
+    rows = tuple(
+        (float(c.get("z0")), float(c.get("r0")), float(c.get("z1")), float(c.get("r1")))
+        for c in holder.findall("cone")
+    )
+    outline = tuple(
+        (float(p.get("r")), float(p.get("z")), float(p.get("bulge")))
+        for p in element.findall("point")
+    )
     return made(Tool, element, outline=outline, holder=Holder(name=holder.get("name"), rows=rows))
 
 
 def _add_operation(root: Any, operation: Operation) -> None:
-    element = etree.SubElement(root, "operation", {**attributes(operation), "tool": str(operation.tool.number)})
+    element = etree.SubElement(
+        root, "operation", {**attributes(operation), "tool": str(operation.tool.number)}
+    )
     cutting = etree.SubElement(element, "cutting", attributes(operation.data))
     for rule in operation.data.rules:
         add(cutting, "rule", rule)
@@ -108,14 +142,25 @@ def _add_operation(root: Any, operation: Operation) -> None:
 
 def _operation(element: Any, tools: dict[int, Tool]) -> Operation:
     cutting = element.find("cutting")
-    return made(Operation, element, tool=tools[int(element.get("tool"))], data=made(CuttingData, cutting, rules=_rules(cutting)),
-                faces=tuple(int(f.get("tag")) for f in element.findall("face")), rules=_rules(element),
-                after=tuple(a.get("operation") for a in element.findall("after")), choices=values_of(element, "choice", "key"),
-                direction=_direction(element.find("direction")))
+    return made(
+        Operation,
+        element,
+        tool=tools[int(element.get("tool"))],
+        data=made(CuttingData, cutting, rules=_rules(cutting)),
+        faces=tuple(int(f.get("tag")) for f in element.findall("face")),
+        rules=_rules(element),
+        after=tuple(a.get("operation") for a in element.findall("after")),
+        choices=values_of(element, "choice", "key"),
+        direction=_direction(element.find("direction")),
+    )
 
 
 def _direction(element: Any) -> tuple[float, float, float]:
-    return UPRIGHT if element is None else (float(element.get("x")), float(element.get("y")), float(element.get("z")))
+    return (
+        UPRIGHT
+        if element is None
+        else (float(element.get("x")), float(element.get("y")), float(element.get("z")))
+    )
 
 
 def _rules(element: Any) -> tuple[str, ...]:

@@ -32,14 +32,24 @@ _MEMBER = re.compile(r"(arrays/[0-9]{5,}\.npy|texts/[0-9]{5,}\.txt)")
 _NO_TIME = (1980, 1, 1, 0, 0, 0)
 
 
-def save_project(session: Session, path: str | Path, part_bytes: bytes, part_suffix: str, progress: Progress = QUIET) -> None:
+def save_project(
+    session: Session,
+    path: str | Path,
+    part_bytes: bytes,
+    part_suffix: str,
+    progress: Progress = QUIET,
+) -> None:
     """Write a session with its part file's bytes, whole or not at all."""
-    data = progress.aside(lambda own: project_bytes(session, part_bytes, part_suffix, own), "packing the project")
+    data = progress.aside(
+        lambda own: project_bytes(session, part_bytes, part_suffix, own), "packing the project"
+    )
     progress.at(1.0, "saving the project")
     write_bytes(path, data)
 
 
-def project_bytes(session: Session, part_bytes: bytes, part_suffix: str, progress: Progress = QUIET) -> bytes:
+def project_bytes(
+    session: Session, part_bytes: bytes, part_suffix: str, progress: Progress = QUIET
+) -> bytes:
     """Return the bytes of a project file; raise `BadInput` for a suffix that no part file has."""
     name = f"part{part_suffix.lower()}"
     if not _PART.fullmatch(name):
@@ -50,8 +60,12 @@ def project_bytes(session: Session, part_bytes: bytes, part_suffix: str, progres
     file = io.BytesIO()
     progress.check()
     with zipfile.ZipFile(file, "w") as archive:
-        for member, data in progress.each({_SESSION: xml.written(root), name: part_bytes, **members.files}.items()):
-            archive.writestr(_entry(member), data, compress_type=zipfile.ZIP_DEFLATED, compresslevel=3)
+        for member, data in progress.each(
+            {_SESSION: xml.written(root), name: part_bytes, **members.files}.items()
+        ):
+            archive.writestr(
+                _entry(member), data, compress_type=zipfile.ZIP_DEFLATED, compresslevel=3
+            )
     return file.getvalue()
 
 
@@ -75,7 +89,9 @@ def _loaded(path: Path, progress: Progress) -> tuple[Session, bytes, str]:
     if root.tag != _ROOT or not version.isdecimal():
         raise BadInput(f"{path}: {_SESSION} is not a project of Trunnion")
     if int(version) != FORMAT:
-        raise BadInput(f"{path}: written in format {version}; this Trunnion reads format {FORMAT}: use the Trunnion that wrote it")
+        raise BadInput(
+            f"{path}: written in format {version}; this Trunnion reads format {FORMAT}: use the Trunnion that wrote it"
+        )
     name = root.get("part", "")
     if name not in members or not _PART.fullmatch(name):
         raise BadInput(f"{path}: the part file is missing in it")
@@ -86,7 +102,10 @@ def _loaded(path: Path, progress: Progress) -> tuple[Session, bytes, str]:
         session: Session = from_xml(root[0], Session, Members(members))
     except BadInput as reason:
         raise BadInput(f"{path}: {_SESSION}, {reason}") from None
-    if session.part is not None and session.part.digest not in ("", hashlib.sha256(part).hexdigest()):
+    if session.part is not None and session.part.digest not in (
+        "",
+        hashlib.sha256(part).hexdigest(),
+    ):
         raise BadInput(f"{path}: the part file in it is not the one that its plan was made for")
     return session, part, name.removeprefix("part")
 
@@ -109,14 +128,24 @@ def _check(path: Path, entries: list[zipfile.ZipInfo]) -> None:
     if _SESSION not in names:
         raise BadInput(f"{path}: not a project file: it holds no {_SESSION}")
     if len(names) > MOST_MEMBERS:
-        raise BadInput(f"{path}: {len(names)} members are more than the {MOST_MEMBERS} that are read")
+        raise BadInput(
+            f"{path}: {len(names)} members are more than the {MOST_MEMBERS} that are read"
+        )
     if len(set(names)) != len(names):
         raise BadInput(f"{path}: a member stands twice in it")
     for entry in entries:
-        if entry.filename != _SESSION and not _PART.fullmatch(entry.filename) and not _MEMBER.fullmatch(entry.filename):
-            raise BadInput(f"{path}: holds {entry.filename!r}, which no project has; it is not opened")
+        if (
+            entry.filename != _SESSION
+            and not _PART.fullmatch(entry.filename)
+            and not _MEMBER.fullmatch(entry.filename)
+        ):
+            raise BadInput(
+                f"{path}: holds {entry.filename!r}, which no project has; it is not opened"
+            )
         if entry.file_size > LARGEST_MEMBER:
-            raise BadInput(f"{path}: {entry.filename} would open to {entry.file_size} bytes; at most {LARGEST_MEMBER} are read")
+            raise BadInput(
+                f"{path}: {entry.filename} would open to {entry.file_size} bytes; at most {LARGEST_MEMBER} are read"
+            )
     total = sum(entry.file_size for entry in entries)
     if total > LARGEST_PROJECT:
         raise BadInput(f"{path}: would open to {total} bytes; at most {LARGEST_PROJECT} are read")

@@ -17,13 +17,24 @@ LARGEST_XML = 256 * 1024 * 1024
 def parse(data: bytes, where: str) -> Any:
     """Return the root of a document; raise `BadInput` for entities, a DTD, another encoding than UTF-8, or damage."""
     if len(data) > LARGEST_XML:
-        raise BadInput(f"{where}: {len(data)} bytes of XML are more than the {LARGEST_XML} that are read")
+        raise BadInput(
+            f"{where}: {len(data)} bytes of XML are more than the {LARGEST_XML} that are read"
+        )
     if b"\0" in data or data[:2] in (b"\xfe\xff", b"\xff\xfe"):
         raise BadInput(f"{where}: must be UTF-8 text")
     if b"<!DOCTYPE" in data or b"<!ENTITY" in data:
-        raise BadInput(f"{where}: holds a document type or entities, which are never read; remove them")
-    parser = etree.XMLParser(resolve_entities=False, no_network=True, load_dtd=False, dtd_validation=False, remove_comments=True,
-                             remove_pis=True, huge_tree=False)
+        raise BadInput(
+            f"{where}: holds a document type or entities, which are never read; remove them"
+        )
+    parser = etree.XMLParser(
+        resolve_entities=False,
+        no_network=True,
+        load_dtd=False,
+        dtd_validation=False,
+        remove_comments=True,
+        remove_pis=True,
+        huge_tree=False,
+    )
     try:
         root = etree.fromstring(data, parser)
     except etree.XMLSyntaxError as reason:
@@ -59,5 +70,7 @@ def versioned(root: Any, schema: str, version: int, where: str) -> Any:
     """Return the root of a document when it is of the version that is read and fits its schema; raise `BadInput` otherwise."""
     said = root.get("version")
     if said is not None and said != str(version):
-        raise BadInput(f"{where}: written in format {said}; this Trunnion reads format {version}: use the Trunnion that wrote it")
+        raise BadInput(
+            f"{where}: written in format {said}; this Trunnion reads format {version}: use the Trunnion that wrote it"
+        )
     return validated(root, schema, where)

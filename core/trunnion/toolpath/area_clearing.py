@@ -27,7 +27,15 @@ from trunnion.toolpath.rings import Ring
 RUN_OUTS = (0.5, 1.0, 2.0, 3.0, 4.0)
 """Of the radius: how far before an open pass a place that is certainly free is looked for."""
 
-RUN_OUT_WAYS = ((-1.0, 0.0), (-0.7, 0.7), (-0.7, -0.7), (0.0, 1.0), (0.0, -1.0), (0.7, 0.7), (0.7, -0.7))
+RUN_OUT_WAYS = (
+    (-1.0, 0.0),
+    (-0.7, 0.7),
+    (-0.7, -0.7),
+    (0.0, 1.0),
+    (0.0, -1.0),
+    (0.7, 0.7),
+    (0.7, -0.7),
+)
 """Where it is looked for: along the pass's direction and to its left; straight before the start is best."""
 
 NEXT_PASS = 2.5
@@ -59,7 +67,9 @@ class Layer:
     def wants(self, points: Floats) -> Floats:
         """Return how far points (k, 2) are inside the clip and the room, rims counted in (negative outside)."""
         depth = self.room.depth(points)
-        return (depth if self.clip is None else np.minimum(depth, self.clip.signed_distance(points))) + tolerance.ON_REGION
+        return (
+            depth if self.clip is None else np.minimum(depth, self.clip.signed_distance(points))
+        ) + tolerance.ON_REGION
 
 
 def clear(builder: PathBuilder, layer: Layer, manner: Manner, progress: Progress) -> None:
@@ -70,7 +80,9 @@ def clear(builder: PathBuilder, layer: Layer, manner: Manner, progress: Progress
         _step_off(builder, layer)
 
 
-def _cut_ring(builder: PathBuilder, layer: Layer, ring: Ring, manner: Manner, progress: Progress) -> None:
+def _cut_ring(
+    builder: PathBuilder, layer: Layer, ring: Ring, manner: Manner, progress: Progress
+) -> None:
     for inner in nearest_first(ring.inner, lambda: builder.here, _ring_away):
         _cut_ring(builder, layer, inner, manner, progress)
     feed = builder.data.feed * (1.0 if ring.inner else manner.slot)
@@ -85,7 +97,9 @@ def _cut_ring(builder: PathBuilder, layer: Layer, ring: Ring, manner: Manner, pr
             _cut_open(builder, layer, curve, manner, feed)
 
 
-def _cut_closed(builder: PathBuilder, layer: Layer, ring: Ring, loop: Curve, manner: Manner, feed: float) -> None:
+def _cut_closed(
+    builder: PathBuilder, layer: Layer, ring: Ring, loop: Curve, manner: Manner, feed: float
+) -> None:
     here = builder.here
     s = loop.nearest(here[:2]) if here is not None else 0.0
     start, _ = loop.at(s)
@@ -127,7 +141,15 @@ def _open_up(builder: PathBuilder, layer: Layer, ring: Ring, loop: Curve, manner
     s = loop.nearest(centre)
     place, _ = loop.at(s)
     if radius > 0.0 and layer.room.holds_line(centre, place):
-        helix(builder, centre, radius, place, _top(builder, layer, centre, radius), layer.z, manner.ramp)
+        helix(
+            builder,
+            centre,
+            radius,
+            place,
+            _top(builder, layer, centre, radius),
+            layer.z,
+            manner.ramp,
+        )
         builder.line((*place, layer.z), builder.data.feed * manner.slot, Mark.LINK)
     else:
         top = max(_top(builder, layer, p, 0.0) for p in loop.points)
@@ -135,9 +157,15 @@ def _open_up(builder: PathBuilder, layer: Layer, ring: Ring, loop: Curve, manner
     return s
 
 
-def _cut_open(builder: PathBuilder, layer: Layer, piece: Curve, manner: Manner, feed: float) -> None:
+def _cut_open(
+    builder: PathBuilder, layer: Layer, piece: Curve, manner: Manner, feed: float
+) -> None:
     start, tangent = piece.start, piece.at(0.0)[1]
-    lead = fitting_lead(start, tangent, manner.lead, layer.room, leaves=False) if manner.lead > 0.0 else None
+    lead = (
+        fitting_lead(start, tangent, manner.lead, layer.room, leaves=False)
+        if manner.lead > 0.0
+        else None
+    )
     if lead is not None and _is_off(layer, lead.outside):
         enter(builder, lead, start, layer.z, builder.data.feed)
     elif not _stays_down(builder, layer, start, manner):
@@ -145,7 +173,12 @@ def _cut_open(builder: PathBuilder, layer: Layer, piece: Curve, manner: Manner, 
     builder.curve(piece, layer.z, feed)
     if manner.lead > 0.0:
         last = piece.at(piece.length)
-        leave(builder, fitting_lead(last[0], last[1], manner.lead, layer.room, leaves=True), layer.z, builder.data.feed)
+        leave(
+            builder,
+            fitting_lead(last[0], last[1], manner.lead, layer.room, leaves=True),
+            layer.z,
+            builder.data.feed,
+        )
 
 
 def _come_to(builder: PathBuilder, layer: Layer, piece: Curve, manner: Manner) -> None:
@@ -165,7 +198,15 @@ def _come_to(builder: PathBuilder, layer: Layer, piece: Curve, manner: Manner) -
     radius = helix_radius(builder, builder.tool.radius)
     centre = start + radius * left
     if radius > 0.0 and float(layer.room.depth(centre)[0]) >= radius - tolerance.ON_REGION:
-        helix(builder, centre, radius, start, _top(builder, layer, centre, radius), layer.z, manner.ramp)
+        helix(
+            builder,
+            centre,
+            radius,
+            start,
+            _top(builder, layer, centre, radius),
+            layer.z,
+            manner.ramp,
+        )
         return
     top = max(_top(builder, layer, p, 0.0) for p in piece.points)
     ramp_along(builder, piece, top, layer.z, manner.ramp)
@@ -174,9 +215,15 @@ def _come_to(builder: PathBuilder, layer: Layer, piece: Curve, manner: Manner) -
 def _stays_down(builder: PathBuilder, layer: Layer, start: Floats, manner: Manner) -> bool:
     """Feed straight to a place when the tool is down, the way stays in the room, and it is short or certainly free; say whether."""
     here = builder.here
-    if here is None or abs(here[2] - layer.z) > tolerance.SHORT_MOVE or not layer.room.holds_line(here, start):
+    if (
+        here is None
+        or abs(here[2] - layer.z) > tolerance.SHORT_MOVE
+        or not layer.room.holds_line(here, start)
+    ):
         return False
-    if float(np.hypot(*(start - here[:2]))) > NEXT_PASS * manner.step and not is_free(builder, here, layer.z, start):
+    if float(np.hypot(*(start - here[:2]))) > NEXT_PASS * manner.step and not is_free(
+        builder, here, layer.z, start
+    ):
         return False
     builder.line((*start, layer.z), builder.data.feed, Mark.LINK)
     return True
@@ -212,4 +259,6 @@ def _nearest(regions: Sequence[Region], place: Floats) -> float:
 
 
 def _curve_away(curve: Curve, place: Floats) -> float:
-    return float(curve.distance(place)[0]) if curve.closed else float(np.hypot(*(curve.start - place)))
+    return (
+        float(curve.distance(place)[0]) if curve.closed else float(np.hypot(*(curve.start - place)))
+    )

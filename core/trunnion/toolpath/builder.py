@@ -28,7 +28,9 @@ NOWHERE = (math.nan, math.nan, math.nan)
 class PathBuilder:
     """A path in the making. `here` is the tip's position (3,), or None before the first block."""
 
-    def __init__(self, tool: Tool, data: CuttingData, stock: PlanningStock, setup: Setup, safety: float) -> None:
+    def __init__(
+        self, tool: Tool, data: CuttingData, stock: PlanningStock, setup: Setup, safety: float
+    ) -> None:
         self.tool = tool
         self.data = data
         self.clearance = setup.clearance
@@ -53,7 +55,9 @@ class PathBuilder:
         way = end[:2] - start[:2]
         if self._motion[-1] >= Motion.ARC_CW:
             ray = end[:2] - np.array(self._centre[-1])[:2]
-            way = np.array([-ray[1], ray[0]]) * (1.0 if self._motion[-1] == Motion.ARC_CCW else -1.0)
+            way = np.array([-ray[1], ray[0]]) * (
+                1.0 if self._motion[-1] == Motion.ARC_CCW else -1.0
+            )
         size = float(np.hypot(*way))
         return way / size if size > tolerance.SHORT_MOVE else np.zeros(2)
 
@@ -74,16 +78,26 @@ class PathBuilder:
         """Feed straight to a point (3,)."""
         self._add(Motion.LINE, _three(point), NOWHERE, feed, mark)
 
-    def arc(self, end: ArrayLike, centre: ArrayLike, sweep: float, feed: float, mark: Mark = Mark.CUT) -> None:
+    def arc(
+        self, end: ArrayLike, centre: ArrayLike, sweep: float, feed: float, mark: Mark = Mark.CUT
+    ) -> None:
         """Feed along an arc about `centre` (2,) to a point (3,), turning by about `sweep` radians (its sign gives the direction).
 
         The height changes evenly along it.
         """
-        start, goal, middle = self._at(), np.array(_three(end)), np.asarray(centre, dtype=np.float64)[:2]
+        start, goal, middle = (
+            self._at(),
+            np.array(_three(end)),
+            np.asarray(centre, dtype=np.float64)[:2],
+        )
         radius = float(np.hypot(*(start[:2] - middle)))
         if abs(sweep) > WIDEST_ARC:
             angle = math.atan2(start[1] - middle[1], start[0] - middle[0]) + 0.5 * sweep
-            half = (middle[0] + radius * math.cos(angle), middle[1] + radius * math.sin(angle), 0.5 * (start[2] + goal[2]))
+            half = (
+                middle[0] + radius * math.cos(angle),
+                middle[1] + radius * math.sin(angle),
+                0.5 * (start[2] + goal[2]),
+            )
             self.arc(half, middle, 0.5 * sweep, feed, mark)
             self.arc(goal, middle, 0.5 * sweep, feed, mark)
             return
@@ -95,9 +109,19 @@ class PathBuilder:
             self.line(goal, feed, mark)
             return
         motion = Motion.ARC_CCW if sweep > 0.0 else Motion.ARC_CW
-        self._add(motion, _three(goal), (float(exact[0]), float(exact[1]), float(start[2])), feed, mark)
+        self._add(
+            motion, _three(goal), (float(exact[0]), float(exact[1]), float(start[2])), feed, mark
+        )
 
-    def curve(self, curve: Curve, z: float, feed: float, mark: Mark = Mark.CUT, *, start_z: float | None = None) -> None:
+    def curve(
+        self,
+        curve: Curve,
+        z: float,
+        feed: float,
+        mark: Mark = Mark.CUT,
+        *,
+        start_z: float | None = None,
+    ) -> None:
         """Feed along a plane curve from where the tool is (its start), at height `z`, or evenly down to it from `start_z`."""
         seg = curve.segments()
         done = np.cumsum(seg.length)
@@ -109,7 +133,13 @@ class PathBuilder:
             if sweep == 0.0:
                 self.line(goal, feed, mark)
             else:
-                self.arc(goal, seg.centre[k], sweep, arc_feed(feed, float(seg.radius[k]), self.tool.radius, sweep), mark)
+                self.arc(
+                    goal,
+                    seg.centre[k],
+                    sweep,
+                    arc_feed(feed, float(seg.radius[k]), self.tool.radius, sweep),
+                    mark,
+                )
 
     def finished(self) -> Toolpath:
         """Return the path, its last block a retract to the setup's clearance height."""
@@ -123,8 +153,19 @@ class PathBuilder:
             raise ValueError("a path must begin with a rapid")
         return self.here
 
-    def _add(self, motion: Motion, point: tuple[float, float, float], centre: tuple[float, float, float], feed: float, mark: Mark) -> None:
-        if self.here is not None and motion <= Motion.LINE and float(np.abs(self.here - point).max()) < tolerance.SHORT_MOVE:
+    def _add(
+        self,
+        motion: Motion,
+        point: tuple[float, float, float],
+        centre: tuple[float, float, float],
+        feed: float,
+        mark: Mark,
+    ) -> None:
+        if (
+            self.here is not None
+            and motion <= Motion.LINE
+            and float(np.abs(self.here - point).max()) < tolerance.SHORT_MOVE
+        ):
             return
         self._position.append(point)
         self._motion.append(motion)
@@ -136,12 +177,22 @@ class PathBuilder:
     def _made(self, first: int) -> Toolpath:
         n = len(self) - first
         motion = np.array(self._motion[first:], dtype=np.int64)
-        position, centre, feed = np.array(self._position[first:]), np.array(self._centre[first:]), np.array(self._feed[first:])
+        position, centre, feed = (
+            np.array(self._position[first:]),
+            np.array(self._centre[first:]),
+            np.array(self._feed[first:]),
+        )
         if first:
             # A later piece begins where the one before ended, which a path can only say by a rapid to that place.
             motion[0], feed[0], centre[0] = Motion.RAPID, 0.0, np.nan
-        return Toolpath(position=position, axis=np.tile([0.0, 0.0, 1.0], (n, 1)), motion=motion, centre=centre, feed=feed,
-                        mark=np.array(self._mark[first:], dtype=np.int64))
+        return Toolpath(
+            position=position,
+            axis=np.tile([0.0, 0.0, 1.0], (n, 1)),
+            motion=motion,
+            centre=centre,
+            feed=feed,
+            mark=np.array(self._mark[first:], dtype=np.int64),
+        )
 
 
 def _three(point: ArrayLike) -> tuple[float, float, float]:

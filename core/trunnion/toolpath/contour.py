@@ -36,7 +36,12 @@ def contour_parts(room: Room, guide: Curve, distance: float) -> list[Curve]:
     """Return the parts of the room's rim that lie `distance` from a guide line, the room on their left."""
     found: list[Curve] = []
     for rim in room.region.curves():
-        found += parts_where(rim, lambda p: np.minimum(distance + tolerance.ON_REGION - guide.distance(p), _beside(guide, p, distance)))
+        found += parts_where(
+            rim,
+            lambda p: np.minimum(
+                distance + tolerance.ON_REGION - guide.distance(p), _beside(guide, p, distance)
+            ),
+        )
     return found
 
 
@@ -46,8 +51,14 @@ def _beside(guide: Curve, points: Floats, distance: float) -> Floats:
     if guide.closed:
         return np.full(len(points), np.inf)
     (first, heading), (last, leaving) = guide.at(0.0), guide.at(guide.length)
-    beyond = [np.where(np.linalg.norm(points - end, axis=1) <= distance + tolerance.SEW, (points - end) @ way, -np.inf)
-              for end, way in ((first, -heading), (last, leaving))]
+    beyond = [
+        np.where(
+            np.linalg.norm(points - end, axis=1) <= distance + tolerance.SEW,
+            (points - end) @ way,
+            -np.inf,
+        )
+        for end, way in ((first, -heading), (last, leaving))
+    ]
     # Ends a little before the half discs, so that the last direction is the wall's and not that of the arc round its end.
     return -tolerance.ON_REGION - np.maximum(*beyond)
 
@@ -62,7 +73,9 @@ def length_out_of_reach(room: Room, guide: Curve, distance: float) -> float:
     return float(spans[missed].sum())
 
 
-def cut_parts(builder: PathBuilder, parts: list[Curve], z: float, room: Room, approach: Approach) -> None:
+def cut_parts(
+    builder: PathBuilder, parts: list[Curve], z: float, room: Room, approach: Approach
+) -> None:
     """Cut contours at height `z`, the nearest next."""
     for part in nearest_first(parts, lambda: builder.here, _away):
         if part.closed:
@@ -72,11 +85,23 @@ def cut_parts(builder: PathBuilder, parts: list[Curve], z: float, room: Room, ap
                 cut_open(builder, part, z, room, approach)
 
 
-def cut_open(builder: PathBuilder, part: Curve, z: float, room: Room, approach: Approach, *, past: bool = True) -> None:
+def cut_open(
+    builder: PathBuilder,
+    part: Curve,
+    z: float,
+    room: Room,
+    approach: Approach,
+    *,
+    past: bool = True,
+) -> None:
     """Cut an open contour, followed straight on past both ends as far as there is room when `past`, with leads."""
     feed = builder.data.feed
     (first, heading), (last, leaving) = part.at(0.0), part.at(part.length)
-    begin, end = (_past(builder, first, -heading, room), _past(builder, last, leaving, room)) if past else (first, last)
+    begin, end = (
+        (_past(builder, first, -heading, room), _past(builder, last, leaving, room))
+        if past
+        else (first, last)
+    )
     lead, free = fitting_lead(begin, heading, approach.radius, room, leaves=False), False
     if lead is not None:
         lead, free = from_free(builder, lead, heading, z, room)
@@ -95,9 +120,20 @@ def cut_open(builder: PathBuilder, part: Curve, z: float, room: Room, approach: 
 
 def _cut_loop(builder: PathBuilder, loop: Curve, z: float, room: Room, approach: Approach) -> None:
     feed = builder.data.feed
-    if cut_closed(builder, loop, z, room, feed, radius=approach.radius, overlap=approach.overlap, rounds=approach.rounds):
+    if cut_closed(
+        builder,
+        loop,
+        z,
+        room,
+        feed,
+        radius=approach.radius,
+        overlap=approach.overlap,
+        rounds=approach.rounds,
+    ):
         return
-    ramp_round(builder, loop, 0.0, max(top_under(builder, p) for p in loop.points), z, approach.ramp)
+    ramp_round(
+        builder, loop, 0.0, max(top_under(builder, p) for p in loop.points), z, approach.ramp
+    )
     opened = loop.split(0.0, 0.0)
     for _ in range(approach.rounds):
         builder.curve(opened, z, feed)

@@ -83,21 +83,46 @@ class Strategy(Protocol):
     finds_rest: bool
     meets: Meets
 
-    def __call__(self, drive: Any, tool: Tool, data: CuttingData, stock: PlanningStock, setup: Setup, settings: Any,
-                 progress: Progress) -> Planned:
+    def __call__(
+        self,
+        drive: Any,
+        tool: Tool,
+        data: CuttingData,
+        stock: PlanningStock,
+        setup: Setup,
+        settings: Any,
+        progress: Progress,
+    ) -> Planned:
         """Return the motions in the setup frame."""
 
 
-def as_planned(tool: Tool, data: CuttingData, settings: Any, before: Operation | None) -> Engagement:
+def as_planned(
+    tool: Tool, data: CuttingData, settings: Any, before: Operation | None
+) -> Engagement:
     """Return the engagement of the cutting data: a strategy that meets no more."""
     return Engagement(width=data.width, depth=data.depth, share=1.0, at="")
 
 
-def strategy(*, settings: type, drive: type = PlaneDrive, tool_axis: AxisRule = fixed_axis, leaves: tuple[str, ...] = (),
-             settles: tuple[str, ...] = (), finds_rest: bool = False, meets: Meets = as_planned) -> Callable[[F], F]:
+def strategy(
+    *,
+    settings: type,
+    drive: type = PlaneDrive,
+    tool_axis: AxisRule = fixed_axis,
+    leaves: tuple[str, ...] = (),
+    settles: tuple[str, ...] = (),
+    finds_rest: bool = False,
+    meets: Meets = as_planned,
+) -> Callable[[F], F]:
     """Mark a function as a strategy and tell what it takes, what it leaves to others, and what engagement it can meet."""
-    declared = {"settings": settings, "drive": drive, "tool_axis": tool_axis, "leaves": leaves, "settles": settles,
-                "finds_rest": finds_rest, "meets": meets}
+    declared = {
+        "settings": settings,
+        "drive": drive,
+        "tool_axis": tool_axis,
+        "leaves": leaves,
+        "settles": settles,
+        "finds_rest": finds_rest,
+        "meets": meets,
+    }
 
     def mark(function: F) -> F:
         vars(function).update(declared)

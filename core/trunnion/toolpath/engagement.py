@@ -24,9 +24,17 @@ BOTH_WALLS = 2.0
 """Walls whose allowance a cutter takes at once in an inner corner."""
 
 
-def full_width(tool: Tool, data: CuttingData, settings: Any, before: Operation | None) -> Engagement:
+def full_width(
+    tool: Tool, data: CuttingData, settings: Any, before: Operation | None
+) -> Engagement:
     """Return a slot of the operation's depth at the settings' `slot_feed`: how contour-parallel passes open an area."""
-    return Engagement(width=tool.diameter, depth=data.depth, share=settings.slot_feed * data.slot_share, at=FULL_WIDTH, slows=True)
+    return Engagement(
+        width=tool.diameter,
+        depth=data.depth,
+        share=settings.slot_feed * data.slot_share,
+        at=FULL_WIDTH,
+        slows=True,
+    )
 
 
 def top_width(tool: Tool, data: CuttingData, settings: Any, before: Operation | None) -> Engagement:
@@ -34,32 +42,55 @@ def top_width(tool: Tool, data: CuttingData, settings: Any, before: Operation | 
     if data.widest <= data.width:
         return Engagement(width=data.width, depth=data.depth, share=1.0, at="")
     width = min(data.widest, tool.diameter)
-    return Engagement(width=width, depth=data.depth, share=settings.slot_feed * data.slot_share, at=FULL_WIDTH, slows=True)
+    return Engagement(
+        width=width,
+        depth=data.depth,
+        share=settings.slot_feed * data.slot_share,
+        at=FULL_WIDTH,
+        slows=True,
+    )
 
 
-def inner_corner(tool: Tool, data: CuttingData, settings: Any, before: Operation | None) -> Engagement:
+def inner_corner(
+    tool: Tool, data: CuttingData, settings: Any, before: Operation | None
+) -> Engagement:
     """Return the width of cut where a contour turns into a corner."""
-    return Engagement(width=corner_width(tool, data.width), depth=data.depth, share=1.0, at=INNER_CORNER)
+    return Engagement(
+        width=corner_width(tool, data.width), depth=data.depth, share=1.0, at=INNER_CORNER
+    )
 
 
-def contour_leftovers(tool: Tool, data: CuttingData, settings: Any, before: Operation | None) -> Engagement:
+def contour_leftovers(
+    tool: Tool, data: CuttingData, settings: Any, before: Operation | None
+) -> Engagement:
     """Return what a finishing pass along walls meets in a corner: both walls' allowance and what a larger cutter left there."""
     width = corner_width(tool, BOTH_WALLS * data.width + _larger(tool, before))
-    return Engagement(width=width, depth=data.depth, share=1.0, at=LEFTOVERS if _larger(tool, before) else INNER_CORNER)
+    return Engagement(
+        width=width,
+        depth=data.depth,
+        share=1.0,
+        at=LEFTOVERS if _larger(tool, before) else INNER_CORNER,
+    )
 
 
-def eased_leftovers(tool: Tool, data: CuttingData, settings: Any, before: Operation | None) -> Engagement:
+def eased_leftovers(
+    tool: Tool, data: CuttingData, settings: Any, before: Operation | None
+) -> Engagement:
     """Return what `contour_leftovers` does, as far as the easing of finishing feeds (`eased_finish`) lets it."""
     return _eased(tool, data, contour_leftovers(tool, data, settings, before))
 
 
-def eased_corner(tool: Tool, data: CuttingData, settings: Any, before: Operation | None) -> Engagement:
+def eased_corner(
+    tool: Tool, data: CuttingData, settings: Any, before: Operation | None
+) -> Engagement:
     """Return two steps of width where walls meet, as far as the easing of finishing feeds (`eased_finish`) lets them."""
     width = corner_width(tool, BOTH_WALLS * data.width)
     return _eased(tool, data, Engagement(width=width, depth=data.depth, share=1.0, at=INNER_CORNER))
 
 
-def floor_leftovers(tool: Tool, data: CuttingData, settings: Any, before: Operation | None) -> Engagement:
+def floor_leftovers(
+    tool: Tool, data: CuttingData, settings: Any, before: Operation | None
+) -> Engagement:
     """Return full width at the floor's allowance, or what a larger cutter left in corners at the slowest that easing goes, if that is
     more. A helix ends at the whole feed."""
     opening = Engagement(width=tool.diameter, depth=data.depth, share=1.0, at=FULL_WIDTH)
@@ -72,9 +103,13 @@ def floor_leftovers(tool: Tool, data: CuttingData, settings: Any, before: Operat
     return Engagement(width=width, depth=depth, share=LEAST, at=LEFTOVERS)
 
 
-def surface_leftovers(tool: Tool, data: CuttingData, settings: Any, before: Operation | None) -> Engagement:
+def surface_leftovers(
+    tool: Tool, data: CuttingData, settings: Any, before: Operation | None
+) -> Engagement:
     """Return the whole cutter in what two faces that meet have left on them: how passes on a skin run into an inner edge."""
-    return Engagement(width=tool.diameter, depth=BOTH_WALLS * data.depth, share=1.0, at=INNER_CORNER)
+    return Engagement(
+        width=tool.diameter, depth=BOTH_WALLS * data.depth, share=1.0, at=INNER_CORNER
+    )
 
 
 def corner_width(tool: Tool, width: float) -> float:
@@ -92,12 +127,20 @@ def segment(radius: float, height: float) -> float:
     (157.08, 0.0)
     """
     h = min(max(height, 0.0), 2.0 * radius)
-    return radius**2 * math.acos(1.0 - h / radius) - (radius - h) * math.sqrt(h * (2.0 * radius - h))
+    return radius**2 * math.acos(1.0 - h / radius) - (radius - h) * math.sqrt(
+        h * (2.0 * radius - h)
+    )
 
 
 def _eased(tool: Tool, data: CuttingData, met: Engagement) -> Engagement:
     most = EASING_SLACK * slot_of_finish(tool, data) / max(data.depth, tolerance.SEW)
-    return Engagement(width=min(met.width, most), depth=met.depth, share=met.share, at=met.at, slows=most < met.width)
+    return Engagement(
+        width=min(met.width, most),
+        depth=met.depth,
+        share=met.share,
+        at=met.at,
+        slows=most < met.width,
+    )
 
 
 def _larger(tool: Tool, before: Operation | None) -> float:

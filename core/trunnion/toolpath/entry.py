@@ -32,7 +32,9 @@ def deepest_place(area: Room, room: Room) -> tuple[Floats, float]:
     low, high = area.region.box()
     best, depth = 0.5 * (low + high), -math.inf
     for _ in range(2):
-        x, y = np.meshgrid(np.linspace(low[0], high[0], GRID), np.linspace(low[1], high[1], GRID), indexing="ij")
+        x, y = np.meshgrid(
+            np.linspace(low[0], high[0], GRID), np.linspace(low[1], high[1], GRID), indexing="ij"
+        )
         points = np.stack([x.ravel(), y.ravel()], axis=1)
         found = np.where(area.depth(points) >= 0.0, room.depth(points), -math.inf)
         row = int(np.argmax(found))
@@ -51,13 +53,27 @@ def helix_radius(builder: PathBuilder, depth: float) -> float:
     return widest if widest >= SMALLEST_HELIX * tool.diameter else 0.0
 
 
-def helix(builder: PathBuilder, centre: Floats, radius: float, towards: Floats, top: float, z: float, angle: float) -> None:
+def helix(
+    builder: PathBuilder,
+    centre: Floats,
+    radius: float,
+    towards: Floats,
+    top: float,
+    z: float,
+    angle: float,
+) -> None:
     """Go down anticlockwise round `centre` from just above `top` to `z` and once round there, ending on the side of `towards` (2,)."""
     way = towards - centre
     first = math.atan2(way[1], way[0])
     begin = top + GAP
-    turns = max(1, math.ceil((begin - z) / (math.tau * radius * math.tan(angle)) - tolerance.COINCIDENT))
-    sides = [centre + radius * np.array([math.cos(first + half * math.pi), math.sin(first + half * math.pi)]) for half in (0, 1)]
+    turns = max(
+        1, math.ceil((begin - z) / (math.tau * radius * math.tan(angle)) - tolerance.COINCIDENT)
+    )
+    sides = [
+        centre
+        + radius * np.array([math.cos(first + half * math.pi), math.sin(first + half * math.pi)])
+        for half in (0, 1)
+    ]
     travel(builder, sides[0], begin)
     feed = builder.data.plunge_feed
     for n in range(1, 2 * turns + 1):
@@ -67,11 +83,15 @@ def helix(builder: PathBuilder, centre: Floats, radius: float, towards: Floats, 
         builder.arc((*side, z), centre, math.pi, builder.data.feed, Mark.ENTRY)
 
 
-def ramp_round(builder: PathBuilder, loop: Curve, s: float, top: float, z: float, angle: float) -> None:
+def ramp_round(
+    builder: PathBuilder, loop: Curve, s: float, top: float, z: float, angle: float
+) -> None:
     """Go down along a closed contour from its place `s`, round and round until `z`, ending where it began."""
     opened = loop.split(s, s)
     begin = top + GAP
-    rounds = max(1, math.ceil((begin - z) / (opened.length * math.tan(angle)) - tolerance.COINCIDENT))
+    rounds = max(
+        1, math.ceil((begin - z) / (opened.length * math.tan(angle)) - tolerance.COINCIDENT)
+    )
     travel(builder, opened.start, begin)
     for n in range(rounds):
         high, low = (begin - (begin - z) * k / rounds for k in (n, n + 1))
@@ -88,4 +108,6 @@ def ramp_along(builder: PathBuilder, piece: Curve, top: float, z: float, angle: 
     travel(builder, part.start, begin)
     for n in range(legs):
         high, low = (begin - (begin - z) * k / legs for k in (n, n + 1))
-        builder.curve(part if n % 2 == 0 else back, low, builder.data.plunge_feed, Mark.ENTRY, start_z=high)
+        builder.curve(
+            part if n % 2 == 0 else back, low, builder.data.plunge_feed, Mark.ENTRY, start_z=high
+        )

@@ -51,7 +51,9 @@ def lead_out(point: Floats, tangent: Floats, radius: float) -> Lead:
     return Lead(centre + radius * tangent, centre, radius, centre + radius * tangent)
 
 
-def fitting_lead(point: Floats, tangent: Floats, radius: float, room: Room, *, leaves: bool) -> Lead | None:
+def fitting_lead(
+    point: Floats, tangent: Floats, radius: float, room: Room, *, leaves: bool
+) -> Lead | None:
     """Return the largest lead up to `radius` that stays in the room, or None."""
     for share in SHARES:
         lead = (lead_out if leaves else lead_in)(point, tangent, share * radius)
@@ -60,8 +62,17 @@ def fitting_lead(point: Floats, tangent: Floats, radius: float, room: Room, *, l
     return None
 
 
-def cut_closed(builder: PathBuilder, loop: Curve, z: float, room: Room, feed: float, *, radius: float, overlap: float,
-               rounds: int = 1) -> bool:
+def cut_closed(
+    builder: PathBuilder,
+    loop: Curve,
+    z: float,
+    room: Room,
+    feed: float,
+    *,
+    radius: float,
+    overlap: float,
+    rounds: int = 1,
+) -> bool:
     """Cut a closed contour from its best start, with a lead in, `rounds` times round, an overlap and a lead out.
 
     The best start has room for the largest lead, in a place that is certainly free, in the middle of a long straight. Say whether
@@ -107,7 +118,9 @@ def start_places(loop: Curve) -> list[float]:
     return [float(before[k] + 0.5 * seg.length[k]) for k in order]
 
 
-def from_free(builder: PathBuilder, lead: Lead, tangent: Floats, z: float, room: Room) -> tuple[Lead, bool]:
+def from_free(
+    builder: PathBuilder, lead: Lead, tangent: Floats, z: float, room: Room
+) -> tuple[Lead, bool]:
     """Return a lead that begins where no material is, lengthened by a straight when that takes it there, and say whether it does."""
     for share in RUN_INS:
         before = lead.outside + share * builder.tool.radius * _left(tangent)
@@ -116,7 +129,9 @@ def from_free(builder: PathBuilder, lead: Lead, tangent: Floats, z: float, room:
     return lead, False
 
 
-def _best_start(builder: PathBuilder, loop: Curve, z: float, room: Room, radius: float) -> tuple[float, Lead] | None:
+def _best_start(
+    builder: PathBuilder, loop: Curve, z: float, room: Room, radius: float
+) -> tuple[float, Lead] | None:
     best: tuple[tuple[bool, float], float, Lead] | None = None
     for s in start_places(loop):
         point, tangent = loop.at(s)

@@ -18,7 +18,9 @@ def steps_down(top: float, bottom: float, step: float) -> tuple[float, ...]:
     return (*(top - (top - bottom) * n / count for n in range(1, count)), bottom)
 
 
-def layers(top: float, bottom: float, step: float, horizontals: Iterable[float], allowance: float) -> tuple[float, ...]:
+def layers(
+    top: float, bottom: float, step: float, horizontals: Iterable[float], allowance: float
+) -> tuple[float, ...]:
     """Return the heights of the layers of a band that begins at `top`; on a horizontal face at its bottom the allowance stays."""
     on_face = any(abs(z - bottom) < tolerance.SEW for z in horizontals)
     last = bottom + allowance if on_face else bottom
@@ -35,7 +37,11 @@ def fillet_steps(fillet: float, corner_radius: float, scallop: float) -> tuple[f
     gap = fillet - corner_radius
     if gap <= tolerance.SEW:
         return (0.0,)
-    angle = 2.0 * scallop / gap if corner_radius <= scallop else _widest_angle(gap, corner_radius, scallop)
+    angle = (
+        2.0 * scallop / gap
+        if corner_radius <= scallop
+        else _widest_angle(gap, corner_radius, scallop)
+    )
     count = max(1, math.ceil(0.5 * math.pi / angle))
     return tuple(gap * (1.0 - math.sin(0.5 * math.pi * n / count)) for n in range(count)) + (0.0,)
 
@@ -45,7 +51,11 @@ def _widest_angle(gap: float, corner_radius: float, scallop: float) -> float:
     for _ in range(40):
         half = 0.25 * (low + high)
         inside = corner_radius**2 - (gap * math.sin(half)) ** 2
-        cusp = gap + corner_radius - gap * math.cos(half) - math.sqrt(inside) if inside > 0.0 else math.inf
+        cusp = (
+            gap + corner_radius - gap * math.cos(half) - math.sqrt(inside)
+            if inside > 0.0
+            else math.inf
+        )
         if cusp > scallop:
             high = 0.5 * (low + high)
         else:

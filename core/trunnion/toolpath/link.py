@@ -30,7 +30,9 @@ def lowest_tip(builder: PathBuilder, start: ArrayLike, end: ArrayLike) -> float:
     lowest = stock.height(start, end, tool.radius)
     for z0, r0, _, r1 in tool.profile():
         if max(r0, r1) > tool.radius:
-            lowest = max(lowest, stock.height(start, end, max(r0, r1) + builder.safety) - z0 + builder.safety)
+            lowest = max(
+                lowest, stock.height(start, end, max(r0, r1) + builder.safety) - z0 + builder.safety
+            )
     return lowest
 
 
@@ -39,13 +41,19 @@ def is_free(builder: PathBuilder, start: ArrayLike, z: float, end: ArrayLike | N
     return top_under(builder, start, 0.0, end) <= z + tolerance.COINCIDENT
 
 
-def top_under(builder: PathBuilder, start: ArrayLike, radius: float = 0.0, end: ArrayLike | None = None) -> float:
+def top_under(
+    builder: PathBuilder, start: ArrayLike, radius: float = 0.0, end: ArrayLike | None = None
+) -> float:
     """Return the top of the material under the cutter at a place, circling with `radius` there, or on its way to another.
 
     Good for feeds only: the field's cells on the rim, which a wall beside the cutter keeps high, are left out.
     """
     stock = builder.stock()
-    return stock.height(start, start if end is None else end, max(builder.tool.radius + radius - RIM * stock.cell, stock.cell))
+    return stock.height(
+        start,
+        start if end is None else end,
+        max(builder.tool.radius + radius - RIM * stock.cell, stock.cell),
+    )
 
 
 def may_plunge(builder: PathBuilder, place: ArrayLike, z: float) -> bool:
@@ -66,7 +74,10 @@ def travel(builder: PathBuilder, place: ArrayLike, z: float) -> None:
     else:
         here = builder.here
         if _apart(here, (x, y)):
-            across = min(max(lowest_tip(builder, here, (x, y)) + builder.safety, here[2], z), builder.clearance)
+            across = min(
+                max(lowest_tip(builder, here, (x, y)) + builder.safety, here[2], z),
+                builder.clearance,
+            )
             if across > here[2] + tolerance.SHORT_MOVE:
                 builder.rapid((here[0], here[1], across))
             builder.rapid((x, y, max(across, here[2])))
@@ -76,10 +87,16 @@ def travel(builder: PathBuilder, place: ArrayLike, z: float) -> None:
     if at is not None and near < at[2] - tolerance.SHORT_MOVE:
         builder.rapid((x, y, near))
     blocked = not is_free(builder, (x, y), z)
-    builder.line((x, y, z), builder.data.plunge_feed if blocked else builder.data.feed, Mark.ENTRY if blocked else Mark.LEAD)
+    builder.line(
+        (x, y, z),
+        builder.data.plunge_feed if blocked else builder.data.feed,
+        Mark.ENTRY if blocked else Mark.LEAD,
+    )
 
 
-def step_aside(builder: PathBuilder, tangent: ArrayLike, room: Room, mark: Mark = Mark.LEAD) -> None:
+def step_aside(
+    builder: PathBuilder, tangent: ArrayLike, room: Room, mark: Mark = Mark.LEAD
+) -> None:
     """Leave the wall on the right: feed a little to the left of the direction just cut, where there is room."""
     if builder.here is None:
         return

@@ -10,7 +10,9 @@ from trunnion.geometry.arrays import Floats
 T = TypeVar("T")
 
 
-def nearest_first(things: Sequence[T], here: Callable[[], Floats | None], away: Callable[[T, Floats], float]) -> Iterator[T]:
+def nearest_first(
+    things: Sequence[T], here: Callable[[], Floats | None], away: Callable[[T, Floats], float]
+) -> Iterator[T]:
     """Yield the things one by one, each time the one nearest to where the tool then is; the first one first when it is nowhere yet.
 
     `away` says how far a thing is from a point (2,).

@@ -25,7 +25,15 @@ class Passes:
     clip: Region | None
 
 
-def passes_over(wanted: Region, boundary: Region, tool: Tool, distance: float, step: float, *, mitred: bool = False) -> Passes:
+def passes_over(
+    wanted: Region,
+    boundary: Region,
+    tool: Tool,
+    distance: float,
+    step: float,
+    *,
+    mitred: bool = False,
+) -> Passes:
     """Return the passes of a cutter whose axis keeps `distance` from the boundary's rim; none when it fits nowhere.
 
     `mitred`: the walls have a fillet at their foot, which `Room.of` must keep whole at sharp edges.

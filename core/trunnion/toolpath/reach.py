@@ -81,7 +81,11 @@ def _mitres(boundary: Region, distance: float) -> list[Region]:
             left = np.array([[-w[1], w[0]] for w in (ways[before[k]], ways[k])]) * distance
             along = left.sum(axis=0)
             tip = along * (2.0 * distance**2 / (along @ along))
-            kites.append(Region.of([Curve.polygon(seg.start[k] + np.array([np.zeros(2), left[1], tip, left[0]]))]))
+            kites.append(
+                Region.of(
+                    [Curve.polygon(seg.start[k] + np.array([np.zeros(2), left[1], tip, left[0]]))]
+                )
+            )
     return kites
 
 
@@ -91,7 +95,9 @@ def level_at(drive: PlaneDrive, z: float) -> DriveLevel:
     Raises `Refused` when the drive has no levels.
     """
     if not drive.levels:
-        raise Refused(f"{drive.feature}: nothing says where the cutter may be; give the operation's drive its levels")
+        raise Refused(
+            f"{drive.feature}: nothing says where the cutter may be; give the operation's drive its levels"
+        )
     for level in drive.levels:
         if z >= level.bottom - tolerance.SEW:
             return level
@@ -115,7 +121,9 @@ def points_along(curve: Curve, spacing: float = SPACING) -> tuple[Floats, Floats
     return np.append(lengths, seg.length.sum()), np.vstack([points, seg.end[-1:]])
 
 
-def parts_where(curve: Curve, keep: Callable[[Floats], Floats], spacing: float = SPACING) -> list[Curve]:
+def parts_where(
+    curve: Curve, keep: Callable[[Floats], Floats], spacing: float = SPACING
+) -> list[Curve]:
     """Return the parts of a curve where `keep` of its points (k, 2) is at least 0, in order; the curve itself when that is everywhere."""
     s, points = points_along(curve, spacing)
     inside = keep(points) >= 0.0
@@ -140,7 +148,9 @@ def parts_where(curve: Curve, keep: Callable[[Floats], Floats], spacing: float =
             marks = marks[1:] + [marks[0] + total]
     else:
         marks = ([0.0] if inside[0] else []) + marks + ([total] if inside[-1] else [])
-    return [curve.split(a, b) for a, b in zip(marks[::2], marks[1::2], strict=True) if b - a > SHORTEST]
+    return [
+        curve.split(a, b) for a, b in zip(marks[::2], marks[1::2], strict=True) if b - a > SHORTEST
+    ]
 
 
 def parts_near(curve: Curve, clip: Region, keep: Callable[[Floats], Floats]) -> list[Curve]:

@@ -44,7 +44,16 @@ def swing_of(blank: Blank, setup: Setup) -> Swing:
     """Return the sphere round the blank and the fixtures of a setup, as far from them as the clearance height is from the blank."""
     corners = _corners(blank, setup)
     safe = max(setup.clearance - float(corners[:, 2].max()), LEAST_SAFE)
-    points = np.vstack([corners, *(setup.frame.to_local(f.mesh.points) for f in setup.fixtures if f.setup in ("", setup.name))])
+    points = np.vstack(
+        [
+            corners,
+            *(
+                setup.frame.to_local(f.mesh.points)
+                for f in setup.fixtures
+                if f.setup in ("", setup.name)
+            ),
+        ]
+    )
     centre = 0.5 * (corners.min(axis=0) + corners.max(axis=0))
     radius = float(np.linalg.norm(points - centre, axis=1).max()) + safe
     return Swing(centre=centre, radius=radius / math.cos(0.5 * STEP))
@@ -57,7 +66,10 @@ def box_of(blank: Blank, setup: Setup) -> tuple[Floats, Floats]:
 
 
 def _corners(blank: Blank, setup: Setup) -> Floats:
-    corners = np.array([[x, y, z] for x in (0, 1) for y in (0, 1) for z in (0, 1)]) * blank.size + blank.low
+    corners = (
+        np.array([[x, y, z] for x in (0, 1) for y in (0, 1) for z in (0, 1)]) * blank.size
+        + blank.low
+    )
     return setup.frame.to_local(blank.frame.to_world(corners))
 
 
@@ -82,10 +94,14 @@ def moved_over(path: Toolpath, before: Pose | None, swing: Swing) -> Toolpath:
         upright_axis = np.array([0.0, 0.0, 1.0])
         turned = np.vstack([turn(direction, upright_axis), turn(upright_axis, axis)[1:]])
     around = [(swing.centre + swing.radius * a, a) for a in turned]
-    return _led([(swing.above(start, direction), direction), *around, (swing.above(tip, axis), axis)], path)
+    return _led(
+        [(swing.above(start, direction), direction), *around, (swing.above(tip, axis), axis)], path
+    )
 
 
-def joined(paths: Sequence[Toolpath], changes: Sequence[bool], swing: Swing) -> tuple[Toolpath, ...]:
+def joined(
+    paths: Sequence[Toolpath], changes: Sequence[bool], swing: Swing
+) -> tuple[Toolpath, ...]:
     """Return paths that are cut one after the other, each led from where the one before has left the tool.
 
     `changes` says which of them begin with a tool change.
@@ -106,7 +122,10 @@ def turn(first: Floats, last: Floats) -> Floats:
     if size <= tolerance.PARAMETRIC:
         # Straight back: any way round does; over the top where there is one.
         seed = np.array([0.0, 0.0, 1.0]) if abs(first[2]) < 0.9 else np.array([1.0, 0.0, 0.0])
-        across, size = seed - (seed @ first) * first, float(np.linalg.norm(seed - (seed @ first) * first))
+        across, size = (
+            seed - (seed @ first) * first,
+            float(np.linalg.norm(seed - (seed @ first) * first)),
+        )
     angle = math.atan2(float(np.linalg.norm(np.cross(first, last))), float(first @ last))
     share = np.linspace(0.0, angle, max(1, math.ceil(angle / STEP)) + 1)[:, None]
     way = np.cos(share) * first + np.sin(share) * (across / size)
@@ -118,13 +137,23 @@ def _led(poses: Sequence[Pose], path: Toolpath) -> Toolpath:
     """Return a path with rapids through poses in front; those that go nowhere are left out."""
     rows = [poses[0]]
     for tip, axis in poses[1:]:
-        if max(np.abs(tip - rows[-1][0]).max(), np.abs(axis - rows[-1][1]).max()) > tolerance.COINCIDENT:
+        if (
+            max(np.abs(tip - rows[-1][0]).max(), np.abs(axis - rows[-1][1]).max())
+            > tolerance.COINCIDENT
+        ):
             rows.append((tip, axis))
     if np.abs(rows[-1][0] - path.position[0]).max() <= tolerance.COINCIDENT:
         rows.pop()
     n = len(rows)
     if not n:
         return path
-    lead = replace(path, position=np.array([t for t, _ in rows]), axis=np.array([a for _, a in rows]), motion=np.full(n, Motion.RAPID),
-                   centre=np.full((n, 3), np.nan), feed=np.zeros(n), mark=np.full(n, Mark.RETRACT))
+    lead = replace(
+        path,
+        position=np.array([t for t, _ in rows]),
+        axis=np.array([a for _, a in rows]),
+        motion=np.full(n, Motion.RAPID),
+        centre=np.full((n, 3), np.nan),
+        feed=np.zeros(n),
+        mark=np.full(n, Mark.RETRACT),
+    )
     return Toolpath.join([lead, path])

@@ -45,7 +45,11 @@ def safe_step(tool: Tool, width: float, ridge: float = 0.0) -> float:
 
 def ring_tree(room: Region, step: float, clip: Region | None = None) -> tuple[Ring, ...]:
     """Return the rings of a room, a step apart; with a clip, only those that can touch it."""
-    rim = None if clip is None else _Clip(clip, tuple(points_along(c, CLIP_SPACING)[1] for c in clip.curves()))
+    rim = (
+        None
+        if clip is None
+        else _Clip(clip, tuple(points_along(c, CLIP_SPACING)[1] for c in clip.curves()))
+    )
     return tuple(_ring(piece, step, rim) for piece in room.split() if _touches(piece, rim))
 
 
@@ -71,7 +75,11 @@ def _ring(piece: Region, step: float, clip: _Clip | None) -> Ring:
 
 def _touches(piece: Region, clip: _Clip | None) -> bool:
     """Say whether a piece has some of a clip's rim in it or lies inside the clip, as a closed space beside open ones does."""
-    return clip is None or any(bool(piece.contains(p).any()) for p in clip.rim) or _lies_in(piece, clip.region)
+    return (
+        clip is None
+        or any(bool(piece.contains(p).any()) for p in clip.rim)
+        or _lies_in(piece, clip.region)
+    )
 
 
 def _lies_in(piece: Region, clip: Region) -> bool:

@@ -45,12 +45,16 @@ class Sides:
             if other != name and self._known.get((name, other)) != stock.digest:
                 self._known[name, other] = stock.digest
                 lowest = _lowest(self._blank, setup.frame)
-                self._stocks[name] = _lowered(self._stocks[name], setup.frame, stock, self._frames[other], lowest)
+                self._stocks[name] = _lowered(
+                    self._stocks[name], setup.frame, stock, self._frames[other], lowest
+                )
         return self._stocks[name]
 
     def cut(self, setup: Setup, path: Toolpath, tool: Tool, progress: Progress = QUIET) -> None:
         """Take a path in the frame of a setup off its stock. A leaning tool takes nothing off: the stock is then higher than it is."""
-        if len(path) and bool((path.axis[path.motion != Motion.RAPID, 2] > 1.0 - tolerance.PARAMETRIC).all()):
+        if len(path) and bool(
+            (path.axis[path.motion != Motion.RAPID, 2] > 1.0 - tolerance.PARAMETRIC).all()
+        ):
             name = digest(setup.frame)
             self._stocks[name] = self._stocks[name].after(path, tool, progress)
 
@@ -63,7 +67,9 @@ def _uncut(blank: Blank, setup: Setup) -> PlanningStock:
         return stock
     # Where the line through a column's middle leaves the box, grown so that a column which only grazes the blank counts.
     places, reach = _centres(stock), 0.75 * stock.cell
-    start = blank.frame.to_local(setup.frame.to_world(np.column_stack([places, np.zeros(len(places))])))
+    start = blank.frame.to_local(
+        setup.frame.to_world(np.column_stack([places, np.zeros(len(places))]))
+    )
     with np.errstate(divide="ignore", invalid="ignore"):
         ends = np.stack([(blank.low - reach - start) / away, (blank.high + reach - start) / away])
     ends = np.where(np.isnan(ends), np.array([-np.inf, np.inf])[:, None, None], ends)
@@ -73,7 +79,9 @@ def _uncut(blank: Blank, setup: Setup) -> PlanningStock:
     return replace(stock, heights=_fixed(heights), digest=digest(stock.digest, heights))
 
 
-def _lowered(stock: PlanningStock, frame: Frame, other: PlanningStock, other_frame: Frame, lowest: float) -> PlanningStock:
+def _lowered(
+    stock: PlanningStock, frame: Frame, other: PlanningStock, other_frame: Frame, lowest: float
+) -> PlanningStock:
     """Return a stock without what another one, seen from elsewhere, knows to be gone; nothing is lower than `lowest`."""
     material = maximum_filter(other.heights, BESIDE, mode="nearest")
     places, heights = _centres(stock), stock.heights.ravel().copy()
@@ -81,7 +89,9 @@ def _lowered(stock: PlanningStock, frame: Frame, other: PlanningStock, other_fra
     rows = np.flatnonzero(heights > lowest)
     while len(rows):
         # The middle of the uppermost step of each column: gone when all around it is.
-        there = other_frame.to_local(frame.to_world(np.column_stack([places[rows], heights[rows] - 0.5 * step])))
+        there = other_frame.to_local(
+            frame.to_world(np.column_stack([places[rows], heights[rows] - 0.5 * step]))
+        )
         cell = np.floor((there[:, :2] - other.corner) / other.cell).astype(np.int64)
         outside = ((cell < 0) | (cell > last)).any(axis=1)
         gone = outside | (there[:, 2] - step > material[tuple(np.clip(cell, 0, last).T)])

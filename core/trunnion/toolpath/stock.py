@@ -51,19 +51,31 @@ class PlanningStock:
     @staticmethod
     def of(blank: Blank, setup: Setup, cell: float = CELL) -> PlanningStock:
         """Return the stock of an uncut blank; of one that stands askew in the setup, the box around it."""
-        corners = np.array([[x, y, z] for x in (blank.low[0], blank.high[0]) for y in (blank.low[1], blank.high[1])
-                            for z in (blank.low[2], blank.high[2])])
+        corners = np.array(
+            [
+                [x, y, z]
+                for x in (blank.low[0], blank.high[0])
+                for y in (blank.low[1], blank.high[1])
+                for z in (blank.low[2], blank.high[2])
+            ]
+        )
         local = setup.frame.to_local(blank.frame.to_world(corners))
         low, high = local.min(axis=0), local.max(axis=0)
         size = high[:2] - low[:2]
         cell = max(cell, float(np.sqrt(size[0] * size[1] / MOST_CELLS)))
         if cell > LARGEST_CELL:
-            raise OutOfMemory(f"the blank of {size[0]:.0f} x {size[1]:.0f} mm is too large to plan safe moves over: split the part")
+            raise OutOfMemory(
+                f"the blank of {size[0]:.0f} x {size[1]:.0f} mm is too large to plan safe moves over: split the part"
+            )
         # Whole cells that stand out past the blank's edge by a part of one, the same at both edges.
         count = np.maximum(np.ceil(size / cell - tolerance.COINCIDENT), 1).astype(int)
         corner = _fixed(low[:2] - 0.5 * (count * cell - size))
-        return PlanningStock(heights=_fixed(np.full(tuple(count), high[2])), corner=corner, cell=cell,
-                             digest=digest(tuple(count.tolist()), high[2].item(), corner, cell))
+        return PlanningStock(
+            heights=_fixed(np.full(tuple(count), high[2])),
+            corner=corner,
+            cell=cell,
+            digest=digest(tuple(count.tolist()), high[2].item(), corner, cell),
+        )
 
     def after(self, path: Toolpath, tool: Tool, progress: Progress = QUIET) -> PlanningStock:
         """Return the stock after the feed moves of a path."""
@@ -71,7 +83,9 @@ class PlanningStock:
             return self
         made = self.working()
         made.lower(path, tool, progress)
-        cut = digest(self.digest, path.position, path.motion, path.centre, tool.radius, tool.corner_radius)
+        cut = digest(
+            self.digest, path.position, path.motion, path.centre, tool.radius, tool.corner_radius
+        )
         return replace(made, heights=_fixed(made.heights), digest=cut)
 
     def working(self) -> PlanningStock:
@@ -85,15 +99,28 @@ class PlanningStock:
         radius, gone = tool.radius - error, np.empty(len(starts))
         for first in progress.each(range(0, len(starts), MOVES)):
             some = slice(first, first + MOVES)
-            heightfield.lower(self.heights, self.corner[0], self.corner[1], self.cell, starts[some], ends[some], radius,
-                              min(tool.corner_radius, radius), gone[some])
+            heightfield.lower(
+                self.heights,
+                self.corner[0],
+                self.corner[1],
+                self.cell,
+                starts[some],
+                ends[some],
+                radius,
+                min(tool.corner_radius, radius),
+                gone[some],
+            )
         volume: Floats = np.bincount(rows, gone, len(path)).astype(np.float64) * self.cell**2
         return volume
 
     def height(self, start: ArrayLike, end: ArrayLike, radius: float) -> float:
         """Return the greatest height that a disc may touch on its way from `start` to `end` (2,), or -inf over nothing."""
         a, b = np.asarray(start, dtype=np.float64)[:2], np.asarray(end, dtype=np.float64)[:2]
-        return float(heightfield.highest(self.heights, self.corner[0], self.corner[1], self.cell, a, b, radius))
+        return float(
+            heightfield.highest(
+                self.heights, self.corner[0], self.corner[1], self.cell, a, b, radius
+            )
+        )
 
     def is_clear(self, z: float, area: Region) -> bool:
         """Say whether no cell in an area is higher than `z`; an area without cells is."""
@@ -102,7 +129,9 @@ class PlanningStock:
         some = self._above(z, area)
         # Most areas that are not clear show it at a few places; only then are all of them looked at.
         few = some[:: max(1, len(some) // 64)]
-        return not (len(few) and area.contains(few).any()) and not (len(some) and area.contains(some).any())
+        return not (len(few) and area.contains(few).any()) and not (
+            len(some) and area.contains(some).any()
+        )
 
     def places_above(self, z: float, area: Region) -> Floats:
         """Return the centres (k, 2) of the cells in an area that are higher than `z`."""

@@ -30,12 +30,16 @@ NEAR_POLE = 1e-4
 """rad: a tool axis that close to the pole of the rotary axes may go through it."""
 
 
-def machining_time(path: Toolpath, machine: Machine, place: Place | None = None, gauge: float = 0.0) -> float:
+def machining_time(
+    path: Toolpath, machine: Machine, place: Place | None = None, gauge: float = 0.0
+) -> float:
     """Return the seconds that a machine takes for a path, rapids included, from where its first block ends."""
     return float(block_times(path, machine, place, gauge).sum())
 
 
-def block_times(path: Toolpath, machine: Machine, place: Place | None = None, gauge: float = 0.0) -> Floats:
+def block_times(
+    path: Toolpath, machine: Machine, place: Place | None = None, gauge: float = 0.0
+) -> Floats:
     """Return the seconds (n,) of each block; the first, whose start is unknown, takes none.
 
     On a machine with rotary axes `place` says where the work stands and `gauge` mm is the length of the tool from its tip to the spindle's
@@ -47,8 +51,8 @@ def block_times(path: Toolpath, machine: Machine, place: Place | None = None, ga
     if len(rows) == 0:
         return times
     length, first, last = way.length[rows], way.first[rows], way.last[rows]
-    axes = [*(machine.axis(name) for name in "XYZ"), *machine.rotary][:first.shape[1]]
-    weight = np.array([1.0, 1.0, 1.0, *_weights(machine)])[:first.shape[1]]
+    axes = [*(machine.axis(name) for name in "XYZ"), *machine.rotary][: first.shape[1]]
+    weight = np.array([1.0, 1.0, 1.0, *_weights(machine)])[: first.shape[1]]
     rate = np.array([a.rapid / SECONDS_PER_MINUTE for a in axes]) * weight
     push = np.array([a.acceleration for a in axes]) * weight
     share = np.maximum(np.abs(first), np.abs(last))
@@ -60,12 +64,20 @@ def block_times(path: Toolpath, machine: Machine, place: Place | None = None, ga
     is_rapid = path.motion[rows] == Motion.RAPID
     feed = np.minimum(path.feed[rows], machine.feed_max) / SECONDS_PER_MINUTE
     # In a block that turns the tip has its feed, however far the machine's axes go for it.
-    stretch = np.divide(length, way.tip[rows], out=np.full(len(rows), np.inf), where=way.tip[rows] > 0.0)
+    stretch = np.divide(
+        length, way.tip[rows], out=np.full(len(rows), np.inf), where=way.tip[rows] > 0.0
+    )
     speed = np.where(is_rapid, limit, np.minimum(feed * np.where(is_rapid, 1.0, stretch), limit))
-    speed[is_arc] = np.minimum(speed[is_arc], np.sqrt(acceleration[is_arc] * way.radius[rows[is_arc]]))
-    rounding = np.where(np.abs(first[:, 3:]).max(axis=1, initial=0.0) > 0.0, ROUNDING_TURNS, ROUNDING)
+    speed[is_arc] = np.minimum(
+        speed[is_arc], np.sqrt(acceleration[is_arc] * way.radius[rows[is_arc]])
+    )
+    rounding = np.where(
+        np.abs(first[:, 3:]).max(axis=1, initial=0.0) > 0.0, ROUNDING_TURNS, ROUNDING
+    )
     joint = _joint_speeds(first, last, speed, acceleration, is_rapid, rounding)
-    times[rows] = _trapezoids(length, speed, acceleration, _looked_ahead(length, joint, acceleration))
+    times[rows] = _trapezoids(
+        length, speed, acceleration, _looked_ahead(length, joint, acceleration)
+    )
     return times
 
 
@@ -92,9 +104,13 @@ def _way_of(path: Toolpath, place: Place | None, gauge: float) -> _Way:
     turn = np.zeros((len(path), 0))
     if place is not None:
         angle = followed(path.axis, place, None, NEAR_POLE, "of the path")
-        turn = np.diff(np.degrees(angle), axis=0, prepend=np.degrees(angle[:1])) * _weights(place.machine)
+        turn = np.diff(np.degrees(angle), axis=0, prepend=np.degrees(angle[:1])) * _weights(
+            place.machine
+        )
         position, axis = words_of(place, position, angle, gauge), spindle_of(place, angle[arcs])
-        centre = words_of(place, np.where(np.isnan(centre), path.position[arcs], centre), angle[arcs], gauge)
+        centre = words_of(
+            place, np.where(np.isnan(centre), path.position[arcs], centre), angle[arcs], gauge
+        )
     start = np.vstack([position[:1], position[:-1]])
     way = np.column_stack([position - start, turn])
     first, last = way.copy(), way.copy()
@@ -104,8 +120,14 @@ def _way_of(path: Toolpath, place: Place | None, gauge: float) -> _Way:
     across, radius = np.zeros((len(path), 3)), np.zeros(len(path))
     across[arcs] = np.sqrt(np.maximum(1.0 - axis * axis, 0.0))
     radius[arcs] = np.linalg.norm(np.cross(axis, position[arcs] - centre), axis=1)
-    return _Way(length=np.where(turns, np.linalg.norm(way, axis=1), tip), tip=tip, first=_units(first), last=_units(last), across=across,
-                radius=radius)
+    return _Way(
+        length=np.where(turns, np.linalg.norm(way, axis=1), tip),
+        tip=tip,
+        first=_units(first),
+        last=_units(last),
+        across=across,
+        radius=radius,
+    )
 
 
 def _weights(machine: Machine) -> list[float]:
@@ -115,16 +137,30 @@ def _weights(machine: Machine) -> list[float]:
 
 
 def _units(vectors: Floats) -> Floats:
-    scaled: Floats = vectors / np.maximum(np.linalg.norm(vectors, axis=1, keepdims=True), np.finfo(float).tiny)
+    scaled: Floats = vectors / np.maximum(
+        np.linalg.norm(vectors, axis=1, keepdims=True), np.finfo(float).tiny
+    )
     return scaled
 
 
-def _joint_speeds(first: Floats, last: Floats, speed: Floats, acceleration: Floats, is_rapid: Bools, rounding: Floats) -> Floats:
+def _joint_speeds(
+    first: Floats,
+    last: Floats,
+    speed: Floats,
+    acceleration: Floats,
+    is_rapid: Bools,
+    rounding: Floats,
+) -> Floats:
     """Return the greatest speed (m + 1,) at each block's beginning, and 0 at the end of the path; rapids begin and end at rest."""
     turn = np.clip((last[:-1] * first[1:]).sum(axis=1), -1.0, 1.0)
     half = np.sqrt(0.5 * (1.0 + turn))
     with np.errstate(divide="ignore"):
-        rounded = np.sqrt(np.minimum(acceleration[:-1], acceleration[1:]) * np.maximum(rounding[:-1], rounding[1:]) * half / (1.0 - half))
+        rounded = np.sqrt(
+            np.minimum(acceleration[:-1], acceleration[1:])
+            * np.maximum(rounding[:-1], rounding[1:])
+            * half
+            / (1.0 - half)
+        )
     inner = np.minimum(np.minimum(speed[:-1], speed[1:]), rounded)
     inner[is_rapid[:-1] != is_rapid[1:]] = 0.0
     return np.concatenate([[0.0], inner, [0.0]])

@@ -47,12 +47,14 @@ class Bodies:
 
     def of(self, tool: int) -> Floats:
         """Return the pieces (k, 8) of one tool."""
-        return self.piece[self.start[tool]:self.start[tool + 1]]
+        return self.piece[self.start[tool] : self.start[tool + 1]]
 
     def widest(self, *, cutting: bool = False) -> Floats:
         """Return the largest radius of each tool (t,), of its cutting pieces alone if so asked."""
         rows = [self.of(k) for k in range(len(self.start) - 1)]
-        return np.array([float(p[(p[:, kernel.KIND] == 0.0) | (not cutting), kernel.R_MAX].max()) for p in rows])
+        return np.array(
+            [float(p[(p[:, kernel.KIND] == 0.0) | (not cutting), kernel.R_MAX].max()) for p in rows]
+        )
 
 
 def bodies_of(tools: Sequence[Tool]) -> Bodies:
@@ -61,15 +63,32 @@ def bodies_of(tools: Sequence[Tool]) -> Bodies:
     pieces, start = [], [0]
     for tool in tools:
         for spans, kind, under, over in _stacked(tool):
-            opened = _arcs(spans, spans[0][:2] if under is None else None, spans[-1][2:4] if over is None else None)
+            opened = _arcs(
+                spans,
+                spans[0][:2] if under is None else None,
+                spans[-1][2:4] if over is None else None,
+            )
             closed = _arcs(spans, _gone_on(spans, under, -OVERLAP), _gone_on(spans, over, OVERLAP))
             first = sum(map(len, arcs))
             arcs += [opened, closed]
-            pieces.append((first, first + len(opened), spans[0][1], spans[-1][3], _widest(spans), kind, first + len(opened),
-                           first + len(opened) + len(closed)))
+            pieces.append(
+                (
+                    first,
+                    first + len(opened),
+                    spans[0][1],
+                    spans[-1][3],
+                    _widest(spans),
+                    kind,
+                    first + len(opened),
+                    first + len(opened) + len(closed),
+                )
+            )
         start.append(len(pieces))
-    return Bodies(arc=np.vstack([np.zeros((0, kernel.ARC_COLUMNS)), *arcs]), piece=np.array(pieces, dtype=np.float64).reshape(-1, 8),
-                  start=np.array(start, dtype=np.int64))
+    return Bodies(
+        arc=np.vstack([np.zeros((0, kernel.ARC_COLUMNS)), *arcs]),
+        piece=np.array(pieces, dtype=np.float64).reshape(-1, 8),
+        start=np.array(start, dtype=np.int64),
+    )
 
 
 @lru_cache(maxsize=256)
@@ -80,7 +99,11 @@ def bodies_of_one(tool: Tool) -> Bodies:
 
 def outline_of(tool: Tool) -> list[Span]:
     """Return the outline of what cuts, from the axis (or a level end face) up to the top of the flutes; no span is without a length."""
-    return [span for span in _spans_of(tool) if math.hypot(span[2] - span[0], span[3] - span[1]) > tolerance.PARAMETRIC]
+    return [
+        span
+        for span in _spans_of(tool)
+        if math.hypot(span[2] - span[0], span[3] - span[1]) > tolerance.PARAMETRIC
+    ]
 
 
 def _spans_of(tool: Tool) -> list[Span]:
@@ -88,17 +111,33 @@ def _spans_of(tool: Tool) -> list[Span]:
     if tool.form == "taper":
         lean = math.radians(tool.taper_angle)
         edge, height = r - c + c * math.cos(lean), c - c * math.sin(lean)
-        return [*_end_face(r - c), *_arc(r - c, 0.0, edge, height, r - c, c, c),
-                _line(edge, height, edge + (top - height) * math.tan(lean), top)]
+        return [
+            *_end_face(r - c),
+            *_arc(r - c, 0.0, edge, height, r - c, c, c),
+            _line(edge, height, edge + (top - height) * math.tan(lean), top),
+        ]
     if tool.form == "barrel":
         middle, big = (r - tool.barrel_radius, tool.widest_height), tool.barrel_radius
         lean = math.atan2(c - middle[1], -middle[0])
         edge, height = c * math.cos(lean), c + c * math.sin(lean)
-        return [*_arc(0.0, 0.0, edge, height, 0.0, c, c),
-                *_arc(edge, height, middle[0] + math.sqrt(big**2 - (top - middle[1]) ** 2), top, *middle, big)]
+        return [
+            *_arc(0.0, 0.0, edge, height, 0.0, c, c),
+            *_arc(
+                edge,
+                height,
+                middle[0] + math.sqrt(big**2 - (top - middle[1]) ** 2),
+                top,
+                *middle,
+                big,
+            ),
+        ]
     if tool.form == "t-slot":
-        return [*_end_face(r - c), *_arc(r - c, 0.0, r, c, r - c, c, c), *([_line(r, c, r, top - c)] if top > 2 * c else []),
-                *_arc(r, top - c, r - c, top, r - c, top - c, c)]
+        return [
+            *_end_face(r - c),
+            *_arc(r - c, 0.0, r, c, r - c, c, c),
+            *([_line(r, c, r, top - c)] if top > 2 * c else []),
+            *_arc(r, top - c, r - c, top, r - c, top - c, c),
+        ]
     if tool.form == "drill" and tool.point_length > 0.0:
         return [_line(0.0, 0.0, r, tool.point_length), _line(r, tool.point_length, r, top)]
     if tool.form == "form":
@@ -117,7 +156,11 @@ def lowest_height(tool: Tool, rho: Floats) -> Floats:
             across = np.sqrt(np.clip(radius**2 - (rho - cr) ** 2, 0.0, None))
             z = np.clip(cz - math.copysign(1.0, radius) * across, min(z0, z1), max(z0, z1))
         else:
-            z = np.full(rho.shape, min(z0, z1)) if r0 == r1 else z0 + (rho - r0) / (r1 - r0) * (z1 - z0)
+            z = (
+                np.full(rho.shape, min(z0, z1))
+                if r0 == r1
+                else z0 + (rho - r0) / (r1 - r0) * (z1 - z0)
+            )
         out = np.where(inside, np.minimum(out, z), out)
     return out
 
@@ -130,7 +173,9 @@ def _end_face(radius: float) -> list[Span]:
     return [_line(0.0, 0.0, radius, 0.0)] if radius > 0.0 else []
 
 
-def _arc(r0: float, z0: float, r1: float, z1: float, cr: float, cz: float, radius: float) -> list[Span]:
+def _arc(
+    r0: float, z0: float, r1: float, z1: float, cr: float, cz: float, radius: float
+) -> list[Span]:
     return [(r0, z0, r1, z1, cr, cz, radius)] if radius > 0.0 else []
 
 
@@ -150,8 +195,11 @@ def _from_rows(rows: Sequence[tuple[float, float, float]]) -> list[Span]:
 def _stacked(tool: Tool) -> list[tuple[list[Span], float, list[Span] | None, list[Span] | None]]:
     """Return the convex runs of a tool's outline: spans, kind, and the runs under and over it, None where that is thinner: a free face."""
     cutting = _convex_runs(outline_of(tool))
-    runs = [(spans, 0.0) for spans in cutting] + [([_line(r0, z0, r1, z1)], 1.0) for z0, r0, z1, r1 in tool.profile()
-                                                   if z1 - z0 > tolerance.PARAMETRIC]
+    runs = [(spans, 0.0) for spans in cutting] + [
+        ([_line(r0, z0, r1, z1)], 1.0)
+        for z0, r0, z1, r1 in tool.profile()
+        if z1 - z0 > tolerance.PARAMETRIC
+    ]
     found = []
     for k, (spans, kind) in enumerate(runs):
         under, over = runs[k - 1][0] if k else None, runs[k + 1][0] if k + 1 < len(runs) else None
@@ -183,7 +231,11 @@ def _opened(span: Span) -> list[Span]:
     turn = math.remainder(b - a, math.tau)
     step = math.sqrt(2.0 * tolerance.CONTACT_BOUND / -radius)
     angles = a + turn * np.linspace(0.0, 1.0, max(2, math.ceil(abs(turn) / step) + 1))
-    points = [(r0, z0), *((cr - radius * math.cos(t), cz - radius * math.sin(t)) for t in angles[1:-1]), (r1, z1)]
+    points = [
+        (r0, z0),
+        *((cr - radius * math.cos(t), cz - radius * math.sin(t)) for t in angles[1:-1]),
+        (r1, z1),
+    ]
     return [_line(*p, *q) for p, q in pairwise(points)]
 
 
@@ -249,12 +301,16 @@ def _radius_at(spans: list[Span], z: float) -> float:
     return max(r0, r1) if z1 == z0 else r0 + (r1 - r0) * (z - z0) / (z1 - z0)
 
 
-def _corner(r: float, z: float, n0: tuple[float, float], n1: tuple[float, float]) -> list[tuple[float, ...]]:
+def _corner(
+    r: float, z: float, n0: tuple[float, float], n1: tuple[float, float]
+) -> list[tuple[float, ...]]:
     turn = n0[0] * n1[1] - n0[1] * n1[0]
     return _halves(r, z, 0.0, n0, n1) if turn > tolerance.PARAMETRIC else []
 
 
-def _halves(r: float, z: float, radius: float, n0: tuple[float, float], n1: tuple[float, float]) -> list[tuple[float, ...]]:
+def _halves(
+    r: float, z: float, radius: float, n0: tuple[float, float], n1: tuple[float, float]
+) -> list[tuple[float, ...]]:
     """Return an arc, in two where its normals go from down to up."""
     if n0[1] < -tolerance.PARAMETRIC and n1[1] > tolerance.PARAMETRIC:
         return [(r, z, radius, *n0, 1.0, 0.0), (r, z, radius, 1.0, 0.0, *n1)]
@@ -263,6 +319,9 @@ def _halves(r: float, z: float, radius: float, n0: tuple[float, float], n1: tupl
 
 def _widest(spans: list[Span]) -> float:
     """Return the largest radius of a convex run."""
-    bulging = [cr + radius for r0, z0, r1, z1, cr, cz, radius in spans if radius > 0.0 and min(z0, z1) <= cz <= max(z0, z1)]
+    bulging = [
+        cr + radius
+        for r0, z0, r1, z1, cr, cz, radius in spans
+        if radius > 0.0 and min(z0, z1) <= cz <= max(z0, z1)
+    ]
     return max([max(s[0], s[2]) for s in spans] + bulging)
-

@@ -70,12 +70,16 @@ class Moves:
     @property
     def turning(self) -> Bools:
         """Whether the tool axis turns along each move (n,)."""
-        return np.asarray(np.abs(self.end_axis - self.start_axis).max(axis=1, initial=0.0) > AXIS_LEAN)
+        return np.asarray(
+            np.abs(self.end_axis - self.start_axis).max(axis=1, initial=0.0) > AXIS_LEAN
+        )
 
     @property
     def cutters(self) -> Floats:
         """Radius, corner radius and flute length of the cutter of each move (n, 3)."""
-        table = np.array([[t.radius, t.corner_radius, t.flute_length] for t in self.tools]).reshape(-1, 3)
+        table = np.array([[t.radius, t.corner_radius, t.flute_length] for t in self.tools]).reshape(
+            -1, 3
+        )
         return table[self.tool]
 
     @property
@@ -121,22 +125,47 @@ def moves_of(sections: Sequence[ProgramSection]) -> Moves:
         lengths.append(length)
         tool_row.append(np.full(n, tools.setdefault(section.tool, len(tools))))
     first, last = _points(start_axes), _points(end_axes)
-    return Moves(start=_points(starts), end=_points(ends), start_axis=first, end_axis=last, centre=_points(centres),
-                 sweep=np.concatenate([np.zeros(0), *sweeps]), upright=_upright(first, last), bodies=bodies_of(tuple(tools)),
-                 row=np.vstack([np.zeros((0, MOVE_COLUMNS)), *rows]), section=_ints(sections_of), block=_ints(blocks),
-                 rapid=np.concatenate([np.zeros(0, bool), *rapid]), feed=np.concatenate([np.zeros(0), *feeds]),
-                 length=np.concatenate([np.zeros(0), *lengths]), tools=tuple(tools), tool=_ints(tool_row))
+    return Moves(
+        start=_points(starts),
+        end=_points(ends),
+        start_axis=first,
+        end_axis=last,
+        centre=_points(centres),
+        sweep=np.concatenate([np.zeros(0), *sweeps]),
+        upright=_upright(first, last),
+        bodies=bodies_of(tuple(tools)),
+        row=np.vstack([np.zeros((0, MOVE_COLUMNS)), *rows]),
+        section=_ints(sections_of),
+        block=_ints(blocks),
+        rapid=np.concatenate([np.zeros(0, bool), *rapid]),
+        feed=np.concatenate([np.zeros(0), *feeds]),
+        length=np.concatenate([np.zeros(0), *lengths]),
+        tools=tuple(tools),
+        tool=_ints(tool_row),
+    )
 
 
 def seen_from(moves: Moves, frame: Frame, other: Frame) -> Moves:
     """Return moves given in a frame as they are in another."""
     if other is frame:
         return moves
-    start, end, centre = (other.to_local(frame.to_world(p)) for p in (moves.start, moves.end, moves.centre))
-    first, last = (other.local_direction(frame.world_direction(a)) for a in (moves.start_axis, moves.end_axis))
+    start, end, centre = (
+        other.to_local(frame.to_world(p)) for p in (moves.start, moves.end, moves.centre)
+    )
+    first, last = (
+        other.local_direction(frame.world_direction(a)) for a in (moves.start_axis, moves.end_axis)
+    )
     motion = np.where(moves.sweep == 0.0, Motion.LINE, Motion.ARC_CCW)
-    return replace(moves, start=start, end=end, start_axis=first, end_axis=last, centre=centre, upright=_upright(first, last),
-                   row=_rows(start, end, centre, moves.sweep, motion))
+    return replace(
+        moves,
+        start=start,
+        end=end,
+        start_axis=first,
+        end_axis=last,
+        centre=centre,
+        upright=_upright(first, last),
+        row=_rows(start, end, centre, moves.sweep, motion),
+    )
 
 
 def _upright(first: Floats, last: Floats) -> Bools:
@@ -156,11 +185,29 @@ def poses_of(tool: Tool, tips: Floats, axes: Floats | None = None) -> Moves:
     """Return moves of one tool that stand still at tips (n, 3), upright or with unit axes (n, 3)."""
     tips = np.asarray(tips, dtype=np.float64).reshape(-1, 3)
     n, nowhere = len(tips), np.full_like(tips, np.nan)
-    axes = np.tile([0.0, 0.0, 1.0], (n, 1)) if axes is None else np.asarray(axes, dtype=np.float64).reshape(-1, 3)
-    return Moves(start=tips, end=tips, start_axis=axes, end_axis=axes, centre=nowhere, sweep=np.zeros(n), upright=_upright(axes, axes),
-                 row=_rows(tips, tips, nowhere, np.zeros(n), np.zeros(n, int)), section=np.zeros(n, np.int64), block=np.arange(n),
-                 rapid=np.zeros(n, bool), feed=np.zeros(n), length=np.zeros(n), tools=(tool,), tool=np.zeros(n, np.int64),
-                 bodies=bodies_of_one(tool))
+    axes = (
+        np.tile([0.0, 0.0, 1.0], (n, 1))
+        if axes is None
+        else np.asarray(axes, dtype=np.float64).reshape(-1, 3)
+    )
+    return Moves(
+        start=tips,
+        end=tips,
+        start_axis=axes,
+        end_axis=axes,
+        centre=nowhere,
+        sweep=np.zeros(n),
+        upright=_upright(axes, axes),
+        row=_rows(tips, tips, nowhere, np.zeros(n), np.zeros(n, int)),
+        section=np.zeros(n, np.int64),
+        block=np.arange(n),
+        rapid=np.zeros(n, bool),
+        feed=np.zeros(n),
+        length=np.zeros(n),
+        tools=(tool,),
+        tool=np.zeros(n, np.int64),
+        bodies=bodies_of_one(tool),
+    )
 
 
 def _ints(parts: list[Ints]) -> Ints:
@@ -180,6 +227,11 @@ def _rows(start: Floats, end: Floats, centre: Floats, sweep: Floats, motion: Int
         middle, half = angle + 0.5 * turn, np.minimum(0.5 * np.abs(turn), np.pi)
         row[arc, KIND] = 1.0
         row[arc, CX], row[arc, CY] = c[:, 0], c[:, 1]
-        row[arc, RADIUS], row[arc, MX], row[arc, MY], row[arc, COS_HALF] = radius, np.cos(middle), np.sin(middle), np.cos(half)
+        row[arc, RADIUS], row[arc, MX], row[arc, MY], row[arc, COS_HALF] = (
+            radius,
+            np.cos(middle),
+            np.sin(middle),
+            np.cos(half),
+        )
         row[arc, START_ANGLE], row[arc, SWEEP] = angle, turn
     return row

@@ -26,7 +26,16 @@ def profiles_of(tools: Sequence[Tool], bodies: Bodies) -> Floats:
         cutting = bodies.of(k)[:, bodies_kernel.KIND] == 0.0
         first = int(bodies.start[k])
         widest = float(bodies.of(k)[cutting, bodies_kernel.R_MAX].max())
-        rows.append((widest, tool.corner_radius, open_height(tool), float(tool.form in PLAIN_FORMS), first, first + int(cutting.sum())))
+        rows.append(
+            (
+                widest,
+                tool.corner_radius,
+                open_height(tool),
+                float(tool.form in PLAIN_FORMS),
+                first,
+                first + int(cutting.sum()),
+            )
+        )
     return np.array(rows, dtype=np.float64).reshape(-1, PROFILE_COLUMNS)
 
 

@@ -12,7 +12,14 @@ LOOK = 0.05
 """Seconds between two looks at cancel."""
 
 
-def in_parallel(work: Callable[[int, int], None], count: int, chunk: int, progress: Progress, text: str, threads: int = 0) -> None:
+def in_parallel(
+    work: Callable[[int, int], None],
+    count: int,
+    chunk: int,
+    progress: Progress,
+    text: str,
+    threads: int = 0,
+) -> None:
     """Call `work(first, last)` for all of `count` rows in chunks, on `threads` threads (0: one a core).
 
     `work` must let go of the interpreter's lock, touch nothing but its own rows, and end a chunk in a tenth of a second or so. Raises what

@@ -32,12 +32,18 @@ class CodeDock(QWidget):
         self.choice.setMinimumContentsLength(18)
         self.lines = QLabel()
         self.lines.setObjectName("muted")
-        self.stale = QLabel(tr("stale: this is the program of the plan before its last change; verify to write it anew"))
+        self.stale = QLabel(
+            tr(
+                "stale: this is the program of the plan before its last change; verify to write it anew"
+            )
+        )
         self.stale.setProperty("verdict", "warning")
         self.stale.setWordWrap(True)
         self.stale.hide()
         self.text = CodeView()
-        self.text.setPlaceholderText(tr("The program appears here when it has been generated and verified."))
+        self.text.setPlaceholderText(
+            tr("The program appears here when it has been generated and verified.")
+        )
         top = QHBoxLayout()
         top.setContentsMargins(10, 6, 10, 0)
         top.addWidget(self.choice)
@@ -70,7 +76,9 @@ class CodeDock(QWidget):
     def refresh(self) -> None:
         """Show the programs of the shown session, if anybody looks."""
         session = self._document.shown
-        self.stale.setVisible(bool(session.posted) and self._document.states.get("verify") not in ("done", "problem"))
+        self.stale.setVisible(
+            bool(session.posted) and self._document.states.get("verify") not in ("done", "problem")
+        )
         if not self.isVisible() or (session.posted, session.verdict) == self._source:
             return
         self._source = (session.posted, session.verdict)
@@ -98,4 +106,3 @@ class CodeDock(QWidget):
         text = self._shown[row].text if 0 <= row < len(self._shown) else ""
         self.text.show_text(text)
         self.lines.setText(tr("{n} lines").format(n=grouped(text.count("\n"))) if text else "")
-

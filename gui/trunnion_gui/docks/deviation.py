@@ -27,7 +27,9 @@ class DeviationDock(QWidget):
         self._theme: Theme | None = None
         self.shown: DrawnMap | None = None
         self.places: tuple[WorstPlace, ...] = ()
-        self.table: QTableWidget = tables.table(["", tr("Deviation"), tr("Face"), tr("Feature"), "x", "y", "z"], stretched=(0, 3))
+        self.table: QTableWidget = tables.table(
+            ["", tr("Deviation"), tr("Face"), tr("Feature"), "x", "y", "z"], stretched=(0, 3)
+        )
         self.empty = QLabel()
         self.empty.setObjectName("muted")
         self.empty.setAlignment(Qt.AlignmentFlag.AlignCenter)
@@ -49,8 +51,15 @@ class DeviationDock(QWidget):
         rows, drawn = [], []
         for place in self.places:
             is_gouge = place.deviation < 0.0
-            rows.append((tr("gouge") if is_gouge else tr("material left"), fine_amount(place.deviation), str(place.face),
-                         self._feature(place.face), *(f"{v:.2f}" for v in place.point)))
+            rows.append(
+                (
+                    tr("gouge") if is_gouge else tr("material left"),
+                    fine_amount(place.deviation),
+                    str(place.face),
+                    self._feature(place.face),
+                    *(f"{v:.2f}" for v in place.point),
+                )
+            )
             drawn.append(icons.icon("gouge" if is_gouge else "left_over", self._colour(is_gouge)))
         tables.fill(self.table, rows, right=(1, 2, 4, 5, 6), icons=drawn)
         self.empty.setText(self._nothing())
@@ -61,7 +70,9 @@ class DeviationDock(QWidget):
         if self.shown is None:
             return tr("The worst places stand here while the deviation map is shown.")
         low, high = fine_amount(self.shown.map.low), fine_amount(self.shown.map.high)
-        return tr("Nothing to list: every place that was measured lies between {low} and {high}.").format(low=low, high=high)
+        return tr(
+            "Nothing to list: every place that was measured lies between {low} and {high}."
+        ).format(low=low, high=high)
 
     def _colour(self, is_gouge: bool) -> str:
         return "" if self._theme is None else self._theme.bad if is_gouge else self._theme.accent

@@ -8,7 +8,15 @@ from __future__ import annotations
 import re
 
 from PySide6.QtCore import QPoint, Qt
-from PySide6.QtWidgets import QAbstractItemView, QLineEdit, QMenu, QTreeWidget, QTreeWidgetItem, QVBoxLayout, QWidget
+from PySide6.QtWidgets import (
+    QAbstractItemView,
+    QLineEdit,
+    QMenu,
+    QTreeWidget,
+    QTreeWidgetItem,
+    QVBoxLayout,
+    QWidget,
+)
 
 from trunnion.model.feature import Feature, Recognition
 from trunnion_gui import edits
@@ -93,16 +101,33 @@ class FeatureDock(QWidget):
         change.setIcon(icons.icon("kind"))
         for kind in kinds():
             if kind not in ("unexplained", feature.kind):
-                change.addAction(colour_icon(kind_colour(kind)), sentence(tr(kind_words(kind))), lambda k=kind: self._document.edit(
-                    tr("{id} becomes {kind}").format(id=feature.id, kind=kind_words(k)), edits.with_kind(feature.id, k)))
+                change.addAction(
+                    colour_icon(kind_colour(kind)),
+                    sentence(tr(kind_words(kind))),
+                    lambda k=kind: self._document.edit(
+                        tr("{id} becomes {kind}").format(id=feature.id, kind=kind_words(k)),
+                        edits.with_kind(feature.id, k),
+                    ),
+                )
         menu.addMenu(change)
-        menu.addAction(icons.icon("delete"), tr("Delete {id}").format(id=feature.id), lambda: self._document.edit(
-            tr("Delete {id}").format(id=feature.id), edits.without_feature(feature.id)))
+        menu.addAction(
+            icons.icon("delete"),
+            tr("Delete {id}").format(id=feature.id),
+            lambda: self._document.edit(
+                tr("Delete {id}").format(id=feature.id), edits.without_feature(feature.id)
+            ),
+        )
         return menu
 
     def _show_columns(self, found: Recognition | None) -> None:
         present = self._views.present(found)
-        self.tree.setHeaderLabels([*self._views.headings(found), tr("Size"), *(column.title for _, column in self._columns)])
+        self.tree.setHeaderLabels(
+            [
+                *self._views.headings(found),
+                tr("Size"),
+                *(column.title for _, column in self._columns),
+            ]
+        )
         for place, (view, _) in enumerate(self._columns, _FIRST_OWN):
             self.tree.setColumnHidden(place, view not in present)
 
@@ -115,7 +140,9 @@ class FeatureDock(QWidget):
         self.tree.addTopLevelItem(top)
         if self._views.of(shown.features[0]).columns():
             top.setText(0, f"{shown.words} · {len(shown.features)}")
-            top.setFirstColumnSpanned(True)  # the columns beside it are narrow, and say nothing of a class
+            top.setFirstColumnSpanned(
+                True
+            )  # the columns beside it are narrow, and say nothing of a class
         for f in shown.features:
             self._items[f.id] = item = self._row(f, colours)
             top.addChild(item)
@@ -125,7 +152,9 @@ class FeatureDock(QWidget):
         view = self._views.of(f)
         item = QTreeWidgetItem([f.id, str(len(f.tags)), view.size(f)])
         item.setData(0, _ID, f.id)
-        item.setToolTip(0, ", ".join(f"{role} {tag}" for role, tag in ((x.role, x.face) for x in f.faces)))
+        item.setToolTip(
+            0, ", ".join(f"{role} {tag}" for role, tag in ((x.role, x.face) for x in f.faces))
+        )
         for place in range(1, _FIRST_OWN):
             item.setTextAlignment(place, RIGHT)
         for place, (owner, column) in enumerate(self._columns, _FIRST_OWN):
@@ -140,8 +169,10 @@ class FeatureDock(QWidget):
     def _find(self) -> None:
         words = [w for w in re.split(r"\s*[,;]\s*|(?<=\d)\s+", self.line.text().strip()) if w]
         if not self._document.selection.select_ids(words):
-            self._document.notice(tr("{words}: no feature and no face has this ID").format(words=self.line.text()),
-                                  tr("write IDs as in the table, with commas between them"))
+            self._document.notice(
+                tr("{words}: no feature and no face has this ID").format(words=self.line.text()),
+                tr("write IDs as in the table, with commas between them"),
+            )
 
     def _click(self, item: QTreeWidgetItem, place: int) -> None:
         feature = self._document.feature(item.data(0, _ID))
@@ -153,7 +184,9 @@ class FeatureDock(QWidget):
     def _choose(self) -> None:
         ids = [item.data(0, _ID) for item in self.tree.selectedItems()]
         if ids == [_UNEXPLAINED] and self._shown is not None:
-            self._document.selection.select(Selection("faces", tr("unexplained faces"), self._shown.unexplained))
+            self._document.selection.select(
+                Selection("faces", tr("unexplained faces"), self._shown.unexplained)
+            )
         elif ids:
             self._document.selection.select_ids([id for id in ids if id in self._items])
 
@@ -181,8 +214,12 @@ class FeatureDock(QWidget):
 def _fill_cell(item: QTreeWidgetItem, place: int, column: Column, feature: Feature) -> None:
     """Write what a family's own column says of a feature into its row."""
     if column.is_ticked is not None:
-        item.setCheckState(place, Qt.CheckState.Checked if column.is_ticked(feature) else Qt.CheckState.Unchecked)
-        item.setFlags(item.flags() & ~Qt.ItemFlag.ItemIsUserCheckable)  # a click is an edit of the session, not of the row
+        item.setCheckState(
+            place, Qt.CheckState.Checked if column.is_ticked(feature) else Qt.CheckState.Unchecked
+        )
+        item.setFlags(
+            item.flags() & ~Qt.ItemFlag.ItemIsUserCheckable
+        )  # a click is an edit of the session, not of the row
         return
     item.setText(place, column.words(feature))
     item.setTextAlignment(place, RIGHT)

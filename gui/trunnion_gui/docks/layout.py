@@ -29,16 +29,38 @@ class Docks:
         self._views = views
         self.features, self.process = FeatureDock(document, views), ProcessDock(document)
         self.properties, self.messages = PropertiesDock(document), MessagesDock(document)
-        self.code, self.listing, self.deviation = CodeDock(document), ListingDock(document), DeviationDock(document)
+        self.code, self.listing, self.deviation = (
+            CodeDock(document),
+            ListingDock(document),
+            DeviationDock(document),
+        )
 
     def table(self) -> tuple[tuple[Qt.DockWidgetArea, tuple[Tab, ...]], ...]:
         """Return, area by area from above, the docks that stand behind each other, the first one in front."""
         return (
-            (RIGHT, (("features", tr("Features"), self.features), ("process", tr("Process tree"), self.process))),
+            (
+                RIGHT,
+                (
+                    ("features", tr("Features"), self.features),
+                    ("process", tr("Process tree"), self.process),
+                ),
+            ),
             (RIGHT, (("properties", tr("Properties"), self.properties),)),
-            (BELOW, (("messages", tr("Messages"), self.messages), ("code", tr("G-code"), self.code),
-                     ("listing", tr("Listing"), self.listing), ("deviation", tr("Deviation"), self.deviation),
-                     *((dock.name, dock.title, dock.widget) for view in self._views for dock in view.docks()))))
+            (
+                BELOW,
+                (
+                    ("messages", tr("Messages"), self.messages),
+                    ("code", tr("G-code"), self.code),
+                    ("listing", tr("Listing"), self.listing),
+                    ("deviation", tr("Deviation"), self.deviation),
+                    *(
+                        (dock.name, dock.title, dock.widget)
+                        for view in self._views
+                        for dock in view.docks()
+                    ),
+                ),
+            ),
+        )
 
     def arrange(self, arrangement: Arrangement) -> None:
         """Put all docks into a window."""

@@ -31,13 +31,19 @@ class MessagesDock(QWidget):
         self._theme: Theme | None = None
         self._notices: list[Finding] = []
         self.findings: tuple[Finding, ...] = ()
-        self.table: QTableWidget = tables.table(["", tr("Message"), tr("Where"), tr("What to do"), tr("Code")], stretched=(1,))
+        self.table: QTableWidget = tables.table(
+            ["", tr("Message"), tr("Where"), tr("What to do"), tr("Code")], stretched=(1,)
+        )
         for shared in _MOST_SHARES:
-            self.table.horizontalHeader().setSectionResizeMode(shared, QHeaderView.ResizeMode.Interactive)
+            self.table.horizontalHeader().setSectionResizeMode(
+                shared, QHeaderView.ResizeMode.Interactive
+            )
         column = QVBoxLayout(self)
         column.setContentsMargins(0, 0, 0, 0)
         column.addWidget(self.table)
-        self.table.cellClicked.connect(lambda row, _: document.selection.select_where(self.findings[row].where))
+        self.table.cellClicked.connect(
+            lambda row, _: document.selection.select_where(self.findings[row].where)
+        )
         document.changed.connect(self.refresh)
         document.noticed.connect(self._note)
         document.files.opened.connect(lambda _: self._notices.clear())
@@ -58,8 +64,11 @@ class MessagesDock(QWidget):
         if listed == self.findings:
             return
         self.findings = listed
-        tables.fill(self.table, [("", f.text, f.place, f.remedy, f.code) for f in listed],
-                    icons=[icons.icon(f.severity.value, self._colour(f.severity)) for f in listed])
+        tables.fill(
+            self.table,
+            [("", f.text, f.place, f.remedy, f.code) for f in listed],
+            icons=[icons.icon(f.severity.value, self._colour(f.severity)) for f in listed],
+        )
         self._share_width()
         self.counted.emit(len(listed))
 
@@ -85,4 +94,6 @@ class MessagesDock(QWidget):
     def _colour(self, severity: Severity) -> str:
         if self._theme is None:
             return ""
-        return {Severity.ERROR: self._theme.bad, Severity.WARNING: self._theme.warning}.get(severity, self._theme.muted)
+        return {Severity.ERROR: self._theme.bad, Severity.WARNING: self._theme.warning}.get(
+            severity, self._theme.muted
+        )

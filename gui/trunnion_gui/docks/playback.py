@@ -5,7 +5,15 @@ from __future__ import annotations
 import numpy as np
 from PySide6.QtCore import QSize, Qt, QTimer
 from PySide6.QtGui import QResizeEvent
-from PySide6.QtWidgets import QComboBox, QHBoxLayout, QLabel, QSizePolicy, QToolButton, QVBoxLayout, QWidget
+from PySide6.QtWidgets import (
+    QComboBox,
+    QHBoxLayout,
+    QLabel,
+    QSizePolicy,
+    QToolButton,
+    QVBoxLayout,
+    QWidget,
+)
 
 from trunnion.model.playback import Moment
 from trunnion_gui.actions import Registry
@@ -16,7 +24,15 @@ from trunnion_gui.look.words import amount, clock, grouped
 from trunnion_gui.playback.player import SPEEDS, Player
 from trunnion_gui.widgets.track import Track
 
-BUTTONS = ("play.begin", "play.previous", "play.back", "play.run", "play.forward", "play.next", "play.end")
+BUTTONS = (
+    "play.begin",
+    "play.previous",
+    "play.back",
+    "play.run",
+    "play.forward",
+    "play.next",
+    "play.end",
+)
 _WORDS_MS = 66
 """Words follow the tool this often at most: nobody reads faster."""
 
@@ -75,7 +91,9 @@ class PlaybackBar(QWidget):
     def _fill_choices(self) -> None:
         for speed in SPEEDS:
             self.speed.addItem(f"×{speed}", speed)
-        self.speed.setToolTip(tr("How many times faster than the machine; block by block: blocks a second"))
+        self.speed.setToolTip(
+            tr("How many times faster than the machine; block by block: blocks a second")
+        )
         for words in (tr("machine time"), tr("block by block")):
             self.mode.addItem(words)
         self.speed.activated.connect(lambda row: self._player.set_speed(SPEEDS[row]))
@@ -131,7 +149,12 @@ class PlaybackBar(QWidget):
         self.track.show_marks(self._player.end, [float(f) for f in line.first[:-1]], words, colours)
         self._load, bad = self._player.load()
         self.track.show_load(self._load, bad)
-        self.clock.setFixedWidth(self.clock.fontMetrics().horizontalAdvance(f"{clock(line.seconds)} / {clock(line.seconds)}") + 8)
+        self.clock.setFixedWidth(
+            self.clock.fontMetrics().horizontalAdvance(
+                f"{clock(line.seconds)} / {clock(line.seconds)}"
+            )
+            + 8
+        )
         self._say()
 
     def _move(self, position: float) -> None:
@@ -150,11 +173,23 @@ class PlaybackBar(QWidget):
         if line is None:
             return
         passage, block = line.passage(position), line.block(position)
-        number = tr("block {n} of {all}").format(n=grouped(block + 1 if position > 0 else 0), all=grouped(len(line)))
+        number = tr("block {n} of {all}").format(
+            n=grouped(block + 1 if position > 0 else 0), all=grouped(len(line))
+        )
         text = tr("line {n}").format(n=grouped(int(line.line[block]))) if line.line[block] else ""
-        rate = f"{amount(self._load[block], 0)} cm³/min" if len(self._load) and self._load[block] > 0.5 else ""
+        rate = (
+            f"{amount(self._load[block], 0)} cm³/min"
+            if len(self._load) and self._load[block] > 0.5
+            else ""
+        )
         words = " · ".join(w for w in (number, text, passage.operation, rate) if w)
-        self.place.setText(self.place.fontMetrics().elidedText(words, Qt.TextElideMode.ElideRight, self.place.width()))
-        self.place.setToolTip(f"{passage.operation} · {passage.setup} · T{passage.tool.number} {passage.tool.name}")
+        self.place.setText(
+            self.place.fontMetrics().elidedText(
+                words, Qt.TextElideMode.ElideRight, self.place.width()
+            )
+        )
+        self.place.setToolTip(
+            f"{passage.operation} · {passage.setup} · T{passage.tool.number} {passage.tool.name}"
+        )
         self.amount.setText(tr("{n} cm³ removed").format(n=grouped(round(self._removed / 1000.0))))
         self.clock.setText(f"{clock(line.seconds_at(position))} / {clock(line.seconds)}")

@@ -4,7 +4,14 @@ from __future__ import annotations
 
 from PySide6.QtCore import QPoint, Qt, Signal
 from PySide6.QtGui import QBrush, QColor, QDropEvent, QFont, QIcon
-from PySide6.QtWidgets import QAbstractItemView, QMenu, QTreeWidget, QTreeWidgetItem, QVBoxLayout, QWidget
+from PySide6.QtWidgets import (
+    QAbstractItemView,
+    QMenu,
+    QTreeWidget,
+    QTreeWidgetItem,
+    QVBoxLayout,
+    QWidget,
+)
 
 from trunnion.model.operation import Operation
 from trunnion.model.session import Session
@@ -81,7 +88,9 @@ class ProcessDock(QWidget):
         for setup in session.process.setups if session.process else ():
             top = QTreeWidgetItem([f"{setup.name}  {setup.work_offset}", setup.machine, "", ""])
             top.setIcon(0, icons.icon("setup"))
-            top.setFlags(top.flags() & ~(Qt.ItemFlag.ItemIsSelectable | Qt.ItemFlag.ItemIsDragEnabled))
+            top.setFlags(
+                top.flags() & ~(Qt.ItemFlag.ItemIsSelectable | Qt.ItemFlag.ItemIsDragEnabled)
+            )
             self.tree.addTopLevelItem(top)
             for o in session.process.operations if session.process else ():
                 if o.setup == setup.name:
@@ -107,7 +116,11 @@ class ProcessDock(QWidget):
     def _stress(self, item: QTreeWidgetItem, is_played: bool) -> None:
         font = QFont(item.font(0))
         font.setBold(is_played)
-        colour = QBrush(QColor(self._theme.accent)) if is_played and self._theme is not None else QBrush()
+        colour = (
+            QBrush(QColor(self._theme.accent))
+            if is_played and self._theme is not None
+            else QBrush()
+        )
         for column in range(self.tree.columnCount()):
             item.setFont(column, font)
             item.setForeground(column, colour)
@@ -124,14 +137,22 @@ class ProcessDock(QWidget):
         """Return what may be done with an operation."""
         menu, id, edit = QMenu(self), operation.id, self._document.edit
         words = tr("Cut {id} again") if operation.suppressed else tr("Suppress {id}")
-        menu.addAction(icons.icon("resume" if operation.suppressed else "suppress"), words.format(id=id),
-                       lambda: edit(words.format(id=id), edits.with_suppressed(id, not operation.suppressed)))
-        menu.addAction(icons.icon("delete"), tr("Delete {id}").format(id=id),
-                       lambda: edit(tr("Delete {id}").format(id=id), edits.without_operation(id)))
+        menu.addAction(
+            icons.icon("resume" if operation.suppressed else "suppress"),
+            words.format(id=id),
+            lambda: edit(words.format(id=id), edits.with_suppressed(id, not operation.suppressed)),
+        )
+        menu.addAction(
+            icons.icon("delete"),
+            tr("Delete {id}").format(id=id),
+            lambda: edit(tr("Delete {id}").format(id=id), edits.without_operation(id)),
+        )
         return menu
 
     def _add(self, top: QTreeWidgetItem, o: Operation, session: Session) -> None:
-        item = QTreeWidgetItem([label(o), o.feature, f"T{o.tool.number}", amount(o.tool.diameter, 2)])
+        item = QTreeWidgetItem(
+            [label(o), o.feature, f"T{o.tool.number}", amount(o.tool.diameter, 2)]
+        )
         item.setData(0, _ID, o.id)
         item.setTextAlignment(3, RIGHT)
         item.setToolTip(0, "<br>".join((f"<b>{o.id}</b>", *o.rules)))
@@ -146,11 +167,21 @@ class ProcessDock(QWidget):
     def _icon(self, o: Operation, session: Session) -> QIcon:
         if o.suppressed:
             return icons.icon("suppress")
-        proof = next((p for p in session.verdict.operations if p.operation == o.id), None) if session.verdict else None
+        proof = (
+            next((p for p in session.verdict.operations if p.operation == o.id), None)
+            if session.verdict
+            else None
+        )
         if proof is None or self._theme is None:
             return icons.icon("by_hand" if o.by_hand else "empty")
-        colours = {Outcome.PASSED: self._theme.good, Outcome.REMARKS: self._theme.warning, Outcome.FAILED: self._theme.bad}
-        return icons.icon("problem" if proof.outcome is Outcome.FAILED else "done", colours[proof.outcome])
+        colours = {
+            Outcome.PASSED: self._theme.good,
+            Outcome.REMARKS: self._theme.warning,
+            Outcome.FAILED: self._theme.bad,
+        }
+        return icons.icon(
+            "problem" if proof.outcome is Outcome.FAILED else "done", colours[proof.outcome]
+        )
 
     def _choose(self) -> None:
         chosen = self.tree.selectedItems()
@@ -176,6 +207,11 @@ class ProcessDock(QWidget):
 
 def label(o: Operation) -> str:
     """Return what tells an operation from others of its feature: its kind, with what else its id says."""
-    rest = o.id.replace(f"-{o.feature}", "").removeprefix(o.kind.replace("_", "-")).removeprefix(o.kind).strip("-")
+    rest = (
+        o.id.replace(f"-{o.feature}", "")
+        .removeprefix(o.kind.replace("_", "-"))
+        .removeprefix(o.kind)
+        .strip("-")
+    )
     kind = sentence(tr(kind_words(o.kind)))
     return f"{kind} {rest}" if rest else kind

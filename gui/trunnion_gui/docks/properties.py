@@ -59,13 +59,25 @@ class PropertiesDock(QScrollArea):
         if chosen.kind == "feature" and feature:
             self._show(feature.id, sentence(tr(kind_words(feature.kind))), feature_rows(feature))
         elif chosen.kind == "operation" and operation:
-            self._show(operation.id, f"{sentence(tr(kind_words(operation.kind)))} · {operation.feature}", self._operation_rows(operation))
+            self._show(
+                operation.id,
+                f"{sentence(tr(kind_words(operation.kind)))} · {operation.feature}",
+                self._operation_rows(operation),
+            )
         elif chosen.kind == "faces":
             rows = self._owner_rows(chosen.faces)
-            self._show(chosen.id, "" if rows or len(chosen.faces) != 1 else tr("no feature has this face"), rows)
+            self._show(
+                chosen.id,
+                "" if rows or len(chosen.faces) != 1 else tr("no feature has this face"),
+                rows,
+            )
         else:
             self._show("", tr("Click a feature or an operation, in the picture or in a table."), [])
-        rules = (*operation.rules, *operation.data.rules) if chosen.kind == "operation" and operation else ()
+        rules = (
+            (*operation.rules, *operation.data.rules)
+            if chosen.kind == "operation" and operation
+            else ()
+        )
         self.rules.setText(tr("Why: {reasons}").format(reasons="; ".join(rules)))
         self.rules.setVisible(bool(rules))
         self._show_form(operation if chosen.kind == "operation" else None)
@@ -84,31 +96,61 @@ class PropertiesDock(QScrollArea):
         for f in self._document.shown.recognition or ():
             own = [t for t in tags if t in f.tags]
             if own:
-                rows.append((f.id, ", ".join(map(str, own)) if len(own) <= 5 else f"{len(own)} {tr('faces')}"))
+                rows.append(
+                    (
+                        f.id,
+                        ", ".join(map(str, own)) if len(own) <= 5 else f"{len(own)} {tr('faces')}",
+                    )
+                )
         return rows
 
     def _operation_rows(self, o: Operation) -> Rows:
         data, verdict = o.data, self._document.shown.verdict
-        proof = next((p for p in verdict.operations if p.operation == o.id), None) if verdict else None
-        rows = [(tr("Tool"), f"T{o.tool.number} {o.tool.name}"), (tr("Diameter"), f"{amount(o.tool.diameter)} mm"),
-                (tr("Corner radius"), f"{amount(o.tool.corner_radius)} mm"), (tr("Stickout"), f"{amount(o.tool.stickout)} mm"),
-                (tr("Holder"), o.tool.holder.name), (tr("Cutting speed"), f"{amount(data.speed, 0)} m/min"),
-                (tr("Spindle speed"), f"{amount(data.spindle, 0)} 1/min"), (tr("Feed"), f"{amount(data.feed, 0)} mm/min"),
-                (tr("Feed per tooth"), f"{amount(data.feed_per_tooth)} mm"), (tr("Depth of cut"), f"{amount(data.depth)} mm"),
-                (tr("Width of cut"), f"{amount(data.width)} mm"),
-                (tr("Power"), f"{amount(data.power, 1)} / {amount(data.power_limit, 1)} kW"),
-                (tr("Torque"), f"{amount(data.torque, 1)} Nm"),
-                (tr("Highest power"), f"{amount(data.highest_power, 1)} kW")]
+        proof = (
+            next((p for p in verdict.operations if p.operation == o.id), None) if verdict else None
+        )
+        rows = [
+            (tr("Tool"), f"T{o.tool.number} {o.tool.name}"),
+            (tr("Diameter"), f"{amount(o.tool.diameter)} mm"),
+            (tr("Corner radius"), f"{amount(o.tool.corner_radius)} mm"),
+            (tr("Stickout"), f"{amount(o.tool.stickout)} mm"),
+            (tr("Holder"), o.tool.holder.name),
+            (tr("Cutting speed"), f"{amount(data.speed, 0)} m/min"),
+            (tr("Spindle speed"), f"{amount(data.spindle, 0)} 1/min"),
+            (tr("Feed"), f"{amount(data.feed, 0)} mm/min"),
+            (tr("Feed per tooth"), f"{amount(data.feed_per_tooth)} mm"),
+            (tr("Depth of cut"), f"{amount(data.depth)} mm"),
+            (tr("Width of cut"), f"{amount(data.width)} mm"),
+            (tr("Power"), f"{amount(data.power, 1)} / {amount(data.power_limit, 1)} kW"),
+            (tr("Torque"), f"{amount(data.torque, 1)} Nm"),
+            (tr("Highest power"), f"{amount(data.highest_power, 1)} kW"),
+        ]
         if o.direction != UPRIGHT:
-            rows.insert(4, (tr("Tool comes from"), "  ".join(f"{axis} {amount(v)}" for axis, v in zip("xyz", o.direction, strict=True))))
+            rows.insert(
+                4,
+                (
+                    tr("Tool comes from"),
+                    "  ".join(
+                        f"{axis} {amount(v)}" for axis, v in zip("xyz", o.direction, strict=True)
+                    ),
+                ),
+            )
         if proof is not None:
-            rows += [(tr("Verdict"), tr(proof.outcome.value)), (tr("Time"), duration(proof.time_s)),
-                     (tr("Deepest gouge"), f"{amount(proof.gouge)} mm")]
+            rows += [
+                (tr("Verdict"), tr(proof.outcome.value)),
+                (tr("Time"), duration(proof.time_s)),
+                (tr("Deepest gouge"), f"{amount(proof.gouge)} mm"),
+            ]
         return rows
 
     def _show_form(self, operation: Operation | None) -> None:
         strategy = operation.strategy if operation else ""
-        if self.form is None or self.form.property("strategy") != strategy or operation is None or operation.id != self._operation:
+        if (
+            self.form is None
+            or self.form.property("strategy") != strategy
+            or operation is None
+            or operation.id != self._operation
+        ):
             self._make_form(operation)
         if self.form is not None and operation is not None:
             self.form.fill({**self._document.session.choices, **operation.choices})
@@ -119,22 +161,45 @@ class PropertiesDock(QScrollArea):
             self.form.deleteLater()
             self.form = None
         self._operation = operation.id if operation else ""
-        group = next((g for g in self._document.groups.get("toolpath", ()) if operation and g.name == operation.strategy), None)
+        group = next(
+            (
+                g
+                for g in self._document.groups.get("toolpath", ())
+                if operation and g.name == operation.strategy
+            ),
+            None,
+        )
         if operation is None or group is None:
             return
         self.form = Form(group.settings)
         self.form.setProperty("strategy", operation.strategy)
         labels, id = {s.key: s.label for s in group.settings}, operation.id
-        self.form.changed.connect(lambda key, value, gesture: self._document.edit(
-            f"{id}: {tr(labels[key])} {value}", edits.with_operation_choice(id, key, value), gesture))
+        self.form.changed.connect(
+            lambda key, value, gesture: self._document.edit(
+                f"{id}: {tr(labels[key])} {value}",
+                edits.with_operation_choice(id, key, value),
+                gesture,
+            )
+        )
         self._forms.addWidget(self.form)
 
 
 def feature_rows(feature: Feature) -> Rows:
     """Return a feature's sizes, attributes and faces by role as words."""
-    rows = [(sentence(tr(kind_words(name))), f"{amount(value)} {size_unit(name, value)}".strip()) for name, value in feature.sizes.items()]
-    rows += [(sentence(tr(kind_words(name))), amount(value)) for name, value in feature.attributes.items()]
+    rows = [
+        (sentence(tr(kind_words(name))), f"{amount(value)} {size_unit(name, value)}".strip())
+        for name, value in feature.sizes.items()
+    ]
+    rows += [
+        (sentence(tr(kind_words(name))), amount(value))
+        for name, value in feature.attributes.items()
+    ]
     for role in dict.fromkeys(f.role for f in feature.faces):
         tags = feature.with_role(role)
-        rows.append((sentence(tr(kind_words(role))), ", ".join(map(str, tags)) if len(tags) <= 5 else f"{len(tags)} {tr('faces')}"))
+        rows.append(
+            (
+                sentence(tr(kind_words(role))),
+                ", ".join(map(str, tags)) if len(tags) <= 5 else f"{len(tags)} {tr('faces')}",
+            )
+        )
     return rows

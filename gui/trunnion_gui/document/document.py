@@ -113,9 +113,17 @@ class Document(QObject):
             self.jobs.after(lambda: self.run(last, tr("Program")))
         elif self.is_ready():
             if self._is_done(last):
-                self.notice(tr("{job}: everything is up to date").format(job=label), severity=Severity.INFO)
+                self.notice(
+                    tr("{job}: everything is up to date").format(job=label), severity=Severity.INFO
+                )
             else:
-                self.jobs.start("run", label, self.session, last, finish=lambda state: self._finish_run(label, state))
+                self.jobs.start(
+                    "run",
+                    label,
+                    self.session,
+                    last,
+                    finish=lambda state: self._finish_run(label, state),
+                )
 
     def program(self) -> None:
         """Do the whole line."""
@@ -149,8 +157,13 @@ class Document(QObject):
     def edit(self, label: str, edit: Edit, gesture: str = "") -> None:
         """Do an undoable edit; a refusal, or a job that runs, is told in a message."""
         if self.is_busy:
-            self.notice(tr("{label}: not while {job} runs").format(label=label, job=self.jobs.job.label if self.jobs.job else ""),
-                        tr("cancel the running job, or wait until it is done"), severity=Severity.WARNING)
+            self.notice(
+                tr("{label}: not while {job} runs").format(
+                    label=label, job=self.jobs.job.label if self.jobs.job else ""
+                ),
+                tr("cancel the running job, or wait until it is done"),
+                severity=Severity.WARNING,
+            )
             self.changed.emit()
             return
         try:
@@ -183,13 +196,18 @@ class Document(QObject):
 
     def _needs_part(self) -> bool:
         if not self.has_part:
-            self.notice(tr("There is no part yet"), tr("open a STEP or IGES file first (Ctrl+O), or drop one on the window"),
-                        severity=Severity.WARNING)
+            self.notice(
+                tr("There is no part yet"),
+                tr("open a STEP or IGES file first (Ctrl+O), or drop one on the window"),
+                severity=Severity.WARNING,
+            )
         return self.has_part
 
     def _is_done(self, last: str) -> bool:
         """Whether nothing is stale up to a step; while the states of a fresh edit are still asked for, nobody knows."""
-        return not self.jobs.asks("states") and all(self.states.get(s) in ("done", "problem") for s in until(last))
+        return not self.jobs.asks("states") and all(
+            self.states.get(s) in ("done", "problem") for s in until(last)
+        )
 
     def _ask_states(self) -> None:
         self.jobs.forget("states")
@@ -245,21 +263,33 @@ class Document(QObject):
     def _stop(self, job: Job, reply: Reply, doing: str) -> None:
         """Keep the steps that a job finished before it stopped short, and tell where it stopped and what is kept."""
         step, self.running_step = self.running_step, ""
-        finished = [TITLES[s] for s in STEPS if s in self.shown.records and self.shown.records[s] != self.session.records.get(s)]
+        finished = [
+            TITLES[s]
+            for s in STEPS
+            if s in self.shown.records and self.shown.records[s] != self.session.records.get(s)
+        ]
         if finished:
             self.history.push(job.label, self.shown)
             self._show(self.shown, self.states)
         else:
             self._show(self.session, self._settled)
-        kept = tr("finished and kept: {steps}").format(steps=", ".join(tr(t) for t in finished)) if finished else \
-            tr("your session is as it was")
+        kept = (
+            tr("finished and kept: {steps}").format(steps=", ".join(tr(t) for t in finished))
+            if finished
+            else tr("your session is as it was")
+        )
         if reply.kind == "cancelled":
             at = " · ".join(words for words in (tr(TITLES[step]) if step else "", doing) if words)
-            where = tr("{job} was cancelled at: {place}").format(job=job.label, place=at) if at else \
-                tr("{job} was cancelled").format(job=job.label)
+            where = (
+                tr("{job} was cancelled at: {place}").format(job=job.label, place=at)
+                if at
+                else tr("{job} was cancelled").format(job=job.label)
+            )
             self.notice(where, kept, severity=Severity.INFO)
         elif reply.kind == "crashed":
-            self.notice(tr("{job} was lost: {reason}").format(job=job.label, reason=reply.text),
-                        tr("{kept}; try again, or save and report the part").format(kept=kept))
+            self.notice(
+                tr("{job} was lost: {reason}").format(job=job.label, reason=reply.text),
+                tr("{kept}; try again, or save and report the part").format(kept=kept),
+            )
         else:
             self.notice(reply.text, kept if finished else "")

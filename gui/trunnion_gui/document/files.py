@@ -45,16 +45,28 @@ class Files(QObject):
     def open(self, path: str | Path, solid: int | None = None) -> None:
         """Open a part or a project file, after a person was asked about unsaved work."""
         file = str(path)
-        self._open(tr("opening {name}").format(name=Path(path).name), file, solid,
-                   lambda found: self._install(found, file, file if file.endswith(PROJECT) else ""))
+        self._open(
+            tr("opening {name}").format(name=Path(path).name),
+            file,
+            solid,
+            lambda found: self._install(found, file, file if file.endswith(PROJECT) else ""),
+        )
 
     def recover(self, path: str | Path, project: str) -> None:
         """Take up work from an autosave; it belongs to a project file (empty: none yet) and still has to be saved there."""
+
         def install(found: Opened) -> None:
             part = found.state.session.part
-            self._install(found, part.path if part is not None else str(path), project, is_saved=False)
+            self._install(
+                found, part.path if part is not None else str(path), project, is_saved=False
+            )
 
-        self._open(tr("recovering {name}").format(name=Path(project or path).name), str(path), None, install)
+        self._open(
+            tr("recovering {name}").format(name=Path(project or path).name),
+            str(path),
+            None,
+            install,
+        )
 
     def save(self, path: str | Path) -> None:
         """Write the project file."""
@@ -65,10 +77,17 @@ class Files(QObject):
     def write(self, folder: str | Path) -> None:
         """Write programs, tool list, XML and report into a folder."""
         if self._document.is_ready():
-            self._jobs.start("write", tr("writing files"), self._document.session, str(folder),
-                             finish=lambda names: self._written(str(folder), names))
+            self._jobs.start(
+                "write",
+                tr("writing files"),
+                self._document.session,
+                str(folder),
+                finish=lambda names: self._written(str(folder), names),
+            )
 
-    def _open(self, label: str, path: str, solid: int | None, finish: Callable[[Opened], None]) -> None:
+    def _open(
+        self, label: str, path: str, solid: int | None, finish: Callable[[Opened], None]
+    ) -> None:
         def go_on() -> None:
             if self._jobs.is_free():
                 self._jobs.start("open", label, path, solid, finish=finish)
@@ -92,5 +111,9 @@ class Files(QObject):
         self.written.emit((folder, names))
         rejected = [name for name in names if ".REJECTED." in name]
         if rejected:
-            self._document.notice(tr("The proof failed, so the programs are {files}").format(files=", ".join(rejected)),
-                                  tr("they must not run; see the messages for what the proof found"))
+            self._document.notice(
+                tr("The proof failed, so the programs are {files}").format(
+                    files=", ".join(rejected)
+                ),
+                tr("they must not run; see the messages for what the proof found"),
+            )

@@ -68,8 +68,11 @@ class Jobs(QObject):
     def is_free(self) -> bool:
         """Return whether no job runs; tell a person which one does."""
         if self.job is not None:
-            self._notice(tr("{job} still runs").format(job=self.job.label), tr("cancel it first, or wait until it is done"),
-                         Severity.WARNING)
+            self._notice(
+                tr("{job} still runs").format(job=self.job.label),
+                tr("cancel it first, or wait until it is done"),
+                Severity.WARNING,
+            )
         return self.job is None
 
     def start(self, verb: str | Work, label: str, *arguments: Any, finish: Finish) -> None:

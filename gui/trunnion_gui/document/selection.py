@@ -70,7 +70,11 @@ class SelectionModel(QObject):
     def select_ids(self, words: Sequence[str]) -> bool:
         """Select features and faces by their ids (`group-05`, `face 12`, `12`), all together; say whether there was any."""
         features = [f for f in (self._document.shown.recognition or ()) if f.id in words]
-        known = set(np.unique(self._document.mesh.face).tolist()) if self._document.mesh is not None else set()
+        known = (
+            set(np.unique(self._document.mesh.face).tolist())
+            if self._document.mesh is not None
+            else set()
+        )
         given = [w.removeprefix("face").strip() for w in words]
         faces = [int(w) for w in given if w.isdigit() and int(w) in known]
         if len(features) == 1 and not faces:
@@ -90,7 +94,11 @@ class SelectionModel(QObject):
         if tag:
             chosen = self.current.faces if self.current.kind in ("faces", "feature") else ()
             faces = tuple(t for t in chosen if t != tag) if tag in chosen else (*chosen, tag)
-            self.select(Selection("faces", ", ".join(f"face {t}" for t in faces), faces) if faces else NOTHING)
+            self.select(
+                Selection("faces", ", ".join(f"face {t}" for t in faces), faces)
+                if faces
+                else NOTHING
+            )
 
     def select_where(self, words: tuple[str, ...]) -> None:
         """Select what the words of a finding name."""

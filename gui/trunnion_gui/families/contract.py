@@ -105,7 +105,9 @@ class FamilyView:
 
     def classes(self, kind: str, features: Sequence[Feature]) -> tuple[FeatureClass, ...]:
         """Return the classes that the features of a kind stand in."""
-        return (FeatureClass(kind, sentence(tr(kind_words(kind))), kind_colour(kind), tuple(features)),)
+        return (
+            FeatureClass(kind, sentence(tr(kind_words(kind))), kind_colour(kind), tuple(features)),
+        )
 
     def size(self, feature: Feature) -> str:
         """Return the one size that tells most about a feature, in mm; empty without one."""

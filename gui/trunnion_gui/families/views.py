@@ -19,13 +19,18 @@ class Views:
     def __init__(self, document: Document) -> None:
         """Make the registered views; raise `BadCall` when two present the same kind of feature."""
         self._plain = FamilyView(document)
-        self._by_name = {name: _view(name, document) for name in sorted({*registry.names("families"), *registry.names("views")})}
+        self._by_name = {
+            name: _view(name, document)
+            for name in sorted({*registry.names("families"), *registry.names("views")})
+        }
         self._by_kind: dict[str, FamilyView] = {}
         for view in self:
             for kind in view.kinds:
                 other = self._by_kind.setdefault(kind, view)
                 if other is not view:
-                    raise BadCall(f"the views of {other.name} and {view.name} both present the kind {kind}: take it out of one of them")
+                    raise BadCall(
+                        f"the views of {other.name} and {view.name} both present the kind {kind}: take it out of one of them"
+                    )
 
     def __iter__(self) -> Iterator[FamilyView]:
         return iter(self._by_name.values())
@@ -59,7 +64,11 @@ class Views:
     def offers(self, group: str, found: Recognition | None) -> bool:
         """Return whether a group of settings may matter to a part: it isn't owned by families alone that the part has nothing of."""
         owners = [view for view in self if view.owns(group)]
-        return found is None or not owners or any(v.name == found.family or v in self.present(found) for v in owners)
+        return (
+            found is None
+            or not owners
+            or any(v.name == found.family or v in self.present(found) for v in owners)
+        )
 
     def face_menu(self, parent: QWidget, tags: tuple[int, ...]) -> QMenu:
         """Return what may be done with some faces."""
@@ -70,6 +79,8 @@ class Views:
 
 
 def _view(name: str, document: Document) -> FamilyView:
-    made: FamilyView = (registry.get("views", name) if name in registry.names("views") else FamilyView)(document)
+    made: FamilyView = (
+        registry.get("views", name) if name in registry.names("views") else FamilyView
+    )(document)
     made.name = name
     return made

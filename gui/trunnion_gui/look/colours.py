@@ -49,7 +49,9 @@ def _themes() -> dict[str, dict[str, str]]:
 
 @cache
 def _palette() -> dict[str, dict[str, str]]:
-    return tomllib.loads((files("trunnion_resources") / "palette" / "palette.toml").read_text("utf-8"))
+    return tomllib.loads(
+        (files("trunnion_resources") / "palette" / "palette.toml").read_text("utf-8")
+    )
 
 
 @cache
@@ -99,7 +101,11 @@ def tool_cycle(numbers: Sequence[int]) -> tuple[str, ...]:
 def stock_colours(chosen: Theme) -> tuple[str, str]:
     """Return the colours of the blank's own surface and of what was cut."""
     raw, cut = (_palette()["stock"][name] for name in ("blank", "cut"))
-    return (mixed(raw, chosen.part, 0.3), mixed(cut, chosen.part, 0.3)) if chosen.name == "dark" else (raw, cut)
+    return (
+        (mixed(raw, chosen.part, 0.3), mixed(cut, chosen.part, 0.3))
+        if chosen.name == "dark"
+        else (raw, cut)
+    )
 
 
 def kind_colour(kind: str) -> str:
@@ -132,7 +138,9 @@ def mixed(colour: str, other: str, share: float) -> str:
     >>> mixed("#000000", "#ffffff", 0.5)
     '#808080'
     """
-    return "#" + "".join(f"{round(a + (b - a) * share):02x}" for a, b in zip(rgb(colour), rgb(other)))
+    return "#" + "".join(
+        f"{round(a + (b - a) * share):02x}" for a, b in zip(rgb(colour), rgb(other))
+    )
 
 
 def contrast(colour: str, ground: str) -> float:
@@ -141,6 +149,7 @@ def contrast(colour: str, ground: str) -> float:
     >>> round(contrast("#000000", "#ffffff")), round(contrast("#777777", "#777777"))
     (21, 1)
     """
+
     def light(of: str) -> float:
         shares = [c / 255.0 for c in rgb(of)]
         linear = [c / 12.92 if c <= 0.04045 else ((c + 0.055) / 1.055) ** 2.4 for c in shares]
@@ -156,4 +165,11 @@ def readable(colour: str, ground: str, text: str) -> str:
     >>> readable("#1660a8", "#ffffff", "#1d2733")
     '#1660a8'
     """
-    return next((c for c in (mixed(colour, text, n / 10.0) for n in range(10)) if contrast(c, ground) >= READABLE), text)
+    return next(
+        (
+            c
+            for c in (mixed(colour, text, n / 10.0) for n in range(10))
+            if contrast(c, ground) >= READABLE
+        ),
+        text,
+    )

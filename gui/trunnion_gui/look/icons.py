@@ -58,5 +58,7 @@ def _pixmap(font_name: str, size: int, colour: str, disabled: str) -> QPixmap:
 def window_icon() -> QIcon:
     """Return the program's own sign."""
     picture = QPixmap()
-    picture.loadFromData((files("trunnion_resources") / "icons" / "trunnion.svg").read_bytes(), "SVG")
+    picture.loadFromData(
+        (files("trunnion_resources") / "icons" / "trunnion.svg").read_bytes(), "SVG"
+    )
     return QIcon(picture)

@@ -8,7 +8,15 @@ from trunnion.model.feature import Recognition
 from trunnion_gui.families.contract import LegendRow
 from trunnion_gui.families.views import Views
 from trunnion_gui.i18n import tr
-from trunnion_gui.look.colours import Theme, axis_colour, feature_colours, kind_colour, motions, stock_colours, tool_colours
+from trunnion_gui.look.colours import (
+    Theme,
+    axis_colour,
+    feature_colours,
+    kind_colour,
+    motions,
+    stock_colours,
+    tool_colours,
+)
 from trunnion_gui.look.words import sentence
 
 GAP: LegendRow = ("", "", "")
@@ -41,6 +49,11 @@ def playing(theme: Theme) -> list[LegendRow]:
     """Return the rows of the playback: stock, tool, and the way of the tip."""
     raw, cut = stock_colours(theme)
     tool = tool_colours()
-    return [(raw, tr("Blank"), ""), (cut, tr("Cut surface"), ""), GAP,
-            *((tool[name], sentence(tr(name)), "") for name in ("cutter", "shank", "holder")), GAP,
-            *((tool[name], sentence(tr(name)), "") for name in ("feed", "rapid"))]
+    return [
+        (raw, tr("Blank"), ""),
+        (cut, tr("Cut surface"), ""),
+        GAP,
+        *((tool[name], sentence(tr(name)), "") for name in ("cutter", "shank", "holder")),
+        GAP,
+        *((tool[name], sentence(tr(name)), "") for name in ("feed", "rapid")),
+    ]

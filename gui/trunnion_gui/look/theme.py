@@ -120,10 +120,20 @@ def apply(theme: Theme) -> None:
     icons.use_theme(theme)
     palette = QPalette()
     roles = QPalette.ColorRole
-    for role, colour in ((roles.Window, theme.window), (roles.Base, theme.panel), (roles.Text, theme.text), (roles.WindowText, theme.text),
-                         (roles.Button, theme.raised), (roles.ButtonText, theme.text), (roles.Highlight, theme.accent_soft),
-                         (roles.HighlightedText, theme.text), (roles.AlternateBase, theme.raised), (roles.PlaceholderText, theme.muted),
-                         (roles.Link, theme.accent), (roles.Accent, theme.accent)):
+    for role, colour in (
+        (roles.Window, theme.window),
+        (roles.Base, theme.panel),
+        (roles.Text, theme.text),
+        (roles.WindowText, theme.text),
+        (roles.Button, theme.raised),
+        (roles.ButtonText, theme.text),
+        (roles.Highlight, theme.accent_soft),
+        (roles.HighlightedText, theme.text),
+        (roles.AlternateBase, theme.raised),
+        (roles.PlaceholderText, theme.muted),
+        (roles.Link, theme.accent),
+        (roles.Accent, theme.accent),
+    ):
         palette.setColor(role, QColor(colour))
     for role in (roles.Text, roles.WindowText, roles.ButtonText):
         palette.setColor(QPalette.ColorGroup.Disabled, role, QColor(theme.muted))

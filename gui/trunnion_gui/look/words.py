@@ -74,7 +74,11 @@ def size_unit(name: str, value: Size) -> str:
     >>> size_unit("depth", 30.0), size_unit("lean", 3.0), size_unit("area", 1800.0), size_unit("size_ratio", 0.9), size_unit("count", 4)
     ('mm', '°', 'mm²', '', '')
     """
-    if isinstance(value, (bool, str)) or name.startswith(_PLAIN) or name.endswith(("count", "ratio")):
+    if (
+        isinstance(value, (bool, str))
+        or name.startswith(_PLAIN)
+        or name.endswith(("count", "ratio"))
+    ):
         return ""
     if name.endswith("area"):
         return "mm²"

@@ -17,9 +17,33 @@ _FIRST_MENUS, _LAST_MENUS = ("File", "Edit", "Steps"), ("Playback", "View", "Hel
 _BEFORE_RECENT = "file.sample"
 """The command that the files opened last are listed under."""
 _GAP, _RIGHTMOST = "", ">"
-_TOOLBAR = ("file.open", "file.save", _GAP, "edit.undo", "edit.redo", _GAP, "run.program", _GAP, "view.isometric", "view.top", "view.front",
-            "view.right", "view.fit", _GAP, "view.colours", "view.blank", "view.paths", "view.section", "view.isolate", _GAP, "play.show",
-            "view.deviation", _RIGHTMOST, "view.find", "view.theme")
+_TOOLBAR = (
+    "file.open",
+    "file.save",
+    _GAP,
+    "edit.undo",
+    "edit.redo",
+    _GAP,
+    "run.program",
+    _GAP,
+    "view.isometric",
+    "view.top",
+    "view.front",
+    "view.right",
+    "view.fit",
+    _GAP,
+    "view.colours",
+    "view.blank",
+    "view.paths",
+    "view.section",
+    "view.isolate",
+    _GAP,
+    "play.show",
+    "view.deviation",
+    _RIGHTMOST,
+    "view.find",
+    "view.theme",
+)
 _MAIN = "run.program"
 _ICON = 19
 """Pixels of a toolbar icon."""

@@ -9,16 +9,33 @@ from trunnion_gui.actions import Command
 from trunnion_gui.i18n import tr
 from trunnion_gui.menus.shell import Shell
 
-_MENU_OF = {"file": "File", "edit": "Edit", "run": "Steps", "step": "Steps", "job": "Steps", "view": "View", "help": "Help"}
+_MENU_OF = {
+    "file": "File",
+    "edit": "Edit",
+    "run": "Steps",
+    "step": "Steps",
+    "job": "Steps",
+    "view": "View",
+    "help": "Help",
+}
 """The menu of a command, by the first word of its id."""
-_STEPS = (("step.recognize", "Recognize", "recognize", "recognize", "F6"), ("step.size", "Analyse", "size", "size", "F7"),
-          ("step.blank", "Create blank", "blank", "blank", "F8"), ("step.route", "Generate route", "route", "route", "F9"),
-          ("step.optimize", "Optimize", "optimize", "optimize", "F10"), ("step.generate", "Generate", "toolpath", "generate", "F11"),
-          ("step.verify", "Verify", "verify", "verify", "F12"))
+_STEPS = (
+    ("step.recognize", "Recognize", "recognize", "recognize", "F6"),
+    ("step.size", "Analyse", "size", "size", "F7"),
+    ("step.blank", "Create blank", "blank", "blank", "F8"),
+    ("step.route", "Generate route", "route", "route", "F9"),
+    ("step.optimize", "Optimize", "optimize", "optimize", "F10"),
+    ("step.generate", "Generate", "toolpath", "generate", "F11"),
+    ("step.verify", "Verify", "verify", "verify", "F12"),
+)
 """Id, words, the last step that runs, icon, keys."""
 _VIEWS = ("isometric", "top", "bottom", "front", "back", "left", "right")
-_LAYERS = (("colours", "Show all features", "C", True), ("blank", "Show the blank", "B", True), ("paths", "Show toolpaths", "T", True),
-           ("isolate", "Fade all but the selection", "I", False))
+_LAYERS = (
+    ("colours", "Show all features", "C", True),
+    ("blank", "Show the blank", "B", True),
+    ("paths", "Show toolpaths", "T", True),
+    ("isolate", "Fade all but the selection", "I", False),
+)
 """Name, words, keys, whether it is on at first."""
 
 
@@ -38,45 +55,205 @@ def add_general_commands(shell: Shell) -> None:
     def has_chosen(*kinds: str) -> bool:
         return is_free() and document.selection.current.kind in kinds
 
-    def command(id: str, text: str, run: Callable[[], object], icon: str = "", keys: str = "", help: str = "",
-                enabled: Callable[[], bool] | None = None) -> None:
-        add(Command(id=id, text=text, run=run, icon=icon, keys=keys, help=help, enabled=enabled, menu=_MENU_OF[id.split(".")[0]]))
+    def command(
+        id: str,
+        text: str,
+        run: Callable[[], object],
+        icon: str = "",
+        keys: str = "",
+        help: str = "",
+        enabled: Callable[[], bool] | None = None,
+    ) -> None:
+        add(
+            Command(
+                id=id,
+                text=text,
+                run=run,
+                icon=icon,
+                keys=keys,
+                help=help,
+                enabled=enabled,
+                menu=_MENU_OF[id.split(".")[0]],
+            )
+        )
 
-    def switch(id: str, text: str, run: Callable[[bool], object], keys: str, help: str = "", checked: bool = False,
-               enabled: Callable[[], bool] | None = None) -> None:
-        add(Command(id=f"view.{id}", text=text, run=run, icon=id, keys=keys, help=help, checkable=True, checked=checked, enabled=enabled,
-                    menu="View"))
+    def switch(
+        id: str,
+        text: str,
+        run: Callable[[bool], object],
+        keys: str,
+        help: str = "",
+        checked: bool = False,
+        enabled: Callable[[], bool] | None = None,
+    ) -> None:
+        add(
+            Command(
+                id=f"view.{id}",
+                text=text,
+                run=run,
+                icon=id,
+                keys=keys,
+                help=help,
+                checkable=True,
+                checked=checked,
+                enabled=enabled,
+                menu="View",
+            )
+        )
 
-    command("file.open", "Open…", do.open, "open", "Ctrl+O", "Open a STEP or IGES part, or a project", is_free)
-    command("file.sample", "Open the sample part", do.open_sample, "sample", "", "An aircraft panel to try things with", is_free)
+    command(
+        "file.open",
+        "Open…",
+        do.open,
+        "open",
+        "Ctrl+O",
+        "Open a STEP or IGES part, or a project",
+        is_free,
+    )
+    command(
+        "file.sample",
+        "Open the sample part",
+        do.open_sample,
+        "sample",
+        "",
+        "An aircraft panel to try things with",
+        is_free,
+    )
     command("file.save", "Save", do.save, "save", "Ctrl+S", "Save the project", has_part)
     command("file.save_as", "Save as…", do.save_as, "save_as", "Ctrl+Shift+S", "", has_part)
-    command("file.write", "Write programs…", do.write, "write", "Ctrl+E", "Write NC, CL, tool list, XML and report into a folder",
-            has_program)
-    command("file.picture", "Save a picture…", do.keep_picture, "picture", "", "Write what the viewport shows as PNG", None)
+    command(
+        "file.write",
+        "Write programs…",
+        do.write,
+        "write",
+        "Ctrl+E",
+        "Write NC, CL, tool list, XML and report into a folder",
+        has_program,
+    )
+    command(
+        "file.picture",
+        "Save a picture…",
+        do.keep_picture,
+        "picture",
+        "",
+        "Write what the viewport shows as PNG",
+        None,
+    )
     command("file.quit", "Quit", shell.close, "quit", "Ctrl+Q", "", None)
-    command("edit.undo", "Undo", document.undo, "undo", "Ctrl+Z", "", lambda: is_free() and bool(document.history.undo_label))
-    command("edit.redo", "Redo", document.redo, "redo", "Ctrl+Shift+Z", "", lambda: is_free() and bool(document.history.redo_label))
-    command("edit.delete", "Delete what is selected", do.delete_selected, "delete", "Del", "",
-            partial(has_chosen, "feature", "operation"))
-    command("edit.suppress", "Suppress or cut again", do.suppress_selected, "suppress", "Ctrl+D",
-            "Keep the selected operation in the tree without cutting it", partial(has_chosen, "operation"))
+    command(
+        "edit.undo",
+        "Undo",
+        document.undo,
+        "undo",
+        "Ctrl+Z",
+        "",
+        lambda: is_free() and bool(document.history.undo_label),
+    )
+    command(
+        "edit.redo",
+        "Redo",
+        document.redo,
+        "redo",
+        "Ctrl+Shift+Z",
+        "",
+        lambda: is_free() and bool(document.history.redo_label),
+    )
+    command(
+        "edit.delete",
+        "Delete what is selected",
+        do.delete_selected,
+        "delete",
+        "Del",
+        "",
+        partial(has_chosen, "feature", "operation"),
+    )
+    command(
+        "edit.suppress",
+        "Suppress or cut again",
+        do.suppress_selected,
+        "suppress",
+        "Ctrl+D",
+        "Keep the selected operation in the tree without cutting it",
+        partial(has_chosen, "operation"),
+    )
     command("edit.none", "Select nothing", do.leave, "", "Escape", "", None)
-    command("run.program", "Program", do.program, "program", "F5", "The whole line: features, route, toolpaths, proof", is_free)
+    command(
+        "run.program",
+        "Program",
+        do.program,
+        "program",
+        "F5",
+        "The whole line: features, route, toolpaths, proof",
+        is_free,
+    )
     for id, text, last, icon, keys in _STEPS:
-        command(id, text, partial(document.run, last, tr(text)), icon, keys, f"{text}: what is stale up to here", has_part)
-    command("job.cancel", "Cancel the running job", document.jobs.cancel, "cancel", "Ctrl+.", "", lambda: document.is_busy)
+        command(
+            id,
+            text,
+            partial(document.run, last, tr(text)),
+            icon,
+            keys,
+            f"{text}: what is stale up to here",
+            has_part,
+        )
+    command(
+        "job.cancel",
+        "Cancel the running job",
+        document.jobs.cancel,
+        "cancel",
+        "Ctrl+.",
+        "",
+        lambda: document.is_busy,
+    )
     for number, view in enumerate(_VIEWS):
-        command(f"view.{view}", f"View: {view}", lambda view=view: shell.viewport.scene.look(view),  # type: ignore[misc]
-                view, f"Ctrl+{number}", "", None)
-    command("view.fit", "Fit", lambda: shell.viewport.scene.fit(), "fit", "F", "Fit the part into the picture", None)
+        command(
+            f"view.{view}",
+            f"View: {view}",
+            lambda view=view: shell.viewport.scene.look(view),  # type: ignore[misc]
+            view,
+            f"Ctrl+{number}",
+            "",
+            None,
+        )
+    command(
+        "view.fit",
+        "Fit",
+        lambda: shell.viewport.scene.fit(),
+        "fit",
+        "F",
+        "Fit the part into the picture",
+        None,
+    )
+
+    def show_layer(name: str) -> Callable[[bool], object]:
+        return lambda on: shell.viewport.show_layer(name, on)
+
     for name, text, keys, on in _LAYERS:
-        switch(name, text, lambda on, name=name: shell.viewport.show_layer(name, on), keys, checked=on)  # type: ignore[misc]
-    switch("section", "Section", lambda on: shell.viewport.show_section(on), "X", "Cut the part open across its height")
-    switch("deviation", "Deviation map", shell.show_deviation, "D",
-           "Colour the part by gouges and material left, as the proof measured them",
-           enabled=lambda: shell.deviation.can_show or shell.deviation.is_on)
-    command("view.find", "Find a command…", lambda: shell.finder.open(), "search", "Ctrl+Shift+P", "", None)
+        switch(name, text, show_layer(name), keys, checked=on)
+    switch(
+        "section",
+        "Section",
+        lambda on: shell.viewport.show_section(on),
+        "X",
+        "Cut the part open across its height",
+    )
+    switch(
+        "deviation",
+        "Deviation map",
+        shell.show_deviation,
+        "D",
+        "Colour the part by gouges and material left, as the proof measured them",
+        enabled=lambda: shell.deviation.can_show or shell.deviation.is_on,
+    )
+    command(
+        "view.find",
+        "Find a command…",
+        lambda: shell.finder.open(),
+        "search",
+        "Ctrl+Shift+P",
+        "",
+        None,
+    )
     command("view.theme", "Light or dark", do.change_theme, "theme", "Ctrl+Shift+L", "", None)
     command("view.arrangement", "Put docks back", do.forget_arrangement, "reset", "", "", None)
     command("view.language", "Next language", do.change_language, "language", "", "", None)

@@ -34,7 +34,9 @@ class Handlers:
     def open_sample(self) -> None:
         """Open the part that comes with the program."""
         self._sample = contextlib.ExitStack()
-        self._document.files.open(self._sample.enter_context(as_file(trunnion_resources.sample("B1"))))
+        self._document.files.open(
+            self._sample.enter_context(as_file(trunnion_resources.sample("B1")))
+        )
 
     def save(self) -> None:
         """Save the project where it was saved before; ask otherwise."""
@@ -86,7 +88,10 @@ class Handlers:
         operation = self._document.operation(self._document.selection.current.id)
         if operation is not None:
             words = tr("Cut {id} again") if operation.suppressed else tr("Suppress {id}")
-            self._document.edit(words.format(id=operation.id), edits.with_suppressed(operation.id, not operation.suppressed))
+            self._document.edit(
+                words.format(id=operation.id),
+                edits.with_suppressed(operation.id, not operation.suppressed),
+            )
 
     def change_theme(self) -> None:
         """Change between light and dark."""
@@ -99,7 +104,10 @@ class Handlers:
         known = i18n.languages()
         following = known[(known.index(remembered.language()) + 1) % len(known)]
         remembered.remember("language", following)
-        self._document.notice(tr("The window speaks {language} from the next start on").format(language=following), severity=Severity.INFO)
+        self._document.notice(
+            tr("The window speaks {language} from the next start on").format(language=following),
+            severity=Severity.INFO,
+        )
 
     def forget_arrangement(self) -> None:
         """Put docks back where they were at first."""
@@ -107,5 +115,8 @@ class Handlers:
 
     def about(self) -> None:
         """Say what this is."""
-        self._document.notice(f"Trunnion {__version__}", tr("From the CAD model of an aerospace part to a proven NC program. Apache-2.0."),
-                             severity=Severity.INFO)
+        self._document.notice(
+            f"Trunnion {__version__}",
+            tr("From the CAD model of an aerospace part to a proven NC program. Apache-2.0."),
+            severity=Severity.INFO,
+        )

@@ -12,13 +12,35 @@ def add_playback_commands(shell: Shell) -> None:
     """Add them to a window's registry."""
     player = shell.player
 
-    def command(id: str, text: str, run: Callable[[], object], icon: str, keys: str, help: str = "") -> None:
-        shell.registry.add(Command(id=f"play.{id}", text=text, run=run, icon=icon, keys=keys, help=help, menu="Playback",
-                                   enabled=lambda: player.is_ready))
+    def command(
+        id: str, text: str, run: Callable[[], object], icon: str, keys: str, help: str = ""
+    ) -> None:
+        shell.registry.add(
+            Command(
+                id=f"play.{id}",
+                text=text,
+                run=run,
+                icon=icon,
+                keys=keys,
+                help=help,
+                menu="Playback",
+                enabled=lambda: player.is_ready,
+            )
+        )
 
-    shell.registry.add(Command(id="play.show", text="Playback", run=shell.show_playback, icon="playback", keys="P", checkable=True,
-                               menu="Playback", help="See the stock being cut, block by block",
-                               enabled=lambda: player.can_play or player.is_on))
+    shell.registry.add(
+        Command(
+            id="play.show",
+            text="Playback",
+            run=shell.show_playback,
+            icon="playback",
+            keys="P",
+            checkable=True,
+            menu="Playback",
+            help="See the stock being cut, block by block",
+            enabled=lambda: player.can_play or player.is_on,
+        )
+    )
     command("run", "Play", player.toggle, "play", "K", "Play or pause")
     command("back", "One block back", lambda: player.step(-1), "step_back", ",")
     command("forward", "One block on", lambda: player.step(1), "step_forward", ".")

@@ -17,4 +17,6 @@ class BlankPanel(Panel):
             self.result.setText("")
             return
         size = " × ".join(amount(v, 1) for v in blank.size)
-        self.result.setText(f"{size} mm<br>{amount(blank.volume / 1e6, 2)} dm³ · {amount(blank.mass, 2)} kg {blank.material}")
+        self.result.setText(
+            f"{size} mm<br>{amount(blank.volume / 1e6, 2)} dm³ · {amount(blank.mass, 2)} kg {blank.material}"
+        )

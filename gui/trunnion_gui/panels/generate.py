@@ -26,7 +26,9 @@ class GeneratePanel(Panel):
     def build(self) -> None:
         self._judged: tuple[object, object] = ((), None)
         self.content.addLayout(self._settings)
-        self.content.addWidget(self.buttons("step.generate", "step.verify", primary="step.generate"))
+        self.content.addWidget(
+            self.buttons("step.generate", "step.verify", primary="step.generate")
+        )
         self.verdict = QLabel()
         self.content.addWidget(self.verdict)
         self.rejected = QLabel()
@@ -53,10 +55,16 @@ class GeneratePanel(Panel):
         self.verdict.setProperty("verdict", VERDICTS[verdict.outcome])
         self.verdict.style().unpolish(self.verdict)
         self.verdict.style().polish(self.verdict)
-        for n, (words, value) in enumerate((
-                (tr("Coverage"), share(verdict.coverage)), (tr("Coverage of what cutters reach"), share(verdict.reachable)),
-                (tr("Deepest gouge"), f"{amount(verdict.gouge)} mm"), (tr("Collisions"), str(verdict.collisions)),
-                (tr("Rapids in stock"), str(verdict.rapids_in_stock)), (tr("Machining time"), duration(verdict.machining_time_s)))):
+        for n, (words, value) in enumerate(
+            (
+                (tr("Coverage"), share(verdict.coverage)),
+                (tr("Coverage of what cutters reach"), share(verdict.reachable)),
+                (tr("Deepest gouge"), f"{amount(verdict.gouge)} mm"),
+                (tr("Collisions"), str(verdict.collisions)),
+                (tr("Rapids in stock"), str(verdict.rapids_in_stock)),
+                (tr("Machining time"), duration(verdict.machining_time_s)),
+            )
+        ):
             label, number = QLabel(words), QLabel(value)
             label.setObjectName("muted")
             self._numbers.addWidget(label, n, 0)
@@ -68,7 +76,11 @@ class GeneratePanel(Panel):
         if (session.posted, session.verdict) != self._judged:
             self._judged = (session.posted, session.verdict)
             names = rejected_names(session)
-            self.rejected.setText(tr("Must not run, and is written as {files}").format(files=", ".join(names)) if names else "")
+            self.rejected.setText(
+                tr("Must not run, and is written as {files}").format(files=", ".join(names))
+                if names
+                else ""
+            )
             self.rejected.setVisible(bool(names))
 
     def shown_motions(self) -> tuple[str, ...]:

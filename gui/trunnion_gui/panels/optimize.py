@@ -25,10 +25,19 @@ class OptimizePanel(Panel):
     def build(self) -> None:
         super().build()
         self.table = tables.table([tr("Op"), "n", "vf", tr("Power")], has_names=True)
-        tips = tr("Operation"), tr("Spindle speed, 1/min"), tr("Feed, mm/min"), tr("Share of the spindle's power, at the highest load")
+        tips = (
+            tr("Operation"),
+            tr("Spindle speed, 1/min"),
+            tr("Feed, mm/min"),
+            tr("Share of the spindle's power, at the highest load"),
+        )
         for column, words in enumerate(tips):
-            self.table.model().setHeaderData(column, Qt.Orientation.Horizontal, words, Qt.ItemDataRole.ToolTipRole)
-        self.table.cellClicked.connect(lambda row, _: self.document.selection.select_operation(self._cut[row].id))
+            self.table.model().setHeaderData(
+                column, Qt.Orientation.Horizontal, words, Qt.ItemDataRole.ToolTipRole
+            )
+        self.table.cellClicked.connect(
+            lambda row, _: self.document.selection.select_operation(self._cut[row].id)
+        )
         self.content.addWidget(self.table)
         self._shown: tuple[object, object, object] | None = None
         self._cut: list[Operation] = []
@@ -36,9 +45,15 @@ class OptimizePanel(Panel):
     def fill(self) -> None:
         process = self.document.shown.process
         # A verdict on an earlier plan says nothing of this one's load.
-        verdict = self.document.shown.verdict if self.document.states.get("verify") in ("done", "problem") else None
+        verdict = (
+            self.document.shown.verdict
+            if self.document.states.get("verify") in ("done", "problem")
+            else None
+        )
         self.table.setVisible(process is not None)
-        if self._shown is not None and all(a is b for a, b in zip(self._shown, (process, verdict, self.theme), strict=True)):
+        if self._shown is not None and all(
+            a is b for a, b in zip(self._shown, (process, verdict, self.theme), strict=True)
+        ):
             return
         self._shown = process, verdict, self.theme
         if process is None:
@@ -46,7 +61,10 @@ class OptimizePanel(Panel):
             return
         self._cut = cut = [o for o in process.operations if not o.suppressed]
         loads = spindle_loads(cut, verdict)
-        rows = [(o.id, amount(o.data.spindle, 0), amount(o.data.feed, 0), share(load.share)) for o, load in zip(cut, loads, strict=True)]
+        rows = [
+            (o.id, amount(o.data.spindle, 0), amount(o.data.feed, 0), share(load.share))
+            for o, load in zip(cut, loads, strict=True)
+        ]
         tables.fill(self.table, rows, right=(1, 2, _POWER))
         tables.fit_height(self.table, _MOST_ROWS)
         self._show_overloads(loads)
@@ -68,10 +86,17 @@ def load_words(load: SpindleLoad) -> str:
     """Return an operation's highest load in words: how much, of what, and where."""
     words = tr("highest load: {id}, {power} of {limit} kW")
     if load.measured:
-        words = tr("highest load: {id}, {power} of {limit} kW as the proof measured ({steady} kW steady)")
+        words = tr(
+            "highest load: {id}, {power} of {limit} kW as the proof measured ({steady} kW steady)"
+        )
     elif load.at:
         words = tr("highest load: {id}, {power} of {limit} kW where {place} ({steady} kW steady)")
     if load.share > 1.0:
         words = tr("overload: {load}").format(load=words)
-    return words.format(id=load.operation, power=amount(load.highest, 1), limit=amount(load.limit, 1), steady=amount(load.steady, 1),
-                        place=tr(load.at))
+    return words.format(
+        id=load.operation,
+        power=amount(load.highest, 1),
+        limit=amount(load.limit, 1),
+        steady=amount(load.steady, 1),
+        place=tr(load.at),
+    )

@@ -52,8 +52,14 @@ class RecognizePanel(Panel):
             self.result.setText("")
             return
         counts = " · ".join(counted(n, tr(kind)) for kind, n in found.counts().items())
-        loose = "" if not found.unexplained else "<br>" + tr("{n} faces unexplained ({share} of the area)").format(
-            n=len(found.unexplained), share=share(found.unexplained_share))
+        loose = (
+            ""
+            if not found.unexplained
+            else "<br>"
+            + tr("{n} faces unexplained ({share} of the area)").format(
+                n=len(found.unexplained), share=share(found.unexplained_share)
+            )
+        )
         taken = f"{_taken(found.taken_for)}<br>" if found.taken_for is not None else ""
         counted_up = tr("Nothing was recognized.")
         if found.features:
@@ -78,7 +84,12 @@ class RecognizePanel(Panel):
 
     def _served(self) -> tuple[str, ...]:
         """Return the families there are, from the setting that chooses one."""
-        declared = (s for g in self.document.groups.get("recognize", ()) for s in g.settings if s.key == FAMILY)
+        declared = (
+            s
+            for g in self.document.groups.get("recognize", ())
+            for s in g.settings
+            if s.key == FAMILY
+        )
         return tuple(str(name) for s in declared for name in s.choices if name != AUTOMATIC)
 
     def _go_on_as(self, family: str) -> None:
@@ -90,7 +101,12 @@ class RecognizePanel(Panel):
         self.solid.setVisible(part.n_solids > 1)
         if self.solid.count() != part.n_solids:
             self.solid.clear()
-            self.solid.addItems([tr("Solid {n} of {all}").format(n=n + 1, all=part.n_solids) for n in range(part.n_solids)])
+            self.solid.addItems(
+                [
+                    tr("Solid {n} of {all}").format(n=n + 1, all=part.n_solids)
+                    for n in range(part.n_solids)
+                ]
+            )
         self.solid.setCurrentIndex(part.solid - 1)
 
     def _choose_solid(self, row: int) -> None:
@@ -103,4 +119,6 @@ class RecognizePanel(Panel):
 def _taken(taken: TakenFor) -> str:
     """Return what a part was taken for, how sure and why, as a line of rich text."""
     words = tr("Taken for {noun} ({sure}): {reason}")
-    return words.format(noun=escape(tr(taken.noun)), sure=f"{taken.score:.2f}", reason=escape(taken.reason))
+    return words.format(
+        noun=escape(tr(taken.noun)), sure=f"{taken.score:.2f}", reason=escape(taken.reason)
+    )

@@ -18,6 +18,11 @@ class RoutePanel(Panel):
             self.result.setText("")
             return
         cut = [o for o in process.operations if not o.suppressed]
-        offsets = ", ".join(f"{s.name} {s.work_offset} · {tr('safe height')} {amount(s.clearance, 1)} mm" for s in process.setups)
-        numbers = f"{counted(len(cut), tr('operation'))} · {counted(len(process.tools()), tr('tool'))}"
+        offsets = ", ".join(
+            f"{s.name} {s.work_offset} · {tr('safe height')} {amount(s.clearance, 1)} mm"
+            for s in process.setups
+        )
+        numbers = (
+            f"{counted(len(cut), tr('operation'))} · {counted(len(process.tools()), tr('tool'))}"
+        )
         self.result.setText(f"{numbers} · {tr('plan')} {process.plan}<br>{offsets}")

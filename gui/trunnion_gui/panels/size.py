@@ -33,7 +33,10 @@ class SizePanel(Panel):
             return
         self._shown = sizes
         self.result.setText(tr("{n} sizes").format(n=len(sizes)) if sizes else "")
-        rows = [(kind_words(tr(s.name)), s.feature, f"{amount(s.value)} {s.unit}".strip()) for s in sizes]
+        rows = [
+            (kind_words(tr(s.name)), s.feature, f"{amount(s.value)} {s.unit}".strip())
+            for s in sizes
+        ]
         tables.fill(self.table, rows, right=(2,))
         tables.fit_height(self.table, _MOST_ROWS)
 

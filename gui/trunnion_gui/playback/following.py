@@ -15,7 +15,9 @@ _FOLLOW_MS = 66
 class Following(QObject):
     """Ties a player, the G-code and the process tree to each other."""
 
-    def __init__(self, player: Player, code: CodeDock, process: ProcessDock, parent: QObject) -> None:
+    def __init__(
+        self, player: Player, code: CodeDock, process: ProcessDock, parent: QObject
+    ) -> None:
         super().__init__(parent)
         self._player, self._code, self._process = player, code, process
         self.soon = QTimer(self)

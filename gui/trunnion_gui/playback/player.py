@@ -81,7 +81,11 @@ class Player(QObject):
     def can_play(self) -> bool:
         """Whether the session has toolpaths, and the worker is free."""
         session = self._document.session
-        return not self._document.is_busy and session.blank is not None and any(len(p.path) for p in session.paths)
+        return (
+            not self._document.is_busy
+            and session.blank is not None
+            and any(len(p.path) for p in session.paths)
+        )
 
     @property
     def is_ready(self) -> bool:
@@ -174,7 +178,11 @@ class Player(QObject):
         """Return the removal rate of every block (n,) in cm3/min and which blocks (n,) the proof found at fault; both empty when it did not
         look at these blocks."""
         verdict, line = self._document.session.verdict, self.timeline
-        blocks = verdict.blocks if verdict is not None and line is not None and line.passages[0].file else ()
+        blocks = (
+            verdict.blocks
+            if verdict is not None and line is not None and line.passages[0].file
+            else ()
+        )
         rate = np.concatenate([np.zeros(0), *(np.asarray(b.rate, dtype=float) for b in blocks)])
         if line is None or len(rate) != len(line):
             return np.zeros(0), np.zeros(0, bool)
@@ -216,7 +224,13 @@ class Player(QObject):
     def _tick(self) -> None:
         now = time.perf_counter()
         passed, self._last = min(now - self._last, _LONGEST_TICK_S), now
-        bound = self._ahead.position if self._ahead is not None else self._asked_for if self._asked else self.end
+        bound = (
+            self._ahead.position
+            if self._ahead is not None
+            else self._asked_for
+            if self._asked
+            else self.end
+        )
         self._move(max(min(self._after(self.position, passed), bound), self.position))
         if self._ahead is not None and self.position >= self._ahead.position:
             self._show(self._ahead)
@@ -241,7 +255,9 @@ class Player(QObject):
         wanted = self._after(self.position, self._lead) if self.is_playing else self.position
         if wanted != self._stock_at:
             self._asked_at, self._asked_for = time.perf_counter(), wanted
-            self._asked = self._document.jobs.worker.ask("moment", self.timeline.key, wanted, _ANSWER_S)
+            self._asked = self._document.jobs.worker.ask(
+                "moment", self.timeline.key, wanted, _ANSWER_S
+            )
 
     def _receive(self, reply: Reply) -> None:
         if not reply.is_last or reply.number not in (self._opening, self._asked):

@@ -77,7 +77,12 @@ def whose_work(path: Path) -> Whose:
     time = datetime.fromtimestamp(path.stat().st_mtime).isoformat(timespec="seconds")
     try:
         noted = json.loads(notes_of(path).read_text("utf-8"))
-        return Whose(**{"time": time, **{name: str(noted[name]) for name in ("project", "part", "time") if name in noted}})
+        return Whose(
+            **{
+                "time": time,
+                **{name: str(noted[name]) for name in ("project", "part", "time") if name in noted},
+            }
+        )
     except (OSError, ValueError, TypeError):
         return Whose(time=time)
 

@@ -65,10 +65,22 @@ class Recovery(QObject):
         if left is not None:
             whose = whose_work(left)
             day, _, clock = whose.time.partition("T")
-            text = tr("{name} was not saved when the program ended; its work was kept on {day} at {time}").format(
-                name=whose.name or tr("A part"), day=day, time=clock)
-            finding = Finding(severity=Severity.INFO, code="window", text=text, remedy=tr("take it up where it ended, or throw it away"))
-            self._notice.tell(finding, {tr("Recover"): partial(self._recover, left), tr("Discard"): partial(self._discard, left)})
+            text = tr(
+                "{name} was not saved when the program ended; its work was kept on {day} at {time}"
+            ).format(name=whose.name or tr("A part"), day=day, time=clock)
+            finding = Finding(
+                severity=Severity.INFO,
+                code="window",
+                text=text,
+                remedy=tr("take it up where it ended, or throw it away"),
+            )
+            self._notice.tell(
+                finding,
+                {
+                    tr("Recover"): partial(self._recover, left),
+                    tr("Discard"): partial(self._discard, left),
+                },
+            )
 
     def _changed(self) -> None:
         document = self._document
@@ -78,7 +90,9 @@ class Recovery(QObject):
             self._edits += 1
             if self._edits >= MOST_EDITS:
                 self.keep()
-            elif not self._soon.isActive():  # never begun anew: steady work would put it off for ever
+            elif (
+                not self._soon.isActive()
+            ):  # never begun anew: steady work would put it off for ever
                 self._soon.start()
         self._seen = document.shown
 
@@ -105,5 +119,8 @@ class Recovery(QObject):
         self.offer()
 
     def _tell(self, reason: str) -> None:
-        self._document.notice(tr("Your work is not kept for recovery: {reason}").format(reason=reason),
-                              tr("save the project yourself (Ctrl+S), or make room"), severity=Severity.WARNING)
+        self._document.notice(
+            tr("Your work is not kept for recovery: {reason}").format(reason=reason),
+            tr("save the project yourself (Ctrl+S), or make room"),
+            severity=Severity.WARNING,
+        )

@@ -54,7 +54,9 @@ def add_recent(path: str) -> None:
 
 def autosave_file() -> Path:
     """Return the file that work in progress is kept in."""
-    folder = os.environ.get("TRUNNION_SETTINGS") or QStandardPaths.writableLocation(QStandardPaths.StandardLocation.AppLocalDataLocation)
+    folder = os.environ.get("TRUNNION_SETTINGS") or QStandardPaths.writableLocation(
+        QStandardPaths.StandardLocation.AppLocalDataLocation
+    )
     Path(folder).mkdir(parents=True, exist_ok=True)
     return Path(folder) / f"autosave-{os.getpid()}.trunnion"
 

@@ -10,7 +10,11 @@ from PySide6.QtWidgets import QMessageBox, QWidget
 from trunnion_gui.document import Document
 from trunnion_gui.i18n import tr
 
-SAVE, DISCARD, CANCEL = QMessageBox.StandardButton.Save, QMessageBox.StandardButton.Discard, QMessageBox.StandardButton.Cancel
+SAVE, DISCARD, CANCEL = (
+    QMessageBox.StandardButton.Save,
+    QMessageBox.StandardButton.Discard,
+    QMessageBox.StandardButton.Cancel,
+)
 GoOn = Callable[[], None]
 """What was asked for and waits until the work is safe: opening another file, closing the window."""
 
@@ -44,7 +48,11 @@ class UnsavedWork(QObject):
         box.setWindowTitle("Trunnion")
         box.setIcon(QMessageBox.Icon.Warning)
         box.setText(tr("Save the changes to {name}?").format(name=self._document.files.name))
-        running = tr("{job} still runs and is cancelled.").format(job=job.label) + " " if job is not None else ""
+        running = (
+            tr("{job} still runs and is cancelled.").format(job=job.label) + " "
+            if job is not None
+            else ""
+        )
         box.setInformativeText(running + tr("They are lost if you discard them."))
         box.setStandardButtons(SAVE | DISCARD | CANCEL)
         for button, words in ((SAVE, tr("Save")), (DISCARD, tr("Discard")), (CANCEL, tr("Cancel"))):

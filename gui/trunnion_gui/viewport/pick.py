@@ -15,7 +15,9 @@ class FacePicker:
     def __init__(self, actor: Any, faces: np.ndarray) -> None:
         """`actor` draws the part's triangles, `faces` (t,) are their tags."""
         self._faces = faces
-        self._locator = vtkStaticCellLocator()  # built at the first question: nobody points while a part is being opened
+        self._locator = (
+            vtkStaticCellLocator()
+        )  # built at the first question: nobody points while a part is being opened
         actor.mapper.Update()
         self._locator.SetDataSet(actor.mapper.GetInput())
         self._picker = vtkCellPicker()

@@ -58,7 +58,9 @@ _FADED = 0.8
 """How far the kinds' colours fade towards the part's own while toolpaths are to be seen on it."""
 
 
-def best_fit(plan: np.ndarray, width: float, height: float, covered: QRectF) -> tuple[float, tuple[float, float]]:
+def best_fit(
+    plan: np.ndarray, width: float, height: float, covered: QRectF
+) -> tuple[float, tuple[float, float]]:
     """Return mm a pixel, and what should be in the middle of a picture, for points (v, 2) in mm (right, up) to fill it.
 
     When they would lie under the rectangle that is covered, they go beside or below it, whichever shows them larger.
@@ -66,18 +68,33 @@ def best_fit(plan: np.ndarray, width: float, height: float, covered: QRectF) -> 
     low, high = plan.min(axis=0), plan.max(axis=0)
 
     def fitted(free: QRectF) -> tuple[float, tuple[float, float]]:
-        scale = float(max((high[0] - low[0]) / free.width(), (high[1] - low[1]) / free.height(), 1e-9) * _ROOM)
+        scale = float(
+            max((high[0] - low[0]) / free.width(), (high[1] - low[1]) / free.height(), 1e-9) * _ROOM
+        )
         away = free.center() - QPointF(width / 2, height / 2)
         middle = (low + high) / 2
         return scale, (float(middle[0] - away.x() * scale), float(middle[1] + away.y() * scale))
 
     whole = QRectF(0, 0, width, height)
     best = fitted(whole)
-    x, y = width / 2 + (plan[:, 0] - best[1][0]) / best[0], height / 2 - (plan[:, 1] - best[1][1]) / best[0]
+    x, y = (
+        width / 2 + (plan[:, 0] - best[1][0]) / best[0],
+        height / 2 - (plan[:, 1] - best[1][1]) / best[0],
+    )
     if covered.isEmpty() or not outline(x, y).intersects(QPolygonF(covered)):
         return best
-    beside, below = whole.adjusted(covered.right(), 0, 0, 0), whole.adjusted(0, covered.bottom(), 0, 0)
-    return min((fitted(free) for free in (beside, below) if free.width() > _LEAST_ROOM and free.height() > _LEAST_ROOM), default=best)
+    beside, below = (
+        whole.adjusted(covered.right(), 0, 0, 0),
+        whole.adjusted(0, covered.bottom(), 0, 0),
+    )
+    return min(
+        (
+            fitted(free)
+            for free in (beside, below)
+            if free.width() > _LEAST_ROOM and free.height() > _LEAST_ROOM
+        ),
+        default=best,
+    )
 
 
 def outline(x: np.ndarray, y: np.ndarray) -> QPolygonF:
@@ -171,7 +188,12 @@ class Scene(QWidget):
         """Mark faces as the selection: filled, or only by their border where toolpaths are to be seen on them."""
         self._chosen, self._is_filled = faces, filled
         if self._part is not None:
-            self._part.outline("chosen", faces, self._theme.edge if filled else self._theme.selection, 2.5 if filled else 4.0)
+            self._part.outline(
+                "chosen",
+                faces,
+                self._theme.edge if filled else self._theme.selection,
+                2.5 if filled else 4.0,
+            )
         self._repaint()
 
     def isolate(self, on: bool) -> None:
@@ -191,7 +213,9 @@ class Scene(QWidget):
         draw_setups(self.view, setups, 0.07 * self._size())
         self.view.render()
 
-    def show_paths(self, paths: Iterable[tuple[Toolpath, Frame]], motions: Iterable[str] = MOTIONS) -> None:
+    def show_paths(
+        self, paths: Iterable[tuple[Toolpath, Frame]], motions: Iterable[str] = MOTIONS
+    ) -> None:
         """Show toolpaths with the frames of their setups."""
         draw_paths(self.view, paths, motions, self._size())
         self.view.render()
@@ -233,15 +257,25 @@ class Scene(QWidget):
         normal = self._normal(face, np.asarray(place))
         away = normal + self._frame.z if normal @ self._frame.z > -0.5 else normal
         away = away + _ASIDE * self._frame.world_direction(np.array([-0.6, -0.8, 0.0]))
-        away = away / np.linalg.norm(away) * np.linalg.norm(np.subtract(camera.position, camera.focal_point))
-        camera.focal_point, camera.position, camera.up = tuple(place), tuple(np.add(place, away)), tuple(self._frame.z)
+        away = (
+            away
+            / np.linalg.norm(away)
+            * np.linalg.norm(np.subtract(camera.position, camera.focal_point))
+        )
+        camera.focal_point, camera.position, camera.up = (
+            tuple(place),
+            tuple(np.add(place, away)),
+            tuple(self._frame.z),
+        )
         camera.parallel_scale = half_height
         self.view.renderer.ResetCameraClippingRange()
         self.view.render()
 
     def _normal(self, face: int, place: np.ndarray) -> np.ndarray:
         """Return the direction that a face looks in at a place."""
-        rows = np.flatnonzero(self._mesh.face == face) if self._mesh is not None else np.zeros(0, int)
+        rows = (
+            np.flatnonzero(self._mesh.face == face) if self._mesh is not None else np.zeros(0, int)
+        )
         if self._mesh is None or not len(rows):
             return np.asarray(self._frame.z)
         nearest = np.argmin(np.linalg.norm(self._mesh.corners()[rows].mean(axis=1) - place, axis=1))
@@ -302,7 +336,9 @@ class Scene(QWidget):
         if self._picker is None or self._is_playing:
             return 0
         ratio = self.view.devicePixelRatioF()
-        return self._picker.at(at.x() * ratio, (self.view.height() - at.y() - 1) * ratio, self.view.renderer)
+        return self._picker.at(
+            at.x() * ratio, (self.view.height() - at.y() - 1) * ratio, self.view.renderer
+        )
 
     def where(self, point: Sequence[float]) -> QPointF:
         """Return where a point of the part (x, y, z) is on the view widget."""
@@ -356,12 +392,22 @@ class Scene(QWidget):
             self.hovered.emit(self.face_at(at))
             return
         ratio = self.view.devicePixelRatioF()
-        self.pointed.emit(self._map.at(at.x() * ratio, (self.view.height() - at.y() - 1) * ratio, self.view.renderer), at)
+        self.pointed.emit(
+            self._map.at(
+                at.x() * ratio, (self.view.height() - at.y() - 1) * ratio, self.view.renderer
+            ),
+            at,
+        )
 
     def _hide(self) -> None:
         """Hide the part's own look while the stock or the map is shown."""
-        for name, is_shown in (("part", not self._is_playing and self._map is None), ("edges", not self._is_playing),
-                               ("chosen", not self._is_playing), ("hover", not self._is_playing), ("deviation", not self._is_playing)):
+        for name, is_shown in (
+            ("part", not self._is_playing and self._map is None),
+            ("edges", not self._is_playing),
+            ("chosen", not self._is_playing),
+            ("hover", not self._is_playing),
+            ("deviation", not self._is_playing),
+        ):
             actor = self.view.actors.get(name)
             if actor is not None:
                 actor.visibility = is_shown
@@ -415,7 +461,9 @@ class Scene(QWidget):
         right = np.cross(forward, camera.up)
         right = right / np.linalg.norm(right)
         up = np.cross(right, forward)
-        plan = np.asarray(self._everything() - np.asarray(camera.focal_point)) @ np.column_stack([right, up])
+        plan = np.asarray(self._everything() - np.asarray(camera.focal_point)) @ np.column_stack(
+            [right, up]
+        )
         width, height = max(self.view.width(), 1), max(self.view.height(), 1)
         scale, (x, y) = best_fit(plan, width, height, self._covered)
         shift = x * right + y * up
@@ -430,7 +478,9 @@ class Scene(QWidget):
 
     def _everything(self) -> np.ndarray:
         """Return the points (v, 3) of the part and of the blank that is shown."""
-        return np.vstack([self._mesh.points, self._blank]) if self._mesh is not None else self._blank
+        return (
+            np.vstack([self._mesh.points, self._blank]) if self._mesh is not None else self._blank
+        )
 
     def _bounds(self) -> tuple[float, ...] | None:
         if self._mesh is None:

@@ -12,7 +12,15 @@ from typing import Any
 
 import numpy as np
 from PySide6.QtCore import QSize, Qt
-from PySide6.QtGui import QGuiApplication, QImage, QMouseEvent, QPainter, QPaintEvent, QResizeEvent, QWheelEvent
+from PySide6.QtGui import (
+    QGuiApplication,
+    QImage,
+    QMouseEvent,
+    QPainter,
+    QPaintEvent,
+    QResizeEvent,
+    QWheelEvent,
+)
 from PySide6.QtWidgets import QWidget
 
 
@@ -24,20 +32,27 @@ def make_view(parent: QWidget | None = None) -> Any:
 
     view = QtInteractor(parent, auto_update=False)
     if "llvmpipe" in str(view.render_window.ReportCapabilities()):
-        view.render_window.SetMultiSamples(0)  # multisampling makes a software renderer five times slower
+        view.render_window.SetMultiSamples(
+            0
+        )  # multisampling makes a software renderer five times slower
     return view
 
 
 class PaintedView(QWidget):
     """A pyvista plotter in a plain widget: VTK draws off screen, the picture is painted, Qt's mouse goes to VTK's interactor."""
 
-    _PRESSES = {Qt.MouseButton.LeftButton: "LeftButtonPressEvent", Qt.MouseButton.RightButton: "RightButtonPressEvent",
-                Qt.MouseButton.MiddleButton: "MiddleButtonPressEvent"}
+    _PRESSES = {
+        Qt.MouseButton.LeftButton: "LeftButtonPressEvent",
+        Qt.MouseButton.RightButton: "RightButtonPressEvent",
+        Qt.MouseButton.MiddleButton: "MiddleButtonPressEvent",
+    }
 
     def __init__(self, parent: QWidget | None = None) -> None:
         super().__init__(parent)
         if sys.platform.startswith("linux"):
-            os.environ.setdefault("VTK_DEFAULT_OPENGL_WINDOW", "vtkEGLRenderWindow")  # else VTK tries X first, and warns
+            os.environ.setdefault(
+                "VTK_DEFAULT_OPENGL_WINDOW", "vtkEGLRenderWindow"
+            )  # else VTK tries X first, and warns
         import pyvista as pv
         from pyvista.plotting.render_window_interactor import RenderWindowInteractor
         from vtkmodules.vtkRenderingUI import vtkGenericRenderWindowInteractor
@@ -113,7 +128,11 @@ class PaintedView(QWidget):
 
     def wheelEvent(self, event: QWheelEvent) -> None:
         self._tell(event)
-        (self._interactor.MouseWheelForwardEvent if event.angleDelta().y() > 0 else self._interactor.MouseWheelBackwardEvent)()
+        (
+            self._interactor.MouseWheelForwardEvent
+            if event.angleDelta().y() > 0
+            else self._interactor.MouseWheelBackwardEvent
+        )()
         self.render()
 
     def close(self) -> bool:
@@ -126,6 +145,12 @@ class PaintedView(QWidget):
 
     def _tell(self, event: QMouseEvent | QWheelEvent) -> None:
         ratio, at, keys = self.devicePixelRatioF(), event.position(), event.modifiers()
-        self._interactor.SetEventInformation(round(at.x() * ratio), round((self.height() - at.y() - 1) * ratio),
-                                             bool(keys & Qt.KeyboardModifier.ControlModifier),
-                                             bool(keys & Qt.KeyboardModifier.ShiftModifier), chr(0), 0, None)
+        self._interactor.SetEventInformation(
+            round(at.x() * ratio),
+            round((self.height() - at.y() - 1) * ratio),
+            bool(keys & Qt.KeyboardModifier.ControlModifier),
+            bool(keys & Qt.KeyboardModifier.ShiftModifier),
+            chr(0),
+            0,
+            None,
+        )

@@ -46,10 +46,22 @@ class Chart(QWidget):
         self._theme = theme
         self.update()
 
-    def show_curves(self, across: str, places: Sequence[str], left: Curve | None, right: Curve | None,
-                    level: tuple[float, str] | None = None) -> None:
+    def show_curves(
+        self,
+        across: str,
+        places: Sequence[str],
+        left: Curve | None,
+        right: Curve | None,
+        level: tuple[float, str] | None = None,
+    ) -> None:
         """Show two curves over places that are named along the axis below; `level` is a value on the left with its words."""
-        self._across, self.places, self.left, self.right, self.level = across, tuple(places), left, right, level
+        self._across, self.places, self.left, self.right, self.level = (
+            across,
+            tuple(places),
+            left,
+            right,
+            level,
+        )
         self.update()
 
     def point(self, curve: Curve, row: int) -> QPointF:
@@ -65,8 +77,10 @@ class Chart(QWidget):
         font.setPixelSize(11)
         painter.setFont(font)
         self._frame(painter)
-        for curve, colour, side in ((self.right, self._theme.warning, Qt.AlignmentFlag.AlignRight),
-                                    (self.left, self._theme.accent, Qt.AlignmentFlag.AlignLeft)):
+        for curve, colour, side in (
+            (self.right, self._theme.warning, Qt.AlignmentFlag.AlignRight),
+            (self.left, self._theme.accent, Qt.AlignmentFlag.AlignLeft),
+        ):
             self._axis(painter, curve, colour, side)
             self._line(painter, curve, colour)
         painter.end()
@@ -78,13 +92,25 @@ class Chart(QWidget):
         painter.drawRect(area)
         painter.setPen(QColor(self._theme.muted))
         for row, words in enumerate(self.places):
-            painter.drawText(QRectF(self._x(row) - 30, area.bottom() + 3, 60, 14), Qt.AlignmentFlag.AlignHCenter, words)
-        painter.drawText(QRectF(area.left(), area.bottom() + 16, area.width(), 16), Qt.AlignmentFlag.AlignHCenter, self._across)
+            painter.drawText(
+                QRectF(self._x(row) - 30, area.bottom() + 3, 60, 14),
+                Qt.AlignmentFlag.AlignHCenter,
+                words,
+            )
+        painter.drawText(
+            QRectF(area.left(), area.bottom() + 16, area.width(), 16),
+            Qt.AlignmentFlag.AlignHCenter,
+            self._across,
+        )
         if self.level is not None:
             y = self._y(self.left, self.level[0])
             painter.setPen(QPen(QColor(self._theme.muted), 1, Qt.PenStyle.DashLine))
             painter.drawLine(QPointF(area.left(), y), QPointF(area.right(), y))
-            painter.drawText(QRectF(area.left() + 6, y - 16, area.width() - 12, 14), Qt.AlignmentFlag.AlignRight, self.level[1])
+            painter.drawText(
+                QRectF(area.left() + 6, y - 16, area.width() - 12, 14),
+                Qt.AlignmentFlag.AlignRight,
+                self.level[1],
+            )
 
     def _axis(self, painter: QPainter, curve: Curve, colour: str, side: Qt.AlignmentFlag) -> None:
         area, is_left = self._area(), side == Qt.AlignmentFlag.AlignLeft
@@ -94,9 +120,17 @@ class Chart(QWidget):
             y = self._y(curve, value) - 8
             words = f"{value:g} {curve.unit}"
             if is_left:
-                painter.drawText(QRectF(0, y, area.left() - 5, 16), Qt.AlignmentFlag.AlignRight | Qt.AlignmentFlag.AlignVCenter, words)
+                painter.drawText(
+                    QRectF(0, y, area.left() - 5, 16),
+                    Qt.AlignmentFlag.AlignRight | Qt.AlignmentFlag.AlignVCenter,
+                    words,
+                )
             else:
-                painter.drawText(QRectF(area.right() + 5, y, _RIGHT - 5, 16), Qt.AlignmentFlag.AlignVCenter, words)
+                painter.drawText(
+                    QRectF(area.right() + 5, y, _RIGHT - 5, 16),
+                    Qt.AlignmentFlag.AlignVCenter,
+                    words,
+                )
 
     def _line(self, painter: QPainter, curve: Curve, colour: str) -> None:
         points = [self.point(curve, row) for row in range(len(curve.values))]
@@ -109,7 +143,12 @@ class Chart(QWidget):
             painter.drawEllipse(point, _DOT, _DOT)
 
     def _area(self) -> QRectF:
-        return QRectF(_LEFT, _TOP, max(self.width() - _LEFT - _RIGHT, 10), max(self.height() - _TOP - _BELOW, 10))
+        return QRectF(
+            _LEFT,
+            _TOP,
+            max(self.width() - _LEFT - _RIGHT, 10),
+            max(self.height() - _TOP - _BELOW, 10),
+        )
 
     def _x(self, row: int) -> float:
         area = self._area()
@@ -126,13 +165,17 @@ class Chart(QWidget):
         """Return the ends of a curve's axis: of its values, or of their powers of ten."""
         if curve.by_powers:
             above = [v for v in curve.values if v > 0.0] or [1.0]
-            return math.floor(math.log10(min(above))), max(math.ceil(math.log10(max(above))), math.floor(math.log10(min(above))) + 1)
+            return math.floor(math.log10(min(above))), max(
+                math.ceil(math.log10(max(above))), math.floor(math.log10(min(above))) + 1
+            )
         return 0.0, max(*curve.values, 1e-9) * 1.1
 
     def _steps(self, curve: Curve) -> list[float]:
         low, high = self._range(curve)
         if curve.by_powers:
-            return [10.0**k for k in range(int(low), int(high) + 1, max(1, round((high - low) / 4)))]
+            return [
+                10.0**k for k in range(int(low), int(high) + 1, max(1, round((high - low) / 4)))
+            ]
         step = 10.0 ** math.floor(math.log10(high))
         step *= next(s for s in (0.2, 0.5, 1.0, 2.0, 5.0) if high / (step * s) <= 5.0)
         return [float(v) for v in np.arange(0.0, high, step)]

@@ -5,13 +5,24 @@ from __future__ import annotations
 import re
 
 from PySide6.QtCore import Qt, Signal
-from PySide6.QtGui import QColor, QMouseEvent, QPaintEvent, QResizeEvent, QTextBlock, QTextCharFormat, QTextCursor, QTextLayout
+from PySide6.QtGui import (
+    QColor,
+    QMouseEvent,
+    QPaintEvent,
+    QResizeEvent,
+    QTextBlock,
+    QTextCharFormat,
+    QTextCursor,
+    QTextLayout,
+)
 from PySide6.QtWidgets import QPlainTextEdit, QTextEdit
 
 from trunnion_gui.look.colours import Theme, motions, readable
 
-_PATTERN = re.compile(r"(?P<comment>\([^)]*\)|;.*$|^\$\$.*$)|(?P<rapid>\bG0?0\b|\bRAPID\b)|(?P<cut>\bG0?[123]\b|\bGOTO\b|\bCIRCLE\b)"
-                      r"|(?P<tool>\b[TMS]\d+(?:\.\d+)?\b|\b[A-Z]{4,}/)|(?P<number>\bN\d+\b)")
+_PATTERN = re.compile(
+    r"(?P<comment>\([^)]*\)|;.*$|^\$\$.*$)|(?P<rapid>\bG0?0\b|\bRAPID\b)|(?P<cut>\bG0?[123]\b|\bGOTO\b|\bCIRCLE\b)"
+    r"|(?P<tool>\b[TMS]\d+(?:\.\d+)?\b|\b[A-Z]{4,}/)|(?P<number>\bN\d+\b)"
+)
 
 
 class CodeView(QPlainTextEdit):
@@ -33,7 +44,9 @@ class CodeView(QPlainTextEdit):
     def use_theme(self, theme: Theme) -> None:
         """Draw in the colours of a theme."""
         colours = {"comment": theme.muted, "number": theme.muted, "tool": theme.accent}
-        colours |= {name: readable(motions()[name], theme.panel, theme.text) for name in ("rapid", "cut")}
+        colours |= {
+            name: readable(motions()[name], theme.panel, theme.text) for name in ("rapid", "cut")
+        }
         self._looks = {name: QTextCharFormat() for name in colours}
         for name, colour in colours.items():
             self._looks[name].setForeground(QColor(colour))

@@ -66,7 +66,9 @@ class Finder(QFrame):
                 return True
             if event.key() in (Qt.Key.Key_Down, Qt.Key.Key_Up):
                 step = 1 if event.key() == Qt.Key.Key_Down else -1
-                self.list.setCurrentRow(min(max(self.list.currentRow() + step, 0), self.list.count() - 1))
+                self.list.setCurrentRow(
+                    min(max(self.list.currentRow() + step, 0), self.list.count() - 1)
+                )
                 return True
         if event.type() == QEvent.Type.FocusOut:
             self.hide()
@@ -74,7 +76,11 @@ class Finder(QFrame):
 
     def _filter(self, wanted: str) -> None:
         self.list.clear()
-        able = [self._registry.action(c.id) for c in self._registry.commands() if self._registry.action(c.id).isEnabled()]
+        able = [
+            self._registry.action(c.id)
+            for c in self._registry.commands()
+            if self._registry.action(c.id).isEnabled()
+        ]
         ranked = sorted(((score(wanted, a.text()), a) for a in able), key=lambda pair: -pair[0])
         for points, action in ranked:
             if points:
@@ -83,7 +89,9 @@ class Finder(QFrame):
 
     def _add(self, action: QAction) -> None:
         keys = action.shortcut().toString(QKeySequence.SequenceFormat.NativeText)
-        item = QListWidgetItem(action.icon(), f"{action.text()}    {keys}" if keys else action.text())
+        item = QListWidgetItem(
+            action.icon(), f"{action.text()}    {keys}" if keys else action.text()
+        )
         item.setData(Qt.ItemDataRole.UserRole, action.objectName())
         self.list.addItem(item)
 

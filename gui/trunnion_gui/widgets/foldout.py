@@ -10,7 +10,13 @@ from trunnion_gui.i18n import tr
 from trunnion_gui.look import icons
 from trunnion_gui.look.colours import Theme
 
-STATES = {"empty": "empty", "stale": "stale", "running": "running", "done": "done", "problem": "problem"}
+STATES = {
+    "empty": "empty",
+    "stale": "stale",
+    "running": "running",
+    "done": "done",
+    "problem": "problem",
+}
 
 
 class _Header(QFrame):
@@ -23,7 +29,9 @@ class _Header(QFrame):
         self.setFocusPolicy(Qt.FocusPolicy.TabFocus)
 
     def mouseReleaseEvent(self, event: QMouseEvent) -> None:
-        if event.button() == Qt.MouseButton.LeftButton and self.rect().contains(event.position().toPoint()):
+        if event.button() == Qt.MouseButton.LeftButton and self.rect().contains(
+            event.position().toPoint()
+        ):
             self.clicked.emit()
 
     def keyPressEvent(self, event: QKeyEvent) -> None:
@@ -38,7 +46,9 @@ class Foldout(QFrame):
 
     toggled = Signal(bool)
 
-    def __init__(self, title: str, number: int = 0, *, is_open: bool = False, is_group: bool = False) -> None:
+    def __init__(
+        self, title: str, number: int = 0, *, is_open: bool = False, is_group: bool = False
+    ) -> None:
         super().__init__()
         self.setObjectName("settingsGroup" if is_group else "foldout")
         self._theme: Theme | None = None
@@ -50,7 +60,9 @@ class Foldout(QFrame):
         self.title = QLabel(title)
         self.body = QWidget()
         self.content = QVBoxLayout(self.body)
-        self.content.setContentsMargins(2 if is_group else 12, 2, 2 if is_group else 12, 4 if is_group else 12)
+        self.content.setContentsMargins(
+            2 if is_group else 12, 2, 2 if is_group else 12, 4 if is_group else 12
+        )
         self.content.setSpacing(8)
         self._lay_header(number, is_group)
         column = QVBoxLayout(self)
@@ -74,8 +86,13 @@ class Foldout(QFrame):
         is_news = (state, self._theme) != self._drawn
         self.state, self._drawn = state, (state, self._theme)
         if self._theme is not None and is_news:
-            colours = {"empty": self._theme.muted, "stale": self._theme.warning, "running": self._theme.accent, "done": self._theme.good,
-                       "problem": self._theme.bad}
+            colours = {
+                "empty": self._theme.muted,
+                "stale": self._theme.warning,
+                "running": self._theme.accent,
+                "done": self._theme.good,
+                "problem": self._theme.bad,
+            }
             self._state.setPixmap(icons.pixmap(state, 14, colours[state]))
             self._words.setText(tr(STATES[state]))
             self._words.setStyleSheet(f"color: {colours[state]}; font-size: 12px")
@@ -89,7 +106,9 @@ class Foldout(QFrame):
 
     def _lay_header(self, number: int, is_group: bool) -> None:
         row = QHBoxLayout(self.header)
-        row.setContentsMargins(2 if is_group else 10, 4 if is_group else 9, 2 if is_group else 12, 4 if is_group else 9)
+        row.setContentsMargins(
+            2 if is_group else 10, 4 if is_group else 9, 2 if is_group else 12, 4 if is_group else 9
+        )
         row.setSpacing(7)
         self._arrow.setFixedWidth(16)
         row.addWidget(self._arrow)
@@ -114,4 +133,10 @@ class Foldout(QFrame):
             self._state.setFixedWidth(15)
 
     def _draw_arrow(self) -> None:
-        self._arrow.setPixmap(icons.pixmap("forward" if self.is_folded else "down", 16, self._theme.muted if self._theme else ""))
+        self._arrow.setPixmap(
+            icons.pixmap(
+                "forward" if self.is_folded else "down",
+                16,
+                self._theme.muted if self._theme else "",
+            )
+        )

@@ -33,7 +33,9 @@ class Panel(Foldout):
     command = ""
     folds_settings = False
 
-    def __init__(self, stage: Stage, number: int, document: Document, registry: Registry, views: Views) -> None:
+    def __init__(
+        self, stage: Stage, number: int, document: Document, registry: Registry, views: Views
+    ) -> None:
         super().__init__(tr(stage.title), number, is_open=number == 1)
         self.setProperty("stage", stage.name)
         self.stage = stage
@@ -91,9 +93,15 @@ class Panel(Foldout):
         """Show state, time, settings and results anew."""
         document = self.document
         records = document.shown.records
-        state = "running" if document.running_step in self.stage.steps else joined_state(document.states, self.stage.steps)
+        state = (
+            "running"
+            if document.running_step in self.stage.steps
+            else joined_state(document.states, self.stage.steps)
+        )
         taken = sum(records[s].seconds for s in self.stage.steps if s in records)
-        self.show_state(state, duration(taken) if any(s in records for s in self.stage.steps) else "")
+        self.show_state(
+            state, duration(taken) if any(s in records for s in self.stage.steps) else ""
+        )
         if document.groups is not self._settings_shown:
             self._make_forms()
         for form in self.forms:
@@ -107,7 +115,11 @@ class Panel(Foldout):
         """Give the main button the accent while its step is the next one to do."""
         earlier = STEPS[: STEPS.index(self.stage.steps[0])]
         states = self.document.states
-        is_next = state in ("empty", "stale") and self.document.has_part and all(states.get(s) in ("done", "problem") for s in earlier)
+        is_next = (
+            state in ("empty", "stale")
+            and self.document.has_part
+            and all(states.get(s) in ("done", "problem") for s in earlier)
+        )
         for button in self._main:
             name = "primary" if is_next else ""
             if button.objectName() != name:
@@ -124,7 +136,9 @@ class Panel(Foldout):
 
     def _make_forms(self) -> None:
         self._settings_shown = self.document.groups
-        groups = [g for step in self.stage.steps for g in self.document.groups.get(step, ()) if g.settings]
+        groups = [
+            g for step in self.stage.steps for g in self.document.groups.get(step, ()) if g.settings
+        ]
         inside = self._settings
         if len(groups) > _MANY:
             whole = self._folded(tr("Settings"))
@@ -157,8 +171,16 @@ class Panel(Foldout):
     def _form(self, group: Group) -> Form:
         form = Form(group.settings)
         labels = {s.key: s.label for s in group.settings}
-        form.changed.connect(lambda key, value, gesture: self.document.choose(key, f"{tr(labels[key])}: {value}", value, gesture))
-        form.reset.connect(lambda key: self.document.edit(f"{tr(labels[key])}: default", edits.without_choices(key)))
+        form.changed.connect(
+            lambda key, value, gesture: self.document.choose(
+                key, f"{tr(labels[key])}: {value}", value, gesture
+            )
+        )
+        form.reset.connect(
+            lambda key: self.document.edit(
+                f"{tr(labels[key])}: default", edits.without_choices(key)
+            )
+        )
         self.forms.append(form)
         return form
 

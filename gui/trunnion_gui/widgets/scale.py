@@ -40,7 +40,10 @@ class _Bar(QWidget):
         painter.setRenderHint(QPainter.RenderHint.Antialiasing)
         gradient = QLinearGradient(0, _PAD + _HEIGHT, 0, _PAD)
         shares = np.linspace(0.0, 1.0, _STOPS)
-        for share, colour in zip(shares, self._colours.at((2 * shares - 1) * shown.limit, shown.low, shown.high, shown.limit)):
+        for share, colour in zip(
+            shares,
+            self._colours.at((2 * shares - 1) * shown.limit, shown.low, shown.high, shown.limit),
+        ):
             gradient.setColorAt(float(share), QColor(*(int(c) for c in colour)))
         painter.setPen(QColor(self.theme.line))
         painter.setBrush(gradient)
@@ -48,18 +51,27 @@ class _Bar(QWidget):
         font = QFont(self.font())
         font.setPixelSize(12)
         painter.setFont(font)
-        for value, words in ((shown.limit, f"≥ {fine_amount(shown.limit)}"), (shown.high, fine_amount(shown.high)), (0.0, "0"),
-                             (shown.low, fine_amount(shown.low)), (-shown.limit, f"≤ {fine_amount(-shown.limit)}")):
+        for value, words in (
+            (shown.limit, f"≥ {fine_amount(shown.limit)}"),
+            (shown.high, fine_amount(shown.high)),
+            (0.0, "0"),
+            (shown.low, fine_amount(shown.low)),
+            (-shown.limit, f"≤ {fine_amount(-shown.limit)}"),
+        ):
             y = self.y_of(value)
             painter.setPen(QColor(self.theme.muted))
             painter.drawLine(QPointF(_BAR + 2, y), QPointF(_BAR + 6, y))
             painter.setPen(QColor(self.theme.text))
-            painter.drawText(QRectF(_BAR + 10, y - 8, _WORDS - 10, 16), Qt.AlignmentFlag.AlignVCenter, words)
+            painter.drawText(
+                QRectF(_BAR + 10, y - 8, _WORDS - 10, 16), Qt.AlignmentFlag.AlignVCenter, words
+            )
         if self.pointed is not None:
             y = self.y_of(self.pointed)
             painter.setPen(Qt.PenStyle.NoPen)
             painter.setBrush(QColor(self.theme.text))
-            painter.drawPolygon([QPointF(_BAR - 3, y), QPointF(_BAR + 5, y - 4.5), QPointF(_BAR + 5, y + 4.5)])
+            painter.drawPolygon(
+                [QPointF(_BAR - 3, y), QPointF(_BAR + 5, y - 4.5), QPointF(_BAR + 5, y + 4.5)]
+            )
         painter.end()
 
 

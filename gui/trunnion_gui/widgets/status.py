@@ -25,7 +25,12 @@ class Status(QStatusBar):
         super().__init__()
         self._document = document
         self.setSizeGripEnabled(False)
-        self.text, self.bar, self.cancel, self.verdict = QLabel(), QProgressBar(), QToolButton(), QLabel()
+        self.text, self.bar, self.cancel, self.verdict = (
+            QLabel(),
+            QProgressBar(),
+            QToolButton(),
+            QLabel(),
+        )
         self.bar.setRange(0, 1000)
         self.bar.setTextVisible(False)
         self.bar.setFixedSize(220, 6)
@@ -45,7 +50,11 @@ class Status(QStatusBar):
         document.changed.connect(self.refresh)
         document.files.saved.connect(lambda path: self._say(tr("Saved {path}").format(path=path)))
         document.said.connect(self._say)
-        document.files.written.connect(lambda what: self._say(tr("{n} files written to {folder}").format(n=len(what[1]), folder=what[0])))
+        document.files.written.connect(
+            lambda what: self._say(
+                tr("{n} files written to {folder}").format(n=len(what[1]), folder=what[0])
+            )
+        )
         self._job()
         self.refresh()
 
@@ -54,13 +63,17 @@ class Status(QStatusBar):
         session = self._document.shown
         verdict = session.verdict
         if verdict is None or self._document.is_busy:
-            self.verdict.setText("" if session.part is None or self._document.is_busy else tr("no verdict yet"))
+            self.verdict.setText(
+                "" if session.part is None or self._document.is_busy else tr("no verdict yet")
+            )
             self._colour("")
             return
         is_stale = self._document.states.get("verify") in ("stale", "empty")
         words = tr("verdict: {outcome}").format(outcome=tr(verdict.outcome.value))
         stale = f" · {tr('stale')}" if is_stale else ""
-        self.verdict.setText(f"{words} · {tr('coverage')} {share(verdict.coverage)} · {duration(verdict.machining_time_s)}{stale}")
+        self.verdict.setText(
+            f"{words} · {tr('coverage')} {share(verdict.coverage)} · {duration(verdict.machining_time_s)}{stale}"
+        )
         self._colour("warning" if is_stale else _VERDICTS[verdict.outcome])
 
     def _colour(self, name: str) -> None:
@@ -104,4 +117,6 @@ class Status(QStatusBar):
     def _tick(self) -> None:
         job = self._document.jobs.job
         if job is not None:
-            self.text.setText(f"{duration(round(time.monotonic() - job.started) or 0.0)} · {self._doing} · {self.bar.value() // 10} %")
+            self.text.setText(
+                f"{duration(round(time.monotonic() - job.started) or 0.0)} · {self._doing} · {self.bar.value() // 10} %"
+            )

@@ -7,7 +7,13 @@ from typing import TypeVar
 
 from PySide6.QtCore import Qt
 from PySide6.QtGui import QColor, QIcon, QPainter, QPixmap
-from PySide6.QtWidgets import QAbstractItemView, QHeaderView, QTableWidget, QTableWidgetItem, QTreeWidget
+from PySide6.QtWidgets import (
+    QAbstractItemView,
+    QHeaderView,
+    QTableWidget,
+    QTableWidgetItem,
+    QTreeWidget,
+)
 
 Tree = TypeVar("Tree", bound=QTreeWidget)
 RIGHT = Qt.AlignmentFlag.AlignRight | Qt.AlignmentFlag.AlignVCenter
@@ -24,12 +30,18 @@ def tree(headers: Sequence[str], stretched: int = 0, kind: type[Tree] = QTreeWid
     made.setContextMenuPolicy(Qt.ContextMenuPolicy.CustomContextMenu)
     made.header().setStretchLastSection(False)
     for column in range(len(headers)):
-        mode = QHeaderView.ResizeMode.Stretch if column == stretched else QHeaderView.ResizeMode.ResizeToContents
+        mode = (
+            QHeaderView.ResizeMode.Stretch
+            if column == stretched
+            else QHeaderView.ResizeMode.ResizeToContents
+        )
         made.header().setSectionResizeMode(column, mode)
     return made
 
 
-def table(headers: Sequence[str], stretched: Sequence[int] = (0,), has_names: bool = False) -> QTableWidget:
+def table(
+    headers: Sequence[str], stretched: Sequence[int] = (0,), has_names: bool = False
+) -> QTableWidget:
     """Return an empty table with its columns; some of them share the room that is left. Names that don't fit keep beginning and end."""
     made = QTableWidget(0, len(headers))
     made.setHorizontalHeaderLabels(list(headers))
@@ -47,12 +59,21 @@ def table(headers: Sequence[str], stretched: Sequence[int] = (0,), has_names: bo
     header.setHighlightSections(False)
     header.setDefaultAlignment(Qt.AlignmentFlag.AlignLeft | Qt.AlignmentFlag.AlignVCenter)
     for column in range(len(headers)):
-        mode = QHeaderView.ResizeMode.Stretch if column in stretched else QHeaderView.ResizeMode.ResizeToContents
+        mode = (
+            QHeaderView.ResizeMode.Stretch
+            if column in stretched
+            else QHeaderView.ResizeMode.ResizeToContents
+        )
         header.setSectionResizeMode(column, mode)
     return made
 
 
-def fill(made: QTableWidget, rows: Iterable[Sequence[str]], right: Sequence[int] = (), icons: Sequence[QIcon] = ()) -> None:
+def fill(
+    made: QTableWidget,
+    rows: Iterable[Sequence[str]],
+    right: Sequence[int] = (),
+    icons: Sequence[QIcon] = (),
+) -> None:
     """Put rows of words into a table; the columns in `right` are right-aligned, the first column has the icons."""
     listed = list(rows)
     made.setRowCount(len(listed))

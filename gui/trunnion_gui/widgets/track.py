@@ -6,7 +6,15 @@ from collections.abc import Sequence
 
 import numpy as np
 from PySide6.QtCore import QEvent, QPointF, QRectF, QSize, Qt, Signal
-from PySide6.QtGui import QColor, QHelpEvent, QKeyEvent, QMouseEvent, QPainter, QPaintEvent, QWheelEvent
+from PySide6.QtGui import (
+    QColor,
+    QHelpEvent,
+    QKeyEvent,
+    QMouseEvent,
+    QPainter,
+    QPaintEvent,
+    QWheelEvent,
+)
 from PySide6.QtWidgets import QSizePolicy, QToolTip, QWidget
 
 from trunnion_gui.look.colours import Theme, mixed
@@ -46,9 +54,16 @@ class Track(QWidget):
         self._theme = theme
         self.update()
 
-    def show_marks(self, end: float, firsts: Sequence[float], words: Sequence[str], colours: Sequence[str]) -> None:
+    def show_marks(
+        self, end: float, firsts: Sequence[float], words: Sequence[str], colours: Sequence[str]
+    ) -> None:
         """Show segments that begin at `firsts`, each with words and a colour."""
-        self._end, self._firsts, self._words, self._colours = end, tuple(firsts), tuple(words), tuple(colours)
+        self._end, self._firsts, self._words, self._colours = (
+            end,
+            tuple(firsts),
+            tuple(words),
+            tuple(colours),
+        )
         self.setEnabled(end > 0.0)
         self.update()
 
@@ -84,14 +99,26 @@ class Track(QWidget):
         painter.setRenderHint(QPainter.RenderHint.Antialiasing)
         painter.setPen(Qt.PenStyle.NoPen)
         middle = 10.0
-        left, right, at = self.x_of(0.0), self.x_of(self._end) if self._end else self.width() - _EDGE, self.x_of(self._value)
+        left, right, at = (
+            self.x_of(0.0),
+            self.x_of(self._end) if self._end else self.width() - _EDGE,
+            self.x_of(self._value),
+        )
         painter.setBrush(QColor(theme.line))
-        painter.drawRoundedRect(QRectF(left, middle - _GROOVE / 2, right - left, _GROOVE), _GROOVE / 2, _GROOVE / 2)
+        painter.drawRoundedRect(
+            QRectF(left, middle - _GROOVE / 2, right - left, _GROOVE), _GROOVE / 2, _GROOVE / 2
+        )
         if self._end:
             painter.setBrush(QColor(mixed(theme.accent, theme.panel, 0.55)))
-            painter.drawRoundedRect(QRectF(left, middle - _GROOVE / 2, self.x_of(self._stock) - left, _GROOVE), _GROOVE / 2, _GROOVE / 2)
+            painter.drawRoundedRect(
+                QRectF(left, middle - _GROOVE / 2, self.x_of(self._stock) - left, _GROOVE),
+                _GROOVE / 2,
+                _GROOVE / 2,
+            )
             painter.setBrush(QColor(theme.accent))
-            painter.drawRoundedRect(QRectF(left, middle - _GROOVE / 2, at - left, _GROOVE), _GROOVE / 2, _GROOVE / 2)
+            painter.drawRoundedRect(
+                QRectF(left, middle - _GROOVE / 2, at - left, _GROOVE), _GROOVE / 2, _GROOVE / 2
+            )
         self._paint_marks(painter, middle + 9.0)
         self._paint_load(painter, middle + 9.0 + _MARKS + 3.0)
         if self._end:
@@ -115,7 +142,12 @@ class Track(QWidget):
         self.stepped.emit(1 if event.angleDelta().y() > 0 else -1)
 
     def keyPressEvent(self, event: QKeyEvent) -> None:
-        step = {Qt.Key.Key_Right: 1, Qt.Key.Key_Left: -1, Qt.Key.Key_PageUp: 100, Qt.Key.Key_PageDown: -100}.get(Qt.Key(event.key()))
+        step = {
+            Qt.Key.Key_Right: 1,
+            Qt.Key.Key_Left: -1,
+            Qt.Key.Key_PageUp: 100,
+            Qt.Key.Key_PageDown: -100,
+        }.get(Qt.Key(event.key()))
         if step is None:
             super().keyPressEvent(event)
         else:
@@ -152,9 +184,18 @@ class Track(QWidget):
         tops = np.maximum.reduceat(self._load, first) / high
         bad = np.logical_or.reduceat(self._bad, first)
         done = self.x_of(self._value) - left
-        pale, full, red = (QColor(c) for c in (mixed(self._theme.accent, self._theme.panel, 0.6), self._theme.accent, self._theme.bad))
+        pale, full, red = (
+            QColor(c)
+            for c in (
+                mixed(self._theme.accent, self._theme.panel, 0.6),
+                self._theme.accent,
+                self._theme.bad,
+            )
+        )
         for x in range(width):
             height = float(tops[x]) * (_LOAD - 4)
-            painter.fillRect(QRectF(left + x, y + _LOAD - 4 - height, 1.0, height), full if x < done else pale)
+            painter.fillRect(
+                QRectF(left + x, y + _LOAD - 4 - height, 1.0, height), full if x < done else pale
+            )
             if bad[x]:
                 painter.fillRect(QRectF(left + x - 1, y - 1, 2.5, _LOAD - 3), red)

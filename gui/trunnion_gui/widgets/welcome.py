@@ -30,7 +30,11 @@ class Welcome(QFrame):
         column.setContentsMargins(28, 26, 28, 22)
         column.setSpacing(10)
         title = QLabel(tr("Drop a part here"))
-        words = QLabel(tr("STEP or IGES, or a Trunnion project. Then press Program: features, route, toolpaths and proof follow."))
+        words = QLabel(
+            tr(
+                "STEP or IGES, or a Trunnion project. Then press Program: features, route, toolpaths and proof follow."
+            )
+        )
         title.setObjectName("welcome")
         words.setObjectName("muted")
         words.setWordWrap(True)

@@ -33,14 +33,19 @@ class DrawnMap:
 
 def drawn_map(shown: DeviationMap) -> DrawnMap:
     """Return a map ready to be drawn."""
-    return DrawnMap(map=shown, normals=normals_of(shown.points, shown.triangles),
-                    colours=load_palette().deviation.at(shown.value, shown.low, shown.high, shown.limit))
+    return DrawnMap(
+        map=shown,
+        normals=normals_of(shown.points, shown.triangles),
+        colours=load_palette().deviation.at(shown.value, shown.low, shown.high, shown.limit),
+    )
 
 
 def drawing_of(mesh: Mesh) -> Drawing:
     """Return a mesh ready to be drawn."""
     borders, owners = border_edges(mesh)
-    return Drawing(mesh=mesh, normals=normals_of(mesh.points, mesh.triangles), borders=borders, owners=owners)
+    return Drawing(
+        mesh=mesh, normals=normals_of(mesh.points, mesh.triangles), borders=borders, owners=owners
+    )
 
 
 def border_edges(mesh: Mesh) -> tuple[np.ndarray, np.ndarray]:
@@ -48,10 +53,14 @@ def border_edges(mesh: Mesh) -> tuple[np.ndarray, np.ndarray]:
 
     Points are shared inside a face and not across faces, so an edge of one triangle only is a face's border.
     """
-    pairs = np.concatenate([mesh.triangles[:, [0, 1]], mesh.triangles[:, [1, 2]], mesh.triangles[:, [2, 0]]])
+    pairs = np.concatenate(
+        [mesh.triangles[:, [0, 1]], mesh.triangles[:, [1, 2]], mesh.triangles[:, [2, 0]]]
+    )
     owner = np.tile(mesh.face, 3)
     ordered = np.sort(pairs, axis=1)
-    _, first, count = np.unique(ordered[:, 0] * len(mesh.points) + ordered[:, 1], return_index=True, return_counts=True)
+    _, first, count = np.unique(
+        ordered[:, 0] * len(mesh.points) + ordered[:, 1], return_index=True, return_counts=True
+    )
     rows = first[count == 1]
     return pairs[rows], owner[rows]
 
@@ -61,7 +70,9 @@ def normals_of(points: np.ndarray, triangles: np.ndarray) -> np.ndarray:
     a, b, c = (points[triangles[:, k]] for k in range(3))
     across = np.cross(b - a, c - a)
     n, rows = len(points), triangles.T.ravel()
-    total = np.stack([np.bincount(rows, weights=np.tile(across[:, k], 3), minlength=n) for k in range(3)], axis=1)
+    total = np.stack(
+        [np.bincount(rows, weights=np.tile(across[:, k], 3), minlength=n) for k in range(3)], axis=1
+    )
     length = np.linalg.norm(total, axis=1, keepdims=True)
     return np.divide(total, length, out=np.zeros_like(total), where=length > 0).astype(np.float32)
 
@@ -99,7 +110,9 @@ def plane_line(mesh: Mesh, tag: int, place: Sequence[float], normal: Sequence[fl
     for step in (1, 2):
         other = (alone + step) % 3
         share = height[row, alone] / (height[row, alone] - height[row, other])
-        ends.append(corners[row, alone] + share[:, None] * (corners[row, other] - corners[row, alone]))
+        ends.append(
+            corners[row, alone] + share[:, None] * (corners[row, other] - corners[row, alone])
+        )
     return np.stack(ends, axis=1)
 
 

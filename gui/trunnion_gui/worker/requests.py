@@ -79,7 +79,9 @@ def _run(engine: Any, progress: Progress, tell: Tell, session: Session, last: st
     for step in steps:
         tell("stage", (step, None))
         try:
-            session = engine.run(session, until=step, progress=_own_share(progress.part(*share(step, steps)), step))
+            session = engine.run(
+                session, until=step, progress=_own_share(progress.part(*share(step, steps)), step)
+            )
         except TrunnionError as reason:
             if step == steps[0]:
                 raise
@@ -100,14 +102,18 @@ def _own_share(progress: Progress, step: str) -> Progress:
             return True
         return False
 
-    return Progress(lambda fraction, text: progress.at(fraction * (done + 1) - done, text), is_cancelled)
+    return Progress(
+        lambda fraction, text: progress.at(fraction * (done + 1) - done, text), is_cancelled
+    )
 
 
 def _states(engine: Any, _progress: Progress, _tell: Tell, session: Session) -> State:
     return State(session, engine.states(session))
 
 
-def _attach(engine: Any, progress: Progress, _tell: Tell, session: Session, data: bytes, suffix: str) -> State:
+def _attach(
+    engine: Any, progress: Progress, _tell: Tell, session: Session, data: bytes, suffix: str
+) -> State:
     engine.attach(session, data, suffix, progress=progress)
     return State(session, engine.states(session))
 
@@ -119,7 +125,9 @@ def _save(engine: Any, progress: Progress, _tell: Tell, session: Session, path: 
 
 
 @writes_files
-def _write(engine: Any, progress: Progress, _tell: Tell, session: Session, folder: str) -> tuple[str, ...]:
+def _write(
+    engine: Any, progress: Progress, _tell: Tell, session: Session, folder: str
+) -> tuple[str, ...]:
     return tuple(str(name) for name in engine.write(session, folder, progress=progress))
 
 
@@ -127,7 +135,9 @@ def _playback(engine: Any, progress: Progress, _tell: Tell, session: Session) ->
     return engine.playback(session, progress=progress)
 
 
-def _moment(engine: Any, progress: Progress, _tell: Tell, key: str, position: float, seconds: float) -> Any:
+def _moment(
+    engine: Any, progress: Progress, _tell: Tell, key: str, position: float, seconds: float
+) -> Any:
     return engine.moment(key, position, seconds, progress)
 
 
@@ -136,8 +146,12 @@ def _deviation(engine: Any, progress: Progress, _tell: Tell, session: Session) -
 
 
 def _settings(engine: Any, _progress: Progress, _tell: Tell) -> dict[str, tuple[Group, ...]]:
-    return {step: tuple(Group(c.GROUP, _title(c), tuple(_offered(d) for d in declared(c))) for c in classes)
-            for step, classes in engine.settings().items()}
+    return {
+        step: tuple(
+            Group(c.GROUP, _title(c), tuple(_offered(d) for d in declared(c))) for c in classes
+        )
+        for step, classes in engine.settings().items()
+    }
 
 
 def _offered(setting: Declared) -> Declared:
@@ -147,13 +161,26 @@ def _offered(setting: Declared) -> Declared:
     from trunnion.shop import load_shop
 
     shop = load_shop()
-    known = [tool.name for tool in shop.tools] if setting.catalogue == "tools" else sorted(getattr(shop, setting.catalogue))
+    known = (
+        [tool.name for tool in shop.tools]
+        if setting.catalogue == "tools"
+        else sorted(getattr(shop, setting.catalogue))
+    )
     return replace(setting, choices=tuple(dict.fromkeys((str(setting.default), *known))))
 
 
 VERBS: dict[str, Callable[..., Any]] = {
-    "open": _open, "run": _run, "states": _states, "attach": _attach, "save": _save, "write": _write, "settings": _settings,
-    "playback": _playback, "moment": _moment, "deviation": _deviation}
+    "open": _open,
+    "run": _run,
+    "states": _states,
+    "attach": _attach,
+    "save": _save,
+    "write": _write,
+    "settings": _settings,
+    "playback": _playback,
+    "moment": _moment,
+    "deviation": _deviation,
+}
 
 
 def _title(group: Any) -> str:

@@ -31,7 +31,7 @@ def packed(thing: Any) -> Parcel:
     memory = SharedMemory(create=True, size=sum(sizes))
     room, at = memoryview(memory.buf or b""), 0
     for view in views:
-        room[at:at + view.nbytes] = view
+        room[at : at + view.nbytes] = view
         at += view.nbytes
     room.release()
     memory.close()
@@ -45,7 +45,7 @@ def unpacked(parcel: Parcel) -> Any:
     memory = SharedMemory(name=parcel.block)
     room, buffers, at = memoryview(memory.buf or b""), [], 0
     for size in parcel.sizes:
-        buffers.append(bytes(room[at:at + size]))
+        buffers.append(bytes(room[at : at + size]))
         at += size
     room.release()
     memory.close()

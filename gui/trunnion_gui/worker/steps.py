@@ -8,11 +8,26 @@ from dataclasses import dataclass
 STEPS = ("recognize", "size", "blank", "route", "optimize", "toolpath", "verify")
 """The pipeline's steps in order (the window's process does not import the pipeline; a test compares)."""
 
-TITLES = {"recognize": "Recognize", "size": "Size analysis", "blank": "Blank", "route": "Process route", "optimize": "Optimize",
-          "toolpath": "Toolpaths", "verify": "Verify and post"}
+TITLES = {
+    "recognize": "Recognize",
+    "size": "Size analysis",
+    "blank": "Blank",
+    "route": "Process route",
+    "optimize": "Optimize",
+    "toolpath": "Toolpaths",
+    "verify": "Verify and post",
+}
 """What a person calls each step; the pipeline's own titles."""
 
-SHARES = {"recognize": 0.08, "size": 0.02, "blank": 0.02, "route": 0.08, "optimize": 0.05, "toolpath": 0.35, "verify": 0.40}
+SHARES = {
+    "recognize": 0.08,
+    "size": 0.02,
+    "blank": 0.02,
+    "route": 0.08,
+    "optimize": 0.05,
+    "toolpath": 0.35,
+    "verify": 0.40,
+}
 """About which share of a whole run each step takes, for the progress bar."""
 
 _WORST = ("problem", "running", "stale", "empty", "done")

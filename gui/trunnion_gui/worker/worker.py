@@ -121,7 +121,11 @@ def _answer(engine: Any, request: Request, pipe: Connection, cancelled: Any) -> 
 
     progress = Progress(report, lambda: cancelled.value >= request.number)
     progress.check()
-    return Reply(request.number, "done", value=work_of(request.verb)(engine, progress, tell, *request.arguments))
+    return Reply(
+        request.number,
+        "done",
+        value=work_of(request.verb)(engine, progress, tell, *request.arguments),
+    )
 
 
 class Worker(QObject):
@@ -196,11 +200,15 @@ class Worker(QObject):
         here, there = context.Pipe()
         self._pipe = here
         # Not a daemon: reading a part starts a child process of its own.
-        self._process = context.Process(target=serve, args=(there, self._factory, self._cancelled), name="trunnion-worker")
+        self._process = context.Process(
+            target=serve, args=(there, self._factory, self._cancelled), name="trunnion-worker"
+        )
         self._process.start()
         there.close()
         for target in (_send_all, _receive_all):
-            threading.Thread(target=target, args=(self, self._generation, here, self._outgoing), daemon=True).start()
+            threading.Thread(
+                target=target, args=(self, self._generation, here, self._outgoing), daemon=True
+            ).start()
 
     def _end(self) -> None:
         if self._process is None:
@@ -248,7 +256,9 @@ class Worker(QObject):
         self._crashes += 1
         lost = self._awaited[0].number if self._awaited else 0
         if self._crashes <= _CRASHES_IN_A_ROW:
-            self._replace("crashed", "the computing process stopped unexpectedly and was started again", lost)
+            self._replace(
+                "crashed", "the computing process stopped unexpectedly and was started again", lost
+            )
             return
         self._end()
         waiting, self._awaited = self._awaited, []
@@ -265,7 +275,9 @@ def _kill(process: Any) -> None:
     process.kill()
 
 
-def _send_all(worker: Worker, generation: int, pipe: Connection, outgoing: queue.SimpleQueue[Request | None]) -> None:
+def _send_all(
+    worker: Worker, generation: int, pipe: Connection, outgoing: queue.SimpleQueue[Request | None]
+) -> None:
     while (request := outgoing.get()) is not None:
         try:
             pipe.send(packed(request))
@@ -273,7 +285,9 @@ def _send_all(worker: Worker, generation: int, pipe: Connection, outgoing: queue
             return
 
 
-def _receive_all(worker: Worker, generation: int, pipe: Connection, outgoing: queue.SimpleQueue[Request | None]) -> None:
+def _receive_all(
+    worker: Worker, generation: int, pipe: Connection, outgoing: queue.SimpleQueue[Request | None]
+) -> None:
     while True:
         try:
             reply: Reply | None = unpacked(pipe.recv())

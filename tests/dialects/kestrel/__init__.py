@@ -23,7 +23,9 @@ class KestrelControl(Control):
     def name(self, line: int) -> None:
         """Take the name: it comes once, before all blocks."""
         if self.named or self.begun:
-            raise BadInput(f"line {line}: a program's name stands once, before its first block; remove it")
+            raise BadInput(
+                f"line {line}: a program's name stands once, before its first block; remove it"
+            )
         self.named = True
 
 

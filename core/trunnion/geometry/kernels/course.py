@@ -40,7 +40,11 @@ def course(cost: Floats, near: Ints, turn: Floats, leap: float) -> tuple[Ints, B
                 price = total[row - 1, way] + angle if way >= 0 else np.inf
                 if price < least or (jumped and price == least < np.inf):
                     least, source, jumped = price, int(way), False
-            total[row, column], back[row, column], leapt[row, column] = cost[row, column] + least, source, jumped
+            total[row, column], back[row, column], leapt[row, column] = (
+                cost[row, column] + least,
+                source,
+                jumped,
+            )
     return traced(total, back, leapt)
 
 

@@ -46,7 +46,11 @@ def course(cost: Floats, near: Ints, turn: Floats, leap: float) -> tuple[Ints, B
                 price = before[way] + turn[column, q]
                 if price < least or (jumped and price == least):
                     least, source, jumped = price, way, False
-            total[column], back[row, column], leapt[row, column] = cost[row, column] + least, source, jumped
+            total[column], back[row, column], leapt[row, column] = (
+                cost[row, column] + least,
+                source,
+                jumped,
+            )
         # Where a path would end if the next row has nothing to choose.
         last = 0
         for column in range(m):

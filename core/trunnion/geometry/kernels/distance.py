@@ -15,7 +15,9 @@ BATCH = 1 << 18
 """Points times segments that are looked at together, so that the tables between stay in the processor's cache."""
 
 
-def nearest_segment(points: Floats, start: Floats, end: Floats, centre: Floats, radius: Floats, sweep: Floats) -> tuple[Floats, Ints]:
+def nearest_segment(
+    points: Floats, start: Floats, end: Floats, centre: Floats, radius: Floats, sweep: Floats
+) -> tuple[Floats, Ints]:
     """Return the distance (k,) mm from each point (k, 2) to the nearest segment, and its row (k,); of
     equal ones the first."""
     best = np.empty(len(points))
@@ -29,7 +31,9 @@ def nearest_segment(points: Floats, start: Floats, end: Floats, centre: Floats, 
     return best, row
 
 
-def _distances(points: Floats, start: Floats, end: Floats, centre: Floats, radius: Floats, sweep: Floats) -> Floats:
+def _distances(
+    points: Floats, start: Floats, end: Floats, centre: Floats, radius: Floats, sweep: Floats
+) -> Floats:
     """Return the distance (k, m) of each point to each segment.
 
     A line: to the foot of the perpendicular, its share held to 0 to 1. An arc: | |q| - radius |
@@ -67,7 +71,9 @@ def _size(x: Floats, y: Floats) -> Floats:
     return np.sqrt(x * x + y * y)
 
 
-def winding_numbers(points: Floats, start: Floats, end: Floats, centre: Floats, radius: Floats, sweep: Floats) -> Ints:
+def winding_numbers(
+    points: Floats, start: Floats, end: Floats, centre: Floats, radius: Floats, sweep: Floats
+) -> Ints:
     """Return the winding number (k,) of the loops made of all the segments about each point (k, 2),
     anticlockwise positive.
 

@@ -26,7 +26,9 @@ def _size(x: float, y: float) -> float:
 
 
 @njit(types.Tuple((types.float64[::1], int64[::1]))(*_ASKED), cache=True, nogil=True)
-def nearest_segment(points: Floats, start: Floats, end: Floats, centre: Floats, radius: Floats, sweep: Floats) -> tuple[Floats, Ints]:
+def nearest_segment(
+    points: Floats, start: Floats, end: Floats, centre: Floats, radius: Floats, sweep: Floats
+) -> tuple[Floats, Ints]:
     """Return the distance (k,) mm from each point (k, 2) to the nearest segment, and its row (k,); of
     equal ones the first."""
     best = np.empty(len(points))
@@ -40,7 +42,9 @@ def nearest_segment(points: Floats, start: Floats, end: Floats, centre: Floats, 
                 # point.
                 dx, dy = end[i, 0] - start[i, 0], end[i, 1] - start[i, 1]
                 square = dx * dx + dy * dy
-                share = ((px - start[i, 0]) * dx + (py - start[i, 1]) * dy) / (square if square > 0.0 else 1.0)
+                share = ((px - start[i, 0]) * dx + (py - start[i, 1]) * dy) / (
+                    square if square > 0.0 else 1.0
+                )
                 share = min(max(share, 0.0), 1.0)
                 away = _size(px - start[i, 0] - share * dx, py - start[i, 1] - share * dy)
             else:
@@ -51,7 +55,11 @@ def nearest_segment(points: Floats, start: Floats, end: Floats, centre: Floats, 
                 turned = 1.0 if sweep[i] > 0.0 else -1.0
                 after_start = turned * (ax * qy - ay * qx) >= 0.0
                 before_end = turned * (qx * by - qy * bx) >= 0.0
-                beside = after_start or before_end if abs(sweep[i]) > math.pi else after_start and before_end
+                beside = (
+                    after_start or before_end
+                    if abs(sweep[i]) > math.pi
+                    else after_start and before_end
+                )
                 if beside:
                     away = abs(_size(qx, qy) - radius[i])
                 else:
@@ -63,7 +71,9 @@ def nearest_segment(points: Floats, start: Floats, end: Floats, centre: Floats, 
 
 
 @njit(int64[::1](*_ASKED), cache=True, nogil=True)
-def winding_numbers(points: Floats, start: Floats, end: Floats, centre: Floats, radius: Floats, sweep: Floats) -> Ints:
+def winding_numbers(
+    points: Floats, start: Floats, end: Floats, centre: Floats, radius: Floats, sweep: Floats
+) -> Ints:
     """Return the winding number (k,) of the loops made of all the segments about each point (k, 2),
     anticlockwise positive."""
     total = np.zeros(len(points), dtype=np.int64)

@@ -28,7 +28,11 @@ def height_at(pieces: Floats, rho: Floats) -> Floats:
     rho = np.asarray(rho, dtype=np.float64)
     out = np.full(rho.shape, np.inf)
     for rho0, rho1, is_round, a, b, c in pieces[::-1]:
-        z = b - np.sqrt(np.clip(c * c - (rho - a) ** 2, 0.0, None)) if is_round else a + b * (rho - rho0)
+        z = (
+            b - np.sqrt(np.clip(c * c - (rho - a) ** 2, 0.0, None))
+            if is_round
+            else a + b * (rho - rho0)
+        )
         out = np.where((rho >= rho0) & (rho <= rho1), z, out)
     return out
 
@@ -39,7 +43,11 @@ def slope_at(pieces: Floats, rho: Floats) -> Floats:
     out = np.full(rho.shape, np.inf)
     for rho0, rho1, is_round, a, b, c in pieces[::-1]:
         root = np.sqrt(np.clip(c * c - (rho - a) ** 2, 0.0, None)) if is_round else None
-        k = np.full(rho.shape, b) if root is None else np.divide(rho - a, root, out=np.full(rho.shape, np.inf), where=root > 0.0)
+        k = (
+            np.full(rho.shape, b)
+            if root is None
+            else np.divide(rho - a, root, out=np.full(rho.shape, np.inf), where=root > 0.0)
+        )
         out = np.where((rho > rho0) & (rho <= rho1), k, out)
     return np.where(rho <= 0.0, 0.0, out)
 
@@ -50,7 +58,10 @@ def radius_at(pieces: Floats, height: Floats) -> Floats:
     out = np.zeros(height.shape)
     for rho0, rho1, is_round, a, b, c in pieces:
         if is_round:
-            begins, reach = b - np.sqrt(max(c * c - (rho0 - a) ** 2, 0.0)), a + np.sqrt(c * c - np.clip(b - height, 0.0, c) ** 2)
+            begins, reach = (
+                b - np.sqrt(max(c * c - (rho0 - a) ** 2, 0.0)),
+                a + np.sqrt(c * c - np.clip(b - height, 0.0, c) ** 2),
+            )
         else:
             begins, reach = a, rho0 + (height - a) / b if b > 0.0 else np.full(height.shape, rho1)
         out = np.where(height >= begins, np.clip(reach, rho0, rho1), out)
@@ -61,14 +72,25 @@ def drop(points: Floats, corners: Floats, pieces: Floats, lowest: float) -> Floa
     """Return the height (n,) of the tip over plan points (n, 2) when it touches triangles (t, 3, 3), at least `lowest`."""
     out = np.full(len(points), lowest)
     for k, point in enumerate(points):
-        out[k] = max([lowest, _on_corners(point, corners, pieces), _on_edges(point, corners, pieces), _on_planes(point, corners, pieces)])
+        out[k] = max(
+            [
+                lowest,
+                _on_corners(point, corners, pieces),
+                _on_edges(point, corners, pieces),
+                _on_planes(point, corners, pieces),
+            ]
+        )
     return out
 
 
 def _on_corners(point: Floats, corners: Floats, pieces: Floats) -> float:
     """Return the greatest height of the tip on any corner of triangles (t, 3, 3)."""
     flat = corners.reshape(-1, 3)
-    return float((flat[:, 2] - height_at(pieces, np.hypot(flat[:, 0] - point[0], flat[:, 1] - point[1]))).max(initial=-np.inf))
+    return float(
+        (
+            flat[:, 2] - height_at(pieces, np.hypot(flat[:, 0] - point[0], flat[:, 1] - point[1]))
+        ).max(initial=-np.inf)
+    )
 
 
 def _on_planes(point: Floats, corners: Floats, pieces: Floats) -> float:
@@ -87,7 +109,9 @@ def _on_planes(point: Floats, corners: Floats, pieces: Floats) -> float:
         below = slope_at(pieces, middle) < steep
         low, high = np.where(below, middle, low), np.where(below, high, middle)
     rho = np.where(steep > 0.0, high, 0.0)
-    uphill = np.divide(gradient, steep[:, None], out=np.zeros_like(gradient), where=steep[:, None] > 0.0)
+    uphill = np.divide(
+        gradient, steep[:, None], out=np.zeros_like(gradient), where=steep[:, None] > 0.0
+    )
     touch = point + rho[:, None] * uphill
     inside = _holds(touch, a, b, c)
     z = a[:, 2] + ((touch - a[:, :2]) * gradient).sum(axis=1) - height_at(pieces, rho)
@@ -96,8 +120,13 @@ def _on_planes(point: Floats, corners: Floats, pieces: Floats) -> float:
 
 def _holds(point: Floats, a: Floats, b: Floats, c: Floats) -> Bools:
     """Return whether plan points (t, 2) lie inside triangles a, b, c (t, 3), whichever way these turn."""
-    sides = np.stack([(q[:, 0] - p[:, 0]) * (point[:, 1] - p[:, 1]) - (q[:, 1] - p[:, 1]) * (point[:, 0] - p[:, 0])
-                      for p, q in ((a, b), (b, c), (c, a))])
+    sides = np.stack(
+        [
+            (q[:, 0] - p[:, 0]) * (point[:, 1] - p[:, 1])
+            - (q[:, 1] - p[:, 1]) * (point[:, 0] - p[:, 0])
+            for p, q in ((a, b), (b, c), (c, a))
+        ]
+    )
     return np.asarray((sides >= 0.0).all(axis=0) | (sides <= 0.0).all(axis=0))
 
 
@@ -120,7 +149,9 @@ def _on_edges(point: Floats, corners: Floats, pieces: Floats) -> float:
     reach = np.sqrt(np.clip(pieces[-1, RHO1] ** 2 - beside**2, 0.0, None))
     low, high = np.maximum(-foot, -reach), np.minimum(length - foot, reach)
     meets = (beside <= pieces[-1, RHO1]) & (low <= high)
-    start, foot, beside, rise, low, high = (v[meets] for v in (start, foot, beside, rise, low, high))
+    start, foot, beside, rise, low, high = (
+        v[meets] for v in (start, foot, beside, rise, low, high)
+    )
     # u runs along the edge from the foot of the axis; the tip's height, z(u) - g(sqrt(beside^2 +
     # u^2)), is concave in it.
     for _ in range(HALVINGS):
@@ -132,5 +163,10 @@ def _on_edges(point: Floats, corners: Floats, pieces: Floats) -> float:
     # Both ends of the last bracket: the better is attained and exact to rounding.
     best = np.full(len(start), -np.inf)
     for u in (low, high):
-        best = np.maximum(best, start[:, 2] + rise * (foot + u) - height_at(pieces, np.minimum(np.hypot(beside, u), pieces[-1, RHO1])))
+        best = np.maximum(
+            best,
+            start[:, 2]
+            + rise * (foot + u)
+            - height_at(pieces, np.minimum(np.hypot(beside, u), pieces[-1, RHO1])),
+        )
     return float(best.max(initial=-np.inf))

@@ -25,7 +25,27 @@ from trunnion.geometry.arrays import Floats, Ints
 from trunnion.geometry.kernels.drop import RHO0, RHO1, ROUND, A, B, C
 from trunnion.geometry.kernels.drop_tree import X0, X1, Y0, Y1, Z1
 
-(AX, AY, AZ, BX, BY, BZ, CX, CY, CZ, GX, GY, STEEP, TURN, LOW_X, LOW_Y, HIGH_X, HIGH_Y, HIGH_Z, OWNS) = range(19)
+(
+    AX,
+    AY,
+    AZ,
+    BX,
+    BY,
+    BZ,
+    CX,
+    CY,
+    CZ,
+    GX,
+    GY,
+    STEEP,
+    TURN,
+    LOW_X,
+    LOW_Y,
+    HIGH_X,
+    HIGH_Y,
+    HIGH_Z,
+    OWNS,
+) = range(19)
 """A triangle's row: corners; slope of its plane along x and y, how steep that is, twice its signed plan area; its box; and which edges
 (bits 0 to 2, from the corner of that number on) and corners (bits 3 to 5) it looks after."""
 FACET_COLUMNS = 19
@@ -131,7 +151,10 @@ def _within(piece: Floats, beside: float, rise: float, low: float, high: float) 
     a, c = piece[A], piece[C]
     # Sphere about the axis: u = rise sqrt((c^2 - beside^2) / (1 + rise^2)).
     if a == 0.0:
-        return min(max(rise * math.sqrt(max((c * c - beside * beside) / (1.0 + rise * rise), 0.0)), low), high)
+        return min(
+            max(rise * math.sqrt(max((c * c - beside * beside) / (1.0 + rise * rise), 0.0)), low),
+            high,
+        )
     u = 0.5 * (low + high)
     for _ in range(STEPS):
         rho = math.sqrt(beside * beside + u * u)
@@ -144,7 +167,9 @@ def _within(piece: Floats, beside: float, rise: float, low: float, high: float) 
         else:
             low = u
         # d/du of g'(rho) u / rho: g'' (u / rho)^2 + g' beside^2 / rho^3, with g'' = c^2 / root^3.
-        bend = c * c / (root * root * root) * (u / rho) ** 2 + k * beside * beside / (rho * rho * rho)
+        bend = c * c / (root * root * root) * (u / rho) ** 2 + k * beside * beside / (
+            rho * rho * rho
+        )
         step = u - value / bend if bend > 0.0 else low
         nearer = step if low < step < high else 0.5 * (low + high)
         if abs(nearer - u) <= _ROUNDING * max(1.0, u):
@@ -154,8 +179,19 @@ def _within(piece: Floats, beside: float, rise: float, low: float, high: float) 
 
 
 @njit(cache=True, nogil=True)
-def _edge(px: float, py: float, ax: float, ay: float, az: float, bx: float, by: float, bz: float, pieces: Floats, radius: float,
-          best: float) -> float:
+def _edge(
+    px: float,
+    py: float,
+    ax: float,
+    ay: float,
+    az: float,
+    bx: float,
+    by: float,
+    bz: float,
+    pieces: Floats,
+    radius: float,
+    best: float,
+) -> float:
     """Return the larger of `best` and the height (mm) to which an edge from a to b lifts the tip over
     (px, py).
 
@@ -167,7 +203,10 @@ def _edge(px: float, py: float, ax: float, ay: float, az: float, bx: float, by: 
         return best
     cross = (ax - px) * dy - (ay - py) * dx
     # Out of the cutter's radius, or even its higher end too low.
-    if cross * cross > radius * radius * square or max(az, bz) - _height(pieces, min(abs(cross) / math.sqrt(square), radius)) <= best:
+    if (
+        cross * cross > radius * radius * square
+        or max(az, bz) - _height(pieces, min(abs(cross) / math.sqrt(square), radius)) <= best
+    ):
         return best
     length = math.sqrt(square)
     beside, foot = abs(cross) / length, -((ax - px) * dx + (ay - py) * dy) / length
@@ -181,7 +220,13 @@ def _edge(px: float, py: float, ax: float, ay: float, az: float, bx: float, by: 
     middle = 0.5 * (low + high)
     rho = math.sqrt(beside * beside + middle * middle)
     fall = _slope(pieces, rho) * middle / rho if rho > 0.0 else 0.0
-    if az + rise * (foot + middle) - _height(pieces, min(rho, radius)) + abs(rise - fall) * 0.5 * (high - low) <= best:
+    if (
+        az
+        + rise * (foot + middle)
+        - _height(pieces, min(rho, radius))
+        + abs(rise - fall) * 0.5 * (high - low)
+        <= best
+    ):
         return best
     u = _steepest(pieces, beside, abs(rise), reach)
     if rise < 0.0:
@@ -197,8 +242,19 @@ def _edge(px: float, py: float, ax: float, ay: float, az: float, bx: float, by: 
 
 
 @njit(cache=True, nogil=True)
-def _edge_of_ball(px: float, py: float, ax: float, ay: float, az: float, bx: float, by: float, bz: float, ball: float, radius: float,
-                  best: float) -> float:
+def _edge_of_ball(
+    px: float,
+    py: float,
+    ax: float,
+    ay: float,
+    az: float,
+    bx: float,
+    by: float,
+    bz: float,
+    ball: float,
+    radius: float,
+    best: float,
+) -> float:
     """Return the larger of `best` and the height (mm) to which an edge lifts the tip of a ball end of
     radius `ball`, in closed form."""
     dx, dy = bx - ax, by - ay
@@ -210,16 +266,24 @@ def _edge_of_ball(px: float, py: float, ax: float, ay: float, az: float, bx: flo
     if beside > radius * radius:
         return best
     length = math.sqrt(square)
-    foot, reach, rise = -((ax - px) * dx + (ay - py) * dy) / length, math.sqrt(radius * radius - beside), (bz - az) / length
+    foot, reach, rise = (
+        -((ax - px) * dx + (ay - py) * dy) / length,
+        math.sqrt(radius * radius - beside),
+        (bz - az) / length,
+    )
     low, high = max(-foot, -reach), min(length - foot, reach)
     if low > high:
         return best
     u = min(max(rise * math.sqrt((ball * ball - beside) / (1.0 + rise * rise)), low), high)
-    return max(best, az + rise * (foot + u) - ball + math.sqrt(max(ball * ball - beside - u * u, 0.0)))
+    return max(
+        best, az + rise * (foot + u) - ball + math.sqrt(max(ball * ball - beside - u * u, 0.0))
+    )
 
 
 @njit(cache=True, nogil=True)
-def _corner(px: float, py: float, x: float, y: float, z: float, pieces: Floats, radius: float, best: float) -> float:
+def _corner(
+    px: float, py: float, x: float, y: float, z: float, pieces: Floats, radius: float, best: float
+) -> float:
     """Return the larger of `best` and the height (mm) to which a corner (x, y, z) lifts the tip."""
     square = (x - px) * (x - px) + (y - py) * (y - py)
     if z <= best or square > radius * radius:
@@ -269,13 +333,27 @@ def lift_loop(planes: Floats, pieces: Floats, lifts: Floats) -> None:
         rho = _touching(pieces, steep)
         if steep > 0.0:
             lifts[n, OUT_X], lifts[n, OUT_Y] = rho * gx / steep, rho * gy / steep
-        lifts[n, HEIGHT], lifts[n, SLOPE], lifts[n, SECANT] = height, steep, math.sqrt(1.0 + steep * steep)
+        lifts[n, HEIGHT], lifts[n, SLOPE], lifts[n, SECANT] = (
+            height,
+            steep,
+            math.sqrt(1.0 + steep * steep),
+        )
         lifts[n, LIFT] = height + rho * steep - _height(pieces, rho)
 
 
 @njit(cache=True, nogil=True, inline="always")
-def _most(px: float, py: float, lift: Floats, x0: float, y0: float, x1: float, y1: float, pieces: Floats, radius: float,
-          ball: float) -> float:
+def _most(
+    px: float,
+    py: float,
+    lift: Floats,
+    x0: float,
+    y0: float,
+    x1: float,
+    y1: float,
+    pieces: Floats,
+    radius: float,
+    ball: float,
+) -> float:
     """Return a height (mm) that nothing below a plane and inside a box lifts the tip over: an upper
     bound."""
     top = lift[LIFT_X] * px + lift[LIFT_Y] * py + lift[LIFT]
@@ -286,7 +364,9 @@ def _most(px: float, py: float, lift: Floats, x0: float, y0: float, x1: float, y
             x, y = px + lift[OUT_X], py + lift[OUT_Y]
             gx, gy = max(max(x0 - x, x - x1), 0.0), max(max(y0 - y, y - y1), 0.0)
             rise = abs(lift[LIFT_X] * (0.5 * (x0 + x1) - x) + lift[LIFT_Y] * (0.5 * (y0 + y1) - y))
-            rise = max(rise - 0.5 * (abs(lift[LIFT_X]) * (x1 - x0) + abs(lift[LIFT_Y]) * (y1 - y0)), 0.0)
+            rise = max(
+                rise - 0.5 * (abs(lift[LIFT_X]) * (x1 - x0) + abs(lift[LIFT_Y]) * (y1 - y0)), 0.0
+            )
             top -= _below_ball(gx * gx + gy * gy + rise * rise, lift, ball)
         else:
             top = min(top, _below_tangent(px, py, lift, x0, y0, x1, y1, pieces, radius))
@@ -307,7 +387,17 @@ def _below_ball(square: float, lift: Floats, ball: float) -> float:
 
 
 @njit(cache=True, nogil=True)
-def _below_tangent(px: float, py: float, lift: Floats, x0: float, y0: float, x1: float, y1: float, pieces: Floats, radius: float) -> float:
+def _below_tangent(
+    px: float,
+    py: float,
+    lift: Floats,
+    x0: float,
+    y0: float,
+    x1: float,
+    y1: float,
+    pieces: Floats,
+    radius: float,
+) -> float:
     """Return an upper bound (mm) as `_most` does, by the tangent plane of the lower side over the
     middle of the box: the lower side is convex, so nowhere below it.
 
@@ -326,8 +416,17 @@ def _below_tangent(px: float, py: float, lift: Floats, x0: float, y0: float, x1:
 
 
 @njit(cache=True, nogil=True)
-def _touch(px: float, py: float, f: Floats, lift: Floats, owns: int, pieces: Floats, radius: float, ball: float,
-           best: float) -> float:
+def _touch(
+    px: float,
+    py: float,
+    f: Floats,
+    lift: Floats,
+    owns: int,
+    pieces: Floats,
+    radius: float,
+    ball: float,
+    best: float,
+) -> float:
     """Return the larger of `best` and the height (mm) to which a facet, with the edges and corners
     that `owns` has bits of, lifts the tip.
 
@@ -336,7 +435,11 @@ def _touch(px: float, py: float, f: Floats, lift: Floats, owns: int, pieces: Flo
     # Bounds first: by its highest z, by its plane, by the tangent over its box.
     if f[HIGH_Z] <= best or lift[LIFT_X] * px + lift[LIFT_Y] * py + lift[LIFT] <= best - _SLACK:
         return best
-    if ball <= 0.0 and _below_tangent(px, py, lift, f[LOW_X], f[LOW_Y], f[HIGH_X], f[HIGH_Y], pieces, radius) <= best - _SLACK:
+    if (
+        ball <= 0.0
+        and _below_tangent(px, py, lift, f[LOW_X], f[LOW_Y], f[HIGH_X], f[HIGH_Y], pieces, radius)
+        <= best - _SLACK
+    ):
         return best
     if f[TURN] != 0.0:
         # Where the plane touches inside the facet, that is the most of all of it. Else it is less
@@ -355,10 +458,16 @@ def _touch(px: float, py: float, f: Floats, lift: Floats, owns: int, pieces: Flo
         top = lift[LIFT_X] * px + lift[LIFT_Y] * py + lift[LIFT]
         if out == 0.0:
             return max(best, top)
-        if ball > 0.0 and top - _below_ball(out * lift[SECANT] * lift[SECANT], lift, ball) <= best - _SLACK:
+        if (
+            ball > 0.0
+            and top - _below_ball(out * lift[SECANT] * lift[SECANT], lift, ball) <= best - _SLACK
+        ):
             return best
     # Bound by the plan distance of the box; then what it owns, one by one.
-    gx, gy = max(max(f[LOW_X] - px, px - f[HIGH_X]), 0.0), max(max(f[LOW_Y] - py, py - f[HIGH_Y]), 0.0)
+    gx, gy = (
+        max(max(f[LOW_X] - px, px - f[HIGH_X]), 0.0),
+        max(max(f[LOW_Y] - py, py - f[HIGH_Y]), 0.0),
+    )
     near = gx * gx + gy * gy
     if near > radius * radius or f[HIGH_Z] - _height(pieces, math.sqrt(near)) <= best:
         return best
@@ -366,9 +475,13 @@ def _touch(px: float, py: float, f: Floats, lift: Floats, owns: int, pieces: Flo
         a, b = 3 * k, 3 * ((k + 1) % 3)
         if owns & (1 << k):
             if ball > 0.0:
-                best = _edge_of_ball(px, py, f[a], f[a + 1], f[a + 2], f[b], f[b + 1], f[b + 2], ball, radius, best)
+                best = _edge_of_ball(
+                    px, py, f[a], f[a + 1], f[a + 2], f[b], f[b + 1], f[b + 2], ball, radius, best
+                )
             else:
-                best = _edge(px, py, f[a], f[a + 1], f[a + 2], f[b], f[b + 1], f[b + 2], pieces, radius, best)
+                best = _edge(
+                    px, py, f[a], f[a + 1], f[a + 2], f[b], f[b + 1], f[b + 2], pieces, radius, best
+                )
         if owns & (8 << k):
             best = _corner(px, py, f[a], f[a + 1], f[a + 2], pieces, radius, best)
     return best
@@ -383,7 +496,10 @@ def _edge_place(px: float, py: float, f: Floats, k: int, pieces: Floats, radius:
     length = math.sqrt(dx * dx + dy * dy)
     if length == 0.0:
         return 0.0 if f[a + 2] > f[b + 2] else 1.0
-    beside, foot = abs((f[a] - px) * dy - (f[a + 1] - py) * dx) / length, -((f[a] - px) * dx + (f[a + 1] - py) * dy) / length
+    beside, foot = (
+        abs((f[a] - px) * dy - (f[a + 1] - py) * dx) / length,
+        -((f[a] - px) * dx + (f[a + 1] - py) * dy) / length,
+    )
     if beside > radius:
         return 0.0
     rise = (f[b + 2] - f[a + 2]) / length
@@ -408,7 +524,11 @@ def _place(px: float, py: float, f: Floats, pieces: Floats, radius: float, at: F
     for k in range(3):
         t = _edge_place(px, py, f, k, pieces, radius)
         a, b = 3 * k, 3 * ((k + 1) % 3)
-        x, y, z = f[a] + t * (f[b] - f[a]), f[a + 1] + t * (f[b + 1] - f[a + 1]), f[a + 2] + t * (f[b + 2] - f[a + 2])
+        x, y, z = (
+            f[a] + t * (f[b] - f[a]),
+            f[a + 1] + t * (f[b + 1] - f[a + 1]),
+            f[a + 2] + t * (f[b + 2] - f[a + 2]),
+        )
         away = math.sqrt((x - px) * (x - px) + (y - py) * (y - py))
         if away <= radius * (1.0 + _ROUNDING) and z - _height(pieces, min(away, radius)) > best:
             best = z - _height(pieces, min(away, radius))
@@ -416,7 +536,16 @@ def _place(px: float, py: float, f: Floats, pieces: Floats, radius: float, at: F
 
 
 @njit(cache=True, nogil=True, inline="always")
-def _node(px: float, py: float, box: Floats, lift: Floats, pieces: Floats, radius: float, ball: float, best: float) -> float:
+def _node(
+    px: float,
+    py: float,
+    box: Floats,
+    lift: Floats,
+    pieces: Floats,
+    radius: float,
+    ball: float,
+    best: float,
+) -> float:
     """Return an upper bound (mm) of the height to which anything below a plane and inside a box lifts
     the tip; -inf when that is not above `best`.
 
@@ -432,13 +561,29 @@ def _node(px: float, py: float, box: Floats, lift: Floats, pieces: Floats, radiu
     top -= _height(pieces, math.sqrt(near))
     if top <= best:
         return -np.inf
-    top = min(top, _most(px, py, lift, box[X0], box[Y0], box[X1], box[Y1], pieces, radius, ball) + _SLACK)
+    top = min(
+        top, _most(px, py, lift, box[X0], box[Y0], box[X1], box[Y1], pieces, radius, ball) + _SLACK
+    )
     return top if top > best else -np.inf
 
 
 @njit(cache=True, nogil=True)
-def touch_loop(first: int, last: int, points: Floats, facets: Floats, start: Ints, boxes: Floats, node_lifts: Floats, lifts: Floats,
-               pieces: Floats, ball: float, lowest: Floats, out: Floats, facet: Ints, contact: Floats) -> None:
+def touch_loop(
+    first: int,
+    last: int,
+    points: Floats,
+    facets: Floats,
+    start: Ints,
+    boxes: Floats,
+    node_lifts: Floats,
+    lifts: Floats,
+    pieces: Floats,
+    ball: float,
+    lowest: Floats,
+    out: Floats,
+    facet: Ints,
+    contact: Floats,
+) -> None:
     """Fill out[first:last] with the tip's height (mm) over plan points (n, 2) when the cutter touches
     facets (t, 19), at least lowest (n,).
 
@@ -458,7 +603,9 @@ def touch_loop(first: int, last: int, points: Floats, facets: Floats, start: Int
         px, py = points[n, 0], points[n, 1]
         best, own = lowest[n], -1
         if touched >= 0:
-            better = _touch(px, py, facets[touched], lifts[touched], ALL, pieces, radius, ball, best)
+            better = _touch(
+                px, py, facets[touched], lifts[touched], ALL, pieces, radius, ball, best
+            )
             if better > best:
                 best, own = better, touched
         # Depth first, the more promising child first. Invariant: what may lift the tip above `best`
@@ -484,7 +631,17 @@ def touch_loop(first: int, last: int, points: Floats, facets: Floats, start: Int
             if reach > best:
                 for r in range(start[node - inner], start[node - inner + 1]):
                     if r != touched:
-                        better = _touch(px, py, facets[r], lifts[r], int(facets[r, OWNS]), pieces, radius, ball, best)
+                        better = _touch(
+                            px,
+                            py,
+                            facets[r],
+                            lifts[r],
+                            int(facets[r, OWNS]),
+                            pieces,
+                            radius,
+                            ball,
+                            best,
+                        )
                         if better > best:
                             best, own = better, r
         out[n], facet[n] = best, own

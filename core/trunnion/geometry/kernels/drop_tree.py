@@ -81,7 +81,13 @@ def cover_loop(corners: Floats, start: Ints, boxes: Floats, planes: Floats) -> N
                     x, y, z = corners[n, k], corners[n, k + 1], corners[n, k + 2]
                     x0, y0, x1, y1, z1 = min(x0, x), min(y0, y), max(x1, x), max(y1, y), max(z1, z)
                     top = max(top, z - planes[node, 0] * x - planes[node, 1] * y)
-            boxes[node, X0], boxes[node, Y0], boxes[node, X1], boxes[node, Y1], boxes[node, Z1] = x0, y0, x1, y1, z1
+            boxes[node, X0], boxes[node, Y0], boxes[node, X1], boxes[node, Y1], boxes[node, Z1] = (
+                x0,
+                y0,
+                x1,
+                y1,
+                z1,
+            )
             planes[node, 2] = top
             node += 1
         width //= 2

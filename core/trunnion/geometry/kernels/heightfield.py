@@ -20,8 +20,17 @@ HALF_DIAGONAL = math.sqrt(0.5)
 
 
 @njit(cache=True)
-def lower(heights: Floats, x0: float, y0: float, cell: float, starts: Floats, ends: Floats, radius: float, corner: float,
-          gone: Floats) -> None:
+def lower(
+    heights: Floats,
+    x0: float,
+    y0: float,
+    cell: float,
+    starts: Floats,
+    ends: Floats,
+    radius: float,
+    corner: float,
+    gone: Floats,
+) -> None:
     """Lower a field in place under straight moves of the tip from `starts` to `ends` (n, 3) of a flat,
     bull or ball end cutter.
 
@@ -70,7 +79,9 @@ def lower(heights: Floats, x0: float, y0: float, cell: float, starts: Floats, en
 
 
 @njit(cache=True)
-def highest(heights: Floats, x0: float, y0: float, cell: float, start: Floats, end: Floats, radius: float) -> float:
+def highest(
+    heights: Floats, x0: float, y0: float, cell: float, start: Floats, end: Floats, radius: float
+) -> float:
     """Return the greatest height of the cells that a disc may touch on its straight path from `start`
     to `end` (2,), or -inf.
 
@@ -101,8 +112,17 @@ def highest(heights: Floats, x0: float, y0: float, cell: float, start: Floats, e
     return top
 
 
-def lower_reference(heights: Floats, x0: float, y0: float, cell: float, starts: Floats, ends: Floats, radius: float,
-                    corner: float, gone: Floats) -> None:
+def lower_reference(
+    heights: Floats,
+    x0: float,
+    y0: float,
+    cell: float,
+    starts: Floats,
+    ends: Floats,
+    radius: float,
+    corner: float,
+    gone: Floats,
+) -> None:
     """Plain numpy form of `lower`: every cell for every move."""
     centres = _centres(heights, x0, y0, cell)
     for n, (a, b) in enumerate(zip(starts, ends, strict=True)):
@@ -114,7 +134,9 @@ def lower_reference(heights: Floats, x0: float, y0: float, cell: float, starts: 
         gone[n] = before - heights.sum()
 
 
-def highest_reference(heights: Floats, x0: float, y0: float, cell: float, start: Floats, end: Floats, radius: float) -> float:
+def highest_reference(
+    heights: Floats, x0: float, y0: float, cell: float, start: Floats, end: Floats, radius: float
+) -> float:
     """Plain numpy form of `highest`."""
     touched = _distance(_centres(heights, x0, y0, cell), start, end) < radius + cell * HALF_DIAGONAL
     return float(heights[touched].max(initial=-np.inf))
@@ -130,5 +152,9 @@ def _distance(points: Floats, start: Floats, end: Floats) -> Floats:
     """Return the plan distances of points (..., 2) to a segment."""
     way = end - start
     square = float(way @ way)
-    t = np.clip(((points - start) @ way) / square, 0.0, 1.0) if square > 0.0 else np.zeros(points.shape[:-1])
+    t = (
+        np.clip(((points - start) @ way) / square, 0.0, 1.0)
+        if square > 0.0
+        else np.zeros(points.shape[:-1])
+    )
     return np.linalg.norm(points - start - t[..., None] * way, axis=-1)

@@ -31,7 +31,9 @@ def stencils(triangles: Ints, lengths: Floats, across: Ints) -> tuple[Ints, Floa
         for k in range(3):
             c, a, b = (int(triangles[t, (k + j) % 3]) for j in range(3))
             ca, ab, bc = (float(lengths[t, (k + j) % 3]) for j in range(3))
-            parted = _parted(triangles, lengths, across, t, k) if ca * ca + bc * bc < ab * ab else None
+            parted = (
+                _parted(triangles, lengths, across, t, k) if ca * ca + bc * bc < ab * ab else None
+            )
             if parted is None:
                 points.append((c, a, b))
                 sizes.append((ca, bc, ab))
@@ -42,7 +44,9 @@ def stencils(triangles: Ints, lengths: Floats, across: Ints) -> tuple[Ints, Floa
     return np.array(points, dtype=np.int64).reshape(-1, 3), np.array(sizes).reshape(-1, 3)
 
 
-def _parted(triangles: Ints, lengths: Floats, across: Ints, t: int, k: int) -> tuple[int, float, float, float] | None:
+def _parted(
+    triangles: Ints, lengths: Floats, across: Ints, t: int, k: int
+) -> tuple[int, float, float, float] | None:
     """Return the point that divides an obtuse corner k, and how far it is from the corner and from
     both ends of the opposite side; None where none is found within `UNFOLDED` triangles."""
     ca, ab, bc = (float(lengths[t, (k + j) % 3]) for j in range(3))
@@ -65,7 +69,12 @@ def _parted(triangles: Ints, lengths: Floats, across: Ints, t: int, k: int) -> t
         over_first = apex[0] * first[0] + apex[1] * first[1] > 0.0
         over_last = apex[0] * last[0] + apex[1] * last[1] > 0.0
         if over_first and over_last:
-            return int(triangles[u, (j + 2) % 3]), math.hypot(*apex), math.dist(apex, first), math.dist(apex, last)
+            return (
+                int(triangles[u, (j + 2) % 3]),
+                math.hypot(*apex),
+                math.dist(apex, first),
+                math.dist(apex, last),
+            )
         if not over_first and not over_last:
             return None
         # The free sector lies on the side of the far end that the apex does not see.
@@ -103,7 +112,15 @@ def reach(ta: float, tb: float, ca: float, cb: float, ab: float) -> tuple[float,
     return best, share
 
 
-def march(points: Ints, sizes: Floats, start: Ints, rows: Ints, time: Floats, foot: Floats, farthest: float) -> None:
+def march(
+    points: Ints,
+    sizes: Floats,
+    start: Ints,
+    rows: Ints,
+    time: Floats,
+    foot: Floats,
+    farthest: float,
+) -> None:
     """Fill in times (v,) at which fronts reach points, and the feet (v, 3) from where they came, by
     stencils.
 
@@ -121,7 +138,7 @@ def march(points: Ints, sizes: Floats, start: Ints, rows: Ints, time: Floats, fo
         if done[v] or t > time[v]:
             continue
         done[v] = True
-        for s in rows[start[v]:start[v + 1]]:
+        for s in rows[start[v] : start[v + 1]]:
             c, a, b = points[s]
             if done[c]:
                 continue
@@ -129,7 +146,13 @@ def march(points: Ints, sizes: Floats, start: Ints, rows: Ints, time: Floats, fo
             new, share = reach(ta, tb, *sizes[s])
             if new < time[c] and new <= farthest:
                 time[c] = new
-                foot[c] = foot[a] if share == 0.0 else foot[b] if share == 1.0 else (1.0 - share) * foot[a] + share * foot[b]
+                foot[c] = (
+                    foot[a]
+                    if share == 0.0
+                    else foot[b]
+                    if share == 1.0
+                    else (1.0 - share) * foot[a] + share * foot[b]
+                )
                 heapq.heappush(heap, (new, int(c)))
 
 

@@ -19,7 +19,11 @@ from trunnion.geometry.kernels.marching import UNFOLDED
 def stencils(triangles: Ints, lengths: Floats, across: Ints) -> tuple[Ints, Floats]:
     """Return stencils: points (s, 3) and lengths |ca|, |cb|, |ab| (s, 3); see
     `kernels.marching.stencils`."""
-    points, sizes, n = np.empty((6 * len(triangles), 3), np.int64), np.empty((6 * len(triangles), 3)), 0
+    points, sizes, n = (
+        np.empty((6 * len(triangles), 3), np.int64),
+        np.empty((6 * len(triangles), 3)),
+        0,
+    )
     for t in range(len(triangles)):
         for k in range(3):
             c, a, b = triangles[t, k], triangles[t, (k + 1) % 3], triangles[t, (k + 2) % 3]
@@ -42,7 +46,9 @@ def stencils(triangles: Ints, lengths: Floats, across: Ints) -> tuple[Ints, Floa
 
 
 @njit(cache=True, nogil=True)
-def _parted(triangles: Ints, lengths: Floats, across: Ints, t: int, k: int) -> tuple[int, float, float, float]:
+def _parted(
+    triangles: Ints, lengths: Floats, across: Ints, t: int, k: int
+) -> tuple[int, float, float, float]:
     """Return the point that divides an obtuse corner k, and its distances from the corner and from
     both ends of the opposite side; -1 where there is none. See `kernels.marching._parted`."""
     ca, ab, bc = lengths[t, k], lengths[t, (k + 1) % 3], lengths[t, (k + 2) % 3]
@@ -63,7 +69,12 @@ def _parted(triangles: Ints, lengths: Floats, across: Ints, t: int, k: int) -> t
         # Both dot products positive: within a right angle of both sides.
         over_first, over_last = px * ca > 0.0, px * bx + py * by > 0.0
         if over_first and over_last:
-            return triangles[u, (j + 2) % 3], math.hypot(px, py), math.hypot(px - ca, py), math.hypot(px - bx, py - by)
+            return (
+                triangles[u, (j + 2) % 3],
+                math.hypot(px, py),
+                math.hypot(px - ca, py),
+                math.hypot(px - bx, py - by),
+            )
         if over_first:
             lx, ly, side = px, py, across[u, (j + 2) % 3]
         elif over_last:
@@ -98,11 +109,24 @@ def _reach(ta: float, tb: float, ca: float, cb: float, ab: float) -> tuple[float
 
 
 @njit(cache=True, nogil=True)
-def march(points: Ints, sizes: Floats, start: Ints, rows: Ints, time: Floats, foot: Floats, farthest: float) -> None:
+def march(
+    points: Ints,
+    sizes: Floats,
+    start: Ints,
+    rows: Ints,
+    time: Floats,
+    foot: Floats,
+    farthest: float,
+) -> None:
     """Fill in times (v,) at which fronts reach points, and the feet (v, 3) from where they came; see
     `kernels.marching.march`."""
     n = len(time)
-    done, place, heap, size = np.zeros(n, np.bool_), np.full(n, -1, np.int64), np.empty(n, np.int64), 0
+    done, place, heap, size = (
+        np.zeros(n, np.bool_),
+        np.full(n, -1, np.int64),
+        np.empty(n, np.int64),
+        0,
+    )
     for v in range(n):
         if time[v] <= farthest:
             place[v], heap[size] = size, v
@@ -122,12 +146,20 @@ def march(points: Ints, sizes: Floats, start: Ints, rows: Ints, time: Floats, fo
             c, a, b = points[s, 0], points[s, 1], points[s, 2]
             if done[c]:
                 continue
-            new, share = _reach(time[a] if done[a] else math.inf, time[b] if done[b] else math.inf, sizes[s, 0], sizes[s, 1], sizes[s, 2])
+            new, share = _reach(
+                time[a] if done[a] else math.inf,
+                time[b] if done[b] else math.inf,
+                sizes[s, 0],
+                sizes[s, 1],
+                sizes[s, 2],
+            )
             if new < time[c] and new <= farthest:
                 time[c] = new
                 for k in range(3):
                     near = foot[a, k] if share < 1.0 else foot[b, k]
-                    foot[c, k] = near if share == 0.0 or share == 1.0 else near + share * (foot[b, k] - near)
+                    foot[c, k] = (
+                        near if share == 0.0 or share == 1.0 else near + share * (foot[b, k] - near)
+                    )
                 if place[c] < 0:
                     place[c], heap[size] = size, c
                     size += 1

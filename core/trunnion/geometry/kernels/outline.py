@@ -26,7 +26,12 @@ def within(places: Floats, pieces: Floats, near: float) -> Ints:
     for k, (x, y) in enumerate(places):
         ax, ay, bx, by = pieces.T
         square = (bx - ax) ** 2 + (by - ay) ** 2
-        share = np.divide((x - ax) * (bx - ax) + (y - ay) * (by - ay), square, out=np.zeros(len(pieces)), where=square > 0.0).clip(0.0, 1.0)
+        share = np.divide(
+            (x - ax) * (bx - ax) + (y - ay) * (by - ay),
+            square,
+            out=np.zeros(len(pieces)),
+            where=square > 0.0,
+        ).clip(0.0, 1.0)
         # Nearest point of any chord within `near`.
         if (np.hypot(ax + share * (bx - ax) - x, ay + share * (by - ay) - y) <= near).any():
             out[k] = NEAR
@@ -40,7 +45,16 @@ def within(places: Floats, pieces: Floats, near: float) -> Ints:
 
 
 @njit(cache=True, nogil=True)
-def within_loop(places: Floats, pieces: Floats, near: float, low: float, pitch: float, start: Ints, rows: Ints, out: Ints) -> None:
+def within_loop(
+    places: Floats,
+    pieces: Floats,
+    near: float,
+    low: float,
+    pitch: float,
+    start: Ints,
+    rows: Ints,
+    out: Ints,
+) -> None:
     """Fill out (k,) with what `within` returns.
 
     Strip i, from `low + i pitch` in y, lists in rows, from start[i] on, the chords that come within
@@ -53,13 +67,23 @@ def within_loop(places: Floats, pieces: Floats, near: float, low: float, pitch: 
         if strip < 0 or strip >= len(start) - 1:
             continue
         for c in range(start[strip], start[strip + 1]):
-            ax, ay, bx, by = pieces[rows[c], 0], pieces[rows[c], 1], pieces[rows[c], 2], pieces[rows[c], 3]
+            ax, ay, bx, by = (
+                pieces[rows[c], 0],
+                pieces[rows[c], 1],
+                pieces[rows[c], 2],
+                pieces[rows[c], 3],
+            )
             # Parity of crossings towards +x; a chord is listed in every strip it passes, and this
             # place reads one.
             if (ay > y) != (by > y) and ax + (y - ay) / (by - ay) * (bx - ax) > x:
                 out[n] = IN - out[n]
             # Only chords whose box is within `near` can be too near.
-            if min(ax, bx) - near > x or max(ax, bx) + near < x or min(ay, by) - near > y or max(ay, by) + near < y:
+            if (
+                min(ax, bx) - near > x
+                or max(ax, bx) + near < x
+                or min(ay, by) - near > y
+                or max(ay, by) + near < y
+            ):
                 continue
             square = (bx - ax) * (bx - ax) + (by - ay) * (by - ay)
             share = 0.0

@@ -38,6 +38,7 @@ def _span(triangle: Floats, y: float, z: float, pieces: Floats) -> tuple[float, 
     A grid drawn closer round the highest place finds a blocked one, if there is any; then bisection
     of both ends.
     """
+
     def height(x: Floats) -> Floats:
         """Return the tip's height over the triangle at places x (n,) of the line."""
         return drop(np.column_stack([x, np.full(len(x), y)]), triangle, pieces, NOWHERE)

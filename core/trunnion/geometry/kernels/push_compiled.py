@@ -33,16 +33,24 @@ def _radius(pieces: Floats, height: float) -> float:
     radius = 0.0
     for k in range(len(pieces)):
         if pieces[k, ROUND] != 0.0:
-            if height < pieces[k, B] - math.sqrt(max(pieces[k, C] ** 2 - (pieces[k, RHO0] - pieces[k, A]) ** 2, 0.0)):
+            if height < pieces[k, B] - math.sqrt(
+                max(pieces[k, C] ** 2 - (pieces[k, RHO0] - pieces[k, A]) ** 2, 0.0)
+            ):
                 return radius
             up = pieces[k, B] - height
-            r = pieces[k, A] + math.sqrt(max(pieces[k, C] * pieces[k, C] - up * up, 0.0)) if up > 0.0 else pieces[k, RHO1]
+            r = (
+                pieces[k, A] + math.sqrt(max(pieces[k, C] * pieces[k, C] - up * up, 0.0))
+                if up > 0.0
+                else pieces[k, RHO1]
+            )
             radius = min(max(r, pieces[k, RHO0]), pieces[k, RHO1])
         else:
             if height < pieces[k, A]:
                 return radius
             if pieces[k, B] > 0.0:
-                radius = min(pieces[k, RHO0] + (height - pieces[k, A]) / pieces[k, B], pieces[k, RHO1])
+                radius = min(
+                    pieces[k, RHO0] + (height - pieces[k, A]) / pieces[k, B], pieces[k, RHO1]
+                )
             else:
                 radius = pieces[k, RHO1]
         if radius < pieces[k, RHO1]:
@@ -67,7 +75,9 @@ def _reach(pieces: Floats, x: float, across: float, height: float) -> float:
 
 
 @njit(cache=True, nogil=True)
-def _edge(pieces: Floats, x0: float, y0: float, z0: float, x1: float, y1: float, z1: float, best: float) -> float:
+def _edge(
+    pieces: Floats, x0: float, y0: float, z0: float, x1: float, y1: float, z1: float, best: float
+) -> float:
     """Return the larger of `best` and how far (x, mm) an edge, relative to the line, blocks it towards
     +x.
 
@@ -77,7 +87,12 @@ def _edge(pieces: Floats, x0: float, y0: float, z0: float, x1: float, y1: float,
     """
     dx, dy, dz = x1 - x0, y1 - y0, z1 - z0
     radius = pieces[len(pieces) - 1, RHO1]
-    if max(x0, x1) + radius <= best or max(z0, z1) < 0.0 or min(y0, y1) > radius or max(y0, y1) < -radius:
+    if (
+        max(x0, x1) + radius <= best
+        or max(z0, z1) < 0.0
+        or min(y0, y1) > radius
+        or max(y0, y1) < -radius
+    ):
         return best
     # The stretch of the edge above the tip's height.
     low, high = 0.0, 1.0
@@ -98,7 +113,9 @@ def _edge(pieces: Floats, x0: float, y0: float, z0: float, x1: float, y1: float,
     inside = 0.5 * (a + b)
     # An end may be better than the interior optimum: the room drops to -1 below the tip.
     for t in (low, high):
-        if _room(pieces, y0 + t * dy, z0 + t * dz) > _room(pieces, y0 + inside * dy, z0 + inside * dz):
+        if _room(pieces, y0 + t * dy, z0 + t * dz) > _room(
+            pieces, y0 + inside * dy, z0 + inside * dz
+        ):
             inside = t
     top = _room(pieces, y0 + inside * dy, z0 + inside * dz)
     if top < 0.0:
@@ -110,7 +127,9 @@ def _edge(pieces: Floats, x0: float, y0: float, z0: float, x1: float, y1: float,
     a, b = low, high
     for _ in range(STEPS):
         p, q = b - GOLDEN * (b - a), a + GOLDEN * (b - a)
-        if _reach(pieces, x0 + p * dx, y0 + p * dy, z0 + p * dz) < _reach(pieces, x0 + q * dx, y0 + q * dy, z0 + q * dz):
+        if _reach(pieces, x0 + p * dx, y0 + p * dy, z0 + p * dz) < _reach(
+            pieces, x0 + q * dx, y0 + q * dy, z0 + q * dz
+        ):
             a = p
         else:
             b = q
@@ -122,7 +141,9 @@ def _edge(pieces: Floats, x0: float, y0: float, z0: float, x1: float, y1: float,
 
 
 @njit(cache=True, nogil=True)
-def _last_inside(pieces: Floats, y0: float, z0: float, dy: float, dz: float, inside: float, end: float) -> float:
+def _last_inside(
+    pieces: Floats, y0: float, z0: float, dy: float, dz: float, inside: float, end: float
+) -> float:
     """Return the last place of an edge, from one that the cutter extends over towards an end, that it
     still extends over."""
     if _room(pieces, y0 + end * dy, z0 + end * dz) >= 0.0:
@@ -191,13 +212,34 @@ def blocked(pieces: Floats, c: Floats, y: float, z: float, mirror: float) -> flo
     for k in range(3):
         a, b = 3 * k, 3 * ((k + 1) % 3)
         best = max(best, _reach(pieces, mirror * c[a], c[a + 1] - y, c[a + 2] - z))
-        best = _edge(pieces, mirror * c[a], c[a + 1] - y, c[a + 2] - z, mirror * c[b], c[b + 1] - y, c[b + 2] - z, best)
+        best = _edge(
+            pieces,
+            mirror * c[a],
+            c[a + 1] - y,
+            c[a + 2] - z,
+            mirror * c[b],
+            c[b + 1] - y,
+            c[b + 2] - z,
+            best,
+        )
     return _plane(pieces, c, y, z, mirror, best)
 
 
 @njit(cache=True, nogil=True)
-def push_loop(first: int, last: int, lines: Floats, facets: Floats, low: Floats, pitch: float, shape: Ints, start: Ints, rows: Ints,
-              pieces: Floats, count: Ints, spans: Floats) -> bool:
+def push_loop(
+    first: int,
+    last: int,
+    lines: Floats,
+    facets: Floats,
+    low: Floats,
+    pitch: float,
+    shape: Ints,
+    start: Ints,
+    rows: Ints,
+    pieces: Floats,
+    count: Ints,
+    spans: Floats,
+) -> bool:
     """List the intervals that facets (t, 19) of a lattice block along lines[first:last] (n, 2) of y
     and z, in the order of the lattice.
 
@@ -210,14 +252,22 @@ def push_loop(first: int, last: int, lines: Floats, facets: Floats, low: Floats,
         y, z = lines[n, 0], lines[n, 1]
         count[n] = 0
         # Rows of the lattice within a radius of the line; a facet in several cells is judged once.
-        j0, j1 = int(math.floor((y - radius - low[1]) / pitch)), int(math.floor((y + radius - low[1]) / pitch))
+        j0, j1 = (
+            int(math.floor((y - radius - low[1]) / pitch)),
+            int(math.floor((y + radius - low[1]) / pitch)),
+        )
         for j in range(max(j0, 0), min(j1, shape[1] - 1) + 1):
             for i in range(shape[0]):
                 cell = j * shape[0] + i
                 for c in range(start[cell], start[cell + 1]):
                     r = rows[c]
                     f = facets[r]
-                    if seen[r] == n or f[HIGH_Z] < z or f[LOW_Y] > y + radius or f[HIGH_Y] < y - radius:
+                    if (
+                        seen[r] == n
+                        or f[HIGH_Z] < z
+                        or f[LOW_Y] > y + radius
+                        or f[HIGH_Y] < y - radius
+                    ):
                         continue
                     seen[r] = n
                     right = blocked(pieces, f, y, z, 1.0)
@@ -225,6 +275,9 @@ def push_loop(first: int, last: int, lines: Floats, facets: Floats, low: Floats,
                         continue
                     if count[n] >= spans.shape[1]:
                         return False
-                    spans[n - first, count[n], 0], spans[n - first, count[n], 1] = -blocked(pieces, f, y, z, -1.0), right
+                    spans[n - first, count[n], 0], spans[n - first, count[n], 1] = (
+                        -blocked(pieces, f, y, z, -1.0),
+                        right,
+                    )
                     count[n] += 1
     return True

@@ -14,7 +14,9 @@ import numpy as np
 from trunnion.geometry.arrays import Floats
 
 
-def surface_at(places: Floats, knots_u: Floats, knots_v: Floats, degree_u: int, degree_v: int, poles: Floats) -> Floats:
+def surface_at(
+    places: Floats, knots_u: Floats, knots_v: Floats, degree_u: int, degree_v: int, poles: Floats
+) -> Floats:
     """Return points and derivatives (k, 6, 3) at places (k, 2), in mm and mm per unit of the
     parameters.
 
@@ -27,13 +29,21 @@ def surface_at(places: Floats, knots_u: Floats, knots_v: Floats, degree_u: int, 
         across = [_bases(knots_v, degree_v, v, order) for order in range(3)]
         # Tensor product in homogeneous coordinates: A and w with the derivatives that are asked
         # for.
-        p, pu, pv, puu, puv, pvv = (np.einsum("i,j,ijc->c", along[i], across[j], poles)
-                                    for i, j in ((0, 0), (1, 0), (0, 1), (2, 0), (1, 1), (0, 2)))
+        p, pu, pv, puu, puv, pvv = (
+            np.einsum("i,j,ijc->c", along[i], across[j], poles)
+            for i, j in ((0, 0), (1, 0), (0, 1), (2, 0), (1, 1), (0, 2))
+        )
         # Back by the quotient rule.
         w, s = p[3], p[:3] / p[3]
         su, sv = (pu[:3] - pu[3] * s) / w, (pv[:3] - pv[3] * s) / w
-        out[k] = (s, su, sv, (puu[:3] - 2.0 * pu[3] * su - puu[3] * s) / w, (puv[:3] - pu[3] * sv - pv[3] * su - puv[3] * s) / w,
-                  (pvv[:3] - 2.0 * pv[3] * sv - pvv[3] * s) / w)
+        out[k] = (
+            s,
+            su,
+            sv,
+            (puu[:3] - 2.0 * pu[3] * su - puu[3] * s) / w,
+            (puv[:3] - pu[3] * sv - pv[3] * su - puv[3] * s) / w,
+            (pvv[:3] - 2.0 * pv[3] * sv - pvv[3] * s) / w,
+        )
     return out
 
 
@@ -51,7 +61,9 @@ def _bases(knots: Floats, degree: int, t: float, order: int) -> Floats:
     """Return a derivative, of order 0 to 2, of all basis functions of a degree at t, by the
     polynomials of the span that holds t."""
     span = span_of(knots, degree, t)
-    return np.array([_base(knots, i, degree, span, t, order) for i in range(len(knots) - degree - 1)])
+    return np.array(
+        [_base(knots, i, degree, span, t, order) for i in range(len(knots) - degree - 1)]
+    )
 
 
 def _base(knots: Floats, i: int, degree: int, span: int, t: float, order: int) -> float:
@@ -66,10 +78,15 @@ def _base(knots: Floats, i: int, degree: int, span: int, t: float, order: int) -
     total = 0.0
     # Both terms of the recursion: basis function, sign of its derivative, linear factor, length of
     # its support.
-    for k, sign, from_, run in ((i, 1.0, t - knots[i], knots[i + degree] - knots[i]),
-                                (i + 1, -1.0, knots[i + degree + 1] - t, knots[i + degree + 1] - knots[i + 1])):
+    for k, sign, from_, run in (
+        (i, 1.0, t - knots[i], knots[i + degree] - knots[i]),
+        (i + 1, -1.0, knots[i + degree + 1] - t, knots[i + degree + 1] - knots[i + 1]),
+    ):
         if run > 0.0:
-            share = sign * degree * _base(knots, k, degree - 1, span, t, order - 1) if order else (
-                from_ * _base(knots, k, degree - 1, span, t, 0))
+            share = (
+                sign * degree * _base(knots, k, degree - 1, span, t, order - 1)
+                if order
+                else (from_ * _base(knots, k, degree - 1, span, t, 0))
+            )
             total += share / run
     return total

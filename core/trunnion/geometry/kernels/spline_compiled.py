@@ -62,8 +62,17 @@ def _bases(knots: Floats, degree: int, t: float, span: int, low: Floats, out: Fl
 
 
 @njit(cache=True, nogil=True)
-def surface_loop(first: int, last: int, places: Floats, knots_u: Floats, knots_v: Floats, degree_u: int, degree_v: int, poles: Floats,
-                 out: Floats) -> None:
+def surface_loop(
+    first: int,
+    last: int,
+    places: Floats,
+    knots_u: Floats,
+    knots_v: Floats,
+    degree_u: int,
+    degree_v: int,
+    poles: Floats,
+    out: Floats,
+) -> None:
     """Fill out[first:last] (k, 6, 3) with points and derivatives at places (k, 2); see
     `kernels.spline.surface_at`."""
     along, across = np.zeros((3, degree_u + 1)), np.zeros((3, degree_v + 1))

@@ -19,8 +19,16 @@ from trunnion.geometry.arrays import Bools, Floats
 TURN = 2.0 * math.pi
 
 
-def follow(angles: Floats, free: Bools, through: Bools, low: Floats, high: Floats, slack: float, start: Floats,
-           chosen: Floats) -> tuple[int, float]:
+def follow(
+    angles: Floats,
+    free: Bools,
+    through: Bools,
+    low: Floats,
+    high: Floats,
+    slack: float,
+    start: Floats,
+    chosen: Floats,
+) -> tuple[int, float]:
     """Fill chosen (m, a) with rotary angles in rad; return how many poses could be followed and how
     far (rad) the axes turned in all.
 
@@ -44,8 +52,12 @@ def follow(angles: Floats, free: Bools, through: Bools, low: Floats, high: Float
                 before = stand[k - 1][other] if k else [float(s) for s in start]
                 if before is None or (k and way != other and not through[k]):
                     continue
-                there = [before[a] if free[k, way, a] else nearest(angles[k, way, a], before[a], low[a], high[a], slack)
-                         for a in range(axes)]
+                there = [
+                    before[a]
+                    if free[k, way, a]
+                    else nearest(angles[k, way, a], before[a], low[a], high[a], slack)
+                    for a in range(axes)
+                ]
                 turns = [abs(t - b) for t, b in zip(there, before, strict=True)]
                 if not all(math.isfinite(t) for t in turns) or (k and max(turns) > math.pi + slack):
                     continue

@@ -24,8 +24,16 @@ def _nearest(angle: float, before: float, low: float, high: float, slack: float)
 
 
 @njit(cache=True, nogil=True)
-def follow(angles: Floats, free: Bools, through: Bools, low: Floats, high: Floats, slack: float, start: Floats,
-           chosen: Floats) -> tuple[int, float]:
+def follow(
+    angles: Floats,
+    free: Bools,
+    through: Bools,
+    low: Floats,
+    high: Floats,
+    slack: float,
+    start: Floats,
+    chosen: Floats,
+) -> tuple[int, float]:
     """Fill chosen (m, a) with rotary angles (rad); return how many poses could be followed and how far
     (rad) the axes turned; see `kernels.winding.follow`."""
     m, ways, axes = angles.shape
@@ -38,12 +46,18 @@ def follow(angles: Floats, free: Bools, through: Bools, low: Floats, high: Float
     for k in range(m):
         for way in range(ways):
             for other in range(ways):
-                if (k == 0 and other != way) or (k > 0 and (cost[k - 1, other] == math.inf or (way != other and not through[k]))):
+                if (k == 0 and other != way) or (
+                    k > 0 and (cost[k - 1, other] == math.inf or (way != other and not through[k]))
+                ):
                     continue
                 spent = cost[k - 1, other] if k else 0.0
                 for a in range(axes):
                     before = stand[k - 1, other, a] if k else start[a]
-                    there[a] = before if free[k, way, a] else _nearest(angles[k, way, a], before, low[a], high[a], slack)
+                    there[a] = (
+                        before
+                        if free[k, way, a]
+                        else _nearest(angles[k, way, a], before, low[a], high[a], slack)
+                    )
                     turn = abs(there[a] - before)
                     # Beyond half a turn the machine would swing the tool round between two
                     # neighbouring poses.

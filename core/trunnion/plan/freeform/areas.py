@@ -39,25 +39,34 @@ class Area:
     hidden: bool = False
 
 
-def areas_of(recognition: Recognition, graph: FaceGraph, left_out: Collection[int] = ()) -> tuple[Area, ...]:
+def areas_of(
+    recognition: Recognition, graph: FaceGraph, left_out: Collection[int] = ()
+) -> tuple[Area, ...]:
     """Return each connected set of local faces as an area of its own, by its largest face's tag, and the remaining faces as one."""
     groups = recognition.of_kind(*exclusive_kinds(recognition.family))
     local = {tag for f in groups if f.attributes.get("local") for tag in f.tags} - set(left_out)
     remaining = sorted({tag for f in groups for tag in f.tags} - local - set(left_out))
     sets = connected(local, graph)
     found = [Area(id=f"{LOCAL}-{n:02}", tags=tags, local=True) for n, tags in enumerate(sets, 1)]
-    return (*([Area(id=REMAINING, tags=tuple(remaining), local=False)] if remaining else []), *found)
+    return (
+        *([Area(id=REMAINING, tags=tuple(remaining), local=False)] if remaining else []),
+        *found,
+    )
 
 
-def hidden_areas(recognition: Recognition, graph: FaceGraph, tags: Collection[int]) -> tuple[Area, ...]:
+def hidden_areas(
+    recognition: Recognition, graph: FaceGraph, tags: Collection[int]
+) -> tuple[Area, ...]:
     """Return hidden faces as areas: planes by themselves, hollows that are too tight for large cutters where they hang together (the
     fillets round a blade), and the other curved faces where they do. Hollows count as local."""
     tight = {tag for f in recognition if 0.0 < _radius(f) < TIGHT for tag in f.tags} & set(tags)
     flat = [tag for tag in sorted(tags) if graph.surface[tag - 1] == "plane"]
     found = [Area(id=f"face-{tag}", tags=(tag,), local=False, hidden=True) for tag in flat]
     for word, faces in (("hidden", set(tags) - tight - set(flat)), ("hollow", tight - set(flat))):
-        found += [Area(id=f"{word}-{n:02}", tags=each, local=word == "hollow", hidden=True)
-                  for n, each in enumerate(connected(faces, graph), 1)]
+        found += [
+            Area(id=f"{word}-{n:02}", tags=each, local=word == "hollow", hidden=True)
+            for n, each in enumerate(connected(faces, graph), 1)
+        ]
     return tuple(found)
 
 
@@ -87,17 +96,30 @@ def blank_faces(part: Part, blank: Blank) -> tuple[int, ...]:
     graph = part.graph()
     low, high = (blank.frame.to_local(box) for box in (graph.box_low, graph.box_high))
     low, high = np.minimum(low, high), np.maximum(low, high)
-    near: Floats = np.stack([np.abs(np.maximum(high - side, side - low)) for side in (blank.low, blank.high)])
+    near: Floats = np.stack(
+        [np.abs(np.maximum(high - side, side - low)) for side in (blank.low, blank.high)]
+    )
     flat = np.array([kind == "plane" for kind in graph.surface])
-    return tuple(tag for tag in part.tags if flat[tag - 1] and (near[:, tag - 1] < tolerance.SLIVER).any())
+    return tuple(
+        tag for tag in part.tags if flat[tag - 1] and (near[:, tag - 1] < tolerance.SLIVER).any()
+    )
 
 
 def walls_of(places: Places, tags: Collection[int]) -> tuple[int, ...]:
     """Return the faces that stand upright all over."""
-    return tuple(sorted(t for t in tags if (own := places.face == t).any() and bool((np.abs(places.normal[own, 2]) < VERTICAL).all())))
+    return tuple(
+        sorted(
+            t
+            for t in tags
+            if (own := places.face == t).any()
+            and bool((np.abs(places.normal[own, 2]) < VERTICAL).all())
+        )
+    )
 
 
-def on_outline(space: SurfaceSpace, places: Places, tags: Collection[int], progress: Progress = QUIET) -> tuple[int, ...]:
+def on_outline(
+    space: SurfaceSpace, places: Places, tags: Collection[int], progress: Progress = QUIET
+) -> tuple[int, ...]:
     """Return the upright faces that nothing of the part stands in front of at their height: an end mill beside them is out in the free.
 
     A face that runs into another one at its foot, or meets one that comes out of it, doesn't stand free.
@@ -109,7 +131,9 @@ def on_outline(space: SurfaceSpace, places: Places, tags: Collection[int], progr
             continue
         own = places.of(places.face == tag)
         beside = own.point[:, :2] + (END_MILL + tolerance.SEW) * own.normal[:, :2]
-        over = space.skin.drop.drop(beside, level_disc(END_MILL), float(space.low[2]) - 1.0, progress.part(0.0, 0.0))
+        over = space.skin.drop.drop(
+            beside, level_disc(END_MILL), float(space.low[2]) - 1.0, progress.part(0.0, 0.0)
+        )
         if (over < own.point[:, 2].min() + tolerance.SEW).all():
             found.append(tag)
     return tuple(found)

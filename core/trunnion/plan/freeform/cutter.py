@@ -26,19 +26,30 @@ def lower_side(tool: Tool, allowance: float = 0.0) -> Floats:
     So the tool's tip is at the dropped height plus the allowance. Raises `Refused` for a form that surface strategies don't cut with.
     """
     if tool.form not in SURFACE_FORMS:
-        raise Refused(f"{tool.name}: a {tool.form} cutter can't finish curved surfaces; choose one of {', '.join(SURFACE_FORMS)}")
+        raise Refused(
+            f"{tool.name}: a {tool.form} cutter can't finish curved surfaces; choose one of {', '.join(SURFACE_FORMS)}"
+        )
     a, c, r = allowance, tool.corner_radius, tool.radius
     if tool.form == "taper":
         lean = math.radians(tool.taper_angle)
         inner, foot = r - c, r - c + c * math.cos(lean)
         top = foot + math.tan(lean) * (tool.flute_length - c * (1.0 - math.sin(lean)))
         rows = [_level(inner), _arc(inner, inner + (c + a) * math.cos(lean), inner, c + a, c + a)]
-        rows.append(_line(inner + (c + a) * math.cos(lean), top + a * math.cos(lean), (c + a) * (1.0 - math.sin(lean)),
-                          1.0 / math.tan(lean)))
+        rows.append(
+            _line(
+                inner + (c + a) * math.cos(lean),
+                top + a * math.cos(lean),
+                (c + a) * (1.0 - math.sin(lean)),
+                1.0 / math.tan(lean),
+            )
+        )
     elif tool.form == "barrel":
         big, centre, height = tool.barrel_radius, r - tool.barrel_radius, tool.widest_height
         touch = c * (0.0 - centre) / (big - c)
-        rows = [_arc(0.0, touch * (c + a) / c, 0.0, c + a, c + a), _arc(touch * (c + a) / c, r + a, centre, height + a, big + a)]
+        rows = [
+            _arc(0.0, touch * (c + a) / c, 0.0, c + a, c + a),
+            _arc(touch * (c + a) / c, r + a, centre, height + a, big + a),
+        ]
     else:
         rows = [_level(r - c), _arc(r - c, r + a, r - c, c + a, c + a)]
     return np.array([row for row in rows if row[1] > row[0]])
@@ -87,7 +98,10 @@ def tip_at(tool: Tool, contact: Floats, normal: Floats, axis: Floats) -> Floats:
 def _slopes(row: Floats) -> tuple[float, float]:
     if row[ROUND]:
         root = [math.sqrt(max(row[C] ** 2 - (rho - row[A]) ** 2, 0.0)) for rho in (row[0], row[1])]
-        return tuple((rho - row[A]) / z if z > 0.0 else math.inf for rho, z in zip((row[0], row[1]), root, strict=True))  # type: ignore[return-value]
+        return tuple(
+            (rho - row[A]) / z if z > 0.0 else math.inf
+            for rho, z in zip((row[0], row[1]), root, strict=True)
+        )  # type: ignore[return-value]
     return float(row[B]), float(row[B])
 
 

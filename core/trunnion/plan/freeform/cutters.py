@@ -40,12 +40,23 @@ def named(shop: Shop, name: str) -> Tool:
         if tool.name == name:
             return tool
     by_lower = {t.name.lower(): t.name for t in shop.tools}
-    near = [by_lower[word] for word in get_close_matches(name.lower(), by_lower, n=NEAR, cutoff=0.0)]
-    raise BadInput(f"there is no cutter {name} in the catalogue; the nearest names are {', '.join(near)}")
+    near = [
+        by_lower[word] for word in get_close_matches(name.lower(), by_lower, n=NEAR, cutoff=0.0)
+    ]
+    raise BadInput(
+        f"there is no cutter {name} in the catalogue; the nearest names are {', '.join(near)}"
+    )
 
 
-def cutter_for(space: SurfaceSpace, places: Places, tools: Sequence[Tool], share: float, room: float, wanted: Tool | None,
-               progress: Progress) -> Chosen:
+def cutter_for(
+    space: SurfaceSpace,
+    places: Places,
+    tools: Sequence[Tool],
+    share: float,
+    room: float,
+    wanted: Tool | None,
+    progress: Progress,
+) -> Chosen:
     """Return the largest cutter that reaches at least a share of what any one reaches of places, the shortest of its size; or the one
     that is `wanted`.
 
@@ -55,17 +66,32 @@ def cutter_for(space: SurfaceSpace, places: Places, tools: Sequence[Tool], share
     reach: dict[str, Bools] = {}
     for n, tool in enumerate([*ranked, *([wanted] if wanted else [])]):
         if tool.name not in reach:
-            reach[tool.name] = reached(space, places, tool, room, 0.0, progress.part(n / (len(ranked) + 1), (n + 1) / (len(ranked) + 1)))
+            reach[tool.name] = reached(
+                space,
+                places,
+                tool,
+                room,
+                0.0,
+                progress.part(n / (len(ranked) + 1), (n + 1) / (len(ranked) + 1)),
+            )
     none = np.zeros(len(places), dtype=bool)
     reachable = np.logical_or.reduce([none, *reach.values()])
     if not reachable.any():
         return Chosen(tool=None, reached=none, reachable=reachable, missed=none, rest=None)
     total = int(reachable.sum())
-    tool = wanted or next((t for t in ranked if reach[t.name].sum() >= share * total),
-                          max(ranked, key=lambda t: int(reach[t.name].sum())))
+    tool = wanted or next(
+        (t for t in ranked if reach[t.name].sum() >= share * total),
+        max(ranked, key=lambda t: int(reach[t.name].sum())),
+    )
     missed = reachable & ~reach[tool.name]
     if missed.sum() <= LEFT * total:
         missed = none
     smaller = [t for t in ranked if t.diameter < tool.diameter]
-    rest = next((t for t in smaller if (reach[t.name] & missed).sum() >= share * missed.sum()), None) if missed.any() else None
-    return Chosen(tool=tool, reached=reach[tool.name], reachable=reachable, missed=missed, rest=rest)
+    rest = (
+        next((t for t in smaller if (reach[t.name] & missed).sum() >= share * missed.sum()), None)
+        if missed.any()
+        else None
+    )
+    return Chosen(
+        tool=tool, reached=reach[tool.name], reachable=reachable, missed=missed, rest=rest
+    )

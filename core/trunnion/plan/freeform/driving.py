@@ -11,15 +11,26 @@ from trunnion.plan.freeform.space import SurfaceSpace
 from trunnion.progress import Progress
 
 
-def space_from(direction: Direction, chord: float, scene: Scene, progress: Progress) -> SurfaceSpace:
+def space_from(
+    direction: Direction, chord: float, scene: Scene, progress: Progress
+) -> SurfaceSpace:
     """Return the part's skin, within a chord error (mm), as a tool from a direction in the setup's frame sees it."""
+
     def seen() -> SurfaceSpace:
-        return SurfaceSpace.of(scene.context.part, scene.context.skin(chord, progress), scene.blank, scene.setup, direction)
+        return SurfaceSpace.of(
+            scene.context.part,
+            scene.context.skin(chord, progress),
+            scene.blank,
+            scene.setup,
+            direction,
+        )
 
     return scene.once(("space", direction, chord), seen)
 
 
-def surface_driven(operation: Operation, needs: DriveNeeds, scene: Scene, progress: Progress) -> Driven:
+def surface_driven(
+    operation: Operation, needs: DriveNeeds, scene: Scene, progress: Progress
+) -> Driven:
     """Return the surface drive of an operation, with the cutter that finished its faces before where the operation names one."""
     space = space_from(operation.direction, tolerance.SKIN_CHORD, scene, progress)
     around = scene.context.around(scene.setup, space.frame, space.skin, progress)

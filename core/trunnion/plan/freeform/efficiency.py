@@ -18,7 +18,9 @@ class AreaRate:
         return area * self.time / self.area
 
 
-def mixed_time(large: Sequence[float], small: Sequence[float], large_rate: AreaRate, small_rate: AreaRate) -> float:
+def mixed_time(
+    large: Sequence[float], small: Sequence[float], large_rate: AreaRate, small_rate: AreaRate
+) -> float:
     """Return the time (s) of areas (mm2) cut by the large cutter and areas cut by the small one; tool changes are left out."""
     return large_rate.seconds(sum(large)) + small_rate.seconds(sum(small))
 

@@ -54,14 +54,21 @@ def estimate_of(process: ProcessTree, area: Floats) -> Estimate | None:
         return None
     rows = [np.array(o.faces) - 1 for o in finishing]
     shared = area / np.maximum(np.bincount(np.concatenate(rows), minlength=len(area)), 1)
-    times = tuple(_time(o, float(shared[of_it].sum())) for o, of_it in zip(finishing, rows, strict=True))
+    times = tuple(
+        _time(o, float(shared[of_it].sum())) for o, of_it in zip(finishing, rows, strict=True)
+    )
     return _summed(times)
 
 
 def measured(estimate: Estimate, seconds: Mapping[str, float]) -> Estimate:
     """Return the estimate with the seconds that the operations' own toolpaths take, by operation, where they are known."""
-    times = tuple(AreaTime(operation=t.operation, tool=t.tool, area=t.area, seconds=s, rate=t.area / s) if s > 0.0 else t
-                  for t in estimate.areas for s in (seconds.get(t.operation, 0.0),))
+    times = tuple(
+        AreaTime(operation=t.operation, tool=t.tool, area=t.area, seconds=s, rate=t.area / s)
+        if s > 0.0
+        else t
+        for t in estimate.areas
+        for s in (seconds.get(t.operation, 0.0),)
+    )
     return _summed(times)
 
 
@@ -69,10 +76,18 @@ def _summed(times: tuple[AreaTime, ...]) -> Estimate:
     slowest = min(times, key=lambda t: t.rate)
     alone = AreaRate(area=slowest.rate, time=1.0).seconds(sum(t.area for t in times))
     total = sum(t.seconds for t in times)
-    return Estimate(areas=times, seconds=total, alone=slowest.tool, seconds_alone=alone, gain=gain(alone, total),
-                    saving=saving(alone, total))
+    return Estimate(
+        areas=times,
+        seconds=total,
+        alone=slowest.tool,
+        seconds_alone=alone,
+        gain=gain(alone, total),
+        saving=saving(alone, total),
+    )
 
 
 def _time(operation: Operation, area: float) -> AreaTime:
     rate = operation.data.feed * operation.data.width / SECONDS_PER_MINUTE
-    return AreaTime(operation=operation.id, tool=operation.tool.name, area=area, rate=rate, seconds=area / rate)
+    return AreaTime(
+        operation=operation.id, tool=operation.tool.name, area=area, rate=rate, seconds=area / rate
+    )

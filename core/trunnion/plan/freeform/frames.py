@@ -24,8 +24,14 @@ def is_upright(direction: Direction) -> bool:
 
 def corners_in(frame: Frame, blank: Blank) -> Floats:
     """Return the eight corners (8, 3) of a box blank in a frame, which may stand askew in it."""
-    corners = np.array([[x, y, z] for x in (blank.low[0], blank.high[0]) for y in (blank.low[1], blank.high[1])
-                        for z in (blank.low[2], blank.high[2])])
+    corners = np.array(
+        [
+            [x, y, z]
+            for x in (blank.low[0], blank.high[0])
+            for y in (blank.low[1], blank.high[1])
+            for z in (blank.low[2], blank.high[2])
+        ]
+    )
     return frame.to_local(blank.frame.to_world(corners))
 
 
@@ -40,4 +46,6 @@ def cutting_setup(setup: Setup, direction: Direction, blank: Blank) -> Setup:
     x = setup.frame.x if abs(setup.frame.x @ z) < abs(setup.frame.y @ z) else setup.frame.y
     frame = Frame(setup.frame.origin, x, z)
     above = setup.clearance - float(corners_in(setup.frame, blank)[:, 2].max())
-    return replace(setup, frame=frame, clearance=float(corners_in(frame, blank)[:, 2].max()) + above)
+    return replace(
+        setup, frame=frame, clearance=float(corners_in(frame, blank)[:, 2].max()) + above
+    )

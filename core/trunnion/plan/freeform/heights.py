@@ -35,14 +35,23 @@ class HeightMap:
     cell: float
 
     @staticmethod
-    def of(drop: DropSurface, low: Floats, high: Floats, cell: float, allowance: float, progress: Progress = QUIET) -> HeightMap:
+    def of(
+        drop: DropSurface,
+        low: Floats,
+        high: Floats,
+        cell: float,
+        allowance: float,
+        progress: Progress = QUIET,
+    ) -> HeightMap:
         """Return the map of a surface over a box with corners (3,), which should hold it with room to spare; nothing is below `low`."""
         size = high[:2] - low[:2]
         cell = max(cell, math.sqrt(float(size[0] * size[1]) / MOST_PLACES))
         count = np.ceil(size / cell).astype(int) + 1
         corner = 0.5 * (low[:2] + high[:2]) - 0.5 * cell * (count - 1)
         places = corner + cell * np.argwhere(np.ones(tuple(count), dtype=bool))
-        top = drop.drop(places, _disc(math.sqrt(2.0) * cell, allowance), float(low[2]) - allowance, progress)
+        top = drop.drop(
+            places, _disc(math.sqrt(2.0) * cell, allowance), float(low[2]) - allowance, progress
+        )
         return HeightMap(height=top.reshape(tuple(count)) + allowance, corner=corner, cell=cell)
 
     def below(self, z: float, chord: float) -> Region:
@@ -57,7 +66,7 @@ def region_below(height: Floats, corner: Floats, cell: float, z: float, chord: f
     much, so that nothing higher comes in.
     """
     low: Bools = np.asarray(height <= z)
-    around = np.stack([low[i:i + low.shape[0] - 1, j:j + low.shape[1] - 1] for i, j in CORNERS])
+    around = np.stack([low[i : i + low.shape[0] - 1, j : j + low.shape[1] - 1] for i, j in CORNERS])
     whole = np.asarray(around.all(axis=0))
     mixed = np.asarray(around.any(axis=0) & ~whole)
     parts = [*_runs(whole, corner, cell), *_slices(height, mixed, corner, cell, z)]
@@ -65,14 +74,20 @@ def region_below(height: Floats, corner: Floats, cell: float, z: float, chord: f
         return EMPTY_REGION
     area = shapely.union_all(np.array(parts))
     # Moved in by as much as it was straightened, corners kept sharp; and out and in again over what is narrower than that.
-    area = shapely.buffer(shapely.simplify(area, chord), -chord, join_style="mitre", mitre_limit=2.0)
+    area = shapely.buffer(
+        shapely.simplify(area, chord), -chord, join_style="mitre", mitre_limit=2.0
+    )
     return region_of(area)
 
 
 def _disc(radius: float, allowance: float) -> Floats:
     """Return the lower side of a level disc, thicker all round by an allowance, as kernels of drops know it."""
     level = [0.0, radius, 0.0, 0.0, 0.0, 0.0]
-    return np.array([level] if allowance <= 0.0 else [level, [radius, radius + allowance, 1.0, radius, allowance, allowance]])
+    return np.array(
+        [level]
+        if allowance <= 0.0
+        else [level, [radius, radius + allowance, 1.0, radius, allowance, allowance]]
+    )
 
 
 def _runs(whole: Bools, corner: Floats, cell: float) -> list[shapely.Geometry]:
@@ -80,18 +95,29 @@ def _runs(whole: Bools, corner: Floats, cell: float) -> list[shapely.Geometry]:
     edge = np.diff(np.pad(whole, ((0, 0), (1, 1))).astype(np.int8), axis=1)
     (i, first), (_, last) = np.nonzero(edge == 1), np.nonzero(edge == -1)
     # Rows that meet have the very same x there: a hair between them would stay when rims are moved in.
-    x0, x1, y0, y1 = corner[0] + cell * i, corner[0] + cell * (i + 1), corner[1] + cell * first, corner[1] + cell * last
+    x0, x1, y0, y1 = (
+        corner[0] + cell * i,
+        corner[0] + cell * (i + 1),
+        corner[1] + cell * first,
+        corner[1] + cell * last,
+    )
     return [shapely.box(*corners) for corners in np.column_stack([x0, y0, x1, y1]).tolist()]
 
 
-def _slices(height: Floats, mixed: Bools, corner: Floats, cell: float, z: float) -> list[shapely.Geometry]:
+def _slices(
+    height: Floats, mixed: Bools, corner: Floats, cell: float, z: float
+) -> list[shapely.Geometry]:
     """Return what lies low of cells that are split: the corners below, and on the edges between the places where they cross the height."""
     i, j = np.nonzero(mixed)
     if not len(i):
         return []
     at = np.stack([np.column_stack([i + a, j + b]) for a, b in CORNERS], axis=1)
     value = height[at[:, :, 0], at[:, :, 1]] - z
-    place, after, next_value = at.astype(np.float64), np.roll(at, -1, axis=1), np.roll(value, -1, axis=1)
+    place, after, next_value = (
+        at.astype(np.float64),
+        np.roll(at, -1, axis=1),
+        np.roll(value, -1, axis=1),
+    )
     crossed = (value <= 0.0) != (next_value <= 0.0)
     share = np.divide(value, value - next_value, out=np.zeros_like(value), where=crossed)
     crossing = place + share[:, :, None] * (after - place)
@@ -109,6 +135,9 @@ def region_of(area: shapely.Geometry) -> Region:
     curves = []
     for polygon in shapely.get_parts(area):
         if polygon.geom_type == "Polygon" and polygon.area > tolerance.AREA:
-            curves += [Curve.polygon(np.asarray(ring.coords)[:-1]) for ring in (polygon.exterior, *polygon.interiors)
-                       if shapely.Polygon(ring).area > tolerance.AREA]
+            curves += [
+                Curve.polygon(np.asarray(ring.coords)[:-1])
+                for ring in (polygon.exterior, *polygon.interiors)
+                if shapely.Polygon(ring).area > tolerance.AREA
+            ]
     return Region.of(curves)

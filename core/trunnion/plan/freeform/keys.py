@@ -4,7 +4,12 @@ from __future__ import annotations
 
 from trunnion.model.operation import Operation
 
-SCALLOP, ALLOWANCE, BOTTOM, CELL = "surface.scallop", "surface.allowance", "surface.bottom", "surface.cell"
+SCALLOP, ALLOWANCE, BOTTOM, CELL = (
+    "surface.scallop",
+    "surface.allowance",
+    "surface.bottom",
+    "surface.cell",
+)
 """Keys of an operation's choices, mm: the scallop height it is wanted with, what it leaves on purpose, the height in the cutting frame that
 it goes down to, and the distance of the places at which the part's height is measured."""
 EARLIER = "surface.earlier"

@@ -48,7 +48,12 @@ PLACES = 0.5
 """mm between the places along a rim that are asked whether a cutter stands free there."""
 LAND, REST_LAND = "land", "rest_land"
 """Kinds of operations on lands: with a large end mill, and with another one of what that left."""
-STOCK, BESIDE_SIDES, AROUND_TOOL, ABOVE_TOOL = "surface.stock", "surface.beside", "surface.around", "surface.above"
+STOCK, BESIDE_SIDES, AROUND_TOOL, ABOVE_TOOL = (
+    "surface.stock",
+    "surface.beside",
+    "surface.around",
+    "surface.above",
+)
 """Keys of the choices of operations on lands, mm: the stock that roughing left on them, and what `Keeping` says."""
 
 
@@ -94,15 +99,25 @@ class Standing:
         skin = self.space.skin
         corners = skin.points[skin.triangles]
         normal = np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0])
-        hangs = (normal[:, 2] < -UNDER * np.linalg.norm(normal, axis=1)) & (corners[:, :, 2].max(axis=1) > z)
+        hangs = (normal[:, 2] < -UNDER * np.linalg.norm(normal, axis=1)) & (
+            corners[:, :, 2].max(axis=1) > z
+        )
         if not hangs.any():
             return EMPTY_REGION
         corners, whole = corners[hangs], corners[hangs][:, :, 2].min(axis=1) >= z
-        pieces = np.concatenate([np.atleast_1d(shapely.polygons(corners[whole][:, :, :2])),
-                                 [shapely.convex_hull(shapely.MultiPoint(_above(c, z))) for c in corners[~whole]]])
+        pieces = np.concatenate(
+            [
+                np.atleast_1d(shapely.polygons(corners[whole][:, :, :2])),
+                [shapely.convex_hull(shapely.MultiPoint(_above(c, z))) for c in corners[~whole]],
+            ]
+        )
         # Each is grown by itself: then neighbours overlap, where they would only touch along an edge that is none the same.
         shadow = shapely.union_all(shapely.buffer(pieces, 2.0 * skin.bound + LAP, quad_segs=1))
-        return region_of(shapely.simplify(shapely.buffer(shadow, EVEN, join_style="mitre", mitre_limit=2.0), EVEN))
+        return region_of(
+            shapely.simplify(
+                shapely.buffer(shadow, EVEN, join_style="mitre", mitre_limit=2.0), EVEN
+            )
+        )
 
     def free(self, z: float, tool: Tool, keeping: Keeping) -> Region:
         """Return the plan area that the envelope of an end mill may be in, its tip at a height: what is in its way, and in that of shank
@@ -111,7 +126,10 @@ class Standing:
         if keeping.beside > 0.0:
             ways.append(self.over(z + SIDE).offset(keeping.beside))
         for z0, r0, _, r1 in tool.profile():
-            more, height = max(r0, r1) - tool.radius, z + max(SKIM, STEP * math.floor((z0 - keeping.above) / STEP))
+            more, height = (
+                max(r0, r1) - tool.radius,
+                z + max(SKIM, STEP * math.floor((z0 - keeping.above) / STEP)),
+            )
             if more > -tolerance.COINCIDENT:
                 ways.append(self.over(height).offset(more + keeping.around))
             elif keeping.beside > 0.0:
@@ -140,14 +158,23 @@ def _is_level(space: SurfaceSpace, tag: int) -> bool:
 def covered(land: Land, free: Region, tool: Tool) -> Region:
     """Return what of a land the flat of an end mill covers that stays in a free area."""
     room = free.offset(-tool.radius)
-    return room.offset(tool.radius - tool.corner_radius).intersect(land.region) if room else EMPTY_REGION
+    return (
+        room.offset(tool.radius - tool.corner_radius).intersect(land.region)
+        if room
+        else EMPTY_REGION
+    )
 
 
 def stands_free(standing: Standing, land: Land, tool: Tool, progress: Progress = QUIET) -> bool:
     """Say whether the part, as triangles, is nowhere in the way of an end mill that comes right up to what stands beside a land: a section
     that misses something would let it in."""
     space = standing.space
-    room = standing.space.around().minus(standing.over(land.z + SKIM)).offset(-tool.radius).intersect(land.region.offset(tool.radius))
+    room = (
+        standing.space.around()
+        .minus(standing.over(land.z + SKIM))
+        .offset(-tool.radius)
+        .intersect(land.region.offset(tool.radius))
+    )
     if not room:
         return True
     rim = room.segments()
@@ -156,30 +183,60 @@ def stands_free(standing: Standing, land: Land, tool: Tool, progress: Progress =
     share = (np.arange(len(row)) - np.repeat(np.cumsum(count) - count, count)) / count[row]
     disc = level_disc(max(tool.radius - TOUCHING, 0.5 * tool.radius))
     progress.check()
-    over = space.skin.drop.drop(rim.at(row, share * rim.length[row]), disc, float(space.low[2]) - 1.0, progress.part(1.0, 1.0))
+    over = space.skin.drop.drop(
+        rim.at(row, share * rim.length[row]),
+        disc,
+        float(space.low[2]) - 1.0,
+        progress.part(1.0, 1.0),
+    )
     return bool((over <= land.z + tolerance.FINISH_GOUGE + 2.0 * space.skin.bound).all())
 
 
-def land_drive(operation: Operation, space: SurfaceSpace, before: Sequence[Operation], stock_top: float,
-               progress: Progress = QUIET) -> PlaneDrive:
+def land_drive(
+    operation: Operation,
+    space: SurfaceSpace,
+    before: Sequence[Operation],
+    stock_top: float,
+    progress: Progress = QUIET,
+) -> PlaneDrive:
     """Return the drive of an end mill on lands, from the highest down: of each what the operations `before` it left.
 
     Stock that is thicker than the operation's depth comes off in even steps.
     """
     standing, keeping, tool = Standing(space, progress), keeping_of(operation), operation.tool
     stock = number(operation, STOCK)
-    steps = max(1, math.ceil(stock / operation.data.depth - tolerance.COINCIDENT)) if operation.data.depth > 0.0 else 1
+    steps = (
+        max(1, math.ceil(stock / operation.data.depth - tolerance.COINCIDENT))
+        if operation.data.depth > 0.0
+        else 1
+    )
     levels: list[DriveLevel] = []
     floors: list[Floor] = []
     for lands in progress.each(_together(lands_of(space, operation.faces))):
         z = min(land.z for land in lands)
         wanted = [left_by(standing, land, before) for land in lands]
-        levels.append(DriveLevel(top=levels[-1].bottom if levels else max(stock_top, z), bottom=z, wanted=union_all(wanted),
-                                 boundary=standing.free(z, tool, keeping)))
-        floors += [Floor(z=land.z + stock * n / steps, region=region, fillet=0.0, face=land.tags[0])
-                   for land, region in zip(lands, wanted, strict=True) if region for n in reversed(range(steps))]
-    return PlaneDrive(feature=operation.feature, kind=operation.kind, levels=tuple(levels), floors=tuple(floors), stock_top=stock_top,
-                      faces=operation.faces)
+        levels.append(
+            DriveLevel(
+                top=levels[-1].bottom if levels else max(stock_top, z),
+                bottom=z,
+                wanted=union_all(wanted),
+                boundary=standing.free(z, tool, keeping),
+            )
+        )
+        floors += [
+            Floor(z=land.z + stock * n / steps, region=region, fillet=0.0, face=land.tags[0])
+            for land, region in zip(lands, wanted, strict=True)
+            if region
+            for n in reversed(range(steps))
+        ]
+    return PlaneDrive(
+        feature=operation.feature,
+        kind=operation.kind,
+        levels=tuple(levels),
+        floors=tuple(floors),
+        stock_top=stock_top,
+        faces=operation.faces,
+    )
 
 
 def left_by(standing: Standing, land: Land, before: Sequence[Operation]) -> Region:
@@ -187,7 +244,14 @@ def left_by(standing: Standing, land: Land, before: Sequence[Operation]) -> Regi
     left = land.region
     for operation in before:
         if set(operation.faces) & set(land.tags):
-            left = without(left, covered(land, standing.free(land.z, operation.tool, keeping_of(operation)), operation.tool))
+            left = without(
+                left,
+                covered(
+                    land,
+                    standing.free(land.z, operation.tool, keeping_of(operation)),
+                    operation.tool,
+                ),
+            )
     return left
 
 
@@ -198,7 +262,9 @@ def without(region: Region, done: Region) -> Region:
 
 def keeping_of(operation: Operation) -> Keeping:
     """Return what an operation on lands keeps, from its choices."""
-    beside, around, above = (number(operation, key) for key in (BESIDE_SIDES, AROUND_TOOL, ABOVE_TOOL))
+    beside, around, above = (
+        number(operation, key) for key in (BESIDE_SIDES, AROUND_TOOL, ABOVE_TOOL)
+    )
     return Keeping(beside=beside, around=around, above=above)
 
 

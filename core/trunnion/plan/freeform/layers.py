@@ -31,11 +31,20 @@ RIM = 2.0
 """Cells of the stock that walls keep high though everything beside them is cut."""
 
 
-def plane_drive_of(operation: Operation, space: SurfaceSpace, stock: Heights, progress: Progress,
-                   process: ProcessTree | None = None) -> PlaneDrive:
+def plane_drive_of(
+    operation: Operation,
+    space: SurfaceSpace,
+    stock: Heights,
+    progress: Progress,
+    process: ProcessTree | None = None,
+) -> PlaneDrive:
     """Return the drive of a plane operation on a part of curved surfaces, in the cutting frame; `process` says what was cut before."""
     if operation.kind == REST_LAND:
-        before = [o for o in process.operations if o.kind == LAND and not o.suppressed] if process else []
+        before = (
+            [o for o in process.operations if o.kind == LAND and not o.suppressed]
+            if process
+            else []
+        )
         return land_drive(operation, space, before, float(stock.heights.max()))
     if operation.kind == LAND:
         return land_drive(operation, space, (), float(stock.heights.max()))
@@ -43,10 +52,14 @@ def plane_drive_of(operation: Operation, space: SurfaceSpace, stock: Heights, pr
         return _layers(operation, space, stock, progress)
     if operation.kind == "profile_finish":
         return _outline(operation, space)
-    raise Refused(f"{operation.id}: parts of curved surfaces have no drive for plane operations of kind {operation.kind}")
+    raise Refused(
+        f"{operation.id}: parts of curved surfaces have no drive for plane operations of kind {operation.kind}"
+    )
 
 
-def _layers(operation: Operation, space: SurfaceSpace, stock: Heights, progress: Progress) -> PlaneDrive:
+def _layers(
+    operation: Operation, space: SurfaceSpace, stock: Heights, progress: Progress
+) -> PlaneDrive:
     """Return layers down to the operation's bottom: what stands over each that the part, its allowance all round, doesn't need.
 
     A layer that nothing stands over wants nothing.
@@ -54,23 +67,48 @@ def _layers(operation: Operation, space: SurfaceSpace, stock: Heights, progress:
     allowance, bottom = number(operation, ALLOWANCE), number(operation, BOTTOM)
     cell = number(operation, CELL)
     margin = np.array([1.0, 1.0, 0.0]) * 2.0 * cell
-    tall = HeightMap.of(space.skin.drop, space.low - margin, space.high + margin, cell, allowance, progress)
+    tall = HeightMap.of(
+        space.skin.drop, space.low - margin, space.high + margin, cell, allowance, progress
+    )
     top, chord = float(stock.heights.max()), max(STRAIGHT * allowance, LEAST_STRAIGHT)
     blank = Region.rectangle(*space.low[:2], *space.high[:2])
     around = space.around()
-    outside = around.minus(Region.rectangle(*(tall.corner + cell), *(tall.corner + tall.cell * (np.array(tall.height.shape) - 1) - cell)))
+    outside = around.minus(
+        Region.rectangle(
+            *(tall.corner + cell),
+            *(tall.corner + tall.cell * (np.array(tall.height.shape) - 1) - cell),
+        )
+    )
     levels = []
     for above, z in pairwise([top, *_heights(space, top, bottom, operation.data.depth, allowance)]):
         progress.check()
         free = outside.union(tall.below(z, chord))
         wanted = free.intersect(blank).intersect(_standing(stock, z, above))
-        levels.append(DriveLevel(top=above, bottom=z, wanted=wanted, boundary=free if wanted else around))
-    return PlaneDrive(feature=operation.feature, kind=operation.kind, levels=tuple(levels), stock_top=top, faces=operation.faces)
+        levels.append(
+            DriveLevel(top=above, bottom=z, wanted=wanted, boundary=free if wanted else around)
+        )
+    return PlaneDrive(
+        feature=operation.feature,
+        kind=operation.kind,
+        levels=tuple(levels),
+        stock_top=top,
+        faces=operation.faces,
+    )
 
 
-def _heights(space: SurfaceSpace, top: float, bottom: float, step: float, allowance: float) -> list[float]:
+def _heights(
+    space: SurfaceSpace, top: float, bottom: float, step: float, allowance: float
+) -> list[float]:
     """Return the heights of layers from the top down, none thicker than a step: each level face ends one, its allowance kept."""
-    breaks = [top, *(z + allowance for z in level_faces(space) if bottom + tolerance.SEW < z + allowance < top - tolerance.SEW), bottom]
+    breaks = [
+        top,
+        *(
+            z + allowance
+            for z in level_faces(space)
+            if bottom + tolerance.SEW < z + allowance < top - tolerance.SEW
+        ),
+        bottom,
+    ]
     found: list[float] = []
     for high, low in pairwise(breaks):
         count = max(1, int(np.ceil((high - low) / step - tolerance.COINCIDENT)))
@@ -89,7 +127,9 @@ def level_faces(space: SurfaceSpace) -> list[float]:
     order = np.argsort(-heights, kind="stable")
     heights, areas = heights[order], areas[order]
     found = []
-    for group in np.split(np.arange(len(heights)), np.flatnonzero(np.diff(heights) < -tolerance.SLIVER) + 1):
+    for group in np.split(
+        np.arange(len(heights)), np.flatnonzero(np.diff(heights) < -tolerance.SLIVER) + 1
+    ):
         if len(group) and areas[group].sum() > LEVEL_AREA:
             found.append(float(heights[group].max()))
     return found
@@ -116,12 +156,33 @@ def _outline(operation: Operation, space: SurfaceSpace) -> PlaneDrive:
     z = space.skin.points[space.skin.triangles[rows], 2]
     bottom, top, beside = float(z.min()), float(z.max()), tolerance.BESIDE_PLANE
     highest = float(space.skin.points[:, 2].max())
-    heights = [bottom + beside, 0.5 * (bottom + top), top - beside, *np.linspace(top, highest, 4)[1:-1], highest - beside]
-    sections = [space.part.section(space.frame, h).holes_filled() for h in heights if bottom < h < highest]
+    heights = [
+        bottom + beside,
+        0.5 * (bottom + top),
+        top - beside,
+        *np.linspace(top, highest, 4)[1:-1],
+        highest - beside,
+    ]
+    sections = [
+        space.part.section(space.frame, h).holes_filled() for h in heights if bottom < h < highest
+    ]
     outline = union_all([s for s in sections if s]).holes_filled()
     around = space.around()
     blank = Region.rectangle(*space.low[:2], *space.high[:2])
-    level = DriveLevel(top=top, bottom=bottom, wanted=blank.minus(outline), boundary=around.minus(outline))
-    walls = tuple(WallGuide(curve=piece.outer.reversed(), top=top, bottom=bottom, fillet=0.0, faces=operation.faces)
-                  for piece in outline.pieces)
-    return PlaneDrive(feature=operation.feature, kind=operation.kind, levels=(level,), walls=walls, stock_top=top, faces=operation.faces)
+    level = DriveLevel(
+        top=top, bottom=bottom, wanted=blank.minus(outline), boundary=around.minus(outline)
+    )
+    walls = tuple(
+        WallGuide(
+            curve=piece.outer.reversed(), top=top, bottom=bottom, fillet=0.0, faces=operation.faces
+        )
+        for piece in outline.pieces
+    )
+    return PlaneDrive(
+        feature=operation.feature,
+        kind=operation.kind,
+        levels=(level,),
+        walls=walls,
+        stock_top=top,
+        faces=operation.faces,
+    )

@@ -38,8 +38,14 @@ def reached_leaning(places: Places, tool: Tool, ask: Asker, progress: Progress =
     return found
 
 
-def leaning_cutter(places: Places, tools: Sequence[Tool], asking: Callable[[Tool], Asker], share: float, wanted: Tool | None = None,
-                   progress: Progress = QUIET) -> Chosen:
+def leaning_cutter(
+    places: Places,
+    tools: Sequence[Tool],
+    asking: Callable[[Tool], Asker],
+    share: float,
+    wanted: Tool | None = None,
+    progress: Progress = QUIET,
+) -> Chosen:
     """Return the largest cutter that, leaning, reaches at least a share of what any one reaches of places, the shortest of its size; or
     the one that is `wanted`. What it misses goes to the largest smaller one that reaches nearly all any does of that."""
     ranked = sorted(tools, key=lambda t: (-t.diameter, depth_reached(t), t.name))
@@ -52,15 +58,23 @@ def leaning_cutter(places: Places, tools: Sequence[Tool], asking: Callable[[Tool
 
     none = np.zeros(len(places), dtype=bool)
     # The smallest cutter of each length says what can be reached at all.
-    reachable = np.logical_or.reduce([none, *(of(t) for t in ranked[-2:]), *([of(wanted)] if wanted else [])])
+    reachable = np.logical_or.reduce(
+        [none, *(of(t) for t in ranked[-2:]), *([of(wanted)] if wanted else [])]
+    )
     if not reachable.any():
         return Chosen(tool=None, reached=none, reachable=reachable, missed=none, rest=None)
-    tool = wanted or next((t for t in ranked if (of(t) & reachable).sum() >= share * reachable.sum()), ranked[-1])
+    tool = wanted or next(
+        (t for t in ranked if (of(t) & reachable).sum() >= share * reachable.sum()), ranked[-1]
+    )
     reachable = np.logical_or.reduce([none, *reach.values()])
     missed = reachable & ~of(tool)
     missed = missed if missed.sum() > LEFT * reachable.sum() else none
     smaller = [t for t in ranked if t.diameter < tool.diameter]
-    rest = next((t for t in smaller if (of(t) & missed).sum() >= share * missed.sum()), None) if missed.any() else None
+    rest = (
+        next((t for t in smaller if (of(t) & missed).sum() >= share * missed.sum()), None)
+        if missed.any()
+        else None
+    )
     return Chosen(tool=tool, reached=of(tool), reachable=reachable, missed=missed, rest=rest)
 
 
@@ -71,5 +85,11 @@ def _axes(normal: Floats) -> list[Floats]:
     x /= np.linalg.norm(x, axis=1, keepdims=True)
     y = np.cross(normal, x)
     turns = 2.0 * math.pi * np.arange(AROUND) / AROUND
-    return [normal, *(math.cos(lean) * normal + math.sin(lean) * (math.cos(turn) * x + math.sin(turn) * y)
-                      for lean in LEANS for turn in turns)]
+    return [
+        normal,
+        *(
+            math.cos(lean) * normal + math.sin(lean) * (math.cos(turn) * x + math.sin(turn) * y)
+            for lean in LEANS
+            for turn in turns
+        ),
+    ]

@@ -27,8 +27,14 @@ PART = 1_000_000
 """Added to a face's tag for a part of it: more than any part has faces."""
 
 
-def parted_near(skin: Skin, tags: tuple[int, ...], over: Callable[[Floats, Floats], Floats], around: float,
-                longest: float = 0.0, progress: Progress = QUIET) -> tuple[Skin, tuple[int, ...]]:
+def parted_near(
+    skin: Skin,
+    tags: tuple[int, ...],
+    over: Callable[[Floats, Floats], Floats],
+    around: float,
+    longest: float = 0.0,
+    progress: Progress = QUIET,
+) -> tuple[Skin, tuple[int, ...]]:
     """Return the skin with what of faces lies within `around` mm of certain places given tags of its own, and those tags.
 
     `over` says for places (p, 3) with outward unit normals (p, 3) how much (p,) there is of what it is about: places above nothing count.
@@ -38,26 +44,44 @@ def parted_near(skin: Skin, tags: tuple[int, ...], over: Callable[[Floats, Float
     rows = np.flatnonzero(skin.of(tags))
     place, normal, of = progress.aside(lambda _: _places(skin, rows), "Parting the faces")
     certain = over(place, normal) > 0.0
-    near = rows[progress.aside(lambda _: _with_those_near(place, of, certain, (1.0 + FILLED) * around))]
+    near = rows[
+        progress.aside(lambda _: _with_those_near(place, of, certain, (1.0 + FILLED) * around))
+    ]
     if not len(near):
         return skin, ()
     if longest > 0.0:
         near = rows
     face = skin.face.copy()
     face[near] += PART
-    fine = progress.aside(lambda own: split_finely(
-        sheet_of(replace(skin, face=face), tuple(int(t) for t in np.unique(face[near]))), _length, longest or FINENESS * around, own))
+    fine = progress.aside(
+        lambda own: split_finely(
+            sheet_of(replace(skin, face=face), tuple(int(t) for t in np.unique(face[near]))),
+            _length,
+            longest or FINENESS * around,
+            own,
+        )
+    )
     above = over(fine.points, fine.normals)
     inside, outside = progress.aside(lambda _: _cut(fine, _past_rim(fine, above, around)))
     kept = np.setdiff1d(np.arange(len(face)), near)
-    points, normals, triangles, tag = [skin.points], [skin.normals], [skin.triangles[kept]], [skin.face[kept]]
+    points, normals, triangles, tag = (
+        [skin.points],
+        [skin.normals],
+        [skin.triangles[kept]],
+        [skin.face[kept]],
+    )
     for part, added in ((inside, 0), (outside, PART)):
         triangles.append(part.triangles + sum(len(p) for p in points))
         points.append(part.points)
         normals.append(part.normals)
         tag.append(part.face - added)
-    return replace(skin, points=np.concatenate(points), normals=np.concatenate(normals), triangles=np.concatenate(triangles),
-                   face=np.concatenate(tag)), tuple(int(t) for t in np.unique(inside.face))
+    return replace(
+        skin,
+        points=np.concatenate(points),
+        normals=np.concatenate(normals),
+        triangles=np.concatenate(triangles),
+        face=np.concatenate(tag),
+    ), tuple(int(t) for t in np.unique(inside.face))
 
 
 def _past_rim(sheet: Sheet, over: Floats, around: float) -> Floats:
@@ -77,7 +101,9 @@ def _distance(sheet: Sheet, value: Floats) -> Floats:
     ends = sheet.edges()[0]
     ends = ends[above[ends[:, 0]] != above[ends[:, 1]]]
     border = sheet.on_edges(ends, _crossing(value, ends))[0]
-    found = np.asarray(cKDTree(np.concatenate([sheet.points[above], border])).query(sheet.points)[0])
+    found = np.asarray(
+        cKDTree(np.concatenate([sheet.points[above], border])).query(sheet.points)[0]
+    )
     found[above] = 0.0
     return found
 
@@ -94,7 +120,9 @@ def _cut(sheet: Sheet, inside: Floats) -> tuple[Sheet, Sheet]:
     ends, side = sheet.edges()
     isin = inside >= 0.0
     crossed = np.flatnonzero(isin[ends[:, 0]] != isin[ends[:, 1]])
-    parted, _ = sheet.parted(ends, side, crossed, np.clip(_crossing(inside, ends[crossed]), NEAR_END, 1.0 - NEAR_END))
+    parted, _ = sheet.parted(
+        ends, side, crossed, np.clip(_crossing(inside, ends[crossed]), NEAR_END, 1.0 - NEAR_END)
+    )
     # New points are on the line: the others of a triangle are all on one side of it.
     signs = np.concatenate([np.where(isin, 1, -1), np.zeros(len(crossed), np.int64)])
     within = signs[parted.triangles].sum(axis=1) > 0
@@ -111,7 +139,10 @@ def _places(skin: Skin, rows: Ints) -> tuple[Floats, Floats, Ints]:
     used, corners = np.unique(skin.triangles[rows], return_inverse=True)
     corners = corners.reshape(-1, 3)
     ends, side = edges_of(corners, len(used))
-    parts = [(x, x[ends].mean(axis=1), x[corners].mean(axis=1)) for x in (skin.points[used], skin.normals[used])]
+    parts = [
+        (x, x[ends].mean(axis=1), x[corners].mean(axis=1))
+        for x in (skin.points[used], skin.normals[used])
+    ]
     place, normal = (np.concatenate(part) for part in parts)
     of = np.column_stack([corners, len(used) + side, len(used) + len(ends) + np.arange(len(rows))])
     return place, normal / np.linalg.norm(normal, axis=1, keepdims=True), of

@@ -36,25 +36,37 @@ class Places:
 
     def of(self, rows: Bools) -> Places:
         """Return some of the places."""
-        return Places(point=self.point[rows], normal=self.normal[rows], face=self.face[rows], area=self.area)
+        return Places(
+            point=self.point[rows], normal=self.normal[rows], face=self.face[rows], area=self.area
+        )
 
 
 def places_on(skin: Skin, tags: tuple[int, ...], count: int = SAMPLES) -> Places:
     """Return places spread evenly over faces: a place stands for an equal share of their area, the same ones each time."""
     rows = np.flatnonzero(skin.of(tags))
     corners = skin.points[skin.triangles[rows]]
-    area = 0.5 * np.linalg.norm(np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0]), axis=1)
+    area = 0.5 * np.linalg.norm(
+        np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0]), axis=1
+    )
     total = float(area.sum())
     if total <= 0.0:
-        return Places(point=np.zeros((0, 3)), normal=np.zeros((0, 3)), face=np.zeros(0, np.int64), area=0.0)
-    at = np.minimum(np.searchsorted(np.cumsum(area), (np.arange(count) + 0.5) / count * total), len(rows) - 1)
+        return Places(
+            point=np.zeros((0, 3)), normal=np.zeros((0, 3)), face=np.zeros(0, np.int64), area=0.0
+        )
+    at = np.minimum(
+        np.searchsorted(np.cumsum(area), (np.arange(count) + 0.5) / count * total), len(rows) - 1
+    )
     u, v = (np.mod((np.arange(count) + 0.5) * step, 1.0) for step in FLAT)
     over = u + v > 1.0
     u, v = np.where(over, 1.0 - u, u), np.where(over, 1.0 - v, v)
     weight = np.column_stack([1.0 - u - v, u, v])[:, :, None]
     normal = (weight * skin.normals[skin.triangles[rows[at]]]).sum(axis=1)
-    return Places(point=(weight * corners[at]).sum(axis=1), normal=normal / np.linalg.norm(normal, axis=1, keepdims=True),
-                  face=skin.face[rows[at]], area=total / count)
+    return Places(
+        point=(weight * corners[at]).sum(axis=1),
+        normal=normal / np.linalg.norm(normal, axis=1, keepdims=True),
+        face=skin.face[rows[at]],
+        area=total / count,
+    )
 
 
 def leans(places: Places) -> Floats:
@@ -62,7 +74,14 @@ def leans(places: Places) -> Floats:
     return np.asarray(np.arccos(np.clip(places.normal[:, 2], -1.0, 1.0)))
 
 
-def reached(space: SurfaceSpace, places: Places, tool: Tool, room: float, allowance: float = 0.0, progress: Progress = QUIET) -> Bools:
+def reached(
+    space: SurfaceSpace,
+    places: Places,
+    tool: Tool,
+    room: float,
+    allowance: float = 0.0,
+    progress: Progress = QUIET,
+) -> Bools:
     """Say which places (k,) an upright cutter touches without being lifted off by other faces, with its shank and holder at least `room`
     mm above the part, and without going lower than the blank.
 
@@ -83,20 +102,26 @@ def reached(space: SurfaceSpace, places: Places, tool: Tool, room: float, allowa
         # What is no wider than the cutter goes where it has been.
         if max(r0, r1) > tool.radius + tolerance.COINCIDENT:
             some = np.flatnonzero(clear)[tip[clear, 2] + z0 - room < highest]
-            over = space.skin.drop.drop(plan[some], level_disc(max(r0, r1) + BESIDE), lowest, progress)
+            over = space.skin.drop.drop(
+                plan[some], level_disc(max(r0, r1) + BESIDE), lowest, progress
+            )
             clear[some] = over + room < tip[some, 2] + z0
     found[rows] = clear
     return found
 
 
-def clear_beside(space: SurfaceSpace, places: Places, tool: Tool, bottom: float, room: float, allowance: float) -> bool:
+def clear_beside(
+    space: SurfaceSpace, places: Places, tool: Tool, bottom: float, room: float, allowance: float
+) -> bool:
     """Say whether shank and holder of a cutter that goes along upright walls, its tip at a height, stay `room` mm over what stands beside:
     the part with an allowance all round."""
     beside = places.point[:, :2] + tool.radius * places.normal[:, :2]
     lowest = float(space.low[2]) - 1.0
     for z0, r0, _, r1 in tool.profile():
         if max(r0, r1) > tool.radius + tolerance.COINCIDENT:
-            over = space.skin.drop.drop(beside, level_disc(max(r0, r1) + BESIDE + allowance), lowest)
+            over = space.skin.drop.drop(
+                beside, level_disc(max(r0, r1) + BESIDE + allowance), lowest
+            )
             if (over + allowance + room >= bottom + z0).any():
                 return False
     return True

@@ -31,8 +31,14 @@ BESIDE = 0.2
 """mm that shank and holder keep from walls beside them."""
 
 
-def left_by(skin: Skin, tags: tuple[int, ...], earlier: Tool, lowest: float, height: float,
-            progress: Progress = QUIET) -> tuple[Skin, tuple[int, ...]]:
+def left_by(
+    skin: Skin,
+    tags: tuple[int, ...],
+    earlier: Tool,
+    lowest: float,
+    height: float,
+    progress: Progress = QUIET,
+) -> tuple[Skin, tuple[int, ...]]:
     """Return the skin with what an upright cutter leaves of faces given tags of their own, and those tags; `height` is the scallop height
     in mm that is wanted."""
     limit = min(UNSEEN * height, LIFTED)
@@ -44,14 +50,30 @@ def left_by(skin: Skin, tags: tuple[int, ...], earlier: Tool, lowest: float, hei
         lift[up] = top - tip[:, 2] - limit
         return lift
 
-    return parted_near(skin, tags, over, max(AROUND, stepover_on_plane(earlier.corner_radius, height)), progress=progress)
+    return parted_near(
+        skin,
+        tags,
+        over,
+        max(AROUND, stepover_on_plane(earlier.corner_radius, height)),
+        progress=progress,
+    )
 
 
-def without_met(skin: Skin, tags: tuple[int, ...], tool: Tool, lowest: float, height: float,
-                progress: Progress = QUIET) -> tuple[Skin, tuple[int, ...]]:
+def without_met(
+    skin: Skin,
+    tags: tuple[int, ...],
+    tool: Tool,
+    lowest: float,
+    height: float,
+    progress: Progress = QUIET,
+) -> tuple[Skin, tuple[int, ...]]:
     """Return the skin and the tags of what of faces an upright tool finishes without its shank or holder meeting the part: all of them
     where these meet nothing, else not what lies around such places, twice as far as passes are apart at a scallop height in mm."""
-    wider = [(z0, max(r0, r1)) for z0, r0, _, r1 in tool.profile() if max(r0, r1) > tool.radius + tolerance.COINCIDENT]
+    wider = [
+        (z0, max(r0, r1))
+        for z0, r0, _, r1 in tool.profile()
+        if max(r0, r1) > tool.radius + tolerance.COINCIDENT
+    ]
     highest = float(skin.points[:, 2].max())
 
     def over(place: Floats, normal: Floats, more: float = 0.0) -> Floats:
@@ -63,7 +85,9 @@ def without_met(skin: Skin, tags: tuple[int, ...], tool: Tool, lowest: float, he
         for z, radius in wider:
             low = np.flatnonzero(stands + z - more < highest)
             if len(low):
-                beside = skin.drop.drop(tip[low, :2], level_disc(radius + BESIDE + more), lowest, progress)
+                beside = skin.drop.drop(
+                    tip[low, :2], level_disc(radius + BESIDE + more), lowest, progress
+                )
                 deepest[low] = np.maximum(deepest[low], beside - stands[low] - z + more)
         met[up] = deepest
         return met
@@ -71,18 +95,29 @@ def without_met(skin: Skin, tags: tuple[int, ...], tool: Tool, lowest: float, he
     rows = skin.triangles[skin.of(tags)]
     middle, normal = skin.points[rows].mean(axis=1), skin.normals[rows].mean(axis=1)
     normal = normal / np.linalg.norm(normal, axis=1, keepdims=True)
-    some = np.unique(np.column_stack([np.floor(middle / ASKED), np.round(normal)]), axis=0, return_index=True)[1]
+    some = np.unique(
+        np.column_stack([np.floor(middle / ASKED), np.round(normal)]), axis=0, return_index=True
+    )[1]
     if not (over(middle[some], normal[some], DOUBT) > 0.0).any():
         return skin, tags
     # The passes go on over a rim for the distance of two of them.
     around = 2.0 * max(AROUND, stepover_on_plane(max(tool.corner_radius, height), height))
     corners = skin.points[skin.triangles[skin.of(tags)]]
-    area = 0.5 * np.linalg.norm(np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0]), axis=1).sum()
-    met_skin, met = parted_near(skin, tags, over, around, max(MET, math.sqrt(area / MOST)), progress)
+    area = (
+        0.5
+        * np.linalg.norm(
+            np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0]), axis=1
+        ).sum()
+    )
+    met_skin, met = parted_near(
+        skin, tags, over, around, max(MET, math.sqrt(area / MOST)), progress
+    )
     return (met_skin, tuple(t for t in tags if met_skin.of((t,)).any())) if met else (skin, tags)
 
 
-def _stood(skin: Skin, place: Floats, normal: Floats, tool: Tool, lowest: float, progress: Progress) -> tuple[Floats, Floats]:
+def _stood(
+    skin: Skin, place: Floats, normal: Floats, tool: Tool, lowest: float, progress: Progress
+) -> tuple[Floats, Floats]:
     """Return the tips (p, 3) of an upright cutter that touches at places (p, 3) with normals (p, 3), and the heights (p,) that the part
     lifts it to there."""
     at = place + 2.0 * skin.bound * normal

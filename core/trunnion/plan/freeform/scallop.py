@@ -43,7 +43,9 @@ def stepover_on_curve(radius: float, height: float, curvature: Floats) -> Floats
     sqrt(8 R h / (1 + R k)), which is sqrt(8 R h rho / (rho + R)). Infinite where a hollow is as round as the cutter: one pass fits it all.
     """
     share = 1.0 + radius * np.asarray(curvature, dtype=np.float64)
-    return np.sqrt(np.divide(8.0 * radius * height, share, out=np.full(share.shape, np.inf), where=share > 0.0))
+    return np.sqrt(
+        np.divide(8.0 * radius * height, share, out=np.full(share.shape, np.inf), where=share > 0.0)
+    )
 
 
 def radius_across(radius: float, corner: float, lean: float) -> float:

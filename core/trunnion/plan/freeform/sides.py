@@ -39,10 +39,21 @@ class Side:
     bottom: float
 
 
-def sides_for(space: SurfaceSpace, setup: Setup, around: Around, hidden: Places, tools: Sequence[Tool], room: float,
-              progress: Progress) -> list[Side]:
+def sides_for(
+    space: SurfaceSpace,
+    setup: Setup,
+    around: Around,
+    hidden: Places,
+    tools: Sequence[Tool],
+    room: float,
+    progress: Progress,
+) -> list[Side]:
     """Return the directions that see hidden places best, each the one that sees most of what those before it don't."""
-    probe = max((t for t in tools if t.diameter <= PROBE), key=lambda t: (t.diameter, t.reach, t.name), default=None)
+    probe = max(
+        (t for t in tools if t.diameter <= PROBE),
+        key=lambda t: (t.diameter, t.reach, t.name),
+        default=None,
+    )
     directions = [d for d in _directions() if bool(around.holds(np.array([d]))[0])]
     if probe is None or not directions:
         return []
@@ -52,8 +63,12 @@ def sides_for(space: SurfaceSpace, setup: Setup, around: Around, hidden: Places,
         there = space.seen_from(setup, direction)
         # Roughing stays off the faces: what the cutter only grazes along its side is seen as well.
         beside = hidden.point + OFF * hidden.normal
-        local = Places(point=there.frame.to_local(space.frame.to_world(beside)), face=hidden.face, area=hidden.area,
-                       normal=there.frame.local_direction(space.frame.world_direction(hidden.normal)))
+        local = Places(
+            point=there.frame.to_local(space.frame.to_world(beside)),
+            face=hidden.face,
+            area=hidden.area,
+            normal=there.frame.local_direction(space.frame.world_direction(hidden.normal)),
+        )
         seen.append(reached(there, local, probe, room))
         spaces.append(there)
         heights.append(local.point[:, 2])
@@ -61,14 +76,23 @@ def sides_for(space: SurfaceSpace, setup: Setup, around: Around, hidden: Places,
     found, left = [], np.ones(len(hidden), dtype=bool)
     for tilt in range(len(TILTS)):
         # Level directions first: they leave most room for the spindle, and what they see lies in even layers.
-        rows = [k for k, d in enumerate(directions) if abs(d[2] - math.cos(TILTS[tilt])) < tolerance.ANGLE]
+        rows = [
+            k
+            for k, d in enumerate(directions)
+            if abs(d[2] - math.cos(TILTS[tilt])) < tolerance.ANGLE
+        ]
         while rows and left.any():
             best = max(rows, key=lambda k: (int((seen[k] & left).sum()), -k))
             gained = seen[best] & left
             if gained.sum() <= WORTH * len(hidden):
                 break
             faces = gained & facing[best]
-            found.append(Side(space=spaces[best], bottom=float(heights[best][faces if faces.any() else gained].min())))
+            found.append(
+                Side(
+                    space=spaces[best],
+                    bottom=float(heights[best][faces if faces.any() else gained].min()),
+                )
+            )
             left &= ~gained
     return found
 
@@ -76,5 +100,13 @@ def sides_for(space: SurfaceSpace, setup: Setup, around: Around, hidden: Places,
 def _directions() -> list[Direction]:
     """Return the directions that are tried, in the setup's frame."""
     order = sorted(range(ROUND), key=lambda k: (k % 2, k))
-    return [(round(math.sin(tilt) * math.cos(a), 12), round(math.sin(tilt) * math.sin(a), 12), round(math.cos(tilt), 12))
-            for tilt in TILTS for k in order for a in (2.0 * math.pi * k / ROUND,)]
+    return [
+        (
+            round(math.sin(tilt) * math.cos(a), 12),
+            round(math.sin(tilt) * math.sin(a), 12),
+            round(math.cos(tilt), 12),
+        )
+        for tilt in TILTS
+        for k in order
+        for a in (2.0 * math.pi * k / ROUND,)
+    ]

@@ -44,12 +44,21 @@ class SurfaceSpace:
     high: Floats
 
     @staticmethod
-    def of(part: Part, skin: Skin, blank: Blank, setup: Setup, direction: Direction = UPRIGHT) -> SurfaceSpace:
+    def of(
+        part: Part, skin: Skin, blank: Blank, setup: Setup, direction: Direction = UPRIGHT
+    ) -> SurfaceSpace:
         """Return the space of a direction given in the setup's frame; `skin` is in the part's coordinates."""
         turned = cutting_setup(setup, direction, blank)
         corners = corners_in(turned.frame, blank)
-        return SurfaceSpace(part=part, blank=blank, setup=turned, direction=direction, skin=skin.moved(WORLD, turned.frame),
-                            low=corners.min(axis=0), high=corners.max(axis=0))
+        return SurfaceSpace(
+            part=part,
+            blank=blank,
+            setup=turned,
+            direction=direction,
+            skin=skin.moved(WORLD, turned.frame),
+            low=corners.min(axis=0),
+            high=corners.max(axis=0),
+        )
 
     @property
     def frame(self) -> Frame:
@@ -64,11 +73,23 @@ class SurfaceSpace:
         """Return the same part seen from another direction given in the frame of the machine's setup."""
         turned = cutting_setup(setup, direction, self.blank)
         corners = corners_in(turned.frame, self.blank)
-        return replace(self, setup=turned, direction=direction, skin=self.skin.moved(self.frame, turned.frame),
-                       low=corners.min(axis=0), high=corners.max(axis=0))
+        return replace(
+            self,
+            setup=turned,
+            direction=direction,
+            skin=self.skin.moved(self.frame, turned.frame),
+            low=corners.min(axis=0),
+            high=corners.max(axis=0),
+        )
 
-    def drive_of(self, operation: Operation, needs: DriveNeeds, earlier: Tool | None = None, ask: Callable[[Tool], Asker] | None = None,
-                 progress: Progress = QUIET) -> SurfaceDrive:
+    def drive_of(
+        self,
+        operation: Operation,
+        needs: DriveNeeds,
+        earlier: Tool | None = None,
+        ask: Callable[[Tool], Asker] | None = None,
+        progress: Progress = QUIET,
+    ) -> SurfaceDrive:
         """Return what an operation on curved faces is driven by; `earlier` is the cutter that finished them before, `ask` makes askers.
 
         Unless the tool leans, what it can't come to without its shank or holder meeting the part is none of its area.
@@ -79,10 +100,35 @@ class SurfaceSpace:
             skin, faces = left_by(skin, faces, earlier, lowest, height, progress)
         if not needs.leans:
             skin, faces = without_met(skin, faces, operation.tool, lowest, height, progress)
-        told = digest(self.part.digest, self.part.solid, operation.feature, operation.kind, operation.faces, self.frame, self.blank,
-                      self.setup.clearance, self.skin.bound, len(self.skin.triangles), height, allowance, earlier, needs.leans)
-        return SurfaceDrive(feature=operation.feature, kind=operation.kind, faces=faces, skin=skin, frame=self.frame,
-                            exact=tuple(ExactFace(self.part, tag, self.frame) for tag in operation.faces), low=self.low, high=self.high,
-                            clearance=self.setup.clearance, allowance=allowance, height=height, digest=told,
-                            earlier=earlier, ask=ask)
-
+        told = digest(
+            self.part.digest,
+            self.part.solid,
+            operation.feature,
+            operation.kind,
+            operation.faces,
+            self.frame,
+            self.blank,
+            self.setup.clearance,
+            self.skin.bound,
+            len(self.skin.triangles),
+            height,
+            allowance,
+            earlier,
+            needs.leans,
+        )
+        return SurfaceDrive(
+            feature=operation.feature,
+            kind=operation.kind,
+            faces=faces,
+            skin=skin,
+            frame=self.frame,
+            exact=tuple(ExactFace(self.part, tag, self.frame) for tag in operation.faces),
+            low=self.low,
+            high=self.high,
+            clearance=self.setup.clearance,
+            allowance=allowance,
+            height=height,
+            digest=told,
+            earlier=earlier,
+            ask=ask,
+        )

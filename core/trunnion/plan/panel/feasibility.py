@@ -18,7 +18,9 @@ POCKETS = ("pocket", "open_pocket")
 ALLOWED_LEAN = math.degrees(tolerance.ANGLE)
 
 
-def plannable(recognition: Recognition, stages: Sequence[Stage]) -> tuple[list[Feature], dict[str, str]]:
+def plannable(
+    recognition: Recognition, stages: Sequence[Stage]
+) -> tuple[list[Feature], dict[str, str]]:
     """Return the features that stages may plan, and for each other one (datum faces apart) why it is left."""
     known = {kind for stage in stages for kind in stage.on}
     planned, refusals = [], {}
@@ -31,7 +33,11 @@ def plannable(recognition: Recognition, stages: Sequence[Stage]) -> tuple[list[F
         else:
             planned.append(feature)
     lost = [f for f in planned if (p := parent_of(f, recognition)) is not None and p.id in refusals]
-    refusals |= {f.id: f"it stands in {parent.id}, which is not planned" for f in lost if (parent := parent_of(f, recognition))}
+    refusals |= {
+        f.id: f"it stands in {parent.id}, which is not planned"
+        for f in lost
+        if (parent := parent_of(f, recognition))
+    }
     return [f for f in planned if f.id not in refusals], refusals
 
 
@@ -41,7 +47,9 @@ def _refusal(feature: Feature, known: set[str]) -> str:
         return refused if isinstance(refused, str) else "it was refused"
     if feature.kind not in known:
         return f"the typical plan has no operation for a {feature.kind.replace('_', ' ')}"
-    if feature.kind in POCKETS and (feature.sizes.get("curved_floor") or "floor_z_max" in feature.sizes):
+    if feature.kind in POCKETS and (
+        feature.sizes.get("curved_floor") or "floor_z_max" in feature.sizes
+    ):
         return "a curved floor, which a plane operation would gouge or leave"
     leans = feature.sizes.get("leans", ())
     steepest = max((abs(v) for v in leans), default=0.0) if isinstance(leans, tuple) else 0.0
@@ -50,12 +58,18 @@ def _refusal(feature: Feature, known: set[str]) -> str:
     return ""
 
 
-def without_lonely_ribs(planned: list[Feature], refusals: dict[str, str], recognition: Recognition,
-                         beside: Mapping[str, frozenset[str]]) -> tuple[list[Feature], dict[str, str]]:
+def without_lonely_ribs(
+    planned: list[Feature],
+    refusals: dict[str, str],
+    recognition: Recognition,
+    beside: Mapping[str, frozenset[str]],
+) -> tuple[list[Feature], dict[str, str]]:
     """Return the same without ribs beside a space that is not planned: their cutter would run in solid material."""
     kinds = {f.id: f.kind for f in recognition}
     for feature in planned:
-        left = sorted(i for i in beside.get(feature.id, ()) if i in refusals and kinds[i] in POCKETS)
+        left = sorted(
+            i for i in beside.get(feature.id, ()) if i in refusals and kinds[i] in POCKETS
+        )
         if feature.kind == "rib" and left:
             refusals = {**refusals, feature.id: f"it stands beside {left[0]}, which is not planned"}
     return [f for f in planned if f.id not in refusals], refusals
@@ -70,8 +84,15 @@ def not_planned(refusals: Mapping[str, str], recognition: Recognition) -> list[F
     for reason, features in reasons.items():
         names = ", ".join(f.id for f in features)
         faces = face_tags(t for f in features for t in f.tags)
-        found.append(warning("route.not-planned", f"{names} not planned: {reason}", *(f.id for f in features), *faces,
-                             remedy="machine by hand or by another operation; the proof counts what is left"))
+        found.append(
+            warning(
+                "route.not-planned",
+                f"{names} not planned: {reason}",
+                *(f.id for f in features),
+                *faces,
+                remedy="machine by hand or by another operation; the proof counts what is left",
+            )
+        )
     return found
 
 
@@ -83,7 +104,12 @@ def beside(recognition: Recognition, part: Sections) -> dict[str, frozenset[str]
         for tag in feature.tags:
             owners.setdefault(tag, set()).add(feature.id)
     found: dict[str, set[str]] = {f.id: set() for f in recognition if f.kind != "datum"}
-    pairs = [(a, b) for r, s in graph.edge_face for a in owners.get(int(r) + 1, ()) for b in owners.get(int(s) + 1, ())]
+    pairs = [
+        (a, b)
+        for r, s in graph.edge_face
+        for a in owners.get(int(r) + 1, ())
+        for b in owners.get(int(s) + 1, ())
+    ]
     pairs += [(f.id, p.id) for f in recognition if (p := parent_of(f, recognition)) is not None]
     for a, b in pairs:
         if a != b and a in found and b in found:
@@ -94,5 +120,10 @@ def beside(recognition: Recognition, part: Sections) -> dict[str, frozenset[str]
 
 def no_cutter(task: OperationTask, found: Candidates) -> Finding:
     """Return the error that no cutter of the catalogue fits an operation."""
-    return error("route.no-cutter", f"{task.feature}: {found.reason} ({task.stage.name})", task.feature, *face_tags(task.faces),
-                 remedy=found.remedy)
+    return error(
+        "route.no-cutter",
+        f"{task.feature}: {found.reason} ({task.stage.name})",
+        task.feature,
+        *face_tags(task.faces),
+        remedy=found.remedy,
+    )

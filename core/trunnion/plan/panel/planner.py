@@ -32,15 +32,37 @@ class PanelPlanner:
 
     def route(self, job: RouteJob) -> ProcessTree:
         """Return the process by `make_route`."""
-        return make_route(job.recognition, job.sizes, job.blank, job.setups, job.shop, job.context.part, job.chosen(RouteSettings),
-                          job.progress)
+        return make_route(
+            job.recognition,
+            job.sizes,
+            job.blank,
+            job.setups,
+            job.shop,
+            job.context.part,
+            job.chosen(RouteSettings),
+            job.progress,
+        )
 
-    def drive(self, operation: Operation, needs: DriveNeeds, scene: Scene, progress: Progress) -> Driven:
+    def drive(
+        self, operation: Operation, needs: DriveNeeds, scene: Scene, progress: Progress
+    ) -> Driven:
         """Return the drive that an operation's strategy needs."""
-        return driven_by({PlaneDrive: _plane_driven, SurfaceDrive: surface_driven}, self, operation, needs, scene, progress)
+        return driven_by(
+            {PlaneDrive: _plane_driven, SurfaceDrive: surface_driven},
+            self,
+            operation,
+            needs,
+            scene,
+            progress,
+        )
 
 
-def _plane_driven(operation: Operation, needs: DriveNeeds, scene: Scene, progress: Progress) -> Driven:
-    space = scene.once("sections", lambda: Space.of(scene.context.part, scene.recognition, scene.blank, scene.setup))
+def _plane_driven(
+    operation: Operation, needs: DriveNeeds, scene: Scene, progress: Progress
+) -> Driven:
+    space = scene.once(
+        "sections",
+        lambda: Space.of(scene.context.part, scene.recognition, scene.blank, scene.setup),
+    )
     drive = drive_of(operation, scene.process, space)
     return Driven(setup=scene.setup, drive=drive, told=drive)

@@ -16,8 +16,22 @@ from trunnion.model.setup import Setup
 from trunnion.model.tool import Tool
 from trunnion.plan.cutting import CuttingSettings, cutting_data, roughing_depth, roughing_width
 from trunnion.plan.feasibility import too_large, too_many_tools
-from trunnion.plan.panel.feasibility import beside, no_cutter, not_planned, plannable, without_lonely_ribs
-from trunnion.plan.panel.tasks import DEPENDENT, WISHES, Draft, OperationTask, catalogue, floor_distance, with_falling_sizes
+from trunnion.plan.panel.feasibility import (
+    beside,
+    no_cutter,
+    not_planned,
+    plannable,
+    without_lonely_ribs,
+)
+from trunnion.plan.panel.tasks import (
+    DEPENDENT,
+    WISHES,
+    Draft,
+    OperationTask,
+    catalogue,
+    floor_distance,
+    with_falling_sizes,
+)
 from trunnion.plan.prismatic.drive import FLOOR_ALLOWANCE, WALL_ALLOWANCE
 from trunnion.plan.prismatic.regions import Sections, Space, parent_of
 from trunnion.plan.sequence import Job, ordered
@@ -36,8 +50,16 @@ FACE_WIDTH, FLOOR_WIDTH, WALL_STEP = 0.7, 0.6, 1.5
 """Width of a face mill's path over its diameter, of a floor's over the cutter's flat, and axial step of a wall over the diameter."""
 
 
-def make_route(recognition: Recognition, sizes: tuple[SizeEntry, ...], blank: Blank, setups: Sequence[Setup], shop: Shop, part: Sections,
-               settings: RouteSettings, progress: Progress) -> ProcessTree:
+def make_route(
+    recognition: Recognition,
+    sizes: tuple[SizeEntry, ...],
+    blank: Blank,
+    setups: Sequence[Setup],
+    shop: Shop,
+    part: Sections,
+    settings: RouteSettings,
+    progress: Progress,
+) -> ProcessTree:
     """Return the process: operations in cutting order with tools numbered in the order of use, and findings on what is not planned.
 
     Features that the typical plan does not know, or whose walls a vertical cutter would gouge or leave, become findings
@@ -48,16 +70,25 @@ def make_route(recognition: Recognition, sizes: tuple[SizeEntry, ...], blank: Bl
     material = shop.material(blank.material)
     findings = too_large(blank, setups, shop)
     if findings:
-        return ProcessTree(plan=plan.name, material=material.name, setups=tuple(setups), findings=tuple(findings))
+        return ProcessTree(
+            plan=plan.name, material=material.name, setups=tuple(setups), findings=tuple(findings)
+        )
     progress.at(0.0, "what is to be cut")
     near = beside(recognition, part)
     planned, refusals = without_lonely_ribs(*plannable(recognition, plan.stages), recognition, near)
     findings = not_planned(refusals, recognition)
     operations: list[Operation] = []
     for n, setup in enumerate(setups):
-        draft = Draft(space=Space.of(part, recognition, blank, setup), recognition=recognition, material=material,
-                      machine=shop.machine(setup.machine), settings=settings, shop=shop, beside=near,
-                      loaded=tuple(o.tool for o in operations))
+        draft = Draft(
+            space=Space.of(part, recognition, blank, setup),
+            recognition=recognition,
+            material=material,
+            machine=shop.machine(setup.machine),
+            settings=settings,
+            shop=shop,
+            beside=near,
+            loaded=tuple(o.tool for o in operations),
+        )
         mine = [f for f in planned if _from_below(f, recognition, part) == (n > 0)]
         share = progress.part(n / len(setups), (n + 1) / len(setups))
         draft.progress = share
@@ -65,7 +96,13 @@ def make_route(recognition: Recognition, sizes: tuple[SizeEntry, ...], blank: Bl
         findings += draft.findings
     operations = _numbered(operations)
     findings += too_many_tools(operations, setups, shop)
-    return ProcessTree(plan=plan.name, material=material.name, setups=tuple(setups), operations=tuple(operations), findings=tuple(findings))
+    return ProcessTree(
+        plan=plan.name,
+        material=material.name,
+        setups=tuple(setups),
+        operations=tuple(operations),
+        findings=tuple(findings),
+    )
 
 
 def _from_below(feature: Feature, recognition: Recognition, part: Sections) -> bool:
@@ -76,17 +113,31 @@ def _from_below(feature: Feature, recognition: Recognition, part: Sections) -> b
     return bool(recognition.frame.local_direction(part.graph().normal[tags[0] - 1])[2] < 0.0)
 
 
-def _with_cutters(draft: Draft, features: Sequence[Feature], stages: Sequence[Stage], progress: Progress) -> list[OperationTask]:
+def _with_cutters(
+    draft: Draft, features: Sequence[Feature], stages: Sequence[Stage], progress: Progress
+) -> list[OperationTask]:
     """Return the tasks that have a cutter, chosen so that few cutters serve all; those that depend on another's cutter come last."""
     tasks: list[OperationTask] = []
-    rounds = [[s for s in stages if s.cutter not in DEPENDENT], *([s] for s in stages if s.cutter in DEPENDENT)]
+    rounds = [
+        [s for s in stages if s.cutter not in DEPENDENT],
+        *([s] for s in stages if s.cutter in DEPENDENT),
+    ]
     for done, together in enumerate(rounds):
         fits: dict[str, Sequence[Tool]] = {}
         progress.at(done / len(rounds), "what is to be cut")
-        fresh = [task for stage in progress.each(together) for task in WISHES[stage.cutter](draft, stage, features)]
+        fresh = [
+            task
+            for stage in progress.each(together)
+            for task in WISHES[stage.cutter](draft, stage, features)
+        ]
         for n, task in enumerate(fresh):
             progress.at((done + n / len(fresh)) / len(rounds), f"cutter for {task.id}")
-            found = candidates(task.requirement, catalogue(draft, task.stage), draft.settings.reach_clearance, progress)
+            found = candidates(
+                task.requirement,
+                catalogue(draft, task.stage),
+                draft.settings.reach_clearance,
+                progress,
+            )
             if found.tools:
                 fits[task.id] = found.tools
             elif task.stage.cutter != "rest":
@@ -96,10 +147,21 @@ def _with_cutters(draft: Draft, features: Sequence[Feature], stages: Sequence[St
     return with_falling_sizes(draft, tasks)
 
 
-def _sequenced(draft: Draft, tasks: Sequence[OperationTask], stages: Sequence[Stage]) -> list[Operation]:
+def _sequenced(
+    draft: Draft, tasks: Sequence[OperationTask], stages: Sequence[Stage]
+) -> list[Operation]:
     rank = {stage.name: n for n, stage in enumerate(stages)}
     after = {w.id: _before(draft, w, tasks) for w in tasks}
-    jobs = [Job(id=w.id, tool=draft.tools[w.id].name, stage=rank[w.stage.name], place=w.place, after=after[w.id]) for w in tasks]
+    jobs = [
+        Job(
+            id=w.id,
+            tool=draft.tools[w.id].name,
+            stage=rank[w.stage.name],
+            place=w.place,
+            after=after[w.id],
+        )
+        for w in tasks
+    ]
     by_id = {w.id: w for w in tasks}
     return [_operation(draft, by_id[id], after[id]) for id in ordered(jobs)]
 
@@ -107,44 +169,89 @@ def _sequenced(draft: Draft, tasks: Sequence[OperationTask], stages: Sequence[St
 def _before(draft: Draft, task: OperationTask, tasks: Sequence[OperationTask]) -> frozenset[str]:
     """Return the ids that come before a task: earlier stages on and beside its feature, larger cutters, the pocket it is sunk in."""
     kinds = {f.id: f.kind for f in draft.recognition}
-    near = {i for i in draft.beside.get(task.feature, ()) if kinds[i] != kinds[task.feature]} | {task.feature, "blank"}
+    near = {i for i in draft.beside.get(task.feature, ()) if kinds[i] != kinds[task.feature]} | {
+        task.feature,
+        "blank",
+    }
     own = next((f for f in draft.recognition if f.id == task.feature), None)
     parent = parent_of(own, draft.recognition) if own else None
     found: set[str] = set()
     for other in tasks:
-        if other.stage.name in task.stage.after_all or (other.stage.name in task.stage.after and other.feature in near):
+        if other.stage.name in task.stage.after_all or (
+            other.stage.name in task.stage.after and other.feature in near
+        ):
             found.add(other.id)
-        if parent is not None and other.stage.name == task.stage.name and other.feature == parent.id:
+        if (
+            parent is not None
+            and other.stage.name == task.stage.name
+            and other.feature == parent.id
+        ):
             found.add(other.id)
     steps = [w.id for w in tasks if w.feature == task.feature and w.stage.name == task.stage.name]
-    return frozenset(found | set(steps[:steps.index(task.id)]))
+    return frozenset(found | set(steps[: steps.index(task.id)]))
 
 
 def _operation(draft: Draft, task: OperationTask, after: frozenset[str]) -> Operation:
-    tool, stage, chosen, cutting = draft.tools[task.id], task.stage, draft.settings, choose(CuttingSettings, {})
+    tool, stage, chosen, cutting = (
+        draft.tools[task.id],
+        task.stage,
+        draft.settings,
+        choose(CuttingSettings, {}),
+    )
     depth, width = _engagement(draft, task, tool, cutting)
-    choices: dict[str, Value] = {} if stage.finish else {WALL_ALLOWANCE: chosen.wall_allowance, FLOOR_ALLOWANCE: chosen.floor_allowance}
+    choices: dict[str, Value] = (
+        {}
+        if stage.finish
+        else {WALL_ALLOWANCE: chosen.wall_allowance, FLOOR_ALLOWANCE: chosen.floor_allowance}
+    )
     if stage.kind == "floor":
         choices["plane.floor.wall_distance"] = floor_distance(chosen)
-    data = cutting_data(tool, draft.material, draft.machine, stage.kind, cutting, depth, width, _widest(task, chosen))
+    data = cutting_data(
+        tool,
+        draft.material,
+        draft.machine,
+        stage.kind,
+        cutting,
+        depth,
+        width,
+        _widest(task, chosen),
+    )
     rules = (stage.rule, *_tool_rules(task, tool, chosen))
     return Operation(
-        id=task.id, kind=stage.kind, strategy=stage.strategy, feature=task.feature, setup=draft.space.setup.name, tool=tool,
-        group=stage.name, data=data,
-        faces=task.faces if stage.finish else (), choices=choices, rules=rules, after=tuple(sorted(after)))
+        id=task.id,
+        kind=stage.kind,
+        strategy=stage.strategy,
+        feature=task.feature,
+        setup=draft.space.setup.name,
+        tool=tool,
+        group=stage.name,
+        data=data,
+        faces=task.faces if stage.finish else (),
+        choices=choices,
+        rules=rules,
+        after=tuple(sorted(after)),
+    )
 
 
-def _engagement(draft: Draft, task: OperationTask, tool: Tool, cutting: CuttingSettings) -> tuple[float, float]:
+def _engagement(
+    draft: Draft, task: OperationTask, tool: Tool, cutting: CuttingSettings
+) -> tuple[float, float]:
     """Return depth ap and width ae: roughing by material, even layers; finishing takes the allowance in steps that the flutes bear."""
     rough_depth = _even(task.height, roughing_depth(tool, draft.material, cutting))
     rough_width = roughing_width(tool, draft.material, cutting)
     kind, allowance = task.stage.kind, draft.settings.wall_allowance
     if kind == "face":
-        return _even(task.height, min(tool.flute_length / 2, rough_depth)), min(FACE_WIDTH * tool.diameter, task.width)
+        return _even(task.height, min(tool.flute_length / 2, rough_depth)), min(
+            FACE_WIDTH * tool.diameter, task.width
+        )
     if kind == "floor":
-        return max(draft.settings.floor_allowance, tolerance.SEW), FLOOR_WIDTH * (tool.diameter - 2 * tool.corner_radius)
+        return max(draft.settings.floor_allowance, tolerance.SEW), FLOOR_WIDTH * (
+            tool.diameter - 2 * tool.corner_radius
+        )
     if kind in ("wall", "corner_finish", "profile_finish"):
-        return _even(task.height, min(tool.flute_length, WALL_STEP * tool.diameter)), max(allowance, tolerance.SEW)
+        return _even(task.height, min(tool.flute_length, WALL_STEP * tool.diameter)), max(
+            allowance, tolerance.SEW
+        )
     if kind in ("rib_top", "island_top"):
         return rough_depth, min(rough_width, task.width + 2 * allowance)
     if kind == "profile_rough":
@@ -157,7 +264,11 @@ def _widest(task: OperationTask, chosen: RouteSettings) -> float:
     where the area doesn't say."""
     if task.stage.kind == "face":
         return task.width
-    return task.width + 2.0 * chosen.wall_allowance if task.stage.kind == "rib_top" and math.isfinite(task.width) else 0.0
+    return (
+        task.width + 2.0 * chosen.wall_allowance
+        if task.stage.kind == "rib_top" and math.isfinite(task.width)
+        else 0.0
+    )
 
 
 def _even(height: float, most: float) -> float:
@@ -171,15 +282,25 @@ def _even(height: float, most: float) -> float:
 
 def _tool_rules(task: OperationTask, tool: Tool, chosen: RouteSettings) -> tuple[str, ...]:
     requirement = task.requirement
-    said = [f"{tool.name}: reaches {trimmed(depth_reached(tool), 2)} mm, {trimmed(requirement.depth, 2)} mm and "
-            f"{trimmed(chosen.reach_clearance, 2)} mm clearance are needed."]
+    said = [
+        f"{tool.name}: reaches {trimmed(depth_reached(tool), 2)} mm, {trimmed(requirement.depth, 2)} mm and "
+        f"{trimmed(chosen.reach_clearance, 2)} mm clearance are needed."
+    ]
     if requirement.radius:
-        said.append(f"Its radius {trimmed(tool.radius, 2)} mm is at most {trimmed(requirement.radius, 2)} mm, "
-                    f"{trimmed(100 * chosen.corner_share, 0)} % of the corner's.")
-    exact = "is that of the floor fillet." if requirement.exact else f"is at most that of the floor fillet, {trimmed(requirement.corner_radius, 2)} mm."
+        said.append(
+            f"Its radius {trimmed(tool.radius, 2)} mm is at most {trimmed(requirement.radius, 2)} mm, "
+            f"{trimmed(100 * chosen.corner_share, 0)} % of the corner's."
+        )
+    exact = (
+        "is that of the floor fillet."
+        if requirement.exact
+        else f"is at most that of the floor fillet, {trimmed(requirement.corner_radius, 2)} mm."
+    )
     said.append(f"Its corner radius {trimmed(tool.corner_radius, 2)} mm {exact}")
     if not task.stage.finish:
-        said.append(f"It leaves {trimmed(chosen.wall_allowance, 2)} mm on walls and {trimmed(chosen.floor_allowance, 2)} mm on floors.")
+        said.append(
+            f"It leaves {trimmed(chosen.wall_allowance, 2)} mm on walls and {trimmed(chosen.floor_allowance, 2)} mm on floors."
+        )
     said.append("Among the cutters that fit it is the one that serves most operations.")
     return tuple(said)
 
@@ -187,4 +308,7 @@ def _tool_rules(task: OperationTask, tool: Tool, chosen: RouteSettings) -> tuple
 def _numbered(operations: Iterable[Operation]) -> list[Operation]:
     """Return the operations with tools numbered from 1 in the order of use."""
     numbers: dict[str, int] = {}
-    return [replace(o, tool=replace(o.tool, number=numbers.setdefault(o.tool.name, len(numbers) + 1))) for o in operations]
+    return [
+        replace(o, tool=replace(o.tool, number=numbers.setdefault(o.tool.name, len(numbers) + 1)))
+        for o in operations
+    ]

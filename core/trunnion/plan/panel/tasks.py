@@ -1,4 +1,5 @@
-"""What is wanted of each stage of a typical plan: for every feature the requirement that a cutter must fit, by the rule that the stage names."""
+"""The operations that each stage of a typical plan asks for: for every feature the requirement that a
+cutter must fit, by the rule that the stage names."""
 
 from __future__ import annotations
 
@@ -81,7 +82,11 @@ def catalogue(draft: Draft, stage: Stage) -> tuple[Tool, ...]:
     """Return the cutters that a stage may choose from."""
     use = "face" if stage.cutter == "face" else "finish" if stage.finish else "rough"
     tools = draft.shop.tools_for(draft.material.iso_group, use)
-    return tools if stage.cutter == "face" else tuple(t for t in tools if t.diameter <= draft.settings.largest)
+    return (
+        tools
+        if stage.cutter == "face"
+        else tuple(t for t in tools if t.diameter <= draft.settings.largest)
+    )
 
 
 def _wishes_face(draft: Draft, stage: Stage, features: Sequence[Feature]) -> list[OperationTask]:
@@ -89,16 +94,36 @@ def _wishes_face(draft: Draft, stage: Stage, features: Sequence[Feature]) -> lis
     height = float(space.blank_high[2]) - space.top
     if height <= tolerance.SEW:
         return []
-    tops = tuple(tag for f in draft.recognition for tag in f.with_role("top", "bottom")
-                 if abs(space.centre(tag)[2] - space.top) < tolerance.SEW)
+    tops = tuple(
+        tag
+        for f in draft.recognition
+        for tag in f.with_role("top", "bottom")
+        if abs(space.centre(tag)[2] - space.top) < tolerance.SEW
+    )
     middle = 0.5 * (space.blank_low + space.blank_high)
-    requirement = ToolRequirement(depth=0.0, room=space.around(), wanted=space.blank_area(), corner_radius=0.0, near=1.0)
-    return [OperationTask(id=f"face-{space.setup.name}", stage=stage, feature="blank", place=(float(middle[0]), float(middle[1])), requirement=requirement,
-                 faces=tops, height=height, width=float(np.min(space.blank_high[:2] - space.blank_low[:2])))]
+    requirement = ToolRequirement(
+        depth=0.0, room=space.around(), wanted=space.blank_area(), corner_radius=0.0, near=1.0
+    )
+    return [
+        OperationTask(
+            id=f"face-{space.setup.name}",
+            stage=stage,
+            feature="blank",
+            place=(float(middle[0]), float(middle[1])),
+            requirement=requirement,
+            faces=tops,
+            height=height,
+            width=float(np.min(space.blank_high[:2] - space.blank_low[:2])),
+        )
+    ]
 
 
-def _pocket_wishes(draft: Draft, stage: Stage, features: Sequence[Feature],
-                   make: Callable[[Feature, tuple[Band, ...]], OperationTask | None]) -> list[OperationTask]:
+def _pocket_wishes(
+    draft: Draft,
+    stage: Stage,
+    features: Sequence[Feature],
+    make: Callable[[Feature, tuple[Band, ...]], OperationTask | None],
+) -> list[OperationTask]:
     """Return the tasks for the pockets of a stage; a pocket without free space over its floor is told of once and left out."""
     found = []
     for feature in draft.progress.each(features):
@@ -109,7 +134,9 @@ def _pocket_wishes(draft: Draft, stage: Stage, features: Sequence[Feature],
                 draft.bands[feature.id] = draft.space.bands_of(feature)
             except Refused as reason:
                 draft.bands[feature.id] = ()
-                draft.findings.append(warning("route.not-planned", str(reason), feature.id, *face_tags(feature.tags)))
+                draft.findings.append(
+                    warning("route.not-planned", str(reason), feature.id, *face_tags(feature.tags))
+                )
         if draft.bands[feature.id]:
             task = make(feature, draft.bands[feature.id])
             if task is not None:
@@ -120,9 +147,18 @@ def _pocket_wishes(draft: Draft, stage: Stage, features: Sequence[Feature],
 def _wishes_rough(draft: Draft, stage: Stage, features: Sequence[Feature]) -> list[OperationTask]:
     def make(feature: Feature, bands: tuple[Band, ...]) -> OperationTask:
         is_open = feature.kind == "open_pocket"
-        requirement = ToolRequirement(depth=_depth(draft, bands), room=bands[-1].boundary, wanted=bands[-1].wanted, corner_radius=floor_fillet(feature),
-                    missable=draft.settings.missable, spare=1.0 if is_open else SPARE, near=NEAR_ROUGH)
-        if not is_open and not any(bands[-1].boundary.offset(-SPARE * t.radius) for t in catalogue(draft, stage)):
+        requirement = ToolRequirement(
+            depth=_depth(draft, bands),
+            room=bands[-1].boundary,
+            wanted=bands[-1].wanted,
+            corner_radius=floor_fillet(feature),
+            missable=draft.settings.missable,
+            spare=1.0 if is_open else SPARE,
+            near=NEAR_ROUGH,
+        )
+        if not is_open and not any(
+            bands[-1].boundary.offset(-SPARE * t.radius) for t in catalogue(draft, stage)
+        ):
             requirement = replace(requirement, spare=1.0)
         return _wish(stage, feature, bands, requirement, ())
 
@@ -136,7 +172,9 @@ def _wishes_rest(draft: Draft, stage: Stage, features: Sequence[Feature]) -> lis
         if before is None:
             return None
         requirement = replace(_wall_task(draft, feature, bands), exact=False)
-        if not 0.0 < corner < before.radius and fits_through(requirement, before, catalogue(draft, stage)):
+        if not 0.0 < corner < before.radius and fits_through(
+            requirement, before, catalogue(draft, stage)
+        ):
             return None
         return _wish(stage, feature, bands, requirement, ())
 
@@ -150,13 +188,25 @@ def _wishes_floor(draft: Draft, stage: Stage, features: Sequence[Feature]) -> li
         # The wall's last pass finishes a strip of the floor as wide as its cutter's reach from the wall.
         tools, clearance = catalogue(draft, stage), draft.settings.reach_clearance
         walling = _wall_task(draft, feature, bands)
-        walls = (candidates(walling, tools, clearance, draft.progress).tools
-                 or candidates(replace(walling, exact=False), tools, clearance, draft.progress).tools)
-        inner = bands[-1].wanted.offset(STRIP_OVERLAP - min((t.diameter - t.corner_radius for t in walls), default=0.0))
-        whole = ToolRequirement(depth=_depth(draft, bands), room=bands[-1].boundary, wanted=bands[-1].wanted, corner_radius=floor_fillet(feature),
-                     missable=draft.settings.missable, near=NEAR_FLOOR)
+        walls = (
+            candidates(walling, tools, clearance, draft.progress).tools
+            or candidates(replace(walling, exact=False), tools, clearance, draft.progress).tools
+        )
+        inner = bands[-1].wanted.offset(
+            STRIP_OVERLAP - min((t.diameter - t.corner_radius for t in walls), default=0.0)
+        )
+        whole = ToolRequirement(
+            depth=_depth(draft, bands),
+            room=bands[-1].boundary,
+            wanted=bands[-1].wanted,
+            corner_radius=floor_fillet(feature),
+            missable=draft.settings.missable,
+            near=NEAR_FLOOR,
+        )
         rest = replace(whole, wanted=inner, keep=floor_distance(draft.settings), missable=0.0)
-        requirement = rest if inner and candidates(rest, tools, clearance, draft.progress).tools else whole
+        requirement = (
+            rest if inner and candidates(rest, tools, clearance, draft.progress).tools else whole
+        )
         return _wish(stage, feature, bands, requirement, feature.with_role("floor"))
 
     return _pocket_wishes(draft, stage, features, make)
@@ -164,17 +214,31 @@ def _wishes_floor(draft: Draft, stage: Stage, features: Sequence[Feature]) -> li
 
 def _wishes_wall(draft: Draft, stage: Stage, features: Sequence[Feature]) -> list[OperationTask]:
     def make(feature: Feature, bands: tuple[Band, ...]) -> OperationTask:
-        islands = [tag for island in draft.space.islands_of(feature) for tag in island.with_role("wall", "corner", "floor_fillet")]
+        islands = [
+            tag
+            for island in draft.space.islands_of(feature)
+            for tag in island.with_role("wall", "corner", "floor_fillet")
+        ]
         faces = (*feature.with_role("wall", "corner", "floor_fillet"), *islands)
         if feature.sizes.get("corner_radius") == 0.0:
-            draft.findings.append(warning(
-                "route.sharp-corner", f"{feature.id}: two of its walls meet in a sharp inner edge; the cutter leaves its radius there",
-                feature.id, *face_tags(feature.with_role("wall")), remedy="give the corner a radius, or finish it by other means"))
+            draft.findings.append(
+                warning(
+                    "route.sharp-corner",
+                    f"{feature.id}: two of its walls meet in a sharp inner edge; the cutter leaves its radius there",
+                    feature.id,
+                    *face_tags(feature.with_role("wall")),
+                    remedy="give the corner a radius, or finish it by other means",
+                )
+            )
         requirement = _with_known_fillet(draft, stage, feature, _wall_task(draft, feature, bands))
-        fine = candidates(requirement, catalogue(draft, stage), draft.settings.reach_clearance, draft.progress).tools
+        fine = candidates(
+            requirement, catalogue(draft, stage), draft.settings.reach_clearance, draft.progress
+        ).tools
         if all(t.stickout / t.diameter > draft.settings.slender for t in fine):
             stiff = replace(requirement, radius=0.0, missable=draft.settings.missable, cusps=False)
-            larger = candidates(stiff, catalogue(draft, stage), draft.settings.reach_clearance, draft.progress).tools
+            larger = candidates(
+                stiff, catalogue(draft, stage), draft.settings.reach_clearance, draft.progress
+            ).tools
             if any(not fine or t.stickout / t.diameter <= draft.settings.slender for t in larger):
                 requirement = stiff
         return _wish(stage, feature, bands, requirement, faces)
@@ -186,7 +250,11 @@ def _wishes_corner(draft: Draft, stage: Stage, features: Sequence[Feature]) -> l
     def make(feature: Feature, bands: tuple[Band, ...]) -> OperationTask | None:
         wall, corner = draft.tools.get(f"wall-{feature.id}"), number(feature, "corner_radius")
         is_sharp = feature.sizes.get("corner_radius") == 0.0
-        if wall is None or (corner <= 0.0 and not is_sharp) or wall.radius <= corner * draft.settings.corner_share + tolerance.COINCIDENT:
+        if (
+            wall is None
+            or (corner <= 0.0 and not is_sharp)
+            or wall.radius <= corner * draft.settings.corner_share + tolerance.COINCIDENT
+        ):
             return None
         requirement = _with_known_fillet(draft, stage, feature, _wall_task(draft, feature, bands))
         if is_sharp:
@@ -210,16 +278,32 @@ def _wishes_top(draft: Draft, stage: Stage, features: Sequence[Feature]) -> list
         try:
             room, wanted = _top_room(draft, feature, z, tops)
         except Refused as reason:
-            draft.findings.append(warning("route.not-planned", str(reason), feature.id, *face_tags(tops)))
+            draft.findings.append(
+                warning("route.not-planned", str(reason), feature.id, *face_tags(tops))
+            )
             continue
         place = draft.space.centre(tops[0])
-        requirement = ToolRequirement(depth=draft.space.top - z, room=room, wanted=wanted, corner_radius=0.0, near=NEAR_FLOOR)
-        found.append(OperationTask(id=f"{stage.kind}-{feature.id}", stage=stage, feature=feature.id, place=(float(place[0]), float(place[1])),
-                          requirement=requirement, faces=tops, height=draft.space.top - z, width=number(feature, "thickness", math.inf)))
+        requirement = ToolRequirement(
+            depth=draft.space.top - z, room=room, wanted=wanted, corner_radius=0.0, near=NEAR_FLOOR
+        )
+        found.append(
+            OperationTask(
+                id=f"{stage.kind}-{feature.id}",
+                stage=stage,
+                feature=feature.id,
+                place=(float(place[0]), float(place[1])),
+                requirement=requirement,
+                faces=tops,
+                height=draft.space.top - z,
+                width=number(feature, "thickness", math.inf),
+            )
+        )
     return found
 
 
-def _top_room(draft: Draft, feature: Feature, z: float, tops: Sequence[int]) -> tuple[Region, Region]:
+def _top_room(
+    draft: Draft, feature: Feature, z: float, tops: Sequence[int]
+) -> tuple[Region, Region]:
     """Return where a cutter may be at a top's height, and the top itself."""
     space, wanted = draft.space, EMPTY_REGION
     for tag in tops:
@@ -227,9 +311,15 @@ def _top_room(draft: Draft, feature: Feature, z: float, tops: Sequence[int]) -> 
     if feature.kind != "island":
         return touching(space.free_near(z + tolerance.BESIDE_PLANE, wanted), wanted), wanted
     pocket = parent_of(feature, draft.recognition)
-    over = [b for b in draft.bands.get(pocket.id, ()) if b.bottom <= z + tolerance.SEW] if pocket else []
+    over = (
+        [b for b in draft.bands.get(pocket.id, ()) if b.bottom <= z + tolerance.SEW]
+        if pocket
+        else []
+    )
     if not over:
-        raise Refused(f"{feature.id} stands in a pocket that is not planned; machine its top by hand")
+        raise Refused(
+            f"{feature.id} stands in a pocket that is not planned; machine its top by hand"
+        )
     return over[0].boundary, wanted
 
 
@@ -242,27 +332,63 @@ def _wishes_profile(draft: Draft, stage: Stage, features: Sequence[Feature]) -> 
             wanted = space.blank_area().minus(outline)
             if not wanted:
                 continue
-            requirement = ToolRequirement(depth=space.top - space.bottom, room=space.around().minus(outline), wanted=wanted, corner_radius=0.0,
-                        near=NEAR_ROUGH)
+            requirement = ToolRequirement(
+                depth=space.top - space.bottom,
+                room=space.around().minus(outline),
+                wanted=wanted,
+                corner_radius=0.0,
+                near=NEAR_ROUGH,
+            )
             low, high = outline.box()
             side = float(np.max([low - space.blank_low[:2], space.blank_high[:2] - high]))
-            found.append(OperationTask(id=f"{stage.kind}-{feature.id}", stage=stage, feature=feature.id, requirement=requirement, width=side,
-                              place=(float(space.blank_low[0]), float(space.blank_low[1])), faces=feature.with_role("wall", "corner"),
-                              height=space.top - space.bottom))
+            found.append(
+                OperationTask(
+                    id=f"{stage.kind}-{feature.id}",
+                    stage=stage,
+                    feature=feature.id,
+                    requirement=requirement,
+                    width=side,
+                    place=(float(space.blank_low[0]), float(space.blank_low[1])),
+                    faces=feature.with_role("wall", "corner"),
+                    height=space.top - space.bottom,
+                )
+            )
     return found
 
 
 WISHES: Mapping[str, Callable[[Draft, Stage, Sequence[Feature]], list[OperationTask]]] = {
-    "face": _wishes_face, "rough": _wishes_rough, "rest": _wishes_rest, "top": _wishes_top, "floor": _wishes_floor, "wall": _wishes_wall,
-    "corner": _wishes_corner, "profile_rough": _wishes_profile, "profile_finish": _wishes_profile}
+    "face": _wishes_face,
+    "rough": _wishes_rough,
+    "rest": _wishes_rest,
+    "top": _wishes_top,
+    "floor": _wishes_floor,
+    "wall": _wishes_wall,
+    "corner": _wishes_corner,
+    "profile_rough": _wishes_profile,
+    "profile_finish": _wishes_profile,
+}
 """The rule behind each word that a typical plan gives for its cutter."""
 
 
-def _wish(stage: Stage, feature: Feature, bands: tuple[Band, ...], requirement: ToolRequirement, faces: tuple[int, ...]) -> OperationTask:
+def _wish(
+    stage: Stage,
+    feature: Feature,
+    bands: tuple[Band, ...],
+    requirement: ToolRequirement,
+    faces: tuple[int, ...],
+) -> OperationTask:
     low, high = bands[-1].wanted.box()
     middle = 0.5 * (low + high)
-    return OperationTask(id=f"{stage.kind}-{feature.id}", stage=stage, feature=feature.id, place=(float(middle[0]), float(middle[1])), requirement=requirement,
-                faces=faces, height=bands[0].top - bands[-1].bottom, width=float(np.min(high - low)))
+    return OperationTask(
+        id=f"{stage.kind}-{feature.id}",
+        stage=stage,
+        feature=feature.id,
+        place=(float(middle[0]), float(middle[1])),
+        requirement=requirement,
+        faces=faces,
+        height=bands[0].top - bands[-1].bottom,
+        width=float(np.min(high - low)),
+    )
 
 
 def _depth(draft: Draft, bands: tuple[Band, ...]) -> float:
@@ -271,29 +397,52 @@ def _depth(draft: Draft, bands: tuple[Band, ...]) -> float:
 
 
 def _wall_task(draft: Draft, feature: Feature, bands: tuple[Band, ...]) -> ToolRequirement:
-    return ToolRequirement(depth=_depth(draft, bands), room=bands[-1].boundary, wanted=bands[-1].wanted,
-                corner_radius=floor_fillet(feature), exact=True, radius=number(feature, "corner_radius") * draft.settings.corner_share,
-                missable=SHARP, near=NEAR_WALL, cusps=True)
+    return ToolRequirement(
+        depth=_depth(draft, bands),
+        room=bands[-1].boundary,
+        wanted=bands[-1].wanted,
+        corner_radius=floor_fillet(feature),
+        exact=True,
+        radius=number(feature, "corner_radius") * draft.settings.corner_share,
+        missable=SHARP,
+        near=NEAR_WALL,
+        cusps=True,
+    )
 
 
-def _with_known_fillet(draft: Draft, stage: Stage, feature: Feature, requirement: ToolRequirement) -> ToolRequirement:
+def _with_known_fillet(
+    draft: Draft, stage: Stage, feature: Feature, requirement: ToolRequirement
+) -> ToolRequirement:
     """Return a wall's requirement with the fillet that cutters have: when none has it exactly, the next smaller, and a finding."""
-    radii = {t.corner_radius for t in catalogue(draft, stage) if not requirement.radius or t.radius <= requirement.radius + tolerance.COINCIDENT}
+    radii = {
+        t.corner_radius
+        for t in catalogue(draft, stage)
+        if not requirement.radius or t.radius <= requirement.radius + tolerance.COINCIDENT
+    }
     if not radii or any(abs(r - requirement.corner_radius) <= tolerance.COINCIDENT for r in radii):
         return requirement
     next_smaller = max((r for r in radii if r < requirement.corner_radius), default=0.0)
-    draft.findings.append(warning(
-        "route.fillet", f"{feature.id}: no cutter has a corner radius of {trimmed(requirement.corner_radius, 3)} mm; "
-                        f"its floor fillet is stepped with {trimmed(next_smaller, 3)} mm", feature.id,
-        *face_tags(feature.with_role("floor_fillet")),
-        remedy="add a cutter with the fillet's radius to the tools folder"))
+    draft.findings.append(
+        warning(
+            "route.fillet",
+            f"{feature.id}: no cutter has a corner radius of {trimmed(requirement.corner_radius, 3)} mm; "
+            f"its floor fillet is stepped with {trimmed(next_smaller, 3)} mm",
+            feature.id,
+            *face_tags(feature.with_role("floor_fillet")),
+            remedy="add a cutter with the fillet's radius to the tools folder",
+        )
+    )
     return replace(requirement, corner_radius=next_smaller)
 
 
 def _smallest(draft: Draft, stage: Stage, requirement: ToolRequirement) -> float:
     """Return the radius of the smallest cutter that gets to the foot of a wall."""
-    found = candidates(replace(requirement, missable=1.0, cusps=False, near=0.0), catalogue(draft, stage), draft.settings.reach_clearance,
-                       draft.progress).tools
+    found = candidates(
+        replace(requirement, missable=1.0, cusps=False, near=0.0),
+        catalogue(draft, stage),
+        draft.settings.reach_clearance,
+        draft.progress,
+    ).tools
     return min((t.radius for t in found), default=math.inf)
 
 
@@ -302,9 +451,14 @@ def with_falling_sizes(draft: Draft, tasks: Sequence[OperationTask]) -> list[Ope
     out: list[OperationTask] = []
     for task in tasks:
         if task.stage.cutter in ("rest", "corner"):
-            before = draft.tools.get(f"{'rough' if task.stage.cutter == 'rest' else 'wall'}-{task.feature}")
+            before = draft.tools.get(
+                f"{'rough' if task.stage.cutter == 'rest' else 'wall'}-{task.feature}"
+            )
             n = 1
-            while before is not None and before.diameter > draft.settings.falling * draft.tools[task.id].diameter:
+            while (
+                before is not None
+                and before.diameter > draft.settings.falling * draft.tools[task.id].diameter
+            ):
                 step = _between(draft, task, before)
                 if step is None:
                     break
@@ -318,6 +472,13 @@ def with_falling_sizes(draft: Draft, tasks: Sequence[OperationTask]) -> list[Ope
 
 def _between(draft: Draft, task: OperationTask, before: Tool) -> Tool | None:
     goal = draft.tools[task.id]
-    fits = [t for t in catalogue(draft, task.stage) if goal.diameter < t.diameter <= before.diameter / draft.settings.falling ** 0.5
-            and t.corner_radius <= goal.corner_radius and depth_reached(t) >= task.requirement.depth + draft.settings.reach_clearance]
-    return max(fits, key=lambda t: (t.diameter, -depth_reached(t), t.corner_radius, t.name), default=None)
+    fits = [
+        t
+        for t in catalogue(draft, task.stage)
+        if goal.diameter < t.diameter <= before.diameter / draft.settings.falling**0.5
+        and t.corner_radius <= goal.corner_radius
+        and depth_reached(t) >= task.requirement.depth + draft.settings.reach_clearance
+    ]
+    return max(
+        fits, key=lambda t: (t.diameter, -depth_reached(t), t.corner_radius, t.name), default=None
+    )

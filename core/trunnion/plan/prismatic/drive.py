@@ -16,7 +16,16 @@ from trunnion.geometry.region import Region
 from trunnion.model.feature import Feature
 from trunnion.model.operation import Operation
 from trunnion.model.process import ProcessTree
-from trunnion.plan.prismatic.regions import Band, Space, floor_fillet, on_rim, parent_of, runs, same_curve, touching
+from trunnion.plan.prismatic.regions import (
+    Band,
+    Space,
+    floor_fillet,
+    on_rim,
+    parent_of,
+    runs,
+    same_curve,
+    touching,
+)
 
 
 @dataclass(frozen=True, slots=True, eq=False, kw_only=True)
@@ -142,7 +151,9 @@ def drive_of(operation: Operation, process: ProcessTree, space: Space) -> PlaneD
         return _island_top(operation, feature, space)
     if operation.kind in ("profile_rough", "profile_finish"):
         return _profile(operation, feature, space)
-    raise Refused(f"{operation.id}: no drive geometry is known for operations of kind {operation.kind}")
+    raise Refused(
+        f"{operation.id}: no drive geometry is known for operations of kind {operation.kind}"
+    )
 
 
 def _face(operation: Operation, space: Space) -> PlaneDrive:
@@ -150,10 +161,19 @@ def _face(operation: Operation, space: Space) -> PlaneDrive:
     tags = operation.faces
     level = DriveLevel(top=top, bottom=space.top, wanted=area, boundary=space.around())
     floor = Floor(z=space.top, region=area, fillet=0.0, face=tags[0] if tags else 0)
-    return PlaneDrive(feature=operation.feature, kind=operation.kind, levels=(level,), floors=(floor,), stock_top=top, faces=tags)
+    return PlaneDrive(
+        feature=operation.feature,
+        kind=operation.kind,
+        levels=(level,),
+        floors=(floor,),
+        stock_top=top,
+        faces=tags,
+    )
 
 
-def _pocket(operation: Operation, process: ProcessTree, feature: Feature, space: Space) -> PlaneDrive:
+def _pocket(
+    operation: Operation, process: ProcessTree, feature: Feature, space: Space
+) -> PlaneDrive:
     bands = space.bands_of(feature)
     fillet = floor_fillet(feature)
     earlier = _earlier(operation, process)
@@ -161,31 +181,58 @@ def _pocket(operation: Operation, process: ProcessTree, feature: Feature, space:
     if operation.kind in ("rough", "corner"):
         floors += _island_tops(feature, bands, space)
     return PlaneDrive(
-        feature=feature.id, kind=operation.kind, levels=tuple(_level(b) for b in bands), floors=floors,
-        walls=_pocket_walls(feature, bands, space, fillet), fillet=fillet, stock_top=bands[0].top, faces=operation.faces,
-        wall_allowance=_choice(operation, WALL_ALLOWANCE), floor_allowance=_choice(operation, FLOOR_ALLOWANCE),
-        earlier_radius=earlier.tool.radius if earlier else 0.0, earlier_allowance=_choice(earlier, WALL_ALLOWANCE) if earlier else 0.0)
+        feature=feature.id,
+        kind=operation.kind,
+        levels=tuple(_level(b) for b in bands),
+        floors=floors,
+        walls=_pocket_walls(feature, bands, space, fillet),
+        fillet=fillet,
+        stock_top=bands[0].top,
+        faces=operation.faces,
+        wall_allowance=_choice(operation, WALL_ALLOWANCE),
+        floor_allowance=_choice(operation, FLOOR_ALLOWANCE),
+        earlier_radius=earlier.tool.radius if earlier else 0.0,
+        earlier_allowance=_choice(earlier, WALL_ALLOWANCE) if earlier else 0.0,
+    )
 
 
-def _floors(feature: Feature, bands: tuple[Band, ...], space: Space, fillet: float) -> tuple[Floor, ...]:
+def _floors(
+    feature: Feature, bands: tuple[Band, ...], space: Space, fillet: float
+) -> tuple[Floor, ...]:
     found = []
     for tag, z in space.floors_of(feature).items():
         for n, band in enumerate(bands):
             if abs(band.bottom - z) < tolerance.SEW:
                 below = bands[n + 1].wanted if n + 1 < len(bands) else None
-                region = touching(band.wanted.minus(below), space.part.face_outline(space.setup.frame, tag)) if below else band.wanted
+                region = (
+                    touching(
+                        band.wanted.minus(below), space.part.face_outline(space.setup.frame, tag)
+                    )
+                    if below
+                    else band.wanted
+                )
                 found.append(Floor(z=z, region=region, fillet=fillet, face=tag))
     return tuple(found)
 
 
 def _island_tops(feature: Feature, bands: tuple[Band, ...], space: Space) -> tuple[Floor, ...]:
     frame = space.setup.frame
-    return tuple(Floor(z=space.island_top(island), region=space.part.face_outline(frame, tag), fillet=0.0, face=tag)
-                 for island in space.islands_of(feature) for tag in island.with_role("top")
-                 if bands[-1].bottom < space.island_top(island) < bands[0].top - tolerance.SEW)
+    return tuple(
+        Floor(
+            z=space.island_top(island),
+            region=space.part.face_outline(frame, tag),
+            fillet=0.0,
+            face=tag,
+        )
+        for island in space.islands_of(feature)
+        for tag in island.with_role("top")
+        if bands[-1].bottom < space.island_top(island) < bands[0].top - tolerance.SEW
+    )
 
 
-def _pocket_walls(feature: Feature, bands: tuple[Band, ...], space: Space, fillet: float) -> tuple[WallGuide, ...]:
+def _pocket_walls(
+    feature: Feature, bands: tuple[Band, ...], space: Space, fillet: float
+) -> tuple[WallGuide, ...]:
     """Return the guide lines of a pocket, each as tall as the bands that share it; a lower one begins above the step's fillet."""
     floors = space.floors_of(feature).values()
     guides: list[WallGuide] = []
@@ -193,13 +240,24 @@ def _pocket_walls(feature: Feature, bands: tuple[Band, ...], space: Space, fille
         stepped = n > 0 and any(abs(z - band.top) < tolerance.SEW for z in floors)
         on_floor = any(abs(z - band.bottom) < tolerance.SEW for z in floors)
         for curve in _walled(feature, band):
-            above = next((k for k, g in enumerate(guides) if abs(g.bottom - band.top) < tolerance.SEW
-                          and same_curve(g.curve, curve)), None)
+            above = next(
+                (
+                    k
+                    for k, g in enumerate(guides)
+                    if abs(g.bottom - band.top) < tolerance.SEW and same_curve(g.curve, curve)
+                ),
+                None,
+            )
             top = band.top if above is None else guides[above].top
             if above is None and stepped:
                 top = min(band.top + fillet, bands[0].top)
-            guide = WallGuide(curve=curve, top=top, bottom=band.bottom, fillet=fillet if on_floor else 0.0,
-                              faces=_wall_faces(feature, curve, space))
+            guide = WallGuide(
+                curve=curve,
+                top=top,
+                bottom=band.bottom,
+                fillet=fillet if on_floor else 0.0,
+                faces=_wall_faces(feature, curve, space),
+            )
             if above is None:
                 guides.append(guide)
             else:
@@ -211,7 +269,9 @@ def _walled(feature: Feature, band: Band) -> list[Curve]:
     """Return the loops of a band where they follow the part, the open side left out."""
     if feature.kind != "open_pocket":
         return list(band.wanted.curves())
-    return [run for curve in band.wanted.curves() for run in runs(curve, on_rim(curve, band.boundary))]
+    return [
+        run for curve in band.wanted.curves() for run in runs(curve, on_rim(curve, band.boundary))
+    ]
 
 
 def _wall_faces(feature: Feature, curve: Curve, space: Space) -> tuple[int, ...]:
@@ -235,39 +295,91 @@ def _rib_top(operation: Operation, feature: Feature, space: Space) -> PlaneDrive
     for tag in tags[1:]:
         wanted = wanted.union(space.part.face_outline(frame, tag))
     # Free at the part's top as well: under a wall that leans over the rib no cutter gets in from above.
-    boundary = touching(space.free_near(z + beside, wanted).intersect(space.free_near(space.top - beside, wanted)), wanted)
-    walls = tuple(WallGuide(curve=run, top=space.top, bottom=z, fillet=0.0, faces=())
-                  for curve in wanted.curves() for run in runs(curve, on_rim(curve, boundary)))
+    boundary = touching(
+        space.free_near(z + beside, wanted).intersect(space.free_near(space.top - beside, wanted)),
+        wanted,
+    )
+    walls = tuple(
+        WallGuide(curve=run, top=space.top, bottom=z, fillet=0.0, faces=())
+        for curve in wanted.curves()
+        for run in runs(curve, on_rim(curve, boundary))
+    )
     return _top(operation, feature, space, z, wanted, boundary, walls)
 
 
 def _island_top(operation: Operation, feature: Feature, space: Space) -> PlaneDrive:
     tags, pocket = feature.with_role("top"), parent_of(feature, space.recognition)
     if not tags or pocket is None:
-        raise Refused(f"{feature.id}: it has no top face or stands in no pocket; give it both or suppress {operation.id}")
+        raise Refused(
+            f"{feature.id}: it has no top face or stands in no pocket; give it both or suppress {operation.id}"
+        )
     z = float(space.centre(tags[0])[2])
     over = next((b for b in space.bands_of(pocket) if abs(b.bottom - z) < tolerance.SEW), None)
     if over is None:
-        raise Refused(f"{feature.id}: its top at z {z:.3f} of {space.setup.name} lies outside {pocket.id}; correct the feature")
-    return _top(operation, feature, space, z, space.part.face_outline(space.setup.frame, tags[0]), over.boundary, ())
+        raise Refused(
+            f"{feature.id}: its top at z {z:.3f} of {space.setup.name} lies outside {pocket.id}; correct the feature"
+        )
+    return _top(
+        operation,
+        feature,
+        space,
+        z,
+        space.part.face_outline(space.setup.frame, tags[0]),
+        over.boundary,
+        (),
+    )
 
 
-def _top(operation: Operation, feature: Feature, space: Space, z: float, wanted: Region, boundary: Region,
-         walls: tuple[WallGuide, ...]) -> PlaneDrive:
+def _top(
+    operation: Operation,
+    feature: Feature,
+    space: Space,
+    z: float,
+    wanted: Region,
+    boundary: Region,
+    walls: tuple[WallGuide, ...],
+) -> PlaneDrive:
     level = DriveLevel(top=space.top, bottom=z, wanted=wanted, boundary=boundary)
     floor = Floor(z=z, region=wanted, fillet=0.0, face=feature.with_role("top")[0])
-    return PlaneDrive(feature=feature.id, kind=operation.kind, levels=(level,), floors=(floor,), walls=walls, stock_top=space.top,
-                      faces=operation.faces)
+    return PlaneDrive(
+        feature=feature.id,
+        kind=operation.kind,
+        levels=(level,),
+        floors=(floor,),
+        walls=walls,
+        stock_top=space.top,
+        faces=operation.faces,
+    )
 
 
 def _profile(operation: Operation, feature: Feature, space: Space) -> PlaneDrive:
     outline = space.silhouette()
-    level = DriveLevel(top=space.top, bottom=space.bottom, wanted=space.blank_area().minus(outline),
-                       boundary=space.around().minus(outline))
-    walls = tuple(WallGuide(curve=piece.outer.reversed(), top=space.top, bottom=space.bottom, fillet=0.0, faces=feature.tags)
-                  for piece in outline.pieces)
-    return PlaneDrive(feature=feature.id, kind=operation.kind, levels=(level,), walls=walls, stock_top=space.top, faces=operation.faces,
-                      wall_allowance=_choice(operation, WALL_ALLOWANCE), floor_allowance=0.0)
+    level = DriveLevel(
+        top=space.top,
+        bottom=space.bottom,
+        wanted=space.blank_area().minus(outline),
+        boundary=space.around().minus(outline),
+    )
+    walls = tuple(
+        WallGuide(
+            curve=piece.outer.reversed(),
+            top=space.top,
+            bottom=space.bottom,
+            fillet=0.0,
+            faces=feature.tags,
+        )
+        for piece in outline.pieces
+    )
+    return PlaneDrive(
+        feature=feature.id,
+        kind=operation.kind,
+        levels=(level,),
+        walls=walls,
+        stock_top=space.top,
+        faces=operation.faces,
+        wall_allowance=_choice(operation, WALL_ALLOWANCE),
+        floor_allowance=0.0,
+    )
 
 
 def _level(band: Band) -> DriveLevel:

@@ -94,7 +94,9 @@ class Space:
 
     def height(self, z: float) -> float:
         """Return the setup's height of a height in the recognition's frame."""
-        return float(self.setup.frame.to_local(self.recognition.frame.to_world(np.array([0.0, 0.0, z])))[2])
+        return float(
+            self.setup.frame.to_local(self.recognition.frame.to_world(np.array([0.0, 0.0, z])))[2]
+        )
 
     def centre(self, tag: int) -> Floats:
         """Return a point (3,) inside a face."""
@@ -121,8 +123,16 @@ class Space:
         if not near:
             return material
         low, high = near.box()
-        over = [c.top for c in self._hanging() if c.hangs > z and (c.low <= high).all() and (c.high >= low).all()]
-        above = [self.section(c + tolerance.BESIDE_PLANE) for c in _distinct(over) if c + tolerance.BESIDE_PLANE < self.top]
+        over = [
+            c.top
+            for c in self._hanging()
+            if c.hangs > z and (c.low <= high).all() and (c.high >= low).all()
+        ]
+        above = [
+            self.section(c + tolerance.BESIDE_PLANE)
+            for c in _distinct(over)
+            if c + tolerance.BESIDE_PLANE < self.top
+        ]
         return union_all([material, *above]) if above else material
 
     def _hanging(self) -> list[_Ceiling]:
@@ -133,9 +143,18 @@ class Space:
             down = frame.local_direction(graph.sample_normal)[:, 2] < -np.sin(tolerance.TANGENT)
             for row in dict.fromkeys(graph.sample_face[down].tolist()):
                 own, edges = graph.sample_face == row, list(graph.edges_of[row])
-                rim = np.vstack([graph.start[edges], graph.middle[edges], graph.end[edges], graph.centre[[row]]])
+                rim = np.vstack(
+                    [graph.start[edges], graph.middle[edges], graph.end[edges], graph.centre[[row]]]
+                )
                 plan = frame.to_local(rim)[:, :2]
-                self._ceilings.append(_Ceiling(float(z[own & down].max()), float(z[own].max()), plan.min(axis=0), plan.max(axis=0)))
+                self._ceilings.append(
+                    _Ceiling(
+                        float(z[own & down].max()),
+                        float(z[own].max()),
+                        plan.min(axis=0),
+                        plan.max(axis=0),
+                    )
+                )
         return self._ceilings
 
     def free_near(self, z: float, region: Region) -> Region:
@@ -164,7 +183,11 @@ class Space:
 
     def islands_of(self, feature: Feature) -> tuple[Feature, ...]:
         """Return the islands that stand in a pocket."""
-        return tuple(f for f in self.recognition.of_kind("island") if parent_of(f, self.recognition) is feature)
+        return tuple(
+            f
+            for f in self.recognition.of_kind("island")
+            if parent_of(f, self.recognition) is feature
+        )
 
     def island_top(self, island: Feature) -> float:
         """Return the height of an island's top."""
@@ -183,31 +206,53 @@ class Space:
         if not floors:
             points = {self.bottom: self._middle_of(feature)}
         top, lowest = self.top_of(feature), min(points)
-        rim = self.height(number(feature, "lowest_rim_z")) if "lowest_rim_z" in feature.sizes else top
+        rim = (
+            self.height(number(feature, "lowest_rim_z")) if "lowest_rim_z" in feature.sizes else top
+        )
         tops = {self.island_top(i): i for i in islands}
         breaks = _distinct([top, *points, *(z for z in tops if lowest < z < top)])
         fillet = floor_fillet(feature)
         if len(breaks) < 2:
-            raise Refused(f"{feature.id}: its floor lies at the part's top in {self.setup.name}; correct the feature")
+            raise Refused(
+                f"{feature.id}: its floor lies at the part's top in {self.setup.name}; correct the feature"
+            )
         bands = []
         for high, low in pairwise(breaks):
             z = _section_height(high, low, min(rim, top), fillet if low in points else 0.0)
             under = [points[f] for f in points if f <= low + tolerance.SEW]
-            sunken = [self.centre(tag)[:2] for height, island in tops.items() if height <= low + tolerance.SEW
-                      for tag in island.with_role("top")]
+            sunken = [
+                self.centre(tag)[:2]
+                for height, island in tops.items()
+                if height <= low + tolerance.SEW
+                for tag in island.with_role("top")
+            ]
             bands.append(self._band(feature, high, low, z, under, sunken))
         return tuple(bands)
 
-    def _band(self, feature: Feature, high: float, low: float, z: float, points: list[Floats], sunken: list[Floats]) -> Band:
+    def _band(
+        self,
+        feature: Feature,
+        high: float,
+        low: float,
+        z: float,
+        points: list[Floats],
+        sunken: list[Floats],
+    ) -> Band:
         material = self.standing_over(z, self._over(feature))
         if feature.kind == "open_pocket":
             wanted = holding(self.silhouette().minus(material), points)
-            boundary = holding(self.around().minus(material).intersect(wanted.offset(AROUND)), points) if wanted else EMPTY_REGION
+            boundary = (
+                holding(self.around().minus(material).intersect(wanted.offset(AROUND)), points)
+                if wanted
+                else EMPTY_REGION
+            )
         else:
             wanted = boundary = enclosed(material, points)
         if not wanted:
-            raise Refused(f"{feature.id}: at z {z:.3f} of {self.setup.name} the part has no space over its floor, or does not close it; "
-                          "correct the feature or machine it by hand")
+            raise Refused(
+                f"{feature.id}: at z {z:.3f} of {self.setup.name} the part has no space over its floor, or does not close it; "
+                "correct the feature or machine it by hand"
+            )
         wanted, boundary = filled_over(wanted, sunken), filled_over(boundary, sunken)
         return Band(top=high, bottom=low, wanted=wanted, boundary=boundary)
 
@@ -217,14 +262,22 @@ class Space:
         edges = sorted({e for tag in feature.tags for e in graph.edges_of[tag - 1]})
         if not edges:
             return EMPTY_REGION
-        plan = self.setup.frame.to_local(np.vstack([graph.start[edges], graph.middle[edges], graph.end[edges]]))[:, :2]
+        plan = self.setup.frame.to_local(
+            np.vstack([graph.start[edges], graph.middle[edges], graph.end[edges]])
+        )[:, :2]
         low, high = plan.min(axis=0), plan.max(axis=0)
-        return Region.rectangle(*low, *high) if (high - low > tolerance.COINCIDENT).all() else EMPTY_REGION
+        return (
+            Region.rectangle(*low, *high)
+            if (high - low > tolerance.COINCIDENT).all()
+            else EMPTY_REGION
+        )
 
     def _middle_of(self, feature: Feature) -> Floats:
         centre = feature.attributes.get("centre", feature.sizes.get("centre"))
         if not isinstance(centre, tuple) or len(centre) < 2:
-            raise Refused(f"{feature.id}: nothing says where it is, it has neither a floor nor a centre; machine it by hand")
+            raise Refused(
+                f"{feature.id}: nothing says where it is, it has neither a floor nor a centre; machine it by hand"
+            )
         point = np.array([centre[0], centre[1], centre[2] if len(centre) > 2 else 0.0])
         return self.setup.frame.to_local(self.recognition.frame.to_world(point))[:2]
 
@@ -270,7 +323,11 @@ def enclosed(material: Region, points: Iterable[Floats]) -> Region:
     for hole in (h.reversed() for p in material.pieces for h in p.holes):
         space = Region((Piece(hole),))
         if space.contains(where).any():
-            standing = tuple(p.outer.reversed() for p in material.pieces if space.contains(p.outer.points[:1]).all())
+            standing = tuple(
+                p.outer.reversed()
+                for p in material.pieces
+                if space.contains(p.outer.points[:1]).all()
+            )
             inner = Region((Piece(hole, standing),))
             if inner.contains(where).any():
                 found.append(inner.pieces[0])
@@ -279,7 +336,13 @@ def enclosed(material: Region, points: Iterable[Floats]) -> Region:
 
 def touching(region: Region, other: Region) -> Region:
     """Return the pieces of a region that share area with another region."""
-    return Region(tuple(piece.pieces[0] for piece in region.split() if piece.intersect(other).area > tolerance.AREA))
+    return Region(
+        tuple(
+            piece.pieces[0]
+            for piece in region.split()
+            if piece.intersect(other).area > tolerance.AREA
+        )
+    )
 
 
 def filled_over(region: Region, points: Iterable[Floats]) -> Region:
@@ -287,8 +350,17 @@ def filled_over(region: Region, points: Iterable[Floats]) -> Region:
     where = np.array(list(points))
     if not len(where):
         return region
-    return Region(tuple(Piece(p.outer, tuple(h for h in p.holes if not Region((Piece(h.reversed()),)).contains(where).any()))
-                        for p in region.pieces))
+    return Region(
+        tuple(
+            Piece(
+                p.outer,
+                tuple(
+                    h for h in p.holes if not Region((Piece(h.reversed()),)).contains(where).any()
+                ),
+            )
+            for p in region.pieces
+        )
+    )
 
 
 def runs(curve: Curve, keep: Bools) -> list[Curve]:
@@ -304,7 +376,11 @@ def runs(curve: Curve, keep: Bools) -> list[Curve]:
     for k in range(n):
         i = (first + k) % n
         if wanted[i]:
-            one = Curve(np.stack([curve.points[i], curve.points[(i + 1) % n]]), np.array([curve.bulges[i], 0.0]), False)
+            one = Curve(
+                np.stack([curve.points[i], curve.points[(i + 1) % n]]),
+                np.array([curve.bulges[i], 0.0]),
+                False,
+            )
             if k and wanted[i - 1]:
                 found[-1].append(one)
             else:
@@ -343,4 +419,8 @@ def _section_height(high: float, low: float, rim: float, fillet: float) -> float
     if ceiling - low <= tolerance.BESIDE_PLANE:
         return rim - tolerance.BESIDE_PLANE
     foot = low + fillet
-    return 0.5 * (foot + ceiling) if ceiling - foot > tolerance.BESIDE_PLANE else ceiling - 0.5 * tolerance.BESIDE_PLANE
+    return (
+        0.5 * (foot + ceiling)
+        if ceiling - foot > tolerance.BESIDE_PLANE
+        else ceiling - 0.5 * tolerance.BESIDE_PLANE
+    )

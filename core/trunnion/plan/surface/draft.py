@@ -53,16 +53,49 @@ class Draft:
         """Return the feature that has most of some faces."""
         return max(self.recognition, key=lambda f: len(set(f.tags) & set(tags))).id
 
-    def add(self, kind: str, name: str, feature: str, tool: Tool, tags: tuple[int, ...], depth: float, width: float,
-            choices: dict[str, Value], rules: tuple[str, ...], *, strategy: str = "", operation_kind: str = "",
-            direction: Direction = UPRIGHT) -> None:
+    def add(
+        self,
+        kind: str,
+        name: str,
+        feature: str,
+        tool: Tool,
+        tags: tuple[int, ...],
+        depth: float,
+        width: float,
+        choices: dict[str, Value],
+        rules: tuple[str, ...],
+        *,
+        strategy: str = "",
+        operation_kind: str = "",
+        direction: Direction = UPRIGHT,
+    ) -> None:
         """Add an operation of the stage of a kind, with data for a depth and a width (mm) of cut."""
         stage = self.stages[kind]
-        data = cutting_data(tool, self.material, self.machine, operation_kind or kind, choose(CuttingSettings, {}), depth, width)
-        self.operations.append(Operation(
-            id=f"{kind.replace('_', '-')}-{name}", kind=operation_kind or kind, strategy=strategy or stage.strategy, feature=feature,
-            setup=self.setup.name, tool=tool, data=data, faces=tags, choices=choices, rules=rules, group=stage.name,
-            direction=direction))
+        data = cutting_data(
+            tool,
+            self.material,
+            self.machine,
+            operation_kind or kind,
+            choose(CuttingSettings, {}),
+            depth,
+            width,
+        )
+        self.operations.append(
+            Operation(
+                id=f"{kind.replace('_', '-')}-{name}",
+                kind=operation_kind or kind,
+                strategy=strategy or stage.strategy,
+                feature=feature,
+                setup=self.setup.name,
+                tool=tool,
+                data=data,
+                faces=tags,
+                choices=choices,
+                rules=rules,
+                group=stage.name,
+                direction=direction,
+            )
+        )
 
 
 def face_name(tags: Sequence[int]) -> str:

@@ -11,7 +11,18 @@ import numpy as np
 from trunnion.findings import BadInput, face_tags, info
 from trunnion.model.tool import Tool
 from trunnion.plan.freeform.end_mills import MISSED, Chosen, end_mills_for
-from trunnion.plan.freeform.lands import ABOVE_TOOL, AROUND_TOOL, BESIDE_SIDES, LAND, REST_LAND, STOCK, Keeping, Land, Standing, lands_of
+from trunnion.plan.freeform.lands import (
+    ABOVE_TOOL,
+    AROUND_TOOL,
+    BESIDE_SIDES,
+    LAND,
+    REST_LAND,
+    STOCK,
+    Keeping,
+    Land,
+    Standing,
+    lands_of,
+)
 from trunnion.plan.freeform.reach import Places, places_on, reached
 from trunnion.plan.freeform.rest import BESIDE
 from trunnion.plan.surface.draft import Draft, face_name
@@ -48,34 +59,71 @@ class Levels:
         return places.of(~done)
 
 
-def plan_lands(draft: Draft, tags: Collection[int], balls: Sequence[Tool], progress: Progress) -> Levels:
+def plan_lands(
+    draft: Draft, tags: Collection[int], balls: Sequence[Tool], progress: Progress
+) -> Levels:
     """Add operations on the level lands among faces; `balls` would finish them instead."""
     if not draft.chosen.lands or not {LAND, REST_LAND} <= set(draft.stages):
         return Levels()
     chosen, route = draft.chosen, draft.route
-    keeping = Keeping(beside=chosen.rough_allowance + APART, around=chosen.rough_allowance + BESIDE, above=route.reach_clearance)
+    keeping = Keeping(
+        beside=chosen.rough_allowance + APART,
+        around=chosen.rough_allowance + BESIDE,
+        above=route.reach_clearance,
+    )
     mills = [t for t in draft.cutters("finish") if t.diameter <= route.largest]
     try:
         standing = Standing(draft.space, progress)
-        found = end_mills_for(standing, lands_of(draft.space, tags), mills, min((t.radius for t in balls), default=0.0),
-                              chosen.share, keeping, [o.tool for o in draft.operations], progress)
+        found = end_mills_for(
+            standing,
+            lands_of(draft.space, tags),
+            mills,
+            min((t.radius for t in balls), default=0.0),
+            chosen.share,
+            keeping,
+            [o.tool for o in draft.operations],
+            progress,
+        )
         found = tuple(c for c in found if not _is_for_balls(draft, c, balls))
     except BadInput as reason:
-        draft.findings.append(info("route.lands", f"level faces are left to balls: {reason}", remedy="nothing needs to be done"))
+        draft.findings.append(
+            info(
+                "route.lands",
+                f"level faces are left to balls: {reason}",
+                remedy="nothing needs to be done",
+            )
+        )
         return Levels()
     for c in found:
         if c.left.area > MISSED:
-            draft.findings.append(info("route.land-left", f"{trimmed(c.left.area, 1)} mm2 of the land at {trimmed(c.land.z, 2)} stay in "
-                                       "corners that no end mill gets into", *face_tags(c.land.tags), remedy="finish them by other means"))
+            draft.findings.append(
+                info(
+                    "route.land-left",
+                    f"{trimmed(c.left.area, 1)} mm2 of the land at {trimmed(c.land.z, 2)} stay in "
+                    "corners that no end mill gets into",
+                    *face_tags(c.land.tags),
+                    remedy="finish them by other means",
+                )
+            )
     low = _low_sides(draft, tags, found)
-    for kind, pairs, beside in ((LAND, [(c.tool, c) for c in found], keeping.beside),
-                                (REST_LAND, [(c.rest, c) for c in found if c.rest is not None], 0.0)):
+    for kind, pairs, beside in (
+        (LAND, [(c.tool, c) for c in found], keeping.beside),
+        (REST_LAND, [(c.rest, c) for c in found if c.rest is not None], 0.0),
+    ):
         by_name = {tool.name: tool for tool, _ in pairs}
         for name, tool in by_name.items():
             mine = [c for other, c in pairs if other.name == name]
-            sides = [t for t, c in low.items() if c in mine and (kind == REST_LAND or c.rest is None)]
-            _add(draft, kind, tool, [c.land for c in mine], sides,
-                 {BESIDE_SIDES: beside, AROUND_TOOL: keeping.around, ABOVE_TOOL: keeping.above})
+            sides = [
+                t for t, c in low.items() if c in mine and (kind == REST_LAND or c.rest is None)
+            ]
+            _add(
+                draft,
+                kind,
+                tool,
+                [c.land for c in mine],
+                sides,
+                {BESIDE_SIDES: beside, AROUND_TOOL: keeping.around, ABOVE_TOOL: keeping.above},
+            )
     return Levels(lands=found, tags=frozenset({t for c in found for t in c.land.tags} | set(low)))
 
 
@@ -102,12 +150,31 @@ def _low_sides(draft: Draft, tags: Collection[int], lands: Sequence[Chosen]) -> 
     return found
 
 
-def _add(draft: Draft, kind: str, tool: Tool, lands: Sequence[Land], sides: Sequence[int], choices: dict[str, Value]) -> None:
+def _add(
+    draft: Draft,
+    kind: str,
+    tool: Tool,
+    lands: Sequence[Land],
+    sides: Sequence[int],
+    choices: dict[str, Value],
+) -> None:
     tags = tuple(sorted([*(t for land in lands for t in land.tags), *sides]))
     stock = draft.chosen.rough_allowance
     depth = max(stock / max(1, math.ceil(stock / DEEPEST)), LEAST)
     width = WIDTH * (tool.diameter - 2.0 * tool.corner_radius)
-    rules = (draft.stages[kind].rule, f"{tool.name} over {trimmed(sum(land.region.area for land in lands), 0)} mm2: "
-             f"{trimmed(width, 2)} mm between passes, {trimmed(depth, 2)} mm deep.")
-    draft.add(kind, face_name(tags), draft.feature_of(tags), tool, tags, depth, width,
-              {STOCK: stock if kind == LAND else 0.0, "plane.floor.wall_distance": 0.0, **choices}, rules)
+    rules = (
+        draft.stages[kind].rule,
+        f"{tool.name} over {trimmed(sum(land.region.area for land in lands), 0)} mm2: "
+        f"{trimmed(width, 2)} mm between passes, {trimmed(depth, 2)} mm deep.",
+    )
+    draft.add(
+        kind,
+        face_name(tags),
+        draft.feature_of(tags),
+        tool,
+        tags,
+        depth,
+        width,
+        {STOCK: stock if kind == LAND else 0.0, "plane.floor.wall_distance": 0.0, **choices},
+        rules,
+    )

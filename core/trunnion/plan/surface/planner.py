@@ -33,8 +33,10 @@ class SurfacePlanner:
     def can_plan(self, part: Part) -> None:
         """Raise `BadInput` for faces that enclose no material."""
         if not part.is_closed:
-            raise BadInput("nothing can be planned for faces that enclose no material; export the whole solid from the CAD system, or only "
-                           "group, cut and export these faces")
+            raise BadInput(
+                "nothing can be planned for faces that enclose no material; export the whole solid from the CAD system, or only "
+                "group, cut and export these faces"
+            )
 
     def route(self, job: RouteJob) -> ProcessTree:
         """Return the process by `make_surface_route`."""
@@ -43,15 +45,35 @@ class SurfacePlanner:
         skin = job.context.skin(tolerance.CHORD, progress.part(0.0, 0.5))
         space = SurfaceSpace.of(job.context.part, skin, job.blank, first)
         around = job.context.around(first, space.frame, space.skin, progress)
-        return make_surface_route(job.recognition, job.blank, job.setups, job.shop, space, around, job.chosen(RouteSettings), curved,
-                                  progress.part(0.5, 1.0))
+        return make_surface_route(
+            job.recognition,
+            job.blank,
+            job.setups,
+            job.shop,
+            space,
+            around,
+            job.chosen(RouteSettings),
+            curved,
+            progress.part(0.5, 1.0),
+        )
 
-    def drive(self, operation: Operation, needs: DriveNeeds, scene: Scene, progress: Progress) -> Driven:
+    def drive(
+        self, operation: Operation, needs: DriveNeeds, scene: Scene, progress: Progress
+    ) -> Driven:
         """Return the drive that an operation's strategy needs."""
-        return driven_by({PlaneDrive: _plane_driven, SurfaceDrive: surface_driven}, self, operation, needs, scene, progress)
+        return driven_by(
+            {PlaneDrive: _plane_driven, SurfaceDrive: surface_driven},
+            self,
+            operation,
+            needs,
+            scene,
+            progress,
+        )
 
 
-def _plane_driven(operation: Operation, needs: DriveNeeds, scene: Scene, progress: Progress) -> Driven:
+def _plane_driven(
+    operation: Operation, needs: DriveNeeds, scene: Scene, progress: Progress
+) -> Driven:
     space = space_from(operation.direction, tolerance.CHORD, scene, progress)
     drive = plane_drive_of(operation, space, scene.stock(space.setup), progress, scene.process)
     return Driven(setup=space.setup, drive=drive, told=drive)

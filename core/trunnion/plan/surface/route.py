@@ -23,7 +23,15 @@ from trunnion.model.tool import Tool
 from trunnion.plan.clearance import Around
 from trunnion.plan.cutting import CuttingSettings, roughing_depth, roughing_width
 from trunnion.plan.feasibility import too_large, too_many_tools
-from trunnion.plan.freeform.areas import Area, areas_of, blank_faces, connected, hidden_areas, on_outline, walls_of
+from trunnion.plan.freeform.areas import (
+    Area,
+    areas_of,
+    blank_faces,
+    connected,
+    hidden_areas,
+    on_outline,
+    walls_of,
+)
 from trunnion.plan.freeform.cutters import Chosen, cutter_for, named
 from trunnion.plan.freeform.keys import ALLOWANCE, BOTTOM, CELL, EARLIER, SCALLOP
 from trunnion.plan.freeform.lands import LAND, REST_LAND
@@ -74,8 +82,17 @@ WALL_SHARE = 0.7
 """Largest cutter of an outline over the largest roughing cutter: finishing wants it stiff, but not heavy."""
 
 
-def make_surface_route(recognition: Recognition, blank: Blank, setups: Sequence[Setup], shop: Shop, space: SurfaceSpace, around: Around,
-                       route: RouteSettings, chosen: SurfaceRouteSettings, progress: Progress) -> ProcessTree:
+def make_surface_route(
+    recognition: Recognition,
+    blank: Blank,
+    setups: Sequence[Setup],
+    shop: Shop,
+    space: SurfaceSpace,
+    around: Around,
+    route: RouteSettings,
+    chosen: SurfaceRouteSettings,
+    progress: Progress,
+) -> ProcessTree:
     """Return the process of a part of curved surfaces: operations in cutting order, tools numbered in the order of use.
 
     What an upright tool doesn't reach is roughed from other directions and finished by a leaning one where the machine has rotary axes.
@@ -85,14 +102,32 @@ def make_surface_route(recognition: Recognition, blank: Blank, setups: Sequence[
     material = shop.material(blank.material)
     findings = too_large(blank, setups, shop)
     if findings:
-        return ProcessTree(plan=plan.name, material=material.name, setups=tuple(setups), findings=tuple(findings))
-    draft = Draft(space=space, around=around, recognition=recognition, material=material, machine=shop.machine(setups[0].machine),
-                  shop=shop, setup=setups[0], route=route, chosen=chosen, stages={s.kind: s for s in plan.stages})
+        return ProcessTree(
+            plan=plan.name, material=material.name, setups=tuple(setups), findings=tuple(findings)
+        )
+    draft = Draft(
+        space=space,
+        around=around,
+        recognition=recognition,
+        material=material,
+        machine=shop.machine(setups[0].machine),
+        shop=shop,
+        setup=setups[0],
+        route=route,
+        chosen=chosen,
+        stages={s.kind: s for s in plan.stages},
+    )
     _plan(draft, progress)
     _add_slivers(draft)
     operations = _numbered(_in_order(draft, plan.stages))
     findings = [*draft.findings, *too_many_tools(operations, setups, shop)]
-    return ProcessTree(plan=plan.name, material=material.name, setups=tuple(setups), operations=tuple(operations), findings=tuple(findings))
+    return ProcessTree(
+        plan=plan.name,
+        material=material.name,
+        setups=tuple(setups),
+        operations=tuple(operations),
+        findings=tuple(findings),
+    )
 
 
 def _plan(draft: Draft, progress: Progress) -> None:
@@ -106,9 +141,15 @@ def _plan(draft: Draft, progress: Progress) -> None:
     for tags in progress.each(connected(walls, part.graph())):
         _outline(draft, tags)
     level = plan_lands(draft, set(mine) - set(walls), _finishers(draft), progress.part(0.0, 0.05))
-    hidden = _hidden(draft, places, set(mine) - set(walls) - level.tags, progress.part(0.05, 0.1)) if draft.machine.rotary else ()
-    areas = [*areas_of(draft.recognition, part.graph(), {*outside, *walls, *level.tags, *hidden}),
-             *hidden_areas(draft.recognition, part.graph(), hidden)]
+    hidden = (
+        _hidden(draft, places, set(mine) - set(walls) - level.tags, progress.part(0.05, 0.1))
+        if draft.machine.rotary
+        else ()
+    )
+    areas = [
+        *areas_of(draft.recognition, part.graph(), {*outside, *walls, *level.tags, *hidden}),
+        *hidden_areas(draft.recognition, part.graph(), hidden),
+    ]
     for n, area in enumerate(areas):
         share = progress.part(0.1 + 0.7 * n / len(areas), 0.1 + 0.7 * (n + 1) / len(areas))
         share.at(0.0, f"cutter for {area.id}")
@@ -120,20 +161,37 @@ def _plan(draft: Draft, progress: Progress) -> None:
     _rough(draft, space, float(space.skin.points[:, 2].min()))
     if hidden:
         seen = places.of(np.isin(places.face, hidden))
-        for n, side in enumerate(sides_for(space, draft.setup, draft.around, seen, _finishers(draft), draft.route.reach_clearance,
-                                           progress.part(0.8, 1.0)), 1):
+        for n, side in enumerate(
+            sides_for(
+                space,
+                draft.setup,
+                draft.around,
+                seen,
+                _finishers(draft),
+                draft.route.reach_clearance,
+                progress.part(0.8, 1.0),
+            ),
+            1,
+        ):
             _rough(draft, side.space, side.bottom, f"side-{n}")
 
 
 def _add_slivers(draft: Draft) -> None:
     """Cut the patches that are too small to be planned by themselves with what lies around them; tell of those that stay."""
     part = draft.space.part
-    mine = (slivers_of(draft.recognition) | draft.unsampled) & set(part.tags) - set(blank_faces(part, draft.space.blank))
+    mine = (slivers_of(draft.recognition) | draft.unsampled) & set(part.tags) - set(
+        blank_faces(part, draft.space.blank)
+    )
     draft.operations, left = with_slivers(draft.operations, mine, part.graph(), draft.space.skin)
     if left:
-        draft.findings.append(warning(
-            "route.not-planned", f"{len(left)} small faces lie beside nothing that is cut", *face_tags(left),
-            remedy="lower recognize.surface.smallest and recognize.surface.sliver_width to plan them by themselves"))
+        draft.findings.append(
+            warning(
+                "route.not-planned",
+                f"{len(left)} small faces lie beside nothing that is cut",
+                *face_tags(left),
+                remedy="lower recognize.surface.smallest and recognize.surface.sliver_width to plan them by themselves",
+            )
+        )
 
 
 def _hidden(draft: Draft, places: Places, tags: set[int], progress: Progress) -> tuple[int, ...]:
@@ -147,7 +205,10 @@ def _hidden(draft: Draft, places: Places, tags: set[int], progress: Progress) ->
 
 def _leaning_finishers(draft: Draft) -> tuple[Tool, ...]:
     """Return the longest ball of each diameter, the smallest first."""
-    longest = {t.diameter: t for t in sorted(_finishers(draft), key=lambda t: (t.diameter, depth_reached(t), t.name))}
+    longest = {
+        t.diameter: t
+        for t in sorted(_finishers(draft), key=lambda t: (t.diameter, depth_reached(t), t.name))
+    }
     return tuple(longest[d] for d in sorted(longest) if d <= LARGEST_LEANING)
 
 
@@ -158,11 +219,20 @@ def _rough(draft: Draft, space: SurfaceSpace, bottom: float, name: str = "part")
     most = min(draft.route.largest, ROUGH_SHARE * size)
     tool = _rougher(draft, most, deep, draft.chosen.rough_cutter)
     if tool is None:
-        draft.findings.append(error("route.no-cutter", f"no roughing cutter up to D {trimmed(most, 1)} reaches {trimmed(deep, 1)} mm deep",
-                                    draft.recognition.features[0].id, remedy="add a longer cutter to the tools folder"))
+        draft.findings.append(
+            error(
+                "route.no-cutter",
+                f"no roughing cutter up to D {trimmed(most, 1)} reaches {trimmed(deep, 1)} mm deep",
+                draft.recognition.features[0].id,
+                remedy="add a longer cutter to the tools folder",
+            )
+        )
         return
     _add_rough(draft, "rough", name, tool, space, bottom)
-    smallest = min((o.tool.diameter for o in draft.operations if o.kind in ("finish", LAND, REST_LAND)), default=tool.diameter)
+    smallest = min(
+        (o.tool.diameter for o in draft.operations if o.kind in ("finish", LAND, REST_LAND)),
+        default=tool.diameter,
+    )
     n = 1
     while tool.diameter > NEAR_FINISH * smallest:
         rest = _rougher(draft, REST_SHARE * tool.diameter, deep, "")
@@ -176,20 +246,54 @@ def _rougher(draft: Draft, most: float, deep: float, name: str) -> Tool | None:
     """Return the largest roughing cutter up to a diameter that reaches a depth, with the corner that leaves least of a slope."""
     if name:
         return named(draft.shop, name)
-    fits = [t for t in draft.cutters("rough") if t.form in ("flat", "bull") and t.diameter <= most
-            and depth_reached(t) >= deep + draft.route.reach_clearance]
-    return max(fits, key=lambda t: (t.diameter, -depth_reached(t), -abs(t.corner_radius - 0.1 * t.diameter), t.name), default=None)
+    fits = [
+        t
+        for t in draft.cutters("rough")
+        if t.form in ("flat", "bull")
+        and t.diameter <= most
+        and depth_reached(t) >= deep + draft.route.reach_clearance
+    ]
+    return max(
+        fits,
+        key=lambda t: (
+            t.diameter,
+            -depth_reached(t),
+            -abs(t.corner_radius - 0.1 * t.diameter),
+            t.name,
+        ),
+        default=None,
+    )
 
 
-def _add_rough(draft: Draft, kind: str, name: str, tool: Tool, space: SurfaceSpace, bottom: float) -> None:
+def _add_rough(
+    draft: Draft, kind: str, name: str, tool: Tool, space: SurfaceSpace, bottom: float
+) -> None:
     stage, chosen, cutting = draft.stages[kind], draft.chosen, choose(CuttingSettings, {})
     depth = min(chosen.layer, roughing_depth(tool, draft.material, cutting))
     width = roughing_width(tool, draft.material, cutting)
-    rules = (stage.rule, f"{tool.name}: reaches {trimmed(depth_reached(tool), 1)} mm deep.",
-             f"It leaves {trimmed(chosen.rough_allowance, 2)} mm all round, in layers of {trimmed(depth, 2)} mm.")
-    choices: dict[str, Value] = {ALLOWANCE: chosen.rough_allowance, BOTTOM: bottom, CELL: chosen.cell}
-    draft.add(kind, name, draft.first_feature(), tool, (), depth, width, choices, rules, operation_kind="rough",
-              direction=space.direction)
+    rules = (
+        stage.rule,
+        f"{tool.name}: reaches {trimmed(depth_reached(tool), 1)} mm deep.",
+        f"It leaves {trimmed(chosen.rough_allowance, 2)} mm all round, in layers of {trimmed(depth, 2)} mm.",
+    )
+    choices: dict[str, Value] = {
+        ALLOWANCE: chosen.rough_allowance,
+        BOTTOM: bottom,
+        CELL: chosen.cell,
+    }
+    draft.add(
+        kind,
+        name,
+        draft.first_feature(),
+        tool,
+        (),
+        depth,
+        width,
+        choices,
+        rules,
+        operation_kind="rough",
+        direction=space.direction,
+    )
 
 
 def _outline(draft: Draft, tags: tuple[int, ...]) -> None:
@@ -198,19 +302,49 @@ def _outline(draft: Draft, tags: tuple[int, ...]) -> None:
     z = space.skin.points[space.skin.triangles[space.skin.of(tags)], 2]
     top, height = float(z.max()), float(z.max() - z.min())
     most = WALL_SHARE * draft.route.largest
-    fits = [t for t in draft.cutters("finish") if t.form == "flat" and t.diameter <= most
-            and depth_reached(t) >= top - float(z.min()) + draft.route.reach_clearance
-            and clear_beside(space, places_on(space.skin, tags, FEW), t, float(z.min()), draft.route.reach_clearance,
-                             draft.chosen.rough_allowance)]
+    fits = [
+        t
+        for t in draft.cutters("finish")
+        if t.form == "flat"
+        and t.diameter <= most
+        and depth_reached(t) >= top - float(z.min()) + draft.route.reach_clearance
+        and clear_beside(
+            space,
+            places_on(space.skin, tags, FEW),
+            t,
+            float(z.min()),
+            draft.route.reach_clearance,
+            draft.chosen.rough_allowance,
+        )
+    ]
     if not fits:
-        draft.findings.append(error("route.no-cutter", f"no end mill up to D {trimmed(most, 1)} reaches {trimmed(height, 1)} mm "
-                                    "down a wall", *face_tags(tags), remedy="add a longer cutter to the tools folder"))
+        draft.findings.append(
+            error(
+                "route.no-cutter",
+                f"no end mill up to D {trimmed(most, 1)} reaches {trimmed(height, 1)} mm "
+                "down a wall",
+                *face_tags(tags),
+                remedy="add a longer cutter to the tools folder",
+            )
+        )
         return
     tool = max(fits, key=lambda t: (t.diameter, -depth_reached(t), t.name))
     steps = max(1, math.ceil(height / min(tool.flute_length, WALL_STEP * tool.diameter)))
-    rules = (stage.rule, f"{tool.name}: the stiffest end mill up to D {trimmed(most, 1)} that reaches {trimmed(height, 1)} mm.")
-    draft.add("profile_finish", face_name(tags), draft.feature_of(tags), tool, tags, height / steps,
-              max(draft.chosen.rough_allowance, 0.1), {}, rules)
+    rules = (
+        stage.rule,
+        f"{tool.name}: the stiffest end mill up to D {trimmed(most, 1)} that reaches {trimmed(height, 1)} mm.",
+    )
+    draft.add(
+        "profile_finish",
+        face_name(tags),
+        draft.feature_of(tags),
+        tool,
+        tags,
+        height / steps,
+        max(draft.chosen.rough_allowance, 0.1),
+        {},
+        rules,
+    )
 
 
 def _area(draft: Draft, area: Area, level: Levels, progress: Progress) -> None:
@@ -224,8 +358,15 @@ def _area(draft: Draft, area: Area, level: Levels, progress: Progress) -> None:
     places = level.without_feet(places)
     area = replace(area, tags=tuple(t for t in area.tags if (places.face == t).any()))
     wanted = chosen.local_cutter if area.local else chosen.cutter
-    found = cutter_for(draft.space, places, _finishers(draft), chosen.share, draft.route.reach_clearance,
-                       named(draft.shop, wanted) if wanted else None, progress)
+    found = cutter_for(
+        draft.space,
+        places,
+        _finishers(draft),
+        chosen.share,
+        draft.route.reach_clearance,
+        named(draft.shop, wanted) if wanted else None,
+        progress,
+    )
     _tell_unreached(draft, area, places, found)
     if found.tool is None:
         return
@@ -235,23 +376,34 @@ def _area(draft: Draft, area: Area, level: Levels, progress: Progress) -> None:
             _add_finish(draft, kind, name, mine, found.tool, strategy, places)
     if found.rest is not None:
         missed = places.of(found.missed)
-        left = Area(id=area.id, tags=tuple(t for t in area.tags if (missed.face == t).any()), local=True)
+        left = Area(
+            id=area.id, tags=tuple(t for t in area.tags if (missed.face == t).any()), local=True
+        )
         for name, mine, strategy in _by_slope(left, left.tags, missed, math.radians(chosen.steep)):
-            _add_finish(draft, "rest_finish", name, mine, found.rest, strategy, missed, earlier=found.tool)
+            _add_finish(
+                draft, "rest_finish", name, mine, found.rest, strategy, missed, earlier=found.tool
+            )
         # Faces that the larger cutter never touches are still as roughing left them.
         raw = replace(left, id=f"{area.id}-rest", tags=tuple(t for t in left.tags if t not in tags))
         if raw.tags and chosen.semi_allowance > 0.0:
-            for name, mine, strategy in _by_slope(raw, raw.tags, missed, math.radians(chosen.steep)):
+            for name, mine, strategy in _by_slope(
+                raw, raw.tags, missed, math.radians(chosen.steep)
+            ):
                 _add_finish(draft, "semi", name, mine, found.rest, strategy, missed)
 
 
 def _hidden_area(draft: Draft, area: Area, progress: Progress) -> None:
     """Plan semi-finishing and finishing of an area with a leaning cutter."""
     chosen = draft.chosen
-    places, few = places_on(draft.space.skin, area.tags), places_on(draft.space.skin, area.tags, LEANING_SAMPLES)
+    places, few = (
+        places_on(draft.space.skin, area.tags),
+        places_on(draft.space.skin, area.tags, LEANING_SAMPLES),
+    )
     wanted = chosen.local_cutter if area.local else chosen.cutter
     own = named(draft.shop, wanted) if wanted else None
-    found = leaning_cutter(few, _leaning_finishers(draft), draft.around, chosen.share, own, progress)
+    found = leaning_cutter(
+        few, _leaning_finishers(draft), draft.around, chosen.share, own, progress
+    )
     _tell_unreached(draft, area, few, found)
     if found.tool is None:
         return
@@ -260,10 +412,21 @@ def _hidden_area(draft: Draft, area: Area, progress: Progress) -> None:
     _add_finish(draft, "finish", area.id, area.tags, found.tool, "surface.point", places)
     if found.rest is not None:
         left = tuple(t for t in area.tags if (found.missed & (few.face == t)).any())
-        _add_finish(draft, "rest_finish", area.id, left, found.rest, "surface.point", places, earlier=found.tool)
+        _add_finish(
+            draft,
+            "rest_finish",
+            area.id,
+            left,
+            found.rest,
+            "surface.point",
+            places,
+            earlier=found.tool,
+        )
 
 
-def _by_slope(area: Area, tags: Sequence[int], places: Places, limit: float) -> list[tuple[str, tuple[int, ...], str]]:
+def _by_slope(
+    area: Area, tags: Sequence[int], places: Places, limit: float
+) -> list[tuple[str, tuple[int, ...], str]]:
     """Return the operations of an area: name, faces, strategy. Local features are of many slopes, which constant scallop suits best.
 
     Places that lean by more than a limit (rad) are cut by waterlines: a face with some of both is in both operations.
@@ -272,8 +435,14 @@ def _by_slope(area: Area, tags: Sequence[int], places: Places, limit: float) -> 
     steep = tuple(t for t in tags if above[places.face == t].mean() > SOME)
     if STEEP not in registry.names("strategies"):
         steep = ()
-    shallow = tuple(t for t in tags if t not in steep or above[places.face == t].mean() < 1.0 - SOME)
-    found = [(area.id, shallow, first_known(FOR_LOCAL if area.local else FOR_SHALLOW))] if shallow else []
+    shallow = tuple(
+        t for t in tags if t not in steep or above[places.face == t].mean() < 1.0 - SOME
+    )
+    found = (
+        [(area.id, shallow, first_known(FOR_LOCAL if area.local else FOR_SHALLOW))]
+        if shallow
+        else []
+    )
     return [*found, (f"{area.id}{FIRST}", steep, STEEP)] if steep else found
 
 
@@ -291,8 +460,11 @@ COARSE, CHORD_SHARE = 0.01, 0.075
 """mm: from this scallop height on passes need not follow their way as closely as strategies do by themselves; and how closely of it."""
 SOME = 0.02
 """Share of a face that is worth another strategy."""
-MEETING = {"surface.waterline": ("surface.waterline.shallowest", -5.0), "surface.constant": ("surface.constant.steepest", 5.0),
-           "surface.parallel": ("surface.parallel.steepest", 5.0)}
+MEETING = {
+    "surface.waterline": ("surface.waterline.shallowest", -5.0),
+    "surface.constant": ("surface.constant.steepest", 5.0),
+    "surface.parallel": ("surface.parallel.steepest", 5.0),
+}
 """Where strategies for shallow and steep places meet: the setting that says it, and by how many degrees each goes on past the limit."""
 
 
@@ -302,12 +474,26 @@ def first_known(names: Sequence[str]) -> str:
     return next((name for name in names if name in known), names[0])
 
 
-def _add_finish(draft: Draft, kind: str, name: str, tags: tuple[int, ...], tool: Tool, strategy: str, places: Places,
-                earlier: Tool | None = None) -> None:
+def _add_finish(
+    draft: Draft,
+    kind: str,
+    name: str,
+    tags: tuple[int, ...],
+    tool: Tool,
+    strategy: str,
+    places: Places,
+    earlier: Tool | None = None,
+) -> None:
     stage, chosen = draft.stages[kind], draft.chosen
     if strategy not in registry.names("strategies"):
-        draft.findings.append(warning("route.no-strategy", f"{name}: no strategy {strategy} is there; {kind} is left out",
-                                      *face_tags(tags), remedy="install a package that has it"))
+        draft.findings.append(
+            warning(
+                "route.no-strategy",
+                f"{name}: no strategy {strategy} is there; {kind} is left out",
+                *face_tags(tags),
+                remedy="install a package that has it",
+            )
+        )
         return
     semi = kind == "semi"
     allowance = chosen.semi_allowance if semi else 0.0
@@ -316,8 +502,12 @@ def _add_finish(draft: Draft, kind: str, name: str, tags: tuple[int, ...], tool:
     depth = chosen.rough_allowance + 0.5 * chosen.layer if after_rough else chosen.semi_allowance
     width = stepover_on_plane(tool.corner_radius or 0.5 * tool.radius, height)
     area = places.area * float(np.isin(places.face, tags).sum())
-    rules = (stage.rule, f"{tool.name} over {trimmed(area, 0)} mm2: scallops of {trimmed(1000.0 * height, 1)} um, "
-             f"{trimmed(width, 3)} mm between passes on a plane.", f"It leaves {trimmed(allowance, 2)} mm.")
+    rules = (
+        stage.rule,
+        f"{tool.name} over {trimmed(area, 0)} mm2: scallops of {trimmed(1000.0 * height, 1)} um, "
+        f"{trimmed(width, 3)} mm between passes on a plane.",
+        f"It leaves {trimmed(allowance, 2)} mm.",
+    )
     choices: dict[str, Value] = {SCALLOP: height, ALLOWANCE: allowance}
     if height >= COARSE:
         choices[f"{strategy}.chord"] = CHORD_SHARE * height
@@ -326,11 +516,26 @@ def _add_finish(draft: Draft, kind: str, name: str, tags: tuple[int, ...], tool:
         choices[key] = min(max(chosen.steep + past, 1.0), 89.0)
     if earlier is not None:
         choices |= {EARLIER: earlier.name, f"{strategy}.lead_radius": REST_LEAD}
-    draft.add(kind, name, draft.feature_of(tags), tool, tags, depth, width, choices, rules, strategy=strategy)
+    draft.add(
+        kind,
+        name,
+        draft.feature_of(tags),
+        tool,
+        tags,
+        depth,
+        width,
+        choices,
+        rules,
+        strategy=strategy,
+    )
 
 
 def _finishers(draft: Draft) -> tuple[Tool, ...]:
-    return tuple(t for t in draft.cutters("surface") if t.form == "ball" and t.diameter <= draft.route.largest)
+    return tuple(
+        t
+        for t in draft.cutters("surface")
+        if t.form == "ball" and t.diameter <= draft.route.largest
+    )
 
 
 def _tell_unreached(draft: Draft, area: Area, places: Places, found: Chosen) -> None:
@@ -338,10 +543,20 @@ def _tell_unreached(draft: Draft, area: Area, places: Places, found: Chosen) -> 
     lost = [t for t in area.tags if not found.reachable[places.face == t].any()]
     if lost:
         size = places.area * float(np.isin(places.face, lost).sum())
-        remedy = ("turn the part in another setup" if draft.machine.rotary else
-                  "machine them on a machine with rotary axes (setup.machine), or turn the part in another setup")
-        draft.findings.append(warning("route.not-planned", f"{area.id}: no cutter reaches {len(lost)} of its faces, {trimmed(size, 0)} mm2 "
-                                      "from the tool's direction", *face_tags(lost), remedy=remedy))
+        remedy = (
+            "turn the part in another setup"
+            if draft.machine.rotary
+            else "machine them on a machine with rotary axes (setup.machine), or turn the part in another setup"
+        )
+        draft.findings.append(
+            warning(
+                "route.not-planned",
+                f"{area.id}: no cutter reaches {len(lost)} of its faces, {trimmed(size, 0)} mm2 "
+                "from the tool's direction",
+                *face_tags(lost),
+                remedy=remedy,
+            )
+        )
 
 
 def _in_order(draft: Draft, stages: Sequence[Stage]) -> list[Operation]:
@@ -351,12 +566,28 @@ def _in_order(draft: Draft, stages: Sequence[Stage]) -> list[Operation]:
     jobs, done = [], {}
     for o in draft.operations:
         stage = by_stage[o.group]
-        before = {other.id for other in draft.operations if other.group in stage.after_all
-                  or (other.group in stage.after and set(other.faces or o.faces) & set(o.faces))
-                  or other.id == o.id + FIRST
-                  or (o.kind in FALLING and other.group == o.group and other.tool.diameter > o.tool.diameter)}
+        before = {
+            other.id
+            for other in draft.operations
+            if other.group in stage.after_all
+            or (other.group in stage.after and set(other.faces or o.faces) & set(o.faces))
+            or other.id == o.id + FIRST
+            or (
+                o.kind in FALLING
+                and other.group == o.group
+                and other.tool.diameter > o.tool.diameter
+            )
+        }
         done[o.id] = replace(o, after=tuple(sorted(before)))
-        jobs.append(Job(id=o.id, tool=o.tool.name, stage=rank[o.group], place=_place(draft, o.faces), after=frozenset(before)))
+        jobs.append(
+            Job(
+                id=o.id,
+                tool=o.tool.name,
+                stage=rank[o.group],
+                place=_place(draft, o.faces),
+                after=frozenset(before),
+            )
+        )
     return [done[id] for id in ordered(jobs)]
 
 
@@ -369,4 +600,7 @@ def _place(draft: Draft, tags: tuple[int, ...]) -> tuple[float, float]:
 
 def _numbered(operations: Sequence[Operation]) -> list[Operation]:
     numbers: dict[str, int] = {}
-    return [replace(o, tool=replace(o.tool, number=numbers.setdefault(o.tool.name, len(numbers) + 1))) for o in operations]
+    return [
+        replace(o, tool=replace(o.tool, number=numbers.setdefault(o.tool.name, len(numbers) + 1)))
+        for o in operations
+    ]

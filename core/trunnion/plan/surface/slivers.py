@@ -17,11 +17,14 @@ WHOLE = ("semi", "finish", "rest_finish")
 
 def slivers_of(recognition: Recognition) -> frozenset[int]:
     """Return the tags of the faces that recognition left out of every feature by itself; what a person deleted is not to be cut."""
-    return frozenset(recognition.unexplained) - {tag for tags in recognition.removed for tag in tags}
+    return frozenset(recognition.unexplained) - {
+        tag for tags in recognition.removed for tag in tags
+    }
 
 
-def with_slivers(operations: Sequence[Operation], slivers: Collection[int], graph: FaceGraph, skin: Skin
-                 ) -> tuple[list[Operation], tuple[int, ...]]:
+def with_slivers(
+    operations: Sequence[Operation], slivers: Collection[int], graph: FaceGraph, skin: Skin
+) -> tuple[list[Operation], tuple[int, ...]]:
     """Return the operations with each sliver among the faces of those that cut its neighbour across the longest common edge, and the tags
     that no operation cuts a neighbour of.
 
@@ -47,8 +50,13 @@ def _hosts(operations: Sequence[Operation], tag: int, graph: FaceGraph, skin: Sk
     beside = sorted(graph.neighbours(tag - 1), key=lambda row: (-_common(graph, tag - 1, row), row))
     for whole in (True, False):
         for row in beside:
-            found = [n for n, o in enumerate(operations) if row + 1 in o.faces and (o.kind in WHOLE) == whole
-                     and (whole or _within(skin, tag, o.faces))]
+            found = [
+                n
+                for n, o in enumerate(operations)
+                if row + 1 in o.faces
+                and (o.kind in WHOLE) == whole
+                and (whole or _within(skin, tag, o.faces))
+            ]
             if found:
                 return found
     return []
@@ -61,6 +69,12 @@ def _common(graph: FaceGraph, a: int, b: int) -> float:
 
 def _within(skin: Skin, tag: int, faces: Collection[int]) -> bool:
     """Say whether a face lies within the heights of others."""
-    mine, theirs = (skin.points[skin.triangles[skin.of(tags)], 2] for tags in ((tag,), tuple(faces)))
-    return bool(mine.size and theirs.size and mine.min() > theirs.min() - tolerance.SLIVER
-                and mine.max() < theirs.max() + tolerance.SLIVER)
+    mine, theirs = (
+        skin.points[skin.triangles[skin.of(tags)], 2] for tags in ((tag,), tuple(faces))
+    )
+    return bool(
+        mine.size
+        and theirs.size
+        and mine.min() > theirs.min() - tolerance.SLIVER
+        and mine.max() < theirs.max() + tolerance.SLIVER
+    )

@@ -50,7 +50,13 @@ class AptDialect:
         self.words = dialect_words(AptWords, self.name)
         self.suffix = self.words.suffix
 
-    def write(self, programs: Sequence[Program], header: Header, settings: PostSettings, places: Places = NO_PLACES) -> str:
+    def write(
+        self,
+        programs: Sequence[Program],
+        header: Header,
+        settings: PostSettings,
+        places: Places = NO_PLACES,
+    ) -> str:
         """Return the text of all setups' programs."""
         if not programs:
             raise BadCall("no program to write")
@@ -60,11 +66,17 @@ class AptDialect:
     def stamp(self, program: str, header: Header) -> tuple[str, ...]:
         """Return the stamp's lines: PARTNO with the name, the others printed."""
         first, *others = header.stamp(program)
-        return (f"PARTNO/{plain(first, self.words.line_length)}", *(_print(self.words, line) for line in others))
+        return (
+            f"PARTNO/{plain(first, self.words.line_length)}",
+            *(_print(self.words, line) for line in others),
+        )
 
-    def read(self, text: str, tools: Sequence[Tool], setups: Sequence[Setup], places: Places = NO_PLACES) -> tuple[Program, ...]:
+    def read(
+        self, text: str, tools: Sequence[Tool], setups: Sequence[Setup], places: Places = NO_PLACES
+    ) -> tuple[Program, ...]:
         """Return the programs of the setups that the text names."""
         from trunnion.post.readers.apt import read_apt
+
         return read_apt(text, tools, setups)
 
 
@@ -72,19 +84,30 @@ def _print(words: AptWords, text: str) -> str:
     return f"PPRINT/{plain(text, words.line_length)}"
 
 
-def _lines(words: AptWords, programs: Sequence[Program], header: Header, settings: PostSettings) -> Iterator[str]:
+def _lines(
+    words: AptWords, programs: Sequence[Program], header: Header, settings: PostSettings
+) -> Iterator[str]:
     yield from (_print(words, line) for line in header.about(programs, settings.units))
     yield words.units[settings.units]
     leans = any(leaning(section.path) for program in programs for section in program.sections)
     yield "MULTAX/ON" if leans else "MULTAX/OFF"
     scale = Scale.of(settings, words.extra_decimals_inch, words.feed_decimals)
-    axes = Scale(unit=1.0, decimals=words.axis_decimals, feed_decimals=words.feed_decimals) if leans else None
+    axes = (
+        Scale(unit=1.0, decimals=words.axis_decimals, feed_decimals=words.feed_decimals)
+        if leans
+        else None
+    )
     for program in programs:
         yield _print(words, f"SETUP {program.setup.name} WORK OFFSET {program.setup.work_offset}")
         tool = None
         for section in program.sections:
             yield from _section(words, section, scale, section.tool.number != tool)
-            yield from _motions(_blocks(section, scale, axes, settings.straying), scale, axes, words.feed[settings.units])
+            yield from _motions(
+                _blocks(section, scale, axes, settings.straying),
+                scale,
+                axes,
+                words.feed[settings.units],
+            )
             tool = section.tool.number
     yield from words.end
 
@@ -94,7 +117,9 @@ def leaning(path: Toolpath) -> bool:
     return bool((np.abs(path.axis[:, :2]).max(axis=1, initial=0.0) > tolerance.PARAMETRIC).any())
 
 
-def _section(words: AptWords, section: ProgramSection, scale: Scale, changes: bool) -> Iterator[str]:
+def _section(
+    words: AptWords, section: ProgramSection, scale: Scale, changes: bool
+) -> Iterator[str]:
     """Yield the head of one operation: its name, the tool when it changes, spindle, coolant."""
     tool = section.tool
     refuse_unwritable(section, words.title, words.coolant)
@@ -108,7 +133,9 @@ def _section(words: AptWords, section: ProgramSection, scale: Scale, changes: bo
     yield words.coolant[section.coolant]
 
 
-def _blocks(section: ProgramSection, scale: Scale, axes: Scale | None, within: float) -> WrittenPath:
+def _blocks(
+    section: ProgramSection, scale: Scale, axes: Scale | None, within: float
+) -> WrittenPath:
     """Return the blocks of a section; arcs about a leaning axis are lines within a distance of them."""
     path = section.path
     if axes is None:

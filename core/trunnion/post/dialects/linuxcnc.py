@@ -21,4 +21,5 @@ class LinuxCncDialect(IsoDialect):
     def control(self) -> type[Control]:
         """Return LinuxCNC's own control."""
         from trunnion.post.readers.linuxcnc import LinuxCncControl
+
         return LinuxCncControl

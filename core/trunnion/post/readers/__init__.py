@@ -11,7 +11,9 @@ from trunnion.model.tool import Tool
 from trunnion.shop.kinematics import NO_PLACES, Places
 
 
-def read_program(dialect: str, text: str, tools: Sequence[Tool], setup: Setup, places: Places = NO_PLACES) -> Program:
+def read_program(
+    dialect: str, text: str, tools: Sequence[Tool], setup: Setup, places: Places = NO_PLACES
+) -> Program:
     """Return the program of one setup that a text in a dialect says; raise `BadInput` with the line of what isn't understood."""
     (program,) = registry.get("dialects", dialect)().read(text, tools, [setup], places)
     return program

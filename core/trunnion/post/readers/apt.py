@@ -49,18 +49,36 @@ class _Reader:
         self.tool: Tool | None = None
         self.unit, self.feed, self.spindle, self.coolant = 0.0, 0.0, 0.0, "off"
         self.circle: list[float] | None = None
-        self.words = {"PARTNO": self.text, "PPRINT": self.text, "REMARK": self.text, "UNITS": self.units, "MULTAX": self.multax,
-                      "LOADTL": self.load, "CUTTER": self.cutter, "SPINDL": self.spindl, "COOLNT": self.coolnt, "RAPID": self.go_rapid,
-                      "FEDRAT": self.fedrat, "GOTO": self.goto, "CIRCLE": self.arc, "END": self.pause, "FINI": self.fini}
+        self.words = {
+            "PARTNO": self.text,
+            "PPRINT": self.text,
+            "REMARK": self.text,
+            "UNITS": self.units,
+            "MULTAX": self.multax,
+            "LOADTL": self.load,
+            "CUTTER": self.cutter,
+            "SPINDL": self.spindl,
+            "COOLNT": self.coolnt,
+            "RAPID": self.go_rapid,
+            "FEDRAT": self.fedrat,
+            "GOTO": self.goto,
+            "CIRCLE": self.arc,
+            "END": self.pause,
+            "FINI": self.fini,
+        }
 
     def run(self, line: int, word: str, rest: str) -> None:
         """Do one statement."""
         if self.ended:
             raise BadInput(f"line {line}: {shown(word)} stands after FINI; remove it")
         if word not in self.words:
-            raise BadInput(f"line {line}: {shown(word)} is not understood; known are {', '.join(self.words)}")
+            raise BadInput(
+                f"line {line}: {shown(word)} is not understood; known are {', '.join(self.words)}"
+            )
         if self.circle is not None and word != "GOTO":
-            raise BadInput(f"line {line}: after CIRCLE comes the GOTO that ends the arc, not {shown(word)}")
+            raise BadInput(
+                f"line {line}: after CIRCLE comes the GOTO that ends the arc, not {shown(word)}"
+            )
         self.words[word](line, rest)
 
     def finished(self) -> tuple[Program, ...]:
@@ -72,7 +90,9 @@ class _Reader:
 
     def close(self) -> None:
         if self.setup is not None:
-            self.programs.append(Program(name=self.setup.name, setup=self.setup, sections=self.sections.finished()))
+            self.programs.append(
+                Program(name=self.setup.name, setup=self.setup, sections=self.sections.finished())
+            )
 
     def text(self, line: int, rest: str) -> None:
         if found := _SETUP.match(rest):
@@ -84,9 +104,13 @@ class _Reader:
 
     def next_setup(self, line: int, name: str, offset: str) -> None:
         if name not in self.setups:
-            raise BadInput(f"line {line}: setup {shown(name)} is not in the plan; it has {', '.join(self.setups)}")
+            raise BadInput(
+                f"line {line}: setup {shown(name)} is not in the plan; it has {', '.join(self.setups)}"
+            )
         if self.setups[name].work_offset != offset.upper():
-            raise BadInput(f"line {line}: {shown(offset)} is not the work offset of setup {name}, {self.setups[name].work_offset}")
+            raise BadInput(
+                f"line {line}: {shown(offset)} is not the work offset of setup {name}, {self.setups[name].work_offset}"
+            )
         if self.named:
             self.close()
         if any(p.setup.name == name for p in self.programs):
@@ -112,11 +136,17 @@ class _Reader:
         tool = next((t for n, t in self.tools.items() if str(n) == number), None)
         if tool is None:
             known = ", ".join(str(n) for n in sorted(self.tools))
-            raise BadInput(f"line {line}: tool {shown(number)} is not in the tool list; it has {known}")
+            raise BadInput(
+                f"line {line}: tool {shown(number)} is not in the tool list; it has {known}"
+            )
         if more and (len(more) != 2 or more[0] != "LENGTH"):
-            raise BadInput(f"line {line}: LOADTL/{shown(rest)} is not understood; write LOADTL/number,LENGTH,length")
+            raise BadInput(
+                f"line {line}: LOADTL/{shown(rest)} is not understood; write LOADTL/number,LENGTH,length"
+            )
         if more and not self.same(line, more[1], tool.gauge_length):
-            raise BadInput(f"line {line}: length {shown(more[1])} is not that of tool {number}, {tool.gauge_length:g} mm")
+            raise BadInput(
+                f"line {line}: length {shown(more[1])} is not that of tool {number}, {tool.gauge_length:g} mm"
+            )
         self.sections.change_tool()
         self.tool, self.spindle, self.turning = tool, 0.0, False
 
@@ -125,9 +155,15 @@ class _Reader:
         tool = self.tool
         if tool is None:
             raise BadInput(f"line {line}: CUTTER before LOADTL; load the tool first")
-        if len(sizes) != 2 or not self.same(line, sizes[0], tool.diameter) or not self.same(line, sizes[1], tool.corner_radius):
-            raise BadInput(f"line {line}: CUTTER/{shown(rest)} is not tool {tool.number}, "
-                           f"CUTTER/{tool.diameter:g},{tool.corner_radius:g} in mm")
+        if (
+            len(sizes) != 2
+            or not self.same(line, sizes[0], tool.diameter)
+            or not self.same(line, sizes[1], tool.corner_radius)
+        ):
+            raise BadInput(
+                f"line {line}: CUTTER/{shown(rest)} is not tool {tool.number}, "
+                f"CUTTER/{tool.diameter:g},{tool.corner_radius:g} in mm"
+            )
 
     def same(self, line: int, word: str, length: float) -> bool:
         return abs(self.numbers(line, word, 1)[0] * self.scale(line) - length) <= tolerance.WRITTEN
@@ -138,14 +174,18 @@ class _Reader:
             self.spindle, self.turning = 0.0, False
             return
         if len(words) != 1:
-            raise BadInput(f"line {line}: SPINDL/{shown(rest)} is not understood; write SPINDL/RPM,speed,CLW or SPINDL/OFF")
+            raise BadInput(
+                f"line {line}: SPINDL/{shown(rest)} is not understood; write SPINDL/RPM,speed,CLW or SPINDL/OFF"
+            )
         speed = self.numbers(line, words[0], 1)[0]
         SPINDLE.check(line, "SPINDL ", speed)
         self.spindle, self.turning = speed, True
 
     def coolnt(self, line: int, rest: str) -> None:
         if rest not in ("FLOOD", "MIST", "OFF", "ON"):
-            raise BadInput(f"line {line}: COOLNT/{shown(rest)} is not understood; use FLOOD, MIST or OFF")
+            raise BadInput(
+                f"line {line}: COOLNT/{shown(rest)} is not understood; use FLOOD, MIST or OFF"
+            )
         self.coolant = "flood" if rest == "ON" else rest.lower()
 
     def go_rapid(self, line: int, rest: str) -> None:
@@ -157,7 +197,9 @@ class _Reader:
         words = [w for w in rest.split(",") if w not in ("MMPM", "IPM")]
         said = "MMPM" if self.scale(line) == 1.0 else "IPM"
         if len(words) != 1 or any(w in ("MMPM", "IPM") and w != said for w in rest.split(",")):
-            raise BadInput(f"line {line}: FEDRAT/{shown(rest)} is not understood; write FEDRAT/feed,{said}")
+            raise BadInput(
+                f"line {line}: FEDRAT/{shown(rest)} is not understood; write FEDRAT/feed,{said}"
+            )
         feed = self.numbers(line, words[0], 1)[0]
         if feed <= 0.0:
             raise BadInput(f"line {line}: the feed must be above zero")
@@ -170,7 +212,9 @@ class _Reader:
             LENGTH.check(line, "GOTO ", value)
         tool, scale = self.tool, self.scale(line)
         if self.setup is None:
-            raise BadInput(f"line {line}: a move before its setup; put PPRINT/SETUP name WORK OFFSET word first")
+            raise BadInput(
+                f"line {line}: a move before its setup; put PPRINT/SETUP name WORK OFFSET word first"
+            )
         if tool is None:
             raise BadInput(f"line {line}: a move before a tool is loaded; put LOADTL first")
         point = (x * scale, y * scale, z * scale, *self.axis(line, axis))
@@ -184,7 +228,9 @@ class _Reader:
         if self.feed <= 0.0:
             raise BadInput(f"line {line}: a feed move without a feed; put FEDRAT first")
         motion, centre = self.motion(line, point)
-        self.sections.feed(line, motion, point, centre, self.feed, tool, (self.spindle, self.coolant))
+        self.sections.feed(
+            line, motion, point, centre, self.feed, tool, (self.spindle, self.coolant)
+        )
 
     def axis(self, line: int, said: list[float]) -> tuple[float, ...]:
         """Return the unit tool axis that a GOTO says: z where it says none or three axes are on; raise `BadInput` for what can't be."""
@@ -192,13 +238,17 @@ class _Reader:
             return _UP
         length = math.hypot(*said)
         if abs(length - 1.0) > _UNIT:
-            raise BadInput(f"line {line}: the tool axis has the length {length:.4f}; it must be a unit vector")
+            raise BadInput(
+                f"line {line}: the tool axis has the length {length:.4f}; it must be a unit vector"
+            )
         axis = tuple(v / length for v in said)
         if math.hypot(*axis[:2]) <= tolerance.PARAMETRIC and axis[2] > 0.0:
             return _UP
         if not self.leans:
             if math.dist(axis, _UP) > tolerance.ANGLE:
-                raise BadInput(f"line {line}: a tilted tool axis after MULTAX/OFF; put MULTAX/ON first")
+                raise BadInput(
+                    f"line {line}: a tilted tool axis after MULTAX/OFF; put MULTAX/ON first"
+                )
             return _UP
         return axis
 
@@ -210,12 +260,19 @@ class _Reader:
             return Motion.LINE, NOWHERE
         (x, y, z, _, _, sense, radius), self.circle = self.circle, None
         if start[3:] != _UP or end[3:] != _UP:
-            raise BadInput(f"line {line}: an arc of a tool that leans is not understood; write lines")
+            raise BadInput(
+                f"line {line}: an arc of a tool that leans is not understood; write lines"
+            )
         first, last = math.dist((x, y), start[:2]), math.dist((x, y), end[:2])
         refuse_no_radius(line, radius)
-        if max(abs(first - radius), abs(last - radius)) > tolerance.ARC_RADIUS or abs(z - start[2]) > tolerance.WRITTEN:
-            raise BadInput(f"line {line}: the arc of radius {radius:.4f} starts at radius {first:.4f} and ends at {last:.4f} mm; "
-                           "check CIRCLE")
+        if (
+            max(abs(first - radius), abs(last - radius)) > tolerance.ARC_RADIUS
+            or abs(z - start[2]) > tolerance.WRITTEN
+        ):
+            raise BadInput(
+                f"line {line}: the arc of radius {radius:.4f} starts at radius {first:.4f} and ends at {last:.4f} mm; "
+                "check CIRCLE"
+            )
         refuse_no_radius(line, min(first, last))
         refuse_nearly_closed(line, start, end)
         return (Motion.ARC_CCW if sense > 0.0 else Motion.ARC_CW), (x, y, start[2])
@@ -240,7 +297,9 @@ class _Reader:
 
     def scale(self, line: int) -> float:
         if self.unit == 0.0:
-            raise BadInput(f"line {line}: a length before its unit is said; put UNITS/MM or UNITS/INCHES first")
+            raise BadInput(
+                f"line {line}: a length before its unit is said; put UNITS/MM or UNITS/INCHES first"
+            )
         return self.unit
 
     def numbers(self, line: int, rest: str, *counts: int) -> list[float]:
@@ -250,5 +309,7 @@ class _Reader:
             raise BadInput(f"line {line}: {shown(rest)} is not a list of numbers")
         values = [float(w) + 0.0 for w in words]
         if len(values) not in counts or not all(math.isfinite(v) for v in values):
-            raise BadInput(f"line {line}: {shown(rest)} must be {' or '.join(str(c) for c in counts)} numbers")
+            raise BadInput(
+                f"line {line}: {shown(rest)} must be {' or '.join(str(c) for c in counts)} numbers"
+            )
         return values

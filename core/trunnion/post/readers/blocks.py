@@ -41,7 +41,9 @@ def split_line(line: int, text: str, brackets: bool = True) -> tuple[Block | Non
         text, comments = _without_end_comment(text, brackets)
     if "(" in text or ")" in text:
         if not brackets:
-            raise BadInput(f"line {line}: brackets are not understood on this control; write comments after a semicolon")
+            raise BadInput(
+                f"line {line}: brackets are not understood on this control; write comments after a semicolon"
+            )
         text, inside = _without_comments(line, text)
         comments = inside + comments
     packed = text.translate(_SPACE).upper()
@@ -91,7 +93,7 @@ def _without_end_comment(text: str, brackets: bool) -> tuple[str, tuple[str, ...
     for n, c in enumerate(text):
         depth += (c == "(") - (c == ")" and depth > 0)
         if c == ";" and not depth:
-            return text[:n], (text[n + 1:].strip(),)
+            return text[:n], (text[n + 1 :].strip(),)
     return text, ()
 
 
@@ -99,5 +101,7 @@ def _without_comments(line: int, text: str) -> tuple[str, tuple[str, ...]]:
     inside = tuple(found.strip() for found in _COMMENT.findall(text))
     rest = _COMMENT.sub(" ", text)
     if "(" in rest or ")" in rest:
-        raise BadInput(f"line {line}: a comment's brackets don't match, or one comment stands inside another")
+        raise BadInput(
+            f"line {line}: a comment's brackets don't match, or one comment stands inside another"
+        )
     return rest, inside

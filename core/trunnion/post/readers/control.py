@@ -35,16 +35,24 @@ class Control:
     modes_class: ClassVar[type[Modes]] = Modes
     brackets: ClassVar[bool] = True
 
-    def __init__(self, words: IsoWords, tools: Mapping[int, Tool], setup: Setup, place: Place | None) -> None:
+    def __init__(
+        self, words: IsoWords, tools: Mapping[int, Tool], setup: Setup, place: Place | None
+    ) -> None:
         if place is not None and not words.inverse_time:
-            raise BadInput(f"setup {setup.name}: {words.title} has no words for the rotary axes of {place.machine.title}; "
-                           "choose another control or machine")
+            raise BadInput(
+                f"setup {setup.name}: {words.title} has no words for the rotary axes of {place.machine.title}; "
+                "choose another control or machine"
+            )
         self.place = place
         self.language = Language(words, place, (*MEANINGS, *self.modes_class.own))
-        sections = Sections(Upright(setup.clearance) if place is None else Joints(place, setup.clearance))
+        sections = Sections(
+            Upright(setup.clearance) if place is None else Joints(place, setup.clearance)
+        )
         self.state = State(tools=tools, setup=setup, sections=sections)
         self.modes = self.modes_class(self.language, self.state)
-        self.moves = Moves(self.language, self.state, Rotary(self.language.rotary, self.language.inverse))
+        self.moves = Moves(
+            self.language, self.state, Rotary(self.language.rotary, self.language.inverse)
+        )
         self.last_n = -1.0
         self.begun = self.ended = False
 
@@ -53,7 +61,9 @@ class Control:
         for number, line in enumerate(text.split("\n"), 1):
             self.read_line(number, line)
         if not self.ended:
-            raise BadInput(f"the program has no end ({listed(self.language.ends)}): is the text complete?")
+            raise BadInput(
+                f"the program has no end ({listed(self.language.ends)}): is the text complete?"
+            )
         setup = self.state.setup
         return Program(name=setup.name, setup=setup, sections=self.state.sections.finished())
 
@@ -95,7 +105,9 @@ class Control:
         """Refuse what can't be understood or stands in a wrong place."""
         line, words, codes = block.line, block.words, block.codes
         if self.ended:
-            raise BadInput(f"line {line}: stands after the end of the program; remove it or the {self.language.ends[0]} before it")
+            raise BadInput(
+                f"line {line}: stands after the end of the program; remove it or the {self.language.ends[0]} before it"
+            )
         for code in codes:
             if code not in self.language.meanings:
                 raise BadInput(f"line {line}: {self.language.why_not(code)}")
@@ -114,12 +126,16 @@ class Control:
             if letter not in letters:
                 rotary = self.language.rotary
                 axes = f"a program for the axes XYZ{rotary}" if rotary else "a three-axis program"
-                raise BadInput(f"line {line}: the word {letter} is not understood by {axes}; remove it")
+                raise BadInput(
+                    f"line {line}: the word {letter} is not understood by {axes}; remove it"
+                )
             if letter in ranges:
                 ranges[letter].check(line, letter, value)
         n = words.get("N")
         if n is not None:
             if n <= self.last_n:
-                raise BadInput(f"line {line}: N{n:.10g} comes after N{self.last_n:.10g}: lines are out of order; put them back or renumber "
-                               "them")
+                raise BadInput(
+                    f"line {line}: N{n:.10g} comes after N{self.last_n:.10g}: lines are out of order; put them back or renumber "
+                    "them"
+                )
             self.last_n = n

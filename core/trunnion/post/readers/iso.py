@@ -13,8 +13,14 @@ from trunnion.post.readers.tools import by_number
 from trunnion.shop.kinematics import Place
 
 
-def read_iso(text: str, tools: Sequence[Tool], setup: Setup, place: Place | None, words: IsoWords,
-             control: type[Control] = Control) -> Program:
+def read_iso(
+    text: str,
+    tools: Sequence[Tool],
+    setup: Setup,
+    place: Place | None,
+    words: IsoWords,
+    control: type[Control] = Control,
+) -> Program:
     """Return the motions of one setup's text, with the line of each block; raise `BadInput` naming the line of what isn't understood.
 
     `tools` are found by their T number; operations by our comments, else they are called `line N`. `place` says where the work stands on a

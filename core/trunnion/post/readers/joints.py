@@ -44,7 +44,9 @@ class Joints:
         if float(np.linalg.norm(axis - UP)) < UPRIGHT:
             more = self.clearance - float(tip[2])
         else:
-            more = self.place.radius - float((tip - self.place.centre) @ lift_of(self.place, angle[0]))
+            more = self.place.radius - float(
+                (tip - self.place.centre) @ lift_of(self.place, angle[0])
+            )
         return None if more <= tolerance.WRITTEN else (*point[:2], point[2] + more, *point[3:])
 
     def opened(self, rows: Rows) -> tuple[Toolpath, tuple[int, ...]]:
@@ -59,14 +61,25 @@ class Joints:
         if not turning.any():
             return path_of(rows, tip, axis, centre), tuple(rows.line)
         row, share = self._pieces(rows.tool, words, angle, motion, np.flatnonzero(turning))
-        row, share = np.concatenate([np.flatnonzero(~turning), row]), np.concatenate([np.ones(int((~turning).sum())), share])
+        row, share = (
+            np.concatenate([np.flatnonzero(~turning), row]),
+            np.concatenate([np.ones(int((~turning).sum())), share]),
+        )
         order = np.lexsort((share, row))
         row, share = row[order], share[order]
         inner = share < 1.0
         position, direction = tip[row], axis[row]
-        position[inner], direction[inner] = _between(self.place, words, angle, gauge, row[inner], share[inner])
-        path = Toolpath(position=position, axis=direction, motion=motion[row], centre=centre[row],
-                        feed=_feeds(rows, tip)[row], mark=marks_of(motion[row]))
+        position[inner], direction[inner] = _between(
+            self.place, words, angle, gauge, row[inner], share[inner]
+        )
+        path = Toolpath(
+            position=position,
+            axis=direction,
+            motion=motion[row],
+            centre=centre[row],
+            feed=_feeds(rows, tip)[row],
+            mark=marks_of(motion[row]),
+        )
         return path, tuple(np.array(rows.line)[row].tolist())
 
     def _centres(self, rows: Rows, motion: Ints, turning: np.ndarray, angle: Floats) -> Floats:
@@ -74,15 +87,23 @@ class Joints:
         centre = np.array(rows.centre)
         arcs = np.flatnonzero(motion >= Motion.ARC_CW)
         for k in arcs[turning[arcs]]:
-            raise BadInput(f"line {rows.line[k]}: an arc in which a rotary axis turns is not understood; write lines")
+            raise BadInput(
+                f"line {rows.line[k]}: an arc in which a rotary axis turns is not understood; write lines"
+            )
         leans = np.linalg.norm(spindle_of(self.place, angle[arcs])[:, :2], axis=1) > UPRIGHT
         for k in arcs[leans]:
-            raise BadInput(f"line {rows.line[k]}: an arc in the plane XY while the head leans is not understood; write lines")
+            raise BadInput(
+                f"line {rows.line[k]}: an arc in the plane XY while the head leans is not understood; write lines"
+            )
         if len(arcs):
-            centre[arcs], _ = poses_of(self.place, centre[arcs], angle[arcs], rows.tool.gauge_length)
+            centre[arcs], _ = poses_of(
+                self.place, centre[arcs], angle[arcs], rows.tool.gauge_length
+            )
         return centre
 
-    def _pieces(self, tool: Tool, words: Floats, angle: Floats, motion: Ints, block: Ints) -> tuple[Ints, Floats]:
+    def _pieces(
+        self, tool: Tool, words: Floats, angle: Floats, motion: Ints, block: Ints
+    ) -> tuple[Ints, Floats]:
         """Return the pieces of blocks (b,) that turn: the block of each (k,) and the share of it where it ends."""
         turn = np.abs(angle[block] - angle[block - 1]).max(axis=1)
         first = np.maximum(1, np.ceil(turn / FIRST_PIECE)).astype(np.int64)
@@ -97,27 +118,53 @@ class Joints:
         more = np.maximum(1, np.ceil(np.sqrt(strays / allowed))).astype(np.int64)
         again = np.repeat(np.arange(len(row)), more)
         number = np.arange(len(again)) - np.repeat(np.cumsum(more) - more, more) + 1
-        share = np.where(number == more[again], end[again], start[again] + number / more[again] * (end - start)[again])
-        return row[again], np.where((number == more[again]) & (place_in[again] + 1 == first[owner][again]), 1.0, share)
+        share = np.where(
+            number == more[again],
+            end[again],
+            start[again] + number / more[again] * (end - start)[again],
+        )
+        return row[again], np.where(
+            (number == more[again]) & (place_in[again] + 1 == first[owner][again]), 1.0, share
+        )
 
-    def _strays(self, words: Floats, angle: Floats, gauge: float, row: Ints, start: Floats, end: Floats, reach: Floats) -> Floats:
+    def _strays(
+        self,
+        words: Floats,
+        angle: Floats,
+        gauge: float,
+        row: Ints,
+        start: Floats,
+        end: Floats,
+        reach: Floats,
+    ) -> Floats:
         """Return by how much (k,) mm tip or flutes leave a straight way with an even turn between shares of blocks."""
         tip0, axis0 = _between(self.place, words, angle, gauge, row, start)
         tip1, axis1 = _between(self.place, words, angle, gauge, row, end)
         most = np.zeros(len(row))
         for share in SHARES:
-            tip, axis = _between(self.place, words, angle, gauge, row, start + share * (end - start))
+            tip, axis = _between(
+                self.place, words, angle, gauge, row, start + share * (end - start)
+            )
             straight = tip0 + share * (tip1 - tip0)
             even = even_turn(axis0, axis1, np.full(len(row), share))
             most = np.maximum(most, np.linalg.norm(tip - straight, axis=1))
-            most = np.maximum(most, np.linalg.norm(tip + reach * axis - straight - reach * even, axis=1))
+            most = np.maximum(
+                most, np.linalg.norm(tip + reach * axis - straight - reach * even, axis=1)
+            )
         return most
 
 
-def _between(place: Place, words: Floats, angle: Floats, gauge: float, row: Ints, share: Floats) -> tuple[Floats, Floats]:
+def _between(
+    place: Place, words: Floats, angle: Floats, gauge: float, row: Ints, share: Floats
+) -> tuple[Floats, Floats]:
     """Return tips and axes (k, 3) at shares (k,) of blocks whose axes go evenly."""
     s = share[:, None]
-    return poses_of(place, words[row - 1] + s * (words[row] - words[row - 1]), angle[row - 1] + s * (angle[row] - angle[row - 1]), gauge)
+    return poses_of(
+        place,
+        words[row - 1] + s * (words[row] - words[row - 1]),
+        angle[row - 1] + s * (angle[row] - angle[row - 1]),
+        gauge,
+    )
 
 
 def _feeds(rows: Rows, tip: Floats) -> Floats:

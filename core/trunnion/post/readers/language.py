@@ -18,7 +18,12 @@ _LETTERS = "NFSTXYZIJ"
 """Letters that mean the same on all controls."""
 _ROTARY = "ABC"
 _UNITS = {"mm": 1.0, "inch": MM_PER_INCH}
-_TAKEN_BY = {"dwell": "dwell", "tolerance": "path tolerance", "joining": "path tolerance", "length": "length"}
+_TAKEN_BY = {
+    "dwell": "dwell",
+    "tolerance": "path tolerance",
+    "joining": "path tolerance",
+    "length": "length",
+}
 """The meaning of the code that takes a letter of each role."""
 _NEEDED = {"dwell": "dwell", "path tolerance": "tolerance"}
 """The role without whose letter a meaning says nothing."""
@@ -39,14 +44,31 @@ class Language:
         self.units = {words.units[name]: unit for name, unit in _UNITS.items()}
         self.coolants = {code: name for name, code in words.coolant.items()}
         self.refused = by_code(words.refused)
-        said = {code: m for code, m in self._checked(tuple(known)).items() if place is not None or m != "inverse time"}
-        self.meanings = {**dict.fromkeys(self.motions, "motion"), **dict.fromkeys(self.units, "units"),
-                         **dict.fromkeys(self.coolants, "coolant"), **dict.fromkeys(words.work_offsets, "work offset"), **said}
-        self.dwell, self.length, self.tool_change = (self._first(m) for m in ("dwell", "length", "tool change"))
-        self.machine, self.inverse, self.spindle = (self._first(m) for m in ("machine", "inverse time", "spindle"))
+        said = {
+            code: m
+            for code, m in self._checked(tuple(known)).items()
+            if place is not None or m != "inverse time"
+        }
+        self.meanings = {
+            **dict.fromkeys(self.motions, "motion"),
+            **dict.fromkeys(self.units, "units"),
+            **dict.fromkeys(self.coolants, "coolant"),
+            **dict.fromkeys(words.work_offsets, "work offset"),
+            **said,
+        }
+        self.dwell, self.length, self.tool_change = (
+            self._first(m) for m in ("dwell", "length", "tool change")
+        )
+        self.machine, self.inverse, self.spindle = (
+            self._first(m) for m in ("machine", "inverse time", "spindle")
+        )
         self.ends = tuple(code for code, meaning in said.items() if meaning == "end")
-        self.groups = ((*self.motions, *(c for c, m in said.items() if m == "no motion")), tuple(self.units), words.work_offsets,
-                       *(tuple(group.split()) for group in words.groups))
+        self.groups = (
+            (*self.motions, *(c for c, m in said.items() if m == "no motion")),
+            tuple(self.units),
+            words.work_offsets,
+            *(tuple(group.split()) for group in words.groups),
+        )
         self._find_letters(words.letters, place)
 
     def _checked(self, known: tuple[str, ...]) -> dict[str, str]:
@@ -54,28 +76,53 @@ class Language:
         said = by_code(self.words.codes)
         for code, meaning in said.items():
             if meaning not in known:
-                raise BadInput(f"dialect {self.words.title}: {code}: {meaning!r} is no meaning of a code; known: {', '.join(known)}")
+                raise BadInput(
+                    f"dialect {self.words.title}: {code}: {meaning!r} is no meaning of a code; known: {', '.join(known)}"
+                )
             if meaning in _NEEDED and _NEEDED[meaning] not in self.words.letters:
-                raise BadInput(f"dialect {self.words.title}: letters needs an entry {_NEEDED[meaning]} for {code}")
+                raise BadInput(
+                    f"dialect {self.words.title}: letters needs an entry {_NEEDED[meaning]} for {code}"
+                )
         return said
 
     def _find_letters(self, role: dict[str, str], place: Place | None) -> None:
         """Find out which letters a text may have, what numbers follow them, and which codes take those that need one."""
         self.rotary = place.names if place else ""
-        self.radius, self.turns, self.length_letter = role["radius"], role.get("turns", ""), role.get("length", "")
+        self.radius, self.turns, self.length_letter = (
+            role["radius"],
+            role.get("turns", ""),
+            role.get("length", ""),
+        )
         self.arc = frozenset(("I", "J", self.radius))
         self.moves = self.arc | set("XYZ") | set(self.rotary)
         self.takers: dict[str, tuple[str, ...]] = {}
         for name, meaning in _TAKEN_BY.items():
-            if name in role and (codes := tuple(code for code, m in self.meanings.items() if m == meaning)):
+            if name in role and (
+                codes := tuple(code for code, m in self.meanings.items() if m == meaning)
+            ):
                 self.takers[role[name]] = (*self.takers.get(role[name], ()), *codes)
-        self.states = frozenset("FST") | ({self.length_letter} if self.length_letter and not self.length else set())
-        self.letters = frozenset(_LETTERS) | self.moves | self.takers.keys() | self.states | ({self.turns} if self.turns else set())
-        self.ranges = {**dict.fromkeys((*"XYZIJ", self.radius), LENGTH), "T": COUNT, "N": LINE_NUMBER}
+        self.states = frozenset("FST") | (
+            {self.length_letter} if self.length_letter and not self.length else set()
+        )
+        self.letters = (
+            frozenset(_LETTERS)
+            | self.moves
+            | self.takers.keys()
+            | self.states
+            | ({self.turns} if self.turns else set())
+        )
+        self.ranges = {
+            **dict.fromkeys((*"XYZIJ", self.radius), LENGTH),
+            "T": COUNT,
+            "N": LINE_NUMBER,
+        }
         if self.length_letter:
             self.ranges[self.length_letter] = COUNT
         if place is not None:
-            self.ranges |= {a.name: Range(a.low, a.high, "degrees", math.degrees(SLACK)) for a in place.machine.rotary}
+            self.ranges |= {
+                a.name: Range(a.low, a.high, "degrees", math.degrees(SLACK))
+                for a in place.machine.rotary
+            }
 
     def _first(self, meaning: str) -> str:
         return next((code for code, m in self.meanings.items() if m == meaning), "")
@@ -91,19 +138,25 @@ class Language:
         for group in self.groups:
             found = [c for c in codes if c in group]
             if len(found) > 1:
-                raise BadInput(f"line {line}: {' and '.join(found)} can't stand in one line; keep one")
+                raise BadInput(
+                    f"line {line}: {' and '.join(found)} can't stand in one line; keep one"
+                )
 
     def refuse_stray_letters(self, block: Block) -> None:
         """Raise `BadInput` for a letter without the code or the arc that takes it, and for one that two codes of the line would take."""
         for letter, takers in self.takers.items():
             if letter in block.words and not self._is_taken(letter, takers, block):
-                raise BadInput(f"line {block.line}: {self._stray(letter, takers, block.words[letter])}")
+                raise BadInput(
+                    f"line {block.line}: {self._stray(letter, takers, block.words[letter])}"
+                )
         if len(block.codes) > 1:
             for letter, takers in self.takers.items():
                 found = [c for c in takers if c in block.codes]
                 if len(found) > 1:
-                    raise BadInput(f"line {block.line}: {' and '.join(found)} in one line: whose {letter} it is is not clear; "
-                                   "write two lines")
+                    raise BadInput(
+                        f"line {block.line}: {' and '.join(found)} in one line: whose {letter} it is is not clear; "
+                        "write two lines"
+                    )
 
     def _is_taken(self, letter: str, takers: tuple[str, ...], block: Block) -> bool:
         by_arc = letter == self.turns and ("I" in block.words or "J" in block.words)
@@ -118,7 +171,9 @@ class Language:
         """Raise `BadInput` for a dwell with a move, and for machine coordinates without one."""
         words, codes, line = block.words, block.codes, block.line
         if self.dwell in codes and not (self.moves | set(_ROTARY)).isdisjoint(words):
-            raise BadInput(f"line {line}: a dwell {self.dwell} and a move in one line; write two lines")
+            raise BadInput(
+                f"line {line}: a dwell {self.dwell} and a move in one line; write two lines"
+            )
         if self.machine in codes and words.keys().isdisjoint("XYZ"):
             raise BadInput(f"line {line}: {self.machine} without a move")
 

@@ -14,7 +14,9 @@ from trunnion.post.readers.iso import read_iso
 from trunnion.shop.kinematics import Place
 
 
-def read_linuxcnc(text: str, tools: Sequence[Tool], setup: Setup, place: Place | None = None) -> Program:
+def read_linuxcnc(
+    text: str, tools: Sequence[Tool], setup: Setup, place: Place | None = None
+) -> Program:
     """Return the motions of one setup's text; see `read_iso`."""
     return read_iso(text, tools, setup, place, iso_words("linuxcnc"), LinuxCncControl)
 
@@ -32,5 +34,7 @@ class LinuxCncControl(Control):
     def percent(self, line: int) -> None:
         """Take a line of %: it must not stand in the middle of the program."""
         if self.begun and not self.ended:
-            raise BadInput(f"line {line}: a % in the middle of the program ends it there; remove it")
+            raise BadInput(
+                f"line {line}: a % in the middle of the program ends it there; remove it"
+            )
         self.begun = True

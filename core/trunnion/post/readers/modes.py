@@ -9,10 +9,24 @@ from trunnion.post.readers.language import Language
 from trunnion.post.readers.numbers import DWELL, FEED, INVERSE_TIME, SPINDLE
 from trunnion.post.readers.state import State
 
-BEFORE_SPEEDS = {"units": "change_units", "inverse time": "feed_by_time", "per minute": "feed_a_minute"}
-AFTER_SPEEDS = {"tool change": "change_tool", "spindle": "start_spindle", "no spindle": "stop_spindle", "coolant": "switch_coolant",
-                "work offset": "set_offset", "length": "set_length", "no length": "drop_length", "path tolerance": "check_path_tolerance",
-                "dwell": "wait", "no motion": "cancel_motion", "motion": "set_motion"}
+BEFORE_SPEEDS = {
+    "units": "change_units",
+    "inverse time": "feed_by_time",
+    "per minute": "feed_a_minute",
+}
+AFTER_SPEEDS = {
+    "tool change": "change_tool",
+    "spindle": "start_spindle",
+    "no spindle": "stop_spindle",
+    "coolant": "switch_coolant",
+    "work offset": "set_offset",
+    "length": "set_length",
+    "no length": "drop_length",
+    "path tolerance": "check_path_tolerance",
+    "dwell": "wait",
+    "no motion": "cancel_motion",
+    "motion": "set_motion",
+}
 """The methods of `Modes` by the meanings of codes, in the order in which a line is worked off; speeds come between the two."""
 ELSEWHERE = ("machine", "end", "nothing")
 """Meanings that change no modal state: a move in machine coordinates, the end, and what is so already."""
@@ -30,7 +44,9 @@ class Modes:
     def __init__(self, language: Language, state: State) -> None:
         self.language, self.state = language, state
         self.before = [(meaning, getattr(self, name)) for meaning, name in BEFORE_SPEEDS.items()]
-        self.after = [(meaning, getattr(self, name)) for meaning, name in {**AFTER_SPEEDS, **self.own}.items()]
+        self.after = [
+            (meaning, getattr(self, name)) for meaning, name in {**AFTER_SPEEDS, **self.own}.items()
+        ]
 
     def run(self, block: Block) -> None:
         """Do what the codes and states of a line say, all but moves and the end."""
@@ -71,7 +87,9 @@ class Modes:
         tool = tools.get(int(number))
         if tool is None or number != int(number):
             known = ", ".join(str(t) for t in sorted(tools))
-            raise BadInput(f"line {block.line}: T{number:g} is not in the tool list; it has {known}")
+            raise BadInput(
+                f"line {block.line}: T{number:g} is not in the tool list; it has {known}"
+            )
         self.state.next_tool = tool
         if not self.language.tool_change:
             self.change_tool(block)
@@ -81,9 +99,13 @@ class Modes:
         state = self.state
         unit = next(unit for code, unit in self.language.units.items() if code in block.codes)
         if state.feed and unit != state.unit:
-            raise BadInput(f"line {block.line}: the units change in the middle of the program; keep one")
+            raise BadInput(
+                f"line {block.line}: the units change in the middle of the program; keep one"
+            )
         if "F" in block.words:
-            raise BadInput(f"line {block.line}: F and a change of units in one line: the feed's unit is not clear; write two lines")
+            raise BadInput(
+                f"line {block.line}: F and a change of units in one line: the feed's unit is not clear; write two lines"
+            )
         state.unit, state.units_given = unit, True
 
     def feed_by_time(self, block: Block) -> None:
@@ -99,14 +121,18 @@ class Modes:
         """Bring the chosen tool into the spindle; its length is off, the spindle stands."""
         state = self.state
         if state.next_tool is None:
-            raise BadInput(f"line {block.line}: {self.language.tool_change} without a T word before it; say which tool")
+            raise BadInput(
+                f"line {block.line}: {self.language.tool_change} without a T word before it; say which tool"
+            )
         state.sections.change_tool()
         state.tool, state.length_on, state.turning, state.over = state.next_tool, False, False, None
 
     def start_spindle(self, block: Block) -> None:
         """Turn the spindle clockwise."""
         if not self.state.speed_given:
-            raise BadInput(f"line {block.line}: {self.language.spindle} without a spindle speed; give S")
+            raise BadInput(
+                f"line {block.line}: {self.language.spindle} without a spindle speed; give S"
+            )
         self.state.turning = True
 
     def stop_spindle(self, block: Block) -> None:
@@ -125,7 +151,9 @@ class Modes:
         for code in block.codes:
             if self.language.meanings[code] == "work offset":
                 if code != setup.work_offset:
-                    raise BadInput(f"line {block.line}: {code} is not the work offset of setup {setup.name}, {setup.work_offset}; use that")
+                    raise BadInput(
+                        f"line {block.line}: {code} is not the work offset of setup {setup.name}, {setup.work_offset}; use that"
+                    )
                 self.state.offset = code
 
     def set_length(self, block: Block) -> None:
@@ -133,11 +161,15 @@ class Modes:
         letter, tool = self.language.length_letter, self.state.tool
         number = block.words.get(letter)
         if tool is None:
-            raise BadInput(f"line {block.line}: {self.language.length or letter} before a tool is in the spindle; "
-                           f"put {self.language.spoken_change} first")
+            raise BadInput(
+                f"line {block.line}: {self.language.length or letter} before a tool is in the spindle; "
+                f"put {self.language.spoken_change} first"
+            )
         if number is not None and number != tool.number:
-            raise BadInput(f"line {block.line}: {letter}{number:g} is the length of another tool than T{tool.number} in the spindle; "
-                           f"use {letter}{tool.number}")
+            raise BadInput(
+                f"line {block.line}: {letter}{number:g} is the length of another tool than T{tool.number} in the spindle; "
+                f"use {letter}{tool.number}"
+            )
         self.state.length_on = True
 
     def drop_length(self, block: Block) -> None:
@@ -146,25 +178,38 @@ class Modes:
 
     def check_path_tolerance(self, block: Block) -> None:
         """Check how far the control may leave the path: at corners, and where it joins lines into one."""
-        line, words, unit, roles = block.line, block.words, self.state.unit, self.language.words.letters
+        line, words, unit, roles = (
+            block.line,
+            block.words,
+            self.state.unit,
+            self.language.words.letters,
+        )
         code = next(c for c in block.codes if self.language.meanings[c] == "path tolerance")
         letter, joining = roles["tolerance"], roles.get("joining", "")
         limit, joined = words.get(letter), words.get(joining, 0.0)
         if limit is None:
-            raise BadInput(f"line {line}: {code} without {letter} rounds corners off without a limit; give {letter}")
+            raise BadInput(
+                f"line {line}: {code} without {letter} rounds corners off without a limit; give {letter}"
+            )
         if not 0.0 <= limit * unit <= tolerance.GOUGE:
-            raise BadInput(f"line {line}: {code} {letter}{limit:g} rounds corners off by more than {tolerance.GOUGE:g} mm; "
-                           f"give a smaller {letter}")
+            raise BadInput(
+                f"line {line}: {code} {letter}{limit:g} rounds corners off by more than {tolerance.GOUGE:g} mm; "
+                f"give a smaller {letter}"
+            )
         if not 0.0 <= joined * unit <= tolerance.GOUGE:
-            raise BadInput(f"line {line}: {code} {joining}{joined:g} joins lines that are more than {tolerance.GOUGE:g} mm apart; "
-                           f"give a smaller {joining}")
+            raise BadInput(
+                f"line {line}: {code} {joining}{joined:g} joins lines that are more than {tolerance.GOUGE:g} mm apart; "
+                f"give a smaller {joining}"
+            )
 
     def wait(self, block: Block) -> None:
         """Dwell for as many seconds as the line says."""
         letter = self.language.words.letters["dwell"]
         seconds = block.words.get(letter)
         if seconds is None:
-            raise BadInput(f"line {block.line}: {self.language.dwell} without {letter}; say how many seconds")
+            raise BadInput(
+                f"line {block.line}: {self.language.dwell} without {letter}; say how many seconds"
+            )
         DWELL.check(block.line, letter, seconds)
         self.state.sections.dwell(seconds)
 
@@ -174,4 +219,6 @@ class Modes:
 
     def set_motion(self, block: Block) -> None:
         """Take over how positions are reached."""
-        self.state.motion = next(motion for code, motion in self.language.motions.items() if code in block.codes)
+        self.state.motion = next(
+            motion for code, motion in self.language.motions.items() if code in block.codes
+        )

@@ -56,12 +56,18 @@ class Moves:
             state.sections.rapid(line, point, tool, (state.spindle, state.coolant))
             return
         if not state.turning:
-            raise BadInput(f"line {line}: a feed move while the spindle stands; give S and {self.language.spindle} first")
+            raise BadInput(
+                f"line {line}: a feed move while the spindle stands; give S and {self.language.spindle} first"
+            )
         if state.feed <= 0.0:
             raise BadInput(f"line {line}: a feed move without a feed; give F")
         centre = NOWHERE if motion == Motion.LINE else self.centre(block, motion, point)
-        feed, minutes = (state.feed, 0.0) if not self.rotary.letters else self.rotary.pace(block, state, point)
-        state.sections.feed(line, motion, point, centre, feed, tool, (state.spindle, state.coolant), minutes)
+        feed, minutes = (
+            (state.feed, 0.0) if not self.rotary.letters else self.rotary.pace(block, state, point)
+        )
+        state.sections.feed(
+            line, motion, point, centre, feed, tool, (state.spindle, state.coolant), minutes
+        )
 
     @property
     def arc_letters(self) -> str:
@@ -72,19 +78,27 @@ class Moves:
         """Return the tool when the control knows all it needs for a move in the work offset."""
         state = self.state
         if state.tool is None:
-            raise BadInput(f"line {line}: a move before a tool is in the spindle; put {self.language.spoken_change} first")
+            raise BadInput(
+                f"line {line}: a move before a tool is in the spindle; put {self.language.spoken_change} first"
+            )
         if not state.units_given:
-            raise BadInput(f"line {line}: a move before its unit is said; put {' or '.join(self.language.units)} first")
+            raise BadInput(
+                f"line {line}: a move before its unit is said; put {' or '.join(self.language.units)} first"
+            )
         if not state.offset:
-            raise BadInput(f"line {line}: a move before its work offset is said; put {state.setup.work_offset} first")
+            raise BadInput(
+                f"line {line}: a move before its work offset is said; put {state.setup.work_offset} first"
+            )
         return state.tool
 
     def target(self, block: Block, motion: Motion, tool: Tool) -> Point | None:
         """Return the end of a move; None for a rapid in XY while the tool is still above everything at an unknown height."""
         words, state, language = block.words, self.state, self.language
         if motion < Motion.ARC_CW and not language.arc.isdisjoint(words):
-            arcs = listed(language.words.motions[Motion.ARC_CW:])
-            raise BadInput(f"line {block.line}: {self.arc_letters} without an arc; put {arcs} first")
+            arcs = listed(language.words.motions[Motion.ARC_CW :])
+            raise BadInput(
+                f"line {block.line}: {self.arc_letters} without an arc; put {arcs} first"
+            )
         at, unit = state.sections.at, state.unit
         if at is None:
             return self.first_target(block, motion, tool)
@@ -92,52 +106,90 @@ class Moves:
         if angle:
             self.rotary.refuse_far_turn(block.line, at[3:], angle)
         if not state.length_on:
-            raise BadInput(f"line {block.line}: a move without the tool's length; put {language.length_of(tool)} first")
+            raise BadInput(
+                f"line {block.line}: a move without the tool's length; put {language.length_of(tool)} first"
+            )
         x, y, z = words.get("X"), words.get("Y"), words.get("Z")
-        return (at[0] if x is None else x * unit, at[1] if y is None else y * unit, at[2] if z is None else z * unit, *angle)
+        return (
+            at[0] if x is None else x * unit,
+            at[1] if y is None else y * unit,
+            at[2] if z is None else z * unit,
+            *angle,
+        )
 
     def first_target(self, block: Block, motion: Motion, tool: Tool) -> Point | None:
         """Return the end of a move after a tool change, once X, Y and Z are known; None until then."""
         words, state, rotary, line = block.words, self.state, self.rotary, block.line
         if motion != Motion.RAPID:
-            raise BadInput(f"line {line}: a feed move before it is known where the tool is; begin with a rapid to X, Y and Z")
+            raise BadInput(
+                f"line {line}: a feed move before it is known where the tool is; begin with a rapid to X, Y and Z"
+            )
         if "Z" in words and rotary.turns(words):
-            raise BadInput(f"line {line}: turn {' and '.join(rotary.letters)} at the top of the machine, in a line before Z comes down")
+            raise BadInput(
+                f"line {line}: turn {' and '.join(rotary.letters)} at the top of the machine, in a line before Z comes down"
+            )
         angle = rotary.turned(words)
         x, y = words.get("X"), words.get("Y")
         if x is not None and y is not None:
             state.over = (x * state.unit, y * state.unit)
-        elif x is not None or y is not None or (state.over is None and ("Z" in words or not rotary.turns(words))):
-            raise BadInput(f"line {line}: it is not known where the tool is; begin with a rapid to X, Y and Z")
+        elif (
+            x is not None
+            or y is not None
+            or (state.over is None and ("Z" in words or not rotary.turns(words)))
+        ):
+            raise BadInput(
+                f"line {line}: it is not known where the tool is; begin with a rapid to X, Y and Z"
+            )
         if "Z" not in words or state.over is None:
             return None
         if not state.length_on:
-            raise BadInput(f"line {line}: a move in Z without the tool's length; put {self.language.length_of(tool)} first")
+            raise BadInput(
+                f"line {line}: a move in Z without the tool's length; put {self.language.length_of(tool)} first"
+            )
         rotary.refuse_lost(line)
         return (*state.over, words["Z"] * state.unit, *angle)
 
     def machine_move(self, block: Block) -> None:
         """Move in machine coordinates: only a rapid straight up to the top of the machine, Z0."""
         words, line, state = block.words, block.line, self.state
-        if state.motion != Motion.RAPID or words.get("Z") != 0.0 or "X" in words or "Y" in words or self.rotary.turns(words):
-            raise BadInput(f"line {line}: of {self.language.machine} only {self.language.words.top}, straight up to the top of the "
-                           "machine, is understood")
+        if (
+            state.motion != Motion.RAPID
+            or words.get("Z") != 0.0
+            or "X" in words
+            or "Y" in words
+            or self.rotary.turns(words)
+        ):
+            raise BadInput(
+                f"line {line}: of {self.language.machine} only {self.language.words.top}, straight up to the top of the "
+                "machine, is understood"
+            )
         if state.tool is not None:
             state.sections.lift(line, state.tool, (state.spindle, state.coolant))
         state.over = None
 
     def centre(self, block: Block, motion: Motion, end: Point) -> Point:
         """Return the centre of an arc at the height of its start; raise `BadInput` for one that the control could take for another."""
-        words, line, start, radius = block.words, block.line, self.state.sections.at, self.language.radius
+        words, line, start, radius = (
+            block.words,
+            block.line,
+            self.state.sections.at,
+            self.language.radius,
+        )
         assert start is not None
         i, j, unit = words.get("I"), words.get("J"), self.state.unit
         if radius in words:
             if i is not None or j is not None:
-                raise BadInput(f"line {line}: an arc with {radius} and with I or J; keep one of them")
+                raise BadInput(
+                    f"line {line}: an arc with {radius} and with I or J; keep one of them"
+                )
             return centre_by_radius(line, motion, start, end, words[radius] * unit, radius)
         if i is None and j is None:
             raise BadInput(f"line {line}: an arc without {self.arc_letters}")
         if words.get(self.language.turns, 1.0) != 1.0:
-            raise BadInput(f"line {line}: an arc of several turns ({self.language.turns}) is not understood; write each turn")
-        offset = self.offset(None if i is None else i * unit, None if j is None else j * unit, start)
+            raise BadInput(
+                f"line {line}: an arc of several turns ({self.language.turns}) is not understood; write each turn"
+            )
+        offset = self.offset(
+            None if i is None else i * unit, None if j is None else j * unit, start
+        )
         return centre_by_offset(line, start, end, offset, radius)

@@ -27,21 +27,28 @@ class Rotary:
     def turned(self, words: Mapping[str, float]) -> list[float]:
         """Return where the axes stand after a line."""
         if self.letters and self.turns(words):
-            self.angle = [words.get(letter, angle) for letter, angle in zip(self.letters, self.angle, strict=True)]
+            self.angle = [
+                words.get(letter, angle)
+                for letter, angle in zip(self.letters, self.angle, strict=True)
+            ]
         return self.angle
 
     def refuse_far_turn(self, line: int, before: Point, after: list[float]) -> None:
         """Raise `BadInput` for a turn in one block of more than the proof looks at."""
         for letter, first, last in zip(self.letters, before, after, strict=True):
             if abs(last - first) > MOST_TURN:
-                raise BadInput(f"line {line}: {letter} turns by {abs(last - first):.10g} degrees in one block, at most "
-                               f"{MOST_TURN:g} are understood; write several")
+                raise BadInput(
+                    f"line {line}: {letter} turns by {abs(last - first):.10g} degrees in one block, at most "
+                    f"{MOST_TURN:g} are understood; write several"
+                )
 
     def refuse_lost(self, line: int) -> None:
         """Raise `BadInput` while it is not known where an axis stands."""
         lost = [letter for letter, v in zip(self.letters, self.angle, strict=True) if math.isnan(v)]
         if lost:
-            raise BadInput(f"line {line}: it is not known where {' and '.join(lost)} stand; begin with a rapid that says so")
+            raise BadInput(
+                f"line {line}: it is not known where {' and '.join(lost)} stand; begin with a rapid that says so"
+            )
 
     def pace(self, block: Block, state: State, end: Point) -> tuple[float, float]:
         """Return the feed of a block, and its minutes where they are what is given: in inverse time, or where rotary axes turn.
@@ -51,13 +58,21 @@ class Rotary:
         start = state.sections.at
         if state.inverse:
             if "F" not in block.words:
-                raise BadInput(f"line {block.line}: a feed move in inverse time ({self.inverse}) needs an F word of its own")
+                raise BadInput(
+                    f"line {block.line}: a feed move in inverse time ({self.inverse}) needs an F word of its own"
+                )
             return state.feed, 1.0 / state.feed
         if start is None or start[3:] == end[3:]:
             return state.feed, 0.0
         length = math.dist(start[:3], end[:3])
-        minutes = length / state.feed if length > 0.0 else math.dist(start[3:], end[3:]) / (state.feed / state.unit)
+        minutes = (
+            length / state.feed
+            if length > 0.0
+            else math.dist(start[3:], end[3:]) / (state.feed / state.unit)
+        )
         if minutes * SECONDS_PER_MINUTE > LONGEST_BLOCK:
-            raise BadInput(f"line {block.line}: at this feed the block takes {minutes:.0f} min, no block takes more than "
-                           f"{LONGEST_BLOCK / SECONDS_PER_MINUTE:.0f}; check F")
+            raise BadInput(
+                f"line {block.line}: at this feed the block takes {minutes:.0f} min, no block takes more than "
+                f"{LONGEST_BLOCK / SECONDS_PER_MINUTE:.0f}; check F"
+            )
         return state.feed, minutes

@@ -55,7 +55,11 @@ class Upright:
 
     def above(self, point: Point, tool: Tool) -> Point | None:
         """See `Reckoning`."""
-        return None if point[2] >= self.clearance - tolerance.WRITTEN else (point[0], point[1], self.clearance)
+        return (
+            None
+            if point[2] >= self.clearance - tolerance.WRITTEN
+            else (point[0], point[1], self.clearance)
+        )
 
     def opened(self, rows: Rows) -> tuple[Toolpath, tuple[int, ...]]:
         """See `Reckoning`."""
@@ -73,7 +77,11 @@ class Leaning:
     def above(self, point: Point, tool: Tool) -> Point | None:
         """See `Reckoning`; a leaning tool comes from wherever the text's machine brings it from."""
         high = point[2] >= self.clearance - tolerance.WRITTEN
-        return None if high or point[3:] != (0.0, 0.0, 1.0) else (point[0], point[1], self.clearance, *point[3:])
+        return (
+            None
+            if high or point[3:] != (0.0, 0.0, 1.0)
+            else (point[0], point[1], self.clearance, *point[3:])
+        )
 
     def opened(self, rows: Rows) -> tuple[Toolpath, tuple[int, ...]]:
         """See `Reckoning`."""
@@ -94,7 +102,14 @@ def operation_of(comment: str) -> str | None:
 def path_of(rows: Rows, position: Floats, axis: Floats, centre: Floats) -> Toolpath:
     """Return the path of rows whose tips, axes and centres are known."""
     motion = np.array(rows.motion)
-    return Toolpath(position=position, axis=axis, motion=motion, centre=centre, feed=np.array(rows.feed), mark=marks_of(motion))
+    return Toolpath(
+        position=position,
+        axis=axis,
+        motion=motion,
+        centre=centre,
+        feed=np.array(rows.feed),
+        mark=marks_of(motion),
+    )
 
 
 def marks_of(motion: Ints) -> Ints:
@@ -116,8 +131,15 @@ class _Open:
     def closed(self, reckoning: Reckoning) -> ProgramSection:
         path, lines = reckoning.opened(self.rows)
         spindle, coolant = self.cutting or self.idle
-        return ProgramSection(operation=self.operation, tool=self.rows.tool, spindle=spindle, path=path, coolant=coolant, block_lines=lines,
-                              dwell=self.dwell)
+        return ProgramSection(
+            operation=self.operation,
+            tool=self.rows.tool,
+            spindle=spindle,
+            path=path,
+            coolant=coolant,
+            block_lines=lines,
+            dwell=self.dwell,
+        )
 
 
 class Sections:
@@ -161,17 +183,32 @@ class Sections:
         if self._open is None:
             self._begin(line, tool)
             start = self.reckoning.above(point, tool) if self.at is None else self.at
-            if start is not None and (self.at is None or start[3:] != point[3:] or self.reckoning.above(start, tool) is not None):
+            if start is not None and (
+                self.at is None
+                or start[3:] != point[3:]
+                or self.reckoning.above(start, tool) is not None
+            ):
                 self._add(line, Motion.RAPID, start, NOWHERE, 0.0)
         self._add(line, Motion.RAPID, point, NOWHERE, 0.0)
         if self._open is not None:
             self._open.idle = state
 
-    def feed(self, line: int, motion: Motion, point: Point, centre: Point, feed: float, tool: Tool, cutting: tuple[float, str],
-             minutes: float = 0.0) -> None:
+    def feed(
+        self,
+        line: int,
+        motion: Motion,
+        point: Point,
+        centre: Point,
+        feed: float,
+        tool: Tool,
+        cutting: tuple[float, str],
+        minutes: float = 0.0,
+    ) -> None:
         """Add a feed move, a line or an arc, with the spindle and coolant it runs with; `minutes` when it is fed in inverse time."""
         if self.at is None:
-            raise BadInput(f"line {line}: a feed move before it is known where the tool is; begin with a rapid to X, Y and Z")
+            raise BadInput(
+                f"line {line}: a feed move before it is known where the tool is; begin with a rapid to X, Y and Z"
+            )
         opened = self._open
         if opened is not None and opened.cutting not in (None, cutting):
             self._close()
@@ -200,12 +237,22 @@ class Sections:
         return tuple(self._done)
 
     def _begin(self, line: int, tool: Tool) -> _Open:
-        self._open = _Open(operation=self._operation or f"line {line}", rows=Rows(tool=tool), dwell=self._waits)
+        self._open = _Open(
+            operation=self._operation or f"line {line}", rows=Rows(tool=tool), dwell=self._waits
+        )
         self._waits = 0.0
         self._operation = self._open.operation
         return self._open
 
-    def _add(self, line: int, motion: Motion, point: Point, centre: Point, feed: float, minutes: float = 0.0) -> None:
+    def _add(
+        self,
+        line: int,
+        motion: Motion,
+        point: Point,
+        centre: Point,
+        feed: float,
+        minutes: float = 0.0,
+    ) -> None:
         assert self._open is not None
         rows = self._open.rows
         rows.point.append(point)

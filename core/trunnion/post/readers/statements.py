@@ -27,12 +27,14 @@ def statements(text: str) -> Iterator[tuple[int, str, str]]:
         if statement:
             yield first, *_parted(statement, is_text)
     if joined:
-        raise BadInput(f"line {first}: the statement goes on after the last line: is the text complete?")
+        raise BadInput(
+            f"line {first}: the statement goes on after the last line: is the text complete?"
+        )
 
 
 def _parted(statement: str, is_text: bool) -> tuple[str, str]:
     if is_text:
         word = next(w for w in _TEXT_WORDS if statement.upper().startswith(w))
-        return word, statement[len(word):].removeprefix("/").strip()
+        return word, statement[len(word) :].removeprefix("/").strip()
     word, _, rest = statement.upper().partition("/")
     return word.strip(), "".join(rest.split())

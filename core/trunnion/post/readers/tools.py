@@ -21,7 +21,9 @@ def by_number(tools: Sequence[Tool]) -> dict[int, Tool]:
     found: dict[int, Tool] = {}
     for tool in tools:
         if found.setdefault(tool.number, tool) != tool:
-            raise BadInput(f"two tools have the number {tool.number}: {found[tool.number].name} and {tool.name}")
+            raise BadInput(
+                f"two tools have the number {tool.number}: {found[tool.number].name} and {tool.name}"
+            )
     return found
 
 
@@ -31,14 +33,24 @@ def check_tool(line: int, comment: str, tools: Mapping[int, Tool]) -> None:
     if found is None:
         return
     tool = next((t for n, t in tools.items() if str(n) == found.group(1)), None)
-    if tool is None or comment not in [plain(tool_line(tool, units), len(comment)) for units in ("mm", "inch")]:
-        raise BadInput(f"line {line}: the text was made for another tool {shown(found.group(1))} than the tool list has; "
-                       "post the program anew")
+    if tool is None or comment not in [
+        plain(tool_line(tool, units), len(comment)) for units in ("mm", "inch")
+    ]:
+        raise BadInput(
+            f"line {line}: the text was made for another tool {shown(found.group(1))} than the tool list has; "
+            "post the program anew"
+        )
 
 
 def check_place(line: int, comment: str, setup: Setup, place: Place | None) -> None:
     """Raise `BadInput` when a comment is our header's line of where the work stands and it stands elsewhere now."""
     if place is None:
-        raise BadInput(f"line {line}: the text was made for a machine with rotary axes, {setup.machine} has none; post the program anew")
-    if comment not in [plain(place_lines(setup, place, units)[0], len(comment)) for units in ("mm", "inch")]:
-        raise BadInput(f"line {line}: the text was made for work that stands elsewhere on its machine; post the program anew")
+        raise BadInput(
+            f"line {line}: the text was made for a machine with rotary axes, {setup.machine} has none; post the program anew"
+        )
+    if comment not in [
+        plain(place_lines(setup, place, units)[0], len(comment)) for units in ("mm", "inch")
+    ]:
+        raise BadInput(
+            f"line {line}: the text was made for work that stands elsewhere on its machine; post the program anew"
+        )

@@ -27,11 +27,15 @@ def coolant(modal: Modal, wanted: str) -> Iterator[str]:
     modal.coolant = wanted
 
 
-def approach(modal: Modal, tool: Tool, point: list[int], angle: list[int], changed: bool) -> Iterator[str]:
+def approach(
+    modal: Modal, tool: Tool, point: list[int], angle: list[int], changed: bool
+) -> Iterator[str]:
     """Yield the lines of the first rapid, to a point and angles in ticks; `changed` after a tool change."""
     words, rapid = modal.words, modal.words.motions[Motion.RAPID]
     x, y, z = (modal.scale.text(v) for v in point)
-    turn = "".join(f" {letter}{modal.degrees.text(v)}" for letter, v in zip(modal.letters, angle, strict=True))
+    turn = "".join(
+        f" {letter}{modal.degrees.text(v)}" for letter, v in zip(modal.letters, angle, strict=True)
+    )
     length = words.tool_length.format(tool=tool.number)
     unwinds = not changed and angle != (modal.angle or [])
     if unwinds:

@@ -75,7 +75,11 @@ class Modal:
     def turned(self, angle: list[int]) -> list[str]:
         """Return the words of the rotary axes that turn."""
         before = self.angle or angle
-        return [letter + self.degrees.text(v) for letter, v, old in zip(self.letters, angle, before, strict=True) if v != old]
+        return [
+            letter + self.degrees.text(v)
+            for letter, v, old in zip(self.letters, angle, before, strict=True)
+            if v != old
+        ]
 
 
 def degrees_of(words: IsoWords) -> Scale:

@@ -28,7 +28,9 @@ def comment(words: IsoWords, text: str) -> str:
 class ProgramWriter:
     """Writes one setup's program line by line. `place` says where the work stands on a machine with rotary axes."""
 
-    def __init__(self, words: IsoWords, program: Program, settings: PostSettings, place: Place | None) -> None:
+    def __init__(
+        self, words: IsoWords, program: Program, settings: PostSettings, place: Place | None
+    ) -> None:
         self.words, self.program, self.settings = words, program, settings
         self.place = place if place is not None and place.machine.rotary else None
         self.axes = _axis_form(words, settings, self.place)
@@ -39,12 +41,23 @@ class ProgramWriter:
         """Yield the lines of the text; raise `Refused` for what the control can't do."""
         words, setup = self.words, self.program.setup
         if setup.work_offset not in words.work_offsets:
-            raise Refused(f"setup {setup.name}: {words.title} has no work offset {setup.work_offset}; "
-                          f"it has {', '.join(words.work_offsets)}")
+            raise Refused(
+                f"setup {setup.name}: {words.title} has no work offset {setup.work_offset}; "
+                f"it has {', '.join(words.work_offsets)}"
+            )
         yield from (comment(words, line) for line in self.header(header))
-        yield from (line.format(program=plain(f"{header.name}.{setup.name}", words.line_length)) for line in words.opening)
-        limit = trimmed(self.settings.path_tolerance / self.modal.scale.unit, self.modal.scale.decimals)
-        filled = {"units": words.units[self.settings.units], "tolerance": limit, "offset": setup.work_offset}
+        yield from (
+            line.format(program=plain(f"{header.name}.{setup.name}", words.line_length))
+            for line in words.opening
+        )
+        limit = trimmed(
+            self.settings.path_tolerance / self.modal.scale.unit, self.modal.scale.decimals
+        )
+        filled = {
+            "units": words.units[self.settings.units],
+            "tolerance": limit,
+            "offset": setup.work_offset,
+        }
         yield from (self.numbered(line.format(**filled)) for line in words.start)
         for section in self.program.sections:
             yield from self.section(section)
@@ -67,7 +80,10 @@ class ProgramWriter:
         words, modal, tool = self.words, self.modal, section.tool
         refuse_unwritable(section, words.title, words.coolant)
         yield comment(words, f"OPERATION {section.operation}")
-        yield comment(words, f"RESTART POINT N{self.number + self.settings.number_step} TOOL {tool.number} {tool.name}")
+        yield comment(
+            words,
+            f"RESTART POINT N{self.number + self.settings.number_step} TOOL {tool.number} {tool.name}",
+        )
         changes = tool.number != modal.tool
         if changes:
             yield from map(self.numbered, tool_change(modal, tool))
@@ -94,6 +110,8 @@ def _axis_form(words: IsoWords, settings: PostSettings, place: Place | None) -> 
     if place is None:
         return ThreeAxes(scale=scale)
     if not words.inverse_time:
-        raise Refused(f"{words.title} has no words for the rotary axes of {place.machine.title}; choose another control or machine")
+        raise Refused(
+            f"{words.title} has no words for the rotary axes of {place.machine.title}; choose another control or machine"
+        )
     straying = Straying(feed=settings.straying, rapid=settings.rapid_straying)
     return JointForm(place=place, scale=scale, degrees=degrees_of(words), straying=straying)

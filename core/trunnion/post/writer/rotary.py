@@ -35,7 +35,9 @@ class AxisForm(Protocol):
     @property
     def letters(self) -> str: ...
 
-    def blocks(self, section: ProgramSection, angle: list[int] | None, goes_on: bool) -> tuple[WrittenPath, Floats]:
+    def blocks(
+        self, section: ProgramSection, angle: list[int] | None, goes_on: bool
+    ) -> tuple[WrittenPath, Floats]:
         """Return the blocks of a section as they are written, and the minutes (m,) of those that are fed in inverse time, else 0.
 
         `angle` is where the rotary axes stand, None when that is not known; `goes_on` says that the tool comes straight from the section
@@ -51,7 +53,9 @@ class ThreeAxes:
     scale: Scale
     letters: str = ""
 
-    def blocks(self, section: ProgramSection, angle: list[int] | None, goes_on: bool) -> tuple[WrittenPath, Floats]:
+    def blocks(
+        self, section: ProgramSection, angle: list[int] | None, goes_on: bool
+    ) -> tuple[WrittenPath, Floats]:
         """See `AxisForm`; a leaning tool is refused."""
         path = written(upright(section.path, section.operation), self.scale, section.operation)
         return path, np.zeros(len(path.motion))
@@ -71,33 +75,54 @@ class JointForm:
         """The letters of the rotary axes, in the machine's order."""
         return self.place.names
 
-    def blocks(self, section: ProgramSection, angle: list[int] | None, goes_on: bool) -> tuple[WrittenPath, Floats]:
+    def blocks(
+        self, section: ProgramSection, angle: list[int] | None, goes_on: bool
+    ) -> tuple[WrittenPath, Floats]:
         """See `AxisForm`."""
         stand = None if angle is None else self.radians(np.array(angle))
-        joints = joint_path(section.path, section.tool, self.place, stand, self.straying, section.operation)
-        moved = Toolpath(position=joints.words, axis=np.tile([0.0, 0.0, 1.0], (len(joints.words), 1)), motion=joints.motion,
-                         centre=joints.centre, feed=joints.feed, mark=np.zeros(len(joints.words), np.int64))
-        path = written(moved, self.scale, section.operation, self.degrees.ticks(np.degrees(joints.angle)))
+        joints = joint_path(
+            section.path, section.tool, self.place, stand, self.straying, section.operation
+        )
+        moved = Toolpath(
+            position=joints.words,
+            axis=np.tile([0.0, 0.0, 1.0], (len(joints.words), 1)),
+            motion=joints.motion,
+            centre=joints.centre,
+            feed=joints.feed,
+            mark=np.zeros(len(joints.words), np.int64),
+        )
+        path = written(
+            moved, self.scale, section.operation, self.degrees.ticks(np.degrees(joints.angle))
+        )
         if goes_on and path.more[0].tolist() != angle:
             self.refuse_another_direction(angle, path.more[0], section.operation)
         return path, self.minutes(path, section.tool)
 
-    def refuse_another_direction(self, before: list[int] | None, after: Ints, operation: str) -> None:
+    def refuse_another_direction(
+        self, before: list[int] | None, after: Ints, operation: str
+    ) -> None:
         """Refuse an operation that begins in another direction than the tool has: only its own path knows a safe way there."""
         old, new = axes_of(self.place, self.radians(np.array([before, after])))
         if np.linalg.norm(new - old) > _SAME_DIRECTION:
-            raise Refused(f"operation {operation} begins with the tool in another direction than the one before it ends with: "
-                          "lead it there over the work first")
+            raise Refused(
+                f"operation {operation} begins with the tool in another direction than the one before it ends with: "
+                "lead it there over the work first"
+            )
 
     def minutes(self, path: WrittenPath, tool: Tool) -> Floats:
         """Return how long (m,) the blocks in which a rotary axis turns last, from what is written: the tip at its feed, unless an axis of
         the machine needs longer."""
         angle = self.radians(path.more)
-        words = np.asarray(path.point * (self.scale.unit / 10.0**self.scale.decimals), dtype=np.float64)
+        words = np.asarray(
+            path.point * (self.scale.unit / 10.0**self.scale.decimals), dtype=np.float64
+        )
         tip, _ = poses_of(self.place, words, angle, tool.gauge_length)
         rates = np.array([self.place.machine.axis(name).rapid for name in (*"XYZ", *self.letters)])
         axes = np.abs(np.diff(np.column_stack([words, np.degrees(angle)]), axis=0)) / rates
-        time = np.maximum(np.linalg.norm(np.diff(tip, axis=0), axis=1) / np.maximum(path.feed[1:], _SLOWEST), axes.max(axis=1))
+        time = np.maximum(
+            np.linalg.norm(np.diff(tip, axis=0), axis=1) / np.maximum(path.feed[1:], _SLOWEST),
+            axes.max(axis=1),
+        )
         turns = (path.more[1:] != path.more[:-1]).any(axis=1) & (path.motion[1:] != Motion.RAPID)
         return np.concatenate([[0.0], np.where(turns, time, 0.0)])
 

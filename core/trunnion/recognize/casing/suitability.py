@@ -32,7 +32,9 @@ class CasingKind:
         axis = main_axis(graph)
         turned = of_revolution(graph, axis) if axis else np.zeros(len(graph), dtype=bool)
         if axis is None or not turned.any():
-            return Suitability(score=0.0, explained=0.0, reason="no face is of revolution about an axis")
+            return Suitability(
+                score=0.0, explained=0.0, reason="no face is of revolution about an axis"
+            )
         whole = float(graph.area.sum())
         explained = min(1.0, float(graph.area[turned | _on_wall(graph, turned)].sum()) / whole)
         sides, bore = _wall(graph, axis, turned)
@@ -40,9 +42,14 @@ class CasingKind:
             return Suitability(score=0.0, explained=explained, reason="no wall runs round an axis")
         thickness = _thickness(graph)
         score = explained * min(1.0, sides / whole / ENOUGH) * min(1.0, THIN * bore / thickness)
-        return Suitability(score=score, explained=explained, reason=(
-            f"{percent(float(graph.area[turned].sum()) / whole)} of the area is of revolution about one axis, {percent(sides / whole)} "
-            f"the two sides of a wall about {thickness:.3g} mm thick round a bore of {2.0 * bore:.3g} mm"))
+        return Suitability(
+            score=score,
+            explained=explained,
+            reason=(
+                f"{percent(float(graph.area[turned].sum()) / whole)} of the area is of revolution about one axis, {percent(sides / whole)} "
+                f"the two sides of a wall about {thickness:.3g} mm thick round a bore of {2.0 * bore:.3g} mm"
+            ),
+        )
 
 
 def _wall(graph: FaceGraph, axis: Axis, turned: Bools) -> tuple[float, float]:
@@ -72,7 +79,10 @@ def _thickness(graph: FaceGraph) -> float:
 def _on_wall(graph: FaceGraph, turned: Bools) -> Bools:
     """Return which faces (n,) are parts of bosses, holes and pockets: not of revolution, and little of them hangs together."""
     found = np.zeros(len(graph), dtype=bool)
-    left, whole = {int(r) for r in np.flatnonzero(~turned & (graph.area > 0.0))}, float(graph.area.sum())
+    left, whole = (
+        {int(r) for r in np.flatnonzero(~turned & (graph.area > 0.0))},
+        float(graph.area.sum()),
+    )
     while left:
         border, mine = [left.pop()], []
         while border:

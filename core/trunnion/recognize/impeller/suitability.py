@@ -39,17 +39,30 @@ class ImpellerKind:
         axis = main_axis(graph)
         turned = of_revolution(graph, axis) if axis else np.zeros(len(graph), dtype=bool)
         repeated = patterns(graph, axis) if axis else ()
-        blades = [p for p in repeated if axis and not turned[p.rows].any() and _may_be_blade(graph, axis, int(p.rows[0]))]
+        blades = [
+            p
+            for p in repeated
+            if axis and not turned[p.rows].any() and _may_be_blade(graph, axis, int(p.rows[0]))
+        ]
         if axis is None or not blades:
-            return Suitability(score=0.0, explained=0.0, reason="nothing like a blade is repeated about an axis")
+            return Suitability(
+                score=0.0, explained=0.0, reason="nothing like a blade is repeated about an axis"
+            )
         whole, blade = float(graph.area.sum()), _within(graph, blades)
         explained = min(1.0, float(graph.area[turned | _within(graph, repeated)].sum()) / whole)
         share = float(graph.area[blade].sum()) / whole
-        carried = _hub_reach(graph, axis, turned, repeated) / float(_away(graph, axis)[blade[graph.sample_face]].max())
+        carried = _hub_reach(graph, axis, turned, repeated) / float(
+            _away(graph, axis)[blade[graph.sample_face]].max()
+        )
         score = explained * min(1.0, share / ENOUGH) if carried >= CARRIED else 0.0
-        return Suitability(score=score, explained=explained, reason=(
-            f"{blades[0].count} blades stand evenly about an axis, {percent(share)} of the area, on a hub of "
-            f"{percent(min(carried, 1.0))} of their radius"))
+        return Suitability(
+            score=score,
+            explained=explained,
+            reason=(
+                f"{blades[0].count} blades stand evenly about an axis, {percent(share)} of the area, on a hub of "
+                f"{percent(min(carried, 1.0))} of their radius"
+            ),
+        )
 
 
 def _within(graph: FaceGraph, chosen: Sequence[Pattern]) -> Bools:
@@ -86,7 +99,10 @@ def _enclosed(graph: FaceGraph, axis: Axis, row: int) -> bool:
     at = ((ends - low) / max(high - low, COINCIDENT)).mean(axis=0)
     length = graph.length[edges]
     inner = length * (graph.convexity[edges] == CONCAVE)
-    return all(float(inner[mine].sum()) > 0.5 * float(length[mine].sum()) for mine in (at < END, at > 1.0 - END))
+    return all(
+        float(inner[mine].sum()) > 0.5 * float(length[mine].sum())
+        for mine in (at < END, at > 1.0 - END)
+    )
 
 
 def _hub_reach(graph: FaceGraph, axis: Axis, turned: Bools, repeated: Sequence[Pattern]) -> float:

@@ -37,9 +37,18 @@ class PanelFamily:
     noun = "a panel"
     settings = PanelSettings
     smallest: tuple[Smallest, ...] = (
-        Smallest(name="smallest_corner_radius", size="corner_radius", kinds=("pocket", "open_pocket", "island")),
-        Smallest(name="smallest_floor_fillet", size="floor_fillet", kinds=("pocket", "open_pocket", "island")),
-        Smallest(name="thinnest_rib", size="thickness", kinds=("rib",)))
+        Smallest(
+            name="smallest_corner_radius",
+            size="corner_radius",
+            kinds=("pocket", "open_pocket", "island"),
+        ),
+        Smallest(
+            name="smallest_floor_fillet",
+            size="floor_fillet",
+            kinds=("pocket", "open_pocket", "island"),
+        ),
+        Smallest(name="thinnest_rib", size="thickness", kinds=("rib",)),
+    )
 
     def suits(self, graph: FaceGraph) -> Suitability:
         """Return the share of the part's area that lies level or upright in the frame that a panel would have.
@@ -53,11 +62,20 @@ class PanelFamily:
         except BadInput:
             return Suitability(score=0.0, explained=0.0, reason="no face is flat")
         kinds = classify(graph.in_frame(frame), choose(PanelSettings, {})).kind
-        fits = [k in STRAIGHT or (k in STEEP_CLASSES and s in RULED) for k, s in zip(kinds, graph.surface, strict=True)]
+        fits = [
+            k in STRAIGHT or (k in STEEP_CLASSES and s in RULED)
+            for k, s in zip(kinds, graph.surface, strict=True)
+        ]
         share = float(graph.area[np.array(fits)].sum() / graph.area.sum())
-        return Suitability(score=min(1.0, share), explained=min(1.0, share), reason=f"{percent(share)} of the area level or upright")
+        return Suitability(
+            score=min(1.0, share),
+            explained=min(1.0, share),
+            reason=f"{percent(share)} of the area level or upright",
+        )
 
-    def recognize(self, graph: FaceGraph, slicer: Slicer, settings: PanelSettings, progress: Progress = QUIET) -> Recognition:
+    def recognize(
+        self, graph: FaceGraph, slicer: Slicer, settings: PanelSettings, progress: Progress = QUIET
+    ) -> Recognition:
         """Return the features of a panel. Raises `BadInput` when the part has no plane face, `Cancelled` when asked to stop."""
         progress.at(0.0, "choosing the frame")
         frame = progress.aside(lambda _: choose_frame(graph))
@@ -79,11 +97,25 @@ class PanelFamily:
         features.extend(around.features)
         findings.extend(around.findings)
         explained = {tag - 1 for f in features for tag in f.tags}
-        left = tuple(r for r, k in enumerate(above.classes.kind) if r not in explained and k is not FaceClass.ABSENT)
+        left = tuple(
+            r
+            for r, k in enumerate(above.classes.kind)
+            if r not in explained and k is not FaceClass.ABSENT
+        )
         findings.extend(above.slices.findings)
-        findings.extend(rest_findings(above.graph, above.classes, left, {f for seen in shown for f in seen.tops.undercut}))
-        return Recognition(family=self.name, frame=frame, features=tuple(features), unexplained=tuple(r + 1 for r in left),
-                           unexplained_share=float(graph.area[list(left)].sum() / graph.area.sum()), findings=tuple(findings))
+        findings.extend(
+            rest_findings(
+                above.graph, above.classes, left, {f for seen in shown for f in seen.tops.undercut}
+            )
+        )
+        return Recognition(
+            family=self.name,
+            frame=frame,
+            features=tuple(features),
+            unexplained=tuple(r + 1 for r in left),
+            unexplained_share=float(graph.area[list(left)].sum() / graph.area.sum()),
+            findings=tuple(findings),
+        )
 
 
 def _shown(view: View, progress: Progress) -> Shown:
@@ -94,17 +126,39 @@ def _made(view: View, seen: Shown, graph: FaceGraph, numbers: Numbers, progress:
     return make_features(view, seen, graph, numbers)
 
 
-def _views(graph: FaceGraph, frame: Frame, slicer: Slicer, settings: PanelSettings, progress: Progress) -> tuple[View, View]:
+def _views(
+    graph: FaceGraph, frame: Frame, slicer: Slicer, settings: PanelSettings, progress: Progress
+) -> tuple[View, View]:
     """Return the part as seen from above and from below, cut once for both."""
     local = graph.in_frame(frame)
     low, high = box(local)
     width, height = float(high[1]), float(high[2])
     classes = classify(local, settings)
-    slices = cut(slicer, frame, heights(local, classes, float(low[2]), height, settings.slicing_depth), progress)
+    slices = cut(
+        slicer,
+        frame,
+        heights(local, classes, float(low[2]), height, settings.slicing_depth),
+        progress,
+    )
     turned = graph.in_frame(flipped(frame, width, height))
-    return (View(graph=local, classes=classes, slices=slices, height=height, settings=settings, below=False),
-            View(graph=turned, classes=classify(turned, settings), slices=slices.flipped(width, height), height=height,
-                 settings=settings, below=True))
+    return (
+        View(
+            graph=local,
+            classes=classes,
+            slices=slices,
+            height=height,
+            settings=settings,
+            below=False,
+        ),
+        View(
+            graph=turned,
+            classes=classify(turned, settings),
+            slices=slices.flipped(width, height),
+            height=height,
+            settings=settings,
+            below=True,
+        ),
+    )
 
 
 def _surroundings(above: View, shown: list[Shown], features: list[Feature]) -> Made:
@@ -113,4 +167,7 @@ def _surroundings(above: View, shown: list[Shown], features: list[Feature]) -> M
     profile = make_profile(above, taken, "profile-01")
     top, bottom = ([f for f in seen.tops.highest if f not in taken] for seen in shown)
     datum = make_datum(top, bottom, above.height, "datum-01")
-    return Made(features=profile.features if datum is None else (*profile.features, datum), findings=profile.findings)
+    return Made(
+        features=profile.features if datum is None else (*profile.features, datum),
+        findings=profile.findings,
+    )

@@ -13,12 +13,25 @@ SAME_RADIUS = 0.999
 
 def floor_fillets(graph: FaceGraph, classes: FaceClasses) -> frozenset[int]:
     """Return the rows of the blends between floors and walls: smooth to a floor, rising from it, and the patches between them."""
-    seeds = [r for r in classes.rows(FaceClass.BLEND) if any(rises_from(graph, e, r) and _floor_side(graph, classes, e, r)
-                                                            for e in graph.edges_of[r])]
+    seeds = [
+        r
+        for r in classes.rows(FaceClass.BLEND)
+        if any(
+            rises_from(graph, e, r) and _floor_side(graph, classes, e, r) for e in graph.edges_of[r]
+        )
+    ]
     found = set(seeds)
-    return frozenset(grown(graph, seeds, lambda edge, _, to: bool(
-        graph.convexity[edge] == SMOOTH and classes.kind[to] is FaceClass.BLEND
-        and (to in found or _patch(graph, classes, to)))))
+    return frozenset(
+        grown(
+            graph,
+            seeds,
+            lambda edge, _, to: bool(
+                graph.convexity[edge] == SMOOTH
+                and classes.kind[to] is FaceClass.BLEND
+                and (to in found or _patch(graph, classes, to))
+            ),
+        )
+    )
 
 
 def rises_from(graph: FaceGraph, edge: int, face: int) -> bool:
@@ -31,35 +44,50 @@ def is_corner(graph: FaceGraph, classes: FaceClasses, face: int) -> bool:
     """Say whether a rising face is a blend of two walls: curved, smooth to rising faces at two sides, each of a wider bend."""
     if not classes.rising[face] or graph.surface[face] == "plane":
         return False
-    beside = {graph.across(e, face) for e in graph.edges_of[face] if graph.convexity[e] == SMOOTH} - {face}
+    beside = {
+        graph.across(e, face) for e in graph.edges_of[face] if graph.convexity[e] == SMOOTH
+    } - {face}
     walls = [n for n in beside if classes.rising[n] and not _stacked(graph, face, n)]
     if len(walls) < 2:
         return False
     own = bend_radius(graph, face)
-    return all(graph.surface[n] == "plane" or own < SAME_RADIUS * bend_radius(graph, n) for n in walls)
+    return all(
+        graph.surface[n] == "plane" or own < SAME_RADIUS * bend_radius(graph, n) for n in walls
+    )
 
 
 def is_rounding(graph: FaceGraph, classes: FaceClasses, face: int) -> bool:
     """Say whether a face of the outer profile rounds a corner off: it bulges, and a wall of a wider bend runs smoothly into it."""
     beside = [graph.across(e, face) for e in graph.edges_of[face] if graph.convexity[e] == SMOOTH]
     own = bend_radius(graph, face)
-    return bool(graph.bend[face] > 0 and any(classes.rising[n] and own < SAME_RADIUS * bend_radius(graph, n) for n in beside))
+    return bool(
+        graph.bend[face] > 0
+        and any(classes.rising[n] and own < SAME_RADIUS * bend_radius(graph, n) for n in beside)
+    )
 
 
 def _floor_side(graph: FaceGraph, classes: FaceClasses, edge: int, face: int) -> bool:
     other = graph.across(edge, face)
     if graph.convexity[edge] != SMOOTH:
         return False
-    return classes.kind[other] is FaceClass.UP or (classes.kind[other] is FaceClass.CROSS and graph.surface[other] != "plane")
+    return classes.kind[other] is FaceClass.UP or (
+        classes.kind[other] is FaceClass.CROSS and graph.surface[other] != "plane"
+    )
 
 
 def _patch(graph: FaceGraph, classes: FaceClasses, face: int) -> bool:
     """Say whether a blend touches no floor and no top of its own: the ball in a corner between two fillets. A dome over them bulges."""
     level = (FaceClass.UP, FaceClass.DOWN)
-    return bool(graph.bend[face] <= 0) and not any(classes.kind[graph.across(e, face)] in level for e in graph.edges_of[face]
-                                                   if graph.convexity[e] != CONVEX)
+    return bool(graph.bend[face] <= 0) and not any(
+        classes.kind[graph.across(e, face)] in level
+        for e in graph.edges_of[face]
+        if graph.convexity[e] != CONVEX
+    )
 
 
 def _stacked(graph: FaceGraph, face: int, other: int) -> bool:
     """Say whether two faces only meet above each other (the same wall, split at a height)."""
-    return bool(graph.box_low[other][2] >= graph.box_high[face][2] - SLIVER or graph.box_high[other][2] <= graph.box_low[face][2] + SLIVER)
+    return bool(
+        graph.box_low[other][2] >= graph.box_high[face][2] - SLIVER
+        or graph.box_high[other][2] <= graph.box_low[face][2] + SLIVER
+    )

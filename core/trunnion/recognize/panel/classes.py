@@ -67,11 +67,16 @@ def classify(graph: FaceGraph, settings: PanelSettings) -> FaceClasses:
     bare = count == 0.0
     low, high = np.where(bare, own, low), np.where(bare, own, high)
     mean = np.where(bare, own, total / np.maximum(count, 1.0))
-    kinds = tuple(FaceClass.ABSENT if graph.area[r] == 0.0 else _kind(low[r], high[r], settings) for r in range(n))
+    kinds = tuple(
+        FaceClass.ABSENT if graph.area[r] == 0.0 else _kind(low[r], high[r], settings)
+        for r in range(n)
+    )
     lean = np.array([degrees(np.pi / 2 - m) for m in mean])
     steep = np.array([k in STEEP_CLASSES for k in kinds])
     slope = np.array([k is FaceClass.CROSS for k in kinds]) & (low >= np.pi / 4)
-    return FaceClasses(kind=kinds, alpha_low=low, alpha_high=high, lean=lean, steep=steep, rising=steep | slope)
+    return FaceClasses(
+        kind=kinds, alpha_low=low, alpha_high=high, lean=lean, steep=steep, rising=steep | slope
+    )
 
 
 def _kind(low: float, high: float, settings: PanelSettings) -> FaceClass:

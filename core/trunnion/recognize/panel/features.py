@@ -13,7 +13,13 @@ from trunnion.recognize.panel.blends import is_rounding
 from trunnion.recognize.panel.classes import FaceClass
 from trunnion.recognize.panel.confirm import LEANING_REMEDY, Confirmed, confirm, refusal
 from trunnion.recognize.panel.rules import Island, Pocket, Shown
-from trunnion.recognize.panel.sizes import corner_radius, island_sizes, pocket_sizes, rib_sizes, tidy
+from trunnion.recognize.panel.sizes import (
+    corner_radius,
+    island_sizes,
+    pocket_sizes,
+    rib_sizes,
+    tidy,
+)
 from trunnion.recognize.panel.view import View
 
 T = TypeVar("T")
@@ -55,11 +61,15 @@ def in_rows(things: Iterable[T], centre: Callable[[T], tuple[float, float]]) -> 
 
 def make_features(view: View, shown: Shown, main: FaceGraph, numbers: Numbers) -> Made:
     """Return pockets, islands and ribs of one side; `main` is the graph in the recognition's frame."""
+
     def middle(faces: Sequence[int]) -> tuple[float, float]:
         low, high = main.box_low[list(faces)].min(axis=0), main.box_high[list(faces)].max(axis=0)
         return float(0.5 * (low[0] + high[0])), float(0.5 * (low[1] + high[1]))
 
-    checked = in_rows([confirm(view, p) for p in shown.pockets], lambda c: middle(c.pocket.floors or c.pocket.sides))
+    checked = in_rows(
+        [confirm(view, p) for p in shown.pockets],
+        lambda c: middle(c.pocket.floors or c.pocket.sides),
+    )
     named = [(numbers.next("open_pocket" if c.open else "pocket"), c) for c in checked]
     ids = {floor: id for id, c in named for floor in c.pocket.floors}
     features: list[Feature] = []
@@ -91,26 +101,64 @@ def make_profile(view: View, taken: set[int], id: str) -> Made:
     radius = corner_radius(view, round_) if round_ else None
     if radius is not None:
         sizes["corner_radius"] = radius
-    leaning = sorted({n for f in faces for n in view.graph.neighbours(f) if view.classes.steep[n] and n not in taken} - set(view.profile))
+    leaning = sorted(
+        {
+            n
+            for f in faces
+            for n in view.graph.neighbours(f)
+            if view.classes.steep[n] and n not in taken
+        }
+        - set(view.profile)
+    )
     if not leaning:
-        return Made(features=(Feature(id=id, kind="profile", faces=roles, sizes=sizes),), findings=())
+        return Made(
+            features=(Feature(id=id, kind="profile", faces=roles, sizes=sizes),), findings=()
+        )
     why = "a wall of the outline leans"
-    return Made(features=(Feature(id=id, kind="profile", faces=roles, sizes=sizes, attributes={"refused": why}),), findings=(
-        warning("panel.leaning-wall", f"{id} is not planned: {why}", id, *face_tags(f + 1 for f in leaning), remedy=LEANING_REMEDY),))
+    return Made(
+        features=(
+            Feature(id=id, kind="profile", faces=roles, sizes=sizes, attributes={"refused": why}),
+        ),
+        findings=(
+            warning(
+                "panel.leaning-wall",
+                f"{id} is not planned: {why}",
+                id,
+                *face_tags(f + 1 for f in leaning),
+                remedy=LEANING_REMEDY,
+            ),
+        ),
+    )
 
 
 def make_datum(top: Sequence[int], bottom: Sequence[int], height: float, id: str) -> Feature | None:
     """Return the datum feature of the flat top and bottom faces (rows) that belong to nothing else."""
-    roles = (*(FaceRole(role="top", face=f + 1) for f in top), *(FaceRole(role="bottom", face=f + 1) for f in bottom))
-    return Feature(id=id, kind="datum", faces=roles, sizes={"top_z": tidy(height), "bottom_z": 0.0}) if roles else None
+    roles = (
+        *(FaceRole(role="top", face=f + 1) for f in top),
+        *(FaceRole(role="bottom", face=f + 1) for f in bottom),
+    )
+    return (
+        Feature(id=id, kind="datum", faces=roles, sizes={"top_z": tidy(height), "bottom_z": 0.0})
+        if roles
+        else None
+    )
 
 
-def _pocket(view: View, id: str, confirmed: Confirmed, ribs: Sequence[int], ids: dict[int, str],
-            middle: Callable[[Sequence[int]], tuple[float, float]]) -> tuple[Feature, tuple[Finding, ...]]:
+def _pocket(
+    view: View,
+    id: str,
+    confirmed: Confirmed,
+    ribs: Sequence[int],
+    ids: dict[int, str],
+    middle: Callable[[Sequence[int]], tuple[float, float]],
+) -> tuple[Feature, tuple[Finding, ...]]:
     pocket, kind = confirmed.pocket, "open_pocket" if confirmed.open else "pocket"
     sizes = pocket_sizes(view, pocket, ribs)
     x, y = middle(pocket.floors or pocket.sides)
-    attributes: dict[str, Size] = {"centre": (tidy(x), tidy(y), float(sizes["floor_z"])), "identification": kind}  # type: ignore[arg-type]
+    attributes: dict[str, Size] = {
+        "centre": (tidy(x), tidy(y), float(sizes["floor_z"])),  # type: ignore[arg-type]
+        "identification": kind,
+    }
     if not pocket.floors:
         attributes["through"] = True
     if pocket.parent is not None and pocket.parent in ids:
@@ -122,27 +170,60 @@ def _pocket(view: View, id: str, confirmed: Confirmed, ribs: Sequence[int], ids:
     if reason is not None:
         code, why, remedy, rows = reason
         attributes["refused"] = why
-        findings.append(warning(code, f"{id} is not planned: {why}", id, *face_tags(r + 1 for r in rows), remedy=remedy))
-    roles = (*_roles("floor", pocket.floors), *((_side_role(view, w), w) for w in pocket.walls), *_roles("corner", pocket.corners),
-             *_roles("floor_fillet", pocket.fillets))
-    return Feature(id=id, kind=kind, faces=_faces(roles), sizes=sizes, attributes=attributes), tuple(findings)
+        findings.append(
+            warning(
+                code,
+                f"{id} is not planned: {why}",
+                id,
+                *face_tags(r + 1 for r in rows),
+                remedy=remedy,
+            )
+        )
+    roles = (
+        *_roles("floor", pocket.floors),
+        *((_side_role(view, w), w) for w in pocket.walls),
+        *_roles("corner", pocket.corners),
+        *_roles("floor_fillet", pocket.fillets),
+    )
+    return Feature(
+        id=id, kind=kind, faces=_faces(roles), sizes=sizes, attributes=attributes
+    ), tuple(findings)
 
 
 def _island(view: View, id: str, island: Island, inside: str) -> Feature:
-    roles = (*_roles("top", island.tops), *((_side_role(view, w), w) for w in island.walls), *_roles("corner", island.corners),
-             *_roles("floor_fillet", island.fillets))
+    roles = (
+        *_roles("top", island.tops),
+        *((_side_role(view, w), w) for w in island.walls),
+        *_roles("corner", island.corners),
+        *_roles("floor_fillet", island.fillets),
+    )
     attributes: dict[str, Size] = {"in": inside}
     if view.below:
         attributes["direction"] = (0.0, 0.0, -1.0)
-    return Feature(id=id, kind="island", faces=_faces(roles), sizes=island_sizes(view, island), attributes=attributes)
+    return Feature(
+        id=id,
+        kind="island",
+        faces=_faces(roles),
+        sizes=island_sizes(view, island),
+        attributes=attributes,
+    )
 
 
 def _rib(view: View, id: str, top: int, pockets: Sequence[Pocket]) -> Feature:
-    beside = {view.graph.across(e, top) for e in view.graph.edges_of[top] if view.graph.convexity[e] == CONVEX}
+    beside = {
+        view.graph.across(e, top)
+        for e in view.graph.edges_of[top]
+        if view.graph.convexity[e] == CONVEX
+    }
     floors = [f for p in pockets if beside.intersection(p.sides) for f in p.floors]
     attributes: dict[str, Size] = {"direction": (0.0, 0.0, -1.0)} if view.below else {}
-    return Feature(id=id, kind="rib", faces=(FaceRole(role="top", face=top + 1),), sizes=rib_sizes(view, top, floors),
-                   attributes=attributes)
+    return Feature(
+        id=id,
+        kind="rib",
+        faces=(FaceRole(role="top", face=top + 1),),
+        sizes=rib_sizes(view, top, floors),
+        attributes=attributes,
+    )
 
 
 def _side_role(view: View, face: int) -> str:

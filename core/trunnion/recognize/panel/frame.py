@@ -37,7 +37,11 @@ def choose_frame(graph: FaceGraph) -> Frame:
     x = flat.world_direction(_long_axis(local, angle, flat.world_direction))
     turned = Frame(np.zeros(3), x, flat.z)
     low, _ = box(graph.in_frame(turned))
-    return Frame(turned.to_world(low).round(DECIMALS) + 0.0, turned.x.round(DECIMALS) + 0.0, turned.z.round(DECIMALS) + 0.0)
+    return Frame(
+        turned.to_world(low).round(DECIMALS) + 0.0,
+        turned.x.round(DECIMALS) + 0.0,
+        turned.z.round(DECIMALS) + 0.0,
+    )
 
 
 def height_frame(graph: FaceGraph) -> Frame:
@@ -54,14 +58,24 @@ def flipped(frame: Frame, width: float, height: float) -> Frame:
 def foot_share(graph: FaceGraph, face: int) -> float:
     """Return the share of a plane face's border that lies at the foot of something: concave edges, hollow blends that rise from it."""
     edges = graph.edges_of[face]
-    foot = [e for e in edges if graph.convexity[e] == CONCAVE
-            or (graph.convexity[e] == SMOOTH and graph.surface[graph.across(e, face)] != "plane" and _rises(graph, e, face))]
+    foot = [
+        e
+        for e in edges
+        if graph.convexity[e] == CONCAVE
+        or (
+            graph.convexity[e] == SMOOTH
+            and graph.surface[graph.across(e, face)] != "plane"
+            and _rises(graph, e, face)
+        )
+    ]
     whole = float(graph.length[list(edges)].sum())
     return float(graph.length[foot].sum()) / whole if whole > 0.0 else 0.0
 
 
 def _rises(graph: FaceGraph, edge: int, face: int) -> bool:
-    return bool((graph.centre[graph.across(edge, face)] - graph.middle[edge]) @ graph.normal[face] > SLIVER)
+    return bool(
+        (graph.centre[graph.across(edge, face)] - graph.middle[edge]) @ graph.normal[face] > SLIVER
+    )
 
 
 def _height_axis(graph: FaceGraph) -> Floats:
@@ -75,16 +89,24 @@ def _height_axis(graph: FaceGraph) -> Floats:
         raise BadInput("the part has no plane face, so it isn't a panel: choose another family")
     families: list[list[int]] = []
     for r in planes:
-        near = next((f for f in families if graph.normal[f[0]] @ graph.normal[r] > np.cos(ANGLE)), None)
+        near = next(
+            (f for f in families if graph.normal[f[0]] @ graph.normal[r] > np.cos(ANGLE)), None
+        )
         if near is None:
             families.append([r])
         else:
             near.append(r)
     ways = [graph.normal[f[0]] for f in families]
     shares = [np.array([foot_share(graph, r) for r in f]) for f in families]
-    alike = [[k, *(n for n, other in enumerate(ways) if other @ way < -np.cos(ANGLE))] for k, way in enumerate(ways)]
-    bound = [sum(float(graph.area[families[n]] @ shares[n]) for n in same) * sum(float(graph.area[families[n]].sum()) for n in same)
-             for same in alike]
+    alike = [
+        [k, *(n for n, other in enumerate(ways) if other @ way < -np.cos(ANGLE))]
+        for k, way in enumerate(ways)
+    ]
+    bound = [
+        sum(float(graph.area[families[n]] @ shares[n]) for n in same)
+        * sum(float(graph.area[families[n]].sum()) for n in same)
+        for same in alike
+    ]
     # What is hidden only takes away: once a family's bound is below the best score, neither it nor any after it can win.
     seen: dict[int, Floats] = {}
     both: dict[int, float] = {}
@@ -94,7 +116,9 @@ def _height_axis(graph: FaceGraph) -> Floats:
         for n in alike[k]:
             if n not in seen:
                 seen[n] = _seen_area(graph, families[n])
-        both[k] = sum(float(seen[n] @ shares[n]) for n in alike[k]) * sum(float(seen[n].sum()) for n in alike[k])
+        both[k] = sum(float(seen[n] @ shares[n]) for n in alike[k]) * sum(
+            float(seen[n].sum()) for n in alike[k]
+        )
     left = sorted(both)
     plan = {k: sum(float(seen[n].sum()) for n in alike[k]) for k in left}
     floors = {k: float(seen[k] @ shares[k]) for k in left}
@@ -112,7 +136,10 @@ def _seen_area(graph: FaceGraph, faces: list[int]) -> Floats:
     seen = []
     for r in faces:
         points = np.vstack([local.centre[r], samples(local, r)[0]])[:, None, :]
-        over = ((points[..., :2] > local.box_low[back, :2]) & (points[..., :2] < local.box_high[back, :2])).all(axis=2)
+        over = (
+            (points[..., :2] > local.box_low[back, :2])
+            & (points[..., :2] < local.box_high[back, :2])
+        ).all(axis=2)
         hidden = (over & (local.box_low[back, 2] > points[..., 2] + SLIVER)).any(axis=1)
         seen.append(float(graph.area[r] * (1.0 - hidden.mean())))
     return np.array(seen)
@@ -169,12 +196,17 @@ def _long_axis(graph: FaceGraph, angle: float, world: Callable[[Floats], Floats]
     a direction into the file's).
     """
     points = outline_points(graph)
-    ways = [np.array([np.cos(angle + q * np.pi / 2), np.sin(angle + q * np.pi / 2), 0.0]) for q in range(4)]
+    ways = [
+        np.array([np.cos(angle + q * np.pi / 2), np.sin(angle + q * np.pi / 2), 0.0])
+        for q in range(4)
+    ]
     spans = [float(np.ptp(points @ w[:2])) for w in ways]
     long = [w for w, span in zip(ways, spans, strict=True) if span > max(spans) * (1.0 - BALANCE)]
     for measure in (_balance, _skewness):
         for across in (False, True):
-            scores = [measure(graph, points, np.array([-w[1], w[0], 0.0]) if across else w) for w in long]
+            scores = [
+                measure(graph, points, np.array([-w[1], w[0], 0.0]) if across else w) for w in long
+            ]
             long = [w for w, s in zip(long, scores, strict=True) if s <= min(scores) + BALANCE]
     return max(long, key=lambda w: tuple(world(w).round(DECIMALS)))
 

@@ -14,35 +14,64 @@ from trunnion.tolerance import ANGLE
 WORDS = {
     "panel.hole": ("holes are not handled yet", "drill them by hand-made operations"),
     "panel.chamfer": ("chamfers are not handled yet", "cut them by hand-made operations"),
-    "panel.leaning-wall": ("leaning faces outside of pockets are not handled yet", "machine them with another strategy"),
-    "panel.underside": ("faces that look down are not reached from above", "add a setup for the other side"),
-    "panel.lower-top": ("tops below the part's top that are too wide for a rib are not handled yet", "face them by hand-made operations"),
-    "panel.undercut": ("recesses under material are not handled yet", "cut them with a T-slot cutter, or from another side"),
-    "panel.unexplained": ("no feature explains these faces", "look at the part there and name the feature by hand"),
+    "panel.leaning-wall": (
+        "leaning faces outside of pockets are not handled yet",
+        "machine them with another strategy",
+    ),
+    "panel.underside": (
+        "faces that look down are not reached from above",
+        "add a setup for the other side",
+    ),
+    "panel.lower-top": (
+        "tops below the part's top that are too wide for a rib are not handled yet",
+        "face them by hand-made operations",
+    ),
+    "panel.undercut": (
+        "recesses under material are not handled yet",
+        "cut them with a T-slot cutter, or from another side",
+    ),
+    "panel.unexplained": (
+        "no feature explains these faces",
+        "look at the part there and name the feature by hand",
+    ),
 }
 
 
-def rest_findings(graph: FaceGraph, classes: FaceClasses, rows: Sequence[int], undercut: Collection[int]) -> tuple[Finding, ...]:
+def rest_findings(
+    graph: FaceGraph, classes: FaceClasses, rows: Sequence[int], undercut: Collection[int]
+) -> tuple[Finding, ...]:
     """Return one finding for each sort of unexplained face, with the share of the area; `undercut` rows have material over them."""
     sorts: dict[str, list[int]] = {}
     for row in rows:
-        sorts.setdefault("panel.undercut" if row in undercut else _sort(graph, classes, row), []).append(row)
+        sorts.setdefault(
+            "panel.undercut" if row in undercut else _sort(graph, classes, row), []
+        ).append(row)
     total = float(graph.area.sum())
-    return tuple(warning(code, f"{WORDS[code][0]}: {len(found)} {'face' if len(found) == 1 else 'faces'}, "
-                               f"{float(graph.area[found].sum()) / total:.1%} of the area",
-                         *face_tags(r + 1 for r in found), remedy=WORDS[code][1])
-                 for code, found in sorted(sorts.items()))
+    return tuple(
+        warning(
+            code,
+            f"{WORDS[code][0]}: {len(found)} {'face' if len(found) == 1 else 'faces'}, "
+            f"{float(graph.area[found].sum()) / total:.1%} of the area",
+            *face_tags(r + 1 for r in found),
+            remedy=WORDS[code][1],
+        )
+        for code, found in sorted(sorts.items())
+    )
 
 
 def _sort(graph: FaceGraph, classes: FaceClasses, row: int) -> str:
     kind = classes.kind[row]
-    if _round(graph, row) or (any(_round(graph, n) for n in graph.neighbours(row)) and _small_bottom(graph, row)):
+    if _round(graph, row) or (
+        any(_round(graph, n) for n in graph.neighbours(row)) and _small_bottom(graph, row)
+    ):
         return "panel.hole"
     if kind in (FaceClass.DOWN, FaceClass.OVERHANG):
         return "panel.underside"
     if kind is FaceClass.UP:
         return "panel.lower-top"
-    if kind is FaceClass.CROSS and all(graph.convexity[e] == CONVEX or graph.convexity[e] == 0 for e in graph.edges_of[row]):
+    if kind is FaceClass.CROSS and all(
+        graph.convexity[e] == CONVEX or graph.convexity[e] == 0 for e in graph.edges_of[row]
+    ):
         return "panel.chamfer"
     if kind in (FaceClass.INNER, FaceClass.OUTER, FaceClass.STEEP):
         return "panel.leaning-wall"
@@ -51,7 +80,11 @@ def _sort(graph: FaceGraph, classes: FaceClasses, row: int) -> str:
 
 def _round(graph: FaceGraph, row: int) -> bool:
     """Say whether a face is the side of a hole: hollow, round about an upright axis, closed about it."""
-    if graph.surface[row] not in ("cylinder", "cone") or graph.bend[row] >= 0 or abs(graph.axis[row][2]) < np.cos(ANGLE):
+    if (
+        graph.surface[row] not in ("cylinder", "cone")
+        or graph.bend[row] >= 0
+        or abs(graph.axis[row][2]) < np.cos(ANGLE)
+    ):
         return False
     span = graph.box_high[row] - graph.box_low[row]
     return bool(min(span[0], span[1]) > 0.9 * max(span[0], span[1]))

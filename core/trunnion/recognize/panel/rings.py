@@ -55,28 +55,54 @@ def ring(view: View, floor: int, edges: tuple[int, ...]) -> Ring:
             drops.append(other)
         elif graph.convexity[edge] == CONCAVE:
             slopes.append(other)
-    fillets = grown(graph, blends, lambda edge, _, to: bool(
-        to in view.fillets and graph.convexity[edge] == SMOOTH and not _has_floor(view, to)))
+    fillets = grown(
+        graph,
+        blends,
+        lambda edge, _, to: bool(
+            to in view.fillets and graph.convexity[edge] == SMOOTH and not _has_floor(view, to)
+        ),
+    )
     for blend in fillets:
         for edge in graph.edges_of[blend]:
             other = graph.across(edge, blend)
             if rising[other] and graph.convexity[edge] != CONVEX:
                 sides.append(other)
-            elif other not in (floor, *view.fillets) and view.classes.kind[other] in SLOPES and graph.convexity[edge] != CONVEX:
+            elif (
+                other not in (floor, *view.fillets)
+                and view.classes.kind[other] in SLOPES
+                and graph.convexity[edge] != CONVEX
+            ):
                 slopes.append(other)
     sides = list(dict.fromkeys(sides))
-    whole = grown(graph, sides, lambda edge, face, to: bool(rising[to] and _continues_up(view, edge, face, to)))
-    return Ring(walls=tuple(r for r in whole if r not in view.corners), corners=tuple(r for r in whole if r in view.corners),
-                fillets=fillets, drops=tuple(dict.fromkeys(drops)), slopes=tuple(dict.fromkeys(slopes)), sharp=sharp)
+    whole = grown(
+        graph,
+        sides,
+        lambda edge, face, to: bool(rising[to] and _continues_up(view, edge, face, to)),
+    )
+    return Ring(
+        walls=tuple(r for r in whole if r not in view.corners),
+        corners=tuple(r for r in whole if r in view.corners),
+        fillets=fillets,
+        drops=tuple(dict.fromkeys(drops)),
+        slopes=tuple(dict.fromkeys(slopes)),
+        sharp=sharp,
+    )
 
 
 def _has_floor(view: View, blend: int) -> bool:
-    return any(view.classes.kind[view.graph.across(e, blend)] is FaceClass.UP and view.graph.convexity[e] == SMOOTH
-               for e in view.graph.edges_of[blend])
+    return any(
+        view.classes.kind[view.graph.across(e, blend)] is FaceClass.UP
+        and view.graph.convexity[e] == SMOOTH
+        for e in view.graph.edges_of[blend]
+    )
 
 
 def _continues_up(view: View, edge: int, face: int, other: int) -> bool:
     """Say whether another face carries a wall on, on the same surface, above the wall's top."""
     graph = view.graph
     at_top = min(graph.start[edge][2], graph.end[edge][2]) > graph.box_high[face][2] - SLIVER
-    return bool(graph.convexity[edge] == SMOOTH and at_top and same_surface(graph, face, other, SLIVER, ANGLE))
+    return bool(
+        graph.convexity[edge] == SMOOTH
+        and at_top
+        and same_surface(graph, face, other, SLIVER, ANGLE)
+    )

@@ -93,27 +93,54 @@ def pockets_of(view: View) -> Shown:
             elif inner.stands:
                 islands[floor].append(island_on(view, floor, inner))
             else:
-                sunk.update({lower: floor for drop in inner.drops for lower in owners.get(drop, ())})
+                sunk.update(
+                    {lower: floor for drop in inner.drops for lower in owners.get(drop, ())}
+                )
         for drop in outer[floor].drops:
             for lower in owners.get(drop, ()):
                 _join(group, floor, lower)
     found = []
     for members in _groups(group, view):
         rings = [outer[f] for f in members]
-        found.append(Pocket(
-            floors=members, walls=_once(rings, "walls"), corners=_once(rings, "corners"), fillets=_once(rings, "fillets"),
-            slopes=_once(rings, "slopes"), drops=_once(rings, "drops"), sharp=any(r.sharp for r in rings),
-            islands=tuple(i for f in members for i in islands[f]),
-            parent=next((sunk[f] for f in members if f in sunk and _root(group, sunk[f]) != _root(group, f)), None)))
+        found.append(
+            Pocket(
+                floors=members,
+                walls=_once(rings, "walls"),
+                corners=_once(rings, "corners"),
+                fillets=_once(rings, "fillets"),
+                slopes=_once(rings, "slopes"),
+                drops=_once(rings, "drops"),
+                sharp=any(r.sharp for r in rings),
+                islands=tuple(i for f in members for i in islands[f]),
+                parent=next(
+                    (
+                        sunk[f]
+                        for f in members
+                        if f in sunk and _root(group, sunk[f]) != _root(group, f)
+                    ),
+                    None,
+                ),
+            )
+        )
     standing = {t for p in found for i in p.islands for t in i.tops}
-    narrow = tuple(t for t in tops.standing if t not in standing and mean_width(view, t) <= view.settings.rib_width)
-    openings = [o for face in (*tops.highest, *tops.standing, *tops.ribs, *floors) for o in openings_in(view, face, set(owners))]
+    narrow = tuple(
+        t
+        for t in tops.standing
+        if t not in standing and mean_width(view, t) <= view.settings.rib_width
+    )
+    openings = [
+        o
+        for face in (*tops.highest, *tops.standing, *tops.ribs, *floors)
+        for o in openings_in(view, face, set(owners))
+    ]
     return Shown(pockets=(*found, *openings), tops=tops, ribs=tops.ribs + narrow)
 
 
 def without(shown: Shown, done: set[int]) -> Shown:
     """Return what a side shows without the openings whose walls another side has already (they go through)."""
-    return replace(shown, pockets=tuple(p for p in shown.pockets if p.floors or not done.issuperset(p.sides)))
+    return replace(
+        shown, pockets=tuple(p for p in shown.pockets if p.floors or not done.issuperset(p.sides))
+    )
 
 
 def openings_in(view: View, face: int, known: set[int]) -> list[Pocket]:
@@ -122,12 +149,25 @@ def openings_in(view: View, face: int, known: set[int]) -> list[Pocket]:
     for number, edges in loops(view.graph, face).items():
         inner = ring(view, face, edges)
         sides = inner.drops
-        if number == 0 or inner.stands or not all(view.classes.steep[s] for s in sides) or known.intersection(sides):
+        if (
+            number == 0
+            or inner.stands
+            or not all(view.classes.steep[s] for s in sides)
+            or known.intersection(sides)
+        ):
             continue
         if not is_round(view, sides):
             parent = face if view.z(face) < view.height - SLIVER else None
-            found.append(Pocket(floors=(), walls=tuple(s for s in sides if s not in view.corners), fillets=(), parent=parent,
-                                corners=tuple(s for s in sides if s in view.corners), drops=sides))
+            found.append(
+                Pocket(
+                    floors=(),
+                    walls=tuple(s for s in sides if s not in view.corners),
+                    fillets=(),
+                    parent=parent,
+                    corners=tuple(s for s in sides if s in view.corners),
+                    drops=sides,
+                )
+            )
     return found
 
 
@@ -145,26 +185,42 @@ def island_on(view: View, floor: int, foot: Ring) -> Island:
 
     reached = grown(graph, foot.sides, stands)
     sides = [r for r in reached if steep[r]]
-    return Island(floor=floor, tops=tuple(r for r in reached if kind[r] is FaceClass.UP), fillets=foot.fillets,
-                  walls=tuple(r for r in sides if r not in view.corners), corners=tuple(r for r in sides if r in view.corners))
+    return Island(
+        floor=floor,
+        tops=tuple(r for r in reached if kind[r] is FaceClass.UP),
+        fillets=foot.fillets,
+        walls=tuple(r for r in sides if r not in view.corners),
+        corners=tuple(r for r in sides if r in view.corners),
+    )
 
 
 def is_bore(view: View, floor: int, around: Ring) -> bool:
     """Say whether a floor is the bottom of a bore: round, sharp, its side one hollow cylinder no wider than a hole may be."""
-    return bool(not around.fillets and not around.drops and not around.slopes and is_round(view, around.sides))
+    return bool(
+        not around.fillets
+        and not around.drops
+        and not around.slopes
+        and is_round(view, around.sides)
+    )
 
 
 def is_round(view: View, sides: tuple[int, ...]) -> bool:
     """Say whether sides are one hollow cylinder, no wider than a hole may be."""
     graph = view.graph
     return bool(sides) and all(
-        graph.surface[s] == "cylinder" and graph.bend[s] < 0 and same_surface(graph, sides[0], s, SLIVER, ANGLE)
-        and 2.0 * graph.radius[s] <= view.settings.hole_diameter + SLIVER for s in sides)
+        graph.surface[s] == "cylinder"
+        and graph.bend[s] < 0
+        and same_surface(graph, sides[0], s, SLIVER, ANGLE)
+        and 2.0 * graph.radius[s] <= view.settings.hole_diameter + SLIVER
+        for s in sides
+    )
 
 
 def _crosses_top(view: View, edge: int, face: int) -> bool:
     low = min(view.graph.start[edge][2], view.graph.end[edge][2])
-    return bool(low > view.graph.box_high[face][2] - SLIVER and view.graph.convexity[edge] == CONVEX)
+    return bool(
+        low > view.graph.box_high[face][2] - SLIVER and view.graph.convexity[edge] == CONVEX
+    )
 
 
 def _once(rings: list[Ring], name: str) -> tuple[int, ...]:
@@ -186,4 +242,7 @@ def _groups(group: dict[int, int], view: View) -> list[tuple[int, ...]]:
     members: dict[int, list[int]] = {}
     for face in group:
         members.setdefault(_root(group, face), []).append(face)
-    return [tuple(sorted(m, key=lambda f: (-round(view.z(f), HEIGHT_DECIMALS), f))) for m in members.values()]
+    return [
+        tuple(sorted(m, key=lambda f: (-round(view.z(f), HEIGHT_DECIMALS), f)))
+        for m in members.values()
+    ]

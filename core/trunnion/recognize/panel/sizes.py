@@ -42,7 +42,11 @@ def pocket_sizes(view: View, pocket: Pocket, ribs: Iterable[int]) -> dict[str, S
     graph = view.graph
     top = max(float(graph.box_high[f][2]) for f in pocket.sides or pocket.floors)
     deep = min(view.z(f) for f in pocket.floors or pocket.sides)
-    sizes: dict[str, Size] = {"depth": tidy(top - deep), "floor_z": main_z(view, deep), "top_z": main_z(view, top)}
+    sizes: dict[str, Size] = {
+        "depth": tidy(top - deep),
+        "floor_z": main_z(view, deep),
+        "top_z": main_z(view, top),
+    }
     sizes.update(side_sizes(view, pocket.walls, pocket.corners))
     sizes["floor_fillet"] = fillet_radius(view, pocket.fillets, pocket.sharp)
     rims = [view.z(r) for r in ribs if _meets(view, r, pocket.sides)]
@@ -56,8 +60,13 @@ def pocket_sizes(view: View, pocket: Pocket, ribs: Iterable[int]) -> dict[str, S
 
 def island_sizes(view: View, island: Island) -> dict[str, Size]:
     """Return the sizes of an island: its highest top, its height over the floor that it stands on, radii and leans."""
-    top = max([view.z(t) for t in island.tops] or [float(view.graph.box_high[w][2]) for w in island.walls])
-    sizes: dict[str, Size] = {"top_z": main_z(view, top), "height": tidy(top - view.z(island.floor))}
+    top = max(
+        [view.z(t) for t in island.tops] or [float(view.graph.box_high[w][2]) for w in island.walls]
+    )
+    sizes: dict[str, Size] = {
+        "top_z": main_z(view, top),
+        "height": tidy(top - view.z(island.floor)),
+    }
     sizes.update(side_sizes(view, island.walls, island.corners))
     sizes["floor_fillet"] = fillet_radius(view, island.fillets, not island.fillets)
     return sizes
@@ -95,9 +104,15 @@ def side_sizes(view: View, walls: Sequence[int], corners: Sequence[int]) -> dict
 def corner_radius(view: View, sides: Sequence[int]) -> float | None:
     """Return the smallest radius of the blends of some sides (hollow ones first), 0 for a sharp inner edge, None when there is none."""
     graph, own = view.graph, set(sides)
-    if any(graph.convexity[e] == CONCAVE and own.issuperset(graph.edge_face[e].tolist()) for s in sides for e in graph.edges_of[s]):
+    if any(
+        graph.convexity[e] == CONCAVE and own.issuperset(graph.edge_face[e].tolist())
+        for s in sides
+        for e in graph.edges_of[s]
+    ):
         return 0.0
-    hollow = [bend_radius(graph, s) for s in sides if graph.bend[s] < 0 and graph.surface[s] != "plane"]
+    hollow = [
+        bend_radius(graph, s) for s in sides if graph.bend[s] < 0 and graph.surface[s] != "plane"
+    ]
     blends = hollow or [bend_radius(graph, s) for s in sides if s in view.corners]
     return tidy(min(blends)) if blends else None
 
@@ -113,29 +128,45 @@ def strip(view: View, face: int) -> tuple[float, float]:
     A curved top has none: its thickness is then the mean width, its length what the area leaves.
     """
     graph = view.graph
-    sides = [e for e in graph.edges_of[face] if graph.curve[e] == "line" and graph.convexity[e] == CONVEX]
+    sides = [
+        e for e in graph.edges_of[face] if graph.curve[e] == "line" and graph.convexity[e] == CONVEX
+    ]
     best: tuple[float, float, Floats, Floats] | None = None
     for i, a in enumerate(sides):
         way = graph.end[a] - graph.start[a]
         way = way / np.linalg.norm(way)
-        for b in sides[i + 1:]:
+        for b in sides[i + 1 :]:
             other = (graph.end[b] - graph.start[b]) / np.linalg.norm(graph.end[b] - graph.start[b])
-            gap = (graph.middle[b] - graph.middle[a]) - ((graph.middle[b] - graph.middle[a]) @ way) * way
+            gap = (graph.middle[b] - graph.middle[a]) - (
+                (graph.middle[b] - graph.middle[a]) @ way
+            ) * way
             width = float(np.linalg.norm(gap))
             spans = [np.sort([p[e] @ way for p in (graph.start, graph.end)]) for e in (a, b)]
             beside = float(min(s[1] for s in spans) - max(s[0] for s in spans))
-            parallel = np.linalg.norm(np.cross(way, other)) < ANGLE and width > SLIVER and beside > width
-            if parallel and (best is None or (round(beside, 3), -width) > (round(best[1], 3), -best[0])):
+            parallel = (
+                np.linalg.norm(np.cross(way, other)) < ANGLE and width > SLIVER and beside > width
+            )
+            if parallel and (
+                best is None or (round(beside, 3), -width) > (round(best[1], 3), -best[0])
+            ):
                 best = (width, beside, way, graph.middle[a] + 0.5 * gap)
     if best is None:
         width = mean_width(view, face)
         return width, float(graph.area[face] / width)
     width, _, way, middle = best
-    reach = [_crossing(graph.start[e], graph.end[e], middle, way) for end in _ends(view, face) for e in end
-             if np.linalg.norm(np.cross(graph.end[e] - graph.start[e], way)) > SLIVER]
+    reach = [
+        _crossing(graph.start[e], graph.end[e], middle, way)
+        for end in _ends(view, face)
+        for e in end
+        if np.linalg.norm(np.cross(graph.end[e] - graph.start[e], way)) > SLIVER
+    ]
     across = [t for t in reach if t is not None]
     if len(across) < 2:
-        along = [float((p[e] - middle) @ way) for e in graph.edges_of[face] for p in (graph.start, graph.end)]
+        along = [
+            float((p[e] - middle) @ way)
+            for e in graph.edges_of[face]
+            for p in (graph.start, graph.end)
+        ]
         return width, max(along) - min(along)
     return width, max(across) - min(across)
 
@@ -161,8 +192,15 @@ def _ends(view: View, face: int) -> list[list[int]]:
 
 def _touch(view: View, a: int, b: int) -> bool:
     graph = view.graph
-    return any(np.linalg.norm(p - q) < SLIVER for p in (graph.start[a], graph.end[a]) for q in (graph.start[b], graph.end[b]))
+    return any(
+        np.linalg.norm(p - q) < SLIVER
+        for p in (graph.start[a], graph.end[a])
+        for q in (graph.start[b], graph.end[b])
+    )
 
 
 def _meets(view: View, rib: int, sides: Sequence[int]) -> bool:
-    return any(view.graph.across(e, rib) in sides and view.graph.convexity[e] == CONVEX for e in view.graph.edges_of[rib])
+    return any(
+        view.graph.across(e, rib) in sides and view.graph.convexity[e] == CONVEX
+        for e in view.graph.edges_of[rib]
+    )

@@ -79,19 +79,37 @@ class Slices:
     def flipped(self, width: float, height: float) -> Slices:
         """Return the same slices as they are seen in the frame that looks from below (`frame.flipped`)."""
         layers = tuple(
-            Slice(z=height - s.z, bottom=height - s.top, top=height - s.bottom, material=_mirrored(s.material, width),
-                  spaces=tuple(Space(plan=_mirrored(p.plan, width), closed=p.closed, islands=tuple(_mirrored(i, width) for i in p.islands))
-                               for p in s.spaces))
-            for s in reversed(self.layers))
+            Slice(
+                z=height - s.z,
+                bottom=height - s.top,
+                top=height - s.bottom,
+                material=_mirrored(s.material, width),
+                spaces=tuple(
+                    Space(
+                        plan=_mirrored(p.plan, width),
+                        closed=p.closed,
+                        islands=tuple(_mirrored(i, width) for i in p.islands),
+                    )
+                    for p in s.spaces
+                ),
+            )
+            for s in reversed(self.layers)
+        )
         return Slices(layers=layers, outline=_mirrored(self.outline, width))
 
 
-def heights(graph: FaceGraph, classes: FaceClasses, low: float, high: float, depth: float) -> tuple[float, ...]:
+def heights(
+    graph: FaceGraph, classes: FaceClasses, low: float, high: float, depth: float
+) -> tuple[float, ...]:
     """Return the heights of all horizontal faces and of the part's bottom and top, and further ones at most `depth` apart.
 
     A slice lies between each two of them, so none passes through a floor: what the paper moves its roughing planes for.
     """
-    found = [low, high, *(float(graph.centre[r][2]) for r in classes.rows(FaceClass.UP, FaceClass.DOWN))]
+    found = [
+        low,
+        high,
+        *(float(graph.centre[r][2]) for r in classes.rows(FaceClass.UP, FaceClass.DOWN)),
+    ]
     events: list[float] = []
     for z in sorted(found):
         if not events or z - events[-1] > SLIVER:
@@ -117,13 +135,29 @@ def cut(slicer: Slicer, frame: Frame, levels: tuple[float, ...], progress: Progr
             except (BadInput, ValueError) as reason:
                 failed = str(reason)
         else:
-            findings.append(warning("panel.no-slice", f"the part can't be cut between the heights {bottom:.3f} and {top:.3f} mm: {failed}",
-                                    remedy="the graph decides alone between the faces there; heal the part"))
+            findings.append(
+                warning(
+                    "panel.no-slice",
+                    f"the part can't be cut between the heights {bottom:.3f} and {top:.3f} mm: {failed}",
+                    remedy="the graph decides alone between the faces there; heal the part",
+                )
+            )
     if not cuts:
-        raise BadInput(f"the part can't be cut by a plane: {findings[0].text}" if findings else "the part has no height in its frame")
+        raise BadInput(
+            f"the part can't be cut by a plane: {findings[0].text}"
+            if findings
+            else "the part has no height in its frame"
+        )
     progress.at(1.0, "slicing")
-    outline = _filled(shapely.union_all([c[3] for c in cuts]).buffer(SLIVER, join_style="mitre").buffer(-SLIVER, join_style="mitre"))
-    layers = tuple(Slice(z=z, bottom=b, top=t, material=m, spaces=tuple(progress.each(_spaces(m, outline)))) for z, b, t, m in cuts)
+    outline = _filled(
+        shapely.union_all([c[3] for c in cuts])
+        .buffer(SLIVER, join_style="mitre")
+        .buffer(-SLIVER, join_style="mitre")
+    )
+    layers = tuple(
+        Slice(z=z, bottom=b, top=t, material=m, spaces=tuple(progress.each(_spaces(m, outline))))
+        for z, b, t, m in cuts
+    )
     return Slices(layers=layers, outline=outline, findings=tuple(findings))
 
 
@@ -145,15 +179,36 @@ def _spaces(material: BaseGeometry, outline: BaseGeometry) -> Iterable[Space]:
     pieces = [g for g in shapely.get_parts(material) if g.area > AREA]
     for guide in (Polygon(hole) for piece in pieces for hole in piece.interiors):
         if guide.area > AREA:
-            islands = tuple(p for p in pieces if guide.covers(p.representative_point()) and p.area < guide.area and guide.contains(p))
-            direct = tuple(i for i in islands if not any(Polygon(o.exterior).contains(i) for o in islands if o is not i))
-            yield Space(plan=_largest(guide.difference(shapely.union_all([Polygon(i.exterior) for i in direct]))), closed=True,
-                        islands=direct)
+            islands = tuple(
+                p
+                for p in pieces
+                if guide.covers(p.representative_point())
+                and p.area < guide.area
+                and guide.contains(p)
+            )
+            direct = tuple(
+                i
+                for i in islands
+                if not any(Polygon(o.exterior).contains(i) for o in islands if o is not i)
+            )
+            yield Space(
+                plan=_largest(
+                    guide.difference(shapely.union_all([Polygon(i.exterior) for i in direct]))
+                ),
+                closed=True,
+                islands=direct,
+            )
     air = outline.difference(_filled(material))
     for part in shapely.get_parts(air.buffer(-NARROW).buffer(NARROW, join_style="mitre")):
         if part.area > AREA:
             hollow = [Polygon(r) for r in part.interiors]
-            yield Space(plan=part, closed=False, islands=tuple(p for p in pieces if any(h.buffer(NARROW).contains(p) for h in hollow)))
+            yield Space(
+                plan=part,
+                closed=False,
+                islands=tuple(
+                    p for p in pieces if any(h.buffer(NARROW).contains(p) for h in hollow)
+                ),
+            )
 
 
 def _largest(shape: BaseGeometry) -> BaseGeometry:
@@ -161,7 +216,9 @@ def _largest(shape: BaseGeometry) -> BaseGeometry:
 
 
 def _filled(shape: BaseGeometry) -> BaseGeometry:
-    return shapely.union_all([Polygon(p.exterior) for p in shapely.get_parts(shape) if isinstance(p, Polygon)])
+    return shapely.union_all(
+        [Polygon(p.exterior) for p in shapely.get_parts(shape) if isinstance(p, Polygon)]
+    )
 
 
 def _mirrored(shape: BaseGeometry, width: float) -> BaseGeometry:

@@ -30,7 +30,9 @@ class Tops:
 
 def sort_tops(view: View) -> Tops:
     """Return what the faces that look up are."""
-    found: dict[str, list[int]] = {n: [] for n in ("highest", "ribs", "floors", "standing", "undercut")}
+    found: dict[str, list[int]] = {
+        n: [] for n in ("highest", "ribs", "floors", "standing", "undercut")
+    }
     for face in view.classes.rows(FaceClass.UP):
         found[_sort(view, face)].append(face)
     for face in view.classes.rows(FaceClass.CROSS):
@@ -65,7 +67,11 @@ def _sort(view: View, face: int) -> str:
         return "standing"
     if view.undercut(face):
         return "undercut"
-    return "ribs" if share < FOOT_SHARE and mean_width(view, face) <= view.settings.rib_width else "floors"
+    return (
+        "ribs"
+        if share < FOOT_SHARE and mean_width(view, face) <= view.settings.rib_width
+        else "floors"
+    )
 
 
 def _border(view: View, face: int) -> tuple[float, float]:
@@ -77,4 +83,7 @@ def _border(view: View, face: int) -> tuple[float, float]:
 
 def _is_foot(view: View, edge: int, face: int) -> bool:
     convexity = view.graph.convexity[edge]
-    return bool(convexity == CONCAVE or (convexity != CONVEX and view.graph.across(edge, face) in view.fillets))
+    return bool(
+        convexity == CONCAVE
+        or (convexity != CONVEX and view.graph.across(edge, face) in view.fillets)
+    )

@@ -47,7 +47,13 @@ class SpaceTree:
     def covered(self, node: Node) -> float:
         """Return the largest share of a space that material stands over: 0 when a cutter can look at all of it from above."""
         own = self.space(node).plan
-        return max((float(own.intersection(layer.material).area / own.area) for layer in self.slices.layers[node[0] + 1:]), default=0.0)
+        return max(
+            (
+                float(own.intersection(layer.material).area / own.area)
+                for layer in self.slices.layers[node[0] + 1 :]
+            ),
+            default=0.0,
+        )
 
 
 def build_tree(slices: Slices) -> SpaceTree:
@@ -60,10 +66,15 @@ def build_tree(slices: Slices) -> SpaceTree:
             continue
         index = shapely.STRtree([s.plan for s in above])
         for k, space in enumerate(layer.spaces):
-            shares = [(space.plan.intersection(above[j].plan).area, -int(j)) for j in index.query(space.plan)]
+            shares = [
+                (space.plan.intersection(above[j].plan).area, -int(j))
+                for j in index.query(space.plan)
+            ]
             best = max(shares, default=(0.0, 0))
             if best[0] > COVER * space.plan.area:
                 up = (n + 1, -best[1])
                 parent[(n, k)] = up
                 children.setdefault(up, []).append((n, k))
-    return SpaceTree(slices=slices, parent=parent, children={node: tuple(c) for node, c in children.items()})
+    return SpaceTree(
+        slices=slices, parent=parent, children={node: tuple(c) for node, c in children.items()}
+    )

@@ -51,11 +51,19 @@ class View:
     @cached_property
     def corners(self) -> frozenset[int]:
         """The rows of the blends between two steep faces."""
-        return frozenset(int(r) for r in np.flatnonzero(self.classes.rising) if is_corner(self.graph, self.classes, int(r)))
+        return frozenset(
+            int(r)
+            for r in np.flatnonzero(self.classes.rising)
+            if is_corner(self.graph, self.classes, int(r))
+        )
 
     def z(self, face: int) -> float:
         """Return the height of a horizontal face, of others that of their lowest point."""
-        return float(self.graph.centre[face][2] if self.classes.kind[face] is FaceClass.UP else self.graph.box_low[face][2])
+        return float(
+            self.graph.centre[face][2]
+            if self.classes.kind[face] is FaceClass.UP
+            else self.graph.box_low[face][2]
+        )
 
     def points(self, face: int) -> Floats:
         """Return points (k, 3) inside a face."""

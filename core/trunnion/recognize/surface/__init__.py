@@ -34,7 +34,13 @@ class SurfaceFamily:
         """Return how near the curved share of the part's area comes to that of parts that are surely of this family."""
         return suitability(graph)
 
-    def recognize(self, graph: FaceGraph, bounded: Bounded, settings: SurfaceSettings, progress: Progress = QUIET) -> Recognition:
+    def recognize(
+        self,
+        graph: FaceGraph,
+        bounded: Bounded,
+        settings: SurfaceSettings,
+        progress: Progress = QUIET,
+    ) -> Recognition:
         """Return one feature a group of equal patches, largest first; local ones are marked. Raises `Cancelled` when asked to stop."""
         progress.at(0.0, "measuring patches")
         sizes = _sizes(graph, bounded, settings)
@@ -46,56 +52,118 @@ class SurfaceFamily:
         small = ~sliver & (size < smallest)
         rows = np.flatnonzero(~sliver & ~small)
         if settings.grouping == ALIGNED:
-            groups = aligned_groups(sizes, rows, settings.tolerance, relative=settings.relative, subdivide=settings.subdivide)
+            groups = aligned_groups(
+                sizes,
+                rows,
+                settings.tolerance,
+                relative=settings.relative,
+                subdivide=settings.subdivide,
+            )
         else:
             groups = invariant_groups(sizes, rows, settings.tolerance, relative=settings.relative)
         bends = patch_bends(bounded, graph, sizes)
-        features = tuple(_feature(f"group-{k:02}", g, sizes, bends, settings) for k, g in enumerate(groups, 1))
+        features = tuple(
+            _feature(f"group-{k:02}", g, sizes, bends, settings) for k, g in enumerate(groups, 1)
+        )
         apart = sliver | small
-        narrow = _told("surface.sliver", sizes, size, sliver, "sliver_width", f"narrower than {sliver_width:.3g} mm on average")
-        tiny = _told("surface.small", sizes, size, small, "smallest", f"below the smallest feature size of {smallest:.3g} mm")
-        return Recognition(family=self.name, features=features, unexplained=tuple(int(t) for t in sizes.tag[apart]),
-                           unexplained_share=float(sizes.area[apart].sum() / sizes.area.sum()),
-                           findings=(*narrow, *tiny))
+        narrow = _told(
+            "surface.sliver",
+            sizes,
+            size,
+            sliver,
+            "sliver_width",
+            f"narrower than {sliver_width:.3g} mm on average",
+        )
+        tiny = _told(
+            "surface.small",
+            sizes,
+            size,
+            small,
+            "smallest",
+            f"below the smallest feature size of {smallest:.3g} mm",
+        )
+        return Recognition(
+            family=self.name,
+            features=features,
+            unexplained=tuple(int(t) for t in sizes.tag[apart]),
+            unexplained_share=float(sizes.area[apart].sum() / sizes.area.sum()),
+            findings=(*narrow, *tiny),
+        )
 
-    def measured(self, found: Recognition, graph: FaceGraph, part: Bounded, settings: SurfaceSettings) -> Recognition:
+    def measured(
+        self, found: Recognition, graph: FaceGraph, part: Bounded, settings: SurfaceSettings
+    ) -> Recognition:
         """Return the groups with sizes that fit their faces; whether those made or changed by hand are local stays as a person said."""
         sizes = _sizes(graph, part, settings)
         bends = patch_bends(part, graph, sizes)
-        anew = {f.id: _feature(f.id, np.flatnonzero(np.isin(sizes.tag, f.tags)), sizes, bends, settings)
-                for f in found.of_kind("group")}
-        features = tuple(f if f.kind != "group" else replace(f, sizes=anew[f.id].sizes) if f.by_hand else anew[f.id]
-                         for f in found.features)
+        anew = {
+            f.id: _feature(f.id, np.flatnonzero(np.isin(sizes.tag, f.tags)), sizes, bends, settings)
+            for f in found.of_kind("group")
+        }
+        features = tuple(
+            f
+            if f.kind != "group"
+            else replace(f, sizes=anew[f.id].sizes)
+            if f.by_hand
+            else anew[f.id]
+            for f in found.features
+        )
         return replace(found, features=features)
 
 
 def _sizes(graph: FaceGraph, bounded: Bounded, settings: SurfaceSettings) -> PatchSizes:
     present = np.flatnonzero(graph.area > 0.0)
-    return patch_sizes(bounded, [int(r) + 1 for r in present], graph.area[present], exact=settings.boundary == EXACT)
+    return patch_sizes(
+        bounded,
+        [int(r) + 1 for r in present],
+        graph.area[present],
+        exact=settings.boundary == EXACT,
+    )
 
 
 def _size(sizes: PatchSizes, settings: SurfaceSettings) -> Floats:
     return sizes.diagonal if settings.grouping == ALIGNED else sizes.diameter
 
 
-def _feature(id: str, rows: Ints, sizes: PatchSizes, bends: PatchBends, settings: SurfaceSettings) -> Feature:
+def _feature(
+    id: str, rows: Ints, sizes: PatchSizes, bends: PatchBends, settings: SurfaceSettings
+) -> Feature:
     size = _size(sizes, settings)
     ratio = float(size[rows].max() / size.max())
-    return Feature(id=id, kind="group", faces=tuple(FaceRole(role="face", face=int(t)) for t in np.sort(sizes.tag[rows])),
-                   sizes={"feature_size": float(size[rows].mean()), "feature_size_min": float(size[rows].min()),
-                          "feature_size_max": float(size[rows].max()), "size_ratio": ratio, "diagonal": float(sizes.diagonal[rows].mean()),
-                          "diameter": float(sizes.diameter[rows].mean()), "boundary_length": float(sizes.length[rows].mean()),
-                          "area": float(sizes.area[rows].sum()), **bends.sizes(rows)},
-                   attributes={"local": ratio < settings.local_ratio})
+    return Feature(
+        id=id,
+        kind="group",
+        faces=tuple(FaceRole(role="face", face=int(t)) for t in np.sort(sizes.tag[rows])),
+        sizes={
+            "feature_size": float(size[rows].mean()),
+            "feature_size_min": float(size[rows].min()),
+            "feature_size_max": float(size[rows].max()),
+            "size_ratio": ratio,
+            "diagonal": float(sizes.diagonal[rows].mean()),
+            "diameter": float(sizes.diameter[rows].mean()),
+            "boundary_length": float(sizes.length[rows].mean()),
+            "area": float(sizes.area[rows].sum()),
+            **bends.sizes(rows),
+        },
+        attributes={"local": ratio < settings.local_ratio},
+    )
 
 
-def _told(code: str, sizes: PatchSizes, size: Floats, rows: Bools, limit: str, words: str) -> tuple[Finding, ...]:
+def _told(
+    code: str, sizes: PatchSizes, size: Floats, rows: Bools, limit: str, words: str
+) -> tuple[Finding, ...]:
     """Return what patches join no group, and why: how many, how large across, and how much area; nothing when there are none."""
     if not rows.any():
         return ()
     tags, area = [int(t) for t in sizes.tag[rows]], float(sizes.area[rows].sum())
     are, join = ("patch is", "joins") if len(tags) == 1 else ("patches are", "join")
-    return (info(code, f"{len(tags)} {are} {words} and {join} no group: {size[rows].min():.3g} to {size[rows].max():.3g} mm across, "
-                 f"{area:.3g} mm2, {area / float(sizes.area.sum()):.2%} of the area", *face_tags(tags),
-                 remedy=f"nothing needs to be done: they are machined with the area around them; lower recognize.surface.{limit} to "
-                 "group them"),)
+    return (
+        info(
+            code,
+            f"{len(tags)} {are} {words} and {join} no group: {size[rows].min():.3g} to {size[rows].max():.3g} mm across, "
+            f"{area:.3g} mm2, {area / float(sizes.area.sum()):.2%} of the area",
+            *face_tags(tags),
+            remedy=f"nothing needs to be done: they are machined with the area around them; lower recognize.surface.{limit} to "
+            "group them",
+        ),
+    )

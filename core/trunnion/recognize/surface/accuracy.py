@@ -34,11 +34,18 @@ class SizeError:
 
     def as_dict(self) -> dict[str, float]:
         """Return the figures as the JSON that other programs rely on."""
-        return {"points_on_edge": self.on_edge, "points": self.points, "largest_error": self.largest, "mean_error": self.mean,
-                "seconds": self.seconds}
+        return {
+            "points_on_edge": self.on_edge,
+            "points": self.points,
+            "largest_error": self.largest,
+            "mean_error": self.mean,
+            "seconds": self.seconds,
+        }
 
 
-def size_errors(bounded: Bounded, tags: Sequence[int], counts: Sequence[int], progress: Progress = QUIET) -> tuple[SizeError, ...]:
+def size_errors(
+    bounded: Bounded, tags: Sequence[int], counts: Sequence[int], progress: Progress = QUIET
+) -> tuple[SizeError, ...]:
     """Return the error and the cost of the feature sizes of some patches for every number of points on an edge, the paper's repair last.
 
     Measured against the exact boxes. Raises `BadInput` for a number that is no count.
@@ -49,9 +56,19 @@ def size_errors(bounded: Bounded, tags: Sequence[int], counts: Sequence[int], pr
     exact, *_ = _diagonals(bounded, tags, None)
     found = []
     for n in progress.over((*counts, -1), "measuring"):
-        diagonal, points, seconds = _diagonals(bounded, tags, repaired(bounded) if n < 0 else _in_pieces(n + 1))
+        diagonal, points, seconds = _diagonals(
+            bounded, tags, repaired(bounded) if n < 0 else _in_pieces(n + 1)
+        )
         error = np.abs(diagonal - exact) / exact
-        found.append(SizeError(on_edge=n, points=points, largest=float(error.max()), mean=float(error.mean()), seconds=seconds))
+        found.append(
+            SizeError(
+                on_edge=n,
+                points=points,
+                largest=float(error.max()),
+                mean=float(error.mean()),
+                seconds=seconds,
+            )
+        )
     return tuple(found)
 
 
@@ -62,7 +79,9 @@ def _in_pieces(parts: int) -> Parts:
     return pieces
 
 
-def _diagonals(bounded: Bounded, tags: Sequence[int], parts: Parts | None) -> tuple[Floats, int, float]:
+def _diagonals(
+    bounded: Bounded, tags: Sequence[int], parts: Parts | None
+) -> tuple[Floats, int, float]:
     began = time.perf_counter()
     boundary = bounded.boundary(parts)
     diagonal = np.linalg.norm(box_sides(boundary, tags), axis=1)

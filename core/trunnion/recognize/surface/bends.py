@@ -35,9 +35,17 @@ class PatchBends:
 
     def sizes(self, rows: Ints) -> dict[str, float]:
         """Return the smallest radii of some patches by the names of sizes; those that are nowhere are left out."""
-        found = {"concave_radius": self.concave, "convex_radius": self.convex, "fillet_radius": self.fillet,
-                 "rounding_radius": self.rounding}
-        return {name: float(np.nanmin(radii[rows])) for name, radii in found.items() if not np.isnan(radii[rows]).all()}
+        found = {
+            "concave_radius": self.concave,
+            "convex_radius": self.convex,
+            "fillet_radius": self.fillet,
+            "rounding_radius": self.rounding,
+        }
+        return {
+            name: float(np.nanmin(radii[rows]))
+            for name, radii in found.items()
+            if not np.isnan(radii[rows]).all()
+        }
 
 
 def patch_bends(bounded: Bounded, graph: FaceGraph, sizes: PatchSizes) -> PatchBends:
@@ -45,9 +53,20 @@ def patch_bends(bounded: Bounded, graph: FaceGraph, sizes: PatchSizes) -> PatchB
     kinds = _kinds(graph, sizes)
     first = np.unique(kinds, return_index=True)[1]
     bends = [bounded.bend(int(tag)) for tag in sizes.tag[first]]
-    even = dict(zip(sizes.tag.tolist(), np.array([_even(b) for b in bends]).reshape(-1, 2)[kinds].tolist(), strict=True))
-    blends = np.array([_blend(graph, int(tag), even) for tag in sizes.tag[first]]).reshape(-1, 2)[kinds]
-    concave, convex = (_radius(np.array(extreme))[kinds] for extreme in ([-b.least for b in bends], [b.most for b in bends]))
+    even = dict(
+        zip(
+            sizes.tag.tolist(),
+            np.array([_even(b) for b in bends]).reshape(-1, 2)[kinds].tolist(),
+            strict=True,
+        )
+    )
+    blends = np.array([_blend(graph, int(tag), even) for tag in sizes.tag[first]]).reshape(-1, 2)[
+        kinds
+    ]
+    concave, convex = (
+        _radius(np.array(extreme))[kinds]
+        for extreme in ([-b.least for b in bends], [b.most for b in bends])
+    )
     return PatchBends(concave=concave, convex=convex, fillet=blends[:, 0], rounding=blends[:, 1])
 
 
@@ -58,14 +77,18 @@ def _kinds(graph: FaceGraph, sizes: PatchSizes) -> Ints:
     size = np.column_stack([sizes.length, sizes.area, sizes.diameter])
     words = np.column_stack([surface, graph.bend[rows]])
     order = np.lexsort((sizes.area, sizes.length, words[:, 1], words[:, 0]))
-    unlike = (np.abs(np.diff(size[order], axis=0)) > ALIKE * size[order[1:]]).any(axis=1) | (np.diff(words[order], axis=0) != 0).any(axis=1)
+    unlike = (np.abs(np.diff(size[order], axis=0)) > ALIKE * size[order[1:]]).any(axis=1) | (
+        np.diff(words[order], axis=0) != 0
+    ).any(axis=1)
     kinds = np.empty(len(rows), dtype=np.int64)
     kinds[order] = np.concatenate([[0], np.cumsum(unlike)])
     return kinds
 
 
 def _radius(curvature: Floats) -> Floats:
-    return np.asarray(np.divide(1.0, curvature, out=np.full(len(curvature), np.nan), where=curvature > FLAT))
+    return np.asarray(
+        np.divide(1.0, curvature, out=np.full(len(curvature), np.nan), where=curvature > FLAT)
+    )
 
 
 def _even(bend: FaceBend) -> tuple[float, float]:

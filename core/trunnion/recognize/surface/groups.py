@@ -18,15 +18,22 @@ def grouped(rows: Ints, size: Floats, tolerance: float, *, relative: bool = Fals
         return []
     sorted_size = size[order]
     allowed = tolerance * sorted_size[:-1] if relative else tolerance
-    return [np.asarray(g) for g in np.split(order, np.flatnonzero(sorted_size[:-1] - sorted_size[1:] > allowed) + 1)]
+    return [
+        np.asarray(g)
+        for g in np.split(order, np.flatnonzero(sorted_size[:-1] - sorted_size[1:] > allowed) + 1)
+    ]
 
 
-def divided(groups: list[Ints], size: Floats, tolerance: float, *, relative: bool = False) -> list[Ints]:
+def divided(
+    groups: list[Ints], size: Floats, tolerance: float, *, relative: bool = False
+) -> list[Ints]:
     """Return every group divided by one more size."""
     return [part for g in groups for part in grouped(g, size, tolerance, relative=relative)]
 
 
-def aligned_groups(sizes: PatchSizes, rows: Ints, tolerance: float, *, relative: bool, subdivide: bool) -> list[Ints]:
+def aligned_groups(
+    sizes: PatchSizes, rows: Ints, tolerance: float, *, relative: bool, subdivide: bool
+) -> list[Ints]:
     """Group by the diagonal of the box along the axes; where asked, divide by its sides, the longest first."""
     groups = grouped(rows, sizes.diagonal, tolerance, relative=relative)
     if subdivide:
@@ -36,7 +43,9 @@ def aligned_groups(sizes: PatchSizes, rows: Ints, tolerance: float, *, relative:
     return groups
 
 
-def invariant_groups(sizes: PatchSizes, rows: Ints, tolerance: float, *, relative: bool) -> list[Ints]:
+def invariant_groups(
+    sizes: PatchSizes, rows: Ints, tolerance: float, *, relative: bool
+) -> list[Ints]:
     """Group by what does not turn with the part: diameter, then area (the tolerance in mm2), then boundary length."""
     groups = grouped(rows, sizes.diameter, tolerance, relative=relative)
     for size in (sizes.area, sizes.length):

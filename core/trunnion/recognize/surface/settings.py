@@ -12,20 +12,60 @@ EXACT, POINTS = "exact", "points"
 class SurfaceSettings:
     """How patches are measured, which ones are equal, and which are local features."""
 
-    grouping: str = setting(INVARIANT, label="Feature size", choices=(INVARIANT, ALIGNED),
-                            help="invariant: largest distance of two boundary points, then area, then boundary length, which don't turn "
-                                 "with the part. aligned: diagonal of the box along the axes, as in the paper.")
-    boundary: str = setting(EXACT, label="Boundary", choices=(EXACT, POINTS),
-                            help="exact: boxes of the true boundary. points: the paper's repair, up to seven points on each edge.")
-    tolerance: float = setting(0.05, unit="mm", low=0.0, high=100.0, label="Similarity",
-                               help="A patch whose size is within this of the one before it, sorted by size, is of the same group.")
-    relative: bool = setting(False, label="Relative similarity", help="The similarity is a share of the size instead of mm.")
-    subdivide: bool = setting(False, label="Subdivide", help="Divide groups of equal diagonal by the sides of their boxes (aligned only).")
-    local_ratio: float = setting(0.3, unit="of the largest", low=0.0, high=1.0, label="Local feature below",
-                                 help="A group is a local feature when its size over the largest patch's is below this.")
-    sliver_width: float = setting(0.05, unit="mm", low=0.0, high=10.0, label="Sliver",
-                                  help="A patch narrower than this on average (twice its area over its boundary) joins no group. "
-                                       "At most 1 % of the largest patch's size.")
-    smallest: float = setting(0.5, unit="mm", low=0.0, high=1000.0, label="Smallest feature size",
-                              help="A patch whose feature size is below this joins no group and is machined with the area around it. "
-                                   "At most 1 % of the largest patch's size.")
+    grouping: str = setting(
+        INVARIANT,
+        label="Feature size",
+        choices=(INVARIANT, ALIGNED),
+        help="invariant: largest distance of two boundary points, then area, then boundary length, which don't turn "
+        "with the part. aligned: diagonal of the box along the axes, as in the paper.",
+    )
+    boundary: str = setting(
+        EXACT,
+        label="Boundary",
+        choices=(EXACT, POINTS),
+        help="exact: boxes of the true boundary. points: the paper's repair, up to seven points on each edge.",
+    )
+    tolerance: float = setting(
+        0.05,
+        unit="mm",
+        low=0.0,
+        high=100.0,
+        label="Similarity",
+        help="A patch whose size is within this of the one before it, sorted by size, is of the same group.",
+    )
+    relative: bool = setting(
+        False,
+        label="Relative similarity",
+        help="The similarity is a share of the size instead of mm.",
+    )
+    subdivide: bool = setting(
+        False,
+        label="Subdivide",
+        help="Divide groups of equal diagonal by the sides of their boxes (aligned only).",
+    )
+    local_ratio: float = setting(
+        0.3,
+        unit="of the largest",
+        low=0.0,
+        high=1.0,
+        label="Local feature below",
+        help="A group is a local feature when its size over the largest patch's is below this.",
+    )
+    sliver_width: float = setting(
+        0.05,
+        unit="mm",
+        low=0.0,
+        high=10.0,
+        label="Sliver",
+        help="A patch narrower than this on average (twice its area over its boundary) joins no group. "
+        "At most 1 % of the largest patch's size.",
+    )
+    smallest: float = setting(
+        0.5,
+        unit="mm",
+        low=0.0,
+        high=1000.0,
+        label="Smallest feature size",
+        help="A patch whose feature size is below this joins no group and is machined with the area around it. "
+        "At most 1 % of the largest patch's size.",
+    )

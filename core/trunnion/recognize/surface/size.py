@@ -41,22 +41,37 @@ class PatchSizes:
     @property
     def width(self) -> Floats:
         """Mean width (n,): that of a long rectangle of the same area and boundary, mm."""
-        return np.asarray(np.divide(2.0 * self.area, self.length, out=np.zeros_like(self.area), where=self.length > 0.0))
+        return np.asarray(
+            np.divide(
+                2.0 * self.area, self.length, out=np.zeros_like(self.area), where=self.length > 0.0
+            )
+        )
 
 
 def patch_sizes(bounded: Bounded, tags: Sequence[int], area: Floats, *, exact: bool) -> PatchSizes:
     """Return the sizes of patches, given by tag with their area (n,) mm2; by the paper's points on the edges unless `exact`."""
     boxes = bounded.boundary(None if exact else repaired(bounded))
-    spread = bounded.boundary(lambda length: np.maximum(np.ceil(SPREAD * length / length.max(initial=1.0)), LEAST).astype(np.int64))
+    spread = bounded.boundary(
+        lambda length: np.maximum(np.ceil(SPREAD * length / length.max(initial=1.0)), LEAST).astype(
+            np.int64
+        )
+    )
     sides = box_sides(boxes, tags)
-    return PatchSizes(tag=np.array(tags, dtype=np.int64), sides=sides, diagonal=np.linalg.norm(sides, axis=1),
-                      diameter=np.array([_diameter(spread.points_of(t)) for t in tags]),
-                      length=np.array([boxes.length_of(t) for t in tags]), area=np.asarray(area, dtype=np.float64))
+    return PatchSizes(
+        tag=np.array(tags, dtype=np.int64),
+        sides=sides,
+        diagonal=np.linalg.norm(sides, axis=1),
+        diameter=np.array([_diameter(spread.points_of(t)) for t in tags]),
+        length=np.array([boxes.length_of(t) for t in tags]),
+        area=np.asarray(area, dtype=np.float64),
+    )
 
 
 def box_sides(boundary: Boundary, tags: Sequence[int]) -> Floats:
     """Return the sides (n, 3) of the axis-aligned box of each patch's boundary points."""
-    return np.array([np.ptp(p, axis=0) if len(p) else np.zeros(3) for p in map(boundary.points_of, tags)]).reshape(-1, 3)
+    return np.array(
+        [np.ptp(p, axis=0) if len(p) else np.zeros(3) for p in map(boundary.points_of, tags)]
+    ).reshape(-1, 3)
 
 
 def repaired(bounded: Bounded) -> Parts:
@@ -65,7 +80,9 @@ def repaired(bounded: Bounded) -> Parts:
     Its datum length, the estimated largest feature size, is the largest diagonal that a few points on each edge give.
     """
     few = bounded.boundary(lambda length: np.full(len(length), FEW))
-    datum = float(np.linalg.norm(box_sides(few, np.unique(few.face).tolist()), axis=1).max(initial=0.0))
+    datum = float(
+        np.linalg.norm(box_sides(few, np.unique(few.face).tolist()), axis=1).max(initial=0.0)
+    )
 
     def parts(length: Floats) -> Ints:
         found = np.ones(len(length), dtype=np.int64)
@@ -96,10 +113,12 @@ def _diameter(points: Floats) -> float:
         a, b = np.nonzero(bound > best * (1.0 + tolerance.PARAMETRIC))
         a, b = a[a + start <= b] + start, b[a + start <= b]
         for k in range(0, len(a), BLOCK):
-            apart = runs[a[k:k + BLOCK], :, None] - runs[b[k:k + BLOCK], None]
+            apart = runs[a[k : k + BLOCK], :, None] - runs[b[k : k + BLOCK], None]
             best = max(best, float(np.sqrt((apart**2).sum(axis=3).max(initial=0.0))))
     return best
 
 
 def _squares(a: Floats, b: Floats) -> Floats:
-    return np.asarray(np.maximum((a**2).sum(axis=1)[:, None] + (b**2).sum(axis=1) - 2.0 * a @ b.T, 0.0))
+    return np.asarray(
+        np.maximum((a**2).sum(axis=1)[:, None] + (b**2).sum(axis=1) - 2.0 * a @ b.T, 0.0)
+    )

@@ -33,18 +33,31 @@ def suitability(graph: FaceGraph) -> Suitability:
     """
     whole = float(graph.area.sum())
     bent = ~_plain(graph)
-    curved = min((float(graph.area[bent & _leans(graph, z)].sum()) for z in _directions(graph)), default=float(graph.area[bent].sum()))
+    curved = min(
+        (float(graph.area[bent & _leans(graph, z)].sum()) for z in _directions(graph)),
+        default=float(graph.area[bent].sum()),
+    )
     explained = min(1.0, float(graph.area[~_slivers(graph)].sum()) / whole)
-    fits, enclose = (1.0, ", and the faces enclose no material") if graph.open_edges else (min(1.0, curved / whole / ENOUGH), "")
-    return Suitability(score=GENERAL * explained * fits, explained=explained,
-                       reason=f"{percent(curved / whole)} of the area curved{enclose}")
+    fits, enclose = (
+        (1.0, ", and the faces enclose no material")
+        if graph.open_edges
+        else (min(1.0, curved / whole / ENOUGH), "")
+    )
+    return Suitability(
+        score=GENERAL * explained * fits,
+        explained=explained,
+        reason=f"{percent(curved / whole)} of the area curved{enclose}",
+    )
 
 
 def _plain(graph: FaceGraph) -> Bools:
     """Return which faces (n,) are planes, or hollow cylinders and cones that are narrow for the part."""
     surface = np.array(graph.surface)
     hollow = np.isin(surface, ("cylinder", "cone")) & (graph.bend < 0)
-    return np.asarray((surface == "plane") | (hollow & (np.nan_to_num(graph.radius, nan=np.inf) < HOLE * reach(graph))))
+    return np.asarray(
+        (surface == "plane")
+        | (hollow & (np.nan_to_num(graph.radius, nan=np.inf) < HOLE * reach(graph)))
+    )
 
 
 def _directions(graph: FaceGraph) -> list[Floats]:

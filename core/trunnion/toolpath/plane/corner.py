@@ -44,13 +44,38 @@ TOUCH = 0.02
 class CornerSettings:
     """How corners are cleared and finished. Width and depth of cut come with the cutting data, allowances with the drive."""
 
-    lead_radius: float = setting(2.0, unit="mm", low=0.2, high=100.0, label="Lead radius",
-                                 help="Radius of the tangential arcs onto the wall and off it; smaller where there is no room.")
-    scallop: float = setting(0.01, unit="mm", low=0.001, high=1.0, label="Scallop",
-                             help="Height of the cusps on a fillet that is larger than the cutter's corner.")
-    ramp_angle: float = setting(2.0, unit="deg", low=0.5, high=30.0, label="Entry angle", help="Slope of a ramp where no lead fits.")
-    safety: float = setting(2.0, unit="mm", low=0.2, high=50.0, label="Safety distance",
-                            help="Where a rapid ends above what may still be there.")
+    lead_radius: float = setting(
+        2.0,
+        unit="mm",
+        low=0.2,
+        high=100.0,
+        label="Lead radius",
+        help="Radius of the tangential arcs onto the wall and off it; smaller where there is no room.",
+    )
+    scallop: float = setting(
+        0.01,
+        unit="mm",
+        low=0.001,
+        high=1.0,
+        label="Scallop",
+        help="Height of the cusps on a fillet that is larger than the cutter's corner.",
+    )
+    ramp_angle: float = setting(
+        2.0,
+        unit="deg",
+        low=0.5,
+        high=30.0,
+        label="Entry angle",
+        help="Slope of a ramp where no lead fits.",
+    )
+    safety: float = setting(
+        2.0,
+        unit="mm",
+        low=0.2,
+        high=50.0,
+        label="Safety distance",
+        help="Where a rapid ends above what may still be there.",
+    )
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -62,11 +87,20 @@ class _Height:
 
 
 @strategy(settings=CornerSettings, drive=PlaneDrive, meets=eased_corner)
-def corner(drive: PlaneDrive, tool: Tool, data: CuttingData, stock: PlanningStock, setup: Setup, settings: CornerSettings,
-           progress: Progress) -> Planned:
+def corner(
+    drive: PlaneDrive,
+    tool: Tool,
+    data: CuttingData,
+    stock: PlanningStock,
+    setup: Setup,
+    settings: CornerSettings,
+    progress: Progress,
+) -> Planned:
     """Return the motions that clear what a cutter of `drive.earlier_radius` left in the corners, and what this one leaves."""
     builder = PathBuilder(tool, data, stock, setup, settings.safety)
-    approach = Approach(radius=settings.lead_radius, overlap=0.0, ramp=math.radians(settings.ramp_angle))
+    approach = Approach(
+        radius=settings.lead_radius, overlap=0.0, ramp=math.radians(settings.ramp_angle)
+    )
     step = safe_step(tool, data.width)
     findings: list[Finding] = []
     above = drive.top
@@ -77,12 +111,16 @@ def corner(drive: PlaneDrive, tool: Tool, data: CuttingData, stock: PlanningStoc
         rests = _rests(drive, level).split()
         near = _reaching(rests, tool)
         rooms: dict[float, tuple[Room, tuple[Curve, ...]]] = {}
-        for rest in nearest_first(rests, lambda: builder.here, lambda r, p: abs(float(r.signed_distance(p)[0]))):
+        for rest in nearest_first(
+            rests, lambda: builder.here, lambda r, p: abs(float(r.signed_distance(p)[0]))
+        ):
             beside: dict[float, list[Curve]] = {}
             for height in heights:
                 progress.check()
                 if height.distance not in rooms:
-                    rooms[height.distance] = _passes(level, height.distance, step, near, mitred=drive.fillet > 0.0)
+                    rooms[height.distance] = _passes(
+                        level, height.distance, step, near, mitred=drive.fillet > 0.0
+                    )
                 room, rims = rooms[height.distance]
                 if height.distance not in beside:
                     beside[height.distance] = list(_beside(rims, rest, tool))
@@ -92,12 +130,16 @@ def corner(drive: PlaneDrive, tool: Tool, data: CuttingData, stock: PlanningStoc
                     else:
                         cut_open(builder, part, height.z, room, approach, past=False)
         findings += _left(drive, level, tool, rests)
-    return Planned(path=eased_finish(builder.finished(), tool, data, stock, progress), findings=tuple(findings))
+    return Planned(
+        path=eased_finish(builder.finished(), tool, data, stock, progress), findings=tuple(findings)
+    )
 
 
 def _rests(drive: PlaneDrive, level: DriveLevel) -> Region:
     """Return what the earlier cutter left of a band's wanted area, the allowance on the walls taken off."""
-    wanted = level.wanted.offset(-drive.wall_allowance) if drive.wall_allowance > 0.0 else level.wanted
+    wanted = (
+        level.wanted.offset(-drive.wall_allowance) if drive.wall_allowance > 0.0 else level.wanted
+    )
     if drive.earlier_radius <= 0.0:
         return wanted
     cut = level.boundary.offset(-drive.earlier_radius - drive.earlier_allowance)
@@ -106,16 +148,27 @@ def _rests(drive: PlaneDrive, level: DriveLevel) -> Region:
     return Region(tuple(p for p in rest.pieces if p.area > SMALLEST_REST))
 
 
-def _heights(drive: PlaneDrive, row: int, above: float, tool: Tool, data: CuttingData, scallop: float) -> list[_Height]:
+def _heights(
+    drive: PlaneDrive, row: int, above: float, tool: Tool, data: CuttingData, scallop: float
+) -> list[_Height]:
     level = drive.levels[row]
-    is_face = row + 1 == len(drive.levels) or level.wanted.area - drive.levels[row + 1].wanted.area > SMALLEST_LEFTOVER
+    is_face = (
+        row + 1 == len(drive.levels)
+        or level.wanted.area - drive.levels[row + 1].wanted.area > SMALLEST_LEFTOVER
+    )
     bottom = level.bottom + (drive.floor_allowance if is_face else 0.0)
     if above - bottom < tolerance.SEW:
         return []
     on_floor = any(abs(f.z - level.bottom) < tolerance.SEW and f.fillet > 0.0 for f in drive.floors)
     finishes = drive.wall_allowance == 0.0 and drive.floor_allowance == 0.0
-    foot = fillet_steps(drive.fillet, tool.corner_radius, scallop) if on_floor and finishes else (0.0,)
-    straight = steps_down(above, bottom + foot[0], min(data.depth, tool.flute_length)) if above - bottom > foot[0] + tolerance.SEW else ()
+    foot = (
+        fillet_steps(drive.fillet, tool.corner_radius, scallop) if on_floor and finishes else (0.0,)
+    )
+    straight = (
+        steps_down(above, bottom + foot[0], min(data.depth, tool.flute_length))
+        if above - bottom > foot[0] + tolerance.SEW
+        else ()
+    )
     heights = [*straight, *(bottom + t for t in foot[1 if straight else 0 :])]
     radius = tool.radius + drive.wall_allowance
     return [_Height(z, radius + _foot(drive, tool, z)) for z in heights]
@@ -130,12 +183,16 @@ def _reaching(rests: tuple[Region, ...], tool: Tool) -> Region:
     return Region(tuple(p for r in rests for p in r.offset(tool.radius).pieces))
 
 
-def _passes(level: DriveLevel, distance: float, step: float, near: Region, *, mitred: bool) -> tuple[Room, tuple[Curve, ...]]:
+def _passes(
+    level: DriveLevel, distance: float, step: float, near: Region, *, mitred: bool
+) -> tuple[Room, tuple[Curve, ...]]:
     """Return the room and the rims of its rings that come near a rest, the innermost first."""
     room = Room.of(level.boundary, distance, mitred=mitred and is_closed(level))
     if not room.region:
         return room, ()
-    return room, tuple(c for ring in depth_first(ring_tree(room.region, step, near)) for c in ring.curves())
+    return room, tuple(
+        c for ring in depth_first(ring_tree(room.region, step, near)) for c in ring.curves()
+    )
 
 
 def _beside(rims: tuple[Curve, ...], rest: Region, tool: Tool) -> Iterator[Curve]:
@@ -151,17 +208,32 @@ def _beside(rims: tuple[Curve, ...], rest: Region, tool: Tool) -> Iterator[Curve
                 yield part
 
 
-def _left(drive: PlaneDrive, level: DriveLevel, tool: Tool, rests: tuple[Region, ...]) -> list[Finding]:
+def _left(
+    drive: PlaneDrive, level: DriveLevel, tool: Tool, rests: tuple[Region, ...]
+) -> list[Finding]:
     if not rests:
         return []
     distance = tool.radius + drive.wall_allowance
     room = Room.of(level.boundary, distance)
     rest = Region(tuple(p for r in rests for p in r.pieces))
     if not room.region:
-        return [error("corner.too-wide", f"{tool.name} does not fit into {drive.feature} below {level.top:.2f}: {rest.area:.1f} mm2 stay",
-                      drive.feature, remedy="choose a smaller cutter")]
+        return [
+            error(
+                "corner.too-wide",
+                f"{tool.name} does not fit into {drive.feature} below {level.top:.2f}: {rest.area:.1f} mm2 stay",
+                drive.feature,
+                remedy="choose a smaller cutter",
+            )
+        ]
     left = rest.minus(room.region.offset(tool.radius + tolerance.SEW)).area
     if left < SMALLEST_LEFTOVER:
         return []
-    return [info("corner.left", f"{left:.1f} mm2 in corners of {drive.feature} between {level.bottom:.2f} and {level.top:.2f} stay: they "
-                 f"are sharper than {tool.name}", drive.feature, remedy="choose a smaller cutter for the corners")]
+    return [
+        info(
+            "corner.left",
+            f"{left:.1f} mm2 in corners of {drive.feature} between {level.bottom:.2f} and {level.top:.2f} stay: they "
+            f"are sharper than {tool.name}",
+            drive.feature,
+            remedy="choose a smaller cutter for the corners",
+        )
+    ]

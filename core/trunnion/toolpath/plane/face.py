@@ -30,28 +30,75 @@ ONE_ROW = "one row takes the whole top"
 class FaceSettings:
     """How a top is faced. Width and depth of cut come with the cutting data."""
 
-    pattern: str = setting("zigzag", label="Pattern", help="Rows to and fro, or all rows in the climbing direction.",
-                           choices=("zigzag", "climb"))
-    run_out: float = setting(3.0, unit="mm", low=0.5, high=100.0, label="Run-out", help="How far the whole cutter leaves the blank.")
-    overlap: float = setting(0.5, unit="mm", low=0.0, high=50.0, label="Overlap", help="How far the last row reaches past the edge.")
-    safety: float = setting(2.0, unit="mm", low=0.2, high=50.0, label="Safety distance",
-                            help="Where a rapid ends above what may still be there.")
+    pattern: str = setting(
+        "zigzag",
+        label="Pattern",
+        help="Rows to and fro, or all rows in the climbing direction.",
+        choices=("zigzag", "climb"),
+    )
+    run_out: float = setting(
+        3.0,
+        unit="mm",
+        low=0.5,
+        high=100.0,
+        label="Run-out",
+        help="How far the whole cutter leaves the blank.",
+    )
+    overlap: float = setting(
+        0.5,
+        unit="mm",
+        low=0.0,
+        high=50.0,
+        label="Overlap",
+        help="How far the last row reaches past the edge.",
+    )
+    safety: float = setting(
+        2.0,
+        unit="mm",
+        low=0.2,
+        high=50.0,
+        label="Safety distance",
+        help="Where a rapid ends above what may still be there.",
+    )
 
 
-def row_width(tool: Tool, data: CuttingData, settings: FaceSettings, before: Operation | None) -> Engagement:
+def row_width(
+    tool: Tool, data: CuttingData, settings: FaceSettings, before: Operation | None
+) -> Engagement:
     """Return the width of a row: where one row takes the whole top, all of it."""
     whole = 0.0 < data.widest <= _one_row(tool, settings.overlap)
-    return Engagement(width=max(data.width, data.widest) if whole else data.width, depth=data.depth, share=1.0, at=ONE_ROW if whole else "")
+    return Engagement(
+        width=max(data.width, data.widest) if whole else data.width,
+        depth=data.depth,
+        share=1.0,
+        at=ONE_ROW if whole else "",
+    )
 
 
 @strategy(settings=FaceSettings, drive=PlaneDrive, meets=row_width)
-def face(drive: PlaneDrive, tool: Tool, data: CuttingData, stock: PlanningStock, setup: Setup, settings: FaceSettings,
-         progress: Progress) -> Planned:
+def face(
+    drive: PlaneDrive,
+    tool: Tool,
+    data: CuttingData,
+    stock: PlanningStock,
+    setup: Setup,
+    settings: FaceSettings,
+    progress: Progress,
+) -> Planned:
     """Return the motions that take the blank's top down to the drive's bottom."""
     builder = PathBuilder(tool, data, stock, setup, settings.safety)
     area = drive.levels[0].wanted if drive.levels else None
     if not area:
-        return Planned(findings=(error("face.nothing", f"{drive.feature} has no top to face", drive.feature, remedy="suppress it"),))
+        return Planned(
+            findings=(
+                error(
+                    "face.nothing",
+                    f"{drive.feature} has no top to face",
+                    drive.feature,
+                    remedy="suppress it",
+                ),
+            )
+        )
     (x0, y0), (x1, y1) = area.box()
     # Rows run along the longer side; `turned` says that this is y.
     turned = y1 - y0 > x1 - x0
@@ -60,8 +107,13 @@ def face(drive: PlaneDrive, tool: Tool, data: CuttingData, stock: PlanningStock,
     out = tool.radius + settings.run_out
     heights = steps_down(max(drive.top, drive.stock_top), drive.bottom, data.depth)
     for z in heights:
-        progress.at((drive.top - z) / max(drive.top - drive.bottom, tolerance.SEW), f"{drive.feature}: layer at {z:.3f}")
-        _cut_rows(builder, rows, (along[0] - out, along[1] + out), z, turned, settings.pattern == "zigzag")
+        progress.at(
+            (drive.top - z) / max(drive.top - drive.bottom, tolerance.SEW),
+            f"{drive.feature}: layer at {z:.3f}",
+        )
+        _cut_rows(
+            builder, rows, (along[0] - out, along[1] + out), z, turned, settings.pattern == "zigzag"
+        )
     return Planned(path=builder.finished())
 
 
@@ -82,7 +134,14 @@ def _rows(across: tuple[float, float], tool: Tool, width: float, overlap: float)
     return middles
 
 
-def _cut_rows(builder: PathBuilder, rows: Floats, along: tuple[float, float], z: float, turned: bool, zigzag: bool) -> None:
+def _cut_rows(
+    builder: PathBuilder,
+    rows: Floats,
+    along: tuple[float, float],
+    z: float,
+    turned: bool,
+    zigzag: bool,
+) -> None:
     def place(u: float, v: float) -> tuple[float, float, float]:
         return (v, u, z) if turned else (u, v, z)
 
@@ -97,5 +156,11 @@ def _cut_rows(builder: PathBuilder, rows: Floats, along: tuple[float, float], z:
             # Half a turn outside, anticlockwise where the next row lies on the left of the direction.
             left = (rows[n + 1] > v) == (forward != turned)
             middle = place(end, 0.5 * (v + rows[n + 1]))
-            builder.arc(place(end, rows[n + 1]), middle[:2], math.pi if left else -math.pi, builder.data.feed, Mark.LINK)
+            builder.arc(
+                place(end, rows[n + 1]),
+                middle[:2],
+                math.pi if left else -math.pi,
+                builder.data.feed,
+                Mark.LINK,
+            )
             forward = not forward

@@ -33,37 +33,114 @@ SMALLEST_LEFTOVER = 1.0
 class FloorSettings:
     """How floors are finished. The step between passes comes with the cutting data."""
 
-    wall_distance: float = setting(0.4, unit="mm", low=0.0, high=10.0, label="Distance from walls",
-                                   help="Kept between cutter and finished wall, a little more than the walls' allowance.")
-    ramp_angle: float = setting(2.0, unit="deg", low=0.5, high=30.0, label="Entry angle", help="Slope of the helix or ramp onto the floor.")
-    slot_feed: float = setting(1.0, unit="of feed", low=0.1, high=1.0, label="Feed in full width",
-                               help="Share of the feed while the whole cutter's width is in material.")
-    safety: float = setting(2.0, unit="mm", low=0.2, high=50.0, label="Safety distance",
-                            help="Where a rapid ends above what may still be there.")
+    wall_distance: float = setting(
+        0.4,
+        unit="mm",
+        low=0.0,
+        high=10.0,
+        label="Distance from walls",
+        help="Kept between cutter and finished wall, a little more than the walls' allowance.",
+    )
+    ramp_angle: float = setting(
+        2.0,
+        unit="deg",
+        low=0.5,
+        high=30.0,
+        label="Entry angle",
+        help="Slope of the helix or ramp onto the floor.",
+    )
+    slot_feed: float = setting(
+        1.0,
+        unit="of feed",
+        low=0.1,
+        high=1.0,
+        label="Feed in full width",
+        help="Share of the feed while the whole cutter's width is in material.",
+    )
+    safety: float = setting(
+        2.0,
+        unit="mm",
+        low=0.2,
+        high=50.0,
+        label="Safety distance",
+        help="Where a rapid ends above what may still be there.",
+    )
 
 
-@strategy(settings=FloorSettings, drive=PlaneDrive, leaves=("floor.left",), settles=("floor.left",), meets=floor_leftovers)
-def floor(drive: PlaneDrive, tool: Tool, data: CuttingData, stock: PlanningStock, setup: Setup, settings: FloorSettings,
-          progress: Progress) -> Planned:
+@strategy(
+    settings=FloorSettings,
+    drive=PlaneDrive,
+    leaves=("floor.left",),
+    settles=("floor.left",),
+    meets=floor_leftovers,
+)
+def floor(
+    drive: PlaneDrive,
+    tool: Tool,
+    data: CuttingData,
+    stock: PlanningStock,
+    setup: Setup,
+    settings: FloorSettings,
+    progress: Progress,
+) -> Planned:
     """Return the motions that finish every floor of the drive, from the highest down, and what they leave."""
     builder = PathBuilder(tool, data, stock, setup, settings.safety)
-    manner = Manner(step=safe_step(tool, data.width), ramp=math.radians(settings.ramp_angle), slot=settings.slot_feed)
+    manner = Manner(
+        step=safe_step(tool, data.width),
+        ramp=math.radians(settings.ramp_angle),
+        slot=settings.slot_feed,
+    )
     findings: list[Finding] = []
     floors = sorted(drive.floors, key=lambda f: -f.z)
     for n, each in enumerate(floors):
         progress.at(n / len(floors), f"{drive.feature}: floor at {each.z:.3f}")
         level = level_at(drive, each.z)
-        distance = tool.radius + settings.wall_distance + foot_clearance(each.fillet, tool.corner_radius, 0.0)
-        passes = passes_over(each.region, level.boundary, tool, distance, manner.step, mitred=each.fillet > 0.0)
+        distance = (
+            tool.radius
+            + settings.wall_distance
+            + foot_clearance(each.fillet, tool.corner_radius, 0.0)
+        )
+        passes = passes_over(
+            each.region, level.boundary, tool, distance, manner.step, mitred=each.fillet > 0.0
+        )
         if not passes.rings:
-            findings.append(error("floor.too-wide", f"{tool.name} does not fit between the walls around the floor at {each.z:.2f}: "
-                                  f"{each.region.area:.0f} mm2 stay", drive.feature, f"face {each.face}", remedy="choose a smaller cutter"))
+            findings.append(
+                error(
+                    "floor.too-wide",
+                    f"{tool.name} does not fit between the walls around the floor at {each.z:.2f}: "
+                    f"{each.region.area:.0f} mm2 stay",
+                    drive.feature,
+                    f"face {each.face}",
+                    remedy="choose a smaller cutter",
+                )
+            )
             continue
-        clear(builder, Layer(z=each.z, rings=passes.rings, room=passes.room, clip=passes.clip), manner, progress)
+        clear(
+            builder,
+            Layer(z=each.z, rings=passes.rings, room=passes.room, clip=passes.clip),
+            manner,
+            progress,
+        )
         left = each.region.minus(passes.room.region.offset(distance + tolerance.SEW)).area
         if left > SMALLEST_LEFTOVER:
-            findings.append(info("floor.left", f"{left:.0f} mm2 of the floor at {each.z:.2f} stay in corners that {tool.name} can't reach",
-                                 drive.feature, f"face {each.face}", remedy="finish them with the corners, by a smaller cutter"))
+            findings.append(
+                info(
+                    "floor.left",
+                    f"{left:.0f} mm2 of the floor at {each.z:.2f} stay in corners that {tool.name} can't reach",
+                    drive.feature,
+                    f"face {each.face}",
+                    remedy="finish them with the corners, by a smaller cutter",
+                )
+            )
     if not floors:
-        findings.append(error("floor.none", f"{drive.feature} has no floor to finish", drive.feature, remedy="suppress the operation"))
-    return Planned(path=eased_finish(builder.finished(), tool, data, stock, progress), findings=tuple(findings))
+        findings.append(
+            error(
+                "floor.none",
+                f"{drive.feature} has no floor to finish",
+                drive.feature,
+                remedy="suppress the operation",
+            )
+        )
+    return Planned(
+        path=eased_finish(builder.finished(), tool, data, stock, progress), findings=tuple(findings)
+    )

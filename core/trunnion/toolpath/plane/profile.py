@@ -35,68 +35,167 @@ RIM_SPACING = 2.0
 class ProfileRoughSettings:
     """How the outer profile is roughed. Width and depth of cut come with the cutting data, the allowance with the drive."""
 
-    lead_radius: float = setting(5.0, unit="mm", low=0.2, high=100.0, label="Lead radius", help="Radius of the tangential arcs.")
-    overlap: float = setting(2.0, unit="mm", low=0.0, high=50.0, label="Overlap", help="How far a closed pass runs on past its start.")
-    ramp_angle: float = setting(3.0, unit="deg", low=0.5, high=30.0, label="Entry angle", help="Slope of a ramp where no lead fits.")
-    safety: float = setting(2.0, unit="mm", low=0.2, high=50.0, label="Safety distance",
-                            help="Where a rapid ends above what may still be there.")
+    lead_radius: float = setting(
+        5.0,
+        unit="mm",
+        low=0.2,
+        high=100.0,
+        label="Lead radius",
+        help="Radius of the tangential arcs.",
+    )
+    overlap: float = setting(
+        2.0,
+        unit="mm",
+        low=0.0,
+        high=50.0,
+        label="Overlap",
+        help="How far a closed pass runs on past its start.",
+    )
+    ramp_angle: float = setting(
+        3.0,
+        unit="deg",
+        low=0.5,
+        high=30.0,
+        label="Entry angle",
+        help="Slope of a ramp where no lead fits.",
+    )
+    safety: float = setting(
+        2.0,
+        unit="mm",
+        low=0.2,
+        high=50.0,
+        label="Safety distance",
+        help="Where a rapid ends above what may still be there.",
+    )
 
 
 @settings("plane.profile_finish")
 class ProfileFinishSettings:
     """How the outer profile is finished. The axial step comes with the cutting data."""
 
-    lead_radius: float = setting(5.0, unit="mm", low=0.2, high=100.0, label="Lead radius", help="Radius of the tangential arcs.")
-    overlap: float = setting(3.0, unit="mm", low=0.0, high=50.0, label="Overlap", help="How far a closed pass runs on past its start.")
-    spring: bool = setting(False, label="Spring pass", help="Go round a second time without moving in.")
-    ramp_angle: float = setting(2.0, unit="deg", low=0.5, high=30.0, label="Entry angle", help="Slope of a ramp where no lead fits.")
-    safety: float = setting(2.0, unit="mm", low=0.2, high=50.0, label="Safety distance",
-                            help="Where a rapid ends above what may still be there.")
+    lead_radius: float = setting(
+        5.0,
+        unit="mm",
+        low=0.2,
+        high=100.0,
+        label="Lead radius",
+        help="Radius of the tangential arcs.",
+    )
+    overlap: float = setting(
+        3.0,
+        unit="mm",
+        low=0.0,
+        high=50.0,
+        label="Overlap",
+        help="How far a closed pass runs on past its start.",
+    )
+    spring: bool = setting(
+        False, label="Spring pass", help="Go round a second time without moving in."
+    )
+    ramp_angle: float = setting(
+        2.0,
+        unit="deg",
+        low=0.5,
+        high=30.0,
+        label="Entry angle",
+        help="Slope of a ramp where no lead fits.",
+    )
+    safety: float = setting(
+        2.0,
+        unit="mm",
+        low=0.2,
+        high=50.0,
+        label="Safety distance",
+        help="Where a rapid ends above what may still be there.",
+    )
 
 
 @strategy(settings=ProfileRoughSettings, drive=PlaneDrive, meets=inner_corner)
-def profile_rough(drive: PlaneDrive, tool: Tool, data: CuttingData, stock: PlanningStock, setup: Setup, settings: ProfileRoughSettings,
-                  progress: Progress) -> Planned:
+def profile_rough(
+    drive: PlaneDrive,
+    tool: Tool,
+    data: CuttingData,
+    stock: PlanningStock,
+    setup: Setup,
+    settings: ProfileRoughSettings,
+    progress: Progress,
+) -> Planned:
     """Return the motions that take the blank's margin off the profile by layers, in rings from outside in."""
     builder = PathBuilder(tool, data, stock, setup, settings.safety)
-    approach = Approach(radius=settings.lead_radius, overlap=settings.overlap, ramp=math.radians(settings.ramp_angle))
+    approach = Approach(
+        radius=settings.lead_radius,
+        overlap=settings.overlap,
+        ramp=math.radians(settings.ramp_angle),
+    )
     findings: list[Finding] = []
     rim = _blank_rim(stock)
     for guide in drive.walls:
         margin = float(guide.curve.distance(rim).max())
-        count = max(1, math.ceil((margin - drive.wall_allowance) / data.width - tolerance.COINCIDENT))
-        distances = [tool.radius + drive.wall_allowance + n * min(data.width, margin / count) for n in reversed(range(count))]
+        count = max(
+            1, math.ceil((margin - drive.wall_allowance) / data.width - tolerance.COINCIDENT)
+        )
+        distances = [
+            tool.radius + drive.wall_allowance + n * min(data.width, margin / count)
+            for n in reversed(range(count))
+        ]
         rooms: dict[tuple[int, float], tuple[Room, list[Curve]]] = {}
         for z in steps_down(max(guide.top, drive.stock_top), guide.bottom, data.depth):
             boundary = level_at(drive, z).boundary
             for distance in distances:
-                progress.at((guide.top - z) / max(guide.top - guide.bottom, tolerance.SEW), f"{drive.feature}: layer at {z:.3f}")
+                progress.at(
+                    (guide.top - z) / max(guide.top - guide.bottom, tolerance.SEW),
+                    f"{drive.feature}: layer at {z:.3f}",
+                )
                 key = (id(boundary), distance)
                 if key not in rooms:
                     room = Room.of(boundary, distance)
-                    rooms[key] = (room, _touching(contour_parts(room, guide.curve, distance), stock, tool.radius))
+                    rooms[key] = (
+                        room,
+                        _touching(contour_parts(room, guide.curve, distance), stock, tool.radius),
+                    )
                 cut_parts(builder, rooms[key][1], z, rooms[key][0], approach)
         findings += _left(drive, guide, tool, drive.wall_allowance)
     return _planned(drive, builder, findings)
 
 
 @strategy(settings=ProfileFinishSettings, drive=PlaneDrive, meets=contour_leftovers)
-def profile_finish(drive: PlaneDrive, tool: Tool, data: CuttingData, stock: PlanningStock, setup: Setup, settings: ProfileFinishSettings,
-                   progress: Progress) -> Planned:
+def profile_finish(
+    drive: PlaneDrive,
+    tool: Tool,
+    data: CuttingData,
+    stock: PlanningStock,
+    setup: Setup,
+    settings: ProfileFinishSettings,
+    progress: Progress,
+) -> Planned:
     """Return the motions that finish the profile in axial steps down to its bottom."""
     builder = PathBuilder(tool, data, stock, setup, settings.safety)
-    approach = Approach(radius=settings.lead_radius, overlap=settings.overlap, ramp=math.radians(settings.ramp_angle),
-                        rounds=2 if settings.spring else 1)
+    approach = Approach(
+        radius=settings.lead_radius,
+        overlap=settings.overlap,
+        ramp=math.radians(settings.ramp_angle),
+        rounds=2 if settings.spring else 1,
+    )
     findings: list[Finding] = []
     for guide in drive.walls:
         distance = tool.radius + drive.wall_allowance
         for z in steps_down(guide.top, guide.bottom, min(data.depth, tool.flute_length)):
-            progress.at((guide.top - z) / max(guide.top - guide.bottom, tolerance.SEW), f"{drive.feature}: pass at {z:.3f}")
+            progress.at(
+                (guide.top - z) / max(guide.top - guide.bottom, tolerance.SEW),
+                f"{drive.feature}: pass at {z:.3f}",
+            )
             room = Room.of(level_at(drive, z).boundary, distance)
             cut_parts(builder, contour_parts(room, guide.curve, distance), z, room, approach)
         if tool.corner_radius > 0.0:
-            findings.append(warning("profile.corner", f"{tool.name} leaves its corner radius at the bottom of {drive.feature}: "
-                                    f"{guide.curve.length * tool.corner_radius:.0f} mm2", drive.feature, remedy="choose a flat cutter"))
+            findings.append(
+                warning(
+                    "profile.corner",
+                    f"{tool.name} leaves its corner radius at the bottom of {drive.feature}: "
+                    f"{guide.curve.length * tool.corner_radius:.0f} mm2",
+                    drive.feature,
+                    remedy="choose a flat cutter",
+                )
+            )
         findings += _left(drive, guide, tool, drive.wall_allowance)
     return _planned(drive, builder, findings)
 
@@ -104,7 +203,14 @@ def profile_finish(drive: PlaneDrive, tool: Tool, data: CuttingData, stock: Plan
 def _planned(drive: PlaneDrive, builder: PathBuilder, findings: list[Finding]) -> Planned:
     path = builder.finished()
     if not len(path) and not findings:
-        findings.append(error("profile.none", f"{drive.feature} has no wall to cut", drive.feature, remedy="suppress the operation"))
+        findings.append(
+            error(
+                "profile.none",
+                f"{drive.feature} has no wall to cut",
+                drive.feature,
+                remedy="suppress the operation",
+            )
+        )
     return Planned(path=path, findings=tuple(findings))
 
 
@@ -112,7 +218,9 @@ def _blank_rim(stock: PlanningStock) -> Floats:
     (x0, y0), (x1, y1) = stock.box()
     x = np.linspace(x0, x1, int((x1 - x0) / RIM_SPACING) + 2)
     y = np.linspace(y0, y1, int((y1 - y0) / RIM_SPACING) + 2)
-    sides = [np.stack([x, np.full_like(x, v)], axis=1) for v in (y0, y1)] + [np.stack([np.full_like(y, v), y], axis=1) for v in (x0, x1)]
+    sides = [np.stack([x, np.full_like(x, v)], axis=1) for v in (y0, y1)] + [
+        np.stack([np.full_like(y, v), y], axis=1) for v in (x0, x1)
+    ]
     return np.concatenate(sides)
 
 
@@ -131,10 +239,24 @@ def _left(drive: PlaneDrive, guide: WallGuide, tool: Tool, allowance: float) -> 
     distance, height = tool.radius + allowance, guide.top - guide.bottom
     room = Room.of(level_at(drive, guide.bottom).boundary, distance)
     if not room.region:
-        return [error("profile.no-room", f"{tool.name} has no room around {drive.feature}: {guide.curve.length * height:.0f} mm2 stay",
-                      drive.feature, *face_tags(guide.faces), remedy="choose a smaller cutter")]
+        return [
+            error(
+                "profile.no-room",
+                f"{tool.name} has no room around {drive.feature}: {guide.curve.length * height:.0f} mm2 stay",
+                drive.feature,
+                *face_tags(guide.faces),
+                remedy="choose a smaller cutter",
+            )
+        ]
     missed = length_out_of_reach(room, guide.curve, distance)
     if missed * height < SMALLEST_LEFTOVER:
         return []
-    return [info("profile.left", f"{missed * height:.0f} mm2 of {drive.feature} stay in concave corners that {tool.name} can't reach",
-                 drive.feature, *face_tags(guide.faces), remedy="finish them with a smaller cutter")]
+    return [
+        info(
+            "profile.left",
+            f"{missed * height:.0f} mm2 of {drive.feature} stay in concave corners that {tool.name} can't reach",
+            drive.feature,
+            *face_tags(guide.faces),
+            remedy="finish them with a smaller cutter",
+        )
+    ]

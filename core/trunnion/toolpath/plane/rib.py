@@ -33,42 +33,99 @@ FLARE_MARGIN = 0.5
 class RibTopSettings:
     """How tops are cut. Width and depth of cut come with the cutting data."""
 
-    overhang: float = setting(0.5, unit="mm", low=0.0, high=20.0, label="Overhang",
-                              help="How far outside the top's edge the middle of the cutter runs.")
-    wall_distance: float = setting(0.0, unit="mm", low=0.0, high=10.0, label="Distance from walls",
-                                   help="Kept between the cutter and the finished walls at a rib's ends.")
-    ramp_angle: float = setting(3.0, unit="deg", low=0.5, high=30.0, label="Entry angle", help="Slope of the helix or ramp onto the top.")
-    slot_feed: float = setting(0.8, unit="of feed", low=0.1, high=1.0, label="Feed in full width",
-                               help="Share of the feed while the whole width of a rib is cut at once.")
-    safety: float = setting(2.0, unit="mm", low=0.2, high=50.0, label="Safety distance",
-                            help="Where a rapid ends above what may still be there.")
+    overhang: float = setting(
+        0.5,
+        unit="mm",
+        low=0.0,
+        high=20.0,
+        label="Overhang",
+        help="How far outside the top's edge the middle of the cutter runs.",
+    )
+    wall_distance: float = setting(
+        0.0,
+        unit="mm",
+        low=0.0,
+        high=10.0,
+        label="Distance from walls",
+        help="Kept between the cutter and the finished walls at a rib's ends.",
+    )
+    ramp_angle: float = setting(
+        3.0,
+        unit="deg",
+        low=0.5,
+        high=30.0,
+        label="Entry angle",
+        help="Slope of the helix or ramp onto the top.",
+    )
+    slot_feed: float = setting(
+        0.8,
+        unit="of feed",
+        low=0.1,
+        high=1.0,
+        label="Feed in full width",
+        help="Share of the feed while the whole width of a rib is cut at once.",
+    )
+    safety: float = setting(
+        2.0,
+        unit="mm",
+        low=0.2,
+        high=50.0,
+        label="Safety distance",
+        help="Where a rapid ends above what may still be there.",
+    )
 
 
 @strategy(settings=RibTopSettings, drive=PlaneDrive, meets=top_width)
-def rib_top(drive: PlaneDrive, tool: Tool, data: CuttingData, stock: PlanningStock, setup: Setup, settings: RibTopSettings,
-            progress: Progress) -> Planned:
+def rib_top(
+    drive: PlaneDrive,
+    tool: Tool,
+    data: CuttingData,
+    stock: PlanningStock,
+    setup: Setup,
+    settings: RibTopSettings,
+    progress: Progress,
+) -> Planned:
     """Return the motions that bring a top to its height by layers, and what of it the cutter leaves."""
     builder = PathBuilder(tool, data, stock, setup, settings.safety)
-    manner = Manner(step=safe_step(tool, data.width), ramp=math.radians(settings.ramp_angle), slot=settings.slot_feed * data.slot_share)
+    manner = Manner(
+        step=safe_step(tool, data.width),
+        ramp=math.radians(settings.ramp_angle),
+        slot=settings.slot_feed * data.slot_share,
+    )
     findings: list[Finding] = []
     above = max(drive.top, drive.stock_top)
     for level in drive.levels:
         room = Room.of(level.boundary, tool.radius + settings.wall_distance)
         over = _over(level, room, tool, settings.overhang)
         if not over:
-            findings.append(error("rib.too-narrow", f"{tool.name} does not fit over {drive.feature}: {level.wanted.area:.0f} mm2 stay",
-                                  drive.feature, remedy="choose a smaller cutter"))
+            findings.append(
+                error(
+                    "rib.too-narrow",
+                    f"{tool.name} does not fit over {drive.feature}: {level.wanted.area:.0f} mm2 stay",
+                    drive.feature,
+                    remedy="choose a smaller cutter",
+                )
+            )
             continue
         rings = ring_tree(over, manner.step)
         for z in steps_down(above, level.bottom, data.depth):
-            progress.at((drive.top - z) / max(drive.top - drive.bottom, tolerance.SEW), f"{drive.feature}: layer at {z:.3f}")
+            progress.at(
+                (drive.top - z) / max(drive.top - drive.bottom, tolerance.SEW),
+                f"{drive.feature}: layer at {z:.3f}",
+            )
             if not stock.is_clear(z + tolerance.COINCIDENT, level.wanted):
                 clear(builder, Layer(z=z, rings=rings, room=room, top=None), manner, progress)
             above = z
         left = level.wanted.minus(over.offset(_flat(tool) + tolerance.SEW)).area
         if left > SMALLEST_LEFTOVER:
-            findings.append(info("rib.left", f"{left:.0f} mm2 of the top of {drive.feature} stay beside walls", drive.feature,
-                                 remedy="choose a flat cutter, or a smaller one"))
+            findings.append(
+                info(
+                    "rib.left",
+                    f"{left:.0f} mm2 of the top of {drive.feature} stay beside walls",
+                    drive.feature,
+                    remedy="choose a flat cutter, or a smaller one",
+                )
+            )
     return Planned(path=builder.finished(), findings=tuple(findings))
 
 
@@ -82,4 +139,8 @@ def _over(level: DriveLevel, room: Room, tool: Tool, overhang: float) -> Region:
     over = room.region.intersect(near)
     missed = level.wanted.minus(over.offset(_flat(tool))) if over else level.wanted
     missed = Region(tuple(p for p in missed.pieces if p.area > tolerance.SEW))
-    return over.union(room.region.intersect(missed.offset(_flat(tool) + FLARE_MARGIN))) if missed else over
+    return (
+        over.union(room.region.intersect(missed.offset(_flat(tool) + FLARE_MARGIN)))
+        if missed
+        else over
+    )

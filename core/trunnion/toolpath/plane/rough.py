@@ -37,51 +37,103 @@ RIDGE = 0.3
 class RoughSettings:
     """How a pocket is roughed. Width and depth of cut come with the cutting data, allowances with the drive."""
 
-    ramp_angle: float = setting(3.0, unit="deg", low=0.5, high=30.0, label="Entry angle",
-                                help="Slope of the helix or ramp into full material.")
-    slot_feed: float = setting(0.6, unit="of feed", low=0.1, high=1.0, label="Feed in full width",
-                               help="Share of the feed while the whole cutter's width is in material.")
-    safety: float = setting(2.0, unit="mm", low=0.2, high=50.0, label="Safety distance",
-                            help="Where a rapid ends above what may still be there.")
+    ramp_angle: float = setting(
+        3.0,
+        unit="deg",
+        low=0.5,
+        high=30.0,
+        label="Entry angle",
+        help="Slope of the helix or ramp into full material.",
+    )
+    slot_feed: float = setting(
+        0.6,
+        unit="of feed",
+        low=0.1,
+        high=1.0,
+        label="Feed in full width",
+        help="Share of the feed while the whole cutter's width is in material.",
+    )
+    safety: float = setting(
+        2.0,
+        unit="mm",
+        low=0.2,
+        high=50.0,
+        label="Safety distance",
+        help="Where a rapid ends above what may still be there.",
+    )
 
 
 @strategy(settings=RoughSettings, drive=PlaneDrive, meets=full_width)
-def rough(drive: PlaneDrive, tool: Tool, data: CuttingData, stock: PlanningStock, setup: Setup, settings: RoughSettings,
-          progress: Progress) -> Planned:
+def rough(
+    drive: PlaneDrive,
+    tool: Tool,
+    data: CuttingData,
+    stock: PlanningStock,
+    setup: Setup,
+    settings: RoughSettings,
+    progress: Progress,
+) -> Planned:
     """Return the motions that clear every band of the drive layer by layer down to the floors' allowance, and what the cutter leaves."""
     builder = PathBuilder(tool, data, stock, setup, settings.safety)
-    manner = Manner(step=safe_step(tool, data.width, RIDGE), ramp=math.radians(settings.ramp_angle),
-                    slot=settings.slot_feed * data.slot_share)
+    manner = Manner(
+        step=safe_step(tool, data.width, RIDGE),
+        ramp=math.radians(settings.ramp_angle),
+        slot=settings.slot_feed * data.slot_share,
+    )
     findings: list[Finding] = []
     left: list[tuple[DriveLevel, float]] = []
     above, first = max(drive.top, drive.stock_top), True
     for n, level in enumerate(drive.levels):
-        heights = layers(above, level.bottom, data.depth, _horizontals(drive, n), drive.floor_allowance)
+        heights = layers(
+            above, level.bottom, data.depth, _horizontals(drive, n), drive.floor_allowance
+        )
         made: dict[float, Passes] = {}
         for z in heights:
-            progress.at((drive.top - z) / max(drive.top - drive.bottom, tolerance.SEW), f"{drive.feature}: layer at {z:.3f}")
+            progress.at(
+                (drive.top - z) / max(drive.top - drive.bottom, tolerance.SEW),
+                f"{drive.feature}: layer at {z:.3f}",
+            )
             distance = tool.radius + drive.wall_allowance + _foot(drive, tool, z)
             if distance not in made:
-                made[distance] = passes_over(level.wanted, level.boundary, tool, distance, manner.step,
-                                             mitred=drive.fillet > 0.0)
+                made[distance] = passes_over(
+                    level.wanted,
+                    level.boundary,
+                    tool,
+                    distance,
+                    manner.step,
+                    mitred=drive.fillet > 0.0,
+                )
             passes = made[distance]
             if passes.rings and not _is_clear(builder, level.wanted, z):
                 known = None if first or passes.clip is not None else above
-                clear(builder, Layer(z=z, rings=passes.rings, room=passes.room, clip=passes.clip, top=known), manner, progress)
+                clear(
+                    builder,
+                    Layer(z=z, rings=passes.rings, room=passes.room, clip=passes.clip, top=known),
+                    manner,
+                    progress,
+                )
             above, first = z, False
         if made and not made[max(made)].room.region:
             findings.append(_too_wide(drive, level, tool))
         elif made:
             left.append((level, _left(level, max(made), made[max(made)].room.region)))
-    findings += _corners(drive, tool, [(level, area) for level, area in left if area >= SMALLEST_LEFTOVER])
-    return Planned(path=eased(builder.finished(), tool, data, stock, manner.slot, progress), findings=tuple(findings))
+    findings += _corners(
+        drive, tool, [(level, area) for level, area in left if area >= SMALLEST_LEFTOVER]
+    )
+    return Planned(
+        path=eased(builder.finished(), tool, data, stock, manner.slot, progress),
+        findings=tuple(findings),
+    )
 
 
 def _horizontals(drive: PlaneDrive, row: int) -> list[float]:
     """Return the heights of horizontal faces that the layers of a band end on: floors, and tops of what stands in the next band."""
     level = drive.levels[row]
     found = [f.z for f in drive.floors]
-    if row + 1 == len(drive.levels) or level.wanted.area - drive.levels[row + 1].wanted.area > SMALLEST_LEFTOVER:
+    if (
+        row + 1 == len(drive.levels)
+        or level.wanted.area - drive.levels[row + 1].wanted.area > SMALLEST_LEFTOVER
+    ):
         found.append(level.bottom)
     return found
 
@@ -99,8 +151,14 @@ def _is_clear(builder: PathBuilder, wanted: Region, z: float) -> bool:
 
 
 def _too_wide(drive: PlaneDrive, level: DriveLevel, tool: Tool) -> Finding:
-    return error("rough.too-wide", f"{tool.name} does not fit between the walls of {drive.feature} below {level.top:.2f}: "
-                 f"{level.wanted.area:.0f} mm2 stay", drive.feature, *face_tags(drive.faces), remedy="choose a smaller cutter")
+    return error(
+        "rough.too-wide",
+        f"{tool.name} does not fit between the walls of {drive.feature} below {level.top:.2f}: "
+        f"{level.wanted.area:.0f} mm2 stay",
+        drive.feature,
+        *face_tags(drive.faces),
+        remedy="choose a smaller cutter",
+    )
 
 
 def _left(level: DriveLevel, distance: float, room: Region) -> float:
@@ -112,7 +170,17 @@ def _corners(drive: PlaneDrive, tool: Tool, left: list[tuple[DriveLevel, float]]
     """Return one finding for all bands with corners that are left."""
     if not left:
         return []
-    most, low, high = max(area for _, area in left), min(level.bottom for level, _ in left), max(level.top for level, _ in left)
+    most, low, high = (
+        max(area for _, area in left),
+        min(level.bottom for level, _ in left),
+        max(level.top for level, _ in left),
+    )
     size = f"{most:.0f} mm2" if len(left) == 1 else f"up to {most:.0f} mm2"
-    return [info("rough.left", f"{size} of {drive.feature} between {low:.2f} and {high:.2f} stay in corners that {tool.name} can't reach",
-                 drive.feature, remedy="clear them by a smaller cutter afterwards")]
+    return [
+        info(
+            "rough.left",
+            f"{size} of {drive.feature} between {low:.2f} and {high:.2f} stay in corners that {tool.name} can't reach",
+            drive.feature,
+            remedy="clear them by a smaller cutter afterwards",
+        )
+    ]

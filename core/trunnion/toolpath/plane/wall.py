@@ -41,26 +41,74 @@ MOST_FILLET_STEPS = 40
 class WallSettings:
     """How walls are finished. The axial step comes with the cutting data."""
 
-    lead_radius: float = setting(4.0, unit="mm", low=0.2, high=100.0, label="Lead radius",
-                                 help="Radius of the tangential arcs onto the wall and off it; smaller where there is no room.")
-    overlap: float = setting(2.0, unit="mm", low=0.0, high=50.0, label="Overlap", help="How far a closed pass runs on past its start.")
-    spring: bool = setting(False, label="Spring pass", help="Go along each wall a second time without moving in.")
-    scallop: float = setting(0.01, unit="mm", low=0.001, high=1.0, label="Scallop",
-                             help="Height of the cusps on a fillet that is larger than the cutter's corner.")
-    floor_rest: bool = setting(True, label="Rest of the floor",
-                               help="Finish what a larger floor cutter left between walls that stand close.")
-    ramp_angle: float = setting(2.0, unit="deg", low=0.5, high=30.0, label="Entry angle", help="Slope of a ramp where no lead fits.")
-    safety: float = setting(2.0, unit="mm", low=0.2, high=50.0, label="Safety distance",
-                            help="Where a rapid ends above what may still be there.")
+    lead_radius: float = setting(
+        4.0,
+        unit="mm",
+        low=0.2,
+        high=100.0,
+        label="Lead radius",
+        help="Radius of the tangential arcs onto the wall and off it; smaller where there is no room.",
+    )
+    overlap: float = setting(
+        2.0,
+        unit="mm",
+        low=0.0,
+        high=50.0,
+        label="Overlap",
+        help="How far a closed pass runs on past its start.",
+    )
+    spring: bool = setting(
+        False, label="Spring pass", help="Go along each wall a second time without moving in."
+    )
+    scallop: float = setting(
+        0.01,
+        unit="mm",
+        low=0.001,
+        high=1.0,
+        label="Scallop",
+        help="Height of the cusps on a fillet that is larger than the cutter's corner.",
+    )
+    floor_rest: bool = setting(
+        True,
+        label="Rest of the floor",
+        help="Finish what a larger floor cutter left between walls that stand close.",
+    )
+    ramp_angle: float = setting(
+        2.0,
+        unit="deg",
+        low=0.5,
+        high=30.0,
+        label="Entry angle",
+        help="Slope of a ramp where no lead fits.",
+    )
+    safety: float = setting(
+        2.0,
+        unit="mm",
+        low=0.2,
+        high=50.0,
+        label="Safety distance",
+        help="Where a rapid ends above what may still be there.",
+    )
 
 
 @strategy(settings=WallSettings, drive=PlaneDrive, meets=eased_leftovers)
-def wall(drive: PlaneDrive, tool: Tool, data: CuttingData, stock: PlanningStock, setup: Setup, settings: WallSettings,
-         progress: Progress) -> Planned:
+def wall(
+    drive: PlaneDrive,
+    tool: Tool,
+    data: CuttingData,
+    stock: PlanningStock,
+    setup: Setup,
+    settings: WallSettings,
+    progress: Progress,
+) -> Planned:
     """Return the motions that finish every wall of the drive, and the lengths of wall that the cutter can't reach."""
     builder = PathBuilder(tool, data, stock, setup, settings.safety)
-    approach = Approach(radius=settings.lead_radius, overlap=settings.overlap, ramp=math.radians(settings.ramp_angle),
-                        rounds=2 if settings.spring else 1)
+    approach = Approach(
+        radius=settings.lead_radius,
+        overlap=settings.overlap,
+        ramp=math.radians(settings.ramp_angle),
+        rounds=2 if settings.spring else 1,
+    )
     findings: list[Finding] = []
     rooms: dict[tuple[int, float, bool], Room] = {}
     for n, guide in enumerate(drive.walls):
@@ -69,7 +117,9 @@ def wall(drive: PlaneDrive, tool: Tool, data: CuttingData, stock: PlanningStock,
             progress.at(n / len(drive.walls), f"{drive.feature}: wall at {z:.3f}")
             boundary = level_at(drive, z).boundary
             distance = tool.radius + drive.wall_allowance + extra
-            room = _room(rooms, boundary, distance, mitred=guide.fillet > 0.0 and guide.curve.closed)
+            room = _room(
+                rooms, boundary, distance, mitred=guide.fillet > 0.0 and guide.curve.closed
+            )
             parts = contour_parts(room, guide.curve, distance)
             cut_parts(builder, parts, z, room, approach)
             found = found or bool(parts)
@@ -79,20 +129,42 @@ def wall(drive: PlaneDrive, tool: Tool, data: CuttingData, stock: PlanningStock,
             progress.check()
             _cut_floor_rest(builder, drive, each, tool, approach, progress)
     if not drive.walls:
-        findings.append(error("wall.none", f"{drive.feature} has no wall to finish", drive.feature, remedy="suppress the operation"))
-    return Planned(path=eased_finish(builder.finished(), tool, data, stock, progress), findings=tuple(findings))
+        findings.append(
+            error(
+                "wall.none",
+                f"{drive.feature} has no wall to finish",
+                drive.feature,
+                remedy="suppress the operation",
+            )
+        )
+    return Planned(
+        path=eased_finish(builder.finished(), tool, data, stock, progress), findings=tuple(findings)
+    )
 
 
-def _cut_floor_rest(builder: PathBuilder, drive: PlaneDrive, each: Floor, tool: Tool, approach: Approach,
-                    progress: Progress) -> None:
+def _cut_floor_rest(
+    builder: PathBuilder,
+    drive: PlaneDrive,
+    each: Floor,
+    tool: Tool,
+    approach: Approach,
+    progress: Progress,
+) -> None:
     """Cut what a larger floor cutter left where it had no room: floor that neither it nor the wall passes have certainly reached."""
     stock = builder.stock()
     inner = each.region.offset(-each.fillet - RIM * stock.cell)
     places = stock.places_above(each.z + tolerance.COINCIDENT, inner)
     if not len(places):
         return
-    rest = union_all([Region.rectangle(*(low - stock.cell), *(high + stock.cell)) for low, high in _clusters(places, tool.radius)])
-    distance = tool.radius + drive.wall_allowance + foot_clearance(each.fillet, tool.corner_radius, 0.0)
+    rest = union_all(
+        [
+            Region.rectangle(*(low - stock.cell), *(high + stock.cell))
+            for low, high in _clusters(places, tool.radius)
+        ]
+    )
+    distance = (
+        tool.radius + drive.wall_allowance + foot_clearance(each.fillet, tool.corner_radius, 0.0)
+    )
     level = level_at(drive, each.z)
     room = Room.of(level.boundary, distance, mitred=each.fillet > 0.0 and is_closed(level))
     step = safe_step(tool, tool.radius)
@@ -111,34 +183,77 @@ def _clusters(places: Floats, apart: float) -> list[tuple[Floats, Floats]]:
     return boxes
 
 
-def _heights(guide: WallGuide, tool: Tool, step: float, scallop: float) -> list[tuple[float, float]]:
+def _heights(
+    guide: WallGuide, tool: Tool, step: float, scallop: float
+) -> list[tuple[float, float]]:
     """Return (height, what is kept more than the radius from the wall) of all passes, downwards."""
     foot = fillet_steps(guide.fillet, tool.corner_radius, scallop)
-    straight = steps_down(guide.top, guide.bottom + foot[0], step) if guide.top - guide.bottom > foot[0] + tolerance.SEW else ()
+    straight = (
+        steps_down(guide.top, guide.bottom + foot[0], step)
+        if guide.top - guide.bottom > foot[0] + tolerance.SEW
+        else ()
+    )
     heights = [*straight, *(guide.bottom + t for t in foot[1 if straight else 0 :])]
-    return [(z, foot_clearance(guide.fillet, tool.corner_radius, z - guide.bottom)) for z in heights]
+    return [
+        (z, foot_clearance(guide.fillet, tool.corner_radius, z - guide.bottom)) for z in heights
+    ]
 
 
-def _room(rooms: dict[tuple[int, float, bool], Room], boundary: Region, distance: float, *, mitred: bool = False) -> Room:
+def _room(
+    rooms: dict[tuple[int, float, bool], Room],
+    boundary: Region,
+    distance: float,
+    *,
+    mitred: bool = False,
+) -> Room:
     key = (id(boundary), distance, mitred)
     if key not in rooms:
         rooms[key] = Room.of(boundary, distance, mitred=mitred)
     return rooms[key]
 
 
-def _left(drive: PlaneDrive, guide: WallGuide, tool: Tool, found: bool, rooms: dict[tuple[int, float, bool], Room]) -> list[Finding]:
+def _left(
+    drive: PlaneDrive,
+    guide: WallGuide,
+    tool: Tool,
+    found: bool,
+    rooms: dict[tuple[int, float, bool], Room],
+) -> list[Finding]:
     height = guide.top - guide.bottom
     if not found:
-        return [error("wall.too-narrow", f"{tool.name} can't come to a wall of {drive.feature}: {guide.curve.length * height:.0f} mm2 stay",
-                      drive.feature, *face_tags(guide.faces), remedy="choose a smaller cutter")]
+        return [
+            error(
+                "wall.too-narrow",
+                f"{tool.name} can't come to a wall of {drive.feature}: {guide.curve.length * height:.0f} mm2 stay",
+                drive.feature,
+                *face_tags(guide.faces),
+                remedy="choose a smaller cutter",
+            )
+        ]
     steps = len(fillet_steps(guide.fillet, tool.corner_radius, tolerance.GOUGE))
     findings = []
     if steps > MOST_FILLET_STEPS:
-        findings.append(info("wall.fillet-cutter", f"the fillet of {guide.fillet:g} mm takes {steps} passes with {tool.name}",
-                             drive.feature, *face_tags(guide.faces), remedy="choose a cutter whose corner radius is the fillet's"))
+        findings.append(
+            info(
+                "wall.fillet-cutter",
+                f"the fillet of {guide.fillet:g} mm takes {steps} passes with {tool.name}",
+                drive.feature,
+                *face_tags(guide.faces),
+                remedy="choose a cutter whose corner radius is the fillet's",
+            )
+        )
     distance = tool.radius + drive.wall_allowance
-    missed = length_out_of_reach(_room(rooms, level_at(drive, guide.bottom).boundary, distance), guide.curve, distance)
+    missed = length_out_of_reach(
+        _room(rooms, level_at(drive, guide.bottom).boundary, distance), guide.curve, distance
+    )
     if missed * height > SMALLEST_LEFTOVER:
-        findings.append(info("wall.left", f"{missed * height:.0f} mm2 of wall stay in corners that {tool.name} can't reach", drive.feature,
-                             *face_tags(guide.faces), remedy="finish them with the corners, by a smaller cutter"))
+        findings.append(
+            info(
+                "wall.left",
+                f"{missed * height:.0f} mm2 of wall stay in corners that {tool.name} can't reach",
+                drive.feature,
+                *face_tags(guide.faces),
+                remedy="finish them with the corners, by a smaller cutter",
+            )
+        )
     return findings

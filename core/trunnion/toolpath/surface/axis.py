@@ -53,7 +53,9 @@ def from_curve(curve: ArrayLike, away: bool = True) -> AxisField:
         ray = point - nearest(points, point)
         size = np.linalg.norm(ray, axis=1, keepdims=True)
         if (size <= _AT_VECTOR).any():
-            raise BadInput("the tool axis can't point away from a place where the tool touches: choose one off the faces")
+            raise BadInput(
+                "the tool axis can't point away from a place where the tool touches: choose one off the faces"
+            )
         return ray / (size if away else -size)
 
     return field
@@ -61,7 +63,10 @@ def from_curve(curve: ArrayLike, away: bool = True) -> AxisField:
 
 def interpolated(places: ArrayLike, axes: ArrayLike) -> AxisField:
     """Return the field between chosen vectors: axes (m, 3) at places (m, 3), weighed by the inverse square of the distance to each."""
-    where, chosen = np.asarray(places, dtype=np.float64).reshape(-1, 3), unit(axes, "tool axis").reshape(-1, 3)
+    where, chosen = (
+        np.asarray(places, dtype=np.float64).reshape(-1, 3),
+        unit(axes, "tool axis").reshape(-1, 3),
+    )
 
     def field(point: Floats, normal: Floats, feed: Floats) -> Floats:
         away = np.linalg.norm(point[:, None] - where[None], axis=2)
@@ -69,7 +74,11 @@ def interpolated(places: ArrayLike, axes: ArrayLike) -> AxisField:
         mean = (weight / weight.sum(axis=1, keepdims=True)) @ chosen
         size = np.linalg.norm(mean, axis=1, keepdims=True)
         # Vectors that cancel each other say nothing: the nearest one counts.
-        return np.where(size > math.sqrt(_AT_VECTOR), mean / np.maximum(size, _AT_VECTOR), chosen[np.argmin(away, axis=1)])
+        return np.where(
+            size > math.sqrt(_AT_VECTOR),
+            mean / np.maximum(size, _AT_VECTOR),
+            chosen[np.argmin(away, axis=1)],
+        )
 
     return field
 
@@ -94,10 +103,18 @@ def eased(axis: Floats, reach: float) -> Floats:
     half = max(1, math.ceil(3.0 * reach))
     weight = np.exp(-0.5 * (np.arange(-half, half + 1) / reach) ** 2)
     # Mirrored through its ends, which therefore stay.
-    before = 2.0 * (axis[:1] * axis[1 : half + 1]).sum(axis=1, keepdims=True) * axis[:1] - axis[1 : half + 1]
-    after = 2.0 * (axis[-1:] * axis[-half - 1 : -1]).sum(axis=1, keepdims=True) * axis[-1:] - axis[-half - 1 : -1]
+    before = (
+        2.0 * (axis[:1] * axis[1 : half + 1]).sum(axis=1, keepdims=True) * axis[:1]
+        - axis[1 : half + 1]
+    )
+    after = (
+        2.0 * (axis[-1:] * axis[-half - 1 : -1]).sum(axis=1, keepdims=True) * axis[-1:]
+        - axis[-half - 1 : -1]
+    )
     padded = np.vstack([_filled(before[::-1], half, True), axis, _filled(after[::-1], half, False)])
-    mean = np.column_stack([np.convolve(padded[:, c], weight / weight.sum(), mode="valid") for c in range(3)])
+    mean = np.column_stack(
+        [np.convolve(padded[:, c], weight / weight.sum(), mode="valid") for c in range(3)]
+    )
     return np.asarray(mean / np.linalg.norm(mean, axis=1, keepdims=True))
 
 

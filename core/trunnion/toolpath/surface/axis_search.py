@@ -83,17 +83,33 @@ class Course:
             place = self.place[rows]
             place[0] = self.place[a - 1] if self.leap[a] else place[0]
             if self.free[a] and len(rows) > 1:
-                found.append(Course(place=place, axis=self.axis[rows], free=self.free[rows], leap=self.leap[rows]))
+                found.append(
+                    Course(
+                        place=place,
+                        axis=self.axis[rows],
+                        free=self.free[rows],
+                        leap=self.leap[rows],
+                    )
+                )
         return found
 
     def at(self, place: Floats) -> Floats:
         """Return the axes (m, 3) at places (m,) of the pass."""
-        row = np.clip(np.interp(place, self.place, np.arange(len(self.place))), 0.0, len(self.place) - 1.0)
+        row = np.clip(
+            np.interp(place, self.place, np.arange(len(self.place))), 0.0, len(self.place) - 1.0
+        )
         return axis_between(self.axis, row)
 
 
-def free_axes(passes: Sequence[Contacts], field: AxisField, tool: Tool, ask: Asker | None, limits: LeanLimits, allowance: float = 0.0,
-              progress: Progress = QUIET) -> list[Course]:
+def free_axes(
+    passes: Sequence[Contacts],
+    field: AxisField,
+    tool: Tool,
+    ask: Asker | None,
+    limits: LeanLimits,
+    allowance: float = 0.0,
+    progress: Progress = QUIET,
+) -> list[Course]:
     """Return the free axes of contact passes, as near as can be to what a field wants.
 
     `ask` says what is free; without it only the limits count. `allowance`: mm that the cutter keeps from the contacts.
@@ -101,31 +117,58 @@ def free_axes(passes: Sequence[Contacts], field: AxisField, tool: Tool, ask: Ask
     return AxisSearch(passes, field, tool, ask, limits, allowance).courses(progress)
 
 
-def leaned(passes: Sequence[Pass], tool: Tool, field: AxisField, ask: Asker | None, limits: LeanLimits, chord: float,
-           progress: Progress = QUIET) -> list[Pass]:
+def leaned(
+    passes: Sequence[Pass],
+    tool: Tool,
+    field: AxisField,
+    ask: Asker | None,
+    limits: LeanLimits,
+    chord: float,
+    progress: Progress = QUIET,
+) -> list[Pass]:
     """Return passes of a ball (or a taper with a ball) with the axis leant to a field: the ball's centre stays on its way.
 
     Turning the axis while the tip goes straight bends the centre's way: blocks are cut so short that it stays within `chord` mm.
     """
     radius, some = tool.corner_radius, [p for p in passes if len(p) > 1]
-    ways = [Contacts(point=p.tip + radius * (p.axis - p.normal), normal=p.normal, closed=p.closed) for p in some]
+    ways = [
+        Contacts(point=p.tip + radius * (p.axis - p.normal), normal=p.normal, closed=p.closed)
+        for p in some
+    ]
     found = []
-    for origin, way, free in zip(some, ways, free_axes(ways, field, tool, ask, limits, 0.0, progress), strict=True):
+    for origin, way, free in zip(
+        some, ways, free_axes(ways, field, tool, ask, limits, 0.0, progress), strict=True
+    ):
         centre = origin.tip + radius * origin.axis
         for run in free.runs():
-            place = _finely(run, np.arange(len(way), dtype=np.float64), math.sqrt(8.0 * chord / radius))
+            place = _finely(
+                run, np.arange(len(way), dtype=np.float64), math.sqrt(8.0 * chord / radius)
+            )
             row = np.clip(place.astype(np.int64), 0, len(way) - 2)
             share = (place - row)[:, None]
             axis = run.at(place)
             normal = slerp(way.normal[row], way.normal[row + 1], place - row)
             whole = origin.closed and len(run.place) == len(free.place)
-            found.append(Pass(tip=(1.0 - share) * centre[row] + share * centre[row + 1] - radius * axis, axis=axis, normal=normal,
-                              closed=whole and bool(angle_between(axis[:1], axis[-1:])[0] < 1e-9)))
+            found.append(
+                Pass(
+                    tip=(1.0 - share) * centre[row] + share * centre[row + 1] - radius * axis,
+                    axis=axis,
+                    normal=normal,
+                    closed=whole and bool(angle_between(axis[:1], axis[-1:])[0] < 1e-9),
+                )
+            )
     return found
 
 
-def leaned_by(passes: Sequence[Pass], drive: SurfaceDrive, tool: Tool, lead: float, tilt: float, chord: float,
-              progress: Progress = QUIET) -> tuple[list[Pass], tuple[Finding, ...]]:
+def leaned_by(
+    passes: Sequence[Pass],
+    drive: SurfaceDrive,
+    tool: Tool,
+    lead: float,
+    tilt: float,
+    chord: float,
+    progress: Progress = QUIET,
+) -> tuple[list[Pass], tuple[Finding, ...]]:
     """Return passes of a ball leant by a lead and a tilt (rad), further where that keeps clear, and what had to be left; as they are when
     both are 0. Raises `Refused` for a cutter that is no ball and where no tool may lean."""
     if lead == 0.0 and tilt == 0.0:
@@ -133,21 +176,41 @@ def leaned_by(passes: Sequence[Pass], drive: SurfaceDrive, tool: Tool, lead: flo
     if drive.ask is None:
         raise Refused(f"{drive.feature}: a lead or tilt angle needs a machine with rotary axes")
     if tool.corner_radius < tool.radius:
-        raise Refused(f"{tool.name}: only passes of a ball keep their place when it leans; choose a ball, or point milling")
-    found = leaned(passes, tool, leaning(lead, tilt), drive.ask(tool), LeanLimits(), chord, progress)
-    whole, done = (sum(float(np.linalg.norm(np.diff(p.tip + tool.radius * p.axis, axis=0), axis=1).sum()) for p in some)
-                   for some in (passes, found))
+        raise Refused(
+            f"{tool.name}: only passes of a ball keep their place when it leans; choose a ball, or point milling"
+        )
+    found = leaned(
+        passes, tool, leaning(lead, tilt), drive.ask(tool), LeanLimits(), chord, progress
+    )
+    whole, done = (
+        sum(
+            float(np.linalg.norm(np.diff(p.tip + tool.radius * p.axis, axis=0), axis=1).sum())
+            for p in some
+        )
+        for some in (passes, found)
+    )
     if done > (1.0 - SMALLEST_SHARE) * whole:
         return found, ()
-    return found, (warning("lean.left", f"{100.0 * (1.0 - done / whole):.1f} % of the passes over {drive.feature} stay: {tool.name} finds "
-                           "no way to lean there", drive.feature, remedy="choose another lead or tilt, or a longer cutter"),)
+    return found, (
+        warning(
+            "lean.left",
+            f"{100.0 * (1.0 - done / whole):.1f} % of the passes over {drive.feature} stay: {tool.name} finds "
+            "no way to lean there",
+            drive.feature,
+            remedy="choose another lead or tilt, or a longer cutter",
+        ),
+    )
 
 
 def roomy(tool: Tool, room: float) -> Tool:
     """Return a tool whose neck, shank and holder are thicker by a room in mm; its cutting part stays as it is."""
     rows = tuple((z0, r0 + room, z1, r1 + room) for z0, r0, z1, r1 in tool.holder.rows)
-    return replace(tool, neck_diameter=tool.neck_diameter + 2.0 * room, shank_diameter=tool.shank_diameter + 2.0 * room,
-                   holder=Holder(name=tool.holder.name, rows=rows))
+    return replace(
+        tool,
+        neck_diameter=tool.neck_diameter + 2.0 * room,
+        shank_diameter=tool.shank_diameter + 2.0 * room,
+        holder=Holder(name=tool.holder.name, rows=rows),
+    )
 
 
 def _finely(run: Course, rows: Floats, turn: float) -> Floats:
@@ -174,14 +237,24 @@ class _Places:
     pitch: Floats
 
     @staticmethod
-    def of(passes: Sequence[Contacts], field: AxisField, tool: Tool, limits: LeanLimits, allowance: float) -> _Places:
+    def of(
+        passes: Sequence[Contacts],
+        field: AxisField,
+        tool: Tool,
+        limits: LeanLimits,
+        allowance: float,
+    ) -> _Places:
         """Return places at even steps of what the cutter travels."""
         radius = max(tool.corner_radius, 0.25 * tool.radius)
         places, points, normals, wanted, pitches = [], [], [], [], []
         for way in passes:
             travel, feed = way.travel(radius), way.feed
             steps = max(1, math.ceil(travel[-1] * limits.turn / STEP))
-            place = np.interp(np.linspace(0.0, travel[-1], steps + 1), travel, np.arange(len(way), dtype=np.float64))
+            place = np.interp(
+                np.linspace(0.0, travel[-1], steps + 1),
+                travel,
+                np.arange(len(way), dtype=np.float64),
+            )
             point, normal = between(way.point, way.normal, feed, place)
             row = np.clip(np.round(place).astype(np.int64), 0, len(way) - 1)
             wish = field(point, normal, feed[row])
@@ -191,8 +264,14 @@ class _Places:
             wanted.append(wish)
             pitches.append(travel[-1] / steps)
         empty = np.zeros((0, 3))
-        return _Places(place=np.concatenate([np.zeros(0), *places]), point=np.vstack([empty, *points]), normal=np.vstack([empty, *normals]),
-                       wanted=np.vstack([empty, *wanted]), start=np.cumsum([0, *(len(p) for p in places)]), pitch=np.array(pitches))
+        return _Places(
+            place=np.concatenate([np.zeros(0), *places]),
+            point=np.vstack([empty, *points]),
+            normal=np.vstack([empty, *normals]),
+            wanted=np.vstack([empty, *wanted]),
+            start=np.cumsum([0, *(len(p) for p in places)]),
+            pitch=np.array(pitches),
+        )
 
 
 class AxisSearch:
@@ -201,8 +280,15 @@ class AxisSearch:
     Whoever finds that a move between two places touches something says so (`met`) and asks for the courses again.
     """
 
-    def __init__(self, passes: Sequence[Contacts], field: AxisField, tool: Tool, ask: Asker | None, limits: LeanLimits,
-                 allowance: float = 0.0) -> None:
+    def __init__(
+        self,
+        passes: Sequence[Contacts],
+        field: AxisField,
+        tool: Tool,
+        ask: Asker | None,
+        limits: LeanLimits,
+        allowance: float = 0.0,
+    ) -> None:
         self.places = places = _Places.of(passes, field, tool, limits, allowance)
         self.tool, self.ask, self.limits = tool, ask, limits
         k = len(places.place)
@@ -214,8 +300,14 @@ class AxisSearch:
         # Row 0: nothing is known, all that the machine can hold is free.
         self.table = self._held()[None]
         self.row = np.zeros(k, dtype=np.int64)
-        alike = np.column_stack([np.floor(places.point / CLOSE), np.floor(places.normal / ALIKE)]).astype(np.int64)
-        self.first, self.node = np.unique(alike, axis=0, return_index=True, return_inverse=True)[1:] if k else (self.row, self.row)
+        alike = np.column_stack(
+            [np.floor(places.point / CLOSE), np.floor(places.normal / ALIKE)]
+        ).astype(np.int64)
+        self.first, self.node = (
+            np.unique(alike, axis=0, return_index=True, return_inverse=True)[1:]
+            if k
+            else (self.row, self.row)
+        )
 
     def _held(self) -> Bools:
         point = _sphere()[0]
@@ -232,7 +324,9 @@ class AxisSearch:
         at = [slice(a, b) for a, b in pairwise(self.places.start.tolist())]
         # The search may go on: what is given away is a copy.
         axis, free, leap = self.axis.copy(), self.free.copy(), self.leap.copy()
-        return [Course(place=self.places.place[s], axis=axis[s], free=free[s], leap=leap[s]) for s in at]
+        return [
+            Course(place=self.places.place[s], axis=axis[s], free=free[s], leap=leap[s]) for s in at
+        ]
 
     def met(self, number: int, places: Floats) -> None:
         """Take in that on the pass of a number something was met at places (k,): the axes to both sides of them won't do."""
@@ -246,7 +340,10 @@ class AxisSearch:
     def _improved(self) -> bool:
         """Choose the courses of passes about which something new is known; say whether what they met is worth another try."""
         for n in np.flatnonzero(self.dirty).tolist():
-            self._choose(slice(int(self.places.start[n]), int(self.places.start[n + 1])), float(self.places.pitch[n]))
+            self._choose(
+                slice(int(self.places.start[n]), int(self.places.start[n + 1])),
+                float(self.places.pitch[n]),
+            )
         self.dirty[:] = False
         rows = np.flatnonzero(self.free & ~self.clear)
         met = self._touching(rows)
@@ -263,7 +360,9 @@ class AxisSearch:
         upright = normal @ point.T >= math.cos(self.limits.steepest)
         # The normal may turn away between two places: half the way to the next ones is kept in sight too.
         for beside in (np.vstack([normal[1:], normal[-1:]]), np.vstack([normal[:1], normal[:-1]])):
-            upright &= (normal + beside) @ point.T >= math.cos(self.limits.steepest) * np.linalg.norm(normal + beside, axis=1)[:, None]
+            upright &= (normal + beside) @ point.T >= math.cos(
+                self.limits.steepest
+            ) * np.linalg.norm(normal + beside, axis=1)[:, None]
         allowed = allowed & upright
         off = np.arccos(np.clip(self.places.wanted[rows] @ point.T, -1.0, 1.0))
         taken = 1.0 - _share_near(allowed, near)
@@ -272,14 +371,19 @@ class AxisSearch:
         self.free[rows], self.leap[rows] = chosen >= 0, leap
         # The direction next to the wanted axis stands for it.
         near_wanted = off[np.arange(len(chosen)), chosen] < STEP
-        axis = np.where((near_wanted & ~self.raw[rows])[:, None], self.places.wanted[rows], point[chosen])
+        axis = np.where(
+            (near_wanted & ~self.raw[rows])[:, None], self.places.wanted[rows], point[chosen]
+        )
         axis = self._eased(rows, axis, chosen >= 0, leap)
         self.clear[rows] &= (axis == self.axis[rows]).all(axis=1)
         self.axis[rows], self.chosen[rows] = axis, chosen
 
     def _eased(self, rows: slice, axis: Floats, free: Bools, leap: Bools) -> Floats:
         """Return a course's axes eased, run by run, as far as they stay within the steepest lean."""
-        out, ends = axis.copy(), np.flatnonzero(leap | ~free | ~np.concatenate([[False], free[:-1]]))
+        out, ends = (
+            axis.copy(),
+            np.flatnonzero(leap | ~free | ~np.concatenate([[False], free[:-1]])),
+        )
         for a, b in pairwise([*ends.tolist(), len(axis)]):
             out[a:b] = eased(axis[a:b], EASING) if free[a] else axis[a:b]
         steep = (out * self.places.normal[rows]).sum(axis=1) < math.cos(self.limits.steepest)
@@ -293,14 +397,20 @@ class AxisSearch:
         if self.ask is None:
             return rows[:0]
         p = self.places
-        return rows[~self.ask(tip_at(self.tool, p.point[rows], p.normal[rows], self.axis[rows]), self.axis[rows])]
+        return rows[
+            ~self.ask(
+                tip_at(self.tool, p.point[rows], p.normal[rows], self.axis[rows]), self.axis[rows]
+            )
+        ]
 
     def _learn(self, met: Ints) -> None:
         """Ask what is free where something was met: once for contacts that are alike, then for the contact itself; a contact that has been
         asked takes its directions as they are, and strikes out the one that failed."""
         k, owner = len(self.row), np.repeat(np.arange(len(self.dirty)), np.diff(self.places.start))
         struck = met[self.own[met]]
-        self.table[self.row[struck[self.raw[struck]]], self.chosen[struck[self.raw[struck]]]] = False
+        self.table[self.row[struck[self.raw[struck]]], self.chosen[struck[self.raw[struck]]]] = (
+            False
+        )
         self.raw[struck] = True
         own = met[(self.row[met] > 0) & ~self.own[met]]
         around = np.unique(np.clip(met[:, None] + np.arange(-AHEAD, AHEAD + 1), 0, k - 1))
@@ -323,11 +433,15 @@ class AxisSearch:
         point, parents = directions(FINE)
         coarse = len(directions(COARSE)[0])
         p, free = self.places, np.zeros((len(rows), len(point)), bool)
-        able = (p.normal[rows] @ point[:coarse].T >= math.cos(self.limits.steepest + STEP)) & self.table[0, :coarse]
+        able = (
+            p.normal[rows] @ point[:coarse].T >= math.cos(self.limits.steepest + STEP)
+        ) & self.table[0, :coarse]
         which, column = np.nonzero(able)
         at, axis = rows[which], point[column]
         free[which, column] = self.ask(tip_at(self.tool, p.point[at], p.normal[at], axis), axis)
-        free[:, coarse:] = free[:, parents[coarse:, 0]] & free[:, parents[coarse:, 1]] & self.table[0, coarse:]
+        free[:, coarse:] = (
+            free[:, parents[coarse:, 0]] & free[:, parents[coarse:, 1]] & self.table[0, coarse:]
+        )
         return free
 
 

@@ -12,20 +12,47 @@ TOO_STEEP, TOO_SHALLOW = "surface.too-steep", "surface.too-shallow"
 
 def steepest() -> Any:
     """Return the field of the slope beyond which an upright tool is not put on contacts."""
-    return setting(80.0, unit="deg", low=5.0, high=89.0, label="Steepest slope", help="Steeper places are left to waterlines.")
+    return setting(
+        80.0,
+        unit="deg",
+        low=5.0,
+        high=89.0,
+        label="Steepest slope",
+        help="Steeper places are left to waterlines.",
+    )
 
 
 def chord() -> Any:
     """Return the field of the chord error of cuts."""
-    return setting(0.0003, unit="mm", low=0.00005, high=0.1, label="Chord error",
-                   help="How far straight moves may leave the way of the cutter.")
+    return setting(
+        0.0003,
+        unit="mm",
+        low=0.00005,
+        high=0.1,
+        label="Chord error",
+        help="How far straight moves may leave the way of the cutter.",
+    )
 
 
 def lead_radius() -> Any:
     """Return the field of the radius of leads."""
-    return setting(1.0, unit="mm", low=0.0, high=20.0, label="Lead radius", help="Radius of the arcs onto and off the face.")
+    return setting(
+        1.0,
+        unit="mm",
+        low=0.0,
+        high=20.0,
+        label="Lead radius",
+        help="Radius of the arcs onto and off the face.",
+    )
 
 
 def safety() -> Any:
     """Return the field of how far above the stock rapids end."""
-    return setting(2.0, unit="mm", low=0.2, high=50.0, label="Safety distance", help="Where a rapid ends above what may still be there.")
+    return setting(
+        2.0,
+        unit="mm",
+        low=0.2,
+        high=50.0,
+        label="Safety distance",
+        help="Where a rapid ends above what may still be there.",
+    )

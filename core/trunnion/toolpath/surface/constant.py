@@ -25,23 +25,45 @@ from trunnion.toolpath.surface.linking import Manner, linked
 class ConstantSettings:
     """How an area is cut at a constant scallop height."""
 
-    direction: str = setting("climb", label="Cutting direction", help="With the uncut side on the right of the cutter, or on its left.",
-                             choices=("climb", "conventional"))
-    order: str = setting("inwards", label="Order", help="From the rim inwards, or from the inside to the rim.",
-                         choices=("inwards", "outwards"))
+    direction: str = setting(
+        "climb",
+        label="Cutting direction",
+        help="With the uncut side on the right of the cutter, or on its left.",
+        choices=("climb", "conventional"),
+    )
+    order: str = setting(
+        "inwards",
+        label="Order",
+        help="From the rim inwards, or from the inside to the rim.",
+        choices=("inwards", "outwards"),
+    )
     steepest: float = choices.steepest()
     chord: float = choices.chord()
     lead_radius: float = choices.lead_radius()
     safety: float = choices.safety()
 
 
-@strategy(settings=ConstantSettings, drive=SurfaceDrive, leaves=(TOO_STEEP,), settles=(TOO_SHALLOW,),
-          meets=surface_leftovers)
-def constant(drive: SurfaceDrive, tool: Tool, data: CuttingData, stock: PlanningStock, setup: Setup, settings: ConstantSettings,
-             progress: Progress = QUIET) -> Planned:
+@strategy(
+    settings=ConstantSettings,
+    drive=SurfaceDrive,
+    leaves=(TOO_STEEP,),
+    settles=(TOO_SHALLOW,),
+    meets=surface_leftovers,
+)
+def constant(
+    drive: SurfaceDrive,
+    tool: Tool,
+    data: CuttingData,
+    stock: PlanningStock,
+    setup: Setup,
+    settings: ConstantSettings,
+    progress: Progress = QUIET,
+) -> Planned:
     """Return the motions of passes at a constant scallop height over the drive's faces, and what they leave."""
     ways = scallop_passes(drive, tool, settings.chord, progress.part(0.0, 0.4))
-    done = stood(ways, drive, tool, settings.chord, math.radians(settings.steepest), progress.part(0.4, 0.8))
+    done = stood(
+        ways, drive, tool, settings.chord, math.radians(settings.steepest), progress.part(0.4, 0.8)
+    )
     inwards = settings.order == "inwards"
     passes = list(done.passes if inwards else done.passes[::-1])
     if inwards == (settings.direction == "climb"):

@@ -30,7 +30,9 @@ class Contacts:
 
     def __post_init__(self) -> None:
         object.__setattr__(self, "point", floats(self.point, (None, 3), "contact points"))
-        object.__setattr__(self, "normal", floats(self.normal, (len(self.point), 3), "contact normals"))
+        object.__setattr__(
+            self, "normal", floats(self.normal, (len(self.point), 3), "contact normals")
+        )
 
     def __len__(self) -> int:
         return len(self.point)
@@ -75,8 +77,11 @@ def between(point: Floats, normal: Floats, feed: Floats, place: Floats) -> tuple
     # As long as the tangents of an arc's cubic: chord / cos^2(turn / 4).
     half = np.sqrt(0.5 * (1.0 + np.clip((start * end).sum(axis=1, keepdims=True), -1.0, 1.0)))
     length = np.linalg.norm(b - a, axis=1, keepdims=True) * 2.0 / (1.0 + half)
-    found = (a * (1.0 + 2.0 * u) * (1.0 - u) ** 2 + b * u * u * (3.0 - 2.0 * u)
-             + length * (start * u * (1.0 - u) ** 2 - end * u * u * (1.0 - u)))
+    found = (
+        a * (1.0 + 2.0 * u) * (1.0 - u) ** 2
+        + b * u * u * (3.0 - 2.0 * u)
+        + length * (start * u * (1.0 - u) ** 2 - end * u * u * (1.0 - u))
+    )
     return found, _scaled((1.0 - u) * normal[row] + u * normal[row + 1])
 
 

@@ -45,15 +45,36 @@ class Stood:
         steep, hidden = self.steep * stepover, self.hidden * stepover
         found = []
         if steep > SMALLEST_LEFTOVER:
-            found.append(warning(TOO_STEEP, f"{drive.feature}: about {steep:.1f} mm2 are too steep for passes of {tool.name} "
-                                 "along contacts", drive.feature, remedy="cut them by waterlines or from another direction"))
+            found.append(
+                warning(
+                    TOO_STEEP,
+                    f"{drive.feature}: about {steep:.1f} mm2 are too steep for passes of {tool.name} "
+                    "along contacts",
+                    drive.feature,
+                    remedy="cut them by waterlines or from another direction",
+                )
+            )
         if hidden > SMALLEST_LEFTOVER:
-            found.append(warning("surface.in-the-way", f"{drive.feature}: about {hidden:.1f} mm2 are out of reach of {tool.name}: other "
-                                 "faces are in its way", drive.feature, remedy="finish them with a smaller cutter or a leaning one"))
+            found.append(
+                warning(
+                    "surface.in-the-way",
+                    f"{drive.feature}: about {hidden:.1f} mm2 are out of reach of {tool.name}: other "
+                    "faces are in its way",
+                    drive.feature,
+                    remedy="finish them with a smaller cutter or a leaning one",
+                )
+            )
         return tuple(found)
 
 
-def stood(ways: Sequence[Contacts], drive: SurfaceDrive, tool: Tool, chord: float, steepest: float, progress: Progress = QUIET) -> Stood:
+def stood(
+    ways: Sequence[Contacts],
+    drive: SurfaceDrive,
+    tool: Tool,
+    chord: float,
+    steepest: float,
+    progress: Progress = QUIET,
+) -> Stood:
     """Return the passes of an upright tool over contacts of the drive's faces, in the cutting frame.
 
     What leans by more than `steepest` (radians) from level is left out: there a tip says little of where it touches.
@@ -61,35 +82,61 @@ def stood(ways: Sequence[Contacts], drive: SurfaceDrive, tool: Tool, chord: floa
     runs, source = [], []
     for k, way in enumerate(ways):
         for piece in _runs(way.normal[:, 2] >= math.cos(steepest), way.closed):
-            runs.append(Contacts(point=way.point[piece], normal=way.normal[piece], closed=way.closed and len(piece) == len(way)))
+            runs.append(
+                Contacts(
+                    point=way.point[piece],
+                    normal=way.normal[piece],
+                    closed=way.closed and len(piece) == len(way),
+                )
+            )
             source.append(k)
     whole, kept = (sum(_length(w.point) for w in some) for some in (ways, runs))
-    tips = [tip_at(tool, w.point + drive.allowance * w.normal, w.normal, np.broadcast_to(UPRIGHT, w.point.shape)) for w in runs]
+    tips = [
+        tip_at(
+            tool,
+            w.point + drive.allowance * w.normal,
+            w.normal,
+            np.broadcast_to(UPRIGHT, w.point.shape),
+        )
+        for w in runs
+    ]
     pieces, lowest = lower_side(tool, drive.allowance), float(drive.low[2]) - tool.flute_length
-    followed = follow(drive.skin.drop, pieces, [t[:, :2] for t in tips], chord, lowest, progress.part(0.0, 0.7))
+    followed = follow(
+        drive.skin.drop, pieces, [t[:, :2] for t in tips], chord, lowest, progress.part(0.0, 0.7)
+    )
     plan = np.concatenate([np.zeros((0, 2)), *(f[:, :2] for f in followed)])
     facet = drive.skin.drop.touch(plan, pieces, lowest, progress.part(0.7, 0.95))[1]
     on_area = (facet >= 0) & drive.skin.of(drive.faces)[np.maximum(facet, 0)]
     passes, owner, begin = [], [], 0
     for way, tip, k, asked in zip(runs, followed, source, tips, strict=True):
-        touches, begin = on_area[begin:begin + len(tip)], begin + len(tip)
+        touches, begin = on_area[begin : begin + len(tip)], begin + len(tip)
         tip = tip + drive.allowance * UPRIGHT
         normal = way.normal[cKDTree(asked[:, :2]).query(tip[:, :2])[1]]
         for piece in _runs(touches, way.closed):
             if len(piece) > 1 and _length(tip[piece]) >= SHORTEST:
-                passes.append(Pass(tip=tip[piece], axis=np.broadcast_to(UPRIGHT, (len(piece), 3)), normal=normal[piece],
-                                   closed=way.closed and len(piece) == len(tip)))
+                passes.append(
+                    Pass(
+                        tip=tip[piece],
+                        axis=np.broadcast_to(UPRIGHT, (len(piece), 3)),
+                        normal=normal[piece],
+                        closed=way.closed and len(piece) == len(tip),
+                    )
+                )
                 owner.append(k)
     hidden = _lifted(tips, drive, pieces, lowest, 5.0 * chord)
     return Stood(passes=tuple(passes), source=tuple(owner), steep=whole - kept, hidden=hidden)
 
 
-def _lifted(tips: Sequence[Floats], drive: SurfaceDrive, pieces: Floats, lowest: float, error: float) -> float:
+def _lifted(
+    tips: Sequence[Floats], drive: SurfaceDrive, pieces: Floats, lowest: float, error: float
+) -> float:
     """Return over what length in mm tips (k, 3) on contacts can't stand, for another face would lift them by more than an error."""
     if not tips:
         return 0.0
     places = np.concatenate(tips)
-    lifted = drive.skin.drop.drop(places[:, :2], pieces, lowest) + drive.allowance > places[:, 2] + error
+    lifted = (
+        drive.skin.drop.drop(places[:, :2], pieces, lowest) + drive.allowance > places[:, 2] + error
+    )
     line = np.repeat(np.arange(len(tips)), [len(t) for t in tips])
     both = lifted[1:] & lifted[:-1] & (line[1:] == line[:-1])
     return float(np.linalg.norm(np.diff(places, axis=0), axis=1)[both].sum())

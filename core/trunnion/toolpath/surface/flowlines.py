@@ -50,7 +50,9 @@ class Flow:
     chord: float = 0.0005
 
 
-def flow_lines(drive: SurfaceDrive, tool: Tool, flow: Flow = Flow(), progress: Progress = QUIET) -> tuple[Contacts, ...]:
+def flow_lines(
+    drive: SurfaceDrive, tool: Tool, flow: Flow = Flow(), progress: Progress = QUIET
+) -> tuple[Contacts, ...]:
     """Return the passes of contacts over the drive's faces from the first guide to the second, in the cutting frame.
 
     All of them run the same way, the part that is still to be cut on their right: a tool that turns clockwise climbs. Each connected part
@@ -72,8 +74,13 @@ def flow_lines(drive: SurfaceDrive, tool: Tool, flow: Flow = Flow(), progress: P
         sheet = split_finely(whole, measure, max(FINENESS, math.sqrt(wide / ENOUGH)), share)
         guides = _guides(sheet, drive, flow)
         for line in _lines(metric_of(sheet, measure), guides, flow.spiral, share):
-            point, normal = spread(*sheet.on_edges(line.ends, line.share), line.closed, tool.radius, flow.chord,
-                                   stepover_on_plane(tool.corner_radius, drive.height))
+            point, normal = spread(
+                *sheet.on_edges(line.ends, line.share),
+                line.closed,
+                tool.radius,
+                flow.chord,
+                stepover_on_plane(tool.corner_radius, drive.height),
+            )
             made.append(Contacts(point=point, normal=normal, closed=line.closed))
     return tuple(made)
 
@@ -93,8 +100,10 @@ def _lines(metric: Metric, guides: Guides, spiral: bool, progress: Progress) -> 
     order = np.argsort(slope)
     narrowest = slope[order[np.searchsorted(np.cumsum(area[order]), SMALLEST * area.sum())]]
     if CROWDED * narrowest * (1.0 + float(area.sum() / (slope @ area))) < 1.0:
-        raise Crowded("flow lines between these guides would lie far closer than the scallop wants; passes at a constant scallop don't, "
-                      "nor may those between other guides")
+        raise Crowded(
+            "flow lines between these guides would lie far closer than the scallop wants; passes at a constant scallop don't, "
+            "nor may those between other guides"
+        )
     count = max(math.ceil(1.0 / narrowest), 1)
     lines = [_turned(line) for line in whole_levels(metric.sheet, field * count + 0.5)]
     if spiral and guides.rings and count > 1:
@@ -102,12 +111,17 @@ def _lines(metric: Metric, guides: Guides, spiral: bool, progress: Progress) -> 
     return [piece for line in lines for piece in line.on(metric.sheet, real)]
 
 
-def _wound(metric: Metric, guides: Guides, field: Floats, count: int, lines: list[SheetLine]) -> list[SheetLine]:
+def _wound(
+    metric: Metric, guides: Guides, field: Floats, count: int, lines: list[SheetLine]
+) -> list[SheetLine]:
     """Return the first and the last of closed passes, and the spiral that winds from one to the other."""
     angle, turns = turns_about(metric, guides.first, guides.second)
     for sign in (1, -1):
         # The field rises by one from guide to guide's next turn and changes by one on the way round: a line of it is a spiral.
-        turning = [_turned(line) for line in whole_levels(metric.sheet, field * count + sign * angle, sign * turns)]
+        turning = [
+            _turned(line)
+            for line in whole_levels(metric.sheet, field * count + sign * angle, sign * turns)
+        ]
         spiral = max(turning, key=lambda line: len(line.share))
         way = spiral.value(field)
         if way[-1] > way[0]:
@@ -117,7 +131,9 @@ def _wound(metric: Metric, guides: Guides, field: Floats, count: int, lines: lis
     if way[0] >= way[-1] or not len(between) or not first.closed or not last.closed:
         return lines
     middle = spiral.of(slice(int(between[0]), int(between[-1]) + 1))
-    start, end = (metric.sheet.on_edges(middle.ends[k:][:1], middle.share[k:][:1])[0] for k in (0, -1))
+    start, end = (
+        metric.sheet.on_edges(middle.ends[k:][:1], middle.share[k:][:1])[0] for k in (0, -1)
+    )
     return [_joined([_begun(metric.sheet, first, start), middle, _begun(metric.sheet, last, end)])]
 
 
@@ -130,9 +146,15 @@ def _begun(sheet: Sheet, ring: SheetLine, place: Floats) -> SheetLine:
 
 
 def _joined(lines: list[SheetLine]) -> SheetLine:
-    return SheetLine(ends=np.concatenate([line.ends for line in lines]), share=np.concatenate([line.share for line in lines]), closed=False,
-                     level=lines[0].level)
+    return SheetLine(
+        ends=np.concatenate([line.ends for line in lines]),
+        share=np.concatenate([line.share for line in lines]),
+        closed=False,
+        level=lines[0].level,
+    )
 
 
 def _turned(line: SheetLine) -> SheetLine:
-    return SheetLine(ends=line.ends[::-1], share=line.share[::-1], closed=line.closed, level=line.level)
+    return SheetLine(
+        ends=line.ends[::-1], share=line.share[::-1], closed=line.closed, level=line.level
+    )

@@ -49,7 +49,9 @@ SMOOTHINGS = 3
 """Times that a ridge's points are put halfway between their neighbours: it was found triangle by triangle."""
 
 
-def scallop_passes(drive: SurfaceDrive, tool: Tool, chord: float, progress: Progress = QUIET) -> list[Contacts]:
+def scallop_passes(
+    drive: SurfaceDrive, tool: Tool, chord: float, progress: Progress = QUIET
+) -> list[Contacts]:
     """Return the passes of contacts from the rim of the drive's faces inwards, what is inside on their left, each connected part and each
     branch of it by itself; then those along ridges. Raises `Refused` for a flat end and for too large an area."""
     measure = stepover_measure(tool, AIM * drive.height)
@@ -62,7 +64,9 @@ def scallop_passes(drive: SurfaceDrive, tool: Tool, chord: float, progress: Prog
     return made
 
 
-def _passes_over(part: Sheet, measure: Measure, longest: float, radius: float, chord: float, progress: Progress) -> list[Contacts]:
+def _passes_over(
+    part: Sheet, measure: Measure, longest: float, radius: float, chord: float, progress: Progress
+) -> list[Contacts]:
     """Return the passes over one connected part; `longest` mm is the stepover on a plane."""
     sheet = opened(split_finely(part, measure, FINENESS, progress))
     metric = metric_of(sheet, measure)
@@ -74,11 +78,16 @@ def _passes_over(part: Sheet, measure: Measure, longest: float, radius: float, c
     found = ridged(metric, *distances(metric, rim), FINENESS * longest)
     field = found.time + 1.0 - FIRST
     progress.check()
-    lines = _nested(found.sheet, _without_slim(found.sheet, field, whole_levels(found.sheet, field)))
+    lines = _nested(
+        found.sheet, _without_slim(found.sheet, field, whole_levels(found.sheet, field))
+    )
     contacts = [found.sheet.on_edges(line.ends, line.share) for line in progress.each(lines)]
     contacts += _along_ridges(found, metric_of(found.sheet, measure), lines, longest)
     closed = [line.closed for line in lines] + [False] * (len(contacts) - len(lines))
-    spreads = ((spread(*pn, c, radius, chord, longest), c) for pn, c in progress.each(zip(contacts, closed, strict=True)))
+    spreads = (
+        (spread(*pn, c, radius, chord, longest), c)
+        for pn, c in progress.each(zip(contacts, closed, strict=True))
+    )
     return [Contacts(point=p, normal=n, closed=c) for (p, n), c in spreads]
 
 
@@ -87,15 +96,23 @@ def _without_slim(sheet: Sheet, field: Floats, lines: Sequence[SheetLine]) -> li
     ends = sheet.edges()[0]
     for sign in (1.0, -1.0):
         value = sign * field
-        doubtful = {line.level for line in lines if value[line.ends].max() < sign * line.level + SLIM}
+        doubtful = {
+            line.level for line in lines if value[line.ends].max() < sign * line.level + SLIM
+        }
         slim = set()
         for level in sorted(doubtful):
             a, b = ends[(value[ends] > sign * level).all(axis=1)].T
-            part = connected_components(coo_matrix((np.ones(len(a)), (a, b)), shape=(len(value),) * 2), directed=False)[1]
+            part = connected_components(
+                coo_matrix((np.ones(len(a)), (a, b)), shape=(len(value),) * 2), directed=False
+            )[1]
             top = np.full(len(value), -np.inf)
             np.maximum.at(top, part, value)
-            slim |= {k for k, line in enumerate(lines) if line.level == level
-                     and top[part[line.ends.ravel()[np.argmax(value[line.ends])]]] < sign * level + SLIM}
+            slim |= {
+                k
+                for k, line in enumerate(lines)
+                if line.level == level
+                and top[part[line.ends.ravel()[np.argmax(value[line.ends])]]] < sign * level + SLIM
+            }
         lines = [line for k, line in enumerate(lines) if k not in slim]
     return list(lines)
 
@@ -112,7 +129,13 @@ def _nested(sheet: Sheet, lines: Sequence[SheetLine]) -> list[SheetLine]:
         inside[k] = []
         if len(outer):
             owner = np.repeat(outer, [len(middles[j]) for j in outer])
-            inside[int(owner[cKDTree(np.concatenate([middles[j] for j in outer])).query(middles[k][0])[1]])].append(k)
+            inside[
+                int(
+                    owner[
+                        cKDTree(np.concatenate([middles[j] for j in outer])).query(middles[k][0])[1]
+                    ]
+                )
+            ].append(k)
         else:
             inside[-1].append(k)
     order, todo = [], inside[-1][::-1]
@@ -123,24 +146,41 @@ def _nested(sheet: Sheet, lines: Sequence[SheetLine]) -> list[SheetLine]:
     return order
 
 
-def _along_ridges(found: Ridged, metric: Metric, lines: Sequence[SheetLine], stepover: float) -> list[tuple[Floats, Floats]]:
+def _along_ridges(
+    found: Ridged, metric: Metric, lines: Sequence[SheetLine], stepover: float
+) -> list[tuple[Floats, Floats]]:
     """Return points and normals (k, 3) of passes along the ridges where places are too far from all lines."""
     if not lines or not found.ridges:
         return []
     rows = np.concatenate([line.ends.ravel() for line in lines])
-    level = np.repeat([line.level - 1.0 + FIRST for line in lines], [2 * len(line.share) for line in lines])
+    level = np.repeat(
+        [line.level - 1.0 + FIRST for line in lines], [2 * len(line.share) for line in lines]
+    )
     away, _ = distances(metric, rows, np.abs(found.time[rows] - level))
-    passes = cKDTree(np.concatenate([_dense(found.sheet.on_edges(line.ends, line.share)[0], DENSE * stepover) for line in lines]))
+    passes = cKDTree(
+        np.concatenate(
+            [
+                _dense(found.sheet.on_edges(line.ends, line.share)[0], DENSE * stepover)
+                for line in lines
+            ]
+        )
+    )
     ways = []
     for ridge in found.ridges:
-        point, normal = _smoothed(found.sheet.points[ridge], found.sheet.normals[ridge], bool(ridge[0] == ridge[-1]))
+        point, normal = _smoothed(
+            found.sheet.points[ridge], found.sheet.normals[ridge], bool(ridge[0] == ridge[-1])
+        )
         run = np.concatenate([[0.0], np.cumsum(np.linalg.norm(np.diff(point, axis=0), axis=1))])
         at, far = _away(found.sheet.points[ridge], away[ridge], passes, stepover)
         lacking = np.interp(at[far > FARTHEST], np.arange(len(run)), run)
         if len(lacking):
             first = np.searchsorted(lacking, run - REACH * stepover)
-            wanted = (first < len(lacking)) & (lacking[np.minimum(first, len(lacking) - 1)] <= run + REACH * stepover)
-            edges = np.flatnonzero(np.diff(wanted.astype(np.int8), prepend=0, append=0)).reshape(-1, 2)
+            wanted = (first < len(lacking)) & (
+                lacking[np.minimum(first, len(lacking) - 1)] <= run + REACH * stepover
+            )
+            edges = np.flatnonzero(np.diff(wanted.astype(np.int8), prepend=0, append=0)).reshape(
+                -1, 2
+            )
             ways += [(point[a:b], normal[a:b]) for a, b in edges.tolist() if b - a > 1]
     return _in_turn(ways)
 
@@ -182,5 +222,8 @@ def _in_turn(ways: list[tuple[Floats, Floats]]) -> list[tuple[Floats, Floats]]:
 def _smoothed(point: Floats, normal: Floats, closed: bool) -> tuple[Floats, Floats]:
     """Return a ridge's points and normals (k, 3), smoother; its ends stay."""
     for _ in range(0 if closed else SMOOTHINGS):
-        point, normal = (np.vstack([x[:1], 0.25 * (x[:-2] + 2.0 * x[1:-1] + x[2:]), x[-1:]]) for x in (point, normal))
+        point, normal = (
+            np.vstack([x[:1], 0.25 * (x[:-2] + 2.0 * x[1:-1] + x[2:]), x[-1:]])
+            for x in (point, normal)
+        )
     return point, normal / np.linalg.norm(normal, axis=1, keepdims=True)

@@ -58,7 +58,9 @@ def guides_of(sheet: Sheet) -> Guides:
     """Return the guides that a connected sheet with its holes filled suggests; raise `BadInput` for one without a rim."""
     rims = sheet.rims()
     if not rims:
-        raise BadInput("the area is closed all round: leave one of its faces out, or choose another strategy")
+        raise BadInput(
+            "the area is closed all round: leave one of its faces out, or choose another strategy"
+        )
     if len(rims) == 2:
         return Guides(first=rims[0], second=rims[1], rings=True)
     sides = _sides(sheet, rims[0])
@@ -68,19 +70,27 @@ def guides_of(sheet: Sheet) -> Guides:
         i, j = np.sort(np.argsort(-lengths, kind="stable")[:2]).tolist()
         return Guides(**_apart(sides[i], sides[j]), rings=False)
     pairs = [(i, j) for i in range(n) for j in range(i + 2, n) if (j + 1) % n != i]
-    i, j = max(pairs, key=lambda p: min(lengths[p[0]], lengths[p[1]]) + lengths[p[0]] + lengths[p[1]])
+    i, j = max(
+        pairs, key=lambda p: min(lengths[p[0]], lengths[p[1]]) + lengths[p[0]] + lengths[p[1]]
+    )
     return Guides(first=sides[i], second=sides[j], rings=False)
 
 
-def guides_beside(sheet: Sheet, skin: Skin, first: tuple[int, ...], second: tuple[int, ...]) -> Guides:
+def guides_beside(
+    sheet: Sheet, skin: Skin, first: tuple[int, ...], second: tuple[int, ...]
+) -> Guides:
     """Return the guides along which a sheet meets faces (tags) of the skin; raise `BadInput` where it does not."""
     rims = sheet.rims()
     found = []
     for tags in (first, second):
-        beside = [rim[_beside(sheet.points[rim], skin, skin.triangles[skin.of(tags)])] for rim in rims]
+        beside = [
+            rim[_beside(sheet.points[rim], skin, skin.triangles[skin.of(tags)])] for rim in rims
+        ]
         rows = np.concatenate([np.zeros(0, np.int64), *beside])
         if len(rows) < 2:
-            raise BadInput(f"no rim of the area lies along {', '.join(f'face {t}' for t in tags)}: name faces next to it as guides")
+            raise BadInput(
+                f"no rim of the area lies along {', '.join(f'face {t}' for t in tags)}: name faces next to it as guides"
+            )
         found.append(rows)
     rings = len(rims) == 2 and all(any(set(rows) == set(rim) for rim in rims) for rows in found)
     return Guides(**_apart(found[0], found[1]), rings=rings)
@@ -94,7 +104,11 @@ def _beside(rim: Floats, skin: Skin, triangles: Ints) -> Bools:
         return np.zeros(len(rim), bool)
     gap, place = cKDTree(skin.points[used]).query(rim)
     on = np.asarray(gap <= tolerance.JOINED_POINTS)
-    sides = {frozenset(side) for k in range(3) for side in zip(triangles[:, k].tolist(), triangles[:, (k + 1) % 3].tolist(), strict=True)}
+    sides = {
+        frozenset(side)
+        for k in range(3)
+        for side in zip(triangles[:, k].tolist(), triangles[:, (k + 1) % 3].tolist(), strict=True)
+    }
     rows, number, n = np.flatnonzero(on), used[np.asarray(place)].tolist(), len(rim)
     for row, after in zip(rows.tolist(), np.roll(rows, -1).tolist(), strict=True):
         width = (after - row) % n
@@ -113,8 +127,10 @@ def _sides(sheet: Sheet, rim: Ints) -> list[Ints]:
     if len(corners) < 2:
         far = int(np.argmax(np.linalg.norm(points - points.mean(axis=0), axis=1)))
         corners = np.unique([far, int(np.argmax(np.linalg.norm(points - points[far], axis=1)))])
-    return [np.take(rim, np.arange(a, b + 1 if b > a else b + len(rim) + 1), mode="wrap")
-            for a, b in zip(corners.tolist(), np.roll(corners, -1).tolist(), strict=True)]
+    return [
+        np.take(rim, np.arange(a, b + 1 if b > a else b + len(rim) + 1), mode="wrap")
+        for a, b in zip(corners.tolist(), np.roll(corners, -1).tolist(), strict=True)
+    ]
 
 
 def _apart(first: Ints, second: Ints) -> dict[str, Ints]:

@@ -61,8 +61,16 @@ class Manner:
     overlap: float = 0.0
 
 
-def linked(passes: Sequence[Pass], drive: SurfaceDrive, tool: Tool, data: CuttingData, stock: PlanningStock, setup: Setup, manner: Manner,
-           progress: Progress = QUIET) -> Toolpath:
+def linked(
+    passes: Sequence[Pass],
+    drive: SurfaceDrive,
+    tool: Tool,
+    data: CuttingData,
+    stock: PlanningStock,
+    setup: Setup,
+    manner: Manner,
+    progress: Progress = QUIET,
+) -> Toolpath:
     """Return the toolpath that cuts all passes, in the cutting frame; it begins and ends at the setup's clearance height."""
     passes = [p for p in passes if len(p) > 1]
     if not passes:
@@ -72,7 +80,12 @@ def linked(passes: Sequence[Pass], drive: SurfaceDrive, tool: Tool, data: Cuttin
     leads_in, leads_out, has_room = _leads(passes, drive, tool, manner, progress.part(0.2, 0.4))
     if manner.arcs:
         near &= has_room
-        ways = iter([np.vstack([leads_out[k], leads_in[k + 1], passes[k + 1].tip[:1]]) for k in np.flatnonzero(near).tolist()])
+        ways = iter(
+            [
+                np.vstack([leads_out[k], leads_in[k + 1], passes[k + 1].tip[:1]])
+                for k in np.flatnonzero(near).tolist()
+            ]
+        )
     else:
         ways = iter(_links(passes, near, drive, tool, manner, progress.part(0.4, 0.9)))
     blocks = _Blocks(tool, data, stock, setup, drive, manner.safety)
@@ -93,7 +106,15 @@ def linked(passes: Sequence[Pass], drive: SurfaceDrive, tool: Tool, data: Cuttin
 class _Blocks:
     """A toolpath in the making, in arrays: most of it are whole passes."""
 
-    def __init__(self, tool: Tool, data: CuttingData, stock: PlanningStock, setup: Setup, drive: SurfaceDrive, safety: float) -> None:
+    def __init__(
+        self,
+        tool: Tool,
+        data: CuttingData,
+        stock: PlanningStock,
+        setup: Setup,
+        drive: SurfaceDrive,
+        safety: float,
+    ) -> None:
         # A builder without a block: it answers how low the tip may go over the stock before the operation.
         self._air = PathBuilder(tool, data, stock, setup, safety)
         self._tool, self._data, self._drive = tool, data, drive
@@ -112,7 +133,9 @@ class _Blocks:
     def feed(self, tips: Floats, axis: Floats, mark: Mark) -> None:
         """Feed along tips (k, 3) with one axis (3,) or an axis each (k, 3)."""
         if len(tips):
-            self._parts.append((tips, np.broadcast_to(axis, tips.shape), Motion.LINE, self._data.feed, mark))
+            self._parts.append(
+                (tips, np.broadcast_to(axis, tips.shape), Motion.LINE, self._data.feed, mark)
+            )
 
     def travel(self, place: Floats, axis: Floats) -> None:
         """Bring the tip to a place (3,) through the air, at the end by a feed."""
@@ -139,8 +162,14 @@ class _Blocks:
         position, axis = (np.concatenate([p[k] for p in self._parts]) for k in (0, 1))
         motion, feed, mark = (np.repeat([p[k] for p in self._parts], count) for k in (2, 3, 4))
         kept = _goes(position, axis)
-        return Toolpath(position=position[kept], axis=axis[kept], motion=motion[kept], feed=feed[kept], mark=mark[kept],
-                        centre=np.full((int(kept.sum()), 3), np.nan))
+        return Toolpath(
+            position=position[kept],
+            axis=axis[kept],
+            motion=motion[kept],
+            feed=feed[kept],
+            mark=mark[kept],
+            centre=np.full((int(kept.sum()), 3), np.nan),
+        )
 
     def _lift(self, place: Floats) -> None:
         """Go over a place, upright: no higher than what may be on the way demands."""
@@ -168,13 +197,20 @@ class _Blocks:
         there where it leans so much that the way up is longer."""
         height = self._air.clearance + _below(self._tool, float(axis[2]))
         up = (height - here[2]) / axis[2] if axis[2] > 0.0 else math.inf
-        aside = max([self._tool.radius, *(max(r0, r1) for _, r0, _, r1 in self._tool.profile())]) + self._air.safety
+        aside = (
+            max([self._tool.radius, *(max(r0, r1) for _, r0, _, r1 in self._tool.profile())])
+            + self._air.safety
+        )
         wall = np.where(axis[:2] > 0.0, self._drive.high[:2] + aside, self._drive.low[:2] - aside)
-        beside = np.divide(wall - here[:2], axis[:2], out=np.full(2, math.inf), where=axis[:2] != 0.0).min()
+        beside = np.divide(
+            wall - here[:2], axis[:2], out=np.full(2, math.inf), where=axis[:2] != 0.0
+        ).min()
         if axis[2] >= SWING or up <= beside:
             return [here + up * axis]
         if beside == math.inf:
-            raise Refused(f"{self._drive.feature}: a tool that points straight up can't be brought to the part")
+            raise Refused(
+                f"{self._drive.feature}: a tool that points straight up can't be brought to the part"
+            )
         stop = here + max(beside, 0.0) * axis
         return [stop, np.append(stop[:2], max(height, stop[2]))]
 
@@ -188,7 +224,10 @@ class _Blocks:
 def _below(tool: Tool, upright: float) -> float:
     """Return how far anything on the spindle is below the tip when the axis has a part `upright` along z."""
     across = math.sqrt(max(1.0 - upright * upright, 0.0))
-    rings = [(0.0, tool.radius), *((z, r) for z0, r0, z1, r1 in tool.profile() for z, r in ((z0, r0), (z1, r1)))]
+    rings = [
+        (0.0, tool.radius),
+        *((z, r) for z0, r0, z1, r1 in tool.profile() for z, r in ((z0, r0), (z1, r1))),
+    ]
     return max(0.0, *(r * across - z * upright for z, r in rings))
 
 
@@ -202,7 +241,8 @@ def _goes(position: Floats, axis: Floats) -> Bools:
     while True:
         rows = np.flatnonzero(kept)
         still = (np.linalg.norm(np.diff(position[rows], axis=0), axis=1) < tolerance.SHORT_MOVE) & (
-            np.abs(np.diff(axis[rows], axis=0)).max(axis=1) < SAME)
+            np.abs(np.diff(axis[rows], axis=0)).max(axis=1) < SAME
+        )
         # Of several short moves in a row every other one goes; what is left may then be long enough.
         still[1:] &= ~still[:-1]
         if not still.any():
@@ -254,20 +294,35 @@ def _overlapped(one: Pass, overlap: float) -> Pass:
     last = min(overlap, 0.5 * float(run[-1]))
     row = int(np.searchsorted(run, last, side="right")) - 1
     share = (last - run[row]) / (run[row + 1] - run[row])
-    more = (np.vstack([a[1:row + 1], (1.0 - share) * a[row:row + 1] + share * a[row + 1:row + 2]]) for a in (one.tip, one.axis, one.normal))
-    tip, axis, normal = (np.vstack([a, b]) for a, b in zip((one.tip, one.axis, one.normal), more, strict=True))
+    more = (
+        np.vstack([a[1 : row + 1], (1.0 - share) * a[row : row + 1] + share * a[row + 1 : row + 2]])
+        for a in (one.tip, one.axis, one.normal)
+    )
+    tip, axis, normal = (
+        np.vstack([a, b]) for a, b in zip((one.tip, one.axis, one.normal), more, strict=True)
+    )
     return Pass(tip=tip, axis=unit(axis), normal=normal)
 
 
 def _near(passes: Sequence[Pass], manner: Manner) -> Bools:
     """Say of each pass but the last whether the next one is reached without lifting."""
-    ends, starts = np.array([p.tip[-1] for p in passes[:-1]]).reshape(-1, 3), np.array([p.tip[0] for p in passes[1:]]).reshape(-1, 3)
+    ends, starts = (
+        np.array([p.tip[-1] for p in passes[:-1]]).reshape(-1, 3),
+        np.array([p.tip[0] for p in passes[1:]]).reshape(-1, 3),
+    )
     turned = np.array([np.abs(a.axis[-1] - b.axis[0]).max() for a, b in pairwise(passes)])
     near = np.linalg.norm(starts - ends, axis=1) <= NEAR * manner.stepover
     return np.asarray(near & (turned < SAME))
 
 
-def _links(passes: Sequence[Pass], near: Bools, drive: SurfaceDrive, tool: Tool, manner: Manner, progress: Progress) -> list[Floats]:
+def _links(
+    passes: Sequence[Pass],
+    near: Bools,
+    drive: SurfaceDrive,
+    tool: Tool,
+    manner: Manner,
+    progress: Progress,
+) -> list[Floats]:
     """Return the ways over the surface (k, 3) from the ends of near passes to the next ones: straight, lifted where that would gouge.
 
     Between leaning passes they are straight: a stepover is short.
@@ -276,43 +331,98 @@ def _links(passes: Sequence[Pass], near: Bools, drive: SurfaceDrive, tool: Tool,
     chords = [np.array([passes[k].tip[-1], passes[k + 1].tip[0]]) for k in rows]
     upright = [bool(_is_upright(passes[k].axis[-1])) for k in rows]
     lowest = float(drive.low[2]) - tool.flute_length
-    over = iter(follow(drive.skin.drop, lower_side(tool, drive.allowance), [c[:, :2] for c, up in zip(chords, upright) if up], manner.chord,
-                       lowest, progress))
-    return [_bridged(next(over), chord, drive.allowance, manner.chord) if up else chord for chord, up in zip(chords, upright)]
+    over = iter(
+        follow(
+            drive.skin.drop,
+            lower_side(tool, drive.allowance),
+            [c[:, :2] for c, up in zip(chords, upright) if up],
+            manner.chord,
+            lowest,
+            progress,
+        )
+    )
+    return [
+        _bridged(next(over), chord, drive.allowance, manner.chord) if up else chord
+        for chord, up in zip(chords, upright)
+    ]
 
 
 def _bridged(way: Floats, chord: Floats, allowance: float, error: float) -> Floats:
     """Return a way over the surface (k, 3), the height of the chord (2, 3) between its ends where that is higher."""
     run = np.hypot(*(way[:, :2] - chord[0, :2]).T)
     share = run / run[-1] if run[-1] > 0.0 else np.linspace(0.0, 1.0, len(way))
-    lifted = np.column_stack([way[:, :2], np.maximum(way[:, 2] + allowance, chord[0, 2] + share * (chord[1, 2] - chord[0, 2]))])
+    lifted = np.column_stack(
+        [
+            way[:, :2],
+            np.maximum(way[:, 2] + allowance, chord[0, 2] + share * (chord[1, 2] - chord[0, 2])),
+        ]
+    )
     return lifted[thinned(lifted, np.zeros(len(lifted), np.int64), error)]
 
 
-def _leads(passes: Sequence[Pass], drive: SurfaceDrive, tool: Tool, manner: Manner, progress: Progress) -> tuple[Floats, Floats, Bools]:
+def _leads(
+    passes: Sequence[Pass], drive: SurfaceDrive, tool: Tool, manner: Manner, progress: Progress
+) -> tuple[Floats, Floats, Bools]:
     """Return the ways (m, k, 3) onto all passes, up to the first tip, and off them, after the last: quarter circles, lifted where they
     would gouge. And say of each pass but the last whether the way off it and onto the next one needs no lifting (m - 1,)."""
-    coming = _arcs(np.array([p.tip[0] for p in passes]), np.array([_off(p.tip, p.axis[0]) for p in passes]),
-                   np.array([p.normal[0] for p in passes]), np.array([p.axis[0] for p in passes]), manner.lead_radius)[:, ::-1]
-    going = _arcs(np.array([p.tip[-1] for p in passes]), np.array([_off(p.tip[::-1], p.axis[-1]) for p in passes]),
-                  np.array([p.normal[-1] for p in passes]), np.array([p.axis[-1] for p in passes]), manner.lead_radius)
+    coming = _arcs(
+        np.array([p.tip[0] for p in passes]),
+        np.array([_off(p.tip, p.axis[0]) for p in passes]),
+        np.array([p.normal[0] for p in passes]),
+        np.array([p.axis[0] for p in passes]),
+        manner.lead_radius,
+    )[:, ::-1]
+    going = _arcs(
+        np.array([p.tip[-1] for p in passes]),
+        np.array([_off(p.tip[::-1], p.axis[-1]) for p in passes]),
+        np.array([p.normal[-1] for p in passes]),
+        np.array([p.axis[-1] for p in passes]),
+        manner.lead_radius,
+    )
     upright = np.array([[_is_upright(p.axis[row]) for p in passes] for row in (0, -1)])
     share = np.linspace(0.0, 1.0, BETWEEN)[:, None]
     between = going[:-1, -1:] + share * (coming[1:, :1] - going[:-1, -1:])
     ways = (coming, going, between)
     flat = np.concatenate([w.reshape(-1, 3) for w in ways])
-    floor = drive.skin.drop.drop(flat[:, :2], lower_side(tool, drive.allowance), float(drive.low[2]) - tool.flute_length, progress)
+    floor = drive.skin.drop.drop(
+        flat[:, :2],
+        lower_side(tool, drive.allowance),
+        float(drive.low[2]) - tool.flute_length,
+        progress,
+    )
     lift = np.maximum(floor + drive.allowance - flat[:, 2], 0.0)
-    lifts = [x.reshape(w.shape[:2]) for x, w in zip(np.split(lift, np.cumsum([w[..., 0].size for w in ways])[:-1]), ways, strict=True)]
-    for arcs, up, stands, nearest, row in zip((coming, going), lifts, upright, (-1, 0), (0, -1), strict=False):
+    lifts = [
+        x.reshape(w.shape[:2])
+        for x, w in zip(
+            np.split(lift, np.cumsum([w[..., 0].size for w in ways])[:-1]), ways, strict=True
+        )
+    ]
+    for arcs, up, stands, nearest, row in zip(
+        (coming, going), lifts, upright, (-1, 0), (0, -1), strict=False
+    ):
         arcs[:, :, 2] += np.where(stands[:, None], up, 0.0)
         # Lifted unevenly an arc runs along something steep, which its chords would enter: the tool then comes and goes along its axis.
-        uneven = stands & (np.abs(np.diff(up, axis=1)).max(axis=1, initial=0.0) + up[:, nearest] > LIFT_STEP)
+        uneven = stands & (
+            np.abs(np.diff(up, axis=1)).max(axis=1, initial=0.0) + up[:, nearest] > LIFT_STEP
+        )
         tips = np.array([p.tip[row] for p in passes])[uneven]
         rise = np.arange(1, QUARTER + 1) * (manner.lead_radius / QUARTER)
-        arcs[uneven] = tips[:, None] + (rise if nearest == 0 else rise[::-1])[None, :, None] * UPRIGHT
-    has_room = (lifts[0][1:].max(axis=1, initial=0.0) <= manner.chord) & (lifts[1][:-1].max(axis=1, initial=0.0) <= manner.chord)
-    return coming, going, np.asarray(has_room & (lifts[2].max(axis=1, initial=0.0) <= manner.chord) & upright[1, :-1] & upright[0, 1:])
+        arcs[uneven] = (
+            tips[:, None] + (rise if nearest == 0 else rise[::-1])[None, :, None] * UPRIGHT
+        )
+    has_room = (lifts[0][1:].max(axis=1, initial=0.0) <= manner.chord) & (
+        lifts[1][:-1].max(axis=1, initial=0.0) <= manner.chord
+    )
+    return (
+        coming,
+        going,
+        np.asarray(
+            has_room
+            & (lifts[2].max(axis=1, initial=0.0) <= manner.chord)
+            & upright[1, :-1]
+            & upright[0, 1:]
+        ),
+    )
 
 
 def _off(tip: Floats, axis: Floats) -> Floats:
@@ -330,7 +440,14 @@ def _arcs(tips: Floats, along: Floats, normals: Floats, axes: Floats, radius: fl
     side = normals - (normals * along).sum(axis=1, keepdims=True) * along
     flat = np.linalg.norm(side, axis=1) < SAME
     side[flat] = axes[flat] - (axes[flat] * along[flat]).sum(axis=1, keepdims=True) * along[flat]
-    side = np.divide(side, np.linalg.norm(side, axis=1, keepdims=True), out=axes.copy(), where=np.linalg.norm(side, axis=1)[:, None] > SAME)
+    side = np.divide(
+        side,
+        np.linalg.norm(side, axis=1, keepdims=True),
+        out=axes.copy(),
+        where=np.linalg.norm(side, axis=1)[:, None] > SAME,
+    )
     angle = 0.5 * math.pi * np.arange(1, QUARTER + 1)[:, None] / QUARTER
-    out: Floats = tips[:, None] + radius * (np.sin(angle) * along[:, None] + (1.0 - np.cos(angle)) * side[:, None])
+    out: Floats = tips[:, None] + radius * (
+        np.sin(angle) * along[:, None] + (1.0 - np.cos(angle)) * side[:, None]
+    )
     return out

@@ -45,14 +45,22 @@ class Strip:
             for x, out in ((sheet.points, place), (sheet.normals, normal)):
                 out.append(x[a[row]] + share[:, None] * (x[b[row]] - x[a[row]]))
         joined = np.concatenate(normal)
-        return Strip(skin=skin, place=np.concatenate(place), normal=joined / np.linalg.norm(joined, axis=1, keepdims=True), width=width)
+        return Strip(
+            skin=skin,
+            place=np.concatenate(place),
+            normal=joined / np.linalg.norm(joined, axis=1, keepdims=True),
+            width=width,
+        )
 
     def has(self, contact: Floats, facet: Ints) -> Bools:
         """Say of contacts (n, 3) on triangles (n,) of the skin, -1: none, whether they lie in the strip, or as near to the rim inside."""
         found = np.zeros(len(contact), dtype=bool)
         rows = np.flatnonzero(facet >= 0)
         if len(rows) and len(self.place):
-            away, nearest = (np.asarray(x) for x in cKDTree(self.place).query(contact[rows], distance_upper_bound=self.width))
+            away, nearest = (
+                np.asarray(x)
+                for x in cKDTree(self.place).query(contact[rows], distance_upper_bound=self.width)
+            )
             rows, nearest = rows[np.isfinite(away)], nearest[np.isfinite(away)]
             corners = self.skin.normals[self.skin.triangles[facet[rows]]].sum(axis=1)
             along = (corners * self.normal[nearest]).sum(axis=1)

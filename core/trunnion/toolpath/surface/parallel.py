@@ -51,33 +51,115 @@ Touches = Callable[[Ints, Floats, Progress], Bools]
 class ParallelSettings:
     """How an area is finished by parallel passes."""
 
-    direction: str = setting("auto", choices=("auto", "angle"), label="Direction",
-                             help="auto: along the side of the area that makes the shortest way; angle: as said by the angle.")
-    angle: float = setting(0.0, unit="deg", low=-180.0, high=180.0, label="Angle", help="From the setup's x axis to the feed direction.")
-    way: str = setting("both", choices=("both", "one"), label="Way", help="both: to and fro; one: every pass in the same direction.")
-    stepover: float = setting(0.0, unit="mm", low=0.0, high=100.0, label="Stepover",
-                              help="Distance of the planes; 0: by the wanted scallop height and how the faces lean.")
-    steepest: float = setting(80.0, unit="deg", low=5.0, high=89.5, label="Steepest",
-                              help="Faces that lean by more from level are left to waterlines.")
-    overlap: float = setting(0.3, unit="mm", low=0.0, high=20.0, label="Overlap", help="How far passes go on past the rim of the area.")
-    chord: float = setting(0.0005, unit="mm", low=0.00005, high=0.1, label="Chord error",
-                           help="How far straight moves may leave the cutter's way over the faces.")
-    lead: float = setting(0.0, unit="deg", low=-60.0, high=60.0, label="Lead angle", help="Lean of a ball from the normal towards the feed "
-                          "on a machine with rotary axes; with a tilt of 0 as well the tool stays upright.")
-    tilt: float = setting(0.0, unit="deg", low=-60.0, high=60.0, label="Tilt angle", help="Lean of a ball to the left of the feed.")
-    lead_radius: float = setting(1.0, unit="mm", low=0.05, high=50.0, label="Lead radius",
-                                 help="Of the quarter circles onto and off passes.")
-    safety: float = setting(2.0, unit="mm", low=0.2, high=50.0, label="Safety distance",
-                            help="Where a rapid ends above what may still be there.")
+    direction: str = setting(
+        "auto",
+        choices=("auto", "angle"),
+        label="Direction",
+        help="auto: along the side of the area that makes the shortest way; angle: as said by the angle.",
+    )
+    angle: float = setting(
+        0.0,
+        unit="deg",
+        low=-180.0,
+        high=180.0,
+        label="Angle",
+        help="From the setup's x axis to the feed direction.",
+    )
+    way: str = setting(
+        "both",
+        choices=("both", "one"),
+        label="Way",
+        help="both: to and fro; one: every pass in the same direction.",
+    )
+    stepover: float = setting(
+        0.0,
+        unit="mm",
+        low=0.0,
+        high=100.0,
+        label="Stepover",
+        help="Distance of the planes; 0: by the wanted scallop height and how the faces lean.",
+    )
+    steepest: float = setting(
+        80.0,
+        unit="deg",
+        low=5.0,
+        high=89.5,
+        label="Steepest",
+        help="Faces that lean by more from level are left to waterlines.",
+    )
+    overlap: float = setting(
+        0.3,
+        unit="mm",
+        low=0.0,
+        high=20.0,
+        label="Overlap",
+        help="How far passes go on past the rim of the area.",
+    )
+    chord: float = setting(
+        0.0005,
+        unit="mm",
+        low=0.00005,
+        high=0.1,
+        label="Chord error",
+        help="How far straight moves may leave the cutter's way over the faces.",
+    )
+    lead: float = setting(
+        0.0,
+        unit="deg",
+        low=-60.0,
+        high=60.0,
+        label="Lead angle",
+        help="Lean of a ball from the normal towards the feed "
+        "on a machine with rotary axes; with a tilt of 0 as well the tool stays upright.",
+    )
+    tilt: float = setting(
+        0.0,
+        unit="deg",
+        low=-60.0,
+        high=60.0,
+        label="Tilt angle",
+        help="Lean of a ball to the left of the feed.",
+    )
+    lead_radius: float = setting(
+        1.0,
+        unit="mm",
+        low=0.05,
+        high=50.0,
+        label="Lead radius",
+        help="Of the quarter circles onto and off passes.",
+    )
+    safety: float = setting(
+        2.0,
+        unit="mm",
+        low=0.2,
+        high=50.0,
+        label="Safety distance",
+        help="Where a rapid ends above what may still be there.",
+    )
 
 
-@strategy(settings=ParallelSettings, drive=SurfaceDrive, tool_axis=lead_and_tilt, leaves=(TOO_STEEP,), settles=(TOO_SHALLOW,),
-          meets=surface_leftovers)
-def parallel(drive: SurfaceDrive, tool: Tool, data: CuttingData, stock: PlanningStock, setup: Setup, settings: ParallelSettings,
-             progress: Progress) -> Planned:
+@strategy(
+    settings=ParallelSettings,
+    drive=SurfaceDrive,
+    tool_axis=lead_and_tilt,
+    leaves=(TOO_STEEP,),
+    settles=(TOO_SHALLOW,),
+    meets=surface_leftovers,
+)
+def parallel(
+    drive: SurfaceDrive,
+    tool: Tool,
+    data: CuttingData,
+    stock: PlanningStock,
+    setup: Setup,
+    settings: ParallelSettings,
+    progress: Progress,
+) -> Planned:
     """Return the motions that finish the drive's faces by parallel passes, and the area that is too steep for them."""
     if drive.height <= 0.0 and settings.stepover <= 0.0:
-        raise Refused(f"{drive.feature}: parallel passes need a scallop height or a stepover above zero")
+        raise Refused(
+            f"{drive.feature}: parallel passes need a scallop height or a stepover above zero"
+        )
     places = places_of(drive, tool)
     places = places.some(places.normal[:, 2] >= math.cos(math.radians(settings.steepest)))
     found = _too_steep(drive, places)
@@ -85,11 +167,27 @@ def parallel(drive: SurfaceDrive, tool: Tool, data: CuttingData, stock: Planning
         return Planned(findings=found)
     planes = _planes(places, tool, drive.height, settings)
     passes = _passes(planes, drive, tool, settings, progress.part(0.0, 0.6))
-    passes, lost = leaned_by(passes, drive, tool, math.radians(settings.lead), math.radians(settings.tilt), settings.chord,
-                             progress.part(0.6, 0.7))
-    manner = Manner(stepover=planes.widest, safety=settings.safety, lead_radius=settings.lead_radius, order="nearest",
-                    reversing=settings.way == "both", chord=settings.chord)
-    return Planned(path=linked(passes, drive, tool, data, stock, setup, manner, progress.part(0.7, 1.0)), findings=(*found, *lost))
+    passes, lost = leaned_by(
+        passes,
+        drive,
+        tool,
+        math.radians(settings.lead),
+        math.radians(settings.tilt),
+        settings.chord,
+        progress.part(0.6, 0.7),
+    )
+    manner = Manner(
+        stepover=planes.widest,
+        safety=settings.safety,
+        lead_radius=settings.lead_radius,
+        order="nearest",
+        reversing=settings.way == "both",
+        chord=settings.chord,
+    )
+    return Planned(
+        path=linked(passes, drive, tool, data, stock, setup, manner, progress.part(0.7, 1.0)),
+        findings=(*found, *lost),
+    )
 
 
 @dataclass(frozen=True, slots=True, eq=False, kw_only=True)
@@ -111,35 +209,68 @@ def _planes(places: Places, tool: Tool, height: float, settings: ParallelSetting
     """Return the planes of the direction that is asked for, or of the better one of both sides of the box around the area."""
     if settings.direction == "angle":
         return _laid(places, tool, height, math.radians(settings.angle), settings.stepover)
-    box = shapely.get_coordinates(shapely.oriented_envelope(shapely.MultiPoint(places.tips.reshape(-1, 3)[:, :2])))
+    box = shapely.get_coordinates(
+        shapely.oriented_envelope(shapely.MultiPoint(places.tips.reshape(-1, 3)[:, :2]))
+    )
     sides = np.diff(box[:3], axis=0)
     longest = sides[np.argmax(np.hypot(*sides.T))]
     angle = math.atan2(longest[1], longest[0]) % math.pi
-    both = [_laid(places, tool, height, a, settings.stepover) for a in (angle, (angle + 0.5 * math.pi) % math.pi)]
-    return min(both, key=lambda planes: float(np.diff(planes.reach, axis=1).sum()) + tool.diameter * len(planes.at))
+    both = [
+        _laid(places, tool, height, a, settings.stepover)
+        for a in (angle, (angle + 0.5 * math.pi) % math.pi)
+    ]
+    return min(
+        both,
+        key=lambda planes: (
+            float(np.diff(planes.reach, axis=1).sum()) + tool.diameter * len(planes.at)
+        ),
+    )
 
 
 def _laid(places: Places, tool: Tool, height: float, angle: float, stepover: float) -> _Planes:
     """Return the planes at an angle (radians), from one side of the area to the other, as far apart as any place near both allows."""
-    along, across = np.array([math.cos(angle), math.sin(angle)]), np.array([-math.sin(angle), math.cos(angle)])
+    along, across = (
+        np.array([math.cos(angle), math.sin(angle)]),
+        np.array([-math.sin(angle), math.cos(angle)]),
+    )
     run, beside = places.tips[:, :, :2] @ along, places.tips[:, :, :2] @ across
     low, high = beside.min(axis=1), beside.max(axis=1)
-    spacing = np.full(len(low), stepover) if stepover > 0.0 else tip_spacing(places, tool, height, np.append(across, 0.0))
+    spacing = (
+        np.full(len(low), stepover)
+        if stepover > 0.0
+        else tip_spacing(places, tool, height, np.append(across, 0.0))
+    )
     at = marched(low, high, spacing, float(low.min()), float(high.max()))
     # From where to where along a plane the tips of the triangles are that it passes.
     beyond = stepover if stepover > 0.0 else stepover_on_plane(tool.corner_radius, height)
-    width = max(float(np.diff(at).min(initial=np.inf)), (at[-1] - at[0]) / len(at), tolerance.SHORT_MOVE)
-    strip, row = strips_over(np.maximum(low - beyond, at[0]), np.minimum(high + beyond, at[-1]), at[0], width)
-    least, most = np.full(int((at[-1] - at[0]) / width) + 1, np.inf), np.full(int((at[-1] - at[0]) / width) + 1, -np.inf)
+    width = max(
+        float(np.diff(at).min(initial=np.inf)), (at[-1] - at[0]) / len(at), tolerance.SHORT_MOVE
+    )
+    strip, row = strips_over(
+        np.maximum(low - beyond, at[0]), np.minimum(high + beyond, at[-1]), at[0], width
+    )
+    least, most = (
+        np.full(int((at[-1] - at[0]) / width) + 1, np.inf),
+        np.full(int((at[-1] - at[0]) / width) + 1, -np.inf),
+    )
     np.minimum.at(least, strip, run.min(axis=1)[row])
     np.maximum.at(most, strip, run.max(axis=1)[row])
     rows = ((at - at[0]) / width).astype(np.int64)
     kept = least[rows] <= most[rows]
-    return _Planes(along=along, across=across, at=at[kept], reach=np.column_stack([least[rows], most[rows]])[kept],
-                   widest=float(np.diff(at).max(initial=width)), beyond=beyond, triangles=places.row)
+    return _Planes(
+        along=along,
+        across=across,
+        at=at[kept],
+        reach=np.column_stack([least[rows], most[rows]])[kept],
+        widest=float(np.diff(at).max(initial=width)),
+        beyond=beyond,
+        triangles=places.row,
+    )
 
 
-def _passes(planes: _Planes, drive: SurfaceDrive, tool: Tool, settings: ParallelSettings, progress: Progress) -> list[Pass]:
+def _passes(
+    planes: _Planes, drive: SurfaceDrive, tool: Tool, settings: ParallelSettings, progress: Progress
+) -> list[Pass]:
     """Return the passes where the cutter touches the area, plane by plane."""
     pieces, lowest = lower_side(tool, drive.allowance), float(drive.low[2]) - tool.flute_length
     on_area = np.zeros(len(drive.skin.triangles), dtype=bool)
@@ -153,7 +284,9 @@ def _passes(planes: _Planes, drive: SurfaceDrive, tool: Tool, settings: Parallel
         found = (facet >= 0) & on_area[np.maximum(facet, 0)]
         # On the rim either of two faces may be named.
         other = np.flatnonzero((facet >= 0) & ~found)
-        found[other] = area.drop(plan[other], pieces, lowest, share) >= z[other] - tolerance.COINCIDENT
+        found[other] = (
+            area.drop(plan[other], pieces, lowest, share) >= z[other] - tolerance.COINCIDENT
+        )
         # Past the area the cutter rolls over its rim.
         within = (run >= planes.reach[plane, 0]) & (run <= planes.reach[plane, 1])
         return np.asarray(found & within), np.asarray(~found & strip.has(contact, facet))
@@ -163,20 +296,27 @@ def _passes(planes: _Planes, drive: SurfaceDrive, tool: Tool, settings: Parallel
         return area | beside
 
     # While the contact goes over the strip, the tip of a cutter that rolls over something tight goes its radius farther at most.
-    plane, runs = _runs(planes, ALONG * tool.radius, planes.beyond + tool.radius, touches, progress.part(0.0, 0.4))
+    plane, runs = _runs(
+        planes, ALONG * tool.radius, planes.beyond + tool.radius, touches, progress.part(0.0, 0.4)
+    )
     # A run that ends past a smooth join has gone on over it.
     beside = asked(np.repeat(plane, 2), runs.ravel(), progress.part(0.4, 0.4))[1].reshape(-1, 2)
     overlap = np.where(beside, max(settings.overlap - planes.beyond, 0.0), settings.overlap)
     plane, runs = _joined(plane, runs, overlap, tool.radius)
-    lines = [planes.at[p] * planes.across + np.outer(r, planes.along) for p, r in zip(plane, runs, strict=True)]
+    lines = [
+        planes.at[p] * planes.across + np.outer(r, planes.along)
+        for p, r in zip(plane, runs, strict=True)
+    ]
     tips = follow(drive.skin.drop, pieces, lines, settings.chord, lowest, progress.part(0.4, 0.9))
     count = np.cumsum([len(t) for t in tips])[:-1]
     plan = np.concatenate([np.zeros((0, 2)), *(t[:, :2] for t in tips)])
     facet = drive.skin.drop.touch(plan, pieces, lowest, progress.part(0.9, 1.0))[1]
     normals = np.split(_facing(drive.skin, facet), count)
     lift = drive.allowance * UPRIGHT
-    return [Pass(tip=tip + lift, axis=np.broadcast_to(UPRIGHT, tip.shape), normal=normal)
-            for tip, normal in zip(tips, normals, strict=True)]
+    return [
+        Pass(tip=tip + lift, axis=np.broadcast_to(UPRIGHT, tip.shape), normal=normal)
+        for tip, normal in zip(tips, normals, strict=True)
+    ]
 
 
 def _facing(skin: Skin, facet: Ints) -> Floats:
@@ -184,7 +324,9 @@ def _facing(skin: Skin, facet: Ints) -> Floats:
     a, b, c = np.moveaxis(skin.points[skin.triangles[np.maximum(facet, 0)]], 1, 0)
     normal = np.where(facet[:, None] >= 0, np.cross(b - a, c - a), UPRIGHT)
     size = np.linalg.norm(normal, axis=1, keepdims=True)
-    return np.divide(normal, size, out=np.broadcast_to(UPRIGHT, normal.shape).copy(), where=size > 0.0)
+    return np.divide(
+        normal, size, out=np.broadcast_to(UPRIGHT, normal.shape).copy(), where=size > 0.0
+    )
 
 
 def _too_steep(drive: SurfaceDrive, level: Places) -> tuple[Finding, ...]:
@@ -193,25 +335,40 @@ def _too_steep(drive: SurfaceDrive, level: Places) -> tuple[Finding, ...]:
     area = float(0.5 * np.linalg.norm(np.cross(b - a, c - a), axis=1).sum() - level.area.sum())
     if area < SMALLEST_LEFTOVER:
         return ()
-    return (warning(TOO_STEEP, f"{area:.1f} mm2 of {drive.feature} are too steep for parallel passes", drive.feature,
-                    remedy="cut them by waterlines or from another direction"),)
+    return (
+        warning(
+            TOO_STEEP,
+            f"{area:.1f} mm2 of {drive.feature} are too steep for parallel passes",
+            drive.feature,
+            remedy="cut them by waterlines or from another direction",
+        ),
+    )
 
 
-def _runs(planes: _Planes, step: float, past: float, touches: Touches, progress: Progress) -> tuple[Ints, Floats]:
+def _runs(
+    planes: _Planes, step: float, past: float, touches: Touches, progress: Progress
+) -> tuple[Ints, Floats]:
     """Return the plane (k,) and from where to where (k, 2) along it the cutter touches the area, one run after the other; it is
     looked for on places a step apart, and no farther than `past` mm beyond the area's tips."""
     before = math.ceil(past / step) + 1
-    count = np.ceil((planes.reach[:, 1] - planes.reach[:, 0]) / step).astype(np.int64) + 1 + 2 * before
+    count = (
+        np.ceil((planes.reach[:, 1] - planes.reach[:, 0]) / step).astype(np.int64) + 1 + 2 * before
+    )
     plane = np.repeat(np.arange(len(count)), count)
     place = np.arange(len(plane)) - np.repeat(np.cumsum(count) - count, count) - before
     run = planes.reach[plane, 0] + place * step
     on = touches(plane, run, progress.part(0.0, 0.8))
     on[[*(np.cumsum(count) - count), *(np.cumsum(count) - 1)]] = False
     edge = np.flatnonzero((on[1:] != on[:-1]) & (plane[1:] == plane[:-1]))
-    inside, outside = np.where(on[edge], run[edge], run[edge + 1]), np.where(on[edge], run[edge + 1], run[edge])
+    inside, outside = (
+        np.where(on[edge], run[edge], run[edge + 1]),
+        np.where(on[edge], run[edge + 1], run[edge]),
+    )
     for k in range(CLOSER):
         middle = 0.5 * (inside + outside)
-        found = touches(plane[edge], middle, progress.part(0.8 + 0.2 * k / CLOSER, 0.8 + 0.2 * (k + 1) / CLOSER))
+        found = touches(
+            plane[edge], middle, progress.part(0.8 + 0.2 * k / CLOSER, 0.8 + 0.2 * (k + 1) / CLOSER)
+        )
         inside, outside = np.where(found, middle, inside), np.where(found, outside, middle)
     return plane[edge[::2]], inside.reshape(-1, 2)
 
@@ -220,7 +377,9 @@ def _joined(plane: Ints, runs: Floats, overlap: Floats, gap: float) -> tuple[Int
     """Return runs (k, 2) with overlaps (k, 2) at their ends, and as one where the way between two is no longer than a gap. One that stays
     shorter than any move is left out: it only touches a corner of the area."""
     runs = runs + overlap * np.array([-1.0, 1.0])
-    begins = np.append(True, (plane[1:] != plane[:-1]) | (runs[1:, 0] - runs[:-1, 1] > gap))[: len(plane)]
+    begins = np.append(True, (plane[1:] != plane[:-1]) | (runs[1:, 0] - runs[:-1, 1] > gap))[
+        : len(plane)
+    ]
     ends = np.append(begins[1:], True)[: len(plane)]
     plane, runs = plane[begins], np.column_stack([runs[begins, 0], runs[ends, 1]])
     long = runs[:, 1] - runs[:, 0] > tolerance.SHORT_MOVE

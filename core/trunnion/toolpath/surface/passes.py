@@ -44,7 +44,9 @@ class Pass:
 
     def reversed(self) -> Pass:
         """Return the pass cut the other way."""
-        return Pass(tip=self.tip[::-1], axis=self.axis[::-1], normal=self.normal[::-1], closed=self.closed)
+        return Pass(
+            tip=self.tip[::-1], axis=self.axis[::-1], normal=self.normal[::-1], closed=self.closed
+        )
 
     def of(self, rows: Bools | slice) -> Pass:
         """Return a part of the pass; it is not closed."""

@@ -51,43 +51,112 @@ SHORTEST = 0.5
 class PencilSettings:
     """How valleys are finished."""
 
-    angle: float = setting(20.0, unit="deg", low=2.0, high=170.0, label="Valley angle",
-                           help="The least angle between the faces on both sides, as the cutter touches them.")
-    sides: int = setting(0, low=0, high=MOST_SIDES, label="Passes beside", help="Passes on each side of a valley; 0: as far as the earlier "
-                                                                           "cutter left material, if there was one.")
-    stepover: float = setting(0.0, unit="mm", low=0.0, high=100.0, label="Stepover",
-                              help="Distance of the passes beside a valley; 0: by the wanted scallop height.")
-    chord: float = setting(0.0005, unit="mm", low=0.00005, high=0.1, label="Chord error",
-                           help="How far straight moves may leave the cutter's way over the faces.")
-    lead_radius: float = setting(1.0, unit="mm", low=0.05, high=50.0, label="Lead radius",
-                                 help="Of the quarter circles onto and off passes.")
-    safety: float = setting(2.0, unit="mm", low=0.2, high=50.0, label="Safety distance",
-                            help="Where a rapid ends above what may still be there.")
+    angle: float = setting(
+        20.0,
+        unit="deg",
+        low=2.0,
+        high=170.0,
+        label="Valley angle",
+        help="The least angle between the faces on both sides, as the cutter touches them.",
+    )
+    sides: int = setting(
+        0,
+        low=0,
+        high=MOST_SIDES,
+        label="Passes beside",
+        help="Passes on each side of a valley; 0: as far as the earlier "
+        "cutter left material, if there was one.",
+    )
+    stepover: float = setting(
+        0.0,
+        unit="mm",
+        low=0.0,
+        high=100.0,
+        label="Stepover",
+        help="Distance of the passes beside a valley; 0: by the wanted scallop height.",
+    )
+    chord: float = setting(
+        0.0005,
+        unit="mm",
+        low=0.00005,
+        high=0.1,
+        label="Chord error",
+        help="How far straight moves may leave the cutter's way over the faces.",
+    )
+    lead_radius: float = setting(
+        1.0,
+        unit="mm",
+        low=0.05,
+        high=50.0,
+        label="Lead radius",
+        help="Of the quarter circles onto and off passes.",
+    )
+    safety: float = setting(
+        2.0,
+        unit="mm",
+        low=0.2,
+        high=50.0,
+        label="Safety distance",
+        help="Where a rapid ends above what may still be there.",
+    )
 
 
 @strategy(settings=PencilSettings, drive=SurfaceDrive, finds_rest=True, meets=surface_leftovers)
-def pencil(drive: SurfaceDrive, tool: Tool, data: CuttingData, stock: PlanningStock, setup: Setup, settings: PencilSettings,
-           progress: Progress) -> Planned:
+def pencil(
+    drive: SurfaceDrive,
+    tool: Tool,
+    data: CuttingData,
+    stock: PlanningStock,
+    setup: Setup,
+    settings: PencilSettings,
+    progress: Progress,
+) -> Planned:
     """Return the motions along the valleys of the drive's faces."""
     if drive.height <= 0.0 and settings.stepover <= 0.0:
-        raise Refused(f"{drive.feature}: passes beside valleys need a scallop height or a stepover above zero")
+        raise Refused(
+            f"{drive.feature}: passes beside valleys need a scallop height or a stepover above zero"
+        )
     if tool.corner_radius <= 0.0:
-        raise Refused(f"{tool.name}: a flat end can't follow valleys of curved faces; choose a ball, bull, taper or barrel end")
+        raise Refused(
+            f"{tool.name}: a flat end can't follow valleys of curved faces; choose a ball, bull, taper or barrel end"
+        )
     places = places_of(drive, tool)
     if not len(places.row):
         return Planned(findings=(_nothing(drive, tool),))
     cell = float(np.clip(CELL * tool.radius, FINEST, COARSEST))
-    ground = _Ground(drive=drive, pieces=lower_side(tool, drive.allowance), lowest=float(drive.low[2]) - tool.flute_length)
-    valleys = _valleys(spread(places.tips, cell), cell, ground, math.radians(settings.angle), progress.part(0.0, 0.5))
+    ground = _Ground(
+        drive=drive,
+        pieces=lower_side(tool, drive.allowance),
+        lowest=float(drive.low[2]) - tool.flute_length,
+    )
+    valleys = _valleys(
+        spread(places.tips, cell),
+        cell,
+        ground,
+        math.radians(settings.angle),
+        progress.part(0.0, 0.5),
+    )
     valleys = [line for line in valleys if _length(line) >= SHORTEST * tool.radius]
     if not valleys:
         return Planned(findings=(_nothing(drive, tool),))
     stepover = settings.stepover or stepover_on_plane(tool.corner_radius, drive.height)
-    lines = [line for valley in valleys for line in _beside(valley, stepover, _sides(valley, stepover, ground, tool, settings))]
+    lines = [
+        line
+        for valley in valleys
+        for line in _beside(valley, stepover, _sides(valley, stepover, ground, tool, settings))
+    ]
     passes = _passes(lines, ground, settings.chord, progress.part(0.5, 0.8))
-    manner = Manner(stepover=stepover, safety=settings.safety, lead_radius=settings.lead_radius, order="nearest", reversing=True,
-                    chord=settings.chord)
-    return Planned(path=linked(passes, drive, tool, data, stock, setup, manner, progress.part(0.8, 1.0)))
+    manner = Manner(
+        stepover=stepover,
+        safety=settings.safety,
+        lead_radius=settings.lead_radius,
+        order="nearest",
+        reversing=True,
+        chord=settings.chord,
+    )
+    return Planned(
+        path=linked(passes, drive, tool, data, stock, setup, manner, progress.part(0.8, 1.0))
+    )
 
 
 @dataclass(frozen=True, slots=True, eq=False, kw_only=True)
@@ -101,15 +170,25 @@ class _Ground:
     def touch(self, plan: Floats, progress: Progress) -> tuple[Floats, Bools, Floats]:
         """Return over plan points (n, 2) how high the tip stands, whether it touches the area, and where it touches (n, 3)."""
         z, facet, contact = self.drive.skin.drop.touch(plan, self.pieces, self.lowest, progress)
-        return z, np.asarray((facet >= 0) & self.drive.skin.of(self.drive.faces)[np.maximum(facet, 0)]), contact
+        return (
+            z,
+            np.asarray((facet >= 0) & self.drive.skin.of(self.drive.faces)[np.maximum(facet, 0)]),
+            contact,
+        )
 
 
 def _nothing(drive: SurfaceDrive, tool: Tool) -> Finding:
-    return info("surface.no-valley", f"{drive.feature} has no valley in which {tool.name} touches two faces", drive.feature,
-                remedy="suppress the operation")
+    return info(
+        "surface.no-valley",
+        f"{drive.feature} has no valley in which {tool.name} touches two faces",
+        drive.feature,
+        remedy="suppress the operation",
+    )
 
 
-def _valleys(tips: Floats, cell: float, ground: _Ground, angle: float, progress: Progress) -> list[Floats]:
+def _valleys(
+    tips: Floats, cell: float, ground: _Ground, angle: float, progress: Progress
+) -> list[Floats]:
     """Return the valleys (k, 2) near tips (n, 3), in plan: what the cutter touches jumps across them."""
     grid = grid_around(tips, cell, MARGIN)
     z, on_area, contact = ground.touch(grid.points[:, :2], progress.part(0.0, 0.5))
@@ -124,8 +203,12 @@ def _valleys(tips: Floats, cell: float, ground: _Ground, angle: float, progress:
     near, far = grid.points[a[rows], :2].copy(), grid.points[b[rows], :2].copy()
     for k in range(CLOSER):
         middle = 0.5 * (near + far)
-        _, _, found = ground.touch(middle, progress.part(0.5 + 0.5 * k / CLOSER, 0.5 + 0.5 * (k + 1) / CLOSER))
-        stays = np.linalg.norm(found - contact[a[rows]], axis=1) <= np.linalg.norm(found - contact[b[rows]], axis=1)
+        _, _, found = ground.touch(
+            middle, progress.part(0.5 + 0.5 * k / CLOSER, 0.5 + 0.5 * (k + 1) / CLOSER)
+        )
+        stays = np.linalg.norm(found - contact[a[rows]], axis=1) <= np.linalg.norm(
+            found - contact[b[rows]], axis=1
+        )
         near, far = np.where(stays[:, None], middle, near), np.where(stays[:, None], far, middle)
     place = np.full((len(ends), 2), np.nan)
     place[rows] = 0.5 * (near + far)
@@ -166,14 +249,21 @@ def _chained(pairs: Ints) -> list[Ints]:
     return lines
 
 
-def _sides(valley: Floats, stepover: float, ground: _Ground, tool: Tool, settings: PencilSettings) -> int:
+def _sides(
+    valley: Floats, stepover: float, ground: _Ground, tool: Tool, settings: PencilSettings
+) -> int:
     """Return how many passes lie on each side of a valley: as set, or as far as the earlier cutter stood off its ground."""
     earlier = ground.drive.earlier
     if settings.sides or earlier is None:
         return settings.sides
-    larger = _Ground(drive=ground.drive, pieces=lower_side(earlier, ground.drive.allowance), lowest=ground.lowest)
+    larger = _Ground(
+        drive=ground.drive, pieces=lower_side(earlier, ground.drive.allowance), lowest=ground.lowest
+    )
     way = np.gradient(valley, axis=0)
-    left = np.column_stack([-way[:, 1], way[:, 0]]) / np.maximum(np.hypot(way[:, 0], way[:, 1]), np.finfo(float).tiny)[:, None]
+    left = (
+        np.column_stack([-way[:, 1], way[:, 0]])
+        / np.maximum(np.hypot(way[:, 0], way[:, 1]), np.finfo(float).tiny)[:, None]
+    )
     far = 0.0
     for aside in (-0.05 * tool.radius, 0.05 * tool.radius):
         places = valley + aside * left
@@ -189,13 +279,17 @@ def _beside(valley: Floats, stepover: float, sides: int) -> list[Floats]:
     found = []
     for k in range(-sides, sides + 1):
         made = shapely.offset_curve(line, k * stepover) if k else line
-        found += [shapely.get_coordinates(part) for part in shapely.get_parts(made) if part.length > 0.0]
+        found += [
+            shapely.get_coordinates(part) for part in shapely.get_parts(made) if part.length > 0.0
+        ]
     return found
 
 
 def _passes(lines: list[Floats], ground: _Ground, chord: float, progress: Progress) -> list[Pass]:
     """Return the passes along lines (k, 2) where the cutter touches the area."""
-    tips = follow(ground.drive.skin.drop, ground.pieces, lines, chord, ground.lowest, progress.part(0.0, 0.8))
+    tips = follow(
+        ground.drive.skin.drop, ground.pieces, lines, chord, ground.lowest, progress.part(0.0, 0.8)
+    )
     plan = np.concatenate([tip[:, :2] for tip in tips])
     _, on_area, contact = ground.touch(plan, progress.part(0.8, 1.0))
     passes, first = [], 0
@@ -205,11 +299,18 @@ def _passes(lines: list[Floats], ground: _Ground, chord: float, progress: Progre
         middle = tip + float(ground.pieces[-1, 4]) * UPRIGHT
         normal = middle - contact[rows]
         normal /= np.maximum(np.linalg.norm(normal, axis=1, keepdims=True), np.finfo(float).tiny)
-        edges = np.flatnonzero(np.diff(on_area[rows].astype(np.int8), prepend=0, append=0)).reshape(-1, 2)
+        edges = np.flatnonzero(np.diff(on_area[rows].astype(np.int8), prepend=0, append=0)).reshape(
+            -1, 2
+        )
         for a, b in edges.tolist():
             if b - a > 1 and np.isfinite(normal[a:b]).all():
-                passes.append(Pass(tip=tip[a:b] + ground.drive.allowance * UPRIGHT, axis=np.broadcast_to(UPRIGHT, (b - a, 3)),
-                                   normal=normal[a:b]))
+                passes.append(
+                    Pass(
+                        tip=tip[a:b] + ground.drive.allowance * UPRIGHT,
+                        axis=np.broadcast_to(UPRIGHT, (b - a, 3)),
+                        normal=normal[a:b],
+                    )
+                )
     return passes
 
 

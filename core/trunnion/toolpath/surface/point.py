@@ -33,7 +33,14 @@ from trunnion.toolpath.contract import Planned, leaning_axis, strategy
 from trunnion.toolpath.engagement import surface_leftovers
 from trunnion.toolpath.stock import PlanningStock
 from trunnion.toolpath.surface.axis import AxisField, fixed, from_point, interpolated, leaning
-from trunnion.toolpath.surface.axis_search import STEP, AxisSearch, Course, LeanLimits, free_axes, roomy
+from trunnion.toolpath.surface.axis_search import (
+    STEP,
+    AxisSearch,
+    Course,
+    LeanLimits,
+    free_axes,
+    roomy,
+)
 from trunnion.toolpath.surface.contacts import Contacts, between, slerp
 from trunnion.toolpath.surface.flowlines import Crowded, Flow, flow_lines
 from trunnion.toolpath.surface.fronts import scallop_passes
@@ -63,27 +70,102 @@ SMALLEST_LEFTOVER = 0.5
 class PointSettings:
     """How the tool leans, how its axis may turn, and how finely the way is cut."""
 
-    pattern: str = setting("flow", label="Pattern", help="Along flow lines between two guides, or as far from pass to pass as keeps the "
-                           "scallop the same everywhere.", choices=("flow", "constant"))
-    axis: str = setting("normal", label="Tool axis", help="What the axis keeps to: the face's normal with lead and tilt, a fixed "
-                        "direction, away from a place, towards a place, or between given vectors. It leaves that where it must.",
-                        choices=("normal", "fixed", "away", "towards", "vectors"))
-    lead: float = setting(10.0, unit="deg", low=-60.0, high=60.0, label="Lead angle", help="Lean from the normal towards the feed.")
-    tilt: float = setting(0.0, unit="deg", low=-60.0, high=60.0, label="Tilt angle", help="Lean from the normal to the left of the feed.")
-    axis_from: str = setting("", label="Axis from", help="In the part's coordinates: a direction x y z, a place x y z, or vectors as "
-                             "x y z > i j k; x y z > i j k.")
-    turn: float = setting(10.0, unit="deg/mm", low=0.5, high=60.0, label="Axis turn", help="How far the axis may turn on a mm of the "
-                          "cutter's way.")
-    steepest: float = setting(75.0, unit="deg", low=10.0, high=85.0, label="Steepest lean", help="Largest angle of axis and normal.")
-    first_guide: str = setting("", label="First guide", help="Faces beyond the rim where the flow lines begin, as in: face 12, face 13.")
-    second_guide: str = setting("", label="Second guide", help="Faces beyond the rim where the flow lines end.")
-    spiral: bool = setting(True, label="Spiral", help="Cut a tube or ring in one continuous spiral instead of closed passes.")
-    way: str = setting("one", label="Way", help="Every pass in the climbing direction, or to and fro, which unwinds rotary axes that can't "
-                       "turn for ever.", choices=("one", "both"))
-    chord: float = setting(0.0005, unit="mm", low=0.0001, high=0.1, label="Chord error",
-                           help="How far a block may leave the faces, on either side.")
-    lead_radius: float = setting(0.5, unit="mm", low=0.0, high=20.0, label="Lead radius", help="Radius of the arcs onto and off the face.")
-    safety: float = setting(2.0, unit="mm", low=0.2, high=50.0, label="Safety distance", help="How far rapids stay from the blank.")
+    pattern: str = setting(
+        "flow",
+        label="Pattern",
+        help="Along flow lines between two guides, or as far from pass to pass as keeps the "
+        "scallop the same everywhere.",
+        choices=("flow", "constant"),
+    )
+    axis: str = setting(
+        "normal",
+        label="Tool axis",
+        help="What the axis keeps to: the face's normal with lead and tilt, a fixed "
+        "direction, away from a place, towards a place, or between given vectors. It leaves that where it must.",
+        choices=("normal", "fixed", "away", "towards", "vectors"),
+    )
+    lead: float = setting(
+        10.0,
+        unit="deg",
+        low=-60.0,
+        high=60.0,
+        label="Lead angle",
+        help="Lean from the normal towards the feed.",
+    )
+    tilt: float = setting(
+        0.0,
+        unit="deg",
+        low=-60.0,
+        high=60.0,
+        label="Tilt angle",
+        help="Lean from the normal to the left of the feed.",
+    )
+    axis_from: str = setting(
+        "",
+        label="Axis from",
+        help="In the part's coordinates: a direction x y z, a place x y z, or vectors as "
+        "x y z > i j k; x y z > i j k.",
+    )
+    turn: float = setting(
+        10.0,
+        unit="deg/mm",
+        low=0.5,
+        high=60.0,
+        label="Axis turn",
+        help="How far the axis may turn on a mm of the cutter's way.",
+    )
+    steepest: float = setting(
+        75.0,
+        unit="deg",
+        low=10.0,
+        high=85.0,
+        label="Steepest lean",
+        help="Largest angle of axis and normal.",
+    )
+    first_guide: str = setting(
+        "",
+        label="First guide",
+        help="Faces beyond the rim where the flow lines begin, as in: face 12, face 13.",
+    )
+    second_guide: str = setting(
+        "", label="Second guide", help="Faces beyond the rim where the flow lines end."
+    )
+    spiral: bool = setting(
+        True,
+        label="Spiral",
+        help="Cut a tube or ring in one continuous spiral instead of closed passes.",
+    )
+    way: str = setting(
+        "one",
+        label="Way",
+        help="Every pass in the climbing direction, or to and fro, which unwinds rotary axes that can't "
+        "turn for ever.",
+        choices=("one", "both"),
+    )
+    chord: float = setting(
+        0.0005,
+        unit="mm",
+        low=0.0001,
+        high=0.1,
+        label="Chord error",
+        help="How far a block may leave the faces, on either side.",
+    )
+    lead_radius: float = setting(
+        0.5,
+        unit="mm",
+        low=0.0,
+        high=20.0,
+        label="Lead radius",
+        help="Radius of the arcs onto and off the face.",
+    )
+    safety: float = setting(
+        2.0,
+        unit="mm",
+        low=0.2,
+        high=50.0,
+        label="Safety distance",
+        help="How far rapids stay from the blank.",
+    )
 
 
 @dataclass(frozen=True, slots=True, eq=False, kw_only=True)
@@ -95,12 +177,23 @@ class Milled:
     left: float
 
 
-@strategy(settings=PointSettings, drive=SurfaceDrive, tool_axis=leaning_axis, meets=surface_leftovers)
-def point(drive: SurfaceDrive, tool: Tool, data: CuttingData, stock: PlanningStock, setup: Setup, settings: PointSettings,
-          progress: Progress = QUIET) -> Planned:
+@strategy(
+    settings=PointSettings, drive=SurfaceDrive, tool_axis=leaning_axis, meets=surface_leftovers
+)
+def point(
+    drive: SurfaceDrive,
+    tool: Tool,
+    data: CuttingData,
+    stock: PlanningStock,
+    setup: Setup,
+    settings: PointSettings,
+    progress: Progress = QUIET,
+) -> Planned:
     """Return the path of a leaning tool over the drive's faces, or over what an earlier cutter left of them, and what it must leave."""
     if drive.ask is None:
-        raise Refused(f"{drive.feature}: point milling leans the tool; choose a machine with rotary axes, or another strategy")
+        raise Refused(
+            f"{drive.feature}: point milling leans the tool; choose a machine with rotary axes, or another strategy"
+        )
     ask, lead, tilt = drive.ask(tool), math.radians(settings.lead), math.radians(settings.tilt)
     ball = grooving(tool, lead, tilt)
     ways, told = _ways(drive, ball, settings, progress.part(0.0, 0.3))
@@ -109,14 +202,43 @@ def point(drive: SurfaceDrive, tool: Tool, data: CuttingData, stock: PlanningSto
     limits = LeanLimits(turn=math.radians(settings.turn), steepest=math.radians(settings.steepest))
     field = field_of(settings, drive.frame)
     if drive.earlier is not None:
-        ways = rest_of(ways, drive.earlier, field, drive.ask(drive.earlier), limits, drive.allowance, progress.part(0.3, 0.4))
+        ways = rest_of(
+            ways,
+            drive.earlier,
+            field,
+            drive.ask(drive.earlier),
+            limits,
+            drive.allowance,
+            progress.part(0.3, 0.4),
+        )
         if not ways:
-            return Planned(findings=(info("point.nothing-left", f"{drive.earlier.name} left nothing of {drive.feature}", drive.feature),))
+            return Planned(
+                findings=(
+                    info(
+                        "point.nothing-left",
+                        f"{drive.earlier.name} left nothing of {drive.feature}",
+                        drive.feature,
+                    ),
+                )
+            )
     # Clear of what still stands beside the faces, and where no lean is, clear of the part itself.
     wide = drive.ask(roomy(tool, max(STANDING * data.depth, LEAST_STANDING)))
-    done = milled(ways, tool, field, wide, limits, settings.chord, drive.allowance, progress.part(0.4, 0.7))
-    tight = milled(done.rest, tool, field, ask, limits, settings.chord, drive.allowance, progress.part(0.7, 0.9))
-    done = Milled(passes=(*done.passes, *tight.passes), rest=tight.rest, left=done.left * tight.left)
+    done = milled(
+        ways, tool, field, wide, limits, settings.chord, drive.allowance, progress.part(0.4, 0.7)
+    )
+    tight = milled(
+        done.rest,
+        tool,
+        field,
+        ask,
+        limits,
+        settings.chord,
+        drive.allowance,
+        progress.part(0.7, 0.9),
+    )
+    done = Milled(
+        passes=(*done.passes, *tight.passes), rest=tight.rest, left=done.left * tight.left
+    )
     stepover = stepover_on_plane(max(ball.radius, drive.height), drive.height)
     findings = _left(done, drive, tool)
     if not done.passes:
@@ -126,23 +248,45 @@ def point(drive: SurfaceDrive, tool: Tool, data: CuttingData, stock: PlanningSto
     return Planned(path=path, findings=(*told, *findings, *met, *_low(path, drive, tool)))
 
 
-def _ways(drive: SurfaceDrive, ball: Tool, settings: PointSettings, progress: Progress) -> tuple[tuple[Contacts, ...], tuple[Finding, ...]]:
+def _ways(
+    drive: SurfaceDrive, ball: Tool, settings: PointSettings, progress: Progress
+) -> tuple[tuple[Contacts, ...], tuple[Finding, ...]]:
     """Return the ways of contacts that the pattern asks for, or those of constant scallop where flow lines don't suit the area, and then
     a finding that says so."""
     told: tuple[Finding, ...] = ()
     if settings.pattern == "flow":
-        flow = Flow(first_guide=settings.first_guide, second_guide=settings.second_guide, spiral=settings.spiral)
+        flow = Flow(
+            first_guide=settings.first_guide,
+            second_guide=settings.second_guide,
+            spiral=settings.spiral,
+        )
         try:
             return flow_lines(drive, ball, flow, progress), told
         except Crowded as reason:
-            told = (info("point.pattern", f"{drive.feature}: cut at a constant scallop, for {reason}", drive.feature,
-                         remedy="set surface.point.pattern to constant to have it so without this note"),)
+            told = (
+                info(
+                    "point.pattern",
+                    f"{drive.feature}: cut at a constant scallop, for {reason}",
+                    drive.feature,
+                    remedy="set surface.point.pattern to constant to have it so without this note",
+                ),
+            )
     # They run with what is inside on their left: the other way round a cutter that turns clockwise climbs.
-    return tuple(way.reversed() for way in scallop_passes(drive, ball, settings.chord, progress)), told
+    return tuple(
+        way.reversed() for way in scallop_passes(drive, ball, settings.chord, progress)
+    ), told
 
 
-def milled(ways: Sequence[Contacts], tool: Tool, field: AxisField, ask: Asker | None, limits: LeanLimits, chord: float,
-           allowance: float = 0.0, progress: Progress = QUIET) -> Milled:
+def milled(
+    ways: Sequence[Contacts],
+    tool: Tool,
+    field: AxisField,
+    ask: Asker | None,
+    limits: LeanLimits,
+    chord: float,
+    allowance: float = 0.0,
+    progress: Progress = QUIET,
+) -> Milled:
     """Return the passes of a cutter over contact passes, its axis as near to a field as `ask` and the limits let it.
 
     The cutter stays within `chord` mm of where it touches, thicker by the allowance. Moves that touch what they must not are left out.
@@ -156,24 +300,53 @@ def milled(ways: Sequence[Contacts], tool: Tool, field: AxisField, ask: Asker | 
     for n in range(TRIES):
         share = progress.part(1.0 - 0.5 ** (n + 1), 1.0 - 0.5 ** (n + 2))
         for k in share.over(again, "Following flow lines with a leaning tool"):
-            found[k], met = _cut([located(ways[k], run, tool, chord, allowance) for run in courses[k].runs()], ask)
+            found[k], met = _cut(
+                [located(ways[k], run, tool, chord, allowance) for run in courses[k].runs()], ask
+            )
             if len(met) and n + 1 < TRIES:
                 search.met(k, met)
         again = np.flatnonzero(search.dirty).tolist()
         courses = search.courses(share) if again else courses
-    gaps = [_gaps(len(way) - 1.0, [(float(place[0]), float(place[-1])) for place, _ in pieces])
-            for way, pieces in zip(ways, found, strict=True)]
-    whole, left = sum(_run(way, 0.0, len(way) - 1.0) for way in ways), sum(_run(way, *g) for way, some in zip(ways, gaps) for g in some)
-    rest = tuple(way.of(slice(math.floor(a), math.ceil(b) + 1)) for way, some in zip(ways, gaps, strict=True) for a, b in some)
-    return Milled(passes=tuple(one for pieces in found for _, one in pieces), rest=rest, left=left / whole if whole > 0.0 else 0.0)
+    gaps = [
+        _gaps(len(way) - 1.0, [(float(place[0]), float(place[-1])) for place, _ in pieces])
+        for way, pieces in zip(ways, found, strict=True)
+    ]
+    whole, left = (
+        sum(_run(way, 0.0, len(way) - 1.0) for way in ways),
+        sum(_run(way, *g) for way, some in zip(ways, gaps) for g in some),
+    )
+    rest = tuple(
+        way.of(slice(math.floor(a), math.ceil(b) + 1))
+        for way, some in zip(ways, gaps, strict=True)
+        for a, b in some
+    )
+    return Milled(
+        passes=tuple(one for pieces in found for _, one in pieces),
+        rest=rest,
+        left=left / whole if whole > 0.0 else 0.0,
+    )
 
 
-def rest_of(ways: Sequence[Contacts], earlier: Tool, field: AxisField, ask: Asker, limits: LeanLimits, allowance: float = 0.0,
-            progress: Progress = QUIET) -> tuple[Contacts, ...]:
+def rest_of(
+    ways: Sequence[Contacts],
+    earlier: Tool,
+    field: AxisField,
+    ask: Asker,
+    limits: LeanLimits,
+    allowance: float = 0.0,
+    progress: Progress = QUIET,
+) -> tuple[Contacts, ...]:
     """Return the stretches of contact passes where an earlier cutter had no free axis, and a little more all round."""
     courses = free_axes(ways, field, earlier, ask, limits, allowance, progress)
-    gone = np.vstack([np.zeros((0, 3)), *(between(way.point, way.normal, way.feed, course.place[~course.free])[0]
-                                          for way, course in zip(ways, courses, strict=True))])
+    gone = np.vstack(
+        [
+            np.zeros((0, 3)),
+            *(
+                between(way.point, way.normal, way.feed, course.place[~course.free])[0]
+                for way, course in zip(ways, courses, strict=True)
+            ),
+        ]
+    )
     if not len(gone):
         return ()
     tree, beside, found = cKDTree(gone), OVERLAP * earlier.radius + STEP / limits.turn, []
@@ -184,7 +357,9 @@ def rest_of(ways: Sequence[Contacts], earlier: Tool, field: AxisField, ask: Aske
     return tuple(found)
 
 
-def located(way: Contacts, run: Course, tool: Tool, chord: float, allowance: float = 0.0) -> tuple[Floats, Pass]:
+def located(
+    way: Contacts, run: Course, tool: Tool, chord: float, allowance: float = 0.0
+) -> tuple[Floats, Pass]:
     """Return where a cutter stands along a run of a contact pass: the places (k,) of the way and the pass itself."""
     radius, feed = max(tool.corner_radius, 0.25 * tool.radius), way.feed
     travel = way.travel(radius)
@@ -198,14 +373,21 @@ def located(way: Contacts, run: Course, tool: Tool, chord: float, allowance: flo
         block = np.clip(np.searchsorted(place, probe, side="right") - 1, 0, len(place) - 2)
         gone = np.interp(probe, np.arange(len(way)), travel)
         ends = np.interp(place, np.arange(len(way)), travel)
-        part = np.clip((gone - ends[block]) / np.maximum(ends[block + 1] - ends[block], tolerance.PARAMETRIC), 0.0, 1.0)
+        part = np.clip(
+            (gone - ends[block]) / np.maximum(ends[block + 1] - ends[block], tolerance.PARAMETRIC),
+            0.0,
+            1.0,
+        )
         turned = slerp(axis[block], axis[block + 1], part)
         at, out = between(way.point, way.normal, feed, probe)
         stands = tip[block] + part[:, None] * (tip[block + 1] - tip[block])
         off = np.abs(((stands - tip_at(tool, at + allowance * out, out, turned)) * out).sum(axis=1))
         worst = np.zeros(len(place) - 1)
         np.maximum.at(worst, block, off)
-        split = np.flatnonzero((worst > chord) & (np.linalg.norm(np.diff(tip, axis=0), axis=1) > 2.0 * tolerance.SHORT_MOVE))
+        split = np.flatnonzero(
+            (worst > chord)
+            & (np.linalg.norm(np.diff(tip, axis=0), axis=1) > 2.0 * tolerance.SHORT_MOVE)
+        )
         if not len(split):
             break
         place = np.sort(np.concatenate([place, 0.5 * (place[split] + place[split + 1])]))
@@ -224,14 +406,27 @@ def grooving(tool: Tool, lead: float, tilt: float) -> Tool:
         lean = math.acos(math.cos(lead) * math.cos(tilt))
         pieces = lower_side(tool)
         rho = float(touching(tool, np.array([lean]))[0][0])
-        profile = next((1.0 / row[C] for row in pieces if row[ROUND] and row[0] <= rho <= row[1]), 0.0)
+        profile = next(
+            (1.0 / row[C] for row in pieces if row[ROUND] and row[0] <= rho <= row[1]), 0.0
+        )
         # The share of the lean that lies across the feed.
         across = (math.sin(tilt) / math.sin(lean)) ** 2 if lean > 0.0 else 0.0
-        curved = across * profile + (1.0 - across) * (math.sin(lean) / rho if rho > 0.0 else profile)
+        curved = across * profile + (1.0 - across) * (
+            math.sin(lean) / rho if rho > 0.0 else profile
+        )
         radius = 1.0 / max(curved, 1.0 / STRAIGHT)
-    return replace(tool, form="ball", diameter=2.0 * radius, corner_radius=radius, flute_length=max(tool.flute_length, radius),
-                   neck_length=max(tool.neck_length, radius), stickout=max(tool.stickout, radius),
-                   gauge_length=max(tool.gauge_length, radius), taper_angle=0.0, barrel_radius=0.0)
+    return replace(
+        tool,
+        form="ball",
+        diameter=2.0 * radius,
+        corner_radius=radius,
+        flute_length=max(tool.flute_length, radius),
+        neck_length=max(tool.neck_length, radius),
+        stickout=max(tool.stickout, radius),
+        gauge_length=max(tool.gauge_length, radius),
+        taper_angle=0.0,
+        barrel_radius=0.0,
+    )
 
 
 def field_of(chosen: PointSettings, frame: Frame) -> AxisField:
@@ -246,24 +441,57 @@ def field_of(chosen: PointSettings, frame: Frame) -> AxisField:
         if chosen.axis == "fixed":
             return fixed(frame.local_direction(np.array(numbers)))
         return from_point(frame.to_local(np.array(numbers)), chosen.axis == "away")
-    wanted = "vectors as x y z > i j k; x y z > i j k" if chosen.axis == "vectors" else "three numbers x y z"
-    raise BadInput(f"Axis from (surface.point.axis_from) must be {wanted} while the tool axis is {chosen.axis}; got {chosen.axis_from!r}")
+    wanted = (
+        "vectors as x y z > i j k; x y z > i j k"
+        if chosen.axis == "vectors"
+        else "three numbers x y z"
+    )
+    raise BadInput(
+        f"Axis from (surface.point.axis_from) must be {wanted} while the tool axis is {chosen.axis}; got {chosen.axis_from!r}"
+    )
 
 
-def _linked(done: Milled, drive: SurfaceDrive, tool: Tool, data: CuttingData, stock: PlanningStock, setup: Setup, manner: Manner,
-            ask: Asker, progress: Progress) -> tuple[Toolpath, tuple[Finding, ...]]:
+def _linked(
+    done: Milled,
+    drive: SurfaceDrive,
+    tool: Tool,
+    data: CuttingData,
+    stock: PlanningStock,
+    setup: Setup,
+    manner: Manner,
+    ask: Asker,
+    progress: Progress,
+) -> tuple[Toolpath, tuple[Finding, ...]]:
     """Return the path through all passes; leads that touch something are tried shorter, what touches in the end is a finding."""
     path, touched = Toolpath.join([]), np.zeros(0, dtype=bool)
     for n, share in enumerate(LEADS):
-        path = linked(done.passes, drive, tool, data, stock, setup, replace(manner, lead_radius=share * manner.lead_radius),
-                      progress.part(n / len(LEADS), (n + 1) / len(LEADS)))
+        path = linked(
+            done.passes,
+            drive,
+            tool,
+            data,
+            stock,
+            setup,
+            replace(manner, lead_radius=share * manner.lead_radius),
+            progress.part(n / len(LEADS), (n + 1) / len(LEADS)),
+        )
         between_cuts = np.flatnonzero(path.mark[1:] != Mark.CUT) + 1
-        touched = ~ask(path.position[between_cuts], path.axis[between_cuts], start_tip=path.position[between_cuts - 1],
-                       start_axis=path.axis[between_cuts - 1])
+        touched = ~ask(
+            path.position[between_cuts],
+            path.axis[between_cuts],
+            start_tip=path.position[between_cuts - 1],
+            start_axis=path.axis[between_cuts - 1],
+        )
         if not touched.any():
             return path, ()
-    return path, (warning("point.link", f"{int(touched.sum())} moves between the passes of {drive.feature} touch part or fixtures",
-                          drive.feature, remedy="choose a smaller cutter or another lead, or cut fewer faces in one operation"),)
+    return path, (
+        warning(
+            "point.link",
+            f"{int(touched.sum())} moves between the passes of {drive.feature} touch part or fixtures",
+            drive.feature,
+            remedy="choose a smaller cutter or another lead, or cut fewer faces in one operation",
+        ),
+    )
 
 
 def _low(path: Toolpath, drive: SurfaceDrive, tool: Tool) -> tuple[Finding, ...]:
@@ -273,8 +501,14 @@ def _low(path: Toolpath, drive: SurfaceDrive, tool: Tool) -> tuple[Finding, ...]
     deep = float(drive.low[2] - (nose[:, 2] - reach).min(initial=np.inf))
     if deep <= 0.0:
         return ()
-    return (warning("point.low", f"the holder of {tool.name} comes {trimmed(deep, 0)} mm lower than the blank's underside while it leans",
-                    drive.feature, remedy=f"let the part stand at least {trimmed(deep, 0)} mm above the table"),)
+    return (
+        warning(
+            "point.low",
+            f"the holder of {tool.name} comes {trimmed(deep, 0)} mm lower than the blank's underside while it leans",
+            drive.feature,
+            remedy=f"let the part stand at least {trimmed(deep, 0)} mm above the table",
+        ),
+    )
 
 
 def _numbers(text: str) -> list[float]:
@@ -284,14 +518,18 @@ def _numbers(text: str) -> list[float]:
         return []
 
 
-def _standing(way: Contacts, feed: Floats, run: Course, tool: Tool, allowance: float, place: Floats) -> tuple[Floats, Floats, Floats]:
+def _standing(
+    way: Contacts, feed: Floats, run: Course, tool: Tool, allowance: float, place: Floats
+) -> tuple[Floats, Floats, Floats]:
     """Return the normals, axes and tips (k, 3) at places (k,) of a run."""
     point, normal = between(way.point, way.normal, feed, place)
     axis = run.at(place)
     return normal, axis, tip_at(tool, point + allowance * normal, normal, axis)
 
 
-def _cut(runs: Sequence[tuple[Floats, Pass]], ask: Asker | None) -> tuple[list[tuple[Floats, Pass]], Floats]:
+def _cut(
+    runs: Sequence[tuple[Floats, Pass]], ask: Asker | None
+) -> tuple[list[tuple[Floats, Pass]], Floats]:
     """Return the stretches of runs whose moves are clear, and the places where a move is not."""
     if ask is None:
         return list(runs), np.zeros(0)
@@ -331,5 +569,11 @@ def _left(done: Milled, drive: SurfaceDrive, tool: Tool) -> tuple[Finding, ...]:
     area = done.left * 0.5 * float(np.linalg.norm(across, axis=1).sum())
     if area < SMALLEST_LEFTOVER:
         return ()
-    return (warning("point.left", f"{area:.0f} mm2 of {drive.feature} stay: {tool.name} finds no way to lean there", drive.feature,
-                    remedy="choose a smaller or longer cutter, a slimmer holder, or let it lean further from the normal"),)
+    return (
+        warning(
+            "point.left",
+            f"{area:.0f} mm2 of {drive.feature} stay: {tool.name} finds no way to lean there",
+            drive.feature,
+            remedy="choose a smaller or longer cutter, a slimmer holder, or let it lean further from the normal",
+        ),
+    )

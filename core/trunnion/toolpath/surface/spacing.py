@@ -52,7 +52,9 @@ class Places:
         size = np.maximum(aa * bb - ab * ab, np.finfo(float).tiny)
         first, second = ((bb * wa - ab * wb) / size)[:, None], ((aa * wb - ab * wa) / size)[:, None]
         moves = self.tips[:, 1:] - self.tips[:, :1]
-        return first * self.turns[:, 0] + second * self.turns[:, 1], first * moves[:, 0] + second * moves[:, 1]
+        return first * self.turns[:, 0] + second * self.turns[:, 1], first * moves[
+            :, 0
+        ] + second * moves[:, 1]
 
 
 def places_of(drive: SurfaceDrive, tool: Tool, least: float = 0.0) -> Places:
@@ -66,9 +68,17 @@ def places_of(drive: SurfaceDrive, tool: Tool, least: float = 0.0) -> Places:
     seen = (size > 0.0) & (normals[:, :, 2].min(axis=1) > least)
     row, points, normals, size = row[seen], points[seen], normals[seen], size[seen]
     contact = (points + drive.allowance * normals).reshape(-1, 3)
-    tips = tip_at(tool, contact, normals.reshape(-1, 3), np.broadcast_to(UPRIGHT, contact.shape)).reshape(-1, 3, 3)
-    return Places(row=row, normal=unit(normals.sum(axis=1)), area=0.5 * size, tips=tips,
-                  edges=points[:, 1:] - points[:, :1], turns=normals[:, 1:] - normals[:, :1])
+    tips = tip_at(
+        tool, contact, normals.reshape(-1, 3), np.broadcast_to(UPRIGHT, contact.shape)
+    ).reshape(-1, 3, 3)
+    return Places(
+        row=row,
+        normal=unit(normals.sum(axis=1)),
+        area=0.5 * size,
+        tips=tips,
+        edges=points[:, 1:] - points[:, :1],
+        turns=normals[:, 1:] - normals[:, :1],
+    )
 
 
 def tip_spacing(places: Places, tool: Tool, height: float, across: Floats) -> Floats:
@@ -80,13 +90,17 @@ def tip_spacing(places: Places, tool: Tool, height: float, across: Floats) -> Fl
     turn, move = places.along(way)
     bend = (turn * way).sum(axis=1, keepdims=True)
     bends = np.abs(places.turns).max(axis=(1, 2), initial=0.0) > tolerance.ANGLE
-    passes = stepover_measure(tool, height)(np.zeros_like(way), places.normal, way, places.normal + bend * way)
+    passes = stepover_measure(tool, height)(
+        np.zeros_like(way), places.normal, way, places.normal + bend * way
+    )
     stepover = np.where(bends, math.sqrt(AIM), 1.0) / passes
     # Tips are nearer to each other than contacts in a hollow, and wider apart on a hill.
     going = (move @ across) / share
     # What is rounder than the cutter by more than the height is left to a smaller one, wherever passes lie.
     fits = going * tool.corner_radius > -height
-    return np.asarray(share * np.where(fits, np.maximum(stepover * going, CLOSEST * height), stepover))
+    return np.asarray(
+        share * np.where(fits, np.maximum(stepover * going, CLOSEST * height), stepover)
+    )
 
 
 def level_spacing(places: Places, tool: Tool, height: float) -> Floats:
@@ -97,7 +111,11 @@ def level_spacing(places: Places, tool: Tool, height: float) -> Floats:
     """
     lean = np.maximum(places.normal[:, 2], 0.0)
     step = np.divide(height, lean, out=np.full(lean.shape, np.inf), where=lean > 0.0)
-    return step if tool.corner_radius <= 0.0 else np.maximum(step, tip_spacing(places, tool, height, UPRIGHT))
+    return (
+        step
+        if tool.corner_radius <= 0.0
+        else np.maximum(step, tip_spacing(places, tool, height, UPRIGHT))
+    )
 
 
 def marched(low: Floats, high: Floats, spacing: Floats, begin: float, end: float) -> Floats:
@@ -105,7 +123,9 @@ def marched(low: Floats, high: Floats, spacing: Floats, begin: float, end: float
     low to high (m,) with a spacing (m,) each."""
     width = max(FINENESS * float(spacing.min()), (end - begin) / MOST_STRIPS)
     count = int((end - begin) / width) + 1
-    begins, ends = (np.clip(((v - begin) / width).astype(np.int64), 0, count - 1) for v in (low, high))
+    begins, ends = (
+        np.clip(((v - begin) / width).astype(np.int64), 0, count - 1) for v in (low, high)
+    )
     allowed = least_over(begins, ends, spacing, count)
     at = [begin]
     while at[-1] < end:

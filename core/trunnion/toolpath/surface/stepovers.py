@@ -52,14 +52,19 @@ def stepover_measure(tool: Tool, height: float) -> Measure:
     A cutter that is not a ball stands along z. Raises `Refused` for a flat end, which leaves steps and no scallops.
     """
     if tool.corner_radius <= 0.0:
-        raise Refused(f"{tool.name}: a flat end leaves steps on curved faces; choose a ball, bull, taper or barrel end")
+        raise Refused(
+            f"{tool.name}: a flat end leaves steps on curved faces; choose a ball, bull, taper or barrel end"
+        )
     least = 1.0 / (WIDEST * tool.diameter) ** 2
     # A groove's chord is shorter than a parabola's by a share of the height over the radius.
     depth = height * (1.0 - 0.5 * min(height / tool.corner_radius, 1.0))
 
     def measure(a: Floats, a_normal: Floats, b: Floats, b_normal: Floats) -> Floats:
         way = b - a
-        own, bend = _own_curvature(tool, way, a_normal + b_normal), (way * (b_normal - a_normal)).sum(axis=1)
+        own, bend = (
+            _own_curvature(tool, way, a_normal + b_normal),
+            (way * (b_normal - a_normal)).sum(axis=1),
+        )
         gap = own + bend + UNSURE * np.maximum(-bend - SNUG * own, 0.0)
         return np.sqrt(np.maximum(gap / (8.0 * depth), least * (way * way).sum(axis=1)))
 
@@ -76,8 +81,12 @@ def _own_curvature(tool: Tool, way: Floats, normal: Floats) -> Floats:
     # Round about the axis, and along the profile.
     cross = way[:, 1] * normal[:, 0] - way[:, 0] * normal[:, 1]
     level = np.divide(cross, sine, out=np.zeros(len(way)), where=sine > 0.0) ** 2
-    around = np.divide(sine, np.hypot(sine, cosine) * rho, out=np.zeros(len(way)), where=rho > tolerance.COINCIDENT)
-    return np.asarray(level * around + np.maximum(square - level, 0.0) * _profile_curvature(tool, rho))
+    around = np.divide(
+        sine, np.hypot(sine, cosine) * rho, out=np.zeros(len(way)), where=rho > tolerance.COINCIDENT
+    )
+    return np.asarray(
+        level * around + np.maximum(square - level, 0.0) * _profile_curvature(tool, rho)
+    )
 
 
 def _profile_curvature(tool: Tool, rho: Floats) -> Floats:
@@ -105,7 +114,9 @@ def _held_past_jumps(sheet: Sheet, ends: Ints, side: Ints, lengths: Floats) -> F
     def along(triangle: Ints, way: Floats) -> Floats:
         """Return the square of the length of ways (k, 3) in triangles (k,)."""
         part = np.einsum("kij,kj->ki", slope[triangle], way)
-        return np.asarray(np.maximum(-(part * np.roll(part, -1, axis=1) * form[triangle]).sum(axis=1), 0.0))
+        return np.asarray(
+            np.maximum(-(part * np.roll(part, -1, axis=1) * form[triangle]).sum(axis=1), 0.0)
+        )
 
     order = np.argsort(side.ravel(), kind="stable")
     twice = np.flatnonzero(np.diff(side.ravel()[order]) == 0)
@@ -113,22 +124,34 @@ def _held_past_jumps(sheet: Sheet, ends: Ints, side: Ints, lengths: Floats) -> F
     run = sheet.points[ends[:, 1]] - sheet.points[ends[:, 0]]
     size = np.linalg.norm(run, axis=1)
     across = np.cross(run[edge], sheet.normals[ends[edge, 0]] + sheet.normals[ends[edge, 1]])
-    across = across / np.maximum(np.linalg.norm(across, axis=1, keepdims=True), tolerance.PARAMETRIC)
+    across = across / np.maximum(
+        np.linalg.norm(across, axis=1, keepdims=True), tolerance.PARAMETRIC
+    )
     squares = along(one, across), along(two, across)
     rounder, square = np.where(squares[0] > squares[1], one, two), np.maximum(*squares)
     jumps = np.flatnonzero((square > JUMP * np.minimum(*squares)) & (square > 0.0))
     if not len(jumps):
         return lengths
-    count = np.maximum(np.ceil(size[edge[jumps]] * np.sqrt(square[jumps]) / (0.5 * PAST)), 1.0).astype(np.int64)
+    count = np.maximum(
+        np.ceil(size[edge[jumps]] * np.sqrt(square[jumps]) / (0.5 * PAST)), 1.0
+    ).astype(np.int64)
     row = np.repeat(jumps, count)
-    share = (np.arange(len(row)) - np.repeat(np.cumsum(count) - count, count) + 0.5) / np.repeat(count, count)
+    share = (np.arange(len(row)) - np.repeat(np.cumsum(count) - count, count) + 0.5) / np.repeat(
+        count, count
+    )
     tree = cKDTree(sheet.points[ends[edge[row], 0]] + share[:, None] * run[edge[row]])
     # The rounder side holds no farther than the flatter one's stepovers are wide.
     density, middle = lengths / size, 0.5 * (sheet.points[ends[:, 0]] + sheet.points[ends[:, 1]])
     near = np.flatnonzero(tree.query(middle)[0] <= 0.5 * size + PAST / density)
-    place = sheet.points[ends[near, 0]][:, None] + ((np.arange(SHARES) + 0.5) / SHARES)[:, None] * run[near][:, None]
+    place = (
+        sheet.points[ends[near, 0]][:, None]
+        + ((np.arange(SHARES) + 0.5) / SHARES)[:, None] * run[near][:, None]
+    )
     farthest = PAST / float(density[near].min(initial=np.inf))
-    away, found = (np.asarray(x) for x in tree.query(place.reshape(-1, 3), k=NEARBY, distance_upper_bound=farthest))
+    away, found = (
+        np.asarray(x)
+        for x in tree.query(place.reshape(-1, 3), k=NEARBY, distance_upper_bound=farthest)
+    )
     of, which = np.nonzero(np.isfinite(away))
     mine = near[of // SHARES]
     jump = row[found[of, which]]
@@ -153,7 +176,9 @@ def _forms(sheet: Sheet, lengths: Floats) -> tuple[Floats, Floats]:
     return slope, lengths**2
 
 
-def spread(point: Floats, normal: Floats, closed: bool, radius: float, chord: float, longest: float) -> tuple[Floats, Floats]:
+def spread(
+    point: Floats, normal: Floats, closed: bool, radius: float, chord: float, longest: float
+) -> tuple[Floats, Floats]:
     """Return contacts (m, 3) with normals over the curved way through contacts (k, 3), at most `longest` mm apart, and so close that
     straight moves between them, and between points a radius above them, leave the way by no more than a chord error, and along
     the face by no more than `ASIDE`. Corners stay."""
@@ -178,5 +203,7 @@ def spread(point: Floats, normal: Floats, closed: bool, radius: float, chord: fl
     at = np.arange(int(count.sum()) + 1.0)
     run[-1] = at[-1]
     row = np.clip(np.searchsorted(run, at, side="right") - 1, 0, len(run) - 2)
-    share = np.clip((at - run[row]) / np.maximum(run[row + 1] - run[row], tolerance.PARAMETRIC), 0.0, 1.0)
+    share = np.clip(
+        (at - run[row]) / np.maximum(run[row + 1] - run[row], tolerance.PARAMETRIC), 0.0, 1.0
+    )
     return between(point[row], normal[row], point[row + 1], normal[row + 1], share)

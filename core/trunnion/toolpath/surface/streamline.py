@@ -25,29 +25,63 @@ from trunnion.toolpath.surface.linking import Manner, linked
 class StreamlineSettings:
     """How flow lines run and how finely they are cut."""
 
-    first_guide: str = setting("", label="First guide", help="Faces beyond the rim where the passes begin, as in: face 12, face 13. "
-                               "Without: a whole rim of a tube, or one of the two longest opposite sides.")
-    second_guide: str = setting("", label="Second guide", help="Faces beyond the rim where the passes end.")
-    spiral: bool = setting(True, label="Spiral", help="Cut a tube or ring in one continuous spiral instead of closed passes.")
-    pattern: str = setting("zigzag", label="Pattern", help="Passes to and fro, or all of them in the climbing direction.",
-                           choices=("zigzag", "climb"))
+    first_guide: str = setting(
+        "",
+        label="First guide",
+        help="Faces beyond the rim where the passes begin, as in: face 12, face 13. "
+        "Without: a whole rim of a tube, or one of the two longest opposite sides.",
+    )
+    second_guide: str = setting(
+        "", label="Second guide", help="Faces beyond the rim where the passes end."
+    )
+    spiral: bool = setting(
+        True,
+        label="Spiral",
+        help="Cut a tube or ring in one continuous spiral instead of closed passes.",
+    )
+    pattern: str = setting(
+        "zigzag",
+        label="Pattern",
+        help="Passes to and fro, or all of them in the climbing direction.",
+        choices=("zigzag", "climb"),
+    )
     steepest: float = choices.steepest()
     chord: float = choices.chord()
     lead_radius: float = choices.lead_radius()
     safety: float = choices.safety()
 
 
-@strategy(settings=StreamlineSettings, drive=SurfaceDrive, leaves=(TOO_STEEP,),
-          meets=surface_leftovers)
-def streamline(drive: SurfaceDrive, tool: Tool, data: CuttingData, stock: PlanningStock, setup: Setup, settings: StreamlineSettings,
-               progress: Progress = QUIET) -> Planned:
+@strategy(
+    settings=StreamlineSettings, drive=SurfaceDrive, leaves=(TOO_STEEP,), meets=surface_leftovers
+)
+def streamline(
+    drive: SurfaceDrive,
+    tool: Tool,
+    data: CuttingData,
+    stock: PlanningStock,
+    setup: Setup,
+    settings: StreamlineSettings,
+    progress: Progress = QUIET,
+) -> Planned:
     """Return the motions of an upright tool along flow lines over the drive's faces, and what it leaves."""
-    flow = Flow(first_guide=settings.first_guide, second_guide=settings.second_guide, spiral=settings.spiral, chord=settings.chord)
+    flow = Flow(
+        first_guide=settings.first_guide,
+        second_guide=settings.second_guide,
+        spiral=settings.spiral,
+        chord=settings.chord,
+    )
     ways = flow_lines(drive, tool, flow, progress.part(0.0, 0.4))
     to_and_fro = settings.pattern == "zigzag"
-    done = stood(ways, drive, tool, settings.chord, math.radians(settings.steepest), progress.part(0.4, 0.8))
+    done = stood(
+        ways, drive, tool, settings.chord, math.radians(settings.steepest), progress.part(0.4, 0.8)
+    )
     stepover = stepover_on_plane(tool.corner_radius, drive.height)
-    manner = Manner(stepover=stepover, safety=settings.safety, lead_radius=settings.lead_radius,
-                    order="nearest" if to_and_fro else "given", reversing=to_and_fro)
+    manner = Manner(
+        stepover=stepover,
+        safety=settings.safety,
+        lead_radius=settings.lead_radius,
+        order="nearest" if to_and_fro else "given",
+        reversing=to_and_fro,
+    )
     path = linked(done.passes, drive, tool, data, stock, setup, manner, progress.part(0.8, 1.0))
     return Planned(path=path, findings=done.left(drive, tool, stepover))

@@ -39,7 +39,14 @@ def grid_around(tips: Floats, cell: float, margin: int) -> Sheet:
     number = np.full(wanted.shape, -1)
     number[wanted] = np.arange(int(wanted.sum()))
     a, b, c, d = number[:-1, :-1], number[1:, :-1], number[1:, 1:], number[:-1, 1:]
-    halves = np.concatenate([np.stack([a, b, c], axis=2).reshape(-1, 3), np.stack([a, c, d], axis=2).reshape(-1, 3)])
+    halves = np.concatenate(
+        [np.stack([a, b, c], axis=2).reshape(-1, 3), np.stack([a, c, d], axis=2).reshape(-1, 3)]
+    )
     halves = halves[(halves >= 0).all(axis=1)]
     points = np.column_stack([corner + cell * np.argwhere(wanted), np.zeros(int(wanted.sum()))])
-    return Sheet(points=points, normals=np.broadcast_to(UPRIGHT, points.shape), triangles=halves, face=np.ones(len(halves), np.int64))
+    return Sheet(
+        points=points,
+        normals=np.broadcast_to(UPRIGHT, points.shape),
+        triangles=halves,
+        face=np.ones(len(halves), np.int64),
+    )

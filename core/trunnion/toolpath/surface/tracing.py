@@ -26,8 +26,14 @@ SEEN, THINNED = 0.1, 0.3
 """Shares of the chord error: how far a middle may be from its chord, and how far a place that is taken out."""
 
 
-def follow(drop: DropSurface, pieces: Floats, curves: Sequence[Floats], chord: float, lowest: float,
-           progress: Progress = QUIET) -> list[Floats]:
+def follow(
+    drop: DropSurface,
+    pieces: Floats,
+    curves: Sequence[Floats],
+    chord: float,
+    lowest: float,
+    progress: Progress = QUIET,
+) -> list[Floats]:
     """Return the tips (n, 3) of a cutter that follows each plan polyline (k, 2), as high as `DropSurface.drop` puts them.
 
     Between two tips lies a straight move that leaves the cutter's way by at most `chord` mm; the ends and every kink of the way stay.
@@ -49,7 +55,9 @@ def follow(drop: DropSurface, pieces: Floats, curves: Sequence[Floats], chord: f
         tips, line = np.insert(tips, rows + 1, found, axis=0), np.insert(line, rows + 1, line[rows])
         is_open = np.insert(is_open, rows + 1, is_open[rows])
         is_open |= _bent(tips, line, chord)
-        is_open[:-1] &= (line[1:] == line[:-1]) & (np.hypot(*np.diff(tips[:, :2], axis=0).T) > chord)
+        is_open[:-1] &= (line[1:] == line[:-1]) & (
+            np.hypot(*np.diff(tips[:, :2], axis=0).T) > chord
+        )
     progress.check()
     kept = thinned(tips, line, THINNED * chord)
     return np.split(tips[kept], np.flatnonzero(np.diff(line[kept])) + 1)
@@ -83,7 +91,11 @@ def beside(points: Floats, start: Floats, end: Floats) -> Floats:
     """Return how far points (n, 3) are from the straight ways (n, 3) from a start to an end."""
     way, to = end - start, points - start
     square = (way * way).sum(axis=1)
-    share = np.clip(np.divide((to * way).sum(axis=1), square, out=np.zeros(len(way)), where=square > 0.0), 0.0, 1.0)
+    share = np.clip(
+        np.divide((to * way).sum(axis=1), square, out=np.zeros(len(way)), where=square > 0.0),
+        0.0,
+        1.0,
+    )
     off: Floats = np.linalg.norm(to - share[:, None] * way, axis=1)
     return off
 
@@ -105,7 +117,11 @@ def _sight(pieces: Floats, chord: float) -> float:
     low, high = 0.0, radius
     for _ in range(HALVINGS):
         middle = 0.5 * (low + high)
-        low, high = (middle, high) if height_at(pieces, np.array([middle]))[0] < UNSEEN * chord else (low, middle)
+        low, high = (
+            (middle, high)
+            if height_at(pieces, np.array([middle]))[0] < UNSEEN * chord
+            else (low, middle)
+        )
     return min(max(2.0 * low, tolerance.SHORT_MOVE), WIDEST * radius)
 
 
@@ -116,7 +132,9 @@ def _spaced(curves: Sequence[Floats], step: float) -> tuple[Floats, Ints]:
     points = np.concatenate([np.asarray(c, dtype=np.float64) for c in curves])
     inside = np.append(line[1:] == line[:-1], False)
     way = np.vstack([np.diff(points, axis=0), np.zeros((1, 2))])
-    count = np.where(inside, np.maximum(np.ceil(np.hypot(way[:, 0], way[:, 1]) / step), 1.0), 1.0).astype(np.int64)
+    count = np.where(
+        inside, np.maximum(np.ceil(np.hypot(way[:, 0], way[:, 1]) / step), 1.0), 1.0
+    ).astype(np.int64)
     rows = np.repeat(np.arange(len(points)), count)
     share = (np.arange(len(rows)) - np.repeat(np.cumsum(count) - count, count)) / count[rows]
     return points[rows] + share[:, None] * np.where(inside[rows, None], way[rows], 0.0), line[rows]

@@ -73,25 +73,78 @@ SMALLEST_LEFTOVER = 0.5
 class WaterlineSettings:
     """How steep faces are finished level by level."""
 
-    step: float = setting(0.0, unit="mm", low=0.0, high=200.0, label="Step",
-                          help="Height from level to level; 0: by the wanted scallop height and how the faces lean.")
-    shallowest: float = setting(20.0, unit="deg", low=0.0, high=89.0, label="Shallowest",
-                                help="Faces that lean by less from level are left to parallel passes.")
-    way: str = setting("climb", choices=("climb", "both"), label="Way", help="climb: the face on the right of the feed; both: to and fro.")
-    overlap: float = setting(0.5, unit="mm", low=0.0, high=20.0, label="Overlap",
-                             help="How far passes go on past the rim of the area, and closed ones over their start.")
-    chord: float = setting(0.0005, unit="mm", low=0.00005, high=0.1, label="Chord error",
-                           help="How far straight moves may leave the cutter's way round the faces.")
-    lead_radius: float = setting(1.0, unit="mm", low=0.05, high=50.0, label="Lead radius",
-                                 help="Of the quarter circles onto and off passes.")
-    safety: float = setting(2.0, unit="mm", low=0.2, high=50.0, label="Safety distance",
-                            help="Where a rapid ends above what may still be there.")
+    step: float = setting(
+        0.0,
+        unit="mm",
+        low=0.0,
+        high=200.0,
+        label="Step",
+        help="Height from level to level; 0: by the wanted scallop height and how the faces lean.",
+    )
+    shallowest: float = setting(
+        20.0,
+        unit="deg",
+        low=0.0,
+        high=89.0,
+        label="Shallowest",
+        help="Faces that lean by less from level are left to parallel passes.",
+    )
+    way: str = setting(
+        "climb",
+        choices=("climb", "both"),
+        label="Way",
+        help="climb: the face on the right of the feed; both: to and fro.",
+    )
+    overlap: float = setting(
+        0.5,
+        unit="mm",
+        low=0.0,
+        high=20.0,
+        label="Overlap",
+        help="How far passes go on past the rim of the area, and closed ones over their start.",
+    )
+    chord: float = setting(
+        0.0005,
+        unit="mm",
+        low=0.00005,
+        high=0.1,
+        label="Chord error",
+        help="How far straight moves may leave the cutter's way round the faces.",
+    )
+    lead_radius: float = setting(
+        1.0,
+        unit="mm",
+        low=0.05,
+        high=50.0,
+        label="Lead radius",
+        help="Of the quarter circles onto and off passes.",
+    )
+    safety: float = setting(
+        2.0,
+        unit="mm",
+        low=0.2,
+        high=50.0,
+        label="Safety distance",
+        help="Where a rapid ends above what may still be there.",
+    )
 
 
-@strategy(settings=WaterlineSettings, drive=SurfaceDrive, leaves=(TOO_SHALLOW,), settles=(TOO_STEEP,),
-          meets=surface_leftovers)
-def waterline(drive: SurfaceDrive, tool: Tool, data: CuttingData, stock: PlanningStock, setup: Setup, settings: WaterlineSettings,
-              progress: Progress) -> Planned:
+@strategy(
+    settings=WaterlineSettings,
+    drive=SurfaceDrive,
+    leaves=(TOO_SHALLOW,),
+    settles=(TOO_STEEP,),
+    meets=surface_leftovers,
+)
+def waterline(
+    drive: SurfaceDrive,
+    tool: Tool,
+    data: CuttingData,
+    stock: PlanningStock,
+    setup: Setup,
+    settings: WaterlineSettings,
+    progress: Progress,
+) -> Planned:
     """Return the motions that finish the drive's faces level by level, and the area that is too shallow for it or hangs over."""
     if drive.height <= 0.0 and settings.step <= 0.0:
         raise Refused(f"{drive.feature}: waterlines need a scallop height or a step above zero")
@@ -101,17 +154,32 @@ def waterline(drive: SurfaceDrive, tool: Tool, data: CuttingData, stock: Plannin
     if not len(places.row):
         return Planned(findings=found)
     feet = _feet(places, drive, tool, progress.part(0.0, 0.1))
-    levels = progress.aside(lambda _: _levels(places, feet, tool, drive.height, settings.step), "Laying levels")
+    levels = progress.aside(
+        lambda _: _levels(places, feet, tool, drive.height, settings.step), "Laying levels"
+    )
     loops = _loops(levels, places, drive, tool, settings, progress.part(0.1, 0.8))
     passes = _in_order(loops, tool, both=settings.way == "both")
     if not passes:
-        nothing = warning("surface.out-of-reach", f"{tool.name} touches nothing of the steep faces of {drive.feature}", drive.feature,
-                          remedy="finish them with a smaller or longer cutter")
+        nothing = warning(
+            "surface.out-of-reach",
+            f"{tool.name} touches nothing of the steep faces of {drive.feature}",
+            drive.feature,
+            remedy="finish them with a smaller or longer cutter",
+        )
         return Planned(findings=(*found, nothing))
     step = float(np.abs(np.diff(levels)).max(initial=tool.radius))
-    manner = Manner(stepover=max(step, tool.radius), safety=settings.safety, lead_radius=settings.lead_radius, chord=settings.chord,
-                    arcs=True, overlap=settings.overlap)
-    return Planned(path=linked(passes, drive, tool, data, stock, setup, manner, progress.part(0.8, 1.0)), findings=found)
+    manner = Manner(
+        stepover=max(step, tool.radius),
+        safety=settings.safety,
+        lead_radius=settings.lead_radius,
+        chord=settings.chord,
+        arcs=True,
+        overlap=settings.overlap,
+    )
+    return Planned(
+        path=linked(passes, drive, tool, data, stock, setup, manner, progress.part(0.8, 1.0)),
+        findings=found,
+    )
 
 
 def _left(drive: SurfaceDrive, steep: Places) -> tuple[Finding, ...]:
@@ -120,8 +188,14 @@ def _left(drive: SurfaceDrive, steep: Places) -> tuple[Finding, ...]:
     area = float(0.5 * np.linalg.norm(np.cross(b - a, c - a), axis=1).sum() - steep.area.sum())
     if area < SMALLEST_LEFTOVER:
         return ()
-    return (warning(TOO_SHALLOW, f"{area:.1f} mm2 of {drive.feature} are too shallow for waterlines, or hang over", drive.feature,
-                    remedy="finish them by parallel passes or from another direction"),)
+    return (
+        warning(
+            TOO_SHALLOW,
+            f"{area:.1f} mm2 of {drive.feature} are too shallow for waterlines, or hang over",
+            drive.feature,
+            remedy="finish them by parallel passes or from another direction",
+        ),
+    )
 
 
 def _feet(places: Places, drive: SurfaceDrive, tool: Tool, progress: Progress) -> Floats:
@@ -129,11 +203,15 @@ def _feet(places: Places, drive: SurfaceDrive, tool: Tool, progress: Progress) -
     low, high = places.tips[:, :, 2].min(axis=1), places.tips[:, :, 2].max(axis=1)
     upright = np.flatnonzero(places.normal[:, 2] <= -UPWARD)
     beside = (places.tips[upright] + OFF * places.normal[upright, None])[:, :, :2].reshape(-1, 2)
-    over = drive.skin.drop.drop(beside, lower_side(tool, drive.allowance), float(drive.low[2]) - tool.flute_length, progress)
+    over = drive.skin.drop.drop(
+        beside, lower_side(tool, drive.allowance), float(drive.low[2]) - tool.flute_length, progress
+    )
     over = over + drive.allowance
     stopped = over.reshape(-1, 3).min(axis=1) + FOOT
     # Where it is stopped over the whole triangle, the foot is another one's.
-    low[upright] = np.where(stopped < high[upright], np.maximum(low[upright], stopped), high[upright])
+    low[upright] = np.where(
+        stopped < high[upright], np.maximum(low[upright], stopped), high[upright]
+    )
     return low
 
 
@@ -141,7 +219,9 @@ def _levels(places: Places, feet: Floats, tool: Tool, height: float, step: float
     """Return the heights of the tip (p,) upwards, from the lowest place that is touched; `feet` is how low the tip comes (m,)."""
     low, high = places.tips[:, :, 2].min(axis=1), places.tips[:, :, 2].max(axis=1)
     spacing = np.full(len(low), step) if step > 0.0 else level_spacing(places, tool, height)
-    spacing = np.minimum(spacing, FLANK * max(tool.flute_length - tool.corner_radius, tool.corner_radius))
+    spacing = np.minimum(
+        spacing, FLANK * max(tool.flute_length - tool.corner_radius, tool.corner_radius)
+    )
     levels = marched(low, high, spacing, float(feet.min()), float(high.max()))
     if len(levels) > 1:
         if not (places.normal[high > levels[-2], 2] > -UPWARD).any():
@@ -150,14 +230,21 @@ def _levels(places: Places, feet: Floats, tool: Tool, height: float, step: float
         else:
             # At its own height the last one would only pass over the top.
             levels[-1] -= BELOW_TOP * (levels[-1] - levels[-2])
-    return np.unique([*levels, *_without_near(feet[(feet > low) & (feet < high)], levels, FEET * tool.corner_radius)])
+    return np.unique(
+        [
+            *levels,
+            *_without_near(feet[(feet > low) & (feet < high)], levels, FEET * tool.corner_radius),
+        ]
+    )
 
 
 def _without_near(feet: Floats, levels: Floats, least: float) -> list[float]:
     """Return heights of feet, upwards, that have no level near above them: none nearer to each other than is asked for."""
     found: list[float] = []
     for z in np.unique(feet).tolist():
-        if (not found or z > found[-1] + least) and not ((levels >= z - tolerance.COINCIDENT) & (levels < z + least)).any():
+        if (not found or z > found[-1] + least) and not (
+            (levels >= z - tolerance.COINCIDENT) & (levels < z + least)
+        ).any():
             found.append(z)
     return found
 
@@ -182,21 +269,29 @@ class _Blocked:
         at, rows = low.copy(), np.arange(len(z))
         for k in range(STEPS):
             places = start[rows] + at[rows, None] * way[rows]
-            _, facet, contact = self.drive.skin.drop.touch(places, self.pieces, z[rows] + tolerance.COINCIDENT, self.progress)
+            _, facet, contact = self.drive.skin.drop.touch(
+                places, self.pieces, z[rows] + tolerance.COINCIDENT, self.progress
+            )
             hits = facet >= 0
             high[rows[~hits]] = at[rows[~hits]]
             aside = contact[hits, :2] - start[rows[hits]]
             ahead = (aside * way[rows[hits]]).sum(axis=1)
             beside = (aside * aside).sum(axis=1) - ahead * ahead
             reach = radius_at(self.pieces, contact[hits, 2] - z[rows[hits]])
-            low[rows[hits]] = np.maximum(ahead + np.sqrt(np.maximum(reach * reach - beside, 0.0)), at[rows[hits]])
+            low[rows[hits]] = np.maximum(
+                ahead + np.sqrt(np.maximum(reach * reach - beside, 0.0)), at[rows[hits]]
+            )
             rows = rows[(low[rows] < most[rows]) & (high[rows] - low[rows] > CLOSE)]
             if not len(rows):
                 break
             at[rows] = low[rows] + 0.5 * CLOSE
             if k >= DIRECT and k % 2:
                 # Where every touch is another one, on level ground and beside straight edges, such steps are short.
-                at[rows] = np.where(high[rows] < np.inf, 0.5 * (low + high)[rows], np.minimum(low[rows] + CLOSE * 4.0**k, most[rows]))
+                at[rows] = np.where(
+                    high[rows] < np.inf,
+                    0.5 * (low + high)[rows],
+                    np.minimum(low[rows] + CLOSE * 4.0**k, most[rows]),
+                )
         found = (high > 0.0) & (high < np.inf)
         return np.where(found, high, 0.0), found
 
@@ -211,11 +306,22 @@ class _Loop:
     closed: bool
 
 
-def _loops(levels: Floats, places: Places, drive: SurfaceDrive, tool: Tool, settings: WaterlineSettings, progress: Progress) -> list[_Loop]:
+def _loops(
+    levels: Floats,
+    places: Places,
+    drive: SurfaceDrive,
+    tool: Tool,
+    settings: WaterlineSettings,
+    progress: Progress,
+) -> list[_Loop]:
     """Return the passes where the cutter touches the area, lowest first, the material on their right."""
     cell = float(np.clip(CELL * tool.radius, FINEST, COARSEST))
-    blocked = _Blocked(drive=drive, pieces=lower_side(tool, drive.allowance), lowest=float(drive.low[2]) - tool.flute_length,
-                       progress=progress)
+    blocked = _Blocked(
+        drive=drive,
+        pieces=lower_side(tool, drive.allowance),
+        lowest=float(drive.low[2]) - tool.flute_length,
+        progress=progress,
+    )
     # Tips are compared as drops put them, without the allowance that lifts the tool.
     tips = spread(places.tips, cell) - drive.allowance * UPRIGHT
     levels = levels - drive.allowance
@@ -232,11 +338,16 @@ def _loops(levels: Floats, places: Places, drive: SurfaceDrive, tool: Tool, sett
         touches = _apart(near, plan, float(levels[line.level])) <= ROUGHLY * cell
         # So far only roughly, and as far as an edge may be rolled round.
         reach = settings.overlap + math.pi * radius
-        found += [(line, rows, closed) for rows, closed in _pieces(plan, touches, line.closed, reach, radius)]
+        found += [
+            (line, rows, closed)
+            for rows, closed in _pieces(plan, touches, line.closed, reach, radius)
+        ]
     if not found:
         return []
     ends = np.concatenate([line.ends[rows] for line, rows, _ in found])
-    over = np.repeat([levels[line.level] for line, *_ in found], [len(rows) for _, rows, _ in found])
+    over = np.repeat(
+        [levels[line.level] for line, *_ in found], [len(rows) for _, rows, _ in found]
+    )
     ends = np.take_along_axis(ends, np.argsort(-heights[ends], axis=1, kind="stable"), axis=1)
     high, low = grid.points[ends[:, 0], :2], grid.points[ends[:, 1], :2]
     side = np.hypot(*(low - high).T)
@@ -247,12 +358,17 @@ def _loops(levels: Floats, places: Places, drive: SurfaceDrive, tool: Tool, sett
     lines = []
     for way, (line, _, closed) in zip(split, found, strict=True):
         z = float(levels[line.level])
-        for rows, whole in _pieces(way, _apart(near, way, z) <= NEARBY * cell, closed, settings.overlap, radius):
+        for rows, whole in _pieces(
+            way, _apart(near, way, z) <= NEARBY * cell, closed, settings.overlap, radius
+        ):
             rows = rows[np.append(True, np.hypot(*np.diff(way[rows], axis=0).T) > CLOSE)]
             if len(rows) > 1:
                 lines.append(_Loop(plan=way[rows], z=z, level=line.level, closed=whole))
     ways = _closer(lines, blocked, settings.chord)
-    return [replace(line, plan=way, z=line.z + drive.allowance) for line, way in zip(lines, ways, strict=True)]
+    return [
+        replace(line, plan=way, z=line.z + drive.allowance)
+        for line, way in zip(lines, ways, strict=True)
+    ]
 
 
 def _apart(tips: cKDTree, plan: Floats, z: float) -> Floats:
@@ -260,7 +376,9 @@ def _apart(tips: cKDTree, plan: Floats, z: float) -> Floats:
     return np.asarray(tips.query(np.column_stack([plan, np.full(len(plan), z)]))[0])
 
 
-def _pieces(plan: Floats, near: Bools, closed: bool, overlap: float, radius: float) -> list[tuple[Ints, bool]]:
+def _pieces(
+    plan: Floats, near: Bools, closed: bool, overlap: float, radius: float
+) -> list[tuple[Ints, bool]]:
     """Return the rows of the pieces of a way (k, 2) that are near the area, roll round an edge of it, or are no farther along the way than
     an overlap from such, and whether each is closed."""
     rows = np.arange(len(plan))
@@ -304,7 +422,10 @@ def _closer(loops: list[_Loop], blocked: _Blocked, chord: float) -> list[Floats]
     """Return the ways with places put in until no chord leaves the rim of what is blocked by more than a chord error."""
     if not loops:
         return []
-    plan, z = np.concatenate([loop.plan for loop in loops]), np.repeat([loop.z for loop in loops], [len(loop.plan) for loop in loops])
+    plan, z = (
+        np.concatenate([loop.plan for loop in loops]),
+        np.repeat([loop.z for loop in loops], [len(loop.plan) for loop in loops]),
+    )
     line = np.repeat(np.arange(len(loops)), [len(loop.plan) for loop in loops])
     off = _bulges(plan, line)
     is_open = np.append(line[1:] == line[:-1], False)
@@ -312,14 +433,18 @@ def _closer(loops: list[_Loop], blocked: _Blocked, chord: float) -> list[Floats]
         rows = np.flatnonzero(is_open)
         if not len(rows):
             break
-        left, found, has_rim = _middles(plan[rows], plan[rows + 1], off[rows], z[rows], blocked, chord)
+        left, found, has_rim = _middles(
+            plan[rows], plan[rows + 1], off[rows], z[rows], blocked, chord
+        )
         # What is where a smooth rim would have it is the middle of two chords that are four times nearer to it.
         seen = 0.25 * np.abs(found) + np.abs(found - off[rows]) <= SEEN * chord
         is_open[rows], off[rows] = ~seen & has_rim, 0.25 * found
         middle = 0.5 * (plan[rows] + plan[rows + 1]) + found[:, None] * left
         rows, middle = rows[has_rim], middle[has_rim]
-        plan, z, line, off = (np.insert(old, rows + 1, new, axis=0) for old, new in ((plan, middle), (z, z[rows]), (line, line[rows]),
-                                                                                     (off, off[rows])))
+        plan, z, line, off = (
+            np.insert(old, rows + 1, new, axis=0)
+            for old, new in ((plan, middle), (z, z[rows]), (line, line[rows]), (off, off[rows]))
+        )
         is_open = np.insert(is_open, rows + 1, is_open[rows])
         # Beside a corner a chord that was never looked at may leave the way.
         is_open |= np.abs(_bulges(plan, line)) > SEEN * chord
@@ -335,22 +460,39 @@ def _bulges(plan: Floats, line: Ints) -> Floats:
     length = np.hypot(way[:, 0], way[:, 1])
     turn = way[:-1, 0] * way[1:, 1] - way[:-1, 1] * way[1:, 0]
     size = length[:-1] * length[1:] * np.hypot(*(way[:-1] + way[1:]).T)
-    bend = np.divide(2.0 * turn, size, out=np.zeros(len(turn)), where=(size > 0.0) & (line[2:] == line[:-2]))
+    bend = np.divide(
+        2.0 * turn, size, out=np.zeros(len(turn)), where=(size > 0.0) & (line[2:] == line[:-2])
+    )
     bend = np.concatenate([[0.0], bend, [0.0]])
     return np.append(-0.0625 * (bend[:-1] + bend[1:]) * length * length, 0.0)
 
 
-def _middles(start: Floats, end: Floats, off: Floats, z: Floats, blocked: _Blocked, chord: float) -> tuple[Floats, Floats, Bools]:
+def _middles(
+    start: Floats, end: Floats, off: Floats, z: Floats, blocked: _Blocked, chord: float
+) -> tuple[Floats, Floats, Bools]:
     """Return the directions (n, 2) to the left of chords, which have what is blocked on their right, how far the rim is from their middles
     that way (n,), expected `off` (n,), and whether one is found."""
     way, middle = end - start, 0.5 * (start + end)
     length = np.maximum(np.hypot(way[:, 0], way[:, 1]), CLOSE)
     left = np.column_stack([-way[:, 1], way[:, 0]]) / length[:, None]
-    off, found, rows = np.clip(off, -0.5 * length, 0.5 * length), np.zeros(len(z)), np.arange(len(z))
+    off, found, rows = (
+        np.clip(off, -0.5 * length, 0.5 * length),
+        np.zeros(len(z)),
+        np.arange(len(z)),
+    )
     near, errors, *lengths = INSIDE
-    for inside in (near * np.abs(off) + 2.0 * CLOSE, np.abs(off) + errors * chord, *(share * length for share in lengths)):
+    for inside in (
+        near * np.abs(off) + 2.0 * CLOSE,
+        np.abs(off) + errors * chord,
+        *(share * length for share in lengths),
+    ):
         begin = (off - inside)[rows]
-        run, has_rim = blocked.rim(middle[rows] + begin[:, None] * left[rows], left[rows], z[rows], 2.0 * inside[rows] + errors * chord)
+        run, has_rim = blocked.rim(
+            middle[rows] + begin[:, None] * left[rows],
+            left[rows],
+            z[rows],
+            2.0 * inside[rows] + errors * chord,
+        )
         found[rows[has_rim]] = (begin + run)[has_rim]
         rows = rows[~has_rim]
         if not len(rows):
@@ -369,16 +511,29 @@ def _in_order(loops: list[_Loop], tool: Tool, *, both: bool) -> list[Pass]:
             open_walls[int(np.argmin(apart))].append(loop)
         else:
             walls.append([loop])
-    return [_pass(loop, turned=both and not loop.closed and k % 2 == 1) for wall in walls for k, loop in enumerate(wall)]
+    return [
+        _pass(loop, turned=both and not loop.closed and k % 2 == 1)
+        for wall in walls
+        for k, loop in enumerate(wall)
+    ]
 
 
 def _pass(loop: _Loop, *, turned: bool) -> Pass:
     way = np.diff(loop.plan, axis=0)
     way /= np.maximum(np.hypot(way[:, 0], way[:, 1]), CLOSE)[:, None]
-    before, after = np.vstack([way[-1:] if loop.closed else way[:1], way]), np.vstack([way, way[:1] if loop.closed else way[-1:]])
+    before, after = (
+        np.vstack([way[-1:] if loop.closed else way[:1], way]),
+        np.vstack([way, way[:1] if loop.closed else way[-1:]]),
+    )
     ahead = before + after
-    ahead[np.hypot(ahead[:, 0], ahead[:, 1]) < CLOSE] = after[np.hypot(ahead[:, 0], ahead[:, 1]) < CLOSE]
+    ahead[np.hypot(ahead[:, 0], ahead[:, 1]) < CLOSE] = after[
+        np.hypot(ahead[:, 0], ahead[:, 1]) < CLOSE
+    ]
     ahead /= np.hypot(ahead[:, 0], ahead[:, 1])[:, None]
-    made = Pass(tip=np.column_stack([loop.plan, np.full(len(loop.plan), loop.z)]), axis=np.broadcast_to(UPRIGHT, (len(loop.plan), 3)),
-                normal=np.column_stack([-ahead[:, 1], ahead[:, 0], np.zeros(len(ahead))]), closed=loop.closed)
+    made = Pass(
+        tip=np.column_stack([loop.plan, np.full(len(loop.plan), loop.z)]),
+        axis=np.broadcast_to(UPRIGHT, (len(loop.plan), 3)),
+        normal=np.column_stack([-ahead[:, 1], ahead[:, 0], np.zeros(len(ahead))]),
+        closed=loop.closed,
+    )
     return made.reversed() if turned else made

@@ -59,33 +59,60 @@ class PartContact:
     are refused. `fixtures` are closed meshes, a row each.
     """
 
-    def __init__(self, surfaces: Surfaces, facets: Facets | None = None, fixtures: Sequence[Facets] = ()) -> None:
+    def __init__(
+        self, surfaces: Surfaces, facets: Facets | None = None, fixtures: Sequence[Facets] = ()
+    ) -> None:
         self.surfaces = surfaces
         missing = np.setdiff1d(surfaces.free, [] if facets is None else facets.face)
         if len(missing):
-            raise BadInput(f"face {int(surfaces.tag[missing[0]])} has no closed form: its contact needs the part's facets")
+            raise BadInput(
+                f"face {int(surfaces.tag[missing[0]])} has no closed form: its contact needs the part's facets"
+            )
         self._strips = StripContact(surfaces)
         self._every = FacetContact(facets) if facets is not None and facets.whole else None
-        self._free = FacetContact(facets.of_faces(surfaces.free)) if facets is not None and len(surfaces.free) else None
+        self._free = (
+            FacetContact(facets.of_faces(surfaces.free))
+            if facets is not None and len(surfaces.free)
+            else None
+        )
         self._fixtures = FacetContact(_joined(fixtures)) if fixtures else None
 
     def along(self, moves: Moves, progress: Progress = QUIET, threads: int = 0) -> Contact:
         """Return how deep every move of a program enters part and fixtures, measured on `threads` threads (0: one a core)."""
         found, rows = Touch.none(len(moves), len(self.surfaces.tag)), np.arange(len(moves))
         engines = [*self._engines(moves), *([(self._fixtures, rows)] if self._fixtures else [])]
-        cost = np.cumsum([0.0, *(len(some) * (1.0 if engine is self._strips else LEANING_COST) for engine, some in engines)])
+        cost = np.cumsum(
+            [
+                0.0,
+                *(
+                    len(some) * (1.0 if engine is self._strips else LEANING_COST)
+                    for engine, some in engines
+                ),
+            ]
+        )
         fixed = Touch.none(len(moves), 0)
         for k, (engine, some) in enumerate(engines):
-            touch = engine.along(moves, some, progress.part(cost[k] / max(cost[-1], 1.0), cost[k + 1] / max(cost[-1], 1.0)), threads)
+            touch = engine.along(
+                moves,
+                some,
+                progress.part(cost[k] / max(cost[-1], 1.0), cost[k + 1] / max(cost[-1], 1.0)),
+                threads,
+            )
             if engine is self._fixtures:
                 fixed = touch
             else:
                 found.take(touch, some)
         kind = np.argmax(fixed.depth, axis=1)
-        return Contact(depth=np.maximum(found.depth, 0.0), face=found.face, place=found.place,
-                       face_depth=np.maximum(found.face_depth, 0.0), face_move=found.face_move,
-                       fixture_depth=np.maximum(fixed.depth[rows, kind], 0.0), fixture=fixed.face[rows, kind],
-                       fixture_place=fixed.place[rows, kind])
+        return Contact(
+            depth=np.maximum(found.depth, 0.0),
+            face=found.face,
+            place=found.place,
+            face_depth=np.maximum(found.face_depth, 0.0),
+            face_move=found.face_move,
+            fixture_depth=np.maximum(fixed.depth[rows, kind], 0.0),
+            fixture=fixed.face[rows, kind],
+            fixture_place=fixed.place[rows, kind],
+        )
 
     def clear(self, moves: Moves, allowed: float) -> Bools:
         """Say for each move or pose (n,) whether nothing of its tool enters part or fixtures deeper than allowed."""
@@ -95,14 +122,26 @@ class PartContact:
         """Return a place (n, 3) of part or fixtures, on it, where something of the tool of each move or pose is deeper than allowed, or
         beside the deepest such place; NaN where there is none."""
         place = np.full((len(moves), 3), np.nan)
-        engines = self._engines(moves) + ([(self._fixtures, np.arange(len(moves)))] if self._fixtures else [])
+        engines = self._engines(moves) + (
+            [(self._fixtures, np.arange(len(moves)))] if self._fixtures else []
+        )
         for engine, rows in engines:
             still = rows[np.isnan(place[rows, 0])]
             place[still] = engine.stopped(moves, still, allowed)
         return place
 
-    def any_clear(self, tool: Tool, tips: Floats, axes: Floats, wanted: Bools, allowed: float, obstacles: Obstacles,
-                  progress: Progress = QUIET, text: str = "", threads: int = 0) -> Bools:
+    def any_clear(
+        self,
+        tool: Tool,
+        tips: Floats,
+        axes: Floats,
+        wanted: Bools,
+        allowed: float,
+        obstacles: Obstacles,
+        progress: Progress = QUIET,
+        text: str = "",
+        threads: int = 0,
+    ) -> Bools:
         """Say for k places whether one of the poses (k, a, 3) of a tool that are wanted (k, a) is clear as `clear` has it.
 
         Much quicker where most poses are stopped: `obstacles`, those of the k places, remembers by what, for the next tool too. The part
@@ -115,16 +154,29 @@ class PartContact:
         if leaning.any():
             if self._every is None:
                 raise BadInput("contact of a leaning tool needs the part's facets")
-            found |= self._every.any_clear(tool, tips, axes, leaning, allowed, obstacles, progress, text, threads)
+            found |= self._every.any_clear(
+                tool, tips, axes, leaning, allowed, obstacles, progress, text, threads
+            )
         row, pose = np.nonzero(wanted & upright & ~found[:, None])
         for first in range(0, len(row), POSES):
             progress.check()
             some = np.arange(first, min(first + POSES, len(row)))
             some = some[~found[row[some]]]
-            some = some[~obstacles.stop(tool, tips[row[some], pose[some]], axes[row[some], pose[some]], row[some], allowed)]
+            some = some[
+                ~obstacles.stop(
+                    tool,
+                    tips[row[some], pose[some]],
+                    axes[row[some], pose[some]],
+                    row[some],
+                    allowed,
+                )
+            ]
             if len(some):
                 progress.check()
-                place = self.stopped(poses_of(tool, tips[row[some], pose[some]], axes[row[some], pose[some]]), allowed)
+                place = self.stopped(
+                    poses_of(tool, tips[row[some], pose[some]], axes[row[some], pose[some]]),
+                    allowed,
+                )
                 progress.check()
                 obstacles.add(place, row[some])
                 found[row[some[np.isnan(place[:, 0])]]] = True
@@ -138,7 +190,9 @@ class PartContact:
             engines.append((self._free, upright))
         if len(leaning):
             if self._every is None:
-                raise BadInput(f"contact of a leaning tool needs the part's facets: block {int(moves.block[leaning[0]])} leans")
+                raise BadInput(
+                    f"contact of a leaning tool needs the part's facets: block {int(moves.block[leaning[0]])} leans"
+                )
             engines.append((self._every, leaning))
         return engines
 
@@ -146,7 +200,10 @@ class PartContact:
 def _joined(fixtures: Sequence[Facets]) -> Facets:
     """Return fixtures as one mesh whose faces are the fixtures."""
     first = np.cumsum([0, *(len(f.points) for f in fixtures)])
-    return Facets(tag=np.arange(len(fixtures)), points=np.vstack([f.points for f in fixtures]),
-                  triangles=np.vstack([f.triangles + k for f, k in zip(fixtures, first, strict=False)]),
-                  face=np.repeat(np.arange(len(fixtures)), [len(f.triangles) for f in fixtures]),
-                  bound=max(f.bound for f in fixtures))
+    return Facets(
+        tag=np.arange(len(fixtures)),
+        points=np.vstack([f.points for f in fixtures]),
+        triangles=np.vstack([f.triangles + k for f, k in zip(fixtures, first, strict=False)]),
+        face=np.repeat(np.arange(len(fixtures)), [len(f.triangles) for f in fixtures]),
+        bound=max(f.bound for f in fixtures),
+    )

@@ -55,15 +55,42 @@ def tree_of(points: Floats, triangles: Ints, face: Ints) -> Tree:
     corners = points[triangles]
     t = len(corners)
     order, boxes = np.zeros(t, np.int64), np.zeros((2 * t, 6))
-    skip, leaves, node_face = np.zeros(2 * t, np.int64), np.zeros((2 * t, 2), np.int64), np.zeros(2 * t, np.int64)
-    count = build_tree(corners.min(axis=1), corners.max(axis=1), face, LEAF, order, boxes, skip, leaves, node_face) if t else 0
+    skip, leaves, node_face = (
+        np.zeros(2 * t, np.int64),
+        np.zeros((2 * t, 2), np.int64),
+        np.zeros(2 * t, np.int64),
+    )
+    count = (
+        build_tree(
+            corners.min(axis=1),
+            corners.max(axis=1),
+            face,
+            LEAF,
+            order,
+            boxes,
+            skip,
+            leaves,
+            node_face,
+        )
+        if t
+        else 0
+    )
     corners = corners[order]
     across = np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0])
     size = np.linalg.norm(across, axis=1, keepdims=True)
     # Any direction bounds a triangle without area.
-    normals = np.where(size > 0.0, across / np.where(size > 0.0, size, 1.0), np.array([0.0, 0.0, 1.0]))
-    return Tree(boxes=boxes[:count].copy(), skip=skip[:count].copy(), leaves=leaves[:count].copy(), node_face=node_face[:count].copy(),
-                corners=corners.reshape(-1, 9), normals=normals, face=face[order])
+    normals = np.where(
+        size > 0.0, across / np.where(size > 0.0, size, 1.0), np.array([0.0, 0.0, 1.0])
+    )
+    return Tree(
+        boxes=boxes[:count].copy(),
+        skip=skip[:count].copy(),
+        leaves=leaves[:count].copy(),
+        node_face=node_face[:count].copy(),
+        corners=corners.reshape(-1, 9),
+        normals=normals,
+        face=face[order],
+    )
 
 
 class FacetContact:
@@ -83,7 +110,9 @@ class FacetContact:
             progress.aside(lambda _: self.tree)
         return self.tree
 
-    def along(self, moves: Moves, rows: Ints, progress: Progress = QUIET, threads: int = 0) -> Touch:
+    def along(
+        self, moves: Moves, rows: Ints, progress: Progress = QUIET, threads: int = 0
+    ) -> Touch:
         """Return how deep the moves of some rows (k,) enter the faces, whichever way the tool stands."""
         return self._measure(moves, rows, progress, threads)
 
@@ -91,8 +120,18 @@ class FacetContact:
         """Return a place (k, 3) of the faces that the tool enters deeper than allowed, for the moves of some rows (k,); NaN where none."""
         return self._measure(moves, rows, QUIET, 1, allowed).deeper_than(allowed)
 
-    def any_clear(self, tool: Tool, tips: Floats, axes: Floats, wanted: Bools, allowed: float, obstacles: Obstacles,
-                  progress: Progress = QUIET, text: str = "", threads: int = 0) -> Bools:
+    def any_clear(
+        self,
+        tool: Tool,
+        tips: Floats,
+        axes: Floats,
+        wanted: Bools,
+        allowed: float,
+        obstacles: Obstacles,
+        progress: Progress = QUIET,
+        text: str = "",
+        threads: int = 0,
+    ) -> Bools:
         """Say for k places whether one of the poses (k, a, 3) of a tool that are wanted (k, a) enters no face deeper than allowed.
 
         `obstacles` are the places'; what stops a pose is added to them.
@@ -100,33 +139,92 @@ class FacetContact:
         tree, bodies, found = self._ready(progress), bodies_of_one(tool), np.zeros(len(tips), bool)
 
         def some(first: int, last: int) -> None:
-            reach.clear_loop(first, last, tips, axes, wanted, bodies.arc, bodies.piece, tree.boxes, tree.skip, tree.leaves, tree.corners,
-                             tree.normals, tree.face, len(self.facets.tag), allowed, tolerance.CONTACT_BOUND, obstacles.place,
-                             obstacles.count, found)
+            reach.clear_loop(
+                first,
+                last,
+                tips,
+                axes,
+                wanted,
+                bodies.arc,
+                bodies.piece,
+                tree.boxes,
+                tree.skip,
+                tree.leaves,
+                tree.corners,
+                tree.normals,
+                tree.face,
+                len(self.facets.tag),
+                allowed,
+                tolerance.CONTACT_BOUND,
+                obstacles.place,
+                obstacles.count,
+                found,
+            )
 
         in_parallel(some, len(tips), PLACES, progress, text, threads)
         return found
 
-    def _measure(self, moves: Moves, rows: Ints, progress: Progress, threads: int, settle: float = np.inf) -> Touch:
+    def _measure(
+        self, moves: Moves, rows: Ints, progress: Progress, threads: int, settle: float = np.inf
+    ) -> Touch:
         tree, bodies, k, f = self._ready(progress), moves.bodies, len(rows), len(self.facets.tag)
         bound = np.where(moves.turning[rows], tolerance.TURNING_BOUND, tolerance.CONTACT_BOUND)
         enough = np.full(k, settle) if np.isfinite(settle) else bound
-        touch = Touch(depth=np.full((k, 2), -np.inf), face=np.full((k, 2), -1), place=np.full((k, 2, 3), np.nan),
-                      face_depth=np.full((f, 2), -np.inf), face_move=np.full((f, 2), -1))
+        touch = Touch(
+            depth=np.full((k, 2), -np.inf),
+            face=np.full((k, 2), -1),
+            place=np.full((k, 2, 3), np.nan),
+            face_depth=np.full((f, 2), -np.inf),
+            face_move=np.full((f, 2), -1),
+        )
         merging = Lock()
 
         starts = _starts(1.0 + moves.length[rows] / SHORT)
 
         def work(first: int, last: int) -> None:
             face_depth, face_move = np.full((f, 2), -np.inf), np.full((f, 2), -1)
-            kernel.contact_loop(int(starts[first]), int(starts[last]), rows, moves.start, moves.end, moves.start_axis, moves.end_axis,
-                                moves.centre, moves.sweep, moves.tool, bodies.arc, bodies.piece, bodies.start, tree.boxes, tree.skip,
-                                tree.leaves, tree.node_face, tree.corners, tree.normals, tree.face, f, bound, enough, settle,
-                                touch.depth, touch.face, touch.place, face_depth, face_move)
+            kernel.contact_loop(
+                int(starts[first]),
+                int(starts[last]),
+                rows,
+                moves.start,
+                moves.end,
+                moves.start_axis,
+                moves.end_axis,
+                moves.centre,
+                moves.sweep,
+                moves.tool,
+                bodies.arc,
+                bodies.piece,
+                bodies.start,
+                tree.boxes,
+                tree.skip,
+                tree.leaves,
+                tree.node_face,
+                tree.corners,
+                tree.normals,
+                tree.face,
+                f,
+                bound,
+                enough,
+                settle,
+                touch.depth,
+                touch.face,
+                touch.place,
+                face_depth,
+                face_move,
+            )
             with merging:
                 deepen(touch.face_depth, touch.face_move, face_depth, face_move)
 
-        in_parallel(work, len(starts) - 1, 1, progress, "Measuring gouges and collisions of leaning tools", threads)
+        in_parallel(
+            work,
+            len(starts) - 1,
+            1,
+            progress,
+            "Measuring gouges and collisions of leaning tools",
+            threads,
+        )
         return touch
 
 

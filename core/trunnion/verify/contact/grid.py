@@ -26,11 +26,20 @@ class Grid:
 def grid_of(boxes: Floats, pitch: float, order: Ints | None = None) -> Grid:
     """Return the grid over plan boxes (n, 4); the rows of a cell come in the boxes' order, or in that of `order`."""
     if not len(boxes):
-        return Grid(np.array([0.0, 0.0, pitch]), np.zeros(2, np.int64), np.zeros(1, np.int64), np.zeros(0, np.int64))
+        return Grid(
+            np.array([0.0, 0.0, pitch]),
+            np.zeros(2, np.int64),
+            np.zeros(1, np.int64),
+            np.zeros(0, np.int64),
+        )
     order = np.arange(len(boxes)) if order is None else order
     boxes = boxes[order]
     low, high = boxes[:, :2].min(axis=0), boxes[:, 2:].max(axis=0)
-    pitch = max(pitch, float(np.sqrt(np.prod(high - low) / GRID_CELLS)), float((high - low).max() / GRID_CELLS))
+    pitch = max(
+        pitch,
+        float(np.sqrt(np.prod(high - low) / GRID_CELLS)),
+        float((high - low).max() / GRID_CELLS),
+    )
     frame, shape = np.array([*low, pitch]), (np.floor((high - low) / pitch) + 1).astype(np.int64)
     counts = np.zeros(int(shape.prod()), np.int64)
     kernel.fill_cells(boxes, frame, shape, counts, np.zeros(0, np.int64), np.zeros(0, np.int64))

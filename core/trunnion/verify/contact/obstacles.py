@@ -43,7 +43,17 @@ class Obstacles:
     def stop(self, tool: Tool, tips: Floats, axes: Floats, rows: Ints, allowed: float) -> Bools:
         """Say for poses (n, 3) of a tool, each of one of the places, whether what is known there is deeper in the tool than allowed."""
         bodies, stopped = bodies_of_one(tool), np.zeros(len(tips), bool)
-        kernel.known_loop(tips, axes, rows, bodies.arc, bodies.piece, self.place, self.count, allowed + tolerance.CONTACT_BOUND, stopped)
+        kernel.known_loop(
+            tips,
+            axes,
+            rows,
+            bodies.arc,
+            bodies.piece,
+            self.place,
+            self.count,
+            allowed + tolerance.CONTACT_BOUND,
+            stopped,
+        )
         return stopped
 
     def add(self, found: Floats, rows: Ints) -> None:

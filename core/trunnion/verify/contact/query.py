@@ -47,9 +47,20 @@ class Room:
     stickout: Floats
 
 
-def room(contact: PartContact, tool: Tool, tip: Floats, axis: Floats, *, pivot: Floats | None = None, directions: int = 8,
-         most_lean: float = math.pi / 2, most_plunge: float = 100.0, longest: float | None = None, allowed: float = tolerance.GOUGE,
-         progress: Progress = QUIET) -> Room:
+def room(
+    contact: PartContact,
+    tool: Tool,
+    tip: Floats,
+    axis: Floats,
+    *,
+    pivot: Floats | None = None,
+    directions: int = 8,
+    most_lean: float = math.pi / 2,
+    most_plunge: float = 100.0,
+    longest: float | None = None,
+    allowed: float = tolerance.GOUGE,
+    progress: Progress = QUIET,
+) -> Room:
     """Return what poses of one tool may do: tips (k, 3), unit axes (k, 3), asked all together.
 
     Leaning turns about `pivot` (k, 3), the tip when not given; the first direction is the setup's x (y where the axis lies along x) seen
@@ -64,9 +75,16 @@ def room(contact: PartContact, tool: Tool, tip: Floats, axis: Floats, *, pivot: 
     towards = _around(axis, directions)
     lean = np.zeros((k, directions))
     of = np.repeat(np.arange(k), directions)
-    lean[...] = _leans(ask, tip[of], axis[of], pivot[of], towards.reshape(-1, 3), clear[of], most_lean).reshape(k, directions)
-    plunge = _furthest(lambda rows, by: ask(tip[rows], tip[rows] - by[:, None] * axis[rows], axis[rows], axis[rows]), clear,
-                       np.full(k, most_plunge))
+    lean[...] = _leans(
+        ask, tip[of], axis[of], pivot[of], towards.reshape(-1, 3), clear[of], most_lean
+    ).reshape(k, directions)
+    plunge = _furthest(
+        lambda rows, by: ask(
+            tip[rows], tip[rows] - by[:, None] * axis[rows], axis[rows], axis[rows]
+        ),
+        clear,
+        np.full(k, most_plunge),
+    )
     stickout = _stickouts(ask, tip, axis, tool.stickout + 50.0 if longest is None else longest)
     return Room(clear=clear, towards=towards, lean=lean, plunge=plunge, stickout=stickout)
 
@@ -86,8 +104,16 @@ class _Asker:
         upright = still.upright & poses_of(self.tool, start, first).upright
         row = still.row.copy()
         row[:, [columns.X0, columns.Y0, columns.Z_START]] = start
-        return self.of(replace(still, start=start, start_axis=first, upright=upright, row=row,
-                               length=np.linalg.norm(end - start, axis=1)))
+        return self.of(
+            replace(
+                still,
+                start=start,
+                start_axis=first,
+                upright=upright,
+                row=row,
+                length=np.linalg.norm(end - start, axis=1),
+            )
+        )
 
     def of(self, moves: Moves) -> Bools:
         clear = np.zeros(len(moves), bool)
@@ -99,8 +125,22 @@ class _Asker:
 
 
 def _rows(moves: Moves, rows: Ints) -> Moves:
-    names = ("start", "end", "start_axis", "end_axis", "centre", "sweep", "upright", "row", "section", "block", "rapid", "feed", "length",
-             "tool")
+    names = (
+        "start",
+        "end",
+        "start_axis",
+        "end_axis",
+        "centre",
+        "sweep",
+        "upright",
+        "row",
+        "section",
+        "block",
+        "rapid",
+        "feed",
+        "length",
+        "tool",
+    )
     return replace(moves, **{name: getattr(moves, name)[rows] for name in names})
 
 
@@ -111,10 +151,20 @@ def _around(axis: Floats, count: int) -> Floats:
     first /= np.linalg.norm(first, axis=1, keepdims=True)
     second = np.cross(axis, first)
     angle = 2.0 * np.pi * np.arange(count) / max(count, 1)
-    return np.asarray(np.cos(angle)[:, None] * first[:, None] + np.sin(angle)[:, None] * second[:, None])
+    return np.asarray(
+        np.cos(angle)[:, None] * first[:, None] + np.sin(angle)[:, None] * second[:, None]
+    )
 
 
-def _leans(ask: _Asker, tip: Floats, axis: Floats, pivot: Floats, towards: Floats, clear: Bools, most: float) -> Floats:
+def _leans(
+    ask: _Asker,
+    tip: Floats,
+    axis: Floats,
+    pivot: Floats,
+    towards: Floats,
+    clear: Bools,
+    most: float,
+) -> Floats:
     """Return how far (k,) poses may lean, each towards a direction (k, 3)."""
 
     def leaned(rows: Ints, angle: Floats) -> tuple[Floats, Floats]:
@@ -133,11 +183,17 @@ def _leans(ask: _Asker, tip: Floats, axis: Floats, pivot: Floats, towards: Float
     blocked = np.zeros(len(tip), bool)
     for k in range(steps):
         rows = np.flatnonzero(going)
-        fits = between(rows, np.full(len(rows), most * k / steps), np.full(len(rows), most * (k + 1) / steps))
+        fits = between(
+            rows, np.full(len(rows), most * k / steps), np.full(len(rows), most * (k + 1) / steps)
+        )
         reached[rows[fits]] = most * (k + 1) / steps
         going[rows[~fits]], blocked[rows[~fits]] = False, True
     start = reached.copy()
-    more = _furthest(lambda rows, by: between(rows, start[rows], start[rows] + by), blocked, np.full(len(tip), most / steps))
+    more = _furthest(
+        lambda rows, by: between(rows, start[rows], start[rows] + by),
+        blocked,
+        np.full(len(tip), most / steps),
+    )
     return reached + more
 
 
@@ -166,7 +222,9 @@ def _stickouts(ask: _Asker, tip: Floats, axis: Floats, longest: float) -> Floats
         each, which = np.unique(steps, return_inverse=True)
         tools = tuple(_stuck_out(tool, tool.neck_length + STICKOUT_STEP * int(n)) for n in each)
         poses = poses_of(tool, tip[rows], axis[rows])
-        return ask.of(replace(poses, tools=tools, tool=which.astype(np.int64), bodies=bodies_of(tools)))
+        return ask.of(
+            replace(poses, tools=tools, tool=which.astype(np.int64), bodies=bodies_of(tools))
+        )
 
     rows = np.arange(len(tip))
     low, high = np.full(len(tip), -1), np.full(len(tip), most)
@@ -186,4 +244,6 @@ def _stickouts(ask: _Asker, tip: Floats, axis: Floats, longest: float) -> Floats
 
 
 def _stuck_out(tool: Tool, stickout: float) -> Tool:
-    return replace(tool, stickout=stickout, gauge_length=tool.gauge_length - tool.stickout + stickout)
+    return replace(
+        tool, stickout=stickout, gauge_length=tool.gauge_length - tool.stickout + stickout
+    )

@@ -13,7 +13,27 @@ import numpy as np
 
 from trunnion import tolerance
 from trunnion.geometry.arrays import Floats, Ints
-from trunnion.part.surfaces import BX0, BY1, BZ0, BZ1, DX, DY, GUIDE, L_KIND, OX, OY, PROFILE, PW0, PW1, PZ0, PZ1, R_KIND, U0, U1, Surfaces
+from trunnion.part.surfaces import (
+    BX0,
+    BY1,
+    BZ0,
+    BZ1,
+    DX,
+    DY,
+    GUIDE,
+    L_KIND,
+    OX,
+    OY,
+    PROFILE,
+    PW0,
+    PW1,
+    PZ0,
+    PZ1,
+    R_KIND,
+    U0,
+    U1,
+    Surfaces,
+)
 from trunnion.progress import QUIET, Progress
 from trunnion.verify.contact.grid import Grid, grid_of
 from trunnion.verify.contact.touch import Touch, deepen
@@ -39,8 +59,13 @@ class _Measured:
 
     @staticmethod
     def empty(k: int, f: int) -> _Measured:
-        return _Measured(depth=np.full((k, 2), -np.inf), which=np.full((k, 2), -1), where=np.zeros((k, 2)),
-                         face_depth=np.full((f, 2), -np.inf), face_move=np.full((f, 2), -1))
+        return _Measured(
+            depth=np.full((k, 2), -np.inf),
+            which=np.full((k, 2), -1),
+            where=np.zeros((k, 2)),
+            face_depth=np.full((f, 2), -np.inf),
+            face_move=np.full((f, 2), -1),
+        )
 
 
 class StripContact:
@@ -48,10 +73,12 @@ class StripContact:
 
     def __init__(self, surfaces: Surfaces) -> None:
         self.surfaces = surfaces
-        self._grid = grid_of(surfaces.strip[:, BX0:BY1 + 1], GRID_PITCH)
+        self._grid = grid_of(surfaces.strip[:, BX0 : BY1 + 1], GRID_PITCH)
         self._cell_z = _heights(self._grid, surfaces.strip[:, [BZ0, BZ1]])
 
-    def along(self, moves: Moves, rows: Ints, progress: Progress = QUIET, threads: int = 0) -> Touch:
+    def along(
+        self, moves: Moves, rows: Ints, progress: Progress = QUIET, threads: int = 0
+    ) -> Touch:
         """Return how deep the moves of some rows (k,) enter the faces; they must stand upright."""
         found = self._measure(moves, rows, progress, threads)
         return progress.aside(lambda _: self._touch(moves, rows, found))
@@ -59,22 +86,77 @@ class StripContact:
     def stopped(self, moves: Moves, rows: Ints, allowed: float) -> Floats:
         """Return a place (k, 3) of the faces about where the tool enters them deeper than allowed, for the moves of some rows (k,), which
         must stand upright; NaN where it doesn't."""
-        return self._touch(moves, rows, self._measure(moves, rows, QUIET, 1, allowed)).deeper_than(allowed)
+        return self._touch(moves, rows, self._measure(moves, rows, QUIET, 1, allowed)).deeper_than(
+            allowed
+        )
 
     def _touch(self, moves: Moves, rows: Ints, found: _Measured) -> Touch:
-        s, face, place = self.surfaces, np.full((len(rows), 2), -1), np.full((len(rows), 2, 3), np.nan)
-        kernel.places(rows, moves.row, found.which, found.where, s.strip, s.strip_face, s.region_z, s.region_face, face, place)
-        return Touch(depth=found.depth, face=face, place=place, face_depth=found.face_depth, face_move=found.face_move)
+        s, face, place = (
+            self.surfaces,
+            np.full((len(rows), 2), -1),
+            np.full((len(rows), 2, 3), np.nan),
+        )
+        kernel.places(
+            rows,
+            moves.row,
+            found.which,
+            found.where,
+            s.strip,
+            s.strip_face,
+            s.region_z,
+            s.region_face,
+            face,
+            place,
+        )
+        return Touch(
+            depth=found.depth,
+            face=face,
+            place=place,
+            face_depth=found.face_depth,
+            face_move=found.face_move,
+        )
 
-    def _measure(self, moves: Moves, rows: Ints, progress: Progress, threads: int, settle: float = np.inf) -> _Measured:
+    def _measure(
+        self, moves: Moves, rows: Ints, progress: Progress, threads: int, settle: float = np.inf
+    ) -> _Measured:
         s, g, bodies, bound = self.surfaces, self._grid, moves.bodies, tolerance.CONTACT_BOUND / 2
         found, merging = _Measured.empty(len(rows), len(s.tag)), Lock()
 
         def work(first: int, last: int) -> None:
-            face_depth, face_move = np.full_like(found.face_depth, -np.inf), np.full_like(found.face_move, -1)
-            kernel.contact_loop(first, last, rows, moves.row, moves.tool, bodies.arc, bodies.piece, bodies.start, s.strip, s.strip_face,
-                                g.start, g.rows, self._cell_z, g.frame, g.shape, s.region_z, s.region_face, s.region_box, s.region_start,
-                                s.outline, bound, bound, settle, found.depth, found.which, found.where, face_depth, face_move)
+            face_depth, face_move = (
+                np.full_like(found.face_depth, -np.inf),
+                np.full_like(found.face_move, -1),
+            )
+            kernel.contact_loop(
+                first,
+                last,
+                rows,
+                moves.row,
+                moves.tool,
+                bodies.arc,
+                bodies.piece,
+                bodies.start,
+                s.strip,
+                s.strip_face,
+                g.start,
+                g.rows,
+                self._cell_z,
+                g.frame,
+                g.shape,
+                s.region_z,
+                s.region_face,
+                s.region_box,
+                s.region_start,
+                s.outline,
+                bound,
+                bound,
+                settle,
+                found.depth,
+                found.which,
+                found.where,
+                face_depth,
+                face_move,
+            )
             with merging:
                 deepen(found.face_depth, found.face_move, face_depth, face_move)
 
@@ -99,7 +181,10 @@ def guide_points(strip: Floats, u: float, shares: Floats) -> Floats:
         w, z = strip[PW0] + strip[PW1] * np.cos(u), strip[PZ0] + strip[PW1] * np.sin(u)
     else:
         share = (u - strip[U0]) / (strip[U1] - strip[U0]) if strip[U1] > strip[U0] else 0.0
-        w, z = strip[PW0] + share * (strip[PW1] - strip[PW0]), strip[PZ0] + share * (strip[PZ1] - strip[PZ0])
+        w, z = (
+            strip[PW0] + share * (strip[PW1] - strip[PW0]),
+            strip[PZ0] + share * (strip[PZ1] - strip[PZ0]),
+        )
     if strip[GUIDE]:
         x, y = strip[OX] + w * np.cos(s), strip[OY] + w * np.sin(s)
     else:
@@ -108,5 +193,9 @@ def guide_points(strip: Floats, u: float, shares: Floats) -> Floats:
 
 
 def _end(strip: Floats, column: int, u: float) -> float:
-    kind, a, b, c, sign = strip[column:column + 5]
-    return float(a + b * (u - strip[U0]) if kind == 0.0 else a + sign * np.sqrt(max(b * b - (u - c) ** 2, 0.0)))
+    kind, a, b, c, sign = strip[column : column + 5]
+    return float(
+        a + b * (u - strip[U0])
+        if kind == 0.0
+        else a + sign * np.sqrt(max(b * b - (u - c) ** 2, 0.0))
+    )

@@ -26,14 +26,23 @@ class Touch:
     @staticmethod
     def none(k: int, f: int) -> Touch:
         """Return what k moves that touch none of f faces measure."""
-        return Touch(depth=np.full((k, 2), -np.inf), face=np.full((k, 2), -1), place=np.full((k, 2, 3), np.nan),
-                     face_depth=np.full((f, 2), -np.inf), face_move=np.full((f, 2), -1))
+        return Touch(
+            depth=np.full((k, 2), -np.inf),
+            face=np.full((k, 2), -1),
+            place=np.full((k, 2, 3), np.nan),
+            face_depth=np.full((f, 2), -np.inf),
+            face_move=np.full((f, 2), -1),
+        )
 
     def take(self, other: Touch, rows: Ints) -> None:
         """Take in what another engine measured for the moves of some rows (k,) on the same faces."""
         deeper = other.depth > self.depth[rows]
         at, kind = rows[np.nonzero(deeper)[0]], np.nonzero(deeper)[1]
-        self.depth[at, kind], self.face[at, kind], self.place[at, kind] = other.depth[deeper], other.face[deeper], other.place[deeper]
+        self.depth[at, kind], self.face[at, kind], self.place[at, kind] = (
+            other.depth[deeper],
+            other.face[deeper],
+            other.place[deeper],
+        )
         deepen(self.face_depth, self.face_move, other.face_depth, other.face_move)
 
     def deeper_than(self, allowed: float) -> Floats:

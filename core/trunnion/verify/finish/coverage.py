@@ -14,7 +14,22 @@ from trunnion import tolerance
 from trunnion.findings import OutOfMemory
 from trunnion.geometry.arrays import Bools, Floats, Ints
 from trunnion.part.facets import Facets, facet_samples
-from trunnion.part.surfaces import DX, DY, GUIDE, L_KIND, PROFILE, PW0, PW1, PZ0, PZ1, R_KIND, SIDE, U0, U1, Surfaces
+from trunnion.part.surfaces import (
+    DX,
+    DY,
+    GUIDE,
+    L_KIND,
+    PROFILE,
+    PW0,
+    PW1,
+    PZ0,
+    PZ1,
+    R_KIND,
+    SIDE,
+    U0,
+    U1,
+    Surfaces,
+)
 from trunnion.progress import QUIET, Progress
 from trunnion.verify.contact import guide_points
 
@@ -35,7 +50,9 @@ class Samples:
         return len(self.face)
 
 
-def samples_of(surfaces: Surfaces, spacing: float, progress: Progress = QUIET, facets: Facets | None = None) -> Samples:
+def samples_of(
+    surfaces: Surfaces, spacing: float, progress: Progress = QUIET, facets: Facets | None = None
+) -> Samples:
     """Return samples about `spacing` mm apart on every face, the same ones each time; no face is without one.
 
     Those of faces without closed form lie on their facets, which must be in the frame of the surfaces. Raises `OutOfMemory` beyond
@@ -45,25 +62,44 @@ def samples_of(surfaces: Surfaces, spacing: float, progress: Progress = QUIET, f
     progress.at(0.0, "Spreading samples")
     expected = sum(_expected(strip, spacing) for strip in progress.each(strips))
     if expected > MOST_SAMPLES:
-        raise OutOfMemory(f"measuring coverage needs about {expected / 1e6:.0f} million samples at {spacing:g} mm: set a larger "
-                          "verify.spacing, or split the part")
-    parts = [_strip_samples(strip, spacing, progress) for strip in progress.over(strips, "Spreading samples")]
-    face = np.repeat(np.concatenate([surfaces.strip_face, surfaces.level_face]), [len(p) for p in parts])
+        raise OutOfMemory(
+            f"measuring coverage needs about {expected / 1e6:.0f} million samples at {spacing:g} mm: set a larger "
+            "verify.spacing, or split the part"
+        )
+    parts = [
+        _strip_samples(strip, spacing, progress)
+        for strip in progress.over(strips, "Spreading samples")
+    ]
+    face = np.repeat(
+        np.concatenate([surfaces.strip_face, surfaces.level_face]), [len(p) for p in parts]
+    )
     rows = np.vstack([np.zeros((0, 7)), *parts])
     if facets is None or not len(surfaces.free):
-        return Samples(face=face.astype(np.int64), point=rows[:, :3], normal=rows[:, 3:6], area=rows[:, 6])
+        return Samples(
+            face=face.astype(np.int64), point=rows[:, :3], normal=rows[:, 3:6], area=rows[:, 6]
+        )
     triangles = facets
-    free, point, normal, area = progress.aside(lambda own: facet_samples(triangles, surfaces.free, spacing, own),
-                                               "Spreading samples over free-form faces")
-    return Samples(face=np.concatenate([face.astype(np.int64), free]), point=np.vstack([rows[:, :3], point]),
-                   normal=np.vstack([rows[:, 3:6], normal]), area=np.concatenate([rows[:, 6], area]))
+    free, point, normal, area = progress.aside(
+        lambda own: facet_samples(triangles, surfaces.free, spacing, own),
+        "Spreading samples over free-form faces",
+    )
+    return Samples(
+        face=np.concatenate([face.astype(np.int64), free]),
+        point=np.vstack([rows[:, :3], point]),
+        normal=np.vstack([rows[:, 3:6], normal]),
+        area=np.concatenate([rows[:, 6], area]),
+    )
 
 
 def _expected(strip: Floats, spacing: float) -> float:
     """Return about how many samples a strip gets, by its size at the middle of its profile."""
     u0, u1 = strip[U0], strip[U1]
     straight = strip[PROFILE] == 0.0
-    length = np.hypot(strip[PW1] - strip[PW0], strip[PZ1] - strip[PZ0]) if straight else strip[PW1] * (u1 - u0)
+    length = (
+        np.hypot(strip[PW1] - strip[PW0], strip[PZ1] - strip[PZ0])
+        if straight
+        else strip[PW1] * (u1 - u0)
+    )
     low, high = guide_ends(strip, 0.5 * (u0 + u1))
     wide = max(abs(strip[PW0]), abs(strip[PW1])) if strip[GUIDE] else 1.0
     return max(float(length * (high - low) * wide), 0.0) / spacing**2
@@ -73,7 +109,11 @@ def _strip_samples(strip: Floats, spacing: float, progress: Progress) -> Floats:
     """Return points, normals and areas (k, 7) of one strip: rows across the profile, each as long as the trim is there."""
     u0, u1 = strip[U0], strip[U1]
     straight = strip[PROFILE] == 0.0
-    length = np.hypot(strip[PW1] - strip[PW0], strip[PZ1] - strip[PZ0]) if straight else strip[PW1] * (u1 - u0)
+    length = (
+        np.hypot(strip[PW1] - strip[PW0], strip[PZ1] - strip[PZ0])
+        if straight
+        else strip[PW1] * (u1 - u0)
+    )
     if u1 - u0 <= 0.0 or length < tolerance.PARAMETRIC:
         return np.zeros((0, 7))
     rows = max(1, int(np.ceil(length / spacing)))
@@ -82,7 +122,10 @@ def _strip_samples(strip: Floats, spacing: float, progress: Progress) -> Floats:
         ends = guide_ends(strip, u)
         if straight:
             share = (u - u0) / (u1 - u0)
-            w, t = strip[PW0] + share * (strip[PW1] - strip[PW0]), np.array([strip[PW1] - strip[PW0], strip[PZ1] - strip[PZ0]]) / length
+            w, t = (
+                strip[PW0] + share * (strip[PW1] - strip[PW0]),
+                np.array([strip[PW1] - strip[PW0], strip[PZ1] - strip[PZ0]]) / length,
+            )
         else:
             w, t = strip[PW0] + strip[PW1] * np.cos(u), np.array([-np.sin(u), np.cos(u)])
         run = (ends[1] - ends[0]) * (abs(w) if strip[GUIDE] else 1.0)
@@ -101,8 +144,14 @@ def guide_ends(strip: Floats, u: float) -> tuple[float, float]:
     """Return where a strip's trim begins and ends along its guide at one profile parameter."""
     ends = []
     for column in (L_KIND, R_KIND):
-        kind, a, b, c, sign = strip[column:column + 5]
-        ends.append(float(a + b * (u - strip[U0]) if kind == 0.0 else a + sign * np.sqrt(max(b * b - (u - c) ** 2, 0.0))))
+        kind, a, b, c, sign = strip[column : column + 5]
+        ends.append(
+            float(
+                a + b * (u - strip[U0])
+                if kind == 0.0
+                else a + sign * np.sqrt(max(b * b - (u - c) ** 2, 0.0))
+            )
+        )
     return ends[0], ends[1]
 
 

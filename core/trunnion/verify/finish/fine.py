@@ -108,12 +108,26 @@ class _Cells:
     def quartered(self) -> _Cells:
         signs = np.array([[-1.0, -1.0], [1.0, -1.0], [-1.0, 1.0], [1.0, 1.0]])
         half = 0.5 * self.half
-        return _Cells(np.repeat(self.face, 4), (self.uv[:, None] + signs * half[:, None]).reshape(-1, 2), np.repeat(half, 4, axis=0),
-                      np.repeat(self.above, 4))
+        return _Cells(
+            np.repeat(self.face, 4),
+            (self.uv[:, None] + signs * half[:, None]).reshape(-1, 2),
+            np.repeat(half, 4, axis=0),
+            np.repeat(self.above, 4),
+        )
 
 
-def fine_measure(faces: Sequence[Face], moves: Moves, spacing: float = 0.2, *, low: Floats | None = None, high: Floats | None = None,
-                 window: float = 1.0, bound: float = FINE_BOUND, progress: Progress = QUIET, threads: int = 0) -> FineMap:
+def fine_measure(
+    faces: Sequence[Face],
+    moves: Moves,
+    spacing: float = 0.2,
+    *,
+    low: Floats | None = None,
+    high: Floats | None = None,
+    window: float = 1.0,
+    bound: float = FINE_BOUND,
+    progress: Progress = QUIET,
+    threads: int = 0,
+) -> FineMap:
     """Return scallop, gouge and steps on faces (within the box from `low` to `high` (3,) when given), all in the frame of the moves.
 
     Cells begin about `spacing` mm wide. `window` mm is how far beside a seam the lowest places of both sides are compared: as far as two
@@ -124,7 +138,9 @@ def fine_measure(faces: Sequence[Face], moves: Moves, spacing: float = 0.2, *, l
     patch = _Patch(faces, tree, flutes, low, high, bound, progress, threads)
     cells = patch.inside(patch.begin(spacing))
     if not len(cells.cells):
-        raise BadInput("the fine mode has nothing to measure: no place of the chosen faces is inside the box")
+        raise BadInput(
+            "the fine mode has nothing to measure: no place of the chosen faces is inside the box"
+        )
     first = patch.look(cells, 0.0, progress.part(0.0, 0.3))
     held = np.flatnonzero(cells.holds)
     most, least = _Best(1.0), _Best(-1.0)
@@ -134,10 +150,17 @@ def fine_measure(faces: Sequence[Face], moves: Moves, spacing: float = 0.2, *, l
     row, at = cells.cells.face[held], cells.at
     labels = np.column_stack([row, move_of[first.nearest[held]]])
     return FineMap(
-        scallop=scallop, gouge=Extreme(value=max(-least.value, 0.0), place=least.place, move=least.move),
-        step=_step(at.point[held], labels, first.left[held], first.nearest[held], spacing, window), bound=bound,
-        face=np.array([f.tag for f in faces])[row], point=at.point[held], normal=at.normal[held], left=first.left[held],
-        nearest=first.nearest[held], area=cells.area[held])
+        scallop=scallop,
+        gouge=Extreme(value=max(-least.value, 0.0), place=least.place, move=least.move),
+        step=_step(at.point[held], labels, first.left[held], first.nearest[held], spacing, window),
+        bound=bound,
+        face=np.array([f.tag for f in faces])[row],
+        point=at.point[held],
+        normal=at.normal[held],
+        left=first.left[held],
+        nearest=first.nearest[held],
+        area=cells.area[held],
+    )
 
 
 @dataclass(slots=True, eq=False)
@@ -151,7 +174,11 @@ class _Placed:
     @property
     def area(self) -> Floats:
         """The areas of the cells (c,) mm2."""
-        return np.asarray(4.0 * self.cells.half.prod(axis=1) * np.linalg.norm(np.cross(self.at.du, self.at.dv), axis=1))
+        return np.asarray(
+            4.0
+            * self.cells.half.prod(axis=1)
+            * np.linalg.norm(np.cross(self.at.du, self.at.dv), axis=1)
+        )
 
 
 @dataclass(slots=True, eq=False)
@@ -183,40 +210,68 @@ class _Patch:
         for row, face in enumerate(self.faces):
             u0, u1, v0, v1 = face.bounds()
             if not np.isfinite([u0, u1, v0, v1]).all():
-                raise BadInput(f"face {face.tag} has no end in its own parameters and can't be measured")
+                raise BadInput(
+                    f"face {face.tag} has no end in its own parameters and can't be measured"
+                )
             share = (np.arange(9) + 0.5) / 9
-            grid = np.stack(np.meshgrid(u0 + share * (u1 - u0), v0 + share * (v1 - v0)), axis=-1).reshape(-1, 2)
+            grid = np.stack(
+                np.meshgrid(u0 + share * (u1 - u0), v0 + share * (v1 - v0)), axis=-1
+            ).reshape(-1, 2)
             at = face.at(grid)
-            count = [max(1, int(np.ceil(span * np.linalg.norm(d, axis=1).max() / spacing)))
-                     for span, d in ((u1 - u0, at.du), (v1 - v0, at.dv))]
+            count = [
+                max(1, int(np.ceil(span * np.linalg.norm(d, axis=1).max() / spacing)))
+                for span, d in ((u1 - u0, at.du), (v1 - v0, at.dv))
+            ]
             if sum(len(m) for m in made) + count[0] * count[1] > MOST_CELLS:
-                raise OutOfMemory(f"the fine mode would need over {MOST_CELLS} cells at {spacing:g} mm: choose fewer faces or a larger "
-                                  "spacing")
+                raise OutOfMemory(
+                    f"the fine mode would need over {MOST_CELLS} cells at {spacing:g} mm: choose fewer faces or a larger "
+                    "spacing"
+                )
             half = np.array([(u1 - u0) / count[0], (v1 - v0) / count[1]]) / 2
-            i, j = (a.ravel() for a in np.meshgrid(np.arange(count[0]), np.arange(count[1]), indexing="ij"))
+            i, j = (
+                a.ravel()
+                for a in np.meshgrid(np.arange(count[0]), np.arange(count[1]), indexing="ij")
+            )
             uv = np.column_stack([u0 + (2 * i + 1) * half[0], v0 + (2 * j + 1) * half[1]])
-            made.append(_Cells(np.full(len(uv), row), uv, np.tile(half, (len(uv), 1)), np.ones(len(uv), bool)))
-        return _Cells(*(np.concatenate([getattr(m, name) for m in made]) for name in _Cells.__slots__))
+            made.append(
+                _Cells(
+                    np.full(len(uv), row), uv, np.tile(half, (len(uv), 1)), np.ones(len(uv), bool)
+                )
+            )
+        return _Cells(
+            *(np.concatenate([getattr(m, name) for m in made]) for name in _Cells.__slots__)
+        )
 
     def inside(self, cells: _Cells) -> _Placed:
         """Return the cells that touch the patch."""
         if len(cells) > MOST_CELLS:
-            raise OutOfMemory("the fine mode needs too many cells: choose fewer faces or a smaller box")
+            raise OutOfMemory(
+                "the fine mode needs too many cells: choose fewer faces or a smaller box"
+            )
         parts, points, holds = [], [], []
-        signs = np.array([[0, 0], [-1, -1], [1, -1], [-1, 1], [1, 1], [0, -1], [0, 1], [-1, 0], [1, 0]], dtype=np.float64)
+        signs = np.array(
+            [[0, 0], [-1, -1], [1, -1], [-1, 1], [1, 1], [0, -1], [0, 1], [-1, 0], [1, 0]],
+            dtype=np.float64,
+        )
         for row, face in enumerate(self.faces):
             self.progress.check()
             mine = cells.some(cells.face == row)
             at = face.at(mine.uv)
-            near = self._in_box(at.point, mine.half[:, :1] * np.abs(at.du) + mine.half[:, 1:] * np.abs(at.dv))
+            near = self._in_box(
+                at.point, mine.half[:, :1] * np.abs(at.du) + mine.half[:, 1:] * np.abs(at.dv)
+            )
             mine, at = mine.some(near), _some(at, near)
             within = _within(face, mine, signs)
             touches = np.asarray(within.any(axis=1))
             parts.append(mine.some(touches))
             points.append(_some(at, touches))
             holds.append((within[:, 0] & self._in_box(at.point, np.zeros((len(mine), 3))))[touches])
-        joined = ExactPoints(**{name: np.concatenate([getattr(p, name) for p in points]) for name in ARRAYS})
-        whole = _Cells(*(np.concatenate([getattr(m, name) for m in parts]) for name in _Cells.__slots__))
+        joined = ExactPoints(
+            **{name: np.concatenate([getattr(p, name) for p in points]) for name in ARRAYS}
+        )
+        whole = _Cells(
+            *(np.concatenate([getattr(m, name) for m in parts]) for name in _Cells.__slots__)
+        )
         return _Placed(whole, joined, np.concatenate(holds))
 
     def _in_box(self, points: Floats, margin: Floats) -> Bools:
@@ -224,27 +279,66 @@ class _Patch:
         high = np.inf if self.high is None else np.asarray(self.high)
         return np.asarray(((points >= low - margin) & (points <= high + margin)).all(axis=1))
 
-    def look(self, placed: _Placed, lift: float, progress: Progress, least: float = -np.inf) -> _Looked:
+    def look(
+        self, placed: _Placed, lift: float, progress: Progress, least: float = -np.inf
+    ) -> _Looked:
         """Return what is left over cells of the surface, lifted along its normals; by how much a cell falls below `least` is not told."""
         n, at, (u, v) = len(placed.cells), placed.at, placed.cells.half.T
-        a, b = u[:, None] * (at.du + lift * at.normal_du), v[:, None] * (at.dv + lift * at.normal_dv)
+        a, b = (
+            u[:, None] * (at.du + lift * at.normal_du),
+            v[:, None] * (at.dv + lift * at.normal_dv),
+        )
         slack = 0.5 * (at.bend[:, 0] * u * u + 2.0 * at.bend[:, 1] * u * v + at.bend[:, 2] * v * v)
         if lift:
             # A lifted surface bends more by what its normals turn, and half as much again for what that changes over a cell.
-            slack *= 1.0 + 1.5 * lift * sum(np.divide(np.linalg.norm(t, axis=1), np.linalg.norm(d, axis=1), out=np.zeros(n),
-                                                      where=(d != 0.0).any(axis=1))
-                                            for t, d in ((at.normal_du, at.du), (at.normal_dv, at.dv)))
-        left, nearest, upper, lower = np.full(n, FAR), np.full(n, -1), np.full(n, FAR), np.full(n, -np.inf)
+            slack *= 1.0 + 1.5 * lift * sum(
+                np.divide(
+                    np.linalg.norm(t, axis=1),
+                    np.linalg.norm(d, axis=1),
+                    out=np.zeros(n),
+                    where=(d != 0.0).any(axis=1),
+                )
+                for t, d in ((at.normal_du, at.du), (at.normal_dv, at.dv))
+            )
+        left, nearest, upper, lower = (
+            np.full(n, FAR),
+            np.full(n, -1),
+            np.full(n, FAR),
+            np.full(n, -np.inf),
+        )
         points = at.point + lift * at.normal
 
         def some(first: int, last: int) -> None:
-            kernel.cells_loop(first, last, points, a, b, slack, self.tree, self.flutes, FAR, least, self.bound, placed.cells.above,
-                              left, nearest, upper, lower)
+            kernel.cells_loop(
+                first,
+                last,
+                points,
+                a,
+                b,
+                slack,
+                self.tree,
+                self.flutes,
+                FAR,
+                least,
+                self.bound,
+                placed.cells.above,
+                left,
+                nearest,
+                upper,
+                lower,
+            )
 
         in_parallel(some, n, CHUNK, progress, "Measuring scallops", self.threads)
         return _Looked(left, nearest, upper, lower)
 
-    def search(self, placed: _Placed, looked: _Looked, lift: float, wanted: Sequence[_Best], progress: Progress) -> None:
+    def search(
+        self,
+        placed: _Placed,
+        looked: _Looked,
+        lift: float,
+        wanted: Sequence[_Best],
+        progress: Progress,
+    ) -> None:
         """Quarter cells until none may beat what is wanted by more than the bound."""
         lowest = -np.inf
         for k in range(ROUNDS):
@@ -278,8 +372,17 @@ class _Patch:
             inside = self._in_box(at.point, np.zeros((len(places), 3)))
             points = (at.point + lift * at.normal)[inside]
             left, nearest = np.full(len(points), FAR), np.full(len(points), -1)
-            left_kernel.far_loop(0, len(points), points, np.arange(len(points)), self.tree, self.flutes, kernel.CLOSE * self.bound, left,
-                                 nearest)
+            left_kernel.far_loop(
+                0,
+                len(points),
+                points,
+                np.arange(len(points)),
+                self.tree,
+                self.flutes,
+                kernel.CLOSE * self.bound,
+                left,
+                nearest,
+            )
             best.take(left, nearest, places[inside], at.point[inside])
             half = 0.4 * half
 
@@ -294,7 +397,13 @@ class _Patch:
         for k in range(LIFTS):
             share = progress.part(k / LIFTS, (k + 1) / LIFTS)
             over = _Best(1.0)
-            self.search(placed, self.look(placed, height, share.part(0.0, 0.5), np.inf), height, (over,), share.part(0.5, 1.0))
+            self.search(
+                placed,
+                self.look(placed, height, share.part(0.0, 0.5), np.inf),
+                height,
+                (over,),
+                share.part(0.5, 1.0),
+            )
             if over.value > 0.0:
                 height, best = height + over.value, over
             if over.value <= self.bound:
@@ -331,7 +440,9 @@ class _Best:
     def raised(self, placed: _Placed, looked: _Looked) -> bool:
         """Take what is left at the cells' middles into account; say whether that changed anything."""
         rows = np.flatnonzero(placed.holds)
-        if not len(rows) or not self.take(looked.left[rows], looked.nearest[rows], placed.cells.uv[rows], placed.at.point[rows]):
+        if not len(rows) or not self.take(
+            looked.left[rows], looked.nearest[rows], placed.cells.uv[rows], placed.at.point[rows]
+        ):
             return False
         row = rows[np.argmax(self.sign * looked.left[rows])]
         self.face, self.half = int(placed.cells.face[row]), placed.cells.half[row]
@@ -344,7 +455,12 @@ class _Best:
         row = int(np.argmax(self.sign * left))
         if self.sign * left[row] <= self.sign * self.value:
             return False
-        self.value, self.place, self.move, self.uv = float(left[row]), point[row], int(nearest[row]), uv[row]
+        self.value, self.place, self.move, self.uv = (
+            float(left[row]),
+            point[row],
+            int(nearest[row]),
+            uv[row],
+        )
         return True
 
     def extreme(self) -> Extreme:
@@ -352,19 +468,25 @@ class _Best:
         return Extreme(value=self.value, place=self.place, move=self.move)
 
 
-def _step(point: Floats, label: Ints, left: Floats, nearest: Ints, spacing: float, window: float) -> Extreme:
+def _step(
+    point: Floats, label: Ints, left: Floats, nearest: Ints, spacing: float, window: float
+) -> Extreme:
     """Return the largest difference between the lowest places on both sides of a seam, where neighbours have other labels (m, 2)."""
     none = Extreme(value=0.0, place=np.full(3, np.nan), move=-1)
     if len(point) < 2:
         return none
     tree = cKDTree(point)
     pairs = tree.query_pairs(1.5 * spacing, output_type="ndarray")
-    pairs = pairs[(label[pairs[:, 0]] != label[pairs[:, 1]]).any(axis=1) & (nearest[pairs] >= 0).all(axis=1)]
+    pairs = pairs[
+        (label[pairs[:, 0]] != label[pairs[:, 1]]).any(axis=1) & (nearest[pairs] >= 0).all(axis=1)
+    ]
     if not len(pairs):
         return none
     middle = point[pairs].mean(axis=1)
     # One look in each cube of half a window is enough: neighbours see nearly the same.
-    _, rows = np.unique(np.floor(middle / (0.5 * window)).astype(np.int64), axis=0, return_index=True)
+    _, rows = np.unique(
+        np.floor(middle / (0.5 * window)).astype(np.int64), axis=0, return_index=True
+    )
     best = none
     for row in np.sort(rows):
         around = np.array(tree.query_ball_point(middle[row], window))

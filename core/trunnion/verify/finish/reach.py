@@ -36,9 +36,20 @@ class Reach:
     """Finds collision-free poses of catalogue cutters that touch a point of the part: upright ones from above, and leaning ones where the
     machine has rotary axes (contact then needs facets). Contact must be without fixtures. Works on `threads` threads (0: one a core)."""
 
-    def __init__(self, contact: PartContact, tools: Sequence[Tool], allowed: float, machine: Machine | None = None,
-                 threads: int = 0) -> None:
-        self._contact, self._allowed, self._machine, self._threads = contact, allowed, machine, threads
+    def __init__(
+        self,
+        contact: PartContact,
+        tools: Sequence[Tool],
+        allowed: float,
+        machine: Machine | None = None,
+        threads: int = 0,
+    ) -> None:
+        self._contact, self._allowed, self._machine, self._threads = (
+            contact,
+            allowed,
+            machine,
+            threads,
+        )
         # Upright and from above, no other form goes where none of these fits. Slender cutters reach what any reach: the order is for speed.
         plain = [t for t in tools if t.form in PLAIN_FORMS]
         self._tools = sorted(reaching_furthest(plain), key=lambda t: (t.radius, -t.reach, t.number))
@@ -52,21 +63,45 @@ class Reach:
         if machine is None or not machine.rotary:
             return _shared(self._try, samples, rows, MOST_TRIED, progress)
         found = _shared(self._try, samples, rows, MOST_TRIED, progress.part(0.0, 0.5))
-        found[~found] = _shared(partial(self._try_leaning, machine), samples, rows[~found], MOST_LEANING, progress.part(0.5, 1.0))
+        found[~found] = _shared(
+            partial(self._try_leaning, machine),
+            samples,
+            rows[~found],
+            MOST_LEANING,
+            progress.part(0.5, 1.0),
+        )
         return found
 
     def _try(self, samples: Samples, rows: Ints, progress: Progress) -> Bools:
-        return self._first_clear(len(rows), partial(upright_poses, samples.point[rows], samples.normal[rows]), progress,
-                                 "Looking for cutters that reach what is left")
+        return self._first_clear(
+            len(rows),
+            partial(upright_poses, samples.point[rows], samples.normal[rows]),
+            progress,
+            "Looking for cutters that reach what is left",
+        )
 
-    def _try_leaning(self, machine: Machine, samples: Samples, rows: Ints, progress: Progress) -> Bools:
+    def _try_leaning(
+        self, machine: Machine, samples: Samples, rows: Ints, progress: Progress
+    ) -> Bools:
         point, normal = samples.point[rows], samples.normal[rows]
         axes = np.stack(list(progress.each(leaning_axes(normal))), axis=1)
-        holds = progress.aside(lambda _: can_hold(axes.reshape(-1, 3), machine)).reshape(axes.shape[:2])
-        return self._first_clear(len(rows), partial(leaning_poses, point, normal, axes, holds), progress,
-                                 "Looking for leaning cutters that reach what is left")
+        holds = progress.aside(lambda _: can_hold(axes.reshape(-1, 3), machine)).reshape(
+            axes.shape[:2]
+        )
+        return self._first_clear(
+            len(rows),
+            partial(leaning_poses, point, normal, axes, holds),
+            progress,
+            "Looking for leaning cutters that reach what is left",
+        )
 
-    def _first_clear(self, k: int, poses: Callable[[Tool, Ints], tuple[Floats, Floats, Bools]], progress: Progress, text: str) -> Bools:
+    def _first_clear(
+        self,
+        k: int,
+        poses: Callable[[Tool, Ints], tuple[Floats, Floats, Bools]],
+        progress: Progress,
+        text: str,
+    ) -> Bools:
         """Say for each of k places whether some tool has a clear pose there; `poses` gives a tool's at some rows of them."""
         found, obstacles = np.zeros(k, bool), Obstacles.none(k)
         for n, tool in enumerate(self._tools):
@@ -77,17 +112,25 @@ class Reach:
                 break
             tips, axes, possible = _poses_asked(poses, tool, rows, share)
             known = obstacles.of(rows)
-            found[rows] = self._contact.any_clear(tool, tips, axes, possible, self._allowed, known, share, text, self._threads)
+            found[rows] = self._contact.any_clear(
+                tool, tips, axes, possible, self._allowed, known, share, text, self._threads
+            )
             obstacles.put(rows, known)
         return found
 
 
-def _poses_asked(poses: Callable[[Tool, Ints], tuple[Floats, Floats, Bools]], tool: Tool, rows: Ints,
-                 progress: Progress) -> tuple[Floats, Floats, Bools]:
+def _poses_asked(
+    poses: Callable[[Tool, Ints], tuple[Floats, Floats, Bools]],
+    tool: Tool,
+    rows: Ints,
+    progress: Progress,
+) -> tuple[Floats, Floats, Bools]:
     return progress.aside(lambda _: poses(tool, rows))
 
 
-def upright_poses(point: Floats, normal: Floats, tool: Tool, rows: Ints) -> tuple[Floats, Floats, Bools]:
+def upright_poses(
+    point: Floats, normal: Floats, tool: Tool, rows: Ints
+) -> tuple[Floats, Floats, Bools]:
     """Return tips and axes (k, a, 3) of an upright cutter that touches some rows (k,) of points from above, and which make sense (k, a).
 
     The first touches along the normal with the corner (or the flank, where the face is upright), two with the flank higher up, the others
@@ -97,7 +140,9 @@ def upright_poses(point: Floats, normal: Floats, tool: Tool, rows: Ints) -> tupl
     level = normal[:, 2] > np.cos(tolerance.ANGLE)
     upright = np.abs(normal[:, 2]) < np.sin(tolerance.ANGLE)
     plan = np.hypot(normal[:, 0], normal[:, 1])
-    out = np.divide(normal[:, :2], plan[:, None], out=np.zeros_like(normal[:, :2]), where=plan[:, None] > 0.0)
+    out = np.divide(
+        normal[:, :2], plan[:, None], out=np.zeros_like(normal[:, :2]), where=plan[:, None] > 0.0
+    )
     inner, corner = tool.radius - tool.corner_radius, tool.corner_radius
     n = 3 + (len(ASIDE) * AROUND if inner > 0.0 and level.any() else 0)
     tips, possible = np.repeat(point[:, None], n, axis=1), np.zeros((len(point), n), bool)
@@ -116,15 +161,28 @@ def upright_poses(point: Floats, normal: Floats, tool: Tool, rows: Ints) -> tupl
     return tips, np.broadcast_to(UP, tips.shape), possible
 
 
-def leaning_poses(point: Floats, normal: Floats, axes: Floats, holds: Bools, tool: Tool, rows: Ints) -> tuple[Floats, Floats, Bools]:
+def leaning_poses(
+    point: Floats, normal: Floats, axes: Floats, holds: Bools, tool: Tool, rows: Ints
+) -> tuple[Floats, Floats, Bools]:
     """Return tips and axes (k, a, 3) of a cutter that touches some rows (k,) of points with their axes (all, a, 3), and which make sense
     (k, a): those that the machine holds (all, a) and that are outside the face."""
     own, n = axes[rows], axes.shape[1]
-    tips, possible = touching_tips(tool, np.repeat(point[rows], n, axis=0), np.repeat(normal[rows], n, axis=0), own.reshape(-1, 3))
+    tips, possible = touching_tips(
+        tool,
+        np.repeat(point[rows], n, axis=0),
+        np.repeat(normal[rows], n, axis=0),
+        own.reshape(-1, 3),
+    )
     return tips.reshape(own.shape), own, possible.reshape(own.shape[:2]) & holds[rows]
 
 
-def _shared(ask: Callable[[Samples, Ints, Progress], Bools], samples: Samples, rows: Ints, most: int, progress: Progress) -> Bools:
+def _shared(
+    ask: Callable[[Samples, Ints, Progress], Bools],
+    samples: Samples,
+    rows: Ints,
+    most: int,
+    progress: Progress,
+) -> Bools:
     """Return what is answered for rows, of very many only for evenly chosen ones: the others share the nearest answer on their face."""
     tried = _tried(samples.face[rows], most)
     answer = ask(samples, rows[tried], progress)
@@ -147,7 +205,11 @@ def reaching_furthest(tools: Sequence[Tool]) -> list[Tool]:
 
 
 def _outreaches(one: Tool, other: Tool) -> bool:
-    return one.flute_length >= other.flute_length and one.reach >= other.reach and one.stickout >= other.stickout
+    return (
+        one.flute_length >= other.flute_length
+        and one.reach >= other.reach
+        and one.stickout >= other.stickout
+    )
 
 
 def _tried(face: Ints, most: int) -> Ints:

@@ -75,9 +75,20 @@ class Sweep:
         boxes = kernel.move_boxes(moves.row, cutter[:, 0] + near)
         grid = grid_of(boxes, CELL, order) if len(order) else grid_of(boxes[:0], CELL)
         flutes = flutes_of(moves)
-        return Sweep(moves, cutter, low, grid, tree_of(moves, np.flatnonzero(feeds & ~plain), flutes), flutes, near, bound)
+        return Sweep(
+            moves,
+            cutter,
+            low,
+            grid,
+            tree_of(moves, np.flatnonzero(feeds & ~plain), flutes),
+            flutes,
+            near,
+            bound,
+        )
 
-    def left(self, points: Floats, most: Floats, progress: Progress = QUIET, threads: int = 0) -> tuple[Floats, Ints]:
+    def left(
+        self, points: Floats, most: Floats, progress: Progress = QUIET, threads: int = 0
+    ) -> tuple[Floats, Ints]:
         """Return the smallest signed distance (s,) of points (s, 3) to what cuts over all feed moves, and the move (-1: none).
 
         Distances above `most` (s,) come back as it. Those above `near` are within `FAR_BOUND` where an upright move is nearest.
@@ -88,14 +99,42 @@ class Sweep:
         order = progress.aside(lambda _: _by_cell(points, g), "Measuring material left")
 
         def some(first: int, last: int) -> None:
-            kernel.left_loop(first, last, points, order, self.moves.row, self.cutter, self.low, g.start, g.rows, g.frame, g.shape,
-                             self.tree, self.flutes, self.bound, left, nearest)
+            kernel.left_loop(
+                first,
+                last,
+                points,
+                order,
+                self.moves.row,
+                self.cutter,
+                self.low,
+                g.start,
+                g.rows,
+                g.frame,
+                g.shape,
+                self.tree,
+                self.flutes,
+                self.bound,
+                left,
+                nearest,
+            )
 
-        in_parallel(some, len(points), CHUNK, progress.part(0.0, 0.7), "Measuring material left", threads)
-        self._look_further(points, order[left[order] > self.near], left, nearest, progress.part(0.7, 1.0), threads)
+        in_parallel(
+            some, len(points), CHUNK, progress.part(0.0, 0.7), "Measuring material left", threads
+        )
+        self._look_further(
+            points, order[left[order] > self.near], left, nearest, progress.part(0.7, 1.0), threads
+        )
         return left, nearest
 
-    def _look_further(self, points: Floats, rows: Ints, left: Floats, nearest: Ints, progress: Progress, threads: int) -> None:
+    def _look_further(
+        self,
+        points: Floats,
+        rows: Ints,
+        left: Floats,
+        nearest: Ints,
+        progress: Progress,
+        threads: int,
+    ) -> None:
         """Lower what is left on points further from everything than `near`, by moves that their cells don't list."""
         listed = np.unique(self.grid.rows)
         if not len(rows) or not len(listed):
@@ -103,7 +142,17 @@ class Sweep:
         tree = progress.aside(lambda _: tree_of(self.moves, listed, self.flutes))
 
         def some(first: int, last: int) -> None:
-            kernel.far_loop(first, last, points, rows, tree, self.flutes, max(FAR_BOUND, self.bound), left, nearest)
+            kernel.far_loop(
+                first,
+                last,
+                points,
+                rows,
+                tree,
+                self.flutes,
+                max(FAR_BOUND, self.bound),
+                left,
+                nearest,
+            )
 
         in_parallel(some, len(rows), CHUNK, progress, "Measuring material left", threads)
 
@@ -113,8 +162,23 @@ class Sweep:
         points = np.ascontiguousarray(points, dtype=np.float64)
 
         def some(first: int, last: int) -> None:
-            kernel.cut_loop(first, last, points, move, self.moves.row, self.cutter, self.low, g.start, g.rows, g.frame, g.shape, self.tree,
-                            self.flutes, self.bound, out)
+            kernel.cut_loop(
+                first,
+                last,
+                points,
+                move,
+                self.moves.row,
+                self.cutter,
+                self.low,
+                g.start,
+                g.rows,
+                g.frame,
+                g.shape,
+                self.tree,
+                self.flutes,
+                self.bound,
+                out,
+            )
 
         in_parallel(some, len(points), CHUNK, QUIET, "", threads)
         return out
@@ -124,8 +188,21 @@ class Sweep:
         plan of it and all above. That others have is not asked."""
         out, g = np.zeros(len(points), bool), self.grid
         points = np.ascontiguousarray(points, dtype=np.float64)
-        kernel.around_loop(0, len(points), points, margin, move, self.moves.row, self.cutter, self.low, g.start, g.rows, g.frame, g.shape,
-                           out)
+        kernel.around_loop(
+            0,
+            len(points),
+            points,
+            margin,
+            move,
+            self.moves.row,
+            self.cutter,
+            self.low,
+            g.start,
+            g.rows,
+            g.frame,
+            g.shape,
+            out,
+        )
         return out
 
 
@@ -135,28 +212,50 @@ def _by_cell(points: Floats, grid: Grid) -> Ints:
     return np.lexsort((cell[:, 0], cell[:, 1]))
 
 
-def left_by_block(left: Floats, nearest: Ints, n_moves: int, area: Floats | None = None) -> BlockLeft:
+def left_by_block(
+    left: Floats, nearest: Ints, n_moves: int, area: Floats | None = None
+) -> BlockLeft:
     """Return the material left (s,) on samples, gathered by the move (s,) that came nearest to each (-1: none).
 
     area (s,) weighs the mean.
     """
     hit = nearest >= 0
-    rows, value, weight = nearest[hit], left[hit], np.ones(int(hit.sum())) if area is None else area[hit]
+    rows, value, weight = (
+        nearest[hit],
+        left[hit],
+        np.ones(int(hit.sum())) if area is None else area[hit],
+    )
     least, most = np.full(n_moves, np.inf), np.full(n_moves, -np.inf)
     np.minimum.at(least, rows, value)
     np.maximum.at(most, rows, value)
     count = np.bincount(rows, minlength=n_moves)
     total, sums = np.bincount(rows, weight, n_moves), np.bincount(rows, weight * value, n_moves)
     mean = np.divide(sums, total, out=np.full(n_moves, np.nan), where=total > 0.0)
-    return BlockLeft(least=np.where(count, least, np.nan), mean=mean, most=np.where(count, most, np.nan), count=count.astype(np.int64))
+    return BlockLeft(
+        least=np.where(count, least, np.nan),
+        mean=mean,
+        most=np.where(count, most, np.nan),
+        count=count.astype(np.int64),
+    )
 
 
 def _in_plan(moves: Moves) -> Bools:
     """Say which moves have a closed form in plan: upright, level or straight up and down, and of a plain cutter with room on its flank."""
     row = moves.row
-    up = (row[:, columns.KIND] == 0.0) & (row[:, columns.X0] == row[:, columns.X1]) & (row[:, columns.Y0] == row[:, columns.Y1])
-    plain = np.array([t.form in PLAIN_FORMS and t.flute_length >= 2.0 * t.corner_radius for t in moves.tools], dtype=bool)
-    return np.asarray(moves.upright & ((row[:, columns.Z_START] == row[:, columns.Z_END]) | up) & plain[moves.tool])
+    up = (
+        (row[:, columns.KIND] == 0.0)
+        & (row[:, columns.X0] == row[:, columns.X1])
+        & (row[:, columns.Y0] == row[:, columns.Y1])
+    )
+    plain = np.array(
+        [t.form in PLAIN_FORMS and t.flute_length >= 2.0 * t.corner_radius for t in moves.tools],
+        dtype=bool,
+    )
+    return np.asarray(
+        moves.upright
+        & ((row[:, columns.Z_START] == row[:, columns.Z_END]) | up)
+        & plain[moves.tool]
+    )
 
 
 def flutes_of(moves: Moves) -> Flutes:
@@ -172,16 +271,21 @@ def flutes_of(moves: Moves) -> Flutes:
             last.append(first[-1] + len(run))
             endless.append(last[-1] - int(is_top and tool.form in PLAIN_FORMS))
         start.append(len(first))
-    return Flutes(arc=np.vstack([np.zeros((0, body.ARC_COLUMNS)), *arcs]), first=np.array(first, dtype=np.int64),
-                  last=np.array(last, dtype=np.int64), endless=np.array(endless, dtype=np.int64), start=np.array(start, dtype=np.int64),
-                  middle=np.array([min(t.radius, t.flute_length / 2) for t in moves.tools]))
+    return Flutes(
+        arc=np.vstack([np.zeros((0, body.ARC_COLUMNS)), *arcs]),
+        first=np.array(first, dtype=np.int64),
+        last=np.array(last, dtype=np.int64),
+        endless=np.array(endless, dtype=np.int64),
+        start=np.array(start, dtype=np.int64),
+        middle=np.array([min(t.radius, t.flute_length / 2) for t in moves.tools]),
+    )
 
 
 def _cutting(bodies: Bodies, tool: int) -> list[Floats]:
     """Return the arcs of each cutting body of a tool; the highest ends where the flutes do, not `OVERLAP` further on."""
     pieces = bodies.of(tool)
     pieces = pieces[pieces[:, body.KIND] == 0.0]
-    runs = [bodies.arc[int(p[body.CLOSED_FIRST]):int(p[body.CLOSED_LAST])].copy() for p in pieces]
+    runs = [bodies.arc[int(p[body.CLOSED_FIRST]) : int(p[body.CLOSED_LAST])].copy() for p in pieces]
     top = runs[-1][-1]
     beyond = top[body.CZ] - pieces[-1, body.Z_HIGH]
     if top[body.R] == 0.0 and beyond > tolerance.PARAMETRIC:
@@ -203,18 +307,27 @@ def ways_of(moves: Moves, rows: Ints) -> Floats:
     size = np.linalg.norm(across, axis=1)
     e = np.where((turning & (size > tolerance.PARAMETRIC))[:, None], across, aside)
     e = e / np.linalg.norm(e, axis=1, keepdims=True)
-    out[:, kernel.PX:kernel.PZ + 1], out[:, kernel.DX:kernel.DZ + 1] = moves.start[rows], moves.end[rows] - moves.start[rows]
-    out[:, kernel.AX:kernel.AZ + 1], out[:, kernel.EX:kernel.EZ + 1] = a, e
+    out[:, kernel.PX : kernel.PZ + 1], out[:, kernel.DX : kernel.DZ + 1] = (
+        moves.start[rows],
+        moves.end[rows] - moves.start[rows],
+    )
+    out[:, kernel.AX : kernel.AZ + 1], out[:, kernel.EX : kernel.EZ + 1] = a, e
     out[:, kernel.TURN] = np.where(turning, np.arctan2(size, (a * b).sum(axis=1)), 0.0)
     arcs = np.flatnonzero(moves.sweep[rows] != 0.0)
     if len(arcs):
         n, centre, at = np.cross(a, e)[arcs], moves.centre[rows[arcs]], rows[arcs]
         c = np.column_stack([(centre * e[arcs]).sum(axis=1), (centre * n).sum(axis=1)])
-        start, end = (np.column_stack([(p * e[arcs]).sum(axis=1), (p * n).sum(axis=1)]) - c for p in (moves.start[at], moves.end[at]))
-        out[arcs, kernel.CENTRE_E:kernel.CENTRE_N + 1] = c
+        start, end = (
+            np.column_stack([(p * e[arcs]).sum(axis=1), (p * n).sum(axis=1)]) - c
+            for p in (moves.start[at], moves.end[at])
+        )
+        out[arcs, kernel.CENTRE_E : kernel.CENTRE_N + 1] = c
         # Posted ends are rounded: the mean of both radii halves what an end may lie off the arc.
         out[arcs, kernel.RADIUS] = 0.5 * (np.hypot(*start.T) + np.hypot(*end.T))
-        out[arcs, kernel.PHASE], out[arcs, kernel.SWEEP] = np.arctan2(start[:, 1], start[:, 0]), moves.sweep[at]
+        out[arcs, kernel.PHASE], out[arcs, kernel.SWEEP] = (
+            np.arctan2(start[:, 1], start[:, 0]),
+            moves.sweep[at],
+        )
     return out
 
 
@@ -231,9 +344,24 @@ def tree_of(moves: Moves, rows: Ints, flutes: Flutes) -> Tree:
     of, low, high, pose, reach = of[order], low[order], high[order], pose[order], reach[order]
     used, start = np.unique(tool[of], return_index=True)
     room = 4 * (len(of) // kernel.BUCKET + len(used))
-    nodes, links, root = np.zeros((room, 8)), np.zeros((room, 5), np.int64), np.zeros(len(used), np.int64)
+    nodes, links, root = (
+        np.zeros((room, 8)),
+        np.zeros((room, 5), np.int64),
+        np.zeros(len(used), np.int64),
+    )
     n = kernel.grow_tree(pose, reach, np.append(start, len(of)), used, nodes, links, root)
-    return Tree(way, rows, tool, of, low, high, reach[:, 0] - middle[order] * reach[:, 1], nodes[:n].copy(), links[:n].copy(), root)
+    return Tree(
+        way,
+        rows,
+        tool,
+        of,
+        low,
+        high,
+        reach[:, 0] - middle[order] * reach[:, 1],
+        nodes[:n].copy(),
+        links[:n].copy(),
+        root,
+    )
 
 
 def _along_curve(points: Floats) -> Ints:

@@ -37,8 +37,18 @@ class Covered:
     findings: tuple[Finding, ...]
 
 
-def covered(samples: Samples, tags: Ints, sides: Sequence[Side], blank: Blank, proofs: Sequence[SetupProof], tools: Sequence[Tool],
-            settings: ProofSettings, planned: Collection[int], progress: Progress = QUIET, machine: Machine | None = None) -> Covered:
+def covered(
+    samples: Samples,
+    tags: Ints,
+    sides: Sequence[Side],
+    blank: Blank,
+    proofs: Sequence[SetupProof],
+    tools: Sequence[Tool],
+    settings: ProofSettings,
+    planned: Collection[int],
+    progress: Progress = QUIET,
+    machine: Machine | None = None,
+) -> Covered:
     """Return what all setups together finish of the part.
 
     `samples` are in the frame of the first side; `tags` (f,) those of the face rows; `tools` the catalogue's, tried from every side where
@@ -48,34 +58,67 @@ def covered(samples: Samples, tags: Ints, sides: Sequence[Side], blank: Blank, p
     low, high = blank_box(blank, frame)
     n = len(tags)
     progress.at(0.0, "Adding up what is finished")
-    left, blank_face = progress.aside(lambda _: (depth_in_blank(samples.point, low, high), on_blank(samples, low, high, n)))
+    left, blank_face = progress.aside(
+        lambda _: (depth_in_blank(samples.point, low, high), on_blank(samples, low, high, n))
+    )
     for p in proofs:
         left = np.minimum(left, p.left)
     finished = (np.abs(left) <= settings.tolerance + settings.allowance) & ~blank_face[samples.face]
     open_rows = np.flatnonzero(~finished & ~blank_face[samples.face] & (left > 0.0))
     lost = np.zeros(len(samples), bool)
     lost[_unreached(samples, open_rows, sides, tools, settings, progress, machine)] = True
-    area, done, away = (_by_face(samples, samples.area * share, n) for share in (1.0, finished, lost))
+    area, done, away = (
+        _by_face(samples, samples.area * share, n) for share in (1.0, finished, lost)
+    )
     wanted = float(area[~blank_face].sum())
     reachable_area = wanted - float(away.sum())
     gouge = np.max([np.zeros(n), *(p.contact.face_depth[:, 0] for p in proofs)], axis=0)
-    faces = progress.aside(lambda _: _faces(samples, tags, left, area, done, away, gouge, blank_face, set(planned)))
+    faces = progress.aside(
+        lambda _: _faces(samples, tags, left, area, done, away, gouge, blank_face, set(planned))
+    )
     coverage = round(float(done.sum()) / wanted, DECIMALS) if wanted and proofs else 0.0
-    of_reachable = round(float(done.sum()) / reachable_area, DECIMALS) if reachable_area > 0.0 and proofs else 0.0
-    return Covered(coverage=coverage, reachable=of_reachable, faces=faces, findings=_findings(faces, of_reachable, settings),
-                   deviation=Deviation(face=tags[samples.face], point=frame.to_world(samples.point), deviation=left))
+    of_reachable = (
+        round(float(done.sum()) / reachable_area, DECIMALS)
+        if reachable_area > 0.0 and proofs
+        else 0.0
+    )
+    return Covered(
+        coverage=coverage,
+        reachable=of_reachable,
+        faces=faces,
+        findings=_findings(faces, of_reachable, settings),
+        deviation=Deviation(
+            face=tags[samples.face], point=frame.to_world(samples.point), deviation=left
+        ),
+    )
 
 
-def _unreached(samples: Samples, rows: Ints, sides: Sequence[Side], tools: Sequence[Tool], settings: ProofSettings,
-               progress: Progress, machine: Machine | None) -> Ints:
+def _unreached(
+    samples: Samples,
+    rows: Ints,
+    sides: Sequence[Side],
+    tools: Sequence[Tool],
+    settings: ProofSettings,
+    progress: Progress,
+    machine: Machine | None,
+) -> Ints:
     """Return the rows of samples that no cutter reaches from any side."""
     home = sides[0].frame
     for k, side in enumerate(sides):
-        here = samples if side.frame is home else Samples(
-            face=samples.face, area=samples.area, point=side.frame.to_local(home.to_world(samples.point)),
-            normal=side.frame.local_direction(home.world_direction(samples.normal)))
+        here = (
+            samples
+            if side.frame is home
+            else Samples(
+                face=samples.face,
+                area=samples.area,
+                point=side.frame.to_local(home.to_world(samples.point)),
+                normal=side.frame.local_direction(home.world_direction(samples.normal)),
+            )
+        )
         share = progress.part(k / len(sides), (k + 1) / len(sides))
-        reached = Reach(side.part, tools, settings.tolerance, machine, settings.threads).reached(here, rows, share)
+        reached = Reach(side.part, tools, settings.tolerance, machine, settings.threads).reached(
+            here, rows, share
+        )
         rows = rows[~reached]
     return rows
 
@@ -84,38 +127,82 @@ def _by_face(samples: Samples, weight: Floats, n: int) -> Floats:
     return np.bincount(samples.face, weight, n).astype(np.float64)
 
 
-def _faces(samples: Samples, tags: Ints, left: Floats, area: Floats, done: Floats, away: Floats, gouge: Floats,
-           blank_face: Bools, planned: set[int]) -> tuple[FaceProof, ...]:
+def _faces(
+    samples: Samples,
+    tags: Ints,
+    left: Floats,
+    area: Floats,
+    done: Floats,
+    away: Floats,
+    gouge: Floats,
+    blank_face: Bools,
+    planned: set[int],
+) -> tuple[FaceProof, ...]:
     n = len(tags)
     least, most = np.full(n, np.inf), np.full(n, -np.inf)
     np.minimum.at(least, samples.face, left)
     np.maximum.at(most, samples.face, left)
     mean = _by_face(samples, samples.area * left, n) / np.maximum(area, tolerance.PARAMETRIC)
     least, most = np.where(np.isfinite(least), least, 0.0), np.where(np.isfinite(most), most, 0.0)
-    return tuple(FaceProof(face=int(tags[k]), area=float(area[k]), finished=float(done[k]), gouge=float(gouge[k]),
-                           left_min=float(least[k]), left_mean=float(mean[k]), left_max=float(most[k]),
-                           planned=int(tags[k]) in planned, reachable=bool(away[k] == 0.0), blank_surface=bool(blank_face[k]))
-                 for k in range(n))
+    return tuple(
+        FaceProof(
+            face=int(tags[k]),
+            area=float(area[k]),
+            finished=float(done[k]),
+            gouge=float(gouge[k]),
+            left_min=float(least[k]),
+            left_mean=float(mean[k]),
+            left_max=float(most[k]),
+            planned=int(tags[k]) in planned,
+            reachable=bool(away[k] == 0.0),
+            blank_surface=bool(blank_face[k]),
+        )
+        for k in range(n)
+    )
 
 
-def _findings(faces: tuple[FaceProof, ...], of_reachable: float, settings: ProofSettings) -> tuple[Finding, ...]:
+def _findings(
+    faces: tuple[FaceProof, ...], of_reachable: float, settings: ProofSettings
+) -> tuple[Finding, ...]:
     found = []
     open_faces = [f for f in faces if not f.blank_surface and f.area - f.finished > tolerance.AREA]
     if of_reachable < settings.coverage:
-        found.append(error("verify.coverage", f"{100 * of_reachable:.2f} % of the reachable area is finished, the goal is "
-                           f"{100 * settings.coverage:.2f} %", *face_tags(f.face for f in open_faces),
-                           remedy="add operations for these faces, or accept the shortfall by name"))
+        found.append(
+            error(
+                "verify.coverage",
+                f"{100 * of_reachable:.2f} % of the reachable area is finished, the goal is "
+                f"{100 * settings.coverage:.2f} %",
+                *face_tags(f.face for f in open_faces),
+                remedy="add operations for these faces, or accept the shortfall by name",
+            )
+        )
     elif open_faces:
-        found.append(info("verify.unfinished", f"{len(open_faces)} faces have places outside the tolerance",
-                          *face_tags(f.face for f in open_faces)))
+        found.append(
+            info(
+                "verify.unfinished",
+                f"{len(open_faces)} faces have places outside the tolerance",
+                *face_tags(f.face for f in open_faces),
+            )
+        )
     missed = [f for f in faces if not f.planned and not f.blank_surface]
     if missed:
         unfinished = [f for f in missed if f.area - f.finished > tolerance.AREA]
         say = warning if unfinished else info
-        found.append(say("verify.unplanned", f"no operation planned {len(missed)} faces, {len(unfinished)} of them are not finished",
-                         *face_tags(f.face for f in missed), remedy="add operations for these faces"))
+        found.append(
+            say(
+                "verify.unplanned",
+                f"no operation planned {len(missed)} faces, {len(unfinished)} of them are not finished",
+                *face_tags(f.face for f in missed),
+                remedy="add operations for these faces",
+            )
+        )
     lost = [f for f in faces if not f.reachable]
     if lost:
-        found.append(info("verify.unreachable", f"no cutter of the catalogue reaches all of {len(lost)} faces from this side",
-                          *face_tags(f.face for f in lost)))
+        found.append(
+            info(
+                "verify.unreachable",
+                f"no cutter of the catalogue reaches all of {len(lost)} faces from this side",
+                *face_tags(f.face for f in lost),
+            )
+        )
     return tuple(found)

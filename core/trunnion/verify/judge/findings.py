@@ -29,43 +29,80 @@ def setup_findings(proof: SetupProof, tags: Ints, settings: ProofSettings) -> li
     return found
 
 
-def _gouges(proof: SetupProof, section: ProgramSection, rows: Ints, tags: Ints, settings: ProofSettings) -> list[Finding]:
+def _gouges(
+    proof: SetupProof, section: ProgramSection, rows: Ints, tags: Ints, settings: ProofSettings
+) -> list[Finding]:
     depth, faces = proof.contact.depth[rows, 0], proof.contact.face[rows, 0]
     found = []
     for face in _worst(faces, depth, settings.tolerance):
         row = rows[np.argmax(np.where(faces == face, depth, -1.0))]
-        found.append(error("verify.gouge", f"{section.operation} cuts {proof.contact.depth[row, 0]:.3f} mm into face "
-                           f"{tags[face]} at {place_of(proof.contact.place[row, 0])}", section.operation, block_of(proof, section, row),
-                           f"face {tags[face]}", remedy="keep the cutter off this face, or choose a cutter that fits"))
+        found.append(
+            error(
+                "verify.gouge",
+                f"{section.operation} cuts {proof.contact.depth[row, 0]:.3f} mm into face "
+                f"{tags[face]} at {place_of(proof.contact.place[row, 0])}",
+                section.operation,
+                block_of(proof, section, row),
+                f"face {tags[face]}",
+                remedy="keep the cutter off this face, or choose a cutter that fits",
+            )
+        )
     return found
 
 
-def _collisions(proof: SetupProof, section: ProgramSection, rows: Ints, tags: Ints, settings: ProofSettings) -> list[Finding]:
+def _collisions(
+    proof: SetupProof, section: ProgramSection, rows: Ints, tags: Ints, settings: ProofSettings
+) -> list[Finding]:
     found = []
     depth, faces = proof.contact.depth[rows, 1], proof.contact.face[rows, 1]
     for face in _worst(faces, depth, settings.tolerance):
         row = rows[np.argmax(np.where(faces == face, depth, -1.0))]
-        found.append(error("verify.collision", f"shank or holder of {section.tool.name} enters face {tags[face]} by "
-                           f"{proof.contact.depth[row, 1]:.3f} mm at {place_of(proof.contact.place[row, 1])}", section.operation,
-                           block_of(proof, section, row), f"face {tags[face]}", remedy="choose a longer or slimmer tool"))
+        found.append(
+            error(
+                "verify.collision",
+                f"shank or holder of {section.tool.name} enters face {tags[face]} by "
+                f"{proof.contact.depth[row, 1]:.3f} mm at {place_of(proof.contact.place[row, 1])}",
+                section.operation,
+                block_of(proof, section, row),
+                f"face {tags[face]}",
+                remedy="choose a longer or slimmer tool",
+            )
+        )
     body = proof.stock.body_depth[rows]
     if body.max(initial=0.0) > settings.tolerance:
         row = rows[np.argmax(body)]
-        found.append(error("verify.collision-stock", f"shank or holder of {section.tool.name} enters standing stock by {body.max():.3f} mm "
-                           f"near {place_of(proof.moves.end[row])}", section.operation, block_of(proof, section, row),
-                           remedy="clear the stock around first, or choose a longer tool"))
+        found.append(
+            error(
+                "verify.collision-stock",
+                f"shank or holder of {section.tool.name} enters standing stock by {body.max():.3f} mm "
+                f"near {place_of(proof.moves.end[row])}",
+                section.operation,
+                block_of(proof, section, row),
+                remedy="clear the stock around first, or choose a longer tool",
+            )
+        )
     return found
 
 
-def _fixtures(proof: SetupProof, section: ProgramSection, rows: Ints, settings: ProofSettings) -> list[Finding]:
+def _fixtures(
+    proof: SetupProof, section: ProgramSection, rows: Ints, settings: ProofSettings
+) -> list[Finding]:
     found = []
     depth, touched = proof.contact.fixture_depth[rows], proof.contact.fixture[rows]
     for fixture in _worst(touched, depth, settings.tolerance):
         row = rows[np.argmax(np.where(touched == fixture, depth, -1.0))]
         name = proof.program.setup.fixtures[fixture].name
-        found.append(error("verify.fixture", f"{section.tool.name} enters fixture {name} by {proof.contact.fixture_depth[row]:.3f} mm at "
-                           f"{place_of(proof.contact.fixture_place[row])}", section.operation, block_of(proof, section, row), name,
-                           remedy="move the fixture, or keep the tool off it"))
+        found.append(
+            error(
+                "verify.fixture",
+                f"{section.tool.name} enters fixture {name} by {proof.contact.fixture_depth[row]:.3f} mm at "
+                f"{place_of(proof.contact.fixture_place[row])}",
+                section.operation,
+                block_of(proof, section, row),
+                name,
+                remedy="move the fixture, or keep the tool off it",
+            )
+        )
     return found
 
 
@@ -79,9 +116,18 @@ def _worst(faces: Ints, depth: Floats, limit: float) -> list[int]:
 def _rapids(proof: SetupProof, section: ProgramSection, rows: Ints) -> list[Finding]:
     depth = proof.stock.rapid_depth
     worst = rows[np.argsort(-depth[rows], kind="stable")[:MOST_FINDINGS]]
-    return [error("verify.rapid-in-stock", f"a rapid of {section.operation} goes {depth[row]:.3f} mm into stock at "
-                  f"{place_of(proof.stock.rapid_place[row])}", section.operation, block_of(proof, section, row),
-                  remedy="lift the rapid, or make it a feed move") for row in worst if depth[row] > 0.0]
+    return [
+        error(
+            "verify.rapid-in-stock",
+            f"a rapid of {section.operation} goes {depth[row]:.3f} mm into stock at "
+            f"{place_of(proof.stock.rapid_place[row])}",
+            section.operation,
+            block_of(proof, section, row),
+            remedy="lift the rapid, or make it a feed move",
+        )
+        for row in worst
+        if depth[row] > 0.0
+    ]
 
 
 def _endless(proof: SetupProof, section: ProgramSection, rows: Ints) -> list[Finding]:
@@ -91,6 +137,13 @@ def _endless(proof: SetupProof, section: ProgramSection, rows: Ints) -> list[Fin
         return []
     row = rows[np.argmax(seconds)]
     where = block_of(proof, section, row)
-    return [error("verify.endless", f"{section.operation} takes {seconds.max() / SECONDS_PER_MINUTE:.0f} min for one block, {where}, at a "
-                  f"feed of {proof.moves.feed[row]:g} mm/min; no block takes more than {LONGEST_BLOCK / SECONDS_PER_MINUTE:.0f} min",
-                  section.operation, where, remedy="check this block's feed and length")]
+    return [
+        error(
+            "verify.endless",
+            f"{section.operation} takes {seconds.max() / SECONDS_PER_MINUTE:.0f} min for one block, {where}, at a "
+            f"feed of {proof.moves.feed[row]:g} mm/min; no block takes more than {LONGEST_BLOCK / SECONDS_PER_MINUTE:.0f} min",
+            section.operation,
+            where,
+            remedy="check this block's feed and length",
+        )
+    ]

@@ -47,8 +47,14 @@ class Load:
     torque: Floats
 
 
-def load_of(moves: Moves, run: StockRun, speed: Floats, sections: Sequence[ProgramSection], cell: float,
-            material: Material | None) -> Load:
+def load_of(
+    moves: Moves,
+    run: StockRun,
+    speed: Floats,
+    sections: Sequence[ProgramSection],
+    cell: float,
+    material: Material | None,
+) -> Load:
     """Return the load of every move.
 
     speed (n,) mm/s of the tip; `cell` mm of the stock. Without a material there is no power; while the spindle stands there is no chip, no
@@ -57,7 +63,9 @@ def load_of(moves: Moves, run: StockRun, speed: Floats, sections: Sequence[Progr
     radius = np.array([t.radius for t in moves.tools])[moves.tool] if len(moves) else np.zeros(0)
     teeth = np.array([s.tool.teeth for s in sections])[moves.section] if len(moves) else np.zeros(0)
     spindle = np.array([s.spindle for s in sections])[moves.section] if len(moves) else np.zeros(0)
-    flute = np.array([t.flute_length for t in moves.tools])[moves.tool] if len(moves) else np.zeros(0)
+    flute = (
+        np.array([t.flute_length for t in moves.tools])[moves.tool] if len(moves) else np.zeros(0)
+    )
     seen = np.clip(run.engagement, 0.0, math.pi)
     width = radius * (1.0 - np.cos(seen))
     mean_area = stretched(moves, run.removed, np.maximum(2.0 * STRETCH * radius, CELLS * cell))
@@ -74,11 +82,23 @@ def load_of(moves: Moves, run: StockRun, speed: Floats, sections: Sequence[Progr
     mean = per_tooth * mean_share(angle)
     power = np.zeros(len(moves))
     if material is not None:
-        power = np.where(spindle > STANDING, rate * specific_force(material, mean) / (SECONDS_PER_MINUTE * WATTS_PER_KILOWATT), 0.0)
+        power = np.where(
+            spindle > STANDING,
+            rate * specific_force(material, mean) / (SECONDS_PER_MINUTE * WATTS_PER_KILOWATT),
+            0.0,
+        )
     held = np.divide(area, width, out=np.zeros(len(moves)), where=cuts & (width > 0.0))
-    torque = NEWTON_METRES * np.divide(power, spindle, out=np.zeros(len(moves)), where=spindle > STANDING)
-    return Load(depth=np.minimum(held, run.depth_of_cut), rate=rate, chip=np.where(cuts, chip, 0.0),
-                mean_chip=np.where(cuts, mean, 0.0), power=power, torque=torque)
+    torque = NEWTON_METRES * np.divide(
+        power, spindle, out=np.zeros(len(moves)), where=spindle > STANDING
+    )
+    return Load(
+        depth=np.minimum(held, run.depth_of_cut),
+        rate=rate,
+        chip=np.where(cuts, chip, 0.0),
+        mean_chip=np.where(cuts, mean, 0.0),
+        power=power,
+        torque=torque,
+    )
 
 
 def least_angle(area: Floats, radius: Floats, flute: Floats) -> Floats:
@@ -86,7 +106,9 @@ def least_angle(area: Floats, radius: Floats, flute: Floats) -> Floats:
 
     A cut narrower than the stock's cells is not seen by the probes, though its volume is.
     """
-    width = np.minimum(np.divide(area, flute, out=np.zeros_like(area), where=flute > 0.0), 2.0 * radius)
+    width = np.minimum(
+        np.divide(area, flute, out=np.zeros_like(area), where=flute > 0.0), 2.0 * radius
+    )
     return np.arccos(1.0 - np.divide(width, radius, out=np.zeros_like(area), where=radius > 0.0))
 
 
@@ -119,4 +141,3 @@ def stretched(moves: Moves, removed: Floats, stretch: Floats) -> Floats:
     way = np.interp(high, at, run) - np.interp(low, at, run)
     cut = np.interp(high, at, taken) - np.interp(low, at, taken)
     return np.divide(cut, way, out=np.zeros(len(moves)), where=feeds & (way > 0.0))
-

@@ -14,14 +14,20 @@ from trunnion.verify.judge.setups import SetupProof
 from trunnion.verify.settings import ProofSettings
 
 
-def operation_proofs(proof: SetupProof, tags: Ints, area: Floats, machine: Machine, settings: ProofSettings) -> list[OperationProof]:
+def operation_proofs(
+    proof: SetupProof, tags: Ints, area: Floats, machine: Machine, settings: ProofSettings
+) -> list[OperationProof]:
     """Return the measurements of every section of a setup's program, in order.
 
     tags (f,) are those of the face rows; area (s,) mm2 that each sample stands for.
     """
     collides = proof.collides(settings.tolerance)
     load, stock, moves = proof.load, proof.stock, proof.moves
-    served = np.where(proof.nearest >= 0, moves.section[proof.nearest], -1) if len(moves) else np.zeros(0, int)
+    served = (
+        np.where(proof.nearest >= 0, moves.section[proof.nearest], -1)
+        if len(moves)
+        else np.zeros(0, int)
+    )
     found = []
     for k, section in enumerate(proof.program.sections):
         rows = moves.section == k
@@ -33,20 +39,41 @@ def operation_proofs(proof: SetupProof, tags: Ints, area: Floats, machine: Machi
         new_tool = k == 0 or proof.program.sections[k - 1].tool.number != section.tool.number
         removed = float(stock.removed[rows].sum())
         left = proof.left[served == k]
-        found.append(OperationProof(
-            operation=section.operation, setup=proof.program.setup.name, outcome=Outcome.FAILED if failed else Outcome.PASSED, gouge=gouge,
-            collisions=int(collides[rows].sum()), rapids_in_stock=int(rapids.sum()),
-            time_s=float(proof.times.seconds[rows].sum()) + section.dwell + machine.tool_change_s * new_tool, removed=removed,
-            air_share=1.0 - _share(float(moves.length[cuts].sum()), float(moves.length[feeds].sum()), 1.0),
-            gouges=_gouges(proof, rows, tags),
-            left_min=float(left.min(initial=np.inf)) if len(left) else 0.0, left_max=float(left.max(initial=-np.inf)) if len(left) else 0.0,
-            left_mean=float(np.average(left, weights=area[served == k])) if len(left) else 0.0,
-            engaged=float(stock.engagement[feeds].max(initial=0.0)),
-            engaged_mean=_share(float((stock.engagement * moves.length)[cuts].sum()), float(moves.length[cuts].sum())),
-            depth=float(load.depth[rows].max(initial=0.0)), rate=float(load.rate[rows].max(initial=0.0)),
-            rate_mean=_share(removed / MM_PER_METRE * SECONDS_PER_MINUTE, float(proof.times.seconds[cuts].sum())),
-            power=float(load.power[rows].max(initial=0.0)), power_limit=machine.power_at(section.spindle),
-            torque=float(load.torque[rows].max(initial=0.0)), chip=float(load.chip[rows].max(initial=0.0))))
+        found.append(
+            OperationProof(
+                operation=section.operation,
+                setup=proof.program.setup.name,
+                outcome=Outcome.FAILED if failed else Outcome.PASSED,
+                gouge=gouge,
+                collisions=int(collides[rows].sum()),
+                rapids_in_stock=int(rapids.sum()),
+                time_s=float(proof.times.seconds[rows].sum())
+                + section.dwell
+                + machine.tool_change_s * new_tool,
+                removed=removed,
+                air_share=1.0
+                - _share(float(moves.length[cuts].sum()), float(moves.length[feeds].sum()), 1.0),
+                gouges=_gouges(proof, rows, tags),
+                left_min=float(left.min(initial=np.inf)) if len(left) else 0.0,
+                left_max=float(left.max(initial=-np.inf)) if len(left) else 0.0,
+                left_mean=float(np.average(left, weights=area[served == k])) if len(left) else 0.0,
+                engaged=float(stock.engagement[feeds].max(initial=0.0)),
+                engaged_mean=_share(
+                    float((stock.engagement * moves.length)[cuts].sum()),
+                    float(moves.length[cuts].sum()),
+                ),
+                depth=float(load.depth[rows].max(initial=0.0)),
+                rate=float(load.rate[rows].max(initial=0.0)),
+                rate_mean=_share(
+                    removed / MM_PER_METRE * SECONDS_PER_MINUTE,
+                    float(proof.times.seconds[cuts].sum()),
+                ),
+                power=float(load.power[rows].max(initial=0.0)),
+                power_limit=machine.power_at(section.spindle),
+                torque=float(load.torque[rows].max(initial=0.0)),
+                chip=float(load.chip[rows].max(initial=0.0)),
+            )
+        )
     return found
 
 
@@ -58,11 +85,20 @@ def block_proof(proof: SetupProof, area: Floats) -> BlockProof:
         return values.astype(np.float32)
 
     return BlockProof(
-        setup=proof.program.setup.name, section=proof.moves.section.astype(np.int32), time=small(proof.times.seconds),
-        gouge=small(proof.contact.depth[:, 0]), collision=small(np.maximum(proof.contact.depth[:, 1], proof.stock.body_depth)),
-        removed=small(proof.stock.removed), engaged=small(proof.stock.engagement), depth=small(proof.load.depth),
-        rate=small(proof.load.rate), power=small(proof.load.power), left_min=small(left.least), left_mean=small(left.mean),
-        left_max=small(left.most))
+        setup=proof.program.setup.name,
+        section=proof.moves.section.astype(np.int32),
+        time=small(proof.times.seconds),
+        gouge=small(proof.contact.depth[:, 0]),
+        collision=small(np.maximum(proof.contact.depth[:, 1], proof.stock.body_depth)),
+        removed=small(proof.stock.removed),
+        engaged=small(proof.stock.engagement),
+        depth=small(proof.load.depth),
+        rate=small(proof.load.rate),
+        power=small(proof.load.power),
+        left_min=small(left.least),
+        left_mean=small(left.mean),
+        left_max=small(left.most),
+    )
 
 
 def _gouges(proof: SetupProof, rows: np.ndarray, tags: Ints) -> tuple[tuple[int, float], ...]:

@@ -39,16 +39,20 @@ class Chosen:
     chip: float
 
 
-def load_findings(proof: SetupProof, machine: Machine, material: Material | None,
-                  settings: ProofSettings) -> tuple[list[Finding], list[Offer]]:
+def load_findings(
+    proof: SetupProof, machine: Machine, material: Material | None, settings: ProofSettings
+) -> tuple[list[Finding], list[Offer]]:
     """Return what is said of the load on cutter and spindle in a setup, and what is offered for it."""
     found: list[Finding] = []
     offers: list[Offer] = []
     for k, section in enumerate(proof.program.sections):
         rows = np.flatnonzero((proof.moves.section == k) & ~proof.moves.rapid)
         if len(rows):
-            for said, offered in (_power(proof, section, rows, machine, material, settings),
-                                  _excess(proof, section, rows, material, settings), _air(proof, section, rows, settings)):
+            for said, offered in (
+                _power(proof, section, rows, machine, material, settings),
+                _excess(proof, section, rows, material, settings),
+                _air(proof, section, rows, settings),
+            ):
                 found += said
                 offers += offered
     return found, offers
@@ -86,8 +90,14 @@ def _thickest(material: Material, diameter: float) -> float:
 Said = tuple[list[Finding], list[Offer]]
 
 
-def _power(proof: SetupProof, section: ProgramSection, rows: Ints, machine: Machine, material: Material | None,
-           settings: ProofSettings) -> Said:
+def _power(
+    proof: SetupProof,
+    section: ProgramSection,
+    rows: Ints,
+    machine: Machine,
+    material: Material | None,
+    settings: ProofSettings,
+) -> Said:
     if material is None or section.spindle_stands:
         return [], []
     limit = machine.power_at(section.spindle) * settings.power
@@ -96,47 +106,104 @@ def _power(proof: SetupProof, section: ProgramSection, rows: Ints, machine: Mach
     if not over.any():
         return [], []
     worst = rows[int(np.argmax(power))]
-    offers = _feeds(proof, section, rows, over, "verify.power", lambda at: (limit / proof.load.power[at]) ** (1.0 / (
-        1.0 - material.force_exponent)))
+    offers = _feeds(
+        proof,
+        section,
+        rows,
+        over,
+        "verify.power",
+        lambda at: (limit / proof.load.power[at]) ** (1.0 / (1.0 - material.force_exponent)),
+    )
     torque = NEWTON_METRES * limit / section.spindle
-    return [error("verify.power", f"{section.operation} asks {proof.load.power[worst]:.1f} kW ({proof.load.torque[worst]:.0f} Nm) of the "
-                  f"spindle at {section.spindle:.0f} 1/min, {machine.title} gives {limit:.1f} kW ({torque:.0f} Nm)", section.operation,
-                  block_of(proof, section, worst), remedy=_feed_remedy(proof, section, offers))], offers
+    return [
+        error(
+            "verify.power",
+            f"{section.operation} asks {proof.load.power[worst]:.1f} kW ({proof.load.torque[worst]:.0f} Nm) of the "
+            f"spindle at {section.spindle:.0f} 1/min, {machine.title} gives {limit:.1f} kW ({torque:.0f} Nm)",
+            section.operation,
+            block_of(proof, section, worst),
+            remedy=_feed_remedy(proof, section, offers),
+        )
+    ], offers
 
 
-def _excess(proof: SetupProof, section: ProgramSection, rows: Ints, material: Material | None, settings: ProofSettings) -> Said:
+def _excess(
+    proof: SetupProof,
+    section: ProgramSection,
+    rows: Ints,
+    material: Material | None,
+    settings: ProofSettings,
+) -> Said:
     chosen, load = chosen_load(section, material), proof.load
-    times = np.maximum(load.rate / (settings.removal * chosen.rate), load.chip / (settings.chip * chosen.chip))
+    times = np.maximum(
+        load.rate / (settings.removal * chosen.rate), load.chip / (settings.chip * chosen.chip)
+    )
     over = times[rows] > 1.0 + tolerance.PARAMETRIC
     if not over.any():
         return [], []
     worst = rows[int(np.argmax(times[rows]))]
     offers = _feeds(proof, section, rows, over, "verify.load", lambda at: 1.0 / times[at])
-    return [warning("verify.load", f"{section.operation} removes {load.rate[worst]:.0f} cm3/min in chips of {load.chip[worst]:.2f} mm with "
-                    f"{math.degrees(proof.stock.engagement[worst]):.0f} degrees of {section.tool.name} engaged; its data are for "
-                    f"{chosen.rate:.0f} cm3/min and {chosen.chip:.2f} mm", section.operation, block_of(proof, section, worst),
-                    remedy=_feed_remedy(proof, section, offers))], offers
+    return [
+        warning(
+            "verify.load",
+            f"{section.operation} removes {load.rate[worst]:.0f} cm3/min in chips of {load.chip[worst]:.2f} mm with "
+            f"{math.degrees(proof.stock.engagement[worst]):.0f} degrees of {section.tool.name} engaged; its data are for "
+            f"{chosen.rate:.0f} cm3/min and {chosen.chip:.2f} mm",
+            section.operation,
+            block_of(proof, section, worst),
+            remedy=_feed_remedy(proof, section, offers),
+        )
+    ], offers
 
 
-def _feeds(proof: SetupProof, section: ProgramSection, rows: Ints, over: Bools, reason: str,
-           share: Callable[[Ints], Floats]) -> list[Offer]:
+def _feeds(
+    proof: SetupProof,
+    section: ProgramSection,
+    rows: Ints,
+    over: Bools,
+    reason: str,
+    share: Callable[[Ints], Floats],
+) -> list[Offer]:
     """Return the feeds that keep a limit, for runs of blocks that pass it, the largest change first."""
     offers = []
     edges = np.flatnonzero(np.diff(np.concatenate([[False], over, [False]])))
     for first, last in edges.reshape(-1, 2):
         run = rows[first:last]
         # Cut to a whole number: a feed of 0 would stand still.
-        feed = max(1.0, math.floor(float((proof.times.speed[run] * SECONDS_PER_MINUTE * share(run)).min())))
-        offers.append(Offer(kind="feed", operation=section.operation, setup=proof.program.setup.name, reason=reason,
-                            first=int(proof.moves.block[run[0]]), last=int(proof.moves.block[run[-1]]), feed=feed))
+        feed = max(
+            1.0, math.floor(float((proof.times.speed[run] * SECONDS_PER_MINUTE * share(run)).min()))
+        )
+        offers.append(
+            Offer(
+                kind="feed",
+                operation=section.operation,
+                setup=proof.program.setup.name,
+                reason=reason,
+                first=int(proof.moves.block[run[0]]),
+                last=int(proof.moves.block[run[-1]]),
+                feed=feed,
+            )
+        )
     return sorted(offers, key=lambda o: (o.feed, o.first))[:MOST_OFFERS]
 
 
 def _feed_remedy(proof: SetupProof, section: ProgramSection, offers: list[Offer]) -> str:
     """Say which feeds are offered."""
     lines = section.block_lines
-    places = [(f"line {lines[o.first]} to {lines[o.last]}" if lines else f"block {o.first} to {o.last}", o.feed) for o in offers]
-    return "feed at most " + ", ".join(f"{feed:.0f} mm/min from {place}" for place, feed in places) + "; or clear the material before"
+    places = [
+        (
+            f"line {lines[o.first]} to {lines[o.last]}"
+            if lines
+            else f"block {o.first} to {o.last}",
+            o.feed,
+        )
+        for o in offers
+    ]
+    return (
+        "feed at most "
+        + ", ".join(f"{feed:.0f} mm/min from {place}" for place, feed in places)
+        + "; or clear the material before"
+    )
 
 
 def _air(proof: SetupProof, section: ProgramSection, rows: Ints, settings: ProofSettings) -> Said:
@@ -145,8 +212,20 @@ def _air(proof: SetupProof, section: ProgramSection, rows: Ints, settings: Proof
     run, wasted = float(length.sum()), float(seconds[air].sum())
     if run <= 0.0 or float(length[air].sum()) <= settings.air * run or wasted < AIR_WORTH:
         return [], []
-    offer = Offer(kind="rest", operation=section.operation, setup=proof.program.setup.name, reason="verify.air",
-                  first=int(proof.moves.block[rows[0]]), last=int(proof.moves.block[rows[-1]]))
-    return [remark("verify.air", f"{section.operation} cuts air on {100 * float(length[air].sum()) / run:.0f} % of its way, {wasted:.0f} s",
-                   section.operation, remedy="let it cut only what still stands, as a rest operation, or move it before what clears its "
-                   "place")], [offer]
+    offer = Offer(
+        kind="rest",
+        operation=section.operation,
+        setup=proof.program.setup.name,
+        reason="verify.air",
+        first=int(proof.moves.block[rows[0]]),
+        last=int(proof.moves.block[rows[-1]]),
+    )
+    return [
+        remark(
+            "verify.air",
+            f"{section.operation} cuts air on {100 * float(length[air].sum()) / run:.0f} % of its way, {wasted:.0f} s",
+            section.operation,
+            remedy="let it cut only what still stands, as a rest operation, or move it before what clears its "
+            "place",
+        )
+    ], [offer]

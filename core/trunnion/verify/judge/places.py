@@ -10,7 +10,11 @@ from trunnion.verify.judge.setups import SetupProof
 def block_of(proof: SetupProof, section: ProgramSection, row: int) -> str:
     """Return where a move stands in its program: the line of the text when it was read back, else the block of its operation."""
     block = int(proof.moves.block[row])
-    return f"line {section.block_lines[block]}" if block < len(section.block_lines) else f"block {block}"
+    return (
+        f"line {section.block_lines[block]}"
+        if block < len(section.block_lines)
+        else f"block {block}"
+    )
 
 
 def place_of(point: Floats) -> str:

@@ -48,12 +48,23 @@ class SetupProof:
 
     def collides(self, allowed: float) -> Bools:
         """Say for each move whether shank or holder enter part or stock, or anything of the tool a fixture, deeper than allowed."""
-        return np.asarray((self.contact.depth[:, 1] > allowed) | (self.stock.body_depth > allowed)
-                          | (self.contact.fixture_depth > allowed))
+        return np.asarray(
+            (self.contact.depth[:, 1] > allowed)
+            | (self.stock.body_depth > allowed)
+            | (self.contact.fixture_depth > allowed)
+        )
 
 
-def prove_setup(program: Program, contact: PartContact, stock: Stock, machine: Machine, material: Material | None, settings: ProofSettings,
-                points: Floats, progress: Progress = QUIET) -> SetupProof:
+def prove_setup(
+    program: Program,
+    contact: PartContact,
+    stock: Stock,
+    machine: Machine,
+    material: Material | None,
+    settings: ProofSettings,
+    points: Floats,
+    progress: Progress = QUIET,
+) -> SetupProof:
     """Return what is measured of one setup's program; `stock` is cut by it, `points` (s, 3) are the samples in its frame."""
     frame = program.setup.frame
     moves = progress.aside(lambda _: moves_of(program.sections), "Reading the moves")
@@ -63,10 +74,24 @@ def prove_setup(program: Program, contact: PartContact, stock: Stock, machine: M
     low, high = blank_box(stock.blank, frame)
     deep = progress.aside(lambda _: depth_in_blank(points, low, high))
     left, nearest = sweep.left(points, deep, progress.part(0.7, 0.98), settings.threads)
-    stands, times = progress.aside(lambda _: _timed(moves, machine, foot_of(stock.blank, frame)), "Timing the moves")
-    load = progress.aside(lambda _: load_of(moves, run, times.speed, program.sections, settings.cell, material), "Weighing the load")
-    return SetupProof(program=program, moves=moves, contact=touched, stock=run, stands=stands, times=times, load=load, left=left,
-                      nearest=nearest)
+    stands, times = progress.aside(
+        lambda _: _timed(moves, machine, foot_of(stock.blank, frame)), "Timing the moves"
+    )
+    load = progress.aside(
+        lambda _: load_of(moves, run, times.speed, program.sections, settings.cell, material),
+        "Weighing the load",
+    )
+    return SetupProof(
+        program=program,
+        moves=moves,
+        contact=touched,
+        stock=run,
+        stands=stands,
+        times=times,
+        load=load,
+        left=left,
+        nearest=nearest,
+    )
 
 
 def _timed(moves: Moves, machine: Machine, foot: Floats) -> tuple[Stands, Times]:
@@ -80,7 +105,9 @@ def foot_of(blank: Blank, frame: Frame) -> Floats:
     return np.array([*(0.5 * (low + high))[:2], low[2]])
 
 
-def bundles_of(programs: Sequence[Program], blank: Blank, settings: ProofSettings) -> tuple[str, ...]:
+def bundles_of(
+    programs: Sequence[Program], blank: Blank, settings: ProofSettings
+) -> tuple[str, ...]:
     """Return the directions of the rays that the stock is made of, chosen by the settings or by what the programs do."""
     if settings.bundles in BUNDLES:
         return BUNDLES[settings.bundles]
@@ -91,7 +118,10 @@ def bundles_of(programs: Sequence[Program], blank: Blank, settings: ProofSetting
 def _from_above(program: Program, blank: Blank) -> bool:
     """Say whether every cut of a setup comes straight from above on the blank, by a cutter that is nowhere wider below than above."""
     up = program.setup.frame.local_direction(blank.frame.z)
-    upright = all(np.linalg.norm(s.path.axis - up, axis=1).max(initial=0.0) < tolerance.PARAMETRIC for s in program.sections)
+    upright = all(
+        np.linalg.norm(s.path.axis - up, axis=1).max(initial=0.0) < tolerance.PARAMETRIC
+        for s in program.sections
+    )
     return upright and not any(undercuts(s.tool) for s in program.sections)
 
 

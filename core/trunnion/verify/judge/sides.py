@@ -27,20 +27,36 @@ class Side:
     part: PartContact
 
 
-def sides_of(frames: Sequence[Frame], surfaces: Sequence[Surfaces], facets: Sequence[Facets | None],
-             fixtures: Sequence[Sequence[Fixture]], progress: Progress = QUIET) -> list[Side]:
+def sides_of(
+    frames: Sequence[Frame],
+    surfaces: Sequence[Surfaces],
+    facets: Sequence[Facets | None],
+    fixtures: Sequence[Sequence[Fixture]],
+    progress: Progress = QUIET,
+) -> list[Side]:
     """Return the side of every frame, from the part's faces in it and what holds it there."""
     sides = []
     for frame, faces, triangles, held in zip(frames, surfaces, facets, fixtures, strict=True):
         progress.check()
         part = PartContact(faces, triangles)
         meshes = [fixture_facets(f, frame) for f in progress.each(held)]
-        sides.append(Side(frame=frame, part=part, contact=PartContact(faces, triangles, meshes) if meshes else part))
+        sides.append(
+            Side(
+                frame=frame,
+                part=part,
+                contact=PartContact(faces, triangles, meshes) if meshes else part,
+            )
+        )
     return sides
 
 
 def fixture_facets(fixture: Fixture, frame: Frame) -> Facets:
     """Return a fixture's triangles in a frame."""
     mesh = fixture.mesh
-    return Facets.of_mesh(frame.to_local(mesh.points), mesh.triangles, np.zeros(len(mesh.triangles), np.int64), np.zeros(1, np.int64),
-                          FIXTURE_BOUND)
+    return Facets.of_mesh(
+        frame.to_local(mesh.points),
+        mesh.triangles,
+        np.zeros(len(mesh.triangles), np.int64),
+        np.zeros(1, np.int64),
+        FIXTURE_BOUND,
+    )

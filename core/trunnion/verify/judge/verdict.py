@@ -36,8 +36,17 @@ from trunnion.verify.settings import ProofSettings
 from trunnion.verify.stock import Stock
 
 
-def prove(programs: Sequence[Program], part: Part, blank: Blank, tools: Sequence[Tool], machine: Machine, settings: ProofSettings,
-          progress: Progress = QUIET, planned_faces: Collection[int] = (), material: Material | None = None) -> Verdict:
+def prove(
+    programs: Sequence[Program],
+    part: Part,
+    blank: Blank,
+    tools: Sequence[Tool],
+    machine: Machine,
+    settings: ProofSettings,
+    progress: Progress = QUIET,
+    planned_faces: Collection[int] = (),
+    material: Material | None = None,
+) -> Verdict:
     """Return the verdict on the programs of all setups, in the order they are cut: each finds the stock that those before it left.
 
     `tools` are the catalogue's, for what could be reached at all; `planned_faces` the tags that some operation means to finish. Without a
@@ -46,14 +55,35 @@ def prove(programs: Sequence[Program], part: Part, blank: Blank, tools: Sequence
     frames = [p.setup.frame for p in programs] or [blank.frame]
     surfaces = [surfaces_of(part, f, progress.part(0.0, 0.05)) for f in frames]
     facets = _facets(programs, part, frames, surfaces, machine, progress.part(0.05, 0.1))
-    return prove_surfaces(programs, surfaces, blank, tools, machine, settings, progress.part(0.1, 1.0), planned_faces, material, facets)
+    return prove_surfaces(
+        programs,
+        surfaces,
+        blank,
+        tools,
+        machine,
+        settings,
+        progress.part(0.1, 1.0),
+        planned_faces,
+        material,
+        facets,
+    )
 
 
-def _facets(programs: Sequence[Program], part: Part, frames: Sequence[Frame], surfaces: Sequence[Surfaces], machine: Machine,
-            progress: Progress) -> list[Facets]:
+def _facets(
+    programs: Sequence[Program],
+    part: Part,
+    frames: Sequence[Frame],
+    surfaces: Sequence[Surfaces],
+    machine: Machine,
+    progress: Progress,
+) -> list[Facets]:
     """Return the part's faces as triangles in each frame: all for a tool that leans, or a machine on which one may be asked to, else those
     without closed form; none when none is."""
-    leans = bool(machine.rotary) or any((np.abs(s.path.axis - [0.0, 0.0, 1.0]) > AXIS_LEAN).any() for p in programs for s in p.sections)
+    leans = bool(machine.rotary) or any(
+        (np.abs(s.path.axis - [0.0, 0.0, 1.0]) > AXIS_LEAN).any()
+        for p in programs
+        for s in p.sections
+    )
     free = {int(s.tag[row]) for s in surfaces for row in s.free}
     if not leans and not free:
         return []
@@ -61,51 +91,107 @@ def _facets(programs: Sequence[Program], part: Part, frames: Sequence[Frame], su
     return [found.moved(frames[0], frame) for frame in frames]
 
 
-def prove_surfaces(programs: Sequence[Program], surfaces: Sequence[Surfaces], blank: Blank, tools: Sequence[Tool], machine: Machine,
-                   settings: ProofSettings, progress: Progress = QUIET, planned_faces: Collection[int] = (),
-                   material: Material | None = None, facets: Sequence[Facets] = ()) -> Verdict:
+def prove_surfaces(
+    programs: Sequence[Program],
+    surfaces: Sequence[Surfaces],
+    blank: Blank,
+    tools: Sequence[Tool],
+    machine: Machine,
+    settings: ProofSettings,
+    progress: Progress = QUIET,
+    planned_faces: Collection[int] = (),
+    material: Material | None = None,
+    facets: Sequence[Facets] = (),
+) -> Verdict:
     """Return the verdict as `prove` does, on faces given in each setup's frame (without a program: in the blank's).
 
     `facets` are the same faces as triangles, one each: without them no tool may lean.
     """
     frames = [p.setup.frame for p in programs] or [blank.frame]
     held = [p.setup.fixtures for p in programs] or [()]
-    sides = progress.aside(lambda own: sides_of(frames, surfaces, facets or [None] * len(frames), held, own),
-                           "Making the faces ready for questions")
-    samples = samples_of(surfaces[0], settings.spacing, progress.part(0.0, 0.05), facets[0] if facets else None)
+    sides = progress.aside(
+        lambda own: sides_of(frames, surfaces, facets or [None] * len(frames), held, own),
+        "Making the faces ready for questions",
+    )
+    samples = samples_of(
+        surfaces[0], settings.spacing, progress.part(0.0, 0.05), facets[0] if facets else None
+    )
     stock = Stock.of(blank, settings.cell, bundles_of(programs, blank, settings))
     proofs = []
     for k, (program, side) in enumerate(zip(programs, sides, strict=False)):
-        share = progress.part(0.05 + 0.75 * k / len(programs), 0.05 + 0.75 * (k + 1) / len(programs), program.setup.name)
+        share = progress.part(
+            0.05 + 0.75 * k / len(programs),
+            0.05 + 0.75 * (k + 1) / len(programs),
+            program.setup.name,
+        )
         points = _moved(samples, frames[0], side.frame)
-        proofs.append(prove_setup(program, side.contact, stock, machine, material, settings, points, share))
+        proofs.append(
+            prove_setup(program, side.contact, stock, machine, material, settings, points, share)
+        )
     findings: list[Finding] = []
     offers: list[Offer] = []
     for p in proofs:
-        told, offered = progress.aside(partial(_told, p, surfaces[0].tag, machine, material, settings), "Judging the moves")
+        told, offered = progress.aside(
+            partial(_told, p, surfaces[0].tag, machine, material, settings), "Judging the moves"
+        )
         findings, offers = findings + told, offers + offered
-    whole = covered(samples, surfaces[0].tag, sides, blank, proofs, tools, settings, planned_faces, progress.part(0.8, 1.0),
-                    machine if facets else None)
+    whole = covered(
+        samples,
+        surfaces[0].tag,
+        sides,
+        blank,
+        proofs,
+        tools,
+        settings,
+        planned_faces,
+        progress.part(0.8, 1.0),
+        machine if facets else None,
+    )
     findings += whole.findings
     operations, blocks = progress.aside(
-        lambda _: (tuple(o for p in proofs for o in operation_proofs(p, surfaces[0].tag, samples.area, machine, settings)),
-                   tuple(block_proof(p, samples.area) for p in proofs)), "Judging the operations")
+        lambda _: (
+            tuple(
+                o
+                for p in proofs
+                for o in operation_proofs(p, surfaces[0].tag, samples.area, machine, settings)
+            ),
+            tuple(block_proof(p, samples.area) for p in proofs),
+        ),
+        "Judging the operations",
+    )
     return Verdict(
-        outcome=outcome_of(findings), coverage=whole.coverage, reachable=whole.reachable,
-        gouge=max((o.gouge for o in operations), default=0.0), collisions=sum(o.collisions for o in operations),
-        rapids_in_stock=sum(o.rapids_in_stock for o in operations), machining_time_s=sum(o.time_s for o in operations),
-        operations=operations, faces=whole.faces, findings=tuple(findings), deviation=whole.deviation,
-        blocks=blocks, offers=tuple(offers))
+        outcome=outcome_of(findings),
+        coverage=whole.coverage,
+        reachable=whole.reachable,
+        gouge=max((o.gouge for o in operations), default=0.0),
+        collisions=sum(o.collisions for o in operations),
+        rapids_in_stock=sum(o.rapids_in_stock for o in operations),
+        machining_time_s=sum(o.time_s for o in operations),
+        operations=operations,
+        faces=whole.faces,
+        findings=tuple(findings),
+        deviation=whole.deviation,
+        blocks=blocks,
+        offers=tuple(offers),
+    )
 
 
-def _told(proof: SetupProof, tags: Ints, machine: Machine, material: Material | None, settings: ProofSettings,
-          progress: Progress) -> tuple[list[Finding], list[Offer]]:
+def _told(
+    proof: SetupProof,
+    tags: Ints,
+    machine: Machine,
+    material: Material | None,
+    settings: ProofSettings,
+    progress: Progress,
+) -> tuple[list[Finding], list[Offer]]:
     """Return the findings on one setup's moves, and what is offered against too much load."""
     findings = setup_findings(proof, tags, settings)
     progress.check()
     said, offers = load_findings(proof, machine, material, settings)
     progress.check()
-    limits = limit_findings(proof.program.setup.name, proof.program.sections, proof.moves, proof.stands, machine)
+    limits = limit_findings(
+        proof.program.setup.name, proof.program.sections, proof.moves, proof.stands, machine
+    )
     return [*findings, *said, *limits], list(offers)
 
 

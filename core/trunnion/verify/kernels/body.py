@@ -39,7 +39,9 @@ PIECE_COLUMNS = 8
 
 
 @njit(cache=True, nogil=True)
-def depth_in_body(arcs: Floats, first: int, last: int, rho: float, h: float) -> tuple[float, float, float]:
+def depth_in_body(
+    arcs: Floats, first: int, last: int, rho: float, h: float
+) -> tuple[float, float, float]:
     """Return the signed depth (mm) of a point (rho, h) in the body of arcs `first` to `last`, negative
     outside, and the nearest side's outward normal (n_rho, n_h).
 
@@ -56,7 +58,11 @@ def depth_in_body(arcs: Floats, first: int, last: int, rho: float, h: float) -> 
         c1 = dr * arcs[k, A1Z] - dz * arcs[k, A1R]
         # The third test separates the cone from its mirror image through C; it also keeps `far`
         # above 0.
-        if c0 >= 0.0 and c1 >= 0.0 and (dr * (arcs[k, A0R] + arcs[k, A1R]) + dz * (arcs[k, A0Z] + arcs[k, A1Z])) > 0.0:
+        if (
+            c0 >= 0.0
+            and c1 >= 0.0
+            and (dr * (arcs[k, A0R] + arcs[k, A1R]) + dz * (arcs[k, A0Z] + arcs[k, A1Z])) > 0.0
+        ):
             far = math.sqrt(dr * dr + dz * dz)
             depth, a, b = arcs[k, R] - far, dr / far, dz / far
         else:
@@ -71,7 +77,9 @@ def depth_in_body(arcs: Floats, first: int, last: int, rho: float, h: float) -> 
 
 
 @njit(cache=True, nogil=True)
-def swept_depth(arcs: Floats, piece: Floats, rho: float, h: float, rise: float) -> tuple[float, float, float]:
+def swept_depth(
+    arcs: Floats, piece: Floats, rho: float, h: float, rise: float
+) -> tuple[float, float, float]:
     """Return the signed depth (mm) of a point in a piece's open run swept by `rise` (mm) along its own
     axis, and the depth's slopes by rho and by h.
 
@@ -95,7 +103,11 @@ def swept_depth(arcs: Floats, piece: Floats, rho: float, h: float, rise: float) 
         # n_h of one sign over the whole cone, so one of the two heights serves all of its normals.
         dr, dz = r - arcs[k, CR], (high if up else low) - arcs[k, CZ]
         d0, d1 = dr * arcs[k, A0R] + dz * arcs[k, A0Z], dr * arcs[k, A1R] + dz * arcs[k, A1Z]
-        if dr * arcs[k, A1Z] >= dz * arcs[k, A1R] and dz * arcs[k, A0R] >= dr * arcs[k, A0Z] and d0 + d1 > 0.0:
+        if (
+            dr * arcs[k, A1Z] >= dz * arcs[k, A1R]
+            and dz * arcs[k, A0R] >= dr * arcs[k, A0Z]
+            and d0 + d1 > 0.0
+        ):
             far = math.sqrt(dr * dr + dz * dz)
             depth, a, b = arcs[k, R] - far, dr / far, dz / far
         elif d0 >= d1:
@@ -120,7 +132,10 @@ def support(arcs: Floats, first: int, last: int, nr: float, nz: float) -> float:
     most = -np.inf
     for k in range(first, last):
         # Inside its cone an arc reaches furthest; elsewhere its nearer end stands for it.
-        if arcs[k, A0R] * nz - arcs[k, A0Z] * nr >= 0.0 and nr * arcs[k, A1Z] - nz * arcs[k, A1R] >= 0.0:
+        if (
+            arcs[k, A0R] * nz - arcs[k, A0Z] * nr >= 0.0
+            and nr * arcs[k, A1Z] - nz * arcs[k, A1R] >= 0.0
+        ):
             return arcs[k, CR] * nr + arcs[k, CZ] * nz + arcs[k, R]
         d0, d1 = arcs[k, A0R] * nr + arcs[k, A0Z] * nz, arcs[k, A1R] * nr + arcs[k, A1Z] * nz
         most = max(most, arcs[k, CR] * nr + arcs[k, CZ] * nz + arcs[k, R] * max(d0, d1))
@@ -155,7 +170,9 @@ def radius_at(arcs: Floats, first: int, last: int, h: float) -> float:
 
 
 @njit(cache=True, nogil=True)
-def heights_at(arcs: Floats, first: int, last: int, z_low: float, z_high: float, rho: float) -> tuple[float, float]:
+def heights_at(
+    arcs: Floats, first: int, last: int, z_low: float, z_high: float, rho: float
+) -> tuple[float, float]:
     """Return the lowest and highest h (mm) at which a body holds points at the distance rho (mm) from
     its axis; low > high where it holds none.
 
@@ -170,8 +187,16 @@ def heights_at(arcs: Floats, first: int, last: int, z_low: float, z_high: float,
             return 1.0, 0.0
         # Whether the section meets the arc itself on its lower or its upper quarter; else the
         # tangents at both ends of the cone bound it.
-        in_cone_low = r > 0.0 and arcs[k, A0Z] < 0.0 and arcs[k, A0R] * r <= dr <= (arcs[k, A1R] * r if arcs[k, A1Z] < 0.0 else r)
-        in_cone_high = r > 0.0 and arcs[k, A1Z] > 0.0 and arcs[k, A1R] * r <= dr <= (arcs[k, A0R] * r if arcs[k, A0Z] > 0.0 else r)
+        in_cone_low = (
+            r > 0.0
+            and arcs[k, A0Z] < 0.0
+            and arcs[k, A0R] * r <= dr <= (arcs[k, A1R] * r if arcs[k, A1Z] < 0.0 else r)
+        )
+        in_cone_high = (
+            r > 0.0
+            and arcs[k, A1Z] > 0.0
+            and arcs[k, A1R] * r <= dr <= (arcs[k, A0R] * r if arcs[k, A0Z] > 0.0 else r)
+        )
         if in_cone_low:
             low = max(low, arcs[k, CZ] - math.sqrt(max(r * r - dr * dr, 0.0)))
         if in_cone_high:

@@ -44,8 +44,21 @@ def _end_near(count: Ints, ends: Floats, ray: int, place: float, reach: float) -
 
 
 @njit(cache=True, nogil=True)
-def _edge(axis: int, cell: Ints, leaves: bool, counts: Counts, lows: Ends, highs: Ends, cells: Ints, origin: Floats, pitch: float,
-          step: int, has: Bools, place: Floats, normal: Floats) -> None:
+def _edge(
+    axis: int,
+    cell: Ints,
+    leaves: bool,
+    counts: Counts,
+    lows: Ends,
+    highs: Ends,
+    cells: Ints,
+    origin: Floats,
+    pitch: float,
+    step: int,
+    has: Bools,
+    place: Floats,
+    normal: Floats,
+) -> None:
     # The two other axes in cyclic order: ray v * cells[u] + u.
     """Fill place (3,) and normal (3,) with where the surface crosses a lattice edge along `axis` from
     the node of a cell (3,), and its outward unit normal there.
@@ -94,8 +107,18 @@ def _edge(axis: int, cell: Ints, leaves: bool, counts: Counts, lows: Ends, highs
 
 
 @njit(cache=True, nogil=True)
-def _layer(k: int, count: Ints, low: Floats, high: Floats, cells: Ints, nodes: Ints, origin: Floats, pitch: float, step: int,
-           inside: Bools) -> None:
+def _layer(
+    k: int,
+    count: Ints,
+    low: Floats,
+    high: Floats,
+    cells: Ints,
+    nodes: Ints,
+    origin: Floats,
+    pitch: float,
+    step: int,
+    inside: Bools,
+) -> None:
     """Fill inside (rows, columns, each with a border of nodes outside) with which nodes of layer k are
     in material."""
     inside[:] = False
@@ -116,8 +139,16 @@ def _layer(k: int, count: Ints, low: Floats, high: Floats, cells: Ints, nodes: I
 def _solve(a: Floats, b: Floats, out: Floats) -> None:
     """Solve a symmetric positive definite system of three, a (3, 3), b (3,), by Cramer's rule into out
     (3,)."""
-    c00, c01, c02 = a[1, 1] * a[2, 2] - a[1, 2] ** 2, a[0, 2] * a[1, 2] - a[0, 1] * a[2, 2], a[0, 1] * a[1, 2] - a[0, 2] * a[1, 1]
-    c11, c12, c22 = a[0, 0] * a[2, 2] - a[0, 2] ** 2, a[0, 1] * a[0, 2] - a[0, 0] * a[1, 2], a[0, 0] * a[1, 1] - a[0, 1] ** 2
+    c00, c01, c02 = (
+        a[1, 1] * a[2, 2] - a[1, 2] ** 2,
+        a[0, 2] * a[1, 2] - a[0, 1] * a[2, 2],
+        a[0, 1] * a[1, 2] - a[0, 2] * a[1, 1],
+    )
+    c11, c12, c22 = (
+        a[0, 0] * a[2, 2] - a[0, 2] ** 2,
+        a[0, 1] * a[0, 2] - a[0, 0] * a[1, 2],
+        a[0, 0] * a[1, 1] - a[0, 1] ** 2,
+    )
     size = a[0, 0] * c00 + a[0, 1] * c01 + a[0, 2] * c02
     out[0] = (c00 * b[0] + c01 * b[1] + c02 * b[2]) / size
     out[1] = (c01 * b[0] + c11 * b[1] + c12 * b[2]) / size
@@ -125,8 +156,24 @@ def _solve(a: Floats, b: Floats, out: Floats) -> None:
 
 
 @njit(cache=True, nogil=True)
-def _point(i: int, j: int, k: int, lower: Bools, upper: Bools, counts: Counts, lows: Ends, highs: Ends, cells: Ints, origin: Floats,
-           pitch: float, step: int, has: Bools, work: Floats, cell: Ints, out: Floats) -> None:
+def _point(
+    i: int,
+    j: int,
+    k: int,
+    lower: Bools,
+    upper: Bools,
+    counts: Counts,
+    lows: Ends,
+    highs: Ends,
+    cells: Ints,
+    origin: Floats,
+    pitch: float,
+    step: int,
+    has: Bools,
+    work: Floats,
+    cell: Ints,
+    out: Floats,
+) -> None:
     """Fill out (3,) with the point of the box whose lowest node is (i, j, k) of the lattice with its
     border.
 
@@ -144,13 +191,37 @@ def _point(i: int, j: int, k: int, lower: Bools, upper: Bools, counts: Counts, l
             for corner in range(4):
                 d = (corner & 1, corner >> 1)
                 # The edge's lower node in the box: 0 along the axis, d across it.
-                x, y, z = (0, d[0], d[1]) if axis == 0 else (d[1], 0, d[0]) if axis == 1 else (d[0], d[1], 0)
+                x, y, z = (
+                    (0, d[0], d[1])
+                    if axis == 0
+                    else (d[1], 0, d[0])
+                    if axis == 1
+                    else (d[0], d[1], 0)
+                )
                 one = (upper if z else lower)[j + y, i + x]
                 x1, y1, z1 = x + (axis == 0), y + (axis == 1), z + (axis == 2)
                 if one == (upper if z1 else lower)[j + y1, i + x1]:
                     continue
-                cell[0], cell[1], cell[2] = begin + (i + x - 1) * step, begin + (j + y - 1) * step, begin + (k + z - 1) * step
-                _edge(axis, cell, one, counts, lows, highs, cells, origin, pitch, step, has, place, normal)
+                cell[0], cell[1], cell[2] = (
+                    begin + (i + x - 1) * step,
+                    begin + (j + y - 1) * step,
+                    begin + (k + z - 1) * step,
+                )
+                _edge(
+                    axis,
+                    cell,
+                    one,
+                    counts,
+                    lows,
+                    highs,
+                    cells,
+                    origin,
+                    pitch,
+                    step,
+                    has,
+                    place,
+                    normal,
+                )
                 if again == 0:
                     total += 1
                     for c in range(3):
@@ -175,27 +246,46 @@ def _point(i: int, j: int, k: int, lower: Bools, upper: Bools, counts: Counts, l
 
 
 @njit(cache=True, nogil=True)
-def count_faces(counts: Counts, lows: Ends, highs: Ends, cells: Ints, origin: Floats, pitch: float, step: int) -> tuple[int, int]:
+def count_faces(
+    counts: Counts, lows: Ends, highs: Ends, cells: Ints, origin: Floats, pitch: float, step: int
+) -> tuple[int, int]:
     """Return how many points and how many faces of four points the mesh of `mesh_rays` has; arguments
     as there."""
     nodes = (cells - step // 2 + step - 1) // step
-    lower, upper = np.zeros((nodes[1] + 2, nodes[0] + 2), np.bool_), np.zeros((nodes[1] + 2, nodes[0] + 2), np.bool_)
+    lower, upper = (
+        np.zeros((nodes[1] + 2, nodes[0] + 2), np.bool_),
+        np.zeros((nodes[1] + 2, nodes[0] + 2), np.bool_),
+    )
     points, faces = 0, 0
     for k in range(nodes[2] + 1):
         _layer(k, counts[2], lows[2], highs[2], cells, nodes, origin, pitch, step, upper)
         for j in range(nodes[1] + 1):
             for i in range(nodes[0] + 1):
                 # A box whose eight nodes differ has a point; an edge whose nodes differ has a face.
-                some = (int(lower[j, i]) + lower[j, i + 1] + lower[j + 1, i] + lower[j + 1, i + 1] + upper[j, i] + upper[j, i + 1]
-                        + upper[j + 1, i] + upper[j + 1, i + 1])
+                some = (
+                    int(lower[j, i])
+                    + lower[j, i + 1]
+                    + lower[j + 1, i]
+                    + lower[j + 1, i + 1]
+                    + upper[j, i]
+                    + upper[j, i + 1]
+                    + upper[j + 1, i]
+                    + upper[j + 1, i + 1]
+                )
                 points += 1 if 0 < some < 8 else 0
-                faces += int(lower[j, i] != lower[j, i + 1]) + int(lower[j, i] != lower[j + 1, i]) + int(lower[j, i] != upper[j, i])
+                faces += (
+                    int(lower[j, i] != lower[j, i + 1])
+                    + int(lower[j, i] != lower[j + 1, i])
+                    + int(lower[j, i] != upper[j, i])
+                )
         lower, upper = upper, lower
     return points, faces
 
 
 @njit(cache=True, nogil=True)
-def _face(a: int, b: int, c: int, d: int, turned: bool, points: Floats, triangles: Ints, n: int) -> int:
+def _face(
+    a: int, b: int, c: int, d: int, turned: bool, points: Floats, triangles: Ints, n: int
+) -> int:
     """Add the two triangles of a face of four points, cut along its shorter diagonal, to triangles
     from row n on; return the next row. `turned` reverses the orientation."""
     first, second = 0.0, 0.0
@@ -212,8 +302,18 @@ def _face(a: int, b: int, c: int, d: int, turned: bool, points: Floats, triangle
 
 
 @njit(cache=True, nogil=True)
-def mesh_rays(counts: Counts, lows: Ends, highs: Ends, has: Bools, cells: Ints, origin: Floats, pitch: float, step: int, n_points: int,
-              n_faces: int) -> tuple[Floats, Ints]:
+def mesh_rays(
+    counts: Counts,
+    lows: Ends,
+    highs: Ends,
+    has: Bools,
+    cells: Ints,
+    origin: Floats,
+    pitch: float,
+    step: int,
+    n_points: int,
+    n_faces: int,
+) -> tuple[Floats, Ints]:
     """Return points (v, 3) and triangles (t, 3), anticlockwise from outside, of the stock that three
     bundles of rays hold.
 
@@ -233,10 +333,35 @@ def mesh_rays(counts: Counts, lows: Ends, highs: Ends, has: Bools, cells: Ints, 
         _layer(k, counts[2], lows[2], highs[2], cells, nodes, origin, pitch, step, upper)
         for j in range(deep - 1):
             for i in range(wide - 1):
-                some = (int(lower[j, i]) + lower[j, i + 1] + lower[j + 1, i] + lower[j + 1, i + 1] + upper[j, i] + upper[j, i + 1]
-                        + upper[j + 1, i] + upper[j + 1, i + 1])
+                some = (
+                    int(lower[j, i])
+                    + lower[j, i + 1]
+                    + lower[j + 1, i]
+                    + lower[j + 1, i + 1]
+                    + upper[j, i]
+                    + upper[j, i + 1]
+                    + upper[j + 1, i]
+                    + upper[j + 1, i + 1]
+                )
                 if 0 < some < 8:
-                    _point(i, j, k, lower, upper, counts, lows, highs, cells, origin, pitch, step, has, work, cell, points[v])
+                    _point(
+                        i,
+                        j,
+                        k,
+                        lower,
+                        upper,
+                        counts,
+                        lows,
+                        highs,
+                        cells,
+                        origin,
+                        pitch,
+                        step,
+                        has,
+                        work,
+                        cell,
+                        points[v],
+                    )
                     over[j, i] = v
                     v += 1
         # Faces around edges along z, between the two layers of nodes: four boxes of the upper layer
@@ -245,16 +370,43 @@ def mesh_rays(counts: Counts, lows: Ends, highs: Ends, has: Bools, cells: Ints, 
             for i in range(1, wide - 1):
                 here = lower[j, i]
                 if here != upper[j, i]:
-                    n = _face(over[j - 1, i - 1], over[j - 1, i], over[j, i], over[j, i - 1], not here, points, triangles, n)
+                    n = _face(
+                        over[j - 1, i - 1],
+                        over[j - 1, i],
+                        over[j, i],
+                        over[j, i - 1],
+                        not here,
+                        points,
+                        triangles,
+                        n,
+                    )
         # Faces around edges along x and y in the lower layer of nodes: two boxes below (`under`)
         # and two above (`over`).
         for j in range(deep - 1):
             for i in range(wide - 1):
                 here = lower[j, i]
                 if here != lower[j, i + 1]:
-                    n = _face(under[j - 1, i], under[j, i], over[j, i], over[j - 1, i], not here, points, triangles, n)
+                    n = _face(
+                        under[j - 1, i],
+                        under[j, i],
+                        over[j, i],
+                        over[j - 1, i],
+                        not here,
+                        points,
+                        triangles,
+                        n,
+                    )
                 if here != lower[j + 1, i]:
-                    n = _face(under[j, i - 1], over[j, i - 1], over[j, i], under[j, i], not here, points, triangles, n)
+                    n = _face(
+                        under[j, i - 1],
+                        over[j, i - 1],
+                        over[j, i],
+                        under[j, i],
+                        not here,
+                        points,
+                        triangles,
+                        n,
+                    )
         lower, upper = upper, lower
         under, over = over, under
     return points, triangles[:n]

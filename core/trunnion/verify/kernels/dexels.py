@@ -33,7 +33,16 @@ import numpy as np
 from numba import njit
 
 from trunnion.geometry.arrays import Bools, Floats, Ints
-from trunnion.verify.kernels.body import CLOSED_FIRST, CLOSED_LAST, KIND, R_MAX, Z_HIGH, Z_LOW, depth_in_body, radius_at
+from trunnion.verify.kernels.body import (
+    CLOSED_FIRST,
+    CLOSED_LAST,
+    KIND,
+    R_MAX,
+    Z_HIGH,
+    Z_LOW,
+    depth_in_body,
+    radius_at,
+)
 from trunnion.verify.kernels.engagement import look_in_intervals
 
 # Columns of a span: tip and tool frame (its rows: two axes across, the tool axis) at both ends,
@@ -41,7 +50,19 @@ from trunnion.verify.kernels.engagement import look_in_intervals
 # of the blank, the whole is one span: centre, direction of its middle, then radius and cosine of
 # half its angle (each three times, so that turning coordinates changes nothing); the radius is 0
 # for all others.
-TIP0, FRAME0, TIP1, FRAME1, CUT_BOX, ALL_BOX, WAY_BOX, CENTRE, MIDDLE, ARC_RADIUS, COS_HALF = 0, 3, 12, 15, 24, 30, 36, 42, 45, 48, 51
+TIP0, FRAME0, TIP1, FRAME1, CUT_BOX, ALL_BOX, WAY_BOX, CENTRE, MIDDLE, ARC_RADIUS, COS_HALF = (
+    0,
+    3,
+    12,
+    15,
+    24,
+    30,
+    36,
+    42,
+    45,
+    48,
+    51,
+)
 SPAN_COLUMNS = 54
 # A ray in the tool frames of a span: foot (3) and direction (3) at the start, what both gain until
 # the end (3, 3), by how much the direction turns, how much smaller the body is taken, and room to
@@ -72,7 +93,9 @@ _in_body = njit(nogil=True, inline="always")(depth_in_body.py_func)
 
 
 @njit(cache=True, nogil=True, inline="always")
-def _depth(arcs: Floats, first: int, last: int, limit: float, ray: Floats, w: float, t: float) -> tuple[float, float, float]:
+def _depth(
+    arcs: Floats, first: int, last: int, limit: float, ray: Floats, w: float, t: float
+) -> tuple[float, float, float]:
     """Return the depth D (mm) of a ray's point at w in a body at the time t, and the slopes along w
     and t.
 
@@ -80,7 +103,11 @@ def _depth(arcs: Floats, first: int, last: int, limit: float, ray: Floats, w: fl
     frame. `limit`: a level end face at that height, infinite for none.
     """
     gx, gy, gz = ray[6] + w * ray[9], ray[7] + w * ray[10], ray[8] + w * ray[11]
-    x, y, h = ray[0] + w * ray[3] + t * gx, ray[1] + w * ray[4] + t * gy, ray[2] + w * ray[5] + t * gz
+    x, y, h = (
+        ray[0] + w * ray[3] + t * gx,
+        ray[1] + w * ray[4] + t * gy,
+        ray[2] + w * ray[5] + t * gz,
+    )
     rho = math.sqrt(x * x + y * y)
     depth, nr, nz = _in_body(arcs, first, last, rho, h)
     # The flutes' top is one more half-plane: depth at most limit - h.
@@ -89,12 +116,16 @@ def _depth(arcs: Floats, first: int, last: int, limit: float, ray: Floats, w: fl
     nx, ny = 0.0, 0.0
     if rho > 0.0:
         nx, ny = nr * x / rho, nr * y / rho
-    along = -(nx * (ray[3] + t * ray[9]) + ny * (ray[4] + t * ray[10]) + nz * (ray[5] + t * ray[11]))
+    along = -(
+        nx * (ray[3] + t * ray[9]) + ny * (ray[4] + t * ray[10]) + nz * (ray[5] + t * ray[11])
+    )
     return depth - ray[SMALLER], along, -(nx * gx + ny * gy + nz * gz)
 
 
 @njit(cache=True, nogil=True)
-def _over_time(arcs: Floats, first: int, last: int, limit: float, ray: Floats, w: float) -> tuple[float, float, float]:
+def _over_time(
+    arcs: Floats, first: int, last: int, limit: float, ray: Floats, w: float
+) -> tuple[float, float, float]:
     """Return F(w), the largest depth (mm) of a ray's point over a span, a slope with which it bounds F
     along the ray from above, and a time at which the point is as deep.
 
@@ -137,7 +168,9 @@ def _over_time(arcs: Floats, first: int, last: int, limit: float, ray: Floats, w
 
 
 @njit(cache=True, nogil=True)
-def _bisected(arcs: Floats, first: int, last: int, limit: float, ray: Floats, outside: float, inside: float) -> float:
+def _bisected(
+    arcs: Floats, first: int, last: int, limit: float, ray: Floats, outside: float, inside: float
+) -> float:
     """Return where a ray enters what is swept, between a place outside and one inside, to within THIN
     (mm); the inner side, so not too much is cut."""
     while abs(inside - outside) > THIN:
@@ -150,7 +183,9 @@ def _bisected(arcs: Floats, first: int, last: int, limit: float, ray: Floats, ou
 
 
 @njit(cache=True, nogil=True)
-def _entered(arcs: Floats, first: int, last: int, limit: float, ray: Floats, w: float, end: float) -> tuple[float, float]:
+def _entered(
+    arcs: Floats, first: int, last: int, limit: float, ray: Floats, w: float, end: float
+) -> tuple[float, float]:
     """Return where a ray that runs from w towards `end` enters what is swept, NaN when it doesn't
     before, and a time to try first for it in the body.
 
@@ -179,7 +214,9 @@ def _entered(arcs: Floats, first: int, last: int, limit: float, ray: Floats, w: 
 
 
 @njit(cache=True, nogil=True, inline="always")
-def _bound(arcs: Floats, first: int, last: int, limit: float, ray: Floats, w: float, end: float) -> float:
+def _bound(
+    arcs: Floats, first: int, last: int, limit: float, ray: Floats, w: float, end: float
+) -> float:
     """Return an upper bound (mm) of the depth between two places over a span, from one evaluation at w
     and t = 0.
 
@@ -191,7 +228,16 @@ def _bound(arcs: Floats, first: int, last: int, limit: float, ray: Floats, w: fl
 
 
 @njit(cache=True, nogil=True)
-def _highest(arcs: Floats, first: int, last: int, limit: float, ray: Floats, low: float, high: float, enough: float) -> tuple[float, float]:
+def _highest(
+    arcs: Floats,
+    first: int,
+    last: int,
+    limit: float,
+    ray: Floats,
+    low: float,
+    high: float,
+    enough: float,
+) -> tuple[float, float]:
     """Return the largest depth (mm) between two places of a ray over a span, and its place; attained,
     within 1e-5 mm, where the tool turns within SURE. One of at most `enough` need not be the largest.
 
@@ -215,7 +261,9 @@ def _highest(arcs: Floats, first: int, last: int, limit: float, ray: Floats, low
 
 
 @njit(cache=True, nogil=True)
-def _peak(arcs: Floats, first: int, last: int, limit: float, ray: Floats, low: float, high: float) -> tuple[float, float]:
+def _peak(
+    arcs: Floats, first: int, last: int, limit: float, ray: Floats, low: float, high: float
+) -> tuple[float, float]:
     """Return the largest depth (mm) between two places of a ray over a span, and its place; attained,
     within 1e-5 mm where the tool keeps its axis, else perhaps one of several peaks.
 
@@ -253,8 +301,16 @@ def _aim(ray: Floats, span: Floats, u: float, v: float) -> None:
     """
     for m in range(3):
         a, b = FRAME0 + 3 * m, FRAME1 + 3 * m
-        foot = span[a] * (u - span[TIP0]) + span[a + 1] * (v - span[TIP0 + 1]) - span[a + 2] * span[TIP0 + 2]
-        after = span[b] * (u - span[TIP1]) + span[b + 1] * (v - span[TIP1 + 1]) - span[b + 2] * span[TIP1 + 2]
+        foot = (
+            span[a] * (u - span[TIP0])
+            + span[a + 1] * (v - span[TIP0 + 1])
+            - span[a + 2] * span[TIP0 + 2]
+        )
+        after = (
+            span[b] * (u - span[TIP1])
+            + span[b + 1] * (v - span[TIP1 + 1])
+            - span[b + 2] * span[TIP1 + 2]
+        )
         ray[m], ray[3 + m] = foot, span[a + 2]
         ray[6 + m], ray[9 + m] = after - foot, span[b + 2] - span[a + 2]
     if abs(ray[3]) + abs(ray[4]) + abs(ray[8]) + ray[TWIST] >= LEVEL:
@@ -264,7 +320,11 @@ def _aim(ray: Floats, span: Floats, u: float, v: float) -> None:
         ray[0], ray[1] = _from_arc(span, u, v, span[CENTRE + 2]), 0.0
     else:
         square = ray[6] * ray[6] + ray[7] * ray[7]
-        t = min(max(-(ray[0] * ray[6] + ray[1] * ray[7]) / square, 0.0), 1.0) if square > 0.0 else 0.0
+        t = (
+            min(max(-(ray[0] * ray[6] + ray[1] * ray[7]) / square, 0.0), 1.0)
+            if square > 0.0
+            else 0.0
+        )
         ray[0], ray[1] = ray[0] + t * ray[6], ray[1] + t * ray[7]
     ray[6], ray[7] = 0.0, 0.0
 
@@ -300,7 +360,10 @@ def _box(box: Floats, span: Floats, piece: Floats, turns: bool) -> None:
         for m in range(3):
             a = span[FRAME0 + 6 + m]
             across, p, q = r * math.sqrt(max(1.0 - a * a, 0.0)), a * piece[Z_LOW], a * piece[Z_HIGH]
-            box[m], box[3 + m] = span[WAY_BOX + m] + min(p, q) - across, span[WAY_BOX + 3 + m] + max(p, q) + across
+            box[m], box[3 + m] = (
+                span[WAY_BOX + m] + min(p, q) - across,
+                span[WAY_BOX + 3 + m] + max(p, q) + across,
+            )
         return
     for m in range(3):
         low, high = np.inf, -np.inf
@@ -324,7 +387,9 @@ def _misses(count: Ints, low: Floats, high: Floats, cell: int, bottom: float, to
 
 
 @njit(cache=True, nogil=True)
-def _cells(low: float, high: float, origin: float, pitch: float, first: int, last: int) -> tuple[int, int]:
+def _cells(
+    low: float, high: float, origin: float, pitch: float, first: int, last: int
+) -> tuple[int, int]:
     """Return the first cell and the one after the last whose centres lie between two coordinates (mm),
     of those from `first` to `last`."""
     a = int(math.ceil((low - origin) / pitch - 0.5))
@@ -333,7 +398,9 @@ def _cells(low: float, high: float, origin: float, pitch: float, first: int, las
 
 
 @njit(cache=True, nogil=True)
-def take_away(count: Ints, low: Floats, high: Floats, cell: int, k: int, a: float, b: float) -> float:
+def take_away(
+    count: Ints, low: Floats, high: Floats, cell: int, k: int, a: float, b: float
+) -> float:
     """Subtract [a, b] from a ray's interval k (a < b, both within it); return the length (mm) that is
     gone.
 
@@ -419,8 +486,22 @@ def _marked(ray: Floats, n: int, w: float) -> int:
 
 
 @njit(cache=True, nogil=True)
-def _cut_across_arc(arcs: Floats, first: int, last: int, limit: float, ray: Floats, span: Floats, u: float, v: float, count: Ints,
-                    low: Floats, high: Floats, cell: int, bottom: float, top: float) -> tuple[float, bool]:
+def _cut_across_arc(
+    arcs: Floats,
+    first: int,
+    last: int,
+    limit: float,
+    ray: Floats,
+    span: Floats,
+    u: float,
+    v: float,
+    count: Ints,
+    low: Floats,
+    high: Floats,
+    cell: int,
+    bottom: float,
+    top: float,
+) -> tuple[float, bool]:
     """Cut a ray across the axis by a body that moves level along an arc: by a disc swept; return as
     `_cut_ray` does.
 
@@ -446,7 +527,11 @@ def _cut_across_arc(arcs: Floats, first: int, last: int, limit: float, ray: Floa
             half = math.sqrt(circle * circle - beside * beside)
             n = _marked(ray, _marked(ray, n, middle - half), middle + half)
     for end in range(2):
-        x, y, w = (span[TIP0], span[TIP0 + 1], span[TIP0 + 2]) if end == 0 else (span[TIP1], span[TIP1 + 1], span[TIP1 + 2])
+        x, y, w = (
+            (span[TIP0], span[TIP0 + 1], span[TIP0 + 2])
+            if end == 0
+            else (span[TIP1], span[TIP1 + 1], span[TIP1 + 2])
+        )
         x, y = x - u, y - v
         along = span[FRAME0 + 6] * x + span[FRAME0 + 7] * y
         square = r * r - (x * x + y * y - along * along)
@@ -456,11 +541,15 @@ def _cut_across_arc(arcs: Floats, first: int, last: int, limit: float, ray: Floa
     # Neighbouring stretches inside are taken away together.
     gone, open_at = 0.0, np.nan
     for k in range(n):
-        inside = k + 1 < n and _from_arc(span, u, v, 0.5 * (ray[MARKS + k] + ray[MARKS + k + 1])) < r
+        inside = (
+            k + 1 < n and _from_arc(span, u, v, 0.5 * (ray[MARKS + k] + ray[MARKS + k + 1])) < r
+        )
         if inside and math.isnan(open_at):
             open_at = ray[MARKS + k]
         elif not inside and not math.isnan(open_at):
-            more, whole = _take_all(count, low, high, cell, max(open_at, bottom), min(ray[MARKS + k], top))
+            more, whole = _take_all(
+                count, low, high, cell, max(open_at, bottom), min(ray[MARKS + k], top)
+            )
             gone, open_at = gone + more, np.nan
             if not whole:
                 return gone, False
@@ -468,7 +557,9 @@ def _cut_across_arc(arcs: Floats, first: int, last: int, limit: float, ray: Floa
 
 
 @njit(cache=True, nogil=True)
-def _take_all(count: Ints, low: Floats, high: Floats, cell: int, a: float, b: float) -> tuple[float, bool]:
+def _take_all(
+    count: Ints, low: Floats, high: Floats, cell: int, a: float, b: float
+) -> tuple[float, bool]:
     """Subtract [a, b] from all intervals of a ray; return the length (mm) that is gone, and whether
     the ray had room for all that is left.
 
@@ -487,13 +578,20 @@ def _take_all(count: Ints, low: Floats, high: Floats, cell: int, a: float, b: fl
 
 
 @njit(cache=True, nogil=True)
-def _both_in(arcs: Floats, first: int, last: int, limit: float, ray: Floats, a: float, b: float, t: float) -> bool:
+def _both_in(
+    arcs: Floats, first: int, last: int, limit: float, ray: Floats, a: float, b: float, t: float
+) -> bool:
     """Return whether two places of a ray are in a body at a time, to within GAP (mm)."""
-    return _depth(arcs, first, last, limit, ray, a, t)[0] >= -GAP and _depth(arcs, first, last, limit, ray, b, t)[0] >= -GAP
+    return (
+        _depth(arcs, first, last, limit, ray, a, t)[0] >= -GAP
+        and _depth(arcs, first, last, limit, ray, b, t)[0] >= -GAP
+    )
 
 
 @njit(cache=True, nogil=True)
-def _in_at_once(arcs: Floats, first: int, last: int, limit: float, ray: Floats, a: float, b: float) -> bool:
+def _in_at_once(
+    arcs: Floats, first: int, last: int, limit: float, ray: Floats, a: float, b: float
+) -> bool:
     """Return whether two places of a ray are found in a body, to within GAP (mm), at one time of a span:
     then all between them is, as the depth is concave along the ray at any time.
 
@@ -526,7 +624,9 @@ def _in_at_once(arcs: Floats, first: int, last: int, limit: float, ray: Floats, 
 
 
 @njit(cache=True, nogil=True)
-def _sure(arcs: Floats, first: int, last: int, limit: float, ray: Floats, a: float, b: float) -> tuple[float, float]:
+def _sure(
+    arcs: Floats, first: int, last: int, limit: float, ray: Floats, a: float, b: float
+) -> tuple[float, float]:
     """Return up to where from a on, towards b, a ray lies in what is swept for certain, and a place
     behind that, at most b, where it doesn't; that is NaN when all up to b does.
 
@@ -549,8 +649,19 @@ def _sure(arcs: Floats, first: int, last: int, limit: float, ray: Floats, a: flo
 
 
 @njit(cache=True, nogil=True)
-def _cut_lobes(arcs: Floats, first: int, last: int, limit: float, ray: Floats, a: float, b: float, count: Ints, low: Floats, high: Floats,
-               cell: int) -> tuple[float, bool]:
+def _cut_lobes(
+    arcs: Floats,
+    first: int,
+    last: int,
+    limit: float,
+    ray: Floats,
+    a: float,
+    b: float,
+    count: Ints,
+    low: Floats,
+    high: Floats,
+    cell: int,
+) -> tuple[float, bool]:
     """Cut a ray between two places that a body which turns reaches, but for the gaps between its
     lobes; return as `_cut_ray` does."""
     gone = 0.0
@@ -570,8 +681,21 @@ def _cut_lobes(arcs: Floats, first: int, last: int, limit: float, ray: Floats, a
 
 
 @njit(cache=True, nogil=True)
-def _cut_ray(arcs: Floats, first: int, last: int, limit: float, ray: Floats, span: Floats, u: float, v: float, count: Ints, low: Floats,
-             high: Floats, cell: int, box: Floats) -> tuple[float, bool]:
+def _cut_ray(
+    arcs: Floats,
+    first: int,
+    last: int,
+    limit: float,
+    ray: Floats,
+    span: Floats,
+    u: float,
+    v: float,
+    count: Ints,
+    low: Floats,
+    high: Floats,
+    cell: int,
+    box: Floats,
+) -> tuple[float, bool]:
     """Cut a ray by a piece within a span; return the length (mm) that is gone, and whether the ray had
     room for all that is left.
 
@@ -583,7 +707,9 @@ def _cut_ray(arcs: Floats, first: int, last: int, limit: float, ray: Floats, spa
         if span[ARC_RADIUS] == 0.0:
             a, b = _across(arcs, first, last, limit, ray)
             return _take_all(count, low, high, cell, max(a, w_low), min(b, w_high))
-        return _cut_across_arc(arcs, first, last, limit, ray, span, u, v, count, low, high, cell, w_low, w_high)
+        return _cut_across_arc(
+            arcs, first, last, limit, ray, span, u, v, count, low, high, cell, w_low, w_high
+        )
     gone = 0.0
     middle = 0.5 * (w_low + w_high)
     k = 0
@@ -601,7 +727,11 @@ def _cut_ray(arcs: Floats, first: int, last: int, limit: float, ray: Floats, spa
         # turns, the other end is tried too, and an entry that one side overshot is bisected.
         turns = ray[TWIST] > 0.0
         from_near, t_near = _entered(arcs, first, last, limit, ray, near, far)
-        from_far, t_far = (np.nan, t_near) if math.isnan(from_near) and not turns else _entered(arcs, first, last, limit, ray, far, near)
+        from_far, t_far = (
+            (np.nan, t_near)
+            if math.isnan(from_near) and not turns
+            else _entered(arcs, first, last, limit, ray, far, near)
+        )
         if math.isnan(from_near) and math.isnan(from_far):
             k += 1
             continue
@@ -616,9 +746,13 @@ def _cut_ray(arcs: Floats, first: int, last: int, limit: float, ray: Floats, spa
         # A cut may need one more interval, a gap another; the caller enlarges the rays and resumes.
         before = count[cell]
         # Of a tool that turns, both entries in the body at one of their times tell that all between is.
-        if turns and not (_both_in(arcs, first, last, limit, ray, from_far, from_near, t_near)
-                          or _both_in(arcs, first, last, limit, ray, from_near, from_far, t_far)):
-            more, whole = _cut_lobes(arcs, first, last, limit, ray, from_a, from_b, count, low, high, cell)
+        if turns and not (
+            _both_in(arcs, first, last, limit, ray, from_far, from_near, t_near)
+            or _both_in(arcs, first, last, limit, ray, from_near, from_far, t_far)
+        ):
+            more, whole = _cut_lobes(
+                arcs, first, last, limit, ray, from_a, from_b, count, low, high, cell
+            )
             gone += more
             if not whole:
                 return gone, False
@@ -631,7 +765,18 @@ def _cut_ray(arcs: Floats, first: int, last: int, limit: float, ray: Floats, spa
 
 
 @njit(cache=True, nogil=True)
-def _beside(count: Ints, low: Floats, high: Floats, columns: int, row: int, end_row: int, i: int, j: int, a: float, b: float) -> float:
+def _beside(
+    count: Ints,
+    low: Floats,
+    high: Floats,
+    columns: int,
+    row: int,
+    end_row: int,
+    i: int,
+    j: int,
+    a: float,
+    b: float,
+) -> float:
     """Return a place (w) between a and b where a ray of a cell, or of one beside it in the tile, has
     material; NaN when none has."""
     for y in range(max(j - 1, row), min(j + 2, end_row)):
@@ -645,8 +790,22 @@ def _beside(count: Ints, low: Floats, high: Floats, columns: int, row: int, end_
 
 
 @njit(cache=True, nogil=True)
-def _may_hide(arcs: Floats, first: int, last: int, ray: Floats, count: Ints, low: Floats, high: Floats, columns: int, row: int,
-              end_row: int, i: int, j: int, pitch: float, box: Floats) -> bool:
+def _may_hide(
+    arcs: Floats,
+    first: int,
+    last: int,
+    ray: Floats,
+    count: Ints,
+    low: Floats,
+    high: Floats,
+    columns: int,
+    row: int,
+    end_row: int,
+    i: int,
+    j: int,
+    pitch: float,
+    box: Floats,
+) -> bool:
     """Return whether somewhere in a cell a body may be in material that is as the rays around have it;
     `ray` is the cell's middle.
 
@@ -670,8 +829,24 @@ def _may_hide(arcs: Floats, first: int, last: int, ray: Floats, count: Ints, low
 
 
 @njit(cache=True, nogil=True)
-def _graze(arcs: Floats, first: int, last: int, span: Floats, ray: Floats, count: Ints, low: Floats, high: Floats, columns: int, row: int,
-           end_row: int, origin: Floats, pitch: float, box: Floats, fine: int, places: Floats) -> None:
+def _graze(
+    arcs: Floats,
+    first: int,
+    last: int,
+    span: Floats,
+    ray: Floats,
+    count: Ints,
+    low: Floats,
+    high: Floats,
+    columns: int,
+    row: int,
+    end_row: int,
+    origin: Floats,
+    pitch: float,
+    box: Floats,
+    fine: int,
+    places: Floats,
+) -> None:
     """List in places (r, 4), u, v, w and depth, where a body may be in material between the rays of a
     bundle, going by the material of the rays around.
 
@@ -689,12 +864,17 @@ def _graze(arcs: Floats, first: int, last: int, span: Floats, ray: Floats, count
     for j in range(j0, j1):
         for i in range(i0, i1):
             _aim(ray, span, origin[0] + (i + 0.5) * pitch, origin[1] + (j + 0.5) * pitch)
-            if not _may_hide(arcs, first, last, ray, count, low, high, columns, row, end_row, i, j, pitch, box):
+            if not _may_hide(
+                arcs, first, last, ray, count, low, high, columns, row, end_row, i, j, pitch, box
+            ):
                 continue
             best[:, 3] = 0.0
             for m in range(fine * fine):
                 x, y = m % fine, m // fine
-                u, v = origin[0] + (i + (x + 0.5) / fine) * pitch, origin[1] + (j + (y + 0.5) / fine) * pitch
+                u, v = (
+                    origin[0] + (i + (x + 0.5) / fine) * pitch,
+                    origin[1] + (j + (y + 0.5) / fine) * pitch,
+                )
                 _aim(ray, span, u, v)
                 a, _t = _entered(arcs, first, last, np.inf, ray, box[2], box[5])
                 if math.isnan(a):
@@ -707,7 +887,12 @@ def _graze(arcs: Floats, first: int, last: int, span: Floats, ray: Floats, count
                     deep = _over_time(arcs, first, last, np.inf, ray, w)[0] + ray[SMALLER]
                     quarter = 2 * (2 * y // fine) + 2 * x // fine
                     if deep > best[quarter, 3]:
-                        best[quarter, 0], best[quarter, 1], best[quarter, 2], best[quarter, 3] = u, v, w, deep
+                        best[quarter, 0], best[quarter, 1], best[quarter, 2], best[quarter, 3] = (
+                            u,
+                            v,
+                            w,
+                            deep,
+                        )
             for m in range(4):
                 if best[m, 3] > 0.0 and listed < len(places):
                     places[listed] = best[m]
@@ -724,10 +909,39 @@ def _limit(piece: Floats, p: int, last: int) -> float:
 
 
 @njit(cache=True, nogil=True)
-def cut_tile(last: int, span: Floats, span_start: Ints, arcs: Floats, piece: Floats, piece_start: Ints, tool: Ints, rapid: Bools,
-             count: Ints, low: Floats, high: Floats, columns: int, row: int, end_row: int, origin: Floats, pitch: float,
-             resume: Ints, removed: Floats, depth: Floats, place: Floats, body: Floats, way: Floats, rings: Floats, flute: Floats,
-             circle: Floats, probe_start: Ints, counted: Ints, seen: Floats, fine: int, allowed: float, grazed: Floats) -> bool:
+def cut_tile(
+    last: int,
+    span: Floats,
+    span_start: Ints,
+    arcs: Floats,
+    piece: Floats,
+    piece_start: Ints,
+    tool: Ints,
+    rapid: Bools,
+    count: Ints,
+    low: Floats,
+    high: Floats,
+    columns: int,
+    row: int,
+    end_row: int,
+    origin: Floats,
+    pitch: float,
+    resume: Ints,
+    removed: Floats,
+    depth: Floats,
+    place: Floats,
+    body: Floats,
+    way: Floats,
+    rings: Floats,
+    flute: Floats,
+    circle: Floats,
+    probe_start: Ints,
+    counted: Ints,
+    seen: Floats,
+    fine: int,
+    allowed: float,
+    grazed: Floats,
+) -> bool:
     """Run moves up to `last` through a tile of a bundle: cut with feed moves, and judge rapids and
     what doesn't cut against what stands.
 
@@ -767,17 +981,45 @@ def cut_tile(last: int, span: Floats, span_start: Ints, arcs: Floats, piece: Flo
         # Feed move: engagement first, as the stock stood before; then every piece that cuts takes
         # its sweep away, span by span.
         if not rapid[n]:
-            if probe_start[n + 1] > probe_start[n] and not (going_on and resume[5] != 0) and _near(
-                    span, span_start[n], span_start[n + 1], v_low - pitch, v_high + pitch):
+            if (
+                probe_start[n + 1] > probe_start[n]
+                and not (going_on and resume[5] != 0)
+                and _near(span, span_start[n], span_start[n + 1], v_low - pitch, v_high + pitch)
+            ):
                 a, b = row * columns, end_row * columns
                 corner[0], corner[1] = origin[0], v_low
-                look_in_intervals(count[a:b], low[a:b], high[a:b], corner, pitch, end_row - row, columns, way[n, 0:3], way[n, 3:6],
-                                  way[n, 6:9], way[n, 9:12], way[n, 12:15], way[n, 15], rings[tool[n]], flute[tool[n]], circle,
-                                  probe_start[n], probe_start[n + 1], counted, seen)
-            for s in range(max(resume[1], span_start[n]) if going_on else span_start[n], span_start[n + 1]):
+                look_in_intervals(
+                    count[a:b],
+                    low[a:b],
+                    high[a:b],
+                    corner,
+                    pitch,
+                    end_row - row,
+                    columns,
+                    way[n, 0:3],
+                    way[n, 3:6],
+                    way[n, 6:9],
+                    way[n, 9:12],
+                    way[n, 12:15],
+                    way[n, 15],
+                    rings[tool[n]],
+                    flute[tool[n]],
+                    circle,
+                    probe_start[n],
+                    probe_start[n + 1],
+                    counted,
+                    seen,
+                )
+            for s in range(
+                max(resume[1], span_start[n]) if going_on else span_start[n], span_start[n + 1]
+            ):
                 going_on = going_on and s == resume[1]
-                if span[s, CUT_BOX + 1] > v_high or span[s, CUT_BOX + 4] < v_low or span[s, CUT_BOX + 2] > top or \
-                        span[s, CUT_BOX + 5] < bottom:
+                if (
+                    span[s, CUT_BOX + 1] > v_high
+                    or span[s, CUT_BOX + 4] < v_low
+                    or span[s, CUT_BOX + 2] > top
+                    or span[s, CUT_BOX + 5] < bottom
+                ):
                     continue
                 ray[TWIST] = _motion(span[s])
                 for p in range(max(resume[2], p0) if going_on else p0, p1):
@@ -793,22 +1035,49 @@ def cut_tile(last: int, span: Floats, span_start: Ints, arcs: Floats, piece: Flo
                     j0, j1 = _cells(box[1], box[4], origin[1], pitch, row, end_row)
                     for j in range(max(j0, resume[3]) if going_on else j0, j1):
                         v = origin[1] + (j + 0.5) * pitch
-                        for i in range(max(i0, resume[4]) if going_on and j == resume[3] else i0, i1):
+                        for i in range(
+                            max(i0, resume[4]) if going_on and j == resume[3] else i0, i1
+                        ):
                             cell = j * columns + i
                             if _misses(count, low, high, cell, box[2], box[5]):
                                 continue
                             u = origin[0] + (i + 0.5) * pitch
                             _aim(ray, span[s], u, v)
-                            gone, whole = _cut_ray(arcs, first, end, limit, ray, span[s], u, v, count, low, high, cell, box)
+                            gone, whole = _cut_ray(
+                                arcs,
+                                first,
+                                end,
+                                limit,
+                                ray,
+                                span[s],
+                                u,
+                                v,
+                                count,
+                                low,
+                                high,
+                                cell,
+                                box,
+                            )
                             removed[n] += gone
                             if not whole:
-                                resume[0], resume[1], resume[2], resume[3], resume[4], resume[5] = n, s, p, j, i, 1
+                                resume[0], resume[1], resume[2], resume[3], resume[4], resume[5] = (
+                                    n,
+                                    s,
+                                    p,
+                                    j,
+                                    i,
+                                    1,
+                                )
                                 return False
         # Then what must not be in material: of rapids all of the tool, of feed moves what doesn't
         # cut, against the stock as it now stands.
         for s in range(span_start[n], span_start[n + 1]):
-            if span[s, ALL_BOX + 1] > v_high or span[s, ALL_BOX + 4] < v_low or span[s, ALL_BOX + 2] > top or \
-                    span[s, ALL_BOX + 5] < bottom:
+            if (
+                span[s, ALL_BOX + 1] > v_high
+                or span[s, ALL_BOX + 4] < v_low
+                or span[s, ALL_BOX + 2] > top
+                or span[s, ALL_BOX + 5] < bottom
+            ):
                 continue
             ray[TWIST] = _motion(span[s])
             if span[s, ARC_RADIUS] != 0.0 and abs(span[s, FRAME0 + 8]) < 0.5:
@@ -847,8 +1116,24 @@ def cut_tile(last: int, span: Floats, span_start: Ints, arcs: Floats, piece: Flo
                 # Rapids that miss the rays may still enter between them.
                 if cuts and fine > 0 and depth[n] <= allowed:
                     ray[SMALLER] = allowed
-                    _graze(arcs, first, end, span[s], ray, count, low, high, columns, row, end_row, origin, pitch, box, fine,
-                           grazed[(rapids - 1) * MOST_GRAZED:rapids * MOST_GRAZED])
+                    _graze(
+                        arcs,
+                        first,
+                        end,
+                        span[s],
+                        ray,
+                        count,
+                        low,
+                        high,
+                        columns,
+                        row,
+                        end_row,
+                        origin,
+                        pitch,
+                        box,
+                        fine,
+                        grazed[(rapids - 1) * MOST_GRAZED : rapids * MOST_GRAZED],
+                    )
                     ray[SMALLER] = SHRINK
     return True
 

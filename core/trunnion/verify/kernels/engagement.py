@@ -24,7 +24,9 @@ from numba import njit
 
 from trunnion.geometry.arrays import Floats, Ints
 
-KIND, X0, Y0, X1, Y1, CX, CY, ARC_RADIUS, MX, MY, COS_HALF, START_ANGLE, SWEEP, Z_START, Z_END = range(15)
+KIND, X0, Y0, X1, Y1, CX, CY, ARC_RADIUS, MX, MY, COS_HALF, START_ANGLE, SWEEP, Z_START, Z_END = (
+    range(15)
+)
 RINGS = 4
 """Rings of a tool below its widest circle and on it, each at a quarter of the height of the one before."""
 ABOVE = 1e-6
@@ -48,7 +50,13 @@ def _place(move: Floats, t: float) -> tuple[float, float, float, float, float]:
     if move[KIND] != 0.0:
         angle, side = move[START_ANGLE] + t * move[SWEEP], 1.0 if move[SWEEP] > 0.0 else -1.0
         c, s = math.cos(angle), math.sin(angle)
-        return move[CX] + move[ARC_RADIUS] * c, move[CY] + move[ARC_RADIUS] * s, z, -side * s, side * c
+        return (
+            move[CX] + move[ARC_RADIUS] * c,
+            move[CY] + move[ARC_RADIUS] * s,
+            z,
+            -side * s,
+            side * c,
+        )
     dx, dy = move[X1] - move[X0], move[Y1] - move[Y0]
     length = math.sqrt(dx * dx + dy * dy)
     if length <= STILL:
@@ -65,8 +73,19 @@ def _plan_length(move: Floats) -> float:
 
 
 @njit(cache=True, nogil=True)
-def look_in_field(top: Floats, origin: Floats, pitch: float, floor: float, move: Floats, rings: Floats, circle: Floats, first: int,
-                  last: int, counted: Ints, spans: Floats) -> None:
+def look_in_field(
+    top: Floats,
+    origin: Floats,
+    pitch: float,
+    floor: float,
+    move: Floats,
+    rings: Floats,
+    circle: Floats,
+    first: int,
+    last: int,
+    counted: Ints,
+    spans: Floats,
+) -> None:
     """Count the engaged directions around the probes `first` to `last` of an upright feed move in a
     field of heights, before it cuts.
 
@@ -104,10 +123,16 @@ def look_in_field(top: Floats, origin: Floats, pitch: float, floor: float, move:
                 # The ring's points: ahead along the direction of motion, narrowed across it; of a
                 # plunge both halves of the circle, made smaller by the margin.
                 for m in range(len(circle)):
-                    along, across = radius * circle[m, 0] + ahead, min(max(radius * circle[m, 1], -reach), reach)
+                    along, across = (
+                        radius * circle[m, 0] + ahead,
+                        min(max(radius * circle[m, 1], -reach), reach),
+                    )
                     if whole:
                         along = (1.0 - 2.0 * side) * reach * circle[m, 0]
-                    i, j = int(math.floor(ox + (along * ux - across * uy) * cell)), int(math.floor(oy + (along * uy + across * ux) * cell))
+                    i, j = (
+                        int(math.floor(ox + (along * ux - across * uy) * cell)),
+                        int(math.floor(oy + (along * uy + across * ux) * cell)),
+                    )
                     if 0 <= i < columns and 0 <= j < rows:
                         h = top[j, i]
                         if h > floor_here:
@@ -121,8 +146,18 @@ def look_in_field(top: Floats, origin: Floats, pitch: float, floor: float, move:
 
 
 @njit(cache=True, nogil=True, inline="always")
-def _in_intervals(x: float, y: float, z: float, count: Ints, low: Floats, high: Floats, origin: Floats, cell: float, rows: int,
-                  columns: int) -> bool:
+def _in_intervals(
+    x: float,
+    y: float,
+    z: float,
+    count: Ints,
+    low: Floats,
+    high: Floats,
+    origin: Floats,
+    cell: float,
+    rows: int,
+    columns: int,
+) -> bool:
     """Return whether a point lies in the sorted intervals of the z ray whose cell holds it."""
     i, j = int(math.floor((x - origin[0]) * cell)), int(math.floor((y - origin[1]) * cell))
     if not (0 <= i < columns and 0 <= j < rows):
@@ -137,8 +172,19 @@ def _in_intervals(x: float, y: float, z: float, count: Ints, low: Floats, high: 
 
 
 @njit(cache=True, nogil=True)
-def _pose(start: Floats, end: Floats, start_axis: Floats, end_axis: Floats, centre: Floats, sweep: float, t: float, tip: Floats,
-          axis: Floats, speed: Floats, turning: Floats) -> None:
+def _pose(
+    start: Floats,
+    end: Floats,
+    start_axis: Floats,
+    end_axis: Floats,
+    centre: Floats,
+    sweep: float,
+    t: float,
+    tip: Floats,
+    axis: Floats,
+    speed: Floats,
+    turning: Floats,
+) -> None:
     """Fill tip (3,) and axis (3,) of a move at its share t, and their derivatives by t: speed (3,) mm
     and turning (3,)."""
     dot, square = 0.0, 0.0
@@ -176,9 +222,28 @@ def _pose(start: Floats, end: Floats, start_axis: Floats, end_axis: Floats, cent
 
 
 @njit(cache=True, nogil=True)
-def look_in_intervals(count: Ints, low: Floats, high: Floats, origin: Floats, pitch: float, rows: int, columns: int, start: Floats,
-                      end: Floats, start_axis: Floats, end_axis: Floats, centre: Floats, sweep: float, rings: Floats, flute: Floats,
-                      circle: Floats, first: int, last: int, counted: Ints, spans: Floats) -> None:
+def look_in_intervals(
+    count: Ints,
+    low: Floats,
+    high: Floats,
+    origin: Floats,
+    pitch: float,
+    rows: int,
+    columns: int,
+    start: Floats,
+    end: Floats,
+    start_axis: Floats,
+    end_axis: Floats,
+    centre: Floats,
+    sweep: float,
+    rings: Floats,
+    flute: Floats,
+    circle: Floats,
+    first: int,
+    last: int,
+    counted: Ints,
+    spans: Floats,
+) -> None:
     """Count the engaged directions around the probes of a feed move with any axis in columns of
     intervals along z, before it cuts.
 
@@ -188,14 +253,25 @@ def look_in_intervals(count: Ints, low: Floats, high: Floats, origin: Floats, pi
     which material beside it is looked for.
     """
     margin, cell = 0.70711 * pitch, 1.0 / pitch
-    tip, axis, speed, turning, forward, across = np.empty(3), np.empty(3), np.empty(3), np.empty(3), np.empty(3), np.empty(3)
+    tip, axis, speed, turning, forward, across = (
+        np.empty(3),
+        np.empty(3),
+        np.empty(3),
+        np.empty(3),
+        np.empty(3),
+        np.empty(3),
+    )
     for probe in range(first, last):
         share = (probe - first + 1) / (last - first)
         _pose(start, end, start_axis, end_axis, centre, sweep, share, tip, axis, speed, turning)
         bottom, most = np.inf, -np.inf
         for k in range(-len(flute), RINGS):
             # First the heights along the flutes on a few meridians, for the depth; then the rings, for the angle.
-            radius, height = (flute[k + len(flute), 0], flute[k + len(flute), 1]) if k < 0 else (rings[k, 0], rings[k, 1])
+            radius, height = (
+                (flute[k + len(flute), 0], flute[k + len(flute), 1])
+                if k < 0
+                else (rings[k, 0], rings[k, 1])
+            )
             if k > 0 and (height >= rings[k - 1, 1] or most - bottom >= 2.0 * rings[k - 1, 1]):
                 break
             # Velocity of the axis at the ring's height: the part along the axis plunges, the part
@@ -220,13 +296,20 @@ def look_in_intervals(count: Ints, low: Floats, high: Floats, origin: Floats, pi
             for c in range(3):
                 forward[c] /= size
             for c in range(3):
-                across[c] = axis[(c + 1) % 3] * forward[(c + 2) % 3] - axis[(c + 2) % 3] * forward[(c + 1) % 3]
+                across[c] = (
+                    axis[(c + 1) % 3] * forward[(c + 2) % 3]
+                    - axis[(c + 2) % 3] * forward[(c + 1) % 3]
+                )
             reach, hits = max(radius - margin, 0.0), 0
             ahead = min(max(CLEAR * margin - share * size, 0.0), margin)
             step = 1 if k >= 0 else max(len(circle) // MERIDIANS, 1)
             for side in range(2 if whole else 1):
                 for m in range(0, len(circle), step):
-                    f = (1.0 - 2.0 * side) * reach * circle[m, 0] if whole else radius * circle[m, 0] + ahead
+                    f = (
+                        (1.0 - 2.0 * side) * reach * circle[m, 0]
+                        if whole
+                        else radius * circle[m, 0] + ahead
+                    )
                     g = min(max(radius * circle[m, 1], -reach), reach)
                     x = tip[0] + f * forward[0] + g * across[0] + height * axis[0]
                     y = tip[1] + f * forward[1] + g * across[1] + height * axis[1]

@@ -32,7 +32,21 @@ import numpy as np
 from numba import njit
 
 from trunnion.geometry.arrays import Floats, Ints
-from trunnion.verify.kernels.body import A0R, A0Z, A1R, A1Z, CLOSED_FIRST, CLOSED_LAST, CR, CZ, KIND, R_MAX, R, depth_in_body, support
+from trunnion.verify.kernels.body import (
+    A0R,
+    A0Z,
+    A1R,
+    A1Z,
+    CLOSED_FIRST,
+    CLOSED_LAST,
+    CR,
+    CZ,
+    KIND,
+    R_MAX,
+    R,
+    depth_in_body,
+    support,
+)
 from trunnion.verify.kernels.tool_motion import (
     END_COLUMNS,
     FLAT,
@@ -62,8 +76,17 @@ DEEP = 1.0
 
 
 @njit(cache=True, nogil=True)
-def _tangent(arcs: Floats, first: int, last: int, ax: float, ay: float, az: float, x: float, y: float,
-             z: float) -> tuple[float, float, float, float]:
+def _tangent(
+    arcs: Floats,
+    first: int,
+    last: int,
+    ax: float,
+    ay: float,
+    az: float,
+    x: float,
+    y: float,
+    z: float,
+) -> tuple[float, float, float, float]:
     """Return the signed depth (mm) of a point relative to the tip, and the outward unit normal (3) of
     the nearest side; (ax, ay, az) the unit tool axis.
 
@@ -78,7 +101,9 @@ def _tangent(arcs: Floats, first: int, last: int, ax: float, ay: float, az: floa
 
 
 @njit(cache=True, nogil=True)
-def depth_at(way: Floats, t: float, arcs: Floats, first: int, last: int, px: float, py: float, pz: float) -> float:
+def depth_at(
+    way: Floats, t: float, arcs: Floats, first: int, last: int, px: float, py: float, pz: float
+) -> float:
     """Return the depth (mm) of a point of space in a body at a share t of the block: exact, so
     attained."""
     ax, ay, az = axis_at(way, t)
@@ -87,8 +112,17 @@ def depth_at(way: Floats, t: float, arcs: Floats, first: int, last: int, px: flo
 
 
 @njit(cache=True, nogil=True)
-def _core(arcs: Floats, first: int, last: int, ax: float, ay: float, az: float, x: float, y: float,
-          z: float) -> tuple[float, float, float]:
+def _core(
+    arcs: Floats,
+    first: int,
+    last: int,
+    ax: float,
+    ay: float,
+    az: float,
+    x: float,
+    y: float,
+    z: float,
+) -> tuple[float, float, float]:
     """Return the point (relative to the tip) about which the body's nearest side is curved: an arc's
     centre ring, or the axis beside a straight flank.
 
@@ -105,7 +139,11 @@ def _core(arcs: Floats, first: int, last: int, ax: float, ay: float, az: float, 
         c1 = dr * arcs[k, A1Z] - dz * arcs[k, A1R]
         # As in `depth_in_body`: inside an arc's cone its centre counts, outside of it the flank's
         # foot.
-        if c0 >= 0.0 and c1 >= 0.0 and (dr * (arcs[k, A0R] + arcs[k, A1R]) + dz * (arcs[k, A0Z] + arcs[k, A1Z])) > 0.0:
+        if (
+            c0 >= 0.0
+            and c1 >= 0.0
+            and (dr * (arcs[k, A0R] + arcs[k, A1R]) + dz * (arcs[k, A0Z] + arcs[k, A1Z])) > 0.0
+        ):
             depth, r, up = arcs[k, R] - math.sqrt(dr * dr + dz * dz), arcs[k, CR], arcs[k, CZ]
         else:
             d0, d1 = dr * arcs[k, A0R] + dz * arcs[k, A0Z], dr * arcs[k, A1R] + dz * arcs[k, A1Z]
@@ -144,7 +182,9 @@ def _together(one: Floats, other: Floats) -> float:
             steeper = other[i] - one[i] - slope
             if steeper > 0.0:
                 reach = (value - one[i] - share * (other[i] - one[i])) / steeper
-                if reach < step or (reach == step and after >= 0 and other[i] - one[i] > other[after] - one[after]):
+                if reach < step or (
+                    reach == step and after >= 0 and other[i] - one[i] > other[after] - one[after]
+                ):
                     step, after = max(reach, 0.0), i
         share += step
         value += step * slope
@@ -176,7 +216,11 @@ def _nearest_of_triangle(p: Floats, x: float, y: float, z: float) -> tuple[float
     # Corner a, corner b, edge ab, corner c, edge ac, edge bc, face: in this order.
     if d1 <= 0.0 and d2 <= 0.0:
         return 0.0, 0.0
-    bb, bc, cc = abx * abx + aby * aby + abz * abz, abx * acx + aby * acy + abz * acz, acx * acx + acy * acy + acz * acz
+    bb, bc, cc = (
+        abx * abx + aby * aby + abz * abz,
+        abx * acx + aby * acy + abz * acz,
+        acx * acx + acy * acy + acz * acz,
+    )
     d3, d4 = d1 - bb, d2 - bc
     if d3 >= 0.0 and d4 <= d3:
         return 1.0, 0.0
@@ -199,7 +243,17 @@ def _nearest_of_triangle(p: Floats, x: float, y: float, z: float) -> tuple[float
 
 
 @njit(cache=True, nogil=True)
-def _attain(way: Floats, t: float, arcs: Floats, first: int, last: int, px: float, py: float, pz: float, found: Floats) -> None:
+def _attain(
+    way: Floats,
+    t: float,
+    arcs: Floats,
+    first: int,
+    last: int,
+    px: float,
+    py: float,
+    pz: float,
+    found: Floats,
+) -> None:
     """Raise found (4,), depth and place, to the depth of a point of space at a share of the block
     where that is deeper."""
     depth = depth_at(way, t, arcs, first, last, px, py, pz)
@@ -208,8 +262,22 @@ def _attain(way: Floats, t: float, arcs: Floats, first: int, last: int, px: floa
 
 
 @njit(cache=True, nogil=True)
-def _look(task: Floats, normal: Floats, way: Floats, arcs: Floats, first: int, last: int, enough: float, bound: float, found: Floats,
-          ends: Floats, span: Floats, six: Floats, cuts: Floats, flat: Floats) -> float:
+def _look(
+    task: Floats,
+    normal: Floats,
+    way: Floats,
+    arcs: Floats,
+    first: int,
+    last: int,
+    enough: float,
+    bound: float,
+    found: Floats,
+    ends: Floats,
+    span: Floats,
+    six: Floats,
+    cuts: Floats,
+    flat: Floats,
+) -> float:
     """Return an upper bound (mm) on the depth of a task (13,), -inf when that is settled: at most
     `enough`, or at most `bound` above what is attained.
 
@@ -245,13 +313,28 @@ def _look(task: Floats, normal: Floats, way: Floats, arcs: Floats, first: int, l
     cx, cy, cz = _core(arcs, first, last, ax, ay, az, x, y, z)
     v, w, s = _nearest_place(six, cx, cy, cz, flat)
     u, r = 1.0 - v - w, 1.0 - s
-    x = r * (u * six[0, 0] + v * six[1, 0] + w * six[2, 0]) + s * (u * six[3, 0] + v * six[4, 0] + w * six[5, 0])
-    y = r * (u * six[0, 1] + v * six[1, 1] + w * six[2, 1]) + s * (u * six[3, 1] + v * six[4, 1] + w * six[5, 1])
-    z = r * (u * six[0, 2] + v * six[1, 2] + w * six[2, 2]) + s * (u * six[3, 2] + v * six[4, 2] + w * six[5, 2])
+    x = r * (u * six[0, 0] + v * six[1, 0] + w * six[2, 0]) + s * (
+        u * six[3, 0] + v * six[4, 0] + w * six[5, 0]
+    )
+    y = r * (u * six[0, 1] + v * six[1, 1] + w * six[2, 1]) + s * (
+        u * six[3, 1] + v * six[4, 1] + w * six[5, 1]
+    )
+    z = r * (u * six[0, 2] + v * six[1, 2] + w * six[2, 2]) + s * (
+        u * six[3, 2] + v * six[4, 2] + w * six[5, 2]
+    )
     least = _cut(arcs, first, last, ax, ay, az, x, y, z, six, cuts[2])
     a, b, c = CORNERS, CORNERS + 3, CORNERS + 6
-    _attain(way, task[T_FROM] + s * (task[T_TO] - task[T_FROM]), arcs, first, last, u * task[a] + v * task[b] + w * task[c],
-            u * task[a + 1] + v * task[b + 1] + w * task[c + 1], u * task[a + 2] + v * task[b + 2] + w * task[c + 2], found)
+    _attain(
+        way,
+        task[T_FROM] + s * (task[T_TO] - task[T_FROM]),
+        arcs,
+        first,
+        last,
+        u * task[a] + v * task[b] + w * task[c],
+        u * task[a + 1] + v * task[b + 1] + w * task[c + 1],
+        u * task[a + 2] + v * task[b + 2] + w * task[c + 2],
+        found,
+    )
     settled = max(enough, found[0] + bound) - drift
     upper = min(upper, least, _together(cuts[0], cuts[2]), _together(cuts[1], cuts[2]))
     if upper <= settled:
@@ -280,7 +363,17 @@ def _see(task: Floats, ends: Floats, span: Floats, six: Floats) -> float:
 
 
 @njit(cache=True, nogil=True)
-def _half_space(arcs: Floats, first: int, last: int, ax: float, ay: float, az: float, normal: Floats, six: Floats, out: Floats) -> float:
+def _half_space(
+    arcs: Floats,
+    first: int,
+    last: int,
+    ax: float,
+    ay: float,
+    az: float,
+    normal: Floats,
+    six: Floats,
+    out: Floats,
+) -> float:
     """Fill out (6,) with s(n) - n . p (mm) at six points for n against a triangle's unit normal, and
     return the greatest.
 
@@ -298,7 +391,9 @@ def _half_space(arcs: Floats, first: int, last: int, ax: float, ay: float, az: f
 
 
 @njit(cache=True, nogil=True)
-def _nearest_place(six: Floats, cx: float, cy: float, cz: float, flat: Floats) -> tuple[float, float, float]:
+def _nearest_place(
+    six: Floats, cx: float, cy: float, cz: float, flat: Floats
+) -> tuple[float, float, float]:
     """Return the place (v, w) in the triangle and the share s of the span at which it is nearest to a
     point.
 
@@ -325,8 +420,19 @@ def _nearest_place(six: Floats, cx: float, cy: float, cz: float, flat: Floats) -
 
 
 @njit(cache=True, nogil=True)
-def _cut(arcs: Floats, first: int, last: int, ax: float, ay: float, az: float, x: float, y: float, z: float, six: Floats,
-         out: Floats) -> float:
+def _cut(
+    arcs: Floats,
+    first: int,
+    last: int,
+    ax: float,
+    ay: float,
+    az: float,
+    x: float,
+    y: float,
+    z: float,
+    six: Floats,
+    out: Floats,
+) -> float:
     """Fill out (6,) with the tangent plane of the depth at a point, at six points (mm), and return its
     greatest value: D(p) - n . (q - p)."""
     depth, nx, ny, nz = _tangent(arcs, first, last, ax, ay, az, x, y, z)
@@ -381,9 +487,27 @@ def _concede(task: Floats, found: Floats) -> None:
 
 
 @njit(cache=True, nogil=True)
-def enter_triangle(corners: Floats, normal: Floats, way: Floats, t0: float, t1: float, arcs: Floats, first: int, last: int, enough: float,
-                   bound: float, settle: float, found: Floats, tasks: Floats, task: Floats, ends: Floats, span: Floats, six: Floats,
-                   cuts: Floats, flat: Floats) -> None:
+def enter_triangle(
+    corners: Floats,
+    normal: Floats,
+    way: Floats,
+    t0: float,
+    t1: float,
+    arcs: Floats,
+    first: int,
+    last: int,
+    enough: float,
+    bound: float,
+    settle: float,
+    found: Floats,
+    tasks: Floats,
+    task: Floats,
+    ends: Floats,
+    span: Floats,
+    six: Floats,
+    cuts: Floats,
+    flat: Floats,
+) -> None:
     """Raise found (4,), depth (mm) and place, to the deepest that a body enters a triangle between two
     shares of a block.
 
@@ -393,9 +517,27 @@ def enter_triangle(corners: Floats, normal: Floats, way: Floats, t0: float, t1: 
     searched for. tasks (k, 13) wait; where they have no room for both halves of one, its bound
     counts as the depth: that errs deep. The rest is workspace, see `_look`.
     """
-    tasks[0, CORNERS:CORNERS + 9] = corners
+    tasks[0, CORNERS : CORNERS + 9] = corners
     tasks[0, T_FROM], tasks[0, T_TO] = t0, t1
-    if _look(tasks[0], normal, way, arcs, first, last, enough, bound, found, ends, span, six, cuts, flat) == -np.inf:
+    if (
+        _look(
+            tasks[0],
+            normal,
+            way,
+            arcs,
+            first,
+            last,
+            enough,
+            bound,
+            found,
+            ends,
+            span,
+            six,
+            cuts,
+            flat,
+        )
+        == -np.inf
+    ):
         return
     # Depth first. Invariant: all that may be deeper than max(enough, found + bound) is in
     # tasks[:top].
@@ -409,8 +551,38 @@ def enter_triangle(corners: Floats, normal: Floats, way: Floats, t0: float, t1: 
             _concede(task, found)
             continue
         _halve(task, tasks[top], tasks[top + 1])
-        one = _look(tasks[top], normal, way, arcs, first, last, enough, bound, found, ends, span, six, cuts, flat)
-        other = _look(tasks[top + 1], normal, way, arcs, first, last, enough, bound, found, ends, span, six, cuts, flat)
+        one = _look(
+            tasks[top],
+            normal,
+            way,
+            arcs,
+            first,
+            last,
+            enough,
+            bound,
+            found,
+            ends,
+            span,
+            six,
+            cuts,
+            flat,
+        )
+        other = _look(
+            tasks[top + 1],
+            normal,
+            way,
+            arcs,
+            first,
+            last,
+            enough,
+            bound,
+            found,
+            ends,
+            span,
+            six,
+            cuts,
+            flat,
+        )
         # The more promising half is looked at next.
         if one > other:
             task[:] = tasks[top]
@@ -423,7 +595,9 @@ def enter_triangle(corners: Floats, normal: Floats, way: Floats, t0: float, t1: 
 
 
 @njit(cache=True, nogil=True)
-def box_depth(box: Floats, ends: Floats, span: Floats, arcs: Floats, first: int, last: int) -> float:
+def box_depth(
+    box: Floats, ends: Floats, span: Floats, arcs: Floats, first: int, last: int
+) -> float:
     """Return an upper bound (mm) on the depth of any point of a box, centre (3,) and half sides (3,),
     in a body during a span.
 
@@ -433,7 +607,9 @@ def box_depth(box: Floats, ends: Floats, span: Floats, arcs: Floats, first: int,
     ax, ay, az = span[S_AXIS], span[S_AXIS + 1], span[S_AXIS + 2]
     x0, y0, z0 = seen(ends, 0, box[0], box[1], box[2])
     x1, y1, z1 = seen(ends, 1, box[0], box[1], box[2])
-    depth, nx, ny, nz = _tangent(arcs, first, last, ax, ay, az, 0.5 * (x0 + x1), 0.5 * (y0 + y1), 0.5 * (z0 + z1))
+    depth, nx, ny, nz = _tangent(
+        arcs, first, last, ax, ay, az, 0.5 * (x0 + x1), 0.5 * (y0 + y1), 0.5 * (z0 + z1)
+    )
     depth += 0.5 * abs(nx * (x1 - x0) + ny * (y1 - y0) + nz * (z1 - z0))
     if span[S_ANGLE] == 0.0:
         return depth + abs(nx) * box[3] + abs(ny) * box[4] + abs(nz) * box[5] + sag_of(span, 0.0)
@@ -442,18 +618,49 @@ def box_depth(box: Floats, ends: Floats, span: Floats, arcs: Floats, first: int,
     most = 0.0
     for e in range(2):
         m = ends[e]
-        most = max(most, abs(m[0] * nx + m[3] * ny + m[6] * nz) * box[3] + abs(m[1] * nx + m[4] * ny + m[7] * nz) * box[4]
-                   + abs(m[2] * nx + m[5] * ny + m[8] * nz) * box[5])
+        most = max(
+            most,
+            abs(m[0] * nx + m[3] * ny + m[6] * nz) * box[3]
+            + abs(m[1] * nx + m[4] * ny + m[7] * nz) * box[4]
+            + abs(m[2] * nx + m[5] * ny + m[8] * nz) * box[5],
+        )
     half = math.sqrt(box[3] * box[3] + box[4] * box[4] + box[5] * box[5])
     far = math.sqrt(max(x0 * x0 + y0 * y0 + z0 * z0, x1 * x1 + y1 * y1 + z1 * z1)) + half
     return depth + most + sag_of(span, far)
 
 
 @njit(cache=True, nogil=True)
-def contact_loop(first: int, last: int, rows: Ints, start: Floats, end: Floats, axis: Floats, end_axis: Floats, centre: Floats,
-                 sweep: Floats, tool: Ints, arcs: Floats, pieces: Floats, piece_start: Ints, boxes: Floats, skip: Ints, leaves: Ints,
-                 node_face: Ints, corners: Floats, normals: Floats, face: Ints, n_faces: int, bound: Floats, enough: Floats,
-                 settle: float, depth: Floats, which: Ints, place: Floats, face_depth: Floats, face_move: Ints) -> None:
+def contact_loop(
+    first: int,
+    last: int,
+    rows: Ints,
+    start: Floats,
+    end: Floats,
+    axis: Floats,
+    end_axis: Floats,
+    centre: Floats,
+    sweep: Floats,
+    tool: Ints,
+    arcs: Floats,
+    pieces: Floats,
+    piece_start: Ints,
+    boxes: Floats,
+    skip: Ints,
+    leaves: Ints,
+    node_face: Ints,
+    corners: Floats,
+    normals: Floats,
+    face: Ints,
+    n_faces: int,
+    bound: Floats,
+    enough: Floats,
+    settle: float,
+    depth: Floats,
+    which: Ints,
+    place: Floats,
+    face_depth: Floats,
+    face_move: Ints,
+) -> None:
     """Measure the moves of rows[first:last] against all triangles.
 
     start, end, axis, end_axis, centre (n, 3), sweep (n,) rad, tool (n,): moves; arcs, pieces,
@@ -470,7 +677,11 @@ def contact_loop(first: int, last: int, rows: Ints, start: Floats, end: Floats, 
     near_ends, near = np.zeros((2, END_COLUMNS)), np.zeros(SPAN_COLUMNS)
     tasks, task, found = np.zeros((TASKS, TASK_COLUMNS)), np.zeros(TASK_COLUMNS), np.zeros(4)
     six, cuts, flat = np.zeros((6, 3)), np.zeros((3, 6)), np.zeros((3, 3))
-    best, best_place, stamp = np.full((n_faces, 2), -np.inf), np.zeros((n_faces, 2, 3)), np.full(n_faces, -1)
+    best, best_place, stamp = (
+        np.full((n_faces, 2), -np.inf),
+        np.zeros((n_faces, 2, 3)),
+        np.full(n_faces, -1),
+    )
     touched = np.zeros(n_faces, np.int64)
     for k in range(first, last):
         n = rows[k]
@@ -503,8 +714,27 @@ def contact_loop(first: int, last: int, rows: Ints, start: Floats, end: Floats, 
                         found[0] = before = best[f, column]
                         if before >= DEEP:
                             continue
-                        enter_triangle(corners[m], normals[m], way, q / count, (q + 1) / count, arcs, a, b, enough[k], bound[k],
-                                       min(settle, DEEP), found, tasks, task, near_ends, near, six, cuts, flat)
+                        enter_triangle(
+                            corners[m],
+                            normals[m],
+                            way,
+                            q / count,
+                            (q + 1) / count,
+                            arcs,
+                            a,
+                            b,
+                            enough[k],
+                            bound[k],
+                            min(settle, DEEP),
+                            found,
+                            tasks,
+                            task,
+                            near_ends,
+                            near,
+                            six,
+                            cuts,
+                            flat,
+                        )
                         if found[0] > before:
                             best[f, column] = found[0]
                             best_place[f, column] = found[1:]

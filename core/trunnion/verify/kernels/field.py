@@ -32,13 +32,23 @@ import numpy as np
 from numba import njit
 
 from trunnion.geometry.arrays import Bools, Floats, Ints
-from trunnion.verify.kernels.body import CLOSED_FIRST, CLOSED_LAST, R_MAX, Z_HIGH, Z_LOW, depth_in_body, heights_at
+from trunnion.verify.kernels.body import (
+    CLOSED_FIRST,
+    CLOSED_LAST,
+    R_MAX,
+    Z_HIGH,
+    Z_LOW,
+    depth_in_body,
+    heights_at,
+)
 from trunnion.verify.kernels.body import FIRST as PIECE_FIRST
 from trunnion.verify.kernels.body import LAST as PIECE_LAST
 from trunnion.verify.kernels.engagement import look_in_field
 
 # Columns of a move, as in `kernels/strips.py`; the engines share the layout of their input, not their loops.
-KIND, X0, Y0, X1, Y1, CX, CY, ARC_RADIUS, MX, MY, COS_HALF, START_ANGLE, SWEEP, Z_START, Z_END = range(15)
+KIND, X0, Y0, X1, Y1, CX, CY, ARC_RADIUS, MX, MY, COS_HALF, START_ANGLE, SWEEP, Z_START, Z_END = (
+    range(15)
+)
 # Columns of a tool's profile, see `verify/profile.py`.
 RADIUS, CORNER, OPEN, PLAIN, FIRST, LAST = range(6)
 STILL = 1e-9
@@ -63,7 +73,9 @@ def _arc_square(qx: float, qy: float, move: Floats) -> float:
 
 
 @njit(cache=True, nogil=True, inline="always")
-def _segment_square(qx: float, qy: float, x0: float, y0: float, dx: float, dy: float, square: float) -> float:
+def _segment_square(
+    qx: float, qy: float, x0: float, y0: float, dx: float, dy: float, square: float
+) -> float:
     """Return the squared plan distance (mm2) of a point to a segment from (x0, y0) by (dx, dy),
     `square` its squared length; 0 makes it a point."""
     t = 0.0
@@ -83,7 +95,14 @@ def formed_height(square: float, profile: Floats, arcs: Floats, pieces: Floats) 
     rho, best = math.sqrt(square), np.inf
     for k in range(int(profile[FIRST]), int(profile[LAST])):
         if rho < pieces[k, R_MAX]:
-            low, high = heights_at(arcs, int(pieces[k, PIECE_FIRST]), int(pieces[k, PIECE_LAST]), pieces[k, Z_LOW], pieces[k, Z_HIGH], rho)
+            low, high = heights_at(
+                arcs,
+                int(pieces[k, PIECE_FIRST]),
+                int(pieces[k, PIECE_LAST]),
+                pieces[k, Z_LOW],
+                pieces[k, Z_HIGH],
+                rho,
+            )
             if low <= high:
                 best = min(best, low)
     return best
@@ -136,8 +155,20 @@ def _box(move: Floats, radius: float) -> tuple[float, float, float, float]:
 
 
 @njit(cache=True, nogil=True)
-def _cut_row_plain(row: Floats, px: float, py: float, pitch: float, dx: float, dy: float, inverse: float, z: float, floor: float,
-                   upper: float, radius: float, corner: float) -> tuple[float, int]:
+def _cut_row_plain(
+    row: Floats,
+    px: float,
+    py: float,
+    pitch: float,
+    dx: float,
+    dy: float,
+    inverse: float,
+    z: float,
+    floor: float,
+    upper: float,
+    radius: float,
+    corner: float,
+) -> tuple[float, int]:
     """Lower the cells of a row under a plain cutter on a level line; return the removed height (mm,
     summed) and how many columns were left standing.
 
@@ -160,7 +191,9 @@ def _cut_row_plain(row: Floats, px: float, py: float, pitch: float, dx: float, d
                 cut = bottom
                 if d > flat:
                     out = math.sqrt(d) - inner
-                    cut = max(z + (corner - math.sqrt(max(corner * corner - out * out, 0.0))), floor)
+                    cut = max(
+                        z + (corner - math.sqrt(max(corner * corner - out * out, 0.0))), floor
+                    )
                 if cut < h:
                     if h > upper:
                         stands += 1
@@ -171,8 +204,21 @@ def _cut_row_plain(row: Floats, px: float, py: float, pitch: float, dx: float, d
 
 
 @njit(cache=True, nogil=True)
-def _cut_row_formed(row: Floats, px: float, py: float, pitch: float, dx: float, dy: float, inverse: float, z: float, floor: float,
-                    upper: float, profile: Floats, arcs: Floats, pieces: Floats) -> tuple[float, int]:
+def _cut_row_formed(
+    row: Floats,
+    px: float,
+    py: float,
+    pitch: float,
+    dx: float,
+    dy: float,
+    inverse: float,
+    z: float,
+    floor: float,
+    upper: float,
+    profile: Floats,
+    arcs: Floats,
+    pieces: Floats,
+) -> tuple[float, int]:
     """Lower the cells of a row under a cutter of any form on a level line; arguments and results as
     for `_cut_row_plain`."""
     removed, stands = 0.0, 0
@@ -196,8 +242,19 @@ def _cut_row_formed(row: Floats, px: float, py: float, pitch: float, dx: float, 
 
 
 @njit(cache=True, nogil=True, fastmath={"reassoc", "nsz", "contract", "nnan"})
-def _cut_row_ball(row: Floats, px: float, py: float, pitch: float, dx: float, dy: float, inverse: float, z: float, floor: float,
-                  upper: float, radius: float) -> tuple[float, int]:
+def _cut_row_ball(
+    row: Floats,
+    px: float,
+    py: float,
+    pitch: float,
+    dx: float,
+    dy: float,
+    inverse: float,
+    z: float,
+    floor: float,
+    upper: float,
+    radius: float,
+) -> tuple[float, int]:
     """Lower the cells of a row under a ball end on a level line, as `_cut_row_plain` does; without
     branches, so that it is vectorised.
 
@@ -226,8 +283,18 @@ def _cut_row_ball(row: Floats, px: float, py: float, pitch: float, dx: float, dy
 
 
 @njit(cache=True, nogil=True, inline="always")
-def _capsule_row(y: float, x0: float, y0: float, x1: float, y1: float, radius: float, sx: float, sy: float, inv_dy: float,
-                 dx: float) -> tuple[float, float]:
+def _capsule_row(
+    y: float,
+    x0: float,
+    y0: float,
+    x1: float,
+    y1: float,
+    radius: float,
+    sx: float,
+    sy: float,
+    inv_dy: float,
+    dx: float,
+) -> tuple[float, float]:
     """Return the x range in which the row at y meets a disc swept along a segment (a capsule); low >
     high where it does not.
 
@@ -257,8 +324,22 @@ def _capsule_row(y: float, x0: float, y0: float, x1: float, y1: float, radius: f
 
 
 @njit(cache=True, nogil=True)
-def _cut_level_line(top: Floats, origin: Floats, pitch: float, floor: float, x0: float, y0: float, x1: float, y1: float, z: float,
-                    upper: float, joined: bool, profile: Floats, arcs: Floats, pieces: Floats) -> tuple[float, int]:
+def _cut_level_line(
+    top: Floats,
+    origin: Floats,
+    pitch: float,
+    floor: float,
+    x0: float,
+    y0: float,
+    x1: float,
+    y1: float,
+    z: float,
+    upper: float,
+    joined: bool,
+    profile: Floats,
+    arcs: Floats,
+    pieces: Floats,
+) -> tuple[float, int]:
     """Cut a level line, or a standing or plunging cutter at its lowest; return the removed height (mm,
     summed) and how many columns were left standing.
 
@@ -281,7 +362,10 @@ def _cut_level_line(top: Floats, origin: Floats, pitch: float, floor: float, x0:
     removed, stands = 0.0, 0
     columns, cell, left = top.shape[1], 1.0 / pitch, origin[0] + 0.5 * pitch
     x = left - x0
-    for j in range(first_cell(min(y0, y1) - radius, origin[1], pitch), last_cell(max(y0, y1) + radius, origin[1], pitch, top.shape[0]) + 1):
+    for j in range(
+        first_cell(min(y0, y1) - radius, origin[1], pitch),
+        last_cell(max(y0, y1) + radius, origin[1], pitch, top.shape[0]) + 1,
+    ):
         y = origin[1] + (j + 0.5) * pitch
         py = y - y0
         low, high = _capsule_row(y, x0, y0, x1, y1, radius, sx, sy, inv_dy, dx)
@@ -297,33 +381,56 @@ def _cut_level_line(top: Floats, origin: Floats, pitch: float, floor: float, x0:
         if low > high:
             continue
         # One cell more on each side than the range holds: the row functions decide by distance.
-        a, b = max(int(math.floor((low - left) * cell)), 0), min(int(math.ceil((high - left) * cell)), columns - 1)
+        a, b = (
+            max(int(math.floor((low - left) * cell)), 0),
+            min(int(math.ceil((high - left) * cell)), columns - 1),
+        )
         # The cells from c to d lie under the level end at the start and are done; c > d: none.
         c, d = b + 1, b
         gap = level * level - py * py
         if gap > SHRINK:
             half = math.sqrt(gap) - SHRINK
-            c, d = int(math.ceil((x0 - half - left) * cell)), int(math.floor((x0 + half - left) * cell))
+            c, d = (
+                int(math.ceil((x0 - half - left) * cell)),
+                int(math.floor((x0 + half - left) * cell)),
+            )
             if c > d:
                 c, d = b + 1, b
         for side in range(2):
             p, q = (a, min(b, c - 1)) if side == 0 else (max(a, d + 1), b)
             if p > q:
                 continue
-            row, px = top[j, p:q + 1], x + p * pitch
+            row, px = top[j, p : q + 1], x + p * pitch
             if ball:
                 r, s = _cut_row_ball(row, px, py, pitch, dx, dy, inverse, z, floor, upper, radius)
             elif plain:
-                r, s = _cut_row_plain(row, px, py, pitch, dx, dy, inverse, z, floor, upper, radius, corner)
+                r, s = _cut_row_plain(
+                    row, px, py, pitch, dx, dy, inverse, z, floor, upper, radius, corner
+                )
             else:
-                r, s = _cut_row_formed(row, px, py, pitch, dx, dy, inverse, z, floor, upper, profile, arcs, pieces)
+                r, s = _cut_row_formed(
+                    row, px, py, pitch, dx, dy, inverse, z, floor, upper, profile, arcs, pieces
+                )
             removed, stands = removed + r, stands + s
     return removed, stands
 
 
 @njit(cache=True, nogil=True)
-def _cut_arc_cells(row: Floats, first: int, last: int, left: float, y: float, pitch: float, move: Floats, z: float, floor: float,
-                   upper: float, profile: Floats, arcs: Floats, pieces: Floats) -> tuple[float, int]:
+def _cut_arc_cells(
+    row: Floats,
+    first: int,
+    last: int,
+    left: float,
+    y: float,
+    pitch: float,
+    move: Floats,
+    z: float,
+    floor: float,
+    upper: float,
+    profile: Floats,
+    arcs: Floats,
+    pieces: Floats,
+) -> tuple[float, int]:
     """Lower cells `first` to `last` of a row under a level arc; results as for `_cut_row_plain`. left:
     x of the row's first cell centre, y of the row."""
     removed, stands = 0.0, 0
@@ -348,8 +455,18 @@ def _cut_arc_cells(row: Floats, first: int, last: int, left: float, y: float, pi
 
 
 @njit(cache=True, nogil=True)
-def _cut_level_arc(top: Floats, origin: Floats, pitch: float, floor: float, move: Floats, z: float, upper: float, profile: Floats,
-                   arcs: Floats, pieces: Floats) -> tuple[float, int]:
+def _cut_level_arc(
+    top: Floats,
+    origin: Floats,
+    pitch: float,
+    floor: float,
+    move: Floats,
+    z: float,
+    upper: float,
+    profile: Floats,
+    arcs: Floats,
+    pieces: Floats,
+) -> tuple[float, int]:
     """Cut a level arc: in each row of its box, the cells between the outer and the inner circle of its
     rim; results as for `_cut_row_plain`.
 
@@ -362,7 +479,9 @@ def _cut_level_arc(top: Floats, origin: Floats, pitch: float, floor: float, move
     outer, hollow = move[ARC_RADIUS] + radius, max(move[ARC_RADIUS] - radius, 0.0)
     i0, i1 = first_cell(x0, origin[0], pitch), last_cell(x1, origin[0], pitch, top.shape[1])
     removed, stands = 0.0, 0
-    for j in range(first_cell(y0, origin[1], pitch), last_cell(y1, origin[1], pitch, top.shape[0]) + 1):
+    for j in range(
+        first_cell(y0, origin[1], pitch), last_cell(y1, origin[1], pitch, top.shape[0]) + 1
+    ):
         y = origin[1] + (j + 0.5) * pitch
         py = y - move[CY]
         half = math.sqrt(max(outer * outer - py * py, 0.0))
@@ -371,12 +490,31 @@ def _cut_level_arc(top: Floats, origin: Floats, pitch: float, floor: float, move
         gap = hollow * hollow - py * py
         if gap > SHRINK:
             half = math.sqrt(gap) - SHRINK
-            c, d = int(math.ceil((move[CX] - half - left) / pitch)), int(math.floor((move[CX] + half - left) / pitch))
+            c, d = (
+                int(math.ceil((move[CX] - half - left) / pitch)),
+                int(math.floor((move[CX] + half - left) / pitch)),
+            )
             if c <= d:
-                r, s = _cut_arc_cells(top[j], a, min(b, c - 1), left, y, pitch, move, z, floor, upper, profile, arcs, pieces)
+                r, s = _cut_arc_cells(
+                    top[j],
+                    a,
+                    min(b, c - 1),
+                    left,
+                    y,
+                    pitch,
+                    move,
+                    z,
+                    floor,
+                    upper,
+                    profile,
+                    arcs,
+                    pieces,
+                )
                 removed, stands = removed + r, stands + s
                 a = max(a, d + 1)
-        r, s = _cut_arc_cells(top[j], a, b, left, y, pitch, move, z, floor, upper, profile, arcs, pieces)
+        r, s = _cut_arc_cells(
+            top[j], a, b, left, y, pitch, move, z, floor, upper, profile, arcs, pieces
+        )
         removed, stands = removed + r, stands + s
     return removed, stands
 
@@ -418,7 +556,9 @@ def _steepness(wanted: float, across: float, inner: float, corner: float) -> flo
             low = p
         if abs(excess) <= 1e-10 * (1.0 + wanted) or high - low <= 1e-13 * high:
             return p
-        slope = seen + (p * across * across * corner * q * q * q / (rho**3 * seen) if seen > 0.0 else 1.0)
+        slope = seen + (
+            p * across * across * corner * q * q * q / (rho**3 * seen) if seen > 0.0 else 1.0
+        )
         p -= excess / slope
         if not low < p < high:
             p = 0.5 * (low + high)
@@ -426,7 +566,15 @@ def _steepness(wanted: float, across: float, inner: float, corner: float) -> flo
 
 
 @njit(cache=True, nogil=True)
-def _formed_on_slope(across: float, low: float, high: float, slope: float, profile: Floats, arcs: Floats, pieces: Floats) -> float:
+def _formed_on_slope(
+    across: float,
+    low: float,
+    high: float,
+    slope: float,
+    profile: Floats,
+    arcs: Floats,
+    pieces: Floats,
+) -> float:
     """Return the least of slope w + g(sqrt(across^2 + w^2)) (mm) over w from `low` to `high`, for a
     cutter of any form; infinite where it never covers the column.
 
@@ -447,14 +595,24 @@ def _formed_on_slope(across: float, low: float, high: float, slope: float, profi
         p, q = int(pieces[k, PIECE_FIRST]), int(pieces[k, PIECE_LAST])
         for _ in range(48):
             c, d = a + 0.382 * (b - a), a + 0.618 * (b - a)
-            hc = heights_at(arcs, p, q, pieces[k, Z_LOW], pieces[k, Z_HIGH], math.sqrt(across * across + c * c))[0]
-            hd = heights_at(arcs, p, q, pieces[k, Z_LOW], pieces[k, Z_HIGH], math.sqrt(across * across + d * d))[0]
+            hc = heights_at(
+                arcs, p, q, pieces[k, Z_LOW], pieces[k, Z_HIGH], math.sqrt(across * across + c * c)
+            )[0]
+            hd = heights_at(
+                arcs, p, q, pieces[k, Z_LOW], pieces[k, Z_HIGH], math.sqrt(across * across + d * d)
+            )[0]
             if slope * c + hc < slope * d + hd:
                 b = d
             else:
                 a = c
         w = 0.5 * (a + b)
-        best = min(best, slope * w + heights_at(arcs, p, q, pieces[k, Z_LOW], pieces[k, Z_HIGH], math.sqrt(across * across + w * w))[0])
+        best = min(
+            best,
+            slope * w
+            + heights_at(
+                arcs, p, q, pieces[k, Z_LOW], pieces[k, Z_HIGH], math.sqrt(across * across + w * w)
+            )[0],
+        )
     return best
 
 
@@ -472,7 +630,15 @@ def _rise(w: float, square: float, inner: float, corner: float) -> float:
 
 
 @njit(cache=True, nogil=True)
-def _lowest_on_slope(along: float, across: float, length: float, z0: float, slope: float, radius: float, corner: float) -> float:
+def _lowest_on_slope(
+    along: float,
+    across: float,
+    length: float,
+    z0: float,
+    slope: float,
+    radius: float,
+    corner: float,
+) -> float:
     """Return the lowest height (mm) of a plain cutter over a column while it moves along a slope;
     infinite when it never covers it.
 
@@ -512,8 +678,23 @@ def _lowest_on_slope(along: float, across: float, length: float, z0: float, slop
 
 
 @njit(cache=True, nogil=True)
-def _cut_slope(top: Floats, origin: Floats, pitch: float, floor: float, x0: float, y0: float, z0: float, x1: float, y1: float, z1: float,
-               upper: float, joined: bool, profile: Floats, arcs: Floats, pieces: Floats) -> tuple[float, int]:
+def _cut_slope(
+    top: Floats,
+    origin: Floats,
+    pitch: float,
+    floor: float,
+    x0: float,
+    y0: float,
+    z0: float,
+    x1: float,
+    y1: float,
+    z1: float,
+    upper: float,
+    joined: bool,
+    profile: Floats,
+    arcs: Floats,
+    pieces: Floats,
+) -> tuple[float, int]:
     """Cut a sloped line; results as for `_cut_row_plain`.
 
     A column behind the start of a joined line that climbs is done: the cutter only moves up and
@@ -530,14 +711,17 @@ def _cut_slope(top: Floats, origin: Floats, pitch: float, floor: float, x0: floa
     # work.
     lowest, removed, stands = max(min(z0, z1), floor), 0.0, 0
     left = origin[0] + 0.5 * pitch
-    for j in range(first_cell(min(y0, y1) - radius, origin[1], pitch), last_cell(max(y0, y1) + radius, origin[1], pitch, top.shape[0]) + 1):
+    for j in range(
+        first_cell(min(y0, y1) - radius, origin[1], pitch),
+        last_cell(max(y0, y1) + radius, origin[1], pitch, top.shape[0]) + 1,
+    ):
         y = origin[1] + (j + 0.5) * pitch
         low, high = _capsule_row(y, x0, y0, x1, y1, radius, sx, sy, inv_dy, dx)
         if low > high:
             continue
         py = y - y0
         first = max(int(math.floor((low - left) / pitch)), 0)
-        row = top[j, first:min(int(math.ceil((high - left) / pitch)), top.shape[1] - 1) + 1]
+        row = top[j, first : min(int(math.ceil((high - left) / pitch)), top.shape[1] - 1) + 1]
         for i in range(len(row)):
             h = row[i]
             if h <= lowest:
@@ -550,7 +734,12 @@ def _cut_slope(top: Floats, origin: Floats, pitch: float, floor: float, x0: floa
                 cut = max(_lowest_on_slope(along, across, length, z0, slope, radius, corner), floor)
             else:
                 low, high = -along, length - along
-                cut = max(z0 + along * slope + _formed_on_slope(abs(across), low, high, slope, profile, arcs, pieces), floor)
+                cut = max(
+                    z0
+                    + along * slope
+                    + _formed_on_slope(abs(across), low, high, slope, profile, arcs, pieces),
+                    floor,
+                )
             if cut < h:
                 if h > upper:
                     stands += 1
@@ -561,7 +750,15 @@ def _cut_slope(top: Floats, origin: Floats, pitch: float, floor: float, x0: floa
 
 
 @njit(cache=True, nogil=True)
-def _cut_helix(top: Floats, origin: Floats, pitch: float, floor: float, move: Floats, radius: float, opening: float) -> tuple[float, int]:
+def _cut_helix(
+    top: Floats,
+    origin: Floats,
+    pitch: float,
+    floor: float,
+    move: Floats,
+    radius: float,
+    opening: float,
+) -> tuple[float, int]:
     """Cut a helix by a level disc of a radius (mm), exactly; results as for `_cut_row_plain`.
 
     A column at the distance rho from the helix's centre is covered while the tip's angle is within
@@ -576,7 +773,9 @@ def _cut_helix(top: Floats, origin: Floats, pitch: float, floor: float, move: Fl
     turns = int(math.floor(sweep / math.tau)) + 1
     lowest, removed, stands = max(min(z0, z1), floor), 0.0, 0
     i0, i1 = first_cell(x0, origin[0], pitch), last_cell(x1, origin[0], pitch, top.shape[1])
-    for j in range(first_cell(y0, origin[1], pitch), last_cell(y1, origin[1], pitch, top.shape[0]) + 1):
+    for j in range(
+        first_cell(y0, origin[1], pitch), last_cell(y1, origin[1], pitch, top.shape[0]) + 1
+    ):
         y = origin[1] + (j + 0.5) * pitch - move[CY]
         for i in range(i0, i1 + 1):
             h = top[j, i]
@@ -592,7 +791,12 @@ def _cut_helix(top: Floats, origin: Floats, pitch: float, floor: float, move: Fl
             if rho + arm < radius:
                 z = min(z0, z1)
             else:
-                half = math.acos(min(max((rho * rho + arm * arm - radius * radius) / (2.0 * rho * arm), -1.0), 1.0))
+                half = math.acos(
+                    min(
+                        max((rho * rho + arm * arm - radius * radius) / (2.0 * rho * arm), -1.0),
+                        1.0,
+                    )
+                )
                 # The column's angle from the start in the direction of travel, 0 to a turn.
                 nearest = (turn * (math.atan2(y, x) - move[START_ANGLE])) % math.tau
                 for round_ in range(-1, turns + 1):
@@ -611,8 +815,18 @@ def _cut_helix(top: Floats, origin: Floats, pitch: float, floor: float, move: Fl
 
 
 @njit(cache=True, nogil=True)
-def cut_move(top: Floats, origin: Floats, pitch: float, floor: float, move: Floats, joined: bool, profile: Floats, arcs: Floats,
-             pieces: Floats, chord: float) -> tuple[float, int]:
+def cut_move(
+    top: Floats,
+    origin: Floats,
+    pitch: float,
+    floor: float,
+    move: Floats,
+    joined: bool,
+    profile: Floats,
+    arcs: Floats,
+    pieces: Floats,
+    chord: float,
+) -> tuple[float, int]:
     """Cut one upright feed move into the field; return the removed height (mm) summed over columns,
     and how many columns were left standing.
 
@@ -631,10 +845,40 @@ def cut_move(top: Floats, origin: Floats, pitch: float, floor: float, move: Floa
     still = line and dx * dx + dy * dy <= STILL * STILL
     if still or z0 == z1:
         # On its way down a cutter passes all of a column up to where it came from.
-        return _cut_level_line(top, origin, pitch, floor, move[X0], move[Y0], move[X1], move[Y1], lowest, max(z0, z1) + profile[OPEN],
-                               joined and not still, profile, arcs, pieces)
+        return _cut_level_line(
+            top,
+            origin,
+            pitch,
+            floor,
+            move[X0],
+            move[Y0],
+            move[X1],
+            move[Y1],
+            lowest,
+            max(z0, z1) + profile[OPEN],
+            joined and not still,
+            profile,
+            arcs,
+            pieces,
+        )
     if line:
-        return _cut_slope(top, origin, pitch, floor, move[X0], move[Y0], z0, move[X1], move[Y1], z1, upper, joined, profile, arcs, pieces)
+        return _cut_slope(
+            top,
+            origin,
+            pitch,
+            floor,
+            move[X0],
+            move[Y0],
+            z0,
+            move[X1],
+            move[Y1],
+            z1,
+            upper,
+            joined,
+            profile,
+            arcs,
+            pieces,
+        )
     removed, stands, level = 0.0, 0, profile[RADIUS] - profile[CORNER]
     if profile[PLAIN] != 0.0 and level > 0.0 and move[ARC_RADIUS] > STILL:
         # The rounded rim then finds little left to do under the level part.
@@ -648,10 +892,29 @@ def cut_move(top: Floats, origin: Floats, pitch: float, floor: float, move: Floa
     for k in range(1, count + 1):
         t = k / count
         angle = move[START_ANGLE] + t * move[SWEEP]
-        qx, qy = move[CX] + move[ARC_RADIUS] * math.cos(angle), move[CY] + move[ARC_RADIUS] * math.sin(angle)
+        qx, qy = (
+            move[CX] + move[ARC_RADIUS] * math.cos(angle),
+            move[CY] + move[ARC_RADIUS] * math.sin(angle),
+        )
         qz = z0 + t * (z1 - z0)
         if (qx - px) ** 2 + (qy - py) ** 2 > STILL * STILL:
-            r, s = _cut_slope(top, origin, pitch, floor, px, py, pz, qx, qy, qz, min(pz, qz) + profile[OPEN], k > 1, profile, arcs, pieces)
+            r, s = _cut_slope(
+                top,
+                origin,
+                pitch,
+                floor,
+                px,
+                py,
+                pz,
+                qx,
+                qy,
+                qz,
+                min(pz, qz) + profile[OPEN],
+                k > 1,
+                profile,
+                arcs,
+                pieces,
+            )
             removed, stands = removed + r, stands + s
         px, py, pz = qx, qy, qz
     return removed, stands
@@ -661,12 +924,21 @@ def cut_move(top: Floats, origin: Floats, pitch: float, floor: float, move: Floa
 def joins(moves: Floats, rapid: Bools, tool: Ints, n: int) -> bool:
     """Return whether a feed move continues where a feed move of the same tool has just ended: exactly
     the same tip."""
-    return (n > 0 and not rapid[n - 1] and not rapid[n] and tool[n] == tool[n - 1] and moves[n, X0] == moves[n - 1, X1]
-            and moves[n, Y0] == moves[n - 1, Y1] and moves[n, Z_START] == moves[n - 1, Z_END])
+    return (
+        n > 0
+        and not rapid[n - 1]
+        and not rapid[n]
+        and tool[n] == tool[n - 1]
+        and moves[n, X0] == moves[n - 1, X1]
+        and moves[n, Y0] == moves[n - 1, Y1]
+        and moves[n, Z_START] == moves[n - 1, Z_END]
+    )
 
 
 @njit(cache=True, nogil=True)
-def _formed_depth(rho: float, h: float, arcs: Floats, first: int, last: int, z_low: float, z_high: float) -> float:
+def _formed_depth(
+    rho: float, h: float, arcs: Floats, first: int, last: int, z_low: float, z_high: float
+) -> float:
     """Return the depth (mm) in one closed body of the material at a distance rho from the axis, from
     below up to the height h above the tip.
 
@@ -676,7 +948,10 @@ def _formed_depth(rho: float, h: float, arcs: Floats, first: int, last: int, z_l
     low, high = z_low, max(min(h, z_high), z_low)
     for _ in range(40):
         a, b = low + 0.382 * (high - low), low + 0.618 * (high - low)
-        if depth_in_body(arcs, first, last, rho, a)[0] > depth_in_body(arcs, first, last, rho, b)[0]:
+        if (
+            depth_in_body(arcs, first, last, rho, a)[0]
+            > depth_in_body(arcs, first, last, rho, b)[0]
+        ):
             high = b
         else:
             low = a
@@ -701,14 +976,35 @@ def _depth(square: float, h: float, profile: Floats, arcs: Floats, pieces: Float
     best = -np.inf
     for k in range(int(profile[FIRST]), int(profile[LAST])):
         if rho < pieces[k, R_MAX] and h > pieces[k, Z_LOW]:
-            best = max(best, _formed_depth(rho, h, arcs, int(pieces[k, CLOSED_FIRST]), int(pieces[k, CLOSED_LAST]), pieces[k, Z_LOW],
-                                           pieces[k, Z_HIGH]))
+            best = max(
+                best,
+                _formed_depth(
+                    rho,
+                    h,
+                    arcs,
+                    int(pieces[k, CLOSED_FIRST]),
+                    int(pieces[k, CLOSED_LAST]),
+                    pieces[k, Z_LOW],
+                    pieces[k, Z_HIGH],
+                ),
+            )
     return best
 
 
 @njit(cache=True, nogil=True)
-def _deepest(top: Floats, origin: Floats, pitch: float, x0: float, y0: float, x1: float, y1: float, z: float, profile: Floats,
-             arcs: Floats, pieces: Floats) -> tuple[float, int]:
+def _deepest(
+    top: Floats,
+    origin: Floats,
+    pitch: float,
+    x0: float,
+    y0: float,
+    x1: float,
+    y1: float,
+    z: float,
+    profile: Floats,
+    arcs: Floats,
+    pieces: Floats,
+) -> tuple[float, int]:
     """Return the greatest depth (mm) of a column in a cutter along a level line at z, and its flat
     cell index, -1 without one."""
     radius = profile[RADIUS]
@@ -716,7 +1012,10 @@ def _deepest(top: Floats, origin: Floats, pitch: float, x0: float, y0: float, x1
     i1 = last_cell(max(x0, x1) + radius, origin[0], pitch, top.shape[1])
     dx, dy = x1 - x0, y1 - y0
     square, limit, best, cell = dx * dx + dy * dy, radius * radius, -np.inf, -1
-    for j in range(first_cell(min(y0, y1) - radius, origin[1], pitch), last_cell(max(y0, y1) + radius, origin[1], pitch, top.shape[0]) + 1):
+    for j in range(
+        first_cell(min(y0, y1) - radius, origin[1], pitch),
+        last_cell(max(y0, y1) + radius, origin[1], pitch, top.shape[0]) + 1,
+    ):
         y = origin[1] + (j + 0.5) * pitch
         for i in range(i0, i1 + 1):
             if top[j, i] <= z:
@@ -730,8 +1029,19 @@ def _deepest(top: Floats, origin: Floats, pitch: float, x0: float, y0: float, x1
 
 
 @njit(cache=True, nogil=True)
-def _rims(top: Floats, origin: Floats, pitch: float, x0: float, y0: float, x1: float, y1: float, z: float, radius: float, rims: Ints,
-          count: int) -> int:
+def _rims(
+    top: Floats,
+    origin: Floats,
+    pitch: float,
+    x0: float,
+    y0: float,
+    x1: float,
+    y1: float,
+    z: float,
+    radius: float,
+    rims: Ints,
+    count: int,
+) -> int:
     """Append to `rims` the cells whose area a level sweep may touch; return the new count.
 
     A cell is listed when it or a neighbour stands higher than z, as -1 - cell when none does: there
@@ -740,8 +1050,14 @@ def _rims(top: Floats, origin: Floats, pitch: float, x0: float, y0: float, x1: f
     takes it as overflow.
     """
     reach = radius + pitch * 0.7072
-    i0, i1 = first_cell(min(x0, x1) - reach, origin[0], pitch), last_cell(max(x0, x1) + reach, origin[0], pitch, top.shape[1])
-    j0, j1 = first_cell(min(y0, y1) - reach, origin[1], pitch), last_cell(max(y0, y1) + reach, origin[1], pitch, top.shape[0])
+    i0, i1 = (
+        first_cell(min(x0, x1) - reach, origin[0], pitch),
+        last_cell(max(x0, x1) + reach, origin[0], pitch, top.shape[1]),
+    )
+    j0, j1 = (
+        first_cell(min(y0, y1) - reach, origin[1], pitch),
+        last_cell(max(y0, y1) + reach, origin[1], pitch, top.shape[0]),
+    )
     dx, dy = x1 - x0, y1 - y0
     square = dx * dx + dy * dy
     for j in range(j0, j1 + 1):
@@ -776,8 +1092,18 @@ def _cone_depth(d: float, h: float, cone: Floats) -> float:
 
 
 @njit(cache=True, nogil=True)
-def _cones(top: Floats, origin: Floats, pitch: float, highest: float, move: Floats, line: Floats, z: float, cones: Floats, first: int,
-           last: int) -> float:
+def _cones(
+    top: Floats,
+    origin: Floats,
+    pitch: float,
+    highest: float,
+    move: Floats,
+    line: Floats,
+    z: float,
+    cones: Floats,
+    first: int,
+    last: int,
+) -> float:
     """Return the greatest depth (mm) of a column in truncated cones `first` to `last` along a level
     plan curve: the move's arc, or a line (4,) x, y to x, y.
 
@@ -798,20 +1124,39 @@ def _cones(top: Floats, origin: Floats, pitch: float, highest: float, move: Floa
             x1, y1 = max(line[0], line[2]) + radius, max(line[1], line[3]) + radius
         i0, i1 = first_cell(x0, origin[0], pitch), last_cell(x1, origin[0], pitch, top.shape[1])
         low = z + cones[k, 2]
-        for j in range(first_cell(y0, origin[1], pitch), last_cell(y1, origin[1], pitch, top.shape[0]) + 1):
+        for j in range(
+            first_cell(y0, origin[1], pitch), last_cell(y1, origin[1], pitch, top.shape[0]) + 1
+        ):
             y = origin[1] + (j + 0.5) * pitch
             for i in range(i0, i1 + 1):
                 if top[j, i] > low:
                     x = origin[0] + (i + 0.5) * pitch
-                    d = _arc_square(x, y, move) if move[KIND] != 0.0 else _segment_square(x, y, line[0], line[1], dx, dy, square)
+                    d = (
+                        _arc_square(x, y, move)
+                        if move[KIND] != 0.0
+                        else _segment_square(x, y, line[0], line[1], dx, dy, square)
+                    )
                     if d < radius * radius:
                         best = max(best, _cone_depth(d, top[j, i] - z, cones[k]))
     return best
 
 
 @njit(cache=True, nogil=True)
-def _judge(top: Floats, origin: Floats, pitch: float, highest: float, move: Floats, is_rapid: bool, profile: Floats, arcs: Floats,
-           pieces: Floats, cones: Floats, first: int, last: int, allowed: float) -> tuple[float, int, float]:
+def _judge(
+    top: Floats,
+    origin: Floats,
+    pitch: float,
+    highest: float,
+    move: Floats,
+    is_rapid: bool,
+    profile: Floats,
+    arcs: Floats,
+    pieces: Floats,
+    cones: Floats,
+    first: int,
+    last: int,
+    allowed: float,
+) -> tuple[float, int, float]:
     """Return how deep (mm) a move's cutter (rapids only) and what is above its flutes enter the field
     as it stands, and the cell of the former.
 
@@ -842,11 +1187,19 @@ def _judge(top: Floats, origin: Floats, pitch: float, highest: float, move: Floa
             continue
         d, c, b = -np.inf, -1, -np.inf
         if is_rapid:
-            d, c = _deepest(top, origin, pitch, line[0], line[1], line[2], line[3], z, profile, arcs, pieces)
+            d, c = _deepest(
+                top, origin, pitch, line[0], line[1], line[2], line[3], z, profile, arcs, pieces
+            )
         b = _cones(top, origin, pitch, highest, move, line, z, cones, first, last)
         # Where the stack is full the part is not halved: its bound counts as it is.
         worth = d > max(depth, allowed) or b > max(body, allowed)
-        if worth and not still and move[KIND] == 0.0 and (t1 - t0) * abs(dz) > allowed and n + 2 < len(spans):
+        if (
+            worth
+            and not still
+            and move[KIND] == 0.0
+            and (t1 - t0) * abs(dz) > allowed
+            and n + 2 < len(spans)
+        ):
             middle = 0.5 * (t0 + t1)
             spans[n, 0], spans[n, 1] = t0, middle
             spans[n + 1, 0], spans[n + 1, 1] = middle, t1
@@ -859,10 +1212,36 @@ def _judge(top: Floats, origin: Floats, pitch: float, highest: float, move: Floa
 
 
 @njit(cache=True, nogil=True)
-def stock_loop(first: int, last: int, top: Floats, origin: Floats, pitch: float, floor: float, highest: float, moves: Floats,
-               rapid: Bools, tool: Ints, profiles: Floats, arcs: Floats, pieces: Floats, cones: Floats, cone_start: Ints, chord: float,
-               allowed: float, removed: Floats, depth: Floats, cell: Ints, body_depth: Floats, rims: Ints, rim_start: Ints,
-               probe_start: Ints, circle: Floats, rings: Floats, counted: Ints, spans: Floats) -> tuple[int, int]:
+def stock_loop(
+    first: int,
+    last: int,
+    top: Floats,
+    origin: Floats,
+    pitch: float,
+    floor: float,
+    highest: float,
+    moves: Floats,
+    rapid: Bools,
+    tool: Ints,
+    profiles: Floats,
+    arcs: Floats,
+    pieces: Floats,
+    cones: Floats,
+    cone_start: Ints,
+    chord: float,
+    allowed: float,
+    removed: Floats,
+    depth: Floats,
+    cell: Ints,
+    body_depth: Floats,
+    rims: Ints,
+    rim_start: Ints,
+    probe_start: Ints,
+    circle: Floats,
+    rings: Floats,
+    counted: Ints,
+    spans: Floats,
+) -> tuple[int, int]:
     """Run upright moves `first` to `last` in order: cut the field with feed moves, judge rapids and
     what is above the flutes against it as it then stands.
 
@@ -886,18 +1265,66 @@ def stock_loop(first: int, last: int, top: Floats, origin: Floats, pitch: float,
         count = rim_start[n]
         # The engagement is measured before the move cuts, the body's depth after it.
         if not rapid[n]:
-            look_in_field(top, origin, pitch, floor, move, rings[tool[n]], circle, probe_start[n], probe_start[n + 1], counted, spans)
-            took, standing = cut_move(top, origin, pitch, floor, move, joins(moves, rapid, tool, n), profile, arcs, pieces, chord)
+            look_in_field(
+                top,
+                origin,
+                pitch,
+                floor,
+                move,
+                rings[tool[n]],
+                circle,
+                probe_start[n],
+                probe_start[n + 1],
+                counted,
+                spans,
+            )
+            took, standing = cut_move(
+                top,
+                origin,
+                pitch,
+                floor,
+                move,
+                joins(moves, rapid, tool, n),
+                profile,
+                arcs,
+                pieces,
+                chord,
+            )
             removed[n] += took
             if standing > 0:
                 return n, 2
         # A move straight up leaves through the column that its own cut has opened.
         straight = move[KIND] == 0.0 and move[X0] == move[X1] and move[Y0] == move[Y1]
         if not (straight and move[Z_END] > move[Z_START]):
-            depth[n], cell[n], body_depth[n] = _judge(top, origin, pitch, highest, move, rapid[n], profile, arcs, pieces, cones,
-                                                      cone_start[tool[n]], cone_start[tool[n] + 1], allowed)
+            depth[n], cell[n], body_depth[n] = _judge(
+                top,
+                origin,
+                pitch,
+                highest,
+                move,
+                rapid[n],
+                profile,
+                arcs,
+                pieces,
+                cones,
+                cone_start[tool[n]],
+                cone_start[tool[n] + 1],
+                allowed,
+            )
             if rapid[n] and depth[n] <= allowed and z + allowed < highest:
-                count = _rims(top, origin, pitch, move[X0], move[Y0], move[X1], move[Y1], z + allowed, profile[RADIUS], rims, count)
+                count = _rims(
+                    top,
+                    origin,
+                    pitch,
+                    move[X0],
+                    move[Y0],
+                    move[X1],
+                    move[Y1],
+                    z + allowed,
+                    profile[RADIUS],
+                    rims,
+                    count,
+                )
                 if count >= len(rims):
                     return n, 1
         rim_start[n + 1] = count

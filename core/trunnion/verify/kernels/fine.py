@@ -56,8 +56,16 @@ CLOSE = 0.05
 @njit(cache=True, nogil=True)
 def _turned(w: Floats, x: float, y: float, z: float, t: float) -> tuple[float, float, float]:
     """Return a direction (vector, mm) as it is seen from the tool at a share t of its way."""
-    nx, ny, nz = w[AY] * w[EZ] - w[AZ] * w[EY], w[AZ] * w[EX] - w[AX] * w[EZ], w[AX] * w[EY] - w[AY] * w[EX]
-    e, n, a = x * w[EX] + y * w[EY] + z * w[EZ], x * nx + y * ny + z * nz, x * w[AX] + y * w[AY] + z * w[AZ]
+    nx, ny, nz = (
+        w[AY] * w[EZ] - w[AZ] * w[EY],
+        w[AZ] * w[EX] - w[AX] * w[EZ],
+        w[AX] * w[EY] - w[AY] * w[EX],
+    )
+    e, n, a = (
+        x * w[EX] + y * w[EY] + z * w[EZ],
+        x * nx + y * ny + z * nz,
+        x * w[AX] + y * w[AY] + z * w[AZ],
+    )
     if w[TURN] > 0.0:
         c, s = math.cos(t * w[TURN]), math.sin(t * w[TURN])
         return c * e - s * a, n, c * a + s * e
@@ -65,7 +73,9 @@ def _turned(w: Floats, x: float, y: float, z: float, t: float) -> tuple[float, f
 
 
 @njit(cache=True, nogil=True)
-def _tangent(arcs: Floats, first: int, last: int, x: float, y: float, z: float) -> tuple[float, float, float, float]:
+def _tangent(
+    arcs: Floats, first: int, last: int, x: float, y: float, z: float
+) -> tuple[float, float, float, float]:
     """Return the signed distance (mm) to a body at a place seen from the tool, and its gradient there."""
     rho = math.sqrt(x * x + y * y)
     depth, nr, nz = depth_in_body(arcs, first, last, rho, z)
@@ -73,8 +83,25 @@ def _tangent(arcs: Floats, first: int, last: int, x: float, y: float, z: float) 
 
 
 @njit(cache=True, nogil=True)
-def _chord_least(arcs: Floats, first: int, last: int, x0: float, y0: float, z0: float, x1: float, y1: float, z1: float, s: float, t: float,
-                 ax: float, ay: float, az: float, bx: float, by: float, bz: float) -> float:
+def _chord_least(
+    arcs: Floats,
+    first: int,
+    last: int,
+    x0: float,
+    y0: float,
+    z0: float,
+    x1: float,
+    y1: float,
+    z1: float,
+    s: float,
+    t: float,
+    ax: float,
+    ay: float,
+    az: float,
+    bx: float,
+    by: float,
+    bz: float,
+) -> float:
     """Return a lower bound (mm) of the signed distance of a cell, half sides a and b, that moves along
     a chord, by the tangents at the shares s <= t.
 
@@ -97,8 +124,23 @@ def _chord_least(arcs: Floats, first: int, last: int, x0: float, y0: float, z0: 
 
 
 @njit(cache=True, nogil=True)
-def _span_least(w: Floats, flutes: Flutes, tool: int, x: float, y: float, z: float, t0: float, t1: float, a: Floats, b: Floats, size: float,
-                slack: float, least: float, close: float, spans: Floats) -> float:
+def _span_least(
+    w: Floats,
+    flutes: Flutes,
+    tool: int,
+    x: float,
+    y: float,
+    z: float,
+    t0: float,
+    t1: float,
+    a: Floats,
+    b: Floats,
+    size: float,
+    slack: float,
+    least: float,
+    close: float,
+    spans: Floats,
+) -> float:
     """Return the smaller of `least` and a lower bound (mm) of the signed distances of a cell along a
     way between two shares.
 
@@ -121,17 +163,42 @@ def _span_least(w: Floats, flutes: Flutes, tool: int, x: float, y: float, z: flo
             turn = w[SWEEP] * share
             sag = min(0.125 * turn * turn, 2.0) * w[RADIUS]
         elif w[TURN] > 0.0:
-            turn, far = w[TURN] * share, math.sqrt(max(x0 * x0 + y0 * y0 + z0 * z0, x1 * x1 + y1 * y1 + z1 * z1))
+            turn, far = (
+                w[TURN] * share,
+                math.sqrt(max(x0 * x0 + y0 * y0 + z0 * z0, x1 * x1 + y1 * y1 + z1 * z1)),
+            )
             sag = turn * (0.125 * turn * far + 0.25 * share * length + size)
         ax, ay, az = _turned(w, a[0], a[1], a[2], s0)
         bx, by, bz = _turned(w, b[0], b[1], b[2], s0)
         lowest = np.inf
         for k in range(flutes.start[tool], flutes.start[tool + 1]):
-            low, _at, s, t = least_on_chord(flutes.arc, flutes.first[k], flutes.last[k], x0, y0, z0, x1, y1, z1, np.inf, close)
+            low, _at, s, t = least_on_chord(
+                flutes.arc, flutes.first[k], flutes.last[k], x0, y0, z0, x1, y1, z1, np.inf, close
+            )
             # Every point of the cell is within size + slack of its middle.
             if low - size - sag - slack < least:
-                lowest = min(lowest, _chord_least(flutes.arc, flutes.first[k], flutes.last[k], x0, y0, z0, x1, y1, z1, s, t, ax, ay, az, bx,
-                                                  by, bz))
+                lowest = min(
+                    lowest,
+                    _chord_least(
+                        flutes.arc,
+                        flutes.first[k],
+                        flutes.last[k],
+                        x0,
+                        y0,
+                        z0,
+                        x1,
+                        y1,
+                        z1,
+                        s,
+                        t,
+                        ax,
+                        ay,
+                        az,
+                        bx,
+                        by,
+                        bz,
+                    ),
+                )
         if lowest - sag - slack >= least:
             continue
         if sag > close and top + 2 <= len(spans):
@@ -145,18 +212,37 @@ def _span_least(w: Floats, flutes: Flutes, tool: int, x: float, y: float, z: flo
 
 
 @njit(cache=True, nogil=True)
-def cell_least(x: float, y: float, z: float, a: Floats, b: Floats, slack: float, tree: Tree, flutes: Flutes, least: float, stop: float,
-               close: float, nodes: Ints, lower: Floats, spans: Floats) -> float:
+def cell_least(
+    x: float,
+    y: float,
+    z: float,
+    a: Floats,
+    b: Floats,
+    slack: float,
+    tree: Tree,
+    flutes: Flutes,
+    least: float,
+    stop: float,
+    close: float,
+    nodes: Ints,
+    lower: Floats,
+    spans: Floats,
+) -> float:
     """Return a lower bound (mm) of the material left on a cell, or something below `stop` when that is
     found first.
 
     a, b (3,) run from its middle to the middles of its sides; slack is how far the surface may be
     from it. `least` is what is left at the middle. nodes, lower (k,), spans (k, 2): workspace.
     """
-    size = math.sqrt(a[0] * a[0] + a[1] * a[1] + a[2] * a[2]) + math.sqrt(b[0] * b[0] + b[1] * b[1] + b[2] * b[2])
+    size = math.sqrt(a[0] * a[0] + a[1] * a[1] + a[2] * a[2]) + math.sqrt(
+        b[0] * b[0] + b[1] * b[1] + b[2] * b[2]
+    )
     top = 0
     for r in range(len(tree.root)):
-        nodes[top], lower[top] = tree.root[r], node_least(tree, flutes, tree.root[r], x, y, z, False) - size - slack
+        nodes[top], lower[top] = (
+            tree.root[r],
+            node_least(tree, flutes, tree.root[r], x, y, z, False) - size - slack,
+        )
         top += 1
     # As `nearest_span`, every bound lowered by the cell's size and slack.
     while top > 0 and least >= stop:
@@ -166,8 +252,14 @@ def cell_least(x: float, y: float, z: float, a: Floats, b: Floats, slack: float,
             continue
         left, right = tree.link[n, 0], tree.link[n, 1]
         if left >= 0:
-            nodes[top], lower[top] = left, node_least(tree, flutes, left, x, y, z, False) - size - slack
-            nodes[top + 1], lower[top + 1] = right, node_least(tree, flutes, right, x, y, z, False) - size - slack
+            nodes[top], lower[top] = (
+                left,
+                node_least(tree, flutes, left, x, y, z, False) - size - slack,
+            )
+            nodes[top + 1], lower[top + 1] = (
+                right,
+                node_least(tree, flutes, right, x, y, z, False) - size - slack,
+            )
             top += 2
             continue
         for k in range(tree.link[n, 2], tree.link[n, 3]):
@@ -175,9 +267,31 @@ def cell_least(x: float, y: float, z: float, a: Floats, b: Floats, slack: float,
             mx, my, mz = in_tool(w, x, y, z, 0.5 * (tree.low[k] + tree.high[k]))
             turn = w[TURN] * (tree.high[k] - tree.low[k])
             reach = tree.reach[k] + 0.5 * turn * math.sqrt(mx * mx + my * my + mz * mz)
-            if flute_distance(flutes, tree.link[n, 4], math.sqrt(mx * mx + my * my), mz, False) - reach - size - slack >= least:
+            if (
+                flute_distance(flutes, tree.link[n, 4], math.sqrt(mx * mx + my * my), mz, False)
+                - reach
+                - size
+                - slack
+                >= least
+            ):
                 continue
-            least = _span_least(w, flutes, tree.link[n, 4], x, y, z, tree.low[k], tree.high[k], a, b, size, slack, least, close, spans)
+            least = _span_least(
+                w,
+                flutes,
+                tree.link[n, 4],
+                x,
+                y,
+                z,
+                tree.low[k],
+                tree.high[k],
+                a,
+                b,
+                size,
+                slack,
+                least,
+                close,
+                spans,
+            )
     return least
 
 
@@ -213,15 +327,33 @@ def _nearest_body(flutes: Flutes, tool: int, w: Floats, place: Floats, share: fl
     x, y, z = in_tool(w, place[0], place[1], place[2], share)
     best, deepest = flutes.start[tool], -np.inf
     for k in range(flutes.start[tool], flutes.start[tool + 1]):
-        depth, _r, _h = depth_in_body(flutes.arc, flutes.first[k], flutes.last[k], math.sqrt(x * x + y * y), z)
+        depth, _r, _h = depth_in_body(
+            flutes.arc, flutes.first[k], flutes.last[k], math.sqrt(x * x + y * y), z
+        )
         if depth > deepest:
             best, deepest = k, depth
     return best
 
 
 @njit(cache=True, nogil=True)
-def cells_loop(first: int, last: int, middle: Floats, a: Floats, b: Floats, slack: Floats, tree: Tree, flutes: Flutes, far: float,
-               lowest: float, bound: float, above: Bools, left: Floats, nearest: Ints, upper: Floats, lower: Floats) -> None:
+def cells_loop(
+    first: int,
+    last: int,
+    middle: Floats,
+    a: Floats,
+    b: Floats,
+    slack: Floats,
+    tree: Tree,
+    flutes: Flutes,
+    far: float,
+    lowest: float,
+    bound: float,
+    above: Bools,
+    left: Floats,
+    nearest: Ints,
+    upper: Floats,
+    lower: Floats,
+) -> None:
     """Fill for cells `first` to `last` what is left at their middle, by which move, and bounds from
     above and below over the whole cell.
 
@@ -231,16 +363,39 @@ def cells_loop(first: int, last: int, middle: Floats, a: Floats, b: Floats, slac
     searched for. Where `above` (c,) is false, no bound from above is searched for.
     """
     close = CLOSE * bound
-    nodes, least, spans = np.zeros(len(tree.root) + 128, np.int64), np.zeros(len(tree.root) + 128), np.zeros((96, 2))
-    rows, shares, distance, places = np.zeros(POSES, np.int64), np.zeros(POSES), np.zeros((POSES, 4)), np.zeros((POSES, 3))
+    nodes, least, spans = (
+        np.zeros(len(tree.root) + 128, np.int64),
+        np.zeros(len(tree.root) + 128),
+        np.zeros((96, 2)),
+    )
+    rows, shares, distance, places = (
+        np.zeros(POSES, np.int64),
+        np.zeros(POSES),
+        np.zeros((POSES, 4)),
+        np.zeros((POSES, 3)),
+    )
     for n in range(first, last):
         # The nearest poses of the middle and the four corners: candidates for the bound from above.
         for k in range(POSES if above[n] else 1):
             i = 0.0 if k == 0 else (1.0 if k % 2 else -1.0)
             j = 0.0 if k == 0 else (1.0 if k > 2 else -1.0)
             places[k] = middle[n] + i * a[n] + j * b[n]
-            value, move, rows[k], shares[k] = nearest_span(places[k, 0], places[k, 1], places[k, 2], tree, flutes, far, -1, close, NO_END,
-                                                           False, -np.inf, nodes, least, spans)
+            value, move, rows[k], shares[k] = nearest_span(
+                places[k, 0],
+                places[k, 1],
+                places[k, 2],
+                tree,
+                flutes,
+                far,
+                -1,
+                close,
+                NO_END,
+                False,
+                -np.inf,
+                nodes,
+                least,
+                spans,
+            )
             if k == 0:
                 left[n], nearest[n] = value, move
         upper[n] = far if above[n] else -np.inf
@@ -252,13 +407,31 @@ def cells_loop(first: int, last: int, middle: Floats, a: Floats, b: Floats, slac
             # Distances of this pose at the four corners: their largest is a bound; so is each mean
             # with an earlier pose.
             for c in range(4):
-                x, y, z = in_tool(w, places[c + 1, 0], places[c + 1, 1], places[c + 1, 2], shares[k])
-                depth, _r, _h = depth_in_body(flutes.arc, flutes.first[body], flutes.last[body], math.sqrt(x * x + y * y), z)
+                x, y, z = in_tool(
+                    w, places[c + 1, 0], places[c + 1, 1], places[c + 1, 2], shares[k]
+                )
+                depth, _r, _h = depth_in_body(
+                    flutes.arc, flutes.first[body], flutes.last[body], math.sqrt(x * x + y * y), z
+                )
                 distance[k, c] = -depth
             upper[n] = min(upper[n], distance[k].max() + slack[n])
             for m in range(k):
                 if rows[m] >= 0:
                     upper[n] = min(upper[n], _mean_of_two(distance[k], distance[m]) + slack[n])
         if lowest < np.inf:
-            lower[n] = cell_least(middle[n, 0], middle[n, 1], middle[n, 2], a[n], b[n], slack[n], tree, flutes, left[n],
-                                  min(lowest, left[n]) - bound, close, nodes, least, spans)
+            lower[n] = cell_least(
+                middle[n, 0],
+                middle[n, 1],
+                middle[n, 2],
+                a[n],
+                b[n],
+                slack[n],
+                tree,
+                flutes,
+                left[n],
+                min(lowest, left[n]) - bound,
+                close,
+                nodes,
+                least,
+                spans,
+            )

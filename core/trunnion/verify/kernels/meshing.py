@@ -57,10 +57,16 @@ def corner_heights(top: Floats, floor: float, pitch: float) -> Floats:
             if a <= floor:
                 continue
             if i + 1 < columns and top[j, i + 1] > floor:
-                before, after = top[j, i - 1] if i > 0 else a, top[j, i + 2] if i + 2 < columns else top[j, i + 1]
+                before, after = (
+                    top[j, i - 1] if i > 0 else a,
+                    top[j, i + 2] if i + 2 < columns else top[j, i + 1],
+                )
                 right[j, i] = _goes_on(before, a, top[j, i + 1], after, fine)
             if j + 1 < rows and top[j + 1, i] > floor:
-                before, after = top[j - 1, i] if j > 0 else a, top[j + 2, i] if j + 2 < rows else top[j + 1, i]
+                before, after = (
+                    top[j - 1, i] if j > 0 else a,
+                    top[j + 2, i] if j + 2 < rows else top[j + 1, i],
+                )
                 up[j, i] = _goes_on(before, a, top[j + 1, i], after, fine)
     out = np.full((rows + 2, columns + 2, 4), floor)
     for j in range(rows):
@@ -144,7 +150,12 @@ def _is_even(free: Bools, corners: Floats, j: int, i: int, size: int, bound: flo
     # Every lattice corner of the block against the bilinear patch of the block's corners.
     e = size - 1
     y, x = j + size, i + size
-    a, b, c, d = corners[j + 1, i + 1, 0], corners[j + 1, x, 1], corners[y, x, 2], corners[y, i + 1, 3]
+    a, b, c, d = (
+        corners[j + 1, i + 1, 0],
+        corners[j + 1, x, 1],
+        corners[y, x, 2],
+        corners[y, i + 1, 3],
+    )
     for y in range(size + 1):
         v = y / size
         for x in range(size + 1):
@@ -209,17 +220,28 @@ def patches(top: Floats, floor: float, corners: Floats, bound: float) -> tuple[I
 
 
 @njit(cache=True, nogil=True)
-def _needed(floor: float, corners: Floats, patch: Ints, tops: int) -> tuple[Bools, Bools, Bools, Bools]:
+def _needed(
+    floor: float, corners: Floats, patch: Ints, tops: int
+) -> tuple[Bools, Bools, Bools, Bools]:
     """Return at which corners of the lattice (rows + 1, columns + 1) tops and bottom must have points, and where walls stand: from each
     corner along its row, and along its column."""
     rows, columns = corners.shape[0] - 2, corners.shape[1] - 2
-    above, below = np.zeros((rows + 1, columns + 1), np.bool_), np.zeros((rows + 1, columns + 1), np.bool_)
-    along, across = np.zeros((rows + 1, columns + 1), np.bool_), np.zeros((rows + 1, columns + 1), np.bool_)
+    above, below = (
+        np.zeros((rows + 1, columns + 1), np.bool_),
+        np.zeros((rows + 1, columns + 1), np.bool_),
+    )
+    along, across = (
+        np.zeros((rows + 1, columns + 1), np.bool_),
+        np.zeros((rows + 1, columns + 1), np.bool_),
+    )
     # The corners of patches.
     for k in range(len(patch)):
         mark = above if k < tops else below
         for q in range(4):
-            mark[patch[k, 2] if CORNER_ROW[q] else patch[k, 0], patch[k, 3] if CORNER_COLUMN[q] else patch[k, 1]] = True
+            mark[
+                patch[k, 2] if CORNER_ROW[q] else patch[k, 0],
+                patch[k, 3] if CORNER_COLUMN[q] else patch[k, 1],
+            ] = True
     # A wall stands along an edge of the lattice where the corners of both sides differ.
     for j in range(rows + 1):
         for i in range(columns + 1):
@@ -238,9 +260,23 @@ def _needed(floor: float, corners: Floats, patch: Ints, tops: int) -> tuple[Bool
             grounded = a[2] == floor or b[3] == floor or c[0] == floor or d[1] == floor
             # A wall that runs on straight and level needs no points here, unless a patch beside it has one.
             if ahead and behind and not (up or down):
-                plain = a[3] == a[2] and a[2] == b[3] and b[3] == b[2] and d[0] == d[1] and d[1] == c[0] and c[0] == c[1]
+                plain = (
+                    a[3] == a[2]
+                    and a[2] == b[3]
+                    and b[3] == b[2]
+                    and d[0] == d[1]
+                    and d[1] == c[0]
+                    and c[0] == c[1]
+                )
             elif up and down and not (ahead or behind):
-                plain = a[1] == a[2] and a[2] == d[1] and d[1] == d[2] and b[0] == b[3] and b[3] == c[0] and c[0] == c[3]
+                plain = (
+                    a[1] == a[2]
+                    and a[2] == d[1]
+                    and d[1] == d[2]
+                    and b[0] == b[3]
+                    and b[3] == c[0]
+                    and c[0] == c[3]
+                )
             else:
                 plain = False
             if not plain or above[j, i] or (grounded and below[j, i]):
@@ -297,8 +333,19 @@ def _point(heights: Floats, start: Ints, corner: int, z: float) -> int:
 
 
 @njit(cache=True, nogil=True)
-def _wall(heights: Floats, start: Ints, p: int, ap: float, bp: float, q: int, aq: float, bq: float, triangles: Ints, n: int,
-          write: bool) -> int:
+def _wall(
+    heights: Floats,
+    start: Ints,
+    p: int,
+    ap: float,
+    bp: float,
+    q: int,
+    aq: float,
+    bq: float,
+    triangles: Ints,
+    n: int,
+    write: bool,
+) -> int:
     """Add the triangles of the wall between cell A and cell B over the edge from corner p to corner q,
     which A's top has in this order; return the new count.
 
@@ -306,15 +353,23 @@ def _wall(heights: Floats, start: Ints, p: int, ap: float, bp: float, q: int, aq
     triangulated by advancing on one of them at a time, so every slot is used and the walls beside
     it fit. Without `write` only counted.
     """
-    at_p, to_p, at_q, to_q = (_point(heights, start, p, ap), _point(heights, start, p, bp), _point(heights, start, q, aq),
-                              _point(heights, start, q, bq))
+    at_p, to_p, at_q, to_q = (
+        _point(heights, start, p, ap),
+        _point(heights, start, p, bp),
+        _point(heights, start, q, aq),
+        _point(heights, start, q, bq),
+    )
     step_p, step_q = 1 if to_p > at_p else -1, 1 if to_q > at_q else -1
     while at_p != to_p or at_q != to_q:
         # The side whose next point is less far from where both began goes on first.
-        first = at_p != to_p and (at_q == to_q or abs(heights[at_p + step_p] - ap) <= abs(heights[at_q + step_q] - aq))
+        first = at_p != to_p and (
+            at_q == to_q or abs(heights[at_p + step_p] - ap) <= abs(heights[at_q + step_q] - aq)
+        )
         following = at_p + step_p if first else at_q + step_q
         if write:
-            triangles[n, 0], triangles[n, 1], triangles[n, 2] = (at_q, at_p, following) if first else (following, at_q, at_p)
+            triangles[n, 0], triangles[n, 1], triangles[n, 2] = (
+                (at_q, at_p, following) if first else (following, at_q, at_p)
+            )
         n += 1
         if first:
             at_p = following
@@ -324,8 +379,21 @@ def _wall(heights: Floats, start: Ints, p: int, ap: float, bp: float, q: int, aq
 
 
 @njit(cache=True, nogil=True)
-def _faces(floor: float, corners: Floats, patch: Ints, tops: int, above: Bools, below: Bools, along: Bools, across: Bools, heights: Floats,
-           start: Ints, centres: Floats, triangles: Ints, write: bool) -> tuple[int, int]:
+def _faces(
+    floor: float,
+    corners: Floats,
+    patch: Ints,
+    tops: int,
+    above: Bools,
+    below: Bools,
+    along: Bools,
+    across: Bools,
+    heights: Floats,
+    start: Ints,
+    centres: Floats,
+    triangles: Ints,
+    write: bool,
+) -> tuple[int, int]:
     """Add all triangles, of patches and of walls; return how many, and how many patches got a point in
     their middle (centres (k, 3): column, row, height).
 
@@ -354,15 +422,24 @@ def _faces(floor: float, corners: Floats, patch: Ints, tops: int, above: Bools, 
                 else:
                     j, i, y, x, q = j1 - s, i0, j1 - s - 1, i0, 3
                 if mark[j, i]:
-                    ring[m] = _point(heights, start, j * wide + i, corners[y + 1, x + 1, q] if is_top else floor)
+                    ring[m] = _point(
+                        heights, start, j * wide + i, corners[y + 1, x + 1, q] if is_top else floor
+                    )
                     m += 1
         if m == 4:
             # A quadrangle is cut along the diagonal whose ends differ less in height.
-            flip = 1 if abs(heights[ring[0]] - heights[ring[2]]) > abs(heights[ring[1]] - heights[ring[3]]) else 0
+            flip = (
+                1
+                if abs(heights[ring[0]] - heights[ring[2]])
+                > abs(heights[ring[1]] - heights[ring[3]])
+                else 0
+            )
             if write:
                 for t in range(2):
                     a, b, c = ring[flip], ring[(flip + 1 + t) % 4], ring[(flip + 2 + t) % 4]
-                    triangles[n + t, 0], triangles[n + t, 1], triangles[n + t, 2] = (a, b, c) if is_top else (a, c, b)
+                    triangles[n + t, 0], triangles[n + t, 1], triangles[n + t, 2] = (
+                        (a, b, c) if is_top else (a, c, b)
+                    )
             n += 2
             continue
         if write:
@@ -371,15 +448,30 @@ def _faces(floor: float, corners: Floats, patch: Ints, tops: int, above: Bools, 
             single = j1 - j0 == 1 or i1 - i0 == 1
             z = floor
             if is_top:
-                z = corners[y + 1, x + 1, 0] if not single else (corners[j0 + 1, i0 + 1, 0] + corners[j0 + 1, i1, 1] + corners[j1, i1, 2]
-                                                                 + corners[j1, i0 + 1, 3]) / 4.0
+                z = (
+                    corners[y + 1, x + 1, 0]
+                    if not single
+                    else (
+                        corners[j0 + 1, i0 + 1, 0]
+                        + corners[j0 + 1, i1, 1]
+                        + corners[j1, i1, 2]
+                        + corners[j1, i0 + 1, 3]
+                    )
+                    / 4.0
+                )
             if single:
-                centres[middles, 0], centres[middles, 1], centres[middles, 2] = 0.5 * (i0 + i1), 0.5 * (j0 + j1), z
+                centres[middles, 0], centres[middles, 1], centres[middles, 2] = (
+                    0.5 * (i0 + i1),
+                    0.5 * (j0 + j1),
+                    z,
+                )
             else:
                 centres[middles, 0], centres[middles, 1], centres[middles, 2] = x, y, z
             for s in range(m):
                 a, b = ring[s], ring[(s + 1) % m]
-                triangles[n + s, 0], triangles[n + s, 1], triangles[n + s, 2] = (middle, a, b) if is_top else (middle, b, a)
+                triangles[n + s, 0], triangles[n + s, 1], triangles[n + s, 2] = (
+                    (middle, a, b) if is_top else (middle, b, a)
+                )
         middles += 1
         n += m
     # Walls from each kept corner along its row and its column to the next kept one.
@@ -392,19 +484,43 @@ def _faces(floor: float, corners: Floats, patch: Ints, tops: int, above: Bools, 
                 e = i + 1
                 while not above[j, e]:
                     e += 1
-                n = _wall(heights, start, j * wide + e, corners[j, e, 2], corners[j + 1, e, 1], j * wide + i, corners[j, i + 1, 3], own[0],
-                          triangles, n, write)
+                n = _wall(
+                    heights,
+                    start,
+                    j * wide + e,
+                    corners[j, e, 2],
+                    corners[j + 1, e, 1],
+                    j * wide + i,
+                    corners[j, i + 1, 3],
+                    own[0],
+                    triangles,
+                    n,
+                    write,
+                )
             if across[j, i]:
                 e = j + 1
                 while not above[e, i]:
                     e += 1
-                n = _wall(heights, start, j * wide + i, corners[j + 1, i, 1], own[0], e * wide + i, corners[e, i, 2], corners[e, i + 1, 3],
-                          triangles, n, write)
+                n = _wall(
+                    heights,
+                    start,
+                    j * wide + i,
+                    corners[j + 1, i, 1],
+                    own[0],
+                    e * wide + i,
+                    corners[e, i, 2],
+                    corners[e, i + 1, 3],
+                    triangles,
+                    n,
+                    write,
+                )
     return n, middles
 
 
 @njit(cache=True, nogil=True)
-def mesh_heights(top: Floats, low_x: float, low_y: float, floor: float, pitch: float, bound: float) -> tuple[Floats, Ints]:
+def mesh_heights(
+    top: Floats, low_x: float, low_y: float, floor: float, pitch: float, bound: float
+) -> tuple[Floats, Ints]:
     """Return points (v, 3) mm and triangles (t, 3), anticlockwise from outside, of the solid between a
     field of heights and its floor.
 
@@ -416,10 +532,37 @@ def mesh_heights(top: Floats, low_x: float, low_y: float, floor: float, pitch: f
     patch, tops, _ = patches(top, floor, corners, bound)
     above, below, along, across = _needed(floor, corners, patch, tops)
     heights, start = _slots(floor, corners, above, below)
-    n, middles = _faces(floor, corners, patch, tops, above, below, along, across, heights, start, np.empty((0, 3)),
-                        np.empty((0, 3), np.int64), False)
+    n, middles = _faces(
+        floor,
+        corners,
+        patch,
+        tops,
+        above,
+        below,
+        along,
+        across,
+        heights,
+        start,
+        np.empty((0, 3)),
+        np.empty((0, 3), np.int64),
+        False,
+    )
     triangles, centres = np.empty((n, 3), np.int64), np.empty((middles, 3))
-    _faces(floor, corners, patch, tops, above, below, along, across, heights, start, centres, triangles, True)
+    _faces(
+        floor,
+        corners,
+        patch,
+        tops,
+        above,
+        below,
+        along,
+        across,
+        heights,
+        start,
+        centres,
+        triangles,
+        True,
+    )
     points = np.empty((len(heights) + middles, 3))
     for corner in range((rows + 1) * (columns + 1)):
         for k in range(start[corner], start[corner + 1]):

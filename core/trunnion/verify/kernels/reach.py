@@ -20,13 +20,37 @@ import numpy as np
 from numba import njit
 
 from trunnion.geometry.arrays import Bools, Floats, Ints
-from trunnion.verify.kernels.body import CLOSED_FIRST, CLOSED_LAST, KIND, R_MAX, Z_HIGH, Z_LOW, depth_in_body
+from trunnion.verify.kernels.body import (
+    CLOSED_FIRST,
+    CLOSED_LAST,
+    KIND,
+    R_MAX,
+    Z_HIGH,
+    Z_LOW,
+    depth_in_body,
+)
 from trunnion.verify.kernels.facets import TASK_COLUMNS, TASKS, box_depth, enter_triangle
-from trunnion.verify.kernels.tool_motion import END_COLUMNS, S_FROM, S_TO, SPAN_COLUMNS, WAY_COLUMNS, fill_span, fill_way
+from trunnion.verify.kernels.tool_motion import (
+    END_COLUMNS,
+    S_FROM,
+    S_TO,
+    SPAN_COLUMNS,
+    WAY_COLUMNS,
+    fill_span,
+    fill_way,
+)
 
 
 @njit(cache=True, nogil=True)
-def stopped_before(tip: Floats, axis: Floats, arcs: Floats, pieces: Floats, places: Floats, count: int, deeper: float) -> bool:
+def stopped_before(
+    tip: Floats,
+    axis: Floats,
+    arcs: Floats,
+    pieces: Floats,
+    places: Floats,
+    count: int,
+    deeper: float,
+) -> bool:
     """Return whether one of the first `count` obstacles (w, 3) lies deeper (mm) than `deeper` in a
     static tool; that one is moved to the front.
 
@@ -44,7 +68,9 @@ def stopped_before(tip: Floats, axis: Floats, arcs: Floats, pieces: Floats, plac
             # Depth in the closed body is at most R_MAX - rho.
             if h < pieces[p, Z_LOW] or h > pieces[p, Z_HIGH] or rho >= pieces[p, R_MAX] - deeper:
                 continue
-            depth, _r, _h = depth_in_body(arcs, int(pieces[p, CLOSED_FIRST]), int(pieces[p, CLOSED_LAST]), rho, h)
+            depth, _r, _h = depth_in_body(
+                arcs, int(pieces[p, CLOSED_FIRST]), int(pieces[p, CLOSED_LAST]), rho, h
+            )
             if depth > deeper:
                 _put_first(places, i, places[i, 0], places[i, 1], places[i, 2])
                 return True
@@ -71,15 +97,26 @@ def _put_first(places: Floats, at: int, x: float, y: float, z: float) -> None:
 
 
 @njit(cache=True, nogil=True)
-def known_loop(tips: Floats, axes: Floats, rows: Ints, arcs: Floats, pieces: Floats, places: Floats, count: Ints, deeper: float,
-               stopped: Bools) -> None:
+def known_loop(
+    tips: Floats,
+    axes: Floats,
+    rows: Ints,
+    arcs: Floats,
+    pieces: Floats,
+    places: Floats,
+    count: Ints,
+    deeper: float,
+    stopped: Bools,
+) -> None:
     """Fill stopped (n,) with whether a known obstacle rules out each of n poses of one tool.
 
     tips, axes (n, 3); rows (n,) the position of each pose among places (k, w, 3) with count (k,)
     known ones. `deeper` (mm) as in `stopped_before`.
     """
     for n in range(len(tips)):
-        stopped[n] = stopped_before(tips[n], axes[n], arcs, pieces, places[rows[n]], count[rows[n]], deeper)
+        stopped[n] = stopped_before(
+            tips[n], axes[n], arcs, pieces, places[rows[n]], count[rows[n]], deeper
+        )
 
 
 @njit(cache=True, nogil=True)
@@ -88,13 +125,33 @@ def remember_loop(found: Floats, rows: Ints, places: Floats, count: Ints) -> Non
     3), count (k,) of the positions rows (n,)."""
     for n in range(len(found)):
         if not math.isnan(found[n, 0]):
-            count[rows[n]] = remember(places[rows[n]], count[rows[n]], found[n, 0], found[n, 1], found[n, 2])
+            count[rows[n]] = remember(
+                places[rows[n]], count[rows[n]], found[n, 0], found[n, 1], found[n, 2]
+            )
 
 
 @njit(cache=True, nogil=True)
-def clear_loop(first: int, last: int, tips: Floats, axes: Floats, wanted: Bools, arcs: Floats, pieces: Floats, boxes: Floats, skip: Ints,
-               leaves: Ints, corners: Floats, normals: Floats, face: Ints, n_faces: int, allowed: float, bound: float, places: Floats,
-               count: Ints, found: Bools) -> None:
+def clear_loop(
+    first: int,
+    last: int,
+    tips: Floats,
+    axes: Floats,
+    wanted: Bools,
+    arcs: Floats,
+    pieces: Floats,
+    boxes: Floats,
+    skip: Ints,
+    leaves: Ints,
+    corners: Floats,
+    normals: Floats,
+    face: Ints,
+    n_faces: int,
+    allowed: float,
+    bound: float,
+    places: Floats,
+    count: Ints,
+    found: Bools,
+) -> None:
     """Fill found[first:last] with whether at least one pose at each position is free of contact deeper
     than `allowed` (mm).
 
@@ -110,7 +167,12 @@ def clear_loop(first: int, last: int, tips: Floats, axes: Floats, wanted: Bools,
     way, ends, span = np.zeros(WAY_COLUMNS), np.zeros((2, END_COLUMNS)), np.zeros(SPAN_COLUMNS)
     near_ends, near = np.zeros((2, END_COLUMNS)), np.zeros(SPAN_COLUMNS)
     tasks, task, deepest = np.zeros((TASKS, TASK_COLUMNS)), np.zeros(TASK_COLUMNS), np.zeros(4)
-    six, cuts, flat, nowhere = np.zeros((6, 3)), np.zeros((3, 6)), np.zeros((3, 3)), np.full(3, np.nan)
+    six, cuts, flat, nowhere = (
+        np.zeros((6, 3)),
+        np.zeros((3, 6)),
+        np.zeros((3, 3)),
+        np.full(3, np.nan),
+    )
     best, stamp, pose = np.full((n_faces, 2), -np.inf), np.full(n_faces, -1), 0
     for k in range(first, last):
         if count[k] == 0 and k > first:
@@ -119,7 +181,9 @@ def clear_loop(first: int, last: int, tips: Floats, axes: Floats, wanted: Bools,
             # work is divided.
             places[k], count[k] = places[k - 1], count[k - 1]
         for n in range(tips.shape[1]):
-            if not wanted[k, n] or stopped_before(tips[k, n], axes[k, n], arcs, pieces, places[k], count[k], allowed + bound):
+            if not wanted[k, n] or stopped_before(
+                tips[k, n], axes[k, n], arcs, pieces, places[k], count[k], allowed + bound
+            ):
                 continue
             # A static pose is a motion of no length: one span over its whole path.
             fill_way(tips[k, n], tips[k, n], axes[k, n], axes[k, n], nowhere, 0.0, way)
@@ -145,11 +209,32 @@ def clear_loop(first: int, last: int, tips: Floats, axes: Floats, wanted: Bools,
                             # entries are stale.
                             stamp[f], best[f, 0], best[f, 1] = pose, -np.inf, -np.inf
                         deepest[0] = best[f, column]
-                        enter_triangle(corners[m], normals[m], way, 0.0, 1.0, arcs, a, b, allowed, bound, allowed, deepest, tasks, task,
-                                       near_ends, near, six, cuts, flat)
+                        enter_triangle(
+                            corners[m],
+                            normals[m],
+                            way,
+                            0.0,
+                            1.0,
+                            arcs,
+                            a,
+                            b,
+                            allowed,
+                            bound,
+                            allowed,
+                            deepest,
+                            tasks,
+                            task,
+                            near_ends,
+                            near,
+                            six,
+                            cuts,
+                            flat,
+                        )
                         if deepest[0] > allowed:
                             clear = False
-                            count[k] = remember(places[k], count[k], deepest[1], deepest[2], deepest[3])
+                            count[k] = remember(
+                                places[k], count[k], deepest[1], deepest[2], deepest[3]
+                            )
                             break
                         best[f, column] = deepest[0]
                     node += 1

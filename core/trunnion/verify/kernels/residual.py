@@ -30,7 +30,9 @@ from trunnion.verify.kernels.body import depth_in_body
 from trunnion.verify.kernels.strips import Z_END, Z_START, move_box, point_distance
 
 # Columns of a way: how a tool moves in space, as the chord of a point seen from it needs it.
-PX, PY, PZ, DX, DY, DZ, AX, AY, AZ, EX, EY, EZ, TURN, CENTRE_E, CENTRE_N, RADIUS, PHASE, SWEEP = range(18)
+PX, PY, PZ, DX, DY, DZ, AX, AY, AZ, EX, EY, EZ, TURN, CENTRE_E, CENTRE_N, RADIUS, PHASE, SWEEP = (
+    range(18)
+)
 """P the tip at the start and D from there to its end; A the axis at the start, E the unit direction across it in which the axis turns by
 the angle TURN. Of arcs (RADIUS above 0): centre along E and along A x E, radius, angle at the start and the signed angle turned."""
 WAY_COLUMNS = 18
@@ -102,7 +104,16 @@ def plain_distance(radius: float, corner: float, top: float, rho: float, h: floa
 
 
 @njit(cache=True, nogil=True)
-def left_by_move(x: float, y: float, z: float, move: Floats, radius: float, corner: float, top: float, best: float) -> float:
+def left_by_move(
+    x: float,
+    y: float,
+    z: float,
+    move: Floats,
+    radius: float,
+    corner: float,
+    top: float,
+    best: float,
+) -> float:
     """Return the smaller of `best` and the signed distance (mm) of a point to a plain cutter along a
     level or upright move (15,).
 
@@ -128,16 +139,26 @@ def in_tool(w: Floats, x: float, y: float, z: float, t: float) -> tuple[float, f
     """Return a point as seen from the tool at a share t of its way: across the axis along E and along
     A x E, and above the tip (mm)."""
     # N = A x E completes the frame.
-    nx, ny, nz = w[AY] * w[EZ] - w[AZ] * w[EY], w[AZ] * w[EX] - w[AX] * w[EZ], w[AX] * w[EY] - w[AY] * w[EX]
+    nx, ny, nz = (
+        w[AY] * w[EZ] - w[AZ] * w[EY],
+        w[AZ] * w[EX] - w[AX] * w[EZ],
+        w[AX] * w[EY] - w[AY] * w[EX],
+    )
     if w[RADIUS] > 0.0:
         angle = w[PHASE] + t * w[SWEEP]
         climb = w[DX] * w[AX] + w[DY] * w[AY] + w[DZ] * w[AZ]
-        return (x * w[EX] + y * w[EY] + z * w[EZ] - w[CENTRE_E] - w[RADIUS] * math.cos(angle),
-                x * nx + y * ny + z * nz - w[CENTRE_N] - w[RADIUS] * math.sin(angle),
-                (x - w[PX]) * w[AX] + (y - w[PY]) * w[AY] + (z - w[PZ]) * w[AZ] - t * climb)
+        return (
+            x * w[EX] + y * w[EY] + z * w[EZ] - w[CENTRE_E] - w[RADIUS] * math.cos(angle),
+            x * nx + y * ny + z * nz - w[CENTRE_N] - w[RADIUS] * math.sin(angle),
+            (x - w[PX]) * w[AX] + (y - w[PY]) * w[AY] + (z - w[PZ]) * w[AZ] - t * climb,
+        )
     # On a line the frame turns by t TURN in the plane of E and A, about N.
     vx, vy, vz = x - w[PX] - t * w[DX], y - w[PY] - t * w[DY], z - w[PZ] - t * w[DZ]
-    e, n, a = vx * w[EX] + vy * w[EY] + vz * w[EZ], vx * nx + vy * ny + vz * nz, vx * w[AX] + vy * w[AY] + vz * w[AZ]
+    e, n, a = (
+        vx * w[EX] + vy * w[EY] + vz * w[EZ],
+        vx * nx + vy * ny + vz * nz,
+        vx * w[AX] + vy * w[AY] + vz * w[AZ],
+    )
     if w[TURN] > 0.0:
         c, s = math.cos(t * w[TURN]), math.sin(t * w[TURN])
         return c * e - s * a, n, c * a + s * e
@@ -154,13 +175,25 @@ def flute_distance(flutes: Flutes, tool: int, rho: float, h: float, endless: boo
     """
     best = np.inf
     for b in range(flutes.start[tool], flutes.start[tool + 1]):
-        depth, _r, _h = _depth(flutes.arc, flutes.first[b], flutes.endless[b] if endless else flutes.last[b], rho, h)
+        depth, _r, _h = _depth(
+            flutes.arc, flutes.first[b], flutes.endless[b] if endless else flutes.last[b], rho, h
+        )
         best = min(best, -depth)
     return best
 
 
 @njit(cache=True, nogil=True, inline="always")
-def _slope(arcs: Floats, first: int, last: int, x: float, y: float, z: float, dx: float, dy: float, dz: float) -> tuple[float, float]:
+def _slope(
+    arcs: Floats,
+    first: int,
+    last: int,
+    x: float,
+    y: float,
+    z: float,
+    dx: float,
+    dy: float,
+    dz: float,
+) -> tuple[float, float]:
     """Return the signed distance (mm) to a convex body at a point seen from the tool, and its
     derivative in the direction (dx, dy, dz)."""
     rho = math.sqrt(x * x + y * y)
@@ -169,8 +202,19 @@ def _slope(arcs: Floats, first: int, last: int, x: float, y: float, z: float, dx
 
 
 @njit(cache=True, nogil=True)
-def least_on_chord(arcs: Floats, first: int, last: int, x0: float, y0: float, z0: float, x1: float, y1: float, z1: float, stop: float,
-                   close: float) -> tuple[float, float, float, float]:
+def least_on_chord(
+    arcs: Floats,
+    first: int,
+    last: int,
+    x0: float,
+    y0: float,
+    z0: float,
+    x1: float,
+    y1: float,
+    z1: float,
+    stop: float,
+    close: float,
+) -> tuple[float, float, float, float]:
     """Return a lower bound (mm) of the signed distance to a convex body along a chord, the share where
     it is nearly attained, and two shares that bracket the minimum.
 
@@ -208,7 +252,9 @@ def least_on_chord(arcs: Floats, first: int, last: int, x0: float, y0: float, z0
 
 
 @njit(cache=True, nogil=True)
-def _level_rho(w: Floats, x: float, y: float, z: float, t0: float, t1: float) -> tuple[float, float, float]:
+def _level_rho(
+    w: Floats, x: float, y: float, z: float, t0: float, t1: float
+) -> tuple[float, float, float]:
     """Return the least distance (mm) of a point from the axis along a way across the axis, its height
     above the tip, and the share where.
 
@@ -225,7 +271,11 @@ def _level_rho(w: Floats, x: float, y: float, z: float, t0: float, t1: float) ->
         off = math.atan2(py, px) - (w[PHASE] + 0.5 * (t0 + t1) * w[SWEEP])
         off -= 2.0 * math.pi * math.floor(off / (2.0 * math.pi) + 0.5)
         if abs(off) <= 0.5 * abs(w[SWEEP]) * (t1 - t0):
-            return abs(math.sqrt(px * px + py * py) - w[RADIUS]), h, 0.5 * (t0 + t1) + off / w[SWEEP]
+            return (
+                abs(math.sqrt(px * px + py * py) - w[RADIUS]),
+                h,
+                0.5 * (t0 + t1) + off / w[SWEEP],
+            )
         square, other = ax * ax + ay * ay, bx * bx + by * by
         return math.sqrt(min(square, other)), h, (t0 if square <= other else t1)
     # Nearest point of the chord to the axis.
@@ -249,13 +299,28 @@ def _sag(w: Floats, span: float, far: float) -> float:
         return min(0.125 * turn * turn, 2.0) * w[RADIUS]
     if w[TURN] > 0.0:
         turn = w[TURN] * span
-        return turn * (0.125 * turn * far + 0.25 * span * math.sqrt(w[DX] * w[DX] + w[DY] * w[DY] + w[DZ] * w[DZ]))
+        return turn * (
+            0.125 * turn * far
+            + 0.25 * span * math.sqrt(w[DX] * w[DX] + w[DY] * w[DY] + w[DZ] * w[DZ])
+        )
     return 0.0
 
 
 @njit(cache=True, nogil=True)
-def left_along(w: Floats, flutes: Flutes, tool: int, x: float, y: float, z: float, t0: float, t1: float, best: float, bound: float,
-               endless: bool, spans: Floats) -> tuple[float, float]:
+def left_along(
+    w: Floats,
+    flutes: Flutes,
+    tool: int,
+    x: float,
+    y: float,
+    z: float,
+    t0: float,
+    t1: float,
+    best: float,
+    bound: float,
+    endless: bool,
+    spans: Floats,
+) -> tuple[float, float]:
     """Return the smaller of `best` and the signed distance (mm) of a point to what cuts of a tool
     along a way between two shares, and the share where.
 
@@ -277,11 +342,24 @@ def left_along(w: Floats, flutes: Flutes, tool: int, x: float, y: float, z: floa
         x1, y1, z1 = in_tool(w, x, y, z, b)
         # The true path lies within the sag of its chord and f has slope 1: its minimum is at least
         # the chord's less the sag.
-        sag = _sag(w, b - a, math.sqrt(max(x0 * x0 + y0 * y0 + z0 * z0, x1 * x1 + y1 * y1 + z1 * z1)))
+        sag = _sag(
+            w, b - a, math.sqrt(max(x0 * x0 + y0 * y0 + z0 * z0, x1 * x1 + y1 * y1 + z1 * z1))
+        )
         least, share = np.inf, 0.0
         for k in range(flutes.start[tool], flutes.start[tool + 1]):
-            lower, s, _a, _b = least_on_chord(flutes.arc, flutes.first[k], flutes.endless[k] if endless else flutes.last[k], x0, y0, z0, x1,
-                                              y1, z1, min(best, least + sag) - bound + sag, 0.25 * bound)
+            lower, s, _a, _b = least_on_chord(
+                flutes.arc,
+                flutes.first[k],
+                flutes.endless[k] if endless else flutes.last[k],
+                x0,
+                y0,
+                z0,
+                x1,
+                y1,
+                z1,
+                min(best, least + sag) - bound + sag,
+                0.25 * bound,
+            )
             if lower < least:
                 least, share = lower, s
         if least - sag >= best - bound:
@@ -302,7 +380,9 @@ def left_along(w: Floats, flutes: Flutes, tool: int, x: float, y: float, z: floa
 
 
 @njit(cache=True, nogil=True)
-def node_least(tree: Tree, flutes: Flutes, n: int, x: float, y: float, z: float, above: bool) -> float:
+def node_least(
+    tree: Tree, flutes: Flutes, n: int, x: float, y: float, z: float, above: bool
+) -> float:
     """Return a lower bound (mm) of the signed distance of a point to any pose below a node.
 
     f(node's pose) - translation - chord of angle x distance from the pose's place: a turn of the
@@ -313,12 +393,30 @@ def node_least(tree: Tree, flutes: Flutes, n: int, x: float, y: float, z: float,
     square = vx * vx + vy * vy + vz * vz
     h = vx * pose[n, 3] + vy * pose[n, 4] + vz * pose[n, 5]
     rho = math.sqrt(max(square - h * h, 0.0))
-    return flute_distance(flutes, tool, rho, h + flutes.middle[tool], above) - pose[n, 6] - pose[n, 7] * math.sqrt(square)
+    return (
+        flute_distance(flutes, tool, rho, h + flutes.middle[tool], above)
+        - pose[n, 6]
+        - pose[n, 7] * math.sqrt(square)
+    )
 
 
 @njit(cache=True, nogil=True)
-def nearest_span(x: float, y: float, z: float, tree: Tree, flutes: Flutes, best: float, by: int, bound: float, before: int, above: bool,
-                 enough: float, nodes: Ints, least: Floats, spans: Floats) -> tuple[float, int, int, float]:
+def nearest_span(
+    x: float,
+    y: float,
+    z: float,
+    tree: Tree,
+    flutes: Flutes,
+    best: float,
+    by: int,
+    bound: float,
+    before: int,
+    above: bool,
+    enough: float,
+    nodes: Ints,
+    least: Floats,
+    spans: Floats,
+) -> tuple[float, int, int, float]:
     """Return the smaller of `best` and the signed distance (mm) of a point to what cuts along the
     spans of a tree, the move (else `by`), the row of its way (else -1), and the share of it where.
 
@@ -328,7 +426,10 @@ def nearest_span(x: float, y: float, z: float, tree: Tree, flutes: Flutes, best:
     """
     top, row_at, share_at = 0, -1, 0.0
     for r in range(len(tree.root)):
-        nodes[top], least[top] = tree.root[r], node_least(tree, flutes, tree.root[r], x, y, z, above)
+        nodes[top], least[top] = (
+            tree.root[r],
+            node_least(tree, flutes, tree.root[r], x, y, z, above),
+        )
         top += 1
     # Depth first, the nearer child first; a node that can no longer undercut `best` is dropped when
     # it comes off the stack.
@@ -339,7 +440,10 @@ def nearest_span(x: float, y: float, z: float, tree: Tree, flutes: Flutes, best:
             continue
         left, right = tree.link[n, 0], tree.link[n, 1]
         if left >= 0:
-            a, b = node_least(tree, flutes, left, x, y, z, above), node_least(tree, flutes, right, x, y, z, above)
+            a, b = (
+                node_least(tree, flutes, left, x, y, z, above),
+                node_least(tree, flutes, right, x, y, z, above),
+            )
             # The nearer child goes on top of the stack.
             if a < b:
                 left, right, a, b = right, left, b, a
@@ -357,16 +461,23 @@ def nearest_span(x: float, y: float, z: float, tree: Tree, flutes: Flutes, best:
             mx, my, mz = in_tool(w, x, y, z, 0.5 * (tree.low[k] + tree.high[k]))
             turn = w[TURN] * (tree.high[k] - tree.low[k])
             most = tree.reach[k] + 0.5 * turn * math.sqrt(mx * mx + my * my + mz * mz)
-            if flute_distance(flutes, tool, math.sqrt(mx * mx + my * my), mz, endless) - most >= best - bound:
+            if (
+                flute_distance(flutes, tool, math.sqrt(mx * mx + my * my), mz, endless) - most
+                >= best - bound
+            ):
                 continue
-            value, at = left_along(w, flutes, tool, x, y, z, tree.low[k], tree.high[k], best, bound, endless, spans)
+            value, at = left_along(
+                w, flutes, tool, x, y, z, tree.low[k], tree.high[k], best, bound, endless, spans
+            )
             if value < best:
                 best, by, row_at, share_at = value, tree.move[row], row, at
     return best, by, row_at, share_at
 
 
 @njit(cache=True, nogil=True)
-def span_poses(way: Floats, of: Ints, low: Floats, high: Floats, middle: Floats) -> tuple[Floats, Floats]:
+def span_poses(
+    way: Floats, of: Ints, low: Floats, high: Floats, middle: Floats
+) -> tuple[Floats, Floats]:
     """Return the middle pose of spans (k, 6), a place on the axis and the unit axis, and how far (mm)
     and by what chord of angle (k, 2) the others of the span differ.
 
@@ -383,7 +494,11 @@ def span_poses(way: Floats, of: Ints, low: Floats, high: Floats, middle: Floats)
             # Seen from its own tip the origin is at minus the tip's place.
             ox, oy, oz = in_tool(w, 0.0, 0.0, 0.0, t)
             nx, ny, nz = ay * w[EZ] - az * w[EY], az * w[EX] - ax * w[EZ], ax * w[EY] - ay * w[EX]
-            px, py, pz = -ox * w[EX] - oy * nx - oz * ax, -ox * w[EY] - oy * ny - oz * ay, -ox * w[EZ] - oy * nz - oz * az
+            px, py, pz = (
+                -ox * w[EX] - oy * nx - oz * ax,
+                -ox * w[EY] - oy * ny - oz * ay,
+                -ox * w[EZ] - oy * nz - oz * az,
+            )
             climb = (w[DX] * ax + w[DY] * ay + w[DZ] * az) * share
             length = math.sqrt(climb * climb + (w[RADIUS] * w[SWEEP] * share) ** 2)
         elif w[TURN] > 0.0:
@@ -396,7 +511,9 @@ def span_poses(way: Floats, of: Ints, low: Floats, high: Floats, middle: Floats)
 
 
 @njit(cache=True, nogil=True)
-def grow_tree(pose: Floats, reach: Floats, start: Ints, tools: Ints, nodes: Floats, links: Ints, root: Ints) -> int:
+def grow_tree(
+    pose: Floats, reach: Floats, start: Ints, tools: Ints, nodes: Floats, links: Ints, root: Ints
+) -> int:
     """Fill the nodes (m, 8) and links (m, 5) of trees over spans in their order; return how many nodes
     there are.
 
@@ -414,7 +531,13 @@ def grow_tree(pose: Floats, reach: Floats, start: Ints, tools: Ints, nodes: Floa
             top -= 1
             first, last, n = work[top, 0], work[top, 1], work[top, 2]
             _bounding(pose, reach, first, last, nodes[n])
-            links[n, 0], links[n, 1], links[n, 2], links[n, 3], links[n, 4] = -1, -1, first, last, tools[r]
+            links[n, 0], links[n, 1], links[n, 2], links[n, 3], links[n, 4] = (
+                -1,
+                -1,
+                first,
+                last,
+                tools[r],
+            )
             if last - first > BUCKET:
                 middle = (first + last) // 2
                 links[n, 0], links[n, 1] = count, count + 1
@@ -449,7 +572,10 @@ def _bounding(pose: Floats, reach: Floats, first: int, last: int, out: Floats) -
         for c in range(3):
             far += (pose[k, c] - out[c]) ** 2
             turn += (pose[k, 3 + c] - out[3 + c]) ** 2
-        out[6], out[7] = max(out[6], math.sqrt(far) + reach[k, 0]), max(out[7], math.sqrt(turn) + reach[k, 1])
+        out[6], out[7] = (
+            max(out[6], math.sqrt(far) + reach[k, 0]),
+            max(out[7], math.sqrt(turn) + reach[k, 1]),
+        )
 
 
 @njit(cache=True, nogil=True)
@@ -458,13 +584,34 @@ def move_boxes(moves: Floats, margin: Floats) -> Floats:
     out = np.empty((len(moves), 4))
     for n in range(len(moves)):
         x0, y0, x1, y1 = move_box(moves[n])
-        out[n, 0], out[n, 1], out[n, 2], out[n, 3] = x0 - margin[n], y0 - margin[n], x1 + margin[n], y1 + margin[n]
+        out[n, 0], out[n, 1], out[n, 2], out[n, 3] = (
+            x0 - margin[n],
+            y0 - margin[n],
+            x1 + margin[n],
+            y1 + margin[n],
+        )
     return out
 
 
 @njit(cache=True, nogil=True)
-def left_loop(first: int, last: int, points: Floats, order: Ints, moves: Floats, cutter: Floats, low: Floats, cell_start: Ints,
-              cell_move: Ints, grid: Floats, shape: Ints, tree: Tree, flutes: Flutes, bound: float, left: Floats, nearest: Ints) -> None:
+def left_loop(
+    first: int,
+    last: int,
+    points: Floats,
+    order: Ints,
+    moves: Floats,
+    cutter: Floats,
+    low: Floats,
+    cell_start: Ints,
+    cell_move: Ints,
+    grid: Floats,
+    shape: Ints,
+    tree: Tree,
+    flutes: Flutes,
+    bound: float,
+    left: Floats,
+    nearest: Ints,
+) -> None:
     """Lower left (s,) mm to the smallest signed distance of each point to what cuts along the moves of
     its cell and of the tree.
 
@@ -472,7 +619,11 @@ def left_loop(first: int, last: int, points: Floats, order: Ints, moves: Floats,
     flute length of each move, low (n,) its lowest tip, by which the lists of a cell are sorted:
     what comes later is higher and can't be nearer. nearest (s,) gets the move.
     """
-    nodes, least, spans = np.zeros(len(tree.root) + 128, np.int64), np.zeros(len(tree.root) + 128), np.zeros((96, 2))
+    nodes, least, spans = (
+        np.zeros(len(tree.root) + 128, np.int64),
+        np.zeros(len(tree.root) + 128),
+        np.zeros((96, 2)),
+    )
     for k in range(first, last):
         n = order[k]
         x, y, z = points[n, 0], points[n, 1], points[n, 2]
@@ -487,24 +638,65 @@ def left_loop(first: int, last: int, points: Floats, order: Ints, moves: Floats,
                 d = left_by_move(x, y, z, moves[m], cutter[m, 0], cutter[m, 1], cutter[m, 2], best)
                 if d < best:
                     best, by = d, m
-        left[n], nearest[n], _row, _share = nearest_span(x, y, z, tree, flutes, best, by, bound, NO_END, False, -np.inf, nodes, least,
-                                                         spans)
+        left[n], nearest[n], _row, _share = nearest_span(
+            x, y, z, tree, flutes, best, by, bound, NO_END, False, -np.inf, nodes, least, spans
+        )
 
 
 @njit(cache=True, nogil=True)
-def far_loop(first: int, last: int, points: Floats, order: Ints, tree: Tree, flutes: Flutes, bound: float, left: Floats,
-             nearest: Ints) -> None:
+def far_loop(
+    first: int,
+    last: int,
+    points: Floats,
+    order: Ints,
+    tree: Tree,
+    flutes: Flutes,
+    bound: float,
+    left: Floats,
+    nearest: Ints,
+) -> None:
     """Lower left (s,) as `left_loop` does, by the moves of a tree alone."""
-    nodes, least, spans = np.zeros(len(tree.root) + 128, np.int64), np.zeros(len(tree.root) + 128), np.zeros((96, 2))
+    nodes, least, spans = (
+        np.zeros(len(tree.root) + 128, np.int64),
+        np.zeros(len(tree.root) + 128),
+        np.zeros((96, 2)),
+    )
     for k in range(first, last):
         n = order[k]
-        left[n], nearest[n], _row, _share = nearest_span(points[n, 0], points[n, 1], points[n, 2], tree, flutes, left[n], nearest[n], bound,
-                                                         NO_END, False, -np.inf, nodes, least, spans)
+        left[n], nearest[n], _row, _share = nearest_span(
+            points[n, 0],
+            points[n, 1],
+            points[n, 2],
+            tree,
+            flutes,
+            left[n],
+            nearest[n],
+            bound,
+            NO_END,
+            False,
+            -np.inf,
+            nodes,
+            least,
+            spans,
+        )
 
 
 @njit(cache=True, nogil=True)
-def _cut_from_above(x: float, y: float, z: float, before: int, thinner: float, most: float, moves: Floats, cutter: Floats, low: Floats,
-                    cell_start: Ints, cell_move: Ints, grid: Floats, shape: Ints) -> bool:
+def _cut_from_above(
+    x: float,
+    y: float,
+    z: float,
+    before: int,
+    thinner: float,
+    most: float,
+    moves: Floats,
+    cutter: Floats,
+    low: Floats,
+    cell_start: Ints,
+    cell_move: Ints,
+    grid: Floats,
+    shape: Ints,
+) -> bool:
     """Return whether a listed move with a row below `before`, of a cutter `thinner` by some mm of
     radius, comes as near as `most` (mm) to a point or to one above it.
 
@@ -519,30 +711,86 @@ def _cut_from_above(x: float, y: float, z: float, before: int, thinner: float, m
         m = cell_move[c]
         if low[m] > z:
             return False
-        if m < before and left_by_move(x, y, z, moves[m], cutter[m, 0] - thinner, cutter[m, 1], np.inf, 1.0) <= most:
+        if (
+            m < before
+            and left_by_move(x, y, z, moves[m], cutter[m, 0] - thinner, cutter[m, 1], np.inf, 1.0)
+            <= most
+        ):
             return True
     return False
 
 
 @njit(cache=True, nogil=True)
-def cut_loop(first: int, last: int, points: Floats, before: int, moves: Floats, cutter: Floats, low: Floats, cell_start: Ints,
-             cell_move: Ints, grid: Floats, shape: Ints, tree: Tree, flutes: Flutes, bound: float, out: Bools) -> None:
+def cut_loop(
+    first: int,
+    last: int,
+    points: Floats,
+    before: int,
+    moves: Floats,
+    cutter: Floats,
+    low: Floats,
+    cell_start: Ints,
+    cell_move: Ints,
+    grid: Floats,
+    shape: Ints,
+    tree: Tree,
+    flutes: Flutes,
+    bound: float,
+    out: Bools,
+) -> None:
     """Fill out[first:last] with whether a move with a row below `before` has removed each point (s,
     3); upright plain cutters also all above.
 
     Points within `bound` (mm) outside of what is cut count as removed.
     """
-    nodes, least, spans = np.zeros(len(tree.root) + 128, np.int64), np.zeros(len(tree.root) + 128), np.zeros((96, 2))
+    nodes, least, spans = (
+        np.zeros(len(tree.root) + 128, np.int64),
+        np.zeros(len(tree.root) + 128),
+        np.zeros((96, 2)),
+    )
     for n in range(first, last):
         x, y, z = points[n, 0], points[n, 1], points[n, 2]
-        out[n] = _cut_from_above(x, y, z, before, 0.0, bound, moves, cutter, low, cell_start, cell_move, grid, shape)
+        out[n] = _cut_from_above(
+            x, y, z, before, 0.0, bound, moves, cutter, low, cell_start, cell_move, grid, shape
+        )
         if not out[n]:
-            out[n] = nearest_span(x, y, z, tree, flutes, 2.0 * bound, -1, bound, before, True, bound, nodes, least, spans)[1] >= 0
+            out[n] = (
+                nearest_span(
+                    x,
+                    y,
+                    z,
+                    tree,
+                    flutes,
+                    2.0 * bound,
+                    -1,
+                    bound,
+                    before,
+                    True,
+                    bound,
+                    nodes,
+                    least,
+                    spans,
+                )[1]
+                >= 0
+            )
 
 
 @njit(cache=True, nogil=True)
-def around_loop(first: int, last: int, points: Floats, margin: float, before: int, moves: Floats, cutter: Floats, low: Floats,
-                cell_start: Ints, cell_move: Ints, grid: Floats, shape: Ints, out: Bools) -> None:
+def around_loop(
+    first: int,
+    last: int,
+    points: Floats,
+    margin: float,
+    before: int,
+    moves: Floats,
+    cutter: Floats,
+    low: Floats,
+    cell_start: Ints,
+    cell_move: Ints,
+    grid: Floats,
+    shape: Ints,
+    out: Bools,
+) -> None:
     """Fill out[first:last] with whether one listed move with a row below `before` has removed all
     within a margin (mm) in plan of each point (s, 3), and all above that.
 
@@ -550,5 +798,18 @@ def around_loop(first: int, last: int, points: Floats, margin: float, before: in
     """
     for n in range(first, last):
         # A cutter thinner by the margin that holds the middle: the cutter itself holds all around.
-        out[n] = _cut_from_above(points[n, 0], points[n, 1], points[n, 2], before, margin, 0.0, moves, cutter, low, cell_start, cell_move,
-                                 grid, shape)
+        out[n] = _cut_from_above(
+            points[n, 0],
+            points[n, 1],
+            points[n, 2],
+            before,
+            margin,
+            0.0,
+            moves,
+            cutter,
+            low,
+            cell_start,
+            cell_move,
+            grid,
+            shape,
+        )

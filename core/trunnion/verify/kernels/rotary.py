@@ -36,7 +36,9 @@ def nearest(value: float, before: float, low: float, high: float) -> float:
 
 
 @njit(cache=True, nogil=True)
-def follow(angles: Floats, free: Bools, low: Floats, high: Floats, first: int, slack: float, chosen: Floats) -> tuple[float, int]:
+def follow(
+    angles: Floats, free: Bools, low: Floats, high: Floats, first: int, slack: float, chosen: Floats
+) -> tuple[float, int]:
     """Fill chosen (m, a) with the rotary angles of m poses and return the total angle turned (rad,
     summed over axes) and the number of poses outside the limits.
 
@@ -57,14 +59,22 @@ def follow(angles: Floats, free: Bools, low: Floats, high: Floats, first: int, s
             cost, out = 0.0, 0
             for a in range(axes):
                 before = chosen[k - 1, a] if k else 0.0
-                angle = before if free[k, way, a] else nearest(angles[k, way, a], before, low[a], high[a])
+                angle = (
+                    before
+                    if free[k, way, a]
+                    else nearest(angles[k, way, a], before, low[a], high[a])
+                )
                 cost += abs(angle - before)
                 out += angle < low[a] - slack or angle > high[a] + slack
             if out < best_out or (out == best_out and cost < best):
                 best, best_out, best_way = cost, out, way
         for a in range(axes):
             before = chosen[k - 1, a] if k else 0.0
-            chosen[k, a] = before if free[k, best_way, a] else nearest(angles[k, best_way, a], before, low[a], high[a])
+            chosen[k, a] = (
+                before
+                if free[k, best_way, a]
+                else nearest(angles[k, best_way, a], before, low[a], high[a])
+            )
         turned += best
         outside += best_out > 0
     return turned, outside

@@ -156,8 +156,10 @@ def _segments(a: Floats, b: Floats) -> float:
         t = (ex * ay - ey * ax) / cross
         if 0.0 <= s <= 1.0 and 0.0 <= t <= 1.0:
             return 0.0
-    return min(min(_point_segment(a[X0], a[Y0], b), _point_segment(a[X1], a[Y1], b)),
-               min(_point_segment(b[X0], b[Y0], a), _point_segment(b[X1], b[Y1], a)))
+    return min(
+        min(_point_segment(a[X0], a[Y0], b), _point_segment(a[X1], a[Y1], b)),
+        min(_point_segment(b[X0], b[Y0], a), _point_segment(b[X1], b[Y1], a)),
+    )
 
 
 @njit(cache=True, nogil=True)
@@ -169,8 +171,10 @@ def _segment_arc(a: Floats, b: Floats) -> float:
     """
     dx, dy = a[X1] - a[X0], a[Y1] - a[Y0]
     square = dx * dx + dy * dy
-    best = min(min(_point_arc(a[X0], a[Y0], b), _point_arc(a[X1], a[Y1], b)),
-               min(_point_segment(b[X0], b[Y0], a), _point_segment(b[X1], b[Y1], a)))
+    best = min(
+        min(_point_arc(a[X0], a[Y0], b), _point_arc(a[X1], a[Y1], b)),
+        min(_point_segment(b[X0], b[Y0], a), _point_segment(b[X1], b[Y1], a)),
+    )
     if square == 0.0:
         return best
     # Foot of the centre on the line, at the share t.
@@ -197,8 +201,10 @@ def _arcs(a: Floats, b: Floats) -> float:
     The least is at an end of either, on the line through both centres, or 0 at a crossing of the
     circles. Concentric arcs that face each other have an end of one opposite to the other.
     """
-    best = min(min(_point_arc(a[X0], a[Y0], b), _point_arc(a[X1], a[Y1], b)),
-               min(_point_arc(b[X0], b[Y0], a), _point_arc(b[X1], b[Y1], a)))
+    best = min(
+        min(_point_arc(a[X0], a[Y0], b), _point_arc(a[X1], a[Y1], b)),
+        min(_point_arc(b[X0], b[Y0], a), _point_arc(b[X1], b[Y1], a)),
+    )
     vx, vy = b[CX] - a[CX], b[CY] - a[CY]
     length = math.sqrt(vx * vx + vy * vy)
     if length < _TINY:
@@ -207,7 +213,9 @@ def _arcs(a: Floats, b: Floats) -> float:
     # Points of the one arc on the line of centres, on both sides.
     for sign in (-1.0, 1.0):
         if _on_arc(sign * vx, sign * vy, 1.0, a):
-            best = min(best, _point_arc(a[CX] + sign * a[RADIUS] * vx, a[CY] + sign * a[RADIUS] * vy, b))
+            best = min(
+                best, _point_arc(a[CX] + sign * a[RADIUS] * vx, a[CY] + sign * a[RADIUS] * vy, b)
+            )
     # Crossings of the circles, by their radical line at `along` from the first centre.
     along = (length * length + a[RADIUS] * a[RADIUS] - b[RADIUS] * b[RADIUS]) / (2.0 * length)
     square = a[RADIUS] * a[RADIUS] - along * along
@@ -237,7 +245,9 @@ def curve_distance(a: Floats, b: Floats) -> float:
 def _profile_w(s: Floats, u: float) -> float:
     """Return w (mm) of a strip's profile at the parameter u; an arc's parameter is its angle (rad)."""
     if s[PROFILE] == 0.0:
-        return s[PW0] + (s[PW1] - s[PW0]) * ((u - s[U0]) / (s[U1] - s[U0]) if s[U1] > s[U0] else 0.0)
+        return s[PW0] + (s[PW1] - s[PW0]) * (
+            (u - s[U0]) / (s[U1] - s[U0]) if s[U1] > s[U0] else 0.0
+        )
     return s[PW0] + s[PW1] * math.cos(u)
 
 
@@ -245,7 +255,9 @@ def _profile_w(s: Floats, u: float) -> float:
 def _profile_z(s: Floats, u: float) -> float:
     """Return z (mm) of a strip's profile at the parameter u."""
     if s[PROFILE] == 0.0:
-        return s[PZ0] + (s[PZ1] - s[PZ0]) * ((u - s[U0]) / (s[U1] - s[U0]) if s[U1] > s[U0] else 0.0)
+        return s[PZ0] + (s[PZ1] - s[PZ0]) * (
+            (u - s[U0]) / (s[U1] - s[U0]) if s[U1] > s[U0] else 0.0
+        )
     return s[PZ0] + s[PW1] * math.sin(u)
 
 
@@ -286,8 +298,14 @@ def _guide(s: Floats, w: float, u0: float, u1: float, out: Floats) -> None:
     if s[FIXED] != 0.0:
         low, high = s[LA], s[RA]
     else:
-        low = min(_end(s[L_KIND], s[LA], s[LB], s[LC], s[L_SIGN], u0, s[U0]), _end(s[L_KIND], s[LA], s[LB], s[LC], s[L_SIGN], u1, s[U0]))
-        high = max(_end(s[R_KIND], s[RA], s[RB], s[RC], s[R_SIGN], u0, s[U0]), _end(s[R_KIND], s[RA], s[RB], s[RC], s[R_SIGN], u1, s[U0]))
+        low = min(
+            _end(s[L_KIND], s[LA], s[LB], s[LC], s[L_SIGN], u0, s[U0]),
+            _end(s[L_KIND], s[LA], s[LB], s[LC], s[L_SIGN], u1, s[U0]),
+        )
+        high = max(
+            _end(s[R_KIND], s[RA], s[RB], s[RC], s[R_SIGN], u0, s[U0]),
+            _end(s[R_KIND], s[RA], s[RB], s[RC], s[R_SIGN], u1, s[U0]),
+        )
         high = max(high, low)
     if s[GUIDE] == 0.0:
         px, py = s[OX] - w * s[DY], s[OY] + w * s[DX]
@@ -307,17 +325,38 @@ def _guide(s: Floats, w: float, u0: float, u1: float, out: Floats) -> None:
 
 
 @njit(cache=True, nogil=True)
-def _depth_at(s: Floats, u: float, path: Floats, z_low: float, rise: float, arcs: Floats, piece: Floats, guide: Floats) -> float:
+def _depth_at(
+    s: Floats,
+    u: float,
+    path: Floats,
+    z_low: float,
+    rise: float,
+    arcs: Floats,
+    piece: Floats,
+    guide: Floats,
+) -> float:
     """Return the depth (mm) that is attained at one profile parameter, for a tip along `path` from
     z_low to z_low + rise."""
     _guide(s, _profile_w(s, u), u, u, guide)
-    depth, _r, _h = swept_depth(arcs, piece, curve_distance(path, guide), _profile_z(s, u) - z_low, rise)
+    depth, _r, _h = swept_depth(
+        arcs, piece, curve_distance(path, guide), _profile_z(s, u) - z_low, rise
+    )
     return depth
 
 
 @njit(cache=True, nogil=True)
-def strip_depth(s: Floats, path: Floats, z_low: float, rise: float, arcs: Floats, piece: Floats, enough: float, bound: float,
-                guide: Floats, stack: Floats) -> tuple[float, float]:
+def strip_depth(
+    s: Floats,
+    path: Floats,
+    z_low: float,
+    rise: float,
+    arcs: Floats,
+    piece: Floats,
+    enough: float,
+    bound: float,
+    guide: Floats,
+    stack: Floats,
+) -> tuple[float, float]:
     """Return the deepest (mm) that one piece enters one strip while its tip follows a plan path
     between z_low and z_low + rise, and the profile parameter there.
 
@@ -444,8 +483,18 @@ def is_sloped(move: Floats) -> bool:
 
 
 @njit(cache=True, nogil=True)
-def move_depth(s: Floats, move: Floats, arcs: Floats, piece: Floats, enough: float, bound: float, path: Floats, guide: Floats,
-               stack: Floats, spans: Floats) -> tuple[float, float]:
+def move_depth(
+    s: Floats,
+    move: Floats,
+    arcs: Floats,
+    piece: Floats,
+    enough: float,
+    bound: float,
+    path: Floats,
+    guide: Floats,
+    stack: Floats,
+    spans: Floats,
+) -> tuple[float, float]:
     """Return the deepest (mm) that one piece enters one strip along a whole move, and the profile
     parameter there.
 
@@ -456,8 +505,18 @@ def move_depth(s: Floats, move: Floats, arcs: Floats, piece: Floats, enough: flo
     the search over time.
     """
     if not is_sloped(move):
-        return strip_depth(s, move, min(move[Z_START], move[Z_END]), abs(move[Z_END] - move[Z_START]), arcs, piece, enough, bound, guide,
-                           stack)
+        return strip_depth(
+            s,
+            move,
+            min(move[Z_START], move[Z_END]),
+            abs(move[Z_END] - move[Z_START]),
+            arcs,
+            piece,
+            enough,
+            bound,
+            guide,
+            stack,
+        )
     best, where = -np.inf, s[U0]
     spans[0, 0], spans[0, 1] = 0.0, 1.0
     top = 1
@@ -465,7 +524,9 @@ def move_depth(s: Floats, move: Floats, arcs: Floats, piece: Floats, enough: flo
         top -= 1
         t0, t1 = spans[top, 0], spans[top, 1]
         z_low, z_high = part_of_move(move, t0, t1, path)
-        most, u = strip_depth(s, path, z_low, z_high - z_low, arcs, piece, max(enough, best), bound, guide, stack)
+        most, u = strip_depth(
+            s, path, z_low, z_high - z_low, arcs, piece, max(enough, best), bound, guide, stack
+        )
         # Not deeper than what is known: the part is done.
         if most <= max(enough, best):
             continue
@@ -560,8 +621,9 @@ def deepest_height(arcs: Floats, piece: Floats) -> float:
 
 
 @njit(cache=True, nogil=True)
-def region_depth(z: float, box: Floats, outline: Floats, move: Floats, arcs: Floats, piece: Floats,
-                 path: Floats) -> tuple[float, float]:
+def region_depth(
+    z: float, box: Floats, outline: Floats, move: Floats, arcs: Floats, piece: Floats, path: Floats
+) -> tuple[float, float]:
     """Return how deep (mm) one piece enters a level face where its axis passes over or under it, and
     at which share of the move.
 
@@ -578,7 +640,11 @@ def region_depth(z: float, box: Floats, outline: Floats, move: Floats, arcs: Flo
     """
     z_low, rise = min(move[Z_START], move[Z_END]), abs(move[Z_END] - move[Z_START])
     if not is_sloped(move):
-        if z - z_low < piece[Z_LOW] or z - z_low > piece[Z_HIGH] + rise or not _over(move[X0], move[Y0], box, outline):
+        if (
+            z - z_low < piece[Z_LOW]
+            or z - z_low > piece[Z_HIGH] + rise
+            or not _over(move[X0], move[Y0], box, outline)
+        ):
             return -np.inf, 0.0
         return _level_depth(arcs, piece, z - z_low, rise), 0.0
     most, when = -np.inf, 0.0
@@ -605,27 +671,71 @@ def _over(x: float, y: float, box: Floats, outline: Floats) -> bool:
 
 
 @njit(cache=True, nogil=True)
-def _near_cell(i: int, j: int, z: Floats, grid: Floats, x0: float, y0: float, x1: float, y1: float, z_low: float, rise: float,
-               pieces: Floats) -> bool:
+def _near_cell(
+    i: int,
+    j: int,
+    z: Floats,
+    grid: Floats,
+    x0: float,
+    y0: float,
+    x1: float,
+    y1: float,
+    z_low: float,
+    rise: float,
+    pieces: Floats,
+) -> bool:
     """Return whether some piece comes near a cell (i, j) of a grid whose strips stand between two
     heights z (2,), from a move's plan box.
 
     By the distance of two boxes and the ranges of height: it errs towards near.
     """
     low_x, low_y = grid[0] + i * grid[2], grid[1] + j * grid[2]
-    gx, gy = max(max(low_x - x1, x0 - low_x - grid[2]), 0.0), max(max(low_y - y1, y0 - low_y - grid[2]), 0.0)
+    gx, gy = (
+        max(max(low_x - x1, x0 - low_x - grid[2]), 0.0),
+        max(max(low_y - y1, y0 - low_y - grid[2]), 0.0),
+    )
     gap = math.sqrt(gx * gx + gy * gy)
     for p in range(len(pieces)):
-        if z[1] >= z_low + pieces[p, Z_LOW] and z[0] <= z_low + rise + pieces[p, Z_HIGH] and gap < pieces[p, R_MAX]:
+        if (
+            z[1] >= z_low + pieces[p, Z_LOW]
+            and z[0] <= z_low + rise + pieces[p, Z_HIGH]
+            and gap < pieces[p, R_MAX]
+        ):
             return True
     return False
 
 
 @njit(cache=True, nogil=True)
-def contact_loop(first: int, last: int, rows: Ints, moves: Floats, tool: Ints, arcs: Floats, pieces: Floats, piece_start: Ints,
-                 strips: Floats, strip_face: Ints, cell_start: Ints, cell_strip: Ints, cell_z: Floats, grid: Floats, shape: Ints,
-                 region_z: Floats, region_face: Ints, region_box: Floats, region_start: Ints, outlines: Floats, enough: float,
-                 bound: float, settle: float, depth: Floats, which: Ints, where: Floats, face_depth: Floats, face_move: Ints) -> None:
+def contact_loop(
+    first: int,
+    last: int,
+    rows: Ints,
+    moves: Floats,
+    tool: Ints,
+    arcs: Floats,
+    pieces: Floats,
+    piece_start: Ints,
+    strips: Floats,
+    strip_face: Ints,
+    cell_start: Ints,
+    cell_strip: Ints,
+    cell_z: Floats,
+    grid: Floats,
+    shape: Ints,
+    region_z: Floats,
+    region_face: Ints,
+    region_box: Floats,
+    region_start: Ints,
+    outlines: Floats,
+    enough: float,
+    bound: float,
+    settle: float,
+    depth: Floats,
+    which: Ints,
+    where: Floats,
+    face_depth: Floats,
+    face_move: Ints,
+) -> None:
     """Measure the moves of rows `first` to `last` against every strip and every level region near
     them.
 
@@ -656,14 +766,22 @@ def contact_loop(first: int, last: int, rows: Ints, moves: Floats, tool: Ints, a
             widest = max(widest, pieces[p, R_MAX])
         # Cells under the move's plan box, widened by the tool's largest radius.
         x0, y0, x1, y1 = move_box(move)
-        i0, i1 = int(math.floor((x0 - widest - grid[0]) / grid[2])), int(math.floor((x1 + widest - grid[0]) / grid[2]))
-        j0, j1 = int(math.floor((y0 - widest - grid[1]) / grid[2])), int(math.floor((y1 + widest - grid[1]) / grid[2]))
+        i0, i1 = (
+            int(math.floor((x0 - widest - grid[0]) / grid[2])),
+            int(math.floor((x1 + widest - grid[0]) / grid[2])),
+        )
+        j0, j1 = (
+            int(math.floor((y0 - widest - grid[1]) / grid[2])),
+            int(math.floor((y1 + widest - grid[1]) / grid[2])),
+        )
         for j in range(max(j0, 0), min(j1, shape[1] - 1) + 1):
             for i in range(max(i0, 0), min(i1, shape[0] - 1) + 1):
                 cell = j * shape[0] + i
                 if cell_z[cell, 1] - z_low <= enough:
                     continue
-                if not _near_cell(i, j, cell_z[cell], grid, x0, y0, x1, y1, z_low, rise, pieces[p0:p1]):
+                if not _near_cell(
+                    i, j, cell_z[cell], grid, x0, y0, x1, y1, z_low, rise, pieces[p0:p1]
+                ):
                     continue
                 for c in range(cell_start[cell], cell_start[cell + 1]):
                     m = cell_strip[c]
@@ -674,28 +792,47 @@ def contact_loop(first: int, last: int, rows: Ints, moves: Floats, tool: Ints, a
                     s = strips[m]
                     if s[BZ1] - z_low <= enough or depth[k, 0] > settle or depth[k, 1] > settle:
                         continue
-                    gx, gy = max(max(s[BX0] - x1, x0 - s[BX1]), 0.0), max(max(s[BY0] - y1, y0 - s[BY1]), 0.0)
+                    gx, gy = (
+                        max(max(s[BX0] - x1, x0 - s[BX1]), 0.0),
+                        max(max(s[BY0] - y1, y0 - s[BY1]), 0.0),
+                    )
                     gap = math.sqrt(gx * gx + gy * gy)
                     for p in range(p0, p1):
                         piece = pieces[p]
-                        if s[BZ1] < z_low + piece[Z_LOW] or s[BZ0] > z_low + rise + piece[Z_HIGH] or gap >= piece[R_MAX] - enough:
+                        if (
+                            s[BZ1] < z_low + piece[Z_LOW]
+                            or s[BZ0] > z_low + rise + piece[Z_HIGH]
+                            or gap >= piece[R_MAX] - enough
+                        ):
                             continue
-                        d, u = move_depth(s, move, arcs, piece, enough, bound, path, guide, stack, spans)
+                        d, u = move_depth(
+                            s, move, arcs, piece, enough, bound, path, guide, stack, spans
+                        )
                         if d > enough:
                             kind = int(piece[PIECE_KIND])
                             if d > depth[k, kind]:
                                 depth[k, kind], which[k, kind], where[k, kind] = d, m, u
                             if d > face_depth[strip_face[m], kind]:
-                                face_depth[strip_face[m], kind], face_move[strip_face[m], kind] = d, n
+                                face_depth[strip_face[m], kind], face_move[strip_face[m], kind] = (
+                                    d,
+                                    n,
+                                )
         # Level faces: their inside, as `region_depth` has it.
         for r in range(len(region_z)):
             if region_z[r] - z_low <= enough or depth[k, 0] > settle or depth[k, 1] > settle:
                 continue
-            if x1 < region_box[r, 0] or x0 > region_box[r, 2] or y1 < region_box[r, 1] or y0 > region_box[r, 3]:
+            if (
+                x1 < region_box[r, 0]
+                or x0 > region_box[r, 2]
+                or y1 < region_box[r, 1]
+                or y0 > region_box[r, 3]
+            ):
                 continue
-            outline = outlines[region_start[r]:region_start[r + 1]]
+            outline = outlines[region_start[r] : region_start[r + 1]]
             for p in range(p0, p1):
-                d, t = region_depth(region_z[r], region_box[r], outline, move, arcs, pieces[p], path)
+                d, t = region_depth(
+                    region_z[r], region_box[r], outline, move, arcs, pieces[p], path
+                )
                 if d > enough:
                     kind = int(pieces[p, PIECE_KIND])
                     if d > depth[k, kind]:
@@ -717,8 +854,18 @@ def guide_point(s: Floats, u: float, share: float) -> tuple[float, float, float]
 
 
 @njit(cache=True, nogil=True)
-def places(rows: Ints, moves: Floats, which: Ints, where: Floats, strips: Floats, strip_face: Ints, region_z: Floats, region_face: Ints,
-           face: Ints, place: Floats) -> None:
+def places(
+    rows: Ints,
+    moves: Floats,
+    which: Ints,
+    where: Floats,
+    strips: Floats,
+    strip_face: Ints,
+    region_z: Floats,
+    region_face: Ints,
+    face: Ints,
+    place: Floats,
+) -> None:
     """Fill face (k, 2) and place (k, 2, 3) with where `contact_loop` found its depths.
 
     On a guide the nearest to the path of 65 even points is taken: a place to show, not part of any
@@ -732,7 +879,11 @@ def places(rows: Ints, moves: Floats, which: Ints, where: Floats, strips: Floats
             if found < -1:
                 part_of_move(move, u, u, path)
                 face[k, kind] = region_face[-2 - found]
-                place[k, kind, 0], place[k, kind, 1], place[k, kind, 2] = path[X0], path[Y0], region_z[-2 - found]
+                place[k, kind, 0], place[k, kind, 1], place[k, kind, 2] = (
+                    path[X0],
+                    path[Y0],
+                    region_z[-2 - found],
+                )
             elif found >= 0:
                 face[k, kind], nearest = strip_face[found], np.inf
                 for n in range(65):
@@ -744,7 +895,9 @@ def places(rows: Ints, moves: Floats, which: Ints, where: Floats, strips: Floats
 
 
 @njit(cache=True, nogil=True)
-def fill_cells(boxes: Floats, grid: Floats, shape: Ints, counts: Ints, start: Ints, rows: Ints) -> None:
+def fill_cells(
+    boxes: Floats, grid: Floats, shape: Ints, counts: Ints, start: Ints, rows: Ints
+) -> None:
     """Count or list the boxes (n, 4), x low, y low, x high, y high, that touch each cell of a grid;
     counts (cells,) is filled either way.
 

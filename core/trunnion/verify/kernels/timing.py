@@ -16,7 +16,9 @@ from trunnion.geometry.arrays import Floats
 
 
 @njit(cache=True, nogil=True)
-def block_times(length: Floats, speed: Floats, turn: Floats, acceleration: float, times: Floats, top: Floats) -> None:
+def block_times(
+    length: Floats, speed: Floats, turn: Floats, acceleration: float, times: Floats, top: Floats
+) -> None:
     """Fill times (n,) in s and top (n,) in mm/s, the peak speed, for blocks of length (n,) mm at a
     programmed speed (n,) mm/s.
 
@@ -32,7 +34,9 @@ def block_times(length: Floats, speed: Floats, turn: Floats, acceleration: float
     before = 0.0
     for k in range(n):
         corner = min(speed[k], speed[k - 1] if k else 0.0) * max(turn[k], 0.0)
-        entry[k] = min(corner, math.sqrt(before * before + 2.0 * acceleration * (length[k - 1] if k else 0.0)))
+        entry[k] = min(
+            corner, math.sqrt(before * before + 2.0 * acceleration * (length[k - 1] if k else 0.0))
+        )
         before = entry[k]
     # Backward pass: what can still be braked within this block to the entry speed of the next.
     after = 0.0

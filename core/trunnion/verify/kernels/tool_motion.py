@@ -41,7 +41,15 @@ FLAT = 1e-12
 
 
 @njit(cache=True, nogil=True)
-def fill_way(start: Floats, end: Floats, axis: Floats, end_axis: Floats, centre: Floats, sweep: float, way: Floats) -> None:
+def fill_way(
+    start: Floats,
+    end: Floats,
+    axis: Floats,
+    end_axis: Floats,
+    centre: Floats,
+    sweep: float,
+    way: Floats,
+) -> None:
     """Fill way (27,) from a block's tips start, end (3,), its unit axes at both, and an arc's centre
     (3,) and signed angle `sweep` (0: a line, centre unused)."""
     way[:] = 0.0
@@ -54,9 +62,15 @@ def fill_way(start: Floats, end: Floats, axis: Floats, end_axis: Floats, centre:
         _fill_arc(start, end, axis, centre, sweep, way)
         return
     # Axis of the turn: axis x end_axis, whose length is the sine of the angle.
-    wx, wy, wz = (axis[1] * end_axis[2] - axis[2] * end_axis[1], axis[2] * end_axis[0] - axis[0] * end_axis[2],
-                  axis[0] * end_axis[1] - axis[1] * end_axis[0])
-    sine, cosine = math.sqrt(wx * wx + wy * wy + wz * wz), axis[0] * end_axis[0] + axis[1] * end_axis[1] + axis[2] * end_axis[2]
+    wx, wy, wz = (
+        axis[1] * end_axis[2] - axis[2] * end_axis[1],
+        axis[2] * end_axis[0] - axis[0] * end_axis[2],
+        axis[0] * end_axis[1] - axis[1] * end_axis[0],
+    )
+    sine, cosine = (
+        math.sqrt(wx * wx + wy * wy + wz * wz),
+        axis[0] * end_axis[0] + axis[1] * end_axis[1] + axis[2] * end_axis[2],
+    )
     if sine < FLAT:
         if cosine > 0.0:
             return
@@ -66,11 +80,18 @@ def fill_way(start: Floats, end: Floats, axis: Floats, end_axis: Floats, centre:
         else:
             wx, wy, wz = -axis[2], 0.0, axis[0]
     size = math.sqrt(wx * wx + wy * wy + wz * wz)
-    way[PIVOT], way[PIVOT + 1], way[PIVOT + 2], way[ANGLE] = wx / size, wy / size, wz / size, math.atan2(sine, cosine)
+    way[PIVOT], way[PIVOT + 1], way[PIVOT + 2], way[ANGLE] = (
+        wx / size,
+        wy / size,
+        wz / size,
+        math.atan2(sine, cosine),
+    )
 
 
 @njit(cache=True, nogil=True)
-def _fill_arc(start: Floats, end: Floats, axis: Floats, centre: Floats, sweep: float, way: Floats) -> None:
+def _fill_arc(
+    start: Floats, end: Floats, axis: Floats, centre: Floats, sweep: float, way: Floats
+) -> None:
     """Fill the columns of an arc: the centre moved along the axis to the start's level, the frame
     across the axis, both radii and the climb.
 
@@ -102,12 +123,18 @@ def _fill_arc(start: Floats, end: Floats, axis: Floats, centre: Floats, sweep: f
 def tip_at(way: Floats, t: float) -> tuple[float, float, float]:
     """Return the tip (mm) at a share t of the block."""
     if way[SWEEP] == 0.0:
-        return way[START] + t * way[VECTOR], way[START + 1] + t * way[VECTOR + 1], way[START + 2] + t * way[VECTOR + 2]
+        return (
+            way[START] + t * way[VECTOR],
+            way[START + 1] + t * way[VECTOR + 1],
+            way[START + 2] + t * way[VECTOR + 2],
+        )
     radius = way[R_START] + t * (way[R_END] - way[R_START])
     a, b, c = radius * math.cos(t * way[SWEEP]), radius * math.sin(t * way[SWEEP]), t * way[CLIMB]
-    return (way[CENTRE] + a * way[ACROSS] + b * way[ALONG] + c * way[AXIS],
-            way[CENTRE + 1] + a * way[ACROSS + 1] + b * way[ALONG + 1] + c * way[AXIS + 1],
-            way[CENTRE + 2] + a * way[ACROSS + 2] + b * way[ALONG + 2] + c * way[AXIS + 2])
+    return (
+        way[CENTRE] + a * way[ACROSS] + b * way[ALONG] + c * way[AXIS],
+        way[CENTRE + 1] + a * way[ACROSS + 1] + b * way[ALONG + 1] + c * way[AXIS + 1],
+        way[CENTRE + 2] + a * way[ACROSS + 2] + b * way[ALONG + 2] + c * way[AXIS + 2],
+    )
 
 
 @njit(cache=True, nogil=True)
@@ -120,7 +147,11 @@ def axis_at(way: Floats, t: float) -> tuple[float, float, float]:
     # Rodrigues' rotation formula; the term along PIVOT drops out because PIVOT is perpendicular to
     # AXIS.
     c, s = math.cos(t * way[ANGLE]), math.sin(t * way[ANGLE])
-    return c * ax + s * (wy * az - wz * ay), c * ay + s * (wz * ax - wx * az), c * az + s * (wx * ay - wy * ax)
+    return (
+        c * ax + s * (wy * az - wz * ay),
+        c * ay + s * (wz * ax - wx * az),
+        c * az + s * (wx * ay - wy * ax),
+    )
 
 
 @njit(cache=True, nogil=True)
@@ -142,7 +173,9 @@ def fill_span(way: Floats, t0: float, t1: float, ends: Floats, span: Floats) -> 
         # derivative of a radius that drifts while it turns, 2 drift turn / 8.
         turn = min(share * abs(way[SWEEP]), math.pi)
         drift = share * abs(way[R_END] - way[R_START])
-        span[S_BULGE] = max(way[R_START], way[R_END]) * (1.0 - math.cos(0.5 * turn)) + 0.25 * drift * turn
+        span[S_BULGE] = (
+            max(way[R_START], way[R_END]) * (1.0 - math.cos(0.5 * turn)) + 0.25 * drift * turn
+        )
     for e in range(2):
         ends[e, TIP], ends[e, TIP + 1], ends[e, TIP + 2] = tip_at(way, t0 if e == 0 else t1)
         # At the start the tool is half the angle behind its middle: points turn forward by it, at
@@ -151,9 +184,21 @@ def fill_span(way: Floats, t0: float, t1: float, ends: Floats, span: Floats) -> 
         c, s = math.cos(half), math.sin(half)
         wx, wy, wz = way[PIVOT], way[PIVOT + 1], way[PIVOT + 2]
         v = 1.0 - c
-        ends[e, 0], ends[e, 1], ends[e, 2] = c + v * wx * wx, v * wx * wy - s * wz, v * wx * wz + s * wy
-        ends[e, 3], ends[e, 4], ends[e, 5] = v * wx * wy + s * wz, c + v * wy * wy, v * wy * wz - s * wx
-        ends[e, 6], ends[e, 7], ends[e, 8] = v * wx * wz - s * wy, v * wy * wz + s * wx, c + v * wz * wz
+        ends[e, 0], ends[e, 1], ends[e, 2] = (
+            c + v * wx * wx,
+            v * wx * wy - s * wz,
+            v * wx * wz + s * wy,
+        )
+        ends[e, 3], ends[e, 4], ends[e, 5] = (
+            v * wx * wy + s * wz,
+            c + v * wy * wy,
+            v * wy * wz - s * wx,
+        )
+        ends[e, 6], ends[e, 7], ends[e, 8] = (
+            v * wx * wz - s * wy,
+            v * wy * wz + s * wx,
+            c + v * wz * wz,
+        )
 
 
 @njit(cache=True, nogil=True, inline="always")
@@ -161,8 +206,11 @@ def seen(ends: Floats, e: int, px: float, py: float, pz: float) -> tuple[float, 
     """Return a point of space (mm) relative to the tip at end e (0, 1) of a span, in the frame of the
     span's middle."""
     x, y, z = px - ends[e, TIP], py - ends[e, TIP + 1], pz - ends[e, TIP + 2]
-    return (ends[e, 0] * x + ends[e, 1] * y + ends[e, 2] * z, ends[e, 3] * x + ends[e, 4] * y + ends[e, 5] * z,
-            ends[e, 6] * x + ends[e, 7] * y + ends[e, 8] * z)
+    return (
+        ends[e, 0] * x + ends[e, 1] * y + ends[e, 2] * z,
+        ends[e, 3] * x + ends[e, 4] * y + ends[e, 5] * z,
+        ends[e, 6] * x + ends[e, 7] * y + ends[e, 8] * z,
+    )
 
 
 @njit(cache=True, nogil=True)
@@ -173,7 +221,11 @@ def spans_of(way: Floats, radius: float) -> int:
     MOST_SWEEP. For lines these are choices of speed alone; an arc's bulge is a bound only up to
     half a circle, far above MOST_SWEEP.
     """
-    most = max(way[LENGTH] / (2.0 * max(radius, NARROW)), way[ANGLE] / MOST_TURN, abs(way[SWEEP]) / MOST_SWEEP)
+    most = max(
+        way[LENGTH] / (2.0 * max(radius, NARROW)),
+        way[ANGLE] / MOST_TURN,
+        abs(way[SWEEP]) / MOST_SWEEP,
+    )
     return max(1, int(math.ceil(most)))
 
 

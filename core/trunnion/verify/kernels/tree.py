@@ -21,8 +21,17 @@ DEEPEST = 128
 
 
 @njit(cache=True, nogil=True)
-def build_tree(low: Floats, high: Floats, face: Ints, leaf: int, order: Ints, boxes: Floats, skip: Ints, leaves: Ints,
-               node_face: Ints) -> int:
+def build_tree(
+    low: Floats,
+    high: Floats,
+    face: Ints,
+    leaf: int,
+    order: Ints,
+    boxes: Floats,
+    skip: Ints,
+    leaves: Ints,
+    node_face: Ints,
+) -> int:
     """Build the tree over boxes low, high (t, 3), t >= 1, with at most `leaf` rows a leaf, and return
     the number of nodes m.
 
@@ -109,7 +118,9 @@ def _parted(rows: Ints, low: Floats, high: Floats, middle: Floats, keep: Ints) -
 
 
 @njit(cache=True, nogil=True)
-def _cheapest(rows: Ints, low: Floats, high: Floats, middle: Floats, least: float, size: float) -> tuple[float, int]:
+def _cheapest(
+    rows: Ints, low: Floats, high: Floats, middle: Floats, least: float, size: float
+) -> tuple[float, int]:
     """Return the cost of the cheapest cut across one axis, and the bin that it lies below (1 to BINS -
     1).
 
@@ -117,12 +128,19 @@ def _cheapest(rows: Ints, low: Floats, high: Floats, middle: Floats, least: floa
     rows.
     """
     # Count and bounding box of each bin.
-    bin_low, bin_high, number = np.full((BINS, 3), np.inf), np.full((BINS, 3), -np.inf), np.zeros(BINS, np.int64)
+    bin_low, bin_high, number = (
+        np.full((BINS, 3), np.inf),
+        np.full((BINS, 3), -np.inf),
+        np.zeros(BINS, np.int64),
+    )
     for r in rows:
         c = _bin(middle[r], least, size)
         number[c] += 1
         for j in range(3):
-            bin_low[c, j], bin_high[c, j] = min(bin_low[c, j], low[r, j]), max(bin_high[c, j], high[r, j])
+            bin_low[c, j], bin_high[c, j] = (
+                min(bin_low[c, j], low[r, j]),
+                max(bin_high[c, j], high[r, j]),
+            )
     # Sweep from the high end: above[c] = count x surface of bins c and higher.
     above = np.full(BINS, np.inf)
     box, count = np.array([np.inf, np.inf, np.inf, -np.inf, -np.inf, -np.inf]), 0

@@ -48,27 +48,46 @@ def stands_of(moves: Moves, machine: Machine, foot: Floats) -> Stands:
     rotary, good = rotary_angles(axis, machine)
     reached = np.ones(len(moves), bool)
     reached[move[~good]] = False
-    gauge = np.array([t.gauge_length for t in moves.tools])[moves.tool[move]] if len(move) else np.zeros(0)
-    return Stands(move=move, linear=linear_positions(tip - foot, gauge, rotary, machine), rotary=rotary, reached=reached,
-                  turns=moves.turning)
+    gauge = (
+        np.array([t.gauge_length for t in moves.tools])[moves.tool[move]]
+        if len(move)
+        else np.zeros(0)
+    )
+    return Stands(
+        move=move,
+        linear=linear_positions(tip - foot, gauge, rotary, machine),
+        rotary=rotary,
+        reached=reached,
+        turns=moves.turning,
+    )
 
 
 def poses_of(moves: Moves) -> tuple[Ints, Floats, Floats]:
     """Return poses along moves, start and end of each among them: move (k,), tip (k, 3), axis (k, 3)."""
     between = angle_between(moves.start_axis, moves.end_axis)
-    steps = np.maximum(1, np.ceil(np.maximum(between, np.abs(moves.sweep)) / STEP - STANDS)).astype(np.int64)
+    steps = np.maximum(1, np.ceil(np.maximum(between, np.abs(moves.sweep)) / STEP - STANDS)).astype(
+        np.int64
+    )
     move = np.repeat(np.arange(len(moves)), steps + 1)
-    share = (np.arange(len(move)) - np.repeat(np.cumsum(steps + 1) - steps - 1, steps + 1)) / steps[move]
+    share = (np.arange(len(move)) - np.repeat(np.cumsum(steps + 1) - steps - 1, steps + 1)) / steps[
+        move
+    ]
     tip = moves.start[move] + share[:, None] * (moves.end - moves.start)[move]
     arc = moves.sweep[move] != 0.0
     if arc.any():
         tip[arc] = _on_arcs(moves, move[arc], share[arc])
-    return move, tip, turned_axes(moves.start_axis[move], moves.end_axis[move], between[move], share)
+    return (
+        move,
+        tip,
+        turned_axes(moves.start_axis[move], moves.end_axis[move], between[move], share),
+    )
 
 
 def angle_between(a: Floats, b: Floats) -> Floats:
     """Return the angle (k,) between unit directions (k, 3)."""
-    return np.asarray(2.0 * np.arctan2(np.linalg.norm(a - b, axis=1), np.linalg.norm(a + b, axis=1)))
+    return np.asarray(
+        2.0 * np.arctan2(np.linalg.norm(a - b, axis=1), np.linalg.norm(a + b, axis=1))
+    )
 
 
 def turned_axes(start: Floats, end: Floats, between: Floats, share: Floats) -> Floats:
@@ -132,7 +151,9 @@ def turned(vectors: Floats, axis: Axis, angle: Floats) -> Floats:
     """Return vectors (k, 3) turned about an axis's direction by angles (k,)."""
     u = np.array(axis.direction)
     cosine, sine = np.cos(angle)[:, None], np.sin(angle)[:, None]
-    return np.asarray(vectors * cosine + np.cross(u, vectors) * sine + np.outer(vectors @ u, u) * (1.0 - cosine))
+    return np.asarray(
+        vectors * cosine + np.cross(u, vectors) * sine + np.outer(vectors @ u, u) * (1.0 - cosine)
+    )
 
 
 def _on_arcs(moves: Moves, move: Ints, share: Floats) -> Floats:
@@ -144,7 +165,13 @@ def _on_arcs(moves: Moves, move: Ints, share: Floats) -> Floats:
     climb = ((end - start) * axis).sum(axis=1, keepdims=True) * axis
     out = out - height
     angle = (share * moves.sweep[move])[:, None]
-    return np.asarray(centre + height + share[:, None] * climb + np.cos(angle) * out + np.sin(angle) * np.cross(axis, out))
+    return np.asarray(
+        centre
+        + height
+        + share[:, None] * climb
+        + np.cos(angle) * out
+        + np.sin(angle) * np.cross(axis, out)
+    )
 
 
 def _both_ways(axis: Floats, rotary: tuple[Axis, ...]) -> tuple[Floats, Bools, Bools]:
@@ -156,11 +183,17 @@ def _both_ways(axis: Floats, rotary: tuple[Axis, ...]) -> tuple[Floats, Bools, B
         u = np.array(first.direction)
         angle, free = _about(u, v, w)
         good = np.linalg.norm(turned(v, first, angle) - w, axis=1) < math.sqrt(STANDS)
-        return np.repeat(angle[:, None, None], 2, axis=1), np.repeat(free[:, None, None], 2, axis=1), good
+        return (
+            np.repeat(angle[:, None, None], 2, axis=1),
+            np.repeat(free[:, None, None], 2, axis=1),
+            good,
+        )
     one, two = rotary
     if one.carries != two.carries:
         work, tool = (one, two) if one.carries == "work" else (two, one)
-        angles, free, good = _second_subproblem(np.array(work.direction), np.array(tool.direction), up, axis)
+        angles, free, good = _second_subproblem(
+            np.array(work.direction), np.array(tool.direction), up, axis
+        )
         angles[:, :, 0] *= -1.0
         return (angles, free, good) if work is one else (angles[:, :, ::-1], free[:, :, ::-1], good)
     v, w = (axis, up) if one.carries == "work" else (up, axis)
@@ -186,4 +219,6 @@ def _about(u: Floats, v: Floats, w: Floats) -> tuple[Floats, Bools]:
     """Return the angles (k,) about u that bring v to w (k, 3), and where any angle does because v lies along u."""
     a, b = v - np.outer(v @ u, u), w - np.outer(w @ u, u)
     angle = np.arctan2(np.cross(a, b) @ u, (a * b).sum(axis=1))
-    return np.asarray(angle), np.asarray(np.minimum(np.linalg.norm(a, axis=1), np.linalg.norm(b, axis=1)) < math.sqrt(STANDS))
+    return np.asarray(angle), np.asarray(
+        np.minimum(np.linalg.norm(a, axis=1), np.linalg.norm(b, axis=1)) < math.sqrt(STANDS)
+    )

@@ -42,15 +42,26 @@ def times_of(moves: Moves, stands: Stands, machine: Machine) -> Times:
     if arc.any():
         first[arc], last[arc] = _tangents(stands, axes, np.flatnonzero(arc))
     length = np.where(stands.turns, way, moves.length)
-    rates = np.array([machine.axis(name).rapid for name in LINEAR] + [np.radians(a.rapid) for a in machine.rotary]) / SECONDS_PER_MINUTE
+    rates = (
+        np.array(
+            [machine.axis(name).rapid for name in LINEAR]
+            + [np.radians(a.rapid) for a in machine.rotary]
+        )
+        / SECONDS_PER_MINUTE
+    )
     fastest = _axis_seconds(np.column_stack([stands.linear, stands.rotary]), rates, stands.move, n)
-    wanted = np.divide(moves.length, moves.feed / SECONDS_PER_MINUTE, out=np.zeros(n), where=~moves.rapid)
+    wanted = np.divide(
+        moves.length, moves.feed / SECONDS_PER_MINUTE, out=np.zeros(n), where=~moves.rapid
+    )
     least = np.maximum(wanted, np.where(moves.rapid | stands.turns, fastest, 0.0))
     speed = np.divide(length, least, out=np.zeros(n), where=least > 0.0)
     speed[arc] = np.minimum(speed[arc], np.sqrt(slowest * _radii(moves, arc)))
     turn = np.concatenate([[0.0], (first[1:] * last[:-1]).sum(axis=1)])
     block_times(length, speed, turn, slowest, seconds, top)
-    return Times(seconds=seconds, speed=top * np.divide(moves.length, length, out=np.ones(n), where=length > 0.0))
+    return Times(
+        seconds=seconds,
+        speed=top * np.divide(moves.length, length, out=np.ones(n), where=length > 0.0),
+    )
 
 
 def seconds_of(moves: Moves, machine: Machine, foot: Floats) -> Floats:

@@ -54,7 +54,9 @@ class Bundle:
         rows, columns = field.top.shape
         low, high = np.zeros((rows * columns, ROOM)), np.zeros((rows * columns, ROOM))
         low[:, 0], high[:, 0] = field.low[2], field.top.ravel()
-        count = _in_blank(rows, columns, field.pitch, (field.high - field.low)[:2]) * (high[:, 0] > field.low[2])
+        count = _in_blank(rows, columns, field.pitch, (field.high - field.low)[:2]) * (
+            high[:, 0] > field.low[2]
+        )
         return Bundle(2, field.pitch, rows, columns, field.low[:2].copy(), count, low, high)
 
     @property
@@ -83,7 +85,9 @@ class Bundle:
         found: list[Part] = []
         for first, last in self.tiles():
             own = slice(first * self.columns, last * self.columns)
-            found.append((self.count[own].copy(), self.low[own][there[own]], self.high[own][there[own]]))
+            found.append(
+                (self.count[own].copy(), self.low[own][there[own]], self.high[own][there[own]])
+            )
         return found
 
     def put(self, parts: Sequence[Part]) -> None:
@@ -101,16 +105,25 @@ class Bundle:
     def contains(self, points: Floats) -> Bools:
         """Say for points (k, 3) in the blank's frame whether the nearest ray has material there."""
         u, v, w = points[:, cycle(self.axis)].T
-        column = np.clip(np.floor((u - self.origin[0]) / self.pitch).astype(np.int64), 0, self.columns - 1)
-        row = np.clip(np.floor((v - self.origin[1]) / self.pitch).astype(np.int64), 0, self.rows - 1)
+        column = np.clip(
+            np.floor((u - self.origin[0]) / self.pitch).astype(np.int64), 0, self.columns - 1
+        )
+        row = np.clip(
+            np.floor((v - self.origin[1]) / self.pitch).astype(np.int64), 0, self.rows - 1
+        )
         cell = row * self.columns + column
         there = np.arange(self.room) < self.count[cell][:, None]
-        return np.asarray((there & (self.low[cell] <= w[:, None]) & (w[:, None] <= self.high[cell])).any(axis=1))
+        return np.asarray(
+            (there & (self.low[cell] <= w[:, None]) & (w[:, None] <= self.high[cell])).any(axis=1)
+        )
 
 
 def _in_blank(rows: int, columns: int, pitch: float, size: Floats) -> Ints:
     """Return 1 for each ray that goes through a blank, 0 for those of the last row or column that pass it."""
-    across, along = ((np.arange(n) + 0.5) * pitch <= s + tolerance.PARAMETRIC for n, s in zip((columns, rows), size, strict=True))
+    across, along = (
+        (np.arange(n) + 0.5) * pitch <= s + tolerance.PARAMETRIC
+        for n, s in zip((columns, rows), size, strict=True)
+    )
     return np.asarray((along[:, None] & across).astype(np.int64).ravel())
 
 

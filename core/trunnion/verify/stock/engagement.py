@@ -53,7 +53,10 @@ class Tally:
 
     def plus(self, other: Tally) -> Tally:
         """Return what two tiles have seen together."""
-        low, high = np.minimum(self.spans[:, 0], other.spans[:, 0]), np.maximum(self.spans[:, 1], other.spans[:, 1])
+        low, high = (
+            np.minimum(self.spans[:, 0], other.spans[:, 0]),
+            np.maximum(self.spans[:, 1], other.spans[:, 1]),
+        )
         return Tally(self.counted + other.counted, np.column_stack([low, high]))
 
 
@@ -76,9 +79,15 @@ def probes_of(moves: Moves) -> Probes:
     rings = np.array([rings_of(tool) for tool in moves.tools]).reshape(-1, RINGS, 2)
     flute = np.array([flute_of(tool) for tool in moves.tools]).reshape(-1, FLUTE_STEPS, 2)
     apart = APART * np.array([tool.radius for tool in moves.tools])[moves.tool]
-    count = np.where(moves.rapid, 0, np.clip(np.ceil(moves.length / np.maximum(apart, 1e-9)), 1, MOST_PROBES)).astype(np.int64)
-    return Probes(start=np.concatenate([[0], np.cumsum(count)]), circle=np.column_stack([np.cos(angles), np.sin(angles)]), rings=rings,
-                  flute=flute)
+    count = np.where(
+        moves.rapid, 0, np.clip(np.ceil(moves.length / np.maximum(apart, 1e-9)), 1, MOST_PROBES)
+    ).astype(np.int64)
+    return Probes(
+        start=np.concatenate([[0], np.cumsum(count)]),
+        circle=np.column_stack([np.cos(angles), np.sin(angles)]),
+        rings=rings,
+        flute=flute,
+    )
 
 
 def engagement_of(probes: Probes, tally: Tally, moves: Moves) -> Engagement:
@@ -94,7 +103,9 @@ def engagement_of(probes: Probes, tally: Tally, moves: Moves) -> Engagement:
     np.maximum.at(largest, owner, angle)
     np.maximum.at(depth, owner, deep)
     count = np.maximum(np.diff(probes.start), 1)
-    return Engagement(largest, np.bincount(owner, angle, n) / count, depth, *_widest(probes, moves, owner, angle))
+    return Engagement(
+        largest, np.bincount(owner, angle, n) / count, depth, *_widest(probes, moves, owner, angle)
+    )
 
 
 def _widest(probes: Probes, moves: Moves, owner: Ints, angle: Floats) -> tuple[Floats, Floats]:
@@ -102,21 +113,33 @@ def _widest(probes: Probes, moves: Moves, owner: Ints, angle: Floats) -> tuple[F
     mean of the move that is (n,)."""
     n, count = len(moves), np.maximum(np.diff(probes.start), 1)
     diameter = np.array([tool.diameter for tool in moves.tools])[moves.tool] if n else np.zeros(0)
-    several = np.clip(np.ceil(diameter * count / np.maximum(moves.length, 1e-9)), 1, count).astype(np.int64)
+    several = np.clip(np.ceil(diameter * count / np.maximum(moves.length, 1e-9)), 1, count).astype(
+        np.int64
+    )
     # A cutter engaged from its side over an angle cuts a width in proportion to 1 - cos.
     width = np.concatenate([[0.0], np.cumsum(1.0 - np.cos(angle))])
     last = np.maximum(np.arange(len(owner)) + 1, probes.start[owner] + several[owner])
     around = (width[last] - width[last - several[owner]]) / several[owner]
     widest, mean = np.zeros(n), (width[probes.start[1:]] - width[probes.start[:-1]]) / count
     np.maximum.at(widest, owner, around)
-    return 0.5 * diameter * widest, np.divide(widest, mean, out=np.ones(n), where=mean > tolerance.PARAMETRIC)
+    return 0.5 * diameter * widest, np.divide(
+        widest, mean, out=np.ones(n), where=mean > tolerance.PARAMETRIC
+    )
 
 
 def rings_of(tool: Tool) -> list[tuple[float, float]]:
     """Return radius and height of a tool's rings: its widest circle, as low as it is, and three below it."""
     spans = outline_of(tool)
     height = _widest_height(tool)
-    return [(tool.radius if k == 0 and tool.form in PLAIN_FORMS else _radius_at(spans, height / 4**k), height / 4**k) for k in range(RINGS)]
+    return [
+        (
+            tool.radius
+            if k == 0 and tool.form in PLAIN_FORMS
+            else _radius_at(spans, height / 4**k),
+            height / 4**k,
+        )
+        for k in range(RINGS)
+    ]
 
 
 def flute_of(tool: Tool) -> list[tuple[float, float]]:
@@ -137,14 +160,19 @@ def _widest_height(tool: Tool) -> float:
     return at
 
 
-def _radius_at(spans: Sequence[tuple[float, float, float, float, float, float, float]], height: float) -> float:
+def _radius_at(
+    spans: Sequence[tuple[float, float, float, float, float, float, float]], height: float
+) -> float:
     """Return the largest radius of an outline at a height."""
     best = 0.0
     for r0, z0, r1, z1, cr, cz, radius in spans:
         if not min(z0, z1) <= height <= max(z0, z1):
             continue
         if radius:
-            best = max(best, cr + math.copysign(math.sqrt(max(radius**2 - (height - cz) ** 2, 0.0)), radius))
+            best = max(
+                best,
+                cr + math.copysign(math.sqrt(max(radius**2 - (height - cz) ** 2, 0.0)), radius),
+            )
         elif z0 == z1:
             best = max(best, r0, r1)
         else:

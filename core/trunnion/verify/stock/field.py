@@ -44,7 +44,9 @@ class Field:
         """Say for points (k, 3) in the blank's box whether the nearest column reaches as high."""
         column, row = np.floor((points[:, :2] - self.low[:2]) / self.pitch).astype(np.int64).T
         rows, columns = self.top.shape
-        return np.asarray(points[:, 2] < self.top[np.clip(row, 0, rows - 1), np.clip(column, 0, columns - 1)])
+        return np.asarray(
+            points[:, 2] < self.top[np.clip(row, 0, rows - 1), np.clip(column, 0, columns - 1)]
+        )
 
     def parts(self) -> list[Part]:
         """Return a copy of each tile."""
@@ -73,7 +75,13 @@ def tiles_of(rows: int) -> list[tuple[int, int]]:
 
 def blank_box(blank: Blank, frame: Frame) -> tuple[Floats, Floats]:
     """Return the lowest and highest corner of a blank's box in a frame (of a frame turned by other than right angles: of its hull)."""
-    corners = np.array([[x, y, z] for x in (blank.low[0], blank.high[0]) for y in (blank.low[1], blank.high[1])
-                        for z in (blank.low[2], blank.high[2])])
+    corners = np.array(
+        [
+            [x, y, z]
+            for x in (blank.low[0], blank.high[0])
+            for y in (blank.low[1], blank.high[1])
+            for z in (blank.low[2], blank.high[2])
+        ]
+    )
     local = frame.to_local(blank.frame.to_world(corners))
     return local.min(axis=0), local.max(axis=0)

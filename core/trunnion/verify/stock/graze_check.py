@@ -33,11 +33,16 @@ def rays_in_cell(pitch: float) -> int:
     return int(np.clip(round(pitch / FINE), 1, MOST_FINE))
 
 
-def confirm_grazed(stock: Stock, found: Passed, frame: Frame, sweep: Sweep, progress: Progress) -> None:
+def confirm_grazed(
+    stock: Stock, found: Passed, frame: Frame, sweep: Sweep, progress: Progress
+) -> None:
     """Note the rapids that are in material at a place between rays, where no cut before has been."""
     if not found.grazed:
         return
-    moves, places = np.concatenate([m for m, _ in found.grazed]), np.vstack([p for _, p in found.grazed])
+    moves, places = (
+        np.concatenate([m for m, _ in found.grazed]),
+        np.vstack([p for _, p in found.grazed]),
+    )
     for row in np.unique(moves):
         progress.check()
         own = places[moves == row]
@@ -58,8 +63,17 @@ def _standing(stock: Stock, places: Floats, frame: Frame, sweep: Sweep, row: int
     return standing
 
 
-def look_closer(stock: Stock, field: Field, moves: Moves, frame: Frame, sweep: Sweep, row: int, cells: Ints, depth: Floats,
-                place: Floats) -> None:
+def look_closer(
+    stock: Stock,
+    field: Field,
+    moves: Moves,
+    frame: Frame,
+    sweep: Sweep,
+    row: int,
+    cells: Ints,
+    depth: Floats,
+    place: Floats,
+) -> None:
     """Judge the cells of a height field that an upright rapid grazes by fine columns; those below zero stand for -1 - cell, where the
     columns around are gone too and only a fin between them can stand."""
     fins = cells < 0
@@ -73,8 +87,15 @@ def look_closer(stock: Stock, field: Field, moves: Moves, frame: Frame, sweep: S
     offsets = ((np.arange(count) + 0.5) / count - 0.5) * field.pitch
     grid = np.stack(np.meshgrid(offsets, offsets), axis=-1).reshape(-1, 2)
     # A fin that goes through a cell crosses one of its middle lines, or one of its neighbour's.
-    cross = np.vstack([np.column_stack([offsets, 0.0 * offsets]), np.column_stack([0.0 * offsets, offsets])])
-    points = np.vstack([(middle[~open_ & ~fins][:, None] + grid).reshape(-1, 2), (middle[~open_ & fins][:, None] + cross).reshape(-1, 2)])
+    cross = np.vstack(
+        [np.column_stack([offsets, 0.0 * offsets]), np.column_stack([0.0 * offsets, offsets])]
+    )
+    points = np.vstack(
+        [
+            (middle[~open_ & ~fins][:, None] + grid).reshape(-1, 2),
+            (middle[~open_ & fins][:, None] + cross).reshape(-1, 2),
+        ]
+    )
     places, rho = _places(moves, row, points, 0.0)
     inside = np.isfinite(places[:, 2])
     if not inside.any():
@@ -91,7 +112,10 @@ def _places(moves: Moves, row: int, points: Floats, around: float) -> tuple[Floa
     """Return the lowest place over each plan point (k, 2) that an upright rapid enters by more than is allowed, or at most as high as any
     such place within `around` mm of it, and the point's distance from its way; infinite where it enters nothing."""
     allowed, move, tool = tolerance.RAPID_DEPTH, moves.row[row], moves.tools[moves.tool[row]]
-    start, end = (move[[getattr(columns, name) for name in names]] for names in (("X0", "Y0", "Z_START"), ("X1", "Y1", "Z_END")))
+    start, end = (
+        move[[getattr(columns, name) for name in names]]
+        for names in (("X0", "Y0", "Z_START"), ("X1", "Y1", "Z_END"))
+    )
     along = end[:2] - start[:2]
     length = float(np.linalg.norm(along))
     nearest = np.clip((points - start[:2]) @ along / max(length**2, tolerance.PARAMETRIC), 0.0, 1.0)
@@ -99,25 +123,38 @@ def _places(moves: Moves, row: int, points: Floats, around: float) -> tuple[Floa
     lowest = np.full(len(points), np.inf)
     sloped = length > 0.0 and start[2] != end[2]
     # On a slope the point is met all the while it is under the cutter, lowest nearly at the end of that.
-    reach = np.sqrt(np.maximum((tool.radius + around) ** 2 - least**2, 0.0)) / max(length, tolerance.PARAMETRIC)
+    reach = np.sqrt(np.maximum((tool.radius + around) ** 2 - least**2, 0.0)) / max(
+        length, tolerance.PARAMETRIC
+    )
     for step in np.linspace(-1.0, 1.0, SHARES) if sloped else [0.0]:
         share = np.clip(nearest + step * reach, 0.0, 1.0)
-        rho = np.maximum(np.linalg.norm(points - start[:2] - share[:, None] * along, axis=1) - around, 0.0)
+        rho = np.maximum(
+            np.linalg.norm(points - start[:2] - share[:, None] * along, axis=1) - around, 0.0
+        )
         tip = start[2] + share * (end[2] - start[2]) if length > 0.0 else min(start[2], end[2])
         # The cutter made smaller by what is allowed: what it still meets, the rapid enters deeper than that.
         height = tip + lowest_height(tool, rho + allowed) + allowed
         lowest = np.minimum(lowest, np.where(rho < tool.radius - allowed, height, np.inf))
     if sloped and around > 0.0:
-        lowest = lowest - abs(end[2] - start[2]) * np.minimum((around + tool.radius / (SHARES - 1)) / length, 1.0)
+        lowest = lowest - abs(end[2] - start[2]) * np.minimum(
+            (around + tool.radius / (SHARES - 1)) / length, 1.0
+        )
     return np.column_stack([points, lowest]), least
 
 
-def _cut_around(stock: Stock, places: Floats, margin: float, frame: Frame, sweep: Sweep, row: int) -> Bools:
+def _cut_around(
+    stock: Stock, places: Floats, margin: float, frame: Frame, sweep: Sweep, row: int
+) -> Bools:
     """Say around which places (k, 3) in the blank's frame all within a margin in plan is gone, as far as single moves show that."""
     gone = ~np.isfinite(places[:, 2])
-    for before, own, last in [(sweep, frame, row), *((s, f, len(s.moves)) for s, f in stock.cut_by)]:
+    for before, own, last in [
+        (sweep, frame, row),
+        *((s, f, len(s.moves)) for s, f in stock.cut_by),
+    ]:
         # What a setup calls plan must be the blank's.
         if own.z @ stock.frame.z > 1.0 - tolerance.PARAMETRIC:
             ask = np.flatnonzero(~gone)
-            gone[ask] = before.cut_around(own.to_local(stock.frame.to_world(places[ask])), margin, last)
+            gone[ask] = before.cut_around(
+                own.to_local(stock.frame.to_world(places[ask])), margin, last
+            )
     return gone

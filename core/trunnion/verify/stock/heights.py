@@ -25,8 +25,15 @@ RIMS = 200_000
 _RIMS_FULL, _STANDING = 1, 2
 
 
-def run_heights(stock: Stock, moves: Moves, frame: Frame, sweep: Sweep | None, probes: Probes, found: Passed,
-                progress: Progress) -> tuple[int, bool]:
+def run_heights(
+    stock: Stock,
+    moves: Moves,
+    frame: Frame,
+    sweep: Sweep | None,
+    probes: Probes,
+    found: Passed,
+    progress: Progress,
+) -> tuple[int, bool]:
     """Run moves given in the blank's frame through the stock's height field, up to the first that it can't follow, and note what happens.
 
     Returns that move's row, and whether its probes have been looked at: it has then been cut as far as heights can show.
@@ -34,7 +41,12 @@ def run_heights(stock: Stock, moves: Moves, frame: Frame, sweep: Sweep | None, p
     field, n = stock.field, int(np.argmin(np.append(moves.upright, False)))
     if field is None:
         return 0, False
-    depth, cell, body, removed = np.full(n, -np.inf), np.full(n, -1), np.full(n, -np.inf), np.zeros(n)
+    depth, cell, body, removed = (
+        np.full(n, -np.inf),
+        np.full(n, -1),
+        np.full(n, -np.inf),
+        np.zeros(n),
+    )
     profiles, (cones, cone_start) = profiles_of(moves.tools, moves.bodies), cones_of(moves.tools)
     work = np.cumsum(_cells_touched(moves, field.pitch))
     rims, rim_start = np.zeros(RIMS, np.int64), np.zeros(n + 1, np.int64)
@@ -44,18 +56,59 @@ def run_heights(stock: Stock, moves: Moves, frame: Frame, sweep: Sweep | None, p
         done = work[first - 1] if first else 0.0
         last = max(first + 1, int(np.searchsorted(work, done + CHUNK_CELLS)))
         rim_start[first] = 0
-        stop, why = kernel.stock_loop(first, min(last, n), field.top, field.low[:2], field.pitch, field.low[2], field.high[2], moves.row,
-                                      moves.rapid, moves.tool, profiles, moves.bodies.arc, moves.bodies.piece, cones, cone_start,
-                                      tolerance.STOCK_CHORD, tolerance.RAPID_DEPTH, removed, depth, cell, body, rims, rim_start,
-                                      probes.start, probes.circle, probes.rings, found.tally.counted, found.tally.spans)
+        stop, why = kernel.stock_loop(
+            first,
+            min(last, n),
+            field.top,
+            field.low[:2],
+            field.pitch,
+            field.low[2],
+            field.high[2],
+            moves.row,
+            moves.rapid,
+            moves.tool,
+            profiles,
+            moves.bodies.arc,
+            moves.bodies.piece,
+            cones,
+            cone_start,
+            tolerance.STOCK_CHORD,
+            tolerance.RAPID_DEPTH,
+            removed,
+            depth,
+            cell,
+            body,
+            rims,
+            rim_start,
+            probes.start,
+            probes.circle,
+            probes.rings,
+            found.tally.counted,
+            found.tally.spans,
+        )
         for row in range(first, stop):
             if sweep is not None and rim_start[row + 1] > rim_start[row]:
                 progress.check()
-                look_closer(stock, field, moves, frame, sweep, row, rims[rim_start[row]:rim_start[row + 1]], depth, found.place)
+                look_closer(
+                    stock,
+                    field,
+                    moves,
+                    frame,
+                    sweep,
+                    row,
+                    rims[rim_start[row] : rim_start[row + 1]],
+                    depth,
+                    found.place,
+                )
         if why == _RIMS_FULL and stop == first:
             rims = np.zeros(2 * len(rims), np.int64)
         first = stop
-    for row in map(int, np.flatnonzero((depth > tolerance.RAPID_DEPTH) & (cell >= 0) & np.isnan(found.place[:n, 0]))):
+    for row in map(
+        int,
+        np.flatnonzero(
+            (depth > tolerance.RAPID_DEPTH) & (cell >= 0) & np.isnan(found.place[:n, 0])
+        ),
+    ):
         at = field.centre(int(cell[row]))
         found.place[row] = *at, moves.row[row, [columns.Z_START, columns.Z_END]].min()
     found.removed[:n] += removed * (field.pitch**2 / len(stock.bundles))

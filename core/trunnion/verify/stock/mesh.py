@@ -35,7 +35,9 @@ def mesh_of(stock: Stock, most: int = MOST) -> Mesh:
     At most `most` triangles: where there would be more, a field merges rougher patches and is seen in every second, fourth… row and
     column, bundles in every second, third… ray. Raises `BadInput` for a stock without rays along z.
     """
-    points, triangles = mesh_of_field(stock.field, most) if stock.field is not None else mesh_of_rays(stock, most)
+    points, triangles = (
+        mesh_of_field(stock.field, most) if stock.field is not None else mesh_of_rays(stock, most)
+    )
     return Mesh(points, triangles, np.zeros(len(triangles), np.int64))
 
 
@@ -43,7 +45,10 @@ def mesh_of_field(field: Field, most: int = MOST) -> tuple[Floats, Ints]:
     """Return points (v, 3) and triangles (t, 3) of a height field: walls upright, level areas merged."""
     every = max(1, math.ceil(math.sqrt(field.top.size / MOST_CELLS)))
     while True:
-        top, pitch = np.ascontiguousarray(field.top[every // 2::every, every // 2::every]), field.pitch * every
+        top, pitch = (
+            np.ascontiguousarray(field.top[every // 2 :: every, every // 2 :: every]),
+            field.pitch * every,
+        )
         for bound in (EVEN * pitch, ROUGH * pitch):
             points, triangles = meshing.mesh_heights(top, *map(float, field.low), pitch, bound)
             if len(triangles) <= most or top.size < LEAST_CELLS:
@@ -57,12 +62,25 @@ def mesh_of_rays(stock: Stock, most: int = MOST) -> tuple[Floats, Ints]:
         raise BadInput("stock: a mesh needs the rays along z")
     none = Bundle.of(stock.blank, max(stock.blank.size), 0)
     bundles = [stock.rays.get(axis, none) for axis in AXES]
-    counts, lows, highs = (tuple(getattr(b, name) for b in bundles) for name in ("count", "low", "high"))
+    counts, lows, highs = (
+        tuple(getattr(b, name) for b in bundles) for name in ("count", "low", "high")
+    )
     has = np.array([axis in stock.rays for axis in AXES])
-    cells, origin = np.array(cells_along(stock.blank.size, stock.pitch)), np.asarray(stock.blank.low, dtype=np.float64)
-    step = max(1, math.ceil((float(cells.prod()) / MOST_NODES) ** (1.0 / 3.0) - tolerance.PARAMETRIC))
-    n_points, n_faces = contouring.count_faces(counts, lows, highs, cells, origin, stock.pitch, step)
+    cells, origin = (
+        np.array(cells_along(stock.blank.size, stock.pitch)),
+        np.asarray(stock.blank.low, dtype=np.float64),
+    )
+    step = max(
+        1, math.ceil((float(cells.prod()) / MOST_NODES) ** (1.0 / 3.0) - tolerance.PARAMETRIC)
+    )
+    n_points, n_faces = contouring.count_faces(
+        counts, lows, highs, cells, origin, stock.pitch, step
+    )
     if 2 * n_faces > most:
         step = math.ceil(step * math.sqrt(2 * n_faces / most))
-        n_points, n_faces = contouring.count_faces(counts, lows, highs, cells, origin, stock.pitch, step)
-    return contouring.mesh_rays(counts, lows, highs, has, cells, origin, stock.pitch, step, n_points, n_faces)
+        n_points, n_faces = contouring.count_faces(
+            counts, lows, highs, cells, origin, stock.pitch, step
+        )
+    return contouring.mesh_rays(
+        counts, lows, highs, has, cells, origin, stock.pitch, step, n_points, n_faces
+    )

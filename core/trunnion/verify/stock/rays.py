@@ -43,7 +43,13 @@ class Passed:
     @staticmethod
     def empty(n: int, probes: Probes) -> Passed:
         """Return that nothing happened."""
-        return Passed(np.zeros(n), np.zeros(n), np.full((n, 3), np.nan), np.zeros(n), Tally.empty(int(probes.start[-1])))
+        return Passed(
+            np.zeros(n),
+            np.zeros(n),
+            np.full((n, 3), np.nan),
+            np.zeros(n),
+            Tally.empty(int(probes.start[-1])),
+        )
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -71,8 +77,16 @@ class _Batch:
     fine: int
 
 
-def run_rays(stock: Stock, going: Sequence[Going], moves: Moves, probes: Probes, found: Passed, fine: int, progress: Progress,
-             threads: int) -> None:
+def run_rays(
+    stock: Stock,
+    going: Sequence[Going],
+    moves: Moves,
+    probes: Probes,
+    found: Passed,
+    fine: int,
+    progress: Progress,
+    threads: int,
+) -> None:
     """Run moves given in the blank's frame through some bundles of a stock and add to what was found.
 
     Cells that a rapid grazes are looked at in `fine` rays along each side, 0 for not at all. Raises `OutOfMemory` when rays are cut in too
@@ -89,17 +103,54 @@ def run_rays(stock: Stock, going: Sequence[Going], moves: Moves, probes: Probes,
         begun = ends[row] - each[row]
         rows = np.arange(row, max(row + 1, int(np.searchsorted(ends, begun + SPANS, side="right"))))
         spans = spans_of(moves, rows, each[rows], whole[rows])
-        way = np.column_stack([a[rows] for a in (moves.start, moves.end, moves.start_axis, moves.end_axis, moves.centre, moves.sweep)])
-        batch = _Batch(spans.start, [spans.along(axis) for axis in range(3)], moves.bodies, moves.tool[rows], moves.rapid[rows],
-                       way, probes, probes.start[row:rows[-1] + 2], fine)
+        way = np.column_stack(
+            [
+                a[rows]
+                for a in (
+                    moves.start,
+                    moves.end,
+                    moves.start_axis,
+                    moves.end_axis,
+                    moves.centre,
+                    moves.sweep,
+                )
+            ]
+        )
+        batch = _Batch(
+            spans.start,
+            [spans.along(axis) for axis in range(3)],
+            moves.bodies,
+            moves.tool[rows],
+            moves.rapid[rows],
+            way,
+            probes,
+            probes.start[row : rows[-1] + 2],
+            fine,
+        )
         looks = np.cumsum(_looks(spans, stock.blank, bundles))
         first = 0
         while first < len(rows):
             before = looks[first - 1] if first else 0.0
-            last = min(max(first + 1, int(np.searchsorted(looks, before + LOOKS, side="right"))), len(rows))
-            jobs = [_Job(g, tile, batch, max(first, g.first - row), last, g.looked and g.first >= row + first)
-                    for g in going if g.first < row + last for tile in g.bundle.tiles()]
-            part = progress.part(float(begun + spans.start[first]) / ends[-1], float(begun + spans.start[last]) / ends[-1])
+            last = min(
+                max(first + 1, int(np.searchsorted(looks, before + LOOKS, side="right"))), len(rows)
+            )
+            jobs = [
+                _Job(
+                    g,
+                    tile,
+                    batch,
+                    max(first, g.first - row),
+                    last,
+                    g.looked and g.first >= row + first,
+                )
+                for g in going
+                if g.first < row + last
+                for tile in g.bundle.tiles()
+            ]
+            part = progress.part(
+                float(begun + spans.start[first]) / ends[-1],
+                float(begun + spans.start[last]) / ends[-1],
+            )
             _run(jobs, bundles, part, threads)
             for job in jobs:
                 job.note(found, row, share)
@@ -111,6 +162,7 @@ def _run(jobs: list[_Job], bundles: Sequence[Bundle], progress: Progress, thread
     """Run jobs until all are done, giving rays more room where they need it."""
     waiting = jobs
     while waiting:
+
         def work(first: int, last: int, waiting: list[_Job] = waiting) -> None:
             for job in waiting[first:last]:
                 job.run()
@@ -119,32 +171,88 @@ def _run(jobs: list[_Job], bundles: Sequence[Bundle], progress: Progress, thread
         waiting = [job for job in waiting if not job.done]
         for bundle in {job.bundle.axis: job.bundle for job in waiting}.values():
             if sum(b.nbytes for b in bundles) + bundle.nbytes > MOST_BYTES:
-                raise OutOfMemory(f"stock at cells of {bundle.pitch:g} mm has become so ragged that it would need more than "
-                                  f"{MOST_BYTES / 1e6:.0f} MB: choose a coarser verify.cell")
+                raise OutOfMemory(
+                    f"stock at cells of {bundle.pitch:g} mm has become so ragged that it would need more than "
+                    f"{MOST_BYTES / 1e6:.0f} MB: choose a coarser verify.cell"
+                )
             bundle.grow()
 
 
 class _Job:
     """Some moves of a batch through one tile."""
 
-    def __init__(self, going: Going, tile: tuple[int, int], batch: _Batch, first: int, last: int, looked: bool) -> None:
+    def __init__(
+        self,
+        going: Going,
+        tile: tuple[int, int],
+        batch: _Batch,
+        first: int,
+        last: int,
+        looked: bool,
+    ) -> None:
         n = last - first
-        self.bundle, self.tile, self.batch, self.first, self.last, self.done = going.bundle, tile, batch, first, last, False
+        self.bundle, self.tile, self.batch, self.first, self.last, self.done = (
+            going.bundle,
+            tile,
+            batch,
+            first,
+            last,
+            False,
+        )
         self.resume = np.array([0, 0, 0, 0, 0, int(looked)])
-        self.removed, self.depth, self.place, self.body = np.zeros(n), np.zeros(n), np.full((n, 3), np.nan), np.zeros(n)
-        self.probe = batch.probe_start[first:last + 1] if self.bundle.axis == UP else np.zeros(n + 1, np.int64)
+        self.removed, self.depth, self.place, self.body = (
+            np.zeros(n),
+            np.zeros(n),
+            np.full((n, 3), np.nan),
+            np.zeros(n),
+        )
+        self.probe = (
+            batch.probe_start[first : last + 1]
+            if self.bundle.axis == UP
+            else np.zeros(n + 1, np.int64)
+        )
         self.tally = Tally.empty(int(self.probe[-1] - self.probe[0]))
         fine = batch.fine if self.bundle.axis == UP else 0
-        self.fine, self.grazed = fine, np.zeros(((fine > 0) * int(batch.rapid[first:last].sum()) * kernel.MOST_GRAZED, 4))
+        self.fine, self.grazed = (
+            fine,
+            np.zeros(((fine > 0) * int(batch.rapid[first:last].sum()) * kernel.MOST_GRAZED, 4)),
+        )
 
     def run(self) -> None:
         """Go on until all moves are done or a ray has no room."""
         own, b, m = slice(self.first, self.last), self.bundle, self.batch
         self.done = kernel.cut_tile(
-            self.last - self.first, m.spans[b.axis], m.start[self.first:self.last + 1], m.bodies.arc, m.bodies.piece, m.bodies.start,
-            m.tool[own], m.rapid[own], b.count, b.low, b.high, b.columns, *self.tile, b.origin, b.pitch, self.resume,
-            self.removed, self.depth, self.place, self.body, m.way[own], m.probes.rings, m.probes.flute, m.probes.circle,
-            self.probe - self.probe[0], self.tally.counted, self.tally.spans, self.fine, tolerance.RAPID_DEPTH, self.grazed)
+            self.last - self.first,
+            m.spans[b.axis],
+            m.start[self.first : self.last + 1],
+            m.bodies.arc,
+            m.bodies.piece,
+            m.bodies.start,
+            m.tool[own],
+            m.rapid[own],
+            b.count,
+            b.low,
+            b.high,
+            b.columns,
+            *self.tile,
+            b.origin,
+            b.pitch,
+            self.resume,
+            self.removed,
+            self.depth,
+            self.place,
+            self.body,
+            m.way[own],
+            m.probes.rings,
+            m.probes.flute,
+            m.probes.circle,
+            self.probe - self.probe[0],
+            self.tally.counted,
+            self.tally.spans,
+            self.fine,
+            tolerance.RAPID_DEPTH,
+            self.grazed,
+        )
 
     def note(self, found: Passed, row: int, share: float) -> None:
         """Add what happened to what was found in other tiles; the batch's moves count from `row`."""
@@ -156,16 +264,18 @@ class _Job:
         found.place[own][deeper[:, None], cycle(self.bundle.axis)] = self.place[deeper]
         seen = slice(self.probe[0], self.probe[-1])
         found.tally.counted[seen] += self.tally.counted
-        found.tally.spans[seen] = Tally(found.tally.counted[seen], found.tally.spans[seen]).plus(self.tally).spans
+        found.tally.spans[seen] = (
+            Tally(found.tally.counted[seen], found.tally.spans[seen]).plus(self.tally).spans
+        )
         listed = np.flatnonzero(self.grazed[:, 3] > 0.0)
         if len(listed):
-            rapids = row + self.first + np.flatnonzero(self.batch.rapid[self.first:self.last])
+            rapids = row + self.first + np.flatnonzero(self.batch.rapid[self.first : self.last])
             found.grazed.append((rapids[listed // kernel.MOST_GRAZED], self.grazed[listed]))
 
 
 def _looks(spans: Spans, blank: Blank, bundles: Sequence[Bundle]) -> Floats:
     """Return a bound for the rays that each move may have to look at."""
-    box = spans.row[:, kernel.ALL_BOX:kernel.ALL_BOX + 6].reshape(-1, 2, 3)
+    box = spans.row[:, kernel.ALL_BOX : kernel.ALL_BOX + 6].reshape(-1, 2, 3)
     size = np.minimum(box[:, 1], blank.high) - np.maximum(box[:, 0], blank.low)
     there = (size > 0.0).all(axis=1)
     rays = 50.0 + sum(there * size[:, cycle(b.axis)[:2]].prod(axis=1) / b.pitch**2 for b in bundles)

@@ -39,15 +39,23 @@ class StockRun:
     peak: Floats
 
 
-def run_stock(stock: Stock, moves: Moves, frame: Frame, sweep: Sweep | None = None, progress: Progress = QUIET,
-              threads: int = 0) -> StockRun:
+def run_stock(
+    stock: Stock,
+    moves: Moves,
+    frame: Frame,
+    sweep: Sweep | None = None,
+    progress: Progress = QUIET,
+    threads: int = 0,
+) -> StockRun:
     """Cut moves given in a setup frame out of the stock (changed in place) and say what each did.
 
     `sweep` of the same moves answers for rapids that graze material between rays; without it they are judged by the rays alone.
     `threads` 0: one a core; the result is the same for any number. Cancelled or out of memory half-way, the stock is of no use any more:
     go back to a snapshot. Raises `OutOfMemory` when rays are cut in too many pieces.
     """
-    local, probes = progress.aside(lambda _: (seen_from(moves, frame, stock.frame), probes_of(moves)), "Cutting the stock")
+    local, probes = progress.aside(
+        lambda _: (seen_from(moves, frame, stock.frame), probes_of(moves)), "Cutting the stock"
+    )
     found = Passed.empty(len(moves), probes)
     heights = progress.part(0.0, 1.0 if stock.bundles == ("z",) else 0.3)
     row, looked = run_heights(stock, local, frame, sweep, probes, found, heights)
@@ -63,6 +71,13 @@ def run_stock(stock: Stock, moves: Moves, frame: Frame, sweep: Sweep | None = No
     rapid_depth = np.where(found.depth > tolerance.RAPID_DEPTH, found.depth, 0.0)
     place = np.where(rapid_depth[:, None] > 0.0, found.place, np.nan)
     engaged = progress.aside(lambda _: engagement_of(probes, found.tally, moves))
-    return StockRun(removed=found.removed, rapid_depth=rapid_depth, rapid_place=frame.to_local(stock.frame.to_world(place)),
-                    body_depth=found.body, engagement=engaged.largest, depth_of_cut=engaged.depth, widest=engaged.widest,
-                    peak=engaged.peak)
+    return StockRun(
+        removed=found.removed,
+        rapid_depth=rapid_depth,
+        rapid_place=frame.to_local(stock.frame.to_world(place)),
+        body_depth=found.body,
+        engagement=engaged.largest,
+        depth_of_cut=engaged.depth,
+        widest=engaged.widest,
+        peak=engaged.peak,
+    )

@@ -34,8 +34,12 @@ def whole_arcs(moves: Moves, along: Sequence[int]) -> Bools:
     """Say which moves (n,) are arcs that go level about one of the blank's axes `along`: each is one span."""
     climb = np.abs(((moves.end - moves.start) * moves.start_axis).sum(axis=1))
     axis = np.abs(moves.start_axis)
-    straight = np.isin(axis.argmax(axis=1), along) & (np.sort(axis, axis=1)[:, :2].max(axis=1, initial=0.0) < kernel.LEVEL / 10.0)
-    return np.asarray((moves.sweep != 0.0) & straight & (climb < kernel.LEVEL / 10.0) & ~moves.turning)
+    straight = np.isin(axis.argmax(axis=1), along) & (
+        np.sort(axis, axis=1)[:, :2].max(axis=1, initial=0.0) < kernel.LEVEL / 10.0
+    )
+    return np.asarray(
+        (moves.sweep != 0.0) & straight & (climb < kernel.LEVEL / 10.0) & ~moves.turning
+    )
 
 
 def spans_each(moves: Moves, whole: Bools) -> Ints:
@@ -44,12 +48,17 @@ def spans_each(moves: Moves, whole: Bools) -> Ints:
     theta = _turns(moves)
     run = np.linalg.norm(moves.end - moves.start, axis=1)
     # A point's way past a turning tool bends by the turn squared at arm's length, and by turn and way together.
-    turning = np.sqrt((theta**2 * np.hypot(size[:, 0], size[:, 2]) + 2.0 * theta * run) / (8.0 * tolerance.STOCK_CHORD))
+    turning = np.sqrt(
+        (theta**2 * np.hypot(size[:, 0], size[:, 2]) + 2.0 * theta * run)
+        / (8.0 * tolerance.STOCK_CHORD)
+    )
     away = moves.start - np.where(np.isnan(moves.centre), moves.start, moves.centre)
     away -= (away * moves.start_axis).sum(axis=1, keepdims=True) * moves.start_axis
     radius = np.linalg.norm(away, axis=1)
     arcs = np.abs(moves.sweep) * np.sqrt(radius / (8.0 * tolerance.STOCK_CHORD))
-    return np.where(whole, 1, np.maximum(1, np.ceil(np.maximum(turning, arcs) - tolerance.PARAMETRIC))).astype(np.int64)
+    return np.where(
+        whole, 1, np.maximum(1, np.ceil(np.maximum(turning, arcs) - tolerance.PARAMETRIC))
+    ).astype(np.int64)
 
 
 def spans_of(moves: Moves, rows: Ints, each: Ints, whole: Bools) -> Spans:
@@ -60,7 +69,7 @@ def spans_of(moves: Moves, rows: Ints, each: Ints, whole: Bools) -> Spans:
     row = np.empty((len(move), VECTORS, 3))
     poses = _Poses(moves, move)
     for k, share in enumerate((step / steps, (step + 1) / steps)):
-        row[:, 4 * k], row[:, 4 * k + 1:4 * k + 4] = poses.at(share)
+        row[:, 4 * k], row[:, 4 * k + 1 : 4 * k + 4] = poses.at(share)
     row[:, 12], row[:, 13] = np.minimum(row[:, 0], row[:, 4]), np.maximum(row[:, 0], row[:, 4])
     bent = np.repeat(whole, each)
     row[:, 14:] = 0.0
@@ -80,7 +89,9 @@ class _Poses:
         self.sweep = moves.sweep[rows]
         axis = moves.start_axis[rows]
         self.theta = _turns(moves)[rows]
-        ahead = moves.end_axis[rows] - (moves.end_axis[rows] * axis).sum(axis=1, keepdims=True) * axis
+        ahead = (
+            moves.end_axis[rows] - (moves.end_axis[rows] * axis).sum(axis=1, keepdims=True) * axis
+        )
         # A tool that keeps its axis may be looked at from anywhere across it.
         across = np.eye(3)[np.abs(axis).argmin(axis=1)]
         across = across - (across * axis).sum(axis=1, keepdims=True) * axis
@@ -98,20 +109,34 @@ class _Poses:
         """Return tips (s, 3) and tool frames (s, 3, 3) at shares (s,) of each way."""
         t = share[:, None]
         angle = t * self.sweep[:, None]
-        bent = self.start + t * self.climb + (np.cos(angle) - 1.0) * self.away + np.sin(angle) * self.over
+        bent = (
+            self.start
+            + t * self.climb
+            + (np.cos(angle) - 1.0) * self.away
+            + np.sin(angle) * self.over
+        )
         tip = np.where(self.arc, bent, self.start + t * self.way)
         turn = t * self.theta[:, None]
         axis = self.axis * np.cos(turn) + self.ahead * np.sin(turn)
         ahead = self.ahead * np.cos(turn) - self.axis * np.sin(turn)
         return tip, np.stack([ahead, self.beside, axis], axis=1)
 
-
     def arcs(self) -> Floats:
         """Return centre, direction of the middle, radius and cosine of half the angle of arcs (s, 4, 3), the last two three times."""
         radius, half = np.linalg.norm(self.away, axis=1, keepdims=True), 0.5 * self.sweep[:, None]
-        middle = (np.cos(half) * self.away + np.sin(half) * self.over) / np.maximum(radius, tolerance.PARAMETRIC)
+        middle = (np.cos(half) * self.away + np.sin(half) * self.over) / np.maximum(
+            radius, tolerance.PARAMETRIC
+        )
         three = np.ones((1, 3))
-        return np.stack([self.start - self.away, middle, radius * three, np.cos(np.clip(half, -np.pi, np.pi)) * three], axis=1)
+        return np.stack(
+            [
+                self.start - self.away,
+                middle,
+                radius * three,
+                np.cos(np.clip(half, -np.pi, np.pi)) * three,
+            ],
+            axis=1,
+        )
 
     def way_boxes(self, rows: Bools) -> Floats:
         """Return boxes (k, 2, 3) of the tips' ways along some arcs."""
@@ -121,8 +146,12 @@ class _Poses:
         low, high = np.minimum(centre + away, end), np.maximum(centre + away, end)
         # Each coordinate goes up and down over a turn: is its top, or its bottom, on the way?
         side = np.sign(sweep)
-        top, bottom = (np.mod(side * (angle + half), 2.0 * np.pi) <= np.abs(sweep) for half in (0.0, np.pi))
-        return np.stack([np.where(bottom, centre - reach, low), np.where(top, centre + reach, high)], axis=1)
+        top, bottom = (
+            np.mod(side * (angle + half), 2.0 * np.pi) <= np.abs(sweep) for half in (0.0, np.pi)
+        )
+        return np.stack(
+            [np.where(bottom, centre - reach, low), np.where(top, centre + reach, high)], axis=1
+        )
 
 
 def _turns(moves: Moves) -> Floats:
@@ -138,15 +167,29 @@ def _sizes(moves: Moves) -> Floats:
     for k in range(len(moves.tools)):
         piece = moves.bodies.of(k)
         cutting = piece[piece[:, body_kernel.KIND] == 0.0]
-        found.append([p[:, column].max() for column in (body_kernel.Z_HIGH, body_kernel.R_MAX) for p in (cutting, piece)])
+        found.append(
+            [
+                p[:, column].max()
+                for column in (body_kernel.Z_HIGH, body_kernel.R_MAX)
+                for p in (cutting, piece)
+            ]
+        )
     return np.array(found).reshape(-1, 4)
 
 
 def _boxes(row: Floats, height: Floats, radius: Floats) -> Floats:
     """Return the boxes (s, 2, 3) of tools of some height and radius in spans."""
     low, high = np.full((len(row), 3), np.inf), np.full((len(row), 3), -np.inf)
-    for tip, axis in ((row[:, 12], row[:, 3]), (row[:, 13], row[:, 3]), (row[:, 0], row[:, 3]), (row[:, 4], row[:, 7])):
+    for tip, axis in (
+        (row[:, 12], row[:, 3]),
+        (row[:, 13], row[:, 3]),
+        (row[:, 0], row[:, 3]),
+        (row[:, 4], row[:, 7]),
+    ):
         across = radius[:, None] * np.sqrt(np.clip(1.0 - axis**2, 0.0, None)) + 0.05
         top = tip + height[:, None] * axis
-        low, high = np.minimum(low, np.minimum(tip, top) - across), np.maximum(high, np.maximum(tip, top) + across)
+        low, high = (
+            np.minimum(low, np.minimum(tip, top) - across),
+            np.maximum(high, np.maximum(tip, top) + across),
+        )
     return np.stack([low, high], axis=1)

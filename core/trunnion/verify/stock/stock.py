@@ -58,10 +58,14 @@ class Stock:
     def of(blank: Blank, pitch: float, bundles: Sequence[str] = ("z",)) -> Stock:
         """Return a whole blank; raise `OutOfMemory` when rays so close would need too much memory."""
         if not bundles or any(name not in AXES for name in bundles):
-            raise BadInput(f"stock: its bundles are some of {', '.join(AXES)}, not {', '.join(bundles) or 'none'}")
+            raise BadInput(
+                f"stock: its bundles are some of {', '.join(AXES)}, not {', '.join(bundles) or 'none'}"
+            )
         _refuse(Stock.need(blank, pitch, bundles), pitch)
         rays = {name: Bundle.of(blank, pitch, AXES.index(name)) for name in bundles if name != "z"}
-        return Stock(blank, pitch, tuple(bundles), Field.of(blank, pitch) if "z" in bundles else None, rays)
+        return Stock(
+            blank, pitch, tuple(bundles), Field.of(blank, pitch) if "z" in bundles else None, rays
+        )
 
     @staticmethod
     def need(blank: Blank, pitch: float, bundles: Sequence[str] = ("z",)) -> int:
@@ -79,13 +83,17 @@ class Stock:
     @property
     def volume(self) -> float:
         """Volume in mm3: the mean of what the bundles say."""
-        volumes = [b.volume for b in self.rays.values()] + ([self.field.volume] if self.field is not None else [])
+        volumes = [b.volume for b in self.rays.values()] + (
+            [self.field.volume] if self.field is not None else []
+        )
         return float(np.mean(volumes))
 
     def contains(self, points: Floats) -> Bools:
         """Say for points (k, 3) in the blank's frame whether they are in material: what most of the nearest rays say."""
         points = np.asarray(points, dtype=np.float64).reshape(-1, 3)
-        said = [b.contains(points) for b in self.rays.values()] + ([self.field.contains(points)] if self.field is not None else [])
+        said = [b.contains(points) for b in self.rays.values()] + (
+            [self.field.contains(points)] if self.field is not None else []
+        )
         inside = ((points >= self.blank.low) & (points <= self.blank.high)).all(axis=1)
         return np.asarray(inside & (2 * np.sum(said, axis=0) > len(said)))
 
@@ -99,7 +107,11 @@ class Stock:
     def open_field(self) -> None:
         """Turn the height field into intervals: from now on anything may be cut."""
         if self.field is not None:
-            _refuse(8 * (1 + 2 * ROOM) * self.field.top.size + sum(b.nbytes for b in self.rays.values()), self.pitch)
+            _refuse(
+                8 * (1 + 2 * ROOM) * self.field.top.size
+                + sum(b.nbytes for b in self.rays.values()),
+                self.pitch,
+            )
             self.rays["z"], self.field = Bundle.of_field(self.field), None
 
     def snapshot(self) -> Snapshot:
@@ -108,7 +120,10 @@ class Stock:
         if self.field is not None:
             parts[HEIGHTS] = self.field.parts()
         before = self._last.parts if self._last is not None else {}
-        self._last = Snapshot({name: _shared(before.get(name, ()), own) for name, own in parts.items()}, tuple(self.cut_by))
+        self._last = Snapshot(
+            {name: _shared(before.get(name, ()), own) for name, own in parts.items()},
+            tuple(self.cut_by),
+        )
         return self._last
 
     def restore(self, snapshot: Snapshot) -> None:
@@ -128,10 +143,15 @@ def _shared(before: Sequence[Part], now: Sequence[Part]) -> tuple[Part, ...]:
     """Return the tiles as they are now, those that are as before by the older copy."""
     if len(before) != len(now):
         return tuple(now)
-    return tuple(old if all(map(np.array_equal, old, new)) else new for old, new in zip(before, now, strict=True))
+    return tuple(
+        old if all(map(np.array_equal, old, new)) else new
+        for old, new in zip(before, now, strict=True)
+    )
 
 
 def _refuse(need: int, pitch: float) -> None:
     if need > MOST_BYTES:
         least = math.ceil(100.0 * pitch * math.sqrt(need / MOST_BYTES)) / 100.0
-        raise OutOfMemory(f"stock at cells of {pitch:g} mm would need {need / 1e6:.0f} MB: choose verify.cell of at least {least:.2f} mm")
+        raise OutOfMemory(
+            f"stock at cells of {pitch:g} mm would need {need / 1e6:.0f} MB: choose verify.cell of at least {least:.2f} mm"
+        )

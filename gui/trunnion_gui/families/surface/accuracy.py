@@ -24,7 +24,9 @@ class AccuracyDock(QWidget):
     def __init__(self, document: Document, jobs: PatchJobs) -> None:
         super().__init__()
         self.shown: Accuracy | None = None
-        self.table: QTableWidget = tables.table([tr("Per edge"), tr("Points"), tr("Largest error"), tr("Mean error"), tr("Time")])
+        self.table: QTableWidget = tables.table(
+            [tr("Per edge"), tr("Points"), tr("Largest error"), tr("Mean error"), tr("Time")]
+        )
         self.chart = Chart()
         self.words = QLabel()
         self.words.setObjectName("muted")
@@ -56,20 +58,42 @@ class AccuracyDock(QWidget):
         """Show what was measured, or what to do for it."""
         self.shown = found
         rows = found.rows if found is not None else ()
-        tables.fill(self.table, [(tr("the paper's repair") if r.on_edge == _REPAIR else str(r.on_edge), grouped(r.points),
-                                  per_cent(r.largest), per_cent(r.mean), duration(r.seconds)) for r in rows], right=(0, 1, 2, 3, 4))
+        tables.fill(
+            self.table,
+            [
+                (
+                    tr("the paper's repair") if r.on_edge == _REPAIR else str(r.on_edge),
+                    grouped(r.points),
+                    per_cent(r.largest),
+                    per_cent(r.mean),
+                    duration(r.seconds),
+                )
+                for r in rows
+            ],
+            right=(0, 1, 2, 3, 4),
+        )
         if found is None:
-            self.words.setText(tr("Patches › Size error by points measures how exact the feature sizes are."))
+            self.words.setText(
+                tr("Patches › Size error by points measures how exact the feature sizes are.")
+            )
             self.chart.show_curves("", (), None, None)
             return
-        self.words.setText(tr("The file's boundary curves are within {error} of their surfaces (face {face}).").format(
-            error=f"{1000.0 * found.boundary:.3g} µm", face=found.face))
+        self.words.setText(
+            tr(
+                "The file's boundary curves are within {error} of their surfaces (face {face})."
+            ).format(error=f"{1000.0 * found.boundary:.3g} µm", face=found.face)
+        )
         spread = [r for r in rows if r.on_edge != _REPAIR]
         repair = next((100.0 * r.largest for r in rows if r.on_edge == _REPAIR), None)
-        self.chart.show_curves(tr("points on an edge"), [str(r.on_edge) for r in spread],
-                               Curve(tr("largest error"), tuple(100.0 * r.largest for r in spread), "%", by_powers=True),
-                               Curve(tr("time"), tuple(r.seconds for r in spread), "s"),
-                               (repair, tr("the paper's repair")) if repair is not None else None)
+        self.chart.show_curves(
+            tr("points on an edge"),
+            [str(r.on_edge) for r in spread],
+            Curve(
+                tr("largest error"), tuple(100.0 * r.largest for r in spread), "%", by_powers=True
+            ),
+            Curve(tr("time"), tuple(r.seconds for r in spread), "s"),
+            (repair, tr("the paper's repair")) if repair is not None else None,
+        )
 
 
 def per_cent(share: float) -> str:

@@ -20,7 +20,9 @@ class AreasBlock(QWidget):
         super().__init__()
         self._finished: list[str] = []
         self.table = tables.table([tr("Area of"), "mm²", "mm²/s", tr("Time")], has_names=True)
-        self.table.cellClicked.connect(lambda row, _: document.selection.select_operation(self._finished[row]))
+        self.table.cellClicked.connect(
+            lambda row, _: document.selection.select_operation(self._finished[row])
+        )
         self.gain = QLabel()
         self.gain.setWordWrap(True)
         column = QVBoxLayout(self)
@@ -36,11 +38,24 @@ class AreasBlock(QWidget):
         if found is None:
             return
         self._finished = [a.operation for a in found.rows]
-        rows = [(a.operation, amount(a.area, 1), amount(a.rate, 2), duration(a.seconds)) for a in found.rows]
+        rows = [
+            (a.operation, amount(a.area, 1), amount(a.rate, 2), duration(a.seconds))
+            for a in found.rows
+        ]
         tables.fill(self.table, rows, right=(1, 2, 3))
         tables.fit_height(self.table, _MOST_ROWS)
-        words = tr("{tool} alone: {alone}; with their own cutters {own}: {gain} % more efficient, {saving} % of the time saved ({source})")
-        self.gain.setText(words.format(
-            tool=found.alone, alone=duration(found.seconds_alone), own=duration(found.seconds), gain=f"{100.0 * found.gain:.2f}",
-            saving=f"{100.0 * found.saving:.2f}",
-            source=tr("measured on the toolpaths") if found.is_measured else tr("from feed and distance of passes")))
+        words = tr(
+            "{tool} alone: {alone}; with their own cutters {own}: {gain} % more efficient, {saving} % of the time saved ({source})"
+        )
+        self.gain.setText(
+            words.format(
+                tool=found.alone,
+                alone=duration(found.seconds_alone),
+                own=duration(found.seconds),
+                gain=f"{100.0 * found.gain:.2f}",
+                saving=f"{100.0 * found.saving:.2f}",
+                source=tr("measured on the toolpaths")
+                if found.is_measured
+                else tr("from feed and distance of passes"),
+            )
+        )

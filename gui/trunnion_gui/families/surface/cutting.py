@@ -6,7 +6,15 @@ from collections.abc import Callable
 
 import numpy as np
 from PySide6.QtCore import Signal
-from PySide6.QtWidgets import QComboBox, QHBoxLayout, QLabel, QPushButton, QSizePolicy, QToolButton, QWidget
+from PySide6.QtWidgets import (
+    QComboBox,
+    QHBoxLayout,
+    QLabel,
+    QPushButton,
+    QSizePolicy,
+    QToolButton,
+    QWidget,
+)
 
 from trunnion.findings import BadInput
 from trunnion.geometry.cut import Cut, plane_cut, way_cut
@@ -103,7 +111,11 @@ class CutBar(QWidget):
                 normal = tuple(float(a == kind) for a in AXES)
                 return plane_cut(self.face, tuple(self.value.value() * v for v in normal), normal)  # type: ignore[arg-type]
             if kind == THREE:
-                return plane_cut(self.face, self.places[0], self._normal()) if len(self.places) == 3 else None
+                return (
+                    plane_cut(self.face, self.places[0], self._normal())
+                    if len(self.places) == 3
+                    else None
+                )
             return way_cut(self.face, tuple(self.places)) if len(self.places) > 1 else None
         except BadInput:
             return None
@@ -124,10 +136,17 @@ class CutBar(QWidget):
 
     def _make_widgets(self) -> None:
         self.manner = QComboBox()
-        self.manner.setSizeAdjustPolicy(QComboBox.SizeAdjustPolicy.AdjustToMinimumContentsLengthWithIcon)
+        self.manner.setSizeAdjustPolicy(
+            QComboBox.SizeAdjustPolicy.AdjustToMinimumContentsLengthWithIcon
+        )
         self.manner.setMinimumContentsLength(12)
-        for words, kind in ((tr("plane across x"), "x"), (tr("plane across y"), "y"), (tr("plane across z"), "z"),
-                            (tr("plane through three places"), THREE), (tr("along a drawn line"), DRAWN)):
+        for words, kind in (
+            (tr("plane across x"), "x"),
+            (tr("plane across y"), "y"),
+            (tr("plane across z"), "z"),
+            (tr("plane through three places"), THREE),
+            (tr("along a drawn line"), DRAWN),
+        ):
             self.manner.addItem(words, kind)
         self.manner.currentIndexChanged.connect(self._change)
         self.value = Number()
@@ -147,7 +166,9 @@ class CutBar(QWidget):
         self.close_button.setToolTip(tr("Put the cut away without making it (Escape)"))
 
     @staticmethod
-    def _button(made: QPushButton | QToolButton, words: str, slot: Callable[[], None]) -> QPushButton | QToolButton:
+    def _button(
+        made: QPushButton | QToolButton, words: str, slot: Callable[[], None]
+    ) -> QPushButton | QToolButton:
         made.setText(words)
         made.clicked.connect(lambda _=False: slot())
         return made
@@ -221,11 +242,14 @@ class CutBar(QWidget):
         if kind in AXES:
             return tr("{face}: type where, or click a place of the plane.").format(face=where)
         if kind == THREE:
-            return tr("{face}: click three places, {n} are there.").format(face=where, n=len(self.places))
+            return tr("{face}: click three places, {n} are there.").format(
+                face=where, n=len(self.places)
+            )
         if self._is_closed():
             return tr("{face}: the line is closed.").format(face=where)
-        return tr("{face}: click places of the line, {n} are there; it is led on to the edge, or closed by a click on the first.").format(
-            face=where, n=len(self.places))
+        return tr(
+            "{face}: click places of the line, {n} are there; it is led on to the edge, or closed by a click on the first."
+        ).format(face=where, n=len(self.places))
 
     def _cut(self) -> None:
         cut = self.cut()

@@ -54,4 +54,8 @@ class EstimateSource(QObject):
 
 
 def _has_areas(session: Session) -> bool:
-    return session.process is not None and session.recognition is not None and bool(session.recognition.of_kind(GROUP))
+    return (
+        session.process is not None
+        and session.recognition is not None
+        and bool(session.recognition.of_kind(GROUP))
+    )

@@ -54,7 +54,11 @@ class ExportDialog(QDialog):
 
     def begin(self) -> None:
         """Show the dialog; groups that have selected faces are ticked."""
-        self._ticked = {f.id for f in self._groups() if set(f.tags) & set(self._document.selection.current.faces)}
+        self._ticked = {
+            f.id
+            for f in self._groups()
+            if set(f.tags) & set(self._document.selection.current.faces)
+        }
         if self._ticked:
             self.parts[CHOSEN].setChecked(True)
         self._fill()
@@ -65,7 +69,11 @@ class ExportDialog(QDialog):
     def words(self) -> tuple[str, ...]:
         """Return what shall be exported, as the engine takes it."""
         chosen = next(name for name, button in self.parts.items() if button.isChecked())
-        return (chosen,) if chosen != CHOSEN else tuple(f.id for f in self._groups() if f.id in self._ticked)
+        return (
+            (chosen,)
+            if chosen != CHOSEN
+            else tuple(f.id for f in self._groups() if f.id in self._ticked)
+        )
 
     def export(self) -> None:
         """Ask for the file and write it."""
@@ -81,19 +89,31 @@ class ExportDialog(QDialog):
 
     def _ask_path(self, proposed: str, kind: str) -> str:
         """Ask which STEP or IGES file patches are written to; empty when none was chosen. Tests replace this."""
-        return QFileDialog.getSaveFileName(self.parentWidget(), tr("Export patches"), proposed, f"{kind} (*{' *'.join(SUFFIXES[kind])})")[0]
+        return QFileDialog.getSaveFileName(
+            self.parentWidget(),
+            tr("Export patches"),
+            proposed,
+            f"{kind} (*{' *'.join(SUFFIXES[kind])})",
+        )[0]
 
     def refresh(self) -> None:
         """Show the groups of the shown session, and say how much is chosen."""
         if not self.isVisible() and not self.list.count():
             return
-        if [self.list.item(n).text().split()[0] for n in range(self.list.count())] != [f.id for f in self._groups()]:
+        if [self.list.item(n).text().split()[0] for n in range(self.list.count())] != [
+            f.id for f in self._groups()
+        ]:
             self._fill()
         words = self.words()
-        groups = {LOCAL: [f for f in self._groups() if is_local(f)],
-                  REMAINING: [f for f in self._groups() if not is_local(f)]}.get(
-            words[0] if words else "", [f for f in self._groups() if f.id in words])
-        self.count.setText(tr("{n} faces in {groups} groups").format(n=sum(len(f.tags) for f in groups), groups=len(groups)))
+        groups = {
+            LOCAL: [f for f in self._groups() if is_local(f)],
+            REMAINING: [f for f in self._groups() if not is_local(f)],
+        }.get(words[0] if words else "", [f for f in self._groups() if f.id in words])
+        self.count.setText(
+            tr("{n} faces in {groups} groups").format(
+                n=sum(len(f.tags) for f in groups), groups=len(groups)
+            )
+        )
         self.list.setEnabled(self.parts[CHOSEN].isChecked())
         self.export_button.setEnabled(bool(groups) and not self._document.is_busy)
 
@@ -110,13 +130,17 @@ class ExportDialog(QDialog):
             item = QListWidgetItem(colour_icon(colours[f.id]), f"{f.id}   {len(f.tags)}")
             item.setData(Qt.ItemDataRole.UserRole, f.id)
             item.setFlags(item.flags() | Qt.ItemFlag.ItemIsUserCheckable)
-            item.setCheckState(Qt.CheckState.Checked if f.id in self._ticked else Qt.CheckState.Unchecked)
+            item.setCheckState(
+                Qt.CheckState.Checked if f.id in self._ticked else Qt.CheckState.Unchecked
+            )
             self.list.addItem(item)
         self.list.blockSignals(False)
 
     def _tick(self, item: QListWidgetItem) -> None:
         id = item.data(Qt.ItemDataRole.UserRole)
-        (self._ticked.add if item.checkState() is Qt.CheckState.Checked else self._ticked.discard)(id)
+        (self._ticked.add if item.checkState() is Qt.CheckState.Checked else self._ticked.discard)(
+            id
+        )
         self.refresh()
 
     def _lay_out(self) -> None:
@@ -126,7 +150,11 @@ class ExportDialog(QDialog):
         column.setContentsMargins(16, 14, 16, 14)
         column.setSpacing(8)
         self._whats, self._kinds = QButtonGroup(self), QButtonGroup(self)
-        for name, words in ((LOCAL, tr("Local features")), (REMAINING, tr("Remaining area")), (CHOSEN, tr("These groups"))):
+        for name, words in (
+            (LOCAL, tr("Local features")),
+            (REMAINING, tr("Remaining area")),
+            (CHOSEN, tr("These groups")),
+        ):
             self.parts[name] = self._radio(words, self._whats)
             column.addWidget(self.parts[name])
         self.list.setFixedHeight(_LINES * 24)

@@ -25,8 +25,16 @@ def with_local(ids: Iterable[str], value: bool) -> Edit:
 
     def edit(session: Session) -> Session:
         found = recognition_of(session)
-        changed = tuple(replace(f, attributes={**f.attributes, LOCAL: value}, by_hand=True)
-                        if f.id in wanted and is_local(f) != value else f for f in found.features)
-        return session if changed == found.features else replace(session, recognition=replace(found, features=changed))
+        changed = tuple(
+            replace(f, attributes={**f.attributes, LOCAL: value}, by_hand=True)
+            if f.id in wanted and is_local(f) != value
+            else f
+            for f in found.features
+        )
+        return (
+            session
+            if changed == found.features
+            else replace(session, recognition=replace(found, features=changed))
+        )
 
     return edit

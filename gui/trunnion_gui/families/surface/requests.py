@@ -71,14 +71,24 @@ def cut(engine: Any, progress: Progress, _tell: Tell, session: Session, cut: Cut
     """Return the session after a face was cut in two."""
     from trunnion.pipeline.patches import with_cut
 
-    return _patched(engine, session, with_cut(engine, session, cut, progress.part(0.0, 0.5)), progress.part(0.5, 1.0))
+    return _patched(
+        engine,
+        session,
+        with_cut(engine, session, cut, progress.part(0.0, 0.5)),
+        progress.part(0.5, 1.0),
+    )
 
 
 def uncut(engine: Any, progress: Progress, _tell: Tell, session: Session, number: int) -> Patched:
     """Return the session after a cut was taken back, counted from 0."""
     from trunnion.pipeline.patches import without_cut
 
-    return _patched(engine, session, without_cut(engine, session, number, progress.part(0.0, 0.5)), progress.part(0.5, 1.0))
+    return _patched(
+        engine,
+        session,
+        without_cut(engine, session, number, progress.part(0.0, 0.5)),
+        progress.part(0.5, 1.0),
+    )
 
 
 def _patched(engine: Any, before: Session, after: Session, progress: Progress) -> Patched:
@@ -88,7 +98,14 @@ def _patched(engine: Any, before: Session, after: Session, progress: Progress) -
     return Patched(State(after, engine.states(after)), drawing_of(engine.mesh(after, progress)))
 
 
-def move(engine: Any, _progress: Progress, _tell: Tell, session: Session, faces: tuple[int, ...], group: str) -> State:
+def move(
+    engine: Any,
+    _progress: Progress,
+    _tell: Tell,
+    session: Session,
+    faces: tuple[int, ...],
+    group: str,
+) -> State:
     """Return the session after faces went to a group by its id, or to a new one."""
     from trunnion.pipeline.patches import with_moved
 
@@ -97,7 +114,14 @@ def move(engine: Any, _progress: Progress, _tell: Tell, session: Session, faces:
 
 
 @writes_files
-def export(engine: Any, _progress: Progress, _tell: Tell, session: Session, what: tuple[str, ...], path: str) -> int:
+def export(
+    engine: Any,
+    _progress: Progress,
+    _tell: Tell,
+    session: Session,
+    what: tuple[str, ...],
+    path: str,
+) -> int:
     """Write `local`, `remaining` or groups by their ids as STEP or IGES; return the number of faces."""
     from trunnion.pipeline.patches import export as export_patches
 
@@ -108,7 +132,10 @@ def accuracy(engine: Any, progress: Progress, _tell: Tell, session: Session) -> 
     """Return how exact the feature sizes are by the number of points on each edge."""
     from trunnion.pipeline.patches import boundary_errors, size_errors
 
-    rows = tuple(ErrorRow(r.on_edge, r.points, r.largest, r.mean, r.seconds) for r in size_errors(engine, session, progress=progress))
+    rows = tuple(
+        ErrorRow(r.on_edge, r.points, r.largest, r.mean, r.seconds)
+        for r in size_errors(engine, session, progress=progress)
+    )
     errors = boundary_errors(engine, session)
     worst = max(errors, key=lambda tag: errors[tag])
     return Accuracy(rows, errors[worst], worst)
@@ -122,4 +149,12 @@ def estimate(engine: Any, _progress: Progress, _tell: Tell, session: Session) ->
     if found is None:
         return None
     rows = tuple(AreaRow(a.operation, a.tool, a.area, a.rate, a.seconds) for a in found.areas)
-    return Estimated(rows, found.seconds, found.alone, found.seconds_alone, found.gain, found.saving, bool(session.paths))
+    return Estimated(
+        rows,
+        found.seconds,
+        found.alone,
+        found.seconds_alone,
+        found.gain,
+        found.saving,
+        bool(session.paths),
+    )

@@ -26,7 +26,11 @@ def _show_patches(window: Window) -> None:
     """Show where a plane would cut a curved face of the remaining area."""
     recognition, view = window.document.session.recognition, window.views[SurfaceView.name]
     assert isinstance(view, SurfaceView)
-    curved = [f for f in recognition.of_kind(GROUP) if "convex_radius" in f.sizes and not is_local(f)] if recognition is not None else []
+    curved = (
+        [f for f in recognition.of_kind(GROUP) if "convex_radius" in f.sizes and not is_local(f)]
+        if recognition is not None
+        else []
+    )
     if curved:
         view.begin_cut(curved[0].tags[0], True)
 

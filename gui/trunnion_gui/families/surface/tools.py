@@ -38,7 +38,11 @@ class PatchTools(QObject):
     def groups_of(self, tags: Iterable[int]) -> list[Feature]:
         """Return the groups that some faces belong to, in their order."""
         wanted = set(tags)
-        return [f for f in self._document.shown.recognition or () if f.kind == GROUP and wanted & set(f.tags)]
+        return [
+            f
+            for f in self._document.shown.recognition or ()
+            if f.kind == GROUP and wanted & set(f.tags)
+        ]
 
     def toggle_face(self, face: int) -> bool:
         """Change the class of a face's group; return whether there is one."""
@@ -62,16 +66,24 @@ class PatchTools(QObject):
         groups, document = self.groups_of(tags), self._document
         if groups:
             are_local = all(map(is_local, groups))
-            local = menu.addAction(tr("Local feature"), lambda: self.set_local([f.id for f in groups], not are_local))
+            local = menu.addAction(
+                tr("Local feature"), lambda: self.set_local([f.id for f in groups], not are_local)
+            )
             local.setCheckable(True)
             local.setChecked(are_local)
         if self.has_groups and tags:
             self._add_groups(menu, tags, groups)
         if len(tags) == 1:
-            menu.addAction(icons.icon("cut_plane"), tr("Cut face {n} by a plane…").format(n=tags[0]),
-                           lambda: self.cut_wanted.emit(tags[0], True))
-            menu.addAction(icons.icon("cut_way"), tr("Cut face {n} along a drawn line…").format(n=tags[0]),
-                           lambda: self.cut_wanted.emit(tags[0], False))
+            menu.addAction(
+                icons.icon("cut_plane"),
+                tr("Cut face {n} by a plane…").format(n=tags[0]),
+                lambda: self.cut_wanted.emit(tags[0], True),
+            )
+            menu.addAction(
+                icons.icon("cut_way"),
+                tr("Cut face {n} along a drawn line…").format(n=tags[0]),
+                lambda: self.cut_wanted.emit(tags[0], False),
+            )
         cuts = document.session.cuts
         if cuts:
             back = menu.addMenu(icons.icon("undo"), tr("Take back a cut"))
@@ -82,10 +94,17 @@ class PatchTools(QObject):
         found = self._document.shown.recognition
         assert found is not None
         colours = feature_colours(found)
-        into = menu.addMenu(icons.icon("move_faces"), tr("Move to") if len(tags) == 1 else tr("Move {n} faces to").format(n=len(tags)))
+        into = menu.addMenu(
+            icons.icon("move_faces"),
+            tr("Move to") if len(tags) == 1 else tr("Move {n} faces to").format(n=len(tags)),
+        )
         for group in found.of_kind(GROUP):
             if [group] != own:
-                into.addAction(colour_icon(colours[group.id]), group.id, partial(self._jobs.move, tags, group.id))
+                into.addAction(
+                    colour_icon(colours[group.id]),
+                    group.id,
+                    partial(self._jobs.move, tags, group.id),
+                )
         into.addSeparator()
         into.addAction(tr("a new group"), lambda: self._jobs.move(tags))
 

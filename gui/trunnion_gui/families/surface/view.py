@@ -8,7 +8,14 @@ from PySide6.QtWidgets import QMenu, QWidget
 
 from trunnion.model.feature import Feature, Recognition
 from trunnion_gui.document import Document
-from trunnion_gui.families.contract import Colouring, Column, Dock, FamilyView, FeatureClass, main_size
+from trunnion_gui.families.contract import (
+    Colouring,
+    Column,
+    Dock,
+    FamilyView,
+    FeatureClass,
+    main_size,
+)
 from trunnion_gui.families.surface import looks
 from trunnion_gui.families.surface.accuracy import AccuracyDock
 from trunnion_gui.families.surface.areas import AreasBlock
@@ -46,9 +53,15 @@ class SurfaceView(FamilyView):
         return tr("Group"), tr("n")
 
     def columns(self) -> tuple[Column, ...]:
-        return (*looks.radius_columns(),
-                Column(title=tr("Local"), tip=tr("A local feature gets a cutter of its own; click to change"), is_ticked=is_local,
-                       click=lambda f: self.tools.set_local([f.id], not is_local(f))))
+        return (
+            *looks.radius_columns(),
+            Column(
+                title=tr("Local"),
+                tip=tr("A local feature gets a cutter of its own; click to change"),
+                is_ticked=is_local,
+                click=lambda f: self.tools.set_local([f.id], not is_local(f)),
+            ),
+        )
 
     def classes(self, kind: str, features: Sequence[Feature]) -> tuple[FeatureClass, ...]:
         return looks.classes(kind, features)
@@ -67,8 +80,11 @@ class SurfaceView(FamilyView):
         self.tools.add_entries(menu, feature.tags)
         chosen = self.document.selection.current
         if chosen.kind == "faces" and not set(chosen.faces) <= set(feature.tags):
-            menu.addAction(icons.icon("move_faces"), tr("Take the selected faces in"),
-                           lambda: self.jobs.move(chosen.faces, feature.id))
+            menu.addAction(
+                icons.icon("move_faces"),
+                tr("Take the selected faces in"),
+                lambda: self.jobs.move(chosen.faces, feature.id),
+            )
 
     def add_commands(self, shell: Shell) -> None:
         add_commands(self, shell)

@@ -17,18 +17,32 @@ class DeviationLayer:
 
     def __init__(self, view: Any, drawn: DrawnMap) -> None:
         self._map = shown = drawn.map
-        surface = surface_of(shown.points, shown.triangles, np.zeros((len(shown.triangles), 3), np.uint8))
+        surface = surface_of(
+            shown.points, shown.triangles, np.zeros((len(shown.triangles), 3), np.uint8)
+        )
         surface.GetCellData().Initialize()
         painted = numpy_to_vtk(drawn.colours, deep=True)
         painted.SetName("rgb")
         surface.GetPointData().SetScalars(painted)
         surface.GetPointData().SetNormals(numpy_to_vtk(drawn.normals, deep=True))
-        self.actor = view.add_mesh(surface, scalars="rgb", rgb=True, name="deviation", reset_camera=False,
-                                   show_scalar_bar=False, ambient=0.42, diffuse=0.62, specular=0.05, copy_mesh=False)
+        self.actor = view.add_mesh(
+            surface,
+            scalars="rgb",
+            rgb=True,
+            name="deviation",
+            reset_camera=False,
+            show_scalar_bar=False,
+            ambient=0.42,
+            diffuse=0.62,
+            specular=0.05,
+            copy_mesh=False,
+        )
         self.actor.prop.interpolation = "Phong"
         self._picker: FacePicker | None = None
 
-    def at(self, x: float, y: float, renderer: Any) -> tuple[int, float, tuple[float, float, float]] | None:
+    def at(
+        self, x: float, y: float, renderer: Any
+    ) -> tuple[int, float, tuple[float, float, float]] | None:
         """Return face tag, deviation in mm and place at a pixel (from the lower left corner); None beside the part."""
         if self._picker is None:
             self._picker = FacePicker(self.actor, np.arange(1, len(self._map.triangles) + 1))

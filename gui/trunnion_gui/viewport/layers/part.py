@@ -20,13 +20,35 @@ class PartLayer:
         self._view = view
         self._mesh = mesh
         self._surface = _surface(drawing)
-        self._surface.cell_data["rgb"] = np.tile(np.array(rgb(theme.part), np.uint8), (len(mesh.triangles), 1))
-        self.actor = view.add_mesh(self._surface, scalars="rgb", rgb=True, name="part", smooth_shading=False, ambient=0.38, diffuse=0.68,
-                                   specular=0.12, specular_power=12, show_scalar_bar=False, reset_camera=False)
+        self._surface.cell_data["rgb"] = np.tile(
+            np.array(rgb(theme.part), np.uint8), (len(mesh.triangles), 1)
+        )
+        self.actor = view.add_mesh(
+            self._surface,
+            scalars="rgb",
+            rgb=True,
+            name="part",
+            smooth_shading=False,
+            ambient=0.38,
+            diffuse=0.68,
+            specular=0.12,
+            specular_power=12,
+            show_scalar_bar=False,
+            reset_camera=False,
+        )
         self.actor.prop.interpolation = "Phong"
         self._ends, self._edge_faces = drawing.borders, drawing.owners
-        self._edges = view.add_mesh(_lines(mesh.points, self._ends), color=theme.edge, line_width=1.2, opacity=0.55, name="edges",
-                                    pickable=False, reset_camera=False, lighting=False, show_scalar_bar=False)
+        self._edges = view.add_mesh(
+            _lines(mesh.points, self._ends),
+            color=theme.edge,
+            line_width=1.2,
+            opacity=0.55,
+            name="edges",
+            pickable=False,
+            reset_camera=False,
+            lighting=False,
+            show_scalar_bar=False,
+        )
         _pull_forward(self._edges)
 
     def paint(self, colours: np.ndarray) -> None:
@@ -49,8 +71,17 @@ class PartLayer:
         if not chosen.any():
             self._view.remove_actor(name, render=False)
             return
-        actor = self._view.add_mesh(_lines(self._mesh.points, self._ends[chosen]), color=colour, line_width=width, name=name,
-                                    pickable=False, reset_camera=False, lighting=False, render_lines_as_tubes=False, show_scalar_bar=False)
+        actor = self._view.add_mesh(
+            _lines(self._mesh.points, self._ends[chosen]),
+            color=colour,
+            line_width=width,
+            name=name,
+            pickable=False,
+            reset_camera=False,
+            lighting=False,
+            render_lines_as_tubes=False,
+            show_scalar_bar=False,
+        )
         _pull_forward(actor, 6.0)
 
 

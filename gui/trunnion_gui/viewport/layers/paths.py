@@ -10,13 +10,23 @@ import pyvista as pv
 
 from trunnion.geometry.frame import Frame
 from trunnion.model.toolpath import Toolpath
-from trunnion.report.lines import MOST_STROKES, MOTIONS, STROKE_EVERY, STROKE_LENGTH, kinds_of, opened, strokes
+from trunnion.report.lines import (
+    MOST_STROKES,
+    MOTIONS,
+    STROKE_EVERY,
+    STROKE_LENGTH,
+    kinds_of,
+    opened,
+    strokes,
+)
 from trunnion_gui.look.colours import axis_colour, motions, rgb
 
 AXES = "tool axes"
 
 
-def draw_paths(view: Any, paths: Iterable[tuple[Toolpath, Frame]], shown: Iterable[str], size: float) -> None:
+def draw_paths(
+    view: Any, paths: Iterable[tuple[Toolpath, Frame]], shown: Iterable[str], size: float
+) -> None:
     """Show toolpaths (each with its setup's frame) as lines: thin ones for rapids, strong ones for feed moves.
 
     `size` mm is the part's, which the strokes of leaning tools are in proportion to.
@@ -26,26 +36,57 @@ def draw_paths(view: Any, paths: Iterable[tuple[Toolpath, Frame]], shown: Iterab
     wanted = np.isin(MOTIONS, list(shown))
     listed = [(path, frame) for path, frame in paths if len(path) > 1]
     drawn = [(opened(path), kinds_of(path), frame) for path, frame in listed]
-    for name, is_rapid, width, opacity in (("rapids", True, 1.3, 0.6), ("feed moves", False, 2.2, 1.0)):
+    for name, is_rapid, width, opacity in (
+        ("rapids", True, 1.3, 0.6),
+        ("feed moves", False, 2.2, 1.0),
+    ):
         kept = wanted & (np.array([m == "rapid" for m in MOTIONS]) == is_rapid)
         lines = _chords(drawn, kept)
         if lines is not None:
-            view.add_mesh(lines, scalars="rgb", rgb=True, line_width=width, opacity=opacity, name=name, pickable=False,
-                          reset_camera=False, lighting=False, show_scalar_bar=False)
+            view.add_mesh(
+                lines,
+                scalars="rgb",
+                rgb=True,
+                line_width=width,
+                opacity=opacity,
+                name=name,
+                pickable=False,
+                reset_camera=False,
+                lighting=False,
+                show_scalar_bar=False,
+            )
     standing = _standing(listed, size)
     if len(standing) and wanted[0]:
-        lines = np.column_stack([np.full(len(standing), 2), np.arange(2 * len(standing)).reshape(-1, 2)]).ravel()
-        view.add_mesh(pv.PolyData(standing.reshape(-1, 3).astype(np.float32), lines=lines), color=axis_colour(), line_width=1.4,
-                      opacity=0.85, name=AXES, pickable=False, reset_camera=False, lighting=False, show_scalar_bar=False)
+        lines = np.column_stack(
+            [np.full(len(standing), 2), np.arange(2 * len(standing)).reshape(-1, 2)]
+        ).ravel()
+        view.add_mesh(
+            pv.PolyData(standing.reshape(-1, 3).astype(np.float32), lines=lines),
+            color=axis_colour(),
+            line_width=1.4,
+            opacity=0.85,
+            name=AXES,
+            pickable=False,
+            reset_camera=False,
+            lighting=False,
+            show_scalar_bar=False,
+        )
 
 
 def _standing(paths: list[tuple[Toolpath, Frame]], size: float) -> np.ndarray:
     """Return the strokes (k, 2, 3) of the paths on which the tool leans, in the part's coordinates."""
-    made = [frame.to_world(strokes(path, STROKE_EVERY * size, STROKE_LENGTH * size, MOST_STROKES).reshape(-1, 3)) for path, frame in paths]
+    made = [
+        frame.to_world(
+            strokes(path, STROKE_EVERY * size, STROKE_LENGTH * size, MOST_STROKES).reshape(-1, 3)
+        )
+        for path, frame in paths
+    ]
     return np.vstack([np.zeros((0, 3)), *made]).reshape(-1, 2, 3)
 
 
-def _chords(paths: list[tuple[tuple[np.ndarray, np.ndarray], np.ndarray, Frame]], kept: np.ndarray) -> pv.PolyData | None:
+def _chords(
+    paths: list[tuple[tuple[np.ndarray, np.ndarray], np.ndarray, Frame]], kept: np.ndarray
+) -> pv.PolyData | None:
     """Return one mesh of the chords whose kinds are wanted, each with its colour."""
     points, ends, kinds, base = [], [], [], 0
     for (own, block), kind, frame in paths:

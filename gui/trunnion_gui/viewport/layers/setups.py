@@ -21,6 +21,19 @@ def draw_setups(view: Any, setups: Sequence[Setup], length: float) -> None:
             view.remove_actor(f"setup {row} {axis}", render=False)
     for row, setup in enumerate(setups[:_MOST]):
         for axis, direction, colour in zip("xyz", setup.frame.axes, _COLOURS):
-            arrow = pv.Arrow(start=setup.frame.origin, direction=np.asarray(direction), scale=length, shaft_radius=0.025, tip_radius=0.07,
-                             tip_length=0.25)
-            view.add_mesh(arrow, color=colour, name=f"setup {row} {axis}", pickable=False, reset_camera=False, ambient=0.4)
+            arrow = pv.Arrow(
+                start=setup.frame.origin,
+                direction=np.asarray(direction),
+                scale=length,
+                shaft_radius=0.025,
+                tip_radius=0.07,
+                tip_length=0.25,
+            )
+            view.add_mesh(
+                arrow,
+                color=colour,
+                name=f"setup {row} {axis}",
+                pickable=False,
+                reset_camera=False,
+                ambient=0.4,
+            )

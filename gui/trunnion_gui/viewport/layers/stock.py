@@ -25,8 +25,20 @@ def draw_stock(view: Any, moment: Moment | None, theme: Theme) -> None:
     if actor is not None:
         actor.mapper.SetInputData(surface)
         return
-    actor = view.add_mesh(surface, scalars="rgb", rgb=True, name="stock", pickable=False, reset_camera=False, show_scalar_bar=False,
-                          ambient=0.30, diffuse=0.74, specular=0.10, specular_power=16, copy_mesh=False)
+    actor = view.add_mesh(
+        surface,
+        scalars="rgb",
+        rgb=True,
+        name="stock",
+        pickable=False,
+        reset_camera=False,
+        show_scalar_bar=False,
+        ambient=0.30,
+        diffuse=0.74,
+        specular=0.10,
+        specular_power=16,
+        copy_mesh=False,
+    )
     actor.prop.interpolation = "Flat"
 
 
@@ -34,8 +46,10 @@ def surface_of(points: np.ndarray, triangles: np.ndarray, colours: np.ndarray) -
     """Return triangles (t, 3) with a colour each (t, 3) uint8; the arrays are taken over, not copied where they fit."""
     n = len(triangles)
     cells = vtkCellArray()
-    cells.SetData(numpy_to_vtkIdTypeArray(np.arange(0, 3 * n + 1, 3, dtype=np.int64), deep=True),
-                  numpy_to_vtkIdTypeArray(triangles.astype(np.int64).ravel(), deep=True))
+    cells.SetData(
+        numpy_to_vtkIdTypeArray(np.arange(0, 3 * n + 1, 3, dtype=np.int64), deep=True),
+        numpy_to_vtkIdTypeArray(triangles.astype(np.int64).ravel(), deep=True),
+    )
     places = vtkPoints()
     places.SetData(numpy_to_vtk(np.ascontiguousarray(points, dtype=np.float32), deep=True))
     surface = pv.PolyData()

@@ -32,9 +32,19 @@ def draw_tool(view: Any, tool: Tool | None, theme: Theme) -> None:
         return
     for part, body in zip(PARTS, (cutter_outline(tool), *shaft_outlines(tool))):
         if len(body) > 1:
-            view.add_mesh(revolved(body), color=tool_colours()[part], name=part, pickable=False, reset_camera=False, ambient=0.28,
-                          diffuse=0.7, specular=0.35, specular_power=24, smooth_shading=False,
-                          opacity=_HOLDER_OPACITY if part == "holder" else 1.0)
+            view.add_mesh(
+                revolved(body),
+                color=tool_colours()[part],
+                name=part,
+                pickable=False,
+                reset_camera=False,
+                ambient=0.28,
+                diffuse=0.7,
+                specular=0.35,
+                specular_power=24,
+                smooth_shading=False,
+                opacity=_HOLDER_OPACITY if part == "holder" else 1.0,
+            )
 
 
 def place_tool(view: Any, tip: np.ndarray, axis: np.ndarray) -> None:
@@ -42,7 +52,12 @@ def place_tool(view: Any, tip: np.ndarray, axis: np.ndarray) -> None:
     across = np.cross(axis, (0.0, 0.0, 1.0) if abs(axis[2]) < 0.9 else (1.0, 0.0, 0.0))
     across /= np.linalg.norm(across)
     matrix = np.eye(4)
-    matrix[:3, 0], matrix[:3, 1], matrix[:3, 2], matrix[:3, 3] = across, np.cross(axis, across), axis, tip
+    matrix[:3, 0], matrix[:3, 1], matrix[:3, 2], matrix[:3, 3] = (
+        across,
+        np.cross(axis, across),
+        axis,
+        tip,
+    )
     for part in PARTS:
         actor = view.actors.get(part)
         if actor is not None:
@@ -56,8 +71,10 @@ def draw_trail(view: Any, points: np.ndarray, rapid: np.ndarray) -> None:
         view.remove_actor("trail", render=False)
         return
     cells = vtkCellArray()
-    cells.SetData(numpy_to_vtkIdTypeArray(np.arange(0, 2 * k + 1, 2, dtype=np.int64), deep=True),
-                  numpy_to_vtkIdTypeArray(np.repeat(np.arange(k + 1), 2)[1:-1].astype(np.int64), deep=True))
+    cells.SetData(
+        numpy_to_vtkIdTypeArray(np.arange(0, 2 * k + 1, 2, dtype=np.int64), deep=True),
+        numpy_to_vtkIdTypeArray(np.repeat(np.arange(k + 1), 2)[1:-1].astype(np.int64), deep=True),
+    )
     line = pv.PolyData()
     places = vtkPoints()
     places.SetData(numpy_to_vtk(np.ascontiguousarray(points, dtype=np.float32), deep=True))
@@ -69,8 +86,18 @@ def draw_trail(view: Any, points: np.ndarray, rapid: np.ndarray) -> None:
     line.GetCellData().SetScalars(shown)
     actor = view.actors.get("trail")
     if actor is None:
-        actor = view.add_mesh(line, scalars="rgb", rgb=True, line_width=1.6, name="trail", pickable=False, reset_camera=False,
-                              lighting=False, show_scalar_bar=False, copy_mesh=False)
+        actor = view.add_mesh(
+            line,
+            scalars="rgb",
+            rgb=True,
+            line_width=1.6,
+            name="trail",
+            pickable=False,
+            reset_camera=False,
+            lighting=False,
+            show_scalar_bar=False,
+            copy_mesh=False,
+        )
         actor.mapper.SetResolveCoincidentTopologyToPolygonOffset()
         actor.mapper.SetRelativeCoincidentTopologyLineOffsetParameters(0.0, -6.0)
     else:
@@ -82,11 +109,18 @@ def cutter_outline(tool: Tool) -> Outline:
     c, r, top = tool.corner_radius, tool.radius, tool.flute_length
     if tool.form == "form":
         rows = [(0.0, 0.0, 0.0), *tool.outline]
-        return [p for a, b in pairwise(rows) for p in _bulged(a[:2], b[:2], a[2])] + [(rows[-1][0], rows[-1][1])]
+        return [p for a, b in pairwise(rows) for p in _bulged(a[:2], b[:2], a[2])] + [
+            (rows[-1][0], rows[-1][1])
+        ]
     if tool.form == "drill":
         return [(0.0, 0.0), (r, tool.point_length), (r, top)]
     if tool.form == "t-slot":
-        return [(0.0, 0.0), *_arc(r - c, c, c, -90.0, 0.0), *_arc(r - c, top - c, c, 0.0, 90.0), (0.0, top)]
+        return [
+            (0.0, 0.0),
+            *_arc(r - c, c, c, -90.0, 0.0),
+            *_arc(r - c, top - c, c, 0.0, 90.0),
+            (0.0, top),
+        ]
     if tool.form == "taper":
         lean = math.radians(tool.taper_angle)
         end = _arc(r - c, c, c, -90.0, -tool.taper_angle)
@@ -105,26 +139,46 @@ def shaft_outlines(tool: Tool) -> tuple[Outline, Outline]:
     """Return the outlines of neck with shank and of the holder, closed at the axis."""
     rows = tool.profile()
     holders = len(tool.holder.rows)
-    return tuple(_stacked(part) for part in (rows[:len(rows) - holders], rows[len(rows) - holders:]))  # type: ignore[return-value]
+    return tuple(
+        _stacked(part) for part in (rows[: len(rows) - holders], rows[len(rows) - holders :])
+    )  # type: ignore[return-value]
 
 
 def revolved(outline: Outline) -> pv.PolyData:
     """Return an outline turned about z, smooth but for its sharp edges."""
-    corners = np.array([p for n, p in enumerate(outline) if n == 0 or math.dist(p, outline[n - 1]) > 1e-9])
+    corners = np.array(
+        [p for n, p in enumerate(outline) if n == 0 or math.dist(p, outline[n - 1]) > 1e-9]
+    )
     angle = np.arange(_AROUND) * (2 * np.pi / _AROUND)
-    points = np.stack([corners[:, :1] * np.cos(angle), corners[:, :1] * np.sin(angle), np.repeat(corners[:, 1:], _AROUND, axis=1)], axis=-1)
+    points = np.stack(
+        [
+            corners[:, :1] * np.cos(angle),
+            corners[:, :1] * np.sin(angle),
+            np.repeat(corners[:, 1:], _AROUND, axis=1),
+        ],
+        axis=-1,
+    )
     at = np.arange(len(corners) * _AROUND).reshape(-1, _AROUND)
     a, d = at[:-1].ravel(), at[1:].ravel()
     b, c = np.roll(at[:-1], -1, axis=1).ravel(), np.roll(at[1:], -1, axis=1).ravel()
     faces = np.column_stack([np.full(len(a), 4), a, b, c, d])
     body = pv.PolyData(points.reshape(-1, 3).astype(np.float32), faces.ravel())
-    return body.compute_normals(split_vertices=True, feature_angle=_SHARP, consistent_normals=False, auto_orient_normals=False)
+    return body.compute_normals(
+        split_vertices=True,
+        feature_angle=_SHARP,
+        consistent_normals=False,
+        auto_orient_normals=False,
+    )
 
 
 def _stacked(rows: tuple[tuple[float, float, float, float], ...]) -> Outline:
     if not rows:
         return []
-    return [(0.0, rows[0][0]), *((r, z) for z0, r0, z1, r1 in rows for r, z in ((r0, z0), (r1, z1))), (0.0, rows[-1][2])]
+    return [
+        (0.0, rows[0][0]),
+        *((r, z) for z0, r0, z1, r1 in rows for r, z in ((r0, z0), (r1, z1))),
+        (0.0, rows[-1][2]),
+    ]
 
 
 def _arc(r: float, z: float, radius: float, first: float, last: float) -> Outline:
@@ -132,7 +186,10 @@ def _arc(r: float, z: float, radius: float, first: float, last: float) -> Outlin
     if radius == 0.0:
         return [(r, z)]
     steps = max(2, math.ceil(abs(math.radians(last - first)) / _CHORD) + 1)
-    return [(max(r + radius * math.cos(a), 0.0), z + radius * math.sin(a)) for a in np.radians(np.linspace(first, last, steps))]
+    return [
+        (max(r + radius * math.cos(a), 0.0), z + radius * math.sin(a))
+        for a in np.radians(np.linspace(first, last, steps))
+    ]
 
 
 def _bulged(start: tuple[float, float], end: tuple[float, float], bulge: float) -> Outline:
@@ -143,4 +200,7 @@ def _bulged(start: tuple[float, float], end: tuple[float, float], bulge: float) 
     steps = max(2, math.ceil(abs(turn) / _CHORD))
     a, b = complex(*start), complex(*end)
     centre = (a + b) / 2 + (b - a) * 1j * (1 - bulge * bulge) / (4 * bulge)
-    return [(p.real, p.imag) for p in (centre + (a - centre) * np.exp(1j * turn * k / steps) for k in range(steps))]
+    return [
+        (p.real, p.imag)
+        for p in (centre + (a - centre) * np.exp(1j * turn * k / steps) for k in range(steps))
+    ]
