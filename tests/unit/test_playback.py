@@ -339,7 +339,7 @@ def test_a_leaning_stock_is_the_same_there_and_back(leaning):
 def test_the_engine_refuses_a_plan_that_is_not_played(session, monkeypatch):
     from trunnion.pipeline import Engine
 
-    monkeypatch.setattr(Engine, "bench", SimpleNamespace(shop=load_shop()))
+    monkeypatch.setattr(Engine, "context", SimpleNamespace(shop=load_shop()))
     engine = Engine()
     with pytest.raises(BadCall, match="not played any more"):
         engine.moment("nothing", 0.0)
