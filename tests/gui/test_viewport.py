@@ -229,3 +229,16 @@ def test_standard_views_follow_the_frame_of_the_recognition(recognized):
         recognized.viewport.scene.view.camera.focal_point,
     )
     assert np.argmax(away) == 0
+
+
+def test_many_changes_in_one_turn_are_drawn_once(recognized, qtbot):
+    scene, drawn = recognized.viewport.scene, []
+    scene.view.grab()
+    scene.view.render_window.AddObserver("StartEvent", lambda *_: drawn.append(1))
+    for _ in range(5):
+        scene.use_tool(None)
+        scene.fit()
+    assert len(drawn) <= 1  # pyvista draws at once where a camera was never set
+    qtbot.waitUntil(lambda: bool(drawn))
+    qtbot.wait(50)
+    assert len(drawn) <= 2

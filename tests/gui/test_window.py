@@ -283,6 +283,7 @@ def test_a_program_of_an_earlier_plan_is_marked_as_stale(programmed, idle):
 
 
 def test_the_palette_runs_what_was_typed(opened, qtbot, idle):
+    opened.activateWindow()  # a screen without a window manager activates none by itself
     qtbot.waitUntil(opened.isActiveWindow)  # a window that is not active yet has no shortcuts
     QTest.keyClick(
         opened,

@@ -28,14 +28,9 @@ def make_view(parent: QWidget | None = None) -> Any:
     """Return a new view for the platform that runs."""
     if QGuiApplication.platformName() == "offscreen":
         return PaintedView(parent)
-    from pyvistaqt import QtInteractor
+    from trunnion_gui.viewport.screen import ScreenView
 
-    view = QtInteractor(parent, auto_update=False)
-    if "llvmpipe" in str(view.render_window.ReportCapabilities()):
-        view.render_window.SetMultiSamples(
-            0
-        )  # multisampling makes a software renderer five times slower
-    return view
+    return ScreenView(parent)
 
 
 class PaintedView(QWidget):

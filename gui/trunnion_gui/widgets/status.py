@@ -15,7 +15,7 @@ from trunnion_gui.look import icons
 from trunnion_gui.look.words import duration, share
 
 _VERDICTS = {Outcome.PASSED: "good", Outcome.REMARKS: "warning", Outcome.FAILED: "bad"}
-_TICK_MS = 500
+_TICK_MS = 250
 
 
 class Status(QStatusBar):
@@ -118,5 +118,5 @@ class Status(QStatusBar):
         job = self._document.jobs.job
         if job is not None:
             self.text.setText(
-                f"{duration(round(time.monotonic() - job.started) or 0.0)} · {self._doing} · {self.bar.value() // 10} %"
+                f"{duration(time.monotonic() - job.started)} · {self._doing} · {self.bar.value() // 10} %"
             )

@@ -1,0 +1,35 @@
+"""The view on a real screen: pyvistaqt's widget, drawn once for all that changed in one turn of the event loop."""
+
+from __future__ import annotations
+
+from PySide6.QtCore import QTimer
+from PySide6.QtWidgets import QWidget
+from pyvistaqt import QtInteractor
+
+
+class ScreenView(QtInteractor):
+    """A pyvistaqt view whose `render()` draws soon, as a widget's `update()` does.
+
+    A step changes several layers at once. A software renderer takes 50 to 200 ms a frame, so drawing after each change would hold the
+    window for as many frames as there are changes.
+    """
+
+    _due: QTimer | None = None
+
+    def __init__(self, parent: QWidget | None = None) -> None:
+        super().__init__(parent, auto_update=False)
+        self._due = QTimer(self)
+        self._due.setSingleShot(True)
+        self._due.setInterval(0)
+        self._due.timeout.connect(self._draw)
+        if "llvmpipe" in str(self.render_window.ReportCapabilities()):
+            # Multisampling makes a software renderer five times slower.
+            self.render_window.SetMultiSamples(0)
+
+    def render(self) -> None:
+        """Draw when the event loop is back, once however often it was asked."""
+        if self._due is not None:
+            self._due.start()
+
+    def _draw(self) -> None:
+        super().render()
