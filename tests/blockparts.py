@@ -9,10 +9,10 @@ from dataclasses import dataclass
 import numpy as np
 import shapely
 
-from trunnion.geometry.curve import Curve
 from trunnion.geometry.facegraph import FaceGraph
 from trunnion.geometry.frame import WORLD, Frame
-from trunnion.geometry.region import Region
+from trunnion.geometry.plane.curve import Curve
+from trunnion.geometry.plane.region import Region
 
 Quad = tuple[int, int, int, int, int]
 """A unit face: axis, side (0 looks down the axis, 1 up), and the cell (i, j, k) that it belongs to."""

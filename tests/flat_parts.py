@@ -9,7 +9,7 @@ import numpy as np
 
 from trunnion.geometry.facegraph import FaceGraph
 from trunnion.geometry.frame import WORLD, Frame
-from trunnion.geometry.region import Region
+from trunnion.geometry.plane.region import Region
 from trunnion.model.blank import Blank
 from trunnion.model.feature import FaceRole, Feature, Recognition
 from trunnion.model.operation import CuttingData, Operation

@@ -10,8 +10,8 @@ import numpy as np
 from trunnion.model.material import Axis
 from trunnion.model.program import ProgramSection
 from trunnion.model.toolpath import Motion, Toolpath
-from trunnion.part.facets import Facets
-from trunnion.part.surfaces import GUIDE, L_KIND, PROFILE, R_KIND, U0, U1
+from trunnion.part.shape.facets import Facets
+from trunnion.part.shape.surfaces import GUIDE, L_KIND, PROFILE, R_KIND, U0, U1
 from trunnion.verify.contact import guide_points
 from verify_tools import (
     FLOOR,

@@ -10,8 +10,8 @@ import shapely
 from trunnion.model.program import ProgramSection
 from trunnion.model.tool import Tool
 from trunnion.model.toolpath import Motion, Toolpath
-from trunnion.part.facets import Facets
-from trunnion.part.surfaces import STRIP_COLUMNS, Face, surfaces_from
+from trunnion.part.shape.facets import Facets
+from trunnion.part.shape.surfaces import STRIP_COLUMNS, Face, surfaces_from
 from trunnion.verify.contact import PartContact
 from trunnion.verify.cutter import outline_of
 from verify_tools import HOLDER

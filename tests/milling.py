@@ -13,7 +13,7 @@ from dataclasses import dataclass, field
 import numpy as np
 
 from trunnion.geometry.frame import WORLD
-from trunnion.geometry.region import Region
+from trunnion.geometry.plane.region import Region
 from trunnion.model.blank import Blank
 from trunnion.model.operation import CuttingData
 from trunnion.model.setup import Setup

@@ -4,8 +4,8 @@ from __future__ import annotations
 
 from typing import Any
 
-from trunnion.part.heal import bodies_of
 from trunnion.part.part import Part, PartFacts
+from trunnion.part.read.heal import bodies_of
 
 
 def part_of_shape(shape: Any, name: str = "shape") -> Part:
@@ -68,7 +68,7 @@ def rounded_plate(width: float, depth: float, height: float, radius: float) -> P
     from OCP.BRepFilletAPI import BRepFilletAPI_MakeFillet
     from OCP.BRepPrimAPI import BRepPrimAPI_MakeBox
 
-    from trunnion.part.identity import edges_of
+    from trunnion.part.topology.identity import edges_of
 
     shape = BRepPrimAPI_MakeBox(width, depth, height).Shape()
     made = BRepFilletAPI_MakeFillet(shape)

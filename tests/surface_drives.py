@@ -5,12 +5,12 @@ from __future__ import annotations
 import numpy as np
 
 from trunnion.geometry.frame import WORLD
-from trunnion.geometry.skin import Skin
+from trunnion.geometry.sheet.skin import Skin
 from trunnion.model.blank import Blank
 from trunnion.model.operation import CuttingData
 from trunnion.model.setup import Setup
 from trunnion.plan.freeform.drive import SurfaceDrive
-from trunnion.toolpath.stock import PlanningStock
+from trunnion.toolpath.stock.heightfield import PlanningStock
 
 DATA = CuttingData(
     speed=200.0,

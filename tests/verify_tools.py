@@ -13,7 +13,7 @@ from trunnion.model.program import Program, ProgramSection
 from trunnion.model.setup import Setup
 from trunnion.model.tool import Holder, Tool
 from trunnion.model.toolpath import Motion, Toolpath
-from trunnion.part.surfaces import (
+from trunnion.part.shape.surfaces import (
     STRIP_COLUMNS,
     Face,
     Guide,

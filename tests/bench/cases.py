@@ -25,7 +25,7 @@ def graph(path: Path, folder: Path, compared: Compare) -> Iterator[Any]:
     from OCP.BRepCheck import BRepCheck_Analyzer
 
     from trunnion.part.part import Part
-    from trunnion.part.read import read_part
+    from trunnion.part.read.part_file import read_part
 
     part = read_part(path)
     data = part.to_bytes()
@@ -45,7 +45,7 @@ def recognition(path: Path, folder: Path, compared: Compare) -> Iterator[Any]:
     from OCP.gp import gp_Dir, gp_Pln, gp_Pnt
 
     from trunnion.part.part import Part
-    from trunnion.part.read import read_part
+    from trunnion.part.read.part_file import read_part
     from trunnion.recognize.panel import PanelFamily
 
     part = read_part(path)
@@ -75,7 +75,7 @@ def roughing(path: Path, folder: Path, compared: Compare) -> Iterator[Any]:
     from trunnion.plan.prismatic.drive import drive_of
     from trunnion.plan.prismatic.regions import Space
     from trunnion.settings import choose
-    from trunnion.toolpath.stock import PlanningStock
+    from trunnion.toolpath.stock.heightfield import PlanningStock
 
     engine, session = _programmed(path, "optimize")
     setup, process = session.setups[0], session.process
@@ -123,7 +123,7 @@ def roughing(path: Path, folder: Path, compared: Compare) -> Iterator[Any]:
 
 def contact(path: Path, folder: Path, compared: Compare) -> Iterator[Any]:
     """Contact of the whole program in closed form, beside sampled points against a hundredth of its blocks in numpy."""
-    from trunnion.part.surfaces import surfaces_of
+    from trunnion.part.shape.surfaces import surfaces_of
     from trunnion.pipeline.proving import program_of
     from trunnion.verify.contact import PartContact
     from trunnion.verify.motion import moves_of

@@ -11,7 +11,7 @@ import numpy as np
 from trunnion.geometry.arrays import Floats, Ints
 from trunnion.geometry.dropping import DropSurface
 from trunnion.geometry.kernels.drop import drop as plain_drop
-from trunnion.plan.freeform.cutter import lower_side
+from trunnion.plan.freeform.cutters.cutter import lower_side
 from verify_tools import bull
 
 LOWEST = -100.0

@@ -151,7 +151,7 @@ def five_axes(quick: bool) -> Figures:
     """Contact of 200,000 five-axis blocks with a mesh of 100,000 triangles, and their stock at 1/400 of the part's length: CPU seconds
     over the cores. The quick mode takes the first twentieth of the blocks."""
     from five_axis import five_axis_case
-    from trunnion.part.facets import Facets
+    from trunnion.part.shape.facets import Facets
     from trunnion.verify.contact.facets import FacetContact
     from trunnion.verify.stock import Stock, run_stock
 

@@ -106,7 +106,7 @@ def unpacked(folder: Path) -> Path:
 
 def reading(path: Path, folder: Path, compared: Callable[..., Figure]) -> Iterator[Figure]:
     """Reading the file with all checks, beside the CAD kernel's own reader."""
-    from trunnion.part.read import read_part
+    from trunnion.part.read.part_file import read_part
 
     yield compared(
         "import",

@@ -359,7 +359,7 @@ def faces_in(path) -> int:
     from OCP.IGESControl import IGESControl_Reader
     from OCP.STEPControl import STEPControl_Reader
 
-    from trunnion.part.identity import faces_of
+    from trunnion.part.topology.identity import faces_of
 
     reader = IGESControl_Reader() if path.suffix == ".igs" else STEPControl_Reader()
     reader.ReadFile(str(path))

@@ -10,8 +10,8 @@ from hypothesis import strategies as st
 from pytest import approx
 
 from trunnion import tolerance
-from trunnion.part import surfaces
-from trunnion.part.surfaces import (
+from trunnion.part.shape import surfaces
+from trunnion.part.shape.surfaces import (
     STRIP_COLUMNS,
     Edge,
     Face,

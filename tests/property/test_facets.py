@@ -13,8 +13,8 @@ from trunnion import tolerance
 from trunnion.geometry.frame import WORLD
 from trunnion.model.program import ProgramSection
 from trunnion.model.toolpath import Motion, Toolpath
-from trunnion.part.facets import Facets, facets_of
-from trunnion.part.surfaces import surfaces_of
+from trunnion.part.shape.facets import Facets, facets_of
+from trunnion.part.shape.surfaces import surfaces_of
 from trunnion.verify.contact import PartContact
 from trunnion.verify.contact.facets import FacetContact
 from trunnion.verify.kernels import body, tool_motion

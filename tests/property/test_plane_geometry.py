@@ -9,9 +9,9 @@ import shapely
 from hypothesis import assume, given, settings
 from hypothesis import strategies as st
 
-from trunnion.geometry.curve import Curve
-from trunnion.geometry.offset import parallel_curves
-from trunnion.geometry.region import Region
+from trunnion.geometry.plane.curve import Curve
+from trunnion.geometry.plane.offset import parallel_curves
+from trunnion.geometry.plane.region import Region
 
 few = settings(deadline=None, max_examples=25)
 

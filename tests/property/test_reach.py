@@ -10,8 +10,8 @@ from leaning_tools import contact_of
 from samples import block_with_pocket_shape, read
 from trunnion import tolerance
 from trunnion.geometry.frame import WORLD
-from trunnion.part.facets import facets_of
-from trunnion.part.surfaces import surfaces_of
+from trunnion.part.shape.facets import facets_of
+from trunnion.part.shape.surfaces import surfaces_of
 from trunnion.verify.contact import Obstacles, PartContact
 from trunnion.verify.finish.coverage import samples_of
 from trunnion.verify.finish.leaning import leaning_axes

@@ -7,13 +7,13 @@ from hypothesis import assume, given, settings
 from hypothesis import strategies as st
 
 from milling import SETUP, Milled, box_blank, closed_pocket, cutting, mill
-from trunnion.geometry.region import Region
+from trunnion.geometry.plane.region import Region
 from trunnion.model.toolpath import Motion, Toolpath
 from trunnion.progress import QUIET
 from trunnion.toolpath.plane.floor import FloorSettings, floor
 from trunnion.toolpath.plane.rough import RoughSettings, rough
 from trunnion.toolpath.plane.wall import WallSettings, wall
-from trunnion.toolpath.stock import PlanningStock
+from trunnion.toolpath.stock.heightfield import PlanningStock
 
 FEW = settings(deadline=None, max_examples=12, derandomize=True)
 BLANK = box_blank((-5, -5, -30), (75, 55, 0))
@@ -41,7 +41,7 @@ cutters = st.sampled_from([(8.0, 0.0), (8.0, 2.0), (12.0, 0.0), (16.0, 3.0)])
 
 def lowered(path: Toolpath) -> np.ndarray:
     """Return the places (k, 2) on feed moves below the blank's top, arcs included."""
-    from trunnion.toolpath.stock import chords
+    from trunnion.toolpath.stock.heightfield import chords
 
     starts, ends, _, _ = chords(path)
     below = np.minimum(starts[:, 2], ends[:, 2]) < -1e-6

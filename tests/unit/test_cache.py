@@ -5,7 +5,7 @@ from __future__ import annotations
 from pytest import approx
 
 from trunnion.geometry.cache import Memo
-from trunnion.geometry.region import Region
+from trunnion.geometry.plane.region import Region
 
 
 def test_an_answer_is_worked_out_once() -> None:

@@ -8,11 +8,11 @@ from pytest import approx
 
 from leaning_tools import cutter
 from trunnion.geometry.frame import WORLD, Frame
-from trunnion.part.read import read_part
-from trunnion.part.skin import skin_of
+from trunnion.part.read.part_file import read_part
+from trunnion.part.shape.skin import skin_of
 from trunnion.pipeline.clearance import ClearanceQuery
 from trunnion.shop import load_shop
-from trunnion.toolpath.surface.axis_search import roomy
+from trunnion.toolpath.contact_passes.axis_search import roomy
 
 BALL = cutter("ball", diameter=6.0, corner=3.0, flute=12.0)
 UP, SIDE, DOWN = (

@@ -8,9 +8,9 @@ import numpy as np
 import pytest
 from pytest import approx
 
-from trunnion.geometry.curve import Curve, joined
 from trunnion.geometry.kernels import distance as plain
 from trunnion.geometry.kernels import distance_compiled as compiled
+from trunnion.geometry.plane.curve import Curve, joined
 
 HALF = math.tan(math.pi / 4.0)
 QUARTER = math.tan(math.pi / 8.0)
@@ -213,5 +213,5 @@ def test_compiled_loops_give_what_the_plain_ones_give(seed):
 def test_many_points_at_once_are_as_far_away_as_each_alone(monkeypatch):
     points = np.random.default_rng(4).uniform(-10.0, 30.0, (50, 2))
     alone = slot().distance(points)
-    monkeypatch.setattr("trunnion.geometry.curve.COMPILED_FROM", 1)
+    monkeypatch.setattr("trunnion.geometry.plane.curve.COMPILED_FROM", 1)
     assert (slot().distance(points) == alone).all()

@@ -9,7 +9,7 @@ from OCP.IGESControl import IGESControl_Reader
 from OCP.STEPControl import STEPControl_Reader
 
 import samples
-from trunnion.part.identity import faces_of
+from trunnion.part.topology.identity import faces_of
 
 
 def test_the_step_reader_drops_a_damaged_face_in_silence(tmp_path: Path) -> None:

@@ -18,12 +18,12 @@ from milling import SETUP, box_blank, cutting, mill
 from samples import block_with_pocket_shape, dome_on_a_plate_shape, read, written
 from trunnion.findings import Cancelled
 from trunnion.geometry.frame import WORLD
-from trunnion.part.facets import facet_samples, facets_of, grouped
+from trunnion.part.shape.facets import facet_samples, facets_of, grouped
 from trunnion.pipeline import STEPS, Engine
 from trunnion.progress import Progress
-from trunnion.toolpath import stock as planning
-from trunnion.toolpath.builder import PathBuilder
-from trunnion.toolpath.stock import PlanningStock
+from trunnion.toolpath.motion.builder import PathBuilder
+from trunnion.toolpath.stock import heightfield as planning
+from trunnion.toolpath.stock.heightfield import PlanningStock
 
 MOST_CALLS = 100_000
 """Calls between two looks on a part of a few dozen faces: a tenth of a second or less (measured: 250 000 take 0.15 s)."""

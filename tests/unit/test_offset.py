@@ -8,9 +8,9 @@ import numpy as np
 import pytest
 from pytest import approx
 
-from trunnion.geometry.curve import Curve
-from trunnion.geometry.offset import parallel_curves
-from trunnion.geometry.region import Region
+from trunnion.geometry.plane.curve import Curve
+from trunnion.geometry.plane.offset import parallel_curves
+from trunnion.geometry.plane.region import Region
 
 QUARTER = math.tan(math.pi / 8.0)
 

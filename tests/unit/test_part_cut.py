@@ -13,9 +13,9 @@ from shaped_parts import bowl, cylinder, face_towards, plate, sphere
 from trunnion.findings import BadInput
 from trunnion.geometry.cut import plane_cut, way_cut
 from trunnion.part.cut import divided
-from trunnion.part.identity import faces_of
-from trunnion.part.measure import area_of
 from trunnion.part.part import Part
+from trunnion.part.topology.identity import faces_of
+from trunnion.part.topology.measure import area_of
 
 
 def areas(part: Part, *tags: int) -> list[float]:

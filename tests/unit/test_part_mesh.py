@@ -11,7 +11,7 @@ import samples
 from trunnion.findings import BadInput
 from trunnion.geometry.frame import Frame
 from trunnion.part.build import box_blank
-from trunnion.part.read import read_part
+from trunnion.part.read.part_file import read_part
 from trunnion.part.write import write_iges, write_step
 
 

@@ -12,9 +12,9 @@ import pytest
 import samples
 from parts import PARTS, needs_parts
 from trunnion.findings import BadInput, Cancelled, OutOfMemory
-from trunnion.part.limits import ReadLimits
 from trunnion.part.part import Part
-from trunnion.part.read import read_part, read_part_bytes
+from trunnion.part.read.limits import ReadLimits
+from trunnion.part.read.part_file import read_part, read_part_bytes
 from trunnion.progress import Progress
 
 
@@ -201,7 +201,7 @@ def test_face_tags_are_those_of_the_plain_reader(name: str) -> None:
     from OCP.IGESControl import IGESControl_Reader
     from OCP.STEPControl import STEPControl_Reader
 
-    from trunnion.part.identity import faces_of
+    from trunnion.part.topology.identity import faces_of
 
     assert PARTS is not None
     plain = IGESControl_Reader() if name.endswith("igs") else STEPControl_Reader()

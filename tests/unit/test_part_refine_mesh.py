@@ -7,7 +7,7 @@ import pytest
 
 from samples import box_shape, read
 from trunnion.findings import BadInput
-from trunnion.part.read import read_part
+from trunnion.part.read.part_file import read_part
 
 
 def faces(*selectors):

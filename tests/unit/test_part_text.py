@@ -6,7 +6,7 @@ import pytest
 
 import samples
 from trunnion.findings import BadInput
-from trunnion.part.text import check_iges, check_step, kind_of
+from trunnion.part.read.text import check_iges, check_step, kind_of
 
 STEP = samples.written(samples.box_shape()).read_bytes()
 IGES = samples.written(samples.box_shape(), "igs").read_bytes()

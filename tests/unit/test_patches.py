@@ -11,8 +11,8 @@ from trunnion.cli.main import BAD, DONE, main
 from trunnion.findings import BadCall, BadInput
 from trunnion.geometry.cut import plane_cut
 from trunnion.model.session import Session
-from trunnion.part.measure import area_of
-from trunnion.part.read import read_part
+from trunnion.part.read.part_file import read_part
+from trunnion.part.topology.measure import area_of
 from trunnion.part.write import write_faces, write_step
 from trunnion.pipeline import Engine
 from trunnion.pipeline.patches import (

@@ -12,7 +12,7 @@ from flat_parts import operation
 from trunnion.geometry.frame import WORLD
 from trunnion.model.process import ProcessTree
 from trunnion.model.setup import Setup
-from trunnion.plan.cutting import (
+from trunnion.plan.cutting.milling import (
     CuttingSettings,
     balance,
     chip_thinning,
@@ -20,7 +20,7 @@ from trunnion.plan.cutting import (
     slenderness,
     table_feed,
 )
-from trunnion.plan.power import cutting_power
+from trunnion.plan.cutting.power import cutting_power
 from trunnion.settings import choose
 from trunnion.shop import load_shop
 

@@ -16,15 +16,15 @@ from trunnion.geometry.frame import WORLD
 from trunnion.model.blank import Blank
 from trunnion.model.setup import Setup
 from trunnion.model.verdict import Outcome
-from trunnion.part.skin import skin_of
+from trunnion.part.shape.skin import skin_of
 from trunnion.pipeline import Engine
-from trunnion.plan.freeform.end_mills import end_mills_for
+from trunnion.plan.freeform.cutters.end_mills import end_mills_for
 from trunnion.plan.freeform.lands import SKIM, Keeping, Standing, covered, lands_of, without
 from trunnion.plan.freeform.layers import plane_drive_of
 from trunnion.plan.freeform.reach import places_on
 from trunnion.plan.freeform.space import SurfaceSpace
 from trunnion.progress import QUIET
-from trunnion.toolpath.stock import PlanningStock
+from trunnion.toolpath.stock.heightfield import PlanningStock
 
 SETUP = Setup(name="S1", frame=WORLD, work_offset="G54", clearance=40.0, machine="Mill 1200")
 BARE, KEEPING = (Keeping(beside=beside, around=0.5, above=1.0) for beside in (0.0, 0.4))

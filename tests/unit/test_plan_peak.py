@@ -20,13 +20,13 @@ from trunnion.model.process import ProcessTree
 from trunnion.model.setup import Setup
 from trunnion.model.verdict import OperationProof, Outcome, Verdict
 from trunnion.pipeline import Engine
-from trunnion.plan.cutting import CuttingSettings, balance
-from trunnion.plan.peak import LEAST_SHARE, overloads
-from trunnion.plan.power import cutting_power
+from trunnion.plan.cutting.milling import CuttingSettings, balance
+from trunnion.plan.cutting.peak import LEAST_SHARE, overloads
+from trunnion.plan.cutting.power import cutting_power
 from trunnion.settings import choose, digest
 from trunnion.shop import load_shop
 from trunnion.toolpath.contract import strategy
-from trunnion.toolpath.engagement import corner_width, segment
+from trunnion.toolpath.motion.engagement import corner_width, segment
 
 SHOP = load_shop()
 ALUMINIUM = SHOP.material("EN AW-7075")

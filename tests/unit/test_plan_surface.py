@@ -15,12 +15,12 @@ from samples import read
 from surface_drives import grid, joined
 from trunnion.geometry.dropping import DropSurface
 from trunnion.geometry.frame import WORLD, Frame
-from trunnion.geometry.region import Region
+from trunnion.geometry.plane.region import Region
 from trunnion.model.blank import Blank
 from trunnion.model.feature import FaceRole, Feature, Recognition
 from trunnion.model.setup import Setup
 from trunnion.model.toolpath import Mark, Motion, Toolpath
-from trunnion.part.skin import skin_of
+from trunnion.part.shape.skin import skin_of
 from trunnion.pipeline.toolpaths import turned
 from trunnion.plan.freeform.areas import (
     areas_of,
@@ -35,8 +35,8 @@ from trunnion.plan.freeform.heights import HeightMap, region_below
 from trunnion.plan.freeform.layers import level_faces
 from trunnion.plan.freeform.reach import places_on, reached
 from trunnion.plan.freeform.space import SurfaceSpace
-from trunnion.toolpath.sides import Sides
-from trunnion.toolpath.stock import PlanningStock
+from trunnion.toolpath.stock.heightfield import PlanningStock
+from trunnion.toolpath.stock.sides import Sides
 
 BLANK = Blank(
     frame=WORLD,

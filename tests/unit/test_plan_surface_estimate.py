@@ -8,7 +8,7 @@ import pytest
 from milling import cutting, mill
 from trunnion.model.operation import Operation
 from trunnion.model.process import ProcessTree
-from trunnion.plan.freeform.estimate import estimate_of, measured
+from trunnion.plan.freeform.estimate.finishing_time import estimate_of, measured
 
 AREAS = np.array([735.836, 737.478])
 

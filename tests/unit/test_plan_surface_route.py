@@ -12,7 +12,7 @@ from trunnion.findings import BadInput
 from trunnion.geometry.cut import plane_cut
 from trunnion.pipeline import Engine
 from trunnion.pipeline.patches import with_cut
-from trunnion.plan.freeform.cutters import named
+from trunnion.plan.freeform.cutters.choice import named
 from trunnion.plan.freeform.keys import ALLOWANCE, SCALLOP
 from trunnion.shop import load_shop
 from trunnion.store.process import read_process, write_process

@@ -15,8 +15,8 @@ from trunnion.geometry.mesh import Mesh
 from trunnion.model.fixture import Fixture
 from trunnion.model.program import Program
 from trunnion.model.verdict import Outcome
-from trunnion.part.fixture import read_fixture, stl_mesh
-from trunnion.part.surfaces import surfaces_from
+from trunnion.part.read.fixture import read_fixture, stl_mesh
+from trunnion.part.shape.surfaces import surfaces_from
 from trunnion.verify.judge.setups import bundles_of
 from trunnion.verify.judge.verdict import prove_surfaces
 from trunnion.verify.settings import ProofSettings

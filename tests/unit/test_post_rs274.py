@@ -18,7 +18,7 @@ from trunnion.model.program import Program
 from trunnion.post.dialects.linuxcnc import LinuxCncDialect
 from trunnion.post.header import Header
 from trunnion.post.settings import PostSettings
-from trunnion.toolpath.reorient import Swing, moved_over
+from trunnion.toolpath.motion.reorient import Swing, moved_over
 
 HEADER = Header(name="B1", part="B1", part_digest="ab12", plan_digest="cd34")
 TOOLS = (FLAT_16, BULL_10)

@@ -13,7 +13,7 @@ from parts import PARTS, needs_parts
 from scoring import scored, truth_of
 from trunnion.model.feature import Recognition
 from trunnion.part.part import Part
-from trunnion.part.read import read_part
+from trunnion.part.read.part_file import read_part
 from trunnion.plan.size import size_table
 from trunnion.progress import QUIET
 from trunnion.recognize.panel import PanelFamily

@@ -12,8 +12,8 @@ import pytest
 from parts import PARTS, needs_parts
 from shaped_parts import bowl, plate, rounded_plate, torus
 from trunnion.geometry.boundary import Boundary
-from trunnion.part.boundary import boundary_of
-from trunnion.part.identity import faces_of
+from trunnion.part.topology.boundary import boundary_of
+from trunnion.part.topology.identity import faces_of
 from trunnion.pipeline import Engine
 from trunnion.recognize.surface import SurfaceFamily, SurfaceSettings
 from trunnion.recognize.surface.groups import aligned_groups, grouped, invariant_groups

@@ -11,8 +11,8 @@ import numpy as np
 import pytest
 from pytest import approx
 
-from trunnion.geometry.curve import Curve
-from trunnion.geometry.region import EMPTY_REGION, Piece, Region, union_all
+from trunnion.geometry.plane.curve import Curve
+from trunnion.geometry.plane.region import EMPTY_REGION, Piece, Region, union_all
 
 QUARTER = math.tan(math.pi / 8.0)
 
@@ -244,7 +244,7 @@ def test_a_region_survives_the_way_to_another_process():
 
 def test_plane_geometry_does_without_the_compiler_until_it_pays():
     code = (
-        "import sys; from trunnion.geometry.region import Region; Region.circle((0, 0), 5).offset(-1).contains([[0, 0]]); "
+        "import sys; from trunnion.geometry.plane.region import Region; Region.circle((0, 0), 5).offset(-1).contains([[0, 0]]); "
         "sys.exit(any(m in sys.modules for m in ('numba', 'scipy')))"
     )
     assert subprocess.run([sys.executable, "-c", code], check=False).returncode == 0

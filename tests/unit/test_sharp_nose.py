@@ -7,9 +7,9 @@ import numpy as np
 import pytest
 
 from samples import written
-from trunnion.geometry.region import Region
+from trunnion.geometry.plane.region import Region
 from trunnion.pipeline import Engine
-from trunnion.toolpath.reach import Room
+from trunnion.toolpath.axis_region import Room
 
 
 def test_the_axis_goes_straight_on_to_where_both_passes_meet():

@@ -15,8 +15,8 @@ from samples import ball_shape, block_with_pocket_shape, box_shape, read
 from trunnion import tolerance
 from trunnion.findings import Cancelled
 from trunnion.geometry.frame import WORLD, Frame
-from trunnion.part.read import read_part
-from trunnion.part.skin import skin_of
+from trunnion.part.read.part_file import read_part
+from trunnion.part.shape.skin import skin_of
 from trunnion.progress import Progress
 
 CHORD = 5e-4

@@ -22,16 +22,16 @@ from surface_forms import (
 )
 from trunnion.findings import BadInput, Refused
 from trunnion.geometry.frame import WORLD
-from trunnion.geometry.sheet import sheet_of
+from trunnion.geometry.sheet.sheet import sheet_of
 from trunnion.model.setup import Setup
 from trunnion.model.toolpath import Mark
 from trunnion.settings import choose
 from trunnion.shop import load_shop
-from trunnion.toolpath.stock import PlanningStock
+from trunnion.toolpath.contact_passes.flowlines import Crowded, Flow, flow_lines
+from trunnion.toolpath.contact_passes.fronts import AIM, FIRST, scallop_passes
+from trunnion.toolpath.contact_passes.stepovers import spread, stepover_measure
+from trunnion.toolpath.stock.heightfield import PlanningStock
 from trunnion.toolpath.surface.constant import ConstantSettings, constant
-from trunnion.toolpath.surface.flowlines import Crowded, Flow, flow_lines
-from trunnion.toolpath.surface.fronts import AIM, FIRST, scallop_passes
-from trunnion.toolpath.surface.stepovers import spread, stepover_measure
 from trunnion.toolpath.surface.streamline import StreamlineSettings, streamline
 
 SHOP = load_shop()

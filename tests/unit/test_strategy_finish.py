@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 
 from milling import SETUP, Milled, box_blank, closed_pocket, cutting, mill, rounded
-from trunnion.geometry.region import Region
+from trunnion.geometry.plane.region import Region
 from trunnion.model.tool import Tool
 from trunnion.model.toolpath import Mark, Motion, Toolpath
 from trunnion.plan.prismatic.drive import DriveLevel, PlaneDrive, WallGuide
@@ -18,7 +18,7 @@ from trunnion.toolpath.plane.corner import CornerSettings, corner
 from trunnion.toolpath.plane.floor import FloorSettings, floor
 from trunnion.toolpath.plane.rough import RoughSettings, rough
 from trunnion.toolpath.plane.wall import WallSettings, wall
-from trunnion.toolpath.stock import PlanningStock
+from trunnion.toolpath.stock.heightfield import PlanningStock
 
 BLANK = box_blank((-15, -15, -40), (75, 55, 0))
 PLAN = rounded(0, 0, 60, 40, 10)

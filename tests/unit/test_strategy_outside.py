@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from milling import SETUP, Milled, box_blank, closed_pocket, cutting, mill, rounded
-from trunnion.geometry.region import Region
+from trunnion.geometry.plane.region import Region
 from trunnion.model.toolpath import Mark, Motion
 from trunnion.plan.prismatic.drive import DriveLevel, PlaneDrive, WallGuide
 from trunnion.progress import QUIET
@@ -18,7 +18,7 @@ from trunnion.toolpath.plane.profile import (
     profile_rough,
 )
 from trunnion.toolpath.plane.rib import RibTopSettings, rib_top
-from trunnion.toolpath.stock import PlanningStock
+from trunnion.toolpath.stock.heightfield import PlanningStock
 
 STOCK = PlanningStock.of(box_blank((-5, -5, -20), (85, 55, 2)), SETUP)
 AROUND = Region.rectangle(-200, -200, 300, 300)

@@ -7,13 +7,13 @@ import pytest
 
 from milling import SETUP, Milled, box_blank, closed_pocket, cutting, mill, rounded
 from trunnion.findings import Cancelled
-from trunnion.geometry.region import Region
+from trunnion.geometry.plane.region import Region
 from trunnion.model.toolpath import Mark, Motion, Toolpath
 from trunnion.plan.prismatic.drive import DriveLevel, PlaneDrive
 from trunnion.progress import QUIET, Progress
 from trunnion.toolpath.contract import Planned
 from trunnion.toolpath.plane.rough import RoughSettings, rough
-from trunnion.toolpath.stock import PlanningStock
+from trunnion.toolpath.stock.heightfield import PlanningStock
 
 BLANK = box_blank((-20, -20, -40), (100, 70, 0))
 PLAN = rounded(0, 0, 80, 50, 10)

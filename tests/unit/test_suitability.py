@@ -192,6 +192,6 @@ SHARED = (
     ],
 )
 def test_shared_parts_are_taken_for_what_they_are(file: str, kind: str) -> None:
-    from trunnion.part.read import read_part
+    from trunnion.part.read.part_file import read_part
 
     assert best(read_part(PARTS / file).graph()).name == kind

@@ -10,7 +10,7 @@ from pytest import approx
 
 from trunnion.findings import BadInput
 from trunnion.geometry.sphere import angle_between
-from trunnion.toolpath.surface.axis import (
+from trunnion.toolpath.contact_passes.axis import (
     eased,
     fixed,
     from_curve,
@@ -18,7 +18,7 @@ from trunnion.toolpath.surface.axis import (
     interpolated,
     leaning,
 )
-from trunnion.toolpath.surface.contacts import Contacts, axis_between, between
+from trunnion.toolpath.contact_passes.contacts import Contacts, axis_between, between
 
 POINT, UP, FEED = (
     np.array([[5.0, 0.0, 0.0]]),

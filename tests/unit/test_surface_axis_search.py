@@ -14,14 +14,20 @@ from surface_drives import DATA, driven, grid
 from trunnion.findings import Refused
 from trunnion.geometry.sphere import angle_between
 from trunnion.pipeline.clearance import PartAsker
-from trunnion.plan.freeform.cutter import tip_at
+from trunnion.plan.freeform.cutters.cutter import tip_at
 from trunnion.progress import QUIET
 from trunnion.settings import choose
-from trunnion.toolpath.surface.axis import fixed, leaning
-from trunnion.toolpath.surface.axis_search import AxisSearch, LeanLimits, free_axes, leaned, roomy
-from trunnion.toolpath.surface.contacts import Contacts, slerp
+from trunnion.toolpath.contact_passes.axis import fixed, leaning
+from trunnion.toolpath.contact_passes.axis_search import (
+    AxisSearch,
+    LeanLimits,
+    free_axes,
+    leaned,
+    roomy,
+)
+from trunnion.toolpath.contact_passes.contacts import Contacts, slerp
+from trunnion.toolpath.contact_passes.passes import UPRIGHT, Pass
 from trunnion.toolpath.surface.parallel import ParallelSettings, parallel
-from trunnion.toolpath.surface.passes import UPRIGHT, Pass
 
 BALL = cutter("ball", diameter=6.0, corner=3.0, flute=12.0)
 WANTED = leaning(math.radians(10.0), 0.0)

@@ -10,7 +10,7 @@ import pytest
 from trunnion.findings import Refused
 from trunnion.geometry.dropping import DropSurface
 from trunnion.geometry.kernels.drop import height_at, slope_at
-from trunnion.plan.freeform.cutter import SURFACE_FORMS, lower_side, tip_at, touching
+from trunnion.plan.freeform.cutters.cutter import SURFACE_FORMS, lower_side, tip_at, touching
 from trunnion.shop import load_shop
 
 SHOP = load_shop()

@@ -11,12 +11,12 @@ from pytest import approx
 
 from surface_forms import cylinder, grid, joined, plane, saddle, zone
 from trunnion.findings import Refused
-from trunnion.geometry import sheet as sheets
-from trunnion.geometry.contours import chains, whole_levels
-from trunnion.geometry.fields import Metric, beyond, blend, distances, turns_about
 from trunnion.geometry.kernels import marching, marching_compiled
-from trunnion.geometry.ridges import ridged
-from trunnion.geometry.sheet import sheet_of, split_finely
+from trunnion.geometry.sheet import sheet as sheets
+from trunnion.geometry.sheet.contours import chains, whole_levels
+from trunnion.geometry.sheet.fields import Metric, beyond, blend, distances, turns_about
+from trunnion.geometry.sheet.ridges import ridged
+from trunnion.geometry.sheet.sheet import sheet_of, split_finely
 
 
 def in_mm(a, a_normal, b, b_normal):

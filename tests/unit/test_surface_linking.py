@@ -9,9 +9,9 @@ import pytest
 
 from surface_drives import DATA, driven, grid
 from trunnion.model.toolpath import Mark, Motion
-from trunnion.plan.freeform.cutter import lower_side
-from trunnion.toolpath.surface.linking import Manner, linked
-from trunnion.toolpath.surface.passes import UPRIGHT, Pass
+from trunnion.plan.freeform.cutters.cutter import lower_side
+from trunnion.toolpath.contact_passes.linking import Manner, linked
+from trunnion.toolpath.contact_passes.passes import UPRIGHT, Pass
 from verify_tools import bull
 
 BALL = bull(6.0, 3.0)()

@@ -12,8 +12,8 @@ from surface_drives import DATA, driven, grid, joined
 from trunnion.findings import Refused
 from trunnion.geometry.kernels.drop import drop
 from trunnion.model.toolpath import Mark, Motion
-from trunnion.plan.freeform.cutter import lower_side
-from trunnion.plan.freeform.scallop import stepover_on_plane
+from trunnion.plan.freeform.cutters.cutter import lower_side
+from trunnion.plan.freeform.estimate.scallop import stepover_on_plane
 from trunnion.progress import QUIET
 from trunnion.toolpath.surface.parallel import ParallelSettings, _joined, _Planes, _runs, parallel
 from verify_tools import bull

@@ -7,8 +7,8 @@ import math
 import numpy as np
 import pytest
 
-from trunnion.plan.freeform.efficiency import AreaRate, gain, mixed_time, saving
-from trunnion.plan.freeform.scallop import (
+from trunnion.plan.freeform.estimate.efficiency import AreaRate, gain, mixed_time, saving
+from trunnion.plan.freeform.estimate.scallop import (
     height_of,
     radius_across,
     roughness,

@@ -9,9 +9,9 @@ import pytest
 
 from surface_drives import DATA, driven, grid, joined
 from trunnion.findings import Refused
-from trunnion.geometry.skin import Skin
+from trunnion.geometry.sheet.skin import Skin
 from trunnion.model.toolpath import Mark, Motion
-from trunnion.plan.freeform.cutter import lower_side
+from trunnion.plan.freeform.cutters.cutter import lower_side
 from trunnion.progress import QUIET
 from trunnion.toolpath.surface.pencil import PencilSettings, pencil
 from verify_tools import bull, flat

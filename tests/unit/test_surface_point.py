@@ -16,10 +16,10 @@ from trunnion.geometry.frame import WORLD, Frame
 from trunnion.model.toolpath import Motion
 from trunnion.pipeline.clearance import PartAsker
 from trunnion.settings import choose
-from trunnion.toolpath.surface.axis import fixed, leaning
-from trunnion.toolpath.surface.axis_search import LeanLimits, roomy
-from trunnion.toolpath.surface.contacts import Contacts, slerp
-from trunnion.toolpath.surface.passes import UPRIGHT
+from trunnion.toolpath.contact_passes.axis import fixed, leaning
+from trunnion.toolpath.contact_passes.axis_search import LeanLimits, roomy
+from trunnion.toolpath.contact_passes.contacts import Contacts, slerp
+from trunnion.toolpath.contact_passes.passes import UPRIGHT
 from trunnion.toolpath.surface.point import PointSettings, field_of, grooving, milled, point
 
 CHORD = 0.0005

@@ -9,18 +9,18 @@ import pytest
 
 from surface_drives import DATA, driven
 from surface_forms import grid, joined, plane
-from trunnion.geometry.sheet import sheet_of
+from trunnion.geometry.sheet.sheet import sheet_of
 from trunnion.model.program import ProgramSection
-from trunnion.part.exact import ExactPoints
-from trunnion.plan.freeform.cutter import lower_side
+from trunnion.part.shape.exact import ExactPoints
+from trunnion.plan.freeform.cutters.cutter import lower_side
+from trunnion.plan.freeform.estimate.scallop import stepover_on_plane
 from trunnion.plan.freeform.parting import PART
 from trunnion.plan.freeform.rest import BESIDE, left_by, without_met
-from trunnion.plan.freeform.scallop import stepover_on_plane
 from trunnion.progress import QUIET
 from trunnion.settings import choose
 from trunnion.shop import load_shop
+from trunnion.toolpath.contact_passes.overrun import Strip
 from trunnion.toolpath.surface.constant import ConstantSettings, constant
-from trunnion.toolpath.surface.overrun import Strip
 from trunnion.toolpath.surface.parallel import ParallelSettings, parallel
 from trunnion.verify.finish.fine import fine_measure
 from trunnion.verify.motion import moves_of

@@ -7,7 +7,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from milling import mill
-from trunnion.toolpath.surface.spacing import Places, least_over, marched, tip_spacing
+from trunnion.toolpath.contact_passes.spacing import Places, least_over, marched, tip_spacing
 
 
 @settings(deadline=None, max_examples=30)

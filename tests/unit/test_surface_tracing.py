@@ -12,7 +12,7 @@ from hypothesis import strategies as st
 from trunnion.findings import Cancelled
 from trunnion.geometry.dropping import DropSurface
 from trunnion.progress import Progress
-from trunnion.toolpath.surface.tracing import beside, follow, thinned
+from trunnion.toolpath.contact_passes.tracing import beside, follow, thinned
 
 BALL = np.array([[0.0, 3.0, 1.0, 0.0, 3.0, 3.0]])
 FLAT = np.array([[0.0, 3.0, 0.0, 0.0, 0.0, 0.0]])

@@ -8,11 +8,11 @@ import numpy as np
 import pytest
 
 from milling import SETUP, box_blank, cutting, mill
-from trunnion.geometry.curve import Curve
+from trunnion.geometry.plane.curve import Curve
 from trunnion.model.toolpath import Mark, Motion
-from trunnion.toolpath.builder import PathBuilder
-from trunnion.toolpath.feed import arc_feed
-from trunnion.toolpath.stock import PlanningStock
+from trunnion.toolpath.motion.builder import PathBuilder
+from trunnion.toolpath.motion.feed import arc_feed
+from trunnion.toolpath.stock.heightfield import PlanningStock
 
 
 @pytest.fixture

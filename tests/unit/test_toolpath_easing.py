@@ -7,8 +7,8 @@ import pytest
 
 from milling import SETUP, box_blank, cutting, mill
 from trunnion.model.toolpath import Mark, Motion, Toolpath
-from trunnion.toolpath.easing import eased
-from trunnion.toolpath.stock import PlanningStock
+from trunnion.toolpath.motion.easing import eased
+from trunnion.toolpath.stock.heightfield import PlanningStock
 
 TOOL, DATA = mill(16.0), cutting(depth=5.0, width=4.0, feed=1000.0)
 STOCK = PlanningStock.of(box_blank((0.0, 0.0, -20.0), (100.0, 60.0, 0.0)), SETUP)

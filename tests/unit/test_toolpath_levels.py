@@ -7,7 +7,7 @@ import math
 
 import pytest
 
-from trunnion.toolpath.levels import fillet_steps, layers, steps_down
+from trunnion.toolpath.offsetting.levels import fillet_steps, layers, steps_down
 
 
 def test_steps_are_equal_and_end_at_the_bottom() -> None:

@@ -6,14 +6,14 @@ import numpy as np
 import pytest
 
 from milling import SETUP, box_blank, cutting, mill
-from trunnion.geometry.curve import Curve
-from trunnion.geometry.region import Region
+from trunnion.geometry.plane.curve import Curve
+from trunnion.geometry.plane.region import Region
 from trunnion.model.toolpath import Mark, Motion
-from trunnion.toolpath.builder import PathBuilder
-from trunnion.toolpath.lead import fitting_lead, lead_in
-from trunnion.toolpath.link import step_aside, travel
-from trunnion.toolpath.reach import Room, parts_where
-from trunnion.toolpath.stock import PlanningStock
+from trunnion.toolpath.axis_region import Room, parts_where
+from trunnion.toolpath.motion.builder import PathBuilder
+from trunnion.toolpath.motion.link import step_aside, travel
+from trunnion.toolpath.offsetting.lead import fitting_lead, lead_in
+from trunnion.toolpath.stock.heightfield import PlanningStock
 
 BLANK = box_blank((0, 0, -60), (100, 60, 0))
 

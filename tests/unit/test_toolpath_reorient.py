@@ -9,7 +9,7 @@ from pytest import approx
 
 from milling import SETUP, box_blank
 from trunnion.model.toolpath import Mark, Motion, Toolpath
-from trunnion.toolpath.reorient import STEP, joined, moved_over, swing_of, turn
+from trunnion.toolpath.motion.reorient import STEP, joined, moved_over, swing_of, turn
 
 UP = np.array([0.0, 0.0, 1.0])
 SWING = swing_of(box_blank((-30, -20, -40), (30, 20, 0)), SETUP)

@@ -9,10 +9,10 @@ from milling import SETUP, box_blank, cutting, mill
 from trunnion.findings import OutOfMemory
 from trunnion.geometry.frame import Frame
 from trunnion.geometry.kernels import heightfield
-from trunnion.geometry.region import Region
+from trunnion.geometry.plane.region import Region
 from trunnion.model.setup import Setup
-from trunnion.toolpath.builder import PathBuilder
-from trunnion.toolpath.stock import PlanningStock
+from trunnion.toolpath.motion.builder import PathBuilder
+from trunnion.toolpath.stock.heightfield import PlanningStock
 
 BLANK = box_blank((0, 0, -20), (60, 40, 2))
 

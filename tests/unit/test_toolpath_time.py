@@ -11,9 +11,9 @@ from leaning_paths import FORK, TABLE, UP, lean, path_of, standing
 from milling import SETUP, box_blank, cutting, mill
 from trunnion.model.material import Axis, Machine
 from trunnion.model.toolpath import EMPTY, Motion, Toolpath
-from trunnion.toolpath.builder import PathBuilder
-from trunnion.toolpath.stock import PlanningStock
-from trunnion.toolpath.time import block_times, machining_time
+from trunnion.toolpath.motion.builder import PathBuilder
+from trunnion.toolpath.motion.time import block_times, machining_time
+from trunnion.toolpath.stock.heightfield import PlanningStock
 
 AXES = tuple(
     Axis(name=n, kind="linear", low=0, high=1000, rapid=30000, acceleration=1000) for n in "XYZ"

@@ -11,7 +11,7 @@ from samples import ball_shape, block_with_pocket_shape, oblique_cylinder_shape,
 from trunnion.geometry.frame import WORLD
 from trunnion.geometry.kernels.outline import IN, NEAR, OUT, within
 from trunnion.geometry.outlines import Outlines
-from trunnion.part.exact import ExactFace
+from trunnion.part.shape.exact import ExactFace
 
 
 def closed(corners):

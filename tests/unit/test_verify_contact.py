@@ -10,8 +10,8 @@ from pytest import approx
 
 from trunnion import tolerance
 from trunnion.findings import BadInput
-from trunnion.part.facets import Facets
-from trunnion.part.surfaces import (
+from trunnion.part.shape.facets import Facets
+from trunnion.part.shape.surfaces import (
     STRIP_COLUMNS,
     Edge,
     Face,

@@ -16,9 +16,9 @@ from trunnion.findings import Cancelled, OutOfMemory
 from trunnion.geometry.frame import WORLD, Frame
 from trunnion.model.program import ProgramSection
 from trunnion.model.toolpath import Motion, Toolpath
-from trunnion.part import refine_mesh as part_opening
-from trunnion.part.facets import Facets, facets_of
-from trunnion.part.surfaces import surfaces_of
+from trunnion.part.shape import refine_mesh as part_opening
+from trunnion.part.shape.facets import Facets, facets_of
+from trunnion.part.shape.surfaces import surfaces_of
 from trunnion.progress import Progress
 from trunnion.verify.contact.facets import FacetContact
 from trunnion.verify.kernels import tool_motion as kernel

@@ -17,7 +17,7 @@ from trunnion.findings import BadCall, BadInput, Cancelled
 from trunnion.geometry.frame import WORLD, Frame
 from trunnion.model.program import Program
 from trunnion.model.toolpath import Motion
-from trunnion.part.exact import ExactFace, ExactPoints
+from trunnion.part.shape.exact import ExactFace, ExactPoints
 from trunnion.pipeline import fine
 from trunnion.pipeline.fine import FineFigures, faces_named, fine_dict, fine_text, measure_fine
 from trunnion.progress import Progress

@@ -10,7 +10,7 @@ from pytest import approx
 
 from leaning_tools import EVERY_FORM, contact_of
 from trunnion.findings import BadCall, Cancelled
-from trunnion.part.facets import Facets
+from trunnion.part.shape.facets import Facets
 from trunnion.progress import Progress
 from trunnion.shop.machines import load_machines
 from trunnion.verify.contact import Obstacles, PartContact

@@ -18,9 +18,16 @@ from samples import (
 )
 from trunnion.findings import BadInput
 from trunnion.geometry.frame import WORLD, Frame
-from trunnion.part import surfaces as strips
-from trunnion.part.facets import facets_of
-from trunnion.part.surfaces import Guide, Profile, level_face, line_edges, strips_of, surfaces_of
+from trunnion.part.shape import surfaces as strips
+from trunnion.part.shape.facets import facets_of
+from trunnion.part.shape.surfaces import (
+    Guide,
+    Profile,
+    level_face,
+    line_edges,
+    strips_of,
+    surfaces_of,
+)
 from trunnion.verify.contact import PartContact
 from trunnion.verify.finish.coverage import samples_of
 

@@ -18,7 +18,7 @@ from trunnion.cli.common import (
 
 if TYPE_CHECKING:
     from trunnion.model.operation import Operation
-    from trunnion.plan.freeform.estimate import Estimate
+    from trunnion.plan.freeform.estimate.finishing_time import Estimate
 
 
 def add(commands: Any) -> None:

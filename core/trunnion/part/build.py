@@ -7,7 +7,7 @@ from numpy.typing import ArrayLike
 
 from trunnion.findings import BadInput
 from trunnion.geometry.frame import Frame
-from trunnion.part.identity import Shape
+from trunnion.part.topology.identity import Shape
 
 
 def box_blank(frame: Frame, low: ArrayLike, high: ArrayLike) -> Shape:

@@ -28,9 +28,16 @@ from trunnion.findings import BadInput
 from trunnion.geometry.arrays import Floats
 from trunnion.geometry.cut import Cut
 from trunnion.part.face_curve import DrawnWay
-from trunnion.part.identity import Shape, edges_of, face_index, faces_of, shells_of, solids_of
-from trunnion.part.measure import open_edges
 from trunnion.part.part import Part
+from trunnion.part.topology.identity import (
+    Shape,
+    edges_of,
+    face_index,
+    faces_of,
+    shells_of,
+    solids_of,
+)
+from trunnion.part.topology.measure import open_edges
 
 T = TypeVar("T")
 REACH = 1.0

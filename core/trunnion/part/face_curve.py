@@ -21,7 +21,7 @@ from OCP.TopAbs import TopAbs_IN, TopAbs_OUT, TopAbs_REVERSED
 from trunnion import tolerance
 from trunnion.findings import BadInput
 from trunnion.geometry.arrays import Floats
-from trunnion.part.identity import Shape
+from trunnion.part.topology.identity import Shape
 
 _BEYOND = 0.02
 """How far an end is led on outside the face, as a share of the face's parameters: clear of its boundary."""

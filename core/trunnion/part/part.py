@@ -19,12 +19,12 @@ from trunnion.geometry.curvature import FaceBend
 from trunnion.geometry.facegraph import FaceGraph
 from trunnion.geometry.frame import Frame
 from trunnion.geometry.mesh import Mesh
-from trunnion.geometry.region import Region
-from trunnion.part.identity import Shape, faces_of
+from trunnion.geometry.plane.region import Region
+from trunnion.part.topology.identity import Shape, faces_of
 from trunnion.progress import QUIET, Progress
 
 if TYPE_CHECKING:
-    from trunnion.part.boundary import Bounding
+    from trunnion.part.topology.boundary import Bounding
 
 _MAGIC = b"trunnion part 1\n"
 
@@ -151,7 +151,7 @@ class Part:
     def graph(self) -> FaceGraph:
         """Return the attributed face graph; row = tag - 1, faces of other solids have area 0, no samples and no edges."""
         if self._graph is None:
-            from trunnion.part.graph import face_graph
+            from trunnion.part.topology.graph import face_graph
 
             self._graph = face_graph(self.shape, self._faces, self.n_faces, self._progress)
         return self._graph
@@ -159,7 +159,7 @@ class Part:
     def mesh(self, chord: float = tolerance.CHORD, angle: float = tolerance.MESH_ANGLE) -> Mesh:
         """Return triangles of the solid within a chord error (mm) and an angle between neighbouring chords (radians)."""
         if (chord, angle) not in self._meshes:
-            from trunnion.part.tessellate import tessellated
+            from trunnion.part.shape.tessellate import tessellated
 
             self._meshes[chord, angle] = tessellated(
                 self.shape, self._faces, chord, angle, self._progress
@@ -176,7 +176,7 @@ class Part:
         key = (b"".join(a.tobytes() for a in (frame.origin, frame.x, frame.z)), float(z))
         if key not in self._sections:
             if self._slicer is None:
-                from trunnion.part.section import SolidSlicer
+                from trunnion.part.shape.section import SolidSlicer
 
                 self._slicer = SolidSlicer(self.shape, list(self._faces.values()), self._progress)
             self._sections[key] = self._slicer.section(frame, float(z), self._progress)
@@ -186,7 +186,7 @@ class Part:
         """Return the boundary of every face as read (healing may move edges): each edge cut into `parts(lengths)` pieces of equal length,
         or with the points that are farthest along x, y and z."""
         if self._bounding is None:
-            from trunnion.part.boundary import bounding_of
+            from trunnion.part.topology.boundary import bounding_of
 
             self._bounding = bounding_of(
                 (tag, face) for tag, face in self._as_read() if tag in self._faces
@@ -195,7 +195,7 @@ class Part:
 
     def boundary_error(self) -> dict[int, float]:
         """Return how far each face's boundary curves, as read, are from its surface at most, mm, by tag."""
-        from trunnion.part.boundary import approximation_of
+        from trunnion.part.topology.boundary import approximation_of
 
         return {tag: approximation_of(face) for tag, face in self._as_read() if tag in self._faces}
 
@@ -208,7 +208,7 @@ class Part:
     def bend(self, tag: int) -> FaceBend:
         """Return how a face bends; raise `BadInput` when it is not of the chosen solid."""
         if tag not in self._bends:
-            from trunnion.part.curvature import bend_of
+            from trunnion.part.shape.curvature import bend_of
 
             self._progress.check()
             face = self.face_shape(tag)
@@ -219,7 +219,7 @@ class Part:
 
     def face_outline(self, frame: Frame, tag: int) -> Region:
         """Return the plan projection, in the frame's x and y, of a plane face that is level or nearly so; raise `BadInput` otherwise."""
-        from trunnion.part.outline import outline
+        from trunnion.part.shape.outline import outline
 
         face = self.face_shape(tag)
         if face is None:

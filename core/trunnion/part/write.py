@@ -8,8 +8,8 @@ from collections.abc import Sequence
 from pathlib import Path
 
 from trunnion.findings import BadInput
-from trunnion.part.identity import Shape
-from trunnion.part.kernel_messages import hush
+from trunnion.part.read.kernel_messages import hush
+from trunnion.part.topology.identity import Shape
 
 UNITS = {"mm": "MM", "inch": "INCH", "metre": "M"}
 IGES, STEP = (".igs", ".iges"), (".step", ".stp")
@@ -80,7 +80,7 @@ def _shells(faces: Sequence[Shape]) -> list[Shape]:
     from scipy.sparse import coo_array
     from scipy.sparse.csgraph import connected_components
 
-    from trunnion.part.identity import edge_index, edges_of
+    from trunnion.part.topology.identity import edge_index, edges_of
 
     index = edge_index(_compound(faces))
     pairs = [(k, len(faces) + index.FindIndex(e)) for k, f in enumerate(faces) for e in edges_of(f)]

@@ -16,13 +16,13 @@ import numpy as np
 from trunnion import tolerance
 from trunnion.geometry.arrays import Bools, Floats
 from trunnion.geometry.frame import Frame
-from trunnion.geometry.skin import Skin
+from trunnion.geometry.sheet.skin import Skin
 from trunnion.model.fixture import Fixture
 from trunnion.model.material import Machine
 from trunnion.model.tool import Tool
-from trunnion.part.facets import Facets
+from trunnion.part.shape.facets import Facets
 from trunnion.progress import QUIET, Progress
-from trunnion.toolpath.surface.axis_search import roomy
+from trunnion.toolpath.contact_passes.axis_search import roomy
 
 if TYPE_CHECKING:
     from trunnion.part.part import Part
@@ -91,7 +91,7 @@ class ClearanceQuery:
 
     @cached_property
     def _contact(self) -> PartContact:
-        from trunnion.part.surfaces import surfaces_of
+        from trunnion.part.shape.surfaces import surfaces_of
         from trunnion.verify.contact import PartContact
         from trunnion.verify.judge.sides import fixture_facets
 

@@ -12,7 +12,7 @@ from trunnion import tolerance
 from trunnion.geometry.arrays import Floats
 from trunnion.geometry.cut import Cut
 from trunnion.geometry.frame import WORLD, Frame
-from trunnion.geometry.skin import Skin
+from trunnion.geometry.sheet.skin import Skin
 from trunnion.model.session import PartInfo
 from trunnion.progress import QUIET, Progress
 from trunnion.shop import Shop
@@ -55,7 +55,7 @@ class Context:
     def skin(self, chord: float = tolerance.SKIN_CHORD, progress: Progress = QUIET) -> Skin:
         """Return the part's skin in its own coordinates within a chord error (mm), as fine as finishing needs it unless said; kept."""
         if chord not in self._skins:
-            from trunnion.part.skin import skin_of
+            from trunnion.part.shape.skin import skin_of
 
             self._skins[chord] = skin_of(self.part, WORLD, chord, progress)
         return self._skins[chord]

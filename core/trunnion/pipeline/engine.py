@@ -53,7 +53,7 @@ class Engine:
         path, progress = Path(path), progress.afresh()
         if path.suffix.lower() == PROJECT_SUFFIX:
             return self._open_project(path, progress)
-        from trunnion.part.read import read_part
+        from trunnion.part.read.part_file import read_part
 
         with compiling(progress):
             part = read_part(path, solid=solid, progress=progress.part(0.0, 0.7))
@@ -71,7 +71,7 @@ class Engine:
         return session
 
     def _take(self, session: Session, data: bytes, suffix: str, progress: Progress) -> None:
-        from trunnion.part.read import read_part_bytes
+        from trunnion.part.read.part_file import read_part_bytes
 
         if session.part is None:
             raise BadInput("the project holds no part: open the part file instead")
@@ -175,7 +175,7 @@ class Engine:
 
         The files' coordinates are the part's. Raises `BadInput` for a file that can't be read.
         """
-        from trunnion.part.fixture import read_fixture
+        from trunnion.part.read.fixture import read_fixture
 
         found = []
         for n, word in enumerate(words):

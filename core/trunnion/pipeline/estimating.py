@@ -4,8 +4,8 @@ from __future__ import annotations
 
 from trunnion.model.session import Session
 from trunnion.pipeline.context import Context
-from trunnion.plan.freeform.estimate import Estimate, estimate_of, measured
-from trunnion.toolpath.time import machining_time
+from trunnion.plan.freeform.estimate.finishing_time import Estimate, estimate_of, measured
+from trunnion.toolpath.motion.time import machining_time
 
 
 def estimate(session: Session, context: Context) -> Estimate | None:

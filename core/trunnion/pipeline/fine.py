@@ -53,7 +53,7 @@ def measure_fine(
     progress: Progress = QUIET,
 ) -> FineFigures:
     """Return what the posted programs of a session leave on faces; `spacing` mm is how far apart it begins to look."""
-    from trunnion.part.exact import ExactFace
+    from trunnion.part.shape.exact import ExactFace
     from trunnion.verify.finish.fine import fine_measure
     from trunnion.verify.motion import moves_of
 

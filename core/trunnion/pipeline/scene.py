@@ -7,7 +7,7 @@ from dataclasses import dataclass, field
 from typing import TYPE_CHECKING, Any, TypeVar
 
 from trunnion.geometry.frame import Frame
-from trunnion.geometry.skin import Skin
+from trunnion.geometry.sheet.skin import Skin
 from trunnion.model.blank import Blank
 from trunnion.model.feature import Recognition
 from trunnion.model.fixture import Fixture
@@ -21,9 +21,9 @@ from trunnion.pipeline.context import Context
 from trunnion.plan.contract import PartContext
 from trunnion.progress import Progress
 from trunnion.settings import digest
-from trunnion.toolpath.reorient import Pose
-from trunnion.toolpath.sides import Sides
-from trunnion.toolpath.stock import PlanningStock
+from trunnion.toolpath.motion.reorient import Pose
+from trunnion.toolpath.stock.heightfield import PlanningStock
+from trunnion.toolpath.stock.sides import Sides
 
 if TYPE_CHECKING:
     from trunnion.part.part import Part

@@ -23,8 +23,8 @@ from trunnion.pipeline.scene import SessionContext
 from trunnion.pipeline.toolpaths import STRATEGIES, findings_of, make_paths, strategy_settings
 from trunnion.plan.blank import BlankSettings, make_blank
 from trunnion.plan.contract import PLANNERS, RouteJob, planner_for
-from trunnion.plan.cutting import CuttingSettings, balance
-from trunnion.plan.peak import overloads
+from trunnion.plan.cutting.milling import CuttingSettings, balance
+from trunnion.plan.cutting.peak import overloads
 from trunnion.plan.setups import SetupSettings, make_setups
 from trunnion.plan.size import size_table
 from trunnion.post.settings import PostSettings

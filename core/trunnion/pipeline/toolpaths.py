@@ -25,7 +25,7 @@ from trunnion.plan.contract import DriveNeeds, Planner, planner_for
 from trunnion.progress import Progress
 from trunnion.settings import checked, choose, digest
 from trunnion.toolpath.contract import ToolAxis
-from trunnion.toolpath.reorient import moved_over, swing_of
+from trunnion.toolpath.motion.reorient import moved_over, swing_of
 
 STRATEGIES = "strategies"
 """Registry of strategies."""

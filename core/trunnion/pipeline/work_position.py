@@ -12,7 +12,7 @@ from trunnion.model.material import Machine
 from trunnion.model.session import Session
 from trunnion.model.setup import Setup
 from trunnion.shop.kinematics import Place, Places
-from trunnion.toolpath.reorient import box_of, swing_of
+from trunnion.toolpath.motion.reorient import box_of, swing_of
 
 
 def places_of(session: Session, machines: Mapping[str, Machine]) -> Places:

@@ -14,7 +14,7 @@ from trunnion import registry
 from trunnion.findings import BadInput, Refused
 from trunnion.geometry.arrays import Floats
 from trunnion.geometry.frame import Frame
-from trunnion.geometry.skin import Skin
+from trunnion.geometry.sheet.skin import Skin
 from trunnion.model.blank import Blank
 from trunnion.model.feature import Recognition
 from trunnion.model.fixture import Fixture

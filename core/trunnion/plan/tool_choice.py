@@ -6,7 +6,7 @@ from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 
 from trunnion import tolerance
-from trunnion.geometry.region import Region
+from trunnion.geometry.plane.region import Region
 from trunnion.model.tool import Tool
 from trunnion.progress import QUIET, Progress
 from trunnion.units import trimmed

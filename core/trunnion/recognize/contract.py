@@ -12,7 +12,7 @@ from trunnion.geometry.boundary import Boundary
 from trunnion.geometry.curvature import FaceBend
 from trunnion.geometry.facegraph import FaceGraph
 from trunnion.geometry.frame import Frame
-from trunnion.geometry.region import Region
+from trunnion.geometry.plane.region import Region
 from trunnion.model.feature import Recognition
 from trunnion.progress import Progress
 

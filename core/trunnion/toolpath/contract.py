@@ -29,7 +29,7 @@ from trunnion.model.tool import Tool
 from trunnion.model.toolpath import EMPTY, Toolpath
 from trunnion.plan.prismatic.drive import PlaneDrive
 from trunnion.progress import Progress
-from trunnion.toolpath.stock import PlanningStock
+from trunnion.toolpath.stock.heightfield import PlanningStock
 
 F = TypeVar("F", bound=Callable[..., Any])
 

@@ -13,7 +13,7 @@ from trunnion.geometry.facegraph import CONVEX, FaceGraph
 from trunnion.model.blank import Blank
 from trunnion.model.feature import Feature, Recognition
 from trunnion.part.part import Part
-from trunnion.plan.freeform.cutter import level_disc
+from trunnion.plan.freeform.cutters.cutter import level_disc
 from trunnion.plan.freeform.reach import Places
 from trunnion.plan.freeform.space import SurfaceSpace
 from trunnion.progress import QUIET, Progress

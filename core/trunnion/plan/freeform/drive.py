@@ -13,7 +13,7 @@ from typing import Protocol
 
 from trunnion.geometry.arrays import Bools, Floats
 from trunnion.geometry.frame import Frame
-from trunnion.geometry.skin import Skin
+from trunnion.geometry.sheet.skin import Skin
 from trunnion.model.tool import Tool
 from trunnion.plan.clearance import Asker
 

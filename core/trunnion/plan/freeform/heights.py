@@ -15,9 +15,9 @@ import shapely
 
 from trunnion import tolerance
 from trunnion.geometry.arrays import Bools, Floats
-from trunnion.geometry.curve import Curve
 from trunnion.geometry.dropping import DropSurface
-from trunnion.geometry.region import EMPTY_REGION, Region
+from trunnion.geometry.plane.curve import Curve
+from trunnion.geometry.plane.region import EMPTY_REGION, Region
 from trunnion.progress import QUIET, Progress
 
 MOST_PLACES = 60_000

@@ -15,11 +15,11 @@ import shapely
 
 from trunnion import tolerance
 from trunnion.geometry.arrays import Floats
-from trunnion.geometry.region import EMPTY_REGION, Region, union_all
+from trunnion.geometry.plane.region import EMPTY_REGION, Region, union_all
 from trunnion.model.operation import Operation
 from trunnion.model.tool import Tool
 from trunnion.plan.freeform.areas import connected
-from trunnion.plan.freeform.cutter import level_disc
+from trunnion.plan.freeform.cutters.cutter import level_disc
 from trunnion.plan.freeform.heights import region_of
 from trunnion.plan.freeform.keys import number
 from trunnion.plan.freeform.space import SurfaceSpace

@@ -8,7 +8,7 @@ import numpy as np
 
 from trunnion import tolerance
 from trunnion.findings import Refused
-from trunnion.geometry.region import EMPTY_REGION, Region, union_all
+from trunnion.geometry.plane.region import EMPTY_REGION, Region, union_all
 from trunnion.model.operation import Operation
 from trunnion.model.process import ProcessTree
 from trunnion.plan.contract import Heights

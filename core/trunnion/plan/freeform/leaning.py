@@ -10,8 +10,8 @@ import numpy as np
 from trunnion.geometry.arrays import Bools, Floats
 from trunnion.model.tool import Tool
 from trunnion.plan.clearance import Asker
-from trunnion.plan.freeform.cutter import tip_at
-from trunnion.plan.freeform.cutters import LEFT, Chosen
+from trunnion.plan.freeform.cutters.choice import LEFT, Chosen
+from trunnion.plan.freeform.cutters.cutter import tip_at
 from trunnion.plan.freeform.reach import Places
 from trunnion.plan.tool_choice import depth_reached
 from trunnion.progress import QUIET, Progress

@@ -10,8 +10,8 @@ import numpy as np
 from scipy.spatial import cKDTree
 
 from trunnion.geometry.arrays import Bools, Floats, Ints
-from trunnion.geometry.sheet import Sheet, edges_of, sheet_of, split_finely
-from trunnion.geometry.skin import Skin
+from trunnion.geometry.sheet.sheet import Sheet, edges_of, sheet_of, split_finely
+from trunnion.geometry.sheet.skin import Skin
 from trunnion.progress import QUIET, Progress
 
 FILLED = 1.0

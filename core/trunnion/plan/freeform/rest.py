@@ -9,11 +9,11 @@ import numpy as np
 
 from trunnion import tolerance
 from trunnion.geometry.arrays import Floats
-from trunnion.geometry.skin import Skin
+from trunnion.geometry.sheet.skin import Skin
 from trunnion.model.tool import Tool
-from trunnion.plan.freeform.cutter import level_disc, lower_side, tip_at
+from trunnion.plan.freeform.cutters.cutter import level_disc, lower_side, tip_at
+from trunnion.plan.freeform.estimate.scallop import stepover_on_plane
 from trunnion.plan.freeform.parting import parted_near
-from trunnion.plan.freeform.scallop import stepover_on_plane
 from trunnion.progress import QUIET, Progress
 
 LIFTED = 0.5 * tolerance.GOUGE

@@ -7,14 +7,14 @@ from dataclasses import dataclass, replace
 
 from trunnion.geometry.arrays import Floats
 from trunnion.geometry.frame import WORLD, Frame
-from trunnion.geometry.region import Region
-from trunnion.geometry.skin import Skin
+from trunnion.geometry.plane.region import Region
+from trunnion.geometry.sheet.skin import Skin
 from trunnion.model.blank import Blank
 from trunnion.model.operation import Operation
 from trunnion.model.setup import Setup
 from trunnion.model.tool import Tool
-from trunnion.part.exact import ExactFace
 from trunnion.part.part import Part
+from trunnion.part.shape.exact import ExactFace
 from trunnion.plan.clearance import Asker
 from trunnion.plan.contract import DriveNeeds
 from trunnion.plan.freeform.drive import SurfaceDrive

@@ -14,7 +14,12 @@ from trunnion.model.process import ProcessTree
 from trunnion.model.session import SizeEntry
 from trunnion.model.setup import Setup
 from trunnion.model.tool import Tool
-from trunnion.plan.cutting import CuttingSettings, cutting_data, roughing_depth, roughing_width
+from trunnion.plan.cutting.milling import (
+    CuttingSettings,
+    cutting_data,
+    roughing_depth,
+    roughing_width,
+)
 from trunnion.plan.feasibility import too_large, too_many_tools
 from trunnion.plan.panel.feasibility import (
     beside,

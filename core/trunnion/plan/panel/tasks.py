@@ -11,7 +11,7 @@ import numpy as np
 
 from trunnion import tolerance
 from trunnion.findings import Finding, Refused, face_tags, warning
-from trunnion.geometry.region import EMPTY_REGION, Region
+from trunnion.geometry.plane.region import EMPTY_REGION, Region
 from trunnion.model.feature import Feature, Recognition
 from trunnion.model.material import Machine, Material
 from trunnion.model.tool import Tool

@@ -11,8 +11,8 @@ from dataclasses import dataclass
 
 from trunnion import tolerance
 from trunnion.findings import Refused
-from trunnion.geometry.curve import Curve
-from trunnion.geometry.region import Region
+from trunnion.geometry.plane.curve import Curve
+from trunnion.geometry.plane.region import Region
 from trunnion.model.feature import Feature
 from trunnion.model.operation import Operation
 from trunnion.model.process import ProcessTree

@@ -17,10 +17,10 @@ import numpy as np
 from trunnion import tolerance
 from trunnion.findings import Refused
 from trunnion.geometry.arrays import Bools, Floats
-from trunnion.geometry.curve import Curve, joined
 from trunnion.geometry.facegraph import FaceGraph
 from trunnion.geometry.frame import Frame
-from trunnion.geometry.region import EMPTY_REGION, Piece, Region, union_all
+from trunnion.geometry.plane.curve import Curve, joined
+from trunnion.geometry.plane.region import EMPTY_REGION, Piece, Region, union_all
 from trunnion.model.blank import Blank
 from trunnion.model.feature import Feature, Recognition
 from trunnion.model.setup import Setup

@@ -12,7 +12,7 @@ from trunnion.model.operation import Operation
 from trunnion.model.setup import Setup
 from trunnion.model.tool import Tool
 from trunnion.plan.clearance import Around
-from trunnion.plan.cutting import CuttingSettings, cutting_data
+from trunnion.plan.cutting.milling import CuttingSettings, cutting_data
 from trunnion.plan.freeform.frames import UPRIGHT, Direction
 from trunnion.plan.freeform.space import SurfaceSpace
 from trunnion.plan.settings import RouteSettings

@@ -10,7 +10,7 @@ import numpy as np
 
 from trunnion.findings import BadInput, face_tags, info
 from trunnion.model.tool import Tool
-from trunnion.plan.freeform.end_mills import MISSED, Chosen, end_mills_for
+from trunnion.plan.freeform.cutters.end_mills import MISSED, Chosen, end_mills_for
 from trunnion.plan.freeform.lands import (
     ABOVE_TOOL,
     AROUND_TOOL,

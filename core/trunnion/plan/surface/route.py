@@ -21,7 +21,7 @@ from trunnion.model.process import ProcessTree
 from trunnion.model.setup import Setup
 from trunnion.model.tool import Tool
 from trunnion.plan.clearance import Around
-from trunnion.plan.cutting import CuttingSettings, roughing_depth, roughing_width
+from trunnion.plan.cutting.milling import CuttingSettings, roughing_depth, roughing_width
 from trunnion.plan.feasibility import too_large, too_many_tools
 from trunnion.plan.freeform.areas import (
     Area,
@@ -32,13 +32,13 @@ from trunnion.plan.freeform.areas import (
     on_outline,
     walls_of,
 )
-from trunnion.plan.freeform.cutters import Chosen, cutter_for, named
+from trunnion.plan.freeform.cutters.choice import Chosen, cutter_for, named
+from trunnion.plan.freeform.estimate.scallop import stepover_on_plane
 from trunnion.plan.freeform.keys import ALLOWANCE, BOTTOM, CELL, EARLIER, SCALLOP
 from trunnion.plan.freeform.lands import LAND, REST_LAND
 from trunnion.plan.freeform.leaning import SAMPLES as LEANING_SAMPLES
 from trunnion.plan.freeform.leaning import leaning_cutter
 from trunnion.plan.freeform.reach import Places, clear_beside, leans, places_on, reached
-from trunnion.plan.freeform.scallop import stepover_on_plane
 from trunnion.plan.freeform.sides import sides_for
 from trunnion.plan.freeform.space import SurfaceSpace
 from trunnion.plan.sequence import Job, ordered

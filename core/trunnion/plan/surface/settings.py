@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from trunnion.findings import BadInput
-from trunnion.plan.freeform.scallop import height_of
+from trunnion.plan.freeform.estimate.scallop import height_of
 from trunnion.settings import setting, settings
 
 

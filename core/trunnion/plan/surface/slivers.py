@@ -7,7 +7,7 @@ from dataclasses import replace
 
 from trunnion import tolerance
 from trunnion.geometry.facegraph import FaceGraph
-from trunnion.geometry.skin import Skin
+from trunnion.geometry.sheet.skin import Skin
 from trunnion.model.feature import Recognition
 from trunnion.model.operation import Operation
 

@@ -18,10 +18,10 @@ from shapely.geometry.base import BaseGeometry
 
 from trunnion.findings import BadInput, Finding, warning
 from trunnion.geometry.arrays import Floats
-from trunnion.geometry.curve import Curve
 from trunnion.geometry.facegraph import FaceGraph
 from trunnion.geometry.frame import Frame
-from trunnion.geometry.region import Region
+from trunnion.geometry.plane.curve import Curve
+from trunnion.geometry.plane.region import Region
 from trunnion.progress import Progress
 from trunnion.recognize.contract import Slicer
 from trunnion.recognize.panel.classes import FaceClass, FaceClasses

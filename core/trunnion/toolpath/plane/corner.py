@@ -8,24 +8,24 @@ from dataclasses import dataclass
 
 from trunnion import tolerance
 from trunnion.findings import Finding, error, info
-from trunnion.geometry.curve import Curve
-from trunnion.geometry.region import Region
+from trunnion.geometry.plane.curve import Curve
+from trunnion.geometry.plane.region import Region
 from trunnion.model.operation import CuttingData
 from trunnion.model.setup import Setup
 from trunnion.model.tool import Tool
 from trunnion.plan.prismatic.drive import DriveLevel, PlaneDrive, foot_clearance
 from trunnion.progress import Progress
 from trunnion.settings import setting, settings
-from trunnion.toolpath.builder import PathBuilder
-from trunnion.toolpath.contour import Approach, cut_open, cut_parts
+from trunnion.toolpath.axis_region import Room, is_closed, parts_where
 from trunnion.toolpath.contract import Planned, strategy
-from trunnion.toolpath.easing import eased_finish
-from trunnion.toolpath.engagement import eased_corner
-from trunnion.toolpath.levels import fillet_steps, steps_down
-from trunnion.toolpath.order import nearest_first
-from trunnion.toolpath.reach import Room, is_closed, parts_where
-from trunnion.toolpath.rings import depth_first, ring_tree, safe_step
-from trunnion.toolpath.stock import PlanningStock
+from trunnion.toolpath.motion.builder import PathBuilder
+from trunnion.toolpath.motion.easing import eased_finish
+from trunnion.toolpath.motion.engagement import eased_corner
+from trunnion.toolpath.motion.order import nearest_first
+from trunnion.toolpath.offsetting.contour import Approach, cut_open, cut_parts
+from trunnion.toolpath.offsetting.levels import fillet_steps, steps_down
+from trunnion.toolpath.offsetting.rings import depth_first, ring_tree, safe_step
+from trunnion.toolpath.stock.heightfield import PlanningStock
 
 SMALLEST_REST = 0.02
 """mm2: a rest smaller than this can't be told from two offsets that differ in their last digits."""

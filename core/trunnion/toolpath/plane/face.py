@@ -16,12 +16,12 @@ from trunnion.model.toolpath import Mark
 from trunnion.plan.prismatic.drive import PlaneDrive
 from trunnion.progress import Progress
 from trunnion.settings import setting, settings
-from trunnion.toolpath.builder import PathBuilder
 from trunnion.toolpath.contract import Planned, strategy
-from trunnion.toolpath.levels import steps_down
-from trunnion.toolpath.link import travel
-from trunnion.toolpath.rings import SAFE_SHARE
-from trunnion.toolpath.stock import PlanningStock
+from trunnion.toolpath.motion.builder import PathBuilder
+from trunnion.toolpath.motion.link import travel
+from trunnion.toolpath.offsetting.levels import steps_down
+from trunnion.toolpath.offsetting.rings import SAFE_SHARE
+from trunnion.toolpath.stock.heightfield import PlanningStock
 
 ONE_ROW = "one row takes the whole top"
 

@@ -15,15 +15,15 @@ from trunnion.model.tool import Tool
 from trunnion.plan.prismatic.drive import PlaneDrive, foot_clearance
 from trunnion.progress import Progress
 from trunnion.settings import setting, settings
-from trunnion.toolpath.area_clearing import Layer, Manner, clear
-from trunnion.toolpath.builder import PathBuilder
+from trunnion.toolpath.axis_region import level_at
 from trunnion.toolpath.contract import Planned, strategy
-from trunnion.toolpath.easing import eased_finish
-from trunnion.toolpath.engagement import floor_leftovers
-from trunnion.toolpath.passes import passes_over
-from trunnion.toolpath.reach import level_at
-from trunnion.toolpath.rings import safe_step
-from trunnion.toolpath.stock import PlanningStock
+from trunnion.toolpath.motion.builder import PathBuilder
+from trunnion.toolpath.motion.easing import eased_finish
+from trunnion.toolpath.motion.engagement import floor_leftovers
+from trunnion.toolpath.offsetting.area_clearing import Layer, Manner, clear
+from trunnion.toolpath.offsetting.passes import passes_over
+from trunnion.toolpath.offsetting.rings import safe_step
+from trunnion.toolpath.stock.heightfield import PlanningStock
 
 SMALLEST_LEFTOVER = 1.0
 """mm2: less that is left needs no word."""

@@ -9,20 +9,25 @@ import numpy as np
 from trunnion import tolerance
 from trunnion.findings import Finding, error, face_tags, info, warning
 from trunnion.geometry.arrays import Floats
-from trunnion.geometry.curve import Curve
+from trunnion.geometry.plane.curve import Curve
 from trunnion.model.operation import CuttingData
 from trunnion.model.setup import Setup
 from trunnion.model.tool import Tool
 from trunnion.plan.prismatic.drive import PlaneDrive, WallGuide
 from trunnion.progress import Progress
 from trunnion.settings import setting, settings
-from trunnion.toolpath.builder import PathBuilder
-from trunnion.toolpath.contour import Approach, contour_parts, cut_parts, length_out_of_reach
+from trunnion.toolpath.axis_region import Room, level_at, parts_where
 from trunnion.toolpath.contract import Planned, strategy
-from trunnion.toolpath.engagement import contour_leftovers, inner_corner
-from trunnion.toolpath.levels import steps_down
-from trunnion.toolpath.reach import Room, level_at, parts_where
-from trunnion.toolpath.stock import PlanningStock
+from trunnion.toolpath.motion.builder import PathBuilder
+from trunnion.toolpath.motion.engagement import contour_leftovers, inner_corner
+from trunnion.toolpath.offsetting.contour import (
+    Approach,
+    contour_parts,
+    cut_parts,
+    length_out_of_reach,
+)
+from trunnion.toolpath.offsetting.levels import steps_down
+from trunnion.toolpath.stock.heightfield import PlanningStock
 
 SMALLEST_LEFTOVER = 1.0
 """mm2: less that is left needs no word."""

@@ -6,21 +6,21 @@ import math
 
 from trunnion import tolerance
 from trunnion.findings import Finding, error, info
-from trunnion.geometry.region import Region
+from trunnion.geometry.plane.region import Region
 from trunnion.model.operation import CuttingData
 from trunnion.model.setup import Setup
 from trunnion.model.tool import Tool
 from trunnion.plan.prismatic.drive import DriveLevel, PlaneDrive
 from trunnion.progress import Progress
 from trunnion.settings import setting, settings
-from trunnion.toolpath.area_clearing import Layer, Manner, clear
-from trunnion.toolpath.builder import PathBuilder
+from trunnion.toolpath.axis_region import Room
 from trunnion.toolpath.contract import Planned, strategy
-from trunnion.toolpath.engagement import top_width
-from trunnion.toolpath.levels import steps_down
-from trunnion.toolpath.reach import Room
-from trunnion.toolpath.rings import ring_tree, safe_step
-from trunnion.toolpath.stock import PlanningStock
+from trunnion.toolpath.motion.builder import PathBuilder
+from trunnion.toolpath.motion.engagement import top_width
+from trunnion.toolpath.offsetting.area_clearing import Layer, Manner, clear
+from trunnion.toolpath.offsetting.levels import steps_down
+from trunnion.toolpath.offsetting.rings import ring_tree, safe_step
+from trunnion.toolpath.stock.heightfield import PlanningStock
 
 SMALLEST_LEFTOVER = 1.0
 """mm2: less that is left needs no word."""

@@ -6,22 +6,22 @@ import math
 
 from trunnion import tolerance
 from trunnion.findings import Finding, error, face_tags, info
-from trunnion.geometry.region import Region
+from trunnion.geometry.plane.region import Region
 from trunnion.model.operation import CuttingData
 from trunnion.model.setup import Setup
 from trunnion.model.tool import Tool
 from trunnion.plan.prismatic.drive import DriveLevel, PlaneDrive, foot_clearance
 from trunnion.progress import Progress
 from trunnion.settings import setting, settings
-from trunnion.toolpath.area_clearing import Layer, Manner, clear
-from trunnion.toolpath.builder import PathBuilder
 from trunnion.toolpath.contract import Planned, strategy
-from trunnion.toolpath.easing import eased
-from trunnion.toolpath.engagement import full_width
-from trunnion.toolpath.levels import layers
-from trunnion.toolpath.passes import Passes, passes_over
-from trunnion.toolpath.rings import safe_step
-from trunnion.toolpath.stock import PlanningStock
+from trunnion.toolpath.motion.builder import PathBuilder
+from trunnion.toolpath.motion.easing import eased
+from trunnion.toolpath.motion.engagement import full_width
+from trunnion.toolpath.offsetting.area_clearing import Layer, Manner, clear
+from trunnion.toolpath.offsetting.levels import layers
+from trunnion.toolpath.offsetting.passes import Passes, passes_over
+from trunnion.toolpath.offsetting.rings import safe_step
+from trunnion.toolpath.stock.heightfield import PlanningStock
 
 SMALLEST_LEFTOVER = 1.0
 """mm2: less that is left needs no word."""

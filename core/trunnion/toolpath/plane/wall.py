@@ -9,23 +9,28 @@ import numpy as np
 from trunnion import tolerance
 from trunnion.findings import Finding, error, face_tags, info
 from trunnion.geometry.arrays import Floats
-from trunnion.geometry.region import Region, union_all
+from trunnion.geometry.plane.region import Region, union_all
 from trunnion.model.operation import CuttingData
 from trunnion.model.setup import Setup
 from trunnion.model.tool import Tool
 from trunnion.plan.prismatic.drive import Floor, PlaneDrive, WallGuide, foot_clearance
 from trunnion.progress import Progress
 from trunnion.settings import setting, settings
-from trunnion.toolpath.area_clearing import Layer, Manner, clear
-from trunnion.toolpath.builder import PathBuilder
-from trunnion.toolpath.contour import Approach, contour_parts, cut_parts, length_out_of_reach
+from trunnion.toolpath.axis_region import Room, is_closed, level_at
 from trunnion.toolpath.contract import Planned, strategy
-from trunnion.toolpath.easing import eased_finish
-from trunnion.toolpath.engagement import eased_leftovers
-from trunnion.toolpath.levels import fillet_steps, steps_down
-from trunnion.toolpath.reach import Room, is_closed, level_at
-from trunnion.toolpath.rings import ring_tree, safe_step
-from trunnion.toolpath.stock import PlanningStock
+from trunnion.toolpath.motion.builder import PathBuilder
+from trunnion.toolpath.motion.easing import eased_finish
+from trunnion.toolpath.motion.engagement import eased_leftovers
+from trunnion.toolpath.offsetting.area_clearing import Layer, Manner, clear
+from trunnion.toolpath.offsetting.contour import (
+    Approach,
+    contour_parts,
+    cut_parts,
+    length_out_of_reach,
+)
+from trunnion.toolpath.offsetting.levels import fillet_steps, steps_down
+from trunnion.toolpath.offsetting.rings import ring_tree, safe_step
+from trunnion.toolpath.stock.heightfield import PlanningStock
 
 SMALLEST_LEFTOVER = 1.0
 """mm2: less that is left needs no word."""

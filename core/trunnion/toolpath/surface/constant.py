@@ -8,17 +8,17 @@ from trunnion.model.operation import CuttingData
 from trunnion.model.setup import Setup
 from trunnion.model.tool import Tool
 from trunnion.plan.freeform.drive import SurfaceDrive
-from trunnion.plan.freeform.scallop import stepover_on_plane
+from trunnion.plan.freeform.estimate.scallop import stepover_on_plane
 from trunnion.progress import QUIET, Progress
 from trunnion.settings import setting, settings
+from trunnion.toolpath.contact_passes import choices
+from trunnion.toolpath.contact_passes.choices import TOO_SHALLOW, TOO_STEEP
+from trunnion.toolpath.contact_passes.fixed_axis import stood
+from trunnion.toolpath.contact_passes.fronts import scallop_passes
+from trunnion.toolpath.contact_passes.linking import Manner, linked
 from trunnion.toolpath.contract import Planned, strategy
-from trunnion.toolpath.engagement import surface_leftovers
-from trunnion.toolpath.stock import PlanningStock
-from trunnion.toolpath.surface import choices
-from trunnion.toolpath.surface.choices import TOO_SHALLOW, TOO_STEEP
-from trunnion.toolpath.surface.fixed_axis import stood
-from trunnion.toolpath.surface.fronts import scallop_passes
-from trunnion.toolpath.surface.linking import Manner, linked
+from trunnion.toolpath.motion.engagement import surface_leftovers
+from trunnion.toolpath.stock.heightfield import PlanningStock
 
 
 @settings("surface.constant")

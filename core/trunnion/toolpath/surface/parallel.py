@@ -17,25 +17,31 @@ from trunnion import tolerance
 from trunnion.findings import Finding, Refused, warning
 from trunnion.geometry.arrays import Bools, Floats, Ints
 from trunnion.geometry.dropping import DropSurface
-from trunnion.geometry.skin import Skin
+from trunnion.geometry.sheet.skin import Skin
 from trunnion.model.operation import CuttingData
 from trunnion.model.setup import Setup
 from trunnion.model.tool import Tool
-from trunnion.plan.freeform.cutter import lower_side
+from trunnion.plan.freeform.cutters.cutter import lower_side
 from trunnion.plan.freeform.drive import SurfaceDrive
-from trunnion.plan.freeform.scallop import stepover_on_plane
+from trunnion.plan.freeform.estimate.scallop import stepover_on_plane
 from trunnion.progress import Progress
 from trunnion.settings import setting, settings
+from trunnion.toolpath.contact_passes.axis_search import leaned_by
+from trunnion.toolpath.contact_passes.choices import TOO_SHALLOW, TOO_STEEP
+from trunnion.toolpath.contact_passes.linking import Manner, linked
+from trunnion.toolpath.contact_passes.overrun import Strip
+from trunnion.toolpath.contact_passes.passes import UPRIGHT, Pass
+from trunnion.toolpath.contact_passes.spacing import (
+    Places,
+    marched,
+    places_of,
+    strips_over,
+    tip_spacing,
+)
+from trunnion.toolpath.contact_passes.tracing import follow
 from trunnion.toolpath.contract import Planned, lead_and_tilt, strategy
-from trunnion.toolpath.engagement import surface_leftovers
-from trunnion.toolpath.stock import PlanningStock
-from trunnion.toolpath.surface.axis_search import leaned_by
-from trunnion.toolpath.surface.choices import TOO_SHALLOW, TOO_STEEP
-from trunnion.toolpath.surface.linking import Manner, linked
-from trunnion.toolpath.surface.overrun import Strip
-from trunnion.toolpath.surface.passes import UPRIGHT, Pass
-from trunnion.toolpath.surface.spacing import Places, marched, places_of, strips_over, tip_spacing
-from trunnion.toolpath.surface.tracing import follow
+from trunnion.toolpath.motion.engagement import surface_leftovers
+from trunnion.toolpath.stock.heightfield import PlanningStock
 
 ALONG = 0.1
 """Of the cutter's radius: distance of the places along a plane that are asked for what the cutter touches."""

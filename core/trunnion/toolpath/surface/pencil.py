@@ -15,23 +15,23 @@ import shapely
 
 from trunnion.findings import Finding, Refused, info
 from trunnion.geometry.arrays import Bools, Floats, Ints
-from trunnion.geometry.sheet import edges_of
+from trunnion.geometry.sheet.sheet import edges_of
 from trunnion.model.operation import CuttingData
 from trunnion.model.setup import Setup
 from trunnion.model.tool import Tool
-from trunnion.plan.freeform.cutter import lower_side
+from trunnion.plan.freeform.cutters.cutter import lower_side
 from trunnion.plan.freeform.drive import SurfaceDrive
-from trunnion.plan.freeform.scallop import stepover_on_plane
+from trunnion.plan.freeform.estimate.scallop import stepover_on_plane
 from trunnion.progress import QUIET, Progress
 from trunnion.settings import setting, settings
+from trunnion.toolpath.contact_passes.linking import Manner, linked
+from trunnion.toolpath.contact_passes.passes import UPRIGHT, Pass
+from trunnion.toolpath.contact_passes.spacing import places_of
+from trunnion.toolpath.contact_passes.tipgrid import grid_around, spread
+from trunnion.toolpath.contact_passes.tracing import follow
 from trunnion.toolpath.contract import Planned, strategy
-from trunnion.toolpath.engagement import surface_leftovers
-from trunnion.toolpath.stock import PlanningStock
-from trunnion.toolpath.surface.linking import Manner, linked
-from trunnion.toolpath.surface.passes import UPRIGHT, Pass
-from trunnion.toolpath.surface.spacing import places_of
-from trunnion.toolpath.surface.tipgrid import grid_around, spread
-from trunnion.toolpath.surface.tracing import follow
+from trunnion.toolpath.motion.engagement import surface_leftovers
+from trunnion.toolpath.stock.heightfield import PlanningStock
 
 CELL, FINEST, COARSEST = 0.1, 0.05, 0.5
 """Of the cutter's radius, and mm at least and at most: side of the grid's cells."""

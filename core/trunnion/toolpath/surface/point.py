@@ -24,16 +24,19 @@ from trunnion.model.setup import Setup
 from trunnion.model.tool import Tool
 from trunnion.model.toolpath import Mark, Toolpath
 from trunnion.plan.clearance import Asker
-from trunnion.plan.freeform.cutter import lower_side, tip_at, touching
+from trunnion.plan.freeform.cutters.cutter import lower_side, tip_at, touching
 from trunnion.plan.freeform.drive import SurfaceDrive
-from trunnion.plan.freeform.scallop import stepover_on_plane
+from trunnion.plan.freeform.estimate.scallop import stepover_on_plane
 from trunnion.progress import QUIET, Progress
 from trunnion.settings import setting, settings
-from trunnion.toolpath.contract import Planned, leaning_axis, strategy
-from trunnion.toolpath.engagement import surface_leftovers
-from trunnion.toolpath.stock import PlanningStock
-from trunnion.toolpath.surface.axis import AxisField, fixed, from_point, interpolated, leaning
-from trunnion.toolpath.surface.axis_search import (
+from trunnion.toolpath.contact_passes.axis import (
+    AxisField,
+    fixed,
+    from_point,
+    interpolated,
+    leaning,
+)
+from trunnion.toolpath.contact_passes.axis_search import (
     STEP,
     AxisSearch,
     Course,
@@ -41,11 +44,14 @@ from trunnion.toolpath.surface.axis_search import (
     free_axes,
     roomy,
 )
-from trunnion.toolpath.surface.contacts import Contacts, between, slerp
-from trunnion.toolpath.surface.flowlines import Crowded, Flow, flow_lines
-from trunnion.toolpath.surface.fronts import scallop_passes
-from trunnion.toolpath.surface.linking import Manner, linked
-from trunnion.toolpath.surface.passes import Pass
+from trunnion.toolpath.contact_passes.contacts import Contacts, between, slerp
+from trunnion.toolpath.contact_passes.flowlines import Crowded, Flow, flow_lines
+from trunnion.toolpath.contact_passes.fronts import scallop_passes
+from trunnion.toolpath.contact_passes.linking import Manner, linked
+from trunnion.toolpath.contact_passes.passes import Pass
+from trunnion.toolpath.contract import Planned, leaning_axis, strategy
+from trunnion.toolpath.motion.engagement import surface_leftovers
+from trunnion.toolpath.stock.heightfield import PlanningStock
 from trunnion.units import trimmed
 
 SHARES = (0.25, 0.5, 0.75)

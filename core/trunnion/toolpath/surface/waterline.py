@@ -17,24 +17,24 @@ from scipy.spatial import cKDTree
 from trunnion import tolerance
 from trunnion.findings import Finding, Refused, warning
 from trunnion.geometry.arrays import Bools, Floats, Ints
-from trunnion.geometry.contours import SheetLine, whole_levels
 from trunnion.geometry.kernels.drop import radius_at
+from trunnion.geometry.sheet.contours import SheetLine, whole_levels
 from trunnion.model.operation import CuttingData
 from trunnion.model.setup import Setup
 from trunnion.model.tool import Tool
-from trunnion.plan.freeform.cutter import lower_side
+from trunnion.plan.freeform.cutters.cutter import lower_side
 from trunnion.plan.freeform.drive import SurfaceDrive
 from trunnion.progress import Progress
 from trunnion.settings import setting, settings
+from trunnion.toolpath.contact_passes.choices import TOO_SHALLOW, TOO_STEEP
+from trunnion.toolpath.contact_passes.linking import Manner, linked
+from trunnion.toolpath.contact_passes.passes import UPRIGHT, Pass
+from trunnion.toolpath.contact_passes.spacing import Places, level_spacing, marched, places_of
+from trunnion.toolpath.contact_passes.tipgrid import grid_around, spread
+from trunnion.toolpath.contact_passes.tracing import thinned
 from trunnion.toolpath.contract import Planned, strategy
-from trunnion.toolpath.engagement import surface_leftovers
-from trunnion.toolpath.stock import PlanningStock
-from trunnion.toolpath.surface.choices import TOO_SHALLOW, TOO_STEEP
-from trunnion.toolpath.surface.linking import Manner, linked
-from trunnion.toolpath.surface.passes import UPRIGHT, Pass
-from trunnion.toolpath.surface.spacing import Places, level_spacing, marched, places_of
-from trunnion.toolpath.surface.tipgrid import grid_around, spread
-from trunnion.toolpath.surface.tracing import thinned
+from trunnion.toolpath.motion.engagement import surface_leftovers
+from trunnion.toolpath.stock.heightfield import PlanningStock
 
 CELL, FINEST, COARSEST = 0.2, 0.1, 1.5
 """Of the cutter's radius, and mm at least and at most: side of the grid's cells. What is blocked is as wide as the cutter and more."""

@@ -14,8 +14,8 @@ import numpy as np
 from trunnion.findings import BadCall, BadInput
 from trunnion.geometry.arrays import Bools, Floats, Ints
 from trunnion.model.tool import Tool
-from trunnion.part.facets import Facets
-from trunnion.part.surfaces import Surfaces
+from trunnion.part.shape.facets import Facets
+from trunnion.part.shape.surfaces import Surfaces
 from trunnion.progress import QUIET, Progress
 from trunnion.verify.contact.facets import FacetContact
 from trunnion.verify.contact.grid import Grid as Grid

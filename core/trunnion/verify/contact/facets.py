@@ -16,7 +16,7 @@ import numpy as np
 from trunnion import tolerance
 from trunnion.geometry.arrays import Bools, Floats, Ints
 from trunnion.model.tool import Tool
-from trunnion.part.facets import Facets
+from trunnion.part.shape.facets import Facets
 from trunnion.progress import QUIET, Progress
 from trunnion.verify.contact.obstacles import Obstacles
 from trunnion.verify.contact.touch import Touch, deepen

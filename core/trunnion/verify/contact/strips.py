@@ -1,4 +1,4 @@
-"""Closed forms: a body of revolution that stands upright, against faces that are strips and level regions (`part/surfaces.py`).
+"""Closed forms: a body of revolution that stands upright, against faces that are strips and level regions (`part/shape/surfaces.py`).
 
 Closed forms in plan and a bounded search over the profile (`kernels/strips.py`): a reported depth is attained, and the true one is at
 most `tolerance.CONTACT_BOUND` deeper. A move along its own axis counts as one body, swept from its lowest to its highest place.
@@ -13,7 +13,7 @@ import numpy as np
 
 from trunnion import tolerance
 from trunnion.geometry.arrays import Floats, Ints
-from trunnion.part.surfaces import (
+from trunnion.part.shape.surfaces import (
     BX0,
     BY1,
     BZ0,

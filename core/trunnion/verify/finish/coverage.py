@@ -13,8 +13,8 @@ import numpy as np
 from trunnion import tolerance
 from trunnion.findings import OutOfMemory
 from trunnion.geometry.arrays import Bools, Floats, Ints
-from trunnion.part.facets import Facets, facet_samples
-from trunnion.part.surfaces import (
+from trunnion.part.shape.facets import Facets, facet_samples
+from trunnion.part.shape.surfaces import (
     DX,
     DY,
     GUIDE,

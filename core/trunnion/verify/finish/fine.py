@@ -18,7 +18,7 @@ from scipy.spatial import cKDTree
 
 from trunnion.findings import BadInput, OutOfMemory
 from trunnion.geometry.arrays import Bools, Floats, Ints
-from trunnion.part.exact import ExactPoints
+from trunnion.part.shape.exact import ExactPoints
 from trunnion.progress import QUIET, Progress
 from trunnion.verify.finish.sweep import flutes_of, tree_of
 from trunnion.verify.kernels import fine as kernel

@@ -9,8 +9,8 @@ import numpy as np
 
 from trunnion.geometry.frame import Frame
 from trunnion.model.fixture import Fixture
-from trunnion.part.facets import Facets
-from trunnion.part.surfaces import Surfaces
+from trunnion.part.shape.facets import Facets
+from trunnion.part.shape.surfaces import Surfaces
 from trunnion.progress import QUIET, Progress
 from trunnion.verify.contact import PartContact
 

@@ -19,9 +19,9 @@ from trunnion.model.material import Machine, Material
 from trunnion.model.program import Program
 from trunnion.model.tool import Tool
 from trunnion.model.verdict import Offer, Outcome, Verdict
-from trunnion.part.facets import Facets, facets_of
 from trunnion.part.part import Part
-from trunnion.part.surfaces import Surfaces, surfaces_of
+from trunnion.part.shape.facets import Facets, facets_of
+from trunnion.part.shape.surfaces import Surfaces, surfaces_of
 from trunnion.progress import QUIET, Progress
 from trunnion.verify.finish.coverage import Samples, samples_of
 from trunnion.verify.judge.coverage import covered

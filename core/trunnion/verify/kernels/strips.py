@@ -1,7 +1,7 @@
 """Compiled contact of an upright tool with trimmed faces in closed form: depth of a swept body by
 branch and bound.
 
-The tool axis is +z. A face is a bundle of *strips* (`part/surfaces.py`): a profile (w, z) carried
+The tool axis is +z. A face is a bundle of *strips* (`part/shape/surfaces.py`): a profile (w, z) carried
 along a guide in plan, a line or an arc about a vertical axis, trimmed at both ends. The tool moves
 along a line or an arc in plan, the path. For a body of revolution swept along the path at one
 height the deepest contact with the level curve of a strip at the profile parameter u is
@@ -20,7 +20,7 @@ is searched, by branch and bound with an upper bound over an interval [u0, u1]:
 * a circular profile leaves its chord by its sagitta, and D has slope 1 at most.
 
 Every approximation errs deep in the bound; what is reported is a depth that is attained, at most
-the stated bound below the deepest. Columns of strips (m, 37) as in `part/surfaces.py`; mm, rad; the
+the stated bound below the deepest. Columns of strips (m, 37) as in `part/shape/surfaces.py`; mm, rad; the
 frame of the moves. Guides use the columns of a move's plan curve.
 
 Bodies come from `kernels/body.py`: a cached caller does not notice a change there, so after one the
@@ -35,7 +35,7 @@ import numpy as np
 from numba import njit
 
 from trunnion.geometry.arrays import Floats, Ints
-from trunnion.part.surfaces import (
+from trunnion.part.shape.surfaces import (
     BX0,
     BX1,
     BY0,

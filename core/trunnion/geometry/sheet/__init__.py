@@ -1,0 +1,1 @@
+"""Sheets: joined triangles of a part's skin, and fields, level lines and ridges over them."""

@@ -1,0 +1,379 @@
+"""A sheet: triangles of some faces of a skin, joined across patches wherever these run smoothly into each other.
+
+Surface strategies lay fields over sheets (`geometry/marching.py`, `geometry/morph.py`) and cut along their lines. A sheet's triangles
+may be split until they are fine enough for a field; the new points are put where the faces' own normals want them, on the cubic curve
+through both ends of the edge (Vlachos, Curved PN Triangles), so that they leave the faces by the fourth power of an edge only.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable
+from dataclasses import dataclass
+
+import numpy as np
+from scipy.sparse import coo_matrix
+from scipy.sparse.csgraph import connected_components
+from scipy.spatial import cKDTree
+
+from trunnion import tolerance
+from trunnion.findings import Refused
+from trunnion.geometry.arrays import Bools, Floats, Ints
+from trunnion.geometry.sheet.skin import Skin
+from trunnion.progress import QUIET, Progress
+
+SMOOTH = np.cos(tolerance.SMOOTH_JOIN)
+MOST_TRIANGLES = 2_000_000
+"""Triangles of a sheet at most: half a gigabyte of working room."""
+ROUNDS = 400
+"""Rounds of splitting at most; each one halves the longest edges of all triangles."""
+TURNS = 12
+"""Rounds of turning edges at most; after a few hardly any are left."""
+OBTUSE = 0.05
+"""Sum of cotangents that is still no obtuse pair: points on a grid would turn their edges for ever."""
+Measure = Callable[[Floats, Floats, Floats, Floats], Floats]
+"""The lengths (e,) of edges from points (e, 3) with normals (e, 3) to points (e, 3) with normals (e, 3)."""
+
+
+@dataclass(frozen=True, slots=True, eq=False, kw_only=True)
+class Sheet:
+    """Points (v, 3) mm and the faces' outward unit normals there (v, 3), triangles (t, 3) rows of points, anticlockwise from outside, and
+    the tag of each one's face (t,). Points are shared across smooth joins of faces, not across sharp ones."""
+
+    points: Floats
+    normals: Floats
+    triangles: Ints
+    face: Ints
+
+    def on_edges(self, ends: Ints, share: Floats) -> tuple[Floats, Floats]:
+        """Return points and normals (k, 3) on the curved edges between points `ends` (k, 2), at shares (k,) of their way."""
+        a, b = ends.T
+        return between(self.points[a], self.normals[a], self.points[b], self.normals[b], share)
+
+    def edges(self) -> tuple[Ints, Ints]:
+        """Return the edges (e, 2), lower row of points first, and which of them the sides (t, 3) of the triangles are.
+
+        Side k runs from a triangle's corner k to the next one.
+        """
+        return edges_of(self.triangles, len(self.points))
+
+    def rims(self) -> list[Ints]:
+        """Return the loops of points (k,) where the sheet ends, the sheet on their left; the longest one first."""
+        n = len(self.points)
+        start, end = self.triangles.ravel(), self.triangles[:, [1, 2, 0]].ravel()
+        free = ~np.isin(start * n + end, end * n + start)
+        start, end = start[free], end[free]
+        order = np.argsort(start, kind="stable")
+        start, end = start[order], end[order]
+        used, loops = np.zeros(len(start), bool), []
+        for first in range(len(start)):
+            loop, row = [], first
+            while not used[row]:
+                used[row] = True
+                loop.append(int(start[row]))
+                low, high = np.searchsorted(start, [end[row], end[row] + 1])
+                row = next((r for r in range(low, high) if not used[r]), first)
+            if len(loop) > 2:
+                loops.append(np.array(loop))
+        return sorted(loops, key=self._round, reverse=True)
+
+    def _round(self, loop: Ints) -> float:
+        return float(
+            np.linalg.norm(
+                np.diff(self.points[loop], axis=0, append=self.points[loop[:1]]), axis=1
+            ).sum()
+        )
+
+    def area(self) -> Floats:
+        """Return the area of each triangle (t,) in mm2."""
+        a, b, c = np.moveaxis(self.points[self.triangles], 1, 0)
+        return 0.5 * np.linalg.norm(np.cross(b - a, c - a), axis=1)
+
+    def components(self) -> list[Sheet]:
+        """Return the connected parts, those with the lowest face tags first."""
+        t = self.triangles
+        links = coo_matrix(
+            (np.ones(2 * len(t)), (t[:, [0, 1]].ravel(), t[:, [1, 2]].ravel())),
+            shape=(len(self.points),) * 2,
+        )
+        label = connected_components(links, directed=False)[1][t[:, 0]]
+        parts = [self.of(label == part) for part in np.unique(label)]
+        return sorted(parts, key=lambda s: (int(s.face.min()), *s.points[0].tolist()))
+
+    def filled(self, holes: list[Ints]) -> Sheet:
+        """Return the sheet with holes (k,), loops of `rims`, closed by triangles with the tag 0: a field may run on over them."""
+        sheet = self
+        for hole in holes:
+            middle, n = len(sheet.points), len(hole)
+            fan = np.column_stack([np.roll(hole, -1), hole, np.full(n, middle)])
+            sheet = Sheet(
+                points=np.vstack([sheet.points, sheet.points[hole].mean(axis=0)]),
+                normals=np.vstack([sheet.normals, _unit(sheet.normals[hole].sum(axis=0)[None])]),
+                triangles=np.vstack([sheet.triangles, fan]),
+                face=np.concatenate([sheet.face, np.zeros(n, np.int64)]),
+            )
+        return sheet
+
+    def parted(self, ends: Ints, side: Ints, rows: Ints, share: Floats) -> tuple[Sheet, Ints]:
+        """Return the sheet with some of its edges (`edges` gives ends and sides), rows (k,), parted at shares (k,) of their way, and for
+        each edge the row of its new point, -1: none. New points come after the old ones, in the order of `rows`."""
+        number = np.full(len(ends), -1)
+        number[rows] = len(self.points) + np.arange(len(rows))
+        points, normals = self.on_edges(ends[rows], share)
+        triangles, face = _parted(self, number[side])
+        made = Sheet(
+            points=np.vstack([self.points, points]),
+            normals=np.vstack([self.normals, normals]),
+            triangles=triangles,
+            face=face,
+        )
+        return made, number
+
+    def of(self, rows: Bools) -> Sheet:
+        """Return a part of the sheet: some triangles (t,) and the points they need."""
+        used, triangles = np.unique(self.triangles[rows], return_inverse=True)
+        return Sheet(
+            points=self.points[used],
+            normals=self.normals[used],
+            triangles=triangles.reshape(-1, 3),
+            face=self.face[rows],
+        )
+
+
+def _parted(sheet: Sheet, middle: Ints) -> tuple[Ints, Ints]:
+    """Return triangles, and their faces, with the sides (t, 3) parted that have a middle, -1: none."""
+    split = middle >= 0
+    count = split.sum(axis=1)
+    made, tags = [sheet.triangles[count == 0]], [sheet.face[count == 0]]
+    for n, lone in ((1, True), (2, False), (3, True)):
+        rows = np.flatnonzero(count == n)
+        # Turned so that a lone middle is on the first side, and a lone side without one is the second side.
+        k = (
+            np.argmax(split[rows] == lone, axis=1)
+            if n != 2
+            else (np.argmax(~split[rows], axis=1) + 2) % 3
+        )
+        a, b, c = (sheet.triangles[rows, (k + j) % 3] for j in range(3))
+        ab, bc, ca = (middle[rows, (k + j) % 3] for j in range(3))
+        parts = {
+            1: ((a, ab, c), (ab, b, c)),
+            2: ((a, ab, ca), (ab, b, c), (ab, c, ca)),
+            3: ((a, ab, ca), (ab, b, bc), (ca, bc, c), (ab, bc, ca)),
+        }[n]
+        made += [np.column_stack(part) for part in parts]
+        tags += [sheet.face[rows]] * len(parts)
+    return np.vstack(made), np.concatenate(tags)
+
+
+def sheet_of(skin: Skin, faces: tuple[int, ...]) -> Sheet:
+    """Return the sheet of faces (tags) of a skin; no triangle when the skin has none of them."""
+    rows = skin.of(faces)
+    used, triangles = np.unique(skin.triangles[rows], return_inverse=True)
+    triangles, points, normals = triangles.reshape(-1, 3), skin.points[used], skin.normals[used]
+    joined = _joined(points, normals)
+    firsts, label = np.unique(joined, return_index=True, return_inverse=True)[1:]
+    normal = np.zeros((len(firsts), 3))
+    np.add.at(normal, label, normals)
+    triangles = label[triangles]
+    real = (triangles != triangles[:, [1, 2, 0]]).all(axis=1)
+    return Sheet(
+        points=points[firsts],
+        normals=_unit(normal),
+        triangles=triangles[real],
+        face=skin.face[rows][real],
+    )
+
+
+def _joined(points: Floats, normals: Floats) -> Ints:
+    """Return for each point the lowest row of those that coincide with it and face the same way."""
+    n = len(points)
+    pairs = (
+        cKDTree(points).query_pairs(tolerance.JOINED_POINTS, output_type="ndarray")
+        if n
+        else np.zeros((0, 2), int)
+    )
+    pairs = pairs[(normals[pairs[:, 0]] * normals[pairs[:, 1]]).sum(axis=1) >= SMOOTH]
+    label = connected_components(
+        coo_matrix((np.ones(len(pairs)), pairs.T), shape=(n, n)), directed=False
+    )[1]
+    lowest = np.full(n, n)
+    np.minimum.at(lowest, label, np.arange(n))
+    return np.asarray(lowest[label])
+
+
+def edges_of(triangles: Ints, n_points: int) -> tuple[Ints, Ints]:
+    """Return the edges (e, 2) of triangles (t, 3), lower row of points first, and which of them the triangles' sides (t, 3) are."""
+    start, end = triangles.ravel(), triangles[:, [1, 2, 0]].ravel()
+    key, side = np.unique(
+        np.minimum(start, end) * n_points + np.maximum(start, end), return_inverse=True
+    )
+    return np.column_stack([key // n_points, key % n_points]), side.reshape(-1, 3)
+
+
+def between(
+    a: Floats, a_normal: Floats, b: Floats, b_normal: Floats, share: Floats
+) -> tuple[Floats, Floats]:
+    """Return points and normals (k, 3) at shares (k,) of the cubic curves that run from a to b square to the normals of both."""
+    way, s = b - a, share[:, None]
+    out = way - (way * a_normal).sum(axis=1, keepdims=True) * a_normal
+    into = way - (way * b_normal).sum(axis=1, keepdims=True) * b_normal
+    point = a + s * way + s * (1.0 - s) * ((1.0 - s) * (out - way) - s * (into - way))
+    return point, _unit((1.0 - s) * a_normal + s * b_normal)
+
+
+def split_finely(
+    sheet: Sheet, measure: Measure, longest: float, progress: Progress = QUIET
+) -> Sheet:
+    """Return the sheet with triangles split until hardly an edge measures more than `longest`.
+
+    The limit falls by halves; at each one edges are turned in their pairs of triangles where that makes these less obtuse, since a
+    field is as good as its triangles. Raises `Refused` when too many triangles would be needed.
+    """
+    points, normals, triangles, face = sheet.points, sheet.normals, sheet.triangles, sheet.face
+    ends = edges_of(triangles, len(points))[0] if len(triangles) else np.zeros((0, 2), np.int64)
+    size = measure(points[ends[:, 0]], normals[ends[:, 0]], points[ends[:, 1]], normals[ends[:, 1]])
+    stages = max(math.ceil(math.log2(size.max(initial=longest) / longest)), 0)
+    for stage in range(stages, -1, -1):
+        points, normals, triangles, face = _split(
+            points, normals, triangles, face, measure, longest * 2.0**stage, progress
+        )
+        triangles = _turned(points, normals, triangles, face, measure, progress)
+    return Sheet(points=points, normals=normals, triangles=triangles, face=face)
+
+
+def _split(
+    points: Floats,
+    normals: Floats,
+    triangles: Ints,
+    face: Ints,
+    measure: Measure,
+    longest: float,
+    progress: Progress,
+) -> tuple[Floats, Floats, Ints, Ints]:
+    """Return points, normals, triangles and faces with edges halved that are too long and the longest of all their triangles, round after
+    round (Rivara): no triangle gets much thinner than those it was made of."""
+    whole, tags = [], []
+    for _ in range(ROUNDS):
+        progress.check()
+        ends, side = edges_of(triangles, len(points))
+        size = measure(
+            points[ends[:, 0]], normals[ends[:, 0]], points[ends[:, 1]], normals[ends[:, 1]]
+        )
+        rank = np.empty(len(size), np.int64)
+        rank[np.lexsort((np.arange(len(size)), size))] = np.arange(len(size))
+        corner = np.argmax(rank[side], axis=1)
+        widest = side[np.arange(len(side)), corner]
+        done = size[widest] <= longest
+        whole.append(triangles[done])
+        tags.append(face[done])
+        triangles, face, corner, widest, side = (
+            triangles[~done],
+            face[~done],
+            corner[~done],
+            widest[~done],
+            side[~done],
+        )
+        if not len(triangles):
+            break
+        agreed = np.bincount(widest, minlength=len(ends)) == np.bincount(
+            side.ravel(), minlength=len(ends)
+        )
+        halved = np.flatnonzero(agreed & (size > longest))
+        number = np.full(len(ends), -1)
+        number[halved] = len(points) + np.arange(len(halved))
+        a, b = ends[halved].T
+        more = between(points[a], normals[a], points[b], normals[b], np.full(len(halved), 0.5))
+        points, normals = np.vstack([points, more[0]]), np.vstack([normals, more[1]])
+        triangles, face = _halved(triangles, face, corner, number[widest])
+        if len(triangles) + sum(len(w) for w in whole) > MOST_TRIANGLES:
+            raise Refused(
+                f"passes this narrow over so large an area need over {MOST_TRIANGLES} triangles: allow a higher scallop, or cut "
+                "the area in pieces"
+            )
+    return points, normals, np.vstack([*whole, triangles]), np.concatenate([*tags, face])
+
+
+def _turned(
+    points: Floats,
+    normals: Floats,
+    triangles: Ints,
+    face: Ints,
+    measure: Measure,
+    progress: Progress,
+) -> Ints:
+    """Return the triangles with edges turned towards Delaunay's condition in a measure: the angles opposite an edge make no more than a
+    half turn. Edges between faces, and those in bent or hollow quadrangles, stay."""
+    triangles = triangles.copy()
+    for _ in range(TURNS):
+        progress.check()
+        ends, side = edges_of(triangles, len(points))
+        size = (
+            measure(
+                points[ends[:, 0]], normals[ends[:, 0]], points[ends[:, 1]], normals[ends[:, 1]]
+            )
+            ** 2
+        )
+        square = size[side]
+        total = square.sum(axis=1, keepdims=True)
+        four = np.sqrt(
+            np.maximum(total**2 - 2.0 * (square**2).sum(axis=1, keepdims=True), 1e-24 * total**2)
+        )
+        opposite = (total - 2.0 * square) / four
+        order = np.argsort(side.ravel(), kind="stable")
+        twice = np.flatnonzero(np.diff(side.ravel()[order]) == 0)
+        one, two = order[twice], order[twice + 1]
+        bad = opposite.ravel()[one] + opposite.ravel()[two]
+        wrong = (bad < -OBTUSE) & (face[one // 3] == face[two // 3])
+        one, two, bad = one[wrong], two[wrong], bad[wrong]
+        # Each triangle takes part in one turn at most: the worst one.
+        rank = np.empty(len(bad), np.int64)
+        rank[np.argsort(bad, kind="stable")] = np.arange(len(bad))
+        first = np.full(len(triangles), len(bad))
+        np.minimum.at(first, one // 3, rank)
+        np.minimum.at(first, two // 3, rank)
+        mine = (first[one // 3] == rank) & (first[two // 3] == rank)
+        one, two = one[mine], two[mine]
+        a, b, c, d = (
+            triangles[t // 3, (t % 3 + k) % 3] for t, k in ((one, 0), (one, 1), (one, 2), (two, 2))
+        )
+        made = np.column_stack([a, d, c]), np.column_stack([d, b, c])
+        known = (
+            set((np.minimum(*ends.T) * len(points) + np.maximum(*ends.T)).tolist())
+            if len(one)
+            else set()
+        )
+        fresh = np.array(
+            [
+                key not in known
+                for key in (np.minimum(c, d) * len(points) + np.maximum(c, d)).tolist()
+            ],
+            dtype=bool,
+        )
+        good = fresh & _upright(points, normals, made[0]) & _upright(points, normals, made[1])
+        if not good.any():
+            break
+        triangles[one[good] // 3], triangles[two[good] // 3] = made[0][good], made[1][good]
+    return triangles
+
+
+def _upright(points: Floats, normals: Floats, triangles: Ints) -> Bools:
+    """Say which triangles (t,) face, all but a little, as the faces do at their corners."""
+    a, b, c = np.moveaxis(points[triangles], 1, 0)
+    normal = _unit(np.cross(b - a, c - a))
+    return np.asarray((np.einsum("tk,tck->tc", normal, normals[triangles]) > SMOOTH).all(axis=1))
+
+
+def _halved(triangles: Ints, face: Ints, corner: Ints, middle: Ints) -> tuple[Ints, Ints]:
+    """Return triangles with those halved whose side that begins at `corner` (t,) gets a middle (t,), -1: none."""
+    rows = np.flatnonzero(middle >= 0)
+    a, b, c = (triangles[rows, (corner[rows] + k) % 3] for k in range(3))
+    kept = middle < 0
+    first, second = np.column_stack([a, middle[rows], c]), np.column_stack([middle[rows], b, c])
+    return np.vstack([triangles[kept], first, second]), np.concatenate(
+        [face[kept], face[rows], face[rows]]
+    )
+
+
+def _unit(vectors: Floats) -> Floats:
+    size = np.linalg.norm(vectors, axis=1, keepdims=True)
+    return np.divide(vectors, size, out=np.zeros_like(vectors), where=size > 0.0)

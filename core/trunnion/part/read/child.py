@@ -1,0 +1,139 @@
+"""The process that reads a part file: a damaged file may crash, bloat or hang the CAD kernel, and then only this process ends.
+
+Started afresh (never forked) as `python -m trunnion.part.read.child FOLDER`. The folder holds the request and the file's bytes; the answer
+is written there.
+"""
+
+from __future__ import annotations
+
+import json
+import os
+import subprocess
+import sys
+import tempfile
+import time
+from dataclasses import asdict
+from pathlib import Path
+
+import numpy as np
+
+from trunnion.findings import BadInput, OutOfMemory, TrunnionError
+from trunnion.part.read.limits import ReadLimits
+from trunnion.part.read.request import Request
+from trunnion.progress import Progress
+
+_LOOK = 0.02
+_CHECK = 0.1
+_REFUSED, _NO_MEMORY = 3, 4
+_MEGA = 1 << 20
+
+
+def run(request: Request, data: bytes, limits: ReadLimits, progress: Progress) -> bytes:
+    """Return the bytes of the part (`Part.to_bytes`) that a fresh process read from a file's bytes, within limits."""
+    with tempfile.TemporaryDirectory(prefix="trunnion-read-") as folder:
+        place = Path(folder)
+        (place / "part").write_bytes(data)
+        (place / "request.json").write_text(
+            json.dumps({"request": asdict(request), "memory": limits.memory}), encoding="utf-8"
+        )
+        with (place / "words").open("wb") as words:
+            # -P: nothing is imported from the folder that the program happens to be started in.
+            child = subprocess.Popen(
+                [sys.executable, "-P", "-m", "trunnion.part.read.child", folder],
+                stdin=subprocess.DEVNULL,
+                stdout=words,
+                stderr=words,
+                env=os.environ | {"PYTHONIOENCODING": "utf-8"},
+            )
+            try:
+                _wait(child, request, limits, progress)
+            finally:
+                child.kill()
+                child.wait()
+        return _answer(child.returncode, place, request, limits)
+
+
+def _wait(
+    child: subprocess.Popen[bytes], request: Request, limits: ReadLimits, progress: Progress
+) -> None:
+    start = looked = time.monotonic()
+    progress.aside(lambda _: _load(), f"reading {request.file}")
+    while child.poll() is None:
+        now = time.monotonic()
+        if now - start > limits.seconds:
+            raise BadInput(
+                f"{request.file}: reading took longer than {limits.seconds:g} s and was stopped; export the part again"
+            )
+        if now - looked > _CHECK:
+            progress.at(min(0.9, (now - start) / limits.seconds), f"reading {request.file}")
+            looked = now
+        time.sleep(_LOOK)
+
+
+def _load() -> None:
+    """Load what the part is wanted with next: that costs no time now, the other process is at work."""
+    import trunnion.part.topology.boundary  # noqa: F401
+    from trunnion.geometry.spline import SplineSurface
+
+    flat = SplineSurface(
+        knots_u=np.array([0.0, 0.0, 1.0, 1.0]),
+        knots_v=np.array([0.0, 0.0, 1.0, 1.0]),
+        degree_u=1,
+        degree_v=1,
+        poles=np.ones((2, 2, 4)),
+    )
+    flat.at(np.zeros((1, 2)))
+
+
+def _answer(code: int, place: Path, request: Request, limits: ReadLimits) -> bytes:
+    refusal = place / "refused"
+    if code == 0 and (place / "answer").is_file():
+        return (place / "answer").read_bytes()
+    if code == _REFUSED and refusal.is_file():
+        raise BadInput(refusal.read_text(encoding="utf-8"))
+    last = (place / "words").read_bytes()[-4096:]
+    if code == _NO_MEMORY or b"bad_alloc" in last or b"MemoryError" in last:
+        raise OutOfMemory(
+            f"{request.file}: reading it needs more than {limits.memory} MB of memory; raise the limit or split the part"
+        )
+    raise BadInput(
+        f"{request.file}: the CAD kernel failed on this file (exit code {code}); export it again, as STEP AP214 if possible"
+    )
+
+
+def main(folder: str) -> int:
+    """Read the part that a folder's request names and write the answer there; return the exit code."""
+    place = Path(folder)
+    told = json.loads((place / "request.json").read_text(encoding="utf-8"))
+    limit_memory(told["memory"])
+    try:
+        from trunnion.part.read.transfer import read_file
+
+        part = read_file(place / "part", Request(**told["request"]))
+        (place / "answer").write_bytes(part.to_bytes())
+    except TrunnionError as reason:
+        (place / "refused").write_text(str(reason), encoding="utf-8")
+        return _REFUSED
+    except MemoryError:
+        return _NO_MEMORY
+    return 0
+
+
+def limit_memory(megabytes: int) -> None:
+    """Keep this process's address space below a limit, where the system can."""
+    try:
+        import resource
+    except ImportError:
+        return
+    most = megabytes * _MEGA
+    hard = resource.getrlimit(resource.RLIMIT_AS)[1]
+    resource.setrlimit(
+        resource.RLIMIT_AS, (most if hard == resource.RLIM_INFINITY else min(most, hard), hard)
+    )
+
+
+if __name__ == "__main__":
+    # The kernel's destructors are not waited for: they cost time and may crash on damaged shapes after the answer is written.
+    code = main(sys.argv[1])
+    sys.stdout.flush()
+    os._exit(code)

@@ -1,0 +1,110 @@
+"""Reads a part file: looks at its text, lets a separate process with limits read it, and says what it found."""
+
+from __future__ import annotations
+
+import gzip
+import hashlib
+import io
+import os
+from pathlib import Path
+
+from trunnion.findings import BadInput
+from trunnion.part.part import Part
+from trunnion.part.read.limits import ReadLimits
+from trunnion.part.read.text import check_iges, check_step, kind_of
+from trunnion.progress import QUIET, Progress
+
+SUFFIXES = (".step", ".stp", ".stpz", ".igs", ".iges")
+_GZIP = b"\x1f\x8b"
+_MEGA = 1 << 20
+
+
+def read_part(
+    path: str | os.PathLike[str],
+    *,
+    solid: int | None = None,
+    limits: ReadLimits | None = None,
+    progress: Progress = QUIET,
+) -> Part:
+    """Return the part of a STEP, gzipped STEP or IGES file, told by its content.
+
+    `solid` chooses one of several solids, from 1; without it the largest is taken and a finding names the others. Raises `BadInput`
+    with one line for a file that can't be used, `OutOfMemory` when reading needs more than `limits` allow, `Cancelled` on request.
+    """
+    limits = limits or ReadLimits()
+    file = Path(path)
+    return _read(_bytes_of(file, limits), file.name, str(file), solid, limits, progress)
+
+
+def read_part_bytes(
+    data: bytes,
+    name: str,
+    suffix: str,
+    *,
+    solid: int | None = None,
+    limits: ReadLimits | None = None,
+    progress: Progress = QUIET,
+) -> Part:
+    """Return the part of a file's bytes, as `read_part` does; `name` and `suffix` are the file's."""
+    file = name if name.endswith(suffix) else name + suffix
+    return _read(data, file, file, solid, limits or ReadLimits(), progress)
+
+
+def _read(
+    data: bytes, file: str, path: str, solid: int | None, limits: ReadLimits, progress: Progress
+) -> Part:
+    from trunnion.part.read.child import run
+    from trunnion.part.read.request import Request
+
+    progress.at(0.0, "reading")
+    plain = _unpacked(data, file, limits)
+    kind = kind_of(plain, file)
+    listed = check_step(plain, file) if kind == "step" else check_iges(plain, file)
+    request = Request(
+        file=file,
+        path=path,
+        name=_stem(file),
+        digest=hashlib.sha256(data).hexdigest(),
+        kind=kind,
+        listed=listed,
+        solid=solid,
+        size=len(plain),
+    )
+    return Part.from_bytes(run(request, plain, limits, progress))
+
+
+def _bytes_of(file: Path, limits: ReadLimits) -> bytes:
+    try:
+        if file.is_dir():
+            raise BadInput(f"{file}: is a folder; give the part file in it")
+        if not file.exists() and not file.is_symlink():
+            raise BadInput(f"{file}: no such file")
+        if file.exists() and not file.is_file():
+            raise BadInput(f"{file}: not a plain file")
+        with file.open("rb") as stream:
+            data = stream.read(limits.size * _MEGA + 1)
+    except (OSError, RuntimeError, ValueError) as reason:
+        words = getattr(reason, "strerror", None) or str(reason)
+        raise BadInput(f"{file}: can't be read ({words})") from None
+    if len(data) > limits.size * _MEGA:
+        raise BadInput(f"{file}: larger than the limit of {limits.size} MB for a part file")
+    return data
+
+
+def _unpacked(data: bytes, name: str, limits: ReadLimits) -> bytes:
+    if not data.startswith(_GZIP):
+        return data
+    try:
+        with gzip.GzipFile(fileobj=io.BytesIO(data)) as stream:
+            plain = stream.read(limits.size * _MEGA + 1)
+    except (OSError, EOFError) as reason:
+        raise BadInput(f"{name}: the gzipped file is damaged ({reason}); copy it again") from None
+    if len(plain) > limits.size * _MEGA:
+        raise BadInput(f"{name}: larger than the limit of {limits.size} MB when unpacked")
+    return plain
+
+
+def _stem(file: str) -> str:
+    name = file[:-3] if file.lower().endswith(".gz") else file
+    stem, suffix = os.path.splitext(name)
+    return stem if suffix.lower() in SUFFIXES else name

@@ -1,0 +1,1 @@
+"""The shape of faces: sections, triangles, exact points, curvature, and what the proof touches."""

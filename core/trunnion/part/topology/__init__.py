@@ -1,0 +1,1 @@
+"""Faces and edges: identity, neighbours, trims, extents, and the attributed face graph."""

@@ -1,0 +1,124 @@
+"""The box around a trimmed face, exact for plain surfaces: the kernel's own boxes are loose or take 10 ms a face (measured)."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterator
+from typing import Any
+
+import numpy as np
+from OCP.BRep import BRep_Tool
+from OCP.GeomAbs import GeomAbs_Circle, GeomAbs_Line
+from OCP.gp import gp_Pnt
+from OCP.ShapeAnalysis import ShapeAnalysis_Surface
+
+from trunnion import tolerance
+from trunnion.geometry.arrays import Floats
+from trunnion.part.shape.evaluate import evaluator_of
+from trunnion.part.topology.canonical import Surface
+from trunnion.part.topology.faces import FaceView
+from trunnion.part.topology.trim import Trim
+from trunnion.progress import QUIET, Progress
+
+_GRID, _ZOOM, _ZOOMS, _STEPS = 13, 5, 4, 65
+Box = tuple[Floats, Floats]
+
+
+def edge_extremes(adaptor: Any, points: Floats) -> Floats:
+    """Return points (k, 3) of an edge that include its farthest ones along x, y and z; `points` run along it."""
+    kind = adaptor.GetType()
+    if kind == GeomAbs_Line:
+        return points[[0, -1]]
+    first, last = adaptor.FirstParameter(), adaptor.LastParameter()
+    if kind != GeomAbs_Circle:
+        return np.array([adaptor.Value(t).Coord() for t in np.linspace(first, last, _STEPS)])
+    circle = adaptor.Circle()
+    x, y = (
+        np.array(circle.XAxis().Direction().Coord()),
+        np.array(circle.YAxis().Direction().Coord()),
+    )
+    angle = np.arctan2(y, x)
+    angle = np.concatenate([angle, angle + math.pi])
+    angle = first + np.mod(angle - first, 2.0 * math.pi)
+    angle = angle[angle < last, None]
+    round_points = np.array(circle.Location().Coord()) + circle.Radius() * (
+        np.cos(angle) * x + np.sin(angle) * y
+    )
+    return np.concatenate([points[[0, -1]], round_points])
+
+
+def face_box(view: FaceView, surface: Surface, boundary: Floats, progress: Progress = QUIET) -> Box:
+    """Return the lowest and highest corner around a face; `boundary` (k, 3) holds its edges' extremes.
+
+    Planes, cylinders and cones are ruled, so their extremes lie on the boundary. Free-form faces are searched by sampling.
+    """
+    if surface.kind in ("plane", "cylinder", "cone") and len(boundary):
+        return boundary.min(axis=0), boundary.max(axis=0)
+    if surface.kind in ("sphere", "torus"):
+        return _with_candidates(view, boundary, np.array(list(_candidates(surface))))
+    return _searched(view, boundary, progress)
+
+
+def _candidates(surface: Surface) -> Iterator[Floats]:
+    """Yield the points of a whole sphere or torus that are farthest along x, y and z, either way."""
+    for direction in np.concatenate([np.eye(3), -np.eye(3)]):
+        if surface.kind == "sphere":
+            yield surface.axis_point + surface.radius * direction
+            continue
+        across = direction - (direction @ surface.axis) * surface.axis
+        size = float(np.linalg.norm(across))
+        if size < tolerance.ANGLE:
+            across = np.cross(surface.axis, np.eye(3)[np.argmin(np.abs(surface.axis))])
+            size = float(np.linalg.norm(across))
+        for way in (1.0, -1.0):
+            yield (
+                surface.axis_point
+                + way * surface.radius * across / size
+                + surface.minor * direction
+            )
+
+
+def _with_candidates(view: FaceView, boundary: Floats, points: Floats) -> Box:
+    low = boundary.min(axis=0) if len(boundary) else np.full(3, np.inf)
+    high = boundary.max(axis=0) if len(boundary) else np.full(3, -np.inf)
+    beyond = ((points < low - tolerance.COINCIDENT) | (points > high + tolerance.COINCIDENT)).any(
+        axis=1
+    )
+    if beyond.any():
+        places = ShapeAnalysis_Surface(BRep_Tool.Surface_s(view.face))
+        for point in points[beyond]:
+            place = places.ValueOfUV(gp_Pnt(*point.tolist()), tolerance.COINCIDENT)
+            if places.Gap() < tolerance.FITTED and view.holds(place.X(), place.Y()):
+                low, high = np.minimum(low, point), np.maximum(high, point)
+    return low, high
+
+
+def _searched(view: FaceView, boundary: Floats, progress: Progress) -> Box:
+    """Return the box of samples, each of the six farthest ones followed by a finer and finer search around it."""
+    u0, u1, v0, v1 = view.bounds()
+    step = np.array([(u1 - u0) / _GRID, (v1 - v0) / _GRID])
+    trim, evaluate = Trim(view, progress), evaluator_of(view.adaptor)
+
+    def inside(places: Floats) -> tuple[Floats, Floats]:
+        kept = places[trim.holds(places)]
+        return kept, evaluate(kept)[:, 0]
+
+    places, points = inside(np.array(view.grid(_GRID)))
+    found = [boundary, points]
+    for axis in range(3):
+        for way in (1.0, -1.0):
+            here, reach = places, step
+            best = points
+            for _ in range(_ZOOMS if len(points) else 0):
+                centre = here[int(np.argmax(way * best[:, axis]))]
+                share = np.linspace(-1.0, 1.0, _ZOOM)
+                around = np.stack(np.meshgrid(share, share), axis=-1).reshape(-1, 2)
+                here, best = inside(np.clip(centre + around * reach, [u0, v0], [u1, v1]))
+                if not len(best):
+                    break
+                found.append(best)
+                reach = reach * (2.0 / _ZOOM)
+    cloud = np.concatenate(
+        [f for f in found if len(f)] or [np.array([view.at(0.5 * (u0 + u1), 0.5 * (v0 + v1))[0]])]
+    )
+    return cloud.min(axis=0), cloud.max(axis=0)

@@ -1,0 +1,277 @@
+"""Cutting data: speeds and feeds from material and cutter, bounded by what machine and cutter can bear; every bound in words."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Mapping
+from dataclasses import replace
+from itertools import pairwise
+
+from trunnion.model.material import Machine, Material
+from trunnion.model.operation import CuttingData, Operation
+from trunnion.model.process import ProcessTree
+from trunnion.model.tool import Tool
+from trunnion.plan.cutting.peak import with_peak
+from trunnion.plan.cutting.power import NEWTON_METRES, cutting_power
+from trunnion.settings import Value, setting, settings
+from trunnion.shop import Shop
+from trunnion.units import MM_PER_METRE, trimmed
+
+ROUGHING = ("face", "rough", "corner", "profile_rough")
+"""Kinds of operation that take the material's roughing speed."""
+
+
+@settings("cutting")
+class CuttingSettings:
+    """Limits that every operation's cutting data keep."""
+
+    speed_share: float = setting(
+        1.0,
+        unit="of the material's",
+        low=0.1,
+        high=3.0,
+        label="Cutting speed",
+        help="Factor on the material's cutting speeds.",
+    )
+    feed_share: float = setting(
+        1.0,
+        unit="of the material's",
+        low=0.1,
+        high=3.0,
+        label="Feed per tooth",
+        help="Factor on the material's feeds per tooth.",
+    )
+    depth_share: float = setting(
+        1.0,
+        unit="of the material's",
+        low=0.1,
+        high=3.0,
+        label="Roughing depth",
+        help="Factor on the material's depth of cut.",
+    )
+    width_share: float = setting(
+        1.0,
+        unit="of the material's",
+        low=0.1,
+        high=3.0,
+        label="Roughing width",
+        help="Factor on the material's width of cut.",
+    )
+    spindle_limit: float = setting(
+        100_000.0,
+        unit="1/min",
+        low=10.0,
+        high=200_000.0,
+        label="Spindle limit",
+        help="Highest spindle speed, when lower than the machine's.",
+    )
+    feed_limit: float = setting(
+        100_000.0,
+        unit="mm/min",
+        low=1.0,
+        high=200_000.0,
+        label="Feed limit",
+        help="Highest feed, when lower than the machine's.",
+    )
+    power_share: float = setting(
+        0.8,
+        unit="of the spindle's",
+        low=0.05,
+        high=1.0,
+        label="Power",
+        help="Share of the spindle's power at its speed that cutting may take.",
+    )
+    thinning_limit: float = setting(
+        1.5,
+        unit="times",
+        low=1.0,
+        high=10.0,
+        label="Chip thinning",
+        help="How far the feed may be raised for a small width of cut.",
+    )
+    plunge_share: float = setting(
+        0.4,
+        unit="of the feed",
+        low=0.02,
+        high=1.0,
+        label="Plunge feed",
+        help="Feed downwards over the feed across.",
+    )
+    slender: float = setting(
+        4.0,
+        unit="diameters",
+        low=1.0,
+        high=20.0,
+        label="Slender from",
+        help="Stickout over diameter from which feed and depth are reduced.",
+    )
+    slender_share: float = setting(
+        0.5,
+        unit="of both",
+        low=0.1,
+        high=1.0,
+        label="Slenderest",
+        help="What is left of feed and depth at two and a half times that length, and beyond.",
+    )
+
+
+def chip_thinning(diameter: float, width: float) -> float:
+    """Return by how much a chip is thinner than the feed per tooth: D / (2 sqrt(ae (D - ae))) for ae < D / 2, else 1.
+
+    >>> chip_thinning(20.0, 10.0), round(chip_thinning(20.0, 2.0), 4)
+    (1.0, 1.6667)
+    """
+    if width >= diameter / 2:
+        return 1.0
+    return diameter / (2.0 * math.sqrt(width * (diameter - width)))
+
+
+def slenderness(tool: Tool, settings: CuttingSettings) -> float:
+    """Return the share of feed and depth that a stickout leaves: 1 up to `slender` diameters, falling straight to `slender_share`."""
+    excess = (tool.stickout / tool.diameter - settings.slender) / (1.5 * settings.slender)
+    return 1.0 - min(max(excess, 0.0), 1.0) * (1.0 - settings.slender_share)
+
+
+def table_feed(material: Material, diameter: float) -> float:
+    """Return the material's feed per tooth in mm for a diameter: straight between the rows, in proportion below them, the last above."""
+    rows = [(d, low + material.feed_share * (high - low)) for d, low, high in material.feeds]
+    if diameter <= rows[0][0]:
+        return rows[0][1] * diameter / rows[0][0]
+    for (d0, f0), (d1, f1) in pairwise(rows):
+        if diameter <= d1:
+            return f0 + (f1 - f0) * (diameter - d0) / (d1 - d0)
+    return rows[-1][1]
+
+
+def roughing_depth(tool: Tool, material: Material, settings: CuttingSettings) -> float:
+    """Return the depth of cut in mm that a material and a cutter bear when roughing, not more than the flutes."""
+    return min(
+        material.depth_factor * settings.depth_share * slenderness(tool, settings) * tool.diameter,
+        tool.flute_length,
+    )
+
+
+def roughing_width(tool: Tool, material: Material, settings: CuttingSettings) -> float:
+    """Return the width of cut in mm that a material bears when roughing."""
+    return min(material.width_factor * settings.width_share, 1.0) * tool.diameter
+
+
+def cutting_data(
+    tool: Tool,
+    material: Material,
+    machine: Machine,
+    kind: str,
+    settings: CuttingSettings,
+    depth: float,
+    width: float,
+    widest: float = 0.0,
+) -> CuttingData:
+    """Return the data of an operation of `kind` that cuts `depth` ap and `width` ae (mm), with a sentence for each number.
+
+    Feeds follow from the material's table, chip thinning and slenderness; then spindle, feed and power of the machine bound them.
+    `widest` (mm) is what may stand in front of the cutter at once, where the area says so.
+    """
+    rough = kind in ROUGHING
+    speed = (material.speed_rough if rough else material.speed_finish) * settings.speed_share
+    rules = [
+        f"vc {trimmed(speed, 0)} m/min: {material.name}, {'roughing' if rough else 'finishing'}"
+    ]
+    spindle = speed * MM_PER_METRE / (math.pi * tool.diameter)
+    highest = min(machine.spindle_high, settings.spindle_limit)
+    if not machine.spindle_low <= spindle <= highest:
+        spindle = min(max(spindle, machine.spindle_low), highest)
+        speed = spindle * math.pi * tool.diameter / MM_PER_METRE
+        rules.append(
+            f"n {trimmed(spindle, 0)} 1/min: the spindle's limit, so vc is {trimmed(speed, 0)} m/min"
+        )
+    width, depth = min(width, tool.diameter), min(depth, tool.flute_length)
+    table = table_feed(material, tool.diameter) * settings.feed_share
+    rules.append(
+        f"fz {trimmed(table, 3)} mm: the material's table at D {trimmed(tool.diameter, 2)}"
+    )
+    thinning = min(chip_thinning(tool.diameter, width), settings.thinning_limit)
+    if thinning > 1.0:
+        rules.append(
+            f"fz times {trimmed(thinning, 2)}: chips are thinner at ae {trimmed(width, 2)} below half the diameter"
+        )
+    share = slenderness(tool, settings)
+    if share < 1.0:
+        rules.append(
+            f"fz times {trimmed(share, 2)}: the cutter sticks out {trimmed(tool.stickout / tool.diameter, 1)} diameters"
+        )
+    feed = table * thinning * share * tool.teeth * spindle
+    fastest = min(machine.feed_max, settings.feed_limit)
+    if feed > fastest:
+        feed = fastest
+        rules.append(f"vf {trimmed(feed, 0)} mm/min: the machine's limit")
+    limit = machine.power_at(spindle) * settings.power_share
+    power = cutting_power(
+        material, tool.diameter, feed / (tool.teeth * spindle), depth, width, feed
+    )
+    if power > limit:
+        feed *= (limit / power) ** (1.0 / (1.0 - material.force_exponent))
+        power = cutting_power(
+            material, tool.diameter, feed / (tool.teeth * spindle), depth, width, feed
+        )
+        rules.append(
+            f"vf {trimmed(feed, 0)} mm/min: the spindle gives {trimmed(limit, 1)} kW at this speed "
+            f"({trimmed(NEWTON_METRES * limit / spindle, 1)} Nm)"
+        )
+    return CuttingData(
+        speed=speed,
+        spindle=spindle,
+        feed_per_tooth=feed / (tool.teeth * spindle),
+        feed=feed,
+        plunge_feed=feed * settings.plunge_share,
+        depth=depth,
+        width=width,
+        removal_rate=depth * width * feed / MM_PER_METRE,
+        power=power,
+        power_limit=limit,
+        torque=NEWTON_METRES * power / spindle,
+        rules=tuple(rules),
+        widest=widest,
+    )
+
+
+def balance(
+    process: ProcessTree, shop: Shop, settings: CuttingSettings, choices: Mapping[str, Value]
+) -> ProcessTree:
+    """Return the process with every operation's data computed again under these limits; what a person set by hand stays.
+
+    Every operation is told the peak of its load under a session's `choices` for the strategies.
+    """
+    material, done = shop.material(process.material), list[Operation]()
+    for operation in process.operations:
+        balanced = _balanced(operation, process, material, shop, settings)
+        done.append(
+            with_peak(balanced, [o for o in done if o.setup == operation.setup], material, choices)
+        )
+    return replace(process, operations=tuple(done))
+
+
+def _balanced(
+    operation: Operation,
+    process: ProcessTree,
+    material: Material,
+    shop: Shop,
+    settings: CuttingSettings,
+) -> Operation:
+    if operation.by_hand:
+        return operation
+    machine = shop.machine(process.setup(operation.setup).machine)
+    depth, width = operation.data.routed_depth or operation.data.depth, operation.data.width
+    if operation.kind in ROUGHING and operation.kind != "face":
+        depth = min(depth, roughing_depth(operation.tool, material, settings))
+        width = min(width, roughing_width(operation.tool, material, settings))
+    data = cutting_data(
+        operation.tool,
+        material,
+        machine,
+        operation.kind,
+        settings,
+        depth,
+        width,
+        operation.data.widest,
+    )
+    return replace(operation, data=data)

@@ -1,0 +1,1 @@
+"""Cutters for curved faces: where one touches, and which of the catalogue an area gets."""

@@ -1,0 +1,1 @@
+"""Scallop heights, area rates and finishing times, by the arithmetic of the surface paper."""

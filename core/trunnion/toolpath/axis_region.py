@@ -1,0 +1,169 @@
+"""Where a cutter's axis may be, and the parts of a curve that lie there."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import ArrayLike
+
+from trunnion import tolerance
+from trunnion.findings import Refused
+from trunnion.geometry.arrays import Floats
+from trunnion.geometry.plane.curve import Curve, segment_boxes
+from trunnion.geometry.plane.region import Region, union_all
+from trunnion.plan.prismatic.drive import DriveLevel, PlaneDrive
+
+OPEN_MARGIN = 0.5
+"""mm: a boundary that runs on past the wanted area by more than this is open there."""
+
+SPACING = 0.5
+"""mm between the places of a curve that are looked at; the ends of its parts are then found to `END`."""
+
+CLIP_SPACING = 1.0
+"""mm between the places that are looked at where a part's ends need not be exact: a clip is wider than what is wanted."""
+
+END = tolerance.SHORT_MOVE
+"""mm: how exactly the end of a part of a curve is found."""
+
+SHORTEST = 0.05
+"""mm: a part of a curve shorter than this is not worth a cut."""
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Room:
+    """The plane area where the axis may be at one height."""
+
+    region: Region
+
+    @staticmethod
+    def of(boundary: Region, distance: float, *, mitred: bool = False) -> Room:
+        """Return the room of an axis that keeps `distance` from the rim of `boundary`.
+
+        Round a sharp edge of the part the axis may go in an arc; when `mitred`, only straight on to where both its walls' passes meet: a
+        fillet at the foot of such walls is mitred at their edge, and a cutter that went round would cut into the mitre.
+        """
+        room = boundary.offset(-distance)
+        return Room(room.minus(union_all(_mitres(boundary, distance))) if mitred and room else room)
+
+    def depth(self, points: ArrayLike) -> Floats:
+        """Return how far inside the room points (k, 2) are (negative outside)."""
+        return self.region.signed_distance(np.atleast_2d(np.asarray(points, dtype=np.float64)))
+
+    def holds(self, points: ArrayLike) -> bool:
+        """Say whether all points (k, 2) are in the room, its rim included."""
+        return bool(self.region) and bool((self.depth(points) >= -tolerance.ON_REGION).all())
+
+    def holds_line(self, start: ArrayLike, end: ArrayLike) -> bool:
+        """Say whether the straight way between two points (2,) stays in the room."""
+        a, b = np.asarray(start, dtype=np.float64)[:2], np.asarray(end, dtype=np.float64)[:2]
+        count = max(2, int(np.hypot(*(b - a)) / SPACING) + 2)
+        return self.holds(a + np.linspace(0.0, 1.0, count)[:, None] * (b - a))
+
+
+def is_closed(level: DriveLevel) -> bool:
+    """Say whether a band's walls close it all round: its boundary does not run on past what is wanted."""
+    return not level.boundary.minus(level.wanted.offset(OPEN_MARGIN))
+
+
+def _mitres(boundary: Region, distance: float) -> list[Region]:
+    """Return the kites between the sharp edges of the part in a boundary's rim and the meeting points of the passes beside them."""
+    kites = []
+    for curve in boundary.curves():
+        seg = curve.segments()
+        straight = np.isnan(seg.radius)
+        before = np.roll(np.arange(len(seg)), 1)
+        ways = np.divide(seg.end - seg.start, seg.length[:, None])
+        turns = ways[before, 0] * ways[:, 1] - ways[before, 1] * ways[:, 0]
+        # The region lies on the left: where its rim turns right by more than a blend does, the part has a sharp edge.
+        for k in np.flatnonzero(straight & straight[before] & (turns < -np.sin(tolerance.TANGENT))):
+            left = np.array([[-w[1], w[0]] for w in (ways[before[k]], ways[k])]) * distance
+            along = left.sum(axis=0)
+            tip = along * (2.0 * distance**2 / (along @ along))
+            kites.append(
+                Region.of(
+                    [Curve.polygon(seg.start[k] + np.array([np.zeros(2), left[1], tip, left[0]]))]
+                )
+            )
+    return kites
+
+
+def level_at(drive: PlaneDrive, z: float) -> DriveLevel:
+    """Return the band of a drive that the tip is in at a height: a height on two bands belongs to the upper one.
+
+    Raises `Refused` when the drive has no levels.
+    """
+    if not drive.levels:
+        raise Refused(
+            f"{drive.feature}: nothing says where the cutter may be; give the operation's drive its levels"
+        )
+    for level in drive.levels:
+        if z >= level.bottom - tolerance.SEW:
+            return level
+    return drive.levels[-1]
+
+
+def points_along(curve: Curve, spacing: float = SPACING) -> tuple[Floats, Floats]:
+    """Return arc lengths (k,) no farther apart than `spacing`, every vertex among them, and the points (k, 2) there.
+
+    Of a closed curve the first point does not come again.
+    """
+    seg = curve.segments()
+    count = np.maximum(np.ceil(seg.length / spacing), 1).astype(np.int64)
+    rows = np.repeat(np.arange(len(seg)), count)
+    share = (np.arange(len(rows)) - np.repeat(np.cumsum(count) - count, count)) / count[rows]
+    before = np.cumsum(seg.length) - seg.length
+    lengths = before[rows] + share * seg.length[rows]
+    points = seg.at(rows, share * seg.length[rows])
+    if curve.closed:
+        return lengths, points
+    return np.append(lengths, seg.length.sum()), np.vstack([points, seg.end[-1:]])
+
+
+def parts_where(
+    curve: Curve, keep: Callable[[Floats], Floats], spacing: float = SPACING
+) -> list[Curve]:
+    """Return the parts of a curve where `keep` of its points (k, 2) is at least 0, in order; the curve itself when that is everywhere."""
+    s, points = points_along(curve, spacing)
+    inside = keep(points) >= 0.0
+    if inside.all():
+        return [curve]
+    if not inside.any():
+        return []
+    total = curve.length
+    if curve.closed:
+        s, inside = np.append(s, total), np.append(inside, inside[0])
+    changes = np.flatnonzero(inside[1:] != inside[:-1])
+    low, high, starts_inside = s[changes], s[changes + 1], inside[changes]
+    while float((high - low).max()) > END:
+        middle = 0.5 * (low + high)
+        same = (keep(_points_at(curve, middle)) >= 0.0) == starts_inside
+        low, high = np.where(same, middle, low), np.where(same, high, middle)
+    # The end that lies inside, so that a part never stands out of where it may be.
+    ends = np.where(starts_inside, low, high)
+    marks = list(ends)
+    if curve.closed:
+        if starts_inside[0]:
+            marks = marks[1:] + [marks[0] + total]
+    else:
+        marks = ([0.0] if inside[0] else []) + marks + ([total] if inside[-1] else [])
+    return [
+        curve.split(a, b) for a, b in zip(marks[::2], marks[1::2], strict=True) if b - a > SHORTEST
+    ]
+
+
+def parts_near(curve: Curve, clip: Region, keep: Callable[[Floats], Floats]) -> list[Curve]:
+    """Return the parts of a curve where `keep` is at least 0, which it nowhere is outside the box of a clip."""
+    low, high = clip.box()
+    first, last = segment_boxes(curve.segments())
+    if ((first > high) | (last < low)).any(axis=1).all():
+        return []
+    return parts_where(curve, keep, CLIP_SPACING)
+
+
+def _points_at(curve: Curve, lengths: Floats) -> Floats:
+    seg = curve.segments()
+    ends = np.cumsum(seg.length)
+    rows = np.minimum(np.searchsorted(ends, lengths, side="right"), len(seg) - 1)
+    return seg.at(rows, lengths - (ends[rows] - seg.length[rows]))

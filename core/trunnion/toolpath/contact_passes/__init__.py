@@ -1,0 +1,1 @@
+"""What surface strategies share: contacts, tool axes, passes, their spacing and linking."""

@@ -1,0 +1,453 @@
+"""From passes to a toolpath: in which order they are cut, how the cutter comes to each and leaves it, and the ways between.
+
+A pass is entered and left by a quarter circle in the plane of feed and normal, so that no mark shows where. A pass that begins near the
+end of the one before is reached over the surface; else the cutter is lifted as far as the stock demands. Whatever is not a cut is lifted
+where it would come below the dropped cutter.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+from dataclasses import dataclass
+from itertools import pairwise
+
+import numpy as np
+
+from trunnion import tolerance
+from trunnion.findings import Refused
+from trunnion.geometry.arrays import Bools, Floats, unit
+from trunnion.model.operation import CuttingData
+from trunnion.model.setup import Setup
+from trunnion.model.tool import Tool
+from trunnion.model.toolpath import EMPTY, Mark, Motion, Toolpath
+from trunnion.plan.freeform.cutters.cutter import lower_side
+from trunnion.plan.freeform.drive import SurfaceDrive
+from trunnion.progress import QUIET, Progress
+from trunnion.toolpath.contact_passes.passes import UPRIGHT, Pass
+from trunnion.toolpath.contact_passes.tracing import follow, thinned
+from trunnion.toolpath.motion.builder import PathBuilder
+from trunnion.toolpath.motion.link import is_free, lowest_tip
+from trunnion.toolpath.stock.heightfield import PlanningStock
+
+NEAR = 3.0
+"""Stepovers: a pass that begins no farther from the end of the one before is reached without lifting."""
+QUARTER = 16
+"""Straight moves in a lead's quarter circle: at 2 mm, 2 um from it."""
+BETWEEN = 9
+"""Places between two leads that are asked for room."""
+LIFT_STEP = 0.02
+"""mm: the difference of what two neighbours on a lead are lifted by, from which on the lead is left out."""
+SAME = 1e-9
+"""Two directions that differ by less are one."""
+SWING = math.cos(math.radians(60.0))
+"""The least part along z of an axis that may turn on its way over the work; a tool that leans more is set upright before."""
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Manner:
+    """How passes are linked: the `stepover` between them, the `safety` distance of rapids and the `lead_radius` in mm; `order` is "given"
+    or "nearest"; `reversing` allows passes to be cut the other way where that is nearer; `chord` is the chord error of links, mm. With
+    `arcs` a near pass is reached by the leads of both, and above the stock where these have no room: for walls, beside which a cutter that
+    follows the surface would be lifted to their tops. Closed passes go on over their start by the `overlap` in mm."""
+
+    stepover: float
+    safety: float = 2.0
+    lead_radius: float = 1.0
+    order: str = "given"
+    reversing: bool = False
+    chord: float = 2e-3
+    arcs: bool = False
+    overlap: float = 0.0
+
+
+def linked(
+    passes: Sequence[Pass],
+    drive: SurfaceDrive,
+    tool: Tool,
+    data: CuttingData,
+    stock: PlanningStock,
+    setup: Setup,
+    manner: Manner,
+    progress: Progress = QUIET,
+) -> Toolpath:
+    """Return the toolpath that cuts all passes, in the cutting frame; it begins and ends at the setup's clearance height."""
+    passes = [p for p in passes if len(p) > 1]
+    if not passes:
+        return EMPTY
+    passes = _ordered(passes, manner, progress.part(0.0, 0.2))
+    near = _near(passes, manner)
+    leads_in, leads_out, has_room = _leads(passes, drive, tool, manner, progress.part(0.2, 0.4))
+    if manner.arcs:
+        near &= has_room
+        ways = iter(
+            [
+                np.vstack([leads_out[k], leads_in[k + 1], passes[k + 1].tip[:1]])
+                for k in np.flatnonzero(near).tolist()
+            ]
+        )
+    else:
+        ways = iter(_links(passes, near, drive, tool, manner, progress.part(0.4, 0.9)))
+    blocks = _Blocks(tool, data, stock, setup, drive, manner.safety)
+    for k, one in enumerate(passes):
+        progress.at(0.9 + 0.1 * k / len(passes), "Linking passes")
+        if k and near[k - 1]:
+            blocks.feed(next(ways), one.axis[0], Mark.LINK)
+        else:
+            if k:
+                blocks.feed(leads_out[k - 1], passes[k - 1].axis[-1], Mark.LEAD)
+            blocks.travel(leads_in[k][0], one.axis[0])
+            blocks.feed(np.vstack([leads_in[k][1:], one.tip[:1]]), one.axis[0], Mark.LEAD)
+        blocks.feed(one.tip, one.axis, Mark.CUT)
+    blocks.feed(leads_out[-1], passes[-1].axis[-1], Mark.LEAD)
+    return blocks.finished()
+
+
+class _Blocks:
+    """A toolpath in the making, in arrays: most of it are whole passes."""
+
+    def __init__(
+        self,
+        tool: Tool,
+        data: CuttingData,
+        stock: PlanningStock,
+        setup: Setup,
+        drive: SurfaceDrive,
+        safety: float,
+    ) -> None:
+        # A builder without a block: it answers how low the tip may go over the stock before the operation.
+        self._air = PathBuilder(tool, data, stock, setup, safety)
+        self._tool, self._data, self._drive = tool, data, drive
+        self._parts: list[tuple[Floats, Floats, Motion, float, Mark]] = []
+
+    @property
+    def here(self) -> Floats:
+        """Where the tip is (3,)."""
+        return self._parts[-1][0][-1]
+
+    @property
+    def axis(self) -> Floats:
+        """How the tool stands (3,)."""
+        return self._parts[-1][1][-1]
+
+    def feed(self, tips: Floats, axis: Floats, mark: Mark) -> None:
+        """Feed along tips (k, 3) with one axis (3,) or an axis each (k, 3)."""
+        if len(tips):
+            self._parts.append(
+                (tips, np.broadcast_to(axis, tips.shape), Motion.LINE, self._data.feed, mark)
+            )
+
+    def travel(self, place: Floats, axis: Floats) -> None:
+        """Bring the tip to a place (3,) through the air, at the end by a feed."""
+        stops = self._outside(place, axis)
+        if self._parts and _is_upright(self.axis) and _is_upright(axis):
+            self._lift(place)
+        else:
+            if self._parts:
+                self._leave()
+                if min(self.axis[2], axis[2]) < SWING:
+                    self._rapid(self.here, UPRIGHT)
+                    self._rapid(np.append(stops[-1][:2], self.here[2]), UPRIGHT)
+            for stop in stops[::-1]:
+                self._rapid(stop, axis)
+        if _is_upright(axis):
+            self._down(place)
+        else:
+            self._add(place, axis, Motion.LINE, self._data.feed, Mark.LEAD)
+
+    def finished(self) -> Toolpath:
+        """Return the path, its last block a retract to the clearance height."""
+        self._leave()
+        count = [len(p[0]) for p in self._parts]
+        position, axis = (np.concatenate([p[k] for p in self._parts]) for k in (0, 1))
+        motion, feed, mark = (np.repeat([p[k] for p in self._parts], count) for k in (2, 3, 4))
+        kept = _goes(position, axis)
+        return Toolpath(
+            position=position[kept],
+            axis=axis[kept],
+            motion=motion[kept],
+            feed=feed[kept],
+            mark=mark[kept],
+            centre=np.full((int(kept.sum()), 3), np.nan),
+        )
+
+    def _lift(self, place: Floats) -> None:
+        """Go over a place, upright: no higher than what may be on the way demands."""
+        safe = lowest_tip(self._air, self.here[:2], place[:2]) + self._air.safety
+        height = min(max(safe, float(self.here[2]), float(place[2])), self._air.clearance)
+        self._rapid(np.append(self.here[:2], height), UPRIGHT)
+        self._rapid(np.append(place[:2], height), UPRIGHT)
+
+    def _down(self, place: Floats) -> None:
+        """Come down upright: at rapid as far as the stock allows, then at feed, slowly where there is material."""
+        safe = max(lowest_tip(self._air, place[:2], place[:2]), float(place[2])) + self._air.safety
+        self._rapid(np.append(place[:2], min(safe, float(self.here[2]))), UPRIGHT)
+        if is_free(self._air, place[:2], float(place[2])):
+            self._add(place, UPRIGHT, Motion.LINE, self._data.feed, Mark.LEAD)
+        else:
+            self._add(place, UPRIGHT, Motion.LINE, self._data.plunge_feed, Mark.ENTRY)
+
+    def _leave(self) -> None:
+        axis = self.axis
+        for stop in self._outside(self.here, axis):
+            self._rapid(stop, axis)
+
+    def _outside(self, here: Floats, axis: Floats) -> list[Floats]:
+        """Return the places that a tool passes on its way along its axis from the work up to clearance: past the blank's side and up from
+        there where it leans so much that the way up is longer."""
+        height = self._air.clearance + _below(self._tool, float(axis[2]))
+        up = (height - here[2]) / axis[2] if axis[2] > 0.0 else math.inf
+        aside = (
+            max([self._tool.radius, *(max(r0, r1) for _, r0, _, r1 in self._tool.profile())])
+            + self._air.safety
+        )
+        wall = np.where(axis[:2] > 0.0, self._drive.high[:2] + aside, self._drive.low[:2] - aside)
+        beside = np.divide(
+            wall - here[:2], axis[:2], out=np.full(2, math.inf), where=axis[:2] != 0.0
+        ).min()
+        if axis[2] >= SWING or up <= beside:
+            return [here + up * axis]
+        if beside == math.inf:
+            raise Refused(
+                f"{self._drive.feature}: a tool that points straight up can't be brought to the part"
+            )
+        stop = here + max(beside, 0.0) * axis
+        return [stop, np.append(stop[:2], max(height, stop[2]))]
+
+    def _rapid(self, place: Floats, axis: Floats) -> None:
+        self._add(place, axis, Motion.RAPID, 0.0, Mark.RETRACT)
+
+    def _add(self, place: Floats, axis: Floats, motion: Motion, feed: float, mark: Mark) -> None:
+        self._parts.append((np.asarray(place)[None], np.asarray(axis)[None], motion, feed, mark))
+
+
+def _below(tool: Tool, upright: float) -> float:
+    """Return how far anything on the spindle is below the tip when the axis has a part `upright` along z."""
+    across = math.sqrt(max(1.0 - upright * upright, 0.0))
+    rings = [
+        (0.0, tool.radius),
+        *((z, r) for z0, r0, z1, r1 in tool.profile() for z, r in ((z0, r0), (z1, r1))),
+    ]
+    return max(0.0, *(r * across - z * upright for z, r in rings))
+
+
+def _is_upright(axis: Floats) -> bool:
+    return bool(np.abs(axis - UPRIGHT).max() < SAME)
+
+
+def _goes(position: Floats, axis: Floats) -> Bools:
+    """Say which blocks (n,) go anywhere or turn the tool: posts write four decimals, so a shorter move would be an empty block."""
+    kept = np.ones(len(position), dtype=bool)
+    while True:
+        rows = np.flatnonzero(kept)
+        still = (np.linalg.norm(np.diff(position[rows], axis=0), axis=1) < tolerance.SHORT_MOVE) & (
+            np.abs(np.diff(axis[rows], axis=0)).max(axis=1) < SAME
+        )
+        # Of several short moves in a row every other one goes; what is left may then be long enough.
+        still[1:] &= ~still[:-1]
+        if not still.any():
+            return kept
+        kept[rows[1:][still]] = False
+
+
+def _ordered(passes: Sequence[Pass], manner: Manner, progress: Progress) -> list[Pass]:
+    """Return the passes in the order they are cut, closed ones begun where they come nearest to the end of the one before."""
+    if manner.order == "nearest":
+        passes = _nearest(passes, manner.reversing, progress)
+    out: list[Pass] = []
+    for one in passes:
+        if one.closed:
+            one = _overlapped(_begun(one, out[-1].tip[-1] if out else one.tip[0]), manner.overlap)
+        out.append(one)
+    return out
+
+
+def _nearest(passes: Sequence[Pass], reversing: bool, progress: Progress) -> list[Pass]:
+    """Return the passes so that each begins near where the one before ends, from the first on."""
+    starts, ends = (np.array([p.tip[k] for p in passes]) for k in (0, -1))
+    out, left = [passes[0]], np.ones(len(passes), dtype=bool)
+    left[0] = False
+    while left.any():
+        progress.at(len(out) / len(passes), "Ordering passes")
+        rows, here = np.flatnonzero(left), out[-1].tip[-1]
+        ahead = np.linalg.norm(starts[rows] - here, axis=1)
+        back = np.linalg.norm(ends[rows] - here, axis=1)
+        turns = reversing and back.min() < ahead.min() - tolerance.COINCIDENT
+        row = int(rows[np.argmin(back if turns else ahead)])
+        out.append(passes[row].reversed() if turns else passes[row])
+        left[row] = False
+    return out
+
+
+def _begun(one: Pass, place: Floats) -> Pass:
+    """Return a closed pass that begins at its tip nearest to a place."""
+    row = int(np.argmin(np.linalg.norm(one.tip[:-1] - place, axis=1)))
+    order = np.append(np.roll(np.arange(len(one) - 1), -row), row)
+    return Pass(tip=one.tip[order], axis=one.axis[order], normal=one.normal[order], closed=True)
+
+
+def _overlapped(one: Pass, overlap: float) -> Pass:
+    """Return a closed pass that goes on over its start by an overlap."""
+    if overlap <= 0.0:
+        return one
+    run = np.concatenate([[0.0], np.cumsum(np.linalg.norm(np.diff(one.tip, axis=0), axis=1))])
+    last = min(overlap, 0.5 * float(run[-1]))
+    row = int(np.searchsorted(run, last, side="right")) - 1
+    share = (last - run[row]) / (run[row + 1] - run[row])
+    more = (
+        np.vstack([a[1 : row + 1], (1.0 - share) * a[row : row + 1] + share * a[row + 1 : row + 2]])
+        for a in (one.tip, one.axis, one.normal)
+    )
+    tip, axis, normal = (
+        np.vstack([a, b]) for a, b in zip((one.tip, one.axis, one.normal), more, strict=True)
+    )
+    return Pass(tip=tip, axis=unit(axis), normal=normal)
+
+
+def _near(passes: Sequence[Pass], manner: Manner) -> Bools:
+    """Say of each pass but the last whether the next one is reached without lifting."""
+    ends, starts = (
+        np.array([p.tip[-1] for p in passes[:-1]]).reshape(-1, 3),
+        np.array([p.tip[0] for p in passes[1:]]).reshape(-1, 3),
+    )
+    turned = np.array([np.abs(a.axis[-1] - b.axis[0]).max() for a, b in pairwise(passes)])
+    near = np.linalg.norm(starts - ends, axis=1) <= NEAR * manner.stepover
+    return np.asarray(near & (turned < SAME))
+
+
+def _links(
+    passes: Sequence[Pass],
+    near: Bools,
+    drive: SurfaceDrive,
+    tool: Tool,
+    manner: Manner,
+    progress: Progress,
+) -> list[Floats]:
+    """Return the ways over the surface (k, 3) from the ends of near passes to the next ones: straight, lifted where that would gouge.
+
+    Between leaning passes they are straight: a stepover is short.
+    """
+    rows = np.flatnonzero(near).tolist()
+    chords = [np.array([passes[k].tip[-1], passes[k + 1].tip[0]]) for k in rows]
+    upright = [bool(_is_upright(passes[k].axis[-1])) for k in rows]
+    lowest = float(drive.low[2]) - tool.flute_length
+    over = iter(
+        follow(
+            drive.skin.drop,
+            lower_side(tool, drive.allowance),
+            [c[:, :2] for c, up in zip(chords, upright) if up],
+            manner.chord,
+            lowest,
+            progress,
+        )
+    )
+    return [
+        _bridged(next(over), chord, drive.allowance, manner.chord) if up else chord
+        for chord, up in zip(chords, upright)
+    ]
+
+
+def _bridged(way: Floats, chord: Floats, allowance: float, error: float) -> Floats:
+    """Return a way over the surface (k, 3), the height of the chord (2, 3) between its ends where that is higher."""
+    run = np.hypot(*(way[:, :2] - chord[0, :2]).T)
+    share = run / run[-1] if run[-1] > 0.0 else np.linspace(0.0, 1.0, len(way))
+    lifted = np.column_stack(
+        [
+            way[:, :2],
+            np.maximum(way[:, 2] + allowance, chord[0, 2] + share * (chord[1, 2] - chord[0, 2])),
+        ]
+    )
+    return lifted[thinned(lifted, np.zeros(len(lifted), np.int64), error)]
+
+
+def _leads(
+    passes: Sequence[Pass], drive: SurfaceDrive, tool: Tool, manner: Manner, progress: Progress
+) -> tuple[Floats, Floats, Bools]:
+    """Return the ways (m, k, 3) onto all passes, up to the first tip, and off them, after the last: quarter circles, lifted where they
+    would gouge. And say of each pass but the last whether the way off it and onto the next one needs no lifting (m - 1,)."""
+    coming = _arcs(
+        np.array([p.tip[0] for p in passes]),
+        np.array([_off(p.tip, p.axis[0]) for p in passes]),
+        np.array([p.normal[0] for p in passes]),
+        np.array([p.axis[0] for p in passes]),
+        manner.lead_radius,
+    )[:, ::-1]
+    going = _arcs(
+        np.array([p.tip[-1] for p in passes]),
+        np.array([_off(p.tip[::-1], p.axis[-1]) for p in passes]),
+        np.array([p.normal[-1] for p in passes]),
+        np.array([p.axis[-1] for p in passes]),
+        manner.lead_radius,
+    )
+    upright = np.array([[_is_upright(p.axis[row]) for p in passes] for row in (0, -1)])
+    share = np.linspace(0.0, 1.0, BETWEEN)[:, None]
+    between = going[:-1, -1:] + share * (coming[1:, :1] - going[:-1, -1:])
+    ways = (coming, going, between)
+    flat = np.concatenate([w.reshape(-1, 3) for w in ways])
+    floor = drive.skin.drop.drop(
+        flat[:, :2],
+        lower_side(tool, drive.allowance),
+        float(drive.low[2]) - tool.flute_length,
+        progress,
+    )
+    lift = np.maximum(floor + drive.allowance - flat[:, 2], 0.0)
+    lifts = [
+        x.reshape(w.shape[:2])
+        for x, w in zip(
+            np.split(lift, np.cumsum([w[..., 0].size for w in ways])[:-1]), ways, strict=True
+        )
+    ]
+    for arcs, up, stands, nearest, row in zip(
+        (coming, going), lifts, upright, (-1, 0), (0, -1), strict=False
+    ):
+        arcs[:, :, 2] += np.where(stands[:, None], up, 0.0)
+        # Lifted unevenly an arc runs along something steep, which its chords would enter: the tool then comes and goes along its axis.
+        uneven = stands & (
+            np.abs(np.diff(up, axis=1)).max(axis=1, initial=0.0) + up[:, nearest] > LIFT_STEP
+        )
+        tips = np.array([p.tip[row] for p in passes])[uneven]
+        rise = np.arange(1, QUARTER + 1) * (manner.lead_radius / QUARTER)
+        arcs[uneven] = (
+            tips[:, None] + (rise if nearest == 0 else rise[::-1])[None, :, None] * UPRIGHT
+        )
+    has_room = (lifts[0][1:].max(axis=1, initial=0.0) <= manner.chord) & (
+        lifts[1][:-1].max(axis=1, initial=0.0) <= manner.chord
+    )
+    return (
+        coming,
+        going,
+        np.asarray(
+            has_room
+            & (lifts[2].max(axis=1, initial=0.0) <= manner.chord)
+            & upright[1, :-1]
+            & upright[0, 1:]
+        ),
+    )
+
+
+def _off(tip: Floats, axis: Floats) -> Floats:
+    """Return the way (3,) on which a pass that begins with tips (k, 3) is left, or come to, there: straight on, or along the axis where
+    the tool only turns about its tip, as a ball does in a hollow as round as it is."""
+    away = tip[0] - tip
+    moved = np.flatnonzero(np.linalg.norm(away, axis=1) > tolerance.COINCIDENT)
+    return np.asarray(away[moved[0]] if len(moved) else axis)
+
+
+def _arcs(tips: Floats, along: Floats, normals: Floats, axes: Floats, radius: float) -> Floats:
+    """Return quarter circles (m, QUARTER, 3) that leave tips (m, 3) along directions and turn to the side of the normals; without the
+    tips."""
+    along = unit(along)
+    side = normals - (normals * along).sum(axis=1, keepdims=True) * along
+    flat = np.linalg.norm(side, axis=1) < SAME
+    side[flat] = axes[flat] - (axes[flat] * along[flat]).sum(axis=1, keepdims=True) * along[flat]
+    side = np.divide(
+        side,
+        np.linalg.norm(side, axis=1, keepdims=True),
+        out=axes.copy(),
+        where=np.linalg.norm(side, axis=1)[:, None] > SAME,
+    )
+    angle = 0.5 * math.pi * np.arange(1, QUARTER + 1)[:, None] / QUARTER
+    out: Floats = tips[:, None] + radius * (
+        np.sin(angle) * along[:, None] + (1.0 - np.cos(angle)) * side[:, None]
+    )
+    return out

@@ -1,0 +1,1 @@
+"""Motions: collecting blocks, links, reorientation, feeds, easing by engagement, machine time."""

@@ -1,0 +1,270 @@
+"""Clears an area at one height by contour-parallel passes, from the inside out, staying down where it may.
+
+Used by every strategy that takes material off a floor-like area; what is roughing and what is finishing is said by the numbers.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+
+from trunnion import tolerance
+from trunnion.geometry.arrays import Floats
+from trunnion.geometry.plane.curve import Curve
+from trunnion.geometry.plane.region import Region
+from trunnion.model.toolpath import Mark
+from trunnion.progress import Progress
+from trunnion.toolpath.axis_region import Room, parts_near
+from trunnion.toolpath.motion.builder import PathBuilder
+from trunnion.toolpath.motion.link import is_free, step_aside, top_under, travel
+from trunnion.toolpath.motion.order import nearest_first
+from trunnion.toolpath.offsetting.entry import (
+    deepest_place,
+    helix,
+    helix_radius,
+    ramp_along,
+    ramp_round,
+)
+from trunnion.toolpath.offsetting.lead import enter, fitting_lead, leave
+from trunnion.toolpath.offsetting.rings import Ring
+
+RUN_OUTS = (0.5, 1.0, 2.0, 3.0, 4.0)
+"""Of the radius: how far before an open pass a place that is certainly free is looked for."""
+
+RUN_OUT_WAYS = (
+    (-1.0, 0.0),
+    (-0.7, 0.7),
+    (-0.7, -0.7),
+    (0.0, 1.0),
+    (0.0, -1.0),
+    (0.7, 0.7),
+    (0.7, -0.7),
+)
+"""Where it is looked for: along the pass's direction and to its left; straight before the start is best."""
+
+NEXT_PASS = 2.5
+"""Of the step: a place no farther away is on the neighbouring pass and may be fed to straight."""
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Manner:
+    """How an area is cleared: `step` mm between passes, `ramp` radians of entry, `slot` share of the feed in a full-width cut,
+    `lead` radius in mm of tangential leads of open passes (0: none)."""
+
+    step: float
+    ramp: float
+    slot: float
+    lead: float = 0.0
+
+
+@dataclass(frozen=True, slots=True, eq=False, kw_only=True)
+class Layer:
+    """What is cleared at height `z`: the rings, the `room` that links and entries may use, the `clip` outside which nothing is wanted
+    (None: everything in the rings), and the height `top` under which material may begin (None: as the stock says)."""
+
+    z: float
+    rings: tuple[Ring, ...]
+    room: Room
+    clip: Region | None = None
+    top: float | None = None
+
+    def wants(self, points: Floats) -> Floats:
+        """Return how far points (k, 2) are inside the clip and the room, rims counted in (negative outside)."""
+        depth = self.room.depth(points)
+        return (
+            depth if self.clip is None else np.minimum(depth, self.clip.signed_distance(points))
+        ) + tolerance.ON_REGION
+
+
+def clear(builder: PathBuilder, layer: Layer, manner: Manner, progress: Progress) -> None:
+    """Cut all passes of a layer."""
+    for ring in nearest_first(layer.rings, lambda: builder.here, _ring_away):
+        _cut_ring(builder, layer, ring, manner, progress)
+    if len(builder):
+        _step_off(builder, layer)
+
+
+def _cut_ring(
+    builder: PathBuilder, layer: Layer, ring: Ring, manner: Manner, progress: Progress
+) -> None:
+    for inner in nearest_first(ring.inner, lambda: builder.here, _ring_away):
+        _cut_ring(builder, layer, inner, manner, progress)
+    feed = builder.data.feed * (1.0 if ring.inner else manner.slot)
+    passes: list[Curve] = []
+    for curve in ring.curves():
+        passes += [curve] if layer.clip is None else parts_near(curve, layer.clip, layer.wants)
+    for curve in nearest_first(passes, lambda: builder.here, _curve_away):
+        progress.check()
+        if curve.closed:
+            _cut_closed(builder, layer, ring, curve, manner, feed)
+        else:
+            _cut_open(builder, layer, curve, manner, feed)
+
+
+def _cut_closed(
+    builder: PathBuilder, layer: Layer, ring: Ring, loop: Curve, manner: Manner, feed: float
+) -> None:
+    here = builder.here
+    s = loop.nearest(here[:2]) if here is not None else 0.0
+    start, _ = loop.at(s)
+    if not _stays_down(builder, layer, start, manner):
+        free = _free_place(builder, layer, loop, s)
+        if free is not None:
+            s = free
+            travel(builder, loop.at(s)[0], layer.z)
+        elif ring.inner:
+            s = _from_inner(builder, layer, ring, loop)
+        else:
+            s = _open_up(builder, layer, ring, loop, manner)
+    builder.curve(loop.split(s, s), layer.z, feed)
+
+
+def _free_place(builder: PathBuilder, layer: Layer, loop: Curve, first: float) -> float | None:
+    count = 8
+    for k in range(count):
+        s = (first + k * loop.length / count) % loop.length
+        if is_free(builder, loop.at(s)[0], layer.z):
+            return s
+    return None
+
+
+def _from_inner(builder: PathBuilder, layer: Layer, ring: Ring, loop: Curve) -> float:
+    """Come down where the pass before, one step further inside, was cut, and feed across."""
+    seeds = [c.points[0] for inner in ring.inner for c in inner.curves()]
+    near = min(seeds, key=lambda p: float(loop.distance(p)[0]))
+    s = loop.nearest(near)
+    place, _ = loop.at(s)
+    travel(builder, near if layer.room.holds_line(near, place) else place, layer.z)
+    builder.line((*place, layer.z), builder.data.plunge_feed, Mark.LINK)
+    return s
+
+
+def _open_up(builder: PathBuilder, layer: Layer, ring: Ring, loop: Curve, manner: Manner) -> float:
+    centre, depth = deepest_place(Room(ring.region), layer.room)
+    radius = helix_radius(builder, depth)
+    s = loop.nearest(centre)
+    place, _ = loop.at(s)
+    if radius > 0.0 and layer.room.holds_line(centre, place):
+        helix(
+            builder,
+            centre,
+            radius,
+            place,
+            _top(builder, layer, centre, radius),
+            layer.z,
+            manner.ramp,
+        )
+        builder.line((*place, layer.z), builder.data.feed * manner.slot, Mark.LINK)
+    else:
+        top = max(_top(builder, layer, p, 0.0) for p in loop.points)
+        ramp_round(builder, loop, s, top, layer.z, manner.ramp)
+    return s
+
+
+def _cut_open(
+    builder: PathBuilder, layer: Layer, piece: Curve, manner: Manner, feed: float
+) -> None:
+    start, tangent = piece.start, piece.at(0.0)[1]
+    lead = (
+        fitting_lead(start, tangent, manner.lead, layer.room, leaves=False)
+        if manner.lead > 0.0
+        else None
+    )
+    if lead is not None and _is_off(layer, lead.outside):
+        enter(builder, lead, start, layer.z, builder.data.feed)
+    elif not _stays_down(builder, layer, start, manner):
+        _come_to(builder, layer, piece, manner)
+    builder.curve(piece, layer.z, feed)
+    if manner.lead > 0.0:
+        last = piece.at(piece.length)
+        leave(
+            builder,
+            fitting_lead(last[0], last[1], manner.lead, layer.room, leaves=True),
+            layer.z,
+            builder.data.feed,
+        )
+
+
+def _come_to(builder: PathBuilder, layer: Layer, piece: Curve, manner: Manner) -> None:
+    """Bring the cutter to the start of an open pass: from outside where it is free, else by helix beside it, else by a ramp along it."""
+    start, tangent = piece.start, piece.at(0.0)[1]
+    if is_free(builder, start, layer.z):
+        travel(builder, start, layer.z)
+        return
+    left = np.array([-tangent[1], tangent[0]])
+    for share in RUN_OUTS:
+        for along, aside in RUN_OUT_WAYS:
+            before = start + share * builder.tool.radius * (along * tangent + aside * left)
+            if is_free(builder, before, layer.z) and layer.room.holds_line(before, start):
+                travel(builder, before, layer.z)
+                builder.line((*start, layer.z), builder.data.feed, Mark.LINK)
+                return
+    radius = helix_radius(builder, builder.tool.radius)
+    centre = start + radius * left
+    if radius > 0.0 and float(layer.room.depth(centre)[0]) >= radius - tolerance.ON_REGION:
+        helix(
+            builder,
+            centre,
+            radius,
+            start,
+            _top(builder, layer, centre, radius),
+            layer.z,
+            manner.ramp,
+        )
+        return
+    top = max(_top(builder, layer, p, 0.0) for p in piece.points)
+    ramp_along(builder, piece, top, layer.z, manner.ramp)
+
+
+def _stays_down(builder: PathBuilder, layer: Layer, start: Floats, manner: Manner) -> bool:
+    """Feed straight to a place when the tool is down, the way stays in the room, and it is short or certainly free; say whether."""
+    here = builder.here
+    if (
+        here is None
+        or abs(here[2] - layer.z) > tolerance.SHORT_MOVE
+        or not layer.room.holds_line(here, start)
+    ):
+        return False
+    if float(np.hypot(*(start - here[:2]))) > NEXT_PASS * manner.step and not is_free(
+        builder, here, layer.z, start
+    ):
+        return False
+    builder.line((*start, layer.z), builder.data.feed, Mark.LINK)
+    return True
+
+
+def _top(builder: PathBuilder, layer: Layer, place: Floats, radius: float) -> float:
+    found = top_under(builder, place, radius)
+    return max(found if layer.top is None else min(found, layer.top), layer.z)
+
+
+def _is_off(layer: Layer, place: Floats) -> bool:
+    return layer.clip is None or float(layer.clip.signed_distance(place)[0]) <= tolerance.ON_REGION
+
+
+def _step_off(builder: PathBuilder, layer: Layer) -> None:
+    if builder.here is None or abs(builder.here[2] - layer.z) > tolerance.SHORT_MOVE:
+        return
+    step_aside(builder, builder.heading(), layer.room)
+
+
+def _ring_away(ring: Ring, place: Floats) -> float:
+    return _nearest([_innermost(ring).region], place)
+
+
+def _innermost(ring: Ring) -> Ring:
+    while ring.inner:
+        ring = ring.inner[0]
+    return ring
+
+
+def _nearest(regions: Sequence[Region], place: Floats) -> float:
+    return min(abs(float(r.signed_distance(place)[0])) for r in regions)
+
+
+def _curve_away(curve: Curve, place: Floats) -> float:
+    return (
+        float(curve.distance(place)[0]) if curve.closed else float(np.hypot(*(curve.start - place)))
+    )

@@ -1,0 +1,152 @@
+"""Passes along walls: the rim of the room of the axis where a guide line made it, with leads, and straight on past open ends."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+
+import numpy as np
+
+from trunnion import tolerance
+from trunnion.geometry.arrays import Floats
+from trunnion.geometry.plane.curve import Curve
+from trunnion.toolpath.axis_region import Room, parts_where, points_along
+from trunnion.toolpath.motion.builder import PathBuilder
+from trunnion.toolpath.motion.link import may_plunge, step_aside, top_under
+from trunnion.toolpath.motion.order import nearest_first
+from trunnion.toolpath.offsetting.entry import ramp_along, ramp_round
+from trunnion.toolpath.offsetting.lead import cut_closed, enter, fitting_lead, from_free, leave
+
+PAST = (1.2, 0.6, 0.3)
+"""Of the cutter's radius: how far past its end an open wall is followed, as far as there is room."""
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Approach:
+    """How a contour is entered and left: radius of the leads and overlap of a closed contour in mm, slope of ramps in radians,
+    times it is gone round."""
+
+    radius: float
+    overlap: float
+    ramp: float
+    rounds: int = 1
+
+
+def contour_parts(room: Room, guide: Curve, distance: float) -> list[Curve]:
+    """Return the parts of the room's rim that lie `distance` from a guide line, the room on their left."""
+    found: list[Curve] = []
+    for rim in room.region.curves():
+        found += parts_where(
+            rim,
+            lambda p: np.minimum(
+                distance + tolerance.ON_REGION - guide.distance(p), _beside(guide, p, distance)
+            ),
+        )
+    return found
+
+
+def _beside(guide: Curve, points: Floats, distance: float) -> Floats:
+    """Return how far points (k, 2) are from the half discs past a guide line's open ends (negative inside): there a pass goes straight on
+    instead of round the end."""
+    if guide.closed:
+        return np.full(len(points), np.inf)
+    (first, heading), (last, leaving) = guide.at(0.0), guide.at(guide.length)
+    beyond = [
+        np.where(
+            np.linalg.norm(points - end, axis=1) <= distance + tolerance.SEW,
+            (points - end) @ way,
+            -np.inf,
+        )
+        for end, way in ((first, -heading), (last, leaving))
+    ]
+    # Ends a little before the half discs, so that the last direction is the wall's and not that of the arc round its end.
+    return -tolerance.ON_REGION - np.maximum(*beyond)
+
+
+def length_out_of_reach(room: Room, guide: Curve, distance: float) -> float:
+    """Return how much of a guide line in mm an axis in the room can't come within `distance` of."""
+    s, points = points_along(guide)
+    spans = np.diff(np.append(s, guide.length))
+    if len(spans) < len(points):
+        spans = np.append(spans, 0.0)
+    missed = -room.depth(points) > distance + tolerance.SEW
+    return float(spans[missed].sum())
+
+
+def cut_parts(
+    builder: PathBuilder, parts: list[Curve], z: float, room: Room, approach: Approach
+) -> None:
+    """Cut contours at height `z`, the nearest next."""
+    for part in nearest_first(parts, lambda: builder.here, _away):
+        if part.closed:
+            _cut_loop(builder, part, z, room, approach)
+        else:
+            for _ in range(approach.rounds):
+                cut_open(builder, part, z, room, approach)
+
+
+def cut_open(
+    builder: PathBuilder,
+    part: Curve,
+    z: float,
+    room: Room,
+    approach: Approach,
+    *,
+    past: bool = True,
+) -> None:
+    """Cut an open contour, followed straight on past both ends as far as there is room when `past`, with leads."""
+    feed = builder.data.feed
+    (first, heading), (last, leaving) = part.at(0.0), part.at(part.length)
+    begin, end = (
+        (_past(builder, first, -heading, room), _past(builder, last, leaving, room))
+        if past
+        else (first, last)
+    )
+    lead, free = fitting_lead(begin, heading, approach.radius, room, leaves=False), False
+    if lead is not None:
+        lead, free = from_free(builder, lead, heading, z, room)
+    if lead is not None and (free or may_plunge(builder, lead.before, z)):
+        enter(builder, lead, begin, z, feed)
+    else:
+        ramp_along(builder, part, max(top_under(builder, p) for p in part.points), z, approach.ramp)
+    builder.line((*first, z), feed)
+    builder.curve(part, z, feed)
+    builder.line((*end, z), feed)
+    off = fitting_lead(end, leaving, approach.radius, room, leaves=True)
+    leave(builder, off, z, feed)
+    if off is None:
+        step_aside(builder, leaving, room)
+
+
+def _cut_loop(builder: PathBuilder, loop: Curve, z: float, room: Room, approach: Approach) -> None:
+    feed = builder.data.feed
+    if cut_closed(
+        builder,
+        loop,
+        z,
+        room,
+        feed,
+        radius=approach.radius,
+        overlap=approach.overlap,
+        rounds=approach.rounds,
+    ):
+        return
+    ramp_round(
+        builder, loop, 0.0, max(top_under(builder, p) for p in loop.points), z, approach.ramp
+    )
+    opened = loop.split(0.0, 0.0)
+    for _ in range(approach.rounds):
+        builder.curve(opened, z, feed)
+    step_aside(builder, loop.at(0.0)[1], room)
+
+
+def _past(builder: PathBuilder, end: Floats, way: Floats, room: Room) -> Floats:
+    for share in PAST:
+        past = end + share * builder.tool.radius * way
+        if room.holds_line(end, past):
+            return past
+    return end
+
+
+def _away(curve: Curve, place: Floats) -> float:
+    return float(curve.distance(place)[0]) if curve.closed else math.dist(curve.start, place)

@@ -1,0 +1,113 @@
+"""Ways into full material: a helix where it fits, else a ramp along the contour."""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+
+from trunnion import tolerance
+from trunnion.geometry.arrays import Floats
+from trunnion.geometry.plane.curve import Curve
+from trunnion.model.toolpath import Mark
+from trunnion.toolpath.axis_region import Room
+from trunnion.toolpath.motion.builder import PathBuilder
+from trunnion.toolpath.motion.link import travel
+
+SMALLEST_HELIX = 0.15
+"""Of the diameter: a helix with a smaller radius would drill with the cutter's dead centre."""
+
+WIDEST_HELIX = 0.45
+"""Of the flat end's radius (and of the diameter): a wider helix leaves a post in its middle."""
+
+GAP = 0.3
+"""mm above the material where the helix or ramp begins."""
+
+GRID = 24
+"""Places along each side of a box that are tried for the deepest place of a room."""
+
+
+def deepest_place(area: Room, room: Room) -> tuple[Floats, float]:
+    """Return the place (2,) in `area` that is deepest inside `room`, and how deep it is there."""
+    low, high = area.region.box()
+    best, depth = 0.5 * (low + high), -math.inf
+    for _ in range(2):
+        x, y = np.meshgrid(
+            np.linspace(low[0], high[0], GRID), np.linspace(low[1], high[1], GRID), indexing="ij"
+        )
+        points = np.stack([x.ravel(), y.ravel()], axis=1)
+        found = np.where(area.depth(points) >= 0.0, room.depth(points), -math.inf)
+        row = int(np.argmax(found))
+        if found[row] > depth:
+            best, depth = points[row], float(found[row])
+        step = (high - low) / (GRID - 1)
+        low, high = best - step, best + step
+    return best, depth
+
+
+def helix_radius(builder: PathBuilder, depth: float) -> float:
+    """Return the radius of the helix that fits where the room is `depth` deep, or 0 when none does."""
+    tool = builder.tool
+    flat = tool.radius - tool.corner_radius
+    widest = min(2.0 * WIDEST_HELIX * max(flat, 0.5 * tool.radius), 0.98 * depth)
+    return widest if widest >= SMALLEST_HELIX * tool.diameter else 0.0
+
+
+def helix(
+    builder: PathBuilder,
+    centre: Floats,
+    radius: float,
+    towards: Floats,
+    top: float,
+    z: float,
+    angle: float,
+) -> None:
+    """Go down anticlockwise round `centre` from just above `top` to `z` and once round there, ending on the side of `towards` (2,)."""
+    way = towards - centre
+    first = math.atan2(way[1], way[0])
+    begin = top + GAP
+    turns = max(
+        1, math.ceil((begin - z) / (math.tau * radius * math.tan(angle)) - tolerance.COINCIDENT)
+    )
+    sides = [
+        centre
+        + radius * np.array([math.cos(first + half * math.pi), math.sin(first + half * math.pi)])
+        for half in (0, 1)
+    ]
+    travel(builder, sides[0], begin)
+    feed = builder.data.plunge_feed
+    for n in range(1, 2 * turns + 1):
+        height = begin - (begin - z) * n / (2 * turns)
+        builder.arc((*sides[n % 2], height), centre, math.pi, feed, Mark.ENTRY)
+    for side in (sides[1], sides[0]):
+        builder.arc((*side, z), centre, math.pi, builder.data.feed, Mark.ENTRY)
+
+
+def ramp_round(
+    builder: PathBuilder, loop: Curve, s: float, top: float, z: float, angle: float
+) -> None:
+    """Go down along a closed contour from its place `s`, round and round until `z`, ending where it began."""
+    opened = loop.split(s, s)
+    begin = top + GAP
+    rounds = max(
+        1, math.ceil((begin - z) / (opened.length * math.tan(angle)) - tolerance.COINCIDENT)
+    )
+    travel(builder, opened.start, begin)
+    for n in range(rounds):
+        high, low = (begin - (begin - z) * k / rounds for k in (n, n + 1))
+        builder.curve(opened, low, builder.data.plunge_feed, Mark.ENTRY, start_z=high)
+
+
+def ramp_along(builder: PathBuilder, piece: Curve, top: float, z: float, angle: float) -> None:
+    """Go down to and fro along the beginning of an open contour until `z`, ending at its start."""
+    begin = top + GAP
+    needed = (begin - z) / math.tan(angle)
+    part = piece.split(0.0, min(piece.length, max(0.5 * needed, builder.tool.radius)))
+    back = part.reversed()
+    legs = 2 * max(1, math.ceil(0.5 * needed / part.length - tolerance.COINCIDENT))
+    travel(builder, part.start, begin)
+    for n in range(legs):
+        high, low = (begin - (begin - z) * k / legs for k in (n, n + 1))
+        builder.curve(
+            part if n % 2 == 0 else back, low, builder.data.plunge_feed, Mark.ENTRY, start_z=high
+        )

@@ -1,0 +1,196 @@
+"""What is certainly gone already: a height field that answers where a rapid is safe.
+
+The field errs on the side of material everywhere: it begins as the blank's top and is lowered only where a cutter covered a whole cell.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+
+import numpy as np
+from numpy.typing import ArrayLike
+
+from trunnion import tolerance
+from trunnion.findings import OutOfMemory
+from trunnion.geometry.arrays import Floats, Ints
+from trunnion.geometry.kernels import heightfield
+from trunnion.geometry.plane.curve import turn
+from trunnion.geometry.plane.region import Region
+from trunnion.model.blank import Blank
+from trunnion.model.setup import Setup
+from trunnion.model.tool import Tool
+from trunnion.model.toolpath import Motion, Toolpath
+from trunnion.progress import QUIET, Progress
+from trunnion.settings import digest
+
+CELL = 0.5
+"""Side of a cell in mm where the blank is small; a larger blank has larger cells."""
+
+MOST_CELLS = 1_000_000
+"""Most cells of a field: 8 MB, beyond which cells grow."""
+
+MOVES = 500
+"""Moves that a field is lowered under between two looks at cancel: some hundredths of a second with the largest cutters."""
+
+LARGEST_CELL = 10.0
+"""A cell wider than this would hide every pocket from the field."""
+
+
+@dataclass(frozen=True, slots=True, eq=False, kw_only=True)
+class PlanningStock:
+    """Heights (nx, ny) mm in the setup frame of square cells of side `cell`; cell (0, 0) begins at `corner` (2,).
+
+    `digest` is a short stable digest of the uncut field and everything that was cut from it.
+    """
+
+    heights: Floats
+    corner: Floats
+    cell: float
+    digest: str
+
+    @staticmethod
+    def of(blank: Blank, setup: Setup, cell: float = CELL) -> PlanningStock:
+        """Return the stock of an uncut blank; of one that stands askew in the setup, the box around it."""
+        corners = np.array(
+            [
+                [x, y, z]
+                for x in (blank.low[0], blank.high[0])
+                for y in (blank.low[1], blank.high[1])
+                for z in (blank.low[2], blank.high[2])
+            ]
+        )
+        local = setup.frame.to_local(blank.frame.to_world(corners))
+        low, high = local.min(axis=0), local.max(axis=0)
+        size = high[:2] - low[:2]
+        cell = max(cell, float(np.sqrt(size[0] * size[1] / MOST_CELLS)))
+        if cell > LARGEST_CELL:
+            raise OutOfMemory(
+                f"the blank of {size[0]:.0f} x {size[1]:.0f} mm is too large to plan safe moves over: split the part"
+            )
+        # Whole cells that stand out past the blank's edge by a part of one, the same at both edges.
+        count = np.maximum(np.ceil(size / cell - tolerance.COINCIDENT), 1).astype(int)
+        corner = _fixed(low[:2] - 0.5 * (count * cell - size))
+        return PlanningStock(
+            heights=_fixed(np.full(tuple(count), high[2])),
+            corner=corner,
+            cell=cell,
+            digest=digest(tuple(count.tolist()), high[2].item(), corner, cell),
+        )
+
+    def after(self, path: Toolpath, tool: Tool, progress: Progress = QUIET) -> PlanningStock:
+        """Return the stock after the feed moves of a path."""
+        if (path.motion == Motion.RAPID).all():
+            return self
+        made = self.working()
+        made.lower(path, tool, progress)
+        cut = digest(
+            self.digest, path.position, path.motion, path.centre, tool.radius, tool.corner_radius
+        )
+        return replace(made, heights=_fixed(made.heights), digest=cut)
+
+    def working(self) -> PlanningStock:
+        """Return a copy that `lower` may change; its digest stays that of the stock it was taken from."""
+        return replace(self, heights=self.heights.copy())
+
+    def lower(self, path: Toolpath, tool: Tool, progress: Progress = QUIET) -> Floats:
+        """Take the feed moves of a path off this very field, which must be a `working` copy; return the volume (n,) in mm3 that each
+        block takes off."""
+        starts, ends, rows, error = chords(path)
+        radius, gone = tool.radius - error, np.empty(len(starts))
+        for first in progress.each(range(0, len(starts), MOVES)):
+            some = slice(first, first + MOVES)
+            heightfield.lower(
+                self.heights,
+                self.corner[0],
+                self.corner[1],
+                self.cell,
+                starts[some],
+                ends[some],
+                radius,
+                min(tool.corner_radius, radius),
+                gone[some],
+            )
+        volume: Floats = np.bincount(rows, gone, len(path)).astype(np.float64) * self.cell**2
+        return volume
+
+    def height(self, start: ArrayLike, end: ArrayLike, radius: float) -> float:
+        """Return the greatest height that a disc may touch on its way from `start` to `end` (2,), or -inf over nothing."""
+        a, b = np.asarray(start, dtype=np.float64)[:2], np.asarray(end, dtype=np.float64)[:2]
+        return float(
+            heightfield.highest(
+                self.heights, self.corner[0], self.corner[1], self.cell, a, b, radius
+            )
+        )
+
+    def is_clear(self, z: float, area: Region) -> bool:
+        """Say whether no cell in an area is higher than `z`; an area without cells is."""
+        if not area:
+            return True
+        some = self._above(z, area)
+        # Most areas that are not clear show it at a few places; only then are all of them looked at.
+        few = some[:: max(1, len(some) // 64)]
+        return not (len(few) and area.contains(few).any()) and not (
+            len(some) and area.contains(some).any()
+        )
+
+    def places_above(self, z: float, area: Region) -> Floats:
+        """Return the centres (k, 2) of the cells in an area that are higher than `z`."""
+        centres = self._above(z, area)
+        return centres[area.contains(centres)] if len(centres) else centres
+
+    def _above(self, z: float, area: Region) -> Floats:
+        if not area:
+            return np.zeros((0, 2))
+        low, high = area.box()
+        first = np.maximum(np.floor((low - self.corner) / self.cell), 0).astype(int)
+        last = np.minimum(np.ceil((high - self.corner) / self.cell), self.heights.shape).astype(int)
+        if (last <= first).any():
+            return np.zeros((0, 2))
+        rows = np.argwhere(self.heights[first[0] : last[0], first[1] : last[1]] > z)
+        return self.corner + (rows + first + 0.5) * self.cell
+
+    def box(self) -> tuple[Floats, Floats]:
+        """Return the lowest and highest corner (2,) of the field."""
+        return self.corner, self.corner + self.cell * np.array(self.heights.shape)
+
+
+ARC_CHORD = 0.02
+"""mm: chord error at which arcs are opened before they lower a field; the cutter is taken smaller by as much."""
+
+
+def chords(path: Toolpath) -> tuple[Floats, Floats, Ints, float]:
+    """Return starts and ends (m, 3) of the straight pieces of a path's feed moves, the block (m,) each is of, and how far an arc may be
+    from its chords in mm."""
+    start, sweep = path.starts(), path.sweeps()
+    arcs = path.motion >= Motion.ARC_CW
+    radius = np.where(arcs, np.linalg.norm(start[:, :2] - path.centre[:, :2], axis=1), 0.0)
+    count = np.ones(len(path), dtype=np.int64)
+    with np.errstate(divide="ignore"):
+        step = 2.0 * np.arccos(np.clip(1.0 - ARC_CHORD / radius[arcs], 0.0, 1.0))
+    count[arcs] = np.maximum(np.ceil(np.abs(sweep[arcs]) / step), 1).astype(np.int64)
+    count[path.motion == Motion.RAPID] = 0
+    rows = np.repeat(np.arange(len(path)), count)
+    place = np.arange(len(rows)) - np.repeat(np.cumsum(count) - count, count)
+    share = np.stack([place, place + 1], axis=1) / count[rows][:, None]
+    ends = [_places(path, start, sweep, rows, share[:, k]) for k in (0, 1)]
+    return ends[0], ends[1], rows, ARC_CHORD if arcs.any() else 0.0
+
+
+def places_on(path: Toolpath, rows: Ints, share: Floats) -> Floats:
+    """Return places (m, 3) on blocks (m,) of a path, at shares (m,) of their way."""
+    return _places(path, path.starts(), path.sweeps(), rows, share)
+
+
+def _places(path: Toolpath, start: Floats, sweep: Floats, rows: Ints, share: Floats) -> Floats:
+    points = start[rows] + share[:, None] * (path.position[rows] - start[rows])
+    arcs = np.flatnonzero(path.motion[rows] >= Motion.ARC_CW)
+    at = rows[arcs]
+    angle = share[arcs] * sweep[at]
+    ray = start[at, :2] - path.centre[at, :2]
+    points[arcs, :2] = path.centre[at, :2] + turn(ray, angle)
+    return points
+
+
+def _fixed(array: Floats) -> Floats:
+    array.setflags(write=False)
+    return array
