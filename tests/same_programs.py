@@ -47,16 +47,12 @@ def cases(parts: Path, seeds: int, folder: Path) -> Iterator[Case]:
         Case("D1-named", parts / "surface/D1.step", NAMED),
     ]
     yield from (c for c in known if c.part.is_file())
-    from cadquery import Shape, exporters
+    from seeded.panels import panel
+    from seeded.plates import plate
 
-    from seeded.panels import panel_shape
-    from seeded.plates import plate_shape
-
-    for make in (panel_shape, plate_shape):
-        for seed in range(seeds):
-            path = folder / f"{make.__name__.removesuffix('_shape')}-{seed:02d}.step"
-            exporters.export(Shape.cast(make(seed)), str(path))
-            yield Case(path.stem, path)
+    for make in (panel, plate):
+        for made in map(make, range(seeds)):
+            yield Case(made.name, made.written(folder))
 
 
 def programmed(

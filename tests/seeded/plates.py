@@ -1,76 +1,141 @@
-"""Random curved plates: a plate with a wavy, spherical or tilted top that carries up to three bosses, domes or dimples."""
+"""Random curved plates, from easy to nasty: a wavy, ball-shaped, saddle or tilted top with up to eight bosses, domes and dimples.
+
+What is random is what a shop's drawings differ in: size, waves, count and sizes of the local features, roundings at their feet, where the
+part lies and in which unit.
+"""
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from math import cos, pi, sin
 from random import Random
 from typing import Any
 
 import cadquery as cq
 
+from seeded.parts import UNITS, Seeded, placed
 
-def plate_shape(seed: int) -> Any:
-    """Return the solid of a curved plate (OCP shape, mm, bottom at z 0, curved face upward)."""
+Height = Callable[[float, float], float]
+"""Height (mm) over shares of length and width."""
+KINDS = ("boss", "dome", "dimple")
+FEET = (0.0, 0.0, 1.5, 2.5)
+"""mm: radii where a boss or dome meets the plate."""
+
+
+def plate(seed: int) -> Seeded:
+    """Return the random curved plate of a seed."""
     draw = Random(f"plate {seed}")
-    length, width, height = (
-        draw.uniform(40.0, 70.0),
-        draw.uniform(40.0, 60.0),
-        draw.uniform(14.0, 22.0),
+    columns, rows = draw.choice(((2, 2), (2, 2), (3, 2), (4, 2)))
+    pitch = draw.uniform(24.0, 34.0)
+    size = columns * pitch, rows * pitch
+    height = draw.uniform(12.0, 24.0)
+    body = draw.choice((_wavy, _wavy, _domed, _saddle, _tilted))(draw, *size, height)
+    spots = [(pitch * (i + 0.5), pitch * (j + 0.5)) for i in range(columns) for j in range(rows)]
+    counts = dict.fromkeys(KINDS, 0)
+    radii = []
+    for spot in draw.sample(spots, draw.randint(0, len(spots))):
+        kind = draw.choice(KINDS)
+        body, radius = _with_local(draw, kind, body, spot, height, pitch)
+        counts[kind] += 1
+        radii += [radius] if radius else []
+    shape = placed(draw, body.solids().val())
+    return Seeded(
+        f"plate-{seed:02d}",
+        shape.wrapped,
+        draw.choice(UNITS),
+        counts,
+        smallest_radius=min(radii, default=0.0),
     )
-    body = (
-        _wavy(draw, length, width, height)
-        if draw.random() < 0.5
-        else _domed(draw, length, width, height)
-    )
-    places = [(x, y) for x in (0.25, 0.75) for y in (0.28, 0.72)]
-    for x, y in draw.sample(places, draw.randint(0, 3)):
-        body = _with_local(draw, body, x * length, y * width, height)
-    return body.val().wrapped
 
 
-def _wavy(draw: Random, length: float, width: float, height: float) -> cq.Workplane:
-    """Return a plate whose top follows a wave along x and rises a little along y."""
-    deep, waves, rise = draw.uniform(0.5, 2.0), draw.uniform(0.5, 1.2), draw.uniform(0.0, 2.0)
-    count = 9
-    rows = [
-        [
-            cq.Vector(
-                length * i / (count - 1),
-                width * j / (count - 1),
-                height
-                - deep * (1.0 - cos(2.0 * pi * waves * i / (count - 1)))
-                - rise * sin(pi * j / (count - 1) / 2.0),
-            )
-            for j in range(count)
-        ]
-        for i in range(count)
-    ]
+def _surfaced(length: float, width: float, height: Height) -> cq.Workplane:
+    """Return the plate under a height function of shares of its length and width, its top one B-spline face."""
+    count = 11
+    past = 0.02
+    at = [-past + (1.0 + 2.0 * past) * k / (count - 1) for k in range(count)]
+    rows = [[cq.Vector(length * u, width * v, height(u, v)) for v in at] for u in at]
     top = cq.Face.makeSplineApprox(rows, tol=1e-4)
-    block = cq.Workplane("XY").box(length, width, height + 5.0, centered=False)
-    parts = cq.Workplane(block.val()).split(cq.Workplane(top)).solids().vals()
+    tall = max(p.z for row in rows for p in row) + 5.0
+    block = cq.Workplane("XY").box(length, width, tall, centered=False)
+    parts = block.split(cq.Workplane(top)).solids().vals()
     return cq.Workplane(min(parts, key=lambda s: s.Center().z))
 
 
+def _wavy(draw: Random, length: float, width: float, height: float) -> cq.Workplane:
+    deep, waves, rise = draw.uniform(0.5, 2.5), draw.uniform(0.5, 1.3), draw.uniform(0.0, 2.5)
+    return _surfaced(
+        length,
+        width,
+        lambda u, v: height - deep * (1.0 - cos(2.0 * pi * waves * u)) - rise * sin(0.5 * pi * v),
+    )
+
+
+def _saddle(draw: Random, length: float, width: float, height: float) -> cq.Workplane:
+    a, b = draw.uniform(1.0, 4.0), draw.uniform(1.0, 4.0)
+    return _surfaced(
+        length, width, lambda u, v: height - a * (2 * u - 1) ** 2 - b * (1 - (2 * v - 1) ** 2)
+    )
+
+
+def _tilted(draw: Random, length: float, width: float, height: float) -> cq.Workplane:
+    rise, bow = draw.uniform(1.0, 5.0), draw.uniform(0.5, 2.0)
+    return _surfaced(length, width, lambda u, v: height - rise * v + bow * sin(pi * u))
+
+
 def _domed(draw: Random, length: float, width: float, height: float) -> cq.Workplane:
-    """Return a plate whose top is part of a large ball."""
     radius = draw.uniform(1.5, 4.0) * max(length, width)
     ball = cq.Workplane("XY").sphere(radius).translate((length / 2.0, width / 2.0, height - radius))
     return cq.Workplane("XY").box(length, width, height + 1.0, centered=False).intersect(ball)
 
 
 def _with_local(
-    draw: Random, body: cq.Workplane, x: float, y: float, height: float
-) -> cq.Workplane:
-    """Return the plate with a boss, a dome or a dimple at a place, its foot or rim rounded where the kernel can."""
-    kind, radius = draw.choice(("boss", "dome", "dimple")), draw.uniform(4.0, 6.5)
+    draw: Random,
+    kind: str,
+    body: cq.Workplane,
+    spot: tuple[float, float],
+    height: float,
+    pitch: float,
+) -> tuple[cq.Workplane, float]:
+    """Return the plate with a boss, a dome or a dimple on a spot, and the radius of its foot, 0 where it is sharp."""
+    radius = draw.uniform(0.14, 0.24) * pitch
+    if kind == "dimple":
+        ball = draw.uniform(1.3, 2.2) * radius
+        lift = (ball**2 - radius**2) ** 0.5
+        at = (*spot, _top(body, spot) + lift)
+        return body.cut(cq.Workplane("XY").sphere(ball).translate(at)), 0.0
     if kind == "boss":
-        cone = (
-            cq.Workplane("XY")
-            .circle(radius)
-            .extrude(height + draw.uniform(2.0, 4.0), taper=draw.uniform(3.0, 10.0))
-        )
-        return body.union(cone.translate((x, y, 0)))
-    sphere = cq.Workplane("XY").sphere(1.6 * radius)
-    if kind == "dome":
-        return body.union(sphere.translate((x, y, height - radius)))
-    return body.cut(sphere.translate((x, y, height + 0.8 * radius)))
+        tall = _top(body, spot) + draw.uniform(2.0, 6.0)
+        local = cq.Workplane("XY").circle(radius).extrude(tall, taper=draw.uniform(2.0, 10.0))
+        local = local.translate((*spot, 0.0))
+    else:
+        ball = draw.uniform(1.1, 1.8) * radius
+        low = _top(body, spot) - (ball**2 - radius**2) ** 0.5
+        local = cq.Workplane("XY").sphere(ball).translate((*spot, low))
+    return _footed(draw, body, body.union(local))
+
+
+def _footed(draw: Random, before: cq.Workplane, joined: cq.Workplane) -> tuple[cq.Workplane, float]:
+    """Return a plate with a rounded foot at its new concave edges where the kernel can round them, and the radius."""
+    foot = draw.choice(FEET)
+    if foot:
+        known = {_key(e) for e in before.edges().vals()}
+        new = [e for e in joined.edges().vals() if _key(e) not in known and e.geomType() != "LINE"]
+        foots = [e for e in new if e.Center().z < max(n.Center().z for n in new) - 0.5] or new[:1]
+        try:
+            rounded = cq.Workplane(joined.val().fillet(foot, foots))
+            if rounded.val().isValid() and len(rounded.solids().vals()) == 1:
+                return rounded, foot
+        except Exception as reason:
+            del reason
+    return joined, 0.0
+
+
+def _key(edge: Any) -> tuple[float, ...]:
+    return tuple(round(c, 3) for c in edge.Center().toTuple()) + (round(edge.Length(), 3),)
+
+
+def _top(body: cq.Workplane, spot: tuple[float, float]) -> float:
+    """Return how high the plate is on a spot."""
+    line = cq.Edge.makeLine(cq.Vector(*spot, -1.0), cq.Vector(*spot, 200.0))
+    met = body.val().intersect(line)
+    return float(met.BoundingBox().zmax)
