@@ -119,8 +119,10 @@ def beside(recognition: Recognition, part: Sections) -> dict[str, frozenset[str]
 
 
 def no_cutter(task: OperationTask, found: Candidates) -> Finding:
-    """Return the error that no cutter of the catalogue fits an operation."""
-    return error(
+    """Return the finding that no cutter of the catalogue fits an operation: an error where a whole feature stays, else a warning on what
+    the proof will measure as left."""
+    tell = warning if task.stage.cutter in ("corner", "foot") else error
+    return tell(
         "route.no-cutter",
         f"{task.feature}: {found.reason} ({task.stage.name})",
         task.feature,

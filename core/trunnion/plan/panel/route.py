@@ -21,6 +21,11 @@ from trunnion.plan.cutting.milling import (
     roughing_width,
 )
 from trunnion.plan.feasibility import too_large, too_many_tools
+from trunnion.plan.panel.fallbacks import (
+    behind_rest_roughing,
+    best_fit,
+    with_floors_behind_roughing,
+)
 from trunnion.plan.panel.feasibility import (
     beside,
     no_cutter,
@@ -33,7 +38,6 @@ from trunnion.plan.panel.tasks import (
     WISHES,
     Draft,
     OperationTask,
-    catalogue,
     floor_distance,
     with_falling_sizes,
 )
@@ -42,7 +46,7 @@ from trunnion.plan.prismatic.regions import Sections, Space, parent_of
 from trunnion.plan.sequence import Job, ordered
 from trunnion.plan.settings import RouteSettings
 from trunnion.plan.setups import from_below
-from trunnion.plan.tool_choice import candidates, covered_by_few, depth_reached
+from trunnion.plan.tool_choice import covered_by_few, depth_reached
 from trunnion.plan.typical import typical_plan
 from trunnion.progress import Progress
 from trunnion.settings import Value, choose
@@ -135,20 +139,19 @@ def _with_cutters(
             for stage in progress.each(together)
             for task in WISHES[stage.cutter](draft, stage, features)
         ]
-        for n, task in enumerate(fresh):
+        served: list[OperationTask] = []
+        for n, wanted in enumerate(fresh):
+            task = wanted
             progress.at((done + n / len(fresh)) / len(rounds), f"cutter for {task.id}")
-            found = candidates(
-                task.requirement,
-                catalogue(draft, task.stage),
-                draft.settings.reach_clearance,
-                progress,
-            )
+            task, found = best_fit(draft, task)
             if found.tools:
                 fits[task.id] = found.tools
+                served.append(task)
             elif task.stage.cutter != "rest":
                 draft.findings.append(no_cutter(task, found))
         draft.tools |= covered_by_few(fits, [*draft.loaded, *draft.tools.values()])
-        tasks += [w for w in fresh if w.id in draft.tools]
+        tasks += served
+    with_floors_behind_roughing(draft, tasks)
     return with_falling_sizes(draft, tasks)
 
 
@@ -192,6 +195,7 @@ def _before(draft: Draft, task: OperationTask, tasks: Sequence[OperationTask]) -
             and other.feature == parent.id
         ):
             found.add(other.id)
+    found |= behind_rest_roughing(draft, task, tasks)
     steps = [w.id for w in tasks if w.feature == task.feature and w.stage.name == task.stage.name]
     return frozenset(found | set(steps[: steps.index(task.id)]))
 
@@ -257,6 +261,8 @@ def _engagement(
         return _even(task.height, min(tool.flute_length, WALL_STEP * tool.diameter)), max(
             allowance, tolerance.SEW
         )
+    if kind == "foot":
+        return task.height, task.height
     if kind in ("rib_top", "island_top"):
         return rough_depth, min(rough_width, task.width + 2 * allowance)
     if kind == "profile_rough":

@@ -11,7 +11,7 @@ import numpy as np
 
 from trunnion import tolerance
 from trunnion.findings import Finding, Refused, face_tags, warning
-from trunnion.geometry.plane.region import EMPTY_REGION, Region
+from trunnion.geometry.plane.region import EMPTY_REGION, Region, union_all
 from trunnion.model.feature import Feature, Recognition
 from trunnion.model.material import Machine, Material
 from trunnion.model.tool import Tool
@@ -37,7 +37,10 @@ FLOOR_DISTANCE = 0.1
 SHARP = 0.02
 """Share of a pocket that corners sharper than the one its cutter is chosen for may keep: no cutter gets into them, the proof counts it."""
 
-DEPENDENT = ("rest", "corner")
+FOOT_RING = 0.5
+"""mm around an island that the cutter of its foot has to get to, all round."""
+
+DEPENDENT = ("rest", "corner", "foot")
 """Rules for cutters that depend on the cutter of another stage."""
 
 
@@ -149,8 +152,8 @@ def _wishes_rough(draft: Draft, stage: Stage, features: Sequence[Feature]) -> li
         is_open = feature.kind == "open_pocket"
         requirement = ToolRequirement(
             depth=_depth(draft, bands),
-            room=bands[-1].boundary,
-            wanted=bands[-1].wanted,
+            room=_kept_off(bands[-1].boundary, draft.settings.wall_allowance),
+            wanted=_kept_off(bands[-1].wanted, draft.settings.wall_allowance),
             corner_radius=floor_fillet(feature),
             missable=draft.settings.missable,
             spare=1.0 if is_open else SPARE,
@@ -197,13 +200,19 @@ def _wishes_floor(draft: Draft, stage: Stage, features: Sequence[Feature]) -> li
         )
         whole = ToolRequirement(
             depth=_depth(draft, bands),
-            room=bands[-1].boundary,
-            wanted=bands[-1].wanted,
+            room=_kept_off(bands[-1].boundary, floor_distance(draft.settings)),
+            wanted=_kept_off(bands[-1].wanted, floor_distance(draft.settings)),
             corner_radius=floor_fillet(feature),
             missable=draft.settings.missable,
             near=NEAR_FLOOR,
         )
-        rest = replace(whole, wanted=inner, keep=floor_distance(draft.settings), missable=0.0)
+        rest = replace(
+            whole,
+            room=bands[-1].boundary,
+            wanted=inner,
+            keep=floor_distance(draft.settings),
+            missable=0.0,
+        )
         requirement = (
             rest if inner and candidates(rest, tools, clearance, draft.progress).tools else whole
         )
@@ -264,6 +273,42 @@ def _wishes_corner(draft: Draft, stage: Stage, features: Sequence[Feature]) -> l
         return _wish(stage, feature, bands, requirement, feature.with_role("corner"))
 
     return _pocket_wishes(draft, stage, features, make)
+
+
+def _wishes_foot(draft: Draft, stage: Stage, features: Sequence[Feature]) -> list[OperationTask]:
+    """Ask for the feet of islands that are sharper than the foot of the pocket's walls, whose cutter leaves its corner there."""
+
+    def make(feature: Feature, bands: tuple[Band, ...]) -> OperationTask | None:
+        wall = draft.tools.get(f"wall-{feature.id}")
+        sharper = [
+            i
+            for i in draft.space.islands_of(feature)
+            if wall is not None and floor_fillet(i) < wall.corner_radius - tolerance.COINCIDENT
+        ]
+        if not sharper:
+            return None
+        standing = union_all([_seen_from_above(draft, i) for i in draft.space.islands_of(feature)])
+        rounder = floor_fillet(feature)
+        requirement = ToolRequirement(
+            depth=_depth(draft, bands),
+            room=bands[-1].boundary.union(standing).offset(-rounder).minus(standing),
+            wanted=union_all([_seen_from_above(draft, i) for i in sharper])
+            .offset(FOOT_RING)
+            .minus(standing),
+            corner_radius=min(map(floor_fillet, sharper)),
+            missable=SHARP,
+            near=NEAR_FLOOR,
+        )
+        faces = tuple(tag for i in sharper for tag in i.with_role("wall", "corner", "floor_fillet"))
+        return replace(_wish(stage, feature, bands, requirement, faces), height=rounder)
+
+    return _pocket_wishes(draft, stage, features, make)
+
+
+def _seen_from_above(draft: Draft, island: Feature) -> Region:
+    """Return the plan area of an island, by its top."""
+    frame = draft.space.setup.frame
+    return union_all([draft.space.part.face_outline(frame, t) for t in island.with_role("top")])
 
 
 def _wishes_top(draft: Draft, stage: Stage, features: Sequence[Feature]) -> list[OperationTask]:
@@ -364,6 +409,7 @@ WISHES: Mapping[str, Callable[[Draft, Stage, Sequence[Feature]], list[OperationT
     "floor": _wishes_floor,
     "wall": _wishes_wall,
     "corner": _wishes_corner,
+    "foot": _wishes_foot,
     "profile_rough": _wishes_profile,
     "profile_finish": _wishes_profile,
 }
@@ -389,6 +435,11 @@ def _wish(
         height=bands[0].top - bands[-1].bottom,
         width=float(np.min(high - low)),
     )
+
+
+def _kept_off(area: Region, distance: float) -> Region:
+    """Return what is left of an area off its walls by what an operation keeps from them; the area itself where nothing is."""
+    return area.offset(-distance) or area
 
 
 def _depth(draft: Draft, bands: tuple[Band, ...]) -> float:

@@ -7,7 +7,7 @@ own radius.
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 from trunnion import tolerance
 from trunnion.findings import Refused
@@ -72,6 +72,11 @@ class WallGuide:
     fillet: float
     faces: tuple[int, ...]
 
+    @property
+    def is_around(self) -> bool:
+        """Whether the part's material is inside a closed guide line, as of an island."""
+        return self.curve.closed and self.curve.area < 0.0
+
 
 @dataclass(frozen=True, slots=True, eq=False, kw_only=True)
 class PlaneDrive:
@@ -84,7 +89,7 @@ class PlaneDrive:
     operation begins (the blank's top before facing, the part's top after). `wall_allowance`, `floor_allowance`: what a roughing operation
     leaves (0 for finishing); `levels`, `floors` and `walls` are the finished part's, allowances not taken off. `earlier_radius`: radius of
     the cutter that was in the corners before (rest roughing and corners; 0: none), `earlier_allowance` what it left on the walls.
-    `faces`: the tags that the operation finishes.
+    `faces`: the tags that the operation finishes. `beside`: walls that are not finished, but whose feet the cutter must stay off.
     """
 
     feature: str
@@ -92,6 +97,7 @@ class PlaneDrive:
     levels: tuple[DriveLevel, ...]
     floors: tuple[Floor, ...] = ()
     walls: tuple[WallGuide, ...] = ()
+    beside: tuple[WallGuide, ...] = ()
     fillet: float = 0.0
     stock_top: float = 0.0
     faces: tuple[int, ...] = ()
@@ -131,7 +137,7 @@ def foot_clearance(fillet: float, corner_radius: float, above: float) -> float:
 WALL_ALLOWANCE, FLOOR_ALLOWANCE = "route.wall_allowance", "route.floor_allowance"
 """Keys of an operation's choices that hold what it leaves on walls and floors, mm."""
 
-OF_POCKETS = ("rough", "corner", "corner_finish", "floor", "wall")
+OF_POCKETS = ("rough", "corner", "corner_finish", "floor", "wall", "foot")
 """Kinds of operation that a pocket's drive serves."""
 
 
@@ -174,18 +180,24 @@ def _face(operation: Operation, space: Space) -> PlaneDrive:
 def _pocket(
     operation: Operation, process: ProcessTree, feature: Feature, space: Space
 ) -> PlaneDrive:
-    bands = space.bands_of(feature)
-    fillet = floor_fillet(feature)
+    bands, own = space.bands_of(feature), floor_fillet(feature)
+    fillet = max([own, *map(floor_fillet, space.islands_of(feature))])
     earlier = _earlier(operation, process)
     floors = _floors(feature, bands, space, fillet)
+    walls = _pocket_walls(feature, bands, space, own)
+    beside: tuple[WallGuide, ...] = ()
     if operation.kind in ("rough", "corner"):
         floors += _island_tops(feature, bands, space)
+    elif operation.kind == "foot":
+        sharper = _sharper_feet(walls, floors, own)
+        floors, walls, beside = (), sharper, walls
     return PlaneDrive(
         feature=feature.id,
         kind=operation.kind,
         levels=tuple(_level(b) for b in bands),
         floors=floors,
-        walls=_pocket_walls(feature, bands, space, fillet),
+        walls=walls,
+        beside=beside,
         fillet=fillet,
         stock_top=bands[0].top,
         faces=operation.faces,
@@ -251,12 +263,14 @@ def _pocket_walls(
             top = band.top if above is None else guides[above].top
             if above is None and stepped:
                 top = min(band.top + fillet, bands[0].top)
+            island = _island_of(feature, curve, space)
+            foot = fillet if island is None else floor_fillet(island)
             guide = WallGuide(
                 curve=curve,
                 top=top,
                 bottom=band.bottom,
-                fillet=fillet if on_floor else 0.0,
-                faces=_wall_faces(feature, curve, space),
+                fillet=foot if on_floor else 0.0,
+                faces=_wall_faces(feature, island),
             )
             if above is None:
                 guides.append(guide)
@@ -274,16 +288,33 @@ def _walled(feature: Feature, band: Band) -> list[Curve]:
     ]
 
 
-def _wall_faces(feature: Feature, curve: Curve, space: Space) -> tuple[int, ...]:
+def _sharper_feet(
+    walls: tuple[WallGuide, ...], floors: tuple[Floor, ...], fillet: float
+) -> tuple[WallGuide, ...]:
+    """Return the feet that are sharper than a pocket's fillet: what its walls' cutter, as round as the fillet, leaves around islands."""
+    return tuple(
+        replace(wall, top=min(wall.top, wall.bottom + fillet))
+        for wall in walls
+        if wall.fillet < fillet - tolerance.COINCIDENT
+        and any(abs(floor.z - wall.bottom) < tolerance.SEW for floor in floors)
+    )
+
+
+def _island_of(feature: Feature, curve: Curve, space: Space) -> Feature | None:
+    """Return the island that a guide line runs around, or None where it follows the pocket's own walls."""
+    if not curve.closed or curve.area >= 0.0:
+        return None
+    inside = Region.of([curve])
+    for island in space.islands_of(feature):
+        at = island.with_role("top") or island.with_role("wall", "corner", "floor_fillet")
+        if at and inside.contains(space.centre(at[0])[:2]).any():
+            return island
+    return None
+
+
+def _wall_faces(feature: Feature, island: Feature | None) -> tuple[int, ...]:
     """Return the tags along a guide line: an island's own around an island, else the pocket's."""
-    if curve.closed and curve.area < 0.0:
-        inside = Region.of([curve])
-        for island in space.islands_of(feature):
-            tags = island.with_role("wall", "corner", "floor_fillet")
-            at = island.with_role("top") or tags
-            if at and inside.contains(space.centre(at[0])[:2]).any():
-                return tags
-    return feature.with_role("wall", "corner", "floor_fillet")
+    return (feature if island is None else island).with_role("wall", "corner", "floor_fillet")
 
 
 def _rib_top(operation: Operation, feature: Feature, space: Space) -> PlaneDrive:

@@ -3,13 +3,14 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Iterable
 
 import numpy as np
 
 from trunnion import tolerance
 from trunnion.findings import Finding, error, face_tags, info
 from trunnion.geometry.arrays import Floats
-from trunnion.geometry.plane.region import Region, union_all
+from trunnion.geometry.plane.region import EMPTY_REGION, Region, union_all
 from trunnion.model.operation import CuttingData
 from trunnion.model.setup import Setup
 from trunnion.model.tool import Tool
@@ -120,7 +121,7 @@ def wall(
         found = False
         for z, extra in _heights(guide, tool, min(data.depth, tool.flute_length), settings.scallop):
             progress.at(n / len(drive.walls), f"{drive.feature}: wall at {z:.3f}")
-            boundary = level_at(drive, z).boundary
+            boundary = _off_other_feet(level_at(drive, z).boundary, drive, guide, tool, z)
             distance = tool.radius + drive.wall_allowance + extra
             room = _room(
                 rooms, boundary, distance, mitred=guide.fillet > 0.0 and guide.curve.closed
@@ -145,6 +146,36 @@ def wall(
     return Planned(
         path=eased_finish(builder.finished(), tool, data, stock, progress), findings=tuple(findings)
     )
+
+
+def _off_other_feet(
+    boundary: Region, drive: PlaneDrive, guide: WallGuide, tool: Tool, z: float
+) -> Region:
+    """Return where the envelope may be beside a wall, kept off feet that are rounder than this wall's by what they need more.
+
+    The axis keeps the clearance of this wall's own foot from everything; a rounder foot beside it, a pocket's around an island or the
+    other way round, needs more, and gets it here.
+    """
+    own = foot_clearance(guide.fillet, tool.corner_radius, z - guide.bottom)
+    islands, pocket = EMPTY_REGION, 0.0
+    for other in (*drive.walls, *drive.beside):
+        if abs(other.bottom - guide.bottom) > tolerance.SEW:
+            continue
+        more = foot_clearance(other.fillet, tool.corner_radius, z - guide.bottom) - own
+        if not other.is_around:
+            pocket = max(pocket, more)
+        elif more > tolerance.COINCIDENT:
+            islands = islands.union(Region.of([other.curve]).offset(more))
+    if pocket > tolerance.COINCIDENT:
+        standing = _inside_of(w for w in (*drive.walls, *drive.beside) if w.is_around)
+        boundary = boundary.union(standing).offset(-pocket).minus(standing)
+    return boundary.minus(islands) if islands else boundary
+
+
+def _inside_of(guides: Iterable[WallGuide]) -> Region:
+    """Return what closed guide lines run around."""
+    inside = [Region.of([g.curve]) for g in guides]
+    return union_all(inside) if inside else EMPTY_REGION
 
 
 def _cut_floor_rest(
