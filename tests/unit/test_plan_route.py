@@ -161,16 +161,33 @@ def test_holes_are_named_together():
     assert told.text == "hole-01, hole-02 not planned: the typical plan has no operation for a hole"
 
 
-def test_a_corner_sharper_than_any_cutter_is_an_error_with_a_remedy():
+def test_a_corner_sharper_than_any_cutter_is_cut_by_the_slimmest_and_told():
     tree = route(with_sizes(panel(), "pocket-01", corner_radius=1.0))
-    (told,) = [f for f in tree.findings if f.severity is Severity.ERROR]
-    assert told.code == "route.no-cutter" and "no tool is small enough" in told.text and told.remedy
+    assert not [f for f in tree.findings if f.severity is Severity.ERROR]
+    told = [f for f in tree.findings if f.code == "route.second-choice" and "corners" in f.text]
+    assert told and all("no tool is small enough" in f.text and f.remedy for f in told)
+    slim = tree.operation("corner_finish-pocket-01").tool
+    assert f"leaves a radius of {slim.radius:g} mm in the corners" in told[-1].text
+    assert slim.diameter == min(
+        t.diameter
+        for t in SHOP.tools_for("N", "finish")
+        if t.corner_radius == 3.0 and t.neck_length >= 26.0
+    )
 
 
 def test_walls_are_finished_also_where_no_cutter_gets_into_the_corners():
     tree = route(with_sizes(panel(), "pocket-01", corner_radius=1.0))
     assert tree.operation("wall-pocket-01").tool.corner_radius == 3.0
-    assert "corner_finish-pocket-01" not in [o.id for o in tree.operations]
+
+
+def test_where_no_cutter_is_slimmer_than_a_deep_corner_one_as_round_as_it_is_taken():
+    # 25 mm deep and 6 mm clear: cutters of D 5 reach 30 mm, those of D 6 36 mm
+    tight = with_sizes(panel(), "pocket-01", corner_radius=3.0, floor_fillet=1.0)
+    tree = route(tight, reach_clearance=6.0)
+    assert not [f for f in tree.findings if f.severity is Severity.ERROR]
+    assert tree.operation("corner_finish-pocket-01").tool.radius == 3.0
+    told = [f.text for f in tree.findings if f.code == "route.second-choice"]
+    assert any("as round as the corners" in t for t in told)
 
 
 def test_a_sharp_inner_corner_is_cut_as_far_as_cutters_go_and_told():
@@ -210,3 +227,28 @@ def test_titanium_gets_cutters_with_four_teeth():
     part, _ = panel()
     tree = route(panel(), blank=replace(blank_of(part), material="Ti-6Al-4V"))
     assert tree.operations and all(o.tool.teeth >= 4 for o in tree.operations)
+
+
+def test_a_floors_cutter_waits_for_the_rest_roughing_of_corners_that_it_gets_into():
+    tree = route(with_sizes(panel(), "pocket-01", corner_radius=4.0, floor_fillet=1.0))
+    ids = [o.id for o in tree.operations]
+    for pocket in ("pocket-01", "pocket-02"):
+        floor = tree.operation(f"floor-{pocket}")
+        if floor.tool.radius < tree.operation(f"rough-{pocket}").tool.radius:
+            rest = [i for i in ids if i.startswith(f"corner-{pocket}")]
+            assert all(ids.index(i) < ids.index(floor.id) for i in rest)
+
+
+@pytest.mark.parametrize("foot", [0.0, 1.0])
+def test_an_island_with_a_sharper_foot_than_its_pocket_gets_a_cutter_for_it(foot):
+    tree = route(with_sizes(panel(), "island-01", floor_fillet=foot))
+    cutter = tree.operation("foot-pocket-02")
+    assert cutter.tool.corner_radius <= foot < tree.operation("wall-pocket-02").tool.corner_radius
+    assert cutter.faces == (9,)
+    ids = [o.id for o in tree.operations]
+    assert ids.index("wall-pocket-02") < ids.index("foot-pocket-02")
+
+
+def test_an_island_with_its_pockets_foot_needs_none():
+    tree = route(with_sizes(panel(), "island-01", floor_fillet=3.0))
+    assert "foot-pocket-02" not in [o.id for o in tree.operations]

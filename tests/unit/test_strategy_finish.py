@@ -273,3 +273,24 @@ def test_a_floor_where_the_cutter_has_no_room_is_an_error() -> None:
         QUIET,
     )
     assert [f.code for f in planned.findings] == ["floor.too-wide"]
+
+
+def test_a_sharp_foot_is_cut_without_touching_the_rounder_ones_beside_it() -> None:
+    island = rounded(20, 14, 32, 26, 3)
+    plan, fillet, cutter = rounded(0, 0, 60, 40, 8), 3.0, mill(8)
+    pocket, around = plan.curves()[0], plan.minus(island).curves()[1]
+    guides = [
+        WallGuide(curve=pocket, top=0.0, bottom=-DEPTH, fillet=fillet, faces=(1,)),
+        WallGuide(curve=around, top=-DEPTH + fillet, bottom=-DEPTH, fillet=0.0, faces=(2,)),
+    ]
+    assert guides[1].is_around and not guides[0].is_around
+    drive = closed_pocket(
+        plan.minus(island), DEPTH, floors=(), walls=(guides[1],), beside=(guides[0],)
+    )
+    path = wall(
+        drive, cutter, cutting(3, 3), PlanningStock.of(BLANK, SETUP), SETUP, WallSettings(), QUIET
+    ).path
+    deep = path.position[np.abs(path.position[:, 2] + DEPTH) < 1e-9]
+    assert len(deep)
+    assert pocket.distance(deep[:, :2]).min() >= cutter.radius + fillet - 1e-6
+    assert around.distance(deep[:, :2]).min() == pytest.approx(cutter.radius, abs=1e-3)
