@@ -246,6 +246,9 @@ class Squares(Rectangles):
             area=np.array([w * h for w, h, _ in self.patches]),
             surface=("plane",) * n,
             bend=np.zeros(n, dtype=int),
+            normal=np.tile([0.0, 0.0, 1.0], (n, 1)),
+            sample_face=np.zeros(0, dtype=int),
+            sample_normal=np.zeros((0, 3)),
             neighbours=lambda row, kind=None: (),
         )
 

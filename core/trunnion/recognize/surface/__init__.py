@@ -13,6 +13,7 @@ from trunnion.model.feature import FaceRole, Feature, Recognition
 from trunnion.progress import QUIET, Progress
 from trunnion.recognize.contract import Bounded, Suitability
 from trunnion.recognize.surface.bends import PatchBends, patch_bends
+from trunnion.recognize.surface.frame import frame_of
 from trunnion.recognize.surface.groups import aligned_groups, invariant_groups
 from trunnion.recognize.surface.settings import ALIGNED, EXACT, SurfaceSettings
 from trunnion.recognize.surface.size import PatchSizes, patch_sizes
@@ -84,6 +85,7 @@ class SurfaceFamily:
         )
         return Recognition(
             family=self.name,
+            frame=frame_of(graph),
             features=features,
             unexplained=tuple(int(t) for t in sizes.tag[apart]),
             unexplained_share=float(sizes.area[apart].sum() / sizes.area.sum()),

@@ -17,7 +17,7 @@ ENOUGH = 0.15
 """Share of the area that is curved on a part that is surely of this family; panels have half of it at most, most of that in fillets."""
 GENERAL = 0.9
 """Patches of any part can be grouped, which says nothing about what they are: a kind that explains as much of them is the better answer."""
-UPRIGHT = radians(2.0)
+UPRIGHT = radians(0.5)
 """A face whose normals stay within this of square to a direction stands upright along it, in radians."""
 MAIN = 0.25
 """Area of parallel planes over that of the largest set of them from which on their normal may be the direction the part is milled from."""
