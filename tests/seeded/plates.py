@@ -111,6 +111,10 @@ def _with_local(
         ball = draw.uniform(1.1, 1.8) * radius
         low = _top(body, spot) - (ball**2 - radius**2) ** 0.5
         local = cq.Workplane("XY").sphere(ball).translate((*spot, low))
+        inside = cq.Workplane("XY").box(
+            4.0 * ball, 4.0 * ball, 2.0 * height, centered=(True, True, False)
+        )
+        local = local.intersect(inside.translate((*spot, 0.5 * height)))
     return _footed(draw, body, body.union(local))
 
 
