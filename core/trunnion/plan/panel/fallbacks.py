@@ -13,7 +13,7 @@ from dataclasses import replace
 
 from trunnion.findings import Finding, face_tags, remark
 from trunnion.model.tool import Tool
-from trunnion.plan.panel.tasks import Draft, OperationTask, catalogue
+from trunnion.plan.panel.tasks import OperationTask, PanelPlanState, catalogue
 from trunnion.plan.tool_choice import Candidates, ToolRequirement, candidates
 from trunnion.units import trimmed
 
@@ -21,7 +21,7 @@ MOST_MISSED = 0.6
 """Share of a pocket that roughing leaves to smaller cutters at most, where none gets into the rest of it."""
 
 
-def best_fit(draft: Draft, task: OperationTask) -> tuple[OperationTask, Candidates]:
+def best_fit(draft: PanelPlanState, task: OperationTask) -> tuple[OperationTask, Candidates]:
     """Return the task as it can be done, with its cutters; without any where nothing on the ladder fits."""
     tools, clearance = catalogue(draft, task.stage), draft.settings.reach_clearance
     wanted = candidates(task.requirement, tools, clearance, draft.progress)
@@ -35,7 +35,7 @@ def best_fit(draft: Draft, task: OperationTask) -> tuple[OperationTask, Candidat
     return task, wanted
 
 
-def _ladder(draft: Draft, task: OperationTask) -> list[tuple[ToolRequirement, str]]:
+def _ladder(draft: PanelPlanState, task: OperationTask) -> list[tuple[ToolRequirement, str]]:
     """Return what may be asked for instead, best first, each with what becomes of it in words."""
     asked, rule = task.requirement, task.stage.cutter
     if rule == "rough":
@@ -66,7 +66,7 @@ def _ladder(draft: Draft, task: OperationTask) -> list[tuple[ToolRequirement, st
     return ladder
 
 
-def _slimmest(draft: Draft, task: OperationTask) -> float:
+def _slimmest(draft: PanelPlanState, task: OperationTask) -> float:
     """Return the radius of the slimmest cutter that gets down to a task's foot."""
     open_to_all = replace(task.requirement, radius=0.0, missable=1.0, cusps=False, near=0.0)
     found = candidates(
@@ -75,7 +75,7 @@ def _slimmest(draft: Draft, task: OperationTask) -> float:
     return min((t.radius for t in found.tools), default=math.inf)
 
 
-def _before(draft: Draft, task: OperationTask) -> Tool | None:
+def _before(draft: PanelPlanState, task: OperationTask) -> Tool | None:
     """Return the cutter that was in a feature's corners before."""
     return draft.tools.get(f"{'rough' if task.stage.cutter == 'rest' else 'wall'}-{task.feature}")
 
@@ -90,7 +90,7 @@ def _second_choice(task: OperationTask, wanted: Candidates, why: str) -> Finding
     )
 
 
-def with_floors_behind_roughing(draft: Draft, tasks: Sequence[OperationTask]) -> None:
+def with_floors_behind_roughing(draft: PanelPlanState, tasks: Sequence[OperationTask]) -> None:
     """Give floors a cutter that finds room where roughing cleared, in pockets whose corners no roughing cutter got into.
 
     A floor's cutter goes to the bottom at once: one that is slimmer than the last roughing cutter goes into stock that stands as high as
@@ -115,14 +115,14 @@ def with_floors_behind_roughing(draft: Draft, tasks: Sequence[OperationTask]) ->
             draft.tools[task.id] = min(as_wide, key=lambda t: (t.radius, -t.corner_radius, t.name))
 
 
-def _cleared(draft: Draft, task: OperationTask, tasks: Sequence[OperationTask]) -> float:
+def _cleared(draft: PanelPlanState, task: OperationTask, tasks: Sequence[OperationTask]) -> float:
     """Return the radius of the smallest cutter that roughed a task's feature, 0 where none did."""
     rough = [t for t in tasks if t.feature == task.feature and t.stage.cutter in ("rough", "rest")]
     return min((draft.tools[t.id].radius for t in rough), default=0.0)
 
 
 def behind_rest_roughing(
-    draft: Draft, task: OperationTask, tasks: Sequence[OperationTask]
+    draft: PanelPlanState, task: OperationTask, tasks: Sequence[OperationTask]
 ) -> frozenset[str]:
     """Return the ids of rest roughing that a floor's cutter has to wait for: it is slimmer than the first roughing cutter, so it goes into
     corners where stock stands up to the pocket's rim."""

@@ -15,7 +15,14 @@ from trunnion.geometry.plane.region import EMPTY_REGION, Region, union_all
 from trunnion.model.feature import Feature, Recognition
 from trunnion.model.material import Machine, Material
 from trunnion.model.tool import Tool
-from trunnion.plan.prismatic.regions import Band, Space, floor_fillet, number, parent_of, touching
+from trunnion.plan.prismatic.regions import (
+    Band,
+    SetupSpace,
+    floor_fillet,
+    number,
+    parent_of,
+    touching,
+)
 from trunnion.plan.settings import RouteSettings
 from trunnion.plan.tool_choice import ToolRequirement, candidates, depth_reached, fits_through
 from trunnion.progress import QUIET, Progress
@@ -59,10 +66,10 @@ class OperationTask:
 
 
 @dataclass(slots=True)
-class Draft:
+class PanelPlanState:
     """What is known while one setup is planned; `loaded` are the tools of the setups before, `progress` is looked at on the way."""
 
-    space: Space
+    space: SetupSpace
     recognition: Recognition
     material: Material
     machine: Machine
@@ -81,7 +88,7 @@ def floor_distance(settings: RouteSettings) -> float:
     return settings.wall_allowance + FLOOR_DISTANCE
 
 
-def catalogue(draft: Draft, stage: Stage) -> tuple[Tool, ...]:
+def catalogue(draft: PanelPlanState, stage: Stage) -> tuple[Tool, ...]:
     """Return the cutters that a stage may choose from."""
     use = "face" if stage.cutter == "face" else "finish" if stage.finish else "rough"
     tools = draft.shop.tools_for(draft.material.iso_group, use)
@@ -92,7 +99,9 @@ def catalogue(draft: Draft, stage: Stage) -> tuple[Tool, ...]:
     )
 
 
-def _wishes_face(draft: Draft, stage: Stage, features: Sequence[Feature]) -> list[OperationTask]:
+def _wishes_face(
+    draft: PanelPlanState, stage: Stage, features: Sequence[Feature]
+) -> list[OperationTask]:
     space = draft.space
     height = float(space.blank_high[2]) - space.top
     if height <= tolerance.SEW:
@@ -122,7 +131,7 @@ def _wishes_face(draft: Draft, stage: Stage, features: Sequence[Feature]) -> lis
 
 
 def _pocket_wishes(
-    draft: Draft,
+    draft: PanelPlanState,
     stage: Stage,
     features: Sequence[Feature],
     make: Callable[[Feature, tuple[Band, ...]], OperationTask | None],
@@ -147,7 +156,9 @@ def _pocket_wishes(
     return found
 
 
-def _wishes_rough(draft: Draft, stage: Stage, features: Sequence[Feature]) -> list[OperationTask]:
+def _wishes_rough(
+    draft: PanelPlanState, stage: Stage, features: Sequence[Feature]
+) -> list[OperationTask]:
     def make(feature: Feature, bands: tuple[Band, ...]) -> OperationTask:
         is_open = feature.kind == "open_pocket"
         requirement = ToolRequirement(
@@ -168,7 +179,9 @@ def _wishes_rough(draft: Draft, stage: Stage, features: Sequence[Feature]) -> li
     return _pocket_wishes(draft, stage, features, make)
 
 
-def _wishes_rest(draft: Draft, stage: Stage, features: Sequence[Feature]) -> list[OperationTask]:
+def _wishes_rest(
+    draft: PanelPlanState, stage: Stage, features: Sequence[Feature]
+) -> list[OperationTask]:
     def make(feature: Feature, bands: tuple[Band, ...]) -> OperationTask | None:
         before = draft.tools.get(f"rough-{feature.id}")
         corner = number(feature, "corner_radius")
@@ -184,7 +197,9 @@ def _wishes_rest(draft: Draft, stage: Stage, features: Sequence[Feature]) -> lis
     return _pocket_wishes(draft, stage, features, make)
 
 
-def _wishes_floor(draft: Draft, stage: Stage, features: Sequence[Feature]) -> list[OperationTask]:
+def _wishes_floor(
+    draft: PanelPlanState, stage: Stage, features: Sequence[Feature]
+) -> list[OperationTask]:
     def make(feature: Feature, bands: tuple[Band, ...]) -> OperationTask | None:
         if not feature.with_role("floor"):
             return None
@@ -221,7 +236,9 @@ def _wishes_floor(draft: Draft, stage: Stage, features: Sequence[Feature]) -> li
     return _pocket_wishes(draft, stage, features, make)
 
 
-def _wishes_wall(draft: Draft, stage: Stage, features: Sequence[Feature]) -> list[OperationTask]:
+def _wishes_wall(
+    draft: PanelPlanState, stage: Stage, features: Sequence[Feature]
+) -> list[OperationTask]:
     def make(feature: Feature, bands: tuple[Band, ...]) -> OperationTask:
         islands = [
             tag
@@ -255,7 +272,9 @@ def _wishes_wall(draft: Draft, stage: Stage, features: Sequence[Feature]) -> lis
     return _pocket_wishes(draft, stage, features, make)
 
 
-def _wishes_corner(draft: Draft, stage: Stage, features: Sequence[Feature]) -> list[OperationTask]:
+def _wishes_corner(
+    draft: PanelPlanState, stage: Stage, features: Sequence[Feature]
+) -> list[OperationTask]:
     def make(feature: Feature, bands: tuple[Band, ...]) -> OperationTask | None:
         wall, corner = draft.tools.get(f"wall-{feature.id}"), number(feature, "corner_radius")
         is_sharp = feature.sizes.get("corner_radius") == 0.0
@@ -275,7 +294,9 @@ def _wishes_corner(draft: Draft, stage: Stage, features: Sequence[Feature]) -> l
     return _pocket_wishes(draft, stage, features, make)
 
 
-def _wishes_foot(draft: Draft, stage: Stage, features: Sequence[Feature]) -> list[OperationTask]:
+def _wishes_foot(
+    draft: PanelPlanState, stage: Stage, features: Sequence[Feature]
+) -> list[OperationTask]:
     """Ask for the feet of islands that are sharper than the foot of the pocket's walls, whose cutter leaves its corner there."""
 
     def make(feature: Feature, bands: tuple[Band, ...]) -> OperationTask | None:
@@ -305,13 +326,15 @@ def _wishes_foot(draft: Draft, stage: Stage, features: Sequence[Feature]) -> lis
     return _pocket_wishes(draft, stage, features, make)
 
 
-def _seen_from_above(draft: Draft, island: Feature) -> Region:
+def _seen_from_above(draft: PanelPlanState, island: Feature) -> Region:
     """Return the plan area of an island, by its top."""
     frame = draft.space.setup.frame
     return union_all([draft.space.part.face_outline(frame, t) for t in island.with_role("top")])
 
 
-def _wishes_top(draft: Draft, stage: Stage, features: Sequence[Feature]) -> list[OperationTask]:
+def _wishes_top(
+    draft: PanelPlanState, stage: Stage, features: Sequence[Feature]
+) -> list[OperationTask]:
     found = []
     for feature in features:
         tops = feature.with_role("top")
@@ -347,7 +370,7 @@ def _wishes_top(draft: Draft, stage: Stage, features: Sequence[Feature]) -> list
 
 
 def _top_room(
-    draft: Draft, feature: Feature, z: float, tops: Sequence[int]
+    draft: PanelPlanState, feature: Feature, z: float, tops: Sequence[int]
 ) -> tuple[Region, Region]:
     """Return where a cutter may be at a top's height, and the top itself."""
     space, wanted = draft.space, EMPTY_REGION
@@ -368,7 +391,9 @@ def _top_room(
     return over[0].boundary, wanted
 
 
-def _wishes_profile(draft: Draft, stage: Stage, features: Sequence[Feature]) -> list[OperationTask]:
+def _wishes_profile(
+    draft: PanelPlanState, stage: Stage, features: Sequence[Feature]
+) -> list[OperationTask]:
     found = []
     space = draft.space
     for feature in features:
@@ -401,7 +426,7 @@ def _wishes_profile(draft: Draft, stage: Stage, features: Sequence[Feature]) -> 
     return found
 
 
-WISHES: Mapping[str, Callable[[Draft, Stage, Sequence[Feature]], list[OperationTask]]] = {
+WISHES: Mapping[str, Callable[[PanelPlanState, Stage, Sequence[Feature]], list[OperationTask]]] = {
     "face": _wishes_face,
     "rough": _wishes_rough,
     "rest": _wishes_rest,
@@ -442,12 +467,12 @@ def _kept_off(area: Region, distance: float) -> Region:
     return area.offset(-distance) or area
 
 
-def _depth(draft: Draft, bands: tuple[Band, ...]) -> float:
+def _depth(draft: PanelPlanState, bands: tuple[Band, ...]) -> float:
     """Return how deep below the part's top a pocket's lowest floor lies: the walls around may stand as high as that."""
     return draft.space.top - bands[-1].bottom
 
 
-def _wall_task(draft: Draft, feature: Feature, bands: tuple[Band, ...]) -> ToolRequirement:
+def _wall_task(draft: PanelPlanState, feature: Feature, bands: tuple[Band, ...]) -> ToolRequirement:
     return ToolRequirement(
         depth=_depth(draft, bands),
         room=bands[-1].boundary,
@@ -462,7 +487,7 @@ def _wall_task(draft: Draft, feature: Feature, bands: tuple[Band, ...]) -> ToolR
 
 
 def _with_known_fillet(
-    draft: Draft, stage: Stage, feature: Feature, requirement: ToolRequirement
+    draft: PanelPlanState, stage: Stage, feature: Feature, requirement: ToolRequirement
 ) -> ToolRequirement:
     """Return a wall's requirement with the fillet that cutters have: when none has it exactly, the next smaller, and a finding."""
     radii = {
@@ -486,7 +511,7 @@ def _with_known_fillet(
     return replace(requirement, corner_radius=next_smaller)
 
 
-def _smallest(draft: Draft, stage: Stage, requirement: ToolRequirement) -> float:
+def _smallest(draft: PanelPlanState, stage: Stage, requirement: ToolRequirement) -> float:
     """Return the radius of the smallest cutter that gets to the foot of a wall."""
     found = candidates(
         replace(requirement, missable=1.0, cusps=False, near=0.0),
@@ -497,7 +522,9 @@ def _smallest(draft: Draft, stage: Stage, requirement: ToolRequirement) -> float
     return min((t.radius for t in found), default=math.inf)
 
 
-def with_falling_sizes(draft: Draft, tasks: Sequence[OperationTask]) -> list[OperationTask]:
+def with_falling_sizes(
+    draft: PanelPlanState, tasks: Sequence[OperationTask]
+) -> list[OperationTask]:
     """Return the tasks with cutters put in where a corner's cutter is much smaller than the one that was there before."""
     out: list[OperationTask] = []
     for task in tasks:
@@ -521,7 +548,7 @@ def with_falling_sizes(draft: Draft, tasks: Sequence[OperationTask]) -> list[Ope
     return out
 
 
-def _between(draft: Draft, task: OperationTask, before: Tool) -> Tool | None:
+def _between(draft: PanelPlanState, task: OperationTask, before: Tool) -> Tool | None:
     goal = draft.tools[task.id]
     fits = [
         t
