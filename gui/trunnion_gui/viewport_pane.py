@@ -26,9 +26,9 @@ from trunnion_gui.look.colours import Theme, motions
 from trunnion_gui.look.words import amount, fine_amount, kind_words
 from trunnion_gui.playback.player import Player
 from trunnion_gui.viewport.scene import Click, Scene
+from trunnion_gui.widgets.colour_bar import ColourBar
 from trunnion_gui.widgets.legend import Legend
 from trunnion_gui.widgets.notice import Notice
-from trunnion_gui.widgets.scale import Scale
 from trunnion_gui.widgets.welcome import Welcome
 from trunnion_gui.worker.drawing import DrawnMap, place_on
 
@@ -81,7 +81,7 @@ class ViewportPane(QWidget):
         self.notice = Notice()
         self.scene = Scene(theme)
         self.legend = Legend(self.scene)
-        self.scale = Scale(self.scene, theme, load_palette().deviation)
+        self.scale = ColourBar(self.scene, theme, load_palette().deviation)
         self.tip = self._make_tip()
         self.welcome = Welcome(document, registry, self.scene)
         self.section_bar, self.section_slider = self._make_section_bar()

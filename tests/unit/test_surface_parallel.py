@@ -10,7 +10,7 @@ import pytest
 
 from surface_drives import DATA, driven, grid, joined
 from trunnion.findings import Refused
-from trunnion.geometry.kernels.drop import drop
+from trunnion.geometry.kernels.drop_cutter import drop
 from trunnion.model.toolpath import Mark, Motion
 from trunnion.plan.freeform.cutters.cutter import lower_side
 from trunnion.plan.freeform.estimate.scallop import stepover_on_plane

@@ -7,7 +7,7 @@ from dataclasses import dataclass
 from trunnion.geometry.facegraph import CONCAVE, CONVEX, SMOOTH
 from trunnion.recognize.grow import grown, same_surface
 from trunnion.recognize.panel.classes import FaceClass
-from trunnion.recognize.panel.view import View
+from trunnion.recognize.panel.side import PanelSide
 from trunnion.tolerance import ANGLE, SLIVER
 
 SLOPES = (FaceClass.CROSS, FaceClass.BLEND, FaceClass.OVERHANG)
@@ -40,7 +40,7 @@ class Ring:
         return bool(self.walls or self.corners or self.fillets or self.slopes)
 
 
-def ring(view: View, floor: int, edges: tuple[int, ...]) -> Ring:
+def ring(view: PanelSide, floor: int, edges: tuple[int, ...]) -> Ring:
     """Return what stands around the edges of one loop of a floor."""
     graph, rising = view.graph, view.classes.rising
     blends, sides, drops, slopes, sharp = [], [], [], [], False
@@ -89,7 +89,7 @@ def ring(view: View, floor: int, edges: tuple[int, ...]) -> Ring:
     )
 
 
-def _has_floor(view: View, blend: int) -> bool:
+def _has_floor(view: PanelSide, blend: int) -> bool:
     return any(
         view.classes.kind[view.graph.across(e, blend)] is FaceClass.UP
         and view.graph.convexity[e] == SMOOTH
@@ -97,7 +97,7 @@ def _has_floor(view: View, blend: int) -> bool:
     )
 
 
-def _continues_up(view: View, edge: int, face: int, other: int) -> bool:
+def _continues_up(view: PanelSide, edge: int, face: int, other: int) -> bool:
     """Say whether another face carries a wall on, on the same surface, above the wall's top."""
     graph = view.graph
     at_top = min(graph.start[edge][2], graph.end[edge][2]) > graph.box_high[face][2] - SLIVER

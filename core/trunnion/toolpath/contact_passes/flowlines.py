@@ -41,12 +41,12 @@ CROWDED = 8.0
 other, or it is a scrap whose guides have little to do with its shape."""
 
 
-class Crowded(Refused):
+class FlowLinesTooDense(Refused):
     """Flow lines would lie far closer nearly everywhere than they need to; passes at a constant scallop don't."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class Flow:
+class FlowParameters:
     """How flow lines run: the faces beyond the rims where they begin and end (`guides.tags_named`; empty: chosen), whether a tube or ring
     is one spiral, and the chord error (mm) that contacts are set by."""
 
@@ -57,13 +57,16 @@ class Flow:
 
 
 def flow_lines(
-    drive: SurfaceDrive, tool: Tool, flow: Flow = Flow(), progress: Progress = QUIET
+    drive: SurfaceDrive,
+    tool: Tool,
+    flow: FlowParameters = FlowParameters(),
+    progress: Progress = QUIET,
 ) -> tuple[Contacts, ...]:
     """Return the passes of contacts over the drive's faces from the first guide to the second, in the cutting frame.
 
     All of them run the same way, the part that is still to be cut on their right: a tool that turns clockwise climbs. Each connected part
     of the area has its own passes, one after the other. Raises `BadInput` for guides that can't be, `Refused` for a cutter that can't,
-    `Crowded` for an area that flow lines don't suit.
+    `FlowLinesTooDense` for an area that flow lines don't suit.
     """
     measure = stepover_measure(tool, drive.height)
     parts = sheet_of(drive.skin, drive.faces).components() if drive.faces else []
@@ -91,7 +94,7 @@ def flow_lines(
     return tuple(made)
 
 
-def _guides(sheet: Sheet, drive: SurfaceDrive, flow: Flow) -> Guides:
+def _guides(sheet: Sheet, drive: SurfaceDrive, flow: FlowParameters) -> Guides:
     first, second = tags_named(flow.first_guide), tags_named(flow.second_guide)
     if bool(first) != bool(second):
         raise BadInput("flow lines need both guides, or none of them to have them chosen")
@@ -106,7 +109,7 @@ def _lines(metric: Metric, guides: Guides, spiral: bool, progress: Progress) -> 
     order = np.argsort(slope)
     narrowest = slope[order[np.searchsorted(np.cumsum(area[order]), SMALLEST * area.sum())]]
     if CROWDED * narrowest * (1.0 + float(area.sum() / (slope @ area))) < 1.0:
-        raise Crowded(
+        raise FlowLinesTooDense(
             "flow lines between these guides would lie far closer than the scallop wants; passes at a constant scallop don't, "
             "nor may those between other guides"
         )

@@ -36,7 +36,7 @@ from trunnion.part.shape.surfaces import (
 )
 from trunnion.progress import QUIET, Progress
 from trunnion.verify.contact.grid import Grid, grid_of
-from trunnion.verify.contact.touch import Touch, deepen
+from trunnion.verify.contact.penetration import Penetration, deepen
 from trunnion.verify.kernels import strips as kernel
 from trunnion.verify.motion import Moves
 from trunnion.verify.threads import in_parallel
@@ -78,7 +78,7 @@ class StripContact:
 
     def along(
         self, moves: Moves, rows: Ints, progress: Progress = QUIET, threads: int = 0
-    ) -> Touch:
+    ) -> Penetration:
         """Return how deep the moves of some rows (k,) enter the faces; they must stand upright."""
         found = self._measure(moves, rows, progress, threads)
         return progress.aside(lambda _: self._touch(moves, rows, found))
@@ -90,7 +90,7 @@ class StripContact:
             allowed
         )
 
-    def _touch(self, moves: Moves, rows: Ints, found: _Measured) -> Touch:
+    def _touch(self, moves: Moves, rows: Ints, found: _Measured) -> Penetration:
         s, face, place = (
             self.surfaces,
             np.full((len(rows), 2), -1),
@@ -108,7 +108,7 @@ class StripContact:
             face,
             place,
         )
-        return Touch(
+        return Penetration(
             depth=found.depth,
             face=face,
             place=place,

@@ -64,7 +64,7 @@ class Flutes(NamedTuple):
     middle: Floats
 
 
-class Tree(NamedTuple):
+class SpanTree(NamedTuple):
     """Spans of ways in a bounding volume hierarchy of poses, one for each tool.
 
     way (w, 18), move (w,) their rows among the moves, tool (w,). Spans: of (k,) the row of the way,
@@ -381,7 +381,7 @@ def left_along(
 
 @njit(cache=True, nogil=True)
 def node_least(
-    tree: Tree, flutes: Flutes, n: int, x: float, y: float, z: float, above: bool
+    tree: SpanTree, flutes: Flutes, n: int, x: float, y: float, z: float, above: bool
 ) -> float:
     """Return a lower bound (mm) of the signed distance of a point to any pose below a node.
 
@@ -405,7 +405,7 @@ def nearest_span(
     x: float,
     y: float,
     z: float,
-    tree: Tree,
+    tree: SpanTree,
     flutes: Flutes,
     best: float,
     by: int,
@@ -606,7 +606,7 @@ def left_loop(
     cell_move: Ints,
     grid: Floats,
     shape: Ints,
-    tree: Tree,
+    tree: SpanTree,
     flutes: Flutes,
     bound: float,
     left: Floats,
@@ -649,7 +649,7 @@ def far_loop(
     last: int,
     points: Floats,
     order: Ints,
-    tree: Tree,
+    tree: SpanTree,
     flutes: Flutes,
     bound: float,
     left: Floats,
@@ -733,7 +733,7 @@ def cut_loop(
     cell_move: Ints,
     grid: Floats,
     shape: Ints,
-    tree: Tree,
+    tree: SpanTree,
     flutes: Flutes,
     bound: float,
     out: Bools,

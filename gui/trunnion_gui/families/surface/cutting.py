@@ -20,7 +20,7 @@ from trunnion.findings import BadInput
 from trunnion.geometry.cut import Cut, plane_cut, way_cut
 from trunnion_gui.document import Document
 from trunnion_gui.families.surface.jobs import PatchJobs
-from trunnion_gui.form import Number
+from trunnion_gui.form import NumberField
 from trunnion_gui.i18n import tr
 from trunnion_gui.look import icons
 from trunnion_gui.viewport.scene import Click, Scene
@@ -149,7 +149,7 @@ class CutBar(QWidget):
         ):
             self.manner.addItem(words, kind)
         self.manner.currentIndexChanged.connect(self._change)
-        self.value = Number()
+        self.value = NumberField()
         self.value.setDecimals(4)
         self.value.setSuffix(" mm")
         self.value.setKeyboardTracking(False)
