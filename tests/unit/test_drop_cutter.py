@@ -10,9 +10,9 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from trunnion.geometry.drop_surface import DropSurface
-from trunnion.geometry.kernels.drop_cutter import drop, height_at, radius_at
-from trunnion.geometry.kernels.push_cutter import push
-from trunnion.geometry.kernels.push_cutter_compiled import blocked
+from trunnion.geometry.kernels.drop_cutter import drop_cutter, height_at, radius_at
+from trunnion.geometry.kernels.push_cutter import push_cutter
+from trunnion.geometry.kernels.push_cutter_compiled import triangle_push
 from trunnion.geometry.lattice import lattice_of
 
 FLAT = np.array([[0.0, 8.0, 0.0, 0.0, 0.0, 0.0]])
@@ -91,7 +91,7 @@ def test_the_compiled_loops_find_what_every_triangle_for_every_point_finds(name:
     points, triangles = wavy(14)
     at = np.vstack([np.random.default_rng(3).uniform(-6.0, 66.0, (120, 2)), points[::9, :2]])
     found = DropSurface.of(points, triangles).drop(at, CUTTERS[name], LOWEST)
-    assert np.abs(found - drop(at, points[triangles], CUTTERS[name], LOWEST)).max() < 1e-9
+    assert np.abs(found - drop_cutter(at, points[triangles], CUTTERS[name], LOWEST)).max() < 1e-9
 
 
 @settings(deadline=None, max_examples=30)
@@ -103,7 +103,7 @@ def test_loose_triangles_of_any_kind(seed: int, name: str) -> None:
     found = DropSurface.of(corners.reshape(-1, 3), np.arange(24).reshape(-1, 3)).drop(
         at, CUTTERS[name], LOWEST
     )
-    assert np.abs(found - drop(at, corners, CUTTERS[name], LOWEST)).max() < 1e-9
+    assert np.abs(found - drop_cutter(at, corners, CUTTERS[name], LOWEST)).max() < 1e-9
 
 
 @pytest.mark.parametrize("name", CUTTERS)
@@ -115,10 +115,10 @@ def test_pushing_is_blocked_just_where_dropping_would_lift_the_tip(name: str) ->
         ]
     )
     lines = np.array([[0.5, 0.3]])
-    plain = push(lines, corners, CUTTERS[name])
+    plain = push_cutter(lines, corners, CUTTERS[name])
     found = [
         [
-            [way * blocked(CUTTERS[name], t.ravel(), *lines[0], way) for way in (-1.0, 1.0)]
+            [way * triangle_push(CUTTERS[name], t.ravel(), *lines[0], way) for way in (-1.0, 1.0)]
             for t in corners
         ]
     ]
@@ -216,7 +216,7 @@ def test_points_along_a_way_find_what_loose_points_find(seed: int, name: str) ->
     found = DropSurface.of(corners.reshape(-1, 3), np.arange(120).reshape(-1, 3)).drop(
         way, CUTTERS[name], LOWEST
     )
-    assert np.abs(found - drop(way, corners, CUTTERS[name], LOWEST)).max() < 1e-9
+    assert np.abs(found - drop_cutter(way, corners, CUTTERS[name], LOWEST)).max() < 1e-9
 
 
 def test_each_point_may_have_its_own_height_to_begin_with() -> None:
@@ -268,7 +268,7 @@ def test_a_wall_of_small_facets_beside_large_ones_lifts_as_its_plain_form_does()
     at = np.random.default_rng(2).uniform(0.0, 14.0, (80, 2))
     for cutter in CUTTERS.values():
         found = DropSurface.of(points, triangles).drop(at, cutter, LOWEST)
-        assert np.abs(found - drop(at, points[triangles], cutter, LOWEST)).max() < 1e-9
+        assert np.abs(found - drop_cutter(at, points[triangles], cutter, LOWEST)).max() < 1e-9
 
 
 @pytest.mark.parametrize("name", CUTTERS)

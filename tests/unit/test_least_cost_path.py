@@ -9,7 +9,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from trunnion.geometry.kernels import least_cost_path as plain
-from trunnion.geometry.kernels.least_cost_path_compiled import course
+from trunnion.geometry.kernels.least_cost_path_compiled import least_cost_path
 from trunnion.geometry.sphere import angle_between, directions, neighbours
 
 INF = math.inf
@@ -20,7 +20,7 @@ FREE = np.zeros((4, 3))
 
 def test_a_course_goes_where_it_is_cheapest() -> None:
     cost = np.array([[1.0, 0.0, 1.0, 1.0], [1.0, 1.0, 0.0, 1.0], [1.0, 1.0, 1.0, 0.0]])
-    chosen, leap = course(cost, LINE, FREE, 9.0)
+    chosen, leap = least_cost_path(cost, LINE, FREE, 9.0)
     assert chosen.tolist() == [1, 2, 3] and not leap.any()
 
 
@@ -28,24 +28,24 @@ def test_a_course_goes_round_what_is_forbidden() -> None:
     cost = np.array(
         [[0.0, 5.0, 9.0, 9.0], [INF, 5.0, 9.0, 9.0], [INF, 5.0, 9.0, 9.0], [0.0, 5.0, 9.0, 9.0]]
     )
-    assert course(cost, LINE, FREE, 99.0)[0].tolist() == [0, 1, 1, 0]
+    assert least_cost_path(cost, LINE, FREE, 99.0)[0].tolist() == [0, 1, 1, 0]
 
 
 def test_turning_costs_so_that_a_course_stays_where_little_is_gained() -> None:
     cost = np.array([[0.0, 1.0, 9.0, 9.0], [1.0, 0.0, 9.0, 9.0], [0.0, 1.0, 9.0, 9.0]])
     turn = np.array([[0.0, 2.0, 0.0], [0.0, 2.0, 2.0], [0.0, 2.0, 2.0], [0.0, 2.0, 0.0]])
-    assert course(cost, LINE, turn, 99.0)[0].tolist() == [0, 0, 0]
+    assert least_cost_path(cost, LINE, turn, 99.0)[0].tolist() == [0, 0, 0]
 
 
 def test_a_course_leaps_where_nothing_near_goes_on() -> None:
     cost = np.array([[0.0, INF, INF, INF], [INF, INF, INF, 0.0]])
-    chosen, leap = course(cost, LINE, FREE, 9.0)
+    chosen, leap = least_cost_path(cost, LINE, FREE, 9.0)
     assert chosen.tolist() == [0, 3] and leap.tolist() == [False, True]
 
 
 def test_a_row_without_choice_ends_a_course_and_another_begins_behind_it() -> None:
     cost = np.array([[0.0, 1.0, 1.0, 1.0], [INF] * 4, [1.0, 1.0, 1.0, 0.0]])
-    chosen, leap = course(cost, LINE, FREE, 9.0)
+    chosen, leap = least_cost_path(cost, LINE, FREE, 9.0)
     assert chosen.tolist() == [0, -1, 3] and not leap.any()
 
 
@@ -59,7 +59,9 @@ def test_the_compiled_loop_answers_as_the_plain_one(k: int, m: int, seed: int) -
     near = np.column_stack([column, (column + 1) % m, np.where(column > 0, column - 1, -1)])
     turn = some.integers(0, 3, (m, 3)).astype(float)
     for mine, theirs in zip(
-        course(cost, near, turn, 3.0), plain.course(cost, near, turn, 3.0), strict=True
+        least_cost_path(cost, near, turn, 3.0),
+        plain.least_cost_path(cost, near, turn, 3.0),
+        strict=True,
     ):
         assert (mine == theirs).all()
 

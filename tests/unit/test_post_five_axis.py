@@ -98,8 +98,8 @@ def test_the_compiled_winding_is_the_plain_one():
         free, through = rng.uniform(size=(30, 2, 2)) < 0.1, rng.uniform(size=30) < 0.3
         low, high, start = np.array([-2.0, -7.0]), np.array([3.0, 7.0]), rng.uniform(-1.0, 1.0, 2)
         plain, fast = np.zeros((30, 2)), np.zeros((30, 2))
-        said = rotary_angles.follow(angle, free, through, low, high, SLACK, start, plain)
-        assert rotary_angles_compiled.follow(
+        said = rotary_angles.choose_angles(angle, free, through, low, high, SLACK, start, plain)
+        assert rotary_angles_compiled.choose_angles(
             angle, free, through, low, high, SLACK, start, fast
         ) == approx(said)
         assert fast == approx(plain)

@@ -30,7 +30,7 @@ def cut(tool, stops, *, joined=True, floor=0.0, size=(60, 80), top=TOP):
     for k in np.flatnonzero(~moves.rapid):
         goes_on = joined and kernel.joins(moves.row, moves.rapid, moves.tool, k)
         done.append(
-            kernel.cut_move(
+            kernel.zmap_cut_move(
                 heights,
                 np.zeros(2),
                 PITCH,
@@ -191,7 +191,7 @@ def test_a_helix_of_a_flat_cutter_is_exact(sweep, rise, clockwise):
     row[[kernel.X0, kernel.Y0]] = 20 + 5 * math.cos(0.3), 15 + 5 * math.sin(0.3)
     row[[kernel.X1, kernel.Y1]] = 20 + 5 * math.cos(0.3 + turn), 15 + 5 * math.sin(0.3 + turn)
     heights = np.full((60, 80), TOP)
-    took, _ = kernel.cut_move(
+    took, _ = kernel.zmap_cut_move(
         heights,
         np.zeros(2),
         PITCH,

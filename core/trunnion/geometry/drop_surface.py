@@ -10,9 +10,9 @@ import numpy as np
 from trunnion import tolerance
 from trunnion.geometry.arrays import Floats, Ints
 from trunnion.geometry.kernels import drop_cutter_compiled as kernel
-from trunnion.geometry.kernels.drop_bvh import BOX_COLUMNS, cover_loop, sort_loop
+from trunnion.geometry.kernels.drop_bvh import BOX_COLUMNS, bvh_bounds_loop, bvh_sort_loop
 from trunnion.geometry.kernels.drop_cutter import ROUND, A, C
-from trunnion.geometry.kernels.push_cutter_compiled import push_loop
+from trunnion.geometry.kernels.push_cutter_compiled import push_cutter_loop
 from trunnion.geometry.lattice import Lattice, lattice_of
 from trunnion.progress import QUIET, Progress
 
@@ -53,7 +53,7 @@ class DropSurface:
         leaves = 1 << int(math.log2(max(len(corners) / FACETS_A_LEAF, 1.0)))
         start = np.arange(leaves + 1) * len(corners) // leaves
         row = np.arange(len(corners))
-        sort_loop(corners.mean(axis=1), start, row)
+        bvh_sort_loop(corners.mean(axis=1), start, row)
         facets = _facets(corners[row], _owned(triangles, len(points))[row])
         own = np.column_stack([facets[:, kernel.GX], facets[:, kernel.GY], np.zeros(len(facets))])
         own[:, 2] = np.where(
@@ -67,7 +67,7 @@ class DropSurface:
         )
         boxes, planes = np.empty((2 * leaves - 1, BOX_COLUMNS)), np.zeros((2 * leaves - 1, 3))
         planes[:, :2] = _slopes(facets, start)
-        cover_loop(facets[:, :9], start, boxes, planes)
+        bvh_bounds_loop(facets[:, :9], start, boxes, planes)
         return DropSurface(facets=facets, row=row, start=start, boxes=boxes, planes=(planes, own))
 
     def drop(
@@ -94,7 +94,7 @@ class DropSurface:
         floor = np.ascontiguousarray(np.broadcast_to(np.asarray(lowest, dtype=np.float64), (n,)))
         for first in range(0, n, CHUNK):
             progress.at(first / n, "Dropping the cutter")
-            kernel.touch_loop(
+            kernel.drop_cutter_loop(
                 first,
                 min(first + CHUNK, n),
                 points,
@@ -125,7 +125,7 @@ class DropSurface:
             last = min(first + LINES, len(lines))
             count = np.zeros(len(lines), np.int64)
             spans = np.empty((last - first, room, 2))
-            while not push_loop(
+            while not push_cutter_loop(
                 first,
                 last,
                 lines,
@@ -165,7 +165,7 @@ class DropSurface:
                 self._lifts.pop(next(iter(self._lifts)))
             made = tuple(np.empty((len(planes), kernel.LIFT_COLUMNS)) for planes in self.planes)
             for planes, lifts in zip(self.planes, made, strict=True):
-                kernel.lift_loop(planes, pieces, lifts)
+                kernel.plane_lift_loop(planes, pieces, lifts)
             self._lifts[key] = (made[0], made[1])
         return self._lifts[key]
 

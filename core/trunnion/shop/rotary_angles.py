@@ -9,7 +9,7 @@ import numpy as np
 
 from trunnion.findings import Refused
 from trunnion.geometry.arrays import Bools, Floats
-from trunnion.geometry.kernels.rotary_angles_compiled import follow
+from trunnion.geometry.kernels.rotary_angles_compiled import choose_angles
 from trunnion.model.material import Machine
 from trunnion.shop.kinematics import POLE, SLACK, WorkPosition, pole_of, stands_of
 
@@ -50,7 +50,7 @@ def followed(
         *_beginnings(angles, free, home, low, high),
         *unwound,
     ]:
-        reached, turned = follow(angles, free, through, low, high, SLACK, start, chosen)
+        reached, turned = choose_angles(angles, free, through, low, high, SLACK, start, chosen)
         if (
             reached == len(axis)
             and start is stand

@@ -19,7 +19,7 @@ BOX_COLUMNS = 5
 
 
 @njit(cache=True, nogil=True)
-def sort_loop(centres: Floats, start: Ints, order: Ints) -> None:
+def bvh_sort_loop(centres: Floats, start: Ints, order: Ints) -> None:
     """Sort order (t,) in place so that each node's run of the centres (t, 3) is halved across its
     longest side; start (leaves + 1,) the runs of the leaves."""
     leaves = len(start) - 1
@@ -35,12 +35,12 @@ def sort_loop(centres: Floats, start: Ints, order: Ints) -> None:
                     low, high = min(low, centres[order[n], k]), max(high, centres[order[n], k])
                 if high - low > longest:
                     axis, longest = k, high - low
-            _part(centres, axis, order, first, last - 1, start[leaf + width // 2])
+            _partition(centres, axis, order, first, last - 1, start[leaf + width // 2])
         width //= 2
 
 
 @njit(cache=True, nogil=True)
-def _part(centres: Floats, axis: int, order: Ints, first: int, last: int, middle: int) -> None:
+def _partition(centres: Floats, axis: int, order: Ints, first: int, last: int, middle: int) -> None:
     """Order order[first:last + 1] along an axis so far that the one at `middle` has no larger ones
     before and no smaller ones after it (quickselect: Hoare, 1961)."""
     while first < last:
@@ -66,7 +66,7 @@ def _part(centres: Floats, axis: int, order: Ints, first: int, last: int, middle
 
 
 @njit(cache=True, nogil=True)
-def cover_loop(corners: Floats, start: Ints, boxes: Floats, planes: Floats) -> None:
+def bvh_bounds_loop(corners: Floats, start: Ints, boxes: Floats, planes: Floats) -> None:
     """Fill boxes (nodes, 5) of the facets' corners (t, 9), and the planes' (nodes, 3) last column: the
     height over (0, 0) of the lowest plane with the slopes of the first two that nothing of the node
     is above."""

@@ -68,22 +68,22 @@ def radius_at(pieces: Floats, height: Floats) -> Floats:
     return out
 
 
-def drop(points: Floats, corners: Floats, pieces: Floats, lowest: float) -> Floats:
+def drop_cutter(points: Floats, corners: Floats, pieces: Floats, lowest: float) -> Floats:
     """Return the height (n,) of the tip over plan points (n, 2) when it touches triangles (t, 3, 3), at least `lowest`."""
     out = np.full(len(points), lowest)
     for k, point in enumerate(points):
         out[k] = max(
             [
                 lowest,
-                _on_corners(point, corners, pieces),
-                _on_edges(point, corners, pieces),
-                _on_planes(point, corners, pieces),
+                _vertex_drop(point, corners, pieces),
+                _edge_drop(point, corners, pieces),
+                _facet_drop(point, corners, pieces),
             ]
         )
     return out
 
 
-def _on_corners(point: Floats, corners: Floats, pieces: Floats) -> float:
+def _vertex_drop(point: Floats, corners: Floats, pieces: Floats) -> float:
     """Return the greatest height of the tip on any corner of triangles (t, 3, 3)."""
     flat = corners.reshape(-1, 3)
     return float(
@@ -93,7 +93,7 @@ def _on_corners(point: Floats, corners: Floats, pieces: Floats) -> float:
     )
 
 
-def _on_planes(point: Floats, corners: Floats, pieces: Floats) -> float:
+def _facet_drop(point: Floats, corners: Floats, pieces: Floats) -> float:
     """Return the greatest height of the tip where it touches a triangle's plane inside the triangle;
     vertical triangles have no such place."""
     a, b, c = corners[:, 0], corners[:, 1], corners[:, 2]
@@ -113,12 +113,12 @@ def _on_planes(point: Floats, corners: Floats, pieces: Floats) -> float:
         gradient, steep[:, None], out=np.zeros_like(gradient), where=steep[:, None] > 0.0
     )
     touch = point + rho[:, None] * uphill
-    inside = _holds(touch, a, b, c)
+    inside = _contains(touch, a, b, c)
     z = a[:, 2] + ((touch - a[:, :2]) * gradient).sum(axis=1) - height_at(pieces, rho)
     return float(z[inside].max(initial=-np.inf))
 
 
-def _holds(point: Floats, a: Floats, b: Floats, c: Floats) -> Bools:
+def _contains(point: Floats, a: Floats, b: Floats, c: Floats) -> Bools:
     """Return whether plan points (t, 2) lie inside triangles a, b, c (t, 3), whichever way these turn."""
     sides = np.stack(
         [
@@ -130,7 +130,7 @@ def _holds(point: Floats, a: Floats, b: Floats, c: Floats) -> Bools:
     return np.asarray((sides >= 0.0).all(axis=0) | (sides <= 0.0).all(axis=0))
 
 
-def _on_edges(point: Floats, corners: Floats, pieces: Floats) -> float:
+def _edge_drop(point: Floats, corners: Floats, pieces: Floats) -> float:
     """Return the greatest height of the tip on any edge of triangles (t, 3, 3).
 
     Along an edge the tip's height is concave: bisection on the sign of its slope, rise - g'(rho) u

@@ -6,9 +6,9 @@ greatest of z - g(rho). Bounds from above, of a facet or of a node of the tree, 
 arguments:
 
 * nothing of it is above its highest z, and g at the nearest plan distance is the least lift-off;
-* nothing of it is above a plane: touching that plane lifts the tip by a closed form (`lift_loop`);
-* g is above its tangents: over the middle of the box (`_below_tangent`), of a ball also from where
-  it touches the plane (`_below_ball`).
+* nothing of it is above a plane: touching that plane lifts the tip by a closed form (`plane_lift_loop`);
+* g is above its tangents: over the middle of the box (`_tangent_height_bound`), of a ball also from where
+  it touches the plane (`_ball_clearance`).
 
 _SLACK (mm) keeps the rounding of a bound from leaving out what is higher: heights are exact. mm,
 tool axis +z.
@@ -63,7 +63,7 @@ _TINY, _ROUNDING, _SLACK = 1e-300, 1e-13, 1e-10
 
 
 @njit(cache=True, nogil=True, inline="always")
-def _height(pieces: Floats, rho: float) -> float:
+def _profile_height(pieces: Floats, rho: float) -> float:
     """Return g (mm), the height above the tip at which the cutter begins at the distance rho; rho
     within its radius."""
     k = 0
@@ -76,7 +76,7 @@ def _height(pieces: Floats, rho: float) -> float:
 
 
 @njit(cache=True, nogil=True, inline="always")
-def _slope(pieces: Floats, rho: float) -> float:
+def _profile_slope(pieces: Floats, rho: float) -> float:
     """Return g'(rho), towards the axis where the lower side has a bend."""
     k = 0
     while k < len(pieces) - 1 and rho > pieces[k, RHO1]:
@@ -88,7 +88,7 @@ def _slope(pieces: Floats, rho: float) -> float:
 
 
 @njit(cache=True, nogil=True)
-def _touching(pieces: Floats, steep: float) -> float:
+def _contact_radius(pieces: Floats, steep: float) -> float:
     """Return the largest distance rho (mm) from the axis at which the lower side is not steeper than a
     plane of slope `steep`: where it touches.
 
@@ -109,7 +109,7 @@ def _touching(pieces: Floats, steep: float) -> float:
 
 
 @njit(cache=True, nogil=True)
-def _steepest(pieces: Floats, beside: float, rise: float, reach: float) -> float:
+def _edge_contact_offset(pieces: Floats, beside: float, rise: float, reach: float) -> float:
     """Return how far (u, mm) from the foot of the axis, 0 to `reach`, an edge that climbs by `rise` >=
     0 touches, at a distance beside the axis.
 
@@ -132,13 +132,15 @@ def _steepest(pieces: Floats, beside: float, rise: float, reach: float) -> float
         else:
             steeper = pieces[k, B] * high >= rise * rho
         if steeper:
-            return _within(pieces[k], beside, rise, low, high)
+            return _piece_contact_offset(pieces[k], beside, rise, low, high)
         low = high
     return reach
 
 
 @njit(cache=True, nogil=True)
-def _within(piece: Floats, beside: float, rise: float, low: float, high: float) -> float:
+def _piece_contact_offset(
+    piece: Floats, beside: float, rise: float, low: float, high: float
+) -> float:
     """Return where (u, mm) one piece is as steep along an edge as the edge climbs, between two
     distances from the foot.
 
@@ -179,7 +181,7 @@ def _within(piece: Floats, beside: float, rise: float, low: float, high: float) 
 
 
 @njit(cache=True, nogil=True)
-def _edge(
+def _edge_drop(
     px: float,
     py: float,
     ax: float,
@@ -205,7 +207,8 @@ def _edge(
     # Out of the cutter's radius, or even its higher end too low.
     if (
         cross * cross > radius * radius * square
-        or max(az, bz) - _height(pieces, min(abs(cross) / math.sqrt(square), radius)) <= best
+        or max(az, bz) - _profile_height(pieces, min(abs(cross) / math.sqrt(square), radius))
+        <= best
     ):
         return best
     length = math.sqrt(square)
@@ -219,16 +222,16 @@ def _edge(
     # The tip's height along an edge is concave: its tangent in the middle bounds it, and most edges need no more.
     middle = 0.5 * (low + high)
     rho = math.sqrt(beside * beside + middle * middle)
-    fall = _slope(pieces, rho) * middle / rho if rho > 0.0 else 0.0
+    fall = _profile_slope(pieces, rho) * middle / rho if rho > 0.0 else 0.0
     if (
         az
         + rise * (foot + middle)
-        - _height(pieces, min(rho, radius))
+        - _profile_height(pieces, min(rho, radius))
         + abs(rise - fall) * 0.5 * (high - low)
         <= best
     ):
         return best
-    u = _steepest(pieces, beside, abs(rise), reach)
+    u = _edge_contact_offset(pieces, beside, abs(rise), reach)
     if rise < 0.0:
         u = -u
     if u < -foot:
@@ -238,11 +241,11 @@ def _edge(
     if abs(u) > reach:
         return best
     rho = min(math.sqrt(beside * beside + u * u), radius)
-    return max(best, az + rise * (foot + u) - _height(pieces, rho))
+    return max(best, az + rise * (foot + u) - _profile_height(pieces, rho))
 
 
 @njit(cache=True, nogil=True)
-def _edge_of_ball(
+def _edge_drop_ball(
     px: float,
     py: float,
     ax: float,
@@ -281,18 +284,18 @@ def _edge_of_ball(
 
 
 @njit(cache=True, nogil=True)
-def _corner(
+def _vertex_drop(
     px: float, py: float, x: float, y: float, z: float, pieces: Floats, radius: float, best: float
 ) -> float:
     """Return the larger of `best` and the height (mm) to which a corner (x, y, z) lifts the tip."""
     square = (x - px) * (x - px) + (y - py) * (y - py)
     if z <= best or square > radius * radius:
         return best
-    return max(best, z - _height(pieces, math.sqrt(square)))
+    return max(best, z - _profile_height(pieces, math.sqrt(square)))
 
 
 @njit(cache=True, nogil=True)
-def _plane(px: float, py: float, f: Floats, pieces: Floats, best: float) -> float:
+def _facet_drop(px: float, py: float, f: Floats, pieces: Floats, best: float) -> float:
     """Return the larger of `best` and the height (mm) to which the inside of a facet (19,) lifts the
     tip; vertical facets have no inside in plan.
 
@@ -301,11 +304,11 @@ def _plane(px: float, py: float, f: Floats, pieces: Floats, best: float) -> floa
     turn = f[TURN]
     if turn == 0.0:
         return best
-    rho = _touching(pieces, f[STEEP])
+    rho = _contact_radius(pieces, f[STEEP])
     x, y = px, py
     if f[STEEP] > 0.0:
         x, y = px + rho * f[GX] / f[STEEP], py + rho * f[GY] / f[STEEP]
-    z = f[AZ] + (x - f[AX]) * f[GX] + (y - f[AY]) * f[GY] - _height(pieces, rho)
+    z = f[AZ] + (x - f[AX]) * f[GX] + (y - f[AY]) * f[GY] - _profile_height(pieces, rho)
     if z <= best:
         return best
     # The touching point must be inside: left of all edges, or right of all, as the facet turns.
@@ -320,7 +323,7 @@ def _plane(px: float, py: float, f: Floats, pieces: Floats, best: float) -> floa
 
 
 @njit(cache=True, nogil=True)
-def lift_loop(planes: Floats, pieces: Floats, lifts: Floats) -> None:
+def plane_lift_loop(planes: Floats, pieces: Floats, lifts: Floats) -> None:
     """Fill lifts (n, 8), as `LIFT_X` to `SECANT` name it, with how planes (n, 3), slopes along x and y
     and height over (0, 0), lift a cutter.
 
@@ -330,7 +333,7 @@ def lift_loop(planes: Floats, pieces: Floats, lifts: Floats) -> None:
         gx, gy, height = planes[n, 0], planes[n, 1], planes[n, 2]
         steep = math.sqrt(gx * gx + gy * gy)
         lifts[n, LIFT_X], lifts[n, LIFT_Y], lifts[n, OUT_X], lifts[n, OUT_Y] = gx, gy, 0.0, 0.0
-        rho = _touching(pieces, steep)
+        rho = _contact_radius(pieces, steep)
         if steep > 0.0:
             lifts[n, OUT_X], lifts[n, OUT_Y] = rho * gx / steep, rho * gy / steep
         lifts[n, HEIGHT], lifts[n, SLOPE], lifts[n, SECANT] = (
@@ -338,11 +341,11 @@ def lift_loop(planes: Floats, pieces: Floats, lifts: Floats) -> None:
             steep,
             math.sqrt(1.0 + steep * steep),
         )
-        lifts[n, LIFT] = height + rho * steep - _height(pieces, rho)
+        lifts[n, LIFT] = height + rho * steep - _profile_height(pieces, rho)
 
 
 @njit(cache=True, nogil=True, inline="always")
-def _most(
+def _height_bound(
     px: float,
     py: float,
     lift: Floats,
@@ -367,14 +370,14 @@ def _most(
             rise = max(
                 rise - 0.5 * (abs(lift[LIFT_X]) * (x1 - x0) + abs(lift[LIFT_Y]) * (y1 - y0)), 0.0
             )
-            top -= _below_ball(gx * gx + gy * gy + rise * rise, lift, ball)
+            top -= _ball_clearance(gx * gx + gy * gy + rise * rise, lift, ball)
         else:
-            top = min(top, _below_tangent(px, py, lift, x0, y0, x1, y1, pieces, radius))
+            top = min(top, _tangent_height_bound(px, py, lift, x0, y0, x1, y1, pieces, radius))
     return top
 
 
 @njit(cache=True, nogil=True, inline="always")
-def _below_ball(square: float, lift: Floats, ball: float) -> float:
+def _ball_clearance(square: float, lift: Floats, ball: float) -> float:
     """Return how far (mm) at least a ball that touches a plane stands above places of the plane at a
     squared distance `square` (mm2) from where it touches, measured along z.
 
@@ -387,7 +390,7 @@ def _below_ball(square: float, lift: Floats, ball: float) -> float:
 
 
 @njit(cache=True, nogil=True)
-def _below_tangent(
+def _tangent_height_bound(
     px: float,
     py: float,
     lift: Floats,
@@ -398,7 +401,7 @@ def _below_tangent(
     pieces: Floats,
     radius: float,
 ) -> float:
-    """Return an upper bound (mm) as `_most` does, by the tangent plane of the lower side over the
+    """Return an upper bound (mm) as `_height_bound` does, by the tangent plane of the lower side over the
     middle of the box: the lower side is convex, so nowhere below it.
 
     Infinite where the middle is beyond the cutter.
@@ -407,16 +410,21 @@ def _below_tangent(
     rho = math.sqrt(x * x + y * y)
     if rho >= radius:
         return np.inf
-    fall = _slope(pieces, rho) / rho if rho > 0.0 else 0.0
+    fall = _profile_slope(pieces, rho) / rho if rho > 0.0 else 0.0
     # Plane less tangent is linear: its greatest over the box is at the middle plus half the extent
     # along its slopes.
     gx, gy = abs(lift[LIFT_X] - fall * x), abs(lift[LIFT_Y] - fall * y)
-    middle = lift[HEIGHT] + lift[LIFT_X] * (px + x) + lift[LIFT_Y] * (py + y) - _height(pieces, rho)
+    middle = (
+        lift[HEIGHT]
+        + lift[LIFT_X] * (px + x)
+        + lift[LIFT_Y] * (py + y)
+        - _profile_height(pieces, rho)
+    )
     return middle + 0.5 * (gx * (x1 - x0) + gy * (y1 - y0))
 
 
 @njit(cache=True, nogil=True)
-def _touch(
+def _triangle_drop(
     px: float,
     py: float,
     f: Floats,
@@ -437,7 +445,9 @@ def _touch(
         return best
     if (
         ball <= 0.0
-        and _below_tangent(px, py, lift, f[LOW_X], f[LOW_Y], f[HIGH_X], f[HIGH_Y], pieces, radius)
+        and _tangent_height_bound(
+            px, py, lift, f[LOW_X], f[LOW_Y], f[HIGH_X], f[HIGH_Y], pieces, radius
+        )
         <= best - _SLACK
     ):
         return best
@@ -460,7 +470,8 @@ def _touch(
             return max(best, top)
         if (
             ball > 0.0
-            and top - _below_ball(out * lift[SECANT] * lift[SECANT], lift, ball) <= best - _SLACK
+            and top - _ball_clearance(out * lift[SECANT] * lift[SECANT], lift, ball)
+            <= best - _SLACK
         ):
             return best
     # Bound by the plan distance of the box; then what it owns, one by one.
@@ -469,26 +480,28 @@ def _touch(
         max(max(f[LOW_Y] - py, py - f[HIGH_Y]), 0.0),
     )
     near = gx * gx + gy * gy
-    if near > radius * radius or f[HIGH_Z] - _height(pieces, math.sqrt(near)) <= best:
+    if near > radius * radius or f[HIGH_Z] - _profile_height(pieces, math.sqrt(near)) <= best:
         return best
     for k in range(3):
         a, b = 3 * k, 3 * ((k + 1) % 3)
         if owns & (1 << k):
             if ball > 0.0:
-                best = _edge_of_ball(
+                best = _edge_drop_ball(
                     px, py, f[a], f[a + 1], f[a + 2], f[b], f[b + 1], f[b + 2], ball, radius, best
                 )
             else:
-                best = _edge(
+                best = _edge_drop(
                     px, py, f[a], f[a + 1], f[a + 2], f[b], f[b + 1], f[b + 2], pieces, radius, best
                 )
         if owns & (8 << k):
-            best = _corner(px, py, f[a], f[a + 1], f[a + 2], pieces, radius, best)
+            best = _vertex_drop(px, py, f[a], f[a + 1], f[a + 2], pieces, radius, best)
     return best
 
 
 @njit(cache=True, nogil=True)
-def _edge_place(px: float, py: float, f: Floats, k: int, pieces: Floats, radius: float) -> float:
+def _edge_contact_share(
+    px: float, py: float, f: Floats, k: int, pieces: Floats, radius: float
+) -> float:
     """Return at which share of its k-th edge, 0 to 1, a facet lifts the cutter most; of a vertical
     edge the higher end."""
     a, b = 3 * k, 3 * ((k + 1) % 3)
@@ -503,26 +516,30 @@ def _edge_place(px: float, py: float, f: Floats, k: int, pieces: Floats, radius:
     if beside > radius:
         return 0.0
     rise = (f[b + 2] - f[a + 2]) / length
-    u = _steepest(pieces, beside, abs(rise), math.sqrt(max(radius * radius - beside * beside, 0.0)))
+    u = _edge_contact_offset(
+        pieces, beside, abs(rise), math.sqrt(max(radius * radius - beside * beside, 0.0))
+    )
     if rise < 0.0:
         u = -u
     return min(max(foot + u, 0.0), length) / length
 
 
 @njit(cache=True, nogil=True)
-def _place(px: float, py: float, f: Floats, pieces: Floats, radius: float, at: Floats) -> None:
+def _contact_point(
+    px: float, py: float, f: Floats, pieces: Floats, radius: float, at: Floats
+) -> None:
     """Fill at (3,) with the point of a facet that lifts the tip most: on its inside, or on one of its
     edges (corners are their ends)."""
     best = -np.inf
-    rho = _touching(pieces, f[STEEP])
-    if _plane(px, py, f, pieces, best) > best:
+    rho = _contact_radius(pieces, f[STEEP])
+    if _facet_drop(px, py, f, pieces, best) > best:
         x, y = px, py
         if f[STEEP] > 0.0:
             x, y = px + rho * f[GX] / f[STEEP], py + rho * f[GY] / f[STEEP]
         at[0], at[1], at[2] = x, y, f[AZ] + (x - f[AX]) * f[GX] + (y - f[AY]) * f[GY]
-        best = at[2] - _height(pieces, rho)
+        best = at[2] - _profile_height(pieces, rho)
     for k in range(3):
-        t = _edge_place(px, py, f, k, pieces, radius)
+        t = _edge_contact_share(px, py, f, k, pieces, radius)
         a, b = 3 * k, 3 * ((k + 1) % 3)
         x, y, z = (
             f[a] + t * (f[b] - f[a]),
@@ -530,13 +547,16 @@ def _place(px: float, py: float, f: Floats, pieces: Floats, radius: float, at: F
             f[a + 2] + t * (f[b + 2] - f[a + 2]),
         )
         away = math.sqrt((x - px) * (x - px) + (y - py) * (y - py))
-        if away <= radius * (1.0 + _ROUNDING) and z - _height(pieces, min(away, radius)) > best:
-            best = z - _height(pieces, min(away, radius))
+        if (
+            away <= radius * (1.0 + _ROUNDING)
+            and z - _profile_height(pieces, min(away, radius)) > best
+        ):
+            best = z - _profile_height(pieces, min(away, radius))
             at[0], at[1], at[2] = x, y, z
 
 
 @njit(cache=True, nogil=True, inline="always")
-def _node(
+def _node_bound(
     px: float,
     py: float,
     box: Floats,
@@ -558,17 +578,19 @@ def _node(
     near = gx * gx + gy * gy
     if near > radius * radius:
         return -np.inf
-    top -= _height(pieces, math.sqrt(near))
+    top -= _profile_height(pieces, math.sqrt(near))
     if top <= best:
         return -np.inf
     top = min(
-        top, _most(px, py, lift, box[X0], box[Y0], box[X1], box[Y1], pieces, radius, ball) + _SLACK
+        top,
+        _height_bound(px, py, lift, box[X0], box[Y0], box[X1], box[Y1], pieces, radius, ball)
+        + _SLACK,
     )
     return top if top > best else -np.inf
 
 
 @njit(cache=True, nogil=True)
-def touch_loop(
+def drop_cutter_loop(
     first: int,
     last: int,
     points: Floats,
@@ -588,7 +610,7 @@ def touch_loop(
     facets (t, 19), at least lowest (n,).
 
     Facets lie in a tree as `drop_bvh` makes it: start (leaves + 1,), boxes (nodes, 5); lifts (t,
-    8) and node_lifts (nodes, 8) as `lift_loop` makes them, of planes that nothing of a facet or a
+    8) and node_lifts (nodes, 8) as `plane_lift_loop` makes them, of planes that nothing of a facet or a
     node's facets is above; ball: the radius of a ball end, 0 for other cutters. facet (n,) gets the
     row of the one that is touched, -1 over none, contact (n, 3) where, NaN over none.
 
@@ -603,7 +625,7 @@ def touch_loop(
         px, py = points[n, 0], points[n, 1]
         best, own = lowest[n], -1
         if touched >= 0:
-            better = _touch(
+            better = _triangle_drop(
                 px, py, facets[touched], lifts[touched], ALL, pieces, radius, ball, best
             )
             if better > best:
@@ -618,8 +640,8 @@ def touch_loop(
             reach = reaches[waiting]
             while node < inner and reach > best:
                 a, b = 2 * node + 1, 2 * node + 2
-                reach = _node(px, py, boxes[a], node_lifts[a], pieces, radius, ball, best)
-                other = _node(px, py, boxes[b], node_lifts[b], pieces, radius, ball, best)
+                reach = _node_bound(px, py, boxes[a], node_lifts[a], pieces, radius, ball, best)
+                other = _node_bound(px, py, boxes[b], node_lifts[b], pieces, radius, ball, best)
                 # What may lift it more comes first: most of the rest is then too low to matter.
                 node = a
                 if other > reach:
@@ -631,7 +653,7 @@ def touch_loop(
             if reach > best:
                 for r in range(start[node - inner], start[node - inner + 1]):
                     if r != touched:
-                        better = _touch(
+                        better = _triangle_drop(
                             px,
                             py,
                             facets[r],
@@ -647,5 +669,5 @@ def touch_loop(
         out[n], facet[n] = best, own
         contact[n, 0], contact[n, 1], contact[n, 2] = np.nan, np.nan, np.nan
         if own >= 0:
-            _place(px, py, facets[own], pieces, radius, contact[n])
+            _contact_point(px, py, facets[own], pieces, radius, contact[n])
             touched = own

@@ -32,7 +32,9 @@ def stencils(triangles: Ints, lengths: Floats, across: Ints) -> tuple[Ints, Floa
             c, a, b = (int(triangles[t, (k + j) % 3]) for j in range(3))
             ca, ab, bc = (float(lengths[t, (k + j) % 3]) for j in range(3))
             parted = (
-                _parted(triangles, lengths, across, t, k) if ca * ca + bc * bc < ab * ab else None
+                _split_obtuse(triangles, lengths, across, t, k)
+                if ca * ca + bc * bc < ab * ab
+                else None
             )
             if parted is None:
                 points.append((c, a, b))
@@ -44,7 +46,7 @@ def stencils(triangles: Ints, lengths: Floats, across: Ints) -> tuple[Ints, Floa
     return np.array(points, dtype=np.int64).reshape(-1, 3), np.array(sizes).reshape(-1, 3)
 
 
-def _parted(
+def _split_obtuse(
     triangles: Ints, lengths: Floats, across: Ints, t: int, k: int
 ) -> tuple[int, float, float, float] | None:
     """Return the point that divides an obtuse corner k, and how far it is from the corner and from
@@ -85,7 +87,7 @@ def _parted(
     return None
 
 
-def reach(ta: float, tb: float, ca: float, cb: float, ab: float) -> tuple[float, float]:
+def arrival_time(ta: float, tb: float, ca: float, cb: float, ab: float) -> tuple[float, float]:
     """Return when a front that passes a and b at times ta and tb reaches c, and from where between
     them (0: a, 1: b).
 
@@ -112,7 +114,7 @@ def reach(ta: float, tb: float, ca: float, cb: float, ab: float) -> tuple[float,
     return best, share
 
 
-def march(
+def fast_march(
     points: Ints,
     sizes: Floats,
     start: Ints,
@@ -143,7 +145,7 @@ def march(
             if done[c]:
                 continue
             ta, tb = (time[p] if done[p] else math.inf for p in (a, b))
-            new, share = reach(ta, tb, *sizes[s])
+            new, share = arrival_time(ta, tb, *sizes[s])
             if new < time[c] and new <= farthest:
                 time[c] = new
                 foot[c] = (

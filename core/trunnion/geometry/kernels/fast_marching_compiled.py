@@ -31,7 +31,7 @@ def stencils(triangles: Ints, lengths: Floats, across: Ints) -> tuple[Ints, Floa
             d, cd, ad, bd = -1, 0.0, 0.0, 0.0
             # Obtuse at c, by the law of cosines: two stencils on both sides of the unfolded point.
             if ca * ca + bc * bc < ab * ab:
-                d, cd, ad, bd = _parted(triangles, lengths, across, t, k)
+                d, cd, ad, bd = _split_obtuse(triangles, lengths, across, t, k)
             if d < 0:
                 points[n, 0], points[n, 1], points[n, 2] = c, a, b
                 sizes[n, 0], sizes[n, 1], sizes[n, 2] = ca, bc, ab
@@ -46,7 +46,7 @@ def stencils(triangles: Ints, lengths: Floats, across: Ints) -> tuple[Ints, Floa
 
 
 @njit(cache=True, nogil=True)
-def _parted(
+def _split_obtuse(
     triangles: Ints, lengths: Floats, across: Ints, t: int, k: int
 ) -> tuple[int, float, float, float]:
     """Return the point that divides an obtuse corner k, and its distances from the corner and from
@@ -85,7 +85,7 @@ def _parted(
 
 
 @njit(cache=True, nogil=True, inline="always")
-def _reach(ta: float, tb: float, ca: float, cb: float, ab: float) -> tuple[float, float]:
+def arrival_time(ta: float, tb: float, ca: float, cb: float, ab: float) -> tuple[float, float]:
     """Return when a planar front through a and b, at times ta and tb, reaches c, and from where
     between them; see `kernels.fast_marching.reach`."""
     best, share = ta + ca, 0.0
@@ -109,7 +109,7 @@ def _reach(ta: float, tb: float, ca: float, cb: float, ab: float) -> tuple[float
 
 
 @njit(cache=True, nogil=True)
-def march(
+def fast_march(
     points: Ints,
     sizes: Floats,
     start: Ints,
@@ -131,7 +131,7 @@ def march(
         if time[v] <= farthest:
             place[v], heap[size] = size, v
             size += 1
-            _up(heap, place, time, place[v])
+            _sift_up(heap, place, time, place[v])
     # The least of all waiting times is final (Dijkstra's invariant); the points beyond it are
     # updated from final ones only.
     while size > 0:
@@ -139,14 +139,14 @@ def march(
         size -= 1
         heap[0] = heap[size]
         place[heap[0]] = 0
-        _down(heap, place, time, 0, size)
+        _sift_down(heap, place, time, 0, size)
         done[v] = True
         for r in range(start[v], start[v + 1]):
             s = rows[r]
             c, a, b = points[s, 0], points[s, 1], points[s, 2]
             if done[c]:
                 continue
-            new, share = _reach(
+            new, share = arrival_time(
                 time[a] if done[a] else math.inf,
                 time[b] if done[b] else math.inf,
                 sizes[s, 0],
@@ -163,11 +163,11 @@ def march(
                 if place[c] < 0:
                     place[c], heap[size] = size, c
                     size += 1
-                _up(heap, place, time, place[c])
+                _sift_up(heap, place, time, place[c])
 
 
 @njit(cache=True, nogil=True)
-def _up(heap: Ints, place: Ints, time: Floats, at: int) -> None:
+def _sift_up(heap: Ints, place: Ints, time: Floats, at: int) -> None:
     """Move the entry `at` up the heap while it is before its parent; place (v,) is where each point
     stands."""
     v = heap[at]
@@ -183,7 +183,7 @@ def _up(heap: Ints, place: Ints, time: Floats, at: int) -> None:
 
 
 @njit(cache=True, nogil=True)
-def _down(heap: Ints, place: Ints, time: Floats, at: int, size: int) -> None:
+def _sift_down(heap: Ints, place: Ints, time: Floats, at: int, size: int) -> None:
     """Move the entry `at` down the heap of `size` while a child is before it."""
     if size == 0:
         return

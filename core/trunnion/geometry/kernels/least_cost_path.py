@@ -14,7 +14,7 @@ import numpy as np
 from trunnion.geometry.arrays import Bools, Floats, Ints
 
 
-def course(cost: Floats, near: Ints, turn: Floats, leap: float) -> tuple[Ints, Bools]:
+def least_cost_path(cost: Floats, near: Ints, turn: Floats, leap: float) -> tuple[Ints, Bools]:
     """Return the chosen column of each row (k,), -1 where there is none, and whether the row is
     reached by a leap (k,).
 
@@ -45,10 +45,10 @@ def course(cost: Floats, near: Ints, turn: Floats, leap: float) -> tuple[Ints, B
                 source,
                 jumped,
             )
-    return traced(total, back, leapt)
+    return trace_back(total, back, leapt)
 
 
-def traced(total: Floats, back: Ints, leapt: Bools) -> tuple[Ints, Bools]:
+def trace_back(total: Floats, back: Ints, leapt: Bools) -> tuple[Ints, Bools]:
     """Return the path that ends cheapest in each run of rows, traced back; arguments (k, m): total
     costs, predecessors, whether by a leap."""
     k = len(total)

@@ -14,7 +14,7 @@ from trunnion.geometry.arrays import Bools, Floats, Ints
 
 
 @njit(cache=True, nogil=True)
-def course(cost: Floats, near: Ints, turn: Floats, leap: float) -> tuple[Ints, Bools]:
+def least_cost_path(cost: Floats, near: Ints, turn: Floats, leap: float) -> tuple[Ints, Bools]:
     """Return the chosen column of each row (k,), -1 where there is none, and whether the row is
     reached by a leap (k,); see `kernels.least_cost_path`."""
     k, m = cost.shape

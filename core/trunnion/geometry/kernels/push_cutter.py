@@ -14,7 +14,7 @@ from collections.abc import Callable
 import numpy as np
 
 from trunnion.geometry.arrays import Floats
-from trunnion.geometry.kernels.drop_cutter import HALVINGS, RHO1, drop
+from trunnion.geometry.kernels.drop_cutter import HALVINGS, RHO1, drop_cutter
 
 SAMPLES, CLOSER = 21, 12
 """Places along a line that are searched for the highest one, and how often they are drawn closer round it."""
@@ -22,17 +22,17 @@ NOWHERE = -1e9
 """mm: how low a cutter falls that meets nothing."""
 
 
-def push(lines: Floats, corners: Floats, pieces: Floats) -> Floats:
+def push_cutter(lines: Floats, corners: Floats, pieces: Floats) -> Floats:
     """Return the intervals of x in which each triangle (t, 3, 3) blocks the tip along lines (n, 2) of
     y and z: (n, t, 2), NaN where it doesn't."""
     out = np.full((len(lines), len(corners), 2), np.nan)
     for n, (y, z) in enumerate(lines):
         for t, triangle in enumerate(corners):
-            out[n, t] = _span(triangle[None], float(y), float(z), pieces)
+            out[n, t] = _triangle_interval(triangle[None], float(y), float(z), pieces)
     return out
 
 
-def _span(triangle: Floats, y: float, z: float, pieces: Floats) -> tuple[float, float]:
+def _triangle_interval(triangle: Floats, y: float, z: float, pieces: Floats) -> tuple[float, float]:
     """Return the interval in which one triangle (1, 3, 3) blocks the line.
 
     A grid drawn closer round the highest place finds a blocked one, if there is any; then bisection
@@ -41,7 +41,7 @@ def _span(triangle: Floats, y: float, z: float, pieces: Floats) -> tuple[float, 
 
     def height(x: Floats) -> Floats:
         """Return the tip's height over the triangle at places x (n,) of the line."""
-        return drop(np.column_stack([x, np.full(len(x), y)]), triangle, pieces, NOWHERE)
+        return drop_cutter(np.column_stack([x, np.full(len(x), y)]), triangle, pieces, NOWHERE)
 
     radius = pieces[-1, RHO1]
     # Beyond a radius from the triangle nothing is blocked.
@@ -54,12 +54,16 @@ def _span(triangle: Floats, y: float, z: float, pieces: Floats) -> tuple[float, 
         k = int(np.argmax(top))
         # A blocked place splits the search: one end of the interval on either side of it.
         if top[k] >= z:
-            return _edge(height, z, float(x[k]), low), _edge(height, z, float(x[k]), high)
+            return _bisect_end(height, z, float(x[k]), low), _bisect_end(
+                height, z, float(x[k]), high
+            )
         a, b = x[max(k - 1, 0)], x[min(k + 1, SAMPLES - 1)]
     return np.nan, np.nan
 
 
-def _edge(height: Callable[[Floats], Floats], z: float, inside: float, outside: float) -> float:
+def _bisect_end(
+    height: Callable[[Floats], Floats], z: float, inside: float, outside: float
+) -> float:
     """Return the last blocked x between a blocked place and a free one, by bisection to the last
     digit."""
     for _ in range(HALVINGS):

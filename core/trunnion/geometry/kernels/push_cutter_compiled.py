@@ -16,7 +16,13 @@ from numba import njit
 
 from trunnion.geometry.arrays import Floats, Ints
 from trunnion.geometry.kernels.drop_cutter import RHO0, RHO1, ROUND, A, B, C
-from trunnion.geometry.kernels.drop_cutter_compiled import HIGH_Y, HIGH_Z, LOW_Y, _height, _touching
+from trunnion.geometry.kernels.drop_cutter_compiled import (
+    HIGH_Y,
+    HIGH_Z,
+    LOW_Y,
+    _contact_radius,
+    _profile_height,
+)
 
 GOLDEN = 0.5 * (math.sqrt(5.0) - 1.0)
 STEPS = 80
@@ -25,7 +31,7 @@ HALVINGS = 60
 
 
 @njit(cache=True, nogil=True)
-def _radius(pieces: Floats, height: float) -> float:
+def _profile_radius(pieces: Floats, height: float) -> float:
     """Return the radius (mm) to which the cutter extends at a height above its tip, -1 below it; where
     it is level, its outer radius."""
     if height < 0.0:
@@ -59,23 +65,23 @@ def _radius(pieces: Floats, height: float) -> float:
 
 
 @njit(cache=True, nogil=True, inline="always")
-def _room(pieces: Floats, across: float, height: float) -> float:
+def _disc_margin(pieces: Floats, across: float, height: float) -> float:
     """Return by how much (mm) the cutter's disc extends over a point beside the line; negative where
     it doesn't. Concave along an edge."""
-    return _radius(pieces, height) - abs(across)
+    return _profile_radius(pieces, height) - abs(across)
 
 
 @njit(cache=True, nogil=True)
-def _reach(pieces: Floats, x: float, across: float, height: float) -> float:
+def _vertex_push(pieces: Floats, x: float, across: float, height: float) -> float:
     """Return how far (x, mm) a point blocks the line towards +x; -inf where the cutter passes beside
     or above it."""
-    r = _radius(pieces, height)
+    r = _profile_radius(pieces, height)
     square = r * r - across * across
     return x + math.sqrt(square) if r >= 0.0 and square >= 0.0 else -np.inf
 
 
 @njit(cache=True, nogil=True)
-def _edge(
+def _edge_push(
     pieces: Floats, x0: float, y0: float, z0: float, x1: float, y1: float, z1: float, best: float
 ) -> float:
     """Return the larger of `best` and how far (x, mm) an edge, relative to the line, blocks it towards
@@ -104,7 +110,9 @@ def _edge(
     top = -1.0
     for _ in range(STEPS):
         p, q = b - GOLDEN * (b - a), a + GOLDEN * (b - a)
-        if _room(pieces, y0 + p * dy, z0 + p * dz) < _room(pieces, y0 + q * dy, z0 + q * dz):
+        if _disc_margin(pieces, y0 + p * dy, z0 + p * dz) < _disc_margin(
+            pieces, y0 + q * dy, z0 + q * dz
+        ):
             a = p
         else:
             b = q
@@ -113,21 +121,21 @@ def _edge(
     inside = 0.5 * (a + b)
     # An end may be better than the interior optimum: the room drops to -1 below the tip.
     for t in (low, high):
-        if _room(pieces, y0 + t * dy, z0 + t * dz) > _room(
+        if _disc_margin(pieces, y0 + t * dy, z0 + t * dz) > _disc_margin(
             pieces, y0 + inside * dy, z0 + inside * dz
         ):
             inside = t
-    top = _room(pieces, y0 + inside * dy, z0 + inside * dz)
+    top = _disc_margin(pieces, y0 + inside * dy, z0 + inside * dz)
     if top < 0.0:
         return best
     # Both ends of the stretch that the cutter extends over, by bisection; then the furthest x on
     # it.
-    low = _last_inside(pieces, y0, z0, dy, dz, inside, low)
-    high = _last_inside(pieces, y0, z0, dy, dz, inside, high)
+    low = _edge_margin_end(pieces, y0, z0, dy, dz, inside, low)
+    high = _edge_margin_end(pieces, y0, z0, dy, dz, inside, high)
     a, b = low, high
     for _ in range(STEPS):
         p, q = b - GOLDEN * (b - a), a + GOLDEN * (b - a)
-        if _reach(pieces, x0 + p * dx, y0 + p * dy, z0 + p * dz) < _reach(
+        if _vertex_push(pieces, x0 + p * dx, y0 + p * dy, z0 + p * dz) < _vertex_push(
             pieces, x0 + q * dx, y0 + q * dy, z0 + q * dz
         ):
             a = p
@@ -136,21 +144,21 @@ def _edge(
         if b - a < 1e-15:
             break
     for t in (low, 0.5 * (a + b), high):
-        best = max(best, _reach(pieces, x0 + t * dx, y0 + t * dy, z0 + t * dz))
+        best = max(best, _vertex_push(pieces, x0 + t * dx, y0 + t * dy, z0 + t * dz))
     return best
 
 
 @njit(cache=True, nogil=True)
-def _last_inside(
+def _edge_margin_end(
     pieces: Floats, y0: float, z0: float, dy: float, dz: float, inside: float, end: float
 ) -> float:
     """Return the last place of an edge, from one that the cutter extends over towards an end, that it
     still extends over."""
-    if _room(pieces, y0 + end * dy, z0 + end * dz) >= 0.0:
+    if _disc_margin(pieces, y0 + end * dy, z0 + end * dz) >= 0.0:
         return end
     for _ in range(HALVINGS):
         middle = 0.5 * (inside + end)
-        if _room(pieces, y0 + middle * dy, z0 + middle * dz) >= 0.0:
+        if _disc_margin(pieces, y0 + middle * dy, z0 + middle * dz) >= 0.0:
             inside = middle
         else:
             end = middle
@@ -158,7 +166,7 @@ def _last_inside(
 
 
 @njit(cache=True, nogil=True)
-def _plane(pieces: Floats, c: Floats, y: float, z: float, mirror: float, best: float) -> float:
+def _facet_push(pieces: Floats, c: Floats, y: float, z: float, mirror: float, best: float) -> float:
     """Return the larger of `best` and how far the inside of a triangle, corners c (9,), blocks a line
     towards +x of the mirrored space.
 
@@ -180,8 +188,8 @@ def _plane(pieces: Floats, c: Floats, y: float, z: float, mirror: float, best: f
     if nz <= 0.0:
         return best
     level = math.sqrt(nx * nx + ny * ny)
-    rho = _touching(pieces, level / nz)
-    sx, sy, sz = -rho * nx / level, -rho * ny / level, _height(pieces, rho)
+    rho = _contact_radius(pieces, level / nz)
+    sx, sy, sz = -rho * nx / level, -rho * ny / level, _profile_height(pieces, rho)
     # The tip is on the line, at (x, 0, 0), and what touches is the tip and s.
     x = ax + (ny * (ay - sy) + nz * (az - sz)) / nx - sx
     if x <= best:
@@ -202,7 +210,7 @@ def _plane(pieces: Floats, c: Floats, y: float, z: float, mirror: float, best: f
 
 
 @njit(cache=True, nogil=True)
-def blocked(pieces: Floats, c: Floats, y: float, z: float, mirror: float) -> float:
+def triangle_push(pieces: Floats, c: Floats, y: float, z: float, mirror: float) -> float:
     """Return how far (x, mm) a triangle, corners c (9,), blocks the line at (y, z) towards +x (mirror
     1) or -x (mirror -1, negated); -inf where it doesn't.
 
@@ -211,8 +219,8 @@ def blocked(pieces: Floats, c: Floats, y: float, z: float, mirror: float) -> flo
     best = -np.inf
     for k in range(3):
         a, b = 3 * k, 3 * ((k + 1) % 3)
-        best = max(best, _reach(pieces, mirror * c[a], c[a + 1] - y, c[a + 2] - z))
-        best = _edge(
+        best = max(best, _vertex_push(pieces, mirror * c[a], c[a + 1] - y, c[a + 2] - z))
+        best = _edge_push(
             pieces,
             mirror * c[a],
             c[a + 1] - y,
@@ -222,11 +230,11 @@ def blocked(pieces: Floats, c: Floats, y: float, z: float, mirror: float) -> flo
             c[b + 2] - z,
             best,
         )
-    return _plane(pieces, c, y, z, mirror, best)
+    return _facet_push(pieces, c, y, z, mirror, best)
 
 
 @njit(cache=True, nogil=True)
-def push_loop(
+def push_cutter_loop(
     first: int,
     last: int,
     lines: Floats,
@@ -270,13 +278,13 @@ def push_loop(
                     ):
                         continue
                     seen[r] = n
-                    right = blocked(pieces, f, y, z, 1.0)
+                    right = triangle_push(pieces, f, y, z, 1.0)
                     if right == -np.inf:
                         continue
                     if count[n] >= spans.shape[1]:
                         return False
                     spans[n - first, count[n], 0], spans[n - first, count[n], 1] = (
-                        -blocked(pieces, f, y, z, -1.0),
+                        -triangle_push(pieces, f, y, z, -1.0),
                         right,
                     )
                     count[n] += 1

@@ -19,7 +19,7 @@ from trunnion.geometry.arrays import Bools, Floats
 TURN = 2.0 * math.pi
 
 
-def follow(
+def choose_angles(
     angles: Floats,
     free: Bools,
     through: Bools,
@@ -55,7 +55,7 @@ def follow(
                 there = [
                     before[a]
                     if free[k, way, a]
-                    else nearest(angles[k, way, a], before[a], low[a], high[a], slack)
+                    else nearest_congruent(angles[k, way, a], before[a], low[a], high[a], slack)
                     for a in range(axes)
                 ]
                 turns = [abs(t - b) for t, b in zip(there, before, strict=True)]
@@ -77,7 +77,7 @@ def follow(
     return m, spent
 
 
-def nearest(angle: float, before: float, low: float, high: float, slack: float) -> float:
+def nearest_congruent(angle: float, before: float, low: float, high: float, slack: float) -> float:
     """Return the angle congruent to `angle` modulo a full turn that is nearest to the one before and
     inside the limits (rad, within slack); infinity where none is."""
     middle = round((before - angle) / TURN)

@@ -13,7 +13,7 @@ TURN = 2.0 * math.pi
 
 
 @njit(cache=True, nogil=True)
-def _nearest(angle: float, before: float, low: float, high: float, slack: float) -> float:
+def _nearest_congruent(angle: float, before: float, low: float, high: float, slack: float) -> float:
     """Return the angle congruent to `angle` modulo a full turn (rad) that is nearest to the one before
     and inside the limits within slack; infinity where none is."""
     turns = round((before - angle) / TURN)
@@ -24,7 +24,7 @@ def _nearest(angle: float, before: float, low: float, high: float, slack: float)
 
 
 @njit(cache=True, nogil=True)
-def follow(
+def choose_angles(
     angles: Floats,
     free: Bools,
     through: Bools,
@@ -56,7 +56,7 @@ def follow(
                     there[a] = (
                         before
                         if free[k, way, a]
-                        else _nearest(angles[k, way, a], before, low[a], high[a], slack)
+                        else _nearest_congruent(angles[k, way, a], before, low[a], high[a], slack)
                     )
                     turn = abs(there[a] - before)
                     # Beyond half a turn the machine would swing the tool round between two

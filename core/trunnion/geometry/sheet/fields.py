@@ -85,7 +85,7 @@ def distances(
     start = np.concatenate([[0], np.cumsum(np.bincount(named, minlength=len(sheet.points)))])
     time, foot = np.full(len(sheet.points), np.inf), sheet.points.copy()
     np.minimum.at(time, rows, np.broadcast_to(times, len(rows)))
-    kernel.march(points, sizes, start, order // 2, time, foot, farthest)
+    kernel.fast_march(points, sizes, start, order // 2, time, foot, farthest)
     return time, foot
 
 

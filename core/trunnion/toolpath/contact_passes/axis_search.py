@@ -18,7 +18,7 @@ import numpy as np
 
 from trunnion.findings import Finding, Refused, warning
 from trunnion.geometry.arrays import Bools, Floats, Ints
-from trunnion.geometry.kernels.least_cost_path_compiled import course
+from trunnion.geometry.kernels.least_cost_path_compiled import least_cost_path
 from trunnion.geometry.sphere import angle_between, directions, neighbours
 from trunnion.model.tool import Holder, Tool
 from trunnion.plan.clearance import ClearanceQuery
@@ -368,7 +368,7 @@ class AxisSearch:
         off = np.arccos(np.clip(self.places.wanted[rows] @ point.T, -1.0, 1.0))
         taken = 1.0 - _share_near(allowed, near)
         cost = np.where(allowed, (off * off + RIM * taken) * pitch, np.inf)
-        chosen, leap = course(cost, near, STIFFNESS**2 * turn**2 / pitch, LEAP)
+        chosen, leap = least_cost_path(cost, near, STIFFNESS**2 * turn**2 / pitch, LEAP)
         self.free[rows], self.leap[rows] = chosen >= 0, leap
         # The direction next to the wanted axis stands for it.
         near_wanted = off[np.arange(len(chosen)), chosen] < STEP

@@ -23,7 +23,7 @@ from trunnion.verify.contact.penetration import Penetration, deepen
 from trunnion.verify.cutter import bodies_of_one
 from trunnion.verify.kernels import facets as kernel
 from trunnion.verify.kernels import pose_search
-from trunnion.verify.kernels.bvh import build_tree
+from trunnion.verify.kernels.bvh import build_bvh
 from trunnion.verify.motion import Moves
 from trunnion.verify.threads import in_parallel
 
@@ -61,7 +61,7 @@ def tree_of(points: Floats, triangles: Ints, face: Ints) -> FacetTree:
         np.zeros(2 * t, np.int64),
     )
     count = (
-        build_tree(
+        build_bvh(
             corners.min(axis=1),
             corners.max(axis=1),
             face,
@@ -139,7 +139,7 @@ class FacetContact:
         tree, bodies, found = self._ready(progress), bodies_of_one(tool), np.zeros(len(tips), bool)
 
         def some(first: int, last: int) -> None:
-            pose_search.clear_loop(
+            pose_search.pose_search_loop(
                 first,
                 last,
                 tips,
@@ -183,7 +183,7 @@ class FacetContact:
 
         def work(first: int, last: int) -> None:
             face_depth, face_move = np.full((f, 2), -np.inf), np.full((f, 2), -1)
-            kernel.contact_loop(
+            kernel.triangle_contact_loop(
                 int(starts[first]),
                 int(starts[last]),
                 rows,

@@ -96,7 +96,7 @@ class StripContact:
             np.full((len(rows), 2), -1),
             np.full((len(rows), 2, 3), np.nan),
         )
-        kernel.places(
+        kernel.contact_points(
             rows,
             moves.row,
             found.which,
@@ -127,7 +127,7 @@ class StripContact:
                 np.full_like(found.face_depth, -np.inf),
                 np.full_like(found.face_move, -1),
             )
-            kernel.contact_loop(
+            kernel.strip_contact_loop(
                 first,
                 last,
                 rows,

@@ -99,7 +99,7 @@ class Sweep:
         order = progress.aside(lambda _: _by_cell(points, g), "Measuring material left")
 
         def some(first: int, last: int) -> None:
-            kernel.left_loop(
+            kernel.residual_loop(
                 first,
                 last,
                 points,
@@ -142,7 +142,7 @@ class Sweep:
         tree = progress.aside(lambda _: tree_of(self.moves, listed, self.flutes))
 
         def some(first: int, last: int) -> None:
-            kernel.far_loop(
+            kernel.residual_bvh_loop(
                 first,
                 last,
                 points,
@@ -162,7 +162,7 @@ class Sweep:
         points = np.ascontiguousarray(points, dtype=np.float64)
 
         def some(first: int, last: int) -> None:
-            kernel.cut_loop(
+            kernel.removed_loop(
                 first,
                 last,
                 points,
@@ -188,7 +188,7 @@ class Sweep:
         plan of it and all above. That others have is not asked."""
         out, g = np.zeros(len(points), bool), self.grid
         points = np.ascontiguousarray(points, dtype=np.float64)
-        kernel.around_loop(
+        kernel.surroundings_removed_loop(
             0,
             len(points),
             points,
@@ -349,7 +349,7 @@ def tree_of(moves: Moves, rows: Ints, flutes: Flutes) -> SpanTree:
         np.zeros((room, 5), np.int64),
         np.zeros(len(used), np.int64),
     )
-    n = kernel.grow_tree(pose, reach, np.append(start, len(of)), used, nodes, links, root)
+    n = kernel.build_pose_bvh(pose, reach, np.append(start, len(of)), used, nodes, links, root)
     return SpanTree(
         way,
         rows,

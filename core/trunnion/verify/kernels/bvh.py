@@ -21,7 +21,7 @@ DEEPEST = 128
 
 
 @njit(cache=True, nogil=True)
-def build_tree(
+def build_bvh(
     low: Floats,
     high: Floats,
     face: Ints,
@@ -53,13 +53,13 @@ def build_tree(
         top -= 1
         a, b = stack[top, 0], stack[top, 1]
         node, count = count, count + 1
-        node_face[node] = _fill_box(order[a:b], low, high, face, boxes[node])
+        node_face[node] = _fill_node_box(order[a:b], low, high, face, boxes[node])
         # A chain deeper than any sensible tree ends in one large leaf.
         if b - a <= leaf or top + 2 > DEEPEST:
             leaves[node, 0], leaves[node, 1] = a, b - a
             continue
         leaves[node, 0], leaves[node, 1] = a, 0
-        cut = a + _parted(order[a:b], low, high, middle, keep)
+        cut = a + _partition_rows(order[a:b], low, high, middle, keep)
         stack[top, 0], stack[top, 1] = cut, b
         stack[top + 1, 0], stack[top + 1, 1] = a, cut
         top += 2
@@ -71,7 +71,7 @@ def build_tree(
 
 
 @njit(cache=True, nogil=True)
-def _fill_box(rows: Ints, low: Floats, high: Floats, face: Ints, box: Floats) -> int:
+def _fill_node_box(rows: Ints, low: Floats, high: Floats, face: Ints, box: Floats) -> int:
     """Fill a node's box (6,), centre and half sides, around the boxes of some rows, and return their
     common face, -1 when there are several."""
     same = face[rows[0]]
@@ -87,7 +87,7 @@ def _fill_box(rows: Ints, low: Floats, high: Floats, face: Ints, box: Floats) ->
 
 
 @njit(cache=True, nogil=True)
-def _parted(rows: Ints, low: Floats, high: Floats, middle: Floats, keep: Ints) -> int:
+def _partition_rows(rows: Ints, low: Floats, high: Floats, middle: Floats, keep: Ints) -> int:
     """Partition rows in place by the cheapest cut, each half in the order it had (stable), and return
     the size of the first half, 1 to len(rows) - 1.
 
@@ -99,7 +99,7 @@ def _parted(rows: Ints, low: Floats, high: Floats, middle: Floats, keep: Ints) -
         for r in rows:
             first, last = min(first, middle[r, k]), max(last, middle[r, k])
         if last > first:
-            weight, place = _cheapest(rows, low, high, middle[:, k], first, last - first)
+            weight, place = _cheapest_split(rows, low, high, middle[:, k], first, last - first)
             if weight < cost:
                 cost, along, at, least, size = weight, k, place, first, last - first
     if along < 0:
@@ -118,7 +118,7 @@ def _parted(rows: Ints, low: Floats, high: Floats, middle: Floats, keep: Ints) -
 
 
 @njit(cache=True, nogil=True)
-def _cheapest(
+def _cheapest_split(
     rows: Ints, low: Floats, high: Floats, middle: Floats, least: float, size: float
 ) -> tuple[float, int]:
     """Return the cost of the cheapest cut across one axis, and the bin that it lies below (1 to BINS -
@@ -145,16 +145,16 @@ def _cheapest(
     above = np.full(BINS, np.inf)
     box, count = np.array([np.inf, np.inf, np.inf, -np.inf, -np.inf, -np.inf]), 0
     for c in range(BINS - 1, 0, -1):
-        count += _joined(box, bin_low[c], bin_high[c], number[c])
+        count += _merge_box(box, bin_low[c], bin_high[c], number[c])
         if count:
-            above[c] = count * _skin(box)
+            above[c] = count * _half_surface_area(box)
     # Sweep from the low end adds the other half; a cut with an empty side costs infinity.
     box[:3], box[3:], count = np.inf, -np.inf, 0
     cost, at = np.inf, 0
     for c in range(BINS - 1):
-        count += _joined(box, bin_low[c], bin_high[c], number[c])
-        if count and count * _skin(box) + above[c + 1] < cost:
-            cost, at = count * _skin(box) + above[c + 1], c + 1
+        count += _merge_box(box, bin_low[c], bin_high[c], number[c])
+        if count and count * _half_surface_area(box) + above[c + 1] < cost:
+            cost, at = count * _half_surface_area(box) + above[c + 1], c + 1
     return cost, at
 
 
@@ -165,7 +165,7 @@ def _bin(middle: float, least: float, size: float) -> int:
 
 
 @njit(cache=True, nogil=True)
-def _joined(box: Floats, low: Floats, high: Floats, number: int) -> int:
+def _merge_box(box: Floats, low: Floats, high: Floats, number: int) -> int:
     """Extend a box (6,), low and high corner, by another one in place; return `number` unchanged, so
     that a sweep reads as one line."""
     for j in range(3):
@@ -174,7 +174,7 @@ def _joined(box: Floats, low: Floats, high: Floats, number: int) -> int:
 
 
 @njit(cache=True, nogil=True)
-def _skin(box: Floats) -> float:
+def _half_surface_area(box: Floats) -> float:
     """Return half the surface (mm2) of a box (6,), low and high corner; the constant factor cancels in
     a comparison."""
     a, b, c = box[3] - box[0], box[4] - box[1], box[5] - box[2]

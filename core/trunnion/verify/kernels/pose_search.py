@@ -29,20 +29,20 @@ from trunnion.verify.kernels.body import (
     Z_LOW,
     depth_in_body,
 )
-from trunnion.verify.kernels.facets import TASK_COLUMNS, TASKS, box_depth, enter_triangle
+from trunnion.verify.kernels.facets import TASK_COLUMNS, TASKS, box_depth_bound, triangle_contact
 from trunnion.verify.kernels.tool_motion import (
     END_COLUMNS,
     S_FROM,
     S_TO,
     SPAN_COLUMNS,
     WAY_COLUMNS,
-    fill_span,
-    fill_way,
+    fill_swept_segment,
+    fill_tool_motion,
 )
 
 
 @njit(cache=True, nogil=True)
-def stopped_before(
+def blocked_by_known(
     tip: Floats,
     axis: Floats,
     arcs: Floats,
@@ -72,22 +72,22 @@ def stopped_before(
                 arcs, int(pieces[p, CLOSED_FIRST]), int(pieces[p, CLOSED_LAST]), rho, h
             )
             if depth > deeper:
-                _put_first(places, i, places[i, 0], places[i, 1], places[i, 2])
+                _move_to_front(places, i, places[i, 0], places[i, 1], places[i, 2])
                 return True
     return False
 
 
 @njit(cache=True, nogil=True)
-def remember(places: Floats, count: int, x: float, y: float, z: float) -> int:
+def insert_obstacle(places: Floats, count: int, x: float, y: float, z: float) -> int:
     """Insert an obstacle (mm) at the front of the `count` known ones in places (w, 3), dropping the
     last when all rows are in use; return the new count."""
     count = min(count + 1, len(places))
-    _put_first(places, count - 1, x, y, z)
+    _move_to_front(places, count - 1, x, y, z)
     return count
 
 
 @njit(cache=True, nogil=True)
-def _put_first(places: Floats, at: int, x: float, y: float, z: float) -> None:
+def _move_to_front(places: Floats, at: int, x: float, y: float, z: float) -> None:
     """Shift rows 0 to at - 1 of places (w, 3) down by one and write (x, y, z) into row 0; the old row
     `at` is overwritten."""
     for i in range(at, 0, -1):
@@ -97,7 +97,7 @@ def _put_first(places: Floats, at: int, x: float, y: float, z: float) -> None:
 
 
 @njit(cache=True, nogil=True)
-def known_loop(
+def blocked_by_known_loop(
     tips: Floats,
     axes: Floats,
     rows: Ints,
@@ -111,27 +111,27 @@ def known_loop(
     """Fill stopped (n,) with whether a known obstacle rules out each of n poses of one tool.
 
     tips, axes (n, 3); rows (n,) the position of each pose among places (k, w, 3) with count (k,)
-    known ones. `deeper` (mm) as in `stopped_before`.
+    known ones. `deeper` (mm) as in `blocked_by_known`.
     """
     for n in range(len(tips)):
-        stopped[n] = stopped_before(
+        stopped[n] = blocked_by_known(
             tips[n], axes[n], arcs, pieces, places[rows[n]], count[rows[n]], deeper
         )
 
 
 @njit(cache=True, nogil=True)
-def remember_loop(found: Floats, rows: Ints, places: Floats, count: Ints) -> None:
+def insert_obstacle_loop(found: Floats, rows: Ints, places: Floats, count: Ints) -> None:
     """Add the points found (n, 3) that stopped poses, NaN where none did, to the lists places (k, w,
     3), count (k,) of the positions rows (n,)."""
     for n in range(len(found)):
         if not math.isnan(found[n, 0]):
-            count[rows[n]] = remember(
+            count[rows[n]] = insert_obstacle(
                 places[rows[n]], count[rows[n]], found[n, 0], found[n, 1], found[n, 2]
             )
 
 
 @njit(cache=True, nogil=True)
-def clear_loop(
+def pose_search_loop(
     first: int,
     last: int,
     tips: Floats,
@@ -181,13 +181,13 @@ def clear_loop(
             # work is divided.
             places[k], count[k] = places[k - 1], count[k - 1]
         for n in range(tips.shape[1]):
-            if not wanted[k, n] or stopped_before(
+            if not wanted[k, n] or blocked_by_known(
                 tips[k, n], axes[k, n], arcs, pieces, places[k], count[k], allowed + bound
             ):
                 continue
             # A static pose is a motion of no length: one span over its whole path.
-            fill_way(tips[k, n], tips[k, n], axes[k, n], axes[k, n], nowhere, 0.0, way)
-            fill_span(way, 0.0, 1.0, ends, span)
+            fill_tool_motion(tips[k, n], tips[k, n], axes[k, n], axes[k, n], nowhere, 0.0, way)
+            fill_swept_segment(way, 0.0, 1.0, ends, span)
             # A share no span has: the cached span of the previous pose must not be taken for this
             # one's.
             near[S_FROM] = near[S_TO] = -1.0
@@ -199,7 +199,7 @@ def clear_loop(
                 # subtree.
                 node = 0
                 while node < len(boxes) and clear:
-                    if box_depth(boxes[node], ends, span, arcs, a, b) <= allowed:
+                    if box_depth_bound(boxes[node], ends, span, arcs, a, b) <= allowed:
                         node = skip[node]
                         continue
                     for m in range(leaves[node, 0], leaves[node, 0] + leaves[node, 1]):
@@ -209,7 +209,7 @@ def clear_loop(
                             # entries are stale.
                             stamp[f], best[f, 0], best[f, 1] = pose, -np.inf, -np.inf
                         deepest[0] = best[f, column]
-                        enter_triangle(
+                        triangle_contact(
                             corners[m],
                             normals[m],
                             way,
@@ -232,7 +232,7 @@ def clear_loop(
                         )
                         if deepest[0] > allowed:
                             clear = False
-                            count[k] = remember(
+                            count[k] = insert_obstacle(
                                 places[k], count[k], deepest[1], deepest[2], deepest[3]
                             )
                             break

@@ -40,11 +40,11 @@ from trunnion.verify.kernels.residual import (
     TURN,
     Flutes,
     SpanTree,
-    flute_distance,
-    in_tool,
-    least_on_chord,
+    chord_distance_bound,
+    flute_signed_distance,
     nearest_span,
-    node_least,
+    node_distance_bound,
+    point_in_tool_frame,
 )
 
 POSES = 5
@@ -54,7 +54,9 @@ CLOSE = 0.05
 
 
 @njit(cache=True, nogil=True)
-def _turned(w: Floats, x: float, y: float, z: float, t: float) -> tuple[float, float, float]:
+def _direction_in_tool_frame(
+    w: Floats, x: float, y: float, z: float, t: float
+) -> tuple[float, float, float]:
     """Return a direction (vector, mm) as it is seen from the tool at a share t of its way."""
     nx, ny, nz = (
         w[AY] * w[EZ] - w[AZ] * w[EY],
@@ -73,7 +75,7 @@ def _turned(w: Floats, x: float, y: float, z: float, t: float) -> tuple[float, f
 
 
 @njit(cache=True, nogil=True)
-def _tangent(
+def _distance_and_gradient(
     arcs: Floats, first: int, last: int, x: float, y: float, z: float
 ) -> tuple[float, float, float, float]:
     """Return the signed distance (mm) to a body at a place seen from the tool, and its gradient there."""
@@ -83,7 +85,7 @@ def _tangent(
 
 
 @njit(cache=True, nogil=True)
-def _chord_least(
+def _cell_chord_bound(
     arcs: Floats,
     first: int,
     last: int,
@@ -111,11 +113,13 @@ def _chord_least(
     a level tangent.
     """
     dx, dy, dz = x1 - x0, y1 - y0, z1 - z0
-    f, gx, gy, gz = _tangent(arcs, first, last, x0 + s * dx, y0 + s * dy, z0 + s * dz)
+    f, gx, gy, gz = _distance_and_gradient(arcs, first, last, x0 + s * dx, y0 + s * dy, z0 + s * dz)
     # Level along the chord: p fall + (1 - p) rise = 0; f is the mixture's value where the chord
     # begins, so everywhere on it.
     if t > s:
-        e, hx, hy, hz = _tangent(arcs, first, last, x0 + t * dx, y0 + t * dy, z0 + t * dz)
+        e, hx, hy, hz = _distance_and_gradient(
+            arcs, first, last, x0 + t * dx, y0 + t * dy, z0 + t * dz
+        )
         fall, rise = gx * dx + gy * dy + gz * dz, hx * dx + hy * dy + hz * dz
         p = rise / (rise - fall)
         f = p * (f - fall * s) + (1.0 - p) * (e - rise * t)
@@ -124,7 +128,7 @@ def _chord_least(
 
 
 @njit(cache=True, nogil=True)
-def _span_least(
+def _cell_span_bound(
     w: Floats,
     flutes: Flutes,
     tool: int,
@@ -154,8 +158,8 @@ def _span_least(
         top -= 1
         s0, s1 = spans[top, 0], spans[top, 1]
         share = s1 - s0
-        x0, y0, z0 = in_tool(w, x, y, z, s0)
-        x1, y1, z1 = in_tool(w, x, y, z, s1)
+        x0, y0, z0 = point_in_tool_frame(w, x, y, z, s0)
+        x1, y1, z1 = point_in_tool_frame(w, x, y, z, s1)
         # Sag of the middle's chord, as in `kernels/residual.py`; a turning axis also turns the cell's
         # sides, by `turn` x size at most.
         sag = 0.0
@@ -168,18 +172,18 @@ def _span_least(
                 math.sqrt(max(x0 * x0 + y0 * y0 + z0 * z0, x1 * x1 + y1 * y1 + z1 * z1)),
             )
             sag = turn * (0.125 * turn * far + 0.25 * share * length + size)
-        ax, ay, az = _turned(w, a[0], a[1], a[2], s0)
-        bx, by, bz = _turned(w, b[0], b[1], b[2], s0)
+        ax, ay, az = _direction_in_tool_frame(w, a[0], a[1], a[2], s0)
+        bx, by, bz = _direction_in_tool_frame(w, b[0], b[1], b[2], s0)
         lowest = np.inf
         for k in range(flutes.start[tool], flutes.start[tool + 1]):
-            low, _at, s, t = least_on_chord(
+            low, _at, s, t = chord_distance_bound(
                 flutes.arc, flutes.first[k], flutes.last[k], x0, y0, z0, x1, y1, z1, np.inf, close
             )
             # Every point of the cell is within size + slack of its middle.
             if low - size - sag - slack < least:
                 lowest = min(
                     lowest,
-                    _chord_least(
+                    _cell_chord_bound(
                         flutes.arc,
                         flutes.first[k],
                         flutes.last[k],
@@ -212,7 +216,7 @@ def _span_least(
 
 
 @njit(cache=True, nogil=True)
-def cell_least(
+def cell_residual_bound(
     x: float,
     y: float,
     z: float,
@@ -241,7 +245,7 @@ def cell_least(
     for r in range(len(tree.root)):
         nodes[top], lower[top] = (
             tree.root[r],
-            node_least(tree, flutes, tree.root[r], x, y, z, False) - size - slack,
+            node_distance_bound(tree, flutes, tree.root[r], x, y, z, False) - size - slack,
         )
         top += 1
     # As `nearest_span`, every bound lowered by the cell's size and slack.
@@ -254,28 +258,30 @@ def cell_least(
         if left >= 0:
             nodes[top], lower[top] = (
                 left,
-                node_least(tree, flutes, left, x, y, z, False) - size - slack,
+                node_distance_bound(tree, flutes, left, x, y, z, False) - size - slack,
             )
             nodes[top + 1], lower[top + 1] = (
                 right,
-                node_least(tree, flutes, right, x, y, z, False) - size - slack,
+                node_distance_bound(tree, flutes, right, x, y, z, False) - size - slack,
             )
             top += 2
             continue
         for k in range(tree.link[n, 2], tree.link[n, 3]):
             w = tree.way[tree.of[k]]
-            mx, my, mz = in_tool(w, x, y, z, 0.5 * (tree.low[k] + tree.high[k]))
+            mx, my, mz = point_in_tool_frame(w, x, y, z, 0.5 * (tree.low[k] + tree.high[k]))
             turn = w[TURN] * (tree.high[k] - tree.low[k])
             reach = tree.reach[k] + 0.5 * turn * math.sqrt(mx * mx + my * my + mz * mz)
             if (
-                flute_distance(flutes, tree.link[n, 4], math.sqrt(mx * mx + my * my), mz, False)
+                flute_signed_distance(
+                    flutes, tree.link[n, 4], math.sqrt(mx * mx + my * my), mz, False
+                )
                 - reach
                 - size
                 - slack
                 >= least
             ):
                 continue
-            least = _span_least(
+            least = _cell_span_bound(
                 w,
                 flutes,
                 tree.link[n, 4],
@@ -324,7 +330,7 @@ def _nearest_body(flutes: Flutes, tool: int, w: Floats, place: Floats, share: fl
     The convexity that the bound from above needs holds for one body; its distance is at least the
     union's.
     """
-    x, y, z = in_tool(w, place[0], place[1], place[2], share)
+    x, y, z = point_in_tool_frame(w, place[0], place[1], place[2], share)
     best, deepest = flutes.start[tool], -np.inf
     for k in range(flutes.start[tool], flutes.start[tool + 1]):
         depth, _r, _h = depth_in_body(
@@ -336,7 +342,7 @@ def _nearest_body(flutes: Flutes, tool: int, w: Floats, place: Floats, share: fl
 
 
 @njit(cache=True, nogil=True)
-def cells_loop(
+def cell_residual_loop(
     first: int,
     last: int,
     middle: Floats,
@@ -357,7 +363,7 @@ def cells_loop(
     """Fill for cells `first` to `last` what is left at their middle, by which move, and bounds from
     above and below over the whole cell.
 
-    middle, a, b (c, 3), slack (c,) as in `cell_least`; far: no distance above it is told. Fills
+    middle, a, b (c, 3), slack (c,) as in `cell_residual_bound`; far: no distance above it is told. Fills
     left (c,) mm, nearest (c,) rows or -1, upper and lower (c,) mm. Where a cell may fall by `bound`
     below both `lowest` and its middle, its `lower` only says so; with an infinite `lowest` it isn't
     searched for. Where `above` (c,) is false, no bound from above is searched for.
@@ -407,7 +413,7 @@ def cells_loop(
             # Distances of this pose at the four corners: their largest is a bound; so is each mean
             # with an earlier pose.
             for c in range(4):
-                x, y, z = in_tool(
+                x, y, z = point_in_tool_frame(
                     w, places[c + 1, 0], places[c + 1, 1], places[c + 1, 2], shares[k]
                 )
                 depth, _r, _h = depth_in_body(
@@ -419,7 +425,7 @@ def cells_loop(
                 if rows[m] >= 0:
                     upper[n] = min(upper[n], _mean_of_two(distance[k], distance[m]) + slack[n])
         if lowest < np.inf:
-            lower[n] = cell_least(
+            lower[n] = cell_residual_bound(
                 middle[n, 0],
                 middle[n, 1],
                 middle[n, 2],

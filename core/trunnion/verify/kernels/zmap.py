@@ -10,7 +10,7 @@ lowers a column to the lower envelope of the cutter along the move,
 with g(rho) the height above the tip at which the cutter begins at the distance rho from its axis.
 For level moves of any form and slopes of plain ones this minimum is taken in closed form, so a move
 is not sampled: only space is, at the cell centres. Between columns nothing is known here (see
-`_rims`).
+`_boundary_cells`).
 
 A level line or arc is cut in one pass over the rows that its sweep covers: within a row only the
 cells that the sweep reaches, less those that the move before has already cut to this height.
@@ -43,7 +43,7 @@ from trunnion.verify.kernels.body import (
 )
 from trunnion.verify.kernels.body import FIRST as PIECE_FIRST
 from trunnion.verify.kernels.body import LAST as PIECE_LAST
-from trunnion.verify.kernels.engagement import look_in_field
+from trunnion.verify.kernels.engagement import engagement_in_zmap
 
 # Columns of a move, as in `kernels/strips.py`; the engines share the layout of their input, not their loops.
 KIND, X0, Y0, X1, Y1, CX, CY, ARC_RADIUS, MX, MY, COS_HALF, START_ANGLE, SWEEP, Z_START, Z_END = (
@@ -58,7 +58,7 @@ SHRINK = 2e-3
 
 
 @njit(cache=True, nogil=True, inline="always")
-def _arc_square(qx: float, qy: float, move: Floats) -> float:
+def _arc_distance_squared(qx: float, qy: float, move: Floats) -> float:
     """Return the squared plan distance (mm2) of a point to a move's arc.
 
     Inside the arc's sector it is (|v| - radius)^2, v from the centre; outside of it an end is
@@ -73,7 +73,7 @@ def _arc_square(qx: float, qy: float, move: Floats) -> float:
 
 
 @njit(cache=True, nogil=True, inline="always")
-def _segment_square(
+def _segment_distance_squared(
     qx: float, qy: float, x0: float, y0: float, dx: float, dy: float, square: float
 ) -> float:
     """Return the squared plan distance (mm2) of a point to a segment from (x0, y0) by (dx, dy),
@@ -86,7 +86,7 @@ def _segment_square(
 
 
 @njit(cache=True, nogil=True)
-def formed_height(square: float, profile: Floats, arcs: Floats, pieces: Floats) -> float:
+def profile_height(square: float, profile: Floats, arcs: Floats, pieces: Floats) -> float:
     """Return g (mm), the height above the tip at which a cutter of any form begins at a squared
     distance `square` (mm2) from its axis; infinite outside of it.
 
@@ -109,7 +109,7 @@ def formed_height(square: float, profile: Floats, arcs: Floats, pieces: Floats) 
 
 
 @njit(cache=True, nogil=True, inline="always")
-def _round_height(square: float, inner: float, corner: float) -> float:
+def _bull_height(square: float, inner: float, corner: float) -> float:
     """Return g (mm) of a plain cutter at a squared distance inside its radius: 0 under the level end,
     a quarter circle of radius `corner` around it.
 
@@ -134,7 +134,7 @@ def last_cell(high: float, origin: float, pitch: float, count: int) -> int:
 
 
 @njit(cache=True, nogil=True)
-def _box(move: Floats, radius: float) -> tuple[float, float, float, float]:
+def _swept_box(move: Floats, radius: float) -> tuple[float, float, float, float]:
     """Return the plan box (x low, y low, x high, y high) of a move, wider by `radius` (mm) on all
     sides."""
     x0, y0 = min(move[X0], move[X1]), min(move[Y0], move[Y1])
@@ -155,7 +155,7 @@ def _box(move: Floats, radius: float) -> tuple[float, float, float, float]:
 
 
 @njit(cache=True, nogil=True)
-def _cut_row_plain(
+def _zmap_cut_row(
     row: Floats,
     px: float,
     py: float,
@@ -204,7 +204,7 @@ def _cut_row_plain(
 
 
 @njit(cache=True, nogil=True)
-def _cut_row_formed(
+def _zmap_cut_row_formed(
     row: Floats,
     px: float,
     py: float,
@@ -220,7 +220,7 @@ def _cut_row_formed(
     pieces: Floats,
 ) -> tuple[float, int]:
     """Lower the cells of a row under a cutter of any form on a level line; arguments and results as
-    for `_cut_row_plain`."""
+    for `_zmap_cut_row`."""
     removed, stands = 0.0, 0
     limit, bottom = profile[RADIUS] * profile[RADIUS], max(z, floor)
     for i in range(len(row)):
@@ -231,7 +231,7 @@ def _cut_row_formed(
             ex, ey = x - t * dx, py - t * dy
             d = ex * ex + ey * ey
             if d < limit:
-                cut = max(z + formed_height(d, profile, arcs, pieces), floor)
+                cut = max(z + profile_height(d, profile, arcs, pieces), floor)
                 if cut < h:
                     if h > upper:
                         stands += 1
@@ -242,7 +242,7 @@ def _cut_row_formed(
 
 
 @njit(cache=True, nogil=True, fastmath={"reassoc", "nsz", "contract", "nnan"})
-def _cut_row_ball(
+def _zmap_cut_row_ball(
     row: Floats,
     px: float,
     py: float,
@@ -255,7 +255,7 @@ def _cut_row_ball(
     upper: float,
     radius: float,
 ) -> tuple[float, int]:
-    """Lower the cells of a row under a ball end on a level line, as `_cut_row_plain` does; without
+    """Lower the cells of a row under a ball end on a level line, as `_zmap_cut_row` does; without
     branches, so that it is vectorised.
 
     Most cells ahead of a ball get lower at every move: computing them all is faster than asking
@@ -324,7 +324,7 @@ def _capsule_row(
 
 
 @njit(cache=True, nogil=True)
-def _cut_level_line(
+def _zmap_cut_line(
     top: Floats,
     origin: Floats,
     pitch: float,
@@ -402,13 +402,15 @@ def _cut_level_line(
                 continue
             row, px = top[j, p : q + 1], x + p * pitch
             if ball:
-                r, s = _cut_row_ball(row, px, py, pitch, dx, dy, inverse, z, floor, upper, radius)
+                r, s = _zmap_cut_row_ball(
+                    row, px, py, pitch, dx, dy, inverse, z, floor, upper, radius
+                )
             elif plain:
-                r, s = _cut_row_plain(
+                r, s = _zmap_cut_row(
                     row, px, py, pitch, dx, dy, inverse, z, floor, upper, radius, corner
                 )
             else:
-                r, s = _cut_row_formed(
+                r, s = _zmap_cut_row_formed(
                     row, px, py, pitch, dx, dy, inverse, z, floor, upper, profile, arcs, pieces
                 )
             removed, stands = removed + r, stands + s
@@ -416,7 +418,7 @@ def _cut_level_line(
 
 
 @njit(cache=True, nogil=True)
-def _cut_arc_cells(
+def _zmap_cut_arc_row(
     row: Floats,
     first: int,
     last: int,
@@ -431,7 +433,7 @@ def _cut_arc_cells(
     arcs: Floats,
     pieces: Floats,
 ) -> tuple[float, int]:
-    """Lower cells `first` to `last` of a row under a level arc; results as for `_cut_row_plain`. left:
+    """Lower cells `first` to `last` of a row under a level arc; results as for `_zmap_cut_row`. left:
     x of the row's first cell centre, y of the row."""
     removed, stands = 0.0, 0
     corner, inner, limit = profile[CORNER], profile[RADIUS] - profile[CORNER], profile[RADIUS] ** 2
@@ -439,12 +441,12 @@ def _cut_arc_cells(
     for i in range(first, last + 1):
         h = row[i]
         if h > bottom:
-            d = _arc_square(left + i * pitch, y, move)
+            d = _arc_distance_squared(left + i * pitch, y, move)
             if d < limit:
                 if profile[PLAIN] != 0.0:
-                    cut = max(z + _round_height(d, inner, corner), floor)
+                    cut = max(z + _bull_height(d, inner, corner), floor)
                 else:
-                    cut = max(z + formed_height(d, profile, arcs, pieces), floor)
+                    cut = max(z + profile_height(d, profile, arcs, pieces), floor)
                 if cut < h:
                     if h > upper:
                         stands += 1
@@ -455,7 +457,7 @@ def _cut_arc_cells(
 
 
 @njit(cache=True, nogil=True)
-def _cut_level_arc(
+def _zmap_cut_arc(
     top: Floats,
     origin: Floats,
     pitch: float,
@@ -468,13 +470,13 @@ def _cut_level_arc(
     pieces: Floats,
 ) -> tuple[float, int]:
     """Cut a level arc: in each row of its box, the cells between the outer and the inner circle of its
-    rim; results as for `_cut_row_plain`.
+    rim; results as for `_zmap_cut_row`.
 
     The inner circle, of radius arc radius - cutter radius, is never reached and is skipped with a
-    margin. The sector is not tested here: `_arc_square` measures to the arc itself.
+    margin. The sector is not tested here: `_arc_distance_squared` measures to the arc itself.
     """
     radius = profile[RADIUS]
-    x0, y0, x1, y1 = _box(move, radius)
+    x0, y0, x1, y1 = _swept_box(move, radius)
     left = origin[0] + 0.5 * pitch
     outer, hollow = move[ARC_RADIUS] + radius, max(move[ARC_RADIUS] - radius, 0.0)
     i0, i1 = first_cell(x0, origin[0], pitch), last_cell(x1, origin[0], pitch, top.shape[1])
@@ -495,7 +497,7 @@ def _cut_level_arc(
                 int(math.floor((move[CX] + half - left) / pitch)),
             )
             if c <= d:
-                r, s = _cut_arc_cells(
+                r, s = _zmap_cut_arc_row(
                     top[j],
                     a,
                     min(b, c - 1),
@@ -512,7 +514,7 @@ def _cut_level_arc(
                 )
                 removed, stands = removed + r, stands + s
                 a = max(a, d + 1)
-        r, s = _cut_arc_cells(
+        r, s = _zmap_cut_arc_row(
             top[j], a, b, left, y, pitch, move, z, floor, upper, profile, arcs, pieces
         )
         removed, stands = removed + r, stands + s
@@ -520,7 +522,7 @@ def _cut_level_arc(
 
 
 @njit(cache=True, nogil=True)
-def _steepness(wanted: float, across: float, inner: float, corner: float) -> float:
+def _rim_slope(wanted: float, across: float, inner: float, corner: float) -> float:
     """Return the slope p of a bull end's rim, in its axial plane, where its slope along the direction
     of motion equals `wanted` >= 0.
 
@@ -566,7 +568,7 @@ def _steepness(wanted: float, across: float, inner: float, corner: float) -> flo
 
 
 @njit(cache=True, nogil=True)
-def _formed_on_slope(
+def _profile_on_slope(
     across: float,
     low: float,
     high: float,
@@ -617,7 +619,7 @@ def _formed_on_slope(
 
 
 @njit(cache=True, nogil=True, inline="always")
-def _rise(w: float, square: float, inner: float, corner: float) -> float:
+def _height_derivative(w: float, square: float, inner: float, corner: float) -> float:
     """Return the derivative by w of a bull end's height g at w along the path, with `square` the
     squared distance beside it; infinite at its rim."""
     rho = math.sqrt(square + w * w)
@@ -630,7 +632,7 @@ def _rise(w: float, square: float, inner: float, corner: float) -> float:
 
 
 @njit(cache=True, nogil=True)
-def _lowest_on_slope(
+def _bull_on_slope(
     along: float,
     across: float,
     length: float,
@@ -645,7 +647,7 @@ def _lowest_on_slope(
     along, across: the column's plan coordinates (mm) from the start, along and beside the path; z0
     tip at the start; slope: rise per mm in plan. With w the position of the axis from the column's
     foot the height is base + slope w + g(sqrt(across^2 + w^2)), convex in w; its minimum over w in
-    [low, high] is found in closed form for flat and ball ends and by `_steepness` for a bull end.
+    [low, high] is found in closed form for flat and ball ends and by `_rim_slope` for a bull end.
     """
     square = across * across
     gap = radius * radius - square
@@ -664,21 +666,21 @@ def _lowest_on_slope(
     if inner <= 0.0:
         w = min(max(-slope * half / math.sqrt(1.0 + slope * slope), low), high)
     # The height over w is convex: where it rises at the low end already, that is the lowest; on short moves nearly everywhere.
-    elif slope + _rise(low, square, inner, corner) >= 0.0:
+    elif slope + _height_derivative(low, square, inner, corner) >= 0.0:
         w = low
-    elif slope + _rise(high, square, inner, corner) <= 0.0:
+    elif slope + _height_derivative(high, square, inner, corner) <= 0.0:
         w = high
     else:
         # Inside: the rim's slope along the path equals minus the path's slope.
-        p = _steepness(abs(slope), abs(across), inner, corner)
+        p = _rim_slope(abs(slope), abs(across), inner, corner)
         rho = inner + corner * p / math.sqrt(1.0 + p * p)
         w = math.sqrt(max(rho * rho - square, 0.0))
         w = min(max(-w if slope > 0.0 else w, low), high)
-    return base + w * slope + _round_height(min(square + w * w, radius * radius), inner, corner)
+    return base + w * slope + _bull_height(min(square + w * w, radius * radius), inner, corner)
 
 
 @njit(cache=True, nogil=True)
-def _cut_slope(
+def _zmap_cut_slope(
     top: Floats,
     origin: Floats,
     pitch: float,
@@ -695,7 +697,7 @@ def _cut_slope(
     arcs: Floats,
     pieces: Floats,
 ) -> tuple[float, int]:
-    """Cut a sloped line; results as for `_cut_row_plain`.
+    """Cut a sloped line; results as for `_zmap_cut_row`.
 
     A column behind the start of a joined line that climbs is done: the cutter only moves up and
     away from it, and stood at the start when the move before ended.
@@ -731,13 +733,13 @@ def _cut_slope(
             if done_behind and along < 0.0:
                 continue
             if plain:
-                cut = max(_lowest_on_slope(along, across, length, z0, slope, radius, corner), floor)
+                cut = max(_bull_on_slope(along, across, length, z0, slope, radius, corner), floor)
             else:
                 low, high = -along, length - along
                 cut = max(
                     z0
                     + along * slope
-                    + _formed_on_slope(abs(across), low, high, slope, profile, arcs, pieces),
+                    + _profile_on_slope(abs(across), low, high, slope, profile, arcs, pieces),
                     floor,
                 )
             if cut < h:
@@ -750,7 +752,7 @@ def _cut_slope(
 
 
 @njit(cache=True, nogil=True)
-def _cut_helix(
+def _zmap_cut_helix(
     top: Floats,
     origin: Floats,
     pitch: float,
@@ -759,7 +761,7 @@ def _cut_helix(
     radius: float,
     opening: float,
 ) -> tuple[float, int]:
-    """Cut a helix by a level disc of a radius (mm), exactly; results as for `_cut_row_plain`.
+    """Cut a helix by a level disc of a radius (mm), exactly; results as for `_zmap_cut_row`.
 
     A column at the distance rho from the helix's centre is covered while the tip's angle is within
     `half` of its own, by the law of cosines rho^2 + arm^2 - 2 rho arm cos(half) = radius^2; on the
@@ -767,7 +769,7 @@ def _cut_helix(
     every covered moment, as many as the sweep has turns, and one before. `opening`: OPEN of the
     tool's profile.
     """
-    x0, y0, x1, y1 = _box(move, radius)
+    x0, y0, x1, y1 = _swept_box(move, radius)
     arm, sweep, z0, z1 = move[ARC_RADIUS], abs(move[SWEEP]), move[Z_START], move[Z_END]
     turn = 1.0 if move[SWEEP] > 0.0 else -1.0
     turns = int(math.floor(sweep / math.tau)) + 1
@@ -815,7 +817,7 @@ def _cut_helix(
 
 
 @njit(cache=True, nogil=True)
-def cut_move(
+def zmap_cut_move(
     top: Floats,
     origin: Floats,
     pitch: float,
@@ -840,12 +842,12 @@ def cut_move(
     upper = lowest + profile[OPEN]
     line = move[KIND] == 0.0
     if z0 == z1 and not line:
-        return _cut_level_arc(top, origin, pitch, floor, move, lowest, upper, profile, arcs, pieces)
+        return _zmap_cut_arc(top, origin, pitch, floor, move, lowest, upper, profile, arcs, pieces)
     dx, dy = move[X1] - move[X0], move[Y1] - move[Y0]
     still = line and dx * dx + dy * dy <= STILL * STILL
     if still or z0 == z1:
         # On its way down a cutter passes all of a column up to where it came from.
-        return _cut_level_line(
+        return _zmap_cut_line(
             top,
             origin,
             pitch,
@@ -862,7 +864,7 @@ def cut_move(
             pieces,
         )
     if line:
-        return _cut_slope(
+        return _zmap_cut_slope(
             top,
             origin,
             pitch,
@@ -882,7 +884,7 @@ def cut_move(
     removed, stands, level = 0.0, 0, profile[RADIUS] - profile[CORNER]
     if profile[PLAIN] != 0.0 and level > 0.0 and move[ARC_RADIUS] > STILL:
         # The rounded rim then finds little left to do under the level part.
-        removed, stands = _cut_helix(top, origin, pitch, floor, move, level, profile[OPEN])
+        removed, stands = _zmap_cut_helix(top, origin, pitch, floor, move, level, profile[OPEN])
         if profile[CORNER] == 0.0:
             return removed, stands
     # Sagitta of a chord over the angle `step`: arm step^2 / 8 = chord.
@@ -898,7 +900,7 @@ def cut_move(
         )
         qz = z0 + t * (z1 - z0)
         if (qx - px) ** 2 + (qy - py) ** 2 > STILL * STILL:
-            r, s = _cut_slope(
+            r, s = _zmap_cut_slope(
                 top,
                 origin,
                 pitch,
@@ -936,7 +938,7 @@ def joins(moves: Floats, rapid: Bools, tool: Ints, n: int) -> bool:
 
 
 @njit(cache=True, nogil=True)
-def _formed_depth(
+def _profile_depth(
     rho: float, h: float, arcs: Floats, first: int, last: int, z_low: float, z_high: float
 ) -> float:
     """Return the depth (mm) in one closed body of the material at a distance rho from the axis, from
@@ -959,7 +961,7 @@ def _formed_depth(
 
 
 @njit(cache=True, nogil=True)
-def _depth(square: float, h: float, profile: Floats, arcs: Floats, pieces: Floats) -> float:
+def _column_depth(square: float, h: float, profile: Floats, arcs: Floats, pieces: Floats) -> float:
     """Return how deep (mm) a column at a squared distance from the axis, its top h above the tip, lies
     in the cutter; negative outside.
 
@@ -978,7 +980,7 @@ def _depth(square: float, h: float, profile: Floats, arcs: Floats, pieces: Float
         if rho < pieces[k, R_MAX] and h > pieces[k, Z_LOW]:
             best = max(
                 best,
-                _formed_depth(
+                _profile_depth(
                     rho,
                     h,
                     arcs,
@@ -992,7 +994,7 @@ def _depth(square: float, h: float, profile: Floats, arcs: Floats, pieces: Float
 
 
 @njit(cache=True, nogil=True)
-def _deepest(
+def _max_depth_line(
     top: Floats,
     origin: Floats,
     pitch: float,
@@ -1020,16 +1022,16 @@ def _deepest(
         for i in range(i0, i1 + 1):
             if top[j, i] <= z:
                 continue
-            d = _segment_square(origin[0] + (i + 0.5) * pitch, y, x0, y0, dx, dy, square)
+            d = _segment_distance_squared(origin[0] + (i + 0.5) * pitch, y, x0, y0, dx, dy, square)
             if d < limit:
-                depth = _depth(d, top[j, i] - z, profile, arcs, pieces)
+                depth = _column_depth(d, top[j, i] - z, profile, arcs, pieces)
                 if depth > best:
                     best, cell = depth, j * top.shape[1] + i
     return best, cell
 
 
 @njit(cache=True, nogil=True)
-def _rims(
+def _boundary_cells(
     top: Floats,
     origin: Floats,
     pitch: float,
@@ -1063,7 +1065,7 @@ def _rims(
     for j in range(j0, j1 + 1):
         y = origin[1] + (j + 0.5) * pitch
         for i in range(i0, i1 + 1):
-            d = _segment_square(origin[0] + (i + 0.5) * pitch, y, x0, y0, dx, dy, square)
+            d = _segment_distance_squared(origin[0] + (i + 0.5) * pitch, y, x0, y0, dx, dy, square)
             if d >= reach * reach:
                 continue
             stands = False
@@ -1092,7 +1094,7 @@ def _cone_depth(d: float, h: float, cone: Floats) -> float:
 
 
 @njit(cache=True, nogil=True)
-def _cones(
+def _max_cone_depth(
     top: Floats,
     origin: Floats,
     pitch: float,
@@ -1118,7 +1120,7 @@ def _cones(
             continue
         radius = max(cones[k, 0], cones[k, 1])
         if move[KIND] != 0.0:
-            x0, y0, x1, y1 = _box(move, radius)
+            x0, y0, x1, y1 = _swept_box(move, radius)
         else:
             x0, y0 = min(line[0], line[2]) - radius, min(line[1], line[3]) - radius
             x1, y1 = max(line[0], line[2]) + radius, max(line[1], line[3]) + radius
@@ -1132,9 +1134,9 @@ def _cones(
                 if top[j, i] > low:
                     x = origin[0] + (i + 0.5) * pitch
                     d = (
-                        _arc_square(x, y, move)
+                        _arc_distance_squared(x, y, move)
                         if move[KIND] != 0.0
-                        else _segment_square(x, y, line[0], line[1], dx, dy, square)
+                        else _segment_distance_squared(x, y, line[0], line[1], dx, dy, square)
                     )
                     if d < radius * radius:
                         best = max(best, _cone_depth(d, top[j, i] - z, cones[k]))
@@ -1142,7 +1144,7 @@ def _cones(
 
 
 @njit(cache=True, nogil=True)
-def _judge(
+def _collision_depth(
     top: Floats,
     origin: Floats,
     pitch: float,
@@ -1187,10 +1189,10 @@ def _judge(
             continue
         d, c, b = -np.inf, -1, -np.inf
         if is_rapid:
-            d, c = _deepest(
+            d, c = _max_depth_line(
                 top, origin, pitch, line[0], line[1], line[2], line[3], z, profile, arcs, pieces
             )
-        b = _cones(top, origin, pitch, highest, move, line, z, cones, first, last)
+        b = _max_cone_depth(top, origin, pitch, highest, move, line, z, cones, first, last)
         # Where the stack is full the part is not halved: its bound counts as it is.
         worth = d > max(depth, allowed) or b > max(body, allowed)
         if (
@@ -1212,7 +1214,7 @@ def _judge(
 
 
 @njit(cache=True, nogil=True)
-def stock_loop(
+def zmap_cut_loop(
     first: int,
     last: int,
     top: Floats,
@@ -1252,7 +1254,7 @@ def stock_loop(
 
     removed (n,) gets the summed height that a move takes off; depth (n,) and cell (n,) how deep a
     rapid enters and where; body_depth (n,) how deep what is above the flutes enters stock; rims
-    gets the cells that a low rapid grazes as `_rims` lists them, rim_start (n + 1,) their
+    gets the cells that a low rapid grazes as `_boundary_cells` lists them, rim_start (n + 1,) their
     beginnings. probe_start (n + 1,), circle, rings, counted and spans: see `kernels/engagement.py`.
 
     Returns the row after the last one done and why it ended early: 1 when `rims` is full, 2 when
@@ -1265,7 +1267,7 @@ def stock_loop(
         count = rim_start[n]
         # The engagement is measured before the move cuts, the body's depth after it.
         if not rapid[n]:
-            look_in_field(
+            engagement_in_zmap(
                 top,
                 origin,
                 pitch,
@@ -1278,7 +1280,7 @@ def stock_loop(
                 counted,
                 spans,
             )
-            took, standing = cut_move(
+            took, standing = zmap_cut_move(
                 top,
                 origin,
                 pitch,
@@ -1296,7 +1298,7 @@ def stock_loop(
         # A move straight up leaves through the column that its own cut has opened.
         straight = move[KIND] == 0.0 and move[X0] == move[X1] and move[Y0] == move[Y1]
         if not (straight and move[Z_END] > move[Z_START]):
-            depth[n], cell[n], body_depth[n] = _judge(
+            depth[n], cell[n], body_depth[n] = _collision_depth(
                 top,
                 origin,
                 pitch,
@@ -1312,7 +1314,7 @@ def stock_loop(
                 allowed,
             )
             if rapid[n] and depth[n] <= allowed and z + allowed < highest:
-                count = _rims(
+                count = _boundary_cells(
                     top,
                     origin,
                     pitch,

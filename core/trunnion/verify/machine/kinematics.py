@@ -14,7 +14,7 @@ import numpy as np
 
 from trunnion.geometry.arrays import Bools, Floats, Ints
 from trunnion.model.material import Axis, Machine
-from trunnion.verify.kernels.rotary import follow
+from trunnion.verify.kernels.rotary import choose_angles_greedy
 from trunnion.verify.motion import Moves
 
 STEP = math.radians(2.0)
@@ -113,7 +113,7 @@ def rotary_angles(axis: Floats, machine: Machine) -> tuple[Floats, Bools]:
     tried = []
     for first in (0, 1):
         chosen = np.zeros((len(axis), len(rotary)))
-        turned, outside = follow(angles, free, low, high, first, SLACK, chosen)
+        turned, outside = choose_angles_greedy(angles, free, low, high, first, SLACK, chosen)
         tried.append((outside, turned, first, chosen))
     return min(tried, key=lambda t: t[:3])[3], good
 

@@ -56,7 +56,7 @@ def run_heights(
         done = work[first - 1] if first else 0.0
         last = max(first + 1, int(np.searchsorted(work, done + CHUNK_CELLS)))
         rim_start[first] = 0
-        stop, why = kernel.stock_loop(
+        stop, why = kernel.zmap_cut_loop(
             first,
             min(last, n),
             field.top,
