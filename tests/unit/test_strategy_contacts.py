@@ -27,7 +27,7 @@ from trunnion.model.setup import Setup
 from trunnion.model.toolpath import Mark
 from trunnion.settings import choose
 from trunnion.shop import load_shop
-from trunnion.toolpath.contact_passes.flowlines import FlowLinesTooDense, FlowParameters, flow_lines
+from trunnion.toolpath.contact_passes.flow_lines import DenseFlowLines, FlowParameters, flow_lines
 from trunnion.toolpath.contact_passes.fronts import AIM, FIRST, scallop_passes
 from trunnion.toolpath.contact_passes.stepovers import spread, stepover_measure
 from trunnion.toolpath.stock.heightfield import PlanningStock
@@ -223,7 +223,7 @@ def test_flow_lines_that_would_crowd_are_refused() -> None:
             *(plane(1.0, 1.0, n=5, tag=tag, start=start) for tag, start in ((2, -1.0), (3, 2.0))),
         )
     )
-    with pytest.raises(FlowLinesTooDense, match="constant scallop"):
+    with pytest.raises(DenseFlowLines, match="constant scallop"):
         flow_lines(drive, BALL, FlowParameters(first_guide="2", second_guide="3"))
 
 

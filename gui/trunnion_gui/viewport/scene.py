@@ -114,7 +114,7 @@ class Click:
     with_ctrl: bool = False
 
 
-class Scene(QWidget):
+class ViewportScene(QWidget):
     """The viewport with its layers."""
 
     clicked = Signal(object)

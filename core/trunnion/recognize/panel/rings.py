@@ -15,7 +15,7 @@ SLOPES = (FaceClass.CROSS, FaceClass.BLEND, FaceClass.OVERHANG)
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class Ring:
+class WallRing:
     """The surroundings of one loop of a floor, as face rows.
 
     `walls` and `corners` stand on the floor, `fillets` lie at their feet, `drops` are the faces that go down from it over a convex
@@ -40,7 +40,7 @@ class Ring:
         return bool(self.walls or self.corners or self.fillets or self.slopes)
 
 
-def ring(view: PanelSide, floor: int, edges: tuple[int, ...]) -> Ring:
+def ring(view: PanelSide, floor: int, edges: tuple[int, ...]) -> WallRing:
     """Return what stands around the edges of one loop of a floor."""
     graph, rising = view.graph, view.classes.rising
     blends, sides, drops, slopes, sharp = [], [], [], [], False
@@ -79,7 +79,7 @@ def ring(view: PanelSide, floor: int, edges: tuple[int, ...]) -> Ring:
         sides,
         lambda edge, face, to: bool(rising[to] and _continues_up(view, edge, face, to)),
     )
-    return Ring(
+    return WallRing(
         walls=tuple(r for r in whole if r not in view.corners),
         corners=tuple(r for r in whole if r in view.corners),
         fillets=fillets,

@@ -7,7 +7,7 @@ from dataclasses import dataclass, replace
 from trunnion.geometry.facegraph import CONVEX
 from trunnion.recognize.grow import grown, loops, same_surface
 from trunnion.recognize.panel.classes import FaceClass
-from trunnion.recognize.panel.rings import Ring, ring
+from trunnion.recognize.panel.rings import WallRing, ring
 from trunnion.recognize.panel.side import PanelSide
 from trunnion.recognize.panel.tops import Tops, mean_width, sort_tops
 from trunnion.tolerance import ANGLE, SLIVER
@@ -171,7 +171,7 @@ def openings_in(view: PanelSide, face: int, known: set[int]) -> list[Pocket]:
     return found
 
 
-def island_on(view: PanelSide, floor: int, foot: Ring) -> Island:
+def island_on(view: PanelSide, floor: int, foot: WallRing) -> Island:
     """Return the island that stands on one inner loop of a floor: its sides, every top over them, the blends at its foot."""
     graph, steep, kind = view.graph, view.classes.steep, view.classes.kind
 
@@ -194,7 +194,7 @@ def island_on(view: PanelSide, floor: int, foot: Ring) -> Island:
     )
 
 
-def is_bore(view: PanelSide, floor: int, around: Ring) -> bool:
+def is_bore(view: PanelSide, floor: int, around: WallRing) -> bool:
     """Say whether a floor is the bottom of a bore: round, sharp, its side one hollow cylinder no wider than a hole may be."""
     return bool(
         not around.fillets
@@ -223,7 +223,7 @@ def _crosses_top(view: PanelSide, edge: int, face: int) -> bool:
     )
 
 
-def _once(rings: list[Ring], name: str) -> tuple[int, ...]:
+def _once(rings: list[WallRing], name: str) -> tuple[int, ...]:
     return tuple(dict.fromkeys(row for r in rings for row in getattr(r, name)))
 
 

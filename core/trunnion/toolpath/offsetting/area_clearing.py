@@ -28,7 +28,7 @@ from trunnion.toolpath.offsetting.entry import (
     ramp_round,
 )
 from trunnion.toolpath.offsetting.lead import enter, fitting_lead, leave
-from trunnion.toolpath.offsetting.rings import Ring
+from trunnion.toolpath.offsetting.rings import OffsetRing
 
 RUN_OUTS = (0.5, 1.0, 2.0, 3.0, 4.0)
 """Of the radius: how far before an open pass a place that is certainly free is looked for."""
@@ -65,7 +65,7 @@ class ClearingLayer:
     (None: everything in the rings), and the height `top` under which material may begin (None: as the stock says)."""
 
     z: float
-    rings: tuple[Ring, ...]
+    rings: tuple[OffsetRing, ...]
     room: AxisRegion
     clip: Region | None = None
     top: float | None = None
@@ -91,7 +91,7 @@ def clear(
 def _cut_ring(
     builder: PathBuilder,
     layer: ClearingLayer,
-    ring: Ring,
+    ring: OffsetRing,
     manner: ClearingParameters,
     progress: Progress,
 ) -> None:
@@ -112,7 +112,7 @@ def _cut_ring(
 def _cut_closed(
     builder: PathBuilder,
     layer: ClearingLayer,
-    ring: Ring,
+    ring: OffsetRing,
     loop: Curve,
     manner: ClearingParameters,
     feed: float,
@@ -143,7 +143,7 @@ def _free_place(
     return None
 
 
-def _from_inner(builder: PathBuilder, layer: ClearingLayer, ring: Ring, loop: Curve) -> float:
+def _from_inner(builder: PathBuilder, layer: ClearingLayer, ring: OffsetRing, loop: Curve) -> float:
     """Come down where the pass before, one step further inside, was cut, and feed across."""
     seeds = [c.points[0] for inner in ring.inner for c in inner.curves()]
     near = min(seeds, key=lambda p: float(loop.distance(p)[0]))
@@ -155,7 +155,11 @@ def _from_inner(builder: PathBuilder, layer: ClearingLayer, ring: Ring, loop: Cu
 
 
 def _open_up(
-    builder: PathBuilder, layer: ClearingLayer, ring: Ring, loop: Curve, manner: ClearingParameters
+    builder: PathBuilder,
+    layer: ClearingLayer,
+    ring: OffsetRing,
+    loop: Curve,
+    manner: ClearingParameters,
 ) -> float:
     centre, depth = deepest_place(AxisRegion(ring.region), layer.room)
     radius = helix_radius(builder, depth)
@@ -273,11 +277,11 @@ def _step_off(builder: PathBuilder, layer: ClearingLayer) -> None:
     step_aside(builder, builder.heading(), layer.room)
 
 
-def _ring_away(ring: Ring, place: Floats) -> float:
+def _ring_away(ring: OffsetRing, place: Floats) -> float:
     return _nearest([_innermost(ring).region], place)
 
 
-def _innermost(ring: Ring) -> Ring:
+def _innermost(ring: OffsetRing) -> OffsetRing:
     while ring.inner:
         ring = ring.inner[0]
     return ring

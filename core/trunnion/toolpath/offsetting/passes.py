@@ -7,7 +7,7 @@ from dataclasses import dataclass
 from trunnion.geometry.plane.region import Region
 from trunnion.model.tool import Tool
 from trunnion.toolpath.axis_region import OPEN_MARGIN, AxisRegion
-from trunnion.toolpath.offsetting.rings import Ring, ring_tree
+from trunnion.toolpath.offsetting.rings import OffsetRing, ring_tree
 
 OVERRUN = 1.0
 """mm that the whole cutter runs past an open side."""
@@ -21,7 +21,7 @@ class ClearingPasses:
     """The room of the axis, its rings, and the clip of an open area (None: closed all round)."""
 
     room: AxisRegion
-    rings: tuple[Ring, ...]
+    rings: tuple[OffsetRing, ...]
     clip: Region | None
 
 

@@ -45,7 +45,7 @@ from trunnion.toolpath.contact_passes.axis_search import (
     roomy,
 )
 from trunnion.toolpath.contact_passes.contacts import Contacts, between, slerp
-from trunnion.toolpath.contact_passes.flowlines import FlowLinesTooDense, FlowParameters, flow_lines
+from trunnion.toolpath.contact_passes.flow_lines import DenseFlowLines, FlowParameters, flow_lines
 from trunnion.toolpath.contact_passes.fronts import scallop_passes
 from trunnion.toolpath.contact_passes.linking import LinkParameters, linked
 from trunnion.toolpath.contact_passes.passes import Pass
@@ -270,7 +270,7 @@ def _ways(
         )
         try:
             return flow_lines(drive, ball, flow, progress), told
-        except FlowLinesTooDense as reason:
+        except DenseFlowLines as reason:
             told = (
                 info(
                     "point.pattern",

@@ -14,7 +14,7 @@ from trunnion.settings import setting, settings
 from trunnion.toolpath.contact_passes import choices
 from trunnion.toolpath.contact_passes.choices import TOO_STEEP
 from trunnion.toolpath.contact_passes.fixed_axis import stood
-from trunnion.toolpath.contact_passes.flowlines import FlowParameters, flow_lines
+from trunnion.toolpath.contact_passes.flow_lines import FlowParameters, flow_lines
 from trunnion.toolpath.contact_passes.linking import LinkParameters, linked
 from trunnion.toolpath.contract import Planned, strategy
 from trunnion.toolpath.motion.engagement import surface_leftovers

@@ -23,7 +23,7 @@ from trunnion_gui.families.surface.jobs import PatchJobs
 from trunnion_gui.form import NumberField
 from trunnion_gui.i18n import tr
 from trunnion_gui.look import icons
-from trunnion_gui.viewport.scene import Click, Scene
+from trunnion_gui.viewport.scene import Click, ViewportScene
 from trunnion_gui.worker.drawing import box_of, plane_line, sampled
 
 AXES = ("x", "y", "z")
@@ -40,7 +40,7 @@ class CutBar(QWidget):
 
     ended = Signal()
 
-    def __init__(self, document: Document, jobs: PatchJobs, scene: Scene) -> None:
+    def __init__(self, document: Document, jobs: PatchJobs, scene: ViewportScene) -> None:
         super().__init__()
         self._document, self._jobs, self._scene = document, jobs, scene
         self.face = 0

@@ -41,7 +41,7 @@ CROWDED = 8.0
 other, or it is a scrap whose guides have little to do with its shape."""
 
 
-class FlowLinesTooDense(Refused):
+class DenseFlowLines(Refused):
     """Flow lines would lie far closer nearly everywhere than they need to; passes at a constant scallop don't."""
 
 
@@ -66,7 +66,7 @@ def flow_lines(
 
     All of them run the same way, the part that is still to be cut on their right: a tool that turns clockwise climbs. Each connected part
     of the area has its own passes, one after the other. Raises `BadInput` for guides that can't be, `Refused` for a cutter that can't,
-    `FlowLinesTooDense` for an area that flow lines don't suit.
+    `DenseFlowLines` for an area that flow lines don't suit.
     """
     measure = stepover_measure(tool, drive.height)
     parts = sheet_of(drive.skin, drive.faces).components() if drive.faces else []
@@ -109,7 +109,7 @@ def _lines(metric: Metric, guides: Guides, spiral: bool, progress: Progress) -> 
     order = np.argsort(slope)
     narrowest = slope[order[np.searchsorted(np.cumsum(area[order]), SMALLEST * area.sum())]]
     if CROWDED * narrowest * (1.0 + float(area.sum() / (slope @ area))) < 1.0:
-        raise FlowLinesTooDense(
+        raise DenseFlowLines(
             "flow lines between these guides would lie far closer than the scallop wants; passes at a constant scallop don't, "
             "nor may those between other guides"
         )
