@@ -72,7 +72,7 @@ class PartClearance:
         clear = np.zeros(len(moves), dtype=bool)
         for start in range(0, len(moves), BATCH):
             self.progress.check()
-            some = _rows(moves, slice(start, start + BATCH))
+            some = moves.some(slice(start, start + BATCH))
             clear[start : start + BATCH] = self._asked(some)
         return clear
 
@@ -83,7 +83,7 @@ class PartClearance:
 
         def work(first: int, last: int) -> None:
             clear[first:last] = contact.clear(
-                _rows(moves, slice(first, last)), tolerance.FINISH_GOUGE
+                moves.some(slice(first, last)), tolerance.FINISH_GOUGE
             )
 
         in_parallel(work, len(moves), CHUNK, QUIET, "Looking for room for a leaning tool")
@@ -147,23 +147,3 @@ class ToolClearanceQuery:
             )
         clear[rows] = self._around.clear(moves)
         return clear
-
-
-def _rows(moves: Moves, rows: slice) -> Moves:
-    names = (
-        "start",
-        "end",
-        "start_axis",
-        "end_axis",
-        "centre",
-        "sweep",
-        "upright",
-        "row",
-        "section",
-        "block",
-        "rapid",
-        "feed",
-        "length",
-        "tool",
-    )
-    return replace(moves, **{name: getattr(moves, name)[rows] for name in names})

@@ -120,28 +120,8 @@ class _Asker:
         for at in range(0, len(moves), POSES):
             self.progress.check()
             some = np.arange(at, min(at + POSES, len(moves)))
-            clear[some] = self.contact.clear(_rows(moves, some), self.allowed)
+            clear[some] = self.contact.clear(moves.some(some), self.allowed)
         return clear
-
-
-def _rows(moves: Moves, rows: Ints) -> Moves:
-    names = (
-        "start",
-        "end",
-        "start_axis",
-        "end_axis",
-        "centre",
-        "sweep",
-        "upright",
-        "row",
-        "section",
-        "block",
-        "rapid",
-        "feed",
-        "length",
-        "tool",
-    )
-    return replace(moves, **{name: getattr(moves, name)[rows] for name in names})
 
 
 def _around(axis: Floats, count: int) -> Floats:
