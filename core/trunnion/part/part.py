@@ -1,4 +1,4 @@
-"""The part: a CAD shape with numbered faces, and what the rest of the program may ask of it."""
+"""The part: a CAD shape with numbered faces, and the queries on it that other packages may make."""
 
 from __future__ import annotations
 

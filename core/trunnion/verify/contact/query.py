@@ -1,4 +1,4 @@
-"""The planners' query: how far may a pose lean, plunge or lengthen before its tool touches part or fixtures?
+"""Clearance of poses for planners: how far a pose may tilt, plunge or lengthen before its tool touches part or fixtures.
 
 Leaning and plunging are asked as motions, not as poses at their end: a thin rib on the way is not jumped over. A lean goes on in steps,
 each a turning move about the pivot, until one touches; within it, and for what only grows, halves close in on the first touch.
