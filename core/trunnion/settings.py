@@ -171,11 +171,6 @@ def choose(cls: type[T], words: Mapping[str, Value]) -> T:
     return cls(**values)
 
 
-def as_words(group: Any) -> dict[str, Value]:
-    """Return the values of a group by full key."""
-    return {d.key: getattr(group, d.name) for d in declared(type(group))}
-
-
 def digest(*things: Any) -> str:
     """Return a short stable digest of groups of settings, texts, numbers, and tuples and mappings of them."""
     return hashlib.sha256(

@@ -12,8 +12,6 @@ from PySide6.QtWidgets import QWidget
 from trunnion_gui.i18n import tr
 from trunnion_gui.look import icons
 
-SEPARATOR = "-"
-
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Command:

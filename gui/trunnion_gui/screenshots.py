@@ -26,27 +26,6 @@ _SHOWN = "pocket-01"
 Prepare = Callable[["Window"], None]
 
 
-def shoot(
-    part: str | Path,
-    picture: str | Path,
-    *,
-    prepare: Prepare | None = None,
-    size: tuple[int, int] = (1600, 1000),
-    factory: str = "",
-    until: str = "verify",
-    theme: str = "light",
-    timeout_s: float = 300.0,
-) -> None:
-    """Open a part in a window, run up to a step, let `prepare(window)` arrange what is to be seen, and write the picture as PNG.
-
-    Raises `TimeoutError` when the line takes longer than `timeout_s`.
-    """
-    with opened(
-        part, size=size, factory=factory, until=until, theme=theme, timeout_s=timeout_s
-    ) as window:
-        take(window, picture, prepare)
-
-
 @contextlib.contextmanager
 def opened(
     part: str | Path,

@@ -16,7 +16,14 @@ def test_the_settings_page_is_what_the_declarations_say(capsys):
 
 
 @pytest.mark.parametrize(
-    "page", ["README.md", "CONTRIBUTING.md", "docs/index.md", "docs/verification.md"]
+    "page",
+    [
+        "README.md",
+        "CONTRIBUTING.md",
+        "docs/index.md",
+        "docs/how-a-program-comes-about.md",
+        "docs/verification.md",
+    ],
 )
 def test_every_file_that_a_page_links_to_is_there(page):
     folder = (ROOT / page).parent

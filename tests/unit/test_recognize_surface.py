@@ -12,7 +12,7 @@ import pytest
 from parts import PARTS, needs_parts
 from shaped_parts import bowl, plate, rounded_plate, torus
 from trunnion.geometry.boundary import Boundary
-from trunnion.part.topology.boundary import boundary_of
+from trunnion.part.topology.boundary import bounding_of
 from trunnion.part.topology.identity import faces_of
 from trunnion.pipeline import Engine
 from trunnion.recognize.surface import SurfaceFamily, SurfaceSettings
@@ -94,8 +94,8 @@ def test_the_boundary_of_a_cylinder_has_no_seam_and_the_box_of_its_circles() -> 
     from OCP.BRepPrimAPI import BRepPrimAPI_MakeCylinder
 
     faces = list(enumerate(faces_of(BRepPrimAPI_MakeCylinder(5.0, 20.0).Shape()), 1))
-    side = max(faces, key=lambda f: len(boundary_of([f], None).length))[0]
-    bounds = boundary_of(faces, None)
+    side = max(faces, key=lambda f: len(bounding_of([f]).points(None).length))[0]
+    bounds = bounding_of(faces).points(None)
     assert bounds.length_of(side) == pytest.approx(20.0 * math.pi)
     assert np.ptp(bounds.points_of(side), axis=0) == pytest.approx([10.0, 10.0, 20.0], abs=2e-5)
 
@@ -104,7 +104,7 @@ def test_an_edge_is_cut_into_pieces_of_equal_length() -> None:
     from OCP.BRepPrimAPI import BRepPrimAPI_MakeCylinder
 
     faces = list(enumerate(faces_of(BRepPrimAPI_MakeCylinder(5.0, 20.0).Shape()), 1))
-    bounds = boundary_of(faces, lambda length: np.full(len(length), 8))
+    bounds = bounding_of(faces).points(lambda length: np.full(len(length), 8))
     ring = bounds.point[bounds.edge == 0]
     assert np.linalg.norm(np.diff(ring, axis=0), axis=1) == pytest.approx(
         np.full(8, 10.0 * math.sin(math.pi / 8)), rel=1e-3

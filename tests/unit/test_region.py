@@ -204,22 +204,6 @@ def test_motions_keep_the_area_and_the_direction_of_loops():
         assert moved.curves()[0].area > 0.0 > moved.curves()[1].area
 
 
-def test_simplifying_joins_lines_and_arcs_in_a_row_and_drops_specks():
-    points = [
-        [0.0, 0.0],
-        [4.0, 0.0],
-        [10.0, 0.0],
-        [10.0, 1e-7],
-        [10.0, 5.0],
-        [5.0, 10.0],
-        [0.0, 5.0],
-    ]
-    bulges = [0.0, 0.0, 0.0, 0.0, QUARTER, QUARTER, 0.0]
-    simple = Region.of([Curve(np.array(points), np.array(bulges), True)]).simplified()
-    assert simple.pieces[0].outer.n_segments == 4
-    assert simple.area == approx(50.0 + 12.5 * math.pi)
-
-
 def test_gaps_below_a_point_between_ends_do_no_harm():
     points = np.array([[0.0, 0.0], [20.0, 1e-7], [20.0 + 1e-7, 10.0], [-1e-7, 10.0 - 1e-7]])
     almost = Region.of([Curve.polygon(points)])

@@ -5,7 +5,7 @@ from __future__ import annotations
 import pytest
 
 from trunnion.findings import BadInput
-from trunnion.settings import GROUPS, as_words, checked, choose, declared, digest, setting, settings
+from trunnion.settings import GROUPS, checked, choose, declared, digest, setting, settings
 
 
 @settings("test.roughing")
@@ -57,7 +57,7 @@ def test_constructors_only_store_and_checked_looks() -> None:
 
 def test_words_round_trip() -> None:
     chosen = Roughing(stepover=0.25, style="zigzag")
-    assert choose(Roughing, as_words(chosen)) == chosen
+    assert choose(Roughing, {d.key: getattr(chosen, d.name) for d in declared(Roughing)}) == chosen
 
 
 def test_a_digest_sees_every_value_and_the_type() -> None:

@@ -127,7 +127,7 @@ def test_compiled_marching_does_what_the_plain_one_does(skin) -> None:
     for module in (fast_marching, fast_marching_compiled):
         time, foot = np.full(len(sheet.points), np.inf), sheet.points.copy()
         time[[0, 5]] = 0.0, 0.3
-        module.march(points, sizes, start, order // 2, time, foot, np.inf)
+        module.fast_march(points, sizes, start, order // 2, time, foot, np.inf)
         times.append((time, foot))
     assert times[0][0] == approx(times[1][0], abs=1e-12) and times[0][1] == approx(
         times[1][1], abs=1e-9

@@ -141,7 +141,7 @@ def test_blocks_are_no_shorter_than_they_need_be() -> None:
 def test_a_ball_grooves_as_itself_and_a_bull_that_leads_as_a_wider_one() -> None:
     assert grooving(BALL, 0.2, 0.1).radius == approx(3.0)
     bull, lead = EVERY_FORM["bull"], math.radians(10.0)
-    # Across the feed the corner's circle is as round as (R - r) / sin(lead) + r (scallop.radius_across).
+    # Across the feed the corner's circle is as round as (R - r) / sin(lead) + r.
     assert grooving(bull, lead, 0.0).radius == approx(3.0 / math.sin(lead) + 2.0)
     assert grooving(bull, 0.0, lead).radius == approx(2.0)
     assert grooving(EVERY_FORM["barrel"], 0.0, math.radians(80.0)).radius == approx(60.0)

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import contextlib
+import io
 import json
 import shutil
 from dataclasses import replace
@@ -29,6 +31,25 @@ def line(tmp_path_factory):
     session = engine.run(engine.open(Path(str(sample("B1")))))
     engine.write(session, folder, name="B1")
     return engine, session, folder
+
+
+@pytest.fixture(scope="module")
+def small(tmp_path_factory, sample_panel):
+    """The same of the small panel, which has a feature of every kind but takes a third of the time."""
+    folder = tmp_path_factory.mktemp("small")
+    engine = Engine()
+    session = engine.run(engine.open(sample_panel))
+    engine.write(session, folder, name="small")
+    return engine, session, folder
+
+
+@pytest.fixture(scope="module")
+def commanded(tmp_path_factory, sample_panel):
+    """The exit code, the JSON and the folder of `trunnion program` on the small panel."""
+    folder, said = tmp_path_factory.mktemp("commanded"), io.StringIO()
+    with contextlib.redirect_stdout(said):
+        code = main(["program", str(sample_panel), "-o", str(folder), "--name", "small", "--json"])
+    return code, json.loads(said.getvalue()), folder
 
 
 def test_b1_passes_its_proof(line):
@@ -116,20 +137,31 @@ def test_every_face_is_in_a_feature(line):
     assert explained | set(recognition.unexplained) == set(range(1, 261))
 
 
-def test_the_same_part_gives_the_same_bytes(line, tmp_path):
+def is_the_same(name, folder, other):
+    """Hold what was written of a part against what was written another time."""
+    for end in (
+        "S1.nc",
+        "cl",
+        "tools.json",
+        "features.xml",
+        "process.xml",
+        "deviation.png",
+        "report.html",
+    ):
+        file = f"{name}.{end}"
+        assert (folder / file).read_bytes() == (other / file).read_bytes(), file
+
+
+def test_the_same_part_gives_the_same_bytes(small, commanded):
+    is_the_same("small", small[2], commanded[2])
+
+
+@pytest.mark.long
+def test_b1_gives_the_same_bytes(line, tmp_path):
     engine = Engine()
     session = engine.run(engine.open(Path(str(sample("B1")))))
     engine.write(session, tmp_path, name="B1")
-    for name in (
-        "B1.S1.nc",
-        "B1.cl",
-        "B1.tools.json",
-        "B1.features.xml",
-        "B1.process.xml",
-        "B1.deviation.png",
-        "B1.report.html",
-    ):
-        assert (tmp_path / name).read_bytes() == (line[2] / name).read_bytes(), name
+    is_the_same("B1", tmp_path, line[2])
 
 
 def test_the_saved_project_opens_with_everything_done(line):
@@ -209,25 +241,24 @@ def test_a_clamp_in_the_way_fails_the_proof_and_leaves_the_plan_as_it_is(line, t
         engine.run(engine.with_fixtures(session, [f"S7={tmp_path / 'clamp.stl'}"]))
 
 
-def test_a_program_that_fails_is_written_as_rejected_and_the_released_one_goes(line, tmp_path):
-    engine, session, folder = line
+def test_a_program_that_fails_is_written_as_rejected_and_the_released_one_goes(small, tmp_path):
+    engine, session, folder = small
     shutil.copytree(folder, tmp_path / "out")
     without = tuple(replace(o, suppressed=o.kind == "wall") for o in session.process.operations)
     failed = engine.run(replace(session, process=replace(session.process, operations=without)))
-    names = engine.write(failed, tmp_path / "out", name="B1")
+    names = engine.write(failed, tmp_path / "out", name="small")
     assert failed.verdict.outcome is Outcome.FAILED and failed.verdict.coverage < 0.99
-    assert "B1.S1.REJECTED.nc" in names and not (tmp_path / "out" / "B1.S1.nc").exists()
+    assert "small.S1.REJECTED.nc" in names and not (tmp_path / "out" / "small.S1.nc").exists()
     assert (
         "REJECTED: DO NOT RUN"
-        in (tmp_path / "out" / "B1.S1.REJECTED.nc").read_text().splitlines()[1]
+        in (tmp_path / "out" / "small.S1.REJECTED.nc").read_text().splitlines()[1]
     )
-    assert "REJECTED" in (tmp_path / "out" / "B1.cl").read_text()
-    assert "REJECTED" in (tmp_path / "out" / "B1.report.html").read_text()
+    assert "REJECTED" in (tmp_path / "out" / "small.cl").read_text()
+    assert "REJECTED" in (tmp_path / "out" / "small.report.html").read_text()
 
 
-def test_the_command_line_prints_the_documented_keys(tmp_path, capsys, sample_panel):
-    code = main(["program", str(sample_panel), "-o", str(tmp_path), "--json"])
-    said = json.loads(capsys.readouterr().out)
+def test_the_command_line_prints_the_documented_keys(commanded):
+    code, said, folder = commanded
     assert code == (0 if said["verdict"].startswith("passed") else 1)
     assert {
         "verdict",
@@ -262,7 +293,7 @@ def test_the_command_line_prints_the_documented_keys(tmp_path, capsys, sample_pa
         "torque_nm",
         "air_share",
     } <= said["operations"][0].keys()
-    assert sorted(said["files"]) == sorted(path.name for path in tmp_path.iterdir())
+    assert sorted(said["files"]) == sorted(path.name for path in folder.iterdir())
 
 
 def test_a_plan_with_errors_is_not_released_however_well_the_rest_is_cut(line):

@@ -1,4 +1,4 @@
-"""Answers to questions that are asked again and again with equal things: worked out once, the longest unused forgotten first."""
+"""A least-recently-used cache of immutable results."""
 
 from __future__ import annotations
 
@@ -10,7 +10,7 @@ Answer = TypeVar("Answer")
 
 
 class Cache(Generic[Answer]):
-    """Keeps the last `most` different answers by what was asked. Answers must be immutable: everyone who asks gets the same one."""
+    """The last `most` results by key. Results must be immutable: every caller gets the same object."""
 
     def __init__(self, most: int) -> None:
         self._most = most

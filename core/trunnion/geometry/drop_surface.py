@@ -76,7 +76,8 @@ class DropSurface:
         """Return the height (n,) of a cutter's tip over plan points (n, 2) when it comes down and touches, at least `lowest`, a height for
         all or for each (n,).
 
-        `pieces` (p, 6) is the cutter's lower side as `kernels/drop_cutter.py` describes it. Points that follow a way are quicker than loose ones.
+        `pieces` (p, 6) is the cutter's lower side as `kernels/drop_cutter.py` describes it. Points that follow a
+        path are quicker than loose ones.
         """
         return self.touch(points, pieces, lowest, progress)[0]
 

@@ -1,4 +1,4 @@
-"""Boxes listed by the cells of a plane grid: which of them come near a place."""
+"""Boxes listed by the cells of a plane grid: an index for proximity queries."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Closed outlines in a plane, asked for many places at once."""
+"""Closed outlines in a plane, with point-in-polygon queries for many points at once."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""A B-spline surface as arrays, asked for many points and derivatives at once."""
+"""A B-spline surface as arrays, evaluated with its derivatives at many points at once."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Cuts one face of a part in two, by a plane or by a way drawn on it: the pieces are faces with tags of their own.
+"""Cuts one face of a part in two, by a plane or by a curve drawn on it: the pieces are faces with tags of their own.
 
 The pieces' common edges cut the whole solid, so that the faces around stay joined to them and the part stays as closed as it was.
 """

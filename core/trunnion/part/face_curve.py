@@ -1,4 +1,4 @@
-"""A way drawn on a face: places brought onto its surface, a smooth curve through them, its ends led out over the face's boundary."""
+"""A curve drawn on a face: points projected onto its surface, a spline through them, its ends extended over the face's boundary."""
 
 from __future__ import annotations
 
@@ -36,7 +36,7 @@ _ASKED = 64
 
 
 class DrawnCurve:
-    """The curve on the surface of one face that goes through given places (k, 3) in order; a way back to its start is closed.
+    """The curve on the surface of one face through given points (k, 3) in order; one that returns to its start is closed.
 
     Raises `BadInput` for a place that is farther than `reach` from the surface.
     """

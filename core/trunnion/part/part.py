@@ -1,4 +1,4 @@
-"""The part: a CAD shape with numbered faces, and what the rest of the program may ask of it."""
+"""The part: a CAD shape with numbered faces, and the queries on it that other packages may make."""
 
 from __future__ import annotations
 
@@ -6,7 +6,7 @@ import io
 import json
 from collections.abc import Callable, Iterator, Mapping
 from contextlib import contextmanager
-from dataclasses import asdict, dataclass, field, replace
+from dataclasses import asdict, dataclass, field
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -225,10 +225,6 @@ class Part:
         if face is None:
             raise BadInput(f"face {tag} is not a face of the chosen solid of {self.name}")
         return outline(face, frame, f"face {tag} of {self.name}")
-
-    def with_path(self, path: str) -> Part:
-        """Return the same part as read from another place."""
-        return Part(replace(self.facts, path=path), self.shape, self.as_read)
 
     def to_bytes(self) -> bytes:
         """Return the part as bytes for another process; what was computed from it stays behind."""

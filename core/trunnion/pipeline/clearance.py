@@ -1,7 +1,7 @@
-"""Who answers a strategy whose tool leans: may the machine hold this axis, and is the tool clear of part and fixtures?
+"""Clearance and axis-limit queries for tilted tools.
 
-Answered by the engine that proves programs (`verify.contact`), asked of poses and of moves before they are planned. Made when first asked:
-most operations never lean.
+The contact engine of the proof (`verify.contact`) measures poses and moves before they are planned. It is built at the first query: most
+operations have no tilted tool.
 """
 
 from __future__ import annotations
@@ -38,8 +38,8 @@ CHUNK = 128
 class PartClearance:
     """A part and its fixtures as they stand in a cutting frame that itself stands in a setup's frame.
 
-    `skin` is the part's in the cutting frame. What cuts may touch the part (`tolerance.FINISH_GOUGE`); neck, shank and holder are asked
-    for thicker by `tolerance.HOLDER_ROOM`. `progress` is looked at for cancel while something is asked.
+    `skin` is the part's in the cutting frame. What cuts may touch the part (`tolerance.FINISH_GOUGE`); neck, shank and holder
+    are thicker by `tolerance.HOLDER_ROOM`. `progress` is looked at for cancel during a query.
     """
 
     def __init__(
@@ -56,11 +56,11 @@ class PartClearance:
         self._machine, self._fixtures, self.progress = machine, tuple(fixtures), progress
 
     def __call__(self, tool: Tool) -> ToolClearanceQuery:
-        """Return who asks for a tool."""
+        """Return the clearance query of a tool."""
         return ToolClearanceQuery(self, roomy(tool, tolerance.HOLDER_ROOM))
 
     def holds(self, axis: Floats) -> Bools:
-        """Say which tool axes (k, 3), in the cutting frame, the machine can hold within the limits of its rotary axes."""
+        """Return which tool axes (k, 3), in the cutting frame, the machine can hold within the limits of its rotary axes."""
         from trunnion.verify.machine.kinematics import can_hold
 
         return can_hold(
@@ -68,11 +68,11 @@ class PartClearance:
         )
 
     def clear(self, moves: Moves) -> Bools:
-        """Say which moves (k,) enter nothing deeper than a finishing cutter may."""
+        """Return which moves (k,) enter nothing deeper than a finishing cutter may."""
         clear = np.zeros(len(moves), dtype=bool)
         for start in range(0, len(moves), BATCH):
             self.progress.check()
-            some = _rows(moves, slice(start, start + BATCH))
+            some = moves.some(slice(start, start + BATCH))
             clear[start : start + BATCH] = self._asked(some)
         return clear
 
@@ -83,7 +83,7 @@ class PartClearance:
 
         def work(first: int, last: int) -> None:
             clear[first:last] = contact.clear(
-                _rows(moves, slice(first, last)), tolerance.FINISH_GOUGE
+                moves.some(slice(first, last)), tolerance.FINISH_GOUGE
             )
 
         in_parallel(work, len(moves), CHUNK, QUIET, "Looking for room for a leaning tool")
@@ -110,7 +110,7 @@ class PartClearance:
 
 
 class ToolClearanceQuery:
-    """Asks for one tool; a pose that the machine can't hold counts as one that isn't clear."""
+    """Clearance query of one tool; a pose that the machine can't hold is not clear."""
 
     def __init__(self, around: PartClearance, tool: Tool) -> None:
         self._around, self._tool = around, tool
@@ -123,7 +123,7 @@ class ToolClearanceQuery:
         start_tip: Floats | None = None,
         start_axis: Floats | None = None,
     ) -> Bools:
-        """Say for tips (k, 3) with unit axes (k, 3), or for moves that begin at others, which are clear."""
+        """Return which poses are clear: tips (k, 3) mm with unit axes (k, 3), or moves from others to these."""
         from trunnion.verify.kernels.strips import X0, Y0, Z_START
         from trunnion.verify.motion import poses_of
 
@@ -147,23 +147,3 @@ class ToolClearanceQuery:
             )
         clear[rows] = self._around.clear(moves)
         return clear
-
-
-def _rows(moves: Moves, rows: slice) -> Moves:
-    names = (
-        "start",
-        "end",
-        "start_axis",
-        "end_axis",
-        "centre",
-        "sweep",
-        "upright",
-        "row",
-        "section",
-        "block",
-        "rapid",
-        "feed",
-        "length",
-        "tool",
-    )
-    return replace(moves, **{name: getattr(moves, name)[rows] for name in names})

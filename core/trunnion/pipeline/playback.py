@@ -47,22 +47,6 @@ _FIRST_CHUNK = 256
 _TOGETHER_S = 0.1
 """Time that blocks cut together should take."""
 _MOST_TOGETHER = 20_000
-_PER_MOVE = (
-    "start",
-    "end",
-    "start_axis",
-    "end_axis",
-    "centre",
-    "sweep",
-    "upright",
-    "row",
-    "section",
-    "block",
-    "rapid",
-    "feed",
-    "length",
-    "tool",
-)
 
 
 class Playback:
@@ -151,7 +135,7 @@ class Playback:
         last = int(stop)
         own = self._moves[program]
         rows = np.arange(first, last) - self._starts[program]
-        pieces = [taken(own, rows[~own.rapid[rows]])]
+        pieces = [own.some(rows[~own.rapid[rows]])]
         if stop > last:
             pieces.append(self._part(program, last, stop - last))
         try:
@@ -171,7 +155,7 @@ class Playback:
     def _part(self, program: int, block: int, share: float) -> Moves:
         """Return the first part of a block as moves of its own: none for a rapid, or when it is too short to matter."""
         own, row = self._moves[program], block - int(self._starts[program])
-        nothing = taken(own, np.zeros(0, np.int64))
+        nothing = own.some(np.zeros(0, np.int64))
         if own.rapid[row] or share * own.length[row] < _LEAST:
             return nothing
         section = self._programs[program].sections[own.section[row]]
@@ -186,7 +170,7 @@ class Playback:
             motion=np.array([Motion.RAPID, section.path.motion[k]]),
             mark=np.array([Mark.RETRACT, section.path.mark[k]]),
         )
-        return taken(moves_of([replace(section, path=path)]), np.array([1]))
+        return moves_of([replace(section, path=path)]).some(np.array([1]))
 
     def _go_back(self, wanted: float) -> None:
         nearest = max(k for k in self._kept if k <= wanted)
@@ -274,11 +258,6 @@ def timeline_of(
         line=np.concatenate(lines),
         time=np.concatenate([[0.0], np.cumsum(np.concatenate(spans))]),
     )
-
-
-def taken(moves: Moves, rows: Ints) -> Moves:
-    """Return some rows of moves, with the same tools."""
-    return replace(moves, **{name: getattr(moves, name)[rows] for name in _PER_MOVE})
 
 
 def fresh_of(points: Floats, triangles: Ints, blank: Blank, near: float) -> Bools:

@@ -1,6 +1,6 @@
-"""Clearance queries: is a tool in a pose clear of part and fixtures, and can the machine hold its axis?
+"""Protocols of clearance queries for tilted tools: contact of a pose with part and fixtures, and the machine's axis limits.
 
-Answered by `pipeline.clearance`.
+`pipeline.clearance` meets them.
 """
 
 from __future__ import annotations
@@ -12,7 +12,7 @@ from trunnion.model.tool import Tool
 
 
 class ClearanceQuery(Protocol):
-    """Asks whether a tool is clear of part and fixtures; poses are in the cutting frame."""
+    """Clearance of one tool from part and fixtures; poses are in the cutting frame."""
 
     def __call__(
         self,
@@ -22,14 +22,14 @@ class ClearanceQuery(Protocol):
         start_tip: Floats | None = None,
         start_axis: Floats | None = None,
     ) -> Bools:
-        """Say for tips (k, 3) with unit axes (k, 3) which poses (or moves from a start) enter nothing deeper than the tolerance."""
+        """Return which poses (k,) enter nothing deeper than the tolerance: tips (k, 3) mm, unit axes (k, 3); or moves from a start."""
 
 
 class ClearanceScene(Protocol):
-    """What stands round a leaning tool: who asks for a tool, and which axes the machine holds."""
+    """Part, fixtures and machine around a tilted tool."""
 
     def __call__(self, tool: Tool) -> ClearanceQuery:
-        """Return who asks for a tool."""
+        """Return the clearance query of a tool."""
 
     def holds(self, axis: Floats) -> Bools:
-        """Say which tool axes (k, 3), in the cutting frame, the machine can hold."""
+        """Return which tool axes (k, 3), in the cutting frame, the machine can hold."""

@@ -1,4 +1,4 @@
-"""Where the work stands on a machine, and poses of the tool to positions of the axes and back: what joint words are reckoned from.
+"""Where the work stands on a machine, and poses of the tool to positions of the axes and back: what joint words are computed from.
 
 The words of a program are positions of the machine's own axes. X, Y and Z count from the work offset, which lies at the setup's origin
 while all rotary axes stand at 0, with the tool's length taken off: so an upright tool is where its words say, as on three axes.

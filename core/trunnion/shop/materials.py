@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from itertools import pairwise
 from pathlib import Path
 
@@ -66,3 +67,14 @@ def _material(entry: CatalogueEntry) -> Material:
     )
     entry.done()
     return material
+
+
+def feed_at(rows: Sequence[tuple[float, float]], diameter: float) -> float:
+    """Return the feed per tooth in mm at a diameter, from rows of diameter and feed: straight between the rows, in proportion below them,
+    the last above."""
+    if diameter <= rows[0][0]:
+        return rows[0][1] * diameter / rows[0][0]
+    for (d0, f0), (d1, f1) in pairwise(rows):
+        if diameter <= d1:
+            return f0 + (f1 - f0) * (diameter - d0) / (d1 - d0)
+    return rows[-1][1]

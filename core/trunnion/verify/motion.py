@@ -36,6 +36,25 @@ AXIS_LEAN = 1e-9
 """A tool axis this close to +z (its sine) stands on it: it comes from a fixed axis written with twelve digits."""
 
 
+PER_MOVE = (
+    "start",
+    "end",
+    "start_axis",
+    "end_axis",
+    "centre",
+    "sweep",
+    "upright",
+    "row",
+    "section",
+    "block",
+    "rapid",
+    "feed",
+    "length",
+    "tool",
+)
+"""The fields of `Moves` with a row a move."""
+
+
 @dataclass(frozen=True, slots=True, eq=False, kw_only=True)
 class Moves:
     """The moves of one setup, n in order.
@@ -66,6 +85,10 @@ class Moves:
 
     def __len__(self) -> int:
         return len(self.row)
+
+    def some(self, rows: Ints | Bools | slice) -> Moves:
+        """Return some of the moves, in the order of `rows`."""
+        return replace(self, **{name: getattr(self, name)[rows] for name in PER_MOVE})
 
     @property
     def turning(self) -> Bools:

@@ -27,7 +27,7 @@ from trunnion_gui.i18n import tr
 from trunnion_gui.look import icons
 from trunnion_gui.look.colours import feature_colours, kind_colour, kinds
 from trunnion_gui.look.words import kind_words, sentence
-from trunnion_gui.widgets.table import RIGHT, colour_icon, tree
+from trunnion_gui.widgets.table import RIGHT, colour_icon, select_row, tree
 
 _ID = Qt.ItemDataRole.UserRole
 _FIRST_OWN = 3
@@ -191,17 +191,14 @@ class FeatureDock(QWidget):
             self._document.selection.select_ids([id for id in ids if id in self._items])
 
     def _follow(self, selection: Selection) -> None:
+        if selection.kind != "faces":
+            item = self._items.get(selection.id) if selection.kind == "feature" else None
+            select_row(self.tree, item)
+            return
         self.tree.blockSignals(True)
-        item = self._items.get(selection.id) if selection.kind == "feature" else None
-        if selection.kind == "faces":
-            named = selection.id.split(", ")
-            for id, row in self._items.items():
-                row.setSelected(id in named)
-        elif item is None:
-            self.tree.clearSelection()
-        else:
-            self.tree.setCurrentItem(item)
-            self.tree.scrollToItem(item)
+        named = selection.id.split(", ")
+        for id, row in self._items.items():
+            row.setSelected(id in named)
         self.tree.blockSignals(False)
 
     def _offer(self, at: QPoint) -> None:

@@ -22,7 +22,7 @@ from trunnion_gui.i18n import tr
 from trunnion_gui.look import icons
 from trunnion_gui.look.colours import Theme
 from trunnion_gui.look.words import amount, kind_words, sentence
-from trunnion_gui.widgets.table import RIGHT, tree
+from trunnion_gui.widgets.table import RIGHT, select_row, tree
 
 _ID = Qt.ItemDataRole.UserRole
 
@@ -189,14 +189,8 @@ class ProcessDock(QWidget):
             self._document.selection.select_operation(chosen[0].data(0, _ID))
 
     def _follow(self, selection: Selection) -> None:
-        self.tree.blockSignals(True)
         item = self._items.get(selection.id) if selection.kind == "operation" else None
-        if item is None:
-            self.tree.clearSelection()
-        else:
-            self.tree.setCurrentItem(item)
-            self.tree.scrollToItem(item)
-        self.tree.blockSignals(False)
+        select_row(self.tree, item)
 
     def _offer(self, at: QPoint) -> None:
         item = self.tree.itemAt(at)

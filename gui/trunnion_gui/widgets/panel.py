@@ -12,7 +12,6 @@ from trunnion_gui.document import Document
 from trunnion_gui.families.views import Views
 from trunnion_gui.form import Form
 from trunnion_gui.i18n import tr
-from trunnion_gui.look import icons
 from trunnion_gui.look.colours import Theme
 from trunnion_gui.look.words import duration
 from trunnion_gui.widgets.foldout import Foldout
@@ -197,11 +196,4 @@ def swatch(colour: str, size: int = 11) -> QLabel:
     label = QLabel()
     label.setFixedSize(size, size)
     label.setStyleSheet(f"background: {colour}; border-radius: 2px")
-    return label
-
-
-def icon_label(name: str, size: int, colour: str) -> QLabel:
-    """Return an icon as a label."""
-    label = QLabel()
-    label.setPixmap(icons.pixmap(name, size, colour))
     return label

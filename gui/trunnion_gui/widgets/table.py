@@ -13,6 +13,7 @@ from PySide6.QtWidgets import (
     QTableWidget,
     QTableWidgetItem,
     QTreeWidget,
+    QTreeWidgetItem,
 )
 
 Tree = TypeVar("Tree", bound=QTreeWidget)
@@ -37,6 +38,17 @@ def tree(headers: Sequence[str], stretched: int = 0, kind: type[Tree] = QTreeWid
         )
         made.header().setSectionResizeMode(column, mode)
     return made
+
+
+def select_row(made: QTreeWidget, item: QTreeWidgetItem | None) -> None:
+    """Select a row of a tree and bring it into view, or none; nobody is told of it."""
+    made.blockSignals(True)
+    if item is None:
+        made.clearSelection()
+    else:
+        made.setCurrentItem(item)
+        made.scrollToItem(item)
+    made.blockSignals(False)
 
 
 def table(

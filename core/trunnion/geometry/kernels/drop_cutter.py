@@ -18,7 +18,6 @@ import numpy as np
 from trunnion.geometry.arrays import Bools, Floats
 
 RHO0, RHO1, ROUND, A, B, C = range(6)
-PIECE_COLUMNS = 6
 HALVINGS = 60
 """Steps of a bisection that ends at the last digit."""
 

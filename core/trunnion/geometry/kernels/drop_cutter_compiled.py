@@ -609,7 +609,7 @@ def drop_cutter_loop(
     """Fill out[first:last] with the tip's height (mm) over plan points (n, 2) when the cutter touches
     facets (t, 19), at least lowest (n,).
 
-    Facets lie in a tree as `drop_tree` makes it: start (leaves + 1,), boxes (nodes, 5); lifts (t,
+    Facets lie in a tree as `drop_bvh` makes it: start (leaves + 1,), boxes (nodes, 5); lifts (t,
     8) and node_lifts (nodes, 8) as `plane_lift_loop` makes them, of planes that nothing of a facet or a
     node's facets is above; ball: the radius of a ball end, 0 for other cutters. facet (n,) gets the
     row of the one that is touched, -1 over none, contact (n, 3) where, NaN over none.

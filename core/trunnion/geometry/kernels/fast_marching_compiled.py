@@ -50,7 +50,7 @@ def _split_obtuse(
     triangles: Ints, lengths: Floats, across: Ints, t: int, k: int
 ) -> tuple[int, float, float, float]:
     """Return the point that divides an obtuse corner k, and its distances from the corner and from
-    both ends of the opposite side; -1 where there is none. See `kernels.fast_marching._parted`."""
+    both ends of the opposite side; -1 where there is none. See `kernels.fast_marching._split_obtuse`."""
     ca, ab, bc = lengths[t, k], lengths[t, (k + 1) % 3], lengths[t, (k + 2) % 3]
     bx = (ca * ca + bc * bc - ab * ab) / (2.0 * ca)
     by = math.sqrt(max(bc * bc - bx * bx, 0.0))
@@ -87,7 +87,7 @@ def _split_obtuse(
 @njit(cache=True, nogil=True, inline="always")
 def arrival_time(ta: float, tb: float, ca: float, cb: float, ab: float) -> tuple[float, float]:
     """Return when a planar front through a and b, at times ta and tb, reaches c, and from where
-    between them; see `kernels.fast_marching.reach`."""
+    between them; see `kernels.fast_marching.arrival_time`."""
     best, share = ta + ca, 0.0
     if tb + cb < best:
         best, share = tb + cb, 1.0
@@ -119,7 +119,7 @@ def fast_march(
     farthest: float,
 ) -> None:
     """Fill in times (v,) at which fronts reach points, and the feet (v, 3) from where they came; see
-    `kernels.fast_marching.march`."""
+    `kernels.fast_marching.fast_march`."""
     n = len(time)
     done, place, heap, size = (
         np.zeros(n, np.bool_),

@@ -35,7 +35,7 @@ def choose_angles(
     chosen: Floats,
 ) -> tuple[int, float]:
     """Fill chosen (m, a) with rotary angles (rad); return how many poses could be followed and how far
-    (rad) the axes turned; see `kernels.rotary_angles.follow`."""
+    (rad) the axes turned; see `kernels.rotary_angles.choose_angles`."""
     m, ways, axes = angles.shape
     stand = np.zeros((m, ways, axes))
     cost = np.full((m, ways), math.inf)

@@ -76,7 +76,7 @@ def evaluate_surface_loop(
     out: Floats,
 ) -> None:
     """Fill out[first:last] (k, 6, 3) with points and derivatives at places (k, 2); see
-    `kernels.spline.surface_at`."""
+    `kernels.spline.evaluate_surface`."""
     along, across = np.zeros((3, degree_u + 1)), np.zeros((3, degree_v + 1))
     room = np.zeros((3, max(degree_u, degree_v) + 1))
     p = np.zeros((6, 4))

@@ -47,19 +47,6 @@ def restored(geometry: shapely.Geometry, chords: Chords) -> list[tuple[Curve, li
     return answer
 
 
-def joined_runs(chords: Chords) -> Curve | None:
-    """Return one closed loop of segments with specks dropped and neighbours on one carrier joined; None when nothing is left."""
-    source = chords.source
-    turned = np.sign(source.sweep).astype(np.int64)
-    rows = np.arange(len(source))
-    change = _changes(chords.carrier, turned)
-    if len(change) == 0:
-        return _round(source, 0, int(turned[0]), source.start[0]) if turned[0] else None
-    return _closed_curve(
-        chords, [_Run(int(rows[k]), int(turned[k]), source.start[k], True) for k in change]
-    )
-
-
 class _Edges:
     """The edges of rings, matched to the carriers they lie on."""
 

@@ -216,18 +216,6 @@ class Region:
         """Return the region with the coordinate `axis` (0: x, 1: y) negated."""
         return self._mapped(lambda c: c.mirrored(axis).reversed())
 
-    def simplified(self) -> Region:
-        """Return the same region with tiny segments dropped and successive segments on one line or circle joined."""
-        pieces = []
-        for p in self.pieces:
-            outer = simplified_curve(p.outer)
-            holes = [
-                h for h in (simplified_curve(h) for h in p.holes) if h is not None and h.area < 0.0
-            ]
-            if outer is not None and outer.area > 0.0:
-                pieces.append(Piece(outer, tuple(holes)))
-        return Region(tuple(pieces))
-
     def _mapped(self, change: Callable[[Curve], Curve]) -> Region:
         return Region(
             tuple(Piece(change(p.outer), tuple(change(h) for h in p.holes)) for p in self.pieces)
@@ -267,12 +255,6 @@ def restored_region(geometry: shapely.Geometry, chords: Chords) -> Region:
         if outer.area > tolerance.AREA:
             pieces.append(Piece(outer, tuple(h for h in holes if h.area < -tolerance.AREA)))
     return Region(tuple(pieces))
-
-
-def simplified_curve(curve: Curve) -> Curve | None:
-    """Return a closed curve without tiny segments and with neighbours on one line or circle joined; None when nothing is left."""
-    chords = chorded(curve.segments())
-    return fit.joined_runs(chords)
 
 
 def _opened_into_chords(regions: Sequence[Region]) -> tuple[Chords, list[shapely.Geometry]]:

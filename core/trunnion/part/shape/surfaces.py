@@ -27,6 +27,7 @@ import numpy as np
 from trunnion import tolerance
 from trunnion.geometry.arrays import Floats, Ints, floats, ints
 from trunnion.geometry.frame import Frame
+from trunnion.part.topology.canonical import xyz
 from trunnion.progress import QUIET, Progress
 
 if TYPE_CHECKING:
@@ -501,17 +502,13 @@ def _forward() -> Any:
     return TopAbs_Orientation.TopAbs_FORWARD
 
 
-def _vector(thing: Any) -> Floats:
-    return np.array([thing.X(), thing.Y(), thing.Z()])
-
-
 def _position(position: Any, frame: Frame) -> tuple[Floats, Floats, Floats, Floats]:
     """Return the origin and the x, y and main directions of a surface's placement in a frame."""
     return (
-        frame.to_local(_vector(position.Location())),
-        frame.local_direction(_vector(position.XDirection())),
-        frame.local_direction(_vector(position.YDirection())),
-        frame.local_direction(_vector(position.Direction())),
+        frame.to_local(xyz(position.Location())),
+        frame.local_direction(xyz(position.XDirection())),
+        frame.local_direction(xyz(position.YDirection())),
+        frame.local_direction(xyz(position.Direction())),
     )
 
 

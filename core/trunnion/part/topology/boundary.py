@@ -69,13 +69,6 @@ def bounding_of(faces: Iterable[tuple[int, Shape]]) -> BoundaryCurves:
     return BoundaryCurves(owner=np.array(owner, dtype=np.int64), curves=curves, length=length)
 
 
-def boundary_of(
-    faces: Iterable[tuple[int, Shape]], parts: Callable[[Floats], Ints] | None
-) -> Boundary:
-    """Return points on the boundary of trimmed faces, given with their tags, as `Bounding.points` does."""
-    return bounding_of(faces).points(parts)
-
-
 def approximation_of(face: Shape) -> float:
     """Return how far a face's boundary curves are from its surface at most, in mm: the paper's approximation error.
 

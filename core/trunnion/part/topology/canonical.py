@@ -63,7 +63,7 @@ def recognised(adaptor: Any, samples: Callable[[], tuple[Floats, Floats]]) -> Ca
     if kind == GeomAbs_Sphere:
         found = adaptor.Sphere()
         return CanonicalSurface(
-            kind="sphere", axis_point=_xyz(found.Location()), axis=NOWHERE, radius=found.Radius()
+            kind="sphere", axis_point=xyz(found.Location()), axis=NOWHERE, radius=found.Radius()
         )
     if kind == GeomAbs_Torus:
         found = adaptor.Torus()
@@ -72,7 +72,7 @@ def recognised(adaptor: Any, samples: Callable[[], tuple[Floats, Floats]]) -> Ca
         )
     if kind == GeomAbs_SurfaceOfRevolution:
         found = adaptor.AxeOfRevolution()
-        point, axis = _xyz(found.Location()), _xyz(found.Direction())
+        point, axis = xyz(found.Location()), xyz(found.Direction())
         return _of_meridian(samples()[0], point, axis) or CanonicalSurface(
             kind="revolution", axis_point=point, axis=axis
         )
@@ -204,8 +204,8 @@ def recognised_curve(adaptor: Any) -> CanonicalCurve:
         found = adaptor.Circle()
         return CanonicalCurve(
             kind="circle",
-            centre=_xyz(found.Location()),
-            axis=_xyz(found.Axis().Direction()),
+            centre=xyz(found.Location()),
+            axis=xyz(found.Axis().Direction()),
             radius=found.Radius(),
         )
     if kind == GeomAbs_Ellipse:
@@ -256,8 +256,9 @@ def _cone(found: Any) -> CanonicalSurface:
 
 
 def _axis(found: Any) -> dict[str, Any]:
-    return {"axis_point": _xyz(found.Axis().Location()), "axis": _xyz(found.Axis().Direction())}
+    return {"axis_point": xyz(found.Axis().Location()), "axis": xyz(found.Axis().Direction())}
 
 
-def _xyz(thing: Any) -> Floats:
+def xyz(thing: Any) -> Floats:
+    """Return the coordinates (3,) of a point, vector or direction of the CAD kernel."""
     return np.array([thing.X(), thing.Y(), thing.Z()])

@@ -5,7 +5,6 @@ from __future__ import annotations
 import math
 from collections.abc import Mapping
 from dataclasses import replace
-from itertools import pairwise
 
 from trunnion.model.material import Machine, Material
 from trunnion.model.operation import CuttingData, Operation
@@ -15,6 +14,7 @@ from trunnion.plan.cutting.peak import with_peak
 from trunnion.plan.cutting.power import NEWTON_METRES, cutting_power
 from trunnion.settings import Value, setting, settings
 from trunnion.shop import Shop
+from trunnion.shop.materials import feed_at
 from trunnion.units import MM_PER_METRE, trimmed
 
 ROUGHING = ("face", "rough", "corner", "profile_rough")
@@ -133,14 +133,9 @@ def slenderness(tool: Tool, settings: CuttingSettings) -> float:
 
 
 def table_feed(material: Material, diameter: float) -> float:
-    """Return the material's feed per tooth in mm for a diameter: straight between the rows, in proportion below them, the last above."""
+    """Return the material's feed per tooth in mm for a diameter."""
     rows = [(d, low + material.feed_share * (high - low)) for d, low, high in material.feeds]
-    if diameter <= rows[0][0]:
-        return rows[0][1] * diameter / rows[0][0]
-    for (d0, f0), (d1, f1) in pairwise(rows):
-        if diameter <= d1:
-            return f0 + (f1 - f0) * (diameter - d0) / (d1 - d0)
-    return rows[-1][1]
+    return feed_at(rows, diameter)
 
 
 def roughing_depth(tool: Tool, material: Material, settings: CuttingSettings) -> float:

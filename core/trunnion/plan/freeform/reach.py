@@ -1,4 +1,4 @@
-"""Which of a part's area a cutter reaches from a direction: touching it there, it enters nothing of the whole part."""
+"""Reach of a cutter from a direction: the share of the part's area that it touches without entering the part anywhere."""
 
 from __future__ import annotations
 

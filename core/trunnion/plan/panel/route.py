@@ -3,8 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Iterable, Sequence
-from dataclasses import replace
+from collections.abc import Sequence
 
 from trunnion import tolerance
 from trunnion.model.blank import Blank
@@ -20,7 +19,7 @@ from trunnion.plan.cutting.milling import (
     roughing_depth,
     roughing_width,
 )
-from trunnion.plan.feasibility import too_large, too_many_tools
+from trunnion.plan.feasibility import too_large
 from trunnion.plan.panel.fallbacks import (
     behind_rest_roughing,
     best_fit,
@@ -43,6 +42,7 @@ from trunnion.plan.panel.tasks import (
 )
 from trunnion.plan.prismatic.drive import FLOOR_ALLOWANCE, WALL_ALLOWANCE
 from trunnion.plan.prismatic.regions import SectionSource, SetupSpace, parent_of
+from trunnion.plan.process import process_of
 from trunnion.plan.sequence import OrderedOperation, ordered
 from trunnion.plan.settings import RouteSettings
 from trunnion.plan.setups import from_below
@@ -103,15 +103,7 @@ def make_route(
         draft.progress = share
         operations += _sequenced(draft, _with_cutters(draft, mine, plan.stages, share), plan.stages)
         findings += draft.findings
-    operations = _numbered(operations)
-    findings += too_many_tools(operations, setups, shop)
-    return ProcessTree(
-        plan=plan.name,
-        material=material.name,
-        setups=tuple(setups),
-        operations=tuple(operations),
-        findings=tuple(findings),
-    )
+    return process_of(operations, findings, plan=plan, material=material, setups=setups, shop=shop)
 
 
 def _from_below(feature: Feature, recognition: Recognition, part: SectionSource) -> bool:
@@ -316,12 +308,3 @@ def _tool_rules(task: OperationTask, tool: Tool, chosen: RouteSettings) -> tuple
         )
     said.append("Among the cutters that fit it is the one that serves most operations.")
     return tuple(said)
-
-
-def _numbered(operations: Iterable[Operation]) -> list[Operation]:
-    """Return the operations with tools numbered from 1 in the order of use."""
-    numbers: dict[str, int] = {}
-    return [
-        replace(o, tool=replace(o.tool, number=numbers.setdefault(o.tool.name, len(numbers) + 1)))
-        for o in operations
-    ]

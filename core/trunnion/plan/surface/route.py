@@ -22,7 +22,7 @@ from trunnion.model.setup import Setup
 from trunnion.model.tool import Tool
 from trunnion.plan.clearance import ClearanceScene
 from trunnion.plan.cutting.milling import CuttingSettings, roughing_depth, roughing_width
-from trunnion.plan.feasibility import too_large, too_many_tools
+from trunnion.plan.feasibility import too_large
 from trunnion.plan.freeform.areas import (
     Area,
     areas_of,
@@ -41,6 +41,7 @@ from trunnion.plan.freeform.roughing_directions import sides_for
 from trunnion.plan.freeform.space import SurfaceSpace
 from trunnion.plan.freeform.tilted_reach import SAMPLES as LEANING_SAMPLES
 from trunnion.plan.freeform.tilted_reach import leaning_cutter
+from trunnion.plan.process import process_of
 from trunnion.plan.sequence import OrderedOperation, ordered
 from trunnion.plan.settings import RouteSettings
 from trunnion.plan.surface.land_route import FinishedLands, plan_lands
@@ -119,14 +120,13 @@ def make_surface_route(
     )
     _plan(draft, progress)
     _add_slivers(draft)
-    operations = _numbered(_in_order(draft, plan.stages))
-    findings = [*draft.findings, *too_many_tools(operations, setups, shop)]
-    return ProcessTree(
-        plan=plan.name,
-        material=material.name,
-        setups=tuple(setups),
-        operations=tuple(operations),
-        findings=tuple(findings),
+    return process_of(
+        _in_order(draft, plan.stages),
+        draft.findings,
+        plan=plan,
+        material=material,
+        setups=setups,
+        shop=shop,
     )
 
 
@@ -600,11 +600,3 @@ def _place(draft: SurfacePlanState, tags: tuple[int, ...]) -> tuple[float, float
         return 0.0, 0.0
     at = draft.space.frame.to_local(draft.space.part.graph().centre[tags[0] - 1])
     return float(at[0]), float(at[1])
-
-
-def _numbered(operations: Sequence[Operation]) -> list[Operation]:
-    numbers: dict[str, int] = {}
-    return [
-        replace(o, tool=replace(o.tool, number=numbers.setdefault(o.tool.name, len(numbers) + 1)))
-        for o in operations
-    ]

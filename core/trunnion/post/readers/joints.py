@@ -37,8 +37,8 @@ class Joints:
     clearance: float
 
     def above(self, point: Point, tool: Tool) -> Point | None:
-        """See `Reckoning`: an upright tool is lifted to the clearance height, a leaning one with the machine's Z beyond all that stands
-        on the table."""
+        """See `PoseInterpreter`: an upright tool is lifted to the clearance height, a leaning one with the machine's Z beyond all that
+        stands on the table."""
         words, angle = np.array([point[:3]]), np.radians([point[3:]])
         (tip,), (axis,) = poses_of(self.place, words, angle, tool.gauge_length)
         if float(np.linalg.norm(axis - UP)) < UPRIGHT:
@@ -50,7 +50,7 @@ class Joints:
         return None if more <= tolerance.WRITTEN else (*point[:2], point[2] + more, *point[3:])
 
     def opened(self, rows: SectionBlocks) -> tuple[Toolpath, tuple[int, ...]]:
-        """See `Reckoning`."""
+        """See `PoseInterpreter`."""
         points = np.array(rows.point)
         words, angle, gauge = points[:, :3], np.radians(points[:, 3:]), rows.tool.gauge_length
         motion = np.array(rows.motion)

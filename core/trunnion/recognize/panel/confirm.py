@@ -1,4 +1,4 @@
-"""The slices' word on what the graph shows: open or closed, islands, overhang. Where the two differ a finding says which decided."""
+"""What slices confirm of the graph's pockets: open or closed, islands, overhang. Where the two differ a finding says which decided."""
 
 from __future__ import annotations
 

@@ -37,13 +37,6 @@ class SpaceTree:
                 return None if k is None else (n, k)
         return None
 
-    def branch(self, node: Node) -> tuple[Node, ...]:
-        """Return a space and all those it opens into, upwards."""
-        found = [node]
-        while found[-1] in self.parent:
-            found.append(self.parent[found[-1]])
-        return tuple(found)
-
     def covered(self, node: Node) -> float:
         """Return the largest share of a space that material stands over: 0 when a cutter can look at all of it from above."""
         own = self.space(node).plan

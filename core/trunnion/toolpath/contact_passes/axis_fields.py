@@ -1,4 +1,4 @@
-"""Tool axis fields: which way a tool should lean where it touches, before anything in its way is asked about.
+"""Tool axis fields: the lead and tilt that a tool should have at its contacts, before clearance is queried.
 
 A field takes contact points, outward unit normals and unit feed directions (k, 3) and returns unit axes (k, 3), from tip to spindle.
 """

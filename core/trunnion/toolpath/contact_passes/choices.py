@@ -44,15 +44,3 @@ def lead_radius() -> Any:
         label="Lead radius",
         help="Radius of the arcs onto and off the face.",
     )
-
-
-def safety() -> Any:
-    """Return the field of how far above the stock rapids end."""
-    return setting(
-        2.0,
-        unit="mm",
-        low=0.2,
-        high=50.0,
-        label="Safety distance",
-        help="Where a rapid ends above what may still be there.",
-    )

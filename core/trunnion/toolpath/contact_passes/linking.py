@@ -1,4 +1,4 @@
-"""From passes to a toolpath: in which order they are cut, how the cutter comes to each and leaves it, and the ways between.
+"""From passes to a toolpath: in which order they are cut, how the cutter comes to each and leaves it, and the links between.
 
 A pass is entered and left by a quarter circle in the plane of feed and normal, so that no mark shows where. A pass that begins near the
 end of the one before is reached over the surface; else the cutter is lifted as far as the stock demands. Whatever is not a cut is lifted

@@ -1,4 +1,4 @@
-"""Ways through the air: up as far as what is certainly gone demands, across, down to just above what may be there, then feed.
+"""Links through the air: up as far as what is certainly gone demands, across, down to just above what may be there, then feed.
 
 A rapid changes either the height or the place, never both, and is measured against everything on the spindle: cutter, neck, shank, holder.
 """

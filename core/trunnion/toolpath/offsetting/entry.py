@@ -1,4 +1,4 @@
-"""Ways into full material: a helix where it fits, else a ramp along the contour."""
+"""Entries into full material: a helix where it fits, else a ramp along the contour."""
 
 from __future__ import annotations
 

@@ -15,13 +15,15 @@ from trunnion.model.setup import Setup
 from trunnion.model.tool import Tool
 from trunnion.plan.prismatic.drive import DriveLevel, PlaneDrive, foot_clearance
 from trunnion.progress import Progress
-from trunnion.settings import setting, settings
+from trunnion.settings import settings
 from trunnion.toolpath.axis_region import AxisRegion, is_closed, parts_where
 from trunnion.toolpath.contract import Planned, strategy
 from trunnion.toolpath.motion.builder import PathBuilder
+from trunnion.toolpath.motion.choices import safety
 from trunnion.toolpath.motion.easing import eased_finish
 from trunnion.toolpath.motion.engagement import eased_corner
 from trunnion.toolpath.motion.order import nearest_first
+from trunnion.toolpath.offsetting import choices
 from trunnion.toolpath.offsetting.contour import ContourApproach, cut_open, cut_parts
 from trunnion.toolpath.offsetting.levels import fillet_steps, steps_down
 from trunnion.toolpath.offsetting.rings import depth_first, ring_tree, safe_step
@@ -44,38 +46,13 @@ TOUCH = 0.02
 class CornerSettings:
     """How corners are cleared and finished. Width and depth of cut come with the cutting data, allowances with the drive."""
 
-    lead_radius: float = setting(
+    lead_radius: float = choices.lead_radius(
         2.0,
-        unit="mm",
-        low=0.2,
-        high=100.0,
-        label="Lead radius",
-        help="Radius of the tangential arcs onto the wall and off it; smaller where there is no room.",
+        "Radius of the tangential arcs onto the wall and off it; smaller where there is no room.",
     )
-    scallop: float = setting(
-        0.01,
-        unit="mm",
-        low=0.001,
-        high=1.0,
-        label="Scallop",
-        help="Height of the cusps on a fillet that is larger than the cutter's corner.",
-    )
-    ramp_angle: float = setting(
-        2.0,
-        unit="deg",
-        low=0.5,
-        high=30.0,
-        label="Entry angle",
-        help="Slope of a ramp where no lead fits.",
-    )
-    safety: float = setting(
-        2.0,
-        unit="mm",
-        low=0.2,
-        high=50.0,
-        label="Safety distance",
-        help="Where a rapid ends above what may still be there.",
-    )
+    scallop: float = choices.fillet_scallop()
+    ramp_angle: float = choices.ramp_angle(2.0)
+    safety: float = safety()
 
 
 @dataclass(frozen=True, slots=True, eq=False)

@@ -17,6 +17,7 @@ from trunnion.plan.prismatic.drive import PlaneDrive
 from trunnion.progress import Progress
 from trunnion.settings import setting, settings
 from trunnion.toolpath.contract import Planned, strategy
+from trunnion.toolpath.motion import choices
 from trunnion.toolpath.motion.builder import PathBuilder
 from trunnion.toolpath.motion.link import travel
 from trunnion.toolpath.offsetting.levels import steps_down
@@ -52,14 +53,7 @@ class FaceSettings:
         label="Overlap",
         help="How far the last row reaches past the edge.",
     )
-    safety: float = setting(
-        2.0,
-        unit="mm",
-        low=0.2,
-        high=50.0,
-        label="Safety distance",
-        help="Where a rapid ends above what may still be there.",
-    )
+    safety: float = choices.safety()
 
 
 def row_width(

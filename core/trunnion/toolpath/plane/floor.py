@@ -18,8 +18,10 @@ from trunnion.settings import setting, settings
 from trunnion.toolpath.axis_region import level_at
 from trunnion.toolpath.contract import Planned, strategy
 from trunnion.toolpath.motion.builder import PathBuilder
+from trunnion.toolpath.motion.choices import safety
 from trunnion.toolpath.motion.easing import eased_finish
 from trunnion.toolpath.motion.engagement import floor_leftovers
+from trunnion.toolpath.offsetting import choices
 from trunnion.toolpath.offsetting.area_clearing import ClearingLayer, ClearingParameters, clear
 from trunnion.toolpath.offsetting.passes import passes_over
 from trunnion.toolpath.offsetting.rings import safe_step
@@ -41,30 +43,11 @@ class FloorSettings:
         label="Distance from walls",
         help="Kept between cutter and finished wall, a little more than the walls' allowance.",
     )
-    ramp_angle: float = setting(
-        2.0,
-        unit="deg",
-        low=0.5,
-        high=30.0,
-        label="Entry angle",
-        help="Slope of the helix or ramp onto the floor.",
+    ramp_angle: float = choices.ramp_angle(2.0, "Slope of the helix or ramp onto the floor.")
+    slot_feed: float = choices.slot_feed(
+        1.0, "Share of the feed while the whole cutter's width is in material."
     )
-    slot_feed: float = setting(
-        1.0,
-        unit="of feed",
-        low=0.1,
-        high=1.0,
-        label="Feed in full width",
-        help="Share of the feed while the whole cutter's width is in material.",
-    )
-    safety: float = setting(
-        2.0,
-        unit="mm",
-        low=0.2,
-        high=50.0,
-        label="Safety distance",
-        help="Where a rapid ends above what may still be there.",
-    )
+    safety: float = safety()
 
 
 @strategy(

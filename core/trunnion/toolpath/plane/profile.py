@@ -19,7 +19,9 @@ from trunnion.settings import setting, settings
 from trunnion.toolpath.axis_region import AxisRegion, level_at, parts_where
 from trunnion.toolpath.contract import Planned, strategy
 from trunnion.toolpath.motion.builder import PathBuilder
+from trunnion.toolpath.motion.choices import safety
 from trunnion.toolpath.motion.engagement import contour_leftovers, inner_corner
+from trunnion.toolpath.offsetting import choices
 from trunnion.toolpath.offsetting.contour import (
     ContourApproach,
     contour_parts,
@@ -40,79 +42,23 @@ RIM_SPACING = 2.0
 class ProfileRoughSettings:
     """How the outer profile is roughed. Width and depth of cut come with the cutting data, the allowance with the drive."""
 
-    lead_radius: float = setting(
-        5.0,
-        unit="mm",
-        low=0.2,
-        high=100.0,
-        label="Lead radius",
-        help="Radius of the tangential arcs.",
-    )
-    overlap: float = setting(
-        2.0,
-        unit="mm",
-        low=0.0,
-        high=50.0,
-        label="Overlap",
-        help="How far a closed pass runs on past its start.",
-    )
-    ramp_angle: float = setting(
-        3.0,
-        unit="deg",
-        low=0.5,
-        high=30.0,
-        label="Entry angle",
-        help="Slope of a ramp where no lead fits.",
-    )
-    safety: float = setting(
-        2.0,
-        unit="mm",
-        low=0.2,
-        high=50.0,
-        label="Safety distance",
-        help="Where a rapid ends above what may still be there.",
-    )
+    lead_radius: float = choices.lead_radius(5.0, "Radius of the tangential arcs.")
+    overlap: float = choices.overlap(2.0)
+    ramp_angle: float = choices.ramp_angle(3.0)
+    safety: float = safety()
 
 
 @settings("plane.profile_finish")
 class ProfileFinishSettings:
     """How the outer profile is finished. The axial step comes with the cutting data."""
 
-    lead_radius: float = setting(
-        5.0,
-        unit="mm",
-        low=0.2,
-        high=100.0,
-        label="Lead radius",
-        help="Radius of the tangential arcs.",
-    )
-    overlap: float = setting(
-        3.0,
-        unit="mm",
-        low=0.0,
-        high=50.0,
-        label="Overlap",
-        help="How far a closed pass runs on past its start.",
-    )
+    lead_radius: float = choices.lead_radius(5.0, "Radius of the tangential arcs.")
+    overlap: float = choices.overlap(3.0)
     spring: bool = setting(
         False, label="Spring pass", help="Go round a second time without moving in."
     )
-    ramp_angle: float = setting(
-        2.0,
-        unit="deg",
-        low=0.5,
-        high=30.0,
-        label="Entry angle",
-        help="Slope of a ramp where no lead fits.",
-    )
-    safety: float = setting(
-        2.0,
-        unit="mm",
-        low=0.2,
-        high=50.0,
-        label="Safety distance",
-        help="Where a rapid ends above what may still be there.",
-    )
+    ramp_angle: float = choices.ramp_angle(2.0)
+    safety: float = safety()
 
 
 @strategy(settings=ProfileRoughSettings, drive=PlaneDrive, meets=inner_corner)

@@ -16,7 +16,9 @@ from trunnion.settings import setting, settings
 from trunnion.toolpath.axis_region import AxisRegion
 from trunnion.toolpath.contract import Planned, strategy
 from trunnion.toolpath.motion.builder import PathBuilder
+from trunnion.toolpath.motion.choices import safety
 from trunnion.toolpath.motion.engagement import top_width
+from trunnion.toolpath.offsetting import choices
 from trunnion.toolpath.offsetting.area_clearing import ClearingLayer, ClearingParameters, clear
 from trunnion.toolpath.offsetting.levels import steps_down
 from trunnion.toolpath.offsetting.rings import ring_tree, safe_step
@@ -49,30 +51,11 @@ class RibTopSettings:
         label="Distance from walls",
         help="Kept between the cutter and the finished walls at a rib's ends.",
     )
-    ramp_angle: float = setting(
-        3.0,
-        unit="deg",
-        low=0.5,
-        high=30.0,
-        label="Entry angle",
-        help="Slope of the helix or ramp onto the top.",
+    ramp_angle: float = choices.ramp_angle(3.0, "Slope of the helix or ramp onto the top.")
+    slot_feed: float = choices.slot_feed(
+        0.8, "Share of the feed while the whole width of a rib is cut at once."
     )
-    slot_feed: float = setting(
-        0.8,
-        unit="of feed",
-        low=0.1,
-        high=1.0,
-        label="Feed in full width",
-        help="Share of the feed while the whole width of a rib is cut at once.",
-    )
-    safety: float = setting(
-        2.0,
-        unit="mm",
-        low=0.2,
-        high=50.0,
-        label="Safety distance",
-        help="Where a rapid ends above what may still be there.",
-    )
+    safety: float = safety()
 
 
 @strategy(settings=RibTopSettings, drive=PlaneDrive, meets=top_width)

@@ -12,11 +12,13 @@ from trunnion.model.setup import Setup
 from trunnion.model.tool import Tool
 from trunnion.plan.prismatic.drive import DriveLevel, PlaneDrive, foot_clearance
 from trunnion.progress import Progress
-from trunnion.settings import setting, settings
+from trunnion.settings import settings
 from trunnion.toolpath.contract import Planned, strategy
 from trunnion.toolpath.motion.builder import PathBuilder
+from trunnion.toolpath.motion.choices import safety
 from trunnion.toolpath.motion.easing import eased
 from trunnion.toolpath.motion.engagement import full_width
+from trunnion.toolpath.offsetting import choices
 from trunnion.toolpath.offsetting.area_clearing import ClearingLayer, ClearingParameters, clear
 from trunnion.toolpath.offsetting.levels import layers
 from trunnion.toolpath.offsetting.passes import ClearingPasses, passes_over
@@ -37,30 +39,11 @@ RIDGE = 0.3
 class RoughSettings:
     """How a pocket is roughed. Width and depth of cut come with the cutting data, allowances with the drive."""
 
-    ramp_angle: float = setting(
-        3.0,
-        unit="deg",
-        low=0.5,
-        high=30.0,
-        label="Entry angle",
-        help="Slope of the helix or ramp into full material.",
+    ramp_angle: float = choices.ramp_angle(3.0, "Slope of the helix or ramp into full material.")
+    slot_feed: float = choices.slot_feed(
+        0.6, "Share of the feed while the whole cutter's width is in material."
     )
-    slot_feed: float = setting(
-        0.6,
-        unit="of feed",
-        low=0.1,
-        high=1.0,
-        label="Feed in full width",
-        help="Share of the feed while the whole cutter's width is in material.",
-    )
-    safety: float = setting(
-        2.0,
-        unit="mm",
-        low=0.2,
-        high=50.0,
-        label="Safety distance",
-        help="Where a rapid ends above what may still be there.",
-    )
+    safety: float = safety()
 
 
 @strategy(settings=RoughSettings, drive=PlaneDrive, meets=full_width)

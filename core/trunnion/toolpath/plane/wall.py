@@ -20,8 +20,10 @@ from trunnion.settings import setting, settings
 from trunnion.toolpath.axis_region import AxisRegion, is_closed, level_at
 from trunnion.toolpath.contract import Planned, strategy
 from trunnion.toolpath.motion.builder import PathBuilder
+from trunnion.toolpath.motion.choices import safety
 from trunnion.toolpath.motion.easing import eased_finish
 from trunnion.toolpath.motion.engagement import eased_leftovers
+from trunnion.toolpath.offsetting import choices
 from trunnion.toolpath.offsetting.area_clearing import ClearingLayer, ClearingParameters, clear
 from trunnion.toolpath.offsetting.contour import (
     ContourApproach,
@@ -47,54 +49,22 @@ MOST_FILLET_STEPS = 40
 class WallSettings:
     """How walls are finished. The axial step comes with the cutting data."""
 
-    lead_radius: float = setting(
+    lead_radius: float = choices.lead_radius(
         4.0,
-        unit="mm",
-        low=0.2,
-        high=100.0,
-        label="Lead radius",
-        help="Radius of the tangential arcs onto the wall and off it; smaller where there is no room.",
+        "Radius of the tangential arcs onto the wall and off it; smaller where there is no room.",
     )
-    overlap: float = setting(
-        2.0,
-        unit="mm",
-        low=0.0,
-        high=50.0,
-        label="Overlap",
-        help="How far a closed pass runs on past its start.",
-    )
+    overlap: float = choices.overlap(2.0)
     spring: bool = setting(
         False, label="Spring pass", help="Go along each wall a second time without moving in."
     )
-    scallop: float = setting(
-        0.01,
-        unit="mm",
-        low=0.001,
-        high=1.0,
-        label="Scallop",
-        help="Height of the cusps on a fillet that is larger than the cutter's corner.",
-    )
+    scallop: float = choices.fillet_scallop()
     floor_rest: bool = setting(
         True,
         label="Rest of the floor",
         help="Finish what a larger floor cutter left between walls that stand close.",
     )
-    ramp_angle: float = setting(
-        2.0,
-        unit="deg",
-        low=0.5,
-        high=30.0,
-        label="Entry angle",
-        help="Slope of a ramp where no lead fits.",
-    )
-    safety: float = setting(
-        2.0,
-        unit="mm",
-        low=0.2,
-        high=50.0,
-        label="Safety distance",
-        help="Where a rapid ends above what may still be there.",
-    )
+    ramp_angle: float = choices.ramp_angle(2.0)
+    safety: float = safety()
 
 
 @strategy(settings=WallSettings, drive=PlaneDrive, meets=eased_leftovers)

@@ -1,4 +1,4 @@
-"""What is certainly gone already: a height field that answers where a rapid is safe.
+"""The planner's stock as a height field (z-map): an upper bound of the material, for safe rapids.
 
 The field errs on the side of material everywhere: it begins as the blank's top and is lowered only where a cutter covered a whole cell.
 """

@@ -8,15 +8,15 @@ from trunnion.model.operation import CuttingData
 from trunnion.model.setup import Setup
 from trunnion.model.tool import Tool
 from trunnion.plan.freeform.drive import SurfaceDrive
-from trunnion.plan.freeform.estimate.scallop import stepover_on_plane
 from trunnion.progress import QUIET, Progress
 from trunnion.settings import setting, settings
 from trunnion.toolpath.contact_passes import choices
 from trunnion.toolpath.contact_passes.choices import TOO_SHALLOW, TOO_STEEP
 from trunnion.toolpath.contact_passes.fixed_axis import stood
 from trunnion.toolpath.contact_passes.fronts import scallop_passes
-from trunnion.toolpath.contact_passes.linking import LinkParameters, linked
+from trunnion.toolpath.contact_passes.upright_path import upright_path
 from trunnion.toolpath.contract import Planned, strategy
+from trunnion.toolpath.motion.choices import safety
 from trunnion.toolpath.motion.engagement import surface_leftovers
 from trunnion.toolpath.stock.heightfield import PlanningStock
 
@@ -40,7 +40,7 @@ class ConstantSettings:
     steepest: float = choices.steepest()
     chord: float = choices.chord()
     lead_radius: float = choices.lead_radius()
-    safety: float = choices.safety()
+    safety: float = safety()
 
 
 @strategy(
@@ -68,9 +68,6 @@ def constant(
     passes = list(done.passes if inwards else done.passes[::-1])
     if inwards == (settings.direction == "climb"):
         passes = [p.reversed() for p in passes]
-    stepover = stepover_on_plane(tool.corner_radius, drive.height)
-    manner = LinkParameters(
-        stepover=stepover, safety=settings.safety, lead_radius=settings.lead_radius
+    return upright_path(
+        passes, done, drive, tool, data, stock, setup, settings, progress.part(0.8, 1.0)
     )
-    path = linked(passes, drive, tool, data, stock, setup, manner, progress.part(0.8, 1.0))
-    return Planned(path=path, findings=done.left(drive, tool, stepover))

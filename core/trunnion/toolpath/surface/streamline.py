@@ -1,4 +1,4 @@
-"""Streamline: an upright cutter along flow lines between two guide curves (`flowlines.py`), lifted where another face is in its way."""
+"""Streamline: an upright cutter along flow lines between two guide curves (`flow_lines.py`), lifted where another face is in its way."""
 
 from __future__ import annotations
 
@@ -8,15 +8,15 @@ from trunnion.model.operation import CuttingData
 from trunnion.model.setup import Setup
 from trunnion.model.tool import Tool
 from trunnion.plan.freeform.drive import SurfaceDrive
-from trunnion.plan.freeform.estimate.scallop import stepover_on_plane
 from trunnion.progress import QUIET, Progress
 from trunnion.settings import setting, settings
 from trunnion.toolpath.contact_passes import choices
 from trunnion.toolpath.contact_passes.choices import TOO_STEEP
 from trunnion.toolpath.contact_passes.fixed_axis import stood
 from trunnion.toolpath.contact_passes.flow_lines import FlowParameters, flow_lines
-from trunnion.toolpath.contact_passes.linking import LinkParameters, linked
+from trunnion.toolpath.contact_passes.upright_path import upright_path
 from trunnion.toolpath.contract import Planned, strategy
+from trunnion.toolpath.motion.choices import safety
 from trunnion.toolpath.motion.engagement import surface_leftovers
 from trunnion.toolpath.stock.heightfield import PlanningStock
 
@@ -48,7 +48,7 @@ class StreamlineSettings:
     steepest: float = choices.steepest()
     chord: float = choices.chord()
     lead_radius: float = choices.lead_radius()
-    safety: float = choices.safety()
+    safety: float = safety()
 
 
 @strategy(
@@ -75,13 +75,16 @@ def streamline(
     done = stood(
         ways, drive, tool, settings.chord, math.radians(settings.steepest), progress.part(0.4, 0.8)
     )
-    stepover = stepover_on_plane(tool.corner_radius, drive.height)
-    manner = LinkParameters(
-        stepover=stepover,
-        safety=settings.safety,
-        lead_radius=settings.lead_radius,
+    return upright_path(
+        done.passes,
+        done,
+        drive,
+        tool,
+        data,
+        stock,
+        setup,
+        settings,
+        progress.part(0.8, 1.0),
         order="nearest" if to_and_fro else "given",
         reversing=to_and_fro,
     )
-    path = linked(done.passes, drive, tool, data, stock, setup, manner, progress.part(0.8, 1.0))
-    return Planned(path=path, findings=done.left(drive, tool, stepover))

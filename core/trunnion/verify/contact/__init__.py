@@ -1,4 +1,4 @@
-"""Does anything enter what it must not? Cutter, shank and holder against the finished part and its fixtures, along every block.
+"""Contact of cutter, shank and holder with the finished part and its fixtures, along every block.
 
 An upright tool against faces of closed form is measured in closed form (`strips.py`); free-form faces, and every face while the tool leans
 or turns, by triangles and bounds (`facets.py`); fixtures are triangles from the start.

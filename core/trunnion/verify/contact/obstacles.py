@@ -1,4 +1,5 @@
-"""What is known to be in a tool's way at some places: asked before any search, it answers for most poses of a place that is hard to reach.
+"""Known obstacles: points of the part that blocked a tool near some places, tested before any search; they settle most poses where access
+is hard.
 
 An obstacle is a point of the part. Where it is deeper in a tool than is allowed, and by more than the bound of the engines of contact, each
 of them would say so too; where none is, nothing is known.

@@ -1,4 +1,4 @@
-"""The planners' query: how far may a pose lean, plunge or lengthen before its tool touches part or fixtures?
+"""Clearance of poses for planners: how far a pose may tilt, plunge or lengthen before its tool touches part or fixtures.
 
 Leaning and plunging are asked as motions, not as poses at their end: a thin rib on the way is not jumped over. A lean goes on in steps,
 each a turning move about the pivot, until one touches; within it, and for what only grows, halves close in on the first touch.
@@ -120,28 +120,8 @@ class _Asker:
         for at in range(0, len(moves), POSES):
             self.progress.check()
             some = np.arange(at, min(at + POSES, len(moves)))
-            clear[some] = self.contact.clear(_rows(moves, some), self.allowed)
+            clear[some] = self.contact.clear(moves.some(some), self.allowed)
         return clear
-
-
-def _rows(moves: Moves, rows: Ints) -> Moves:
-    names = (
-        "start",
-        "end",
-        "start_axis",
-        "end_axis",
-        "centre",
-        "sweep",
-        "upright",
-        "row",
-        "section",
-        "block",
-        "rapid",
-        "feed",
-        "length",
-        "tool",
-    )
-    return replace(moves, **{name: getattr(moves, name)[rows] for name in names})
 
 
 def _around(axis: Floats, count: int) -> Floats:

@@ -1,4 +1,4 @@
-"""Which places some cutter of the catalogue reaches: upright from above, or leaning where the machine turns.
+"""Accessibility: the points of the part that some cutter of the catalogue reaches, upright from above or tilted on rotary axes.
 
 A place that nothing reaches is settled only when every pose of every cutter is stopped. What stopped one stops most of the others, so each
 place remembers its obstacles (`contact/obstacles.py`), and few poses are held against the whole part.

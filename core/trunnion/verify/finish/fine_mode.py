@@ -1,10 +1,10 @@
 """The fine mode: scallop height, deepest gouge and steps at seams on a chosen patch, against the exact surface.
 
-The patch is cut into cells of the faces' own parameters. Over a cell, what is left is bounded from both sides (`kernels/residual_bounds.py`) on the
-parallelogram of its tangents, and the surface leaves that by at most half its second derivatives times the squares of the cell's half
-sides. A cell that may still hold more than the most found, or less than the least, by over the bound is quartered: what is reported is
-attained on the surface, and nothing on the patch is beyond it by more than the bound. A piece of a face smaller than the spacing, and so
-between the samples of its cells, may be missed.
+The patch is cut into cells of the faces' own parameters. Over a cell, what is left is bounded from both sides
+(`kernels/residual_bounds.py`) on the parallelogram of its tangents, and the surface leaves that by at most half its second derivatives
+times the squares of the cell's half sides. A cell that may still hold more than the most found, or less than the least, by over the bound
+is quartered: what is reported is attained on the surface, and nothing on the patch is beyond it by more than the bound. A piece of a face
+smaller than the spacing, and so between the samples of its cells, may be missed.
 """
 
 from __future__ import annotations

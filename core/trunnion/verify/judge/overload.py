@@ -9,7 +9,6 @@ from __future__ import annotations
 import math
 from collections.abc import Callable
 from dataclasses import dataclass
-from itertools import pairwise
 
 import numpy as np
 
@@ -19,6 +18,7 @@ from trunnion.geometry.arrays import Bools, Floats, Ints
 from trunnion.model.material import Machine, Material
 from trunnion.model.program import ProgramSection
 from trunnion.model.verdict import Offer
+from trunnion.shop.materials import feed_at
 from trunnion.units import MM_PER_METRE, SECONDS_PER_MINUTE
 from trunnion.verify.judge.load import NEWTON_METRES
 from trunnion.verify.judge.locations import block_of
@@ -77,14 +77,8 @@ def _angle(width: float, diameter: float) -> float:
 
 
 def _thickest(material: Material, diameter: float) -> float:
-    """Return the largest feed per tooth of the material's table at a diameter, straight between rows and in proportion below them."""
-    rows = [(d, most) for d, _, most in material.feeds]
-    if diameter <= rows[0][0]:
-        return rows[0][1] * diameter / rows[0][0]
-    for (d0, f0), (d1, f1) in pairwise(rows):
-        if diameter <= d1:
-            return f0 + (f1 - f0) * (diameter - d0) / (d1 - d0)
-    return rows[-1][1]
+    """Return the largest feed per tooth of the material's table at a diameter."""
+    return feed_at([(d, most) for d, _, most in material.feeds], diameter)
 
 
 Said = tuple[list[Finding], list[Offer]]

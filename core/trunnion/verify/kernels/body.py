@@ -35,7 +35,6 @@ from trunnion.geometry.arrays import Floats
 CR, CZ, R, A0R, A0Z, A1R, A1Z = range(7)
 ARC_COLUMNS = 7
 FIRST, LAST, Z_LOW, Z_HIGH, R_MAX, KIND, CLOSED_FIRST, CLOSED_LAST = range(8)
-PIECE_COLUMNS = 8
 
 
 @njit(cache=True, nogil=True)

@@ -1,1 +1,1 @@
-"""What the machine does: where its axes stand, how long the blocks take, which limits they pass."""
+"""The machine: axis positions, time of the blocks, limits."""

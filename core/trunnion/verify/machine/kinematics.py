@@ -1,4 +1,4 @@
-"""Where a machine's axes stand for each pose of the tool: rotary angles by the nearer way, linear positions with the pivots in them.
+"""Axis positions of a machine for each pose of the tool: rotary angles by the nearer turn, linear positions with the pivots in them.
 
 A pose asks that the tool's direction on the machine and the axis in the work agree: Rot(p, alpha) Rot(q, beta) v = w for two rotary axes,
 solved in closed form with both ways to stand (Paden and Kahan's second subproblem; Murray, Li, Sastry, A Mathematical Introduction to
@@ -28,7 +28,7 @@ UP = np.array([0.0, 0.0, 1.0])
 
 @dataclass(frozen=True, slots=True, eq=False, kw_only=True)
 class AxisPositions:
-    """How a machine stands along the moves of a setup, at poses k close enough to follow every turn.
+    """Axis positions along the moves of a setup, at poses k close enough to follow every turn.
 
     move (k,): the move that each pose belongs to; a move's first pose is its start. linear (k, 3) mm: the positions of X, Y, Z up to where
     zero is. rotary (k, a) rad, in the order of `Machine.rotary`. reached (n,): whether the machine can hold the axis of each move.

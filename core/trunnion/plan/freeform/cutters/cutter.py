@@ -1,8 +1,8 @@
 """A cutter as surface strategies see it: its lower side for drops, and where it touches a face of a given inclination.
 
 The lower side (design: drop along the axis) is the cutting part's profile from the tip to its widest circle, as pieces over the distance
-from the axis (`geometry.kernels.drop_cutter`). An allowance makes the profile thicker all round by as much: a drop of the thicker cutter keeps the
-allowance in every direction.
+from the axis (`geometry.kernels.drop_cutter`). An allowance makes the profile thicker all round by as much: a drop of the thicker
+cutter keeps the allowance in every direction.
 """
 
 from __future__ import annotations
