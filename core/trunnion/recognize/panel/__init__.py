@@ -16,6 +16,7 @@ from trunnion.recognize.extent import box
 from trunnion.recognize.panel.classes import STEEP_CLASSES, FaceClass, classify
 from trunnion.recognize.panel.features import Made, Numbers, make_datum, make_features, make_profile
 from trunnion.recognize.panel.frame import choose_frame, flipped, height_frame
+from trunnion.recognize.panel.kinds import KINDS
 from trunnion.recognize.panel.rest import rest_findings
 from trunnion.recognize.panel.rules import Shown, pockets_of, without
 from trunnion.recognize.panel.settings import PanelSettings
@@ -35,6 +36,7 @@ class PanelFamily:
 
     name = "panel"
     noun = "a panel"
+    kinds = KINDS
     settings = PanelSettings
     smallest: tuple[Smallest, ...] = (
         Smallest(

@@ -14,6 +14,7 @@ from trunnion.progress import QUIET, Progress
 from trunnion.recognize.contract import Bounded, Suitability
 from trunnion.recognize.surface.bends import PatchBends, patch_bends
 from trunnion.recognize.surface.groups import aligned_groups, invariant_groups
+from trunnion.recognize.surface.kinds import GROUP, KINDS
 from trunnion.recognize.surface.settings import ALIGNED, EXACT, SurfaceSettings
 from trunnion.recognize.surface.size import PatchSizes, patch_sizes
 from trunnion.recognize.surface.suitability import suitability
@@ -27,8 +28,9 @@ class SurfaceFamily:
 
     name = "surface"
     noun = "a part of curved surfaces"
+    kinds = KINDS
     settings = SurfaceSettings
-    exclusive: tuple[str, ...] = ("group",)
+    exclusive: tuple[str, ...] = (GROUP,)
 
     def suits(self, graph: FaceGraph) -> Suitability:
         """Return how near the curved share of the part's area comes to that of parts that are surely of this family."""
