@@ -89,7 +89,8 @@ class FeatureKind:
     """A kind of features as people meet it: `name` in features and files, `label` in words ("open pocket"), `colour` (`#rrggbb`).
 
     `classes`, where features of the kind are told apart, have the colours instead, and `heading` says what they are together. `pocket`
-    gives the pocket paper's model of a feature of the kind, where it has one.
+    gives the pocket paper's model of a feature of the kind, where it has one. `along_axes` are sizes taken along the axes of the part's
+    file: they change when the part is turned, no other size does.
     """
 
     name: str
@@ -98,6 +99,7 @@ class FeatureKind:
     classes: tuple[LegendClass, ...] = ()
     heading: str = ""
     pocket: Callable[[Feature, Recognition], GeneralizedPocket] | None = None
+    along_axes: tuple[str, ...] = ()
 
     def class_of(self, feature: Feature) -> LegendClass:
         """Return the class that a feature of the kind belongs to; the kind itself where it has no classes."""

@@ -6,7 +6,7 @@ from dataclasses import replace
 
 import numpy as np
 
-from trunnion.findings import Finding, face_tags, info
+from trunnion.findings import BadInput, Finding, face_tags, info
 from trunnion.geometry.arrays import Bools, Floats, Ints
 from trunnion.geometry.facegraph import FaceGraph
 from trunnion.model.feature import FaceRole, Feature, Recognition
@@ -43,8 +43,15 @@ class SurfaceFamily:
         settings: SurfaceSettings,
         progress: Progress = QUIET,
     ) -> Recognition:
-        """Return one feature a group of equal patches, largest first; local ones are marked. Raises `Cancelled` when asked to stop."""
+        """Return one feature a group of equal patches, largest first; local ones are marked.
+
+        Raises `BadInput` for a part without faces, `Cancelled` when asked to stop.
+        """
         progress.at(0.0, "measuring patches")
+        if not len(graph):
+            raise BadInput(
+                "the part has no face: export its solid or its surfaces from the CAD system"
+            )
         sizes = _sizes(graph, bounded, settings)
         progress.at(0.5, "grouping patches")
         size = _size(sizes, settings)

@@ -15,6 +15,7 @@ KINDS = (
         label="group",
         colour="#56b4e9",
         heading="Groups of equal patches",
+        along_axes=("diagonal",),
         # Told apart within their class by light and dark, the classes by cold and warm.
         classes=(
             LegendClass(
