@@ -211,4 +211,5 @@ def test_its_process_is_read_back_as_it_was_written(name, tmp_path):
 
 @by_name
 def test_it_stops_soon_after_it_was_asked_to(name):
+    route_again(name)
     check_cancel(lambda progress: route_again(name, progress))
