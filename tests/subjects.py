@@ -37,7 +37,7 @@ def engines() -> dict[str, tuple[Engine, Session]]:
     found = {}
     for name, file in (
         ("pockets", samples.written(samples.two_pockets_and_a_rib_shape())),
-        ("bowl", samples.written(bowl(20.0, 16.0, 8.0, 6.0).shape)),
+        ("bowl", samples.written(bowl(20.0, 16.0, 8.0, 6.0).shape, name="bowl")),
     ):
         found[name] = _recognized(file)
     for folder in registry.resource_folders("samples")[1:]:

@@ -87,3 +87,25 @@ def test_the_report_and_its_pictures_show_the_familys_words_and_colours(disc):
     hues = {colour: n for n, colour in seen}
     for named in ((17, 119, 51), (204, 102, 119), (51, 34, 136)):
         assert hues.get(named, 0) > 100, named
+
+
+def test_settings_of_the_package_are_listed_and_checked_like_ours(disc):
+    listed = {s["key"]: s for s in json.loads(trunnion("settings", "--json").stdout)}
+    assert listed["disc.bevel.below"]["unit"] == "mm"
+    assert {"turner", "kestrel"} <= set(listed["post.dialect"]["choices"])
+    said = trunnion("info", str(disc.file), "--set", "disc.bevel.below=99")
+    assert said.returncode == 2
+    wrong = "Below the bevel (disc.bevel.below) must be from 0 to 10 mm; got 99"
+    assert said.stderr.strip() == f"trunnion: {wrong}"
+
+
+def test_its_planner_checks_the_cutter_rules_of_a_shops_own_plan(disc, tmp_path):
+    (tmp_path / "plans").mkdir()
+    (tmp_path / "plans" / "discs.toml").write_text(
+        '["Discs, by laser"]\ntitle = "Discs"\nfamily = "turned_disc"\nstage = [{ name = "burn", kind = "face", '
+        'strategy = "plane.face", on = ["disc_end"], cutter = "laser", finish = true, rule = "quick" }]\n'
+    )
+    said = trunnion("route", str(disc.file), "--user-folder", str(tmp_path))
+    assert said.returncode == 2
+    known = "cutter must be one of end mill, bevel; got 'laser'"
+    assert f"typical plan Discs, by laser, stage burn: {known}" in said.stderr
