@@ -29,9 +29,9 @@ COARSE = {"surface.scallop": 0.3}
 """Scallops in mm for passes that nobody proves."""
 NOT_LESS = 0.95
 """Foreseen over measured power: the stock's cells let the proof see a little more than there is."""
-KNOWN = {("plane.profile_finish", "bowl")}
+KNOWN = {("plane.profile_finish", "bowl"), ("surface.waterline", "bowl")}
 """Strategies that meet more than they declare on a part, faults to be mended: on the bowl the outline's finishing measures 2.1 kW where
-1.64 kW are foreseen."""
+1.64 kW are foreseen. One that is mended must leave this list."""
 LARGER = 4.0
 """Diameter of a cutter that is far too large over that of the one that was chosen."""
 
