@@ -8,7 +8,7 @@ from dataclasses import replace
 from trunnion.findings import warning
 from trunnion.model.operation import Operation
 from trunnion.model.process import ProcessTree
-from trunnion.plan.contract import Driven, driven_by
+from trunnion.plan.contract import OperationDrive, driven_by
 from trunnion.plan.cutting.milling import (
     CuttingSettings,
     cutting_data,
@@ -17,7 +17,7 @@ from trunnion.plan.cutting.milling import (
 )
 from trunnion.plan.feasibility import too_large, too_many_tools
 from trunnion.plan.prismatic.drive import FLOOR_ALLOWANCE, WALL_ALLOWANCE, PlaneDrive, drive_of
-from trunnion.plan.prismatic.regions import Space
+from trunnion.plan.prismatic.regions import SetupSpace
 from trunnion.plan.typical import typical_plan
 from trunnion.settings import choose, setting, settings
 from turned_disc.bevel import SAME_ANGLE, BevelDrive
@@ -181,10 +181,10 @@ def _numbered(operations):
 def _plane(operation, needs, scene, progress):
     part = scene.context.part
     space = scene.once(
-        "sections", lambda: Space.of(part, scene.recognition, scene.blank, scene.setup)
+        "sections", lambda: SetupSpace.of(part, scene.recognition, scene.blank, scene.setup)
     )
     drive = drive_of(operation, scene.process, space)
-    return Driven(setup=scene.setup, drive=drive, told=drive)
+    return OperationDrive(setup=scene.setup, drive=drive, told=drive)
 
 
 def _bevel(operation, needs, scene, progress):
@@ -197,4 +197,4 @@ def _bevel(operation, needs, scene, progress):
         top=float(foot[2]) + sizes["height"],
         angle=sizes["angle"],
     )
-    return Driven(setup=scene.setup, drive=drive, told=drive)
+    return OperationDrive(setup=scene.setup, drive=drive, told=drive)

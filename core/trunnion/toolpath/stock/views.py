@@ -1,0 +1,116 @@
+"""One planning stock for each direction that a tool comes from, and what each knows of what the others have cut.
+
+A field of heights says that everything above it is gone. Seen from another direction that leaves, column by column, the highest place in
+the blank that no field has above it: taken over in steps of a cell, always on the side of material.
+"""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import numpy as np
+from scipy.ndimage import maximum_filter
+
+from trunnion import tolerance
+from trunnion.geometry.arrays import Floats
+from trunnion.geometry.frame import Frame
+from trunnion.model.blank import Blank
+from trunnion.model.setup import Setup
+from trunnion.model.tool import Tool
+from trunnion.model.toolpath import Motion, Toolpath
+from trunnion.plan.freeform.frames import corners_in
+from trunnion.progress import QUIET, Progress
+from trunnion.settings import digest
+from trunnion.toolpath.stock.heightfield import PlanningStock
+
+BESIDE = 3
+"""Cells that a place is compared with in another field, in each of its directions: the cells it may lie in for all of its own cell."""
+
+
+class StockViews:
+    """The stock of one setup as its directions see it."""
+
+    def __init__(self, blank: Blank) -> None:
+        self._blank = blank
+        self._stocks: dict[str, PlanningStock] = {}
+        self._frames: dict[str, Frame] = {}
+        self._known: dict[tuple[str, str], str] = {}
+
+    def seen(self, setup: Setup) -> PlanningStock:
+        """Return the stock in the frame of a setup (a cutting frame is one), with all that was cut from other directions."""
+        name = digest(setup.frame)
+        if name not in self._stocks:
+            self._stocks[name], self._frames[name] = _uncut(self._blank, setup), setup.frame
+        for other, stock in list(self._stocks.items()):
+            if other != name and self._known.get((name, other)) != stock.digest:
+                self._known[name, other] = stock.digest
+                lowest = _lowest(self._blank, setup.frame)
+                self._stocks[name] = _lowered(
+                    self._stocks[name], setup.frame, stock, self._frames[other], lowest
+                )
+        return self._stocks[name]
+
+    def cut(self, setup: Setup, path: Toolpath, tool: Tool, progress: Progress = QUIET) -> None:
+        """Take a path in the frame of a setup off its stock. A leaning tool takes nothing off: the stock is then higher than it is."""
+        if len(path) and bool(
+            (path.axis[path.motion != Motion.RAPID, 2] > 1.0 - tolerance.PARAMETRIC).all()
+        ):
+            name = digest(setup.frame)
+            self._stocks[name] = self._stocks[name].after(path, tool, progress)
+
+
+def _uncut(blank: Blank, setup: Setup) -> PlanningStock:
+    """Return the stock of an uncut blank, each column as high as the blank is in it, or as low as it gets where there is none of it."""
+    stock = PlanningStock.of(blank, setup)
+    away = blank.frame.local_direction(setup.frame.z)
+    if np.abs(away).max() > 1.0 - tolerance.PARAMETRIC:
+        return stock
+    # Where the line through a column's middle leaves the box, grown so that a column which only grazes the blank counts.
+    places, reach = _centres(stock), 0.75 * stock.cell
+    start = blank.frame.to_local(
+        setup.frame.to_world(np.column_stack([places, np.zeros(len(places))]))
+    )
+    with np.errstate(divide="ignore", invalid="ignore"):
+        ends = np.stack([(blank.low - reach - start) / away, (blank.high + reach - start) / away])
+    ends = np.where(np.isnan(ends), np.array([-np.inf, np.inf])[:, None, None], ends)
+    first, last = ends.min(axis=0).max(axis=1), ends.max(axis=0).min(axis=1)
+    top = np.where(first < last, last, -np.inf).reshape(stock.heights.shape)
+    heights = np.clip(top, _lowest(blank, setup.frame), stock.heights)
+    return replace(stock, heights=_fixed(heights), digest=digest(stock.digest, heights))
+
+
+def _lowered(
+    stock: PlanningStock, frame: Frame, other: PlanningStock, other_frame: Frame, lowest: float
+) -> PlanningStock:
+    """Return a stock without what another one, seen from elsewhere, knows to be gone; nothing is lower than `lowest`."""
+    material = maximum_filter(other.heights, BESIDE, mode="nearest")
+    places, heights = _centres(stock), stock.heights.ravel().copy()
+    step, last = stock.cell, np.array(material.shape) - 1
+    rows = np.flatnonzero(heights > lowest)
+    while len(rows):
+        # The middle of the uppermost step of each column: gone when all around it is.
+        there = other_frame.to_local(
+            frame.to_world(np.column_stack([places[rows], heights[rows] - 0.5 * step]))
+        )
+        cell = np.floor((there[:, :2] - other.corner) / other.cell).astype(np.int64)
+        outside = ((cell < 0) | (cell > last)).any(axis=1)
+        gone = outside | (there[:, 2] - step > material[tuple(np.clip(cell, 0, last).T)])
+        rows = rows[gone]
+        heights[rows] -= step
+        rows = rows[heights[rows] > lowest]
+    kept = np.maximum(heights, lowest).reshape(stock.heights.shape)
+    return replace(stock, heights=_fixed(kept), digest=digest(stock.digest, other.digest))
+
+
+def _lowest(blank: Blank, frame: Frame) -> float:
+    return float(corners_in(frame, blank)[:, 2].min())
+
+
+def _centres(stock: PlanningStock) -> Floats:
+    rows = np.argwhere(np.ones(stock.heights.shape, dtype=bool))
+    return np.asarray(stock.corner + (rows + 0.5) * stock.cell)
+
+
+def _fixed(array: Floats) -> Floats:
+    array.setflags(write=False)
+    return array
