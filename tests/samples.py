@@ -232,6 +232,21 @@ def mirrored(shape: Any, plane: str = "YZ") -> Any:
     return cq.Shape.cast(shape).mirror(plane).wrapped
 
 
+def renumbered(shape: Any) -> Any:
+    """Return a solid with its faces in the opposite order."""
+    from OCP.BRep import BRep_Builder
+    from OCP.TopoDS import TopoDS_Shell, TopoDS_Solid
+
+    builder, shell, solid = BRep_Builder(), TopoDS_Shell(), TopoDS_Solid()
+    builder.MakeShell(shell)
+    for face in reversed(cq.Shape.cast(shape).Faces()):
+        builder.Add(shell, face.wrapped)
+    shell.Closed(True)
+    builder.MakeSolid(solid)
+    builder.Add(solid, shell)
+    return solid
+
+
 _FOLDER = tempfile.TemporaryDirectory(prefix="trunnion-samples-")
 _FILES: dict[tuple[bytes, str, str, str], Path] = {}
 _PARTS: dict[tuple[Path, int | None], Part] = {}

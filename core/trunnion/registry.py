@@ -1,4 +1,4 @@
-"""Names to things that are imported only when wanted: families, kinds of part, planners, strategies, dialects, views.
+"""Names to things that are imported only when wanted: families, kinds of part, planners, strategies, dialects, views, commands, data.
 
 The names come from the entry points `trunnion.KIND` of installed packages, so a user's own package adds one without
 touching ours; the module behind a name is imported on the first `get`.
@@ -8,11 +8,31 @@ from __future__ import annotations
 
 from functools import cache
 from importlib.metadata import EntryPoint, entry_points
+from importlib.resources import files
+from importlib.resources.abc import Traversable
 from typing import Any
 
 from trunnion.findings import BadCall
 
-KINDS = ("families", "part_kinds", "planners", "strategies", "dialects", "views")
+FAMILIES = "families"
+"""Families of parts, by name."""
+PART_KINDS = "part_kinds"
+"""Kinds of part that are told from others, but that no family serves yet."""
+PLANNERS = "planners"
+"""Planners, by the name of their family."""
+STRATEGIES = "strategies"
+"""Strategies, by name."""
+DIALECTS = "dialects"
+"""Dialects of controls, by name."""
+VIEWS = "views"
+"""What families bring to the window, by the family's name."""
+COMMANDS = "commands"
+"""Functions that add a command to the command line (a module's `add(commands)`), by the command's name."""
+RESOURCES = "resources"
+"""Packages with data of their own, in folders like those of `trunnion_resources`."""
+KINDS = (FAMILIES, PART_KINDS, PLANNERS, STRATEGIES, DIALECTS, VIEWS, COMMANDS, RESOURCES)
+OWN_RESOURCES = "trunnion_resources"
+"""The program's own package of data."""
 
 
 @cache
@@ -41,3 +61,10 @@ def get(kind: str, name: str) -> Any:
     if name not in points:
         raise BadCall(f"unknown {kind} name {name}; known: {', '.join(sorted(points))}")
     return points[name].load()
+
+
+def resource_folders(kind: str) -> tuple[Traversable, ...]:
+    """Return where data of a kind (`tools`, `plans`, `translations`, ...) lie: the program's own folder, then those of registered
+    packages in the order of their names. A package need not have every folder."""
+    packages = (OWN_RESOURCES, *(get(RESOURCES, name) for name in names(RESOURCES)))
+    return tuple(files(package).joinpath(kind) for package in packages)

@@ -1,4 +1,4 @@
-"""Words in the person's language: English in the code, other languages as data in resources."""
+"""Words in the person's language: English in the code, other languages as data in the resources of the program and of packages."""
 
 from __future__ import annotations
 
@@ -6,12 +6,14 @@ import json
 from functools import cache
 from importlib.resources import files
 
+from trunnion.registry import OWN_RESOURCES, resource_folders
+
 _chosen = "en"
 
 
 def languages() -> tuple[str, ...]:
     """Return the languages the window speaks."""
-    folder = files("trunnion_resources") / "translations"
+    folder = files(OWN_RESOURCES) / "translations"
     return (
         "en",
         *sorted(f.name.removesuffix(".json") for f in folder.iterdir() if f.name.endswith(".json")),
@@ -33,6 +35,9 @@ def tr(text: str) -> str:
 def _words(language: str) -> dict[str, str]:
     if language == "en":
         return {}
-    return json.loads(
-        (files("trunnion_resources") / "translations" / f"{language}.json").read_text("utf-8")
-    )
+    found: dict[str, str] = {}
+    # The program's own words come last: a package adds words, it changes none.
+    for folder in reversed(resource_folders("translations")):
+        file = folder / f"{language}.json"
+        found |= json.loads(file.read_text("utf-8")) if file.is_file() else {}
+    return found

@@ -1,4 +1,4 @@
-"""What every registered dialect must do, whoever wrote it: ours, and the one of a package of its own in `tests/dialects`."""
+"""What every registered dialect must do, whoever wrote it: ours, and those of packages in `tests/dialects` and `tests/families`."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ from hypothesis import given, settings
 
 from leaning_paths import TABLE, lean, standing
 from leaning_paths import path_of as leaning_path
-from own_dialects import all_dialects
+from own_packages import all_dialects
 from programs import BULL_10, FLAT_16, S1, WALL, program_1, section, verdict
 from random_programs import program_of, programs, same, spoils
 from trunnion.findings import BadCall, BadInput, Refused
@@ -56,7 +56,7 @@ def one(*sections, setup=S1) -> Program:
 
 
 def test_a_dialect_of_ones_own_is_among_them():
-    assert {"apt", "linuxcnc", "kestrel"} <= set(DIALECTS)
+    assert {"apt", "linuxcnc", "kestrel", "turner"} <= set(DIALECTS)
 
 
 def test_it_has_the_name_that_it_is_registered_under():

@@ -1,22 +1,15 @@
-"""What a family brings to the window is in its own package: the window names no family, and takes one up that lives elsewhere."""
+"""What a family brings to the window: the window takes up a view that lives in a package of its own."""
 
 from __future__ import annotations
 
-import ast
 import importlib
 import sys
-from pathlib import Path
 
 import pytest
 from PySide6.QtCore import Qt
 
-import trunnion_gui
 from trunnion import registry
-from trunnion.report.palette import load_palette
 
-HOUSE = Path(trunnion_gui.__file__).parent
-GENERAL = {"other", "unexplained"}
-"""Entries of the palette that no family has for itself."""
 RIBS = """
 from trunnion_gui.actions import Command
 from trunnion_gui.families.contract import Colouring, Column, Dock, FamilyView, FeatureClass
@@ -68,38 +61,6 @@ class RibView(FamilyView):
     def docks(self):
         return (Dock("ribs", "Ribs", self.label),)
 """
-
-
-def words_of(path: Path) -> set[str]:
-    """Return the texts of a module, the first words of dotted ones, and the names it imports."""
-    tree = ast.parse(path.read_text("utf-8"))
-    texts = {
-        n.value for n in ast.walk(tree) if isinstance(n, ast.Constant) and isinstance(n.value, str)
-    }
-    names = {
-        a.name
-        for n in ast.walk(tree)
-        if isinstance(n, ast.ImportFrom) and n.module == "trunnion.report.palette"
-        for a in n.names
-    }
-    return texts | {t.split(".")[0] for t in texts if "." in t and " " not in t} | names
-
-
-@pytest.mark.parametrize(
-    "path",
-    [p for p in sorted(HOUSE.rglob("*.py")) if "families" not in p.relative_to(HOUSE).parts],
-    ids=lambda p: str(p.relative_to(HOUSE)),
-)
-def test_no_module_outside_a_familys_own_names_a_family_or_a_kind_of_feature(path):
-    own = {
-        *registry.names("families"),
-        *registry.names("part_kinds"),
-        *registry.names("views"),
-        *load_palette().kinds,
-        "local",
-        "GROUP",
-    }
-    assert words_of(path) & (own - GENERAL) == set()
 
 
 def test_every_view_has_a_family():

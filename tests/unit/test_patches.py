@@ -16,15 +16,14 @@ from trunnion.part.topology.measure import area_of
 from trunnion.part.write import write_faces, write_step
 from trunnion.pipeline import Engine
 from trunnion.pipeline.patches import (
-    boundary_errors,
     export,
-    size_errors,
     tags_of,
     with_cut,
     with_local,
     with_moved,
     without_cut,
 )
+from trunnion.recognize.surface.accuracy import size_errors
 
 SURFACE = {"recognize.family": "surface"}
 
@@ -208,25 +207,26 @@ def test_words_that_mean_no_face_are_refused(engine, opened, found):
 
 
 def test_more_points_on_the_edges_leave_a_smaller_error(engine, opened):
-    none, few, many, repair = size_errors(engine, opened, (0, 2, 60))
+    part = engine.context_of(opened).part
+    none, few, many, repair = size_errors(part, part.tags, (0, 2, 60))
     assert none.points < few.points < many.points
     assert none.largest > few.largest > many.largest >= 0.0
     assert many.largest < 1e-3
     assert repair.on_edge == -1
     with pytest.raises(BadInput, match="from 0"):
-        size_errors(engine, opened, (-3,))
+        size_errors(part, part.tags, (-3,))
 
 
 def test_three_points_on_a_ring_give_the_box_that_can_be_worked_out(engine, tmp_path):
     write_step(plate(30.0, 30.0, 5.0, hole=10.0).shape, tmp_path / "ring.step")
-    session = engine.open(tmp_path / "ring.step")
-    bare, *_ = size_errors(engine, session, (0,))
+    part = read_part(tmp_path / "ring.step")
+    bare, *_ = size_errors(part, part.tags, (0,))
     # One vertex a ring is all that stands on the hole's edges: of its box, 20 x 20 x 5, only the height is left.
     assert bare.largest == pytest.approx(1.0 - 5.0 / (2.0 * 10.0**2 * 4.0 + 25.0) ** 0.5, rel=1e-6)
 
 
 def test_boundary_curves_made_by_the_kernel_lie_on_their_surfaces(engine, opened):
-    assert max(boundary_errors(engine, opened).values()) < 1e-6
+    assert max(engine.context_of(opened).part.boundary_error().values()) < 1e-6
 
 
 def test_the_command_line_cuts_regroups_exports_and_measures(file, tmp_path, capsys):

@@ -1,4 +1,4 @@
-"""Planners: found by the family's name, asked for routes and drives; a family of one's own brings its planner along."""
+"""Planners: found by the family's name and asked for drives; common checks are in `tests/conformance/test_planners.py`."""
 
 from __future__ import annotations
 
@@ -7,38 +7,17 @@ from dataclasses import replace
 import pytest
 
 from trunnion import registry
-from trunnion.findings import BadInput, Refused, Severity
-from trunnion.model.process import ProcessTree
+from trunnion.findings import BadInput, Severity
 from trunnion.pipeline import Engine
 from trunnion.pipeline.toolpaths import make_paths
 from trunnion.plan.contract import DriveNeeds, driven_by, planner_for
 from trunnion.progress import QUIET
-from trunnion.settings import declared, setting, settings
-
-
-@settings("wedge")
-class WedgeSettings:
-    """What a shop may choose about wedges."""
-
-    slope: float = setting(
-        3.0, unit="deg", low=0.0, high=30.0, label="Slope", help="How much a wedge leans."
-    )
 
 
 class WedgePlanner:
-    """A planner of a test: plans nothing, drives nothing."""
+    """A planner of a test: it makes no drives."""
 
-    name, noun, settings, cutter_rules = "wedge", "wedges", (WedgeSettings,), ()
-
-    def can_plan(self, part):
-        """Refuse no part."""
-
-    def route(self, job):
-        """Return a process without operations, named by the slope."""
-        slope = job.chosen(WedgeSettings).slope
-        return ProcessTree(
-            plan=f"wedge of {slope:g}", material=job.blank.material, setups=job.setups
-        )
+    name, noun, settings, cutter_rules = "wedge", "wedges", (), ()
 
     def drive(self, operation, needs, scene, progress):
         """Make no drive."""
@@ -81,19 +60,6 @@ def as_family(session, family):
     return replace(session, recognition=replace(session.recognition, family=family))
 
 
-def route_step():
-    from trunnion.pipeline.steps import step_named
-
-    return step_named("route")
-
-
-def test_every_family_of_ours_has_a_planner_of_its_name() -> None:
-    assert registry.names("planners") == registry.names("families")
-    assert [planner_for(name).name for name in registry.names("planners")] == list(
-        registry.names("planners")
-    )
-
-
 def test_a_family_without_a_planner_is_refused_with_what_to_do() -> None:
     with pytest.raises(
         BadInput,
@@ -101,18 +67,6 @@ def test_a_family_without_a_planner_is_refused_with_what_to_do() -> None:
         "outlines choose recognize.family = panel or surface",
     ):
         planner_for("casing")
-
-
-def test_a_family_of_ones_own_is_routed_by_its_planner(measured, wedges) -> None:
-    engine, session = measured
-    chosen = replace(as_family(session, "wedge"), choices={"wedge.slope": 7.0})
-    assert route_step().work(chosen, engine.context, QUIET).session.process.plan == "wedge of 7"
-
-
-def test_its_settings_can_be_chosen(wedges) -> None:
-    assert "wedge.slope" in {
-        d.key for group in Engine().settings()["route"] for d in declared(group)
-    }
 
 
 def test_a_drive_that_a_planner_does_not_make_is_an_error_that_names_strategy_and_family(
@@ -130,8 +84,6 @@ def test_a_drive_that_a_planner_does_not_make_is_an_error_that_names_strategy_an
 @pytest.mark.parametrize("family", registry.names("planners"))
 def test_our_planners_drive_every_strategy_that_is_there(routed, family) -> None:
     operation = routed[1].process.operations[0]
-    with pytest.raises(Refused, match="driven by a int, which is not made for"):
-        planner_for(family).drive(operation, DriveNeeds(drive=int), None, QUIET)
     made = {registry.get("strategies", name).drive for name in registry.names("strategies")}
     for drive in made:
         with pytest.raises(AttributeError):  # it goes for the scene: a drive of this class is made

@@ -6,7 +6,7 @@ import pytest
 from pytest import approx
 
 from leaning_paths import TABLE, standing
-from own_dialects import FOLDER, all_dialects
+from own_packages import FOLDER, all_dialects
 from programs import BULL_10, FLAT_16, S1
 from trunnion.findings import BadInput
 from trunnion.model.program import Program

@@ -1,8 +1,7 @@
-"""CONTRIBUTING's recipes for a package of one's own: a strategy and a dialect are found without touching ours."""
+"""CONTRIBUTING's recipe of a dialect does what it says; whole packages of one's own are in `test_own_family.py`."""
 
 from __future__ import annotations
 
-import json
 import os
 import subprocess
 import sys
@@ -13,91 +12,7 @@ import pytest
 
 from parts import ROOT
 
-MODULE = '''
-from trunnion.model.feature import FaceRole, Feature, Recognition
-from trunnion.model.process import ProcessTree
-from trunnion.plan.contract import driven_by
-from trunnion.plan.prismatic.drive import PlaneDrive
-from trunnion.plan.typical import typical_plan
-from trunnion.recognize.contract import Suitability
-from trunnion.settings import setting, settings
-from trunnion.toolpath.contract import Planned, strategy
-
-
-@settings("plane.engrave")
-class EngraveSettings:
-    """What a shop may choose when it engraves."""
-
-    depth: float = setting(0.2, unit="mm", low=0.01, high=2.0, label="Depth", help="How deep the letters are.")
-
-
-@strategy(settings=EngraveSettings, drive=PlaneDrive)
-def engrave(drive, tool, data, stock, setup, settings, progress):
-    """Return no motions: a recipe's example."""
-    return Planned()
-
-
-@settings("recognize.wedge")
-class WedgeSettings:
-    """What decides whether a part is a wedge."""
-
-
-@settings("wedge")
-class WedgeRouteSettings:
-    """What a shop may choose about the route of a wedge."""
-
-    slope: float = setting(3.0, unit="deg", low=0.0, high=30.0, label="Slope", help="How much a wedge leans.")
-
-
-class Wedges:
-    """A family whose parts are one feature."""
-
-    name, noun, settings = "wedge", "a wedge", WedgeSettings
-
-    def suits(self, graph):
-        """Suit no part that wasn't chosen by hand."""
-        return Suitability(score=0.0, explained=1.0, reason="nobody can tell")
-
-    def recognize(self, graph, slicer, settings, progress):
-        """Return one feature with all faces."""
-        faces = tuple(FaceRole(role="face", face=n + 1) for n in range(len(graph.area)))
-        return Recognition(family="wedge", features=(Feature(id="wedge-01", kind="wedge", faces=faces),))
-
-
-class WedgePlanner:
-    """Follows its typical plan, which has no operation yet."""
-
-    name, noun, settings, cutter_rules = "wedge", "wedges", (WedgeRouteSettings,), ("chisel",)
-
-    def can_plan(self, part):
-        """Refuse no part."""
-
-    def route(self, job):
-        """Return a process without operations."""
-        plan = typical_plan(job.shop, self.name, "", self.cutter_rules)
-        title = f"{plan.name}, {job.chosen(WedgeRouteSettings).slope:g} degrees"
-        return ProcessTree(plan=title, material=job.blank.material, setups=job.setups)
-
-    def drive(self, operation, needs, scene, progress):
-        """Return what drives an operation: there is none."""
-        return driven_by({}, self, operation, needs, scene, progress)
-'''
-PLAN = """
-["Wedges, by hand"]
-title = "Wedges"
-family = "wedge"
-stage = [{ name = "split", kind = "split", strategy = "plane.engrave", on = ["wedge"], cutter = "CUTTER", finish = true, rule = "first" }]
-"""
-ENTRY_POINTS = """[trunnion.strategies]
-plane.engrave = shop_extra:engrave
-
-[trunnion.families]
-wedge = shop_extra:Wedges
-
-[trunnion.planners]
-wedge = shop_extra:WedgePlanner
-
-[trunnion.dialects]
+ENTRY_POINTS = """[trunnion.dialects]
 murmur = shop_extra:MurmurDialect
 """
 
@@ -122,7 +37,7 @@ def own_package(tmp_path):
     """A shop's own package as pip would lay it out; returns the environment in which Python sees it."""
     package = tmp_path / "shop_extra"
     package.mkdir()
-    (package / "__init__.py").write_text(MODULE + recipe("A dialect"))
+    (package / "__init__.py").write_text(recipe("A dialect"))
     words = (files("trunnion_resources") / "dialects" / "linuxcnc.toml").read_text()
     (package / "murmur.toml").write_text(
         words.replace('"LinuxCNC"', '"Murmur 4"').replace('"nc"', '"mur"').replace('"G21"', '"G71"')
@@ -141,36 +56,6 @@ def recipe(name: str) -> str:
     return textwrap.dedent(after.split("```python\n")[1].split("```")[0])
 
 
-def test_a_strategy_of_ones_own_brings_its_settings_to_the_command_line(own_package):
-    code = "from trunnion.cli.main import run; run()"
-    said = subprocess.run(
-        [sys.executable, "-c", code, "settings", "--json"],
-        capture_output=True,
-        text=True,
-        env=own_package,
-        check=True,
-    )
-    listed = {entry["key"]: entry for entry in json.loads(said.stdout)}
-    assert listed["plane.engrave.depth"]["unit"] == "mm"
-    assert "murmur" in listed["post.dialect"]["choices"]
-
-
-def test_its_values_are_checked_like_ours(own_package, sample_part):
-    code = "from trunnion.cli.main import run; run()"
-    said = subprocess.run(
-        [sys.executable, "-c", code, "info", str(sample_part), "--set", "plane.engrave.depth=9"],
-        capture_output=True,
-        text=True,
-        env=own_package,
-        check=False,
-    )
-    assert said.returncode == 2
-    assert (
-        said.stderr.strip()
-        == "trunnion: Depth (plane.engrave.depth) must be from 0.01 to 2 mm; got 9"
-    )
-
-
 def test_a_dialect_of_ones_own_writes_and_reads_with_its_words(own_package):
     said = subprocess.run(
         [sys.executable, "-c", ROUND_TRIP],
@@ -183,50 +68,6 @@ def test_a_dialect_of_ones_own_writes_and_reads_with_its_words(own_package):
     assert "N10 G71\n" in text
     assert "G21" not in text
     assert same == "mur True"
-
-
-def routed(own_package, tmp_path, part, cutter):
-    """Return what the command line says of a route by the planner of one's own, with a typical plan of the user's folder."""
-    (tmp_path / "user" / "plans").mkdir(parents=True)
-    (tmp_path / "user" / "plans" / "wedges.toml").write_text(PLAN.replace("CUTTER", cutter))
-    code = "from trunnion.cli.main import run; run()"
-    return subprocess.run(
-        [
-            sys.executable,
-            "-c",
-            code,
-            "route",
-            str(part),
-            "--json",
-            "--set",
-            "recognize.family=wedge",
-            "--set",
-            "wedge.slope=7",
-            "--user-folder",
-            str(tmp_path / "user"),
-        ],
-        capture_output=True,
-        text=True,
-        env=own_package,
-        check=False,
-    )
-
-
-def test_a_family_of_ones_own_is_recognised_and_planned(own_package, tmp_path, sample_panel):
-    said = routed(own_package, tmp_path, sample_panel, "chisel")
-    assert said.returncode == 0, said.stderr
-    assert json.loads(said.stdout)["plan"] == "Wedges, by hand, 7 degrees"
-
-
-def test_its_planner_checks_the_cutter_rules_of_its_typical_plan(
-    own_package, tmp_path, sample_panel
-):
-    said = routed(own_package, tmp_path, sample_panel, "laser")
-    assert said.returncode == 2
-    assert (
-        "typical plan Wedges, by hand, stage split: cutter must be one of chisel; got 'laser'"
-        in said.stderr
-    )
 
 
 def test_the_recipes_name_what_the_example_does():

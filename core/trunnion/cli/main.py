@@ -11,12 +11,12 @@ import sys
 from importlib import import_module
 from typing import NoReturn
 
-from trunnion import __version__
+from trunnion import __version__, registry
 from trunnion.findings import Cancelled, TrunnionError
 
 DONE, PROBLEMS, BAD, CANCELLED = 0, 1, 2, 130
 
-COMMANDS = (
+GENERAL = (
     "info",
     "recognize",
     "size",
@@ -27,12 +27,12 @@ COMMANDS = (
     "verify",
     "post",
     "batch",
-    "patches",
     "cut",
     "export",
     "settings",
     "gui",
 )
+"""Commands for parts of every family; families and packages add theirs by entry points (`registry.COMMANDS`)."""
 
 
 class OneLineParser(argparse.ArgumentParser):
@@ -50,8 +50,10 @@ def parser() -> argparse.ArgumentParser:
     )
     top.add_argument("--version", action="version", version=f"trunnion {__version__}")
     commands = top.add_subparsers(dest="command", metavar="COMMAND", parser_class=OneLineParser)
-    for name in COMMANDS:
+    for name in GENERAL:
         import_module(f"trunnion.cli.{name}").add(commands)
+    for name in registry.names(registry.COMMANDS):
+        registry.get(registry.COMMANDS, name)(commands)
     return top
 
 

@@ -61,6 +61,24 @@ class Feature:
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
+class GeneralizedPocket:
+    """A pocket in the words of "Slicing Recognition of Aircraft Integral Panel Generalized Pocket" (2.2).
+
+    `identification` says what pocket it is; `centre` has two or three coordinates in mm, or none; `top` and `bottom` are heights in mm;
+    `guide` are the faces that the guide profile's lines lie on, with their roles; `islands` and `auxiliary` are other features.
+    """
+
+    identification: str
+    through: bool
+    centre: tuple[float, ...] = ()
+    top: float | None = None
+    bottom: float | None = None
+    guide: tuple[FaceRole, ...] = ()
+    islands: tuple[Feature, ...] = ()
+    auxiliary: tuple[Feature, ...] = ()
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
 class TakenFor:
     """What kind of part a part was taken for: the kind's name and what its parts are called ("a panel"), how sure (0 to 1) and why."""
 

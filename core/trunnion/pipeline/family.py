@@ -19,12 +19,11 @@ from trunnion.model.session import Session
 from trunnion.pipeline.context import Context
 from trunnion.progress import Progress
 from trunnion.recognize.contract import Suitability
+from trunnion.registry import FAMILIES, PART_KINDS
 from trunnion.settings import checked, choose, setting, settings
 from trunnion.units import percent
 
 AUTOMATIC = "auto"
-FAMILIES, KINDS = "families", "part_kinds"
-"""Registries of the kinds of part that a family serves, and of those that none serves yet."""
 ENOUGH = 0.5
 """Share of the area that recognition must explain, and score of a kind that no family serves, from which on it counts."""
 SCORE_DECIMALS = 3
@@ -80,7 +79,7 @@ def ratings(graph: FaceGraph) -> tuple[Rated, ...]:
             served=group == FAMILIES,
             suits=kind.suits(graph),
         )
-        for group in (FAMILIES, KINDS)
+        for group in (FAMILIES, PART_KINDS)
         for name in registry.names(group)
     ]
     return tuple(

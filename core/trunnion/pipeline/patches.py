@@ -1,4 +1,4 @@
-"""What a person does to the patches of a curved part: cuts them in two, moves them between groups, calls groups local, exports them.
+"""What a person does to faces that features share out: cuts them in two, moves them between groups, calls groups local, exports them.
 
 Sessions go in and come out; the engine gives the part. Steps that read what was changed are stale afterwards.
 """
@@ -17,18 +17,13 @@ from trunnion.model.session import Session
 from trunnion.pipeline.manual_edits import free_id, without_faces
 from trunnion.pipeline.steps import measured_anew
 from trunnion.progress import QUIET, Progress
-from trunnion.recognize.contract import exclusive_kinds
+from trunnion.recognize.contract import exclusive_kinds, sharing_families
 
 if TYPE_CHECKING:
     from trunnion.pipeline.engine import Engine
-    from trunnion.recognize.surface.accuracy import SizeError
 
 LOCAL, REMAINING = "local", "remaining"
 """What may be exported beside groups by their id: all local features, and all other faces of the part."""
-NO_GROUPS = "the part's family has no groups of patches; choose recognize.family = surface"
-
-COUNTS = (0, 1, 3, 7, 15, 31, 63, 127, 255, 500)
-"""Points on an edge that the table of size errors is made for; the paper's figure 8 ends with 500."""
 
 
 def with_cut(engine: Engine, session: Session, cut: Cut, progress: Progress = QUIET) -> Session:
@@ -123,21 +118,6 @@ def export(engine: Engine, session: Session, what: Sequence[str], path: str | Pa
     return len(tags)
 
 
-def size_errors(
-    engine: Engine, session: Session, counts: Sequence[int] = COUNTS, progress: Progress = QUIET
-) -> tuple[SizeError, ...]:
-    """Return how exact the feature sizes are, and what they cost, for so many points on each edge; the last is the paper's repair."""
-    from trunnion.recognize.surface.accuracy import size_errors as measured
-
-    part = engine.context_of(session).part
-    return measured(part, part.tags, counts, progress)
-
-
-def boundary_errors(engine: Engine, session: Session) -> dict[int, float]:
-    """Return how far each face's boundary curves are from its surface at most, mm, by tag: what the file itself leaves open."""
-    return engine.context_of(session).part.boundary_error()
-
-
 def _recognition(session: Session) -> Recognition:
     if session.recognition is None:
         raise BadCall("no groups yet: recognize first")
@@ -151,8 +131,14 @@ def _group(found: Recognition, id: str) -> Feature:
             return f
     known = [f.id for f in groups]
     raise BadInput(
-        f"there is no group {id}; " + (f"known: {known[0]} to {known[-1]}" if known else NO_GROUPS)
+        f"there is no group {id}; "
+        + (f"known: {known[0]} to {known[-1]}" if known else _no_groups())
     )
+
+
+def _no_groups() -> str:
+    families = " or ".join(sharing_families())
+    return f"the part's family has no groups of patches; choose recognize.family = {families}"
 
 
 def _groups(found: Recognition) -> tuple[Feature, ...]:
@@ -162,7 +148,7 @@ def _groups(found: Recognition) -> tuple[Feature, ...]:
 def _new_group(found: Recognition, face: int) -> Feature:
     from_group = next((f for f in _groups(found) if face in f.tags), None)
     if from_group is None and not exclusive_kinds(found.family):
-        raise BadInput(NO_GROUPS)
+        raise BadInput(_no_groups())
     kind = exclusive_kinds(found.family)[0]
     local = from_group is not None and bool(from_group.attributes.get("local"))
     return Feature(

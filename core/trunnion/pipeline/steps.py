@@ -16,13 +16,13 @@ from trunnion.findings import BadCall, BadInput, Finding
 from trunnion.model.feature import Recognition
 from trunnion.model.session import Session
 from trunnion.pipeline.context import Context
-from trunnion.pipeline.family import FAMILIES, KINDS, RecognizeSettings, recognised
+from trunnion.pipeline.family import RecognizeSettings, recognised
 from trunnion.pipeline.manual_edits import with_features_by_hand, with_operations_by_hand
 from trunnion.pipeline.proving import prove_session
 from trunnion.pipeline.scene import SessionContext
-from trunnion.pipeline.toolpaths import STRATEGIES, findings_of, make_paths, strategy_settings
+from trunnion.pipeline.toolpaths import findings_of, make_paths, strategy_settings
 from trunnion.plan.blank import BlankSettings, make_blank
-from trunnion.plan.contract import PLANNERS, RouteJob, planner_for
+from trunnion.plan.contract import RouteJob, planner_for
 from trunnion.plan.cutting.milling import CuttingSettings, balance
 from trunnion.plan.cutting.peak import overloads
 from trunnion.plan.setups import SetupSettings, make_setups
@@ -30,6 +30,7 @@ from trunnion.plan.size import size_table
 from trunnion.post.settings import PostSettings
 from trunnion.progress import Progress
 from trunnion.recognize.contract import Measuring
+from trunnion.registry import FAMILIES, PART_KINDS, PLANNERS, STRATEGIES
 from trunnion.settings import checked, choose, digest
 from trunnion.verify.settings import ProofSettings
 
@@ -263,7 +264,7 @@ STEP_TABLE: tuple[Step, ...] = (
             b.part.digest,
             b.part.solid,
             registry.names(FAMILIES),
-            registry.names(KINDS),
+            registry.names(PART_KINDS),
         ),
         done=lambda s: s.recognition is not None,
         version=2,

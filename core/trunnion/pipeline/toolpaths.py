@@ -23,12 +23,11 @@ from trunnion.pipeline.context import Context
 from trunnion.pipeline.scene import SessionContext, SetupScene
 from trunnion.plan.contract import DriveNeeds, Planner, planner_for
 from trunnion.progress import Progress
+from trunnion.registry import STRATEGIES
 from trunnion.settings import checked, choose, digest
 from trunnion.toolpath.contract import ToolAxis
 from trunnion.toolpath.motion.reorient import moved_over, swing_of
 
-STRATEGIES = "strategies"
-"""Registry of strategies."""
 DRIVEN = 0.2
 """Share of an operation's progress for the geometry that drives it."""
 

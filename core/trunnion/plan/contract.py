@@ -24,14 +24,13 @@ from trunnion.model.session import SizeEntry
 from trunnion.model.setup import Setup
 from trunnion.plan.clearance import ClearanceScene
 from trunnion.progress import Progress
+from trunnion.registry import PLANNERS
 from trunnion.settings import Value, checked, choose
 from trunnion.shop import Shop
 
 if TYPE_CHECKING:
     from trunnion.part.part import Part
 
-PLANNERS = "planners"
-"""Registry of planners, by the name of their family."""
 T = TypeVar("T")
 
 

@@ -7,14 +7,16 @@ from dataclasses import dataclass
 from typing import Any, Protocol, runtime_checkable
 
 from trunnion import registry
+from trunnion.findings import BadCall
 from trunnion.geometry.arrays import Floats, Ints
 from trunnion.geometry.boundary import Boundary
 from trunnion.geometry.curvature import FaceCurvature
 from trunnion.geometry.facegraph import FaceGraph
 from trunnion.geometry.frame import Frame
 from trunnion.geometry.plane.region import Region
-from trunnion.model.feature import Recognition
+from trunnion.model.feature import Feature, GeneralizedPocket, Recognition
 from trunnion.progress import Progress
+from trunnion.registry import FAMILIES
 
 
 class Slicer(Protocol):
@@ -70,12 +72,53 @@ class PartKind(Protocol):
         ...
 
 
+@dataclass(frozen=True, slots=True, kw_only=True)
+class LegendClass:
+    """Features of a kind that legends count together: those whose `attribute` is true, or (empty) all that no other class has.
+
+    `label` is what several of them are called; `colours` (`#rrggbb`) tell neighbours apart by turns, the first stands for the class.
+    """
+
+    label: str
+    colours: tuple[str, ...]
+    attribute: str = ""
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class FeatureKind:
+    """A kind of features as people meet it: `name` in features and files, `label` in words ("open pocket"), `colour` (`#rrggbb`).
+
+    `classes`, where features of the kind are told apart, have the colours instead, and `heading` says what they are together. `pocket`
+    gives the pocket paper's model of a feature of the kind, where it has one. `along_axes` are sizes taken along the axes of the part's
+    file: they change when the part is turned, no other size does.
+    """
+
+    name: str
+    label: str
+    colour: str
+    classes: tuple[LegendClass, ...] = ()
+    heading: str = ""
+    pocket: Callable[[Feature, Recognition], GeneralizedPocket] | None = None
+    along_axes: tuple[str, ...] = ()
+
+    def class_of(self, feature: Feature) -> LegendClass:
+        """Return the class that a feature of the kind belongs to; the kind itself where it has no classes."""
+        rest = LegendClass(label=self.label, colours=(self.colour,))
+        for each in self.classes:
+            if each.attribute and feature.attributes.get(each.attribute):
+                return each
+            if not each.attribute:
+                rest = each
+        return rest
+
+
 class Family(PartKind, Protocol):
-    """A kind of parts with features of its own: its settings and its recogniser.
+    """A kind of parts with features of its own: their kinds, its settings and its recogniser.
 
     A package adds one through the entry points `trunnion.families`.
     """
 
+    kinds: tuple[FeatureKind, ...]
     settings: type
 
     def recognize(
@@ -103,10 +146,6 @@ class Measuring(Protocol):
         ...
 
 
-FAMILIES = "families"
-"""Registry of families, by name."""
-
-
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Smallest:
     """A size of the part that is the smallest of a size of its features: `name` in the size table, `size` of features of some `kinds`."""
@@ -128,6 +167,23 @@ class Bounding(Protocol):
     """A family whose smallest sizes bound what cutters a part can be machined with: they are sizes of the part."""
 
     smallest: tuple[Smallest, ...]
+
+
+def feature_kinds() -> dict[str, FeatureKind]:
+    """Return the kinds of features of all registered families by name; raise `BadCall` where two declare one differently."""
+    found: dict[str, FeatureKind] = {}
+    for family in registry.names(FAMILIES):
+        for kind in registry.get(FAMILIES, family).kinds:
+            if found.setdefault(kind.name, kind) != kind:
+                raise BadCall(
+                    f"the family {family} declares the kind of features {kind.name} otherwise than another family: rename it"
+                )
+    return found
+
+
+def sharing_families() -> tuple[str, ...]:
+    """Return the registered families with kinds of features that share out faces."""
+    return tuple(name for name in registry.names(FAMILIES) if exclusive_kinds(name))
 
 
 def exclusive_kinds(family: str) -> tuple[str, ...]:

@@ -2,8 +2,10 @@
 
 from __future__ import annotations
 
+import re
 import tomllib
-from collections.abc import Iterable
+from collections import Counter
+from collections.abc import Iterable, Mapping
 from dataclasses import dataclass
 from typing import Any
 
@@ -13,11 +15,12 @@ from numpy.typing import NDArray
 from trunnion.findings import BadInput
 from trunnion.geometry.arrays import Floats
 from trunnion.model.feature import Feature
+from trunnion.recognize.contract import FeatureKind, feature_kinds
 from trunnion_resources import folder
 
 Colour = tuple[int, int, int]
-GROUP = "group"
-"""The kind of a group of equal patches."""
+OTHER, UNEXPLAINED = "other", "unexplained"
+"""What has a colour of its own beside the kinds that families declare: features of any other kind, and faces in no feature."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -54,33 +57,58 @@ class RadiusColours:
         return self.colours[sum(radius > limit for limit in self.limits)]
 
 
+@dataclass(frozen=True, slots=True, kw_only=True)
+class ClassColours:
+    """A class of features in legends: what several are called, and its colours, which tell neighbours apart by turns."""
+
+    label: str
+    colours: tuple[Colour, ...]
+
+
 @dataclass(frozen=True, kw_only=True)
 class Palette:
-    """Colours of feature kinds, of groups of equal patches by class, of radii, of motions and of deviations."""
+    """Colours of features by the kinds that families declare, of radii, of motions and of deviations.
 
-    kinds: dict[str, Colour]
-    remaining: tuple[Colour, ...]
-    local: tuple[Colour, ...]
+    `other` is that of features whose kind no registered family declares, `unexplained` that of faces in no feature.
+    """
+
+    kinds: Mapping[str, FeatureKind]
+    other: Colour
+    unexplained: Colour
     radius: RadiusColours
     motions: dict[str, Colour]
     deviation: DeviationColours
 
     def kind(self, name: str) -> Colour:
         """Return the colour of a feature kind; kinds without one of their own share that of `other`."""
-        return self.kinds.get(name, self.kinds["other"])
+        if name == UNEXPLAINED:
+            return self.unexplained
+        return rgb(name, self.kinds[name].colour) if name in self.kinds else self.other
+
+    def class_of(self, feature: Feature) -> ClassColours:
+        """Return the class that a feature stands in."""
+        if feature.kind not in self.kinds:
+            return ClassColours(label=feature.kind.replace("_", " "), colours=(self.other,))
+        found = self.kinds[feature.kind].class_of(feature)
+        return ClassColours(
+            label=found.label, colours=tuple(rgb(feature.kind, c) for c in found.colours)
+        )
+
+    def classes(self, features: Iterable[Feature]) -> dict[ClassColours, int]:
+        """Return the classes of features with the number of each, in the order in which they are declared within a kind."""
+        met = Counter(self.class_of(f) for f in features)
+        labels = [c.label for kind in self.kinds.values() for c in kind.classes]
+        rank = {label: n for n, label in enumerate(labels)}
+        return dict(sorted(met.items(), key=lambda item: rank.get(item[0].label, -1)))
 
     def features(self, features: Iterable[Feature]) -> dict[str, Colour]:
-        """Return the colour of each feature by id: its kind's, but groups of equal patches are told apart, local ones by warm colours."""
+        """Return the colour of each feature by id: its kind's, or by turns one of its class."""
         found: dict[str, Colour] = {}
-        met = {True: 0, False: 0}
+        met: Counter[ClassColours] = Counter()
         for f in features:
-            if f.kind != GROUP:
-                found[f.id] = self.kind(f.kind)
-                continue
-            is_local = bool(f.attributes.get("local"))
-            wheel = self.local if is_local else self.remaining
-            found[f.id] = wheel[met[is_local] % len(wheel)]
-            met[is_local] += 1
+            stands = self.class_of(f)
+            found[f.id] = stands.colours[met[stands] % len(stands.colours)]
+            met[stands] += 1
         return found
 
     def motion(self, name: str) -> Colour:
@@ -89,23 +117,20 @@ class Palette:
 
 
 def load_palette() -> Palette:
-    """Return the palette that is shipped; raise `BadInput` when a colour is not written as `#rrggbb`."""
+    """Return the shipped colours with those that families declare; raise `BadInput` when a colour is not written as `#rrggbb`."""
     data = tomllib.loads((folder("palette") / "palette.toml").read_text(encoding="utf-8"))
-    kinds, motions = (
-        {k: _colour(k, v) for k, v in data[table].items()} for table in ("kinds", "motions")
-    )
-    remaining, local = (
-        tuple(_colour(name, text) for text in data["groups"][name])
-        for name in ("remaining", "local")
+    motions, features = (
+        {name: rgb(name, text) for name, text in data[table].items()}
+        for table in ("motions", "features")
     )
     radius = RadiusColours(
         limits=tuple(data["radius"]["limits"]),
-        colours=tuple(_colour("radius", c) for c in data["radius"]["colours"]),
+        colours=tuple(rgb("radius", c) for c in data["radius"]["colours"]),
     )
     return Palette(
-        kinds=kinds,
-        remaining=remaining,
-        local=local,
+        kinds=feature_kinds(),
+        other=features[OTHER],
+        unexplained=features[UNEXPLAINED],
         radius=radius,
         motions=motions,
         deviation=_deviation(data["deviation"]),
@@ -113,11 +138,12 @@ def load_palette() -> Palette:
 
 
 def _deviation(data: dict[str, Any]) -> DeviationColours:
-    gouge, left = (tuple(_colour(name, text) for text in data[name]) for name in ("gouge", "left"))
-    return DeviationColours(finished=_colour("finished", data["finished"]), gouge=gouge, left=left)
+    gouge, left = (tuple(rgb(name, text) for text in data[name]) for name in ("gouge", "left"))
+    return DeviationColours(finished=rgb("finished", data["finished"]), gouge=gouge, left=left)
 
 
-def _colour(name: str, text: str) -> Colour:
-    if len(text) != 7 or not text.startswith("#"):
+def rgb(name: str, text: str) -> Colour:
+    """Return red, green and blue (0 to 255) of what is written `#rrggbb`; raise `BadInput` that names it otherwise."""
+    if not re.fullmatch("#[0-9a-fA-F]{6}", text):
         raise BadInput(f"palette: the colour of {name} must be written #rrggbb, not {text}")
     return int(text[1:3], 16), int(text[3:5], 16), int(text[5:7], 16)

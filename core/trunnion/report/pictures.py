@@ -34,7 +34,7 @@ from trunnion.report.lines import (
     opened,
     strokes,
 )
-from trunnion.report.palette import GROUP, Colour, Palette
+from trunnion.report.palette import Colour, Palette
 from trunnion.settings import checked, choose
 from trunnion.verify.settings import ProofSettings
 
@@ -72,9 +72,7 @@ def write_pictures(
     if session.recognition is not None:
         progress.at(0.1, "drawing the features")
         _shoot(_features(session, mesh, palette), folder / f"{name}.features.png", progress)
-        words = (
-            "Groups of equal patches" if session.recognition.of_kind(GROUP) else "Features by kind"
-        )
+        words = features_caption(session.recognition, palette)
         made.append(Picture(file=f"{name}.features.png", caption=words))
     if any(len(p.path) for p in session.paths):
         progress.at(0.3, "drawing the toolpaths")
@@ -177,22 +175,18 @@ def _features(session: Session, mesh: Mesh, palette: Palette) -> Plotter:
     return _look(plotter, session)
 
 
+def features_caption(recognition: Recognition, palette: Palette) -> str:
+    """Return what the picture of the features shows: the heading of the first kind that has one, else features by kind."""
+    found = (palette.kinds[k].heading for k in recognition.counts() if k in palette.kinds)
+    return next(filter(None, found), "Features by kind")
+
+
 def feature_legend(recognition: Recognition, palette: Palette) -> dict[str, Colour]:
-    """Return what the colours of features mean: kinds with their number, or, of groups of equal patches, both classes with theirs."""
-    groups = [bool(f.attributes.get("local")) for f in recognition.of_kind(GROUP)]
-    words = {
-        f"{kind.replace('_', ' ')} {n}": palette.kind(kind)
-        for kind, n in recognition.counts().items()
-        if kind != GROUP
+    """Return what the colours of features mean: kinds with their number, or the classes of a kind with theirs."""
+    return {
+        f"{stands.label} {n}": stands.colours[0]
+        for stands, n in palette.classes(recognition.features).items()
     }
-    if groups:
-        words |= {f"groups of the remaining area {groups.count(False)}": palette.remaining[0]}
-        words |= (
-            {f"groups of local features {groups.count(True)}": palette.local[0]}
-            if any(groups)
-            else {}
-        )
-    return words
 
 
 def _outline(plotter: Plotter, surface: Any) -> None:

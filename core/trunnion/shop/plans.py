@@ -39,12 +39,12 @@ class TypicalPlan:
 
 
 def load_plans(user_folder: Path | None) -> dict[str, TypicalPlan]:
-    """Return the typical plans by name, in the order in which a family takes the first: a user's before the program's, then by file name,
-    then as they stand in the file. A user's replaces the program's of the same name as a whole."""
+    """Return the typical plans by name, in the order in which a family takes the first: a user's before those of registered packages,
+    these before the program's, then by file name, then as they stand in the file. One replaces another of its name as a whole."""
     found = list(entries("plans", user_folder))
-    own = {entry.name for layer, entry in found if layer}
+    folder = {entry.name: layer for layer, entry in found}
     chosen = by_name(found)
-    return {name: _plan(chosen[name]) for name in sorted(chosen, key=lambda name: name not in own)}
+    return {name: _plan(chosen[name]) for name in sorted(chosen, key=lambda name: -folder[name])}
 
 
 def _plan(entry: CatalogueEntry) -> TypicalPlan:

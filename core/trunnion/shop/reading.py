@@ -6,12 +6,12 @@ import math
 import tomllib
 from collections.abc import Iterable, Iterator
 from dataclasses import dataclass, field
-from importlib.resources import files
 from importlib.resources.abc import Traversable
 from pathlib import Path
 from typing import Any
 
 from trunnion.findings import BadInput
+from trunnion.registry import resource_folders
 
 SUFFIX = ".toml"
 
@@ -133,13 +133,14 @@ class CatalogueEntry:
 
 
 def folders(kind: str, user_folder: Path | None) -> tuple[Traversable, ...]:
-    """Return where a kind of catalogue (`tools`, `materials`, ...) lies: the program's own folder, then the user's when there is one."""
-    own: tuple[Traversable, ...] = (files("trunnion_resources").joinpath(kind),)
+    """Return where a kind of catalogue (`tools`, `materials`, ...) lies: the program's own folder, those of registered packages, then
+    the user's when there is one."""
+    own = resource_folders(kind)
     return own if user_folder is None else (*own, user_folder / kind)
 
 
 def entries(kind: str, user_folder: Path | None) -> Iterator[tuple[int, CatalogueEntry]]:
-    """Yield the top tables of every file of a kind in the order of file names, with 0 for the program's folder and 1 for the user's."""
+    """Yield the top tables of every file of a kind in the order of file names, with the number of the folder: 0 for the program's."""
     for layer, folder in enumerate(folders(kind, user_folder)):
         if folder.is_dir():
             for path in sorted(
@@ -153,7 +154,7 @@ def entries(kind: str, user_folder: Path | None) -> Iterator[tuple[int, Catalogu
 
 
 def by_name(found: Iterable[tuple[int, CatalogueEntry]]) -> dict[str, CatalogueEntry]:
-    """Return entries by name, the user's over the program's; raise `BadInput` when one folder gives a name twice."""
+    """Return entries by name, those of later folders over those of earlier ones; raise `BadInput` when one folder gives a name twice."""
     chosen: dict[str, tuple[int, CatalogueEntry]] = {}
     for layer, entry in found:
         earlier = chosen.get(entry.name)

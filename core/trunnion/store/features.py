@@ -1,8 +1,4 @@
-"""The features XML: tags, roles and sizes, and each pocket in the panel paper's words; no geometry is copied.
-
-The generalised pocket of "Slicing Recognition of Aircraft Integral Panel Generalized Pocket" (2.2): centre, top, bottom, guide profile
-(each guide line by the part face it lies on), islands, auxiliary features, identification.
-"""
+"""The features XML: tags, roles and sizes, and each pocket in the pocket paper's words (`GeneralizedPocket`); no geometry is copied."""
 
 from __future__ import annotations
 
@@ -12,8 +8,9 @@ from typing import Any
 from lxml import etree
 
 from trunnion.findings import BadCall, BadInput
-from trunnion.model.feature import FaceRole, Feature, Recognition, TakenFor
+from trunnion.model.feature import FaceRole, Feature, GeneralizedPocket, Recognition, TakenFor
 from trunnion.model.session import PartInfo, Session
+from trunnion.recognize.contract import FeatureKind, feature_kinds
 from trunnion.store import xml
 from trunnion.store.atomic import write_bytes
 from trunnion.store.pieces import (
@@ -29,8 +26,6 @@ from trunnion.store.pieces import (
 )
 
 FORMAT = 1
-_POCKETS = {"pocket": "pocket", "open_pocket": "open pocket"}
-_GUIDES = ("wall", "inner_convergence", "outer_convergence", "corner")
 
 
 def write_features(session: Session, path: str | Path) -> None:
@@ -54,8 +49,9 @@ def features_xml(recognition: Recognition, part: PartInfo) -> bytes:
     )
     _add_taken_for(root, recognition)
     add_frame(root, recognition.frame)
+    kinds = feature_kinds()
     for feature in recognition.features:
-        _add_feature(root, feature, recognition)
+        _add_feature(root, feature, recognition, kinds.get(feature.kind))
     unexplained = add(root, "unexplained", area_share=text_of(float(recognition.unexplained_share)))
     for tag in recognition.unexplained:
         add(unexplained, "face", tag=str(tag))
@@ -113,7 +109,9 @@ def _taken_for(root: Any) -> TakenFor | None:
     return None if element is None else made(TakenFor, element, reason=element.text or "")
 
 
-def _add_feature(root: Any, feature: Feature, recognition: Recognition) -> None:
+def _add_feature(
+    root: Any, feature: Feature, recognition: Recognition, kind: FeatureKind | None
+) -> None:
     element = add(
         root, "feature", id=feature.id, kind=feature.kind, by_hand=text_of(feature.by_hand)
     )
@@ -121,40 +119,33 @@ def _add_feature(root: Any, feature: Feature, recognition: Recognition) -> None:
         add(element, "face", tag=str(face.face), role=face.role)
     add_values(element, "size", "name", feature.sizes)
     add_values(element, "attribute", "name", feature.attributes)
-    if feature.kind in _POCKETS:
-        _add_pocket(element, feature, recognition)
+    if kind is not None and kind.pocket is not None:
+        _add_pocket(element, kind.pocket(feature, recognition))
 
 
-def _add_pocket(element: Any, feature: Feature, recognition: Recognition) -> None:
-    """Add the paper's model of a pocket, made from what the feature already says."""
+def _add_pocket(element: Any, model: GeneralizedPocket) -> None:
+    """Add the paper's model of a pocket: what it says comes from the feature's family."""
     pocket = add(
         element,
         "generalized-pocket",
-        identification=str(feature.attributes.get("identification", _POCKETS[feature.kind])),
-        through=text_of(bool(feature.attributes.get("through", not feature.with_role("floor")))),
+        identification=model.identification,
+        through=text_of(model.through),
     )
-    centre = feature.attributes.get("centre")
-    if isinstance(centre, (tuple, list)) and len(centre) in (2, 3):
+    if model.centre:
         add(
             pocket,
             "centre",
-            **{axis: text_of(float(v)) for axis, v in zip("xyz", centre, strict=False)},
+            **{axis: text_of(v) for axis, v in zip("xyz", model.centre, strict=False)},
         )
-    for tag, size in (("top", "top_z"), ("bottom", "floor_z")):
-        if isinstance(z := feature.sizes.get(size), (int, float)):
-            add(pocket, tag, z=text_of(float(z)))
+    for tag, z in (("top", model.top), ("bottom", model.bottom)):
+        if z is not None:
+            add(pocket, tag, z=text_of(z))
     guide = add(pocket, "guide-profile")
-    for face in feature.faces:
-        if face.role in _GUIDES:
-            add(guide, "guide-line", face=str(face.face), role=face.role)
-    for other in recognition.features:
-        if feature.id in (other.attributes.get("in"), other.attributes.get("nested_in")):
-            add(
-                pocket,
-                "island" if other.kind == "island" else "auxiliary",
-                feature=other.id,
-                kind=other.kind,
-            )
+    for face in model.guide:
+        add(guide, "guide-line", face=str(face.face), role=face.role)
+    for other in (*model.islands, *model.auxiliary):
+        tag = "island" if other in model.islands else "auxiliary"
+        add(pocket, tag, feature=other.id, kind=other.kind)
 
 
 def _feature(element: Any) -> Feature:

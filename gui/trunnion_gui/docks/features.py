@@ -25,8 +25,8 @@ from trunnion_gui.families.contract import Column, FeatureClass
 from trunnion_gui.families.views import Views
 from trunnion_gui.i18n import tr
 from trunnion_gui.look import icons
-from trunnion_gui.look.colours import feature_colours, kind_colour, kinds
-from trunnion_gui.look.words import kind_words, sentence
+from trunnion_gui.look.colours import feature_colours, kind_colour, kind_label, kinds
+from trunnion_gui.look.words import sentence
 from trunnion_gui.widgets.table import RIGHT, colour_icon, select_row, tree
 
 _ID = Qt.ItemDataRole.UserRole
@@ -100,12 +100,12 @@ class FeatureDock(QWidget):
         change = QMenu(tr("Change kind"), menu)
         change.setIcon(icons.icon("kind"))
         for kind in kinds():
-            if kind not in ("unexplained", feature.kind):
+            if kind != feature.kind:
                 change.addAction(
                     colour_icon(kind_colour(kind)),
-                    sentence(tr(kind_words(kind))),
+                    sentence(tr(kind_label(kind))),
                     lambda k=kind: self._document.edit(
-                        tr("{id} becomes {kind}").format(id=feature.id, kind=kind_words(k)),
+                        tr("{id} becomes {kind}").format(id=feature.id, kind=tr(kind_label(k))),
                         edits.with_kind(feature.id, k),
                     ),
                 )

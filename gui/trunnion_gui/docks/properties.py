@@ -10,6 +10,7 @@ from trunnion_gui import edits
 from trunnion_gui.document import Document
 from trunnion_gui.form import Form
 from trunnion_gui.i18n import tr
+from trunnion_gui.look.colours import kind_label
 from trunnion_gui.look.words import amount, duration, kind_words, sentence, size_unit
 from trunnion_gui.widgets import table as tables
 
@@ -57,7 +58,7 @@ class PropertiesDock(QScrollArea):
         chosen, document = self._document.selection.current, self._document
         feature, operation = document.feature(chosen.id), document.operation(chosen.id)
         if chosen.kind == "feature" and feature:
-            self._show(feature.id, sentence(tr(kind_words(feature.kind))), feature_rows(feature))
+            self._show(feature.id, sentence(tr(kind_label(feature.kind))), feature_rows(feature))
         elif chosen.kind == "operation" and operation:
             self._show(
                 operation.id,

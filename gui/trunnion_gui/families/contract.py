@@ -15,8 +15,8 @@ from PySide6.QtWidgets import QMenu, QWidget
 from trunnion.model.feature import Feature, Recognition
 from trunnion_gui.document import Document
 from trunnion_gui.i18n import tr
-from trunnion_gui.look.colours import Theme, kind_colour
-from trunnion_gui.look.words import amount, kind_words, sentence
+from trunnion_gui.look.colours import Theme, kind_colour, kind_label
+from trunnion_gui.look.words import amount, sentence
 
 if TYPE_CHECKING:
     from trunnion_gui.menus.window_access import WindowAccess
@@ -106,7 +106,7 @@ class FamilyView:
     def classes(self, kind: str, features: Sequence[Feature]) -> tuple[FeatureClass, ...]:
         """Return the classes that the features of a kind stand in."""
         return (
-            FeatureClass(kind, sentence(tr(kind_words(kind))), kind_colour(kind), tuple(features)),
+            FeatureClass(kind, sentence(tr(kind_label(kind))), kind_colour(kind), tuple(features)),
         )
 
     def size(self, feature: Feature) -> str:

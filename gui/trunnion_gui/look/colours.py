@@ -11,7 +11,8 @@ from importlib.resources import files
 
 from trunnion.model.feature import Recognition
 from trunnion.report.lines import AXIS, MOTIONS
-from trunnion.report.palette import Palette, load_palette
+from trunnion.report.palette import OTHER, Palette, load_palette
+from trunnion_gui.look.words import kind_words
 
 Rgb = tuple[int, int, int]
 READABLE = 4.5
@@ -66,9 +67,9 @@ def theme(name: str) -> Theme:
     return Theme(name=name, **_themes()[name])
 
 
-def kinds() -> dict[str, str]:
-    """Return the colour of every kind of feature."""
-    return _palette()["kinds"]
+def kinds() -> tuple[str, ...]:
+    """Return the kinds of feature that families declare, and the one that stands for all others."""
+    return (*palette().kinds, OTHER)
 
 
 def feature_colours(found: Recognition) -> dict[str, str]:
@@ -110,8 +111,13 @@ def stock_colours(chosen: Theme) -> tuple[str, str]:
 
 def kind_colour(kind: str) -> str:
     """Return the colour of a kind; kinds without one of their own share that of `other`."""
-    known = kinds()
-    return known.get(kind, known["other"])
+    return hexed(palette().kind(kind))
+
+
+def kind_label(kind: str) -> str:
+    """Return what a feature of a kind is called, in English; a kind that no family declares by its name."""
+    declared = palette().kinds.get(kind)
+    return declared.label if declared else kind_words(kind)
 
 
 def rgb(colour: str) -> Rgb:

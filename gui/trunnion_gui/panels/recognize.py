@@ -9,6 +9,7 @@ from PySide6.QtWidgets import QComboBox, QHBoxLayout, QLabel, QPushButton, QWidg
 from trunnion.model.feature import Recognition, TakenFor
 from trunnion.model.session import PartInfo
 from trunnion_gui.i18n import tr
+from trunnion_gui.look.colours import kind_label
 from trunnion_gui.look.words import amount, counted, share
 from trunnion_gui.widgets.layout import empty
 from trunnion_gui.widgets.panel import Panel
@@ -51,7 +52,7 @@ class RecognizePanel(Panel):
         if found is None:
             self.result.setText("")
             return
-        counts = " · ".join(counted(n, tr(kind)) for kind, n in found.counts().items())
+        counts = " · ".join(counted(n, tr(kind_label(kind))) for kind, n in found.counts().items())
         loose = (
             ""
             if not found.unexplained

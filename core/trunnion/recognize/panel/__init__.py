@@ -22,6 +22,7 @@ from trunnion.recognize.panel.features import (
     make_profile,
 )
 from trunnion.recognize.panel.frame import choose_frame, flipped, height_frame
+from trunnion.recognize.panel.kinds import KINDS
 from trunnion.recognize.panel.rules import GraphFeatures, pockets_of, without
 from trunnion.recognize.panel.settings import PanelSettings
 from trunnion.recognize.panel.side import PanelSide
@@ -41,6 +42,7 @@ class PanelFamily:
 
     name = "panel"
     noun = "a panel"
+    kinds = KINDS
     settings = PanelSettings
     smallest: tuple[Smallest, ...] = (
         Smallest(

@@ -6,7 +6,7 @@ from dataclasses import replace
 
 import numpy as np
 
-from trunnion.findings import Finding, face_tags, info
+from trunnion.findings import BadInput, Finding, face_tags, info
 from trunnion.geometry.arrays import Bools, Floats, Ints
 from trunnion.geometry.facegraph import FaceGraph
 from trunnion.model.feature import FaceRole, Feature, Recognition
@@ -14,6 +14,7 @@ from trunnion.progress import QUIET, Progress
 from trunnion.recognize.contract import Bounded, Suitability
 from trunnion.recognize.surface.frame import frame_of
 from trunnion.recognize.surface.groups import aligned_groups, invariant_groups
+from trunnion.recognize.surface.kinds import GROUP, KINDS
 from trunnion.recognize.surface.radii import PatchRadii, patch_bends
 from trunnion.recognize.surface.settings import ALIGNED, EXACT, SurfaceSettings
 from trunnion.recognize.surface.size import PatchSizes, patch_sizes
@@ -28,8 +29,9 @@ class SurfaceFamily:
 
     name = "surface"
     noun = "a part of curved surfaces"
+    kinds = KINDS
     settings = SurfaceSettings
-    exclusive: tuple[str, ...] = ("group",)
+    exclusive: tuple[str, ...] = (GROUP,)
 
     def suits(self, graph: FaceGraph) -> Suitability:
         """Return how near the curved share of the part's area comes to that of parts that are surely of this family."""
@@ -42,8 +44,15 @@ class SurfaceFamily:
         settings: SurfaceSettings,
         progress: Progress = QUIET,
     ) -> Recognition:
-        """Return one feature a group of equal patches, largest first; local ones are marked. Raises `Cancelled` when asked to stop."""
+        """Return one feature a group of equal patches, largest first; local ones are marked.
+
+        Raises `BadInput` for a part without faces, `Cancelled` when asked to stop.
+        """
         progress.at(0.0, "measuring patches")
+        if not len(graph):
+            raise BadInput(
+                "the part has no face: export its solid or its surfaces from the CAD system"
+            )
         sizes = _sizes(graph, bounded, settings)
         progress.at(0.5, "grouping patches")
         size = _size(sizes, settings)

@@ -14,6 +14,8 @@ from trunnion.progress import QUIET, Progress
 from trunnion.recognize.contract import Bounded
 from trunnion.recognize.surface.size import Parts, box_sides, repaired
 
+COUNTS = (0, 1, 3, 7, 15, 31, 63, 127, 255, 500)
+"""Points on an edge that the table of size errors is made for; the paper's figure 8 ends with 500."""
 MOST_POINTS = 10_000
 """Points on an edge beyond which nothing is learned any more."""
 

@@ -32,6 +32,8 @@ def suitability(graph: FaceGraph) -> Suitability:
     material nothing else can be made than groups.
     """
     whole = float(graph.area.sum())
+    if whole == 0.0:
+        return Suitability(score=0.0, explained=0.0, reason="the part has no face")
     bent = ~_plain(graph)
     curved = min(
         (float(graph.area[bent & _leans(graph, z)].sum()) for z in _directions(graph)),

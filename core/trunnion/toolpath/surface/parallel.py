@@ -14,7 +14,7 @@ import numpy as np
 import shapely
 
 from trunnion import tolerance
-from trunnion.findings import Finding, Refused, warning
+from trunnion.findings import Finding, Refused, face_tags, warning
 from trunnion.geometry.arrays import Bools, Floats, Ints
 from trunnion.geometry.drop_surface import DropSurface
 from trunnion.geometry.sheet.skin import Skin
@@ -173,6 +173,8 @@ def parallel(
         return Planned(findings=found)
     planes = _planes(places, tool, drive.height, settings)
     passes = _passes(planes, drive, tool, settings, progress.part(0.0, 0.6))
+    if not passes:
+        return Planned(findings=(*found, _untouched(drive, tool)))
     passes, lost = leaned_by(
         passes,
         drive,
@@ -193,6 +195,17 @@ def parallel(
     return Planned(
         path=linked(passes, drive, tool, data, stock, setup, manner, progress.part(0.7, 1.0)),
         findings=(*found, *lost),
+    )
+
+
+def _untouched(drive: SurfaceDrive, tool: Tool) -> Finding:
+    """Return the finding that a cutter is too large to touch the area anywhere."""
+    return warning(
+        "surface.out-of-reach",
+        f"{tool.name} touches nothing of the faces of {drive.feature}",
+        drive.feature,
+        *face_tags(drive.faces),
+        remedy="finish them with a smaller or longer cutter",
     )
 
 
@@ -277,7 +290,7 @@ def _laid(places: FacetSlopes, tool: Tool, height: float, angle: float, stepover
 def _passes(
     planes: _Planes, drive: SurfaceDrive, tool: Tool, settings: ParallelSettings, progress: Progress
 ) -> list[Pass]:
-    """Return the passes where the cutter touches the area, plane by plane."""
+    """Return the passes where the cutter touches the area, plane by plane; none where it touches it nowhere."""
     pieces, lowest = lower_side(tool, drive.allowance), float(drive.low[2]) - tool.flute_length
     on_area = np.zeros(len(drive.skin.triangles), dtype=bool)
     on_area[planes.triangles] = True
@@ -309,6 +322,8 @@ def _passes(
     beside = asked(np.repeat(plane, 2), runs.ravel(), progress.part(0.4, 0.4))[1].reshape(-1, 2)
     overlap = np.where(beside, max(settings.overlap - planes.beyond, 0.0), settings.overlap)
     plane, runs = _joined(plane, runs, overlap, tool.radius)
+    if not len(runs):
+        return []
     lines = [
         planes.at[p] * planes.across + np.outer(r, planes.along)
         for p, r in zip(plane, runs, strict=True)

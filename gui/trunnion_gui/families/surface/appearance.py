@@ -6,7 +6,7 @@ from collections.abc import Sequence
 
 from trunnion.model.feature import Feature, Recognition
 from trunnion_gui.families.contract import Column, FeatureClass, LegendRow
-from trunnion_gui.families.surface.groups import LOCAL, is_local
+from trunnion_gui.families.surface.groups import GROUP, LOCAL, is_local
 from trunnion_gui.i18n import tr
 from trunnion_gui.look.colours import hexed, palette
 from trunnion_gui.look.words import amount
@@ -29,7 +29,8 @@ def classes(kind: str, features: Sequence[Feature]) -> tuple[FeatureClass, ...]:
 
 def class_colours() -> tuple[str, str]:
     """Return the colours that stand for the groups of the remaining area, and for local features."""
-    return hexed(palette().remaining[0]), hexed(palette().local[0])
+    remaining, local = palette().kinds[GROUP].classes
+    return remaining.colours[0], local.colours[0]
 
 
 def radius_columns() -> tuple[Column, ...]:

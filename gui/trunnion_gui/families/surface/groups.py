@@ -7,11 +7,9 @@ from dataclasses import replace
 
 from trunnion.model.feature import Feature
 from trunnion.model.session import Session
-from trunnion.report.palette import GROUP as GROUP
+from trunnion.recognize.surface.kinds import GROUP as GROUP
+from trunnion.recognize.surface.kinds import LOCAL as LOCAL
 from trunnion_gui.edits import Edit, recognition_of
-
-LOCAL = "local"
-"""The attribute of a local feature, and the name of their class."""
 
 
 def is_local(feature: Feature) -> bool:

@@ -134,13 +134,14 @@ def export(
 
 def accuracy(engine: Any, progress: Progress, _tell: Tell, session: Session) -> Accuracy:
     """Return how exact the feature sizes are by the number of points on each edge."""
-    from trunnion.pipeline.patches import boundary_errors, size_errors
+    from trunnion.recognize.surface.accuracy import COUNTS, size_errors
 
+    part = engine.context_of(session).part
     rows = tuple(
         ErrorRow(r.on_edge, r.points, r.largest, r.mean, r.seconds)
-        for r in size_errors(engine, session, progress=progress)
+        for r in size_errors(part, part.tags, COUNTS, progress)
     )
-    errors = boundary_errors(engine, session)
+    errors = part.boundary_error()
     worst = max(errors, key=lambda tag: errors[tag])
     return Accuracy(rows, errors[worst], worst)
 

@@ -37,13 +37,14 @@ def add(commands: Any) -> None:
 
 def run(chosen: argparse.Namespace) -> int:
     """Print the table of errors and the boundary's own error."""
-    from trunnion.pipeline.patches import COUNTS, boundary_errors, size_errors
+    from trunnion.recognize.surface.accuracy import COUNTS, size_errors
 
     counts = _counts(chosen.points) or COUNTS
     engine, session = open_session(chosen, None)
     assert session.part is not None
-    rows = size_errors(engine, session, counts, progress_of(chosen))
-    errors = boundary_errors(engine, session)
+    part = engine.context_of(session).part
+    rows = size_errors(part, part.tags, counts, progress_of(chosen))
+    errors = part.boundary_error()
     worst = max(errors, key=lambda tag: errors[tag])
     if chosen.json:
         show_json(

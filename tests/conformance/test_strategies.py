@@ -1,0 +1,248 @@
+"""What every registered strategy must do, whoever wrote it: ours, and those of packages in `tests/families`.
+
+A strategy is looked at in an operation of a small part that uses it, after all that comes before; one that no small part's plan uses takes
+the place of an operation that is driven by the same class of geometry.
+"""
+
+from __future__ import annotations
+
+import re
+from dataclasses import dataclass, replace
+from functools import cache
+
+import numpy as np
+import pytest
+
+from subjects import PLANNERS, STRATEGIES, check_cancel, check_settings, is_one_line, own, until
+from trunnion import registry
+from trunnion.model.operation import Operation, OperationPath
+from trunnion.model.session import Session
+from trunnion.model.toolpath import Motion
+from trunnion.pipeline import Engine
+from trunnion.pipeline.toolpaths import make_paths
+from trunnion.progress import QUIET
+from trunnion.settings import choose
+from trunnion.toolpath.contract import ToolAxis
+
+by_name = pytest.mark.parametrize("name", STRATEGIES)
+COARSE = {"surface.scallop": 0.3}
+"""Scallops in mm for passes that nobody proves."""
+NOT_LESS = 0.95
+"""Foreseen over measured power: the stock's cells let the proof see a little more than there is."""
+KNOWN = {("plane.profile_finish", "bowl"), ("surface.waterline", "bowl")}
+"""Strategies that meet more than they declare on a part, faults to be mended: on the bowl the outline's finishing measures 2.1 kW where
+1.64 kW are foreseen. One that is mended must leave this list."""
+LARGER = 4.0
+"""Diameter of a cutter that is far too large over that of the one that was chosen."""
+
+
+@dataclass(frozen=True, eq=False)
+class Case:
+    """An operation by a strategy, in a session whose process ends with it; `is_own` where a plan chose the strategy for it."""
+
+    engine: Engine
+    session: Session
+    operation: Operation
+    is_own: bool
+
+    def path(self, operation=None, progress=QUIET, alone=False) -> OperationPath:
+        """Return the toolpath of the operation, or of a changed one in its place."""
+        last = operation or self.operation
+        before = () if alone else self.session.process.operations[:-1]
+        process = replace(self.session.process, operations=(*before, last))
+        paths = tuple(p for p in self.session.paths if p.operation != last.id)
+        session = replace(self.session, process=process, paths=paths)
+        return make_paths(session, self.engine.context, progress)[-1]
+
+
+def declared_drive(name) -> type:
+    return registry.get("strategies", name).drive
+
+
+@cache
+def case(name) -> Case:
+    """Return the case of a strategy: an operation of its own, else one of the same class of drive."""
+    chosen = [(f, o) for f in PLANNERS for o in until(f, "toolpath").process.operations]
+    mine = [(f, o) for f, o in chosen if o.strategy == name]
+    alike = [(f, o) for f, o in chosen if declared_drive(o.strategy) is declared_drive(name)]
+    family, operation = mine[-1] if mine else min(alike, key=finished_area)
+    engine, session = own(family)[0], until(family, "toolpath")
+    rows = [o.id for o in session.process.operations]
+    before = session.process.operations[: rows.index(operation.id)]
+    strategy = registry.get("strategies", name)
+    if not mine:
+        operation = replace(operation, strategy=name)
+    if strategy.tool_axis(choose(strategy.settings, operation.choices)) is ToolAxis.LEANING:
+        session = with_five_axes(engine, session)
+    operation = replace(operation, choices={**operation.choices, **COARSE})
+    process = replace(session.process, operations=(*before, operation))
+    return Case(engine, replace(session, process=process), operation, bool(mine))
+
+
+def finished_area(chosen) -> float:
+    """Return the area in mm2 that an operation of a family's small part finishes; infinite where it finishes none."""
+    family, operation = chosen
+    area = own(family)[0].context.part.graph().area
+    return float(area[np.array(operation.faces) - 1].sum()) if operation.faces else np.inf
+
+
+def with_five_axes(engine, session):
+    """Return a session whose setups stand on a machine with two rotary axes."""
+    machines = engine.context.shop.machines
+    machine = next(name for name, m in machines.items() if len(m.rotary) == 2)
+    setups = tuple(replace(s, machine=machine) for s in session.setups)
+    return replace(session, setups=setups, process=replace(session.process, setups=setups))
+
+
+@cache
+def made(name) -> OperationPath:
+    return case(name).path()
+
+
+def test_a_strategy_of_a_package_is_among_them():
+    assert any(not name.startswith(("plane.", "surface.")) for name in STRATEGIES)
+
+
+@by_name
+def test_its_settings_are_complete(name):
+    check_settings(registry.get("strategies", name).settings)
+    group = registry.get("strategies", name).settings.GROUP
+    assert group == name
+
+
+@by_name
+def test_it_declares_what_it_takes_and_leaves(name):
+    strategy = registry.get("strategies", name)
+    settled = {c for other in STRATEGIES for c in registry.get("strategies", other).settles}
+    assert hasattr(strategy.drive, "is_empty")
+    assert set(strategy.leaves) <= settled
+    assert strategy.tool_axis(strategy.settings()) in ToolAxis
+    assert is_one_line(strategy.__doc__.split("\n")[0])
+
+
+@by_name
+def test_the_engagement_that_it_can_meet_fits_the_cutter(name):
+    o, strategy = case(name).operation, registry.get("strategies", name)
+    met = strategy.meets(o.tool, o.data, choose(strategy.settings, {}), None)
+    assert 0.0 < met.width <= max(o.tool.diameter, o.data.width) and met.depth > 0.0
+    assert 0.0 < met.share <= 1.0
+
+
+@by_name
+def test_it_moves_or_says_why_not(name):
+    found = made(name)
+    assert len(found.path) or found.findings
+    if case(name).is_own:
+        assert len(found.path)
+
+
+@cache
+def coarse(name) -> OperationPath:
+    """Return the operation with a cutter that is far too large."""
+    o = case(name).operation
+    return case(name).path(replace(o, tool=scaled(o.tool, LARGER)))
+
+
+def scaled(tool, share):
+    """Return a cutter of the same form that is larger, its flutes as long as its corner asks for."""
+    wide = (
+        "diameter",
+        "neck_diameter",
+        "shank_diameter",
+        *(() if tool.form == "bull" else ("corner_radius",)),
+    )
+    length = max(tool.flute_length, 0.5 * share * tool.diameter)
+    high = ("flute_length", "neck_length", "stickout", "gauge_length")
+    sizes = {f: getattr(tool, f) * share for f in wide}
+    return replace(
+        tool, **sizes, **{f: getattr(tool, f) + length - tool.flute_length for f in high}
+    )
+
+
+@by_name
+def test_what_it_leaves_is_said_in_words_with_what_to_do(name):
+    for found in (made(name), coarse(name)):
+        assert len(found.path) or found.findings
+        for f in found.findings:
+            assert is_one_line(f.text) and f.code.count(".") == 1, f
+            assert f.remedy or f.code == "toolpath.refused", f
+
+
+@by_name
+def test_positions_are_numbers_and_axes_unit(name):
+    path = made(name).path
+    assert np.isfinite(path.position).all() and np.isfinite(path.feed).all()
+    assert np.linalg.norm(path.axis, axis=1) == pytest.approx(1.0)
+    assert (path.feed[path.motion != Motion.RAPID] > 0.0).all()
+
+
+@by_name
+def test_it_begins_and_ends_at_the_clearance_height_or_above(name):
+    path, clearance = made(name).path, case(name).session.setups[0].clearance
+    if len(path):
+        assert path.motion[0] == path.motion[-1] == Motion.RAPID
+        assert (path.position[[0, -1], 2] >= clearance - 1e-9).all()
+
+
+@by_name
+def test_a_rapid_of_an_upright_tool_never_moves_in_xy_and_z_at_once(name):
+    path = made(name).path
+    rapid = (path.motion == Motion.RAPID) & (path.axis[:, 2] > 1.0 - 1e-12)
+    steps = np.abs(path.position - path.starts())[rapid]
+    assert not ((steps[:, :2].max(axis=1, initial=0.0) > 1e-9) & (steps[:, 2] > 1e-9)).any()
+
+
+@by_name
+def test_arcs_keep_their_radius_from_start_to_end(name):
+    path = made(name).path
+    arcs = path.motion >= Motion.ARC_CW
+    at_start = np.linalg.norm((path.starts() - path.centre)[arcs, :2], axis=1)
+    at_end = np.linalg.norm((path.position - path.centre)[arcs, :2], axis=1)
+    assert at_end == pytest.approx(at_start, abs=1e-6)
+
+
+@by_name
+def test_no_block_stands_still(name):
+    path = made(name).path
+    turns = np.linalg.norm(np.diff(path.axis, axis=0), axis=1) > 1e-9
+    assert ((path.lengths()[1:] > 1e-4) | turns).all()
+
+
+@by_name
+def test_the_same_input_gives_the_same_bytes(name):
+    first, again = made(name), case(name).path()
+    for column in ("position", "axis", "motion", "centre", "feed", "mark"):
+        assert getattr(again.path, column).tobytes() == getattr(first.path, column).tobytes()
+    assert (again.key, again.findings) == (first.key, first.findings)
+
+
+def left(found: OperationPath) -> float:
+    """Return the area in mm2 that findings say is left."""
+    words = " ".join(f.text for f in found.findings)
+    return sum(map(float, re.findall(r"([0-9.]+) mm2", words)))
+
+
+@by_name
+def test_a_smaller_cutter_leaves_no_more(name):
+    by_large = coarse(name)
+    assert left(made(name)) <= left(by_large) or not len(by_large.path)
+
+
+@pytest.mark.parametrize("family", PLANNERS)
+def test_no_path_meets_more_than_its_strategy_declares(family):
+    session = until(family, "verify")
+    proofs = {p.operation: p for p in session.verdict.operations}
+    assert session.verdict.releases and set(proofs) == {o.id for o in session.process.operations}
+    measured = {o.id: proofs[o.id].power or 0.0 for o in session.process.operations}
+    more = {
+        (o.strategy, session.part.name)
+        for o in session.process.operations
+        if o.data.highest_power < NOT_LESS * measured[o.id]
+    }
+    assert more == {known for known in KNOWN if known[1] == session.part.name}
+
+
+@by_name
+def test_it_stops_soon_after_it_was_asked_to(name):
+    made(name)
+    check_cancel(lambda progress: case(name).path(progress=progress, alone=True))
