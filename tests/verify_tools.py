@@ -457,7 +457,7 @@ def proof(
         (block_with_pocket(),),
         blank,
         tools,
-        machine,
+        (machine,),
         chosen,
         progress,
         planned_faces=range(1, 24),

@@ -23,7 +23,7 @@ SHOP = load_shop()
 def route(made, *, blank=None, **words):
     part, recognition = made
     blank = blank or blank_of(part)
-    setups = make_setups(recognition, blank, SHOP.machine("Mill 1200"), choose(SetupSettings, {}))
+    setups = make_setups(recognition, blank, choose(SetupSettings, {}))
     return make_route(
         recognition, (), blank, setups, SHOP, part, choose(RouteSettings, words), QUIET
     )

@@ -8,7 +8,7 @@ playback may stop anywhere.
 from __future__ import annotations
 
 import time
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import replace
 
 import numpy as np
@@ -22,7 +22,7 @@ from trunnion.model.program import Program
 from trunnion.model.session import PostedFile, Session
 from trunnion.model.toolpath import Mark, Motion, Toolpath
 from trunnion.pipeline.context import Context
-from trunnion.pipeline.proving import programs_of, read_back
+from trunnion.pipeline.proving import machine_of, programs_of, read_back
 from trunnion.post.release import release
 from trunnion.progress import QUIET, Progress
 from trunnion.settings import checked, choose, digest
@@ -88,13 +88,13 @@ class Playback:
         self._moves = progress.aside(
             lambda _: [moves_of(p.sections) for p in programs], "putting the blocks in time"
         )
-        machine = context.shop.machines[programs[0].setup.machine]
+        machines = [machine_of(p.setup, context.shop.machines) for p in programs]
         self.timeline = progress.aside(
             lambda _: timeline_of(
                 programs,
                 self._moves,
                 files,
-                machine,
+                machines,
                 digest(self.cell, [f.text for f in files], _keys(session)),
             )
         )
@@ -235,14 +235,14 @@ def timeline_of(
     programs: tuple[Program, ...],
     moves: list[Moves],
     files: tuple[PostedFile, ...],
-    machine: Machine,
+    machines: Sequence[Machine],
     key: str,
 ) -> Timeline:
-    """Return all blocks of some programs over time; a change of the tool counts to the first block after it."""
+    """Return all blocks of some programs over time, each on its own machine; a change of the tool counts to the first block after it."""
     passages: list[Passage] = []
     spans: list[Floats] = []
     lines: list[Ints] = []
-    for k, (program, own) in enumerate(zip(programs, moves, strict=True)):
+    for k, (program, own, machine) in enumerate(zip(programs, moves, machines, strict=True)):
         span = seconds_of(own, machine, np.zeros(3))
         begins = np.cumsum([0, *(len(s.path) for s in program.sections)])
         for n, section in enumerate(program.sections):

@@ -182,11 +182,12 @@ def _route(session: Session, context: Context, progress: Progress) -> Result:
         raise BadCall("no blank yet: create the blank first")
     planner = planner_for(recognition.family)
     setup = checked(choose(SetupSettings, session.choices))
-    if setup.machine not in context.shop.machines:
-        raise BadInput(
-            f"there is no machine {setup.machine} in the catalogue; known: {', '.join(sorted(context.shop.machines))}"
-        )
-    setups = make_setups(recognition, session.blank, context.shop.machines[setup.machine], setup)
+    for machine in filter(None, (setup.machine, setup.next_machine)):
+        if machine not in context.shop.machines:
+            raise BadInput(
+                f"there is no machine {machine} in the catalogue; known: {', '.join(sorted(context.shop.machines))}"
+            )
+    setups = make_setups(recognition, session.blank, setup)
     planner.can_plan(context.part)
     process = planner.route(
         RouteJob(

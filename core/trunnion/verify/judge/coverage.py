@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Collection, Sequence
 from dataclasses import dataclass
+from itertools import zip_longest
 
 import numpy as np
 
@@ -47,12 +48,13 @@ def covered(
     settings: ProofSettings,
     planned: Collection[int],
     progress: Progress = QUIET,
-    machine: Machine | None = None,
+    machines: Sequence[Machine] = (),
 ) -> Covered:
     """Return what all setups together finish of the part.
 
     `samples` are in the frame of the first side; `tags` (f,) those of the face rows; `tools` the catalogue's, tried from every side where
-    something is not finished, as if nothing held the part. They lean where `machine` does, which needs facets of all faces.
+    something is not finished, as if nothing held the part. They lean where the side's own of `machines` does, which
+    needs facets of all faces; without machines they are upright.
     """
     frame = sides[0].frame
     low, high = blank_box(blank, frame)
@@ -66,7 +68,7 @@ def covered(
     finished = (np.abs(left) <= settings.tolerance + settings.allowance) & ~blank_face[samples.face]
     open_rows = np.flatnonzero(~finished & ~blank_face[samples.face] & (left > 0.0))
     lost = np.zeros(len(samples), bool)
-    lost[_unreached(samples, open_rows, sides, tools, settings, progress, machine)] = True
+    lost[_unreached(samples, open_rows, sides, tools, settings, progress, machines)] = True
     area, done, away = (
         _by_face(samples, samples.area * share, n) for share in (1.0, finished, lost)
     )
@@ -100,11 +102,11 @@ def _unreached(
     tools: Sequence[Tool],
     settings: ProofSettings,
     progress: Progress,
-    machine: Machine | None,
+    machines: Sequence[Machine],
 ) -> Ints:
     """Return the rows of samples that no cutter reaches from any side."""
     home = sides[0].frame
-    for k, side in enumerate(sides):
+    for k, (side, machine) in enumerate(zip_longest(sides, machines)):
         here = (
             samples
             if side.frame is home

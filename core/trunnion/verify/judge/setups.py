@@ -33,10 +33,11 @@ BUNDLES = {"z": ("z",), "xyz": ("x", "y", "z")}
 
 @dataclass(frozen=True, slots=True, eq=False, kw_only=True)
 class SetupProof:
-    """What was measured in one setup: contact, stock, stands, times and load by move; left (s,) mm on the samples, and the move nearest to
-    each (-1: none)."""
+    """What was measured in one setup on its machine: contact, stock, stands, times and load by move; left (s,) mm on the samples, and the
+    move nearest to each (-1: none)."""
 
     program: Program
+    machine: Machine
     moves: Moves
     contact: Contact
     stock: StockRun
@@ -83,6 +84,7 @@ def prove_setup(
     )
     return SetupProof(
         program=program,
+        machine=machine,
         moves=moves,
         contact=touched,
         stock=run,
