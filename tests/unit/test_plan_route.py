@@ -9,7 +9,7 @@ import pytest
 
 from flat_parts import blank_of, narrow_panel, open_panel, panel, stepped_panel
 from trunnion.findings import Severity
-from trunnion.model.blank import Blank
+from trunnion.model.blank import Box
 from trunnion.model.feature import FaceRole, Feature
 from trunnion.plan.panel.route import RouteSettings, make_route
 from trunnion.plan.setups import SetupSettings, make_setups
@@ -194,7 +194,7 @@ def test_a_fillet_no_cutter_has_is_stepped_and_told():
 def test_a_blank_larger_than_the_machine_is_an_error_and_nothing_is_planned():
     part, _ = panel()
     box = blank_of(part)
-    huge = Blank(
+    huge = Box(
         frame=box.frame,
         low=box.low,
         high=box.high + np.array([20000.0, 0, 0]),

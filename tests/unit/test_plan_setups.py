@@ -11,7 +11,7 @@ from flat_parts import blank_of, panel
 from trunnion.geometry.frame import WORLD, Frame
 from trunnion.model.feature import Feature
 from trunnion.plan.blank import BlankSettings, make_blank
-from trunnion.plan.setups import SetupSettings, box_in, make_setups
+from trunnion.plan.setups import SetupSettings, make_setups
 from trunnion.settings import choose
 from trunnion.shop import load_shop
 
@@ -52,7 +52,7 @@ def test_a_feature_reached_from_below_gets_a_setup_turned_about_x():
     recognition = replace(recognition, features=(*recognition.features, BELOW))
     _, below = make_setups(recognition, blank_of(part), choose(SetupSettings, {}))
     assert below.frame.z.tolist() == [0, 0, -1] and below.work_offset == "G55"
-    low, high = box_in(below.frame, blank_of(part))
+    low, high = blank_of(part).box_in(below.frame)
     assert low == approx([0, 0, -32]) and high == approx([210, 110, 0])
 
 
@@ -80,4 +80,4 @@ def test_a_turned_part_has_its_blank_in_its_own_frame():
         SHOP.material("C45"),
         choose(BlankSettings, {}),
     )
-    assert box_in(frame, blank)[1] == approx([105, 55, 22])
+    assert blank.box_in(frame)[1] == approx([105, 55, 22])

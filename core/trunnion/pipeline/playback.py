@@ -38,6 +38,10 @@ FINENESS = 900
 """Cells along the longest side of the blank when nobody chooses, for heights: as fine as a picture shows, and still cut at once."""
 COARSER = 400
 """The same for several bundles."""
+FLUSH = 1e-4
+"""Of a cell: what is so near to a flat side of the blank lies in it."""
+CURVED = 1.0
+"""Of a cell: the same beside a curved side, which cells follow in steps."""
 SNAPSHOTS = 32
 """Places of the plan that the stock is remembered at."""
 _LEAST = 1e-3
@@ -101,7 +105,9 @@ class Playback:
         self._starts = np.cumsum([0, *(len(m) for m in self._moves)])
         self._every = max(1, -(-len(self.timeline) // SNAPSHOTS))
         self._chunk = _FIRST_CHUNK
-        self._stock = Stock.of(self.blank, self.cell, bundles)
+        self._stock = progress.aside(
+            lambda _: Stock.of(self.blank, self.cell, bundles), "filling the blank with rays"
+        )
         self._position, self._removed = 0.0, 0.0
         self._kept: dict[int, tuple[Snapshot, float]] = {0: (self._stock.snapshot(), 0.0)}
 
@@ -206,7 +212,7 @@ class Playback:
             position=self._position,
             points=self.blank.frame.to_world(points).astype(np.float32),
             triangles=triangles.astype(np.int32),
-            fresh=fresh_of(points, triangles, self.blank, 1e-4 * self.cell),
+            fresh=fresh_of(points, triangles, self.blank, self.cell),
             tip=tip,
             axis=axis,
             operation=line.passage(self._position).operation,
@@ -281,11 +287,11 @@ def taken(moves: Moves, rows: Ints) -> Moves:
     return replace(moves, **{name: getattr(moves, name)[rows] for name in _PER_MOVE})
 
 
-def fresh_of(points: Floats, triangles: Ints, blank: Blank, near: float) -> Bools:
-    """Say for each triangle (t,) of a stock's surface in the blank's frame whether it was cut: it doesn't lie in a side of the blank."""
-    sides = np.zeros(len(points), np.uint8)
-    for n in range(3):
-        sides |= (np.abs(points[:, n] - blank.low[n]) <= near).astype(np.uint8) << (2 * n)
-        sides |= (np.abs(points[:, n] - blank.high[n]) <= near).astype(np.uint8) << (2 * n + 1)
+def fresh_of(points: Floats, triangles: Ints, blank: Blank, cell: float) -> Bools:
+    """Say for each triangle (t,) of a stock's surface in the blank's frame whether it was cut: it doesn't lie in a side of the blank.
+
+    Round a curved side of the blank the surface of a stock with cells of `cell` mm is only near it.
+    """
+    sides = blank.sides(points, FLUSH * cell, CURVED * cell)
     a, b, c = (sides[triangles[:, k]] for k in range(3))
-    return np.asarray(a & b & c == 0)
+    return np.asarray(~(a & b & c).any(axis=1))

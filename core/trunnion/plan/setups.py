@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import numpy as np
 
-from trunnion.geometry.arrays import Floats
 from trunnion.geometry.frame import Frame
 from trunnion.model.blank import Blank
 from trunnion.model.feature import Feature, Recognition
@@ -74,14 +73,8 @@ def from_below(feature: Feature) -> bool:
     return isinstance(direction, tuple) and len(direction) == 3 and direction[2] < 0.0
 
 
-def box_in(frame: Frame, blank: Blank) -> tuple[Floats, Floats]:
-    """Return the lowest and highest corner (3,) of the blank in a frame whose axes are parallel to the blank's."""
-    corners = frame.to_local(blank.frame.to_world(np.stack([blank.low, blank.high])))
-    return corners.min(axis=0), corners.max(axis=0)
-
-
 def _setup(n: int, frame: Frame, blank: Blank, settings: SetupSettings) -> Setup:
-    low, high = box_in(frame, blank)
+    low, high = blank.box_in(frame)
     place, height = settings.origin.split()
     origin = low if place == "corner" else 0.5 * (low + high)
     z = high[2] if height == "top" else low[2]

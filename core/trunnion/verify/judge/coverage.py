@@ -16,12 +16,11 @@ from trunnion.model.material import Machine
 from trunnion.model.tool import Tool
 from trunnion.model.verdict import Deviation, FaceProof
 from trunnion.progress import QUIET, Progress
-from trunnion.verify.finish.coverage import Samples, depth_in_blank, on_blank
+from trunnion.verify.finish.coverage import Samples, on_blank
 from trunnion.verify.finish.reach import Reach
 from trunnion.verify.judge.setups import SetupProof
 from trunnion.verify.judge.sides import Side
 from trunnion.verify.settings import ProofSettings
-from trunnion.verify.stock import blank_box
 
 DECIMALS = 9
 """Decimals of a share of area: sums of thousands of areas differ in their last digits, and no goal is that fine."""
@@ -57,11 +56,10 @@ def covered(
     needs facets of all faces; without machines they are upright.
     """
     frame = sides[0].frame
-    low, high = blank_box(blank, frame)
     n = len(tags)
     progress.at(0.0, "Adding up what is finished")
     left, blank_face = progress.aside(
-        lambda _: (depth_in_blank(samples.point, low, high), on_blank(samples, low, high, n))
+        lambda _: (blank.depth(samples.point, frame), on_blank(samples, blank, frame, n))
     )
     for p in proofs:
         left = np.minimum(left, p.left)

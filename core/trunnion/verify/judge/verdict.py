@@ -117,7 +117,10 @@ def prove_surfaces(
     samples = samples_of(
         surfaces[0], settings.spacing, progress.part(0.0, 0.05), facets[0] if facets else None
     )
-    stock = Stock.of(blank, settings.cell, bundles_of(programs, blank, settings))
+    stock = progress.aside(
+        lambda _: Stock.of(blank, settings.cell, bundles_of(programs, blank, settings)),
+        "Filling the blank with rays",
+    )
     proofs = []
     for k, (program, side, machine) in enumerate(zip(programs, sides, machines, strict=False)):
         share = progress.part(
