@@ -26,30 +26,38 @@ class Intervals:
 
     def clipped(self, lowest: float, highest: float) -> Intervals:
         """Return what lies between two places along the rays."""
-        there = np.arange(self.low.shape[1]) < self.count[:, None]
         low, high = np.maximum(self.low, lowest), np.minimum(self.high, highest)
-        kept = there & (high > low)
-        order = np.argsort(~kept, axis=1, kind="stable")
-        low, high = (
-            np.take_along_axis(np.where(kept, ends, 0.0), order, axis=1) for ends in (low, high)
-        )
+        kept = high > low
+        kept &= np.arange(self.low.shape[1]) < self.count[:, None]
+        low[~kept] = high[~kept] = 0.0
+        if low.shape[1] > 1:
+            order = np.argsort(~kept, axis=1, kind="stable")
+            low, high = (np.take_along_axis(ends, order, axis=1) for ends in (low, high))
         return Intervals(kept.sum(axis=1).astype(np.int64), low, high)
 
     def tops(self, nothing: float) -> Floats:
         """Return the highest end of each ray's intervals (n,), or `nothing` for a ray that is never inside."""
-        last = np.maximum(self.count - 1, 0)[:, None]
-        top = np.take_along_axis(self.high, last, axis=1)[:, 0]
+        top = self.high[:, 0]
+        if self.high.shape[1] > 1:
+            last = np.maximum(self.count - 1, 0)[:, None]
+            top = np.take_along_axis(self.high, last, axis=1)[:, 0]
         return np.where(self.count > 0, top, nothing)
 
 
 def stacked(parts: Sequence[Intervals]) -> Intervals:
     """Return the intervals of rays one after the other."""
-    width = max((p.low.shape[1] for p in parts), default=1)
+    width = max(p.low.shape[1] for p in parts)
     low, high = (
-        np.vstack([np.pad(a, ((0, 0), (0, width - a.shape[1]))) for a in ends])
-        for ends in ([p.low for p in parts], [p.high for p in parts])
+        np.concatenate([_wide(a, width) for a in ends])
+        for ends in zip(*((p.low, p.high) for p in parts), strict=True)
     )
     return Intervals(np.concatenate([p.count for p in parts]), low, high)
+
+
+def _wide(ends: Floats, width: int) -> Floats:
+    """Return ends (n, k) of intervals with zeros up to a width."""
+    missing = width - ends.shape[1]
+    return np.pad(ends, ((0, 0), (0, missing))) if missing else ends
 
 
 def box_intervals(low: Floats, high: Floats, start: Floats, direction: Floats) -> Intervals:
@@ -59,19 +67,18 @@ def box_intervals(low: Floats, high: Floats, start: Floats, direction: Floats) -
     """
     enter, leave = np.full(len(start), -np.inf), np.full(len(start), np.inf)
     for k in range(3):
+        place, (first, last) = start[:, k], (low[k], high[k])
         if direction[k] == 0.0:
-            beside = (start[:, k] < low[k] - tolerance.PARAMETRIC) | (
-                start[:, k] > high[k] + tolerance.PARAMETRIC
-            )
-            leave[beside] = -np.inf
+            inside = place >= first - tolerance.PARAMETRIC
+            inside &= place <= last + tolerance.PARAMETRIC
+            leave[~inside] = -np.inf
         else:
-            ends = np.sort((np.array([low[k], high[k]]) - start[:, k, None]) / direction[k], axis=1)
-            enter, leave = np.maximum(enter, ends[:, 0]), np.minimum(leave, ends[:, 1])
-    count = (leave > enter).astype(np.int64)
-    inside = count[:, None] > 0
-    return Intervals(
-        count, np.where(inside, enter[:, None], 0.0), np.where(inside, leave[:, None], 0.0)
-    )
+            near, far = (first, last) if direction[k] > 0.0 else (last, first)
+            np.maximum(enter, (near - place) / direction[k], out=enter)
+            np.minimum(leave, (far - place) / direction[k], out=leave)
+    inside = leave > enter
+    enter[~inside] = leave[~inside] = 0.0
+    return Intervals(inside.astype(np.int64), enter[:, None], leave[:, None])
 
 
 def mesh_intervals(points: Floats, triangles: Ints, start: Floats, direction: Floats) -> Intervals:
