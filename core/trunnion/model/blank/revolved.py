@@ -145,7 +145,8 @@ class Revolved(BlankBase):
                 triangles.append(np.column_stack([a, np.roll(a, -1), b]))
             if r[(row + 1) % k] > 0.0:
                 triangles.append(np.column_stack([np.roll(a, -1), np.roll(b, -1), b]))
-        return self._back(points.reshape(-1, 3)), np.vstack(triangles)
+        used, rows = np.unique(np.vstack(triangles), return_inverse=True)
+        return self._back(points.reshape(-1, 3)[used]), rows.reshape(-1, 3).astype(np.int64)
 
     def built(self, builder: Builder[S]) -> S:
         """See `BlankBase`."""
