@@ -46,7 +46,7 @@ bench: setup
 	$(BIN)/python tests/bench/run.py --output bench.json
 
 screenshots: setup
-	$(BIN)/python -m trunnion_gui.shots docs/pictures
+	$(BIN)/python -m trunnion_gui.screenshots docs/pictures
 
 run: setup
 	env -u QT_QPA_PLATFORM $(BIN)/trunnion-gui

@@ -21,10 +21,10 @@ from trunnion.post.header import Header
 from trunnion.post.readers import control
 from trunnion.post.readers.joints import Joints
 from trunnion.post.readers.linuxcnc import read_linuxcnc
-from trunnion.post.readers.sections import Rows
+from trunnion.post.readers.sections import SectionBlocks
 from trunnion.post.settings import PostSettings
 from trunnion.shop import load_shop
-from trunnion.shop.kinematics import Place
+from trunnion.shop.kinematics import WorkPosition
 
 SHOP = load_shop()
 TABLE, FORK = SHOP.machine("Trunnion 650"), SHOP.machine("Gantry 6000 fork")
@@ -89,9 +89,9 @@ def lean(degrees: float, around: float = 0.0) -> Floats:
     return np.array([math.sin(a) * math.cos(b), math.sin(a) * math.sin(b), math.cos(a)])
 
 
-def standing(machine: Machine, foot: Sequence[float] = (10.0, 5.0, -40.0)) -> Place:
+def standing(machine: Machine, foot: Sequence[float] = (10.0, 5.0, -40.0)) -> WorkPosition:
     """Return work on a machine, its foot in the setup frame, all of it within 120 mm round (10, 5, -20)."""
-    return Place(
+    return WorkPosition(
         machine=machine, foot=np.array(foot), centre=np.array([10.0, 5.0, -20.0]), radius=120.0
     )
 
@@ -122,7 +122,7 @@ def program(*paths: Toolpath, tool: Tool = FLAT_16, setup: Setup = S1) -> Progra
     )
 
 
-def text_of(made: Program, place: Place, **settings) -> str:
+def text_of(made: Program, place: WorkPosition, **settings) -> str:
     """Return the LinuxCNC text of a program."""
     return LinuxCncDialect().write(
         [made], HEADER, PostSettings(**settings), {made.setup.name: place}
@@ -130,17 +130,17 @@ def text_of(made: Program, place: Place, **settings) -> str:
 
 
 def again(
-    text: str, place: Place, tools: Sequence[Tool] = (FLAT_16,), setup: Setup = S1
+    text: str, place: WorkPosition, tools: Sequence[Tool] = (FLAT_16,), setup: Setup = S1
 ) -> Program:
     """Return what a text says, read back."""
     return read_linuxcnc(text, tools, setup, place)
 
 
 def joint_rows(
-    text: str, place: Place, tools: Sequence[Tool] = (FLAT_16,), setup: Setup = S1
-) -> list[Rows]:
+    text: str, place: WorkPosition, tools: Sequence[Tool] = (FLAT_16,), setup: Setup = S1
+) -> list[SectionBlocks]:
     """Return the blocks of every section as positions of the axes, before they are opened into what the tool does."""
-    caught: list[Rows] = []
+    caught: list[SectionBlocks] = []
 
     class Caught(Joints):
         def opened(self, rows):

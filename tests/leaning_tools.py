@@ -11,7 +11,7 @@ from trunnion.model.program import ProgramSection
 from trunnion.model.tool import Tool
 from trunnion.model.toolpath import Motion, Toolpath
 from trunnion.part.shape.facets import Facets
-from trunnion.part.shape.surfaces import STRIP_COLUMNS, Face, surfaces_from
+from trunnion.part.shape.surfaces import STRIP_COLUMNS, ContactFace, surfaces_from
 from trunnion.verify.contact import PartContact
 from trunnion.verify.cutter import outline_of
 from verify_tools import HOLDER
@@ -96,7 +96,7 @@ def contact_of(*boxes):
         ):
             corners += [c[[a, b, d]], c[[a, d, e]]]
     triangles, empty = np.array(corners), np.zeros((0, STRIP_COLUMNS))
-    joined = Face(1, empty, empty, np.zeros((0, 4)), is_free=True)
+    joined = ContactFace(1, empty, empty, np.zeros((0, 4)), is_free=True)
     rows = np.arange(3 * len(triangles)).reshape(-1, 3)
     facets = Facets.of_mesh(
         triangles.reshape(-1, 3), rows, np.zeros(len(rows), np.int64), np.array([1])

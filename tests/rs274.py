@@ -21,7 +21,7 @@ from trunnion.model.setup import Setup
 from trunnion.model.tool import Tool
 from trunnion.model.toolpath import Motion
 from trunnion.post.readers.linuxcnc import read_linuxcnc
-from trunnion.post.readers.sections import Rows
+from trunnion.post.readers.sections import SectionBlocks
 
 Call = tuple[str, str, list[float]]
 
@@ -111,7 +111,7 @@ def motions_of(text: str, tools: Sequence[Tool], setup: Setup) -> list[Call]:
 
 
 def compare_joints(
-    text: str, rows: Sequence[Rows], letters: str, tools: Sequence[Tool], folder: Path
+    text: str, rows: Sequence[SectionBlocks], letters: str, tools: Sequence[Tool], folder: Path
 ) -> int:
     """Return the number of moves after seeing that rs274's positions of all axes equal our reading of a text with rotary axes to 1e-4."""
     lines = text.split("\n")

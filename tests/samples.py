@@ -258,7 +258,7 @@ def written(shape: Any, suffix: str = "step", unit: str = "mm", name: str = "sam
 
 def read(shape: Any, suffix: str = "step", unit: str = "mm", solid: int | None = None) -> Part:
     """Return the part of a shape that was written to a file and read back, once a session and, for speed, in this process."""
-    from trunnion.part.read.child import Request
+    from trunnion.part.read.child import ReadRequest
     from trunnion.part.read.text import check_iges, check_step
     from trunnion.part.read.transfer import read_file
 
@@ -266,7 +266,7 @@ def read(shape: Any, suffix: str = "step", unit: str = "mm", solid: int | None =
     if (file, solid) not in _PARTS:
         data = file.read_bytes()
         is_iges = suffix in ("igs", "iges")
-        request = Request(
+        request = ReadRequest(
             file=file.name,
             path=str(file),
             name=file.stem,

@@ -4,14 +4,14 @@ from __future__ import annotations
 
 from typing import Any
 
-from trunnion.part.part import Part, PartFacts
+from trunnion.part.part import Part, PartMetadata
 from trunnion.part.read.heal import bodies_of
 
 
 def part_of_shape(shape: Any, name: str = "shape") -> Part:
     """Return the part that reading a file with this one body would give."""
     (body,), _ = bodies_of(shape)
-    facts = PartFacts(
+    facts = PartMetadata(
         path="",
         name=name,
         digest="",

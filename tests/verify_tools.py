@@ -15,7 +15,7 @@ from trunnion.model.tool import Holder, Tool
 from trunnion.model.toolpath import Motion, Toolpath
 from trunnion.part.shape.surfaces import (
     STRIP_COLUMNS,
-    Face,
+    ContactFace,
     Guide,
     Profile,
     circle_edges,
@@ -376,7 +376,7 @@ def block_with_pocket():
 
 def _swept(tag, guide, profile, u0, u1, s0, s1, side):
     edges = line_edges(np.array([[s0, u0], [s1, u0], [s1, u1], [s0, u1], [s0, u0]]))
-    return Face(
+    return ContactFace(
         tag, strips_of(guide, profile, edges, side), np.zeros((0, STRIP_COLUMNS)), np.zeros((0, 4))
     )
 

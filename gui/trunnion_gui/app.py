@@ -21,7 +21,7 @@ def main(arguments: Sequence[str] | None = None) -> int:
 
     from trunnion_gui import i18n
     from trunnion_gui.gc_control import GcControl
-    from trunnion_gui.storage import remembered
+    from trunnion_gui.storage import preferences
     from trunnion_gui.window import Window
 
     words = list(sys.argv[1:] if arguments is None else arguments)
@@ -31,7 +31,7 @@ def main(arguments: Sequence[str] | None = None) -> int:
     app = QApplication.instance() or QApplication(["trunnion"])
     app.setApplicationName("Trunnion")
     app.setOrganizationName("Trunnion")
-    i18n.use(remembered.language())
+    i18n.use(preferences.language())
     tidy = GcControl()
     window = Window()
     window.show()

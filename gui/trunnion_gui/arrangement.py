@@ -16,7 +16,7 @@ from PySide6.QtWidgets import (
     QWidget,
 )
 
-from trunnion_gui.storage import remembered
+from trunnion_gui.storage import preferences
 
 LEFT = Qt.DockWidgetArea.LeftDockWidgetArea
 RIGHT = Qt.DockWidgetArea.RightDockWidgetArea
@@ -85,7 +85,7 @@ class Arrangement:
             middle.setMinimumWidth(_LEAST_CENTRE)
         self._size()
         self._first = self._window.saveState()
-        geometry, state = remembered.arrangement("geometry"), remembered.arrangement("state")
+        geometry, state = preferences.arrangement("geometry"), preferences.arrangement("state")
         if geometry is not None:
             self._window.restoreGeometry(geometry)
         if state is not None:
@@ -94,13 +94,13 @@ class Arrangement:
     def settle(self) -> None:
         """Put the docks right once the window is there: Qt forgets some sizes that were asked for before."""
         self._hide_old_tabs()
-        if remembered.arrangement("state") is None:
+        if preferences.arrangement("state") is None:
             self._size()
 
     def keep(self) -> None:
         """Remember how things stand for the next start."""
-        remembered.remember("geometry", self._window.saveGeometry())
-        remembered.remember("state", self._window.saveState())
+        preferences.remember("geometry", self._window.saveGeometry())
+        preferences.remember("state", self._window.saveState())
 
     def forget(self) -> None:
         """Put docks back where they were at first."""

@@ -16,7 +16,7 @@ Edit = Callable[[Session], Session]
 
 
 @dataclass(frozen=True, slots=True)
-class Entry:
+class HistoryEntry:
     """One state in the history: what led to it, the session, and the gesture that may still go on."""
 
     label: str
@@ -31,7 +31,7 @@ class History:
     """
 
     def __init__(self, session: Session, label: str = "") -> None:
-        self._entries = [Entry(label, session)]
+        self._entries = [HistoryEntry(label, session)]
         self._at = 0
         self._saved: Session | None = session
 
@@ -65,7 +65,7 @@ class History:
             and self._at == len(self._entries) - 1
         )
         del self._entries[self._at + (0 if goes_on else 1) :]
-        self._entries.append(Entry(label, session, gesture))
+        self._entries.append(HistoryEntry(label, session, gesture))
         self._at = len(self._entries) - 1
 
     def undo(self) -> Session:

@@ -29,7 +29,7 @@ _LONG = 60
 """A list of more words than this is searched, not opened."""
 
 
-class Number(QDoubleSpinBox):
+class NumberField(QDoubleSpinBox):
     """A number with its unit, without trailing zeros; the wheel turns it only while it has the focus."""
 
     def textFromValue(self, value: float) -> str:
@@ -39,14 +39,14 @@ class Number(QDoubleSpinBox):
         super().wheelEvent(event) if self.hasFocus() else event.ignore()
 
 
-class Count(QSpinBox):
+class CountField(QSpinBox):
     """A whole number; the wheel turns it only while it has the focus."""
 
     def wheelEvent(self, event: QWheelEvent) -> None:
         super().wheelEvent(event) if self.hasFocus() else event.ignore()
 
 
-class Choice(QComboBox):
+class ChoiceField(QComboBox):
     """One of several words; the wheel never turns it."""
 
     def wheelEvent(self, event: QWheelEvent) -> None:
@@ -151,7 +151,7 @@ def make_field(setting: Declared) -> QWidget:
     if len(setting.choices) > _LONG:
         return _searched(setting)
     if setting.choices:
-        choice = Choice()
+        choice = ChoiceField()
         for word in setting.choices:
             choice.addItem(tr(word) if word else tr("automatic"), word)
         choice.setFixedWidth(_FIELD_WIDTH)
@@ -219,10 +219,10 @@ def _number(setting: Declared) -> QSpinBox | QDoubleSpinBox:
     low = -_WIDEST if setting.low is None else setting.low
     high = _WIDEST if setting.high is None else setting.high
     if setting.kind is int:
-        field = Count()
+        field = CountField()
         field.setRange(int(low), int(high))
     else:
-        field = Number()
+        field = NumberField()
         field.setDecimals(4)
         field.setRange(float(low), float(high))
         field.setSingleStep(_step(float(setting.default)))

@@ -12,7 +12,7 @@ from PySide6.QtWidgets import QHBoxLayout, QLabel, QSlider, QVBoxLayout, QWidget
 
 from trunnion.model.playback import Moment
 from trunnion.model.session import Session, SizeEntry
-from trunnion.report.deviation import WorstPlace
+from trunnion.report.deviation import WorstPoint
 from trunnion.report.lines import leans
 from trunnion.report.palette import load_palette
 from trunnion_gui.actions import Registry
@@ -25,10 +25,10 @@ from trunnion_gui.look import legend
 from trunnion_gui.look.colours import Theme, motions
 from trunnion_gui.look.words import amount, fine_amount, kind_words
 from trunnion_gui.playback.player import Player
-from trunnion_gui.viewport.scene import Click, Scene
+from trunnion_gui.viewport.scene import Click, ViewportScene
+from trunnion_gui.widgets.colour_bar import ColourBar
 from trunnion_gui.widgets.legend import Legend
 from trunnion_gui.widgets.notice import Notice
-from trunnion_gui.widgets.scale import Scale
 from trunnion_gui.widgets.welcome import Welcome
 from trunnion_gui.worker.drawing import DrawnMap, place_on
 
@@ -79,9 +79,9 @@ class ViewportPane(QWidget):
         self._takes_click: Callable[[int], bool] | None = None
         self.motions: tuple[str, ...] = tuple(motions())
         self.notice = Notice()
-        self.scene = Scene(theme)
+        self.scene = ViewportScene(theme)
         self.legend = Legend(self.scene)
-        self.scale = Scale(self.scene, theme, load_palette().deviation)
+        self.scale = ColourBar(self.scene, theme, load_palette().deviation)
         self.tip = self._make_tip()
         self.welcome = Welcome(document, registry, self.scene)
         self.section_bar, self.section_slider = self._make_section_bar()
@@ -430,7 +430,7 @@ class ViewportPane(QWidget):
         self._point(None, QPointF())
         self.refresh()
 
-    def look_at_place(self, place: WorstPlace) -> None:
+    def look_at_place(self, place: WorstPoint) -> None:
         """Go to a worst place of the map."""
         self.scene.look_at(place.point, place.face, _CLOSE_LOOK)
         self.scene.show_label(fine_amount(place.deviation), place.point)

@@ -20,22 +20,22 @@ from trunnion_gui.look import colours, icons, theme
 from trunnion_gui.menus.bars import fill_menus, toolbar
 from trunnion_gui.menus.general import add_general_commands
 from trunnion_gui.menus.handlers import Handlers
-from trunnion_gui.menus.playing import add_playback_commands
+from trunnion_gui.menus.playback import add_playback_commands
 from trunnion_gui.panels.blank import BlankPanel
 from trunnion_gui.panels.generate import GeneratePanel
 from trunnion_gui.panels.optimize import OptimizePanel
 from trunnion_gui.panels.recognize import RecognizePanel
 from trunnion_gui.panels.route import RoutePanel
 from trunnion_gui.panels.size import SizePanel
-from trunnion_gui.playback.following import Following
 from trunnion_gui.playback.player import Player
-from trunnion_gui.storage import remembered
+from trunnion_gui.playback.sync import PlaybackSync
+from trunnion_gui.storage import preferences
 from trunnion_gui.storage.recovery import Recovery
 from trunnion_gui.storage.unsaved import UnsavedWork
 from trunnion_gui.viewport_pane import ViewportPane
 from trunnion_gui.widgets.finder import Finder
 from trunnion_gui.widgets.panel import Panel
-from trunnion_gui.widgets.status import Status
+from trunnion_gui.widgets.status import StatusBar
 from trunnion_gui.worker.steps import STAGES
 from trunnion_gui.worker.worker import ENGINE
 
@@ -59,7 +59,7 @@ class Window(QMainWindow):
         self.setWindowIcon(icons.window_icon())
         self.setAcceptDrops(True)
         self.resize(1440, 900)
-        self.theme = colours.theme(remembered.theme_name())
+        self.theme = colours.theme(preferences.theme_name())
         theme.apply(self.theme)
         self.document = Document(factory, self)
         self.registry = Registry(self)
@@ -91,17 +91,17 @@ class Window(QMainWindow):
         fill_menus(self.menuBar(), self.registry, self.document.files.open)
         self.toolbar = toolbar(self.registry)
         self.addToolBar(self.toolbar)
-        self.status = Status(self.document, self.registry)
+        self.status = StatusBar(self.document, self.registry)
         self.setStatusBar(self.status)
         self.finder = Finder(self.registry, self)
-        self.following = Following(self.player, self.docks.code, self.docks.process, self)
+        self.following = PlaybackSync(self.player, self.docks.code, self.docks.process, self)
         self.unsaved = UnsavedWork(self.document, self.handlers.save, self)
         self.document.files.holds_work = self.unsaved.holds
         self.recovery = Recovery(self.document, self.viewport.notice, self)
         self._connect()
         self.use_theme(self.theme)
         self.arrangement.begin()
-        self.viewport.welcome.show_recent(remembered.recent())
+        self.viewport.welcome.show_recent(preferences.recent())
         self.recovery.offer()
         self._refresh()
 
@@ -175,7 +175,7 @@ class Window(QMainWindow):
         document.selection.changed.connect(lambda _: self.registry.refresh())
         document.noticed.connect(self._tell)
         document.files.opened.connect(self._opened)
-        document.files.saved.connect(remembered.add_recent)
+        document.files.saved.connect(preferences.add_recent)
         self.docks.messages.counted.connect(
             lambda n: messages.setWindowTitle(f"{tr('Messages')} {n}" if n else tr("Messages"))
         )
@@ -220,6 +220,6 @@ class Window(QMainWindow):
         self.viewport.notice.tell(finding)
 
     def _opened(self, path: str) -> None:
-        remembered.add_recent(path)
-        self.viewport.welcome.show_recent(remembered.recent())
+        preferences.add_recent(path)
+        self.viewport.welcome.show_recent(preferences.recent())
         self.viewport.notice.hide()

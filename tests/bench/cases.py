@@ -73,7 +73,7 @@ def roughing(path: Path, folder: Path, compared: Compare) -> Iterator[Any]:
     """Roughing paths of every pocket, beside the same offsets by shapely alone (chords, no arcs, no entries, no links)."""
     from trunnion import registry
     from trunnion.plan.prismatic.drive import drive_of
-    from trunnion.plan.prismatic.regions import Space
+    from trunnion.plan.prismatic.regions import SetupSpace
     from trunnion.settings import choose
     from trunnion.toolpath.stock.heightfield import PlanningStock
 
@@ -82,7 +82,7 @@ def roughing(path: Path, folder: Path, compared: Compare) -> Iterator[Any]:
     assert process is not None and session.recognition is not None and session.blank is not None
     rough = registry.get("strategies", "plane.rough")
     stock = PlanningStock.of(session.blank, setup)
-    space = Space.of(engine.context.part, session.recognition, session.blank, setup)
+    space = SetupSpace.of(engine.context.part, session.recognition, session.blank, setup)
     jobs = [
         (o, drive_of(o, process, space)) for o in process.operations if o.strategy == "plane.rough"
     ]

@@ -9,8 +9,8 @@ from typing import Any
 import numpy as np
 
 from trunnion.geometry.arrays import Floats, Ints
-from trunnion.geometry.dropping import DropSurface
-from trunnion.geometry.kernels.drop import drop as plain_drop
+from trunnion.geometry.drop_surface import DropSurface
+from trunnion.geometry.kernels.drop_cutter import drop_cutter as plain_drop
 from trunnion.plan.freeform.cutters.cutter import lower_side
 from verify_tools import bull
 

@@ -6,7 +6,7 @@ import pytest
 from PySide6.QtCore import Qt
 from PySide6.QtWidgets import QLabel
 
-from trunnion_gui.storage import remembered
+from trunnion_gui.storage import preferences
 
 WIDE = "a line that is much longer than any dock is wide " * 40
 
@@ -73,6 +73,6 @@ def test_a_column_that_was_left_too_narrow_is_wide_enough_at_the_next_start(make
     qtbot.wait(50)
     assert widths(first)["features"] < 200
     narrow.keep()
-    assert remembered.arrangement("state") is not None
+    assert preferences.arrangement("state") is not None
     again = make_window()
     assert relaid(again, qtbot)["features"] >= 260

@@ -17,8 +17,8 @@ from test_viewport import hue, pixel
 
 from samples import written
 from trunnion.geometry.cut import plane_cut
+from trunnion_gui.families.surface.appearance import radius_colour
 from trunnion_gui.families.surface.cutting import DRAWN, THREE
-from trunnion_gui.families.surface.looks import radius_colour
 from trunnion_gui.look.colours import rgb
 
 LEFT, RIGHT = Qt.MouseButton.LeftButton, Qt.MouseButton.RightButton

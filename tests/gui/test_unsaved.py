@@ -11,7 +11,7 @@ from PySide6.QtGui import QDropEvent
 from PySide6.QtTest import QTest
 from PySide6.QtWidgets import QApplication, QMessageBox, QPushButton
 
-from trunnion_gui.storage import recovery, remembered
+from trunnion_gui.storage import preferences, recovery
 from trunnion_gui.storage.autosave import notes_of, whose_work
 from trunnion_gui.storage.unsaved import CANCEL, DISCARD, SAVE
 
@@ -42,7 +42,7 @@ def by_drop(window, path, _monkeypatch):
 
 
 def by_recent(window, path, _monkeypatch):
-    remembered.add_recent(str(path))
+    preferences.add_recent(str(path))
     menu = next(
         a.menu()
         for m in window.menuBar().actions()
@@ -202,7 +202,7 @@ def test_closing_while_a_run_goes_on_saves_what_was_finished(
 def left_behind(window, monkeypatch, qtbot):
     """Return the autosave of a window as if its program had been killed; the window's own is gone."""
     window.recovery.keep()
-    own = remembered.autosave_file()
+    own = preferences.autosave_file()
     qtbot.waitUntil(lambda: notes_of(own).exists(), timeout=10000)
     left = own.with_name("autosave-999999999.trunnion")
     left.write_bytes(own.read_bytes())
@@ -221,7 +221,7 @@ def test_steady_work_is_kept_and_does_not_put_the_keeping_off(opened, idle, qtbo
     for n in range(8):  # an edit every 100 ms: a timer that begins anew would never fire
         opened.document.choose("fake.blank.side", "Allowance", 6.0 + n)
         qtbot.wait(100)
-    assert remembered.autosave_file().exists()
+    assert preferences.autosave_file().exists()
 
 
 def test_ten_edits_are_kept_at_once(opened, idle, qtbot):
@@ -229,9 +229,9 @@ def test_ten_edits_are_kept_at_once(opened, idle, qtbot):
     for n in range(recovery.MOST_EDITS - 1):
         opened.document.choose("fake.blank.side", "Allowance", 6.0 + n)
     qtbot.wait(100)
-    assert not remembered.autosave_file().exists()
+    assert not preferences.autosave_file().exists()
     opened.document.choose("fake.blank.side", "Allowance", 3.0)
-    qtbot.waitUntil(remembered.autosave_file().exists, timeout=5000)
+    qtbot.waitUntil(preferences.autosave_file().exists, timeout=5000)
 
 
 def test_at_most_five_seconds_are_lost():
@@ -246,7 +246,7 @@ def test_steps_that_a_run_has_finished_are_kept_while_it_goes_on(
     idle(window)
     window.recovery._soon.setInterval(100)
     window.document.program()
-    qtbot.waitUntil(remembered.autosave_file().exists, timeout=20000)
+    qtbot.waitUntil(preferences.autosave_file().exists, timeout=20000)
     assert window.document.is_busy
     window.registry.run("job.cancel")
     idle(window)
@@ -254,7 +254,7 @@ def test_steps_that_a_run_has_finished_are_kept_while_it_goes_on(
 
 def test_an_explicit_save_leaves_no_autosave(programmed, tmp_path, idle, monkeypatch, qtbot):
     programmed.recovery.keep()
-    own = remembered.autosave_file()
+    own = preferences.autosave_file()
     qtbot.waitUntil(own.exists, timeout=10000)
     monkeypatch.setattr(programmed.dialogs, "save_path", lambda: str(tmp_path / "tray.trunnion"))
     programmed.registry.run("file.save")
@@ -265,10 +265,10 @@ def test_an_explicit_save_leaves_no_autosave(programmed, tmp_path, idle, monkeyp
 def test_what_was_undone_to_the_saved_state_leaves_no_autosave(opened, idle, qtbot):
     opened.document.choose("fake.blank.side", "Allowance", 8.0)
     opened.recovery.keep()
-    qtbot.waitUntil(remembered.autosave_file().exists, timeout=10000)
+    qtbot.waitUntil(preferences.autosave_file().exists, timeout=10000)
     idle(opened)
     opened.document.undo()
-    qtbot.waitUntil(lambda: not remembered.autosave_file().exists(), timeout=10000)
+    qtbot.waitUntil(lambda: not preferences.autosave_file().exists(), timeout=10000)
 
 
 def test_a_recovered_project_knows_its_file_and_still_has_to_be_saved(
@@ -332,7 +332,7 @@ def test_work_that_is_thrown_away_makes_room_for_the_next_one(
 
 
 def test_an_autosave_with_damaged_notes_is_offered_by_its_time(make_window, monkeypatch):
-    left = remembered.autosave_file().with_name("autosave-999999999.trunnion")
+    left = preferences.autosave_file().with_name("autosave-999999999.trunnion")
     left.write_bytes(b"")
     notes_of(left).write_text("{")
     window = make_window()
@@ -340,14 +340,14 @@ def test_an_autosave_with_damaged_notes_is_offered_by_its_time(make_window, monk
 
 
 def test_an_autosave_is_left_behind_when_another_program_got_its_number(tmp_path):
-    left = remembered.autosave_file().with_name("autosave-1.trunnion")
+    left = preferences.autosave_file().with_name("autosave-1.trunnion")
     left.write_bytes(b"")
     os.utime(left, (1.0, 1.0))  # older than the program that has the number now
-    assert remembered.left_behind() == left
+    assert preferences.left_behind() == left
 
 
 def test_work_that_can_not_be_kept_is_told(opened, monkeypatch, qtbot):
-    folder = remembered.autosave_file().parent
+    folder = preferences.autosave_file().parent
     opened.recovery.file._path = folder / "nowhere" / "autosave.trunnion"
     opened.document.choose("fake.blank.side", "Allowance", 8.0)
     opened.recovery.keep()

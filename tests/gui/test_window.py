@@ -13,7 +13,7 @@ from PySide6.QtWidgets import QPushButton, QToolButton
 
 from trunnion.findings import face_tags, warning
 from trunnion_gui.look import icons
-from trunnion_gui.storage import remembered
+from trunnion_gui.storage import preferences
 from trunnion_gui.widgets.finder import score
 from trunnion_gui.worker.steps import STAGES, STEPS, TITLES, joined_state
 
@@ -190,7 +190,7 @@ def test_a_saved_project_opens_again_and_is_recent(programmed, tmp_path, idle, m
     programmed.document.files.open(path)
     idle(programmed)
     assert programmed.document.session.verdict is not None
-    assert remembered.recent()[0] == str(path)
+    assert preferences.recent()[0] == str(path)
 
 
 def test_programs_are_written_into_a_folder(programmed, tmp_path, idle, monkeypatch):
@@ -321,7 +321,7 @@ def test_every_command_stands_in_a_menu(window):
 
 def test_light_and_dark_change_and_are_remembered(window):
     window.registry.run("view.theme")
-    assert (window.theme.name, remembered.theme_name()) == ("dark", "dark")
+    assert (window.theme.name, preferences.theme_name()) == ("dark", "dark")
     window.registry.run("view.theme")
     assert window.theme.name == "light"
 

@@ -13,10 +13,10 @@ from trunnion import tolerance
 from trunnion.part.shape import surfaces
 from trunnion.part.shape.surfaces import (
     STRIP_COLUMNS,
-    Edge,
-    Face,
+    ContactFace,
     Guide,
     Profile,
+    TrimEdge,
     circle_edges,
     level_face,
     line_edges,
@@ -162,7 +162,7 @@ def strips(draw):
             draw(st.floats(0.2, 6.0)),
         )
     lean = draw(st.sampled_from([0.0, 0.0, 0.05]))
-    left, right = Edge(low, u0, low + lean, u1), Edge(high, u0, high - lean, u1)
+    left, right = TrimEdge(low, u0, low + lean, u1), TrimEdge(high, u0, high - lean, u1)
     return strip_row(guide, profile, u0, u1, left, right)
 
 
@@ -196,9 +196,9 @@ def paths(draw):
 def test_the_deepest_of_a_random_block_is_within_the_bound_of_a_far_finer_search(strip, form, path):
     moves = moves_of([program_section(FORMS[form], [path[0], path[1:]])])
     empty = np.zeros((0, STRIP_COLUMNS))
-    contact = PartContact(surfaces_from([Face(1, strip[None], empty, np.zeros((0, 4)))])).along(
-        moves
-    )
+    contact = PartContact(
+        surfaces_from([ContactFace(1, strip[None], empty, np.zeros((0, 4)))])
+    ).along(moves)
     parts = supports_of(FORMS[form])
     for kind in (0, 1):
         measured = contact.depth[1, kind]

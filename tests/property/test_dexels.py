@@ -175,15 +175,15 @@ def test_the_deepest_of_a_ray_in_a_swinging_body_is_found_wherever_it_is(form, s
         int(piece[kernel.CLOSED_LAST]),
         np.inf,
     )
-    ray[kernel.TWIST] = kernel._motion(span)
-    kernel._aim(
+    ray[kernel.TWIST] = kernel._ray_turn(span)
+    kernel._ray_in_tool_frame(
         ray, span, 10.0 + tool.radius + rng.uniform(-0.5, 0.3) * lean * tool.flute_length, 10.0
     )
     low, high = np.sort(rng.uniform(8.0 - height - 2.0, 8.0 - height + tool.flute_length + 2.0, 2))
-    deepest = max(kernel._over_time(*body, ray, w)[0] for w in np.linspace(low, high, 600))
-    found, place = kernel._highest(*body, ray, low, high, -0.05)
+    deepest = max(kernel._swept_depth(*body, ray, w)[0] for w in np.linspace(low, high, 600))
+    found, place = kernel._max_depth_turning(*body, ray, low, high, -0.05)
     assert max(found, -0.05) >= deepest - tolerance.CONTACT_BOUND
-    assert low <= place <= high and found <= kernel._over_time(*body, ray, place)[0] + 1e-9
+    assert low <= place <= high and found <= kernel._swept_depth(*body, ray, place)[0] + 1e-9
 
 
 def check_rays(tool, section, rng):

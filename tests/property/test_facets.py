@@ -195,7 +195,7 @@ def test_the_deepest_of_a_random_move_is_within_the_bound_of_a_far_finer_search(
 )
 def test_a_search_without_room_for_its_open_tasks_errs_deep(form, move, triangles, room):
     moves, row = moves_for(FORMS[form], move), np.zeros(tool_motion.WAY_COLUMNS)
-    tool_motion.fill_way(
+    tool_motion.fill_tool_motion(
         *(
             a[1]
             for a in (
@@ -227,7 +227,7 @@ def test_a_search_without_room_for_its_open_tasks_errs_deep(form, move, triangle
             )
         ]
         space[2][[tool_motion.S_FROM, tool_motion.S_TO]] = -1.0
-        kernel.enter_triangle(
+        kernel.triangle_contact(
             triangles[0].ravel(),
             normal,
             row,

@@ -7,15 +7,15 @@ from itertools import pairwise, permutations
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from trunnion.plan.sequence import Job, ordered
+from trunnion.plan.sequence import OrderedOperation, ordered
 
 
 @st.composite
-def job_lists(draw) -> list[Job]:
+def job_lists(draw) -> list[OrderedOperation]:
     count = draw(st.integers(1, 6))
     waits = [draw(st.sets(st.integers(0, n - 1), max_size=2)) if n else set() for n in range(count)]
     return [
-        Job(
+        OrderedOperation(
             id=f"op-{n}",
             tool=draw(st.sampled_from("ABC")),
             stage=draw(st.integers(0, 3)),
@@ -30,7 +30,7 @@ def changes(order: tuple[str, ...], tools: dict[str, str]) -> int:
     return sum(tools[a] != tools[b] for a, b in pairwise(order))
 
 
-def allowed(order: tuple[str, ...], jobs: list[Job]) -> bool:
+def allowed(order: tuple[str, ...], jobs: list[OrderedOperation]) -> bool:
     return all(order.index(w) < order.index(j.id) for j in jobs for w in j.after)
 
 

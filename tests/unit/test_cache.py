@@ -4,13 +4,13 @@ from __future__ import annotations
 
 from pytest import approx
 
-from trunnion.geometry.cache import Memo
+from trunnion.geometry.cache import Cache
 from trunnion.geometry.plane.region import Region
 
 
 def test_an_answer_is_worked_out_once() -> None:
     worked: list[str] = []
-    memo: Memo[str] = Memo(2)
+    memo: Cache[str] = Cache(2)
 
     def ask(what: str) -> str:
         return memo.answer(what, lambda: worked.append(what) or what.upper())  # type: ignore[func-returns-value]
@@ -21,7 +21,7 @@ def test_an_answer_is_worked_out_once() -> None:
 
 def test_the_longest_unused_answer_is_forgotten_first() -> None:
     worked: list[str] = []
-    memo: Memo[str] = Memo(2)
+    memo: Cache[str] = Cache(2)
     for what in "abacab":
         memo.answer(what, lambda asked=what: worked.append(asked) or asked)  # type: ignore[misc]
     assert worked == ["a", "b", "c", "b"]

@@ -10,7 +10,7 @@ from leaning_tools import cutter
 from trunnion.geometry.frame import WORLD, Frame
 from trunnion.part.read.part_file import read_part
 from trunnion.part.shape.skin import skin_of
-from trunnion.pipeline.clearance import ClearanceQuery
+from trunnion.pipeline.clearance import PartClearance
 from trunnion.shop import load_shop
 from trunnion.toolpath.contact_passes.axis_search import roomy
 
@@ -31,7 +31,7 @@ def block(sample_part):
 
 def around(block, machine="Trunnion 650", cutting=WORLD):
     part, skin = block
-    return ClearanceQuery(
+    return PartClearance(
         part, skin.moved(WORLD, cutting), cutting, WORLD, load_shop().machines[machine]
     )
 

@@ -24,7 +24,7 @@ from trunnion.geometry.frame import WORLD
 from trunnion.model.feature import FaceRole, Feature, Recognition
 from trunnion.model.process import ProcessTree
 from trunnion.plan.prismatic.drive import drive_of, foot_clearance
-from trunnion.plan.prismatic.regions import Space
+from trunnion.plan.prismatic.regions import SetupSpace
 from trunnion.plan.setups import SetupSettings, make_setups
 from trunnion.settings import choose
 from trunnion.shop import load_shop
@@ -40,7 +40,7 @@ def drive(made, kind, feature, earlier=(), choices=None):
     (setup,) = make_setups(recognition, blank_of(part), choose(SetupSettings, {}))
     one = operation(kind, feature, D10, choices)
     process = ProcessTree(plan="", material="", setups=(setup,), operations=(*earlier, one))
-    return drive_of(one, process, Space.of(part, recognition, blank_of(part), setup))
+    return drive_of(one, process, SetupSpace.of(part, recognition, blank_of(part), setup))
 
 
 def test_a_pocket_beside_a_low_rib_stays_closed_over_it():
@@ -171,7 +171,7 @@ def test_the_same_drive_comes_out_in_a_setup_from_below():
     recognition = Recognition(family="panel", frame=WORLD, features=(pocket,))
     _, below = make_setups(recognition, blank_of(part), choose(SetupSettings, {}))
     process = ProcessTree(plan="", material="", setups=(below,))
-    space = Space.of(part, recognition, blank_of(part), below)
+    space = SetupSpace.of(part, recognition, blank_of(part), below)
     (level,) = drive_of(operation("rough", "pocket-01", D10), process, space).levels
     assert (level.top, level.bottom) == approx((0.0, -12.0))
     assert level.wanted.area == approx(60 * 30 - CORNERS)

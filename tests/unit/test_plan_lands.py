@@ -19,7 +19,7 @@ from trunnion.model.verdict import Outcome
 from trunnion.part.shape.skin import skin_of
 from trunnion.pipeline import Engine
 from trunnion.plan.freeform.cutters.end_mills import end_mills_for
-from trunnion.plan.freeform.lands import SKIM, Keeping, Standing, covered, lands_of, without
+from trunnion.plan.freeform.lands import SKIM, LandClearances, PartAbove, covered, lands_of, without
 from trunnion.plan.freeform.layers import plane_drive_of
 from trunnion.plan.freeform.reach import places_on
 from trunnion.plan.freeform.space import SurfaceSpace
@@ -27,7 +27,7 @@ from trunnion.progress import QUIET
 from trunnion.toolpath.stock.heightfield import PlanningStock
 
 SETUP = Setup(name="S1", frame=WORLD, work_offset="G54", clearance=40.0, machine="Mill 1200")
-BARE, KEEPING = (Keeping(beside=beside, around=0.5, above=1.0) for beside in (0.0, 0.4))
+BARE, KEEPING = (LandClearances(beside=beside, around=0.5, above=1.0) for beside in (0.0, 0.4))
 MILLS = [mill(d) for d in (4.0, 6.0, 8.0, 12.0, 16.0)]
 CURVED = {"recognize.family": "surface", "surface.scallop": 0.02, "surface.semi_allowance": 0.0}
 
@@ -76,7 +76,7 @@ def lands(space):
 
 
 def chosen(space, mills=MILLS, ball=1.0, kept=()):
-    return end_mills_for(Standing(space), lands(space), mills, ball, 0.97, KEEPING, kept, QUIET)
+    return end_mills_for(PartAbove(space), lands(space), mills, ball, 0.97, KEEPING, kept, QUIET)
 
 
 def at(found, z):
@@ -104,7 +104,7 @@ def test_level_faces_that_hang_together_are_one_land() -> None:
 
 def test_what_hangs_over_a_land_is_in_the_way() -> None:
     space = spaced(walled().union(box(0, 0, 18, 15, 30, 21)))
-    over = Standing(space).over(6.0 + SKIM)
+    over = PartAbove(space).over(6.0 + SKIM)
     assert over.area == pytest.approx(15.0 * 30.0, rel=0.01)
     assert over.contains([[14.9, 15.0]])[0]
 
@@ -112,10 +112,10 @@ def test_what_hangs_over_a_land_is_in_the_way() -> None:
 def test_an_end_mill_goes_up_to_a_wall_and_hardly_over_the_rim_of_a_fillet() -> None:
     land = lands(spaced(walled()))[1]
     assert covered(
-        land, Standing(spaced(walled())).free(land.z, MILLS[2], BARE), MILLS[2]
+        land, PartAbove(spaced(walled())).free(land.z, MILLS[2], BARE), MILLS[2]
     ).area == pytest.approx(35.0 * 30.0, abs=1e-3)
     space = spaced(boss())
-    free = Standing(space).free(6.0, MILLS[2], BARE)
+    free = PartAbove(space).free(6.0, MILLS[2], BARE)
     rim = 9.0 - math.sqrt(2.0 * 3.0 * SKIM)
     assert not free.contains([[20.0 + rim - 1e-3, 15.0]])[0]
     assert free.contains([[20.0 + rim + 1e-3, 15.0]])[0]
@@ -124,13 +124,13 @@ def test_an_end_mill_goes_up_to_a_wall_and_hardly_over_the_rim_of_a_fillet() -> 
 def test_it_keeps_off_sides_that_are_not_finished_yet_but_not_off_a_fillet() -> None:
     space = spaced(walled())
     assert covered(
-        lands(space)[1], Standing(space).free(6.0, MILLS[2], KEEPING), MILLS[2]
+        lands(space)[1], PartAbove(space).free(6.0, MILLS[2], KEEPING), MILLS[2]
     ).area == pytest.approx(34.6 * 30.0, abs=1e-3)
     space = spaced(boss())
     whole = lands(space)[-1]
     assert (
         without(
-            whole.region, covered(whole, Standing(space).free(6.0, MILLS[2], KEEPING), MILLS[2])
+            whole.region, covered(whole, PartAbove(space).free(6.0, MILLS[2], KEEPING), MILLS[2])
         ).area
         < 1e-3
     )
@@ -139,7 +139,7 @@ def test_it_keeps_off_sides_that_are_not_finished_yet_but_not_off_a_fillet() -> 
 def test_it_keeps_farther_off_an_unfinished_side_that_is_higher_than_its_flutes() -> None:
     space, low = spaced(walled()), replace(mill(8.0), flute_length=8.0)
     rims = [
-        Standing(space).free(6.0, low, keeping).signed_distance([[10.0, 15.0]])[0]
+        PartAbove(space).free(6.0, low, keeping).signed_distance([[10.0, 15.0]])[0]
         for keeping in (BARE, KEEPING)
     ]
     assert rims == pytest.approx([5.0, 4.0], abs=1e-3)
@@ -155,7 +155,7 @@ def test_a_shank_as_thick_as_the_cutter_keeps_off_a_taller_wall() -> None:
         stickout=60.0,
     )
     space = spaced(walled(30.0))
-    assert Standing(space).free(6.0, short, BARE).signed_distance([[5.5, 15.0]])[
+    assert PartAbove(space).free(6.0, short, BARE).signed_distance([[5.5, 15.0]])[
         0
     ] == pytest.approx(0.0, abs=1e-3)
 

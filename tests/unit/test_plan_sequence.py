@@ -6,14 +6,16 @@ from itertools import pairwise
 
 import pytest
 
-from trunnion.plan.sequence import Job, ordered
+from trunnion.plan.sequence import OrderedOperation, ordered
 
 
-def job(id: str, tool: str, stage: int = 0, after: str = "", x: float = 0.0) -> Job:
-    return Job(id=id, tool=tool, stage=stage, place=(x, 0.0), after=frozenset(after.split()))
+def job(id: str, tool: str, stage: int = 0, after: str = "", x: float = 0.0) -> OrderedOperation:
+    return OrderedOperation(
+        id=id, tool=tool, stage=stage, place=(x, 0.0), after=frozenset(after.split())
+    )
 
 
-def changes(order: tuple[str, ...], jobs: list[Job]) -> int:
+def changes(order: tuple[str, ...], jobs: list[OrderedOperation]) -> int:
     tools = [next(j.tool for j in jobs if j.id == id) for id in order]
     return sum(a != b for a, b in pairwise(tools))
 

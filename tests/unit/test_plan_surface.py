@@ -13,7 +13,7 @@ from hypothesis import strategies as st
 from milling import mill
 from samples import read
 from surface_drives import grid, joined
-from trunnion.geometry.dropping import DropSurface
+from trunnion.geometry.drop_surface import DropSurface
 from trunnion.geometry.frame import WORLD, Frame
 from trunnion.geometry.plane.region import Region
 from trunnion.model.blank import Box
@@ -36,7 +36,7 @@ from trunnion.plan.freeform.layers import level_faces
 from trunnion.plan.freeform.reach import places_on, reached
 from trunnion.plan.freeform.space import SurfaceSpace
 from trunnion.toolpath.stock.heightfield import PlanningStock
-from trunnion.toolpath.stock.sides import Sides
+from trunnion.toolpath.stock.views import StockViews
 
 BLANK = Box(
     frame=WORLD,
@@ -323,7 +323,7 @@ def cut_from(x):
 
 
 def test_what_is_cut_from_above_is_gone_from_the_side_too():
-    sides = Sides(BLANK)
+    sides = StockViews(BLANK)
     from_left = cutting_setup(SETUP, (-1.0, 0.0, 0.0), BLANK)
     before = sides.seen(from_left)
     assert before.heights.max() == pytest.approx(0.0)
@@ -338,7 +338,7 @@ def test_what_is_cut_from_above_is_gone_from_the_side_too():
 
 def test_a_blank_that_stands_askew_is_as_high_as_it_is_there():
     tilted = cutting_setup(SETUP, (0.6, 0.0, 0.8), BLANK)
-    stock = Sides(BLANK).seen(tilted)
+    stock = StockViews(BLANK).seen(tilted)
     around = PlanningStock.of(BLANK, tilted)
     assert stock.heights.shape == around.heights.shape and (stock.heights <= around.heights).all()
     low, high = stock.box()
@@ -361,7 +361,7 @@ def test_a_blank_that_stands_askew_is_as_high_as_it_is_there():
 
 
 def test_a_leaning_path_takes_nothing_off():
-    sides = Sides(BLANK)
+    sides = StockViews(BLANK)
     before = sides.seen(SETUP)
     path = cut_from(20.0)
     sides.cut(SETUP, replace(path, axis=np.tile([0.6, 0.0, 0.8], (len(path), 1))), mill(10.0))

@@ -28,15 +28,15 @@ from leaning_paths import (
 )
 from programs import BULL_10, FLAT_16, S1, program_1
 from trunnion.findings import BadInput, Refused
-from trunnion.geometry.kernels import winding, winding_compiled
+from trunnion.geometry.kernels import rotary_angles, rotary_angles_compiled
 from trunnion.model.listing import listing
 from trunnion.model.toolpath import Motion, Toolpath
 from trunnion.post.dialects.apt import AptDialect
 from trunnion.post.dialects.linuxcnc import LinuxCncDialect
-from trunnion.post.linearize import Straying, even_turn, joint_path
+from trunnion.post.linearize import PathTolerance, even_turn, joint_path
 from trunnion.post.settings import PostSettings
 from trunnion.shop.kinematics import SLACK, poses_of, stands_of, words_of
-from trunnion.shop.winding import followed
+from trunnion.shop.rotary_angles import followed
 from trunnion.verify.machine.kinematics import linear_positions
 
 BOTH = pytest.mark.parametrize("machine", [TABLE, ENDLESS_FORK], ids=["table", "fork"])
@@ -98,8 +98,8 @@ def test_the_compiled_winding_is_the_plain_one():
         free, through = rng.uniform(size=(30, 2, 2)) < 0.1, rng.uniform(size=30) < 0.3
         low, high, start = np.array([-2.0, -7.0]), np.array([3.0, 7.0]), rng.uniform(-1.0, 1.0, 2)
         plain, fast = np.zeros((30, 2)), np.zeros((30, 2))
-        said = winding.follow(angle, free, through, low, high, SLACK, start, plain)
-        assert winding_compiled.follow(
+        said = rotary_angles.choose_angles(angle, free, through, low, high, SLACK, start, plain)
+        assert rotary_angles_compiled.choose_angles(
             angle, free, through, low, high, SLACK, start, fast
         ) == approx(said)
         assert fast == approx(plain)
@@ -110,7 +110,9 @@ def test_the_winding_keeps_its_way_where_the_other_would_end_at_a_limit():
     path = path_of(
         *[((0.0, 0.0, 10.0), lean(abs(t), 90.0 if t < 0 else -90.0)) for t in range(-60, 61, 5)]
     )
-    joints = joint_path(path, FLAT_16, standing(TABLE), None, Straying(feed=0.002, rapid=0.5), "op")
+    joints = joint_path(
+        path, FLAT_16, standing(TABLE), None, PathTolerance(feed=0.002, rapid=0.5), "op"
+    )
     angle = np.degrees(joints.angle)
     assert angle[:, 0].min() == approx(-60.0)
     assert angle[:, 0].max() <= 1e-6
@@ -120,20 +122,22 @@ def test_the_winding_keeps_its_way_where_the_other_would_end_at_a_limit():
 def test_an_axis_that_may_turn_for_ever_winds_up_and_one_that_may_not_is_refused():
     turns = path_of(*[((20.0, 0.0, 5.0), lean(25.0, 10.0 * k)) for k in range(109)])
     endless = joint_path(
-        turns, FLAT_16, standing(TABLE), None, Straying(feed=0.01, rapid=0.5), "op"
+        turns, FLAT_16, standing(TABLE), None, PathTolerance(feed=0.01, rapid=0.5), "op"
     )
     assert math.degrees(np.ptp(endless.angle[:, 1])) == approx(1080.0)
     with pytest.raises(
         Refused,
         match=r"operation op, block \d+: its tool axis needs .* has C -360 to 360, A -110 to 110",
     ):
-        joint_path(turns, FLAT_16, standing(FORK), None, Straying(feed=0.01, rapid=0.5), "op")
+        joint_path(turns, FLAT_16, standing(FORK), None, PathTolerance(feed=0.01, rapid=0.5), "op")
 
 
 def test_a_way_begins_where_its_turns_fit_between_the_limits():
     # 600 degrees of C fit only from one end of a fork's 720.
     turns = path_of(*[((20.0, 0.0, 5.0), lean(25.0, 10.0 * k)) for k in range(61)])
-    joints = joint_path(turns, FLAT_16, standing(FORK), None, Straying(feed=0.01, rapid=0.5), "op")
+    joints = joint_path(
+        turns, FLAT_16, standing(FORK), None, PathTolerance(feed=0.01, rapid=0.5), "op"
+    )
     assert math.degrees(np.ptp(joints.angle[:, 0])) == approx(600.0)
     assert np.degrees(np.abs(joints.angle[:, 0])).max() <= 360.0
 
@@ -157,7 +161,7 @@ def test_between_two_blocks_the_tool_stays_within_the_tolerance_of_its_way(machi
         ((20.0, -30.0, 5.0), lean(3.0, -120.0)),
         ((25.0, -25.0, 5.0), lean(3.0, 100.0)),
     )
-    straying = Straying(feed=0.002, rapid=0.5)
+    straying = PathTolerance(feed=0.002, rapid=0.5)
     joints = joint_path(path, FLAT_16, place, None, straying, "op")
     tip, axis = swept(place, joints.words, joints.angle, FLAT_16.gauge_length)
     assert farthest_from(path, tip, axis, 0.0) <= straying.feed

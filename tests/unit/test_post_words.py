@@ -10,10 +10,10 @@ import pytest
 
 from trunnion.findings import BadInput
 from trunnion.post.iso_words import IsoWords, checked_iso_words, iso_words
-from trunnion.post.readers.language import Language
+from trunnion.post.readers.language import ControlLanguage
 from trunnion.post.readers.modes import MEANINGS
 from trunnion.post.settings import PostSettings
-from trunnion.post.ticks import Scale
+from trunnion.post.ticks import TickScale
 from trunnion.post.words import checked_words, dialect_words, plain
 
 TABLE = tomllib.loads((files("trunnion_resources") / "dialects" / "linuxcnc.toml").read_text())
@@ -90,7 +90,7 @@ def test_words_that_no_control_can_use_are_refused(change, message):
 )
 def test_codes_that_the_reader_cannot_follow_are_refused(change, message):
     with pytest.raises(BadInput, match=message):
-        Language(replace(iso_words("linuxcnc"), **change), None, MEANINGS)
+        ControlLanguage(replace(iso_words("linuxcnc"), **change), None, MEANINGS)
 
 
 def test_a_dialect_without_words_is_refused():
@@ -116,14 +116,14 @@ def test_a_comment_is_one_plain_line(text, said):
     [(0, "0"), (1, "0.0001"), (-1, "-0.0001"), (125000, "12.5"), (-400000, "-40")],
 )
 def test_ticks_are_written_without_trailing_zeros(ticks, said):
-    assert Scale.of(PostSettings(), 1, 1).text(ticks) == said
+    assert TickScale.of(PostSettings(), 1, 1).text(ticks) == said
 
 
 @pytest.mark.parametrize(("feed", "said"), [(400.0, "400"), (0.001, "0.1"), (1234.56, "1234.6")])
 def test_a_feed_is_never_written_as_zero(feed, said):
-    assert Scale.of(PostSettings(), 1, 1).feed(feed) == said
+    assert TickScale.of(PostSettings(), 1, 1).feed(feed) == said
 
 
 def test_an_inch_has_one_decimal_more():
-    scale = Scale.of(PostSettings(units="inch"), 1, 1)
+    scale = TickScale.of(PostSettings(units="inch"), 1, 1)
     assert (scale.decimals, scale.text(int(scale.ticks(25.4 * 1.00001)))) == (5, "1.00001")

@@ -236,9 +236,9 @@ class Squares(Rectangles):
         super().__init__(*((s, s, 0.0) for s in sides))
 
     def bend(self, tag):
-        from trunnion.geometry.curvature import FaceBend
+        from trunnion.geometry.curvature import FaceCurvature
 
-        return FaceBend(least=0.0, most=0.0, spread=np.zeros((0, 2)))
+        return FaceCurvature(least=0.0, most=0.0, spread=np.zeros((0, 2)))
 
     def graph(self):
         n = len(self.patches)

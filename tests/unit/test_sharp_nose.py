@@ -9,16 +9,18 @@ import pytest
 from samples import written
 from trunnion.geometry.plane.region import Region
 from trunnion.pipeline import Engine
-from trunnion.toolpath.axis_region import Room
+from trunnion.toolpath.axis_region import AxisRegion
 
 
 def test_the_axis_goes_straight_on_to_where_both_passes_meet():
     nosed = Region.rectangle(0, 0, 100, 100).minus(Region.rectangle(40, 60, 60, 100))
-    room = Room.of(nosed, 10.0, mitred=True)
+    room = AxisRegion.of(nosed, 10.0, mitred=True)
     edge = np.array([40.0, 60.0])
     assert room.holds([edge + [-10.0, -10.0]])
     assert not room.holds([edge + 10.001 * np.array([-np.sqrt(0.5), -np.sqrt(0.5)])])
-    assert Room.of(nosed, 10.0).holds([edge + 10.001 * np.array([-np.sqrt(0.5), -np.sqrt(0.5)])])
+    assert AxisRegion.of(nosed, 10.0).holds(
+        [edge + 10.001 * np.array([-np.sqrt(0.5), -np.sqrt(0.5)])]
+    )
 
 
 @pytest.fixture(scope="module")

@@ -13,7 +13,7 @@ from leaning_tools import leaning_section
 from trunnion.findings import BadInput
 from trunnion.geometry.frame import WORLD
 from trunnion.model.blank import Box
-from trunnion.verify.kernels.meshing import mesh_heights
+from trunnion.verify.kernels.meshing import mesh_zmap
 from trunnion.verify.motion import moves_of
 from trunnion.verify.stock import Stock, run_stock
 from trunnion.verify.stock.bundles import cycle
@@ -137,9 +137,9 @@ def test_a_part_400_cells_long_is_quick_and_light():
         for m in range(3):
             inside = np.maximum(np.abs(x - 25.0 - 50.0 * k), np.abs(y - 25.0 - 50.0 * m))
             top[inside < 20.0] = 5.0 + np.clip(inside[inside < 20.0] - 14.0, 0.0, None) ** 2 / 4.0
-    mesh_heights(top, 0.0, 0.0, 0.0, PITCH, 0.02)
+    mesh_zmap(top, 0.0, 0.0, 0.0, PITCH, 0.02)
     began = time.process_time()
-    points, triangles = mesh_heights(top, 0.0, 0.0, 0.0, PITCH, 0.02)
+    points, triangles = mesh_zmap(top, 0.0, 0.0, 0.0, PITCH, 0.02)
     assert time.process_time() - began < 0.1
     assert len(triangles) < 200_000 and len(points) < 100_000
 

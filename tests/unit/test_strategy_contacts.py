@@ -27,7 +27,7 @@ from trunnion.model.setup import Setup
 from trunnion.model.toolpath import Mark
 from trunnion.settings import choose
 from trunnion.shop import load_shop
-from trunnion.toolpath.contact_passes.flowlines import Crowded, Flow, flow_lines
+from trunnion.toolpath.contact_passes.flow_lines import DenseFlowLines, FlowParameters, flow_lines
 from trunnion.toolpath.contact_passes.fronts import AIM, FIRST, scallop_passes
 from trunnion.toolpath.contact_passes.stepovers import spread, stepover_measure
 from trunnion.toolpath.stock.heightfield import PlanningStock
@@ -177,7 +177,7 @@ def test_flow_lines_over_a_plane_are_rows_that_climb() -> None:
 def test_a_ring_is_one_spiral_and_without_one_closed_passes() -> None:
     drive = drive_of(zone())
     spiral = flow_lines(drive, BALL)
-    rings = flow_lines(drive, BALL, Flow(spiral=False))
+    rings = flow_lines(drive, BALL, FlowParameters(spiral=False))
     assert len(spiral) == 1 and len(rings) > 3 and all(r.closed for r in rings)
     assert np.linalg.norm(spiral[0].point, axis=1) == approx(
         np.full(len(spiral[0]), 10.0), abs=1e-4
@@ -187,7 +187,9 @@ def test_a_ring_is_one_spiral_and_without_one_closed_passes() -> None:
 
 def test_flow_lines_run_between_the_faces_that_are_named() -> None:
     skin = joined(plane(), plane(tag=2, start=6.0), plane(tag=3, start=-6.0))
-    ways = flow_lines(drive_of(skin), BALL, Flow(first_guide="face 2", second_guide="face 3"))
+    ways = flow_lines(
+        drive_of(skin), BALL, FlowParameters(first_guide="face 2", second_guide="face 3")
+    )
     assert (
         ways[0].point[:, 0] == approx(np.full(len(ways[0]), ways[0].point[0, 0]))
         and ways[0].point[0, 0] > ways[-1].point[0, 0]
@@ -204,7 +206,7 @@ def test_flow_lines_run_between_the_faces_that_are_named() -> None:
 )
 def test_guides_that_cannot_be_are_refused_in_words(words, message: str) -> None:
     with pytest.raises(BadInput, match=message):
-        flow_lines(drive_of(plane()), BALL, Flow(**words))
+        flow_lines(drive_of(plane()), BALL, FlowParameters(**words))
 
 
 def test_flow_lines_that_would_crowd_are_refused() -> None:
@@ -221,8 +223,8 @@ def test_flow_lines_that_would_crowd_are_refused() -> None:
             *(plane(1.0, 1.0, n=5, tag=tag, start=start) for tag, start in ((2, -1.0), (3, 2.0))),
         )
     )
-    with pytest.raises(Crowded, match="constant scallop"):
-        flow_lines(drive, BALL, Flow(first_guide="2", second_guide="3"))
+    with pytest.raises(DenseFlowLines, match="constant scallop"):
+        flow_lines(drive, BALL, FlowParameters(first_guide="2", second_guide="3"))
 
 
 @pytest.mark.parametrize(

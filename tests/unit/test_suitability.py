@@ -16,7 +16,7 @@ from trunnion.recognize.casing.suitability import CasingKind
 from trunnion.recognize.contract import Suitability
 from trunnion.recognize.impeller.suitability import ImpellerKind
 from trunnion.recognize.panel import PanelFamily
-from trunnion.recognize.revolution import Axis, main_axis, of_revolution
+from trunnion.recognize.revolution import RevolutionAxis, main_axis, of_revolution
 from trunnion.recognize.surface import SurfaceFamily
 from trunnion.recognize.symmetry import fold, patterns
 
@@ -104,7 +104,7 @@ def test_the_main_axis_is_the_one_that_most_area_turns_about() -> None:
     assert axis is not None
     turned = of_revolution(graph, axis)
     assert float(graph.area[turned].sum() / graph.area.sum()) > 0.9
-    across = Axis(
+    across = RevolutionAxis(
         point=axis.point,
         direction=np.cross(axis.direction, [0.6, 0.0, 0.8])
         / np.linalg.norm(np.cross(axis.direction, [0.6, 0.0, 0.8])),

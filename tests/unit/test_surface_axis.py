@@ -10,7 +10,7 @@ from pytest import approx
 
 from trunnion.findings import BadInput
 from trunnion.geometry.sphere import angle_between
-from trunnion.toolpath.contact_passes.axis import (
+from trunnion.toolpath.contact_passes.axis_fields import (
     eased,
     fixed,
     from_curve,

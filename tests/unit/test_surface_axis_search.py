@@ -13,11 +13,11 @@ from leaning_tools import contact_of, cutter
 from surface_drives import DATA, driven, grid
 from trunnion.findings import Refused
 from trunnion.geometry.sphere import angle_between
-from trunnion.pipeline.clearance import PartAsker
+from trunnion.pipeline.clearance import ToolClearanceQuery
 from trunnion.plan.freeform.cutters.cutter import tip_at
 from trunnion.progress import QUIET
 from trunnion.settings import choose
-from trunnion.toolpath.contact_passes.axis import fixed, leaning
+from trunnion.toolpath.contact_passes.axis_fields import fixed, leaning
 from trunnion.toolpath.contact_passes.axis_search import (
     AxisSearch,
     LeanLimits,
@@ -48,7 +48,7 @@ class Boxes:
 
 
 def asker(*boxes, tool=BALL, lowest=-1.0):
-    return PartAsker(Boxes(*boxes, lowest=lowest), roomy(tool, 0.2))
+    return ToolClearanceQuery(Boxes(*boxes, lowest=lowest), roomy(tool, 0.2))
 
 
 def straight(length=30.0, n=61, y=0.0):
@@ -146,8 +146,8 @@ def test_round_an_edge_axes_turn_no_faster_than_allowed() -> None:
 def test_what_lies_alike_is_asked_once() -> None:
     ways = [straight(y=0.1 * k) for k in range(8)]
     one, many = Boxes(WALL), Boxes(WALL)
-    free_axes(ways[:1], WANTED, BALL, PartAsker(one, roomy(BALL, 0.2)), LeanLimits())
-    free_axes(ways, WANTED, BALL, PartAsker(many, roomy(BALL, 0.2)), LeanLimits())
+    free_axes(ways[:1], WANTED, BALL, ToolClearanceQuery(one, roomy(BALL, 0.2)), LeanLimits())
+    free_axes(ways, WANTED, BALL, ToolClearanceQuery(many, roomy(BALL, 0.2)), LeanLimits())
     assert many.asked < 3 * one.asked
 
 

@@ -8,8 +8,8 @@ import numpy as np
 import pytest
 
 from trunnion.findings import Refused
-from trunnion.geometry.dropping import DropSurface
-from trunnion.geometry.kernels.drop import height_at, slope_at
+from trunnion.geometry.drop_surface import DropSurface
+from trunnion.geometry.kernels.drop_cutter import height_at, slope_at
 from trunnion.plan.freeform.cutters.cutter import SURFACE_FORMS, lower_side, tip_at, touching
 from trunnion.shop import load_shop
 

@@ -11,7 +11,7 @@ from pytest import approx
 
 from surface_forms import cylinder, grid, joined, plane, saddle, zone
 from trunnion.findings import Refused
-from trunnion.geometry.kernels import marching, marching_compiled
+from trunnion.geometry.kernels import fast_marching, fast_marching_compiled
 from trunnion.geometry.sheet import sheet as sheets
 from trunnion.geometry.sheet.contours import chains, whole_levels
 from trunnion.geometry.sheet.fields import Metric, beyond, blend, distances, turns_about
@@ -115,7 +115,7 @@ def test_compiled_marching_does_what_the_plain_one_does(skin) -> None:
     metric, across = plain(sheet), beyond(sheet)
     found = [
         module.stencils(sheet.triangles, metric.lengths, across)
-        for module in (marching, marching_compiled)
+        for module in (fast_marching, fast_marching_compiled)
     ]
     assert (found[0][0] == found[1][0]).all() and found[0][1] == approx(found[1][1])
     points, sizes = found[0]
@@ -124,7 +124,7 @@ def test_compiled_marching_does_what_the_plain_one_does(skin) -> None:
         [[0], np.cumsum(np.bincount(points[:, 1:].ravel(), minlength=len(sheet.points)))]
     )
     times = []
-    for module in (marching, marching_compiled):
+    for module in (fast_marching, fast_marching_compiled):
         time, foot = np.full(len(sheet.points), np.inf), sheet.points.copy()
         time[[0, 5]] = 0.0, 0.3
         module.march(points, sizes, start, order // 2, time, foot, np.inf)
@@ -142,7 +142,7 @@ def test_chains_plain_and_compiled() -> None:
         np.zeros(9, np.int64),
         np.zeros(8, bool),
     )
-    count = marching.chain_loop(follows, plain_order, plain_start, plain_closed)
+    count = fast_marching.chain_loop(follows, plain_order, plain_start, plain_closed)
     assert [order[a:b].tolist() for a, b in pairwise(start)] == [
         [0, 3],
         [1, 2, 1],

@@ -10,12 +10,12 @@ import pytest
 from surface_drives import DATA, driven, grid
 from trunnion.model.toolpath import Mark, Motion
 from trunnion.plan.freeform.cutters.cutter import lower_side
-from trunnion.toolpath.contact_passes.linking import Manner, linked
+from trunnion.toolpath.contact_passes.linking import LinkParameters, linked
 from trunnion.toolpath.contact_passes.passes import UPRIGHT, Pass
 from verify_tools import bull
 
 BALL = bull(6.0, 3.0)()
-MANNER = Manner(stepover=0.5, lead_radius=1.0)
+MANNER = LinkParameters(stepover=0.5, lead_radius=1.0)
 
 
 def straight(start, end, axis=UPRIGHT, normal=UPRIGHT, closed=False):
@@ -59,7 +59,7 @@ def test_a_far_pass_is_reached_above_the_stock() -> None:
 
 def test_a_link_over_a_ridge_is_lifted_and_one_over_a_dip_is_not_lowered() -> None:
     ridge = driven(grid(lambda x, y: np.maximum(0.0, 1.0 - np.abs(y - 15.0)), n=60))
-    wide = Manner(stepover=3.0)
+    wide = LinkParameters(stepover=3.0)
     path, drive, _ = made(
         [straight((5, 11, 0), (15, 11, 0)), straight((15, 19, 0), (5, 19, 0))], wide, ridge
     )
@@ -87,7 +87,7 @@ def test_leads_never_come_below_the_dropped_cutter() -> None:
     )
     path, drive, _ = made(
         [Pass(tip=tip, axis=np.tile(UPRIGHT, (40, 1)), normal=np.tile(UPRIGHT, (40, 1)))],
-        Manner(stepover=1.0, lead_radius=5.0),
+        LinkParameters(stepover=1.0, lead_radius=5.0),
         drive,
     )
     leads = path.position[path.mark == Mark.LEAD]
@@ -100,7 +100,7 @@ def test_nearest_passes_come_first_and_may_be_turned_round() -> None:
         straight((0, 2, 0), (10, 2, 0)),
         straight((0, 0.5, 0), (10, 0.5, 0)),
     ]
-    path, *_ = made(passes, Manner(stepover=0.5, order="nearest", reversing=True))
+    path, *_ = made(passes, LinkParameters(stepover=0.5, order="nearest", reversing=True))
     ends = path.position[path.mark == Mark.CUT]
     # A pass's first tip is the end of the way to it.
     assert ends[:, :2].tolist() == [[10.0, 0.0], [0.0, 0.5], [10.0, 2.0]]

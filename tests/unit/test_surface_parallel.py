@@ -10,7 +10,7 @@ import pytest
 
 from surface_drives import DATA, driven, grid, joined
 from trunnion.findings import Refused
-from trunnion.geometry.kernels.drop import drop
+from trunnion.geometry.kernels.drop_cutter import drop_cutter
 from trunnion.model.toolpath import Mark, Motion
 from trunnion.plan.freeform.cutters.cutter import lower_side
 from trunnion.plan.freeform.estimate.scallop import stepover_on_plane
@@ -168,7 +168,8 @@ def test_tips_stand_where_the_plain_drop_puts_them() -> None:
     )
     tips = cuts(made.path)[::7, 1]
     assert tips[:, 2] == pytest.approx(
-        drop(tips[:, :2], drive.skin.points[drive.skin.triangles], lower_side(BALL), -9.0), abs=1e-9
+        drop_cutter(tips[:, :2], drive.skin.points[drive.skin.triangles], lower_side(BALL), -9.0),
+        abs=1e-9,
     )
 
 

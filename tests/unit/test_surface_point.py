@@ -14,9 +14,9 @@ from surface_drives import DATA, driven, grid
 from trunnion.findings import BadInput, Refused
 from trunnion.geometry.frame import WORLD, Frame
 from trunnion.model.toolpath import Motion
-from trunnion.pipeline.clearance import PartAsker
+from trunnion.pipeline.clearance import ToolClearanceQuery
 from trunnion.settings import choose
-from trunnion.toolpath.contact_passes.axis import fixed, leaning
+from trunnion.toolpath.contact_passes.axis_fields import fixed, leaning
 from trunnion.toolpath.contact_passes.axis_search import LeanLimits, roomy
 from trunnion.toolpath.contact_passes.contacts import Contacts, slerp
 from trunnion.toolpath.contact_passes.passes import UPRIGHT
@@ -160,7 +160,7 @@ class Boxes:
         return self._contact.clear(moves, 0.006)
 
     def __call__(self, tool):
-        return PartAsker(self, roomy(tool, 0.2))
+        return ToolClearanceQuery(self, roomy(tool, 0.2))
 
 
 FLOOR = ((-60.0, -60.0, -9.0), (90.0, 90.0, 0.0))

@@ -14,15 +14,15 @@ from trunnion.model.program import ProgramSection
 from trunnion.part.shape.exact import ExactPoints
 from trunnion.plan.freeform.cutters.cutter import lower_side
 from trunnion.plan.freeform.estimate.scallop import stepover_on_plane
-from trunnion.plan.freeform.parting import PART
+from trunnion.plan.freeform.partition import PART
 from trunnion.plan.freeform.rest import BESIDE, left_by, without_met
 from trunnion.progress import QUIET
 from trunnion.settings import choose
 from trunnion.shop import load_shop
-from trunnion.toolpath.contact_passes.overrun import Strip
+from trunnion.toolpath.contact_passes.overrun import OverrunStrip
 from trunnion.toolpath.surface.constant import ConstantSettings, constant
 from trunnion.toolpath.surface.parallel import ParallelSettings, parallel
-from trunnion.verify.finish.fine import fine_measure
+from trunnion.verify.finish.fine_mode import fine_measure
 from trunnion.verify.motion import moves_of
 from verify_tools import bull
 
@@ -191,7 +191,7 @@ def test_a_strip_goes_on_over_smooth_joins_but_not_round_edges() -> None:
         3,
     )
     skin = joined(LEVEL.skin(12), EDGE.skin(24), wall)
-    strip = Strip.of(skin, (1,), 0.3)
+    strip = OverrunStrip.of(skin, (1,), 0.3)
     middle, facet = skin.points[skin.triangles].mean(axis=1), np.arange(len(skin.triangles))
     inside = (middle[:, 0] > 1.0) & (middle[:, 0] < 5.0) & strip.has(middle, facet)
     assert (inside & (skin.face == 2)).any() and not (inside & (skin.face == 3)).any()

@@ -7,7 +7,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from milling import mill
-from trunnion.toolpath.contact_passes.spacing import Places, least_over, marched, tip_spacing
+from trunnion.toolpath.contact_passes.spacing import FacetSlopes, least_over, marched, tip_spacing
 
 
 @settings(deadline=None, max_examples=30)
@@ -42,7 +42,7 @@ def test_ridges_in_a_hollow_stay_low_however_nearly_it_is_as_round_as_the_cutter
     normals = -ring / hollow
     corners = np.array([[ring[0], ring[1], ring[0] + [0.0, 1e-3, 0.0]]])
     facing = np.array([[normals[0], normals[1], normals[0]]])
-    places = Places(
+    places = FacetSlopes(
         row=np.array([0]),
         normal=facing.mean(axis=1),
         area=np.ones(1),

@@ -10,7 +10,7 @@ from hypothesis import example, given, settings
 from hypothesis import strategies as st
 
 from trunnion.findings import Cancelled
-from trunnion.geometry.dropping import DropSurface
+from trunnion.geometry.drop_surface import DropSurface
 from trunnion.progress import Progress
 from trunnion.toolpath.contact_passes.tracing import beside, follow, thinned
 

@@ -9,7 +9,7 @@ from milling import SETUP, box_blank, cutting, mill
 from trunnion.geometry.plane.curve import Curve
 from trunnion.geometry.plane.region import Region
 from trunnion.model.toolpath import Mark, Motion
-from trunnion.toolpath.axis_region import Room, parts_where
+from trunnion.toolpath.axis_region import AxisRegion, parts_where
 from trunnion.toolpath.motion.builder import PathBuilder
 from trunnion.toolpath.motion.link import step_aside, travel
 from trunnion.toolpath.offsetting.lead import fitting_lead, lead_in
@@ -75,13 +75,13 @@ def test_a_holder_that_would_touch_lifts_the_way() -> None:
 
 def test_stepping_aside_goes_left_where_there_is_room() -> None:
     builder = at_the_bottom_of_a_slot()
-    step_aside(builder, (1.0, 0.0), Room(Region.rectangle(0, 0, 200, 60)))
+    step_aside(builder, (1.0, 0.0), AxisRegion(Region.rectangle(0, 0, 200, 60)))
     assert builder.here == pytest.approx([120.0, 31.5, -30.0])
 
 
 def test_stepping_aside_stays_where_there_is_no_room() -> None:
     builder = at_the_bottom_of_a_slot()
-    step_aside(builder, (1.0, 0.0), Room(Region.rectangle(0, 0, 200, 30)))
+    step_aside(builder, (1.0, 0.0), AxisRegion(Region.rectangle(0, 0, 200, 30)))
     assert builder.here == pytest.approx([120.0, 30.0, -30.0])
 
 
@@ -96,7 +96,7 @@ def test_a_lead_shrinks_until_it_fits() -> None:
         np.array([10.0, 0.0]),
         np.array([1.0, 0.0]),
         10.0,
-        Room(Region.rectangle(0, 0, 20, 4)),
+        AxisRegion(Region.rectangle(0, 0, 20, 4)),
         leaves=False,
     )
     assert lead is not None and lead.radius == pytest.approx(3.5)
@@ -108,7 +108,7 @@ def test_no_lead_fits_where_there_is_no_room_at_all() -> None:
             np.array([10.0, 0.0]),
             np.array([1.0, 0.0]),
             10.0,
-            Room(Region.rectangle(0, 0, 20, 1)),
+            AxisRegion(Region.rectangle(0, 0, 20, 1)),
             leaves=False,
         )
         is None

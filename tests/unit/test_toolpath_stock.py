@@ -78,8 +78,8 @@ def test_the_compiled_field_is_lowered_as_its_plain_form(corner: float) -> None:
     )
     fast, plain = np.zeros((80, 60)), np.zeros((80, 60))
     gone, plainly_gone = np.zeros(20), np.zeros(20)
-    heightfield.lower(fast, 0.0, 0.0, 0.5, starts, ends, 6.0, corner, gone)
-    heightfield.lower_reference(plain, 0.0, 0.0, 0.5, starts, ends, 6.0, corner, plainly_gone)
+    heightfield.zmap_cut(fast, 0.0, 0.0, 0.5, starts, ends, 6.0, corner, gone)
+    heightfield.zmap_cut_reference(plain, 0.0, 0.0, 0.5, starts, ends, 6.0, corner, plainly_gone)
     assert max(np.abs(fast - plain).max(), np.abs(gone - plainly_gone).max()) < 1e-9
 
 
@@ -93,12 +93,12 @@ def test_the_compiled_greatest_height_is_that_of_its_plain_form() -> None:
         strict=True,
     ):
         asked = (heights, 0.0, 0.0, 0.5, a, b, radius)
-        assert heightfield.highest(*asked) == heightfield.highest_reference(*asked)
+        assert heightfield.zmap_highest(*asked) == heightfield.zmap_highest_reference(*asked)
 
 
 def test_a_cutter_smaller_than_a_cell_removes_nothing_for_certain() -> None:
     heights = np.zeros((10, 10))
-    heightfield.lower(
+    heightfield.zmap_cut(
         heights,
         0.0,
         0.0,

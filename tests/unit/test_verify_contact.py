@@ -13,10 +13,10 @@ from trunnion.findings import BadInput
 from trunnion.part.shape.facets import Facets
 from trunnion.part.shape.surfaces import (
     STRIP_COLUMNS,
-    Edge,
-    Face,
+    ContactFace,
     Guide,
     Profile,
+    TrimEdge,
     circle_edges,
     level_face,
     line_edges,
@@ -37,12 +37,12 @@ NO_CHORDS, NO_LEVEL = np.zeros((0, 4)), np.zeros((0, STRIP_COLUMNS))
 
 def touched(strips, tool, stops):
     """Return the depths of the last block into strips, cutter first."""
-    faces = surfaces_from([Face(1, np.atleast_2d(strips), NO_LEVEL, NO_CHORDS)])
+    faces = surfaces_from([ContactFace(1, np.atleast_2d(strips), NO_LEVEL, NO_CHORDS)])
     return PartContact(faces).along(moves_of([program_section(tool, stops)])).depth[-1]
 
 
 def swept(guide, profile, u0, u1, s0, s1):
-    return strip_row(guide, profile, u0, u1, Edge(s0, u0, s0, u1), Edge(s1, u0, s1, u1))
+    return strip_row(guide, profile, u0, u1, TrimEdge(s0, u0, s0, u1), TrimEdge(s1, u0, s1, u1))
 
 
 WALL = swept(Guide(0, 0.0, 0.0, 1.0, 0.0), Profile(0.0, 0.0, 0.0, 1.0), 0.0, 20.0, 0.0, 100.0)
@@ -146,7 +146,7 @@ def test_a_rounded_end_of_a_wall_is_trimmed_exactly():
     wall = strips_of(
         Guide(0, 0.0, 0.0, 1.0, 0.0),
         Profile(0.0, 0.0, 0.0, 1.0),
-        [Edge(0, 0, 0, 20), Edge(100, 0, 80, 20, 80.0, 0.0, 20.0, 1.0)],
+        [TrimEdge(0, 0, 0, 20), TrimEdge(100, 0, 80, 20, 80.0, 0.0, 20.0, 1.0)],
         1.0,
     )
     depth = touched(wall, flat(10.0)(), [(101 - 0.5, -40, 12), (101 - 0.5, 40, 12)])[0]
@@ -418,7 +418,7 @@ def test_a_pointed_tool_in_a_hole_beside_the_chords_of_its_rim_is_as_deep_as_its
 
 
 def test_places_lie_on_the_guide_where_it_is_nearest_to_the_path():
-    found = PartContact(surfaces_from([Face(1, WALL[None], NO_LEVEL, NO_CHORDS)])).along(
+    found = PartContact(surfaces_from([ContactFace(1, WALL[None], NO_LEVEL, NO_CHORDS)])).along(
         moves_of([program_section(flat(10.0)(), [(40, -20, 5), (40, -4.9, 5)])])
     )
     points = guide_points(WALL, float(found.place[-1, 0, 2]), np.linspace(0.0, 1.0, 65))

@@ -11,7 +11,7 @@ from pytest import approx
 
 from trunnion.geometry.frame import WORLD
 from trunnion.model.blank import Box
-from trunnion.verify.kernels.engagement import look_in_field
+from trunnion.verify.kernels.engagement import engagement_in_zmap
 from trunnion.verify.motion import moves_of
 from trunnion.verify.stock import Stock, run_stock
 from trunnion.verify.stock.engagement import (
@@ -39,7 +39,7 @@ def seen(tool, heights, start, end, bands=1):
     edges = np.linspace(0, len(heights), bands + 1).astype(int)
     for a, b in pairwise(edges):
         tally = Tally.empty(int(probes.start[-1]))
-        look_in_field(
+        engagement_in_zmap(
             heights[a:b],
             np.array([0.0, a * PITCH]),
             PITCH,

@@ -276,8 +276,8 @@ def test_compiled_loops_agree_with_themselves_uncompiled():
     start, end, centre = np.array([1.0, 2.0, 3.0]), np.array([4.0, 1.0, 2.0]), np.full(3, np.nan)
     for turned in (leaning(30), leaning(-170), (0.0, 0.0, -1.0)):
         args = start, end, np.array(leaning(0)), np.array(turned), centre, 0.0
-        kernel.fill_way(*args, way)
-        kernel.fill_way.py_func(*args, plain)
+        kernel.fill_tool_motion(*args, way)
+        kernel.fill_tool_motion.py_func(*args, plain)
         assert way == approx(plain)
         assert kernel.axis_at(way, 1.0) == approx(turned, abs=1e-12)
         assert kernel.tip_at(way, 0.5) == approx((start + end) / 2)

@@ -14,7 +14,7 @@ from trunnion.model.material import Axis
 from trunnion.model.program import ProgramSection
 from trunnion.model.toolpath import Motion, Toolpath
 from trunnion.shop import load_shop
-from trunnion.verify.kernels.rotary import follow
+from trunnion.verify.kernels.rotary import choose_angles_greedy
 from trunnion.verify.kernels.timing import block_times
 from trunnion.verify.machine.kinematics import (
     UP,
@@ -233,7 +233,7 @@ def test_each_pose_takes_the_nearer_of_both_ways_as_a_plain_search_does():
     rng = np.random.default_rng(5)
     angles, free = rng.uniform(-math.pi, math.pi, (60, 2, 2)), rng.random((60, 2, 2)) < 0.1
     low, high, chosen = np.array([-2.0, -20.0]), np.array([2.0, 20.0]), np.zeros((60, 2))
-    turned_by, outside = follow(angles, free, low, high, 1, 1e-9, chosen)
+    turned_by, outside = choose_angles_greedy(angles, free, low, high, 1, 1e-9, chosen)
     before, turned_plain, outside_plain = np.zeros(2), 0.0, 0
     for k in range(60):
         tried = []

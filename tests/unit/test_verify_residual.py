@@ -37,7 +37,7 @@ def test_every_form_is_closed_at_the_top_of_its_flutes(form):
         )
     )
     mine = np.array(
-        [kernel.flute_distance(flutes, 0, r, z, False) for r, z in zip(rho, h, strict=True)]
+        [kernel.flute_signed_distance(flutes, 0, r, z, False) for r, z in zip(rho, h, strict=True)]
     )
     true = PlainCutter(tool).distance(rho, h)
     if form == "form":

@@ -28,7 +28,7 @@ def add(commands: Any) -> None:
 
 def run(chosen: argparse.Namespace) -> int:
     """Print each operation's cutting data beside the spindle's power."""
-    from trunnion.pipeline.estimating import estimate
+    from trunnion.pipeline.finishing_estimate import estimate
 
     engine, session = open_session(chosen, "optimize")
     process, areas = session.process, estimate(session, engine.context_of(session))

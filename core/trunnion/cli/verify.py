@@ -44,9 +44,9 @@ def add(commands: Any) -> None:
 
 def run(chosen: argparse.Namespace) -> int:
     """Print the verdict."""
-    from trunnion.pipeline import fine
+    from trunnion.pipeline import fine_faces
 
-    faces = fine.faces_named(chosen.fine) if chosen.fine else ()
+    faces = fine_faces.faces_named(chosen.fine) if chosen.fine else ()
     if not 0.001 <= chosen.fine_spacing <= 10.0:
         raise BadCall(f"--fine-spacing {chosen.fine_spacing:g}: it must be from 0.001 to 10 mm")
     if chosen.nc:
@@ -60,7 +60,7 @@ def run(chosen: argparse.Namespace) -> int:
 
         session = verify_texts(engine, session, chosen.nc, progress_of(chosen))
     figures = (
-        fine.measure_fine(engine, session, faces, chosen.fine_spacing, progress_of(chosen))
+        fine_faces.measure_fine(engine, session, faces, chosen.fine_spacing, progress_of(chosen))
         if faces
         else None
     )
@@ -70,10 +70,10 @@ def run(chosen: argparse.Namespace) -> int:
             tuple(str(f) for f in chosen.nc),
             {n: r.seconds for n, r in session.records.items()},
         )
-        show_json(told | ({"fine": fine.fine_dict(figures)} if figures else {}))
+        show_json(told | ({"fine": fine_faces.fine_dict(figures)} if figures else {}))
     else:
         print(proof_text(session))
         if figures:
-            print(fine.fine_text(figures))
+            print(fine_faces.fine_text(figures))
     show_findings(chosen, session.findings())
     return verdict_code(session)

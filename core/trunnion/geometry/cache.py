@@ -9,7 +9,7 @@ from typing import Generic, TypeVar
 Answer = TypeVar("Answer")
 
 
-class Memo(Generic[Answer]):
+class Cache(Generic[Answer]):
     """Keeps the last `most` different answers by what was asked. Answers must be immutable: everyone who asks gets the same one."""
 
     def __init__(self, most: int) -> None:

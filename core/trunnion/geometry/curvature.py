@@ -10,7 +10,7 @@ from trunnion.geometry.arrays import Floats, floats
 
 
 @dataclass(frozen=True, slots=True, eq=False, kw_only=True)
-class FaceBend:
+class FaceCurvature:
     """How one face bends, in 1/mm, above 0 where it bulges out of the material and below where it is hollow.
 
     spread (k, 2) the lesser and the greater principal curvature at places spread over the trimmed face; least and most the extremes of

@@ -7,7 +7,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from trunnion.geometry.arrays import Floats, Ints
-from trunnion.geometry.kernels.outline import within_loop
+from trunnion.geometry.kernels.outline import points_in_polygon_loop
 
 
 @dataclass(frozen=True, slots=True, eq=False, kw_only=True)
@@ -50,7 +50,7 @@ class Outlines:
         """Return `OUT`, `IN` or `NEAR` of `kernels.outline` (k,) for places (k, 2)."""
         out = np.empty(len(places), np.int64)
         places = np.ascontiguousarray(places, dtype=np.float64)
-        within_loop(
+        points_in_polygon_loop(
             places, self.pieces, self.near, self.low, self.pitch, self.start, self.rows, out
         )
         return out

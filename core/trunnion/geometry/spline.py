@@ -7,7 +7,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from trunnion.geometry.arrays import Floats, floats
-from trunnion.geometry.kernels.spline_compiled import surface_loop
+from trunnion.geometry.kernels.spline_compiled import evaluate_surface_loop
 
 
 @dataclass(frozen=True, slots=True, eq=False, kw_only=True)
@@ -41,7 +41,7 @@ class SplineSurface:
                 low, high, t = knots[degree], knots[-degree - 1], places[:, axis]
                 places[:, axis] = np.where((t < low) | (t > high), low + np.mod(t - low, period), t)
         out = np.empty((len(places), 6, 3))
-        surface_loop(
+        evaluate_surface_loop(
             0,
             len(places),
             places,

@@ -27,7 +27,7 @@ from trunnion import tolerance
 from trunnion.findings import BadInput
 from trunnion.geometry.arrays import Floats
 from trunnion.geometry.cut import Cut
-from trunnion.part.face_curve import DrawnWay
+from trunnion.part.face_curve import DrawnCurve
 from trunnion.part.part import Part
 from trunnion.part.topology.identity import (
     Shape,
@@ -92,7 +92,7 @@ def divided(part: Part, cut: Cut) -> Part:
 def _pieces(face: Shape, cut: Cut, where: str) -> list[Shape]:
     """Return the pieces of a face, those that keep the tag's side first, the larger first on either side."""
     places = np.array(cut.places, dtype=np.float64).reshape(-1, 3)
-    way = None if cut.is_plane else DrawnWay(face, places, REACH, where)
+    way = None if cut.is_plane else DrawnCurve(face, places, REACH, where)
     tool = _plane(face, places[0], np.array(cut.normal)) if way is None else way.edge()
     pieces = faces_of(_split(face, [tool]).Shape())
     if len(pieces) < 2:

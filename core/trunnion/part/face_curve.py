@@ -35,7 +35,7 @@ _ASKED = 64
 """Places along the way beside which pieces are asked for."""
 
 
-class DrawnWay:
+class DrawnCurve:
     """The curve on the surface of one face that goes through given places (k, 3) in order; a way back to its start is closed.
 
     Raises `BadInput` for a place that is farther than `reach` from the surface.

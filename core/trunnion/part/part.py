@@ -15,7 +15,7 @@ from trunnion import tolerance
 from trunnion.findings import BadInput, Finding, Severity
 from trunnion.geometry.arrays import Floats, Ints
 from trunnion.geometry.boundary import Boundary
-from trunnion.geometry.curvature import FaceBend
+from trunnion.geometry.curvature import FaceCurvature
 from trunnion.geometry.facegraph import FaceGraph
 from trunnion.geometry.frame import Frame
 from trunnion.geometry.mesh import Mesh
@@ -24,13 +24,13 @@ from trunnion.part.topology.identity import Shape, faces_of
 from trunnion.progress import QUIET, Progress
 
 if TYPE_CHECKING:
-    from trunnion.part.topology.boundary import Bounding
+    from trunnion.part.topology.boundary import BoundaryCurves
 
 _MAGIC = b"trunnion part 1\n"
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class PartFacts:
+class PartMetadata:
     """What is known of a part beside its shape.
 
     `unit` is the file's own ("mm", "inch", ...), lengths here are mm; `tags` (k,) the tag of every face of the chosen solid in the
@@ -58,7 +58,7 @@ class PartFacts:
         return json.dumps(plain)
 
     @staticmethod
-    def from_json(text: str) -> PartFacts:
+    def from_json(text: str) -> PartMetadata:
         """Return the facts that `to_json` wrote."""
         data = json.loads(text)
         data["findings"] = tuple(
@@ -68,7 +68,7 @@ class PartFacts:
         data["names"] = {int(k): v for k, v in data["names"].items()}
         data["colours"] = {int(k): tuple(v) for k, v in data["colours"].items()}
         data["tags"] = tuple(data["tags"])
-        return PartFacts(**data)
+        return PartMetadata(**data)
 
 
 class Part:
@@ -78,7 +78,7 @@ class Part:
     computed from them is kept: ask as often as you like.
     """
 
-    def __init__(self, facts: PartFacts, shape: Shape, as_read: Shape) -> None:
+    def __init__(self, facts: PartMetadata, shape: Shape, as_read: Shape) -> None:
         self.facts = facts
         self.shape = shape
         self.as_read = as_read
@@ -91,8 +91,8 @@ class Part:
         self._graph: FaceGraph | None = None
         self._meshes: dict[tuple[float, float], Mesh] = {}
         self._sections: dict[tuple[bytes, float], Region] = {}
-        self._bounding: Bounding | None = None
-        self._bends: dict[int, FaceBend] = {}
+        self._bounding: BoundaryCurves | None = None
+        self._bends: dict[int, FaceCurvature] = {}
         self._slicer: Any = None
         self._progress = QUIET
 
@@ -205,7 +205,7 @@ class Part:
             self._progress.check()
             yield tag, face
 
-    def bend(self, tag: int) -> FaceBend:
+    def bend(self, tag: int) -> FaceCurvature:
         """Return how a face bends; raise `BadInput` when it is not of the chosen solid."""
         if tag not in self._bends:
             from trunnion.part.shape.curvature import bend_of
@@ -245,7 +245,7 @@ class Part:
         at = len(_MAGIC) + 8
         end = at + int.from_bytes(data[len(_MAGIC) : at], "little")
         shape, as_read = shapes_from(data[end:])
-        return Part(PartFacts.from_json(data[at:end].decode()), shape, as_read)
+        return Part(PartMetadata.from_json(data[at:end].decode()), shape, as_read)
 
 
 def shape_bytes(shape: Shape, as_read: Shape) -> bytes:

@@ -35,7 +35,7 @@ CHUNK = 128
 """Moves that one thread asks before it looks for more."""
 
 
-class ClearanceQuery:
+class PartClearance:
     """A part and its fixtures as they stand in a cutting frame that itself stands in a setup's frame.
 
     `skin` is the part's in the cutting frame. What cuts may touch the part (`tolerance.FINISH_GOUGE`); neck, shank and holder are asked
@@ -55,9 +55,9 @@ class ClearanceQuery:
         self._part, self._skin, self._cutting, self._setup = part, skin, cutting, setup
         self._machine, self._fixtures, self.progress = machine, tuple(fixtures), progress
 
-    def __call__(self, tool: Tool) -> PartAsker:
+    def __call__(self, tool: Tool) -> ToolClearanceQuery:
         """Return who asks for a tool."""
-        return PartAsker(self, roomy(tool, tolerance.HOLDER_ROOM))
+        return ToolClearanceQuery(self, roomy(tool, tolerance.HOLDER_ROOM))
 
     def holds(self, axis: Floats) -> Bools:
         """Say which tool axes (k, 3), in the cutting frame, the machine can hold within the limits of its rotary axes."""
@@ -109,10 +109,10 @@ class ClearanceQuery:
         )
 
 
-class PartAsker:
+class ToolClearanceQuery:
     """Asks for one tool; a pose that the machine can't hold counts as one that isn't clear."""
 
-    def __init__(self, around: ClearanceQuery, tool: Tool) -> None:
+    def __init__(self, around: PartClearance, tool: Tool) -> None:
         self._around, self._tool = around, tool
 
     def __call__(

@@ -16,14 +16,14 @@ from trunnion.model.process import ProcessTree
 from trunnion.model.session import Session
 from trunnion.model.setup import Setup
 from trunnion.model.tool import Tool
-from trunnion.pipeline.clearance import ClearanceQuery
+from trunnion.pipeline.clearance import PartClearance
 from trunnion.pipeline.context import Context
 from trunnion.plan.contract import PartContext
 from trunnion.progress import Progress
 from trunnion.settings import digest
 from trunnion.toolpath.motion.reorient import Pose
 from trunnion.toolpath.stock.heightfield import PlanningStock
-from trunnion.toolpath.stock.sides import Sides
+from trunnion.toolpath.stock.views import StockViews
 
 if TYPE_CHECKING:
     from trunnion.part.part import Part
@@ -37,22 +37,20 @@ class SessionContext:
     def __init__(self, context: Context, session: Session) -> None:
         self.part: Part = context.part
         self._context, self._session = context, session
-        self._around: dict[tuple[str, str], ClearanceQuery] = {}
+        self._around: dict[tuple[str, str], PartClearance] = {}
 
     def skin(self, chord: float, progress: Progress) -> Skin:
         """Return the part's skin in its own coordinates within a chord error (mm)."""
         return self._context.skin(chord, progress)
 
-    def around(
-        self, setup: Setup, cutting: Frame, skin: Skin, progress: Progress
-    ) -> ClearanceQuery:
+    def around(self, setup: Setup, cutting: Frame, skin: Skin, progress: Progress) -> PartClearance:
         """Return the clearance queries of a setup for a cutting frame, in which `skin` is the part's.
 
         `progress` is looked at from now on.
         """
         key = (setup.name, digest(cutting))
         if key not in self._around:
-            self._around[key] = ClearanceQuery(
+            self._around[key] = PartClearance(
                 self.part,
                 skin,
                 cutting,
@@ -74,13 +72,13 @@ class SetupScene:
     setup: Setup
     process: ProcessTree
     fixtures: tuple[Fixture, ...]
-    sides: Sides = field(init=False)
+    sides: StockViews = field(init=False)
     last: OperationPath | None = None
     tool: Tool | None = None
     _made: dict[Hashable, Any] = field(default_factory=dict)
 
     def __post_init__(self) -> None:
-        self.sides = Sides(self.blank)
+        self.sides = StockViews(self.blank)
 
     def stock(self, setup: Setup) -> PlanningStock:
         """Return the stock that is left at this moment, in the frame of a setup (a cutting frame is one)."""

@@ -11,7 +11,7 @@ from trunnion.model.blank import Blank
 from trunnion.model.material import Machine
 from trunnion.model.session import Session
 from trunnion.model.setup import Setup
-from trunnion.shop.kinematics import Place, Places
+from trunnion.shop.kinematics import Places, WorkPosition
 from trunnion.toolpath.motion.reorient import swing_of
 
 
@@ -27,9 +27,9 @@ def places_of(session: Session, machines: Mapping[str, Machine]) -> Places:
     }
 
 
-def place_of(blank: Blank, setup: Setup, machine: Machine) -> Place:
+def place_of(blank: Blank, setup: Setup, machine: Machine) -> WorkPosition:
     """Return where a setup's work stands: the middle of the blank's underside lies on the middle of the table."""
     low, high = blank.box_in(setup.frame)
     swing = swing_of(blank, setup)
     foot = np.array([*(0.5 * (low + high))[:2], low[2]])
-    return Place(machine=machine, foot=foot, centre=swing.centre, radius=swing.radius)
+    return WorkPosition(machine=machine, foot=foot, centre=swing.centre, radius=swing.radius)

@@ -11,7 +11,7 @@ from trunnion.geometry.arrays import Bools, Floats
 from trunnion.model.tool import Tool
 
 
-class Asker(Protocol):
+class ClearanceQuery(Protocol):
     """Asks whether a tool is clear of part and fixtures; poses are in the cutting frame."""
 
     def __call__(
@@ -25,10 +25,10 @@ class Asker(Protocol):
         """Say for tips (k, 3) with unit axes (k, 3) which poses (or moves from a start) enter nothing deeper than the tolerance."""
 
 
-class Around(Protocol):
+class ClearanceScene(Protocol):
     """What stands round a leaning tool: who asks for a tool, and which axes the machine holds."""
 
-    def __call__(self, tool: Tool) -> Asker:
+    def __call__(self, tool: Tool) -> ClearanceQuery:
         """Return who asks for a tool."""
 
     def holds(self, axis: Floats) -> Bools:

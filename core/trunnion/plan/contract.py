@@ -22,7 +22,7 @@ from trunnion.model.operation import Operation
 from trunnion.model.process import ProcessTree
 from trunnion.model.session import SizeEntry
 from trunnion.model.setup import Setup
-from trunnion.plan.clearance import Around
+from trunnion.plan.clearance import ClearanceScene
 from trunnion.progress import Progress
 from trunnion.settings import Value, checked, choose
 from trunnion.shop import Shop
@@ -35,7 +35,7 @@ PLANNERS = "planners"
 T = TypeVar("T")
 
 
-class Heights(Protocol):
+class StockHeights(Protocol):
     """What is known to be gone already, as a field of heights (`toolpath.stock.PlanningStock`)."""
 
     @property
@@ -59,7 +59,9 @@ class PartContext(Protocol):
     def skin(self, chord: float, progress: Progress) -> Skin:
         """Return the part's skin in its own coordinates within a chord error (mm)."""
 
-    def around(self, setup: Setup, cutting: Frame, skin: Skin, progress: Progress) -> Around:
+    def around(
+        self, setup: Setup, cutting: Frame, skin: Skin, progress: Progress
+    ) -> ClearanceScene:
         """Return the clearance queries of a setup for a cutting frame, in which `skin` is the part's."""
 
 
@@ -101,7 +103,7 @@ class Scene(Protocol):
     process: ProcessTree
     fixtures: tuple[Fixture, ...]
 
-    def stock(self, setup: Setup) -> Heights:
+    def stock(self, setup: Setup) -> StockHeights:
         """Return the stock that is left at this moment, in the frame of a setup (a cutting frame is one)."""
 
     def once(self, key: Hashable, make: Callable[[], T]) -> T:
@@ -117,7 +119,7 @@ class Drive(Protocol):
 
 
 @dataclass(frozen=True, slots=True, eq=False, kw_only=True)
-class Driven:
+class OperationDrive:
     """The drive of an operation, the setup whose frame it lies in (the cutting frame), and `told`, what a digest is made of that tells the
     drive from others: the drive itself, or its digest, with all else that its queries depend on."""
 
@@ -149,11 +151,11 @@ class Planner(Protocol):
 
     def drive(
         self, operation: Operation, needs: DriveNeeds, scene: Scene, progress: Progress
-    ) -> Driven:
+    ) -> OperationDrive:
         """Return the drive of an operation; raise `Refused` where the part does not bear the feature out."""
 
 
-DriveMaker = Callable[[Operation, DriveNeeds, Scene, Progress], Driven]
+DriveMaker = Callable[[Operation, DriveNeeds, Scene, Progress], OperationDrive]
 """How a planner makes drives of one class."""
 
 
@@ -176,7 +178,7 @@ def driven_by(
     needs: DriveNeeds,
     scene: Scene,
     progress: Progress,
-) -> Driven:
+) -> OperationDrive:
     """Return the drive of an operation by the maker for the class that its strategy needs; raise `Refused` where there is none."""
     if needs.drive not in makers:
         raise Refused(

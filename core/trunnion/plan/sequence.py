@@ -7,7 +7,7 @@ from dataclasses import dataclass
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class Job:
+class OrderedOperation:
     """What is ordered: an operation with its tool's name, its stage in the plan (0 first), its place and what comes before."""
 
     id: str
@@ -17,7 +17,7 @@ class Job:
     after: frozenset[str]
 
 
-def ordered(jobs: Sequence[Job]) -> tuple[str, ...]:
+def ordered(jobs: Sequence[OrderedOperation]) -> tuple[str, ...]:
     """Return the ids in an order that keeps every `after` with the fewest tool changes; the same jobs give the same order.
 
     With one tool everything that is ready is done before the next tool comes: putting it off never saves a change. So the search goes
@@ -45,7 +45,9 @@ def ordered(jobs: Sequence[Job]) -> tuple[str, ...]:
     raise ValueError("operations wait for each other in a circle or for one that is not planned")
 
 
-def _exhausted(jobs: Mapping[str, Job], tool: str, done: frozenset[str]) -> frozenset[str]:
+def _exhausted(
+    jobs: Mapping[str, OrderedOperation], tool: str, done: frozenset[str]
+) -> frozenset[str]:
     """Return the jobs of one tool that can be done after `done`, among them those that only wait for each other."""
     found: set[str] = set()
     waiting = [j for j in jobs.values() if j.tool == tool and j.id not in done]
@@ -57,7 +59,7 @@ def _exhausted(jobs: Mapping[str, Job], tool: str, done: frozenset[str]) -> froz
     return frozenset(found)
 
 
-def _walked(jobs: Mapping[str, Job], tools: Sequence[str]) -> tuple[str, ...]:
+def _walked(jobs: Mapping[str, OrderedOperation], tools: Sequence[str]) -> tuple[str, ...]:
     """Return the jobs tool by tool, within a tool by stage, within a stage always the nearest next."""
     order: list[str] = []
     at = (0.0, 0.0)

@@ -16,7 +16,7 @@ from trunnion.model.setup import Setup
 from trunnion.model.tool import Tool, TurningTool
 from trunnion.model.verdict import Verdict
 from trunnion.settings import digest
-from trunnion.shop.kinematics import Place
+from trunnion.shop.kinematics import WorkPosition
 from trunnion.units import MM_PER_INCH, trimmed
 
 REJECTED = "REJECTED"
@@ -125,7 +125,7 @@ class Header:
         return (*lines, *(tool_line(t, units) for t in tools_of(programs)))
 
 
-def place_lines(setup: Setup, place: Place, units: str) -> tuple[str, ...]:
+def place_lines(setup: Setup, place: WorkPosition, units: str) -> tuple[str, ...]:
     """Return the lines of a header that say where the work stands and what the words of rotary axes mean; a reader compares the first."""
     rotary = place.machine.rotary
     stands = " ".join(

@@ -19,14 +19,14 @@ from trunnion.model.toolpath import Motion, Toolpath
 from trunnion.shop.kinematics import (
     SLACK,
     UPRIGHT,
-    Place,
+    WorkPosition,
     axes_of,
     poses_of,
     spindle_of,
     stands_of,
     words_of,
 )
-from trunnion.shop.winding import TURN, beyond, followed
+from trunnion.shop.rotary_angles import TURN, beyond, followed
 
 HALVINGS = 40
 """A block through the pole itself is halved until what is left of its lean is below the tolerance: far fewer times than this."""
@@ -39,7 +39,7 @@ MOST_TURN = math.radians(30.0)
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class Straying:
+class PathTolerance:
     """How far the tool may leave its planned motion between blocks, mm: its tip, and by its lean as much again over the flutes (in rapids
     over the whole tool)."""
 
@@ -62,9 +62,9 @@ class JointPath:
 def joint_path(
     path: Toolpath,
     tool: Tool,
-    place: Place,
+    place: WorkPosition,
     stand: Floats | None,
-    straying: Straying,
+    straying: PathTolerance,
     operation: str,
 ) -> JointPath:
     """Return the positions of the axes along a path.
@@ -129,7 +129,7 @@ def lines_for_arcs(path: Toolpath, rows: Ints, within: float) -> tuple[Toolpath,
 
 
 def _arcs_opened(
-    path: Toolpath, angle: Floats, place: Place, straying: Straying
+    path: Toolpath, angle: Floats, place: WorkPosition, straying: PathTolerance
 ) -> tuple[Toolpath, Floats]:
     """Return a path without the arcs that don't lie across the machine's Z, and its angles."""
     arcs = np.flatnonzero(path.motion >= Motion.ARC_CW)
@@ -158,7 +158,12 @@ class _Pieces:
 
 
 def _between(
-    path: Toolpath, angle: Floats, tool: Tool, place: Place, straying: Straying, operation: str
+    path: Toolpath,
+    angle: Floats,
+    tool: Tool,
+    place: WorkPosition,
+    straying: PathTolerance,
+    operation: str,
 ) -> JointPath:
     """Return the positions of the axes at a path's poses and at those that must come between them."""
     turning = np.zeros(len(path), bool)
@@ -188,7 +193,7 @@ def _between(
 
 
 def _axis_held(
-    path: Toolpath, pieces: _Pieces, allowed: Floats, place: Place, operation: str
+    path: Toolpath, pieces: _Pieces, allowed: Floats, place: WorkPosition, operation: str
 ) -> _Pieces:
     """Return pieces halved until the tool axis stays within `allowed` (n,) rad of its even turn; mid poses take the way that is nearer."""
     done: list[_Pieces] = []
@@ -222,7 +227,7 @@ def _ordered(parts: list[_Pieces]) -> _Pieces:
     return whole.of(np.lexsort((whole.start, whole.block)))
 
 
-def _axis_strays(path: Toolpath, pieces: _Pieces, place: Place) -> Floats:
+def _axis_strays(path: Toolpath, pieces: _Pieces, place: WorkPosition) -> Floats:
     """Return by how much (p,) rad the tool axis leaves its even turn in pieces whose axes go evenly."""
     most = np.zeros(len(pieces.block))
     for share in SHARES:
@@ -232,7 +237,7 @@ def _axis_strays(path: Toolpath, pieces: _Pieces, place: Place) -> Floats:
     return most
 
 
-def _halved(path: Toolpath, pieces: _Pieces, place: Place) -> _Pieces:
+def _halved(path: Toolpath, pieces: _Pieces, place: WorkPosition) -> _Pieces:
     middle = 0.5 * (pieces.start + pieces.end)
     between = 0.5 * (pieces.first + pieces.last)
     angles, free, _ = stands_of(place.machine, turned(path, pieces.block, middle))
@@ -249,7 +254,7 @@ def _halved(path: Toolpath, pieces: _Pieces, place: Place) -> _Pieces:
 
 
 def _tip_held(
-    path: Toolpath, pieces: _Pieces, allowed: Floats, gauge: float, place: Place
+    path: Toolpath, pieces: _Pieces, allowed: Floats, gauge: float, place: WorkPosition
 ) -> tuple[Ints, Floats, Floats]:
     """Return the ends of blocks (row, share of it, angles) along which the tip stays within `allowed` (n,) mm of its straight way."""
     turn = np.abs(pieces.last - pieces.first).max(axis=1, initial=0.0)
@@ -277,7 +282,7 @@ def _parted(pieces: _Pieces, n: Ints) -> _Pieces:
     )
 
 
-def _tip_strays(path: Toolpath, pieces: _Pieces, gauge: float, place: Place) -> Floats:
+def _tip_strays(path: Toolpath, pieces: _Pieces, gauge: float, place: WorkPosition) -> Floats:
     """Return by how much (p,) mm the tip leaves its straight way in pieces whose axes go evenly."""
     first = words_of(place, _tips(path, pieces.block, pieces.start), pieces.first, gauge)
     last = words_of(place, _tips(path, pieces.block, pieces.end), pieces.last, gauge)

@@ -16,7 +16,7 @@ from trunnion.units import MM_PER_INCH
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class Scale:
+class TickScale:
     """How lengths in mm become written numbers: `unit` mm of one written unit, `decimals` of a length, `feed_decimals` of a feed."""
 
     unit: float
@@ -24,7 +24,7 @@ class Scale:
     feed_decimals: int
 
     @classmethod
-    def of(cls, settings: PostSettings, extra_inch: int, feed_decimals: int) -> Scale:
+    def of(cls, settings: PostSettings, extra_inch: int, feed_decimals: int) -> TickScale:
         """Return the scale that the settings ask for."""
         inch = settings.units == "inch"
         extra = extra_inch if inch else 0
@@ -91,7 +91,9 @@ def upright(path: Toolpath, operation: str) -> Toolpath:
     return path
 
 
-def written(path: Toolpath, scale: Scale, operation: str, more: Ints | None = None) -> WrittenPath:
+def written(
+    path: Toolpath, scale: TickScale, operation: str, more: Ints | None = None
+) -> WrittenPath:
     """Return a path as it will be written, arcs across z; raise `Refused` for an arc that no control takes.
 
     A block is kept where its point or one of the further numbers `more` (n, c) changes.

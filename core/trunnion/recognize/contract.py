@@ -9,7 +9,7 @@ from typing import Any, Protocol, runtime_checkable
 from trunnion import registry
 from trunnion.geometry.arrays import Floats, Ints
 from trunnion.geometry.boundary import Boundary
-from trunnion.geometry.curvature import FaceBend
+from trunnion.geometry.curvature import FaceCurvature
 from trunnion.geometry.facegraph import FaceGraph
 from trunnion.geometry.frame import Frame
 from trunnion.geometry.plane.region import Region
@@ -35,7 +35,7 @@ class Bounded(Protocol):
         """Return the boundary of every face: each edge cut into `parts(lengths)` pieces of equal length, or its exact extremes."""
         ...
 
-    def bend(self, tag: int) -> FaceBend:
+    def bend(self, tag: int) -> FaceCurvature:
         """Return how a face bends."""
         ...
 

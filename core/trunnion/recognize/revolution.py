@@ -25,7 +25,7 @@ surfaces stay far below, a blade or a flat pad leaves it by several degrees."""
 
 
 @dataclass(frozen=True, slots=True, eq=False, kw_only=True)
-class Axis:
+class RevolutionAxis:
     """A line in the part's coordinates: a point (3,) in mm and a unit direction (3,)."""
 
     point: Floats
@@ -48,7 +48,7 @@ def reach(graph: FaceGraph) -> float:
     )
 
 
-def main_axis(graph: FaceGraph) -> Axis | None:
+def main_axis(graph: FaceGraph) -> RevolutionAxis | None:
     """Return the axis that the most area is of revolution about, None for a part without round faces and round edges."""
     found = _lines(graph)
     return max(
@@ -56,7 +56,7 @@ def main_axis(graph: FaceGraph) -> Axis | None:
     )
 
 
-def of_revolution(graph: FaceGraph, axis: Axis) -> Bools:
+def of_revolution(graph: FaceGraph, axis: RevolutionAxis) -> Bools:
     """Return which faces (n,) are of revolution about an axis: planes across it, cylinders, cones and any other surface whose normals
     lie in the planes through it."""
     away = axis.away(graph.sample_point)
@@ -70,7 +70,7 @@ def of_revolution(graph: FaceGraph, axis: Axis) -> Bools:
     return np.asarray(sampled & ~strange & (graph.area > 0.0))
 
 
-def _lines(graph: FaceGraph) -> list[Axis]:
+def _lines(graph: FaceGraph) -> list[RevolutionAxis]:
     """Return the lines that most of the round faces and edges share, the heaviest first."""
     faces = np.flatnonzero(
         np.isin(graph.surface, ROUND) & np.isfinite(graph.axis).all(axis=1) & (graph.area > 0.0)
@@ -82,14 +82,16 @@ def _lines(graph: FaceGraph) -> list[Axis]:
     middle, size = _middle(graph), reach(graph)
     foot = point + np.einsum("ij,ij->i", middle - point, direction)[:, None] * direction
     near = SAME_LINE * size
-    found: list[Axis] = []
+    found: list[RevolutionAxis] = []
     # A slightly bent edge may be an arc about a line far out of the part.
     left = (weight > COINCIDENT**2) & (np.linalg.norm(foot - middle, axis=1) < 0.5 * size)
     while left.any() and len(found) < CANDIDATES:
         most = int(np.argmax(np.where(left, weight, -1.0)))
         same = left & _same(foot, direction, most, near)
         found.append(
-            Axis(point=foot[most], direction=direction[most] / np.linalg.norm(direction[most]))
+            RevolutionAxis(
+                point=foot[most], direction=direction[most] / np.linalg.norm(direction[most])
+            )
         )
         left &= ~same
     return found

@@ -8,7 +8,7 @@ import numpy as np
 
 from trunnion.geometry.arrays import Floats, Ints
 from trunnion.geometry.facegraph import FaceGraph
-from trunnion.recognize.revolution import Axis, reach
+from trunnion.recognize.revolution import RevolutionAxis, reach
 from trunnion.tolerance import ANGLE
 from trunnion.units import radians
 
@@ -29,14 +29,14 @@ MOST = 120
 
 
 @dataclass(frozen=True, slots=True, eq=False, kw_only=True)
-class Pattern:
+class CircularPattern:
     """Equal faces evenly about an axis: the number of places around it, and the rows (k,) of the faces."""
 
     count: int
     rows: Ints
 
 
-def patterns(graph: FaceGraph, axis: Axis) -> tuple[Pattern, ...]:
+def patterns(graph: FaceGraph, axis: RevolutionAxis) -> tuple[CircularPattern, ...]:
     """Return the faces that are repeated evenly about an axis, the largest copies first. Faces without samples are in none."""
     rows, place, angle = _signatures(graph, axis)
     near = SAME_PLACE * reach(graph)
@@ -51,7 +51,7 @@ def patterns(graph: FaceGraph, axis: Axis) -> tuple[Pattern, ...]:
             left &= ~alike
             count = fold(angle[alike])
             if count:
-                found.append(Pattern(count=count, rows=rows[alike]))
+                found.append(CircularPattern(count=count, rows=rows[alike]))
     return tuple(found)
 
 
@@ -71,7 +71,7 @@ def fold(angle: Floats) -> int:
     return best
 
 
-def _signatures(graph: FaceGraph, axis: Axis) -> tuple[Ints, Floats, Floats]:
+def _signatures(graph: FaceGraph, axis: RevolutionAxis) -> tuple[Ints, Floats, Floats]:
     """Return the rows (k,) of the faces with samples, what copies have in common (k, 6), and their angles about the axis (k,).
 
     In common: area; radius and height of the middle; the mean normal away from, around and along the axis.

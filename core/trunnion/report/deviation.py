@@ -26,7 +26,7 @@ _APART = 1e5
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class WorstPlace:
+class WorstPoint:
     """Where a face deviates most: its tag, the point in the part's coordinates, mm (+ material left, - gouge)."""
 
     face: int
@@ -49,7 +49,7 @@ class DeviationMap:
     low: float
     high: float
     limit: float
-    worst: tuple[WorstPlace, ...] = ()
+    worst: tuple[WorstPoint, ...] = ()
 
 
 def deviation_map(
@@ -197,9 +197,9 @@ def values_at(
     return value
 
 
-def worst_places(deviation: Deviation, low: float, high: float) -> tuple[WorstPlace, ...]:
+def worst_places(deviation: Deviation, low: float, high: float) -> tuple[WorstPoint, ...]:
     """Return where each face is gouged deepest and where most is left on it, as far as they are outside `low` to `high`."""
-    found: list[WorstPlace] = []
+    found: list[WorstPoint] = []
     for sign, bad in ((1.0, deviation.deviation < low), (-1.0, deviation.deviation > high)):
         rows = np.flatnonzero(bad)
         rows = rows[np.lexsort((rows, sign * deviation.deviation[rows]))]
@@ -207,7 +207,7 @@ def worst_places(deviation: Deviation, low: float, high: float) -> tuple[WorstPl
         for row in rows[np.sort(first)]:
             x, y, z = (float(v) for v in deviation.point[row])
             found.append(
-                WorstPlace(
+                WorstPoint(
                     face=int(deviation.face[row]),
                     point=(x, y, z),
                     deviation=float(deviation.deviation[row]),

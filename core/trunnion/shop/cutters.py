@@ -9,7 +9,7 @@ from pathlib import Path
 from typing import Any
 
 from trunnion.model.tool import Holder, Tool
-from trunnion.shop.reading import Entry, by_name, entries
+from trunnion.shop.reading import CatalogueEntry, by_name, entries
 from trunnion.units import trimmed
 
 USES = ("face", "rough", "finish", "surface", "undercut", "drill")
@@ -53,14 +53,19 @@ def load_cutters(holders: Mapping[str, Holder], user_folder: Path | None) -> tup
     thick a T-slot cutter is (H6); a drill is `SERIES D8.5`. `form` is one of `KINDS`. A user's series or tool replaces the program's of
     the same name.
     """
-    found: list[tuple[int, Entry]] = []
+    found: list[tuple[int, CatalogueEntry]] = []
     for layer, group in entries("tools", user_folder):
         if group.name not in ("tool", "series"):
             raise group.wrong("tables are named [tool.NAME] or [series.NAME]")
         for name in group.fields:
             inner = group.table(name)
             found.append(
-                (layer, Entry(file=inner.file, name=f"{group.name} {name}", fields=inner.fields))
+                (
+                    layer,
+                    CatalogueEntry(
+                        file=inner.file, name=f"{group.name} {name}", fields=inner.fields
+                    ),
+                )
             )
     cutters: dict[str, Cutter] = {}
     for full, entry in by_name(found).items():
@@ -79,7 +84,7 @@ def load_cutters(holders: Mapping[str, Holder], user_folder: Path | None) -> tup
     )
 
 
-def _holder(entry: Entry) -> Holder:
+def _holder(entry: CatalogueEntry) -> Holder:
     entry.text("title")
     rows = entry.rows("rows", 4, 0.0, _LARGEST)
     entry.done()
@@ -94,7 +99,7 @@ def _holder(entry: Entry) -> Holder:
     return Holder(name=entry.name, rows=tuple((z0, r0, z1, r1) for z0, r0, z1, r1 in rows))
 
 
-def _single(entry: Entry, name: str, holders: Mapping[str, Holder]) -> Cutter:
+def _single(entry: CatalogueEntry, name: str, holders: Mapping[str, Holder]) -> Cutter:
     kind = _kind(entry, END_MILL)
     corner = 0.0 if kind in ("drill", "form") else entry.number("corner_radius", 0.0, _LARGEST)
     tool = _tool(entry, entry, kind, name, corner, holders)
@@ -107,7 +112,7 @@ def _single(entry: Entry, name: str, holders: Mapping[str, Holder]) -> Cutter:
     return cutter
 
 
-def _series(entry: Entry, name: str, holders: Mapping[str, Holder]) -> list[Cutter]:
+def _series(entry: CatalogueEntry, name: str, holders: Mapping[str, Holder]) -> list[Cutter]:
     kind = _kind(entry)
     suits, use = _suits(entry), entry.texts("use", _USE.get(kind, ("rough", "finish")), USES)
     made = []
@@ -126,7 +131,7 @@ def _series(entry: Entry, name: str, holders: Mapping[str, Holder]) -> list[Cutt
     return made
 
 
-def _kind(entry: Entry, default: str | None = None) -> str:
+def _kind(entry: CatalogueEntry, default: str | None = None) -> str:
     kind = entry.text("form", default)
     if kind not in KINDS:
         raise entry.wrong(f"form knows {', '.join(KINDS)}; got {kind!r}")
@@ -145,12 +150,17 @@ def _size_name(tool: Tool) -> str:
     }.get(tool.form, corner)
 
 
-def _suits(entry: Entry) -> tuple[str, ...]:
+def _suits(entry: CatalogueEntry) -> tuple[str, ...]:
     return entry.texts("suits", ISO_GROUPS, ISO_GROUPS)
 
 
 def _tool(
-    series: Entry, size: Entry, kind: str, name: str, corner: float, holders: Mapping[str, Holder]
+    series: CatalogueEntry,
+    size: CatalogueEntry,
+    kind: str,
+    name: str,
+    corner: float,
+    holders: Mapping[str, Holder],
 ) -> Tool:
     """Return one cutter: what all sizes share from `series`, its lengths from `size`."""
     holder_name = size.text("holder")
@@ -183,7 +193,7 @@ def _tool(
         raise size.wrong(str(reason)) from None
 
 
-def _shape(series: Entry, size: Entry, kind: str) -> dict[str, Any]:
+def _shape(series: CatalogueEntry, size: CatalogueEntry, kind: str) -> dict[str, Any]:
     """Return the fields that only one form has; a size's own go before those of its series."""
     if kind == "taper":
         return {
@@ -208,5 +218,5 @@ def _shape(series: Entry, size: Entry, kind: str) -> dict[str, Any]:
     return {}
 
 
-def _given(series: Entry, size: Entry, field: str) -> Entry:
+def _given(series: CatalogueEntry, size: CatalogueEntry, field: str) -> CatalogueEntry:
     return size if size.has(field) else series

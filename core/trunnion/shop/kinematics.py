@@ -25,7 +25,7 @@ UPRIGHT = 1e-9
 
 
 @dataclass(frozen=True, slots=True, eq=False, kw_only=True)
-class Place:
+class WorkPosition:
     """A machine, and where the work stands on it.
 
     `foot` (3,) is the point, in the setup frame, that lies on the middle of the table's top with all axes at 0. Round `centre` (3,), setup
@@ -50,19 +50,21 @@ class Place:
         )  # type: ignore[return-value]
 
 
-Places = Mapping[str, Place]
+Places = Mapping[str, WorkPosition]
 """Places by the names of their setups."""
 NO_PLACES: Places = MappingProxyType({})
 """What is known of three axes: nothing more is needed."""
 
 
-def words_of(place: Place, tip: Floats, angle: Floats, gauge: float) -> Floats:
+def words_of(place: WorkPosition, tip: Floats, angle: Floats, gauge: float) -> Floats:
     """Return the X, Y, Z words (k, 3) in mm that put tips (k, 3) of the setup frame where they belong at rotary angles (k, a) in rad."""
     work, spindle = _carried(place.machine, tip - place.foot, angle, gauge)
     return np.asarray(work - spindle + place.foot - gauge * UP)
 
 
-def poses_of(place: Place, words: Floats, angle: Floats, gauge: float) -> tuple[Floats, Floats]:
+def poses_of(
+    place: WorkPosition, words: Floats, angle: Floats, gauge: float
+) -> tuple[Floats, Floats]:
     """Return tips (k, 3) and unit tool axes (k, 3) in the setup frame at X, Y, Z words (k, 3) and rotary angles (k, a) in rad."""
     machine, n = place.machine, len(words)
     at = words - place.foot + gauge * UP
@@ -79,12 +81,12 @@ def poses_of(place: Place, words: Floats, angle: Floats, gauge: float) -> tuple[
     return at + place.foot, axis / np.linalg.norm(axis, axis=1, keepdims=True)
 
 
-def axes_of(place: Place, angle: Floats) -> Floats:
+def axes_of(place: WorkPosition, angle: Floats) -> Floats:
     """Return the unit tool axes (k, 3) in the setup frame at rotary angles (k, a) in rad."""
     return poses_of(place, np.zeros((len(angle), 3)), angle, 0.0)[1]
 
 
-def spindle_of(place: Place, angle: Floats) -> Floats:
+def spindle_of(place: WorkPosition, angle: Floats) -> Floats:
     """Return the tool's direction (k, 3) on the machine, X, Y, Z fixed to its bed, at rotary angles (k, a)."""
     axis = np.tile(UP, (len(angle), 1))
     for k, rotary in reversed(list(enumerate(place.machine.rotary))):
@@ -93,7 +95,7 @@ def spindle_of(place: Place, angle: Floats) -> Floats:
     return axis
 
 
-def lift_of(place: Place, angle: Floats) -> Floats:
+def lift_of(place: WorkPosition, angle: Floats) -> Floats:
     """Return where the machine's Z goes (3,), in the setup frame, with the rotary axes at angles (a,)."""
     up = UP[None]
     for k, rotary in enumerate(place.machine.rotary):

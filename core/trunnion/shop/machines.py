@@ -9,7 +9,7 @@ from typing import Any
 
 from trunnion import registry
 from trunnion.model.material import CONTROL, Axis, Machine
-from trunnion.shop.reading import Entry, by_name, entries
+from trunnion.shop.reading import CatalogueEntry, by_name, entries
 from trunnion.units import FARTHEST, FASTEST
 
 AXIS_KINDS = ("linear", "rotary")
@@ -27,7 +27,7 @@ def load_machines(user_folder: Path | None) -> dict[str, Machine]:
     }
 
 
-def _machine(entry: Entry) -> Machine:
+def _machine(entry: CatalogueEntry) -> Machine:
     spindle = entry.table("spindle")
     low, high = spindle.number("low", 0.0, FASTEST), spindle.number("high", 1.0, FASTEST)
     power = tuple((n, kw) for n, kw in spindle.rows("power", 2, 0.0, FASTEST))
@@ -61,7 +61,7 @@ def _machine(entry: Entry) -> Machine:
     return machine
 
 
-def _control(entry: Entry) -> str:
+def _control(entry: CatalogueEntry) -> str:
     """Return the name of the dialect that a machine is programmed in."""
     control, known = entry.text("control", CONTROL), registry.names("dialects")
     if control not in known:
@@ -69,7 +69,7 @@ def _control(entry: Entry) -> str:
     return control
 
 
-def _axis(entry: Entry) -> Axis:
+def _axis(entry: CatalogueEntry) -> Axis:
     kind = entry.text("kind")
     if kind not in AXIS_KINDS:
         raise entry.wrong(f"kind must be one of {', '.join(AXIS_KINDS)}; got {kind!r}")
@@ -90,7 +90,7 @@ def _axis(entry: Entry) -> Axis:
     return axis
 
 
-def _turning(entry: Entry) -> dict[str, Any]:
+def _turning(entry: CatalogueEntry) -> dict[str, Any]:
     """Return what a rotary axis says beyond a linear one."""
     carries = entry.text("carries")
     if carries not in CARRIES:
@@ -107,7 +107,7 @@ def _turning(entry: Entry) -> dict[str, Any]:
     return {"carries": carries, "direction": tuple(v / length for v in direction), "point": point}
 
 
-def _check_rotary(entry: Entry, axes: tuple[Axis, ...]) -> None:
+def _check_rotary(entry: CatalogueEntry, axes: tuple[Axis, ...]) -> None:
     turning = [a for a in axes if a.kind == "rotary"]
     if len(turning) > MOST_ROTARY:
         raise entry.wrong(f"{len(turning)} rotary axes: at most {MOST_ROTARY} are understood")

@@ -7,7 +7,7 @@ from pathlib import Path
 
 from trunnion.model.material import Material
 from trunnion.shop.cutters import ISO_GROUPS
-from trunnion.shop.reading import Entry, by_name, entries
+from trunnion.shop.reading import CatalogueEntry, by_name, entries
 
 _DENSEST = 25.0
 _FASTEST = 5000.0
@@ -22,10 +22,10 @@ def load_materials(user_folder: Path | None) -> dict[str, Material]:
     }
 
 
-def _material(entry: Entry) -> Material:
+def _material(entry: CatalogueEntry) -> Material:
     sources: dict[str, str] = {}
 
-    def sourced(name: str) -> Entry:
+    def sourced(name: str) -> CatalogueEntry:
         table = entry.table(name)
         sources[name.replace("_", " ")] = table.text("source")
         return table

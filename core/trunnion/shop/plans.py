@@ -5,7 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 from pathlib import Path
 
-from trunnion.shop.reading import Entry, by_name, entries
+from trunnion.shop.reading import CatalogueEntry, by_name, entries
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -47,7 +47,7 @@ def load_plans(user_folder: Path | None) -> dict[str, TypicalPlan]:
     return {name: _plan(chosen[name]) for name in sorted(chosen, key=lambda name: name not in own)}
 
 
-def _plan(entry: Entry) -> TypicalPlan:
+def _plan(entry: CatalogueEntry) -> TypicalPlan:
     title, family = entry.text("title"), entry.text("family")
     stages: list[Stage] = []
     for table in entry.tables("stage"):
@@ -66,7 +66,7 @@ def _plan(entry: Entry) -> TypicalPlan:
     return TypicalPlan(name=entry.name, title=title, family=family, stages=tuple(stages))
 
 
-def _stage(entry: Entry) -> Stage:
+def _stage(entry: CatalogueEntry) -> Stage:
     stage = Stage(
         name=entry.text("name"),
         kind=entry.text("kind"),

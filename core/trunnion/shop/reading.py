@@ -17,7 +17,7 @@ SUFFIX = ".toml"
 
 
 @dataclass(slots=True, kw_only=True)
-class Entry:
+class CatalogueEntry:
     """One table of a catalogue file. Fields are asked for by name and checked; `done` refuses those that nobody asked for."""
 
     file: str
@@ -88,20 +88,20 @@ class Entry:
             raise self.wrong(f"{name} must be rows of {width} numbers; got {value!r}")
         return tuple(tuple(self._number(name, v, low, high) for v in row) for row in value)
 
-    def table(self, name: str) -> Entry:
+    def table(self, name: str) -> CatalogueEntry:
         """Return a table inside this entry."""
         value = self._get(name, None)
         if not isinstance(value, dict):
             raise self.wrong(f"{name} must be a table; got {value!r}")
-        return Entry(file=self.file, name=f"{self.name}: {name}", fields=value)
+        return CatalogueEntry(file=self.file, name=f"{self.name}: {name}", fields=value)
 
-    def tables(self, name: str) -> tuple[Entry, ...]:
+    def tables(self, name: str) -> tuple[CatalogueEntry, ...]:
         """Return the tables of a list inside this entry, at least one."""
         value = self._get(name, None)
         if not isinstance(value, list) or not value or not all(isinstance(v, dict) for v in value):
             raise self.wrong(f"{name} must be a list of tables; got {value!r}")
         return tuple(
-            Entry(file=self.file, name=f"{self.name}: {name} {n}", fields=v)
+            CatalogueEntry(file=self.file, name=f"{self.name}: {name} {n}", fields=v)
             for n, v in enumerate(value, 1)
         )
 
@@ -138,7 +138,7 @@ def folders(kind: str, user_folder: Path | None) -> tuple[Traversable, ...]:
     return own if user_folder is None else (*own, user_folder / kind)
 
 
-def entries(kind: str, user_folder: Path | None) -> Iterator[tuple[int, Entry]]:
+def entries(kind: str, user_folder: Path | None) -> Iterator[tuple[int, CatalogueEntry]]:
     """Yield the top tables of every file of a kind in the order of file names, with 0 for the program's folder and 1 for the user's."""
     for layer, folder in enumerate(folders(kind, user_folder)):
         if folder.is_dir():
@@ -149,12 +149,12 @@ def entries(kind: str, user_folder: Path | None) -> Iterator[tuple[int, Entry]]:
                 for name, table in _parsed(path, label).items():
                     if not isinstance(table, dict):
                         raise BadInput(f"{label}: {name} must be a table, written as [{name}]")
-                    yield layer, Entry(file=label, name=name, fields=table)
+                    yield layer, CatalogueEntry(file=label, name=name, fields=table)
 
 
-def by_name(found: Iterable[tuple[int, Entry]]) -> dict[str, Entry]:
+def by_name(found: Iterable[tuple[int, CatalogueEntry]]) -> dict[str, CatalogueEntry]:
     """Return entries by name, the user's over the program's; raise `BadInput` when one folder gives a name twice."""
-    chosen: dict[str, tuple[int, Entry]] = {}
+    chosen: dict[str, tuple[int, CatalogueEntry]] = {}
     for layer, entry in found:
         earlier = chosen.get(entry.name)
         if earlier is not None and earlier[0] == layer:

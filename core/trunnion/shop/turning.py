@@ -6,7 +6,7 @@ from collections.abc import Mapping
 from pathlib import Path
 
 from trunnion.model.tool import Insert, TurningTool
-from trunnion.shop.reading import Entry, by_name, entries
+from trunnion.shop.reading import CatalogueEntry, by_name, entries
 
 KINDS = ("insert", "tool")
 _LARGEST = 1000.0
@@ -20,14 +20,14 @@ def load_turning(user_folder: Path | None) -> tuple[TurningTool, ...]:
     A file holds `[insert.NAME]` and `[tool.NAME]` tables; a user's replaces the program's of the same name. Raises `BadInput` with file,
     entry and field of the first fault.
     """
-    found: list[tuple[int, Entry]] = []
+    found: list[tuple[int, CatalogueEntry]] = []
     for layer, group in entries("turning", user_folder):
         if group.name not in KINDS:
             raise group.wrong("tables are named [insert.NAME] or [tool.NAME]")
         for name in group.fields:
             inner = group.table(name)
             full = f"{group.name} {name}"
-            found.append((layer, Entry(file=inner.file, name=full, fields=inner.fields)))
+            found.append((layer, CatalogueEntry(file=inner.file, name=full, fields=inner.fields)))
     known = by_name(found)
     inserts = {
         name.split(" ", 1)[1]: _insert(entry, name.split(" ", 1)[1])
@@ -43,7 +43,7 @@ def load_turning(user_folder: Path | None) -> tuple[TurningTool, ...]:
     return tuple(sorted(tools, key=lambda t: t.name))
 
 
-def _insert(entry: Entry, name: str) -> Insert:
+def _insert(entry: CatalogueEntry, name: str) -> Insert:
     try:
         made = Insert(
             designation=name,
@@ -58,7 +58,7 @@ def _insert(entry: Entry, name: str) -> Insert:
     return made
 
 
-def _tools(entry: Entry, name: str, inserts: Mapping[str, Insert]) -> list[TurningTool]:
+def _tools(entry: CatalogueEntry, name: str, inserts: Mapping[str, Insert]) -> list[TurningTool]:
     lengths = {
         key: entry.number(key, 0.0, _LARGEST)
         for key in ("shank_height", "shank_width", "functional_length", "functional_width")

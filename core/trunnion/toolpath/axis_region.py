@@ -32,20 +32,22 @@ SHORTEST = 0.05
 
 
 @dataclass(frozen=True, slots=True, eq=False)
-class Room:
+class AxisRegion:
     """The plane area where the axis may be at one height."""
 
     region: Region
 
     @staticmethod
-    def of(boundary: Region, distance: float, *, mitred: bool = False) -> Room:
+    def of(boundary: Region, distance: float, *, mitred: bool = False) -> AxisRegion:
         """Return the room of an axis that keeps `distance` from the rim of `boundary`.
 
         Round a sharp edge of the part the axis may go in an arc; when `mitred`, only straight on to where both its walls' passes meet: a
         fillet at the foot of such walls is mitred at their edge, and a cutter that went round would cut into the mitre.
         """
         room = boundary.offset(-distance)
-        return Room(room.minus(union_all(_mitres(boundary, distance))) if mitred and room else room)
+        return AxisRegion(
+            room.minus(union_all(_mitres(boundary, distance))) if mitred and room else room
+        )
 
     def depth(self, points: ArrayLike) -> Floats:
         """Return how far inside the room points (k, 2) are (negative outside)."""

@@ -5,7 +5,7 @@ from __future__ import annotations
 from PySide6.QtCore import Qt, Signal
 from PySide6.QtWidgets import QLabel, QStackedLayout, QTableWidget, QWidget
 
-from trunnion.report.deviation import WorstPlace
+from trunnion.report.deviation import WorstPoint
 from trunnion_gui.document import Document
 from trunnion_gui.i18n import tr
 from trunnion_gui.look import icons
@@ -19,14 +19,14 @@ class DeviationDock(QWidget):
     """One row a place: what is wrong, how much, on which face of which feature, where."""
 
     chosen = Signal(object)
-    """A `WorstPlace` that a person wants to see."""
+    """A `WorstPoint` that a person wants to see."""
 
     def __init__(self, document: Document) -> None:
         super().__init__()
         self._document = document
         self._theme: Theme | None = None
         self.shown: DrawnMap | None = None
-        self.places: tuple[WorstPlace, ...] = ()
+        self.places: tuple[WorstPoint, ...] = ()
         self.table: QTableWidget = tables.table(
             ["", tr("Deviation"), tr("Face"), tr("Feature"), "x", "y", "z"], stretched=(0, 3)
         )

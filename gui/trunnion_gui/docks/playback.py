@@ -22,7 +22,7 @@ from trunnion_gui.look import icons
 from trunnion_gui.look.colours import Theme, tool_cycle
 from trunnion_gui.look.words import amount, clock, grouped
 from trunnion_gui.playback.player import SPEEDS, Player
-from trunnion_gui.widgets.track import Track
+from trunnion_gui.widgets.timeline_slider import TimelineSlider
 
 BUTTONS = (
     "play.begin",
@@ -46,7 +46,7 @@ class PlaybackBar(QWidget):
         self._registry = registry
         self._removed = 0.0
         self._load = np.zeros(0)
-        self.track = Track(theme)
+        self.track = TimelineSlider(theme)
         self.speed, self.mode = QComboBox(), QComboBox()
         self.place, self.clock, self.amount = QLabel(), QLabel(), QLabel()
         self._fill_choices()

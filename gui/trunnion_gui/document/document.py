@@ -25,8 +25,8 @@ from trunnion_gui.document.jobs import Finish, Job, Jobs
 from trunnion_gui.document.selection import SelectionModel
 from trunnion_gui.edits import Edit, History
 from trunnion_gui.i18n import tr
-from trunnion_gui.worker.drawing import Drawing
-from trunnion_gui.worker.requests import Group, State, Work
+from trunnion_gui.worker.drawing import DrawnMesh
+from trunnion_gui.worker.requests import SessionState, SettingsGroup, Work
 from trunnion_gui.worker.steps import STEPS, TITLES, until
 from trunnion_gui.worker.worker import ENGINE, Reply
 
@@ -50,10 +50,10 @@ class Document(QObject):
         self.history = History(Session())
         self.shown = self.history.session
         self.states: dict[str, str] = {}
-        self.groups: Mapping[str, tuple[Group, ...]] = {}
-        self.drawing: Drawing | None = None
+        self.groups: Mapping[str, tuple[SettingsGroup, ...]] = {}
+        self.drawing: DrawnMesh | None = None
         self.running_step = ""
-        self._drawings: dict[tuple[Cut, ...], Drawing] = {}
+        self._drawings: dict[tuple[Cut, ...], DrawnMesh] = {}
         self._settled: dict[str, str] = {}
         self.jobs = Jobs(factory, self.notice, self)
         self.files, self.selection = Files(self), SelectionModel(self)
@@ -136,14 +136,14 @@ class Document(QObject):
 
     # the session
 
-    def keep(self, label: str, state: State, drawing: Drawing | None = None) -> None:
+    def keep(self, label: str, state: SessionState, drawing: DrawnMesh | None = None) -> None:
         """Take a session into the history, with what is drawn of its part where its faces are others."""
         if drawing is not None:
             self._drawings[state.session.cuts] = drawing
         self.history.push(label, state.session)
         self._show(state.session, state.steps)
 
-    def install(self, state: State, drawing: Drawing, is_saved: bool) -> None:
+    def install(self, state: SessionState, drawing: DrawnMesh, is_saved: bool) -> None:
         """Take up the session of another part, with an empty history."""
         self.history = History(state.session)
         if not is_saved:
@@ -221,11 +221,11 @@ class Document(QObject):
         if not self.groups:
             self.jobs.ask("settings", finish=self._take_groups)
 
-    def _take_groups(self, groups: Mapping[str, tuple[Group, ...]]) -> None:
+    def _take_groups(self, groups: Mapping[str, tuple[SettingsGroup, ...]]) -> None:
         self.groups = groups
         self.changed.emit()
 
-    def _take_states(self, state: State) -> None:
+    def _take_states(self, state: SessionState) -> None:
         if not self.is_busy:
             self.states = state.steps
             self.changed.emit()
@@ -246,7 +246,7 @@ class Document(QObject):
         if self.is_busy:
             self._settled = self.states
 
-    def _take_stage(self, stage: tuple[str, State | None]) -> None:
+    def _take_stage(self, stage: tuple[str, SessionState | None]) -> None:
         step, state = stage
         if state is None:
             self.running_step = step
@@ -254,7 +254,7 @@ class Document(QObject):
         else:
             self._show(state.session, state.steps)
 
-    def _finish_run(self, label: str, state: State) -> None:
+    def _finish_run(self, label: str, state: SessionState) -> None:
         self.running_step = ""
         self.keep(label, state)
         if state.refusal:

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING
 from PySide6.QtCore import QObject, Signal
 
 from trunnion_gui.i18n import tr
-from trunnion_gui.worker.requests import Opened
+from trunnion_gui.worker.requests import OpenedSession
 
 if TYPE_CHECKING:
     from trunnion_gui.document.document import Document
@@ -55,7 +55,7 @@ class Files(QObject):
     def recover(self, path: str | Path, project: str) -> None:
         """Take up work from an autosave; it belongs to a project file (empty: none yet) and still has to be saved there."""
 
-        def install(found: Opened) -> None:
+        def install(found: OpenedSession) -> None:
             part = found.state.session.part
             self._install(
                 found, part.path if part is not None else str(path), project, is_saved=False
@@ -86,7 +86,7 @@ class Files(QObject):
             )
 
     def _open(
-        self, label: str, path: str, solid: int | None, finish: Callable[[Opened], None]
+        self, label: str, path: str, solid: int | None, finish: Callable[[OpenedSession], None]
     ) -> None:
         def go_on() -> None:
             if self._jobs.is_free():
@@ -95,7 +95,9 @@ class Files(QObject):
         if self._jobs.is_free() and not self.holds_work(go_on):
             go_on()
 
-    def _install(self, found: Opened, path: str, project: str, is_saved: bool = True) -> None:
+    def _install(
+        self, found: OpenedSession, path: str, project: str, is_saved: bool = True
+    ) -> None:
         self.path, self.project, self.kept = path, project, found.kept
         self._document.install(found.state, found.drawing, is_saved)
         self.opened.emit(path)

@@ -19,7 +19,7 @@ from trunnion_gui.look.colours import Theme, kind_colour
 from trunnion_gui.look.words import amount, kind_words, sentence
 
 if TYPE_CHECKING:
-    from trunnion_gui.menus.shell import Shell
+    from trunnion_gui.menus.window_access import WindowAccess
 
 SIZES = ("depth", "thickness", "height", "diameter", "feature_size")
 """Names of sizes, from the one that tells most about a feature on."""
@@ -139,10 +139,10 @@ class FamilyView:
     def use_theme(self, theme: Theme) -> None:
         """Draw docks and blocks in the colours of a theme."""
 
-    def add_commands(self, shell: Shell) -> None:
+    def add_commands(self, shell: WindowAccess) -> None:
         """Add commands to a window's registry; what they reach of the window is made later."""
 
-    def begin(self, shell: Shell) -> None:
+    def begin(self, shell: WindowAccess) -> None:
         """Take up work in a window whose picture is there, before its panels and docks are."""
 
 

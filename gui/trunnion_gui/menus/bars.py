@@ -10,7 +10,7 @@ from PySide6.QtWidgets import QMenu, QMenuBar, QSizePolicy, QToolBar, QToolButto
 
 from trunnion_gui.actions import Registry
 from trunnion_gui.i18n import tr
-from trunnion_gui.storage import remembered
+from trunnion_gui.storage import preferences
 
 _FIRST_MENUS, _LAST_MENUS = ("File", "Edit", "Steps"), ("Playback", "View", "Help")
 """The menus of every window; those that families bring stand between them."""
@@ -63,7 +63,7 @@ def fill_menus(bar: QMenuBar, registry: Registry, open: Callable[[str], object])
 def _add_recent(menu: QMenu, open: Callable[[str], object]) -> None:
     def fill() -> None:
         menu.clear()
-        for path in remembered.recent():
+        for path in preferences.recent():
             entry = menu.addAction(Path(path).name)
             entry.setToolTip(path)
             entry.triggered.connect(lambda _=False, chosen=path: open(chosen))

@@ -7,7 +7,7 @@ from functools import partial
 
 from trunnion_gui.actions import Command
 from trunnion_gui.i18n import tr
-from trunnion_gui.menus.shell import Shell
+from trunnion_gui.menus.window_access import WindowAccess
 
 _MENU_OF = {
     "file": "File",
@@ -39,7 +39,7 @@ _LAYERS = (
 """Name, words, keys, whether it is on at first."""
 
 
-def add_general_commands(shell: Shell) -> None:
+def add_general_commands(shell: WindowAccess) -> None:
     """Add them to a window's registry."""
     document, add, do = shell.document, shell.registry.add, shell.handlers
 

@@ -13,16 +13,16 @@ from trunnion_gui import edits, i18n
 from trunnion_gui.document import PROJECT
 from trunnion_gui.i18n import tr
 from trunnion_gui.look import colours
-from trunnion_gui.storage import remembered
+from trunnion_gui.storage import preferences
 
 if TYPE_CHECKING:
-    from trunnion_gui.menus.shell import Shell
+    from trunnion_gui.menus.window_access import WindowAccess
 
 
 class Handlers:
     """Commands that need more than one call of a part of the window."""
 
-    def __init__(self, shell: Shell) -> None:
+    def __init__(self, shell: WindowAccess) -> None:
         self._shell, self._document = shell, shell.document
 
     def open(self) -> None:
@@ -96,14 +96,14 @@ class Handlers:
     def change_theme(self) -> None:
         """Change between light and dark."""
         name = "dark" if self._shell.theme.name == "light" else "light"
-        remembered.remember("theme", name)
+        preferences.remember("theme", name)
         self._shell.use_theme(colours.theme(name))
 
     def change_language(self) -> None:
         """Take the next language; it is spoken from the next start on."""
         known = i18n.languages()
-        following = known[(known.index(remembered.language()) + 1) % len(known)]
-        remembered.remember("language", following)
+        following = known[(known.index(preferences.language()) + 1) % len(known)]
+        preferences.remember("language", following)
         self._document.notice(
             tr("The window speaks {language} from the next start on").format(language=following),
             severity=Severity.INFO,

@@ -21,7 +21,7 @@ from trunnion.store.project import save_project
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class Whose:
+class AutosaveOwner:
     """Whose work an autosave is: the project it was opened from or saved to (empty: none yet), its part file, and when it was kept."""
 
     project: str = ""
@@ -42,7 +42,9 @@ class Autosave:
         self._newest = 0
         self._writer = ThreadPoolExecutor(max_workers=1, thread_name_prefix="autosave")
 
-    def keep(self, session: Session, data: bytes, suffix: str, whose: Whose) -> Future[None]:
+    def keep(
+        self, session: Session, data: bytes, suffix: str, whose: AutosaveOwner
+    ) -> Future[None]:
         """Write a session with its part file's bytes and suffix, unless a newer one is asked for before its turn comes."""
         self._newest += 1
         return self._writer.submit(self._keep, self._newest, session, data, suffix, whose)
@@ -57,7 +59,9 @@ class Autosave:
         self.forget()
         self._writer.shutdown(wait=True)
 
-    def _keep(self, number: int, session: Session, data: bytes, suffix: str, whose: Whose) -> None:
+    def _keep(
+        self, number: int, session: Session, data: bytes, suffix: str, whose: AutosaveOwner
+    ) -> None:
         if number != self._newest:
             return
         try:
@@ -72,19 +76,19 @@ def notes_of(path: Path) -> Path:
     return path.with_suffix(".json")
 
 
-def whose_work(path: Path) -> Whose:
+def whose_work(path: Path) -> AutosaveOwner:
     """Return whose work an autosave is; where its notes are missing or damaged, the time it was written is known still."""
     time = datetime.fromtimestamp(path.stat().st_mtime).isoformat(timespec="seconds")
     try:
         noted = json.loads(notes_of(path).read_text("utf-8"))
-        return Whose(
+        return AutosaveOwner(
             **{
                 "time": time,
                 **{name: str(noted[name]) for name in ("project", "part", "time") if name in noted},
             }
         )
     except (OSError, ValueError, TypeError):
-        return Whose(time=time)
+        return AutosaveOwner(time=time)
 
 
 def take_over(left: Path, path: Path) -> None:

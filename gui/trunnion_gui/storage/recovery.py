@@ -16,8 +16,8 @@ from trunnion.findings import Finding, Severity
 from trunnion.model.session import Session
 from trunnion_gui.document import Document
 from trunnion_gui.i18n import tr
-from trunnion_gui.storage import remembered
-from trunnion_gui.storage.autosave import Autosave, Whose, remove, take_over, whose_work
+from trunnion_gui.storage import preferences
+from trunnion_gui.storage.autosave import Autosave, AutosaveOwner, remove, take_over, whose_work
 from trunnion_gui.widgets.notice import Notice
 
 LATEST_MS = 4000
@@ -35,7 +35,7 @@ class Recovery(QObject):
         self._document, self._notice = document, notice
         self._seen: Session = document.shown
         self._is_kept, self._edits = False, 0
-        self.file = Autosave(remembered.autosave_file(), self._failed.emit)
+        self.file = Autosave(preferences.autosave_file(), self._failed.emit)
         self._soon = QTimer(self)
         self._soon.setSingleShot(True)
         self._soon.setInterval(LATEST_MS)
@@ -56,12 +56,14 @@ class Recovery(QObject):
         document, self._edits, self._is_kept = self._document, 0, True
         part = document.shown.part
         time = datetime.now().isoformat(timespec="seconds")
-        whose = Whose(project=document.files.project, part=part.path if part else "", time=time)
+        whose = AutosaveOwner(
+            project=document.files.project, part=part.path if part else "", time=time
+        )
         self.file.keep(document.shown, *document.files.kept, whose)
 
     def offer(self) -> None:
         """Offer what an earlier program left behind, if there is something; the next one when a person throws it away."""
-        left = remembered.left_behind()
+        left = preferences.left_behind()
         if left is not None:
             whose = whose_work(left)
             day, _, clock = whose.time.partition("T")
@@ -108,7 +110,7 @@ class Recovery(QObject):
 
         def taken(_path: str) -> None:
             self._document.files.opened.disconnect(taken)
-            take_over(left, remembered.autosave_file())
+            take_over(left, preferences.autosave_file())
             self._is_kept = True
 
         self._document.files.opened.connect(taken)

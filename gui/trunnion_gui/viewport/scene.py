@@ -31,7 +31,7 @@ from trunnion_gui.viewport.layers.stock import draw_stock
 from trunnion_gui.viewport.layers.tool import draw_tool, draw_trail, place_tool
 from trunnion_gui.viewport.pick import FacePicker
 from trunnion_gui.viewport.view import make_view
-from trunnion_gui.worker.drawing import Drawing, DrawnMap
+from trunnion_gui.worker.drawing import DrawnMap, DrawnMesh
 
 VIEWS: dict[str, tuple[tuple[float, float, float], tuple[float, float, float]]] = {
     "isometric": ((-0.55, -0.75, 0.75), (0.0, 0.0, 1.0)),
@@ -114,7 +114,7 @@ class Click:
     with_ctrl: bool = False
 
 
-class Scene(QWidget):
+class ViewportScene(QWidget):
     """The viewport with its layers."""
 
     clicked = Signal(object)
@@ -134,7 +134,7 @@ class Scene(QWidget):
         column.addWidget(self.view)
         self._theme = theme
         self._part: PartLayer | None = None
-        self._drawing: Drawing | None = None
+        self._drawing: DrawnMesh | None = None
         self._mesh: Mesh | None = None
         self._blank = np.zeros((0, 3))
         self._picker: FacePicker | None = None
@@ -164,7 +164,7 @@ class Scene(QWidget):
             self.show_mesh(self._drawing, keep_camera=True)
         self.view.render()
 
-    def show_mesh(self, drawing: Drawing | None, keep_camera: bool = False) -> None:
+    def show_mesh(self, drawing: DrawnMesh | None, keep_camera: bool = False) -> None:
         """Show a part, or nothing."""
         mesh = drawing.mesh if drawing is not None else None
         self._drawing, self._mesh = drawing, mesh

@@ -18,7 +18,7 @@ _DOT = 3.0
 
 
 @dataclass(frozen=True, slots=True)
-class Curve:
+class ChartCurve:
     """A curve of a chart: what it is, its values (k,), the words for a value, and whether its axis counts by powers of ten."""
 
     words: str
@@ -34,8 +34,8 @@ class Chart(QWidget):
         super().__init__()
         self._theme: Theme | None = None
         self.places: tuple[str, ...] = ()
-        self.left: Curve | None = None
-        self.right: Curve | None = None
+        self.left: ChartCurve | None = None
+        self.right: ChartCurve | None = None
         self.level: tuple[float, str] | None = None
         self._across = ""
         self.setSizePolicy(QSizePolicy.Policy.Expanding, QSizePolicy.Policy.Expanding)
@@ -50,8 +50,8 @@ class Chart(QWidget):
         self,
         across: str,
         places: Sequence[str],
-        left: Curve | None,
-        right: Curve | None,
+        left: ChartCurve | None,
+        right: ChartCurve | None,
         level: tuple[float, str] | None = None,
     ) -> None:
         """Show two curves over places that are named along the axis below; `level` is a value on the left with its words."""
@@ -64,7 +64,7 @@ class Chart(QWidget):
         )
         self.update()
 
-    def point(self, curve: Curve, row: int) -> QPointF:
+    def point(self, curve: ChartCurve, row: int) -> QPointF:
         """Return where a value of a curve is drawn."""
         return QPointF(self._x(row), self._y(curve, curve.values[row]))
 
@@ -112,7 +112,9 @@ class Chart(QWidget):
                 self.level[1],
             )
 
-    def _axis(self, painter: QPainter, curve: Curve, colour: str, side: Qt.AlignmentFlag) -> None:
+    def _axis(
+        self, painter: QPainter, curve: ChartCurve, colour: str, side: Qt.AlignmentFlag
+    ) -> None:
         area, is_left = self._area(), side == Qt.AlignmentFlag.AlignLeft
         painter.setPen(QColor(colour))
         painter.drawText(QRectF(4, 4, self.width() - 8, 16), side, curve.words)
@@ -132,7 +134,7 @@ class Chart(QWidget):
                     words,
                 )
 
-    def _line(self, painter: QPainter, curve: Curve, colour: str) -> None:
+    def _line(self, painter: QPainter, curve: ChartCurve, colour: str) -> None:
         points = [self.point(curve, row) for row in range(len(curve.values))]
         painter.setPen(QPen(QColor(colour), 1.8))
         painter.setBrush(Qt.BrushStyle.NoBrush)
@@ -154,14 +156,14 @@ class Chart(QWidget):
         area = self._area()
         return area.left() + area.width() * (row + 0.5) / max(len(self.places), 1)
 
-    def _y(self, curve: Curve, value: float) -> float:
+    def _y(self, curve: ChartCurve, value: float) -> float:
         low, high = self._range(curve)
         area = self._area()
         if curve.by_powers:
             value = math.log10(max(value, 10.0**low))
         return area.bottom() - area.height() * (value - low) / max(high - low, 1e-12)
 
-    def _range(self, curve: Curve) -> tuple[float, float]:
+    def _range(self, curve: ChartCurve) -> tuple[float, float]:
         """Return the ends of a curve's axis: of its values, or of their powers of ten."""
         if curve.by_powers:
             above = [v for v in curve.values if v > 0.0] or [1.0]
@@ -170,7 +172,7 @@ class Chart(QWidget):
             )
         return 0.0, max(*curve.values, 1e-9) * 1.1
 
-    def _steps(self, curve: Curve) -> list[float]:
+    def _steps(self, curve: ChartCurve) -> list[float]:
         low, high = self._range(curve)
         if curve.by_powers:
             return [

@@ -16,8 +16,8 @@ from trunnion_gui.look import icons
 from trunnion_gui.look.colours import Theme
 from trunnion_gui.look.words import duration
 from trunnion_gui.widgets.foldout import Foldout
-from trunnion_gui.worker.requests import Group
-from trunnion_gui.worker.steps import STEPS, Stage, joined_state
+from trunnion_gui.worker.requests import SettingsGroup
+from trunnion_gui.worker.steps import STEPS, PanelStage, joined_state
 
 _FEW = 4
 """The first group of a step is shown open when it has at most so many settings; everything else is folded."""
@@ -34,7 +34,7 @@ class Panel(Foldout):
     folds_settings = False
 
     def __init__(
-        self, stage: Stage, number: int, document: Document, registry: Registry, views: Views
+        self, stage: PanelStage, number: int, document: Document, registry: Registry, views: Views
     ) -> None:
         super().__init__(tr(stage.title), number, is_open=number == 1)
         self.setProperty("stage", stage.name)
@@ -168,7 +168,7 @@ class Panel(Foldout):
         self._groups.append(foldout)
         return foldout
 
-    def _form(self, group: Group) -> Form:
+    def _form(self, group: SettingsGroup) -> Form:
         form = Form(group.settings)
         labels = {s.key: s.label for s in group.settings}
         form.changed.connect(

@@ -18,7 +18,7 @@ _VERDICTS = {Outcome.PASSED: "good", Outcome.REMARKS: "warning", Outcome.FAILED:
 _TICK_MS = 250
 
 
-class Status(QStatusBar):
+class StatusBar(QStatusBar):
     """Everything has a fixed place, so that nothing jumps when a job ends."""
 
     def __init__(self, document: Document, registry: Registry) -> None:

@@ -13,7 +13,7 @@ from trunnion.report.palette import load_palette
 
 
 @dataclass(frozen=True, slots=True, eq=False, kw_only=True)
-class Drawing:
+class DrawnMesh:
     """A mesh with the normal at every point (v, 3) float32, its faces' borders as rows of points (e, 2), and whose border each is (e,)."""
 
     mesh: Mesh
@@ -40,10 +40,10 @@ def drawn_map(shown: DeviationMap) -> DrawnMap:
     )
 
 
-def drawing_of(mesh: Mesh) -> Drawing:
+def drawing_of(mesh: Mesh) -> DrawnMesh:
     """Return a mesh ready to be drawn."""
     borders, owners = border_edges(mesh)
-    return Drawing(
+    return DrawnMesh(
         mesh=mesh, normals=normals_of(mesh.points, mesh.triangles), borders=borders, owners=owners
     )
 

@@ -14,12 +14,12 @@ from trunnion.findings import Cancelled, TrunnionError
 from trunnion.model.session import Session
 from trunnion.progress import Progress
 from trunnion.settings import Declared, declared
-from trunnion_gui.worker.drawing import Drawing, drawing_of, drawn_map
+from trunnion_gui.worker.drawing import DrawnMesh, drawing_of, drawn_map
 from trunnion_gui.worker.steps import share, until
 
 
 @dataclass(frozen=True, slots=True)
-class State:
+class SessionState:
     """A session, the state of each step, and the line of the step that refused after others were done."""
 
     session: Session
@@ -28,16 +28,16 @@ class State:
 
 
 @dataclass(frozen=True, slots=True)
-class Opened:
+class OpenedSession:
     """A session as opened, with what the window draws, and the part file's bytes and suffix for a worker that must take over."""
 
-    state: State
-    drawing: Drawing
+    state: SessionState
+    drawing: DrawnMesh
     kept: tuple[bytes, str]
 
 
 @dataclass(frozen=True, slots=True)
-class Group:
+class SettingsGroup:
     """The declared settings of one group, as the window's forms need them (the class stays in the worker)."""
 
     name: str
@@ -66,14 +66,18 @@ def is_writing(verb: str | Work) -> bool:
     return work_of(verb) in _writing
 
 
-def _open(engine: Any, progress: Progress, tell: Tell, path: str, solid: int | None) -> Opened:
+def _open(
+    engine: Any, progress: Progress, tell: Tell, path: str, solid: int | None
+) -> OpenedSession:
     session = engine.open(path, solid=solid, progress=progress.part(0.0, 0.8))
     tell("progress", (0.85, "preparing the picture"))
     mesh = engine.mesh(session, progress.part(0.85, 1.0))
-    return Opened(State(session, engine.states(session)), drawing_of(mesh), engine.keep())
+    return OpenedSession(
+        SessionState(session, engine.states(session)), drawing_of(mesh), engine.keep()
+    )
 
 
-def _run(engine: Any, progress: Progress, tell: Tell, session: Session, last: str) -> State:
+def _run(engine: Any, progress: Progress, tell: Tell, session: Session, last: str) -> SessionState:
     before = engine.states(session)
     steps = [s for s in until(last) if before[s] in ("empty", "stale")] or [last]
     for step in steps:
@@ -85,10 +89,10 @@ def _run(engine: Any, progress: Progress, tell: Tell, session: Session, last: st
         except TrunnionError as reason:
             if step == steps[0]:
                 raise
-            return State(session, engine.states(session), str(reason))
+            return SessionState(session, engine.states(session), str(reason))
         if step != steps[-1]:
-            tell("stage", (step, State(session, engine.states(session))))
-    return State(session, engine.states(session))
+            tell("stage", (step, SessionState(session, engine.states(session))))
+    return SessionState(session, engine.states(session))
 
 
 def _own_share(progress: Progress, step: str) -> Progress:
@@ -107,15 +111,15 @@ def _own_share(progress: Progress, step: str) -> Progress:
     )
 
 
-def _states(engine: Any, _progress: Progress, _tell: Tell, session: Session) -> State:
-    return State(session, engine.states(session))
+def _states(engine: Any, _progress: Progress, _tell: Tell, session: Session) -> SessionState:
+    return SessionState(session, engine.states(session))
 
 
 def _attach(
     engine: Any, progress: Progress, _tell: Tell, session: Session, data: bytes, suffix: str
-) -> State:
+) -> SessionState:
     engine.attach(session, data, suffix, progress=progress)
-    return State(session, engine.states(session))
+    return SessionState(session, engine.states(session))
 
 
 @writes_files
@@ -145,10 +149,13 @@ def _deviation(engine: Any, progress: Progress, _tell: Tell, session: Session) -
     return drawn_map(engine.deviation_map(session, progress))
 
 
-def _settings(engine: Any, _progress: Progress, _tell: Tell) -> dict[str, tuple[Group, ...]]:
+def _settings(
+    engine: Any, _progress: Progress, _tell: Tell
+) -> dict[str, tuple[SettingsGroup, ...]]:
     return {
         step: tuple(
-            Group(c.GROUP, _title(c), tuple(_offered(d) for d in declared(c))) for c in classes
+            SettingsGroup(c.GROUP, _title(c), tuple(_offered(d) for d in declared(c)))
+            for c in classes
         )
         for step, classes in engine.settings().items()
     }

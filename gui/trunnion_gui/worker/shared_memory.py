@@ -12,7 +12,7 @@ SMALL = 1 << 18
 
 
 @dataclass(frozen=True, slots=True)
-class Parcel:
+class SharedMessage:
     """A pickled thing; its arrays of `sizes` bytes lie one after the other in the shared block, if it has one."""
 
     data: bytes
@@ -20,14 +20,14 @@ class Parcel:
     sizes: tuple[int, ...] = ()
 
 
-def packed(thing: Any) -> Parcel:
+def packed(thing: Any) -> SharedMessage:
     """Return a thing ready to be sent. Who receives it must call `unpacked` once: that frees the block."""
     buffers: list[pickle.PickleBuffer] = []
     data = pickle.dumps(thing, protocol=5, buffer_callback=buffers.append)
     views = [b.raw() for b in buffers]
     sizes = tuple(v.nbytes for v in views)
     if sum(sizes) < SMALL:
-        return Parcel(pickle.dumps(thing, protocol=5))
+        return SharedMessage(pickle.dumps(thing, protocol=5))
     memory = SharedMemory(create=True, size=sum(sizes))
     room, at = memoryview(memory.buf or b""), 0
     for view in views:
@@ -35,10 +35,10 @@ def packed(thing: Any) -> Parcel:
         at += view.nbytes
     room.release()
     memory.close()
-    return Parcel(data, memory.name, sizes)
+    return SharedMessage(data, memory.name, sizes)
 
 
-def unpacked(parcel: Parcel) -> Any:
+def unpacked(parcel: SharedMessage) -> Any:
     """Return the thing of a parcel and free its block; arrays come back read-only."""
     if not parcel.block:
         return pickle.loads(parcel.data)

@@ -34,7 +34,7 @@ _WORST = ("problem", "running", "stale", "empty", "done")
 
 
 @dataclass(frozen=True, slots=True)
-class Stage:
+class PanelStage:
     """One foldout panel: its name, title and the steps it stands for."""
 
     name: str
@@ -43,12 +43,12 @@ class Stage:
 
 
 STAGES = (
-    Stage("recognize", "Recognize", ("recognize",)),
-    Stage("size", "Size analysis", ("size",)),
-    Stage("blank", "Blank", ("blank",)),
-    Stage("route", "Process route", ("route",)),
-    Stage("optimize", "Optimize", ("optimize",)),
-    Stage("generate", "Generate", ("toolpath", "verify")),
+    PanelStage("recognize", "Recognize", ("recognize",)),
+    PanelStage("size", "Size analysis", ("size",)),
+    PanelStage("blank", "Blank", ("blank",)),
+    PanelStage("route", "Process route", ("route",)),
+    PanelStage("optimize", "Optimize", ("optimize",)),
+    PanelStage("generate", "Generate", ("toolpath", "verify")),
 )
 
 

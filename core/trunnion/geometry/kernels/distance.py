@@ -48,7 +48,7 @@ def _distances(
         square = dx * dx + dy * dy
         share = ((px - ax) * dx + (py - ay) * dy) / np.where(square > 0.0, square, 1.0)
         share = np.clip(share, 0.0, 1.0)
-        away[:, lines] = _size(px - ax - share * dx, py - ay - share * dy)
+        away[:, lines] = _length(px - ax - share * dx, py - ay - share * dy)
     if len(arcs):
         cx, cy = centre[arcs].T
         turned = np.sign(sweep[arcs])
@@ -60,12 +60,12 @@ def _distances(
         before_end = turned * (qx * by - qy * bx) >= 0.0
         wide = np.abs(sweep[arcs]) > np.pi
         beside = np.where(wide, after_start | before_end, after_start & before_end)
-        to_end = np.minimum(_size(qx - ax, qy - ay), _size(qx - bx, qy - by))
-        away[:, arcs] = np.where(beside, np.abs(_size(qx, qy) - radius[arcs]), to_end)
+        to_end = np.minimum(_length(qx - ax, qy - ay), _length(qx - bx, qy - by))
+        away[:, arcs] = np.where(beside, np.abs(_length(qx, qy) - radius[arcs]), to_end)
     return away
 
 
-def _size(x: Floats, y: Floats) -> Floats:
+def _length(x: Floats, y: Floats) -> Floats:
     """Return the length of plane vectors."""
     # As the compiled loops have it: which of the two answers must not show in a single digit.
     return np.sqrt(x * x + y * y)
@@ -95,7 +95,7 @@ def winding_numbers(
         down = (ay > py) & (by <= py) & (side < 0.0)
         count = up.sum(axis=1) - down.sum(axis=1)
         if len(arcs):
-            inside = _size(px - centre[arcs, 0], py - centre[arcs, 1]) < radius[arcs]
+            inside = _length(px - centre[arcs, 0], py - centre[arcs, 1]) < radius[arcs]
             # A point on the chord's line belongs to the side that the crossings above gave it to.
             level = side[:, arcs] == 0.0
             left = (side[:, arcs] > 0.0) | (level & ((by < ay) | ((by == ay) & (bx > ax)))[arcs])

@@ -19,7 +19,7 @@ _ASKED = (_PAIRS, _PAIRS, _PAIRS, _PAIRS, _NUMBERS, _NUMBERS)
 
 
 @njit(cache=True, nogil=True)
-def _size(x: float, y: float) -> float:
+def _length(x: float, y: float) -> float:
     """Return the length of a plane vector."""
     # Three times as fast as hypot, and these numbers neither overflow nor vanish.
     return math.sqrt(x * x + y * y)
@@ -46,7 +46,7 @@ def nearest_segment(
                     square if square > 0.0 else 1.0
                 )
                 share = min(max(share, 0.0), 1.0)
-                away = _size(px - start[i, 0] - share * dx, py - start[i, 1] - share * dy)
+                away = _length(px - start[i, 0] - share * dx, py - start[i, 1] - share * dy)
             else:
                 # An arc: in its sector the circle is nearest, else an end.
                 qx, qy = px - centre[i, 0], py - centre[i, 1]
@@ -61,9 +61,9 @@ def nearest_segment(
                     else after_start and before_end
                 )
                 if beside:
-                    away = abs(_size(qx, qy) - radius[i])
+                    away = abs(_length(qx, qy) - radius[i])
                 else:
-                    away = min(_size(qx - ax, qy - ay), _size(qx - bx, qy - by))
+                    away = min(_length(qx - ax, qy - ay), _length(qx - bx, qy - by))
             if away < least:
                 least, nearest = away, i
         best[k], row[k] = least, nearest
@@ -90,7 +90,7 @@ def winding_numbers(
                 count -= 1
             # The cap between chord and arc; a point on the chord's line belongs to the side that
             # the crossing above gave it to.
-            if sweep[i] != 0.0 and _size(px - centre[i, 0], py - centre[i, 1]) < radius[i]:
+            if sweep[i] != 0.0 and _length(px - centre[i, 0], py - centre[i, 1]) < radius[i]:
                 left = side > 0.0 or (side == 0.0 and (by < ay or (by == ay and bx > ax)))
                 if sweep[i] > 0.0 and not left:
                     count += 1

@@ -20,7 +20,7 @@ HALF_DIAGONAL = math.sqrt(0.5)
 
 
 @njit(cache=True)
-def lower(
+def zmap_cut(
     heights: Floats,
     x0: float,
     y0: float,
@@ -79,7 +79,7 @@ def lower(
 
 
 @njit(cache=True)
-def highest(
+def zmap_highest(
     heights: Floats, x0: float, y0: float, cell: float, start: Floats, end: Floats, radius: float
 ) -> float:
     """Return the greatest height of the cells that a disc may touch on its straight path from `start`
@@ -112,7 +112,7 @@ def highest(
     return top
 
 
-def lower_reference(
+def zmap_cut_reference(
     heights: Floats,
     x0: float,
     y0: float,
@@ -123,7 +123,7 @@ def lower_reference(
     corner: float,
     gone: Floats,
 ) -> None:
-    """Plain numpy form of `lower`: every cell for every move."""
+    """Plain numpy form of `zmap_cut`: every cell for every move."""
     centres = _centres(heights, x0, y0, cell)
     for n, (a, b) in enumerate(zip(starts, ends, strict=True)):
         before = heights.sum()
@@ -134,10 +134,10 @@ def lower_reference(
         gone[n] = before - heights.sum()
 
 
-def highest_reference(
+def zmap_highest_reference(
     heights: Floats, x0: float, y0: float, cell: float, start: Floats, end: Floats, radius: float
 ) -> float:
-    """Plain numpy form of `highest`."""
+    """Plain numpy form of `zmap_highest`."""
     touched = _distance(_centres(heights, x0, y0, cell), start, end) < radius + cell * HALF_DIAGONAL
     return float(heights[touched].max(initial=-np.inf))
 

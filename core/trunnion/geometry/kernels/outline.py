@@ -2,7 +2,7 @@
 with a strip index.
 
 Outlines are closed chains of short chords that stand for curves; within `near` of them the chords
-can't tell inside from outside. Plain reference `within`. mm.
+can't tell inside from outside. Plain reference `points_in_polygon`. mm.
 """
 
 from __future__ import annotations
@@ -17,7 +17,7 @@ from trunnion.geometry.arrays import Floats, Ints
 OUT, IN, NEAR = 0, 1, 2
 
 
-def within(places: Floats, pieces: Floats, near: float) -> Ints:
+def points_in_polygon(places: Floats, pieces: Floats, near: float) -> Ints:
     """Return OUT, IN or NEAR (k,) for places (k, 2) and chords (s, 4), from x, y to x, y, that close.
 
     Inside, a ray towards +x crosses an odd number of chords.
@@ -45,7 +45,7 @@ def within(places: Floats, pieces: Floats, near: float) -> Ints:
 
 
 @njit(cache=True, nogil=True)
-def within_loop(
+def points_in_polygon_loop(
     places: Floats,
     pieces: Floats,
     near: float,
@@ -55,7 +55,7 @@ def within_loop(
     rows: Ints,
     out: Ints,
 ) -> None:
-    """Fill out (k,) with what `within` returns.
+    """Fill out (k,) with what `points_in_polygon` returns.
 
     Strip i, from `low + i pitch` in y, lists in rows, from start[i] on, the chords that come within
     `near` of it; places beyond all strips are OUT.

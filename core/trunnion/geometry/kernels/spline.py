@@ -14,7 +14,7 @@ import numpy as np
 from trunnion.geometry.arrays import Floats
 
 
-def surface_at(
+def evaluate_surface(
     places: Floats, knots_u: Floats, knots_v: Floats, degree_u: int, degree_v: int, poles: Floats
 ) -> Floats:
     """Return points and derivatives (k, 6, 3) at places (k, 2), in mm and mm per unit of the
@@ -25,8 +25,8 @@ def surface_at(
     """
     out = np.empty((len(places), 6, 3))
     for k, (u, v) in enumerate(places):
-        along = [_bases(knots_u, degree_u, u, order) for order in range(3)]
-        across = [_bases(knots_v, degree_v, v, order) for order in range(3)]
+        along = [_basis_functions(knots_u, degree_u, u, order) for order in range(3)]
+        across = [_basis_functions(knots_v, degree_v, v, order) for order in range(3)]
         # Tensor product in homogeneous coordinates: A and w with the derivatives that are asked
         # for.
         p, pu, pv, puu, puv, pvv = (
@@ -47,7 +47,7 @@ def surface_at(
     return out
 
 
-def span_of(knots: Floats, degree: int, t: float) -> int:
+def knot_span(knots: Floats, degree: int, t: float) -> int:
     """Return the knot span that holds a parameter: the last one of positive length that begins at or
     before it, held to the surface's own."""
     last = len(knots) - degree - 2
@@ -57,16 +57,16 @@ def span_of(knots: Floats, degree: int, t: float) -> int:
     return span
 
 
-def _bases(knots: Floats, degree: int, t: float, order: int) -> Floats:
+def _basis_functions(knots: Floats, degree: int, t: float, order: int) -> Floats:
     """Return a derivative, of order 0 to 2, of all basis functions of a degree at t, by the
     polynomials of the span that holds t."""
-    span = span_of(knots, degree, t)
+    span = knot_span(knots, degree, t)
     return np.array(
-        [_base(knots, i, degree, span, t, order) for i in range(len(knots) - degree - 1)]
+        [_basis_function(knots, i, degree, span, t, order) for i in range(len(knots) - degree - 1)]
     )
 
 
-def _base(knots: Floats, i: int, degree: int, span: int, t: float, order: int) -> float:
+def _basis_function(knots: Floats, i: int, degree: int, span: int, t: float, order: int) -> float:
     """Return a derivative of basis function i of a degree at t.
 
     N_i,p = (t - t_i) / (t_i+p - t_i) N_i,p-1 + (t_i+p+1 - t) / (t_i+p+1 - t_i+1) N_i+1,p-1, its
@@ -84,9 +84,9 @@ def _base(knots: Floats, i: int, degree: int, span: int, t: float, order: int) -
     ):
         if run > 0.0:
             share = (
-                sign * degree * _base(knots, k, degree - 1, span, t, order - 1)
+                sign * degree * _basis_function(knots, k, degree - 1, span, t, order - 1)
                 if order
-                else (from_ * _base(knots, k, degree - 1, span, t, 0))
+                else (from_ * _basis_function(knots, k, degree - 1, span, t, 0))
             )
             total += share / run
     return total

@@ -10,7 +10,7 @@ from trunnion.geometry.arrays import Floats
 
 
 @njit(cache=True, nogil=True)
-def _span(knots: Floats, degree: int, t: float) -> int:
+def _knot_span(knots: Floats, degree: int, t: float) -> int:
     """Return the knot span that holds t, by bisection; one of no length gives way to the one before
     it."""
     low, high = degree, len(knots) - degree - 1
@@ -29,7 +29,9 @@ def _span(knots: Floats, degree: int, t: float) -> int:
 
 
 @njit(cache=True, nogil=True)
-def _bases(knots: Floats, degree: int, t: float, span: int, low: Floats, out: Floats) -> None:
+def _basis_functions(
+    knots: Floats, degree: int, t: float, span: int, low: Floats, out: Floats
+) -> None:
     """Fill out (3, degree + 1) with the basis functions that are not 0 on a span and their first two
     derivatives; low, as large, is workspace.
 
@@ -62,7 +64,7 @@ def _bases(knots: Floats, degree: int, t: float, span: int, low: Floats, out: Fl
 
 
 @njit(cache=True, nogil=True)
-def surface_loop(
+def evaluate_surface_loop(
     first: int,
     last: int,
     places: Floats,
@@ -80,9 +82,9 @@ def surface_loop(
     p = np.zeros((6, 4))
     for n in range(first, last):
         u, v = places[n, 0], places[n, 1]
-        su, sv = _span(knots_u, degree_u, u), _span(knots_v, degree_v, v)
-        _bases(knots_u, degree_u, u, su, room, along)
-        _bases(knots_v, degree_v, v, sv, room, across)
+        su, sv = _knot_span(knots_u, degree_u, u), _knot_span(knots_v, degree_v, v)
+        _basis_functions(knots_u, degree_u, u, su, room, along)
+        _basis_functions(knots_v, degree_v, v, sv, room, across)
         p[:] = 0.0
         # Tensor product: sums over v first, then over u, of the homogeneous coordinates A and w and
         # their derivatives.

@@ -12,7 +12,7 @@ from numpy.typing import ArrayLike
 
 from trunnion import tolerance
 from trunnion.geometry.arrays import Bools, Floats, Ints
-from trunnion.geometry.cache import Memo
+from trunnion.geometry.cache import Cache
 from trunnion.geometry.plane import fit
 from trunnion.geometry.plane.chords import Chords, chorded, polygons_of
 from trunnion.geometry.plane.curve import (
@@ -237,8 +237,8 @@ class Region:
 EMPTY_REGION = Region()
 """The region without any area."""
 
-_OFFSETS: Memo[Region] = Memo(KEPT_ANSWERS)
-_OVERLAYS: Memo[Region] = Memo(KEPT_ANSWERS)
+_OFFSETS: Cache[Region] = Cache(KEPT_ANSWERS)
+_OVERLAYS: Cache[Region] = Cache(KEPT_ANSWERS)
 
 
 def union_all(regions: Sequence[Region]) -> Region:

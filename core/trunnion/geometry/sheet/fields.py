@@ -16,7 +16,7 @@ from scipy.sparse.csgraph import dijkstra
 from scipy.sparse.linalg import factorized
 
 from trunnion.geometry.arrays import Floats, Ints
-from trunnion.geometry.kernels import marching_compiled as kernel
+from trunnion.geometry.kernels import fast_marching_compiled as kernel
 from trunnion.geometry.sheet.sheet import Sheet
 from trunnion.progress import QUIET, Progress
 
@@ -85,7 +85,7 @@ def distances(
     start = np.concatenate([[0], np.cumsum(np.bincount(named, minlength=len(sheet.points)))])
     time, foot = np.full(len(sheet.points), np.inf), sheet.points.copy()
     np.minimum.at(time, rows, np.broadcast_to(times, len(rows)))
-    kernel.march(points, sizes, start, order // 2, time, foot, farthest)
+    kernel.fast_march(points, sizes, start, order // 2, time, foot, farthest)
     return time, foot
 
 

@@ -29,7 +29,7 @@ through points."""
 
 
 @dataclass(frozen=True, slots=True, eq=False, kw_only=True)
-class Ridged:
+class RidgedSheet:
     """A sheet whose triangles are parted along the ridges of a distance, that distance (v,), and the ridges: rows of points (k,) each,
     without branches; the last of a closed one is its first again."""
 
@@ -38,7 +38,7 @@ class Ridged:
     ridges: list[Ints]
 
 
-def ridged(metric: Metric, time: Floats, foot: Floats, gap: float) -> Ridged:
+def ridged(metric: Metric, time: Floats, foot: Floats, gap: float) -> RidgedSheet:
     """Return the sheet parted along the ridges of distances (v,) that came from places (v, 3), as `geometry.fields.distances` gives them.
 
     Ridges whose ends lie within `gap` mm of each other are one.
@@ -60,7 +60,7 @@ def ridged(metric: Metric, time: Floats, foot: Floats, gap: float) -> Ridged:
         )
         for k in (1, 2)
     ]
-    return Ridged(
+    return RidgedSheet(
         sheet=parted, time=time, ridges=_chained(parted.points, _lines(np.concatenate(pairs)), gap)
     )
 

@@ -7,7 +7,7 @@ from dataclasses import dataclass, field, replace
 import numpy as np
 
 from trunnion.geometry.arrays import Bools, Floats, Ints, floats, ints
-from trunnion.geometry.dropping import DropSurface
+from trunnion.geometry.drop_surface import DropSurface
 from trunnion.geometry.frame import Frame
 
 

@@ -19,7 +19,7 @@ import numpy as np
 
 from trunnion.findings import BadInput, OutOfMemory, TrunnionError
 from trunnion.part.read.limits import ReadLimits
-from trunnion.part.read.request import Request
+from trunnion.part.read.request import ReadRequest
 from trunnion.progress import Progress
 
 _LOOK = 0.02
@@ -28,7 +28,7 @@ _REFUSED, _NO_MEMORY = 3, 4
 _MEGA = 1 << 20
 
 
-def run(request: Request, data: bytes, limits: ReadLimits, progress: Progress) -> bytes:
+def run(request: ReadRequest, data: bytes, limits: ReadLimits, progress: Progress) -> bytes:
     """Return the bytes of the part (`Part.to_bytes`) that a fresh process read from a file's bytes, within limits."""
     with tempfile.TemporaryDirectory(prefix="trunnion-read-") as folder:
         place = Path(folder)
@@ -54,7 +54,7 @@ def run(request: Request, data: bytes, limits: ReadLimits, progress: Progress) -
 
 
 def _wait(
-    child: subprocess.Popen[bytes], request: Request, limits: ReadLimits, progress: Progress
+    child: subprocess.Popen[bytes], request: ReadRequest, limits: ReadLimits, progress: Progress
 ) -> None:
     start = looked = time.monotonic()
     progress.aside(lambda _: _load(), f"reading {request.file}")
@@ -85,7 +85,7 @@ def _load() -> None:
     flat.at(np.zeros((1, 2)))
 
 
-def _answer(code: int, place: Path, request: Request, limits: ReadLimits) -> bytes:
+def _answer(code: int, place: Path, request: ReadRequest, limits: ReadLimits) -> bytes:
     refusal = place / "refused"
     if code == 0 and (place / "answer").is_file():
         return (place / "answer").read_bytes()
@@ -109,7 +109,7 @@ def main(folder: str) -> int:
     try:
         from trunnion.part.read.transfer import read_file
 
-        part = read_file(place / "part", Request(**told["request"]))
+        part = read_file(place / "part", ReadRequest(**told["request"]))
         (place / "answer").write_bytes(part.to_bytes())
     except TrunnionError as reason:
         (place / "refused").write_text(str(reason), encoding="utf-8")

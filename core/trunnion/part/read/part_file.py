@@ -54,13 +54,13 @@ def _read(
     data: bytes, file: str, path: str, solid: int | None, limits: ReadLimits, progress: Progress
 ) -> Part:
     from trunnion.part.read.child import run
-    from trunnion.part.read.request import Request
+    from trunnion.part.read.request import ReadRequest
 
     progress.at(0.0, "reading")
     plain = _unpacked(data, file, limits)
     kind = kind_of(plain, file)
     listed = check_step(plain, file) if kind == "step" else check_iges(plain, file)
-    request = Request(
+    request = ReadRequest(
         file=file,
         path=path,
         name=_stem(file),

@@ -6,7 +6,7 @@ from dataclasses import dataclass
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class Request:
+class ReadRequest:
     """What the reading process is told: the file's name and path, digest, kind ("step" or "iges"), the faces its text lists."""
 
     file: str

@@ -15,10 +15,10 @@ from OCP.TopLoc import TopLoc_Location
 from OCP.TopTools import TopTools_IndexedMapOfShape
 
 from trunnion.findings import BadInput, Finding, error, face_tags, warning
-from trunnion.part.part import Part, PartFacts
+from trunnion.part.part import Part, PartMetadata
 from trunnion.part.read.heal import Body, bodies_of
 from trunnion.part.read.kernel_messages import hush
-from trunnion.part.read.request import Request
+from trunnion.part.read.request import ReadRequest
 from trunnion.part.topology.identity import Shape, face_index, faces_of
 
 _IGES_UNITS = {
@@ -44,7 +44,7 @@ _UNIT_WORDS = {
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class Read:
+class TransferResult:
     """What the kernel read: the shape in mm, the file's unit, names and colours by face tag."""
 
     shape: Shape
@@ -53,7 +53,7 @@ class Read:
     colours: Mapping[int, tuple[float, float, float]] = field(default_factory=dict)
 
 
-def read_file(file: Path, request: Request) -> Part:
+def read_file(file: Path, request: ReadRequest) -> Part:
     """Return the part in a file whose text has been checked; raise `BadInput` when the kernel can't make a solid of it."""
     hush()
     try:
@@ -66,7 +66,7 @@ def read_file(file: Path, request: Request) -> Part:
         ) from None
 
 
-def _read_step(file: Path, request: Request) -> Read:
+def _read_step(file: Path, request: ReadRequest) -> TransferResult:
     from OCP.IFSelect import IFSelect_RetDone
     from OCP.STEPCAFControl import STEPCAFControl_Reader
     from OCP.TColStd import TColStd_SequenceOfAsciiString
@@ -82,7 +82,7 @@ def _read_step(file: Path, request: Request) -> Read:
     return _with_document(reader, reader.ChangeReader(), request, _UNIT_WORDS.get(unit, unit))
 
 
-def _read_iges(file: Path, request: Request) -> Read:
+def _read_iges(file: Path, request: ReadRequest) -> TransferResult:
     from OCP.IFSelect import IFSelect_RetDone
     from OCP.IGESCAFControl import IGESCAFControl_Reader
 
@@ -95,7 +95,7 @@ def _read_iges(file: Path, request: Request) -> Read:
     return _with_document(reader, reader, request, unit)
 
 
-def _with_document(reader: Any, plain: Any, request: Request, unit: str) -> Read:
+def _with_document(reader: Any, plain: Any, request: ReadRequest, unit: str) -> TransferResult:
     from OCP.TCollection import TCollection_ExtendedString
     from OCP.TDocStd import TDocStd_Document
 
@@ -110,7 +110,7 @@ def _with_document(reader: Any, plain: Any, request: Request, unit: str) -> Read
             f"{request.file}: the file holds no faces (curves or points only); export the part as a solid"
         )
     faces = faces_of(shape)
-    return Read(
+    return TransferResult(
         shape=shape, unit=unit, names=_names(document, shape), colours=_colours(document, faces)
     )
 
@@ -150,7 +150,7 @@ def _colours(document: Any, faces: list[Shape]) -> dict[int, tuple[float, float,
     return found
 
 
-def _part(read: Read, request: Request) -> Part:
+def _part(read: TransferResult, request: ReadRequest) -> Part:
     tagged = faces_of(read.shape)
     bodies, findings = bodies_of(read.shape)
     if not bodies:
@@ -176,7 +176,7 @@ def _part(read: Read, request: Request) -> Part:
                 remedy="close the gaps in the CAD system and export the solid again",
             )
         )
-    facts = PartFacts(
+    facts = PartMetadata(
         path=request.path,
         name=request.name,
         digest=request.digest,
@@ -195,7 +195,7 @@ def _part(read: Read, request: Request) -> Part:
     return Part(facts, body.shape, read.shape)
 
 
-def _chosen(bodies: list[Body], request: Request) -> int:
+def _chosen(bodies: list[Body], request: ReadRequest) -> int:
     if request.solid is None:
         return (
             max(range(len(bodies)), key=lambda n: (bodies[n].is_closed, *_size(bodies[n]), -n)) + 1
@@ -213,7 +213,7 @@ def _size(body: Body) -> tuple[float, float]:
     return float(f"{abs(body.volume):.9g}"), float(f"{body.area:.9g}")
 
 
-def _other_solids(bodies: list[Body], chosen: int, request: Request) -> list[Finding]:
+def _other_solids(bodies: list[Body], chosen: int, request: ReadRequest) -> list[Finding]:
     if len(bodies) == 1 or request.solid is not None:
         return []
     others = ", ".join(
@@ -232,7 +232,7 @@ def _other_solids(bodies: list[Body], chosen: int, request: Request) -> list[Fin
     ]
 
 
-def _loose(bodies: list[Body], count: int, request: Request) -> list[Finding]:
+def _loose(bodies: list[Body], count: int, request: ReadRequest) -> list[Finding]:
     loose = set(range(1, count + 1)) - {tag for body in bodies for tag in body.tags}
     if not loose:
         return []
@@ -243,7 +243,7 @@ def _loose(bodies: list[Body], count: int, request: Request) -> list[Finding]:
     return [warning("part.loose-faces", text, request.file, *face_tags(loose), remedy=remedy)]
 
 
-def _count_findings(tagged: list[Shape], request: Request) -> list[Finding]:
+def _count_findings(tagged: list[Shape], request: ReadRequest) -> list[Finding]:
     """Compare what was transferred with what the file lists; an assembly's repeated faces count once."""
     alone = TopTools_IndexedMapOfShape()
     for face in tagged:

@@ -12,7 +12,7 @@ from OCP.TopoDS import TopoDS
 
 from trunnion import tolerance
 from trunnion.geometry.arrays import Bools, Floats
-from trunnion.geometry.curvature import FaceBend, principal_curvatures
+from trunnion.geometry.curvature import FaceCurvature, principal_curvatures
 from trunnion.part.shape.evaluate import evaluator_of
 from trunnion.part.topology.identity import Shape, edges_of
 
@@ -56,22 +56,22 @@ class _Bending:
         ), step
 
 
-def bend_of(face: Shape) -> FaceBend:
+def bend_of(face: Shape) -> FaceCurvature:
     """Return how a face, as it lies in the solid, bends."""
     bending = _Bending(face)
     grid, step = bending.grid()
     if bending.adaptor.GetType() in _SAME_EVERYWHERE:
         spread = bending.at(grid[:1])
-        return FaceBend(spread=spread, least=float(spread[0, 0]), most=float(spread[0, 1]))
+        return FaceCurvature(spread=spread, least=float(spread[0, 0]), most=float(spread[0, 1]))
     inside = grid[bending.inside(grid)]
     places = np.vstack([inside, _along_edges(face)])
     bends = bending.at(places)
     known = np.asarray(np.isfinite(bends).all(axis=1))
     if not known.any():
-        return FaceBend(spread=np.zeros((0, 2)), least=0.0, most=0.0)
+        return FaceCurvature(spread=np.zeros((0, 2)), least=0.0, most=0.0)
     within = bends[: len(inside)][known[: len(inside)]]
     least, most = _extremes(bending, places[known], bends[known], step)
-    return FaceBend(spread=within if len(within) else bends[known], least=least, most=most)
+    return FaceCurvature(spread=within if len(within) else bends[known], least=least, most=most)
 
 
 def _along_edges(shape: Shape) -> Floats:

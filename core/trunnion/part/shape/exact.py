@@ -42,13 +42,13 @@ class ExactFace:
         from OCP.GeomAbs import GeomAbs_SurfaceType as Kind
 
         from trunnion.part.shape.evaluate import evaluator_of
-        from trunnion.part.topology.faces import FaceView
+        from trunnion.part.topology.faces import TrimmedFace
         from trunnion.part.topology.trim import Trim
 
         shape = part.face_shape(tag)
         if shape is None:
             raise BadInput(f"face {tag} is not a face of the chosen solid of {part.name}")
-        self.tag, self._frame, self._view = tag, frame, FaceView(shape, tag - 1)
+        self.tag, self._frame, self._view = tag, frame, TrimmedFace(shape, tag - 1)
         self._evaluate, self._trim = evaluator_of(self._view.adaptor), Trim(self._view)
         kind = self._view.adaptor.GetType()
         known = (

@@ -15,9 +15,9 @@ from trunnion.geometry.arrays import Floats
 from trunnion.geometry.frame import Frame
 from trunnion.geometry.plane.curve import Curve
 from trunnion.geometry.plane.region import Region
-from trunnion.part.shape.fitting import arcs_through
+from trunnion.part.shape.arc_fitting import arcs_through
 from trunnion.part.topology.canonical import recognised, recognised_curve
-from trunnion.part.topology.faces import FaceView
+from trunnion.part.topology.faces import TrimmedFace
 from trunnion.part.topology.identity import Shape
 
 _STEPS = 65
@@ -28,7 +28,7 @@ def outline(face: Shape, frame: Frame, words: str) -> Region:
 
     Raises `BadInput` when the face is not plane or leans by more than `tolerance.TANGENT`.
     """
-    view = FaceView(face, 0)
+    view = TrimmedFace(face, 0)
     surface = recognised(view.adaptor, lambda: view.evaluated(view.grid(5)))
     normal = view.evaluated(view.grid(1))[1][0]
     if surface.kind != "plane" or abs(float(normal @ frame.z)) < np.cos(tolerance.TANGENT):

@@ -45,7 +45,7 @@ PIECES = 1 << (ROUNDS + 2)
 
 
 @dataclass(frozen=True, slots=True, eq=False, kw_only=True)
-class Opened:
+class RefinedMesh:
     """Triangles of faces, in the part's coordinates. v points, t triangles, f faces in rows.
 
     tag (f,) of the faces; points, outward unit normals (v, 3); triangles (t, 3) rows of points, anticlockwise seen from outside;
@@ -60,7 +60,7 @@ class Opened:
     bound: Floats
 
 
-def opened(part: Part, chords: Mapping[int, float], progress: Progress = QUIET) -> Opened:
+def opened(part: Part, chords: Mapping[int, float], progress: Progress = QUIET) -> RefinedMesh:
     """Return the faces of the tags in `chords` as triangles, each within its chord error (mm), as measured.
 
     Raises `BadInput` for a face that the mesher can't do and `OutOfMemory` beyond `MOST_TRIANGLES`.
@@ -70,7 +70,7 @@ def opened(part: Part, chords: Mapping[int, float], progress: Progress = QUIET) 
     tags = sorted(chords)
     if not tags:
         none = np.zeros((0, 3))
-        return Opened(
+        return RefinedMesh(
             tag=np.zeros(0, np.int64),
             points=none,
             normals=none,
@@ -405,10 +405,10 @@ class _Net:
             normals[lost] = self.normal(self.on(self.owner[lost], beside))[0]
         return np.asarray(normals * self.sides[self.owner][:, None])
 
-    def result(self, tags: list[int], normals: Floats) -> Opened:
+    def result(self, tags: list[int], normals: Floats) -> RefinedMesh:
         """Return what was made, in the order of the faces."""
         order = np.argsort(self.face, kind="stable")
-        return Opened(
+        return RefinedMesh(
             tag=np.array(tags, dtype=np.int64),
             points=self.points,
             normals=normals,

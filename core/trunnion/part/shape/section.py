@@ -31,11 +31,11 @@ from trunnion.geometry.arrays import Floats
 from trunnion.geometry.frame import Frame
 from trunnion.geometry.plane.curve import Curve
 from trunnion.geometry.plane.region import Region
-from trunnion.part.shape.fitting import along_arcs, arcs_through
-from trunnion.part.shape.tracing import trace
-from trunnion.part.topology.canonical import Surface, recognised
+from trunnion.part.shape.arc_fitting import along_arcs, arcs_through
+from trunnion.part.shape.plane_intersection import trace
+from trunnion.part.topology.canonical import CanonicalSurface, recognised
 from trunnion.part.topology.extent import edge_extremes, face_box
-from trunnion.part.topology.faces import FaceView
+from trunnion.part.topology.faces import TrimmedFace
 from trunnion.part.topology.graph import coedges
 from trunnion.part.topology.identity import Shape
 from trunnion.progress import QUIET, Progress
@@ -73,7 +73,7 @@ class Plane:
 
 
 @dataclass(slots=True, eq=False)
-class Edge:
+class SectionEdge:
     """An edge of the solid: its curve, points that bound it, and samples along it when it is neither line nor circle."""
 
     shape: Shape
@@ -86,11 +86,11 @@ class Edge:
 
 
 @dataclass(slots=True, eq=False)
-class Face:
+class SectionFace:
     """A trimmed face with the surface under it, its edges' numbers and its box."""
 
-    view: FaceView
-    surface: Surface
+    view: TrimmedFace
+    surface: CanonicalSurface
     edges: tuple[int, ...]
     low: Floats
     high: Floats
@@ -105,7 +105,7 @@ class Face:
 
 
 @dataclass(frozen=True, slots=True, eq=False)
-class Link:
+class SectionPiece:
     """A piece of the section in plan, from node to node: points (k, 2) with bulges (k - 1,)."""
 
     start: Node
@@ -121,7 +121,7 @@ class SolidSlicer:
         index = TopTools_IndexedMapOfShape()
         TopExp.MapShapes_s(shape, TopAbs_EDGE, index)
         shapes = [TopoDS.Edge_s(index.FindKey(n)) for n in range(1, index.Extent() + 1)]
-        self.edges: dict[int, Edge] = {}
+        self.edges: dict[int, SectionEdge] = {}
         progress.doing("making ready to cut the part by planes")
         for n, s in enumerate(shapes, start=1):
             progress.check()
@@ -144,7 +144,7 @@ class SolidSlicer:
         progress.check()
         plane = self._clear_of_corners(frame, z)
         nodes = self._nodes(plane)
-        links: list[Link] = []
+        links: list[SectionPiece] = []
         loops: list[Curve] = []
         for face in self._crossed(plane):
             progress.check()
@@ -157,16 +157,18 @@ class SolidSlicer:
             loops += closed
         return Region.of(loops + _chained(links, f"z = {z:g}"))
 
-    def _face(self, face: Shape, index: TopTools_IndexedMapOfShape, progress: Progress) -> Face:
+    def _face(
+        self, face: Shape, index: TopTools_IndexedMapOfShape, progress: Progress
+    ) -> SectionFace:
         progress.check()
-        view = FaceView(face, 0)
+        view = TrimmedFace(face, 0)
         own = tuple(c.edge for c in coedges(face, index) if c.edge in self.edges)
         surface = recognised(view.adaptor, lambda: view.evaluated(view.grid(5)))
         boundary = (
             np.concatenate([self.edges[n].extremes for n in own]) if own else np.empty((0, 3))
         )
         low, high = face_box(view, surface, boundary, progress)
-        return Face(view, surface, own, low, high)
+        return SectionFace(view, surface, own, low, high)
 
     def _clear_of_corners(self, frame: Frame, z: float) -> Plane:
         """Return the plane, moved up by small steps until no corner of the solid lies in it."""
@@ -181,7 +183,7 @@ class SolidSlicer:
             f"no section at z = {z:g}: the part has corners at every height there; choose another height"
         )
 
-    def _crossed(self, plane: Plane) -> list[Face]:
+    def _crossed(self, plane: Plane) -> list[SectionFace]:
         middle, half = 0.5 * (self._low + self._high), 0.5 * (self._high - self._low)
         reach = half @ np.abs(plane.normal) + tolerance.COINCIDENT
         return [self.faces[n] for n in np.nonzero(np.abs(plane.above(middle)) <= reach)[0]]
@@ -216,15 +218,15 @@ class SolidSlicer:
         return found
 
 
-def _edge(shape: Shape) -> Edge:
+def _edge(shape: Shape) -> SectionEdge:
     adaptor = BRepAdaptor_Curve(shape)
     first, last, kind = adaptor.FirstParameter(), adaptor.LastParameter(), adaptor.GetType()
     steps = 2 if kind in (GeomAbs_Line, GeomAbs_Circle) else _SAMPLES
     points = np.array([adaptor.Value(t).Coord() for t in np.linspace(first, last, steps)])
-    return Edge(shape, adaptor, first, last, kind, points, edge_extremes(adaptor, points))
+    return SectionEdge(shape, adaptor, first, last, kind, points, edge_extremes(adaptor, points))
 
 
-def _on_circle(edge: Edge, plane: Plane) -> list[float]:
+def _on_circle(edge: SectionEdge, plane: Plane) -> list[float]:
     """Return the parameters where a circular edge meets the plane, ascending."""
     circle = edge.adaptor.Circle()
     x, y = (
@@ -242,7 +244,7 @@ def _on_circle(edge: Edge, plane: Plane) -> list[float]:
     return sorted(t for t in turns if t < edge.last)
 
 
-def _on_curve(edge: Edge, plane: Plane) -> list[float]:
+def _on_curve(edge: SectionEdge, plane: Plane) -> list[float]:
     """Return the parameters where a free edge meets the plane, ascending, by halving between samples of unlike side."""
     places = np.linspace(edge.first, edge.last, _SAMPLES)
     heights = plane.above(edge.points)
@@ -262,7 +264,9 @@ def _on_curve(edge: Edge, plane: Plane) -> list[float]:
 Nodes = list[tuple[Node, Floats]]
 
 
-def _cut(face: Face, plane: Plane, own: Nodes, seams: set[int]) -> tuple[list[Link], list[Curve]]:
+def _cut(
+    face: SectionFace, plane: Plane, own: Nodes, seams: set[int]
+) -> tuple[list[SectionPiece], list[Curve]]:
     """Return the pieces and the whole loops in which a plane meets a face."""
     surface, normal = face.surface, plane.normal
     level = (
@@ -283,7 +287,7 @@ def _cut(face: Face, plane: Plane, own: Nodes, seams: set[int]) -> tuple[list[Li
     return _traced(face, plane, own, seams)
 
 
-def _plane_normal(face: Face) -> Floats:
+def _plane_normal(face: SectionFace) -> Floats:
     return (
         face.view.plane_normal
         if face.view.plane_normal is not None
@@ -291,7 +295,7 @@ def _plane_normal(face: Face) -> Floats:
     )
 
 
-def _on_line(face: Face, plane: Plane, own: Nodes, along: Floats) -> list[Link]:
+def _on_line(face: SectionFace, plane: Plane, own: Nodes, along: Floats) -> list[SectionPiece]:
     """Return the pieces of a line across a face, or of two parallel ones (a cylinder's)."""
     along = along / np.linalg.norm(along)
     across = np.cross(plane.normal, along)
@@ -306,11 +310,11 @@ def _on_line(face: Face, plane: Plane, own: Nodes, along: Floats) -> list[Link]:
         track.sort(key=lambda item: float(item[1] @ along))
         for (a, p), (b, q) in pairwise(track):
             if len(track) == 2 or face.holds(0.5 * (p + q)):
-                links.append(Link(a, b, plane.flat(np.stack([p, q])), np.zeros(1)))
+                links.append(SectionPiece(a, b, plane.flat(np.stack([p, q])), np.zeros(1)))
     return links
 
 
-def _circles(surface: Surface, plane: Plane) -> list[tuple[Floats, float]]:
+def _circles(surface: CanonicalSurface, plane: Plane) -> list[tuple[Floats, float]]:
     """Return centre and radius of the circles in which a plane across its axis meets a whole surface of revolution."""
     height = float(plane.above(surface.axis_point))
     centre = surface.axis_point - height * plane.normal
@@ -329,9 +333,9 @@ def _circles(surface: Surface, plane: Plane) -> list[tuple[Floats, float]]:
 
 
 def _on_circles(
-    face: Face, plane: Plane, own: Nodes, seams: set[int]
-) -> tuple[list[Link], list[Curve]]:
-    links: list[Link] = []
+    face: SectionFace, plane: Plane, own: Nodes, seams: set[int]
+) -> tuple[list[SectionPiece], list[Curve]]:
+    links: list[SectionPiece] = []
     loops: list[Curve] = []
     circles = _circles(face.surface, plane)
     parts: dict[int, Nodes] = defaultdict(list)
@@ -386,21 +390,21 @@ def _arc(
     radius: float,
     angle: float,
     sweep: float,
-) -> Link:
+) -> SectionPiece:
     """Return an anticlockwise arc, in two pieces when it is more than half a circle, because its bulge would grow without bound."""
     if sweep <= math.pi:
-        return Link(a, b, np.stack([start, end]), np.array([math.tan(0.25 * sweep)]))
+        return SectionPiece(a, b, np.stack([start, end]), np.array([math.tan(0.25 * sweep)]))
     half = centre + radius * np.array(
         [math.cos(angle + 0.5 * sweep), math.sin(angle + 0.5 * sweep)]
     )
-    return Link(a, b, np.stack([start, half, end]), np.full(2, math.tan(0.125 * sweep)))
+    return SectionPiece(a, b, np.stack([start, half, end]), np.full(2, math.tan(0.125 * sweep)))
 
 
 def _traced(
-    face: Face, plane: Plane, own: Nodes, seams: set[int]
-) -> tuple[list[Link], list[Curve]]:
+    face: SectionFace, plane: Plane, own: Nodes, seams: set[int]
+) -> tuple[list[SectionPiece], list[Curve]]:
     """Return the pieces of a general curve, followed over the surface and fitted by arcs."""
-    links: list[Link] = []
+    links: list[SectionPiece] = []
     loops: list[Curve] = []
     for start, end, points, headings in trace(face.view, plane, own, seams, face.low, face.high):
         along = plane.frame.local_direction(headings)[:, :2]
@@ -408,11 +412,11 @@ def _traced(
         if start is None or end is None:
             loops.append(Curve(flat[:-1], bulges, True))
         else:
-            links.append(Link(start, end, flat, bulges))
+            links.append(SectionPiece(start, end, flat, bulges))
     return links, loops
 
 
-def _chained(links: list[Link], where: str) -> list[Curve]:
+def _chained(links: list[SectionPiece], where: str) -> list[Curve]:
     """Return the closed curves of pieces that end at common nodes; raise `BadInput` when an end is left over."""
     at: dict[Node, list[int]] = defaultdict(list)
     for n, link in enumerate(links):

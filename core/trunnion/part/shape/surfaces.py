@@ -125,7 +125,7 @@ class Surfaces:
 
 
 @dataclass(frozen=True, slots=True)
-class Edge:
+class TrimEdge:
     """A piece of a trim, monotone in s and u: a line from (s0, u0) to (s1, u1), or (radius > 0) a quarter or less of a circle about
     (sc, uc) on the side `sign` of s."""
 
@@ -195,15 +195,15 @@ class Profile:
         ]
 
 
-def line_edges(points: Floats) -> list[Edge]:
+def line_edges(points: Floats) -> list[TrimEdge]:
     """Return the edges of a chain of points (k, 2) in (s, u)."""
     return [
-        Edge(a[0], a[1], b[0], b[1])
+        TrimEdge(a[0], a[1], b[0], b[1])
         for a, b in zip(points[:-1].tolist(), points[1:].tolist(), strict=True)
     ]
 
 
-def circle_edges(sc: float, uc: float, radius: float, start: float, end: float) -> list[Edge]:
+def circle_edges(sc: float, uc: float, radius: float, start: float, end: float) -> list[TrimEdge]:
     """Return the edges of a circle's arc in (s, u) between two angles, cut where it turns back."""
     low, high = min(start, end), max(start, end)
     quarter = math.pi / 2
@@ -217,7 +217,7 @@ def circle_edges(sc: float, uc: float, radius: float, start: float, end: float) 
         if b - a > tolerance.PARAMETRIC:
             sign = 1.0 if math.cos(0.5 * (a + b)) > 0 else -1.0
             edges.append(
-                Edge(
+                TrimEdge(
                     sc + radius * math.cos(a),
                     uc + radius * math.sin(a),
                     sc + radius * math.cos(b),
@@ -232,7 +232,7 @@ def circle_edges(sc: float, uc: float, radius: float, start: float, end: float) 
 
 
 def strips_of(
-    guide: Guide, profile: Profile, edges: list[Edge], side: float, progress: Progress = QUIET
+    guide: Guide, profile: Profile, edges: list[TrimEdge], side: float, progress: Progress = QUIET
 ) -> Floats | None:
     """Return the strips (m, 37) of a face trimmed by edges in (s, u), or None when the edges don't close."""
     ends = [u for e in edges for u in (e.u0, e.u1)]
@@ -258,7 +258,13 @@ def strips_of(
 
 
 def strip_row(
-    guide: Guide, profile: Profile, u0: float, u1: float, left: Edge, right: Edge, side: float = 1.0
+    guide: Guide,
+    profile: Profile,
+    u0: float,
+    u1: float,
+    left: TrimEdge,
+    right: TrimEdge,
+    side: float = 1.0,
 ) -> Floats:
     """Return one strip (37,) between two parameters of a profile and two ends."""
     row = np.zeros(STRIP_COLUMNS)
@@ -293,11 +299,11 @@ def strip_row(
 def point_strip(guide: Guide, w: float, z: float, low: float, high: float) -> Floats:
     """Return the strip (37,) of one edge of a level face: a guide at one offset and height, from s = low to s = high."""
     return strip_row(
-        guide, Profile(w, z), 0.0, 0.0, Edge(low, 0.0, low, 0.0), Edge(high, 0.0, high, 0.0)
+        guide, Profile(w, z), 0.0, 0.0, TrimEdge(low, 0.0, low, 0.0), TrimEdge(high, 0.0, high, 0.0)
     )
 
 
-def surfaces_from(faces: list[Face]) -> Surfaces:
+def surfaces_from(faces: list[ContactFace]) -> Surfaces:
     """Return the arrays of faces given one by one."""
     empty = np.zeros((0, STRIP_COLUMNS))
     regions = [(row, f) for row, f in enumerate(faces) if len(f.outline)]
@@ -318,7 +324,7 @@ def surfaces_from(faces: list[Face]) -> Surfaces:
 
 
 @dataclass(frozen=True, slots=True, eq=False)
-class Face:
+class ContactFace:
     """One face before it goes into `Surfaces`: strips (m, 37); of a level one also its area `level` (k, 37), outline (c, 7) and height.
 
     One without closed form `is_free`.
@@ -333,8 +339,8 @@ class Face:
 
 
 def level_face(
-    tag: int, z: float, edges: list[Edge], side: float = 1.0, progress: Progress = QUIET
-) -> Face:
+    tag: int, z: float, edges: list[TrimEdge], side: float = 1.0, progress: Progress = QUIET
+) -> ContactFace:
     """Return a level face from its outline's edges in plan (s is x, u is y); side +1 looks up, -1 down."""
     boundary, outline = [], []
     for e in progress.each(edges):
@@ -352,7 +358,7 @@ def level_face(
         Guide(0, 0.0, 0.0, 1.0, 0.0), Profile(0.0, z, 1.0, 0.0), edges, -side, progress
     )
     empty = np.zeros((0, STRIP_COLUMNS))
-    return Face(
+    return ContactFace(
         tag,
         np.array(boundary).reshape(-1, STRIP_COLUMNS),
         empty if level is None else level,
@@ -464,7 +470,7 @@ def _box(
 # From here on CAD: one face's surface and edges, turned into the frame.
 
 
-def _face(tag: int, shape: Any, frame: Frame, progress: Progress) -> Face:
+def _face(tag: int, shape: Any, frame: Frame, progress: Progress) -> ContactFace:
     from OCP.BRepAdaptor import BRepAdaptor_Surface
     from OCP.GeomAbs import GeomAbs_SurfaceType as Kind
     from OCP.TopoDS import TopoDS
@@ -473,7 +479,7 @@ def _face(tag: int, shape: Any, frame: Frame, progress: Progress) -> Face:
     sign = 1.0 if shape.Orientation() == _forward() else -1.0
     surface = BRepAdaptor_Surface(face)
     kind = surface.GetType()
-    made: Face | None = None
+    made: ContactFace | None = None
     if kind == Kind.GeomAbs_Plane:
         made = _plane(tag, face, surface.Plane(), sign, frame, progress)
     elif kind in (
@@ -486,7 +492,7 @@ def _face(tag: int, shape: Any, frame: Frame, progress: Progress) -> Face:
     if made is not None:
         return made
     nothing = np.zeros((0, STRIP_COLUMNS))
-    return Face(tag, nothing, nothing, np.zeros((0, 4)), is_free=True)
+    return ContactFace(tag, nothing, nothing, np.zeros((0, 4)), is_free=True)
 
 
 def _forward() -> Any:
@@ -525,7 +531,7 @@ def _flat_enough(slope: float, extent: float) -> bool:
 
 def _plane(
     tag: int, face: Any, plane: Any, sign: float, frame: Frame, progress: Progress
-) -> Face | None:
+) -> ContactFace | None:
     origin, x, y, _ = _position(plane.Position(), frame)
     normal = sign * np.cross(x, y)
     if _flat_enough(math.hypot(normal[0], normal[1]), _extent(face)):
@@ -554,13 +560,13 @@ def _plane(
     return (
         None
         if strips is None
-        else Face(tag, strips, np.zeros((0, STRIP_COLUMNS)), np.zeros((0, 4)))
+        else ContactFace(tag, strips, np.zeros((0, STRIP_COLUMNS)), np.zeros((0, 4)))
     )
 
 
 def _round(
     tag: int, face: Any, surface: Any, sign: float, frame: Frame, progress: Progress
-) -> Face | None:
+) -> ContactFace | None:
     from OCP.GeomAbs import GeomAbs_SurfaceType as Kind
 
     kind = surface.GetType()
@@ -616,11 +622,11 @@ def _round(
     return (
         None
         if strips is None
-        else Face(tag, strips, np.zeros((0, STRIP_COLUMNS)), np.zeros((0, 4)))
+        else ContactFace(tag, strips, np.zeros((0, STRIP_COLUMNS)), np.zeros((0, 4)))
     )
 
 
-def _edges(face: Any, matrix: Floats, shift: Floats, progress: Progress) -> list[Edge]:
+def _edges(face: Any, matrix: Floats, shift: Floats, progress: Progress) -> list[TrimEdge]:
     """Return the face's edges in (s, u): rows of the matrix are where the surface's two parameters go, `shift` where its origin goes."""
     from OCP.BRep import BRep_Tool
     from OCP.BRepAdaptor import BRepAdaptor_Curve2d
@@ -633,7 +639,7 @@ def _edges(face: Any, matrix: Floats, shift: Floats, progress: Progress) -> list
         abs(abs(np.linalg.det(matrix)) - 1.0) < tolerance.COINCIDENT
         and abs(matrix[0] @ matrix[1]) < tolerance.COINCIDENT
     )
-    found: list[Edge] = []
+    found: list[TrimEdge] = []
     walk = TopExp_Explorer(face, TopAbs_ShapeEnum.TopAbs_EDGE)
     while walk.More():
         progress.check()
@@ -670,7 +676,9 @@ def _mapped(curve: Any, parameters: Floats, matrix: Floats, shift: Floats) -> Fl
     return np.array([[p.X(), p.Y()] for p in points]) @ matrix + shift
 
 
-def _sampled(curve: Any, first: float, last: float, matrix: Floats, shift: Floats) -> list[Edge]:
+def _sampled(
+    curve: Any, first: float, last: float, matrix: Floats, shift: Floats
+) -> list[TrimEdge]:
     """Return chords of a general trim, monotone in u, close enough for the contact bound in mm or radians times mm."""
     count = 8
     while True:

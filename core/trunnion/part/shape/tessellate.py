@@ -12,7 +12,7 @@ from OCP.BRepTools import BRepTools
 from OCP.TopLoc import TopLoc_Location
 
 from trunnion.geometry.mesh import Mesh
-from trunnion.part.topology.faces import FaceView
+from trunnion.part.topology.faces import TrimmedFace
 from trunnion.part.topology.identity import Shape
 from trunnion.progress import QUIET, Progress
 
@@ -78,5 +78,5 @@ def _looks_out(face: Shape, found: Any, points: np.ndarray, rows: np.ndarray) ->
     across = np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0])
     largest = int(np.argmax((across * across).sum(axis=1)))
     place = np.mean([found.UVNode(int(n) + 1).Coord() for n in rows[largest]], axis=0)
-    normal = FaceView(face, 0).at(float(place[0]), float(place[1]))[1]
+    normal = TrimmedFace(face, 0).at(float(place[0]), float(place[1]))[1]
     return float(across[largest] @ normal) > 0.0

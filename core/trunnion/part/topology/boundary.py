@@ -28,7 +28,7 @@ _PLACES = (0.0, 0.25, 0.5, 0.75, 1.0)
 
 
 @dataclass(frozen=True, slots=True, eq=False, kw_only=True)
-class Bounding:
+class BoundaryCurves:
     """The curves that bound trimmed faces: owner (e,) the tag of the face that each one bounds, length (e,) mm. Seams and edges without
     length bound nothing."""
 
@@ -57,7 +57,7 @@ class Bounding:
         )
 
 
-def bounding_of(faces: Iterable[tuple[int, Shape]]) -> Bounding:
+def bounding_of(faces: Iterable[tuple[int, Shape]]) -> BoundaryCurves:
     """Return what bounds trimmed faces, given with their tags."""
     owner: list[int] = []
     curves: list[BRepAdaptor_Curve] = []
@@ -66,7 +66,7 @@ def bounding_of(faces: Iterable[tuple[int, Shape]]) -> Bounding:
         curves += found
         owner += [tag] * len(found)
     length = np.array([GCPnts_AbscissaPoint.Length_s(c) for c in curves])
-    return Bounding(owner=np.array(owner, dtype=np.int64), curves=curves, length=length)
+    return BoundaryCurves(owner=np.array(owner, dtype=np.int64), curves=curves, length=length)
 
 
 def boundary_of(

@@ -34,7 +34,7 @@ _STEPS = 9
 
 
 @dataclass(frozen=True, slots=True, eq=False, kw_only=True)
-class Surface:
+class CanonicalSurface:
     """A surface's kind (a name of `facegraph.SURFACES`) and its axis, radius and second radius or half angle; NaN where it has none.
 
     A cone's axis points to where it widens, and `radius` is the one at `axis_point`.
@@ -47,36 +47,36 @@ class Surface:
     minor: float = math.nan
 
 
-PLAIN = Surface(kind="plane", axis_point=NOWHERE, axis=NOWHERE)
+PLAIN = CanonicalSurface(kind="plane", axis_point=NOWHERE, axis=NOWHERE)
 
 
-def recognised(adaptor: Any, samples: Callable[[], tuple[Floats, Floats]]) -> Surface:
+def recognised(adaptor: Any, samples: Callable[[], tuple[Floats, Floats]]) -> CanonicalSurface:
     """Return the plain surface under a face's adaptor; `samples` gives points and normals (k, 3) of it for what has to be fitted."""
     kind = adaptor.GetType()
     if kind == GeomAbs_Plane:
         return PLAIN
     if kind == GeomAbs_Cylinder:
         found = adaptor.Cylinder()
-        return Surface(kind="cylinder", **_axis(found), radius=found.Radius())
+        return CanonicalSurface(kind="cylinder", **_axis(found), radius=found.Radius())
     if kind == GeomAbs_Cone:
         return _cone(adaptor.Cone())
     if kind == GeomAbs_Sphere:
         found = adaptor.Sphere()
-        return Surface(
+        return CanonicalSurface(
             kind="sphere", axis_point=_xyz(found.Location()), axis=NOWHERE, radius=found.Radius()
         )
     if kind == GeomAbs_Torus:
         found = adaptor.Torus()
-        return Surface(
+        return CanonicalSurface(
             kind="torus", **_axis(found), radius=found.MajorRadius(), minor=found.MinorRadius()
         )
     if kind == GeomAbs_SurfaceOfRevolution:
         found = adaptor.AxeOfRevolution()
         point, axis = _xyz(found.Location()), _xyz(found.Direction())
-        return _of_meridian(samples()[0], point, axis) or Surface(
+        return _of_meridian(samples()[0], point, axis) or CanonicalSurface(
             kind="revolution", axis_point=point, axis=axis
         )
-    fallback = Surface(
+    fallback = CanonicalSurface(
         kind="extrusion" if kind == GeomAbs_SurfaceOfExtrusion else "spline",
         axis_point=NOWHERE,
         axis=NOWHERE,
@@ -84,7 +84,7 @@ def recognised(adaptor: Any, samples: Callable[[], tuple[Floats, Floats]]) -> Su
     return fitted_surface(*samples()) or fallback
 
 
-def fitted_surface(points: Floats, normals: Floats) -> Surface | None:
+def fitted_surface(points: Floats, normals: Floats) -> CanonicalSurface | None:
     """Return the plane, sphere, cylinder, cone or torus that samples (k, 3) with unit normals lie on, or None."""
     middle = points.mean(axis=0)
     flat = np.linalg.svd(points - middle)[2][2]
@@ -93,17 +93,17 @@ def fitted_surface(points: Floats, normals: Floats) -> Surface | None:
     return _sphere(points) or _revolved(points, normals)
 
 
-def _sphere(points: Floats) -> Surface | None:
+def _sphere(points: Floats) -> CanonicalSurface | None:
     centre, radius = _ball(points)
     if (
         not np.isfinite(radius)
         or np.abs(np.linalg.norm(points - centre, axis=1) - radius).max() > tolerance.FITTED
     ):
         return None
-    return Surface(kind="sphere", axis_point=centre, axis=NOWHERE, radius=radius)
+    return CanonicalSurface(kind="sphere", axis_point=centre, axis=NOWHERE, radius=radius)
 
 
-def _revolved(points: Floats, normals: Floats) -> Surface | None:
+def _revolved(points: Floats, normals: Floats) -> CanonicalSurface | None:
     middle = points.mean(axis=0)
     size = float(np.abs(points - middle).max())
     p = (points - middle) / size
@@ -132,18 +132,20 @@ def _cylinder_foot(points: Floats, axis: Floats) -> Floats | None:
     return centre[0] * x + centre[1] * y if np.isfinite(radius) else None
 
 
-def _of_meridian(points: Floats, foot: Floats, axis: Floats) -> Surface | None:
+def _of_meridian(points: Floats, foot: Floats, axis: Floats) -> CanonicalSurface | None:
     """Return the cylinder, cone, sphere, torus or plane that points lie on when turned into one half plane of an axis, or None."""
     height = (points - foot) @ axis
     rho = np.linalg.norm(points - foot - height[:, None] * axis, axis=1)
     if np.ptp(height) < tolerance.FITTED:
         return PLAIN
     if np.ptp(rho) < tolerance.FITTED:
-        return Surface(kind="cylinder", axis_point=foot, axis=axis, radius=float(rho.mean()))
+        return CanonicalSurface(
+            kind="cylinder", axis_point=foot, axis=axis, radius=float(rho.mean())
+        )
     slope, start = np.polyfit(height, rho, 1)
     if np.abs(rho - start - slope * height).max() < tolerance.FITTED:
         way = 1.0 if slope > 0.0 else -1.0
-        return Surface(
+        return CanonicalSurface(
             kind="cone",
             axis_point=foot,
             axis=way * axis,
@@ -159,8 +161,10 @@ def _of_meridian(points: Floats, foot: Floats, axis: Floats) -> Surface | None:
         return None
     at = foot + centre[1] * axis
     if abs(centre[0]) < tolerance.FITTED:
-        return Surface(kind="sphere", axis_point=at, axis=NOWHERE, radius=radius)
-    return Surface(kind="torus", axis_point=at, axis=axis, radius=float(centre[0]), minor=radius)
+        return CanonicalSurface(kind="sphere", axis_point=at, axis=NOWHERE, radius=radius)
+    return CanonicalSurface(
+        kind="torus", axis_point=at, axis=axis, radius=float(centre[0]), minor=radius
+    )
 
 
 def _ball(points: Floats) -> tuple[Floats, float]:
@@ -179,7 +183,7 @@ def _ball(points: Floats) -> tuple[Floats, float]:
 
 
 @dataclass(frozen=True, slots=True, eq=False, kw_only=True)
-class EdgeCurve:
+class CanonicalCurve:
     """A curve's kind (a name of `facegraph.CURVES`) and a circle's centre, axis and radius; NaN where it has none."""
 
     kind: str
@@ -188,31 +192,31 @@ class EdgeCurve:
     radius: float = math.nan
 
 
-_LINE = EdgeCurve(kind="line", centre=NOWHERE, axis=NOWHERE)
+_LINE = CanonicalCurve(kind="line", centre=NOWHERE, axis=NOWHERE)
 
 
-def recognised_curve(adaptor: Any) -> EdgeCurve:
+def recognised_curve(adaptor: Any) -> CanonicalCurve:
     """Return the plain curve under an edge's adaptor."""
     kind = adaptor.GetType()
     if kind == GeomAbs_Line:
         return _LINE
     if kind == GeomAbs_Circle:
         found = adaptor.Circle()
-        return EdgeCurve(
+        return CanonicalCurve(
             kind="circle",
             centre=_xyz(found.Location()),
             axis=_xyz(found.Axis().Direction()),
             radius=found.Radius(),
         )
     if kind == GeomAbs_Ellipse:
-        return EdgeCurve(kind="ellipse", centre=NOWHERE, axis=NOWHERE)
+        return CanonicalCurve(kind="ellipse", centre=NOWHERE, axis=NOWHERE)
     first, last = adaptor.FirstParameter(), adaptor.LastParameter()
     return fitted_curve(
         np.array([adaptor.Value(t).Coord() for t in np.linspace(first, last, _STEPS)])
     )
 
 
-def fitted_curve(points: Floats) -> EdgeCurve:
+def fitted_curve(points: Floats) -> CanonicalCurve:
     """Return the line or circle that points (k, 3) along a curve lie on, else a spline."""
     chord = points[-1] - points[0]
     length = float(np.linalg.norm(chord))
@@ -230,19 +234,19 @@ def fitted_curve(points: Floats) -> EdgeCurve:
             np.isfinite(radius)
             and np.abs(np.linalg.norm(flat - centre, axis=1) - radius).max() < tolerance.FITTED
         ):
-            return EdgeCurve(
+            return CanonicalCurve(
                 kind="circle",
                 centre=middle + centre[0] * x + centre[1] * y,
                 axis=axis,
                 radius=radius,
             )
-    return EdgeCurve(kind="spline", centre=NOWHERE, axis=NOWHERE)
+    return CanonicalCurve(kind="spline", centre=NOWHERE, axis=NOWHERE)
 
 
-def _cone(found: Any) -> Surface:
+def _cone(found: Any) -> CanonicalSurface:
     angle, axes = found.SemiAngle(), _axis(found)
     way = 1.0 if angle > 0.0 else -1.0
-    return Surface(
+    return CanonicalSurface(
         kind="cone",
         axis_point=axes["axis_point"],
         axis=way * axes["axis"],

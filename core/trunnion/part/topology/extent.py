@@ -15,8 +15,8 @@ from OCP.ShapeAnalysis import ShapeAnalysis_Surface
 from trunnion import tolerance
 from trunnion.geometry.arrays import Floats
 from trunnion.part.shape.evaluate import evaluator_of
-from trunnion.part.topology.canonical import Surface
-from trunnion.part.topology.faces import FaceView
+from trunnion.part.topology.canonical import CanonicalSurface
+from trunnion.part.topology.faces import TrimmedFace
 from trunnion.part.topology.trim import Trim
 from trunnion.progress import QUIET, Progress
 
@@ -47,7 +47,9 @@ def edge_extremes(adaptor: Any, points: Floats) -> Floats:
     return np.concatenate([points[[0, -1]], round_points])
 
 
-def face_box(view: FaceView, surface: Surface, boundary: Floats, progress: Progress = QUIET) -> Box:
+def face_box(
+    view: TrimmedFace, surface: CanonicalSurface, boundary: Floats, progress: Progress = QUIET
+) -> Box:
     """Return the lowest and highest corner around a face; `boundary` (k, 3) holds its edges' extremes.
 
     Planes, cylinders and cones are ruled, so their extremes lie on the boundary. Free-form faces are searched by sampling.
@@ -59,7 +61,7 @@ def face_box(view: FaceView, surface: Surface, boundary: Floats, progress: Progr
     return _searched(view, boundary, progress)
 
 
-def _candidates(surface: Surface) -> Iterator[Floats]:
+def _candidates(surface: CanonicalSurface) -> Iterator[Floats]:
     """Yield the points of a whole sphere or torus that are farthest along x, y and z, either way."""
     for direction in np.concatenate([np.eye(3), -np.eye(3)]):
         if surface.kind == "sphere":
@@ -78,7 +80,7 @@ def _candidates(surface: Surface) -> Iterator[Floats]:
             )
 
 
-def _with_candidates(view: FaceView, boundary: Floats, points: Floats) -> Box:
+def _with_candidates(view: TrimmedFace, boundary: Floats, points: Floats) -> Box:
     low = boundary.min(axis=0) if len(boundary) else np.full(3, np.inf)
     high = boundary.max(axis=0) if len(boundary) else np.full(3, -np.inf)
     beyond = ((points < low - tolerance.COINCIDENT) | (points > high + tolerance.COINCIDENT)).any(
@@ -93,7 +95,7 @@ def _with_candidates(view: FaceView, boundary: Floats, points: Floats) -> Box:
     return low, high
 
 
-def _searched(view: FaceView, boundary: Floats, progress: Progress) -> Box:
+def _searched(view: TrimmedFace, boundary: Floats, progress: Progress) -> Box:
     """Return the box of samples, each of the six farthest ones followed by a finer and finer search around it."""
     u0, u1, v0, v1 = view.bounds()
     step = np.array([(u1 - u0) / _GRID, (v1 - v0) / _GRID])

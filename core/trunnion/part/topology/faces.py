@@ -18,7 +18,7 @@ from trunnion.part.topology.identity import Shape
 
 
 @dataclass(slots=True, eq=False)
-class FaceView:
+class TrimmedFace:
     """A trimmed face with what is asked of it again and again."""
 
     face: Shape

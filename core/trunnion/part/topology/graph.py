@@ -24,9 +24,15 @@ from OCP.TopTools import TopTools_IndexedMapOfShape
 from trunnion import tolerance
 from trunnion.geometry.arrays import Floats
 from trunnion.geometry.facegraph import CONCAVE, CONVEX, SMOOTH, FaceGraph
-from trunnion.part.topology.canonical import PLAIN, EdgeCurve, Surface, recognised, recognised_curve
+from trunnion.part.topology.canonical import (
+    PLAIN,
+    CanonicalCurve,
+    CanonicalSurface,
+    recognised,
+    recognised_curve,
+)
 from trunnion.part.topology.extent import edge_extremes, face_box
-from trunnion.part.topology.faces import FaceView
+from trunnion.part.topology.faces import TrimmedFace
 from trunnion.part.topology.identity import Shape
 from trunnion.part.topology.measure import ACCURACY
 from trunnion.progress import QUIET, Progress
@@ -47,7 +53,7 @@ class Coedge:
 
 
 @dataclass(slots=True, eq=False)
-class EdgeView:
+class TopologyEdge:
     """An edge with its curve and who uses it. `points` (7, 3) run along it, `extremes` (k, 3) include its farthest along x, y, z."""
 
     edge: Shape
@@ -55,7 +61,7 @@ class EdgeView:
     middle: float = field(init=False)
     points: Floats = field(init=False)
     extremes: Floats = field(init=False)
-    users: list[tuple[FaceView, float, int]] = field(init=False, default_factory=list)
+    users: list[tuple[TrimmedFace, float, int]] = field(init=False, default_factory=list)
 
     def __post_init__(self) -> None:
         self.adaptor = BRepAdaptor_Curve(self.edge)
@@ -75,7 +81,7 @@ def face_graph(
     The normal bend of a torus is that of its tube; of a free-form face the one that is at least twice as sharp as the other.
     """
     progress.doing("looking at faces and edges")
-    views = {tag: FaceView(face, tag - 1) for tag, face in progress.each(sorted(faces.items()))}
+    views = {tag: TrimmedFace(face, tag - 1) for tag, face in progress.each(sorted(faces.items()))}
     edges, rims = _edges(shape, views, progress)
     rows = {
         tag - 1: _face_row(view, rims[tag - 1], progress)
@@ -133,17 +139,17 @@ def _points(rows: Any) -> Floats:
 
 
 def _edges(
-    shape: Shape, views: Mapping[int, FaceView], progress: Progress
-) -> tuple[list[EdgeView], dict[int, list[EdgeView]]]:
+    shape: Shape, views: Mapping[int, TrimmedFace], progress: Progress
+) -> tuple[list[TopologyEdge], dict[int, list[TopologyEdge]]]:
     """Return the edges with their users (a seam has its face twice), and by face row the edges around it."""
     index = TopTools_IndexedMapOfShape()
     TopExp.MapShapes_s(shape, TopAbs_EDGE, index)
     edges = {
-        n: EdgeView(edge)
+        n: TopologyEdge(edge)
         for n in progress.each(range(1, index.Extent() + 1))
         if not BRep_Tool.Degenerated_s(edge := TopoDS.Edge_s(index.FindKey(n)))
     }
-    rims: dict[int, list[EdgeView]] = {}
+    rims: dict[int, list[TopologyEdge]] = {}
     for view in progress.each(views.values()):
         rim = rims.setdefault(view.row, [])
         for coedge in coedges(view.face, index):
@@ -180,19 +186,19 @@ def coedges(face: Shape, index: TopTools_IndexedMapOfShape) -> list[Coedge]:
 
 
 @dataclass(frozen=True, slots=True, eq=False, kw_only=True)
-class Joint:
+class FaceAdjacency:
     """Two faces meeting at an edge."""
 
-    view: EdgeView
+    view: TopologyEdge
     faces: tuple[int, int]
     loops: tuple[int, int]
     convexity: int
     dihedral: float
     length: float
-    curve: EdgeCurve
+    curve: CanonicalCurve
 
 
-def _joints(edge: EdgeView) -> list[Joint]:
+def _joints(edge: TopologyEdge) -> list[FaceAdjacency]:
     pairs = [
         (a, b) for n, a in enumerate(edge.users) for b in edge.users[n + 1 :] if a[0] is not b[0]
     ]
@@ -208,7 +214,7 @@ def _joints(edge: EdgeView) -> list[Joint]:
         )
         convexity = SMOOTH if abs(turn) < tolerance.TANGENT else CONVEX if turn > 0.0 else CONCAVE
         found.append(
-            Joint(
+            FaceAdjacency(
                 view=edge,
                 faces=(a.row, b.row),
                 loops=(loop_a, loop_b),
@@ -221,7 +227,7 @@ def _joints(edge: EdgeView) -> list[Joint]:
     return found
 
 
-def _tangent(edge: EdgeView) -> Floats:
+def _tangent(edge: TopologyEdge) -> Floats:
     point, along = gp_Pnt(), gp_Vec()
     edge.adaptor.D1(edge.middle, point, along)
     tangent = np.array(along.Coord())
@@ -233,14 +239,14 @@ def _tangent(edge: EdgeView) -> Floats:
     return tangent / size
 
 
-def _normal_beside(edge: EdgeView, view: FaceView) -> Floats:
+def _normal_beside(edge: TopologyEdge, view: TrimmedFace) -> Floats:
     if view.plane_normal is not None:
         return view.plane_normal
     place = BRepAdaptor_Curve2d(edge.edge, view.face).Value(edge.middle)
     return view.at(place.X(), place.Y())[1]
 
 
-def _length(edge: EdgeView, curve: EdgeCurve) -> float:
+def _length(edge: TopologyEdge, curve: CanonicalCurve) -> float:
     if edge.adaptor.GetType() != 0 and curve.kind == "line":
         return float(np.linalg.norm(np.diff(edge.points, axis=0), axis=1).sum())
     return float(GCPnts_AbscissaPoint.Length_s(edge.adaptor))
@@ -250,10 +256,10 @@ def _length(edge: EdgeView, curve: EdgeCurve) -> float:
 
 
 @dataclass(frozen=True, slots=True, eq=False, kw_only=True)
-class FaceRow:
+class FaceAttributes:
     """What the graph says of one face."""
 
-    surface: Surface
+    surface: CanonicalSurface
     area: float
     centre: Floats
     normal: Floats
@@ -265,7 +271,7 @@ class FaceRow:
 
 
 _ORIGIN = np.zeros(3)
-_ABSENT = FaceRow(
+_ABSENT = FaceAttributes(
     surface=replace(PLAIN, kind="other"),
     area=0.0,
     centre=_ORIGIN,
@@ -278,7 +284,7 @@ _ABSENT = FaceRow(
 )
 
 
-def _face_row(view: FaceView, rim: list[EdgeView], progress: Progress) -> FaceRow:
+def _face_row(view: TrimmedFace, rim: list[TopologyEdge], progress: Progress) -> FaceAttributes:
     points, normals = _samples(view, progress)
     surface = recognised(view.adaptor, lambda: view.evaluated(view.grid(_GRIDS[0])))
     best = _deepest(points, np.concatenate([e.points for e in rim]) if rim else np.empty((0, 3)))
@@ -289,7 +295,7 @@ def _face_row(view: FaceView, rim: list[EdgeView], progress: Progress) -> FaceRo
         progress,
     )
     surface = _beside(surface, points[best])
-    return FaceRow(
+    return FaceAttributes(
         surface=surface,
         area=_area(view),
         centre=points[best],
@@ -302,7 +308,7 @@ def _face_row(view: FaceView, rim: list[EdgeView], progress: Progress) -> FaceRo
     )
 
 
-def _samples(view: FaceView, progress: Progress) -> tuple[Floats, Floats]:
+def _samples(view: TrimmedFace, progress: Progress) -> tuple[Floats, Floats]:
     """Return points spread over the trimmed area and their outward normals; at least one even on the thinnest face."""
     most: list[tuple[float, float]] = []
     is_plane = view.adaptor.GetType() == GeomAbs_Plane
@@ -322,7 +328,7 @@ def _samples(view: FaceView, progress: Progress) -> tuple[Floats, Floats]:
     return view.evaluated(most)
 
 
-def _beside_rim(view: FaceView, wanted: int) -> list[tuple[float, float]]:
+def _beside_rim(view: TrimmedFace, wanted: int) -> list[tuple[float, float]]:
     """Return up to `wanted` places (u, v) a little inside the boundary: a thin face falls between the cells of any grid."""
     found: list[tuple[float, float]] = []
     around = TopExp_Explorer(view.face, TopAbs_EDGE)
@@ -352,7 +358,7 @@ def _deepest(points: Floats, boundary: Floats) -> int:
     return int(np.argmax(np.round(away, 9)))
 
 
-def _area(view: FaceView) -> float:
+def _area(view: TrimmedFace) -> float:
     found = GProp_GProps()
     if view.adaptor.GetType() == GeomAbs_Plane:
         BRepGProp.SurfaceProperties_s(view.face, found)
@@ -361,7 +367,7 @@ def _area(view: FaceView) -> float:
     return abs(float(found.Mass()))
 
 
-def _beside(surface: Surface, near: Floats) -> Surface:
+def _beside(surface: CanonicalSurface, near: Floats) -> CanonicalSurface:
     """Return the surface with its axis point beside a point of the face, so that it doesn't depend on how the file wrote it."""
     if surface.kind not in ("cylinder", "cone"):
         return surface
@@ -374,7 +380,7 @@ def _beside(surface: Surface, near: Floats) -> Surface:
     return replace(surface, axis_point=surface.axis_point + along * surface.axis, radius=radius)
 
 
-def _bend(surface: Surface, points: Floats, normals: Floats, best: int) -> int:
+def _bend(surface: CanonicalSurface, points: Floats, normals: Floats, best: int) -> int:
     point, normal = points[best], normals[best]
     if surface.kind == "plane":
         return 0

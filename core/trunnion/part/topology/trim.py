@@ -16,7 +16,7 @@ from OCP.TopoDS import TopoDS
 from trunnion.geometry.arrays import Bools, Floats
 from trunnion.geometry.kernels.outline import IN, NEAR
 from trunnion.geometry.outlines import Outlines
-from trunnion.part.topology.faces import FaceView
+from trunnion.part.topology.faces import TrimmedFace
 from trunnion.progress import QUIET, Progress
 
 SAG = 1e-4
@@ -31,7 +31,7 @@ TRIED = 8
 class Trim:
     """The trimmed area of a face; `progress` is looked at while the kernel is asked."""
 
-    def __init__(self, view: FaceView, progress: Progress = QUIET) -> None:
+    def __init__(self, view: TrimmedFace, progress: Progress = QUIET) -> None:
         self._view, self._progress = view, progress
         u0, u1, v0, v1 = view.bounds()
         self._turns = np.array([view.adaptor.IsUPeriodic(), view.adaptor.IsVPeriodic()])

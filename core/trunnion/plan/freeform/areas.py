@@ -13,7 +13,7 @@ from trunnion.model.blank import Blank
 from trunnion.model.feature import Feature, Recognition
 from trunnion.part.part import Part
 from trunnion.plan.freeform.cutters.cutter import level_disc
-from trunnion.plan.freeform.reach import Places
+from trunnion.plan.freeform.reach import AreaSamples
 from trunnion.plan.freeform.space import SurfaceSpace
 from trunnion.progress import QUIET, Progress
 from trunnion.recognize.contract import exclusive_kinds
@@ -106,7 +106,7 @@ def blank_faces(part: Part, blank: Blank) -> tuple[int, ...]:
     return tuple(tag for tag in part.tags if lies[tag - 1])
 
 
-def walls_of(places: Places, tags: Collection[int]) -> tuple[int, ...]:
+def walls_of(places: AreaSamples, tags: Collection[int]) -> tuple[int, ...]:
     """Return the faces that stand upright all over."""
     return tuple(
         sorted(
@@ -119,7 +119,7 @@ def walls_of(places: Places, tags: Collection[int]) -> tuple[int, ...]:
 
 
 def on_outline(
-    space: SurfaceSpace, places: Places, tags: Collection[int], progress: Progress = QUIET
+    space: SurfaceSpace, places: AreaSamples, tags: Collection[int], progress: Progress = QUIET
 ) -> tuple[int, ...]:
     """Return the upright faces that nothing of the part stands in front of at their height: an end mill beside them is out in the free.
 

@@ -15,7 +15,7 @@ from trunnion.geometry.arrays import Bools, Floats
 from trunnion.geometry.frame import Frame
 from trunnion.geometry.sheet.skin import Skin
 from trunnion.model.tool import Tool
-from trunnion.plan.clearance import Asker
+from trunnion.plan.clearance import ClearanceQuery
 
 
 class ExactFace(Protocol):
@@ -29,11 +29,11 @@ class ExactFace(Protocol):
     def inside(self, places: Floats) -> Bools:
         """Say which places (k, 2) lie inside the trim."""
 
-    def at(self, places: Floats) -> ExactPlaces:
+    def at(self, places: Floats) -> ExactPoints:
         """Return the surface at places (k, 2)."""
 
 
-class ExactPlaces(Protocol):
+class ExactPoints(Protocol):
     """Points of a face."""
 
     @property
@@ -85,7 +85,7 @@ class SurfaceDrive:
     height: float
     digest: str
     earlier: Tool | None = None
-    ask: Callable[[Tool], Asker] | None = None
+    ask: Callable[[Tool], ClearanceQuery] | None = None
 
     @property
     def is_empty(self) -> bool:

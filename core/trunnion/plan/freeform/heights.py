@@ -15,7 +15,7 @@ import shapely
 
 from trunnion import tolerance
 from trunnion.geometry.arrays import Bools, Floats
-from trunnion.geometry.dropping import DropSurface
+from trunnion.geometry.drop_surface import DropSurface
 from trunnion.geometry.plane.curve import Curve
 from trunnion.geometry.plane.region import EMPTY_REGION, Region
 from trunnion.progress import QUIET, Progress

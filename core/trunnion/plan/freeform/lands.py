@@ -54,7 +54,7 @@ STOCK, BESIDE_SIDES, AROUND_TOOL, ABOVE_TOOL = (
     "surface.around",
     "surface.above",
 )
-"""Keys of the choices of operations on lands, mm: the stock that roughing left on them, and what `Keeping` says."""
+"""Keys of the choices of operations on lands, mm: the stock that roughing left on them, and what `LandClearances` says."""
 
 
 @dataclass(frozen=True, slots=True, eq=False, kw_only=True)
@@ -67,7 +67,7 @@ class Land:
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class Keeping:
+class LandClearances:
     """What an end mill keeps, in mm: `beside` from sides of the part that are not finished yet, `around` shank and holder from the part all
     round, `above` them over it."""
 
@@ -77,7 +77,7 @@ class Keeping:
 
 
 @dataclass(frozen=True, slots=True, eq=False)
-class Standing:
+class PartAbove:
     """What a part has above heights, in plan; each is found once, with looks at progress."""
 
     space: SurfaceSpace
@@ -119,7 +119,7 @@ class Standing:
             )
         )
 
-    def free(self, z: float, tool: Tool, keeping: Keeping) -> Region:
+    def free(self, z: float, tool: Tool, keeping: LandClearances) -> Region:
         """Return the plan area that the envelope of an end mill may be in, its tip at a height: what is in its way, and in that of shank
         and holder, is left out. It goes on past the blank."""
         ways = [self.over(z + SKIM)]
@@ -165,7 +165,7 @@ def covered(land: Land, free: Region, tool: Tool) -> Region:
     )
 
 
-def stands_free(standing: Standing, land: Land, tool: Tool, progress: Progress = QUIET) -> bool:
+def stands_free(standing: PartAbove, land: Land, tool: Tool, progress: Progress = QUIET) -> bool:
     """Say whether the part, as triangles, is nowhere in the way of an end mill that comes right up to what stands beside a land: a section
     that misses something would let it in."""
     space = standing.space
@@ -203,7 +203,7 @@ def land_drive(
 
     Stock that is thicker than the operation's depth comes off in even steps.
     """
-    standing, keeping, tool = Standing(space, progress), keeping_of(operation), operation.tool
+    standing, keeping, tool = PartAbove(space, progress), keeping_of(operation), operation.tool
     stock = number(operation, STOCK)
     steps = (
         max(1, math.ceil(stock / operation.data.depth - tolerance.COINCIDENT))
@@ -239,7 +239,7 @@ def land_drive(
     )
 
 
-def left_by(standing: Standing, land: Land, before: Sequence[Operation]) -> Region:
+def left_by(standing: PartAbove, land: Land, before: Sequence[Operation]) -> Region:
     """Return what operations on a land leave of it: but for hairs along their rims all of it where there are none."""
     left = land.region
     for operation in before:
@@ -260,12 +260,12 @@ def without(region: Region, done: Region) -> Region:
     return region.minus(done).opened(HAIR) if done else region
 
 
-def keeping_of(operation: Operation) -> Keeping:
+def keeping_of(operation: Operation) -> LandClearances:
     """Return what an operation on lands keeps, from its choices."""
     beside, around, above = (
         number(operation, key) for key in (BESIDE_SIDES, AROUND_TOOL, ABOVE_TOOL)
     )
-    return Keeping(beside=beside, around=around, above=above)
+    return LandClearances(beside=beside, around=around, above=above)
 
 
 def _together(lands: Sequence[Land]) -> list[list[Land]]:

@@ -11,7 +11,7 @@ from trunnion.findings import Refused
 from trunnion.geometry.plane.region import EMPTY_REGION, Region, union_all
 from trunnion.model.operation import Operation
 from trunnion.model.process import ProcessTree
-from trunnion.plan.contract import Heights
+from trunnion.plan.contract import StockHeights
 from trunnion.plan.freeform.heights import HeightMap, region_below
 from trunnion.plan.freeform.keys import ALLOWANCE, BOTTOM, CELL, number
 from trunnion.plan.freeform.lands import LAND, REST_LAND, land_drive
@@ -34,7 +34,7 @@ RIM = 2.0
 def plane_drive_of(
     operation: Operation,
     space: SurfaceSpace,
-    stock: Heights,
+    stock: StockHeights,
     progress: Progress,
     process: ProcessTree | None = None,
 ) -> PlaneDrive:
@@ -58,7 +58,7 @@ def plane_drive_of(
 
 
 def _layers(
-    operation: Operation, space: SurfaceSpace, stock: Heights, progress: Progress
+    operation: Operation, space: SurfaceSpace, stock: StockHeights, progress: Progress
 ) -> PlaneDrive:
     """Return layers down to the operation's bottom: what stands over each that the part, its allowance all round, doesn't need.
 
@@ -134,7 +134,7 @@ def level_faces(space: SurfaceSpace) -> list[float]:
     return found
 
 
-def _standing(stock: Heights, z: float, above: float) -> Region:
+def _standing(stock: StockHeights, z: float, above: float) -> Region:
     """Return where the stock stands over a layer by more than is worth nothing; rims beside walls, which are never certain, left out."""
     most = float(stock.heights.max())
     higher = stock.heights > z + WORTH * (above - z)

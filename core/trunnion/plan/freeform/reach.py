@@ -23,7 +23,7 @@ FLAT = (0.5 * (math.sqrt(5.0) - 1.0), 0.5 * (math.sqrt(5.0) - 1.0) ** 2)
 
 
 @dataclass(frozen=True, slots=True, eq=False, kw_only=True)
-class Places:
+class AreaSamples:
     """Places (k, 3) on faces with outward unit normals (k, 3) and tags (k,), each standing for the same area in mm2."""
 
     point: Floats
@@ -34,14 +34,14 @@ class Places:
     def __len__(self) -> int:
         return len(self.face)
 
-    def of(self, rows: Bools) -> Places:
+    def of(self, rows: Bools) -> AreaSamples:
         """Return some of the places."""
-        return Places(
+        return AreaSamples(
             point=self.point[rows], normal=self.normal[rows], face=self.face[rows], area=self.area
         )
 
 
-def places_on(skin: Skin, tags: tuple[int, ...], count: int = SAMPLES) -> Places:
+def places_on(skin: Skin, tags: tuple[int, ...], count: int = SAMPLES) -> AreaSamples:
     """Return places spread evenly over faces: a place stands for an equal share of their area, the same ones each time."""
     rows = np.flatnonzero(skin.of(tags))
     corners = skin.points[skin.triangles[rows]]
@@ -50,7 +50,7 @@ def places_on(skin: Skin, tags: tuple[int, ...], count: int = SAMPLES) -> Places
     )
     total = float(area.sum())
     if total <= 0.0:
-        return Places(
+        return AreaSamples(
             point=np.zeros((0, 3)), normal=np.zeros((0, 3)), face=np.zeros(0, np.int64), area=0.0
         )
     at = np.minimum(
@@ -61,7 +61,7 @@ def places_on(skin: Skin, tags: tuple[int, ...], count: int = SAMPLES) -> Places
     u, v = np.where(over, 1.0 - u, u), np.where(over, 1.0 - v, v)
     weight = np.column_stack([1.0 - u - v, u, v])[:, :, None]
     normal = (weight * skin.normals[skin.triangles[rows[at]]]).sum(axis=1)
-    return Places(
+    return AreaSamples(
         point=(weight * corners[at]).sum(axis=1),
         normal=normal / np.linalg.norm(normal, axis=1, keepdims=True),
         face=skin.face[rows[at]],
@@ -69,14 +69,14 @@ def places_on(skin: Skin, tags: tuple[int, ...], count: int = SAMPLES) -> Places
     )
 
 
-def leans(places: Places) -> Floats:
+def leans(places: AreaSamples) -> Floats:
     """Return how far the normals of places lean from the tool's axis (k,), rad."""
     return np.asarray(np.arccos(np.clip(places.normal[:, 2], -1.0, 1.0)))
 
 
 def reached(
     space: SurfaceSpace,
-    places: Places,
+    places: AreaSamples,
     tool: Tool,
     room: float,
     allowance: float = 0.0,
@@ -111,7 +111,12 @@ def reached(
 
 
 def clear_beside(
-    space: SurfaceSpace, places: Places, tool: Tool, bottom: float, room: float, allowance: float
+    space: SurfaceSpace,
+    places: AreaSamples,
+    tool: Tool,
+    bottom: float,
+    room: float,
+    allowance: float,
 ) -> bool:
     """Say whether shank and holder of a cutter that goes along upright walls, its tip at a height, stay `room` mm over what stands beside:
     the part with an allowance all round."""

@@ -13,7 +13,7 @@ from trunnion.geometry.sheet.skin import Skin
 from trunnion.model.tool import Tool
 from trunnion.plan.freeform.cutters.cutter import level_disc, lower_side, tip_at
 from trunnion.plan.freeform.estimate.scallop import stepover_on_plane
-from trunnion.plan.freeform.parting import parted_near
+from trunnion.plan.freeform.partition import parted_near
 from trunnion.progress import QUIET, Progress
 
 LIFTED = 0.5 * tolerance.GOUGE

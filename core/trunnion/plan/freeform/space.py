@@ -15,7 +15,7 @@ from trunnion.model.setup import Setup
 from trunnion.model.tool import Tool
 from trunnion.part.part import Part
 from trunnion.part.shape.exact import ExactFace
-from trunnion.plan.clearance import Asker
+from trunnion.plan.clearance import ClearanceQuery
 from trunnion.plan.contract import DriveNeeds
 from trunnion.plan.freeform.drive import SurfaceDrive
 from trunnion.plan.freeform.frames import UPRIGHT, Direction, cutting_setup
@@ -91,7 +91,7 @@ class SurfaceSpace:
         operation: Operation,
         needs: DriveNeeds,
         earlier: Tool | None = None,
-        ask: Callable[[Tool], Asker] | None = None,
+        ask: Callable[[Tool], ClearanceQuery] | None = None,
         progress: Progress = QUIET,
     ) -> SurfaceDrive:
         """Return what an operation on curved faces is driven by; `earlier` is the cutter that finished them before, `ask` makes askers.

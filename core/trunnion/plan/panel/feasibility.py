@@ -9,7 +9,7 @@ from trunnion import tolerance
 from trunnion.findings import Finding, error, face_tags, warning
 from trunnion.model.feature import Feature, Recognition
 from trunnion.plan.panel.tasks import OperationTask
-from trunnion.plan.prismatic.regions import Sections, parent_of
+from trunnion.plan.prismatic.regions import SectionSource, parent_of
 from trunnion.plan.tool_choice import Candidates
 from trunnion.shop import Stage
 from trunnion.units import trimmed
@@ -96,7 +96,7 @@ def not_planned(refusals: Mapping[str, str], recognition: Recognition) -> list[F
     return found
 
 
-def beside(recognition: Recognition, part: Sections) -> dict[str, frozenset[str]]:
+def beside(recognition: Recognition, part: SectionSource) -> dict[str, frozenset[str]]:
     """Return for each feature those whose faces share an edge with its own, and those it stands in or holds."""
     graph = part.graph()
     owners: dict[int, set[str]] = {}

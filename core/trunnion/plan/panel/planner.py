@@ -6,13 +6,13 @@ from typing import TYPE_CHECKING
 
 from trunnion.model.operation import Operation
 from trunnion.model.process import ProcessTree
-from trunnion.plan.contract import Driven, DriveNeeds, RouteJob, Scene, driven_by
+from trunnion.plan.contract import DriveNeeds, OperationDrive, RouteJob, Scene, driven_by
 from trunnion.plan.freeform.drive import SurfaceDrive
-from trunnion.plan.freeform.driving import surface_driven
+from trunnion.plan.freeform.surface_drives import surface_driven
 from trunnion.plan.panel.route import make_route
 from trunnion.plan.panel.tasks import WISHES
 from trunnion.plan.prismatic.drive import PlaneDrive, drive_of
-from trunnion.plan.prismatic.regions import Space
+from trunnion.plan.prismatic.regions import SetupSpace
 from trunnion.plan.settings import RouteSettings
 from trunnion.progress import Progress
 
@@ -45,7 +45,7 @@ class PanelPlanner:
 
     def drive(
         self, operation: Operation, needs: DriveNeeds, scene: Scene, progress: Progress
-    ) -> Driven:
+    ) -> OperationDrive:
         """Return the drive that an operation's strategy needs."""
         return driven_by(
             {PlaneDrive: _plane_driven, SurfaceDrive: surface_driven},
@@ -59,10 +59,10 @@ class PanelPlanner:
 
 def _plane_driven(
     operation: Operation, needs: DriveNeeds, scene: Scene, progress: Progress
-) -> Driven:
+) -> OperationDrive:
     space = scene.once(
         "sections",
-        lambda: Space.of(scene.context.part, scene.recognition, scene.blank, scene.setup),
+        lambda: SetupSpace.of(scene.context.part, scene.recognition, scene.blank, scene.setup),
     )
     drive = drive_of(operation, scene.process, space)
-    return Driven(setup=scene.setup, drive=drive, told=drive)
+    return OperationDrive(setup=scene.setup, drive=drive, told=drive)

@@ -31,15 +31,15 @@ from trunnion.plan.panel.feasibility import (
 from trunnion.plan.panel.tasks import (
     DEPENDENT,
     WISHES,
-    Draft,
     OperationTask,
+    PanelPlanState,
     catalogue,
     floor_distance,
     with_falling_sizes,
 )
 from trunnion.plan.prismatic.drive import FLOOR_ALLOWANCE, WALL_ALLOWANCE
-from trunnion.plan.prismatic.regions import Sections, Space, parent_of
-from trunnion.plan.sequence import Job, ordered
+from trunnion.plan.prismatic.regions import SectionSource, SetupSpace, parent_of
+from trunnion.plan.sequence import OrderedOperation, ordered
 from trunnion.plan.settings import RouteSettings
 from trunnion.plan.setups import from_below
 from trunnion.plan.tool_choice import candidates, covered_by_few, depth_reached
@@ -61,7 +61,7 @@ def make_route(
     blank: Blank,
     setups: Sequence[Setup],
     shop: Shop,
-    part: Sections,
+    part: SectionSource,
     settings: RouteSettings,
     progress: Progress,
 ) -> ProcessTree:
@@ -84,8 +84,8 @@ def make_route(
     findings = not_planned(refusals, recognition)
     operations: list[Operation] = []
     for n, setup in enumerate(setups):
-        draft = Draft(
-            space=Space.of(part, recognition, blank, setup),
+        draft = PanelPlanState(
+            space=SetupSpace.of(part, recognition, blank, setup),
             recognition=recognition,
             material=material,
             machine=shop.machine(setup.machine),
@@ -110,7 +110,7 @@ def make_route(
     )
 
 
-def _from_below(feature: Feature, recognition: Recognition, part: Sections) -> bool:
+def _from_below(feature: Feature, recognition: Recognition, part: SectionSource) -> bool:
     """Say whether a feature is reached from under the part: as it says itself, else as its floor or top looks."""
     tags = feature.with_role("floor", "top")
     if "direction" in feature.attributes or not tags:
@@ -119,7 +119,7 @@ def _from_below(feature: Feature, recognition: Recognition, part: Sections) -> b
 
 
 def _with_cutters(
-    draft: Draft, features: Sequence[Feature], stages: Sequence[Stage], progress: Progress
+    draft: PanelPlanState, features: Sequence[Feature], stages: Sequence[Stage], progress: Progress
 ) -> list[OperationTask]:
     """Return the tasks that have a cutter, chosen so that few cutters serve all; those that depend on another's cutter come last."""
     tasks: list[OperationTask] = []
@@ -153,12 +153,12 @@ def _with_cutters(
 
 
 def _sequenced(
-    draft: Draft, tasks: Sequence[OperationTask], stages: Sequence[Stage]
+    draft: PanelPlanState, tasks: Sequence[OperationTask], stages: Sequence[Stage]
 ) -> list[Operation]:
     rank = {stage.name: n for n, stage in enumerate(stages)}
     after = {w.id: _before(draft, w, tasks) for w in tasks}
     jobs = [
-        Job(
+        OrderedOperation(
             id=w.id,
             tool=draft.tools[w.id].name,
             stage=rank[w.stage.name],
@@ -171,7 +171,9 @@ def _sequenced(
     return [_operation(draft, by_id[id], after[id]) for id in ordered(jobs)]
 
 
-def _before(draft: Draft, task: OperationTask, tasks: Sequence[OperationTask]) -> frozenset[str]:
+def _before(
+    draft: PanelPlanState, task: OperationTask, tasks: Sequence[OperationTask]
+) -> frozenset[str]:
     """Return the ids that come before a task: earlier stages on and beside its feature, larger cutters, the pocket it is sunk in."""
     kinds = {f.id: f.kind for f in draft.recognition}
     near = {i for i in draft.beside.get(task.feature, ()) if kinds[i] != kinds[task.feature]} | {
@@ -196,7 +198,7 @@ def _before(draft: Draft, task: OperationTask, tasks: Sequence[OperationTask]) -
     return frozenset(found | set(steps[: steps.index(task.id)]))
 
 
-def _operation(draft: Draft, task: OperationTask, after: frozenset[str]) -> Operation:
+def _operation(draft: PanelPlanState, task: OperationTask, after: frozenset[str]) -> Operation:
     tool, stage, chosen, cutting = (
         draft.tools[task.id],
         task.stage,
@@ -239,7 +241,7 @@ def _operation(draft: Draft, task: OperationTask, after: frozenset[str]) -> Oper
 
 
 def _engagement(
-    draft: Draft, task: OperationTask, tool: Tool, cutting: CuttingSettings
+    draft: PanelPlanState, task: OperationTask, tool: Tool, cutting: CuttingSettings
 ) -> tuple[float, float]:
     """Return depth ap and width ae: roughing by material, even layers; finishing takes the allowance in steps that the flutes bear."""
     rough_depth = _even(task.height, roughing_depth(tool, draft.material, cutting))

@@ -15,7 +15,14 @@ from trunnion.geometry.plane.region import EMPTY_REGION, Region
 from trunnion.model.feature import Feature, Recognition
 from trunnion.model.material import Machine, Material
 from trunnion.model.tool import Tool
-from trunnion.plan.prismatic.regions import Band, Space, floor_fillet, number, parent_of, touching
+from trunnion.plan.prismatic.regions import (
+    Band,
+    SetupSpace,
+    floor_fillet,
+    number,
+    parent_of,
+    touching,
+)
 from trunnion.plan.settings import RouteSettings
 from trunnion.plan.tool_choice import ToolRequirement, candidates, depth_reached, fits_through
 from trunnion.progress import QUIET, Progress
@@ -56,10 +63,10 @@ class OperationTask:
 
 
 @dataclass(slots=True)
-class Draft:
+class PanelPlanState:
     """What is known while one setup is planned; `loaded` are the tools of the setups before, `progress` is looked at on the way."""
 
-    space: Space
+    space: SetupSpace
     recognition: Recognition
     material: Material
     machine: Machine
@@ -78,7 +85,7 @@ def floor_distance(settings: RouteSettings) -> float:
     return settings.wall_allowance + FLOOR_DISTANCE
 
 
-def catalogue(draft: Draft, stage: Stage) -> tuple[Tool, ...]:
+def catalogue(draft: PanelPlanState, stage: Stage) -> tuple[Tool, ...]:
     """Return the cutters that a stage may choose from."""
     use = "face" if stage.cutter == "face" else "finish" if stage.finish else "rough"
     tools = draft.shop.tools_for(draft.material.iso_group, use)
@@ -89,7 +96,9 @@ def catalogue(draft: Draft, stage: Stage) -> tuple[Tool, ...]:
     )
 
 
-def _wishes_face(draft: Draft, stage: Stage, features: Sequence[Feature]) -> list[OperationTask]:
+def _wishes_face(
+    draft: PanelPlanState, stage: Stage, features: Sequence[Feature]
+) -> list[OperationTask]:
     space = draft.space
     height = float(space.blank_high[2]) - space.top
     if height <= tolerance.SEW:
@@ -119,7 +128,7 @@ def _wishes_face(draft: Draft, stage: Stage, features: Sequence[Feature]) -> lis
 
 
 def _pocket_wishes(
-    draft: Draft,
+    draft: PanelPlanState,
     stage: Stage,
     features: Sequence[Feature],
     make: Callable[[Feature, tuple[Band, ...]], OperationTask | None],
@@ -144,7 +153,9 @@ def _pocket_wishes(
     return found
 
 
-def _wishes_rough(draft: Draft, stage: Stage, features: Sequence[Feature]) -> list[OperationTask]:
+def _wishes_rough(
+    draft: PanelPlanState, stage: Stage, features: Sequence[Feature]
+) -> list[OperationTask]:
     def make(feature: Feature, bands: tuple[Band, ...]) -> OperationTask:
         is_open = feature.kind == "open_pocket"
         requirement = ToolRequirement(
@@ -165,7 +176,9 @@ def _wishes_rough(draft: Draft, stage: Stage, features: Sequence[Feature]) -> li
     return _pocket_wishes(draft, stage, features, make)
 
 
-def _wishes_rest(draft: Draft, stage: Stage, features: Sequence[Feature]) -> list[OperationTask]:
+def _wishes_rest(
+    draft: PanelPlanState, stage: Stage, features: Sequence[Feature]
+) -> list[OperationTask]:
     def make(feature: Feature, bands: tuple[Band, ...]) -> OperationTask | None:
         before = draft.tools.get(f"rough-{feature.id}")
         corner = number(feature, "corner_radius")
@@ -181,7 +194,9 @@ def _wishes_rest(draft: Draft, stage: Stage, features: Sequence[Feature]) -> lis
     return _pocket_wishes(draft, stage, features, make)
 
 
-def _wishes_floor(draft: Draft, stage: Stage, features: Sequence[Feature]) -> list[OperationTask]:
+def _wishes_floor(
+    draft: PanelPlanState, stage: Stage, features: Sequence[Feature]
+) -> list[OperationTask]:
     def make(feature: Feature, bands: tuple[Band, ...]) -> OperationTask | None:
         if not feature.with_role("floor"):
             return None
@@ -212,7 +227,9 @@ def _wishes_floor(draft: Draft, stage: Stage, features: Sequence[Feature]) -> li
     return _pocket_wishes(draft, stage, features, make)
 
 
-def _wishes_wall(draft: Draft, stage: Stage, features: Sequence[Feature]) -> list[OperationTask]:
+def _wishes_wall(
+    draft: PanelPlanState, stage: Stage, features: Sequence[Feature]
+) -> list[OperationTask]:
     def make(feature: Feature, bands: tuple[Band, ...]) -> OperationTask:
         islands = [
             tag
@@ -246,7 +263,9 @@ def _wishes_wall(draft: Draft, stage: Stage, features: Sequence[Feature]) -> lis
     return _pocket_wishes(draft, stage, features, make)
 
 
-def _wishes_corner(draft: Draft, stage: Stage, features: Sequence[Feature]) -> list[OperationTask]:
+def _wishes_corner(
+    draft: PanelPlanState, stage: Stage, features: Sequence[Feature]
+) -> list[OperationTask]:
     def make(feature: Feature, bands: tuple[Band, ...]) -> OperationTask | None:
         wall, corner = draft.tools.get(f"wall-{feature.id}"), number(feature, "corner_radius")
         is_sharp = feature.sizes.get("corner_radius") == 0.0
@@ -266,7 +285,9 @@ def _wishes_corner(draft: Draft, stage: Stage, features: Sequence[Feature]) -> l
     return _pocket_wishes(draft, stage, features, make)
 
 
-def _wishes_top(draft: Draft, stage: Stage, features: Sequence[Feature]) -> list[OperationTask]:
+def _wishes_top(
+    draft: PanelPlanState, stage: Stage, features: Sequence[Feature]
+) -> list[OperationTask]:
     found = []
     for feature in features:
         tops = feature.with_role("top")
@@ -302,7 +323,7 @@ def _wishes_top(draft: Draft, stage: Stage, features: Sequence[Feature]) -> list
 
 
 def _top_room(
-    draft: Draft, feature: Feature, z: float, tops: Sequence[int]
+    draft: PanelPlanState, feature: Feature, z: float, tops: Sequence[int]
 ) -> tuple[Region, Region]:
     """Return where a cutter may be at a top's height, and the top itself."""
     space, wanted = draft.space, EMPTY_REGION
@@ -323,7 +344,9 @@ def _top_room(
     return over[0].boundary, wanted
 
 
-def _wishes_profile(draft: Draft, stage: Stage, features: Sequence[Feature]) -> list[OperationTask]:
+def _wishes_profile(
+    draft: PanelPlanState, stage: Stage, features: Sequence[Feature]
+) -> list[OperationTask]:
     found = []
     space = draft.space
     for feature in features:
@@ -356,7 +379,7 @@ def _wishes_profile(draft: Draft, stage: Stage, features: Sequence[Feature]) -> 
     return found
 
 
-WISHES: Mapping[str, Callable[[Draft, Stage, Sequence[Feature]], list[OperationTask]]] = {
+WISHES: Mapping[str, Callable[[PanelPlanState, Stage, Sequence[Feature]], list[OperationTask]]] = {
     "face": _wishes_face,
     "rough": _wishes_rough,
     "rest": _wishes_rest,
@@ -391,12 +414,12 @@ def _wish(
     )
 
 
-def _depth(draft: Draft, bands: tuple[Band, ...]) -> float:
+def _depth(draft: PanelPlanState, bands: tuple[Band, ...]) -> float:
     """Return how deep below the part's top a pocket's lowest floor lies: the walls around may stand as high as that."""
     return draft.space.top - bands[-1].bottom
 
 
-def _wall_task(draft: Draft, feature: Feature, bands: tuple[Band, ...]) -> ToolRequirement:
+def _wall_task(draft: PanelPlanState, feature: Feature, bands: tuple[Band, ...]) -> ToolRequirement:
     return ToolRequirement(
         depth=_depth(draft, bands),
         room=bands[-1].boundary,
@@ -411,7 +434,7 @@ def _wall_task(draft: Draft, feature: Feature, bands: tuple[Band, ...]) -> ToolR
 
 
 def _with_known_fillet(
-    draft: Draft, stage: Stage, feature: Feature, requirement: ToolRequirement
+    draft: PanelPlanState, stage: Stage, feature: Feature, requirement: ToolRequirement
 ) -> ToolRequirement:
     """Return a wall's requirement with the fillet that cutters have: when none has it exactly, the next smaller, and a finding."""
     radii = {
@@ -435,7 +458,7 @@ def _with_known_fillet(
     return replace(requirement, corner_radius=next_smaller)
 
 
-def _smallest(draft: Draft, stage: Stage, requirement: ToolRequirement) -> float:
+def _smallest(draft: PanelPlanState, stage: Stage, requirement: ToolRequirement) -> float:
     """Return the radius of the smallest cutter that gets to the foot of a wall."""
     found = candidates(
         replace(requirement, missable=1.0, cusps=False, near=0.0),
@@ -446,7 +469,9 @@ def _smallest(draft: Draft, stage: Stage, requirement: ToolRequirement) -> float
     return min((t.radius for t in found), default=math.inf)
 
 
-def with_falling_sizes(draft: Draft, tasks: Sequence[OperationTask]) -> list[OperationTask]:
+def with_falling_sizes(
+    draft: PanelPlanState, tasks: Sequence[OperationTask]
+) -> list[OperationTask]:
     """Return the tasks with cutters put in where a corner's cutter is much smaller than the one that was there before."""
     out: list[OperationTask] = []
     for task in tasks:
@@ -470,7 +495,7 @@ def with_falling_sizes(draft: Draft, tasks: Sequence[OperationTask]) -> list[Ope
     return out
 
 
-def _between(draft: Draft, task: OperationTask, before: Tool) -> Tool | None:
+def _between(draft: PanelPlanState, task: OperationTask, before: Tool) -> Tool | None:
     goal = draft.tools[task.id]
     fits = [
         t

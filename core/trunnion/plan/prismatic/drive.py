@@ -18,7 +18,7 @@ from trunnion.model.operation import Operation
 from trunnion.model.process import ProcessTree
 from trunnion.plan.prismatic.regions import (
     Band,
-    Space,
+    SetupSpace,
     floor_fillet,
     on_rim,
     parent_of,
@@ -135,7 +135,7 @@ OF_POCKETS = ("rough", "corner", "corner_finish", "floor", "wall")
 """Kinds of operation that a pocket's drive serves."""
 
 
-def drive_of(operation: Operation, process: ProcessTree, space: Space) -> PlaneDrive:
+def drive_of(operation: Operation, process: ProcessTree, space: SetupSpace) -> PlaneDrive:
     """Return the drive geometry of an operation in the frame of the space's setup, from tags and sections alone.
 
     Raises `Refused` when the part's sections do not bear the feature out.
@@ -156,7 +156,7 @@ def drive_of(operation: Operation, process: ProcessTree, space: Space) -> PlaneD
     )
 
 
-def _face(operation: Operation, space: Space) -> PlaneDrive:
+def _face(operation: Operation, space: SetupSpace) -> PlaneDrive:
     area, top = space.blank_area(), float(space.blank_high[2])
     tags = operation.faces
     level = DriveLevel(top=top, bottom=space.top, wanted=area, boundary=space.around())
@@ -172,7 +172,7 @@ def _face(operation: Operation, space: Space) -> PlaneDrive:
 
 
 def _pocket(
-    operation: Operation, process: ProcessTree, feature: Feature, space: Space
+    operation: Operation, process: ProcessTree, feature: Feature, space: SetupSpace
 ) -> PlaneDrive:
     bands = space.bands_of(feature)
     fillet = floor_fillet(feature)
@@ -197,7 +197,7 @@ def _pocket(
 
 
 def _floors(
-    feature: Feature, bands: tuple[Band, ...], space: Space, fillet: float
+    feature: Feature, bands: tuple[Band, ...], space: SetupSpace, fillet: float
 ) -> tuple[Floor, ...]:
     found = []
     for tag, z in space.floors_of(feature).items():
@@ -215,7 +215,7 @@ def _floors(
     return tuple(found)
 
 
-def _island_tops(feature: Feature, bands: tuple[Band, ...], space: Space) -> tuple[Floor, ...]:
+def _island_tops(feature: Feature, bands: tuple[Band, ...], space: SetupSpace) -> tuple[Floor, ...]:
     frame = space.setup.frame
     return tuple(
         Floor(
@@ -231,7 +231,7 @@ def _island_tops(feature: Feature, bands: tuple[Band, ...], space: Space) -> tup
 
 
 def _pocket_walls(
-    feature: Feature, bands: tuple[Band, ...], space: Space, fillet: float
+    feature: Feature, bands: tuple[Band, ...], space: SetupSpace, fillet: float
 ) -> tuple[WallGuide, ...]:
     """Return the guide lines of a pocket, each as tall as the bands that share it; a lower one begins above the step's fillet."""
     floors = space.floors_of(feature).values()
@@ -274,7 +274,7 @@ def _walled(feature: Feature, band: Band) -> list[Curve]:
     ]
 
 
-def _wall_faces(feature: Feature, curve: Curve, space: Space) -> tuple[int, ...]:
+def _wall_faces(feature: Feature, curve: Curve, space: SetupSpace) -> tuple[int, ...]:
     """Return the tags along a guide line: an island's own around an island, else the pocket's."""
     if curve.closed and curve.area < 0.0:
         inside = Region.of([curve])
@@ -286,7 +286,7 @@ def _wall_faces(feature: Feature, curve: Curve, space: Space) -> tuple[int, ...]
     return feature.with_role("wall", "corner", "floor_fillet")
 
 
-def _rib_top(operation: Operation, feature: Feature, space: Space) -> PlaneDrive:
+def _rib_top(operation: Operation, feature: Feature, space: SetupSpace) -> PlaneDrive:
     tags, frame, beside = feature.with_role("top"), space.setup.frame, tolerance.BESIDE_PLANE
     if not tags:
         raise Refused(f"{feature.id}: it has no top face; give it one or suppress {operation.id}")
@@ -307,7 +307,7 @@ def _rib_top(operation: Operation, feature: Feature, space: Space) -> PlaneDrive
     return _top(operation, feature, space, z, wanted, boundary, walls)
 
 
-def _island_top(operation: Operation, feature: Feature, space: Space) -> PlaneDrive:
+def _island_top(operation: Operation, feature: Feature, space: SetupSpace) -> PlaneDrive:
     tags, pocket = feature.with_role("top"), parent_of(feature, space.recognition)
     if not tags or pocket is None:
         raise Refused(
@@ -333,7 +333,7 @@ def _island_top(operation: Operation, feature: Feature, space: Space) -> PlaneDr
 def _top(
     operation: Operation,
     feature: Feature,
-    space: Space,
+    space: SetupSpace,
     z: float,
     wanted: Region,
     boundary: Region,
@@ -352,7 +352,7 @@ def _top(
     )
 
 
-def _profile(operation: Operation, feature: Feature, space: Space) -> PlaneDrive:
+def _profile(operation: Operation, feature: Feature, space: SetupSpace) -> PlaneDrive:
     outline = space.silhouette()
     level = DriveLevel(
         top=space.top,

@@ -32,7 +32,7 @@ NEAR = 60.0
 """mm: how far free space is looked at around a top; more than a cutter of the largest diameter and its way in."""
 
 
-class Sections(Protocol):
+class SectionSource(Protocol):
     """What planning asks of a part."""
 
     def section(self, frame: Frame, z: float) -> Region:
@@ -66,13 +66,13 @@ class _Ceiling:
 
 
 @dataclass(frozen=True, slots=True, eq=False)
-class Space:
+class SetupSpace:
     """A part in its blank as a setup sees it; every height and region is in the setup's frame.
 
     What is asked of it again for each operation, the bands of a pocket and what hangs over, is worked out once.
     """
 
-    part: Sections
+    part: SectionSource
     recognition: Recognition
     setup: Setup
     blank: Blank
@@ -84,13 +84,15 @@ class Space:
     _ceilings: list[_Ceiling] = field(init=False, repr=False, default_factory=list)
 
     @staticmethod
-    def of(part: Sections, recognition: Recognition, blank: Blank, setup: Setup) -> Space:
+    def of(part: SectionSource, recognition: Recognition, blank: Blank, setup: Setup) -> SetupSpace:
         """Return the part's space in a setup."""
         low, high = blank.box_in(setup.frame)
         graph = part.graph()
         points = np.vstack([graph.start, graph.middle, graph.end, graph.sample_point])
         z = setup.frame.to_local(points)[:, 2]
-        return Space(part, recognition, setup, blank, low, high, float(z.min()), float(z.max()))
+        return SetupSpace(
+            part, recognition, setup, blank, low, high, float(z.min()), float(z.max())
+        )
 
     def height(self, z: float) -> float:
         """Return the setup's height of a height in the recognition's frame."""

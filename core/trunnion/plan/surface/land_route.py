@@ -10,7 +10,7 @@ import numpy as np
 
 from trunnion.findings import BadInput, face_tags, info
 from trunnion.model.tool import Tool
-from trunnion.plan.freeform.cutters.end_mills import MISSED, Chosen, end_mills_for
+from trunnion.plan.freeform.cutters.end_mills import MISSED, LandCutters, end_mills_for
 from trunnion.plan.freeform.lands import (
     ABOVE_TOOL,
     AROUND_TOOL,
@@ -18,14 +18,14 @@ from trunnion.plan.freeform.lands import (
     LAND,
     REST_LAND,
     STOCK,
-    Keeping,
     Land,
-    Standing,
+    LandClearances,
+    PartAbove,
     lands_of,
 )
-from trunnion.plan.freeform.reach import Places, places_on, reached
+from trunnion.plan.freeform.reach import AreaSamples, places_on, reached
 from trunnion.plan.freeform.rest import BESIDE
-from trunnion.plan.surface.draft import Draft, face_name
+from trunnion.plan.surface.plan_state import SurfacePlanState, face_name
 from trunnion.progress import Progress
 from trunnion.settings import Value
 from trunnion.units import trimmed
@@ -45,13 +45,13 @@ APART = 0.1
 
 
 @dataclass(frozen=True, slots=True, eq=False, kw_only=True)
-class Levels:
+class FinishedLands:
     """The lands that end mills finish, with these, and the tags of all faces that they finish: lands, and low sides beside them."""
 
-    lands: tuple[Chosen, ...] = ()
+    lands: tuple[LandCutters, ...] = ()
     tags: frozenset[int] = frozenset()
 
-    def without_feet(self, places: Places) -> Places:
+    def without_feet(self, places: AreaSamples) -> AreaSamples:
         """Return the places that are not on the feet of sides that end mills finish."""
         done = np.zeros(len(places), dtype=bool)
         for each in self.lands:
@@ -60,20 +60,20 @@ class Levels:
 
 
 def plan_lands(
-    draft: Draft, tags: Collection[int], balls: Sequence[Tool], progress: Progress
-) -> Levels:
+    draft: SurfacePlanState, tags: Collection[int], balls: Sequence[Tool], progress: Progress
+) -> FinishedLands:
     """Add operations on the level lands among faces; `balls` would finish them instead."""
     if not draft.chosen.lands or not {LAND, REST_LAND} <= set(draft.stages):
-        return Levels()
+        return FinishedLands()
     chosen, route = draft.chosen, draft.route
-    keeping = Keeping(
+    keeping = LandClearances(
         beside=chosen.rough_allowance + APART,
         around=chosen.rough_allowance + BESIDE,
         above=route.reach_clearance,
     )
     mills = [t for t in draft.cutters("finish") if t.diameter <= route.largest]
     try:
-        standing = Standing(draft.space, progress)
+        standing = PartAbove(draft.space, progress)
         found = end_mills_for(
             standing,
             lands_of(draft.space, tags),
@@ -93,7 +93,7 @@ def plan_lands(
                 remedy="nothing needs to be done",
             )
         )
-        return Levels()
+        return FinishedLands()
     for c in found:
         if c.left.area > MISSED:
             draft.findings.append(
@@ -124,10 +124,12 @@ def plan_lands(
                 sides,
                 {BESIDE_SIDES: beside, AROUND_TOOL: keeping.around, ABOVE_TOOL: keeping.above},
             )
-    return Levels(lands=found, tags=frozenset({t for c in found for t in c.land.tags} | set(low)))
+    return FinishedLands(
+        lands=found, tags=frozenset({t for c in found for t in c.land.tags} | set(low))
+    )
 
 
-def _is_for_balls(draft: Draft, chosen: Chosen, balls: Sequence[Tool]) -> bool:
+def _is_for_balls(draft: SurfacePlanState, chosen: LandCutters, balls: Sequence[Tool]) -> bool:
     """Say whether balls come to too much of a land that no end mill does: into slits that run out from it."""
     if chosen.left.area <= MISSED:
         return False
@@ -139,7 +141,9 @@ def _is_for_balls(draft: Draft, chosen: Chosen, balls: Sequence[Tool]) -> bool:
     return float(seen.sum()) * places.area > max(MISSED, SLITS * chosen.land.region.area)
 
 
-def _low_sides(draft: Draft, tags: Collection[int], lands: Sequence[Chosen]) -> dict[int, Chosen]:
+def _low_sides(
+    draft: SurfacePlanState, tags: Collection[int], lands: Sequence[LandCutters]
+) -> dict[int, LandCutters]:
     """Return the upright faces that the end mills of a land finish all over, with that land."""
     found = {}
     for tag in sorted(tags) if lands else ():
@@ -151,7 +155,7 @@ def _low_sides(draft: Draft, tags: Collection[int], lands: Sequence[Chosen]) -> 
 
 
 def _add(
-    draft: Draft,
+    draft: SurfacePlanState,
     kind: str,
     tool: Tool,
     lands: Sequence[Land],

@@ -8,11 +8,11 @@ from trunnion import tolerance
 from trunnion.findings import BadInput
 from trunnion.model.operation import Operation
 from trunnion.model.process import ProcessTree
-from trunnion.plan.contract import Driven, DriveNeeds, RouteJob, Scene, driven_by
+from trunnion.plan.contract import DriveNeeds, OperationDrive, RouteJob, Scene, driven_by
 from trunnion.plan.freeform.drive import SurfaceDrive
-from trunnion.plan.freeform.driving import space_from, surface_driven
 from trunnion.plan.freeform.layers import plane_drive_of
 from trunnion.plan.freeform.space import SurfaceSpace
+from trunnion.plan.freeform.surface_drives import space_from, surface_driven
 from trunnion.plan.prismatic.drive import PlaneDrive
 from trunnion.plan.settings import RouteSettings
 from trunnion.plan.surface.route import CUTTER_RULES, make_surface_route
@@ -59,7 +59,7 @@ class SurfacePlanner:
 
     def drive(
         self, operation: Operation, needs: DriveNeeds, scene: Scene, progress: Progress
-    ) -> Driven:
+    ) -> OperationDrive:
         """Return the drive that an operation's strategy needs."""
         return driven_by(
             {PlaneDrive: _plane_driven, SurfaceDrive: surface_driven},
@@ -73,7 +73,7 @@ class SurfacePlanner:
 
 def _plane_driven(
     operation: Operation, needs: DriveNeeds, scene: Scene, progress: Progress
-) -> Driven:
+) -> OperationDrive:
     space = space_from(operation.direction, tolerance.CHORD, scene, progress)
     drive = plane_drive_of(operation, space, scene.stock(space.setup), progress, scene.process)
-    return Driven(setup=space.setup, drive=drive, told=drive)
+    return OperationDrive(setup=space.setup, drive=drive, told=drive)

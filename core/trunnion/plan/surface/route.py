@@ -20,7 +20,7 @@ from trunnion.model.operation import Operation
 from trunnion.model.process import ProcessTree
 from trunnion.model.setup import Setup
 from trunnion.model.tool import Tool
-from trunnion.plan.clearance import Around
+from trunnion.plan.clearance import ClearanceScene
 from trunnion.plan.cutting.milling import CuttingSettings, roughing_depth, roughing_width
 from trunnion.plan.feasibility import too_large, too_many_tools
 from trunnion.plan.freeform.areas import (
@@ -32,19 +32,19 @@ from trunnion.plan.freeform.areas import (
     on_outline,
     walls_of,
 )
-from trunnion.plan.freeform.cutters.choice import Chosen, cutter_for, named
+from trunnion.plan.freeform.cutters.choice import AreaCutters, cutter_for, named
 from trunnion.plan.freeform.estimate.scallop import stepover_on_plane
 from trunnion.plan.freeform.keys import ALLOWANCE, BOTTOM, CELL, EARLIER, SCALLOP
 from trunnion.plan.freeform.lands import LAND, REST_LAND
-from trunnion.plan.freeform.leaning import SAMPLES as LEANING_SAMPLES
-from trunnion.plan.freeform.leaning import leaning_cutter
-from trunnion.plan.freeform.reach import Places, clear_beside, leans, places_on, reached
-from trunnion.plan.freeform.sides import sides_for
+from trunnion.plan.freeform.reach import AreaSamples, clear_beside, leans, places_on, reached
+from trunnion.plan.freeform.roughing_directions import sides_for
 from trunnion.plan.freeform.space import SurfaceSpace
-from trunnion.plan.sequence import Job, ordered
+from trunnion.plan.freeform.tilted_reach import SAMPLES as LEANING_SAMPLES
+from trunnion.plan.freeform.tilted_reach import leaning_cutter
+from trunnion.plan.sequence import OrderedOperation, ordered
 from trunnion.plan.settings import RouteSettings
-from trunnion.plan.surface.draft import Draft, face_name
-from trunnion.plan.surface.land_route import Levels, plan_lands
+from trunnion.plan.surface.land_route import FinishedLands, plan_lands
+from trunnion.plan.surface.plan_state import SurfacePlanState, face_name
 from trunnion.plan.surface.settings import SurfaceRouteSettings
 from trunnion.plan.surface.slivers import slivers_of, with_slivers
 from trunnion.plan.tool_choice import depth_reached
@@ -88,7 +88,7 @@ def make_surface_route(
     setups: Sequence[Setup],
     shop: Shop,
     space: SurfaceSpace,
-    around: Around,
+    around: ClearanceScene,
     route: RouteSettings,
     chosen: SurfaceRouteSettings,
     progress: Progress,
@@ -105,7 +105,7 @@ def make_surface_route(
         return ProcessTree(
             plan=plan.name, material=material.name, setups=tuple(setups), findings=tuple(findings)
         )
-    draft = Draft(
+    draft = SurfacePlanState(
         space=space,
         around=around,
         recognition=recognition,
@@ -130,7 +130,7 @@ def make_surface_route(
     )
 
 
-def _plan(draft: Draft, progress: Progress) -> None:
+def _plan(draft: SurfacePlanState, progress: Progress) -> None:
     space, part = draft.space, draft.space.part
     outside = blank_faces(part, space.blank)
     mine = sorted({tag for f in draft.recognition for tag in f.tags} - set(outside))
@@ -176,7 +176,7 @@ def _plan(draft: Draft, progress: Progress) -> None:
             _rough(draft, side.space, side.bottom, f"side-{n}")
 
 
-def _add_slivers(draft: Draft) -> None:
+def _add_slivers(draft: SurfacePlanState) -> None:
     """Cut the patches that are too small to be planned by themselves with what lies around them; tell of those that stay."""
     part = draft.space.part
     mine = (slivers_of(draft.recognition) | draft.unsampled) & set(part.tags) - set(
@@ -194,7 +194,9 @@ def _add_slivers(draft: Draft) -> None:
         )
 
 
-def _hidden(draft: Draft, places: Places, tags: set[int], progress: Progress) -> tuple[int, ...]:
+def _hidden(
+    draft: SurfacePlanState, places: AreaSamples, tags: set[int], progress: Progress
+) -> tuple[int, ...]:
     """Return the faces that no upright cutter finishes most of."""
     seen = np.zeros(len(places), dtype=bool)
     slender = sorted(_finishers(draft), key=lambda t: (t.diameter, -depth_reached(t)))[:SLENDER]
@@ -203,7 +205,7 @@ def _hidden(draft: Draft, places: Places, tags: set[int], progress: Progress) ->
     return tuple(sorted(t for t in tags if seen[places.face == t].mean() < MOST))
 
 
-def _leaning_finishers(draft: Draft) -> tuple[Tool, ...]:
+def _leaning_finishers(draft: SurfacePlanState) -> tuple[Tool, ...]:
     """Return the longest ball of each diameter, the smallest first."""
     longest = {
         t.diameter: t
@@ -212,7 +214,7 @@ def _leaning_finishers(draft: Draft) -> tuple[Tool, ...]:
     return tuple(longest[d] for d in sorted(longest) if d <= LARGEST_LEANING)
 
 
-def _rough(draft: Draft, space: SurfaceSpace, bottom: float, name: str = "part") -> None:
+def _rough(draft: SurfacePlanState, space: SurfaceSpace, bottom: float, name: str = "part") -> None:
     """Plan roughing by layers with a large cutter from a direction, and with falling sizes what those before left: down to about the size
     of the smallest finishing cutter, so that this one finds little."""
     size, deep = float((space.high - space.low)[:2].min()), float(space.high[2]) - bottom
@@ -242,7 +244,7 @@ def _rough(draft: Draft, space: SurfaceSpace, bottom: float, name: str = "part")
         tool, n = rest, n + 1
 
 
-def _rougher(draft: Draft, most: float, deep: float, name: str) -> Tool | None:
+def _rougher(draft: SurfacePlanState, most: float, deep: float, name: str) -> Tool | None:
     """Return the largest roughing cutter up to a diameter that reaches a depth, with the corner that leaves least of a slope."""
     if name:
         return named(draft.shop, name)
@@ -266,7 +268,7 @@ def _rougher(draft: Draft, most: float, deep: float, name: str) -> Tool | None:
 
 
 def _add_rough(
-    draft: Draft, kind: str, name: str, tool: Tool, space: SurfaceSpace, bottom: float
+    draft: SurfacePlanState, kind: str, name: str, tool: Tool, space: SurfaceSpace, bottom: float
 ) -> None:
     stage, chosen, cutting = draft.stages[kind], draft.chosen, choose(CuttingSettings, {})
     depth = min(chosen.layer, roughing_depth(tool, draft.material, cutting))
@@ -296,7 +298,7 @@ def _add_rough(
     )
 
 
-def _outline(draft: Draft, tags: tuple[int, ...]) -> None:
+def _outline(draft: SurfacePlanState, tags: tuple[int, ...]) -> None:
     """Plan upright walls that stand free, along the part's outline."""
     stage, space = draft.stages["profile_finish"], draft.space
     z = space.skin.points[space.skin.triangles[space.skin.of(tags)], 2]
@@ -347,7 +349,7 @@ def _outline(draft: Draft, tags: tuple[int, ...]) -> None:
     )
 
 
-def _area(draft: Draft, area: Area, level: Levels, progress: Progress) -> None:
+def _area(draft: SurfacePlanState, area: Area, level: FinishedLands, progress: Progress) -> None:
     """Plan semi-finishing and finishing of an area with its own cutter, and of what that cutter leaves with a smaller one.
 
     The feet of sides that end mills finish with lands are no matter of its cutter.
@@ -392,7 +394,7 @@ def _area(draft: Draft, area: Area, level: Levels, progress: Progress) -> None:
                 _add_finish(draft, "semi", name, mine, found.rest, strategy, missed)
 
 
-def _hidden_area(draft: Draft, area: Area, progress: Progress) -> None:
+def _hidden_area(draft: SurfacePlanState, area: Area, progress: Progress) -> None:
     """Plan semi-finishing and finishing of an area with a leaning cutter."""
     chosen = draft.chosen
     places, few = (
@@ -425,7 +427,7 @@ def _hidden_area(draft: Draft, area: Area, progress: Progress) -> None:
 
 
 def _by_slope(
-    area: Area, tags: Sequence[int], places: Places, limit: float
+    area: Area, tags: Sequence[int], places: AreaSamples, limit: float
 ) -> list[tuple[str, tuple[int, ...], str]]:
     """Return the operations of an area: name, faces, strategy. Local features are of many slopes, which constant scallop suits best.
 
@@ -475,13 +477,13 @@ def first_known(names: Sequence[str]) -> str:
 
 
 def _add_finish(
-    draft: Draft,
+    draft: SurfacePlanState,
     kind: str,
     name: str,
     tags: tuple[int, ...],
     tool: Tool,
     strategy: str,
-    places: Places,
+    places: AreaSamples,
     earlier: Tool | None = None,
 ) -> None:
     stage, chosen = draft.stages[kind], draft.chosen
@@ -530,7 +532,7 @@ def _add_finish(
     )
 
 
-def _finishers(draft: Draft) -> tuple[Tool, ...]:
+def _finishers(draft: SurfacePlanState) -> tuple[Tool, ...]:
     return tuple(
         t
         for t in draft.cutters("surface")
@@ -538,7 +540,9 @@ def _finishers(draft: Draft) -> tuple[Tool, ...]:
     )
 
 
-def _tell_unreached(draft: Draft, area: Area, places: Places, found: Chosen) -> None:
+def _tell_unreached(
+    draft: SurfacePlanState, area: Area, places: AreaSamples, found: AreaCutters
+) -> None:
     """Say which faces no cutter reaches, or not the one that was asked for."""
     lost = [t for t in area.tags if not found.reachable[places.face == t].any()]
     if lost:
@@ -559,7 +563,7 @@ def _tell_unreached(draft: Draft, area: Area, places: Places, found: Chosen) -> 
         )
 
 
-def _in_order(draft: Draft, stages: Sequence[Stage]) -> list[Operation]:
+def _in_order(draft: SurfacePlanState, stages: Sequence[Stage]) -> list[Operation]:
     """Return the operations in the order of the plan's stages, with as few tool changes as that allows."""
     rank = {stage.name: n for n, stage in enumerate(stages)}
     by_stage = {stage.name: stage for stage in stages}
@@ -580,7 +584,7 @@ def _in_order(draft: Draft, stages: Sequence[Stage]) -> list[Operation]:
         }
         done[o.id] = replace(o, after=tuple(sorted(before)))
         jobs.append(
-            Job(
+            OrderedOperation(
                 id=o.id,
                 tool=o.tool.name,
                 stage=rank[o.group],
@@ -591,7 +595,7 @@ def _in_order(draft: Draft, stages: Sequence[Stage]) -> list[Operation]:
     return [done[id] for id in ordered(jobs)]
 
 
-def _place(draft: Draft, tags: tuple[int, ...]) -> tuple[float, float]:
+def _place(draft: SurfacePlanState, tags: tuple[int, ...]) -> tuple[float, float]:
     if not tags:
         return 0.0, 0.0
     at = draft.space.frame.to_local(draft.space.part.graph().centre[tags[0] - 1])

@@ -19,7 +19,7 @@ from trunnion.model.toolpath import Motion, Toolpath
 from trunnion.post.header import Header
 from trunnion.post.linearize import lines_for_arcs
 from trunnion.post.settings import PostSettings
-from trunnion.post.ticks import Scale, WrittenPath, upright, written
+from trunnion.post.ticks import TickScale, WrittenPath, upright, written
 from trunnion.post.words import dialect_words, plain, refuse_unwritable
 from trunnion.shop.kinematics import NO_PLACES, Places
 from trunnion.units import trimmed
@@ -91,9 +91,9 @@ def _lines(
     yield words.units[settings.units]
     leans = any(leaning(section.path) for program in programs for section in program.sections)
     yield "MULTAX/ON" if leans else "MULTAX/OFF"
-    scale = Scale.of(settings, words.extra_decimals_inch, words.feed_decimals)
+    scale = TickScale.of(settings, words.extra_decimals_inch, words.feed_decimals)
     axes = (
-        Scale(unit=1.0, decimals=words.axis_decimals, feed_decimals=words.feed_decimals)
+        TickScale(unit=1.0, decimals=words.axis_decimals, feed_decimals=words.feed_decimals)
         if leans
         else None
     )
@@ -118,7 +118,7 @@ def leaning(path: Toolpath) -> bool:
 
 
 def _section(
-    words: AptWords, section: ProgramSection, scale: Scale, changes: bool
+    words: AptWords, section: ProgramSection, scale: TickScale, changes: bool
 ) -> Iterator[str]:
     """Yield the head of one operation: its name, the tool when it changes, spindle, coolant."""
     tool = section.tool
@@ -134,7 +134,7 @@ def _section(
 
 
 def _blocks(
-    section: ProgramSection, scale: Scale, axes: Scale | None, within: float
+    section: ProgramSection, scale: TickScale, axes: TickScale | None, within: float
 ) -> WrittenPath:
     """Return the blocks of a section; arcs about a leaning axis are lines within a distance of them."""
     path = section.path
@@ -145,7 +145,9 @@ def _blocks(
     return written(path, scale, section.operation, axes.ticks(path.axis))
 
 
-def _motions(path: WrittenPath, scale: Scale, axes: Scale | None, feed_words: str) -> Iterator[str]:
+def _motions(
+    path: WrittenPath, scale: TickScale, axes: TickScale | None, feed_words: str
+) -> Iterator[str]:
     text, said, start = scale.text, "", [0, 0, 0]
     for (point, centre, motion, feed), axis in zip(path.blocks(), path.more.tolist(), strict=True):
         if motion == Motion.RAPID:

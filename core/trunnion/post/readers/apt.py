@@ -14,7 +14,7 @@ from trunnion.model.tool import Tool
 from trunnion.model.toolpath import Motion
 from trunnion.post.readers.arcs import refuse_nearly_closed, refuse_no_radius
 from trunnion.post.readers.numbers import FEED, LENGTH, SPINDLE, shown
-from trunnion.post.readers.sections import NOWHERE, Leaning, Point, Sections, operation_of
+from trunnion.post.readers.sections import NOWHERE, Point, Sections, TiltedPoses, operation_of
 from trunnion.post.readers.statements import statements
 from trunnion.post.readers.tools import by_number, check_tool
 from trunnion.units import MM_PER_INCH
@@ -44,7 +44,7 @@ class _Reader:
         self.tools, self.setups = tools, {s.name: s for s in setups}
         self.programs: list[Program] = []
         self.setup: Setup | None = setups[0] if len(setups) == 1 else None
-        self.sections = Sections(Leaning(self.setup.clearance if self.setup else 0.0))
+        self.sections = Sections(TiltedPoses(self.setup.clearance if self.setup else 0.0))
         self.named = self.rapid = self.ended = self.leans = self.turning = False
         self.tool: Tool | None = None
         self.unit, self.feed, self.spindle, self.coolant = 0.0, 0.0, 0.0, "off"
@@ -116,7 +116,7 @@ class _Reader:
         if any(p.setup.name == name for p in self.programs):
             raise BadInput(f"line {line}: setup {name} comes twice; put its operations together")
         self.setup, self.named, self.tool = self.setups[name], True, None
-        self.sections = Sections(Leaning(self.setup.clearance))
+        self.sections = Sections(TiltedPoses(self.setup.clearance))
 
     def units(self, line: int, rest: str) -> None:
         if rest not in ("MM", "INCHES"):

@@ -16,14 +16,14 @@ from trunnion.model.tool import Tool
 from trunnion.post.iso_words import IsoWords
 from trunnion.post.readers.blocks import Block, split_line
 from trunnion.post.readers.joints import Joints
-from trunnion.post.readers.language import Language, listed
+from trunnion.post.readers.language import ControlLanguage, listed
 from trunnion.post.readers.modes import MEANINGS, Modes
-from trunnion.post.readers.moves import Moves
+from trunnion.post.readers.moves import ToolMover
 from trunnion.post.readers.rotary import Rotary
-from trunnion.post.readers.sections import Sections, Upright, operation_of
-from trunnion.post.readers.state import State
+from trunnion.post.readers.sections import Sections, UprightPoses, operation_of
+from trunnion.post.readers.state import ModalState
 from trunnion.post.readers.tools import check_place, check_tool
-from trunnion.shop.kinematics import Place
+from trunnion.shop.kinematics import WorkPosition
 
 
 class Control:
@@ -36,7 +36,7 @@ class Control:
     brackets: ClassVar[bool] = True
 
     def __init__(
-        self, words: IsoWords, tools: Mapping[int, Tool], setup: Setup, place: Place | None
+        self, words: IsoWords, tools: Mapping[int, Tool], setup: Setup, place: WorkPosition | None
     ) -> None:
         if place is not None and not words.inverse_time:
             raise BadInput(
@@ -44,13 +44,13 @@ class Control:
                 "choose another control or machine"
             )
         self.place = place
-        self.language = Language(words, place, (*MEANINGS, *self.modes_class.own))
+        self.language = ControlLanguage(words, place, (*MEANINGS, *self.modes_class.own))
         sections = Sections(
-            Upright(setup.clearance) if place is None else Joints(place, setup.clearance)
+            UprightPoses(setup.clearance) if place is None else Joints(place, setup.clearance)
         )
-        self.state = State(tools=tools, setup=setup, sections=sections)
+        self.state = ModalState(tools=tools, setup=setup, sections=sections)
         self.modes = self.modes_class(self.language, self.state)
-        self.moves = Moves(
+        self.moves = ToolMover(
             self.language, self.state, Rotary(self.language.rotary, self.language.inverse)
         )
         self.last_n = -1.0

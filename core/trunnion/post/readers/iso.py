@@ -10,14 +10,14 @@ from trunnion.model.tool import Tool
 from trunnion.post.iso_words import IsoWords
 from trunnion.post.readers.control import Control
 from trunnion.post.readers.tools import by_number
-from trunnion.shop.kinematics import Place
+from trunnion.shop.kinematics import WorkPosition
 
 
 def read_iso(
     text: str,
     tools: Sequence[Tool],
     setup: Setup,
-    place: Place | None,
+    place: WorkPosition | None,
     words: IsoWords,
     control: type[Control] = Control,
 ) -> Program:

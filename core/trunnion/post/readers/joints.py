@@ -17,8 +17,8 @@ from trunnion.geometry.arrays import Floats, Ints
 from trunnion.model.tool import Tool
 from trunnion.model.toolpath import Motion, Toolpath
 from trunnion.post.linearize import even_turn
-from trunnion.post.readers.sections import Point, Rows, marks_of, path_of
-from trunnion.shop.kinematics import UP, UPRIGHT, Place, lift_of, poses_of, spindle_of
+from trunnion.post.readers.sections import Point, SectionBlocks, marks_of, path_of
+from trunnion.shop.kinematics import UP, UPRIGHT, WorkPosition, lift_of, poses_of, spindle_of
 
 OPENED, OPENED_RAPID = 0.001, 0.01
 """mm: how far a piece may be from what the tool does, in feed moves and in rapids."""
@@ -33,7 +33,7 @@ LEAST_FEED = 1e-3
 class Joints:
     """Points are X, Y, Z words in mm and the angles of the rotary axes in degrees."""
 
-    place: Place
+    place: WorkPosition
     clearance: float
 
     def above(self, point: Point, tool: Tool) -> Point | None:
@@ -49,7 +49,7 @@ class Joints:
             )
         return None if more <= tolerance.WRITTEN else (*point[:2], point[2] + more, *point[3:])
 
-    def opened(self, rows: Rows) -> tuple[Toolpath, tuple[int, ...]]:
+    def opened(self, rows: SectionBlocks) -> tuple[Toolpath, tuple[int, ...]]:
         """See `Reckoning`."""
         points = np.array(rows.point)
         words, angle, gauge = points[:, :3], np.radians(points[:, 3:]), rows.tool.gauge_length
@@ -82,7 +82,9 @@ class Joints:
         )
         return path, tuple(np.array(rows.line)[row].tolist())
 
-    def _centres(self, rows: Rows, motion: Ints, turning: np.ndarray, angle: Floats) -> Floats:
+    def _centres(
+        self, rows: SectionBlocks, motion: Ints, turning: np.ndarray, angle: Floats
+    ) -> Floats:
         """Return the centres of arcs in the setup frame; refuse arcs in which the tool turns or that it leans to."""
         centre = np.array(rows.centre)
         arcs = np.flatnonzero(motion >= Motion.ARC_CW)
@@ -155,7 +157,7 @@ class Joints:
 
 
 def _between(
-    place: Place, words: Floats, angle: Floats, gauge: float, row: Ints, share: Floats
+    place: WorkPosition, words: Floats, angle: Floats, gauge: float, row: Ints, share: Floats
 ) -> tuple[Floats, Floats]:
     """Return tips and axes (k, 3) at shares (k,) of blocks whose axes go evenly."""
     s = share[:, None]
@@ -167,7 +169,7 @@ def _between(
     )
 
 
-def _feeds(rows: Rows, tip: Floats) -> Floats:
+def _feeds(rows: SectionBlocks, tip: Floats) -> Floats:
     """Return the feed (n,) of the tip: what is said, or its way over the time that is said."""
     feed, minutes = np.array(rows.feed), np.array(rows.minutes)
     way = np.linalg.norm(np.diff(tip, axis=0, prepend=tip[:1]), axis=1)

@@ -10,8 +10,8 @@ from trunnion.model.tool import Tool
 from trunnion.model.toolpath import Motion
 from trunnion.post.iso_words import IsoWords, by_code
 from trunnion.post.readers.blocks import Block
-from trunnion.post.readers.numbers import COUNT, LENGTH, LINE_NUMBER, Range
-from trunnion.shop.kinematics import SLACK, Place
+from trunnion.post.readers.numbers import COUNT, LENGTH, LINE_NUMBER, NumberRange
+from trunnion.shop.kinematics import SLACK, WorkPosition
 from trunnion.units import MM_PER_INCH
 
 _LETTERS = "NFSTXYZIJ"
@@ -29,7 +29,7 @@ _NEEDED = {"dwell": "dwell", "path tolerance": "tolerance"}
 """The role without whose letter a meaning says nothing."""
 
 
-class Language:
+class ControlLanguage:
     """The codes and letters that a text may have, for the axes of a machine.
 
     `meanings` says what each known code makes the control do; `motions`, `units` (mm), `coolants` what those of one kind mean. `letters`
@@ -38,7 +38,7 @@ class Language:
     `known` are the meanings that the control understands.
     """
 
-    def __init__(self, words: IsoWords, place: Place | None, known: Iterable[str]) -> None:
+    def __init__(self, words: IsoWords, place: WorkPosition | None, known: Iterable[str]) -> None:
         self.words = words
         self.motions = {code: Motion(n) for n, code in enumerate(words.motions)}
         self.units = {words.units[name]: unit for name, unit in _UNITS.items()}
@@ -85,7 +85,7 @@ class Language:
                 )
         return said
 
-    def _find_letters(self, role: dict[str, str], place: Place | None) -> None:
+    def _find_letters(self, role: dict[str, str], place: WorkPosition | None) -> None:
         """Find out which letters a text may have, what numbers follow them, and which codes take those that need one."""
         self.rotary = place.names if place else ""
         self.radius, self.turns, self.length_letter = (
@@ -120,7 +120,7 @@ class Language:
             self.ranges[self.length_letter] = COUNT
         if place is not None:
             self.ranges |= {
-                a.name: Range(a.low, a.high, "degrees", math.degrees(SLACK))
+                a.name: NumberRange(a.low, a.high, "degrees", math.degrees(SLACK))
                 for a in place.machine.rotary
             }
 

@@ -11,11 +11,11 @@ from trunnion.model.tool import Tool
 from trunnion.post.iso_words import iso_words
 from trunnion.post.readers.control import Control
 from trunnion.post.readers.iso import read_iso
-from trunnion.shop.kinematics import Place
+from trunnion.shop.kinematics import WorkPosition
 
 
 def read_linuxcnc(
-    text: str, tools: Sequence[Tool], setup: Setup, place: Place | None = None
+    text: str, tools: Sequence[Tool], setup: Setup, place: WorkPosition | None = None
 ) -> Program:
     """Return the motions of one setup's text; see `read_iso`."""
     return read_iso(text, tools, setup, place, iso_words("linuxcnc"), LinuxCncControl)

@@ -5,9 +5,9 @@ from __future__ import annotations
 from trunnion import tolerance
 from trunnion.findings import BadInput
 from trunnion.post.readers.blocks import Block
-from trunnion.post.readers.language import Language
+from trunnion.post.readers.language import ControlLanguage
 from trunnion.post.readers.numbers import DWELL, FEED, INVERSE_TIME, SPINDLE
-from trunnion.post.readers.state import State
+from trunnion.post.readers.state import ModalState
 
 BEFORE_SPEEDS = {
     "units": "change_units",
@@ -41,7 +41,7 @@ class Modes:
     own: dict[str, str] = {}
     """Methods by meaning of what only this control does; after all others."""
 
-    def __init__(self, language: Language, state: State) -> None:
+    def __init__(self, language: ControlLanguage, state: ModalState) -> None:
         self.language, self.state = language, state
         self.before = [(meaning, getattr(self, name)) for meaning, name in BEFORE_SPEEDS.items()]
         self.after = [

@@ -9,10 +9,10 @@ from trunnion.model.tool import Tool
 from trunnion.model.toolpath import Motion
 from trunnion.post.readers.arcs import centre_by_offset, centre_by_radius
 from trunnion.post.readers.blocks import Block
-from trunnion.post.readers.language import Language, listed
+from trunnion.post.readers.language import ControlLanguage, listed
 from trunnion.post.readers.rotary import Rotary
 from trunnion.post.readers.sections import NOWHERE, Point
-from trunnion.post.readers.state import State
+from trunnion.post.readers.state import ModalState
 
 Offset = Callable[[float | None, float | None, Point], tuple[float, float]]
 """Returns how far the centre of an arc lies from its start, by I and J in mm and the start."""
@@ -32,10 +32,10 @@ OFFSETS: dict[str, Offset] = {"start": from_start, "absolute": absolute}
 """By what `IsoWords.centres` says."""
 
 
-class Moves:
+class ToolMover:
     """Moves the tool; the motions go to the sections of the state."""
 
-    def __init__(self, language: Language, state: State, rotary: Rotary) -> None:
+    def __init__(self, language: ControlLanguage, state: ModalState, rotary: Rotary) -> None:
         self.language, self.state, self.rotary = language, state, rotary
         self.offset = OFFSETS[language.words.centres]
 

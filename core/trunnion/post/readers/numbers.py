@@ -14,7 +14,7 @@ DECIMALS = 4
 
 
 @dataclass(frozen=True, slots=True)
-class Range:
+class NumberRange:
     """The numbers from `low` to `high`, both allowed, and their unit in words; `slack` is how far rounding may bring one beyond."""
 
     low: float
@@ -29,16 +29,16 @@ class Range:
             raise BadInput(f"line {line}: {word}{value:.15g} is out of range; allowed is {ends}")
 
 
-LENGTH = Range(-FARTHEST, FARTHEST, "mm or inch")
-FEED = Range(1e-3, FASTEST, "mm or inch a minute")
+LENGTH = NumberRange(-FARTHEST, FARTHEST, "mm or inch")
+FEED = NumberRange(1e-3, FASTEST, "mm or inch a minute")
 """The least is a hundredth of the smallest feed that posts write in mm."""
-INVERSE_TIME = Range(SECONDS_PER_MINUTE / LONGEST_BLOCK, 1e12, "1/min")
+INVERSE_TIME = NumberRange(SECONDS_PER_MINUTE / LONGEST_BLOCK, 1e12, "1/min")
 """Blocks from the last written decimal of an angle at `FASTEST` to `LONGEST_BLOCK`."""
-SPINDLE = Range(0.0, FASTEST, "1/min")
-DWELL = Range(0.0, LONGEST_BLOCK, "s")
-LINE_NUMBER = Range(0.0, 99_999_999.0)
+SPINDLE = NumberRange(0.0, FASTEST, "1/min")
+DWELL = NumberRange(0.0, LONGEST_BLOCK, "s")
+LINE_NUMBER = NumberRange(0.0, 99_999_999.0)
 """Eight digits, as the controls with the longest line numbers take them."""
-COUNT = Range(0.0, 99_999.0)
+COUNT = NumberRange(0.0, 99_999.0)
 """Numbers of tools and of their lengths: LinuxCNC's tool table takes five digits."""
 MOST_TURN = 3600.0
 """Degrees that a rotary axis may turn in one block while the tool is at the work: every degree of it is looked at by the proof."""

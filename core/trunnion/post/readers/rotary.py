@@ -9,7 +9,7 @@ from trunnion.findings import BadInput
 from trunnion.post.readers.blocks import Block
 from trunnion.post.readers.numbers import MOST_TURN
 from trunnion.post.readers.sections import Point
-from trunnion.post.readers.state import State
+from trunnion.post.readers.state import ModalState
 from trunnion.units import LONGEST_BLOCK, SECONDS_PER_MINUTE
 
 
@@ -50,7 +50,7 @@ class Rotary:
                 f"line {line}: it is not known where {' and '.join(lost)} stand; begin with a rapid that says so"
             )
 
-    def pace(self, block: Block, state: State, end: Point) -> tuple[float, float]:
+    def pace(self, block: Block, state: ModalState, end: Point) -> tuple[float, float]:
         """Return the feed of a block, and its minutes where they are what is given: in inverse time, or where rotary axes turn.
 
         In units a minute the control feeds along X, Y and Z, and by degrees where none of them moves.

@@ -23,7 +23,7 @@ NOWHERE = (math.nan, math.nan, math.nan)
 
 
 @dataclass(slots=True, kw_only=True)
-class Rows:
+class SectionBlocks:
     """The blocks of a section while it grows; `minutes` are those of blocks fed in inverse time, else 0."""
 
     tool: Tool
@@ -35,47 +35,47 @@ class Rows:
     line: list[int] = field(default_factory=list)
 
 
-class Reckoning(Protocol):
+class PoseInterpreter(Protocol):
     """What the points of a text mean."""
 
     def above(self, point: Point, tool: Tool) -> Point | None:
         """Return where a tool at a point comes out when it is lifted above everything; None when it is as high already."""
         ...
 
-    def opened(self, rows: Rows) -> tuple[Toolpath, tuple[int, ...]]:
+    def opened(self, rows: SectionBlocks) -> tuple[Toolpath, tuple[int, ...]]:
         """Return the motions that the blocks amount to, and the line of each."""
         ...
 
 
 @dataclass(frozen=True, slots=True)
-class Upright:
+class UprightPoses:
     """Points are tips in the setup frame, the tool stands along z; above everything is the clearance height."""
 
     clearance: float
 
     def above(self, point: Point, tool: Tool) -> Point | None:
-        """See `Reckoning`."""
+        """See `PoseInterpreter`."""
         return (
             None
             if point[2] >= self.clearance - tolerance.WRITTEN
             else (point[0], point[1], self.clearance)
         )
 
-    def opened(self, rows: Rows) -> tuple[Toolpath, tuple[int, ...]]:
-        """See `Reckoning`."""
+    def opened(self, rows: SectionBlocks) -> tuple[Toolpath, tuple[int, ...]]:
+        """See `PoseInterpreter`."""
         axis = np.zeros((len(rows.motion), 3))
         axis[:, 2] = 1.0
         return path_of(rows, np.array(rows.point), axis, np.array(rows.centre)), tuple(rows.line)
 
 
 @dataclass(frozen=True, slots=True)
-class Leaning:
+class TiltedPoses:
     """Points are tips in the setup frame and the unit axis of the tool; an upright one is lifted to the clearance height."""
 
     clearance: float
 
     def above(self, point: Point, tool: Tool) -> Point | None:
-        """See `Reckoning`; a leaning tool comes from wherever the text's machine brings it from."""
+        """See `PoseInterpreter`; a leaning tool comes from wherever the text's machine brings it from."""
         high = point[2] >= self.clearance - tolerance.WRITTEN
         return (
             None
@@ -83,8 +83,8 @@ class Leaning:
             else (point[0], point[1], self.clearance, *point[3:])
         )
 
-    def opened(self, rows: Rows) -> tuple[Toolpath, tuple[int, ...]]:
-        """See `Reckoning`."""
+    def opened(self, rows: SectionBlocks) -> tuple[Toolpath, tuple[int, ...]]:
+        """See `PoseInterpreter`."""
         points = np.array(rows.point)
         return path_of(rows, points[:, :3], points[:, 3:], np.array(rows.centre)), tuple(rows.line)
 
@@ -99,7 +99,7 @@ def operation_of(comment: str) -> str | None:
     return found.group(1) if found else None
 
 
-def path_of(rows: Rows, position: Floats, axis: Floats, centre: Floats) -> Toolpath:
+def path_of(rows: SectionBlocks, position: Floats, axis: Floats, centre: Floats) -> Toolpath:
     """Return the path of rows whose tips, axes and centres are known."""
     motion = np.array(rows.motion)
     return Toolpath(
@@ -123,12 +123,12 @@ class _Open:
     long it waits, s."""
 
     operation: str
-    rows: Rows
+    rows: SectionBlocks
     cutting: tuple[float, str] | None = None
     idle: tuple[float, str] = (0.0, "off")
     dwell: float = 0.0
 
-    def closed(self, reckoning: Reckoning) -> ProgramSection:
+    def closed(self, reckoning: PoseInterpreter) -> ProgramSection:
         path, lines = reckoning.opened(self.rows)
         spindle, coolant = self.cutting or self.idle
         return ProgramSection(
@@ -150,7 +150,7 @@ class Sections:
     from where it really starts; after a tool change the tool comes from above, at the clearance height or higher.
     """
 
-    def __init__(self, reckoning: Reckoning) -> None:
+    def __init__(self, reckoning: PoseInterpreter) -> None:
         self.reckoning = reckoning
         self.at: Point | None = None
         self._done: list[ProgramSection] = []
@@ -238,7 +238,9 @@ class Sections:
 
     def _begin(self, line: int, tool: Tool) -> _Open:
         self._open = _Open(
-            operation=self._operation or f"line {line}", rows=Rows(tool=tool), dwell=self._waits
+            operation=self._operation or f"line {line}",
+            rows=SectionBlocks(tool=tool),
+            dwell=self._waits,
         )
         self._waits = 0.0
         self._operation = self._open.operation

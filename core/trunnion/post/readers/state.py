@@ -12,7 +12,7 @@ from trunnion.post.readers.sections import Sections
 
 
 @dataclass(slots=True, kw_only=True)
-class State:
+class ModalState:
     """What the control knows. Lengths are mm in the setup frame.
 
     `unit` mm of a written length; `feed` mm/min, in inverse time 1/min, 0 when it must be given; `spindle` 1/min as it was given, it turns

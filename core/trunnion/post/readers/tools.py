@@ -11,7 +11,7 @@ from trunnion.model.tool import Tool
 from trunnion.post.header import place_lines, tool_line
 from trunnion.post.readers.numbers import shown
 from trunnion.post.words import plain
-from trunnion.shop.kinematics import Place
+from trunnion.shop.kinematics import WorkPosition
 
 _TOOL = re.compile(r"TOOL (\d+) .* HOLDER ")
 
@@ -42,7 +42,7 @@ def check_tool(line: int, comment: str, tools: Mapping[int, Tool]) -> None:
         )
 
 
-def check_place(line: int, comment: str, setup: Setup, place: Place | None) -> None:
+def check_place(line: int, comment: str, setup: Setup, place: WorkPosition | None) -> None:
     """Raise `BadInput` when a comment is our header's line of where the work stands and it stands elsewhere now."""
     if place is None:
         raise BadInput(

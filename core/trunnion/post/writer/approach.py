@@ -10,16 +10,16 @@ from collections.abc import Iterator
 
 from trunnion.model.tool import Tool
 from trunnion.model.toolpath import Motion
-from trunnion.post.writer.modal import Modal
+from trunnion.post.writer.modal import WrittenState
 
 
-def tool_change(modal: Modal, tool: Tool) -> Iterator[str]:
+def tool_change(modal: WrittenState, tool: Tool) -> Iterator[str]:
     """Yield the lines that bring a tool into the spindle; where it is is not known after them."""
     yield from (line.format(tool=tool.number) for line in modal.words.tool_change)
     modal.tool, modal.at, modal.coolant = tool.number, None, "off"
 
 
-def coolant(modal: Modal, wanted: str) -> Iterator[str]:
+def coolant(modal: WrittenState, wanted: str) -> Iterator[str]:
     """Yield the lines that switch the coolant; another one is switched off before."""
     if modal.coolant not in ("off", wanted):
         yield modal.words.coolant["off"]
@@ -28,7 +28,7 @@ def coolant(modal: Modal, wanted: str) -> Iterator[str]:
 
 
 def approach(
-    modal: Modal, tool: Tool, point: list[int], angle: list[int], changed: bool
+    modal: WrittenState, tool: Tool, point: list[int], angle: list[int], changed: bool
 ) -> Iterator[str]:
     """Yield the lines of the first rapid, to a point and angles in ticks; `changed` after a tool change."""
     words, rapid = modal.words, modal.words.motions[Motion.RAPID]

@@ -5,7 +5,7 @@ from __future__ import annotations
 from trunnion.model.toolpath import Motion
 from trunnion.post.iso_words import IsoWords
 from trunnion.post.settings import PostSettings
-from trunnion.post.ticks import Scale
+from trunnion.post.ticks import TickScale
 from trunnion.post.writer.arcs import CENTRES
 from trunnion.post.writer.rotary import inverse_time
 
@@ -13,7 +13,7 @@ Block = tuple[list[int], list[int], int, float]
 """End point, centre, motion and feed in mm/min, as `WrittenPath.blocks` yields them."""
 
 
-class Modal:
+class WrittenState:
     """What the control knows at this line of the text. Positions, centres and angles are in ticks of their last decimal.
 
     `at` is the tip's place, None when it is not known; `angle` that of the rotary axes whose letters are `letters`, None before the first;
@@ -22,7 +22,7 @@ class Modal:
 
     def __init__(self, words: IsoWords, settings: PostSettings, letters: str) -> None:
         self.words, self.letters = words, letters
-        self.scale = Scale.of(settings, words.extra_decimals_inch, words.feed_decimals)
+        self.scale = TickScale.of(settings, words.extra_decimals_inch, words.feed_decimals)
         self.degrees = degrees_of(words)
         self.centre_words = CENTRES[words.centres]
         self.tool: int | None = None
@@ -82,6 +82,6 @@ class Modal:
         ]
 
 
-def degrees_of(words: IsoWords) -> Scale:
+def degrees_of(words: IsoWords) -> TickScale:
     """Return how angles in degrees become written numbers."""
-    return Scale(unit=1.0, decimals=words.angle_decimals, feed_decimals=words.feed_decimals)
+    return TickScale(unit=1.0, decimals=words.angle_decimals, feed_decimals=words.feed_decimals)

@@ -8,14 +8,14 @@ from trunnion.findings import Refused
 from trunnion.model.program import Program, ProgramSection
 from trunnion.post.header import Header, place_lines
 from trunnion.post.iso_words import IsoWords
-from trunnion.post.linearize import Straying
+from trunnion.post.linearize import PathTolerance
 from trunnion.post.settings import PostSettings
-from trunnion.post.ticks import Scale
+from trunnion.post.ticks import TickScale
 from trunnion.post.words import plain, refuse_unwritable
 from trunnion.post.writer.approach import approach, coolant, tool_change
-from trunnion.post.writer.modal import Modal, degrees_of
+from trunnion.post.writer.modal import WrittenState, degrees_of
 from trunnion.post.writer.rotary import AxisForm, JointForm, ThreeAxes
-from trunnion.shop.kinematics import Place
+from trunnion.shop.kinematics import WorkPosition
 from trunnion.units import trimmed
 
 
@@ -29,12 +29,12 @@ class ProgramWriter:
     """Writes one setup's program line by line. `place` says where the work stands on a machine with rotary axes."""
 
     def __init__(
-        self, words: IsoWords, program: Program, settings: PostSettings, place: Place | None
+        self, words: IsoWords, program: Program, settings: PostSettings, place: WorkPosition | None
     ) -> None:
         self.words, self.program, self.settings = words, program, settings
         self.place = place if place is not None and place.machine.rotary else None
         self.axes = _axis_form(words, settings, self.place)
-        self.modal = Modal(words, settings, self.axes.letters)
+        self.modal = WrittenState(words, settings, self.axes.letters)
         self.number = 0
 
     def lines(self, header: Header) -> Iterator[str]:
@@ -105,13 +105,13 @@ class ProgramWriter:
             yield numbered(words_of(block, turned, time))
 
 
-def _axis_form(words: IsoWords, settings: PostSettings, place: Place | None) -> AxisForm:
-    scale = Scale.of(settings, words.extra_decimals_inch, words.feed_decimals)
+def _axis_form(words: IsoWords, settings: PostSettings, place: WorkPosition | None) -> AxisForm:
+    scale = TickScale.of(settings, words.extra_decimals_inch, words.feed_decimals)
     if place is None:
         return ThreeAxes(scale=scale)
     if not words.inverse_time:
         raise Refused(
             f"{words.title} has no words for the rotary axes of {place.machine.title}; choose another control or machine"
         )
-    straying = Straying(feed=settings.straying, rapid=settings.rapid_straying)
+    straying = PathTolerance(feed=settings.straying, rapid=settings.rapid_straying)
     return JointForm(place=place, scale=scale, degrees=degrees_of(words), straying=straying)

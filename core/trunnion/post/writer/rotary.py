@@ -17,9 +17,9 @@ from trunnion.geometry.arrays import Floats, Ints
 from trunnion.model.program import ProgramSection
 from trunnion.model.tool import Tool
 from trunnion.model.toolpath import Motion, Toolpath
-from trunnion.post.linearize import Straying, joint_path
-from trunnion.post.ticks import Scale, WrittenPath, upright, written
-from trunnion.shop.kinematics import UPRIGHT, Place, axes_of, poses_of
+from trunnion.post.linearize import PathTolerance, joint_path
+from trunnion.post.ticks import TickScale, WrittenPath, upright, written
+from trunnion.shop.kinematics import UPRIGHT, WorkPosition, axes_of, poses_of
 
 _DIGITS = 6
 """Digits of an inverse-time feed."""
@@ -50,7 +50,7 @@ class AxisForm(Protocol):
 class ThreeAxes:
     """Tips of an upright tool."""
 
-    scale: Scale
+    scale: TickScale
     letters: str = ""
 
     def blocks(
@@ -65,10 +65,10 @@ class ThreeAxes:
 class JointForm:
     """Positions of the axes of a machine on which the work stands at `place`; lengths in `scale`, angles in `degrees`."""
 
-    place: Place
-    scale: Scale
-    degrees: Scale
-    straying: Straying
+    place: WorkPosition
+    scale: TickScale
+    degrees: TickScale
+    straying: PathTolerance
 
     @property
     def letters(self) -> str:

@@ -7,7 +7,7 @@ import numpy as np
 from trunnion.geometry.arrays import Bools, Floats
 from trunnion.geometry.facegraph import FaceGraph
 from trunnion.recognize.contract import Suitability
-from trunnion.recognize.revolution import Axis, main_axis, of_revolution
+from trunnion.recognize.revolution import RevolutionAxis, main_axis, of_revolution
 from trunnion.tolerance import COINCIDENT
 from trunnion.units import percent
 
@@ -52,7 +52,7 @@ class CasingKind:
         )
 
 
-def _wall(graph: FaceGraph, axis: Axis, turned: Bools) -> tuple[float, float]:
+def _wall(graph: FaceGraph, axis: RevolutionAxis, turned: Bools) -> tuple[float, float]:
     """Return twice the area of that side of a wall round an axis that has less of it, mm2, and the mean radius inside it, mm."""
     weight = np.where(turned[graph.sample_face], _weights(graph), 0.0)
     away = axis.away(graph.sample_point)

@@ -10,8 +10,8 @@ from trunnion.geometry.arrays import Bools, Floats
 from trunnion.geometry.facegraph import CONCAVE, FaceGraph
 from trunnion.recognize.contract import Suitability
 from trunnion.recognize.grow import samples
-from trunnion.recognize.revolution import Axis, main_axis, of_revolution
-from trunnion.recognize.symmetry import Pattern, patterns
+from trunnion.recognize.revolution import RevolutionAxis, main_axis, of_revolution
+from trunnion.recognize.symmetry import CircularPattern, patterns
 from trunnion.tolerance import COINCIDENT
 from trunnion.units import percent, radians
 
@@ -65,18 +65,18 @@ class ImpellerKind:
         )
 
 
-def _within(graph: FaceGraph, chosen: Sequence[Pattern]) -> Bools:
+def _within(graph: FaceGraph, chosen: Sequence[CircularPattern]) -> Bools:
     found = np.zeros(len(graph), dtype=bool)
     for pattern in chosen:
         found[pattern.rows] = True
     return found
 
 
-def _away(graph: FaceGraph, axis: Axis) -> Floats:
+def _away(graph: FaceGraph, axis: RevolutionAxis) -> Floats:
     return np.asarray(np.linalg.norm(axis.away(graph.sample_point), axis=1))
 
 
-def _may_be_blade(graph: FaceGraph, axis: Axis, row: int) -> bool:
+def _may_be_blade(graph: FaceGraph, axis: RevolutionAxis, row: int) -> bool:
     """Say whether a repeated face is a side of a blade: twisted or leaning, or upright with both ends in hub and shroud.
 
     Other upright faces are teeth, spokes and the walls of pockets, which a flat part has too.
@@ -89,7 +89,7 @@ def _may_be_blade(graph: FaceGraph, axis: Axis, row: int) -> bool:
     return bool(along.max() > np.sin(UPRIGHT)) or _enclosed(graph, axis, row)
 
 
-def _enclosed(graph: FaceGraph, axis: Axis, row: int) -> bool:
+def _enclosed(graph: FaceGraph, axis: RevolutionAxis, row: int) -> bool:
     """Say whether most of the edges at either end of a face along the axis are inner corners."""
     edges = list(graph.edges_of[row])
     if not edges:
@@ -105,7 +105,9 @@ def _enclosed(graph: FaceGraph, axis: Axis, row: int) -> bool:
     )
 
 
-def _hub_reach(graph: FaceGraph, axis: Axis, turned: Bools, repeated: Sequence[Pattern]) -> float:
+def _hub_reach(
+    graph: FaceGraph, axis: RevolutionAxis, turned: Bools, repeated: Sequence[CircularPattern]
+) -> float:
     """Return the radius in mm out to which faces of revolution run round the axis; the tips of blades, apart from one another, don't."""
     tips = np.zeros(len(graph), dtype=bool)
     for pattern in repeated:

@@ -14,13 +14,19 @@ from trunnion.progress import QUIET, Progress
 from trunnion.recognize.contract import Slicer, Smallest, Suitability
 from trunnion.recognize.extent import box
 from trunnion.recognize.panel.classes import STEEP_CLASSES, FaceClass, classify
-from trunnion.recognize.panel.features import Made, Numbers, make_datum, make_features, make_profile
+from trunnion.recognize.panel.features import (
+    FeatureNumbers,
+    SideFeatures,
+    make_datum,
+    make_features,
+    make_profile,
+)
 from trunnion.recognize.panel.frame import choose_frame, flipped, height_frame
-from trunnion.recognize.panel.rest import rest_findings
-from trunnion.recognize.panel.rules import Shown, pockets_of, without
+from trunnion.recognize.panel.rules import GraphFeatures, pockets_of, without
 from trunnion.recognize.panel.settings import PanelSettings
+from trunnion.recognize.panel.side import PanelSide
 from trunnion.recognize.panel.slices import cut, heights
-from trunnion.recognize.panel.view import View
+from trunnion.recognize.panel.unexplained import rest_findings
 from trunnion.settings import choose
 from trunnion.units import percent
 
@@ -86,7 +92,7 @@ class PanelFamily:
             shown.append(progress.aside(partial(_shown, view)))
         features: list[Feature] = []
         findings: list[Finding] = []
-        numbers = Numbers()
+        numbers = FeatureNumbers()
         for view, seen in zip((above, below), shown, strict=True):
             progress.at(0.9, "naming features")
             done = {tag - 1 for f in features for tag in f.with_role("wall", "corner")}
@@ -118,17 +124,23 @@ class PanelFamily:
         )
 
 
-def _shown(view: View, progress: Progress) -> Shown:
+def _shown(view: PanelSide, progress: Progress) -> GraphFeatures:
     return pockets_of(view)
 
 
-def _made(view: View, seen: Shown, graph: FaceGraph, numbers: Numbers, progress: Progress) -> Made:
+def _made(
+    view: PanelSide,
+    seen: GraphFeatures,
+    graph: FaceGraph,
+    numbers: FeatureNumbers,
+    progress: Progress,
+) -> SideFeatures:
     return make_features(view, seen, graph, numbers)
 
 
 def _views(
     graph: FaceGraph, frame: Frame, slicer: Slicer, settings: PanelSettings, progress: Progress
-) -> tuple[View, View]:
+) -> tuple[PanelSide, PanelSide]:
     """Return the part as seen from above and from below, cut once for both."""
     local = graph.in_frame(frame)
     low, high = box(local)
@@ -142,7 +154,7 @@ def _views(
     )
     turned = graph.in_frame(flipped(frame, width, height))
     return (
-        View(
+        PanelSide(
             graph=local,
             classes=classes,
             slices=slices,
@@ -150,7 +162,7 @@ def _views(
             settings=settings,
             below=False,
         ),
-        View(
+        PanelSide(
             graph=turned,
             classes=classify(turned, settings),
             slices=slices.flipped(width, height),
@@ -161,13 +173,15 @@ def _views(
     )
 
 
-def _surroundings(above: View, shown: list[Shown], features: list[Feature]) -> Made:
+def _surroundings(
+    above: PanelSide, shown: list[GraphFeatures], features: list[Feature]
+) -> SideFeatures:
     """Return the outer profile and the datum faces: what no other feature holds."""
     taken = {tag - 1 for f in features for tag in f.tags}
     profile = make_profile(above, taken, "profile-01")
     top, bottom = ([f for f in seen.tops.highest if f not in taken] for seen in shown)
     datum = make_datum(top, bottom, above.height, "datum-01")
-    return Made(
+    return SideFeatures(
         features=profile.features if datum is None else (*profile.features, datum),
         findings=profile.findings,
     )

@@ -7,8 +7,8 @@ from dataclasses import dataclass
 from trunnion.findings import Finding, face_tags, remark, warning
 from trunnion.recognize.panel.classes import FaceClass
 from trunnion.recognize.panel.rules import Pocket
+from trunnion.recognize.panel.side import PanelSide
 from trunnion.recognize.panel.tree import COVER
-from trunnion.recognize.panel.view import View
 
 LEANING_REMEDY = (
     "plan the part as one of curved surfaces (recognize.family=surface), or make the walls vertical"
@@ -16,7 +16,7 @@ LEANING_REMEDY = (
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class Confirmed:
+class ConfirmedPocket:
     """A pocket with what the slices say of it: `open` to the outline, `covered` the share of its plan that material stands over."""
 
     pocket: Pocket
@@ -25,13 +25,13 @@ class Confirmed:
     findings: tuple[Finding, ...]
 
 
-def confirm(view: View, pocket: Pocket) -> Confirmed:
+def confirm(view: PanelSide, pocket: Pocket) -> ConfirmedPocket:
     """Return a pocket with what slices and graph agree on. The slices decide what is open, the graph which faces belong to it."""
     where = face_tags(f + 1 for f in (pocket.floors or pocket.sides))
     drops = set(pocket.drops) - set(pocket.sides)
     graph_open = bool(drops & set(view.profile))
     if not pocket.floors:
-        return Confirmed(pocket=pocket, open=False, covered=0.0, findings=())
+        return ConfirmedPocket(pocket=pocket, open=False, covered=0.0, findings=())
     nodes = [
         n
         for n in (
@@ -42,7 +42,7 @@ def confirm(view: View, pocket: Pocket) -> Confirmed:
         if n is not None
     ]
     if not nodes:
-        return Confirmed(
+        return ConfirmedPocket(
             pocket=pocket,
             open=graph_open,
             covered=0.0,
@@ -80,7 +80,7 @@ def confirm(view: View, pocket: Pocket) -> Confirmed:
                 remedy="check the islands of this pocket",
             )
         )
-    return Confirmed(
+    return ConfirmedPocket(
         pocket=pocket,
         open=is_open,
         covered=max(view.tree.covered(n) for n in nodes),
@@ -88,7 +88,9 @@ def confirm(view: View, pocket: Pocket) -> Confirmed:
     )
 
 
-def refusal(view: View, confirmed: Confirmed) -> tuple[str, str, str, tuple[int, ...]] | None:
+def refusal(
+    view: PanelSide, confirmed: ConfirmedPocket
+) -> tuple[str, str, str, tuple[int, ...]] | None:
     """Return why a vertical strategy would gouge or leave a pocket: code, reason, remedy and the face rows, or None when it wouldn't."""
     pocket, kind = confirmed.pocket, view.classes.kind
     sides = (*pocket.sides, *(f for i in pocket.islands for f in (*i.walls, *i.corners)))
@@ -125,5 +127,5 @@ def refusal(view: View, confirmed: Confirmed) -> tuple[str, str, str, tuple[int,
     return None
 
 
-def _curved(view: View, pocket: Pocket) -> bool:
+def _curved(view: PanelSide, pocket: Pocket) -> bool:
     return any(view.classes.kind[f] is not FaceClass.UP for f in pocket.floors)

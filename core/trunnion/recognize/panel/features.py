@@ -11,8 +11,9 @@ from trunnion.geometry.facegraph import CONVEX, FaceGraph
 from trunnion.model.feature import FaceRole, Feature, Size
 from trunnion.recognize.panel.blends import is_rounding
 from trunnion.recognize.panel.classes import FaceClass
-from trunnion.recognize.panel.confirm import LEANING_REMEDY, Confirmed, confirm, refusal
-from trunnion.recognize.panel.rules import Island, Pocket, Shown
+from trunnion.recognize.panel.confirm import LEANING_REMEDY, ConfirmedPocket, confirm, refusal
+from trunnion.recognize.panel.rules import GraphFeatures, Island, Pocket
+from trunnion.recognize.panel.side import PanelSide
 from trunnion.recognize.panel.sizes import (
     corner_radius,
     island_sizes,
@@ -20,7 +21,6 @@ from trunnion.recognize.panel.sizes import (
     rib_sizes,
     tidy,
 )
-from trunnion.recognize.panel.view import View
 
 T = TypeVar("T")
 ROW = 0.01
@@ -28,14 +28,14 @@ ROW = 0.01
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class Made:
+class SideFeatures:
     """The features of one side and what is to be said about them."""
 
     features: tuple[Feature, ...]
     findings: tuple[Finding, ...]
 
 
-class Numbers:
+class FeatureNumbers:
     """Hands out ids, counting by kind."""
 
     def __init__(self) -> None:
@@ -59,7 +59,9 @@ def in_rows(things: Iterable[T], centre: Callable[[T], tuple[float, float]]) -> 
     return [t for row in rows for t in sorted(row, key=lambda t: centre(t)[0])]
 
 
-def make_features(view: View, shown: Shown, main: FaceGraph, numbers: Numbers) -> Made:
+def make_features(
+    view: PanelSide, shown: GraphFeatures, main: FaceGraph, numbers: FeatureNumbers
+) -> SideFeatures:
     """Return pockets, islands and ribs of one side; `main` is the graph in the recognition's frame."""
 
     def middle(faces: Sequence[int]) -> tuple[float, float]:
@@ -84,17 +86,17 @@ def make_features(view: View, shown: Shown, main: FaceGraph, numbers: Numbers) -
     pockets = [c.pocket for _, c in named]
     for top in in_rows(shown.ribs, lambda r: middle((r,))):
         features.append(_rib(view, numbers.next("rib"), top, pockets))
-    return Made(features=tuple(features), findings=tuple(findings))
+    return SideFeatures(features=tuple(features), findings=tuple(findings))
 
 
-def make_profile(view: View, taken: set[int], id: str) -> Made:
+def make_profile(view: PanelSide, taken: set[int], id: str) -> SideFeatures:
     """Return the outer profile, if any vertical face lies on the outline: concave arcs are walls, convex roundings corners.
 
     It is refused when the outline goes on over a leaning face, which the cut along the vertical ones would run into.
     """
     faces = [f for f in view.profile if f not in taken]
     if not faces:
-        return Made(features=(), findings=())
+        return SideFeatures(features=(), findings=())
     round_ = [f for f in faces if is_rounding(view.graph, view.classes, f)]
     roles = tuple(FaceRole(role="corner" if f in round_ else "wall", face=f + 1) for f in faces)
     sizes: dict[str, Size] = {"height": tidy(view.height)}
@@ -111,11 +113,11 @@ def make_profile(view: View, taken: set[int], id: str) -> Made:
         - set(view.profile)
     )
     if not leaning:
-        return Made(
+        return SideFeatures(
             features=(Feature(id=id, kind="profile", faces=roles, sizes=sizes),), findings=()
         )
     why = "a wall of the outline leans"
-    return Made(
+    return SideFeatures(
         features=(
             Feature(id=id, kind="profile", faces=roles, sizes=sizes, attributes={"refused": why}),
         ),
@@ -145,9 +147,9 @@ def make_datum(top: Sequence[int], bottom: Sequence[int], height: float, id: str
 
 
 def _pocket(
-    view: View,
+    view: PanelSide,
     id: str,
-    confirmed: Confirmed,
+    confirmed: ConfirmedPocket,
     ribs: Sequence[int],
     ids: dict[int, str],
     middle: Callable[[Sequence[int]], tuple[float, float]],
@@ -190,7 +192,7 @@ def _pocket(
     ), tuple(findings)
 
 
-def _island(view: View, id: str, island: Island, inside: str) -> Feature:
+def _island(view: PanelSide, id: str, island: Island, inside: str) -> Feature:
     roles = (
         *_roles("top", island.tops),
         *((_side_role(view, w), w) for w in island.walls),
@@ -209,7 +211,7 @@ def _island(view: View, id: str, island: Island, inside: str) -> Feature:
     )
 
 
-def _rib(view: View, id: str, top: int, pockets: Sequence[Pocket]) -> Feature:
+def _rib(view: PanelSide, id: str, top: int, pockets: Sequence[Pocket]) -> Feature:
     beside = {
         view.graph.across(e, top)
         for e in view.graph.edges_of[top]
@@ -226,7 +228,7 @@ def _rib(view: View, id: str, top: int, pockets: Sequence[Pocket]) -> Feature:
     )
 
 
-def _side_role(view: View, face: int) -> str:
+def _side_role(view: PanelSide, face: int) -> str:
     kind = view.classes.kind[face]
     if kind is FaceClass.VERTICAL:
         return "wall"

@@ -7,7 +7,7 @@ from dataclasses import dataclass
 from trunnion.geometry.facegraph import CONCAVE, CONVEX, SMOOTH
 from trunnion.recognize.grow import grown, same_surface
 from trunnion.recognize.panel.classes import FaceClass
-from trunnion.recognize.panel.view import View
+from trunnion.recognize.panel.side import PanelSide
 from trunnion.tolerance import ANGLE, SLIVER
 
 SLOPES = (FaceClass.CROSS, FaceClass.BLEND, FaceClass.OVERHANG)
@@ -15,7 +15,7 @@ SLOPES = (FaceClass.CROSS, FaceClass.BLEND, FaceClass.OVERHANG)
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class Ring:
+class WallRing:
     """The surroundings of one loop of a floor, as face rows.
 
     `walls` and `corners` stand on the floor, `fillets` lie at their feet, `drops` are the faces that go down from it over a convex
@@ -40,7 +40,7 @@ class Ring:
         return bool(self.walls or self.corners or self.fillets or self.slopes)
 
 
-def ring(view: View, floor: int, edges: tuple[int, ...]) -> Ring:
+def ring(view: PanelSide, floor: int, edges: tuple[int, ...]) -> WallRing:
     """Return what stands around the edges of one loop of a floor."""
     graph, rising = view.graph, view.classes.rising
     blends, sides, drops, slopes, sharp = [], [], [], [], False
@@ -79,7 +79,7 @@ def ring(view: View, floor: int, edges: tuple[int, ...]) -> Ring:
         sides,
         lambda edge, face, to: bool(rising[to] and _continues_up(view, edge, face, to)),
     )
-    return Ring(
+    return WallRing(
         walls=tuple(r for r in whole if r not in view.corners),
         corners=tuple(r for r in whole if r in view.corners),
         fillets=fillets,
@@ -89,7 +89,7 @@ def ring(view: View, floor: int, edges: tuple[int, ...]) -> Ring:
     )
 
 
-def _has_floor(view: View, blend: int) -> bool:
+def _has_floor(view: PanelSide, blend: int) -> bool:
     return any(
         view.classes.kind[view.graph.across(e, blend)] is FaceClass.UP
         and view.graph.convexity[e] == SMOOTH
@@ -97,7 +97,7 @@ def _has_floor(view: View, blend: int) -> bool:
     )
 
 
-def _continues_up(view: View, edge: int, face: int, other: int) -> bool:
+def _continues_up(view: PanelSide, edge: int, face: int, other: int) -> bool:
     """Say whether another face carries a wall on, on the same surface, above the wall's top."""
     graph = view.graph
     at_top = min(graph.start[edge][2], graph.end[edge][2]) > graph.box_high[face][2] - SLIVER

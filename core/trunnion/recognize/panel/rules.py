@@ -7,9 +7,9 @@ from dataclasses import dataclass, replace
 from trunnion.geometry.facegraph import CONVEX
 from trunnion.recognize.grow import grown, loops, same_surface
 from trunnion.recognize.panel.classes import FaceClass
-from trunnion.recognize.panel.rings import Ring, ring
+from trunnion.recognize.panel.rings import WallRing, ring
+from trunnion.recognize.panel.side import PanelSide
 from trunnion.recognize.panel.tops import Tops, mean_width, sort_tops
-from trunnion.recognize.panel.view import View
 from trunnion.tolerance import ANGLE, SLIVER
 
 HEIGHT_DECIMALS = 3
@@ -61,7 +61,7 @@ class Pocket:
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class Shown:
+class GraphFeatures:
     """What the graph shows of one side: pockets with their islands, the tops of ribs, and what each top is."""
 
     pockets: tuple[Pocket, ...]
@@ -69,7 +69,7 @@ class Shown:
     ribs: tuple[int, ...]
 
 
-def pockets_of(view: View) -> Shown:
+def pockets_of(view: PanelSide) -> GraphFeatures:
     """Return the pockets, islands and ribs that the graph of one side shows."""
     tops = sort_tops(view)
     around = {floor: loops(view.graph, floor) for floor in tops.floors}
@@ -133,17 +133,17 @@ def pockets_of(view: View) -> Shown:
         for face in (*tops.highest, *tops.standing, *tops.ribs, *floors)
         for o in openings_in(view, face, set(owners))
     ]
-    return Shown(pockets=(*found, *openings), tops=tops, ribs=tops.ribs + narrow)
+    return GraphFeatures(pockets=(*found, *openings), tops=tops, ribs=tops.ribs + narrow)
 
 
-def without(shown: Shown, done: set[int]) -> Shown:
+def without(shown: GraphFeatures, done: set[int]) -> GraphFeatures:
     """Return what a side shows without the openings whose walls another side has already (they go through)."""
     return replace(
         shown, pockets=tuple(p for p in shown.pockets if p.floors or not done.issuperset(p.sides))
     )
 
 
-def openings_in(view: View, face: int, known: set[int]) -> list[Pocket]:
+def openings_in(view: PanelSide, face: int, known: set[int]) -> list[Pocket]:
     """Return the pockets without a floor that break through a horizontal face: inner loops whose faces go down to no floor."""
     found = []
     for number, edges in loops(view.graph, face).items():
@@ -171,7 +171,7 @@ def openings_in(view: View, face: int, known: set[int]) -> list[Pocket]:
     return found
 
 
-def island_on(view: View, floor: int, foot: Ring) -> Island:
+def island_on(view: PanelSide, floor: int, foot: WallRing) -> Island:
     """Return the island that stands on one inner loop of a floor: its sides, every top over them, the blends at its foot."""
     graph, steep, kind = view.graph, view.classes.steep, view.classes.kind
 
@@ -194,7 +194,7 @@ def island_on(view: View, floor: int, foot: Ring) -> Island:
     )
 
 
-def is_bore(view: View, floor: int, around: Ring) -> bool:
+def is_bore(view: PanelSide, floor: int, around: WallRing) -> bool:
     """Say whether a floor is the bottom of a bore: round, sharp, its side one hollow cylinder no wider than a hole may be."""
     return bool(
         not around.fillets
@@ -204,7 +204,7 @@ def is_bore(view: View, floor: int, around: Ring) -> bool:
     )
 
 
-def is_round(view: View, sides: tuple[int, ...]) -> bool:
+def is_round(view: PanelSide, sides: tuple[int, ...]) -> bool:
     """Say whether sides are one hollow cylinder, no wider than a hole may be."""
     graph = view.graph
     return bool(sides) and all(
@@ -216,14 +216,14 @@ def is_round(view: View, sides: tuple[int, ...]) -> bool:
     )
 
 
-def _crosses_top(view: View, edge: int, face: int) -> bool:
+def _crosses_top(view: PanelSide, edge: int, face: int) -> bool:
     low = min(view.graph.start[edge][2], view.graph.end[edge][2])
     return bool(
         low > view.graph.box_high[face][2] - SLIVER and view.graph.convexity[edge] == CONVEX
     )
 
 
-def _once(rings: list[Ring], name: str) -> tuple[int, ...]:
+def _once(rings: list[WallRing], name: str) -> tuple[int, ...]:
     return tuple(dict.fromkeys(row for r in rings for row in getattr(r, name)))
 
 
@@ -238,7 +238,7 @@ def _join(group: dict[int, int], a: int, b: int) -> None:
     group[high] = low
 
 
-def _groups(group: dict[int, int], view: View) -> list[tuple[int, ...]]:
+def _groups(group: dict[int, int], view: PanelSide) -> list[tuple[int, ...]]:
     members: dict[int, list[int]] = {}
     for face in group:
         members.setdefault(_root(group, face), []).append(face)

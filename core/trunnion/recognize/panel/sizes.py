@@ -12,8 +12,8 @@ from trunnion.model.feature import Size
 from trunnion.recognize.grow import bend_radius
 from trunnion.recognize.panel.classes import FaceClass
 from trunnion.recognize.panel.rules import Island, Pocket
+from trunnion.recognize.panel.side import PanelSide
 from trunnion.recognize.panel.tops import mean_width
-from trunnion.recognize.panel.view import View
 from trunnion.tolerance import ANGLE, SLIVER
 
 DECIMALS = 4
@@ -32,12 +32,12 @@ def tidy(value: float) -> float:
     return round(float(value), DECIMALS) + 0.0
 
 
-def main_z(view: View, z: float) -> float:
+def main_z(view: PanelSide, z: float) -> float:
     """Return a height of a view in the recognition's frame."""
     return tidy(view.height - z if view.below else z)
 
 
-def pocket_sizes(view: View, pocket: Pocket, ribs: Iterable[int]) -> dict[str, Size]:
+def pocket_sizes(view: PanelSide, pocket: Pocket, ribs: Iterable[int]) -> dict[str, Size]:
     """Return the sizes of a pocket: depth from its deepest floor to its highest rim, radii for the cutter, leans, rims."""
     graph = view.graph
     top = max(float(graph.box_high[f][2]) for f in pocket.sides or pocket.floors)
@@ -58,7 +58,7 @@ def pocket_sizes(view: View, pocket: Pocket, ribs: Iterable[int]) -> dict[str, S
     return sizes
 
 
-def island_sizes(view: View, island: Island) -> dict[str, Size]:
+def island_sizes(view: PanelSide, island: Island) -> dict[str, Size]:
     """Return the sizes of an island: its highest top, its height over the floor that it stands on, radii and leans."""
     top = max(
         [view.z(t) for t in island.tops] or [float(view.graph.box_high[w][2]) for w in island.walls]
@@ -72,7 +72,7 @@ def island_sizes(view: View, island: Island) -> dict[str, Size]:
     return sizes
 
 
-def rib_sizes(view: View, top: int, floors: Iterable[int]) -> dict[str, Size]:
+def rib_sizes(view: PanelSide, top: int, floors: Iterable[int]) -> dict[str, Size]:
     """Return the sizes of a rib: thickness at its top, length along its middle line, heights over the floors beside it."""
     z = view.z(top)
     sizes: dict[str, Size] = {"top_z": main_z(view, z), "below_top": tidy(view.height - z)}
@@ -87,7 +87,7 @@ def rib_sizes(view: View, top: int, floors: Iterable[int]) -> dict[str, Size]:
     return sizes
 
 
-def side_sizes(view: View, walls: Sequence[int], corners: Sequence[int]) -> dict[str, Size]:
+def side_sizes(view: PanelSide, walls: Sequence[int], corners: Sequence[int]) -> dict[str, Size]:
     """Return the corner radius (0 when two walls meet in a sharp inner edge; none when nothing is hollow) and the leans."""
     sizes: dict[str, Size] = {}
     radius = corner_radius(view, (*walls, *corners))
@@ -101,7 +101,7 @@ def side_sizes(view: View, walls: Sequence[int], corners: Sequence[int]) -> dict
     return sizes
 
 
-def corner_radius(view: View, sides: Sequence[int]) -> float | None:
+def corner_radius(view: PanelSide, sides: Sequence[int]) -> float | None:
     """Return the smallest radius of the blends of some sides (hollow ones first), 0 for a sharp inner edge, None when there is none."""
     graph, own = view.graph, set(sides)
     if any(
@@ -117,12 +117,12 @@ def corner_radius(view: View, sides: Sequence[int]) -> float | None:
     return tidy(min(blends)) if blends else None
 
 
-def fillet_radius(view: View, fillets: Sequence[int], sharp: bool) -> float:
+def fillet_radius(view: PanelSide, fillets: Sequence[int], sharp: bool) -> float:
     """Return the smallest radius at the foot of walls, 0 when one of them stands sharply on the floor."""
     return 0.0 if sharp or not fillets else tidy(min(bend_radius(view.graph, f) for f in fillets))
 
 
-def strip(view: View, face: int) -> tuple[float, float]:
+def strip(view: PanelSide, face: int) -> tuple[float, float]:
     """Return thickness and length of a rib's top: between the parallel edges that run beside each other longest, and along their middle.
 
     A curved top has none: its thickness is then the mean width, its length what the area leaves.
@@ -178,7 +178,7 @@ def _crossing(start: Floats, end: Floats, point: Floats, way: Floats) -> float |
     return float((start + share * edge - point) @ way) if -SLIVER < share < 1.0 + SLIVER else None
 
 
-def _ends(view: View, face: int) -> list[list[int]]:
+def _ends(view: PanelSide, face: int) -> list[list[int]]:
     """Return the edges where a rib's top runs into something higher, those that touch together."""
     graph = view.graph
     feet = [e for e in graph.edges_of[face] if graph.convexity[e] == CONCAVE]
@@ -190,7 +190,7 @@ def _ends(view: View, face: int) -> list[list[int]]:
     return groups
 
 
-def _touch(view: View, a: int, b: int) -> bool:
+def _touch(view: PanelSide, a: int, b: int) -> bool:
     graph = view.graph
     return any(
         np.linalg.norm(p - q) < SLIVER
@@ -199,7 +199,7 @@ def _touch(view: View, a: int, b: int) -> bool:
     )
 
 
-def _meets(view: View, rib: int, sides: Sequence[int]) -> bool:
+def _meets(view: PanelSide, rib: int, sides: Sequence[int]) -> bool:
     return any(
         view.graph.across(e, rib) in sides and view.graph.convexity[e] == CONVEX
         for e in view.graph.edges_of[rib]

@@ -36,7 +36,7 @@ TRIES = (0.5, 0.37, 0.71)
 
 
 @dataclass(frozen=True, slots=True, eq=False, kw_only=True)
-class Space:
+class SliceSpace:
     """One connected area to be emptied in a slice: its plan, whether material closes it all round, and the islands in it."""
 
     plan: BaseGeometry
@@ -52,7 +52,7 @@ class Slice:
     bottom: float
     top: float
     material: BaseGeometry
-    spaces: tuple[Space, ...]
+    spaces: tuple[SliceSpace, ...]
 
     def space_at(self, point: Floats) -> int | None:
         """Return the number of the space that holds a point (x, y), None in material and outside."""
@@ -85,7 +85,7 @@ class Slices:
                 top=height - s.bottom,
                 material=_mirrored(s.material, width),
                 spaces=tuple(
-                    Space(
+                    SliceSpace(
                         plan=_mirrored(p.plan, width),
                         closed=p.closed,
                         islands=tuple(_mirrored(i, width) for i in p.islands),
@@ -174,7 +174,7 @@ def _ring(curve: Curve) -> Floats:
     return np.asarray(curve.sampled(10.0 * PLANE_REGION))
 
 
-def _spaces(material: BaseGeometry, outline: BaseGeometry) -> Iterable[Space]:
+def _spaces(material: BaseGeometry, outline: BaseGeometry) -> Iterable[SliceSpace]:
     """Yield the spaces of a slice: rule 3 for the closed ones, the rest of the outline for the open ones."""
     pieces = [g for g in shapely.get_parts(material) if g.area > AREA]
     for guide in (Polygon(hole) for piece in pieces for hole in piece.interiors):
@@ -191,7 +191,7 @@ def _spaces(material: BaseGeometry, outline: BaseGeometry) -> Iterable[Space]:
                 for i in islands
                 if not any(Polygon(o.exterior).contains(i) for o in islands if o is not i)
             )
-            yield Space(
+            yield SliceSpace(
                 plan=_largest(
                     guide.difference(shapely.union_all([Polygon(i.exterior) for i in direct]))
                 ),
@@ -202,7 +202,7 @@ def _spaces(material: BaseGeometry, outline: BaseGeometry) -> Iterable[Space]:
     for part in shapely.get_parts(air.buffer(-NARROW).buffer(NARROW, join_style="mitre")):
         if part.area > AREA:
             hollow = [Polygon(r) for r in part.interiors]
-            yield Space(
+            yield SliceSpace(
                 plan=part,
                 closed=False,
                 islands=tuple(

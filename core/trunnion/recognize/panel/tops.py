@@ -9,7 +9,7 @@ import numpy as np
 from trunnion.geometry.facegraph import CONCAVE, CONVEX
 from trunnion.recognize.grow import loops
 from trunnion.recognize.panel.classes import FaceClass
-from trunnion.recognize.panel.view import View
+from trunnion.recognize.panel.side import PanelSide
 from trunnion.tolerance import SLIVER
 
 FOOT_SHARE = 1.0 / 3.0
@@ -28,7 +28,7 @@ class Tops:
     undercut: tuple[int, ...]
 
 
-def sort_tops(view: View) -> Tops:
+def sort_tops(view: PanelSide) -> Tops:
     """Return what the faces that look up are."""
     found: dict[str, list[int]] = {
         n: [] for n in ("highest", "ribs", "floors", "standing", "undercut")
@@ -41,25 +41,25 @@ def sort_tops(view: View) -> Tops:
     return Tops(**{name: tuple(rows) for name, rows in found.items()})
 
 
-def foot_share(view: View, face: int) -> float:
+def foot_share(view: PanelSide, face: int) -> float:
     """Return the share of a face's border that lies at the foot of something."""
     foot, edge = _border(view, face)
     return foot / (foot + edge) if foot + edge > 0.0 else 0.0
 
 
-def mean_width(view: View, face: int) -> float:
+def mean_width(view: PanelSide, face: int) -> float:
     """Return twice the area over the length of the free border: the width of a strip, whatever way it runs."""
     _, edge = _border(view, face)
     return float(2.0 * view.graph.area[face] / edge) if edge > 0.0 else float("inf")
 
 
-def is_curved_floor(view: View, face: int) -> bool:
+def is_curved_floor(view: PanelSide, face: int) -> bool:
     """Say whether a curved face that looks up lies at the foot of walls all round."""
     outer = loops(view.graph, face).get(0, ())
     return bool(outer) and all(_is_foot(view, e, face) for e in outer)
 
 
-def _sort(view: View, face: int) -> str:
+def _sort(view: PanelSide, face: int) -> str:
     if view.z(face) >= view.height - SLIVER:
         return "highest"
     share = foot_share(view, face)
@@ -74,14 +74,14 @@ def _sort(view: View, face: int) -> str:
     )
 
 
-def _border(view: View, face: int) -> tuple[float, float]:
+def _border(view: PanelSide, face: int) -> tuple[float, float]:
     edges = view.graph.edges_of[face]
     foot = [e for e in edges if _is_foot(view, e, face)]
     free = [e for e in edges if view.graph.convexity[e] == CONVEX]
     return float(np.sum(view.graph.length[foot])), float(np.sum(view.graph.length[free]))
 
 
-def _is_foot(view: View, edge: int, face: int) -> bool:
+def _is_foot(view: PanelSide, edge: int, face: int) -> bool:
     convexity = view.graph.convexity[edge]
     return bool(
         convexity == CONCAVE

@@ -7,7 +7,7 @@ from dataclasses import dataclass
 import shapely
 
 from trunnion.geometry.arrays import Floats
-from trunnion.recognize.panel.slices import Slices, Space
+from trunnion.recognize.panel.slices import Slices, SliceSpace
 from trunnion.tolerance import SLIVER
 
 COVER = 0.02
@@ -25,7 +25,7 @@ class SpaceTree:
     parent: dict[Node, Node]
     children: dict[Node, tuple[Node, ...]]
 
-    def space(self, node: Node) -> Space:
+    def space(self, node: Node) -> SliceSpace:
         """Return the space of a node."""
         return self.slices.layers[node[0]].spaces[node[1]]
 

@@ -12,8 +12,8 @@ from trunnion.geometry.facegraph import FaceGraph
 from trunnion.model.feature import FaceRole, Feature, Recognition
 from trunnion.progress import QUIET, Progress
 from trunnion.recognize.contract import Bounded, Suitability
-from trunnion.recognize.surface.bends import PatchBends, patch_bends
 from trunnion.recognize.surface.groups import aligned_groups, invariant_groups
+from trunnion.recognize.surface.radii import PatchRadii, patch_bends
 from trunnion.recognize.surface.settings import ALIGNED, EXACT, SurfaceSettings
 from trunnion.recognize.surface.size import PatchSizes, patch_sizes
 from trunnion.recognize.surface.suitability import suitability
@@ -126,7 +126,7 @@ def _size(sizes: PatchSizes, settings: SurfaceSettings) -> Floats:
 
 
 def _feature(
-    id: str, rows: Ints, sizes: PatchSizes, bends: PatchBends, settings: SurfaceSettings
+    id: str, rows: Ints, sizes: PatchSizes, bends: PatchRadii, settings: SurfaceSettings
 ) -> Feature:
     size = _size(sizes, settings)
     ratio = float(size[rows].max() / size.max())

@@ -18,14 +18,14 @@ import numpy as np
 
 from trunnion.findings import Finding, Refused, warning
 from trunnion.geometry.arrays import Bools, Floats, Ints
-from trunnion.geometry.kernels.course_compiled import course
+from trunnion.geometry.kernels.least_cost_path_compiled import least_cost_path
 from trunnion.geometry.sphere import angle_between, directions, neighbours
 from trunnion.model.tool import Holder, Tool
-from trunnion.plan.clearance import Asker
+from trunnion.plan.clearance import ClearanceQuery
 from trunnion.plan.freeform.cutters.cutter import tip_at
 from trunnion.plan.freeform.drive import SurfaceDrive
 from trunnion.progress import QUIET, Progress
-from trunnion.toolpath.contact_passes.axis import AxisField, eased, leaning
+from trunnion.toolpath.contact_passes.axis_fields import AxisField, eased, leaning
 from trunnion.toolpath.contact_passes.contacts import Contacts, axis_between, between, slerp
 from trunnion.toolpath.contact_passes.passes import Pass
 
@@ -62,7 +62,7 @@ class LeanLimits:
 
 
 @dataclass(frozen=True, slots=True, eq=False, kw_only=True)
-class Course:
+class FreeAxes:
     """Free axes of one pass: at places (k,) along its contacts (2.25: a quarter of the way from the third to the next) axis (k, 3).
 
     free (k,): whether there is one; leap (k,): whether the axis is not reached from the place before without lifting the tool.
@@ -73,7 +73,7 @@ class Course:
     free: Bools
     leap: Bools
 
-    def runs(self) -> list[Course]:
+    def runs(self) -> list[FreeAxes]:
         """Return the pieces that are cut without lifting the tool, those of two places and more."""
         ends = np.flatnonzero(self.leap | ~self.free | ~np.concatenate([[False], self.free[:-1]]))
         found = []
@@ -84,7 +84,7 @@ class Course:
             place[0] = self.place[a - 1] if self.leap[a] else place[0]
             if self.free[a] and len(rows) > 1:
                 found.append(
-                    Course(
+                    FreeAxes(
                         place=place,
                         axis=self.axis[rows],
                         free=self.free[rows],
@@ -105,11 +105,11 @@ def free_axes(
     passes: Sequence[Contacts],
     field: AxisField,
     tool: Tool,
-    ask: Asker | None,
+    ask: ClearanceQuery | None,
     limits: LeanLimits,
     allowance: float = 0.0,
     progress: Progress = QUIET,
-) -> list[Course]:
+) -> list[FreeAxes]:
     """Return the free axes of contact passes, as near as can be to what a field wants.
 
     `ask` says what is free; without it only the limits count. `allowance`: mm that the cutter keeps from the contacts.
@@ -121,7 +121,7 @@ def leaned(
     passes: Sequence[Pass],
     tool: Tool,
     field: AxisField,
-    ask: Asker | None,
+    ask: ClearanceQuery | None,
     limits: LeanLimits,
     chord: float,
     progress: Progress = QUIET,
@@ -213,7 +213,7 @@ def roomy(tool: Tool, room: float) -> Tool:
     )
 
 
-def _finely(run: Course, rows: Floats, turn: float) -> Floats:
+def _finely(run: FreeAxes, rows: Floats, turn: float) -> Floats:
     """Return the places of a run at which its pass has rows, and as many between as keep the axis from turning further than `turn`."""
     low, high = run.place[0], run.place[-1]
     place = np.unique(np.concatenate([[low], rows[(rows > low) & (rows < high)], [high]]))
@@ -285,7 +285,7 @@ class AxisSearch:
         passes: Sequence[Contacts],
         field: AxisField,
         tool: Tool,
-        ask: Asker | None,
+        ask: ClearanceQuery | None,
         limits: LeanLimits,
         allowance: float = 0.0,
     ) -> None:
@@ -315,7 +315,7 @@ class AxisSearch:
             return np.ones(len(point), bool)
         return self.ask(self.places.point.mean(axis=0) + AWAY * point, point)
 
-    def courses(self, progress: Progress = QUIET) -> list[Course]:
+    def courses(self, progress: Progress = QUIET) -> list[FreeAxes]:
         """Return the courses of all passes."""
         for n in range(ROUNDS):
             progress.at(n / ROUNDS, "Leaning the tool clear")
@@ -325,7 +325,8 @@ class AxisSearch:
         # The search may go on: what is given away is a copy.
         axis, free, leap = self.axis.copy(), self.free.copy(), self.leap.copy()
         return [
-            Course(place=self.places.place[s], axis=axis[s], free=free[s], leap=leap[s]) for s in at
+            FreeAxes(place=self.places.place[s], axis=axis[s], free=free[s], leap=leap[s])
+            for s in at
         ]
 
     def met(self, number: int, places: Floats) -> None:
@@ -367,7 +368,7 @@ class AxisSearch:
         off = np.arccos(np.clip(self.places.wanted[rows] @ point.T, -1.0, 1.0))
         taken = 1.0 - _share_near(allowed, near)
         cost = np.where(allowed, (off * off + RIM * taken) * pitch, np.inf)
-        chosen, leap = course(cost, near, STIFFNESS**2 * turn**2 / pitch, LEAP)
+        chosen, leap = least_cost_path(cost, near, STIFFNESS**2 * turn**2 / pitch, LEAP)
         self.free[rows], self.leap[rows] = chosen >= 0, leap
         # The direction next to the wanted axis stands for it.
         near_wanted = off[np.arange(len(chosen)), chosen] < STEP

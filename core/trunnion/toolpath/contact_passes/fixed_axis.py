@@ -31,7 +31,7 @@ SMALLEST_LEFTOVER = 0.5
 
 
 @dataclass(frozen=True, slots=True, eq=False, kw_only=True)
-class Stood:
+class UprightPasses:
     """Passes of an upright tool, the number (p,) of the contact pass that each is of, and how much of the contacts' way in mm was too
     steep or behind other faces."""
 
@@ -74,7 +74,7 @@ def stood(
     chord: float,
     steepest: float,
     progress: Progress = QUIET,
-) -> Stood:
+) -> UprightPasses:
     """Return the passes of an upright tool over contacts of the drive's faces, in the cutting frame.
 
     What leans by more than `steepest` (radians) from level is left out: there a tip says little of where it touches.
@@ -124,7 +124,9 @@ def stood(
                 )
                 owner.append(k)
     hidden = _lifted(tips, drive, pieces, lowest, 5.0 * chord)
-    return Stood(passes=tuple(passes), source=tuple(owner), steep=whole - kept, hidden=hidden)
+    return UprightPasses(
+        passes=tuple(passes), source=tuple(owner), steep=whole - kept, hidden=hidden
+    )
 
 
 def _lifted(

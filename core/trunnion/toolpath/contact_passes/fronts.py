@@ -18,7 +18,7 @@ from scipy.spatial import cKDTree
 from trunnion.geometry.arrays import Floats
 from trunnion.geometry.sheet.contours import SheetLine, whole_levels
 from trunnion.geometry.sheet.fields import Metric, distances
-from trunnion.geometry.sheet.ridges import Ridged, opened, ridged
+from trunnion.geometry.sheet.ridges import RidgedSheet, opened, ridged
 from trunnion.geometry.sheet.sheet import Measure, Sheet, sheet_of, split_finely
 from trunnion.model.tool import Tool
 from trunnion.plan.freeform.drive import SurfaceDrive
@@ -147,7 +147,7 @@ def _nested(sheet: Sheet, lines: Sequence[SheetLine]) -> list[SheetLine]:
 
 
 def _along_ridges(
-    found: Ridged, metric: Metric, lines: Sequence[SheetLine], stepover: float
+    found: RidgedSheet, metric: Metric, lines: Sequence[SheetLine], stepover: float
 ) -> list[tuple[Floats, Floats]]:
     """Return points and normals (k, 3) of passes along the ridges where places are too far from all lines."""
     if not lines or not found.ridges:

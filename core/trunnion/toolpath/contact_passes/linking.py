@@ -45,7 +45,7 @@ SWING = math.cos(math.radians(60.0))
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class Manner:
+class LinkParameters:
     """How passes are linked: the `stepover` between them, the `safety` distance of rapids and the `lead_radius` in mm; `order` is "given"
     or "nearest"; `reversing` allows passes to be cut the other way where that is nearer; `chord` is the chord error of links, mm. With
     `arcs` a near pass is reached by the leads of both, and above the stock where these have no room: for walls, beside which a cutter that
@@ -68,7 +68,7 @@ def linked(
     data: CuttingData,
     stock: PlanningStock,
     setup: Setup,
-    manner: Manner,
+    manner: LinkParameters,
     progress: Progress = QUIET,
 ) -> Toolpath:
     """Return the toolpath that cuts all passes, in the cutting frame; it begins and ends at the setup's clearance height."""
@@ -250,7 +250,7 @@ def _goes(position: Floats, axis: Floats) -> Bools:
         kept[rows[1:][still]] = False
 
 
-def _ordered(passes: Sequence[Pass], manner: Manner, progress: Progress) -> list[Pass]:
+def _ordered(passes: Sequence[Pass], manner: LinkParameters, progress: Progress) -> list[Pass]:
     """Return the passes in the order they are cut, closed ones begun where they come nearest to the end of the one before."""
     if manner.order == "nearest":
         passes = _nearest(passes, manner.reversing, progress)
@@ -304,7 +304,7 @@ def _overlapped(one: Pass, overlap: float) -> Pass:
     return Pass(tip=tip, axis=unit(axis), normal=normal)
 
 
-def _near(passes: Sequence[Pass], manner: Manner) -> Bools:
+def _near(passes: Sequence[Pass], manner: LinkParameters) -> Bools:
     """Say of each pass but the last whether the next one is reached without lifting."""
     ends, starts = (
         np.array([p.tip[-1] for p in passes[:-1]]).reshape(-1, 3),
@@ -320,7 +320,7 @@ def _links(
     near: Bools,
     drive: SurfaceDrive,
     tool: Tool,
-    manner: Manner,
+    manner: LinkParameters,
     progress: Progress,
 ) -> list[Floats]:
     """Return the ways over the surface (k, 3) from the ends of near passes to the next ones: straight, lifted where that would gouge.
@@ -361,7 +361,11 @@ def _bridged(way: Floats, chord: Floats, allowance: float, error: float) -> Floa
 
 
 def _leads(
-    passes: Sequence[Pass], drive: SurfaceDrive, tool: Tool, manner: Manner, progress: Progress
+    passes: Sequence[Pass],
+    drive: SurfaceDrive,
+    tool: Tool,
+    manner: LinkParameters,
+    progress: Progress,
 ) -> tuple[Floats, Floats, Bools]:
     """Return the ways (m, k, 3) onto all passes, up to the first tip, and off them, after the last: quarter circles, lifted where they
     would gouge. And say of each pass but the last whether the way off it and onto the next one needs no lifting (m - 1,)."""

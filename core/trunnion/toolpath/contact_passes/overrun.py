@@ -23,7 +23,7 @@ CLOSE = 0.25
 
 
 @dataclass(frozen=True, slots=True, eq=False, kw_only=True)
-class Strip:
+class OverrunStrip:
     """The strip of a width (mm) past the rim of an area; the rim's places (k, 3) and the outward unit normals (k, 3) of the area there."""
 
     skin: Skin
@@ -32,7 +32,7 @@ class Strip:
     width: float
 
     @staticmethod
-    def of(skin: Skin, faces: tuple[int, ...], width: float) -> Strip:
+    def of(skin: Skin, faces: tuple[int, ...], width: float) -> OverrunStrip:
         """Return the strip beside faces (tags) of a skin."""
         sheet = sheet_of(skin, faces)
         place, normal = [np.zeros((0, 3))], [np.zeros((0, 3))]
@@ -45,7 +45,7 @@ class Strip:
             for x, out in ((sheet.points, place), (sheet.normals, normal)):
                 out.append(x[a[row]] + share[:, None] * (x[b[row]] - x[a[row]]))
         joined = np.concatenate(normal)
-        return Strip(
+        return OverrunStrip(
             skin=skin,
             place=np.concatenate(place),
             normal=joined / np.linalg.norm(joined, axis=1, keepdims=True),

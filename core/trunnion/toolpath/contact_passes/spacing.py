@@ -29,7 +29,7 @@ between passes d apart e (1 - cos(d / 2 e)) stays, which is no more than 0.3623 
 
 
 @dataclass(frozen=True, slots=True, eq=False, kw_only=True)
-class Places:
+class FacetSlopes:
     """Triangles of a drive's faces in the cutting frame: row (m,) of the skin's, unit normals of their middles (m, 3), areas (m,), where
     the cutter's tip is when it touches their corners (m, 3, 3), and two edges of each (m, 2, 3) with the turn of the normal along them."""
 
@@ -40,9 +40,9 @@ class Places:
     edges: Floats
     turns: Floats
 
-    def some(self, which: Bools) -> Places:
+    def some(self, which: Bools) -> FacetSlopes:
         """Return some of the places."""
-        return Places(**{f.name: getattr(self, f.name)[which] for f in fields(self)})
+        return FacetSlopes(**{f.name: getattr(self, f.name)[which] for f in fields(self)})
 
     def along(self, way: Floats) -> tuple[Floats, Floats]:
         """Return how the normal turns and how the tip moves for each mm that the contact goes along unit tangents (m, 3), each (m, 3)."""
@@ -57,7 +57,7 @@ class Places:
         ] + second * moves[:, 1]
 
 
-def places_of(drive: SurfaceDrive, tool: Tool, least: float = 0.0) -> Places:
+def places_of(drive: SurfaceDrive, tool: Tool, least: float = 0.0) -> FacetSlopes:
     """Return the triangles of the faces to be finished that an upright cutter can come to from above: those that look upwards, their
     normals' part along z above `least`."""
     skin = drive.skin
@@ -71,7 +71,7 @@ def places_of(drive: SurfaceDrive, tool: Tool, least: float = 0.0) -> Places:
     tips = tip_at(
         tool, contact, normals.reshape(-1, 3), np.broadcast_to(UPRIGHT, contact.shape)
     ).reshape(-1, 3, 3)
-    return Places(
+    return FacetSlopes(
         row=row,
         normal=unit(normals.sum(axis=1)),
         area=0.5 * size,
@@ -81,7 +81,7 @@ def places_of(drive: SurfaceDrive, tool: Tool, least: float = 0.0) -> Places:
     )
 
 
-def tip_spacing(places: Places, tool: Tool, height: float, across: Floats) -> Floats:
+def tip_spacing(places: FacetSlopes, tool: Tool, height: float, across: Floats) -> Floats:
     """Return how far apart (m,) passes in planes across a unit direction (3,) may lie at each triangle, measured between tips."""
     lean = places.normal @ across
     # Along the face, square to the feed: what is left of the direction in the tangent plane.
@@ -103,7 +103,7 @@ def tip_spacing(places: Places, tool: Tool, height: float, across: Floats) -> Fl
     )
 
 
-def level_spacing(places: Places, tool: Tool, height: float) -> Floats:
+def level_spacing(places: FacetSlopes, tool: Tool, height: float) -> Floats:
     """Return how far apart (m,) level passes may lie at each triangle, measured between tips; infinite beside an upright wall.
 
     The flank of the upper pass and the end of the lower one leave a step as well, of the drop between them times how much the wall leans:

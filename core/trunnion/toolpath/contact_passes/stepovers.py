@@ -20,7 +20,7 @@ from scipy.spatial import cKDTree
 from trunnion import tolerance
 from trunnion.findings import Refused
 from trunnion.geometry.arrays import Floats, Ints
-from trunnion.geometry.kernels.drop import ROUND, C
+from trunnion.geometry.kernels.drop_cutter import ROUND, C
 from trunnion.geometry.sheet.fields import Metric
 from trunnion.geometry.sheet.sheet import Measure, Sheet, between
 from trunnion.model.tool import Tool

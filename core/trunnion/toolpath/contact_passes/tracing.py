@@ -13,8 +13,8 @@ import numpy as np
 
 from trunnion import tolerance
 from trunnion.geometry.arrays import Bools, Floats, Ints
-from trunnion.geometry.dropping import DropSurface
-from trunnion.geometry.kernels.drop import RHO1, height_at
+from trunnion.geometry.drop_surface import DropSurface
+from trunnion.geometry.kernels.drop_cutter import RHO1, height_at
 from trunnion.progress import QUIET, Progress
 
 UNSEEN = 0.5

@@ -11,7 +11,7 @@ from numpy.typing import ArrayLike
 from trunnion import tolerance
 from trunnion.geometry.arrays import Floats
 from trunnion.model.toolpath import Mark
-from trunnion.toolpath.axis_region import Room
+from trunnion.toolpath.axis_region import AxisRegion
 from trunnion.toolpath.motion.builder import PathBuilder
 
 RIM = 2.0
@@ -95,7 +95,7 @@ def travel(builder: PathBuilder, place: ArrayLike, z: float) -> None:
 
 
 def step_aside(
-    builder: PathBuilder, tangent: ArrayLike, room: Room, mark: Mark = Mark.LEAD
+    builder: PathBuilder, tangent: ArrayLike, room: AxisRegion, mark: Mark = Mark.LEAD
 ) -> None:
     """Leave the wall on the right: feed a little to the left of the direction just cut, where there is room."""
     if builder.here is None:

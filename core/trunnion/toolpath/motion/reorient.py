@@ -28,7 +28,7 @@ Pose = tuple[Floats, Floats]
 
 
 @dataclass(frozen=True, slots=True, eq=False, kw_only=True)
-class Swing:
+class SwingSphere:
     """The sphere that a turning tool stays out of: `centre` (3,) and `radius` mm, in the setup frame."""
 
     centre: Floats
@@ -40,7 +40,7 @@ class Swing:
         return np.asarray(tip + max(out, 0.0) * axis)
 
 
-def swing_of(blank: Blank, setup: Setup) -> Swing:
+def swing_of(blank: Blank, setup: Setup) -> SwingSphere:
     """Return the sphere round the blank and the fixtures of a setup, as far from them as the clearance height is from the blank."""
     corners = blank.corners(setup.frame)
     safe = max(setup.clearance - float(corners[:, 2].max()), LEAST_SAFE)
@@ -56,10 +56,10 @@ def swing_of(blank: Blank, setup: Setup) -> Swing:
     )
     centre = 0.5 * (corners.min(axis=0) + corners.max(axis=0))
     radius = float(np.linalg.norm(points - centre, axis=1).max()) + safe
-    return Swing(centre=centre, radius=radius / math.cos(0.5 * STEP))
+    return SwingSphere(centre=centre, radius=radius / math.cos(0.5 * STEP))
 
 
-def moved_over(path: Toolpath, before: Pose | None, swing: Swing) -> Toolpath:
+def moved_over(path: Toolpath, before: Pose | None, swing: SwingSphere) -> Toolpath:
     """Return a path with the rapids in front that bring the tool safely to its first pose.
 
     `before` is the pose that the tool was left in, or None when it comes from its change: then it comes in along its axis from outside the
@@ -86,7 +86,7 @@ def moved_over(path: Toolpath, before: Pose | None, swing: Swing) -> Toolpath:
 
 
 def joined(
-    paths: Sequence[Toolpath], changes: Sequence[bool], swing: Swing
+    paths: Sequence[Toolpath], changes: Sequence[bool], swing: SwingSphere
 ) -> tuple[Toolpath, ...]:
     """Return paths that are cut one after the other, each led from where the one before has left the tool.
 

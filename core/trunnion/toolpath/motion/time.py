@@ -18,8 +18,8 @@ import numpy as np
 from trunnion.geometry.arrays import Bools, Floats
 from trunnion.model.material import Machine
 from trunnion.model.toolpath import Motion, Toolpath
-from trunnion.shop.kinematics import Place, spindle_of, words_of
-from trunnion.shop.winding import followed
+from trunnion.shop.kinematics import WorkPosition, spindle_of, words_of
+from trunnion.shop.rotary_angles import followed
 from trunnion.units import SECONDS_PER_MINUTE
 
 ROUNDING = 0.01
@@ -31,14 +31,14 @@ NEAR_POLE = 1e-4
 
 
 def machining_time(
-    path: Toolpath, machine: Machine, place: Place | None = None, gauge: float = 0.0
+    path: Toolpath, machine: Machine, place: WorkPosition | None = None, gauge: float = 0.0
 ) -> float:
     """Return the seconds that a machine takes for a path, rapids included, from where its first block ends."""
     return float(block_times(path, machine, place, gauge).sum())
 
 
 def block_times(
-    path: Toolpath, machine: Machine, place: Place | None = None, gauge: float = 0.0
+    path: Toolpath, machine: Machine, place: WorkPosition | None = None, gauge: float = 0.0
 ) -> Floats:
     """Return the seconds (n,) of each block; the first, whose start is unknown, takes none.
 
@@ -96,7 +96,7 @@ class _Way:
     radius: Floats
 
 
-def _way_of(path: Toolpath, place: Place | None, gauge: float) -> _Way:
+def _way_of(path: Toolpath, place: WorkPosition | None, gauge: float) -> _Way:
     """Return the way of a path: on a machine with rotary axes that of the positions of all its axes."""
     tip, sweep = path.lengths(), path.sweeps()
     arcs = np.flatnonzero(path.motion >= Motion.ARC_CW)

@@ -16,7 +16,7 @@ from trunnion.geometry.plane.curve import Curve
 from trunnion.geometry.plane.region import Region
 from trunnion.model.toolpath import Mark
 from trunnion.progress import Progress
-from trunnion.toolpath.axis_region import Room, parts_near
+from trunnion.toolpath.axis_region import AxisRegion, parts_near
 from trunnion.toolpath.motion.builder import PathBuilder
 from trunnion.toolpath.motion.link import is_free, step_aside, top_under, travel
 from trunnion.toolpath.motion.order import nearest_first
@@ -28,7 +28,7 @@ from trunnion.toolpath.offsetting.entry import (
     ramp_round,
 )
 from trunnion.toolpath.offsetting.lead import enter, fitting_lead, leave
-from trunnion.toolpath.offsetting.rings import Ring
+from trunnion.toolpath.offsetting.rings import OffsetRing
 
 RUN_OUTS = (0.5, 1.0, 2.0, 3.0, 4.0)
 """Of the radius: how far before an open pass a place that is certainly free is looked for."""
@@ -49,7 +49,7 @@ NEXT_PASS = 2.5
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class Manner:
+class ClearingParameters:
     """How an area is cleared: `step` mm between passes, `ramp` radians of entry, `slot` share of the feed in a full-width cut,
     `lead` radius in mm of tangential leads of open passes (0: none)."""
 
@@ -60,13 +60,13 @@ class Manner:
 
 
 @dataclass(frozen=True, slots=True, eq=False, kw_only=True)
-class Layer:
+class ClearingLayer:
     """What is cleared at height `z`: the rings, the `room` that links and entries may use, the `clip` outside which nothing is wanted
     (None: everything in the rings), and the height `top` under which material may begin (None: as the stock says)."""
 
     z: float
-    rings: tuple[Ring, ...]
-    room: Room
+    rings: tuple[OffsetRing, ...]
+    room: AxisRegion
     clip: Region | None = None
     top: float | None = None
 
@@ -78,7 +78,9 @@ class Layer:
         ) + tolerance.ON_REGION
 
 
-def clear(builder: PathBuilder, layer: Layer, manner: Manner, progress: Progress) -> None:
+def clear(
+    builder: PathBuilder, layer: ClearingLayer, manner: ClearingParameters, progress: Progress
+) -> None:
     """Cut all passes of a layer."""
     for ring in nearest_first(layer.rings, lambda: builder.here, _ring_away):
         _cut_ring(builder, layer, ring, manner, progress)
@@ -87,7 +89,11 @@ def clear(builder: PathBuilder, layer: Layer, manner: Manner, progress: Progress
 
 
 def _cut_ring(
-    builder: PathBuilder, layer: Layer, ring: Ring, manner: Manner, progress: Progress
+    builder: PathBuilder,
+    layer: ClearingLayer,
+    ring: OffsetRing,
+    manner: ClearingParameters,
+    progress: Progress,
 ) -> None:
     for inner in nearest_first(ring.inner, lambda: builder.here, _ring_away):
         _cut_ring(builder, layer, inner, manner, progress)
@@ -104,7 +110,12 @@ def _cut_ring(
 
 
 def _cut_closed(
-    builder: PathBuilder, layer: Layer, ring: Ring, loop: Curve, manner: Manner, feed: float
+    builder: PathBuilder,
+    layer: ClearingLayer,
+    ring: OffsetRing,
+    loop: Curve,
+    manner: ClearingParameters,
+    feed: float,
 ) -> None:
     here = builder.here
     s = loop.nearest(here[:2]) if here is not None else 0.0
@@ -121,7 +132,9 @@ def _cut_closed(
     builder.curve(loop.split(s, s), layer.z, feed)
 
 
-def _free_place(builder: PathBuilder, layer: Layer, loop: Curve, first: float) -> float | None:
+def _free_place(
+    builder: PathBuilder, layer: ClearingLayer, loop: Curve, first: float
+) -> float | None:
     count = 8
     for k in range(count):
         s = (first + k * loop.length / count) % loop.length
@@ -130,7 +143,7 @@ def _free_place(builder: PathBuilder, layer: Layer, loop: Curve, first: float) -
     return None
 
 
-def _from_inner(builder: PathBuilder, layer: Layer, ring: Ring, loop: Curve) -> float:
+def _from_inner(builder: PathBuilder, layer: ClearingLayer, ring: OffsetRing, loop: Curve) -> float:
     """Come down where the pass before, one step further inside, was cut, and feed across."""
     seeds = [c.points[0] for inner in ring.inner for c in inner.curves()]
     near = min(seeds, key=lambda p: float(loop.distance(p)[0]))
@@ -141,8 +154,14 @@ def _from_inner(builder: PathBuilder, layer: Layer, ring: Ring, loop: Curve) -> 
     return s
 
 
-def _open_up(builder: PathBuilder, layer: Layer, ring: Ring, loop: Curve, manner: Manner) -> float:
-    centre, depth = deepest_place(Room(ring.region), layer.room)
+def _open_up(
+    builder: PathBuilder,
+    layer: ClearingLayer,
+    ring: OffsetRing,
+    loop: Curve,
+    manner: ClearingParameters,
+) -> float:
+    centre, depth = deepest_place(AxisRegion(ring.region), layer.room)
     radius = helix_radius(builder, depth)
     s = loop.nearest(centre)
     place, _ = loop.at(s)
@@ -164,7 +183,11 @@ def _open_up(builder: PathBuilder, layer: Layer, ring: Ring, loop: Curve, manner
 
 
 def _cut_open(
-    builder: PathBuilder, layer: Layer, piece: Curve, manner: Manner, feed: float
+    builder: PathBuilder,
+    layer: ClearingLayer,
+    piece: Curve,
+    manner: ClearingParameters,
+    feed: float,
 ) -> None:
     start, tangent = piece.start, piece.at(0.0)[1]
     lead = (
@@ -187,7 +210,9 @@ def _cut_open(
         )
 
 
-def _come_to(builder: PathBuilder, layer: Layer, piece: Curve, manner: Manner) -> None:
+def _come_to(
+    builder: PathBuilder, layer: ClearingLayer, piece: Curve, manner: ClearingParameters
+) -> None:
     """Bring the cutter to the start of an open pass: from outside where it is free, else by helix beside it, else by a ramp along it."""
     start, tangent = piece.start, piece.at(0.0)[1]
     if is_free(builder, start, layer.z):
@@ -218,7 +243,9 @@ def _come_to(builder: PathBuilder, layer: Layer, piece: Curve, manner: Manner) -
     ramp_along(builder, piece, top, layer.z, manner.ramp)
 
 
-def _stays_down(builder: PathBuilder, layer: Layer, start: Floats, manner: Manner) -> bool:
+def _stays_down(
+    builder: PathBuilder, layer: ClearingLayer, start: Floats, manner: ClearingParameters
+) -> bool:
     """Feed straight to a place when the tool is down, the way stays in the room, and it is short or certainly free; say whether."""
     here = builder.here
     if (
@@ -235,26 +262,26 @@ def _stays_down(builder: PathBuilder, layer: Layer, start: Floats, manner: Manne
     return True
 
 
-def _top(builder: PathBuilder, layer: Layer, place: Floats, radius: float) -> float:
+def _top(builder: PathBuilder, layer: ClearingLayer, place: Floats, radius: float) -> float:
     found = top_under(builder, place, radius)
     return max(found if layer.top is None else min(found, layer.top), layer.z)
 
 
-def _is_off(layer: Layer, place: Floats) -> bool:
+def _is_off(layer: ClearingLayer, place: Floats) -> bool:
     return layer.clip is None or float(layer.clip.signed_distance(place)[0]) <= tolerance.ON_REGION
 
 
-def _step_off(builder: PathBuilder, layer: Layer) -> None:
+def _step_off(builder: PathBuilder, layer: ClearingLayer) -> None:
     if builder.here is None or abs(builder.here[2] - layer.z) > tolerance.SHORT_MOVE:
         return
     step_aside(builder, builder.heading(), layer.room)
 
 
-def _ring_away(ring: Ring, place: Floats) -> float:
+def _ring_away(ring: OffsetRing, place: Floats) -> float:
     return _nearest([_innermost(ring).region], place)
 
 
-def _innermost(ring: Ring) -> Ring:
+def _innermost(ring: OffsetRing) -> OffsetRing:
     while ring.inner:
         ring = ring.inner[0]
     return ring

@@ -10,7 +10,7 @@ import numpy as np
 from trunnion import tolerance
 from trunnion.geometry.arrays import Floats
 from trunnion.geometry.plane.curve import Curve
-from trunnion.toolpath.axis_region import Room, parts_where, points_along
+from trunnion.toolpath.axis_region import AxisRegion, parts_where, points_along
 from trunnion.toolpath.motion.builder import PathBuilder
 from trunnion.toolpath.motion.link import may_plunge, step_aside, top_under
 from trunnion.toolpath.motion.order import nearest_first
@@ -22,7 +22,7 @@ PAST = (1.2, 0.6, 0.3)
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class Approach:
+class ContourApproach:
     """How a contour is entered and left: radius of the leads and overlap of a closed contour in mm, slope of ramps in radians,
     times it is gone round."""
 
@@ -32,7 +32,7 @@ class Approach:
     rounds: int = 1
 
 
-def contour_parts(room: Room, guide: Curve, distance: float) -> list[Curve]:
+def contour_parts(room: AxisRegion, guide: Curve, distance: float) -> list[Curve]:
     """Return the parts of the room's rim that lie `distance` from a guide line, the room on their left."""
     found: list[Curve] = []
     for rim in room.region.curves():
@@ -63,7 +63,7 @@ def _beside(guide: Curve, points: Floats, distance: float) -> Floats:
     return -tolerance.ON_REGION - np.maximum(*beyond)
 
 
-def length_out_of_reach(room: Room, guide: Curve, distance: float) -> float:
+def length_out_of_reach(room: AxisRegion, guide: Curve, distance: float) -> float:
     """Return how much of a guide line in mm an axis in the room can't come within `distance` of."""
     s, points = points_along(guide)
     spans = np.diff(np.append(s, guide.length))
@@ -74,7 +74,7 @@ def length_out_of_reach(room: Room, guide: Curve, distance: float) -> float:
 
 
 def cut_parts(
-    builder: PathBuilder, parts: list[Curve], z: float, room: Room, approach: Approach
+    builder: PathBuilder, parts: list[Curve], z: float, room: AxisRegion, approach: ContourApproach
 ) -> None:
     """Cut contours at height `z`, the nearest next."""
     for part in nearest_first(parts, lambda: builder.here, _away):
@@ -89,8 +89,8 @@ def cut_open(
     builder: PathBuilder,
     part: Curve,
     z: float,
-    room: Room,
-    approach: Approach,
+    room: AxisRegion,
+    approach: ContourApproach,
     *,
     past: bool = True,
 ) -> None:
@@ -118,7 +118,9 @@ def cut_open(
         step_aside(builder, leaving, room)
 
 
-def _cut_loop(builder: PathBuilder, loop: Curve, z: float, room: Room, approach: Approach) -> None:
+def _cut_loop(
+    builder: PathBuilder, loop: Curve, z: float, room: AxisRegion, approach: ContourApproach
+) -> None:
     feed = builder.data.feed
     if cut_closed(
         builder,
@@ -140,7 +142,7 @@ def _cut_loop(builder: PathBuilder, loop: Curve, z: float, room: Room, approach:
     step_aside(builder, loop.at(0.0)[1], room)
 
 
-def _past(builder: PathBuilder, end: Floats, way: Floats, room: Room) -> Floats:
+def _past(builder: PathBuilder, end: Floats, way: Floats, room: AxisRegion) -> Floats:
     for share in PAST:
         past = end + share * builder.tool.radius * way
         if room.holds_line(end, past):

@@ -10,7 +10,7 @@ from trunnion import tolerance
 from trunnion.geometry.arrays import Floats
 from trunnion.geometry.plane.curve import Curve
 from trunnion.model.toolpath import Mark
-from trunnion.toolpath.axis_region import Room
+from trunnion.toolpath.axis_region import AxisRegion
 from trunnion.toolpath.motion.builder import PathBuilder
 from trunnion.toolpath.motion.link import travel
 
@@ -27,7 +27,7 @@ GRID = 24
 """Places along each side of a box that are tried for the deepest place of a room."""
 
 
-def deepest_place(area: Room, room: Room) -> tuple[Floats, float]:
+def deepest_place(area: AxisRegion, room: AxisRegion) -> tuple[Floats, float]:
     """Return the place (2,) in `area` that is deepest inside `room`, and how deep it is there."""
     low, high = area.region.box()
     best, depth = 0.5 * (low + high), -math.inf

@@ -11,7 +11,7 @@ from trunnion import tolerance
 from trunnion.geometry.arrays import Floats
 from trunnion.geometry.plane.curve import Curve
 from trunnion.model.toolpath import Mark
-from trunnion.toolpath.axis_region import Room
+from trunnion.toolpath.axis_region import AxisRegion
 from trunnion.toolpath.motion.builder import PathBuilder
 from trunnion.toolpath.motion.link import is_free, may_plunge, travel
 
@@ -52,7 +52,7 @@ def lead_out(point: Floats, tangent: Floats, radius: float) -> Lead:
 
 
 def fitting_lead(
-    point: Floats, tangent: Floats, radius: float, room: Room, *, leaves: bool
+    point: Floats, tangent: Floats, radius: float, room: AxisRegion, *, leaves: bool
 ) -> Lead | None:
     """Return the largest lead up to `radius` that stays in the room, or None."""
     for share in SHARES:
@@ -66,7 +66,7 @@ def cut_closed(
     builder: PathBuilder,
     loop: Curve,
     z: float,
-    room: Room,
+    room: AxisRegion,
     feed: float,
     *,
     radius: float,
@@ -119,7 +119,7 @@ def start_places(loop: Curve) -> list[float]:
 
 
 def from_free(
-    builder: PathBuilder, lead: Lead, tangent: Floats, z: float, room: Room
+    builder: PathBuilder, lead: Lead, tangent: Floats, z: float, room: AxisRegion
 ) -> tuple[Lead, bool]:
     """Return a lead that begins where no material is, lengthened by a straight when that takes it there, and say whether it does."""
     for share in RUN_INS:
@@ -130,7 +130,7 @@ def from_free(
 
 
 def _best_start(
-    builder: PathBuilder, loop: Curve, z: float, room: Room, radius: float
+    builder: PathBuilder, loop: Curve, z: float, room: AxisRegion, radius: float
 ) -> tuple[float, Lead] | None:
     best: tuple[tuple[bool, float], float, Lead] | None = None
     for s in start_places(loop):

@@ -6,8 +6,8 @@ from dataclasses import dataclass
 
 from trunnion.geometry.plane.region import Region
 from trunnion.model.tool import Tool
-from trunnion.toolpath.axis_region import OPEN_MARGIN, Room
-from trunnion.toolpath.offsetting.rings import Ring, ring_tree
+from trunnion.toolpath.axis_region import OPEN_MARGIN, AxisRegion
+from trunnion.toolpath.offsetting.rings import OffsetRing, ring_tree
 
 OVERRUN = 1.0
 """mm that the whole cutter runs past an open side."""
@@ -17,11 +17,11 @@ FAR = 10_000.0
 
 
 @dataclass(frozen=True, slots=True, eq=False)
-class Passes:
+class ClearingPasses:
     """The room of the axis, its rings, and the clip of an open area (None: closed all round)."""
 
-    room: Room
-    rings: tuple[Ring, ...]
+    room: AxisRegion
+    rings: tuple[OffsetRing, ...]
     clip: Region | None
 
 
@@ -33,22 +33,24 @@ def passes_over(
     step: float,
     *,
     mitred: bool = False,
-) -> Passes:
+) -> ClearingPasses:
     """Return the passes of a cutter whose axis keeps `distance` from the boundary's rim; none when it fits nowhere.
 
     `mitred`: the walls have a fillet at their foot, which `Room.of` must keep whole at sharp edges.
     """
     closed = not boundary.minus(wanted.offset(OPEN_MARGIN))
-    room = Room.of(boundary, distance, mitred=mitred and closed)
+    room = AxisRegion.of(boundary, distance, mitred=mitred and closed)
     if not room.region or not wanted:
-        return Passes(room, (), None)
+        return ClearingPasses(room, (), None)
     if closed:
-        return Passes(room, ring_tree(room.region, step), None)
+        return ClearingPasses(room, ring_tree(room.region, step), None)
     clip = wanted.offset(tool.radius + OVERRUN)
     near = clip.offset(distance + OVERRUN)
     walls = near.minus(boundary)
     if not walls:
-        return Passes(room, ring_tree(room.region, step, clip), clip)
+        return ClearingPasses(room, ring_tree(room.region, step, clip), clip)
     low, high = near.box()
     everywhere = Region.rectangle(low[0] - FAR, low[1] - FAR, high[0] + FAR, high[1] + FAR)
-    return Passes(room, ring_tree(everywhere.minus(walls.offset(distance)), step, clip), clip)
+    return ClearingPasses(
+        room, ring_tree(everywhere.minus(walls.offset(distance)), step, clip), clip
+    )

@@ -25,11 +25,11 @@ CLIP_SPACING = 2.0
 
 
 @dataclass(frozen=True, slots=True, eq=False)
-class Ring:
+class OffsetRing:
     """One piece of an offset of the room: its rim is a pass, `inner` are the pieces one step further inside."""
 
     region: Region
-    inner: tuple[Ring, ...]
+    inner: tuple[OffsetRing, ...]
 
     def curves(self) -> tuple[Curve, ...]:
         """Return the loops of the rim, the room on the left of each."""
@@ -43,7 +43,7 @@ def safe_step(tool: Tool, width: float, ridge: float = 0.0) -> float:
     return min(width, SAFE_SHARE * max(tool.radius - corner + at_ridge, 0.5 * tool.radius))
 
 
-def ring_tree(room: Region, step: float, clip: Region | None = None) -> tuple[Ring, ...]:
+def ring_tree(room: Region, step: float, clip: Region | None = None) -> tuple[OffsetRing, ...]:
     """Return the rings of a room, a step apart; with a clip, only those that can touch it."""
     rim = (
         None
@@ -53,7 +53,7 @@ def ring_tree(room: Region, step: float, clip: Region | None = None) -> tuple[Ri
     return tuple(_ring(piece, step, rim) for piece in room.split() if _touches(piece, rim))
 
 
-def depth_first(rings: tuple[Ring, ...]) -> Iterator[Ring]:
+def depth_first(rings: tuple[OffsetRing, ...]) -> Iterator[OffsetRing]:
     """Yield all rings of a tree, inner ones before the ring around them."""
     for ring in rings:
         yield from depth_first(ring.inner)
@@ -68,9 +68,9 @@ class _Clip:
     rim: tuple[Floats, ...]
 
 
-def _ring(piece: Region, step: float, clip: _Clip | None) -> Ring:
+def _ring(piece: Region, step: float, clip: _Clip | None) -> OffsetRing:
     inside = piece.offset(-step).split()
-    return Ring(piece, tuple(_ring(p, step, clip) for p in inside if _touches(p, clip)))
+    return OffsetRing(piece, tuple(_ring(p, step, clip) for p in inside if _touches(p, clip)))
 
 
 def _touches(piece: Region, clip: _Clip | None) -> bool:

@@ -16,13 +16,13 @@ from trunnion.model.tool import Tool
 from trunnion.plan.prismatic.drive import DriveLevel, PlaneDrive, foot_clearance
 from trunnion.progress import Progress
 from trunnion.settings import setting, settings
-from trunnion.toolpath.axis_region import Room, is_closed, parts_where
+from trunnion.toolpath.axis_region import AxisRegion, is_closed, parts_where
 from trunnion.toolpath.contract import Planned, strategy
 from trunnion.toolpath.motion.builder import PathBuilder
 from trunnion.toolpath.motion.easing import eased_finish
 from trunnion.toolpath.motion.engagement import eased_corner
 from trunnion.toolpath.motion.order import nearest_first
-from trunnion.toolpath.offsetting.contour import Approach, cut_open, cut_parts
+from trunnion.toolpath.offsetting.contour import ContourApproach, cut_open, cut_parts
 from trunnion.toolpath.offsetting.levels import fillet_steps, steps_down
 from trunnion.toolpath.offsetting.rings import depth_first, ring_tree, safe_step
 from trunnion.toolpath.stock.heightfield import PlanningStock
@@ -98,7 +98,7 @@ def corner(
 ) -> Planned:
     """Return the motions that clear what a cutter of `drive.earlier_radius` left in the corners, and what this one leaves."""
     builder = PathBuilder(tool, data, stock, setup, settings.safety)
-    approach = Approach(
+    approach = ContourApproach(
         radius=settings.lead_radius, overlap=0.0, ramp=math.radians(settings.ramp_angle)
     )
     step = safe_step(tool, data.width)
@@ -110,7 +110,7 @@ def corner(
         above = heights[-1].z if heights else above
         rests = _rests(drive, level).split()
         near = _reaching(rests, tool)
-        rooms: dict[float, tuple[Room, tuple[Curve, ...]]] = {}
+        rooms: dict[float, tuple[AxisRegion, tuple[Curve, ...]]] = {}
         for rest in nearest_first(
             rests, lambda: builder.here, lambda r, p: abs(float(r.signed_distance(p)[0]))
         ):
@@ -185,9 +185,9 @@ def _reaching(rests: tuple[Region, ...], tool: Tool) -> Region:
 
 def _passes(
     level: DriveLevel, distance: float, step: float, near: Region, *, mitred: bool
-) -> tuple[Room, tuple[Curve, ...]]:
+) -> tuple[AxisRegion, tuple[Curve, ...]]:
     """Return the room and the rims of its rings that come near a rest, the innermost first."""
-    room = Room.of(level.boundary, distance, mitred=mitred and is_closed(level))
+    room = AxisRegion.of(level.boundary, distance, mitred=mitred and is_closed(level))
     if not room.region:
         return room, ()
     return room, tuple(
@@ -214,7 +214,7 @@ def _left(
     if not rests:
         return []
     distance = tool.radius + drive.wall_allowance
-    room = Room.of(level.boundary, distance)
+    room = AxisRegion.of(level.boundary, distance)
     rest = Region(tuple(p for r in rests for p in r.pieces))
     if not room.region:
         return [

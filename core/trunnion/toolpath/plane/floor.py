@@ -20,7 +20,7 @@ from trunnion.toolpath.contract import Planned, strategy
 from trunnion.toolpath.motion.builder import PathBuilder
 from trunnion.toolpath.motion.easing import eased_finish
 from trunnion.toolpath.motion.engagement import floor_leftovers
-from trunnion.toolpath.offsetting.area_clearing import Layer, Manner, clear
+from trunnion.toolpath.offsetting.area_clearing import ClearingLayer, ClearingParameters, clear
 from trunnion.toolpath.offsetting.passes import passes_over
 from trunnion.toolpath.offsetting.rings import safe_step
 from trunnion.toolpath.stock.heightfield import PlanningStock
@@ -85,7 +85,7 @@ def floor(
 ) -> Planned:
     """Return the motions that finish every floor of the drive, from the highest down, and what they leave."""
     builder = PathBuilder(tool, data, stock, setup, settings.safety)
-    manner = Manner(
+    manner = ClearingParameters(
         step=safe_step(tool, data.width),
         ramp=math.radians(settings.ramp_angle),
         slot=settings.slot_feed,
@@ -117,7 +117,7 @@ def floor(
             continue
         clear(
             builder,
-            Layer(z=each.z, rings=passes.rings, room=passes.room, clip=passes.clip),
+            ClearingLayer(z=each.z, rings=passes.rings, room=passes.room, clip=passes.clip),
             manner,
             progress,
         )

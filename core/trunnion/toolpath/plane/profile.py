@@ -16,12 +16,12 @@ from trunnion.model.tool import Tool
 from trunnion.plan.prismatic.drive import PlaneDrive, WallGuide
 from trunnion.progress import Progress
 from trunnion.settings import setting, settings
-from trunnion.toolpath.axis_region import Room, level_at, parts_where
+from trunnion.toolpath.axis_region import AxisRegion, level_at, parts_where
 from trunnion.toolpath.contract import Planned, strategy
 from trunnion.toolpath.motion.builder import PathBuilder
 from trunnion.toolpath.motion.engagement import contour_leftovers, inner_corner
 from trunnion.toolpath.offsetting.contour import (
-    Approach,
+    ContourApproach,
     contour_parts,
     cut_parts,
     length_out_of_reach,
@@ -127,7 +127,7 @@ def profile_rough(
 ) -> Planned:
     """Return the motions that take the blank's margin off the profile by layers, in rings from outside in."""
     builder = PathBuilder(tool, data, stock, setup, settings.safety)
-    approach = Approach(
+    approach = ContourApproach(
         radius=settings.lead_radius,
         overlap=settings.overlap,
         ramp=math.radians(settings.ramp_angle),
@@ -143,7 +143,7 @@ def profile_rough(
             tool.radius + drive.wall_allowance + n * min(data.width, margin / count)
             for n in reversed(range(count))
         ]
-        rooms: dict[tuple[int, float], tuple[Room, list[Curve]]] = {}
+        rooms: dict[tuple[int, float], tuple[AxisRegion, list[Curve]]] = {}
         for z in steps_down(max(guide.top, drive.stock_top), guide.bottom, data.depth):
             boundary = level_at(drive, z).boundary
             for distance in distances:
@@ -153,7 +153,7 @@ def profile_rough(
                 )
                 key = (id(boundary), distance)
                 if key not in rooms:
-                    room = Room.of(boundary, distance)
+                    room = AxisRegion.of(boundary, distance)
                     rooms[key] = (
                         room,
                         _touching(contour_parts(room, guide.curve, distance), stock, tool.radius),
@@ -175,7 +175,7 @@ def profile_finish(
 ) -> Planned:
     """Return the motions that finish the profile in axial steps down to its bottom."""
     builder = PathBuilder(tool, data, stock, setup, settings.safety)
-    approach = Approach(
+    approach = ContourApproach(
         radius=settings.lead_radius,
         overlap=settings.overlap,
         ramp=math.radians(settings.ramp_angle),
@@ -189,7 +189,7 @@ def profile_finish(
                 (guide.top - z) / max(guide.top - guide.bottom, tolerance.SEW),
                 f"{drive.feature}: pass at {z:.3f}",
             )
-            room = Room.of(level_at(drive, z).boundary, distance)
+            room = AxisRegion.of(level_at(drive, z).boundary, distance)
             cut_parts(builder, contour_parts(room, guide.curve, distance), z, room, approach)
         if tool.corner_radius > 0.0:
             findings.append(
@@ -242,7 +242,7 @@ def _touching(parts: list[Curve], stock: PlanningStock, radius: float) -> list[C
 
 def _left(drive: PlaneDrive, guide: WallGuide, tool: Tool, allowance: float) -> list[Finding]:
     distance, height = tool.radius + allowance, guide.top - guide.bottom
-    room = Room.of(level_at(drive, guide.bottom).boundary, distance)
+    room = AxisRegion.of(level_at(drive, guide.bottom).boundary, distance)
     if not room.region:
         return [
             error(

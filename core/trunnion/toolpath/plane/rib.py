@@ -13,11 +13,11 @@ from trunnion.model.tool import Tool
 from trunnion.plan.prismatic.drive import DriveLevel, PlaneDrive
 from trunnion.progress import Progress
 from trunnion.settings import setting, settings
-from trunnion.toolpath.axis_region import Room
+from trunnion.toolpath.axis_region import AxisRegion
 from trunnion.toolpath.contract import Planned, strategy
 from trunnion.toolpath.motion.builder import PathBuilder
 from trunnion.toolpath.motion.engagement import top_width
-from trunnion.toolpath.offsetting.area_clearing import Layer, Manner, clear
+from trunnion.toolpath.offsetting.area_clearing import ClearingLayer, ClearingParameters, clear
 from trunnion.toolpath.offsetting.levels import steps_down
 from trunnion.toolpath.offsetting.rings import ring_tree, safe_step
 from trunnion.toolpath.stock.heightfield import PlanningStock
@@ -87,7 +87,7 @@ def rib_top(
 ) -> Planned:
     """Return the motions that bring a top to its height by layers, and what of it the cutter leaves."""
     builder = PathBuilder(tool, data, stock, setup, settings.safety)
-    manner = Manner(
+    manner = ClearingParameters(
         step=safe_step(tool, data.width),
         ramp=math.radians(settings.ramp_angle),
         slot=settings.slot_feed * data.slot_share,
@@ -95,7 +95,7 @@ def rib_top(
     findings: list[Finding] = []
     above = max(drive.top, drive.stock_top)
     for level in drive.levels:
-        room = Room.of(level.boundary, tool.radius + settings.wall_distance)
+        room = AxisRegion.of(level.boundary, tool.radius + settings.wall_distance)
         over = _over(level, room, tool, settings.overhang)
         if not over:
             findings.append(
@@ -114,7 +114,9 @@ def rib_top(
                 f"{drive.feature}: layer at {z:.3f}",
             )
             if not stock.is_clear(z + tolerance.COINCIDENT, level.wanted):
-                clear(builder, Layer(z=z, rings=rings, room=room, top=None), manner, progress)
+                clear(
+                    builder, ClearingLayer(z=z, rings=rings, room=room, top=None), manner, progress
+                )
             above = z
         left = level.wanted.minus(over.offset(_flat(tool) + tolerance.SEW)).area
         if left > SMALLEST_LEFTOVER:
@@ -133,7 +135,7 @@ def _flat(tool: Tool) -> float:
     return max(tool.radius - tool.corner_radius, tolerance.SLIVER)
 
 
-def _over(level: DriveLevel, room: Room, tool: Tool, overhang: float) -> Region:
+def _over(level: DriveLevel, room: AxisRegion, tool: Tool, overhang: float) -> Region:
     """Return where the axis goes: over the top and a little more, and beside it where a wall keeps the axis away from its flares."""
     near = level.wanted.offset(overhang) if overhang > 0.0 else level.wanted
     over = room.region.intersect(near)

@@ -17,9 +17,9 @@ from trunnion.toolpath.contract import Planned, strategy
 from trunnion.toolpath.motion.builder import PathBuilder
 from trunnion.toolpath.motion.easing import eased
 from trunnion.toolpath.motion.engagement import full_width
-from trunnion.toolpath.offsetting.area_clearing import Layer, Manner, clear
+from trunnion.toolpath.offsetting.area_clearing import ClearingLayer, ClearingParameters, clear
 from trunnion.toolpath.offsetting.levels import layers
-from trunnion.toolpath.offsetting.passes import Passes, passes_over
+from trunnion.toolpath.offsetting.passes import ClearingPasses, passes_over
 from trunnion.toolpath.offsetting.rings import safe_step
 from trunnion.toolpath.stock.heightfield import PlanningStock
 
@@ -75,7 +75,7 @@ def rough(
 ) -> Planned:
     """Return the motions that clear every band of the drive layer by layer down to the floors' allowance, and what the cutter leaves."""
     builder = PathBuilder(tool, data, stock, setup, settings.safety)
-    manner = Manner(
+    manner = ClearingParameters(
         step=safe_step(tool, data.width, RIDGE),
         ramp=math.radians(settings.ramp_angle),
         slot=settings.slot_feed * data.slot_share,
@@ -87,7 +87,7 @@ def rough(
         heights = layers(
             above, level.bottom, data.depth, _horizontals(drive, n), drive.floor_allowance
         )
-        made: dict[float, Passes] = {}
+        made: dict[float, ClearingPasses] = {}
         for z in heights:
             progress.at(
                 (drive.top - z) / max(drive.top - drive.bottom, tolerance.SEW),
@@ -108,7 +108,9 @@ def rough(
                 known = None if first or passes.clip is not None else above
                 clear(
                     builder,
-                    Layer(z=z, rings=passes.rings, room=passes.room, clip=passes.clip, top=known),
+                    ClearingLayer(
+                        z=z, rings=passes.rings, room=passes.room, clip=passes.clip, top=known
+                    ),
                     manner,
                     progress,
                 )

@@ -16,14 +16,14 @@ from trunnion.model.tool import Tool
 from trunnion.plan.prismatic.drive import Floor, PlaneDrive, WallGuide, foot_clearance
 from trunnion.progress import Progress
 from trunnion.settings import setting, settings
-from trunnion.toolpath.axis_region import Room, is_closed, level_at
+from trunnion.toolpath.axis_region import AxisRegion, is_closed, level_at
 from trunnion.toolpath.contract import Planned, strategy
 from trunnion.toolpath.motion.builder import PathBuilder
 from trunnion.toolpath.motion.easing import eased_finish
 from trunnion.toolpath.motion.engagement import eased_leftovers
-from trunnion.toolpath.offsetting.area_clearing import Layer, Manner, clear
+from trunnion.toolpath.offsetting.area_clearing import ClearingLayer, ClearingParameters, clear
 from trunnion.toolpath.offsetting.contour import (
-    Approach,
+    ContourApproach,
     contour_parts,
     cut_parts,
     length_out_of_reach,
@@ -108,14 +108,14 @@ def wall(
 ) -> Planned:
     """Return the motions that finish every wall of the drive, and the lengths of wall that the cutter can't reach."""
     builder = PathBuilder(tool, data, stock, setup, settings.safety)
-    approach = Approach(
+    approach = ContourApproach(
         radius=settings.lead_radius,
         overlap=settings.overlap,
         ramp=math.radians(settings.ramp_angle),
         rounds=2 if settings.spring else 1,
     )
     findings: list[Finding] = []
-    rooms: dict[tuple[int, float, bool], Room] = {}
+    rooms: dict[tuple[int, float, bool], AxisRegion] = {}
     for n, guide in enumerate(drive.walls):
         found = False
         for z, extra in _heights(guide, tool, min(data.depth, tool.flute_length), settings.scallop):
@@ -152,7 +152,7 @@ def _cut_floor_rest(
     drive: PlaneDrive,
     each: Floor,
     tool: Tool,
-    approach: Approach,
+    approach: ContourApproach,
     progress: Progress,
 ) -> None:
     """Cut what a larger floor cutter left where it had no room: floor that neither it nor the wall passes have certainly reached."""
@@ -171,11 +171,11 @@ def _cut_floor_rest(
         tool.radius + drive.wall_allowance + foot_clearance(each.fillet, tool.corner_radius, 0.0)
     )
     level = level_at(drive, each.z)
-    room = Room.of(level.boundary, distance, mitred=each.fillet > 0.0 and is_closed(level))
+    room = AxisRegion.of(level.boundary, distance, mitred=each.fillet > 0.0 and is_closed(level))
     step = safe_step(tool, tool.radius)
     clip = rest.offset(step)
-    layer = Layer(z=each.z, rings=ring_tree(room.region, step, clip), room=room, clip=clip)
-    clear(builder, layer, Manner(step=step, ramp=approach.ramp, slot=1.0), progress)
+    layer = ClearingLayer(z=each.z, rings=ring_tree(room.region, step, clip), room=room, clip=clip)
+    clear(builder, layer, ClearingParameters(step=step, ramp=approach.ramp, slot=1.0), progress)
 
 
 def _clusters(places: Floats, apart: float) -> list[tuple[Floats, Floats]]:
@@ -205,15 +205,15 @@ def _heights(
 
 
 def _room(
-    rooms: dict[tuple[int, float, bool], Room],
+    rooms: dict[tuple[int, float, bool], AxisRegion],
     boundary: Region,
     distance: float,
     *,
     mitred: bool = False,
-) -> Room:
+) -> AxisRegion:
     key = (id(boundary), distance, mitred)
     if key not in rooms:
-        rooms[key] = Room.of(boundary, distance, mitred=mitred)
+        rooms[key] = AxisRegion.of(boundary, distance, mitred=mitred)
     return rooms[key]
 
 
@@ -222,7 +222,7 @@ def _left(
     guide: WallGuide,
     tool: Tool,
     found: bool,
-    rooms: dict[tuple[int, float, bool], Room],
+    rooms: dict[tuple[int, float, bool], AxisRegion],
 ) -> list[Finding]:
     height = guide.top - guide.bottom
     if not found:

@@ -80,7 +80,7 @@ class PlanningStock:
         return replace(made, heights=_fixed(made.heights), digest=cut)
 
     def working(self) -> PlanningStock:
-        """Return a copy that `lower` may change; its digest stays that of the stock it was taken from."""
+        """Return a copy that `zmap_cut` may change; its digest stays that of the stock it was taken from."""
         return replace(self, heights=self.heights.copy())
 
     def lower(self, path: Toolpath, tool: Tool, progress: Progress = QUIET) -> Floats:
@@ -90,7 +90,7 @@ class PlanningStock:
         radius, gone = tool.radius - error, np.empty(len(starts))
         for first in progress.each(range(0, len(starts), MOVES)):
             some = slice(first, first + MOVES)
-            heightfield.lower(
+            heightfield.zmap_cut(
                 self.heights,
                 self.corner[0],
                 self.corner[1],
@@ -108,7 +108,7 @@ class PlanningStock:
         """Return the greatest height that a disc may touch on its way from `start` to `end` (2,), or -inf over nothing."""
         a, b = np.asarray(start, dtype=np.float64)[:2], np.asarray(end, dtype=np.float64)[:2]
         return float(
-            heightfield.highest(
+            heightfield.zmap_highest(
                 self.heights, self.corner[0], self.corner[1], self.cell, a, b, radius
             )
         )

@@ -15,7 +15,7 @@ from trunnion.toolpath.contact_passes import choices
 from trunnion.toolpath.contact_passes.choices import TOO_SHALLOW, TOO_STEEP
 from trunnion.toolpath.contact_passes.fixed_axis import stood
 from trunnion.toolpath.contact_passes.fronts import scallop_passes
-from trunnion.toolpath.contact_passes.linking import Manner, linked
+from trunnion.toolpath.contact_passes.linking import LinkParameters, linked
 from trunnion.toolpath.contract import Planned, strategy
 from trunnion.toolpath.motion.engagement import surface_leftovers
 from trunnion.toolpath.stock.heightfield import PlanningStock
@@ -69,6 +69,8 @@ def constant(
     if inwards == (settings.direction == "climb"):
         passes = [p.reversed() for p in passes]
     stepover = stepover_on_plane(tool.corner_radius, drive.height)
-    manner = Manner(stepover=stepover, safety=settings.safety, lead_radius=settings.lead_radius)
+    manner = LinkParameters(
+        stepover=stepover, safety=settings.safety, lead_radius=settings.lead_radius
+    )
     path = linked(passes, drive, tool, data, stock, setup, manner, progress.part(0.8, 1.0))
     return Planned(path=path, findings=done.left(drive, tool, stepover))

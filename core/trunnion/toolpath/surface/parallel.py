@@ -16,7 +16,7 @@ import shapely
 from trunnion import tolerance
 from trunnion.findings import Finding, Refused, warning
 from trunnion.geometry.arrays import Bools, Floats, Ints
-from trunnion.geometry.dropping import DropSurface
+from trunnion.geometry.drop_surface import DropSurface
 from trunnion.geometry.sheet.skin import Skin
 from trunnion.model.operation import CuttingData
 from trunnion.model.setup import Setup
@@ -28,11 +28,11 @@ from trunnion.progress import Progress
 from trunnion.settings import setting, settings
 from trunnion.toolpath.contact_passes.axis_search import leaned_by
 from trunnion.toolpath.contact_passes.choices import TOO_SHALLOW, TOO_STEEP
-from trunnion.toolpath.contact_passes.linking import Manner, linked
-from trunnion.toolpath.contact_passes.overrun import Strip
+from trunnion.toolpath.contact_passes.linking import LinkParameters, linked
+from trunnion.toolpath.contact_passes.overrun import OverrunStrip
 from trunnion.toolpath.contact_passes.passes import UPRIGHT, Pass
 from trunnion.toolpath.contact_passes.spacing import (
-    Places,
+    FacetSlopes,
     marched,
     places_of,
     strips_over,
@@ -182,7 +182,7 @@ def parallel(
         settings.chord,
         progress.part(0.6, 0.7),
     )
-    manner = Manner(
+    manner = LinkParameters(
         stepover=planes.widest,
         safety=settings.safety,
         lead_radius=settings.lead_radius,
@@ -211,7 +211,7 @@ class _Planes:
     triangles: Ints
 
 
-def _planes(places: Places, tool: Tool, height: float, settings: ParallelSettings) -> _Planes:
+def _planes(places: FacetSlopes, tool: Tool, height: float, settings: ParallelSettings) -> _Planes:
     """Return the planes of the direction that is asked for, or of the better one of both sides of the box around the area."""
     if settings.direction == "angle":
         return _laid(places, tool, height, math.radians(settings.angle), settings.stepover)
@@ -233,7 +233,7 @@ def _planes(places: Places, tool: Tool, height: float, settings: ParallelSetting
     )
 
 
-def _laid(places: Places, tool: Tool, height: float, angle: float, stepover: float) -> _Planes:
+def _laid(places: FacetSlopes, tool: Tool, height: float, angle: float, stepover: float) -> _Planes:
     """Return the planes at an angle (radians), from one side of the area to the other, as far apart as any place near both allows."""
     along, across = (
         np.array([math.cos(angle), math.sin(angle)]),
@@ -282,7 +282,7 @@ def _passes(
     on_area = np.zeros(len(drive.skin.triangles), dtype=bool)
     on_area[planes.triangles] = True
     area = DropSurface.of(drive.skin.points, drive.skin.triangles[on_area])
-    strip = Strip.of(drive.skin, drive.faces, planes.beyond)
+    strip = OverrunStrip.of(drive.skin, drive.faces, planes.beyond)
 
     def asked(plane: Ints, run: Floats, share: Progress) -> tuple[Bools, Bools]:
         plan = run[:, None] * planes.along + planes.at[plane, None] * planes.across
@@ -335,7 +335,7 @@ def _facing(skin: Skin, facet: Ints) -> Floats:
     )
 
 
-def _too_steep(drive: SurfaceDrive, level: Places) -> tuple[Finding, ...]:
+def _too_steep(drive: SurfaceDrive, level: FacetSlopes) -> tuple[Finding, ...]:
     """Return a finding of the area that no level place stands for."""
     a, b, c = np.moveaxis(drive.skin.points[drive.skin.triangles[drive.skin.of(drive.faces)]], 1, 0)
     area = float(0.5 * np.linalg.norm(np.cross(b - a, c - a), axis=1).sum() - level.area.sum())

@@ -24,10 +24,10 @@ from trunnion.plan.freeform.drive import SurfaceDrive
 from trunnion.plan.freeform.estimate.scallop import stepover_on_plane
 from trunnion.progress import QUIET, Progress
 from trunnion.settings import setting, settings
-from trunnion.toolpath.contact_passes.linking import Manner, linked
+from trunnion.toolpath.contact_passes.linking import LinkParameters, linked
 from trunnion.toolpath.contact_passes.passes import UPRIGHT, Pass
 from trunnion.toolpath.contact_passes.spacing import places_of
-from trunnion.toolpath.contact_passes.tipgrid import grid_around, spread
+from trunnion.toolpath.contact_passes.tip_grid import grid_around, spread
 from trunnion.toolpath.contact_passes.tracing import follow
 from trunnion.toolpath.contract import Planned, strategy
 from trunnion.toolpath.motion.engagement import surface_leftovers
@@ -146,7 +146,7 @@ def pencil(
         for line in _beside(valley, stepover, _sides(valley, stepover, ground, tool, settings))
     ]
     passes = _passes(lines, ground, settings.chord, progress.part(0.5, 0.8))
-    manner = Manner(
+    manner = LinkParameters(
         stepover=stepover,
         safety=settings.safety,
         lead_radius=settings.lead_radius,

@@ -18,18 +18,18 @@ from trunnion import tolerance
 from trunnion.findings import BadInput, Finding, Refused, info, warning
 from trunnion.geometry.arrays import Bools, Floats
 from trunnion.geometry.frame import Frame
-from trunnion.geometry.kernels.drop import ROUND, C
+from trunnion.geometry.kernels.drop_cutter import ROUND, C
 from trunnion.model.operation import CuttingData
 from trunnion.model.setup import Setup
 from trunnion.model.tool import Tool
 from trunnion.model.toolpath import Mark, Toolpath
-from trunnion.plan.clearance import Asker
+from trunnion.plan.clearance import ClearanceQuery
 from trunnion.plan.freeform.cutters.cutter import lower_side, tip_at, touching
 from trunnion.plan.freeform.drive import SurfaceDrive
 from trunnion.plan.freeform.estimate.scallop import stepover_on_plane
 from trunnion.progress import QUIET, Progress
 from trunnion.settings import setting, settings
-from trunnion.toolpath.contact_passes.axis import (
+from trunnion.toolpath.contact_passes.axis_fields import (
     AxisField,
     fixed,
     from_point,
@@ -39,15 +39,15 @@ from trunnion.toolpath.contact_passes.axis import (
 from trunnion.toolpath.contact_passes.axis_search import (
     STEP,
     AxisSearch,
-    Course,
+    FreeAxes,
     LeanLimits,
     free_axes,
     roomy,
 )
 from trunnion.toolpath.contact_passes.contacts import Contacts, between, slerp
-from trunnion.toolpath.contact_passes.flowlines import Crowded, Flow, flow_lines
+from trunnion.toolpath.contact_passes.flow_lines import DenseFlowLines, FlowParameters, flow_lines
 from trunnion.toolpath.contact_passes.fronts import scallop_passes
-from trunnion.toolpath.contact_passes.linking import Manner, linked
+from trunnion.toolpath.contact_passes.linking import LinkParameters, linked
 from trunnion.toolpath.contact_passes.passes import Pass
 from trunnion.toolpath.contract import Planned, leaning_axis, strategy
 from trunnion.toolpath.motion.engagement import surface_leftovers
@@ -175,7 +175,7 @@ class PointSettings:
 
 
 @dataclass(frozen=True, slots=True, eq=False, kw_only=True)
-class Milled:
+class PointMilledPasses:
     """Passes of a leaning cutter, the stretches of the contact ways that had to be left, and their share of the ways."""
 
     passes: tuple[Pass, ...]
@@ -242,14 +242,16 @@ def point(
         drive.allowance,
         progress.part(0.7, 0.9),
     )
-    done = Milled(
+    done = PointMilledPasses(
         passes=(*done.passes, *tight.passes), rest=tight.rest, left=done.left * tight.left
     )
     stepover = stepover_on_plane(max(ball.radius, drive.height), drive.height)
     findings = _left(done, drive, tool)
     if not done.passes:
         return Planned(findings=(*told, *findings))
-    manner = Manner(stepover=stepover, safety=settings.safety, lead_radius=settings.lead_radius)
+    manner = LinkParameters(
+        stepover=stepover, safety=settings.safety, lead_radius=settings.lead_radius
+    )
     path, met = _linked(done, drive, tool, data, stock, setup, manner, ask, progress.part(0.9, 1.0))
     return Planned(path=path, findings=(*told, *findings, *met, *_low(path, drive, tool)))
 
@@ -261,14 +263,14 @@ def _ways(
     a finding that says so."""
     told: tuple[Finding, ...] = ()
     if settings.pattern == "flow":
-        flow = Flow(
+        flow = FlowParameters(
             first_guide=settings.first_guide,
             second_guide=settings.second_guide,
             spiral=settings.spiral,
         )
         try:
             return flow_lines(drive, ball, flow, progress), told
-        except Crowded as reason:
+        except DenseFlowLines as reason:
             told = (
                 info(
                     "point.pattern",
@@ -287,18 +289,18 @@ def milled(
     ways: Sequence[Contacts],
     tool: Tool,
     field: AxisField,
-    ask: Asker | None,
+    ask: ClearanceQuery | None,
     limits: LeanLimits,
     chord: float,
     allowance: float = 0.0,
     progress: Progress = QUIET,
-) -> Milled:
+) -> PointMilledPasses:
     """Return the passes of a cutter over contact passes, its axis as near to a field as `ask` and the limits let it.
 
     The cutter stays within `chord` mm of where it touches, thicker by the allowance. Moves that touch what they must not are left out.
     """
     if not ways:
-        return Milled(passes=(), rest=(), left=0.0)
+        return PointMilledPasses(passes=(), rest=(), left=0.0)
     search = AxisSearch(ways, field, tool, ask, limits, allowance)
     courses = search.courses(progress.part(0.0, 0.5))
     found: list[list[tuple[Floats, Pass]]] = [[] for _ in ways]
@@ -326,7 +328,7 @@ def milled(
         for way, some in zip(ways, gaps, strict=True)
         for a, b in some
     )
-    return Milled(
+    return PointMilledPasses(
         passes=tuple(one for pieces in found for _, one in pieces),
         rest=rest,
         left=left / whole if whole > 0.0 else 0.0,
@@ -337,7 +339,7 @@ def rest_of(
     ways: Sequence[Contacts],
     earlier: Tool,
     field: AxisField,
-    ask: Asker,
+    ask: ClearanceQuery,
     limits: LeanLimits,
     allowance: float = 0.0,
     progress: Progress = QUIET,
@@ -364,7 +366,7 @@ def rest_of(
 
 
 def located(
-    way: Contacts, run: Course, tool: Tool, chord: float, allowance: float = 0.0
+    way: Contacts, run: FreeAxes, tool: Tool, chord: float, allowance: float = 0.0
 ) -> tuple[Floats, Pass]:
     """Return where a cutter stands along a run of a contact pass: the places (k,) of the way and the pass itself."""
     radius, feed = max(tool.corner_radius, 0.25 * tool.radius), way.feed
@@ -458,14 +460,14 @@ def field_of(chosen: PointSettings, frame: Frame) -> AxisField:
 
 
 def _linked(
-    done: Milled,
+    done: PointMilledPasses,
     drive: SurfaceDrive,
     tool: Tool,
     data: CuttingData,
     stock: PlanningStock,
     setup: Setup,
-    manner: Manner,
-    ask: Asker,
+    manner: LinkParameters,
+    ask: ClearanceQuery,
     progress: Progress,
 ) -> tuple[Toolpath, tuple[Finding, ...]]:
     """Return the path through all passes; leads that touch something are tried shorter, what touches in the end is a finding."""
@@ -525,7 +527,7 @@ def _numbers(text: str) -> list[float]:
 
 
 def _standing(
-    way: Contacts, feed: Floats, run: Course, tool: Tool, allowance: float, place: Floats
+    way: Contacts, feed: Floats, run: FreeAxes, tool: Tool, allowance: float, place: Floats
 ) -> tuple[Floats, Floats, Floats]:
     """Return the normals, axes and tips (k, 3) at places (k,) of a run."""
     point, normal = between(way.point, way.normal, feed, place)
@@ -534,7 +536,7 @@ def _standing(
 
 
 def _cut(
-    runs: Sequence[tuple[Floats, Pass]], ask: Asker | None
+    runs: Sequence[tuple[Floats, Pass]], ask: ClearanceQuery | None
 ) -> tuple[list[tuple[Floats, Pass]], Floats]:
     """Return the stretches of runs whose moves are clear, and the places where a move is not."""
     if ask is None:
@@ -569,7 +571,7 @@ def _run(way: Contacts, start: float, end: float) -> float:
     return float(np.diff(np.interp([start, end], np.arange(len(way)), length))[0])
 
 
-def _left(done: Milled, drive: SurfaceDrive, tool: Tool) -> tuple[Finding, ...]:
+def _left(done: PointMilledPasses, drive: SurfaceDrive, tool: Tool) -> tuple[Finding, ...]:
     corners = drive.skin.points[drive.skin.triangles[drive.skin.of(drive.faces)]]
     across = np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0])
     area = done.left * 0.5 * float(np.linalg.norm(across, axis=1).sum())

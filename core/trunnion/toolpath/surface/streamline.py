@@ -14,8 +14,8 @@ from trunnion.settings import setting, settings
 from trunnion.toolpath.contact_passes import choices
 from trunnion.toolpath.contact_passes.choices import TOO_STEEP
 from trunnion.toolpath.contact_passes.fixed_axis import stood
-from trunnion.toolpath.contact_passes.flowlines import Flow, flow_lines
-from trunnion.toolpath.contact_passes.linking import Manner, linked
+from trunnion.toolpath.contact_passes.flow_lines import FlowParameters, flow_lines
+from trunnion.toolpath.contact_passes.linking import LinkParameters, linked
 from trunnion.toolpath.contract import Planned, strategy
 from trunnion.toolpath.motion.engagement import surface_leftovers
 from trunnion.toolpath.stock.heightfield import PlanningStock
@@ -64,7 +64,7 @@ def streamline(
     progress: Progress = QUIET,
 ) -> Planned:
     """Return the motions of an upright tool along flow lines over the drive's faces, and what it leaves."""
-    flow = Flow(
+    flow = FlowParameters(
         first_guide=settings.first_guide,
         second_guide=settings.second_guide,
         spiral=settings.spiral,
@@ -76,7 +76,7 @@ def streamline(
         ways, drive, tool, settings.chord, math.radians(settings.steepest), progress.part(0.4, 0.8)
     )
     stepover = stepover_on_plane(tool.corner_radius, drive.height)
-    manner = Manner(
+    manner = LinkParameters(
         stepover=stepover,
         safety=settings.safety,
         lead_radius=settings.lead_radius,

@@ -17,7 +17,7 @@ from scipy.spatial import cKDTree
 from trunnion import tolerance
 from trunnion.findings import Finding, Refused, warning
 from trunnion.geometry.arrays import Bools, Floats, Ints
-from trunnion.geometry.kernels.drop import radius_at
+from trunnion.geometry.kernels.drop_cutter import radius_at
 from trunnion.geometry.sheet.contours import SheetLine, whole_levels
 from trunnion.model.operation import CuttingData
 from trunnion.model.setup import Setup
@@ -27,10 +27,10 @@ from trunnion.plan.freeform.drive import SurfaceDrive
 from trunnion.progress import Progress
 from trunnion.settings import setting, settings
 from trunnion.toolpath.contact_passes.choices import TOO_SHALLOW, TOO_STEEP
-from trunnion.toolpath.contact_passes.linking import Manner, linked
+from trunnion.toolpath.contact_passes.linking import LinkParameters, linked
 from trunnion.toolpath.contact_passes.passes import UPRIGHT, Pass
-from trunnion.toolpath.contact_passes.spacing import Places, level_spacing, marched, places_of
-from trunnion.toolpath.contact_passes.tipgrid import grid_around, spread
+from trunnion.toolpath.contact_passes.spacing import FacetSlopes, level_spacing, marched, places_of
+from trunnion.toolpath.contact_passes.tip_grid import grid_around, spread
 from trunnion.toolpath.contact_passes.tracing import thinned
 from trunnion.toolpath.contract import Planned, strategy
 from trunnion.toolpath.motion.engagement import surface_leftovers
@@ -168,7 +168,7 @@ def waterline(
         )
         return Planned(findings=(*found, nothing))
     step = float(np.abs(np.diff(levels)).max(initial=tool.radius))
-    manner = Manner(
+    manner = LinkParameters(
         stepover=max(step, tool.radius),
         safety=settings.safety,
         lead_radius=settings.lead_radius,
@@ -182,7 +182,7 @@ def waterline(
     )
 
 
-def _left(drive: SurfaceDrive, steep: Places) -> tuple[Finding, ...]:
+def _left(drive: SurfaceDrive, steep: FacetSlopes) -> tuple[Finding, ...]:
     """Return a finding of the area that no steep place stands for."""
     a, b, c = np.moveaxis(drive.skin.points[drive.skin.triangles[drive.skin.of(drive.faces)]], 1, 0)
     area = float(0.5 * np.linalg.norm(np.cross(b - a, c - a), axis=1).sum() - steep.area.sum())
@@ -198,7 +198,7 @@ def _left(drive: SurfaceDrive, steep: Places) -> tuple[Finding, ...]:
     )
 
 
-def _feet(places: Places, drive: SurfaceDrive, tool: Tool, progress: Progress) -> Floats:
+def _feet(places: FacetSlopes, drive: SurfaceDrive, tool: Tool, progress: Progress) -> Floats:
     """Return how low (m,) the tip comes that touches each triangle: lower than it only where the foot of an upright one stops it."""
     low, high = places.tips[:, :, 2].min(axis=1), places.tips[:, :, 2].max(axis=1)
     upright = np.flatnonzero(places.normal[:, 2] <= -UPWARD)
@@ -215,7 +215,7 @@ def _feet(places: Places, drive: SurfaceDrive, tool: Tool, progress: Progress) -
     return low
 
 
-def _levels(places: Places, feet: Floats, tool: Tool, height: float, step: float) -> Floats:
+def _levels(places: FacetSlopes, feet: Floats, tool: Tool, height: float, step: float) -> Floats:
     """Return the heights of the tip (p,) upwards, from the lowest place that is touched; `feet` is how low the tip comes (m,)."""
     low, high = places.tips[:, :, 2].min(axis=1), places.tips[:, :, 2].max(axis=1)
     spacing = np.full(len(low), step) if step > 0.0 else level_spacing(places, tool, height)
@@ -308,7 +308,7 @@ class _Loop:
 
 def _loops(
     levels: Floats,
-    places: Places,
+    places: FacetSlopes,
     drive: SurfaceDrive,
     tool: Tool,
     settings: WaterlineSettings,

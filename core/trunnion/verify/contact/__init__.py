@@ -21,9 +21,9 @@ from trunnion.verify.contact.facets import FacetContact
 from trunnion.verify.contact.grid import Grid as Grid
 from trunnion.verify.contact.grid import grid_of as grid_of
 from trunnion.verify.contact.obstacles import Obstacles as Obstacles
+from trunnion.verify.contact.penetration import Penetration
 from trunnion.verify.contact.strips import StripContact
 from trunnion.verify.contact.strips import guide_points as guide_points
-from trunnion.verify.contact.touch import Touch
 from trunnion.verify.motion import Moves, poses_of, upright_axes
 
 LEANING_COST = 50.0
@@ -79,7 +79,7 @@ class PartContact:
 
     def along(self, moves: Moves, progress: Progress = QUIET, threads: int = 0) -> Contact:
         """Return how deep every move of a program enters part and fixtures, measured on `threads` threads (0: one a core)."""
-        found, rows = Touch.none(len(moves), len(self.surfaces.tag)), np.arange(len(moves))
+        found, rows = Penetration.none(len(moves), len(self.surfaces.tag)), np.arange(len(moves))
         engines = [*self._engines(moves), *([(self._fixtures, rows)] if self._fixtures else [])]
         cost = np.cumsum(
             [
@@ -90,7 +90,7 @@ class PartContact:
                 ),
             ]
         )
-        fixed = Touch.none(len(moves), 0)
+        fixed = Penetration.none(len(moves), 0)
         for k, (engine, some) in enumerate(engines):
             touch = engine.along(
                 moves,

@@ -19,11 +19,11 @@ from trunnion.model.tool import Tool
 from trunnion.part.shape.facets import Facets
 from trunnion.progress import QUIET, Progress
 from trunnion.verify.contact.obstacles import Obstacles
-from trunnion.verify.contact.touch import Touch, deepen
+from trunnion.verify.contact.penetration import Penetration, deepen
 from trunnion.verify.cutter import bodies_of_one
 from trunnion.verify.kernels import facets as kernel
-from trunnion.verify.kernels import reach
-from trunnion.verify.kernels.tree import build_tree
+from trunnion.verify.kernels import pose_search
+from trunnion.verify.kernels.bvh import build_bvh
 from trunnion.verify.motion import Moves
 from trunnion.verify.threads import in_parallel
 
@@ -38,8 +38,8 @@ LEAF = 4
 
 
 @dataclass(frozen=True, slots=True, eq=False, kw_only=True)
-class Tree:
-    """Triangles in the order of the leaves of a tree of boxes, in preorder; `kernels/tree.py` names the columns."""
+class FacetTree:
+    """Triangles in the order of the leaves of a tree of boxes, in preorder; `kernels/bvh.py` names the columns."""
 
     boxes: Floats
     skip: Ints
@@ -50,7 +50,7 @@ class Tree:
     face: Ints
 
 
-def tree_of(points: Floats, triangles: Ints, face: Ints) -> Tree:
+def tree_of(points: Floats, triangles: Ints, face: Ints) -> FacetTree:
     """Return the tree over triangles (t, 3) of points (v, 3), each with the row of its face (t,)."""
     corners = points[triangles]
     t = len(corners)
@@ -61,7 +61,7 @@ def tree_of(points: Floats, triangles: Ints, face: Ints) -> Tree:
         np.zeros(2 * t, np.int64),
     )
     count = (
-        build_tree(
+        build_bvh(
             corners.min(axis=1),
             corners.max(axis=1),
             face,
@@ -82,7 +82,7 @@ def tree_of(points: Floats, triangles: Ints, face: Ints) -> Tree:
     normals = np.where(
         size > 0.0, across / np.where(size > 0.0, size, 1.0), np.array([0.0, 0.0, 1.0])
     )
-    return Tree(
+    return FacetTree(
         boxes=boxes[:count].copy(),
         skip=skip[:count].copy(),
         leaves=leaves[:count].copy(),
@@ -100,11 +100,11 @@ class FacetContact:
         self.facets = facets
 
     @cached_property
-    def tree(self) -> Tree:
+    def tree(self) -> FacetTree:
         """The tree over the triangles, built when first asked for."""
         return tree_of(self.facets.points, self.facets.triangles, self.facets.face)
 
-    def _ready(self, progress: Progress) -> Tree:
+    def _ready(self, progress: Progress) -> FacetTree:
         """Return the tree, with looks at progress while it is built."""
         if "tree" not in self.__dict__:
             progress.aside(lambda _: self.tree)
@@ -112,7 +112,7 @@ class FacetContact:
 
     def along(
         self, moves: Moves, rows: Ints, progress: Progress = QUIET, threads: int = 0
-    ) -> Touch:
+    ) -> Penetration:
         """Return how deep the moves of some rows (k,) enter the faces, whichever way the tool stands."""
         return self._measure(moves, rows, progress, threads)
 
@@ -139,7 +139,7 @@ class FacetContact:
         tree, bodies, found = self._ready(progress), bodies_of_one(tool), np.zeros(len(tips), bool)
 
         def some(first: int, last: int) -> None:
-            reach.clear_loop(
+            pose_search.pose_search_loop(
                 first,
                 last,
                 tips,
@@ -166,11 +166,11 @@ class FacetContact:
 
     def _measure(
         self, moves: Moves, rows: Ints, progress: Progress, threads: int, settle: float = np.inf
-    ) -> Touch:
+    ) -> Penetration:
         tree, bodies, k, f = self._ready(progress), moves.bodies, len(rows), len(self.facets.tag)
         bound = np.where(moves.turning[rows], tolerance.TURNING_BOUND, tolerance.CONTACT_BOUND)
         enough = np.full(k, settle) if np.isfinite(settle) else bound
-        touch = Touch(
+        touch = Penetration(
             depth=np.full((k, 2), -np.inf),
             face=np.full((k, 2), -1),
             place=np.full((k, 2, 3), np.nan),
@@ -183,7 +183,7 @@ class FacetContact:
 
         def work(first: int, last: int) -> None:
             face_depth, face_move = np.full((f, 2), -np.inf), np.full((f, 2), -1)
-            kernel.contact_loop(
+            kernel.triangle_contact_loop(
                 int(starts[first]),
                 int(starts[last]),
                 rows,

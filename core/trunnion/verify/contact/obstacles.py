@@ -14,7 +14,7 @@ from trunnion import tolerance
 from trunnion.geometry.arrays import Bools, Floats, Ints
 from trunnion.model.tool import Tool
 from trunnion.verify.cutter import bodies_of_one
-from trunnion.verify.kernels import reach as kernel
+from trunnion.verify.kernels import pose_search as kernel
 
 KEPT = 24
 """Obstacles that are remembered at a place, those that stopped a tool last: a pit is closed by about so many from all sides."""
@@ -43,7 +43,7 @@ class Obstacles:
     def stop(self, tool: Tool, tips: Floats, axes: Floats, rows: Ints, allowed: float) -> Bools:
         """Say for poses (n, 3) of a tool, each of one of the places, whether what is known there is deeper in the tool than allowed."""
         bodies, stopped = bodies_of_one(tool), np.zeros(len(tips), bool)
-        kernel.known_loop(
+        kernel.blocked_by_known_loop(
             tips,
             axes,
             rows,
@@ -58,4 +58,4 @@ class Obstacles:
 
     def add(self, found: Floats, rows: Ints) -> None:
         """Remember what stopped poses, each of one of the places: points (n, 3), NaN where nothing did."""
-        kernel.remember_loop(found, rows, self.place, self.count)
+        kernel.insert_obstacle_loop(found, rows, self.place, self.count)

@@ -32,7 +32,7 @@ POSES = 512
 
 
 @dataclass(frozen=True, slots=True, eq=False, kw_only=True)
-class Room:
+class PoseClearance:
     """What each of k poses may do before its tool touches deeper than allowed; all of it is clear up to the figure given.
 
     clear (k,): whether the pose itself is; 0 and NaN elsewhere where it isn't. towards (k, n, 3): the n directions across the axis into
@@ -60,7 +60,7 @@ def room(
     longest: float | None = None,
     allowed: float = tolerance.GOUGE,
     progress: Progress = QUIET,
-) -> Room:
+) -> PoseClearance:
     """Return what poses of one tool may do: tips (k, 3), unit axes (k, 3), asked all together.
 
     Leaning turns about `pivot` (k, 3), the tip when not given; the first direction is the setup's x (y where the axis lies along x) seen
@@ -86,7 +86,7 @@ def room(
         np.full(k, most_plunge),
     )
     stickout = _stickouts(ask, tip, axis, tool.stickout + 50.0 if longest is None else longest)
-    return Room(clear=clear, towards=towards, lean=lean, plunge=plunge, stickout=stickout)
+    return PoseClearance(clear=clear, towards=towards, lean=lean, plunge=plunge, stickout=stickout)
 
 
 @dataclass(slots=True, eq=False)

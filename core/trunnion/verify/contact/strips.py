@@ -36,7 +36,7 @@ from trunnion.part.shape.surfaces import (
 )
 from trunnion.progress import QUIET, Progress
 from trunnion.verify.contact.grid import Grid, grid_of
-from trunnion.verify.contact.touch import Touch, deepen
+from trunnion.verify.contact.penetration import Penetration, deepen
 from trunnion.verify.kernels import strips as kernel
 from trunnion.verify.motion import Moves
 from trunnion.verify.threads import in_parallel
@@ -78,7 +78,7 @@ class StripContact:
 
     def along(
         self, moves: Moves, rows: Ints, progress: Progress = QUIET, threads: int = 0
-    ) -> Touch:
+    ) -> Penetration:
         """Return how deep the moves of some rows (k,) enter the faces; they must stand upright."""
         found = self._measure(moves, rows, progress, threads)
         return progress.aside(lambda _: self._touch(moves, rows, found))
@@ -90,13 +90,13 @@ class StripContact:
             allowed
         )
 
-    def _touch(self, moves: Moves, rows: Ints, found: _Measured) -> Touch:
+    def _touch(self, moves: Moves, rows: Ints, found: _Measured) -> Penetration:
         s, face, place = (
             self.surfaces,
             np.full((len(rows), 2), -1),
             np.full((len(rows), 2, 3), np.nan),
         )
-        kernel.places(
+        kernel.contact_points(
             rows,
             moves.row,
             found.which,
@@ -108,7 +108,7 @@ class StripContact:
             face,
             place,
         )
-        return Touch(
+        return Penetration(
             depth=found.depth,
             face=face,
             place=place,
@@ -127,7 +127,7 @@ class StripContact:
                 np.full_like(found.face_depth, -np.inf),
                 np.full_like(found.face_move, -1),
             )
-            kernel.contact_loop(
+            kernel.strip_contact_loop(
                 first,
                 last,
                 rows,

@@ -19,7 +19,7 @@ from trunnion.verify.cutter import Bodies
 from trunnion.verify.kernels import body
 from trunnion.verify.kernels import residual as kernel
 from trunnion.verify.kernels import strips as columns
-from trunnion.verify.kernels.residual import Flutes, Tree
+from trunnion.verify.kernels.residual import Flutes, SpanTree
 from trunnion.verify.motion import Moves
 from trunnion.verify.threads import in_parallel
 
@@ -38,7 +38,7 @@ FAR_BOUND = 0.01
 
 
 @dataclass(frozen=True, slots=True, eq=False, kw_only=True)
-class BlockLeft:
+class BlockResidual:
     """Material left by each of n moves on the samples whose nearest move it is: smallest, mean (by area) and largest (n,) mm, NaN without
     samples, and how many there are (n,)."""
 
@@ -59,7 +59,7 @@ class Sweep:
     cutter: Floats
     low: Floats
     grid: Grid
-    tree: Tree
+    tree: SpanTree
     flutes: Flutes
     near: float
     bound: float
@@ -99,7 +99,7 @@ class Sweep:
         order = progress.aside(lambda _: _by_cell(points, g), "Measuring material left")
 
         def some(first: int, last: int) -> None:
-            kernel.left_loop(
+            kernel.residual_loop(
                 first,
                 last,
                 points,
@@ -142,7 +142,7 @@ class Sweep:
         tree = progress.aside(lambda _: tree_of(self.moves, listed, self.flutes))
 
         def some(first: int, last: int) -> None:
-            kernel.far_loop(
+            kernel.residual_bvh_loop(
                 first,
                 last,
                 points,
@@ -162,7 +162,7 @@ class Sweep:
         points = np.ascontiguousarray(points, dtype=np.float64)
 
         def some(first: int, last: int) -> None:
-            kernel.cut_loop(
+            kernel.removed_loop(
                 first,
                 last,
                 points,
@@ -188,7 +188,7 @@ class Sweep:
         plan of it and all above. That others have is not asked."""
         out, g = np.zeros(len(points), bool), self.grid
         points = np.ascontiguousarray(points, dtype=np.float64)
-        kernel.around_loop(
+        kernel.surroundings_removed_loop(
             0,
             len(points),
             points,
@@ -214,7 +214,7 @@ def _by_cell(points: Floats, grid: Grid) -> Ints:
 
 def left_by_block(
     left: Floats, nearest: Ints, n_moves: int, area: Floats | None = None
-) -> BlockLeft:
+) -> BlockResidual:
     """Return the material left (s,) on samples, gathered by the move (s,) that came nearest to each (-1: none).
 
     area (s,) weighs the mean.
@@ -231,7 +231,7 @@ def left_by_block(
     count = np.bincount(rows, minlength=n_moves)
     total, sums = np.bincount(rows, weight, n_moves), np.bincount(rows, weight * value, n_moves)
     mean = np.divide(sums, total, out=np.full(n_moves, np.nan), where=total > 0.0)
-    return BlockLeft(
+    return BlockResidual(
         least=np.where(count, least, np.nan),
         mean=mean,
         most=np.where(count, most, np.nan),
@@ -331,7 +331,7 @@ def ways_of(moves: Moves, rows: Ints) -> Floats:
     return out
 
 
-def tree_of(moves: Moves, rows: Ints, flutes: Flutes) -> Tree:
+def tree_of(moves: Moves, rows: Ints, flutes: Flutes) -> SpanTree:
     """Return some moves as spans in trees of poses, one a tool."""
     way, tool = ways_of(moves, rows), moves.tool[rows]
     run = moves.length[rows] + way[:, kernel.TURN] * flutes.middle[tool]
@@ -349,8 +349,8 @@ def tree_of(moves: Moves, rows: Ints, flutes: Flutes) -> Tree:
         np.zeros((room, 5), np.int64),
         np.zeros(len(used), np.int64),
     )
-    n = kernel.grow_tree(pose, reach, np.append(start, len(of)), used, nodes, links, root)
-    return Tree(
+    n = kernel.build_pose_bvh(pose, reach, np.append(start, len(of)), used, nodes, links, root)
+    return SpanTree(
         way,
         rows,
         tool,

@@ -16,8 +16,8 @@ from trunnion.model.material import Machine
 from trunnion.model.tool import Tool
 from trunnion.model.verdict import Deviation, FaceProof
 from trunnion.progress import QUIET, Progress
+from trunnion.verify.finish.accessibility import Accessibility
 from trunnion.verify.finish.coverage import Samples, on_blank
-from trunnion.verify.finish.reach import Reach
 from trunnion.verify.judge.setups import SetupProof
 from trunnion.verify.judge.sides import Side
 from trunnion.verify.settings import ProofSettings
@@ -27,7 +27,7 @@ DECIMALS = 9
 
 
 @dataclass(frozen=True, slots=True, eq=False, kw_only=True)
-class Covered:
+class CoverageResult:
     """Coverage and what goes with it."""
 
     coverage: float
@@ -48,7 +48,7 @@ def covered(
     planned: Collection[int],
     progress: Progress = QUIET,
     machines: Sequence[Machine] = (),
-) -> Covered:
+) -> CoverageResult:
     """Return what all setups together finish of the part.
 
     `samples` are in the frame of the first side; `tags` (f,) those of the face rows; `tools` the catalogue's, tried from every side where
@@ -82,7 +82,7 @@ def covered(
         if reachable_area > 0.0 and proofs
         else 0.0
     )
-    return Covered(
+    return CoverageResult(
         coverage=coverage,
         reachable=of_reachable,
         faces=faces,
@@ -116,9 +116,9 @@ def _unreached(
             )
         )
         share = progress.part(k / len(sides), (k + 1) / len(sides))
-        reached = Reach(side.part, tools, settings.tolerance, machine, settings.threads).reached(
-            here, rows, share
-        )
+        reached = Accessibility(
+            side.part, tools, settings.tolerance, machine, settings.threads
+        ).reached(here, rows, share)
         rows = rows[~reached]
     return rows
 

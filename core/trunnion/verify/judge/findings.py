@@ -8,7 +8,7 @@ from trunnion.findings import Finding, error
 from trunnion.geometry.arrays import Floats, Ints
 from trunnion.model.program import ProgramSection
 from trunnion.units import LONGEST_BLOCK, SECONDS_PER_MINUTE
-from trunnion.verify.judge.places import block_of, place_of
+from trunnion.verify.judge.locations import block_of, place_of
 from trunnion.verify.judge.setups import SetupProof
 from trunnion.verify.settings import ProofSettings
 

@@ -21,7 +21,7 @@ from trunnion.model.program import ProgramSection
 from trunnion.model.verdict import Offer
 from trunnion.units import MM_PER_METRE, SECONDS_PER_MINUTE
 from trunnion.verify.judge.load import NEWTON_METRES
-from trunnion.verify.judge.places import block_of
+from trunnion.verify.judge.locations import block_of
 from trunnion.verify.judge.setups import SetupProof
 from trunnion.verify.settings import ProofSettings
 
@@ -32,7 +32,7 @@ AIR_WORTH = 10.0
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class Chosen:
+class AllowedLoad:
     """Load that an operation may bring: removal rate cm3/min and thickest chip mm; infinite where nothing is known."""
 
     rate: float
@@ -58,7 +58,7 @@ def load_findings(
     return found, offers
 
 
-def chosen_load(section: ProgramSection, material: Material | None) -> Chosen:
+def chosen_load(section: ProgramSection, material: Material | None) -> AllowedLoad:
     """Return the load that a section's cutting data were chosen for, or the material's tables allow its cutter when that is more."""
     tool = section.tool
     feed = section.feed or float(section.path.feed.max(initial=0.0))
@@ -68,7 +68,7 @@ def chosen_load(section: ProgramSection, material: Material | None) -> Chosen:
     if material is not None:
         area = max(area, material.depth_factor * material.width_factor * tool.diameter**2)
         chip = max(chip, _thickest(material, tool.diameter))
-    return Chosen(rate=area * feed / MM_PER_METRE or math.inf, chip=chip or math.inf)
+    return AllowedLoad(rate=area * feed / MM_PER_METRE or math.inf, chip=chip or math.inf)
 
 
 def _angle(width: float, diameter: float) -> float:

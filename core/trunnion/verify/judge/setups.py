@@ -19,8 +19,8 @@ from trunnion.progress import QUIET, Progress
 from trunnion.verify.contact import Contact, PartContact
 from trunnion.verify.finish.sweep import Sweep
 from trunnion.verify.judge.load import Load, load_of
-from trunnion.verify.machine.kinematics import Stands, stands_of
-from trunnion.verify.machine.times import Times, times_of
+from trunnion.verify.machine.kinematics import AxisPositions, stands_of
+from trunnion.verify.machine.times import MachineTimes, times_of
 from trunnion.verify.motion import Moves, moves_of
 from trunnion.verify.settings import ProofSettings
 from trunnion.verify.stock import Stock, StockRun, run_stock
@@ -40,8 +40,8 @@ class SetupProof:
     moves: Moves
     contact: Contact
     stock: StockRun
-    stands: Stands
-    times: Times
+    stands: AxisPositions
+    times: MachineTimes
     load: Load
     left: Floats
     nearest: Ints
@@ -94,7 +94,7 @@ def prove_setup(
     )
 
 
-def _timed(moves: Moves, machine: Machine, foot: Floats) -> tuple[Stands, Times]:
+def _timed(moves: Moves, machine: Machine, foot: Floats) -> tuple[AxisPositions, MachineTimes]:
     stands = stands_of(moves, machine, foot)
     return stands, times_of(moves, stands, machine)
 

@@ -32,7 +32,7 @@ Ends = tuple[Floats, Floats, Floats]
 
 
 @njit(cache=True, nogil=True)
-def _end_near(count: Ints, ends: Floats, ray: int, place: float, reach: float) -> float:
+def _nearest_crossing(count: Ints, ends: Floats, ray: int, place: float, reach: float) -> float:
     """Return the end of material (mm) on a ray that is nearest to a place, NaN where none is within
     `reach` (mm)."""
     best, found = reach, np.nan
@@ -44,7 +44,7 @@ def _end_near(count: Ints, ends: Floats, ray: int, place: float, reach: float) -
 
 
 @njit(cache=True, nogil=True)
-def _edge(
+def _edge_crossing(
     axis: int,
     cell: Ints,
     leaves: bool,
@@ -75,7 +75,9 @@ def _edge(
     if not has[axis]:
         return
     count, ends = counts[axis], highs[axis] if leaves else lows[axis]
-    end = _end_near(count, ends, cell[v] * cells[u] + cell[u], place[axis], half * (1.0 + 1e-9))
+    end = _nearest_crossing(
+        count, ends, cell[v] * cells[u] + cell[u], place[axis], half * (1.0 + 1e-9)
+    )
     if np.isnan(end):
         return
     place[axis] = end
@@ -88,7 +90,7 @@ def _edge(
             if not 0 <= beside < cells[across]:
                 continue
             ray = cell[v] * cells[u] + beside if side == 0 else beside * cells[u] + cell[u]
-            other = _end_near(count, ends, ray, end, REACH * pitch)
+            other = _nearest_crossing(count, ends, ray, end, REACH * pitch)
             if np.isnan(other):
                 continue
             rise = (other - end) / (way * pitch)
@@ -107,7 +109,7 @@ def _edge(
 
 
 @njit(cache=True, nogil=True)
-def _layer(
+def _classify_layer(
     k: int,
     count: Ints,
     low: Floats,
@@ -136,7 +138,7 @@ def _layer(
 
 
 @njit(cache=True, nogil=True)
-def _solve(a: Floats, b: Floats, out: Floats) -> None:
+def _solve_cramer(a: Floats, b: Floats, out: Floats) -> None:
     """Solve a symmetric positive definite system of three, a (3, 3), b (3,), by Cramer's rule into out
     (3,)."""
     c00, c01, c02 = (
@@ -156,7 +158,7 @@ def _solve(a: Floats, b: Floats, out: Floats) -> None:
 
 
 @njit(cache=True, nogil=True)
-def _point(
+def _dual_vertex(
     i: int,
     j: int,
     k: int,
@@ -207,7 +209,7 @@ def _point(
                     begin + (j + y - 1) * step,
                     begin + (k + z - 1) * step,
                 )
-                _edge(
+                _edge_crossing(
                     axis,
                     cell,
                     one,
@@ -239,17 +241,17 @@ def _point(
                 mean[c] /= total
     for c in range(3):
         a[c, c] += CALM * total
-    _solve(a, b, offset)
+    _solve_cramer(a, b, offset)
     for c in range(3):
         low = origin[c] + (begin + ((i, j, k)[c] - 1) * step + 0.5) * pitch
         out[c] = min(max(mean[c] + offset[c], low), low + step * pitch)
 
 
 @njit(cache=True, nogil=True)
-def count_faces(
+def count_dual_mesh(
     counts: Counts, lows: Ends, highs: Ends, cells: Ints, origin: Floats, pitch: float, step: int
 ) -> tuple[int, int]:
-    """Return how many points and how many faces of four points the mesh of `mesh_rays` has; arguments
+    """Return how many points and how many faces of four points the mesh of `dual_contour` has; arguments
     as there."""
     nodes = (cells - step // 2 + step - 1) // step
     lower, upper = (
@@ -258,7 +260,7 @@ def count_faces(
     )
     points, faces = 0, 0
     for k in range(nodes[2] + 1):
-        _layer(k, counts[2], lows[2], highs[2], cells, nodes, origin, pitch, step, upper)
+        _classify_layer(k, counts[2], lows[2], highs[2], cells, nodes, origin, pitch, step, upper)
         for j in range(nodes[1] + 1):
             for i in range(nodes[0] + 1):
                 # A box whose eight nodes differ has a point; an edge whose nodes differ has a face.
@@ -283,7 +285,7 @@ def count_faces(
 
 
 @njit(cache=True, nogil=True)
-def _face(
+def _add_quad(
     a: int, b: int, c: int, d: int, turned: bool, points: Floats, triangles: Ints, n: int
 ) -> int:
     """Add the two triangles of a face of four points, cut along its shorter diagonal, to triangles
@@ -302,7 +304,7 @@ def _face(
 
 
 @njit(cache=True, nogil=True)
-def mesh_rays(
+def dual_contour(
     counts: Counts,
     lows: Ends,
     highs: Ends,
@@ -320,7 +322,7 @@ def mesh_rays(
     counts, lows, highs: of the bundles along x, y, z; ray v * cells[u] + u stands in cell (u, v) of
     the two other axes, in cyclic order. has (3,): which bundles there are (z always); cells (3,)
     along each axis from origin (3,), `pitch` wide; a lattice of every `step`-th ray; n_points,
-    n_faces: what `count_faces` says.
+    n_faces: what `count_dual_mesh` says.
     """
     nodes = (cells - step // 2 + step - 1) // step
     wide, deep = nodes[0] + 2, nodes[1] + 2
@@ -330,7 +332,7 @@ def mesh_rays(
     work, cell = np.empty((8, 3)), np.empty(3, np.int64)
     v, n = 0, 0
     for k in range(nodes[2] + 1):
-        _layer(k, counts[2], lows[2], highs[2], cells, nodes, origin, pitch, step, upper)
+        _classify_layer(k, counts[2], lows[2], highs[2], cells, nodes, origin, pitch, step, upper)
         for j in range(deep - 1):
             for i in range(wide - 1):
                 some = (
@@ -344,7 +346,7 @@ def mesh_rays(
                     + upper[j + 1, i + 1]
                 )
                 if 0 < some < 8:
-                    _point(
+                    _dual_vertex(
                         i,
                         j,
                         k,
@@ -370,7 +372,7 @@ def mesh_rays(
             for i in range(1, wide - 1):
                 here = lower[j, i]
                 if here != upper[j, i]:
-                    n = _face(
+                    n = _add_quad(
                         over[j - 1, i - 1],
                         over[j - 1, i],
                         over[j, i],
@@ -386,7 +388,7 @@ def mesh_rays(
             for i in range(wide - 1):
                 here = lower[j, i]
                 if here != lower[j, i + 1]:
-                    n = _face(
+                    n = _add_quad(
                         under[j - 1, i],
                         under[j, i],
                         over[j, i],
@@ -397,7 +399,7 @@ def mesh_rays(
                         n,
                     )
                 if here != lower[j + 1, i]:
-                    n = _face(
+                    n = _add_quad(
                         under[j, i - 1],
                         over[j, i - 1],
                         over[j, i],

@@ -43,7 +43,7 @@ from trunnion.verify.kernels.body import (
     depth_in_body,
     radius_at,
 )
-from trunnion.verify.kernels.engagement import look_in_intervals
+from trunnion.verify.kernels.engagement import engagement_in_dexels
 
 # Columns of a span: tip and tool frame (its rows: two axes across, the tool axis) at both ends,
 # then the boxes of what cuts, of all and of the tip's path. Of an arc that runs level about an axis
@@ -93,7 +93,7 @@ _in_body = njit(nogil=True, inline="always")(depth_in_body.py_func)
 
 
 @njit(cache=True, nogil=True, inline="always")
-def _depth(
+def _body_depth(
     arcs: Floats, first: int, last: int, limit: float, ray: Floats, w: float, t: float
 ) -> tuple[float, float, float]:
     """Return the depth D (mm) of a ray's point at w in a body at the time t, and the slopes along w
@@ -123,7 +123,7 @@ def _depth(
 
 
 @njit(cache=True, nogil=True)
-def _over_time(
+def _swept_depth(
     arcs: Floats, first: int, last: int, limit: float, ray: Floats, w: float
 ) -> tuple[float, float, float]:
     """Return F(w), the largest depth (mm) of a ray's point over a span, a slope with which it bounds F
@@ -133,10 +133,10 @@ def _over_time(
     outside: it errs deep.
     """
     # A concave function that falls at the start, or rises at the end, is greatest there.
-    f0, slope0, s0 = _depth(arcs, first, last, limit, ray, w, 0.0)
+    f0, slope0, s0 = _body_depth(arcs, first, last, limit, ray, w, 0.0)
     if s0 <= 0.0:
         return f0, slope0, 0.0
-    f1, slope1, s1 = _depth(arcs, first, last, limit, ray, w, 1.0)
+    f1, slope1, s1 = _body_depth(arcs, first, last, limit, ray, w, 1.0)
     if s1 >= 0.0:
         return f1, slope1, 1.0
     # Cutting planes in time (Kelley, 1960). Invariant: D rises at t0 and falls at t1. The mixture
@@ -157,7 +157,7 @@ def _over_time(
         if step % 2:
             t = t0 + (t1 - t0) * share
         t = min(max(t, t0 + 1e-3 * (t1 - t0)), t1 - 1e-3 * (t1 - t0))
-        f, along, s = _depth(arcs, first, last, limit, ray, w, t)
+        f, along, s = _body_depth(arcs, first, last, limit, ray, w, t)
         if s > 0.0:
             t0, f0, slope0, s0 = t, f, along, s
         elif s < 0.0:
@@ -168,14 +168,14 @@ def _over_time(
 
 
 @njit(cache=True, nogil=True)
-def _bisected(
+def _bisect_entry(
     arcs: Floats, first: int, last: int, limit: float, ray: Floats, outside: float, inside: float
 ) -> float:
     """Return where a ray enters what is swept, between a place outside and one inside, to within THIN
     (mm); the inner side, so not too much is cut."""
     while abs(inside - outside) > THIN:
         w = 0.5 * (inside + outside)
-        if _over_time(arcs, first, last, limit, ray, w)[0] > 0.0:
+        if _swept_depth(arcs, first, last, limit, ray, w)[0] > 0.0:
             inside = w
         else:
             outside = w
@@ -183,7 +183,7 @@ def _bisected(
 
 
 @njit(cache=True, nogil=True)
-def _entered(
+def _newton_entry(
     arcs: Floats, first: int, last: int, limit: float, ray: Floats, w: float, end: float
 ) -> tuple[float, float]:
     """Return where a ray that runs from w towards `end` enters what is swept, NaN when it doesn't
@@ -195,10 +195,10 @@ def _entered(
     way = 1.0 if end > w else -1.0
     before = w
     for step in range(100):
-        f, slope, t = _over_time(arcs, first, last, limit, ray, w)
+        f, slope, t = _swept_depth(arcs, first, last, limit, ray, w)
         if f > 1e-5 and step > 0:
             # Only where the body turns is the depth not quite concave, and a step too long.
-            return _bisected(arcs, first, last, limit, ray, before, w), 0.5
+            return _bisect_entry(arcs, first, last, limit, ray, before, w), 0.5
         # What is only touched to begin with, and left behind, was cut before.
         if f > NOISE or (f >= -NOISE and step > 0):
             return w, t
@@ -214,7 +214,7 @@ def _entered(
 
 
 @njit(cache=True, nogil=True, inline="always")
-def _bound(
+def _depth_bound(
     arcs: Floats, first: int, last: int, limit: float, ray: Floats, w: float, end: float
 ) -> float:
     """Return an upper bound (mm) of the depth between two places over a span, from one evaluation at w
@@ -223,12 +223,12 @@ def _bound(
     Tangents in w and t, plus the bilinear term: TWIST is how far a unit of w is turned over the
     span.
     """
-    f, slope, s = _depth(arcs, first, last, limit, ray, w, 0.0)
+    f, slope, s = _body_depth(arcs, first, last, limit, ray, w, 0.0)
     return f + max(slope * (end - w), 0.0) + max(s, 0.0) + ray[TWIST] * abs(end - w)
 
 
 @njit(cache=True, nogil=True)
-def _highest(
+def _max_depth_turning(
     arcs: Floats,
     first: int,
     last: int,
@@ -245,12 +245,12 @@ def _highest(
     the bilinear term where the tool turns. So from the lower end on each tangent tells how far on
     nothing can be deeper than what is known by more than SURE (Piyavskii, 1972, with slopes).
     """
-    best, place = _peak(arcs, first, last, limit, ray, low, high)
+    best, place = _max_depth(arcs, first, last, limit, ray, low, high)
     if ray[TWIST] == 0.0:
         return best, place
     w = low
     while w < high:
-        f, slope, _t = _over_time(arcs, first, last, limit, ray, w)
+        f, slope, _t = _swept_depth(arcs, first, last, limit, ray, w)
         if f > best:
             best, place = f, w
         steep = slope + ray[TWIST]
@@ -261,16 +261,16 @@ def _highest(
 
 
 @njit(cache=True, nogil=True)
-def _peak(
+def _max_depth(
     arcs: Floats, first: int, last: int, limit: float, ray: Floats, low: float, high: float
 ) -> tuple[float, float]:
     """Return the largest depth (mm) between two places of a ray over a span, and its place; attained,
     within 1e-5 mm where the tool keeps its axis, else perhaps one of several peaks.
 
-    Cutting planes along w, as `_over_time` has them along t.
+    Cutting planes along w, as `_swept_depth` has them along t.
     """
-    f0, s0, _t = _over_time(arcs, first, last, limit, ray, low)
-    f1, s1, _t = _over_time(arcs, first, last, limit, ray, high)
+    f0, s0, _t = _swept_depth(arcs, first, last, limit, ray, low)
+    f1, s1, _t = _swept_depth(arcs, first, last, limit, ray, high)
     best, place = (f0, low) if f0 >= f1 else (f1, high)
     if s0 <= 0.0 or s1 >= 0.0:
         return best, place
@@ -281,7 +281,7 @@ def _peak(
         if step % 2:
             w = low + (high - low) * s0 / (s0 - s1)
         w = min(max(w, low + 1e-3 * (high - low)), high - 1e-3 * (high - low))
-        f, s, _t = _over_time(arcs, first, last, limit, ray, w)
+        f, s, _t = _swept_depth(arcs, first, last, limit, ray, w)
         if f > best:
             best, place = f, w
         if s > 0.0:
@@ -292,7 +292,7 @@ def _peak(
 
 
 @njit(cache=True, nogil=True, inline="always")
-def _aim(ray: Floats, span: Floats, u: float, v: float) -> None:
+def _ray_in_tool_frame(ray: Floats, span: Floats, u: float, v: float) -> None:
     """Write the ray at (u, v) into the tool frames of a span: foot and direction at the start, and
     what both gain until the end.
 
@@ -317,7 +317,7 @@ def _aim(ray: Floats, span: Floats, u: float, v: float) -> None:
         return
     # Along the axis of a tool that moves level, all of a ray is deepest when the axis comes nearest.
     if span[ARC_RADIUS] != 0.0:
-        ray[0], ray[1] = _from_arc(span, u, v, span[CENTRE + 2]), 0.0
+        ray[0], ray[1] = _arc_distance(span, u, v, span[CENTRE + 2]), 0.0
     else:
         square = ray[6] * ray[6] + ray[7] * ray[7]
         t = (
@@ -330,7 +330,7 @@ def _aim(ray: Floats, span: Floats, u: float, v: float) -> None:
 
 
 @njit(cache=True, nogil=True)
-def _from_arc(span: Floats, u: float, v: float, w: float) -> float:
+def _arc_distance(span: Floats, u: float, v: float, w: float) -> float:
     """Return how far (mm) a point (u, v, w) is from the tool axis that moves along an arc, across the
     axis: to the circle in the arc's sector, else to the nearer end."""
     a, b, c = span[FRAME0 + 6], span[FRAME0 + 7], span[FRAME0 + 8]
@@ -349,7 +349,7 @@ def _from_arc(span: Floats, u: float, v: float, w: float) -> float:
 
 
 @njit(cache=True, nogil=True)
-def _box(box: Floats, span: Floats, piece: Floats, turns: bool) -> None:
+def _swept_box(box: Floats, span: Floats, piece: Floats, turns: bool) -> None:
     """Write box (6,), low and high of u, v, w, of what a piece sweeps in a span.
 
     Across a direction that the axis leans to by a, a disc of radius r reaches r sqrt(1 - a^2). With
@@ -377,7 +377,9 @@ def _box(box: Floats, span: Floats, piece: Floats, turns: bool) -> None:
 
 
 @njit(cache=True, nogil=True)
-def _misses(count: Ints, low: Floats, high: Floats, cell: int, bottom: float, top: float) -> bool:
+def _ray_misses(
+    count: Ints, low: Floats, high: Floats, cell: int, bottom: float, top: float
+) -> bool:
     """Return whether a ray has no material between two places, or no more than what SHRINK leaves of a
     cut."""
     for k in range(count[cell]):
@@ -387,7 +389,7 @@ def _misses(count: Ints, low: Floats, high: Floats, cell: int, bottom: float, to
 
 
 @njit(cache=True, nogil=True)
-def _cells(
+def _cell_range(
     low: float, high: float, origin: float, pitch: float, first: int, last: int
 ) -> tuple[int, int]:
     """Return the first cell and the one after the last whose centres lie between two coordinates (mm),
@@ -398,7 +400,7 @@ def _cells(
 
 
 @njit(cache=True, nogil=True)
-def take_away(
+def subtract_interval(
     count: Ints, low: Floats, high: Floats, cell: int, k: int, a: float, b: float
 ) -> float:
     """Subtract [a, b] from a ray's interval k (a < b, both within it); return the length (mm) that is
@@ -432,7 +434,7 @@ def take_away(
 
 
 @njit(cache=True, nogil=True)
-def _disc(arcs: Floats, first: int, last: int, limit: float, h: float) -> float:
+def _disc_radius(arcs: Floats, first: int, last: int, limit: float, h: float) -> float:
     """Return the radius (mm) of what a body cuts at a height, less SHRINK; 0 where it cuts nothing."""
     if h > limit - SHRINK or depth_in_body(arcs, first, last, 0.0, h)[0] <= SHRINK:
         return 0.0
@@ -440,14 +442,16 @@ def _disc(arcs: Floats, first: int, last: int, limit: float, h: float) -> float:
 
 
 @njit(cache=True, nogil=True)
-def _across(arcs: Floats, first: int, last: int, limit: float, ray: Floats) -> tuple[float, float]:
+def _swept_disc_interval(
+    arcs: Floats, first: int, last: int, limit: float, ray: Floats
+) -> tuple[float, float]:
     """Return from where to where (w, mm) a ray across the axis lies in a body that moves level: in a
     disc swept along a line; low > high where it does not.
 
     A capsule is convex, so the hull of the ray's stretches in both end discs and between the
     straight sides is exact.
     """
-    r = _disc(arcs, first, last, limit, ray[2])
+    r = _disc_radius(arcs, first, last, limit, ray[2])
     if r <= 0.0:
         return 1.0, 0.0
     # The disc's middle in the plane of ray and motion: along the ray from w0 on by dw, beside it from c0 on by dc.
@@ -475,7 +479,7 @@ def _across(arcs: Floats, first: int, last: int, limit: float, ray: Floats) -> t
 
 
 @njit(cache=True, nogil=True)
-def _marked(ray: Floats, n: int, w: float) -> int:
+def _insert_sorted(ray: Floats, n: int, w: float) -> int:
     """Insert a place into those marked on a ray, in order; return how many there are."""
     k = MARKS + n
     while k > MARKS and ray[k - 1] > w:
@@ -486,7 +490,7 @@ def _marked(ray: Floats, n: int, w: float) -> int:
 
 
 @njit(cache=True, nogil=True)
-def _cut_across_arc(
+def _tridexel_cut_arc(
     arcs: Floats,
     first: int,
     last: int,
@@ -503,12 +507,12 @@ def _cut_across_arc(
     top: float,
 ) -> tuple[float, bool]:
     """Cut a ray across the axis by a body that moves level along an arc: by a disc swept; return as
-    `_cut_ray` does.
+    `_tridexel_cut_ray` does.
 
     The sweep is not convex. All its boundary points on the ray are marked, on the outer and the
     inner circle and on both end discs, and each stretch between two marks is tested at its middle.
     """
-    r, radius = _disc(arcs, first, last, limit, ray[2]), span[ARC_RADIUS]
+    r, radius = _disc_radius(arcs, first, last, limit, ray[2]), span[ARC_RADIUS]
     if r <= 0.0:
         return 0.0, True
     # In the plane across the axis, the ray's place nearest to the centre, and how far beside it the ray passes.
@@ -519,13 +523,13 @@ def _cut_across_arc(
     if beside >= radius + r:
         return 0.0, True
     half = math.sqrt((radius + r) ** 2 - beside * beside)
-    if _misses(count, low, high, cell, max(bottom, middle - half), min(top, middle + half)):
+    if _ray_misses(count, low, high, cell, max(bottom, middle - half), min(top, middle + half)):
         return 0.0, True
     n = 0
     for circle in (radius + r, radius - r):
         if circle > beside:
             half = math.sqrt(circle * circle - beside * beside)
-            n = _marked(ray, _marked(ray, n, middle - half), middle + half)
+            n = _insert_sorted(ray, _insert_sorted(ray, n, middle - half), middle + half)
     for end in range(2):
         x, y, w = (
             (span[TIP0], span[TIP0 + 1], span[TIP0 + 2])
@@ -537,17 +541,17 @@ def _cut_across_arc(
         square = r * r - (x * x + y * y - along * along)
         if square > 0.0:
             half = math.sqrt(square)
-            n = _marked(ray, _marked(ray, n, w - half), w + half)
+            n = _insert_sorted(ray, _insert_sorted(ray, n, w - half), w + half)
     # Neighbouring stretches inside are taken away together.
     gone, open_at = 0.0, np.nan
     for k in range(n):
         inside = (
-            k + 1 < n and _from_arc(span, u, v, 0.5 * (ray[MARKS + k] + ray[MARKS + k + 1])) < r
+            k + 1 < n and _arc_distance(span, u, v, 0.5 * (ray[MARKS + k] + ray[MARKS + k + 1])) < r
         )
         if inside and math.isnan(open_at):
             open_at = ray[MARKS + k]
         elif not inside and not math.isnan(open_at):
-            more, whole = _take_all(
+            more, whole = _subtract_from_ray(
                 count, low, high, cell, max(open_at, bottom), min(ray[MARKS + k], top)
             )
             gone, open_at = gone + more, np.nan
@@ -557,7 +561,7 @@ def _cut_across_arc(
 
 
 @njit(cache=True, nogil=True)
-def _take_all(
+def _subtract_from_ray(
     count: Ints, low: Floats, high: Floats, cell: int, a: float, b: float
 ) -> tuple[float, bool]:
     """Subtract [a, b] from all intervals of a ray; return the length (mm) that is gone, and whether
@@ -572,24 +576,24 @@ def _take_all(
         if d - c > NOISE:
             if before + 1 > low.shape[1]:
                 return gone, False
-            gone += take_away(count, low, high, cell, k, c, d)
+            gone += subtract_interval(count, low, high, cell, k, c, d)
         k += 1 + count[cell] - before
     return gone, True
 
 
 @njit(cache=True, nogil=True)
-def _both_in(
+def _both_inside_at(
     arcs: Floats, first: int, last: int, limit: float, ray: Floats, a: float, b: float, t: float
 ) -> bool:
     """Return whether two places of a ray are in a body at a time, to within GAP (mm)."""
     return (
-        _depth(arcs, first, last, limit, ray, a, t)[0] >= -GAP
-        and _depth(arcs, first, last, limit, ray, b, t)[0] >= -GAP
+        _body_depth(arcs, first, last, limit, ray, a, t)[0] >= -GAP
+        and _body_depth(arcs, first, last, limit, ray, b, t)[0] >= -GAP
     )
 
 
 @njit(cache=True, nogil=True)
-def _in_at_once(
+def _inside_together(
     arcs: Floats, first: int, last: int, limit: float, ray: Floats, a: float, b: float
 ) -> bool:
     """Return whether two places of a ray are found in a body, to within GAP (mm), at one time of a span:
@@ -603,7 +607,7 @@ def _in_at_once(
     for _ in range(30):
         inside = True
         for k in range(2):
-            f, _along, s = _depth(arcs, first, last, limit, ray, a if k == 0 else b, t)
+            f, _along, s = _body_depth(arcs, first, last, limit, ray, a if k == 0 else b, t)
             if f >= -GAP:
                 continue
             inside = False
@@ -624,7 +628,7 @@ def _in_at_once(
 
 
 @njit(cache=True, nogil=True)
-def _sure(
+def _certain_interval(
     arcs: Floats, first: int, last: int, limit: float, ray: Floats, a: float, b: float
 ) -> tuple[float, float]:
     """Return up to where from a on, towards b, a ray lies in what is swept for certain, and a place
@@ -638,9 +642,9 @@ def _sure(
     short = 4.0 * GAP / ray[TWIST]
     while a < b:
         step = b - a
-        while step > short and not _in_at_once(arcs, first, last, limit, ray, a, a + step):
+        while step > short and not _inside_together(arcs, first, last, limit, ray, a, a + step):
             step *= 0.5
-            if _over_time(arcs, first, last, limit, ray, a + step)[0] < -GAP:
+            if _swept_depth(arcs, first, last, limit, ray, a + step)[0] < -GAP:
                 return a, a + step
         if step >= b - a:
             break
@@ -649,7 +653,7 @@ def _sure(
 
 
 @njit(cache=True, nogil=True)
-def _cut_lobes(
+def _tridexel_cut_turning(
     arcs: Floats,
     first: int,
     last: int,
@@ -663,25 +667,25 @@ def _cut_lobes(
     cell: int,
 ) -> tuple[float, bool]:
     """Cut a ray between two places that a body which turns reaches, but for the gaps between its
-    lobes; return as `_cut_ray` does."""
+    lobes; return as `_tridexel_cut_ray` does."""
     gone = 0.0
     while a < b:
-        end, gap = _sure(arcs, first, last, limit, ray, a, b)
+        end, gap = _certain_interval(arcs, first, last, limit, ray, a, b)
         if not math.isnan(gap):
             # The lobe's end lies before the gap. If yet another gap hides there, the rest stays.
-            edge = _bisected(arcs, first, last, limit, ray, gap, end)
-            if math.isnan(_sure(arcs, first, last, limit, ray, end, edge)[1]):
+            edge = _bisect_entry(arcs, first, last, limit, ray, gap, end)
+            if math.isnan(_certain_interval(arcs, first, last, limit, ray, end, edge)[1]):
                 end = edge
-        more, whole = _take_all(count, low, high, cell, a, end)
+        more, whole = _subtract_from_ray(count, low, high, cell, a, end)
         gone += more
         if math.isnan(gap) or not whole:
             return gone, whole
-        a = _bisected(arcs, first, last, limit, ray, gap, b)
+        a = _bisect_entry(arcs, first, last, limit, ray, gap, b)
     return gone, True
 
 
 @njit(cache=True, nogil=True)
-def _cut_ray(
+def _tridexel_cut_ray(
     arcs: Floats,
     first: int,
     last: int,
@@ -705,9 +709,9 @@ def _cut_ray(
     w_low, w_high = box[2], box[5]
     if abs(ray[5]) + abs(ray[8]) + ray[TWIST] < LEVEL:
         if span[ARC_RADIUS] == 0.0:
-            a, b = _across(arcs, first, last, limit, ray)
-            return _take_all(count, low, high, cell, max(a, w_low), min(b, w_high))
-        return _cut_across_arc(
+            a, b = _swept_disc_interval(arcs, first, last, limit, ray)
+            return _subtract_from_ray(count, low, high, cell, max(a, w_low), min(b, w_high))
+        return _tridexel_cut_arc(
             arcs, first, last, limit, ray, span, u, v, count, low, high, cell, w_low, w_high
         )
     gone = 0.0
@@ -720,25 +724,25 @@ def _cut_ray(
             continue
         # From the end nearer to the middle of the body's box: there the bound rejects most.
         near, far = (a, b) if abs(a - middle) < abs(b - middle) else (b, a)
-        if _bound(arcs, first, last, limit, ray, near, far) <= NOISE:
+        if _depth_bound(arcs, first, last, limit, ray, near, far) <= NOISE:
             k += 1
             continue
         # For a still axis F is concave: no entry from one end means none at all. Where the tool
         # turns, the other end is tried too, and an entry that one side overshot is bisected.
         turns = ray[TWIST] > 0.0
-        from_near, t_near = _entered(arcs, first, last, limit, ray, near, far)
+        from_near, t_near = _newton_entry(arcs, first, last, limit, ray, near, far)
         from_far, t_far = (
             (np.nan, t_near)
             if math.isnan(from_near) and not turns
-            else _entered(arcs, first, last, limit, ray, far, near)
+            else _newton_entry(arcs, first, last, limit, ray, far, near)
         )
         if math.isnan(from_near) and math.isnan(from_far):
             k += 1
             continue
         if math.isnan(from_near):
-            from_near = _bisected(arcs, first, last, limit, ray, near, from_far)
+            from_near = _bisect_entry(arcs, first, last, limit, ray, near, from_far)
         elif math.isnan(from_far):
-            from_far = _bisected(arcs, first, last, limit, ray, far, from_near)
+            from_far = _bisect_entry(arcs, first, last, limit, ray, far, from_near)
         from_a, from_b = min(from_near, from_far), max(from_near, from_far)
         if (from_far - from_near) * (far - near) <= 0.0:
             k += 1
@@ -747,10 +751,10 @@ def _cut_ray(
         before = count[cell]
         # Of a tool that turns, both entries in the body at one of their times tell that all between is.
         if turns and not (
-            _both_in(arcs, first, last, limit, ray, from_far, from_near, t_near)
-            or _both_in(arcs, first, last, limit, ray, from_near, from_far, t_far)
+            _both_inside_at(arcs, first, last, limit, ray, from_far, from_near, t_near)
+            or _both_inside_at(arcs, first, last, limit, ray, from_near, from_far, t_far)
         ):
-            more, whole = _cut_lobes(
+            more, whole = _tridexel_cut_turning(
                 arcs, first, last, limit, ray, from_a, from_b, count, low, high, cell
             )
             gone += more
@@ -759,13 +763,13 @@ def _cut_ray(
         elif before + 1 > low.shape[1]:
             return gone, False
         else:
-            gone += take_away(count, low, high, cell, k, from_a, from_b)
+            gone += subtract_interval(count, low, high, cell, k, from_a, from_b)
         k += 1 + count[cell] - before
     return gone, True
 
 
 @njit(cache=True, nogil=True)
-def _beside(
+def _neighbour_material(
     count: Ints,
     low: Floats,
     high: Floats,
@@ -819,17 +823,19 @@ def _may_hide(
                 a, b = max(box[2], low[cell, k]), min(box[5], high[cell, k])
                 if b <= a:
                     continue
-                deepest, w = _highest(arcs, first, last, np.inf, ray, a, b, -0.7072 * pitch)
+                deepest, w = _max_depth_turning(
+                    arcs, first, last, np.inf, ray, a, b, -0.7072 * pitch
+                )
                 if deepest > -0.7072 * pitch:
                     # Across rays the depth grows by what its slope along them leaves, up to half a diagonal.
-                    slope = _over_time(arcs, first, last, np.inf, ray, w)[1]
+                    slope = _swept_depth(arcs, first, last, np.inf, ray, w)[1]
                     if deepest + 0.7072 * pitch * math.sqrt(max(1.0 - slope * slope, 0.0)) > 0.0:
                         return True
     return False
 
 
 @njit(cache=True, nogil=True)
-def _graze(
+def _graze_candidates(
     arcs: Floats,
     first: int,
     last: int,
@@ -854,8 +860,8 @@ def _graze(
     ray[SMALLER] is what is allowed, so only deeper contact is listed. A suspicion:
     `stock/graze_check.py` confirms it.
     """
-    i0, i1 = _cells(box[0] - 0.5 * pitch, box[3] + 0.5 * pitch, origin[0], pitch, 0, columns)
-    j0, j1 = _cells(box[1] - 0.5 * pitch, box[4] + 0.5 * pitch, origin[1], pitch, row, end_row)
+    i0, i1 = _cell_range(box[0] - 0.5 * pitch, box[3] + 0.5 * pitch, origin[0], pitch, 0, columns)
+    j0, j1 = _cell_range(box[1] - 0.5 * pitch, box[4] + 0.5 * pitch, origin[1], pitch, row, end_row)
     # Behind what earlier spans have listed.
     listed = 0
     while listed < len(places) and places[listed, 3] > 0.0:
@@ -863,7 +869,9 @@ def _graze(
     best = np.zeros((4, 4))
     for j in range(j0, j1):
         for i in range(i0, i1):
-            _aim(ray, span, origin[0] + (i + 0.5) * pitch, origin[1] + (j + 0.5) * pitch)
+            _ray_in_tool_frame(
+                ray, span, origin[0] + (i + 0.5) * pitch, origin[1] + (j + 0.5) * pitch
+            )
             if not _may_hide(
                 arcs, first, last, ray, count, low, high, columns, row, end_row, i, j, pitch, box
             ):
@@ -875,16 +883,16 @@ def _graze(
                     origin[0] + (i + (x + 0.5) / fine) * pitch,
                     origin[1] + (j + (y + 0.5) / fine) * pitch,
                 )
-                _aim(ray, span, u, v)
-                a, _t = _entered(arcs, first, last, np.inf, ray, box[2], box[5])
+                _ray_in_tool_frame(ray, span, u, v)
+                a, _t = _newton_entry(arcs, first, last, np.inf, ray, box[2], box[5])
                 if math.isnan(a):
                     continue
-                b, _t = _entered(arcs, first, last, np.inf, ray, box[5], box[2])
+                b, _t = _newton_entry(arcs, first, last, np.inf, ray, box[5], box[2])
                 if math.isnan(b) or b <= a:
                     continue
-                w = _beside(count, low, high, columns, row, end_row, i, j, a, b)
+                w = _neighbour_material(count, low, high, columns, row, end_row, i, j, a, b)
                 if not math.isnan(w):
-                    deep = _over_time(arcs, first, last, np.inf, ray, w)[0] + ray[SMALLER]
+                    deep = _swept_depth(arcs, first, last, np.inf, ray, w)[0] + ray[SMALLER]
                     quarter = 2 * (2 * y // fine) + 2 * x // fine
                     if deep > best[quarter, 3]:
                         best[quarter, 0], best[quarter, 1], best[quarter, 2], best[quarter, 3] = (
@@ -900,7 +908,7 @@ def _graze(
 
 
 @njit(cache=True, nogil=True)
-def _limit(piece: Floats, p: int, last: int) -> float:
+def _flute_limit(piece: Floats, p: int, last: int) -> float:
     """Return the height (mm) where a tool's flutes end, for the last piece that cuts: its closed body
     reaches beyond into the next one. Infinite for others."""
     if piece[p, KIND] == 0.0 and p + 1 < last and piece[p + 1, KIND] != 0.0:
@@ -909,7 +917,7 @@ def _limit(piece: Floats, p: int, last: int) -> float:
 
 
 @njit(cache=True, nogil=True)
-def cut_tile(
+def tridexel_cut_tile(
     last: int,
     span: Floats,
     span_start: Ints,
@@ -984,11 +992,13 @@ def cut_tile(
             if (
                 probe_start[n + 1] > probe_start[n]
                 and not (going_on and resume[5] != 0)
-                and _near(span, span_start[n], span_start[n + 1], v_low - pitch, v_high + pitch)
+                and _spans_meet(
+                    span, span_start[n], span_start[n + 1], v_low - pitch, v_high + pitch
+                )
             ):
                 a, b = row * columns, end_row * columns
                 corner[0], corner[1] = origin[0], v_low
-                look_in_intervals(
+                engagement_in_dexels(
                     count[a:b],
                     low[a:b],
                     high[a:b],
@@ -1021,29 +1031,29 @@ def cut_tile(
                     or span[s, CUT_BOX + 5] < bottom
                 ):
                     continue
-                ray[TWIST] = _motion(span[s])
+                ray[TWIST] = _ray_turn(span[s])
                 for p in range(max(resume[2], p0) if going_on else p0, p1):
                     going_on = going_on and p == resume[2]
                     if piece[p, KIND] != 0.0:
                         break
-                    _box(box, span[s], piece[p], ray[TWIST] > 0.0)
+                    _swept_box(box, span[s], piece[p], ray[TWIST] > 0.0)
                     if box[2] > top or box[5] < bottom:
                         continue
                     first, end = int(piece[p, CLOSED_FIRST]), int(piece[p, CLOSED_LAST])
-                    limit = _limit(piece, p, p1)
-                    i0, i1 = _cells(box[0], box[3], origin[0], pitch, 0, columns)
-                    j0, j1 = _cells(box[1], box[4], origin[1], pitch, row, end_row)
+                    limit = _flute_limit(piece, p, p1)
+                    i0, i1 = _cell_range(box[0], box[3], origin[0], pitch, 0, columns)
+                    j0, j1 = _cell_range(box[1], box[4], origin[1], pitch, row, end_row)
                     for j in range(max(j0, resume[3]) if going_on else j0, j1):
                         v = origin[1] + (j + 0.5) * pitch
                         for i in range(
                             max(i0, resume[4]) if going_on and j == resume[3] else i0, i1
                         ):
                             cell = j * columns + i
-                            if _misses(count, low, high, cell, box[2], box[5]):
+                            if _ray_misses(count, low, high, cell, box[2], box[5]):
                                 continue
                             u = origin[0] + (i + 0.5) * pitch
-                            _aim(ray, span[s], u, v)
-                            gone, whole = _cut_ray(
+                            _ray_in_tool_frame(ray, span[s], u, v)
+                            gone, whole = _tridexel_cut_ray(
                                 arcs,
                                 first,
                                 end,
@@ -1079,7 +1089,7 @@ def cut_tile(
                 or span[s, ALL_BOX + 5] < bottom
             ):
                 continue
-            ray[TWIST] = _motion(span[s])
+            ray[TWIST] = _ray_turn(span[s])
             if span[s, ARC_RADIUS] != 0.0 and abs(span[s, FRAME0 + 8]) < 0.5:
                 # Of an arc that is one span, the rays along the axis tell how deep it is.
                 continue
@@ -1087,28 +1097,30 @@ def cut_tile(
                 cuts = piece[p, KIND] == 0.0
                 if cuts and not rapid[n]:
                     continue
-                _box(box, span[s], piece[p], ray[TWIST] > 0.0)
+                _swept_box(box, span[s], piece[p], ray[TWIST] > 0.0)
                 if box[2] > top or box[5] < bottom:
                     continue
                 first, end = int(piece[p, CLOSED_FIRST]), int(piece[p, CLOSED_LAST])
-                i0, i1 = _cells(box[0], box[3], origin[0], pitch, 0, columns)
-                j0, j1 = _cells(box[1], box[4], origin[1], pitch, row, end_row)
+                i0, i1 = _cell_range(box[0], box[3], origin[0], pitch, 0, columns)
+                j0, j1 = _cell_range(box[1], box[4], origin[1], pitch, row, end_row)
                 for j in range(j0, j1):
                     v = origin[1] + (j + 0.5) * pitch
                     for i in range(i0, i1):
                         cell = j * columns + i
-                        if _misses(count, low, high, cell, box[2], box[5]):
+                        if _ray_misses(count, low, high, cell, box[2], box[5]):
                             continue
                         u = origin[0] + (i + 0.5) * pitch
                         # Only the deepest of a move is wanted: an interval that cannot be deeper
                         # than what is known is skipped.
-                        _aim(ray, span[s], u, v)
+                        _ray_in_tool_frame(ray, span[s], u, v)
                         for k in range(count[cell]):
                             a, b = max(low[cell, k], box[2]), min(high[cell, k], box[5])
                             best = depth[n] if cuts else body[n]
-                            if b <= a or _bound(arcs, first, end, np.inf, ray, a, b) <= best:
+                            if b <= a or _depth_bound(arcs, first, end, np.inf, ray, a, b) <= best:
                                 continue
-                            deepest, w = _highest(arcs, first, end, np.inf, ray, a, b, best)
+                            deepest, w = _max_depth_turning(
+                                arcs, first, end, np.inf, ray, a, b, best
+                            )
                             if deepest > best and cuts:
                                 depth[n], place[n, 0], place[n, 1], place[n, 2] = deepest, u, v, w
                             elif deepest > best:
@@ -1116,7 +1128,7 @@ def cut_tile(
                 # Rapids that miss the rays may still enter between them.
                 if cuts and fine > 0 and depth[n] <= allowed:
                     ray[SMALLER] = allowed
-                    _graze(
+                    _graze_candidates(
                         arcs,
                         first,
                         end,
@@ -1139,7 +1151,7 @@ def cut_tile(
 
 
 @njit(cache=True, nogil=True)
-def _near(span: Floats, first: int, last: int, v_low: float, v_high: float) -> bool:
+def _spans_meet(span: Floats, first: int, last: int, v_low: float, v_high: float) -> bool:
     """Return whether what cuts comes between two coordinates v (mm) in spans `first` to `last`."""
     near = False
     for s in range(first, last):
@@ -1148,7 +1160,7 @@ def _near(span: Floats, first: int, last: int, v_low: float, v_high: float) -> b
 
 
 @njit(cache=True, nogil=True)
-def _motion(span: Floats) -> float:
+def _ray_turn(span: Floats) -> float:
     """Return how far the direction of rays turns in a span as the tool sees it (the length of its
     change); 0 when the axis keeps still."""
     x = span[FRAME1 + 2] - span[FRAME0 + 2]

@@ -43,7 +43,7 @@ MERIDIANS = 8
 
 
 @njit(cache=True, nogil=True, inline="always")
-def _place(move: Floats, t: float) -> tuple[float, float, float, float, float]:
+def _upright_pose(move: Floats, t: float) -> tuple[float, float, float, float, float]:
     """Return tip (x, y, z) and unit plan direction of an upright move at its share t; direction 0 when
     it stands in plan."""
     z = move[Z_START] + t * (move[Z_END] - move[Z_START])
@@ -73,7 +73,7 @@ def _plan_length(move: Floats) -> float:
 
 
 @njit(cache=True, nogil=True)
-def look_in_field(
+def engagement_in_zmap(
     top: Floats,
     origin: Floats,
     pitch: float,
@@ -105,7 +105,7 @@ def look_in_field(
     for probe in range(first, last):
         # Probes stand at even shares, the last at the move's end.
         share = (probe - first + 1) / (last - first)
-        x, y, z, ux, uy = _place(move, share)
+        x, y, z, ux, uy = _upright_pose(move, share)
         # Moved ahead by up to a margin, fading out `CLEAR` margins from the start.
         ahead = min(max(CLEAR * margin - share * length, 0.0), margin)
         if whole and length <= STILL:
@@ -146,7 +146,7 @@ def look_in_field(
 
 
 @njit(cache=True, nogil=True, inline="always")
-def _in_intervals(
+def _inside_intervals(
     x: float,
     y: float,
     z: float,
@@ -172,7 +172,7 @@ def _in_intervals(
 
 
 @njit(cache=True, nogil=True)
-def _pose(
+def _pose_and_velocity(
     start: Floats,
     end: Floats,
     start_axis: Floats,
@@ -222,7 +222,7 @@ def _pose(
 
 
 @njit(cache=True, nogil=True)
-def look_in_intervals(
+def engagement_in_dexels(
     count: Ints,
     low: Floats,
     high: Floats,
@@ -249,7 +249,7 @@ def look_in_intervals(
 
     count (rays,), low and high (rays, k) sorted intervals of rows x columns rays from origin (2,);
     start, end, axes, centre (3,) and sweep of one row of `Moves`; rings, circle, counted and spans
-    as in `look_in_field`. flute (s, 2): radius and height of the cutter, upwards from the tip, at
+    as in `engagement_in_zmap`. flute (s, 2): radius and height of the cutter, upwards from the tip, at
     which material beside it is looked for.
     """
     margin, cell = 0.70711 * pitch, 1.0 / pitch
@@ -263,7 +263,9 @@ def look_in_intervals(
     )
     for probe in range(first, last):
         share = (probe - first + 1) / (last - first)
-        _pose(start, end, start_axis, end_axis, centre, sweep, share, tip, axis, speed, turning)
+        _pose_and_velocity(
+            start, end, start_axis, end_axis, centre, sweep, share, tip, axis, speed, turning
+        )
         bottom, most = np.inf, -np.inf
         for k in range(-len(flute), RINGS):
             # First the heights along the flutes on a few meridians, for the depth; then the rings, for the angle.
@@ -314,7 +316,7 @@ def look_in_intervals(
                     x = tip[0] + f * forward[0] + g * across[0] + height * axis[0]
                     y = tip[1] + f * forward[1] + g * across[1] + height * axis[1]
                     z = tip[2] + f * forward[2] + g * across[2] + height * axis[2] + ABOVE
-                    if _in_intervals(x, y, z, count, low, high, origin, cell, rows, columns):
+                    if _inside_intervals(x, y, z, count, low, high, origin, cell, rows, columns):
                         hits += 1
             if k >= 0:
                 counted[probe, k] += hits

@@ -57,11 +57,11 @@ from trunnion.verify.kernels.tool_motion import (
     SPAN_COLUMNS,
     WAY_COLUMNS,
     axis_at,
-    fill_span,
-    fill_way,
-    sag_of,
-    seen,
-    spans_of,
+    chord_sag,
+    fill_swept_segment,
+    fill_tool_motion,
+    point_in_tool_frame,
+    segment_count,
     tip_at,
 )
 
@@ -76,7 +76,7 @@ DEEP = 1.0
 
 
 @njit(cache=True, nogil=True)
-def _tangent(
+def _depth_and_normal(
     arcs: Floats,
     first: int,
     last: int,
@@ -101,18 +101,18 @@ def _tangent(
 
 
 @njit(cache=True, nogil=True)
-def depth_at(
+def swept_depth_at(
     way: Floats, t: float, arcs: Floats, first: int, last: int, px: float, py: float, pz: float
 ) -> float:
     """Return the depth (mm) of a point of space in a body at a share t of the block: exact, so
     attained."""
     ax, ay, az = axis_at(way, t)
     cx, cy, cz = tip_at(way, t)
-    return _tangent(arcs, first, last, ax, ay, az, px - cx, py - cy, pz - cz)[0]
+    return _depth_and_normal(arcs, first, last, ax, ay, az, px - cx, py - cy, pz - cz)[0]
 
 
 @njit(cache=True, nogil=True)
-def _core(
+def _curvature_centre(
     arcs: Floats,
     first: int,
     last: int,
@@ -159,7 +159,7 @@ def _core(
 
 
 @njit(cache=True, nogil=True)
-def _together(one: Floats, other: Floats) -> float:
+def _minimax_combination(one: Floats, other: Floats) -> float:
     """Return the least over m in [0, 1] of the greatest over six points of (1 - m) one + m other (each
     (6,), mm).
 
@@ -195,14 +195,14 @@ def _together(one: Floats, other: Floats) -> float:
 
 
 @njit(cache=True, nogil=True, inline="always")
-def _share(part: float, whole: float) -> float:
+def _safe_ratio(part: float, whole: float) -> float:
     """Return part / whole, 0 where the whole is not positive: triangles without area or with an edge
     of no length."""
     return part / whole if whole > 0.0 else 0.0
 
 
 @njit(cache=True, nogil=True)
-def _nearest_of_triangle(p: Floats, x: float, y: float, z: float) -> tuple[float, float]:
+def _closest_point_on_triangle(p: Floats, x: float, y: float, z: float) -> tuple[float, float]:
     """Return the place (v, w) of the point a + v (b - a) + w (c - a) of a triangle (3, 3) that is
     nearest to a point.
 
@@ -226,16 +226,16 @@ def _nearest_of_triangle(p: Floats, x: float, y: float, z: float) -> tuple[float
         return 1.0, 0.0
     vc = d1 * d4 - d3 * d2
     if vc <= 0.0 and d1 >= 0.0 and d3 <= 0.0 and d1 > d3:
-        return _share(d1, d1 - d3), 0.0
+        return _safe_ratio(d1, d1 - d3), 0.0
     d5, d6 = d1 - bc, d2 - cc
     if d6 >= 0.0 and d5 <= d6:
         return 0.0, 1.0
     vb = d5 * d2 - d1 * d6
     if vb <= 0.0 and d2 >= 0.0 and d6 <= 0.0 and d2 > d6:
-        return 0.0, _share(d2, d2 - d6)
+        return 0.0, _safe_ratio(d2, d2 - d6)
     va = d3 * d6 - d5 * d4
     if va <= 0.0 and d4 - d3 >= 0.0 and d5 - d6 >= 0.0 and d4 - d3 + d5 - d6 > 0.0:
-        w = _share(d4 - d3, (d4 - d3) + (d5 - d6))
+        w = _safe_ratio(d4 - d3, (d4 - d3) + (d5 - d6))
         return 1.0 - w, w
     # A triangle without area may get here by rounding: any of its points is as good.
     total = va + vb + vc
@@ -243,7 +243,7 @@ def _nearest_of_triangle(p: Floats, x: float, y: float, z: float) -> tuple[float
 
 
 @njit(cache=True, nogil=True)
-def _attain(
+def _raise_attained(
     way: Floats,
     t: float,
     arcs: Floats,
@@ -256,13 +256,13 @@ def _attain(
 ) -> None:
     """Raise found (4,), depth and place, to the depth of a point of space at a share of the block
     where that is deeper."""
-    depth = depth_at(way, t, arcs, first, last, px, py, pz)
+    depth = swept_depth_at(way, t, arcs, first, last, px, py, pz)
     if depth > found[0]:
         found[0], found[1], found[2], found[3] = depth, px, py, pz
 
 
 @njit(cache=True, nogil=True)
-def _look(
+def _task_bound(
     task: Floats,
     normal: Floats,
     way: Floats,
@@ -287,14 +287,14 @@ def _look(
     workspace.
     """
     if span[S_FROM] != task[T_FROM] or span[S_TO] != task[T_TO]:
-        fill_span(way, task[T_FROM], task[T_TO], ends, span)
+        fill_swept_segment(way, task[T_FROM], task[T_TO], ends, span)
     # True positions lie within `drift` of the hull and D has slope 1: the hull's bound must be
     # below what is asked by that much.
     ax, ay, az = span[S_AXIS], span[S_AXIS + 1], span[S_AXIS + 2]
-    drift = _see(task, ends, span, six)
+    drift = _corners_in_tool_frame(task, ends, span, six)
     settled = max(enough, found[0] + bound) - drift
     # First bound: the half-space against the triangle's normal.
-    upper = _half_space(arcs, first, last, ax, ay, az, normal, six, cuts[0])
+    upper = _half_space_bound(arcs, first, last, ax, ay, az, normal, six, cuts[0])
     if upper <= settled:
         return -np.inf
     # Second bound: the tangent at the middle of the six points; and its best mixture with the
@@ -302,16 +302,16 @@ def _look(
     x = y = z = 0.0
     for i in range(6):
         x, y, z = x + six[i, 0] / 6.0, y + six[i, 1] / 6.0, z + six[i, 2] / 6.0
-    least = _cut(arcs, first, last, ax, ay, az, x, y, z, six, cuts[1])
+    least = _tangent_plane_bound(arcs, first, last, ax, ay, az, x, y, z, six, cuts[1])
     if least <= settled:
         return -np.inf
-    upper = min(upper, least, _together(cuts[0], cuts[1]))
+    upper = min(upper, least, _minimax_combination(cuts[0], cuts[1]))
     if upper <= settled:
         return -np.inf
     # Third: the tangent at the place and time of the triangle nearest to the body's core there. The
     # depth attained there, on the true motion, raises what is known.
-    cx, cy, cz = _core(arcs, first, last, ax, ay, az, x, y, z)
-    v, w, s = _nearest_place(six, cx, cy, cz, flat)
+    cx, cy, cz = _curvature_centre(arcs, first, last, ax, ay, az, x, y, z)
+    v, w, s = _closest_point_and_share(six, cx, cy, cz, flat)
     u, r = 1.0 - v - w, 1.0 - s
     x = r * (u * six[0, 0] + v * six[1, 0] + w * six[2, 0]) + s * (
         u * six[3, 0] + v * six[4, 0] + w * six[5, 0]
@@ -322,9 +322,9 @@ def _look(
     z = r * (u * six[0, 2] + v * six[1, 2] + w * six[2, 2]) + s * (
         u * six[3, 2] + v * six[4, 2] + w * six[5, 2]
     )
-    least = _cut(arcs, first, last, ax, ay, az, x, y, z, six, cuts[2])
+    least = _tangent_plane_bound(arcs, first, last, ax, ay, az, x, y, z, six, cuts[2])
     a, b, c = CORNERS, CORNERS + 3, CORNERS + 6
-    _attain(
+    _raise_attained(
         way,
         task[T_FROM] + s * (task[T_TO] - task[T_FROM]),
         arcs,
@@ -336,17 +336,19 @@ def _look(
         found,
     )
     settled = max(enough, found[0] + bound) - drift
-    upper = min(upper, least, _together(cuts[0], cuts[2]), _together(cuts[1], cuts[2]))
+    upper = min(
+        upper, least, _minimax_combination(cuts[0], cuts[2]), _minimax_combination(cuts[1], cuts[2])
+    )
     if upper <= settled:
         return -np.inf
     # Time where the drift is more than half of what is open, else the longest extent.
-    task[HALVE] = _halving(task, six, drift > 0.5 * (upper - settled))
+    task[HALVE] = _choose_split(task, six, drift > 0.5 * (upper - settled))
     task[UPPER] = upper + drift
     return upper + drift
 
 
 @njit(cache=True, nogil=True)
-def _see(task: Floats, ends: Floats, span: Floats, six: Floats) -> float:
+def _corners_in_tool_frame(task: Floats, ends: Floats, span: Floats, six: Floats) -> float:
     """Fill six (6, 3) with a task's corners as the tool sees them at both ends of the span, and return
     the sag (mm): how far the triangle may leave their hull in between.
 
@@ -356,14 +358,14 @@ def _see(task: Floats, ends: Floats, span: Floats, six: Floats) -> float:
     far = 0.0
     for i in range(6):
         c = CORNERS + 3 * (i % 3)
-        x, y, z = seen(ends, i // 3, task[c], task[c + 1], task[c + 2])
+        x, y, z = point_in_tool_frame(ends, i // 3, task[c], task[c + 1], task[c + 2])
         six[i, 0], six[i, 1], six[i, 2] = x, y, z
         far = max(far, x * x + y * y + z * z)
-    return sag_of(span, math.sqrt(far))
+    return chord_sag(span, math.sqrt(far))
 
 
 @njit(cache=True, nogil=True)
-def _half_space(
+def _half_space_bound(
     arcs: Floats,
     first: int,
     last: int,
@@ -391,14 +393,14 @@ def _half_space(
 
 
 @njit(cache=True, nogil=True)
-def _nearest_place(
+def _closest_point_and_share(
     six: Floats, cx: float, cy: float, cz: float, flat: Floats
 ) -> tuple[float, float, float]:
     """Return the place (v, w) in the triangle and the share s of the span at which it is nearest to a
     point.
 
     Two rounds of alternating minimisation, triangle then time, from the span's middle: a guess, as
-    for `_core`.
+    for `_curvature_centre`.
     """
     s = 0.5
     v = w = 0.0
@@ -406,7 +408,7 @@ def _nearest_place(
         for i in range(3):
             for k in range(3):
                 flat[i, k] = six[i, k] + s * (six[i + 3, k] - six[i, k])
-        v, w = _nearest_of_triangle(flat, cx, cy, cz)
+        v, w = _closest_point_on_triangle(flat, cx, cy, cz)
         dot = square = 0.0
         for k in range(3):
             one = six[0, k] + v * (six[1, k] - six[0, k]) + w * (six[2, k] - six[0, k])
@@ -420,7 +422,7 @@ def _nearest_place(
 
 
 @njit(cache=True, nogil=True)
-def _cut(
+def _tangent_plane_bound(
     arcs: Floats,
     first: int,
     last: int,
@@ -435,7 +437,7 @@ def _cut(
 ) -> float:
     """Fill out (6,) with the tangent plane of the depth at a point, at six points (mm), and return its
     greatest value: D(p) - n . (q - p)."""
-    depth, nx, ny, nz = _tangent(arcs, first, last, ax, ay, az, x, y, z)
+    depth, nx, ny, nz = _depth_and_normal(arcs, first, last, ax, ay, az, x, y, z)
     most = -np.inf
     for i in range(6):
         out[i] = depth - nx * (six[i, 0] - x) - ny * (six[i, 1] - y) - nz * (six[i, 2] - z)
@@ -444,7 +446,7 @@ def _cut(
 
 
 @njit(cache=True, nogil=True)
-def _halving(task: Floats, six: Floats, is_drift: bool) -> float:
+def _choose_split(task: Floats, six: Floats, is_drift: bool) -> float:
     """Return what to halve: 0 the time, 1 to 3 the edge that begins at that corner; the longest of
     edges and corners' paths, or time where the sag is what is left open."""
     if is_drift:
@@ -464,7 +466,7 @@ def _halving(task: Floats, six: Floats, is_drift: bool) -> float:
 
 
 @njit(cache=True, nogil=True)
-def _halve(task: Floats, one: Floats, other: Floats) -> None:
+def _split_task(task: Floats, one: Floats, other: Floats) -> None:
     """Write both halves of a task: its time at the middle, or its triangle across the middle of an
     edge."""
     one[:] = task
@@ -479,7 +481,7 @@ def _halve(task: Floats, one: Floats, other: Floats) -> None:
 
 
 @njit(cache=True, nogil=True)
-def _concede(task: Floats, found: Floats) -> None:
+def _accept_bound(task: Floats, found: Floats) -> None:
     """Raise found (4,), depth and place, to a task's bound, at the middle of its triangle."""
     found[0] = task[UPPER]
     for k in range(3):
@@ -487,7 +489,7 @@ def _concede(task: Floats, found: Floats) -> None:
 
 
 @njit(cache=True, nogil=True)
-def enter_triangle(
+def triangle_contact(
     corners: Floats,
     normal: Floats,
     way: Floats,
@@ -515,12 +517,12 @@ def enter_triangle(
     deepest, or anything when the deepest is at most `enough`; beyond `settle` it may be any depth
     larger than that. `found` as given counts as known: only what is deeper by more than `bound` is
     searched for. tasks (k, 13) wait; where they have no room for both halves of one, its bound
-    counts as the depth: that errs deep. The rest is workspace, see `_look`.
+    counts as the depth: that errs deep. The rest is workspace, see `_task_bound`.
     """
     tasks[0, CORNERS : CORNERS + 9] = corners
     tasks[0, T_FROM], tasks[0, T_TO] = t0, t1
     if (
-        _look(
+        _task_bound(
             tasks[0],
             normal,
             way,
@@ -548,10 +550,10 @@ def enter_triangle(
         if task[UPPER] <= max(enough, found[0] + bound):
             continue
         if top + 2 > len(tasks):
-            _concede(task, found)
+            _accept_bound(task, found)
             continue
-        _halve(task, tasks[top], tasks[top + 1])
-        one = _look(
+        _split_task(task, tasks[top], tasks[top + 1])
+        one = _task_bound(
             tasks[top],
             normal,
             way,
@@ -567,7 +569,7 @@ def enter_triangle(
             cuts,
             flat,
         )
-        other = _look(
+        other = _task_bound(
             tasks[top + 1],
             normal,
             way,
@@ -595,7 +597,7 @@ def enter_triangle(
 
 
 @njit(cache=True, nogil=True)
-def box_depth(
+def box_depth_bound(
     box: Floats, ends: Floats, span: Floats, arcs: Floats, first: int, last: int
 ) -> float:
     """Return an upper bound (mm) on the depth of any point of a box, centre (3,) and half sides (3,),
@@ -605,14 +607,14 @@ def box_depth(
     sides and the sag add along its normal.
     """
     ax, ay, az = span[S_AXIS], span[S_AXIS + 1], span[S_AXIS + 2]
-    x0, y0, z0 = seen(ends, 0, box[0], box[1], box[2])
-    x1, y1, z1 = seen(ends, 1, box[0], box[1], box[2])
-    depth, nx, ny, nz = _tangent(
+    x0, y0, z0 = point_in_tool_frame(ends, 0, box[0], box[1], box[2])
+    x1, y1, z1 = point_in_tool_frame(ends, 1, box[0], box[1], box[2])
+    depth, nx, ny, nz = _depth_and_normal(
         arcs, first, last, ax, ay, az, 0.5 * (x0 + x1), 0.5 * (y0 + y1), 0.5 * (z0 + z1)
     )
     depth += 0.5 * abs(nx * (x1 - x0) + ny * (y1 - y0) + nz * (z1 - z0))
     if span[S_ANGLE] == 0.0:
-        return depth + abs(nx) * box[3] + abs(ny) * box[4] + abs(nz) * box[5] + sag_of(span, 0.0)
+        return depth + abs(nx) * box[3] + abs(ny) * box[4] + abs(nz) * box[5] + chord_sag(span, 0.0)
     # The box turns against the normal: half sides at the end where they reach further, and the sag
     # of its furthest corner.
     most = 0.0
@@ -626,11 +628,11 @@ def box_depth(
         )
     half = math.sqrt(box[3] * box[3] + box[4] * box[4] + box[5] * box[5])
     far = math.sqrt(max(x0 * x0 + y0 * y0 + z0 * z0, x1 * x1 + y1 * y1 + z1 * z1)) + half
-    return depth + most + sag_of(span, far)
+    return depth + most + chord_sag(span, far)
 
 
 @njit(cache=True, nogil=True)
-def contact_loop(
+def triangle_contact_loop(
     first: int,
     last: int,
     rows: Ints,
@@ -685,23 +687,23 @@ def contact_loop(
     touched = np.zeros(n_faces, np.int64)
     for k in range(first, last):
         n = rows[k]
-        fill_way(start[n], end[n], axis[n], end_axis[n], centre[n], sweep[n], way)
+        fill_tool_motion(start[n], end[n], axis[n], end_axis[n], centre[n], sweep[n], way)
         # What was filled for the move before is not this one's, though its shares be the same.
         near[S_FROM] = near[S_TO] = -1.0
         n_touched, done = 0, False
         for p in range(piece_start[tool[n]], piece_start[tool[n] + 1]):
             a, b = int(pieces[p, CLOSED_FIRST]), int(pieces[p, CLOSED_LAST])
             column = 0 if pieces[p, KIND] == 0.0 else 1
-            count = spans_of(way, pieces[p, R_MAX])
+            count = segment_count(way, pieces[p, R_MAX])
             for q in range(count):
-                fill_span(way, q / count, (q + 1) / count, ends, span)
+                fill_swept_segment(way, q / count, (q + 1) / count, ends, span)
                 node = 0
                 # Preorder traversal; a subtree is skipped when its box cannot be entered by more
                 # than `enough`, or all of it is one face that is already known to be `DEEP`.
                 while node < len(boxes) and not done:
                     f = node_face[node]
                     known = f >= 0 and stamp[f] == k and best[f, column] >= DEEP
-                    if known or box_depth(boxes[node], ends, span, arcs, a, b) <= enough[k]:
+                    if known or box_depth_bound(boxes[node], ends, span, arcs, a, b) <= enough[k]:
                         node = skip[node]
                         continue
                     for m in range(leaves[node, 0], leaves[node, 0] + leaves[node, 1]):
@@ -714,7 +716,7 @@ def contact_loop(
                         found[0] = before = best[f, column]
                         if before >= DEEP:
                             continue
-                        enter_triangle(
+                        triangle_contact(
                             corners[m],
                             normals[m],
                             way,

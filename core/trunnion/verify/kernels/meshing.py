@@ -30,7 +30,7 @@ CORNER_COLUMN = (0, 1, 1, 0)
 
 
 @njit(cache=True, nogil=True, inline="always")
-def _goes_on(before: float, a: float, b: float, after: float, fine: float) -> bool:
+def _is_continuous(before: float, a: float, b: float, after: float, fine: float) -> bool:
     """Return whether the surface continues from a cell of height a to its neighbour of height b, the
     cells before and after them given too.
 
@@ -61,13 +61,13 @@ def corner_heights(top: Floats, floor: float, pitch: float) -> Floats:
                     top[j, i - 1] if i > 0 else a,
                     top[j, i + 2] if i + 2 < columns else top[j, i + 1],
                 )
-                right[j, i] = _goes_on(before, a, top[j, i + 1], after, fine)
+                right[j, i] = _is_continuous(before, a, top[j, i + 1], after, fine)
             if j + 1 < rows and top[j + 1, i] > floor:
                 before, after = (
                     top[j - 1, i] if j > 0 else a,
                     top[j + 2, i] if j + 2 < rows else top[j + 1, i],
                 )
-                up[j, i] = _goes_on(before, a, top[j + 1, i], after, fine)
+                up[j, i] = _is_continuous(before, a, top[j + 1, i], after, fine)
     out = np.full((rows + 2, columns + 2, 4), floor)
     for j in range(rows):
         for i in range(columns):
@@ -114,7 +114,7 @@ def corner_heights(top: Floats, floor: float, pitch: float) -> Floats:
 
 
 @njit(cache=True, nogil=True)
-def _largest(free: Bools, top: Floats, j: int, i: int, same: bool) -> tuple[int, int]:
+def _largest_rectangle(free: Bools, top: Floats, j: int, i: int, same: bool) -> tuple[int, int]:
     """Return the row and column after a rectangle of free cells (of one height, if so asked) that
     begins at cell (j, i): as wide as its first row goes, then as deep."""
     rows, columns = top.shape
@@ -131,7 +131,7 @@ def _largest(free: Bools, top: Floats, j: int, i: int, same: bool) -> tuple[int,
 
 
 @njit(cache=True, nogil=True)
-def _is_even(free: Bools, corners: Floats, j: int, i: int, size: int, bound: float) -> bool:
+def _is_one_surface(free: Bools, corners: Floats, j: int, i: int, size: int, bound: float) -> bool:
     """Return whether a size x size block of free cells is one surface, everywhere within a bound (mm)
     of what its four corners span."""
     rows, columns = free.shape
@@ -193,18 +193,22 @@ def patches(top: Floats, floor: float, corners: Floats, bound: float) -> tuple[I
                 if stage == 3:
                     if not there[j, i]:
                         continue
-                    j1, i1 = _largest(there, top, j, i, False)
+                    j1, i1 = _largest_rectangle(there, top, j, i, False)
                 elif stage == 0:
                     if not level[j, i]:
                         continue
-                    j1, i1 = _largest(level, top, j, i, True)
+                    j1, i1 = _largest_rectangle(level, top, j, i, True)
                 elif not free[j, i]:
                     continue
                 elif stage == 1:
-                    if j % 4 != 0 or i % 4 != 0 or not _is_even(free, corners, j, i, 4, bound):
+                    if (
+                        j % 4 != 0
+                        or i % 4 != 0
+                        or not _is_one_surface(free, corners, j, i, 4, bound)
+                    ):
                         continue
                     j1, i1 = j + 4, i + 4
-                elif j % 2 == 0 and i % 2 == 0 and _is_even(free, corners, j, i, 2, bound):
+                elif j % 2 == 0 and i % 2 == 0 and _is_one_surface(free, corners, j, i, 2, bound):
                     j1, i1 = j + 2, i + 2
                 else:
                     j1, i1 = j + 1, i + 1
@@ -518,7 +522,7 @@ def _faces(
 
 
 @njit(cache=True, nogil=True)
-def mesh_heights(
+def mesh_zmap(
     top: Floats, low_x: float, low_y: float, floor: float, pitch: float, bound: float
 ) -> tuple[Floats, Ints]:
     """Return points (v, 3) mm and triangles (t, 3), anticlockwise from outside, of the solid between a

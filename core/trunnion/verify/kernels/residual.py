@@ -64,7 +64,7 @@ class Flutes(NamedTuple):
     middle: Floats
 
 
-class Tree(NamedTuple):
+class SpanTree(NamedTuple):
     """Spans of ways in a bounding volume hierarchy of poses, one for each tool.
 
     way (w, 18), move (w,) their rows among the moves, tool (w,). Spans: of (k,) the row of the way,
@@ -87,7 +87,7 @@ class Tree(NamedTuple):
 
 
 @njit(cache=True, nogil=True)
-def plain_distance(radius: float, corner: float, top: float, rho: float, h: float) -> float:
+def bull_signed_distance(radius: float, corner: float, top: float, rho: float, h: float) -> float:
     """Return the signed distance (mm) of a point (rho, h) to a plain cutter whose flutes end at `top`
     (mm, at least its corner radius); negative inside.
 
@@ -104,7 +104,7 @@ def plain_distance(radius: float, corner: float, top: float, rho: float, h: floa
 
 
 @njit(cache=True, nogil=True)
-def left_by_move(
+def move_signed_distance(
     x: float,
     y: float,
     z: float,
@@ -131,11 +131,13 @@ def left_by_move(
     # flank is nearest: above the corner, and above the end face by more than the flank is away.
     deep = min(max(radius - rho, 0.0), 0.5 * top)
     h = min(max(z - high, max(corner, deep)), z - low)
-    return min(best, plain_distance(radius, corner, top, rho, h))
+    return min(best, bull_signed_distance(radius, corner, top, rho, h))
 
 
 @njit(cache=True, nogil=True, inline="always")
-def in_tool(w: Floats, x: float, y: float, z: float, t: float) -> tuple[float, float, float]:
+def point_in_tool_frame(
+    w: Floats, x: float, y: float, z: float, t: float
+) -> tuple[float, float, float]:
     """Return a point as seen from the tool at a share t of its way: across the axis along E and along
     A x E, and above the tip (mm)."""
     # N = A x E completes the frame.
@@ -166,7 +168,7 @@ def in_tool(w: Floats, x: float, y: float, z: float, t: float) -> tuple[float, f
 
 
 @njit(cache=True, nogil=True, inline="always")
-def flute_distance(flutes: Flutes, tool: int, rho: float, h: float, endless: bool) -> float:
+def flute_signed_distance(flutes: Flutes, tool: int, rho: float, h: float, endless: bool) -> float:
     """Return the signed distance (mm) of a point (rho, h) to the union of a tool's cutting bodies,
     negative inside.
 
@@ -183,7 +185,7 @@ def flute_distance(flutes: Flutes, tool: int, rho: float, h: float, endless: boo
 
 
 @njit(cache=True, nogil=True, inline="always")
-def _slope(
+def _distance_slope(
     arcs: Floats,
     first: int,
     last: int,
@@ -202,7 +204,7 @@ def _slope(
 
 
 @njit(cache=True, nogil=True)
-def least_on_chord(
+def chord_distance_bound(
     arcs: Floats,
     first: int,
     last: int,
@@ -224,11 +226,11 @@ def least_on_chord(
     """
     dx, dy, dz = x1 - x0, y1 - y0, z1 - z0
     a, b = 0.0, 1.0
-    fa, ma = _slope(arcs, first, last, x0, y0, z0, dx, dy, dz)
+    fa, ma = _distance_slope(arcs, first, last, x0, y0, z0, dx, dy, dz)
     # A minimum at an end: the tangent there already rises (or still falls) along the chord.
     if ma >= 0.0:
         return fa, 0.0, 0.0, 0.0
-    fb, mb = _slope(arcs, first, last, x1, y1, z1, dx, dy, dz)
+    fb, mb = _distance_slope(arcs, first, last, x1, y1, z1, dx, dy, dz)
     if mb <= 0.0:
         return fb, 1.0, 1.0, 1.0
     lower = -np.inf
@@ -239,7 +241,7 @@ def least_on_chord(
         lower = min(fa + ma * (t - a), fb + mb * (t - b))
         if lower >= stop or min(fa, fb) - lower <= close:
             break
-        f, m = _slope(arcs, first, last, x0 + t * dx, y0 + t * dy, z0 + t * dz, dx, dy, dz)
+        f, m = _distance_slope(arcs, first, last, x0 + t * dx, y0 + t * dy, z0 + t * dz, dx, dy, dz)
         if m == 0.0:
             return f, t, t, t
         if f - lower <= close:
@@ -260,8 +262,8 @@ def _level_rho(
 
     At a constant height f never falls with rho, so the least rho gives the least distance.
     """
-    ax, ay, h = in_tool(w, x, y, z, t0)
-    bx, by, _h = in_tool(w, x, y, z, t1)
+    ax, ay, h = point_in_tool_frame(w, x, y, z, t0)
+    bx, by, _h = point_in_tool_frame(w, x, y, z, t1)
     if w[RADIUS] > 0.0:
         # Seen from the arc's centre the point stands still, and the tip turns past it.
         angle = w[PHASE] + t0 * w[SWEEP]
@@ -287,7 +289,7 @@ def _level_rho(
 
 
 @njit(cache=True, nogil=True)
-def _sag(w: Floats, span: float, far: float) -> float:
+def _chord_sag(w: Floats, span: float, far: float) -> float:
     """Return how far (mm) a point at most `far` from the tip leaves its chord, seen from the tool,
     over a share of the way.
 
@@ -307,7 +309,7 @@ def _sag(w: Floats, span: float, far: float) -> float:
 
 
 @njit(cache=True, nogil=True)
-def left_along(
+def span_signed_distance(
     w: Floats,
     flutes: Flutes,
     tool: int,
@@ -330,7 +332,7 @@ def left_along(
     # Across a still axis: closed form.
     if w[TURN] == 0.0 and abs(w[DX] * w[AX] + w[DY] * w[AY] + w[DZ] * w[AZ]) <= _LEVEL:
         rho, h, at = _level_rho(w, x, y, z, t0, t1)
-        return min(best, flute_distance(flutes, tool, rho, h, endless)), at
+        return min(best, flute_signed_distance(flutes, tool, rho, h, endless)), at
     # Invariant: every time at which the distance may be below best - bound lies in a span on the
     # stack.
     spans[0, 0], spans[0, 1] = t0, t1
@@ -338,16 +340,16 @@ def left_along(
     while top > 0:
         top -= 1
         a, b = spans[top, 0], spans[top, 1]
-        x0, y0, z0 = in_tool(w, x, y, z, a)
-        x1, y1, z1 = in_tool(w, x, y, z, b)
+        x0, y0, z0 = point_in_tool_frame(w, x, y, z, a)
+        x1, y1, z1 = point_in_tool_frame(w, x, y, z, b)
         # The true path lies within the sag of its chord and f has slope 1: its minimum is at least
         # the chord's less the sag.
-        sag = _sag(
+        sag = _chord_sag(
             w, b - a, math.sqrt(max(x0 * x0 + y0 * y0 + z0 * z0, x1 * x1 + y1 * y1 + z1 * z1))
         )
         least, share = np.inf, 0.0
         for k in range(flutes.start[tool], flutes.start[tool + 1]):
-            lower, s, _a, _b = least_on_chord(
+            lower, s, _a, _b = chord_distance_bound(
                 flutes.arc,
                 flutes.first[k],
                 flutes.endless[k] if endless else flutes.last[k],
@@ -366,8 +368,8 @@ def left_along(
             continue
         # Evaluate on the true motion where the chord's minimum is: attained.
         t = a + share * (b - a)
-        xt, yt, zt = in_tool(w, x, y, z, t)
-        value = flute_distance(flutes, tool, math.sqrt(xt * xt + yt * yt), zt, endless)
+        xt, yt, zt = point_in_tool_frame(w, x, y, z, t)
+        value = flute_signed_distance(flutes, tool, math.sqrt(xt * xt + yt * yt), zt, endless)
         if value < best:
             best, at = value, t
         if least - sag >= best - bound or top + 2 > len(spans):
@@ -380,8 +382,8 @@ def left_along(
 
 
 @njit(cache=True, nogil=True)
-def node_least(
-    tree: Tree, flutes: Flutes, n: int, x: float, y: float, z: float, above: bool
+def node_distance_bound(
+    tree: SpanTree, flutes: Flutes, n: int, x: float, y: float, z: float, above: bool
 ) -> float:
     """Return a lower bound (mm) of the signed distance of a point to any pose below a node.
 
@@ -394,7 +396,7 @@ def node_least(
     h = vx * pose[n, 3] + vy * pose[n, 4] + vz * pose[n, 5]
     rho = math.sqrt(max(square - h * h, 0.0))
     return (
-        flute_distance(flutes, tool, rho, h + flutes.middle[tool], above)
+        flute_signed_distance(flutes, tool, rho, h + flutes.middle[tool], above)
         - pose[n, 6]
         - pose[n, 7] * math.sqrt(square)
     )
@@ -405,7 +407,7 @@ def nearest_span(
     x: float,
     y: float,
     z: float,
-    tree: Tree,
+    tree: SpanTree,
     flutes: Flutes,
     best: float,
     by: int,
@@ -428,7 +430,7 @@ def nearest_span(
     for r in range(len(tree.root)):
         nodes[top], least[top] = (
             tree.root[r],
-            node_least(tree, flutes, tree.root[r], x, y, z, above),
+            node_distance_bound(tree, flutes, tree.root[r], x, y, z, above),
         )
         top += 1
     # Depth first, the nearer child first; a node that can no longer undercut `best` is dropped when
@@ -441,8 +443,8 @@ def nearest_span(
         left, right = tree.link[n, 0], tree.link[n, 1]
         if left >= 0:
             a, b = (
-                node_least(tree, flutes, left, x, y, z, above),
-                node_least(tree, flutes, right, x, y, z, above),
+                node_distance_bound(tree, flutes, left, x, y, z, above),
+                node_distance_bound(tree, flutes, right, x, y, z, above),
             )
             # The nearer child goes on top of the stack.
             if a < b:
@@ -458,15 +460,16 @@ def nearest_span(
             w = tree.way[row]
             endless = above and w[AZ] > 1.0 - _LEVEL and w[TURN] == 0.0
             # A span is bounded as a node is: by its middle pose.
-            mx, my, mz = in_tool(w, x, y, z, 0.5 * (tree.low[k] + tree.high[k]))
+            mx, my, mz = point_in_tool_frame(w, x, y, z, 0.5 * (tree.low[k] + tree.high[k]))
             turn = w[TURN] * (tree.high[k] - tree.low[k])
             most = tree.reach[k] + 0.5 * turn * math.sqrt(mx * mx + my * my + mz * mz)
             if (
-                flute_distance(flutes, tool, math.sqrt(mx * mx + my * my), mz, endless) - most
+                flute_signed_distance(flutes, tool, math.sqrt(mx * mx + my * my), mz, endless)
+                - most
                 >= best - bound
             ):
                 continue
-            value, at = left_along(
+            value, at = span_signed_distance(
                 w, flutes, tool, x, y, z, tree.low[k], tree.high[k], best, bound, endless, spans
             )
             if value < best:
@@ -492,7 +495,7 @@ def span_poses(
         length = math.sqrt(w[DX] * w[DX] + w[DY] * w[DY] + w[DZ] * w[DZ]) * share
         if w[RADIUS] > 0.0:
             # Seen from its own tip the origin is at minus the tip's place.
-            ox, oy, oz = in_tool(w, 0.0, 0.0, 0.0, t)
+            ox, oy, oz = point_in_tool_frame(w, 0.0, 0.0, 0.0, t)
             nx, ny, nz = ay * w[EZ] - az * w[EY], az * w[EX] - ax * w[EZ], ax * w[EY] - ay * w[EX]
             px, py, pz = (
                 -ox * w[EX] - oy * nx - oz * ax,
@@ -511,7 +514,7 @@ def span_poses(
 
 
 @njit(cache=True, nogil=True)
-def grow_tree(
+def build_pose_bvh(
     pose: Floats, reach: Floats, start: Ints, tools: Ints, nodes: Floats, links: Ints, root: Ints
 ) -> int:
     """Fill the nodes (m, 8) and links (m, 5) of trees over spans in their order; return how many nodes
@@ -530,7 +533,7 @@ def grow_tree(
         while top > 0:
             top -= 1
             first, last, n = work[top, 0], work[top, 1], work[top, 2]
-            _bounding(pose, reach, first, last, nodes[n])
+            _bounding_pose(pose, reach, first, last, nodes[n])
             links[n, 0], links[n, 1], links[n, 2], links[n, 3], links[n, 4] = (
                 -1,
                 -1,
@@ -549,7 +552,7 @@ def grow_tree(
 
 
 @njit(cache=True, nogil=True)
-def _bounding(pose: Floats, reach: Floats, first: int, last: int, out: Floats) -> None:
+def _bounding_pose(pose: Floats, reach: Floats, first: int, last: int, out: Floats) -> None:
     """Fill a node's row (8,): the middle of its places' box and of their axes, and the radius and
     chord of angle that hold all its spans.
 
@@ -594,7 +597,7 @@ def move_boxes(moves: Floats, margin: Floats) -> Floats:
 
 
 @njit(cache=True, nogil=True)
-def left_loop(
+def residual_loop(
     first: int,
     last: int,
     points: Floats,
@@ -606,7 +609,7 @@ def left_loop(
     cell_move: Ints,
     grid: Floats,
     shape: Ints,
-    tree: Tree,
+    tree: SpanTree,
     flutes: Flutes,
     bound: float,
     left: Floats,
@@ -635,7 +638,9 @@ def left_loop(
                 m = cell_move[c]
                 if low[m] - z >= best:
                     break
-                d = left_by_move(x, y, z, moves[m], cutter[m, 0], cutter[m, 1], cutter[m, 2], best)
+                d = move_signed_distance(
+                    x, y, z, moves[m], cutter[m, 0], cutter[m, 1], cutter[m, 2], best
+                )
                 if d < best:
                     best, by = d, m
         left[n], nearest[n], _row, _share = nearest_span(
@@ -644,18 +649,18 @@ def left_loop(
 
 
 @njit(cache=True, nogil=True)
-def far_loop(
+def residual_bvh_loop(
     first: int,
     last: int,
     points: Floats,
     order: Ints,
-    tree: Tree,
+    tree: SpanTree,
     flutes: Flutes,
     bound: float,
     left: Floats,
     nearest: Ints,
 ) -> None:
-    """Lower left (s,) as `left_loop` does, by the moves of a tree alone."""
+    """Lower left (s,) as `residual_loop` does, by the moves of a tree alone."""
     nodes, least, spans = (
         np.zeros(len(tree.root) + 128, np.int64),
         np.zeros(len(tree.root) + 128),
@@ -682,7 +687,7 @@ def far_loop(
 
 
 @njit(cache=True, nogil=True)
-def _cut_from_above(
+def _removed_from_above(
     x: float,
     y: float,
     z: float,
@@ -713,7 +718,9 @@ def _cut_from_above(
             return False
         if (
             m < before
-            and left_by_move(x, y, z, moves[m], cutter[m, 0] - thinner, cutter[m, 1], np.inf, 1.0)
+            and move_signed_distance(
+                x, y, z, moves[m], cutter[m, 0] - thinner, cutter[m, 1], np.inf, 1.0
+            )
             <= most
         ):
             return True
@@ -721,7 +728,7 @@ def _cut_from_above(
 
 
 @njit(cache=True, nogil=True)
-def cut_loop(
+def removed_loop(
     first: int,
     last: int,
     points: Floats,
@@ -733,7 +740,7 @@ def cut_loop(
     cell_move: Ints,
     grid: Floats,
     shape: Ints,
-    tree: Tree,
+    tree: SpanTree,
     flutes: Flutes,
     bound: float,
     out: Bools,
@@ -750,7 +757,7 @@ def cut_loop(
     )
     for n in range(first, last):
         x, y, z = points[n, 0], points[n, 1], points[n, 2]
-        out[n] = _cut_from_above(
+        out[n] = _removed_from_above(
             x, y, z, before, 0.0, bound, moves, cutter, low, cell_start, cell_move, grid, shape
         )
         if not out[n]:
@@ -776,7 +783,7 @@ def cut_loop(
 
 
 @njit(cache=True, nogil=True)
-def around_loop(
+def surroundings_removed_loop(
     first: int,
     last: int,
     points: Floats,
@@ -798,7 +805,7 @@ def around_loop(
     """
     for n in range(first, last):
         # A cutter thinner by the margin that holds the middle: the cutter itself holds all around.
-        out[n] = _cut_from_above(
+        out[n] = _removed_from_above(
             points[n, 0],
             points[n, 1],
             points[n, 2],

@@ -3,7 +3,7 @@ before.
 
 The inverse kinematics of a five-axis machine have two solutions for a tool axis, each repeated
 every full turn of an axis. From pose to pose the solution within the limits that turns the axes
-least is taken (nearest-neighbour; the planner's `geometry/kernels/winding.py` optimises over the
+least is taken (nearest-neighbour; the planner's `geometry/kernels/rotary_angles.py` optimises over the
 whole path, this one stands for a control that looks one block ahead). Angles in rad.
 """
 
@@ -19,7 +19,7 @@ TURN = 2.0 * math.pi
 
 
 @njit(cache=True, nogil=True)
-def nearest(value: float, before: float, low: float, high: float) -> float:
+def nearest_congruent(value: float, before: float, low: float, high: float) -> float:
     """Return the angle congruent to `value` modulo a full turn that is nearest to `before` (rad),
     shifted by whole turns into low to high where that is possible.
 
@@ -36,7 +36,7 @@ def nearest(value: float, before: float, low: float, high: float) -> float:
 
 
 @njit(cache=True, nogil=True)
-def follow(
+def choose_angles_greedy(
     angles: Floats, free: Bools, low: Floats, high: Floats, first: int, slack: float, chosen: Floats
 ) -> tuple[float, int]:
     """Fill chosen (m, a) with the rotary angles of m poses and return the total angle turned (rad,
@@ -62,7 +62,7 @@ def follow(
                 angle = (
                     before
                     if free[k, way, a]
-                    else nearest(angles[k, way, a], before, low[a], high[a])
+                    else nearest_congruent(angles[k, way, a], before, low[a], high[a])
                 )
                 cost += abs(angle - before)
                 out += angle < low[a] - slack or angle > high[a] + slack
@@ -73,7 +73,7 @@ def follow(
             chosen[k, a] = (
                 before
                 if free[k, best_way, a]
-                else nearest(angles[k, best_way, a], before, low[a], high[a])
+                else nearest_congruent(angles[k, best_way, a], before, low[a], high[a])
             )
         turned += best
         outside += best_out > 0

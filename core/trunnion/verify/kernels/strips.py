@@ -277,7 +277,7 @@ def _profile_u(s: Floats, z: float) -> float:
 
 
 @njit(cache=True, nogil=True)
-def _end(kind: float, a: float, b: float, c: float, sign: float, u: float, u0: float) -> float:
+def _trim_end(kind: float, a: float, b: float, c: float, sign: float, u: float, u0: float) -> float:
     """Return the guide coordinate s (mm, on arcs rad) at which a strip ends at the parameter u: a line
     in (s, u), or a circle about (a, c) of radius b."""
     if kind == 0.0:
@@ -286,7 +286,7 @@ def _end(kind: float, a: float, b: float, c: float, sign: float, u: float, u0: f
 
 
 @njit(cache=True, nogil=True)
-def _guide(s: Floats, w: float, u0: float, u1: float, out: Floats) -> None:
+def _guide_curve(s: Floats, w: float, u0: float, u1: float, out: Floats) -> None:
     """Fill out (15,) with the guide's plan curve at offset w, trimmed as wide as it is anywhere
     between two profile parameters.
 
@@ -299,12 +299,12 @@ def _guide(s: Floats, w: float, u0: float, u1: float, out: Floats) -> None:
         low, high = s[LA], s[RA]
     else:
         low = min(
-            _end(s[L_KIND], s[LA], s[LB], s[LC], s[L_SIGN], u0, s[U0]),
-            _end(s[L_KIND], s[LA], s[LB], s[LC], s[L_SIGN], u1, s[U0]),
+            _trim_end(s[L_KIND], s[LA], s[LB], s[LC], s[L_SIGN], u0, s[U0]),
+            _trim_end(s[L_KIND], s[LA], s[LB], s[LC], s[L_SIGN], u1, s[U0]),
         )
         high = max(
-            _end(s[R_KIND], s[RA], s[RB], s[RC], s[R_SIGN], u0, s[U0]),
-            _end(s[R_KIND], s[RA], s[RB], s[RC], s[R_SIGN], u1, s[U0]),
+            _trim_end(s[R_KIND], s[RA], s[RB], s[RC], s[R_SIGN], u0, s[U0]),
+            _trim_end(s[R_KIND], s[RA], s[RB], s[RC], s[R_SIGN], u1, s[U0]),
         )
         high = max(high, low)
     if s[GUIDE] == 0.0:
@@ -337,7 +337,7 @@ def _depth_at(
 ) -> float:
     """Return the depth (mm) that is attained at one profile parameter, for a tip along `path` from
     z_low to z_low + rise."""
-    _guide(s, _profile_w(s, u), u, u, guide)
+    _guide_curve(s, _profile_w(s, u), u, u, guide)
     depth, _r, _h = swept_depth(
         arcs, piece, curve_distance(path, guide), _profile_z(s, u) - z_low, rise
     )
@@ -391,12 +391,12 @@ def strip_depth(
         u0, u1 = stack[top, 0], stack[top, 1]
         w0, w1, z0, z1 = _profile_w(s, u0), _profile_w(s, u1), _profile_z(s, u0), _profile_z(s, u1)
         # Both ends with the interval's widest guide: then w alone moves the guide.
-        _guide(s, w0, u0, u1, guide)
+        _guide_curve(s, w0, u0, u1, guide)
         rho0 = curve_distance(path, guide)
         rho1, sag = rho0, 0.0
         span = abs(w1 - w0)
         if span > 0.0:
-            _guide(s, w1, u0, u1, guide)
+            _guide_curve(s, w1, u0, u1, guide)
             rho1 = curve_distance(path, guide)
             # Sag of the distance below its chord: by its slope of 1; and, where the curves cannot
             # touch in between (`nearest` bounds the distance from below), by its second derivative.
@@ -643,7 +643,7 @@ def region_depth(
         if (
             z - z_low < piece[Z_LOW]
             or z - z_low > piece[Z_HIGH] + rise
-            or not _over(move[X0], move[Y0], box, outline)
+            or not _point_in_region(move[X0], move[Y0], box, outline)
         ):
             return -np.inf, 0.0
         return _level_depth(arcs, piece, z - z_low, rise), 0.0
@@ -657,7 +657,7 @@ def region_depth(
             if not 0.0 < t < 1.0:
                 continue
         tip, _z = part_of_move(move, t, t, path)
-        if _over(path[X0], path[Y0], box, outline):
+        if _point_in_region(path[X0], path[Y0], box, outline):
             depth = _level_depth(arcs, piece, z - tip, 0.0)
             if depth > most:
                 most, when = depth, t
@@ -665,7 +665,7 @@ def region_depth(
 
 
 @njit(cache=True, nogil=True, inline="always")
-def _over(x: float, y: float, box: Floats, outline: Floats) -> bool:
+def _point_in_region(x: float, y: float, box: Floats, outline: Floats) -> bool:
     """Return whether a plan point lies in a region, by its box (4,) first."""
     return box[0] <= x <= box[2] and box[1] <= y <= box[3] and _inside(x, y, outline)
 
@@ -706,7 +706,7 @@ def _near_cell(
 
 
 @njit(cache=True, nogil=True)
-def contact_loop(
+def strip_contact_loop(
     first: int,
     last: int,
     rows: Ints,
@@ -845,8 +845,8 @@ def contact_loop(
 def guide_point(s: Floats, u: float, share: float) -> tuple[float, float, float]:
     """Return the point (x, y, z) of a strip at one profile parameter, at a share of its guide from the
     left end to the right one."""
-    low = _end(s[L_KIND], s[LA], s[LB], s[LC], s[L_SIGN], u, s[U0])
-    high = _end(s[R_KIND], s[RA], s[RB], s[RC], s[R_SIGN], u, s[U0])
+    low = _trim_end(s[L_KIND], s[LA], s[LB], s[LC], s[L_SIGN], u, s[U0])
+    high = _trim_end(s[R_KIND], s[RA], s[RB], s[RC], s[R_SIGN], u, s[U0])
     at, w = low + share * (high - low), _profile_w(s, u)
     if s[GUIDE] != 0.0:
         return s[OX] + w * math.cos(at), s[OY] + w * math.sin(at), _profile_z(s, u)
@@ -854,7 +854,7 @@ def guide_point(s: Floats, u: float, share: float) -> tuple[float, float, float]
 
 
 @njit(cache=True, nogil=True)
-def places(
+def contact_points(
     rows: Ints,
     moves: Floats,
     which: Ints,
@@ -866,7 +866,7 @@ def places(
     face: Ints,
     place: Floats,
 ) -> None:
-    """Fill face (k, 2) and place (k, 2, 3) with where `contact_loop` found its depths.
+    """Fill face (k, 2) and place (k, 2, 3) with where `strip_contact_loop` found its depths.
 
     On a guide the nearest to the path of 65 even points is taken: a place to show, not part of any
     bound.

@@ -7,7 +7,7 @@ from 0 to 1 over the block.
 
 A span is a part of a block. Seen in the frame that the tool has in the middle of the span, a fixed
 point of space follows q(t) = M(t) (p - tip(t)). It stays close to the chord between its positions
-at both ends of the span: the deviation is bounded by `sag_of`, so a span stands for a continuous
+at both ends of the span: the deviation is bounded by `chord_sag`, so a span stands for a continuous
 motion without sampling it. Lengths mm, angles rad, all in the frame of the moves.
 """
 
@@ -41,7 +41,7 @@ FLAT = 1e-12
 
 
 @njit(cache=True, nogil=True)
-def fill_way(
+def fill_tool_motion(
     start: Floats,
     end: Floats,
     axis: Floats,
@@ -59,7 +59,7 @@ def fill_way(
         square += way[VECTOR + k] * way[VECTOR + k]
     way[LENGTH] = math.sqrt(square)
     if sweep != 0.0:
-        _fill_arc(start, end, axis, centre, sweep, way)
+        _fill_arc_motion(start, end, axis, centre, sweep, way)
         return
     # Axis of the turn: axis x end_axis, whose length is the sine of the angle.
     wx, wy, wz = (
@@ -89,7 +89,7 @@ def fill_way(
 
 
 @njit(cache=True, nogil=True)
-def _fill_arc(
+def _fill_arc_motion(
     start: Floats, end: Floats, axis: Floats, centre: Floats, sweep: float, way: Floats
 ) -> None:
     """Fill the columns of an arc: the centre moved along the axis to the start's level, the frame
@@ -155,7 +155,7 @@ def axis_at(way: Floats, t: float) -> tuple[float, float, float]:
 
 
 @njit(cache=True, nogil=True)
-def fill_span(way: Floats, t0: float, t1: float, ends: Floats, span: Floats) -> None:
+def fill_swept_segment(way: Floats, t0: float, t1: float, ends: Floats, span: Floats) -> None:
     """Fill ends (2, 12) and span (8,) for the part of a block between two shares.
 
     ends: for both ends the rotation matrix (9, row by row) that takes world directions into the
@@ -202,7 +202,9 @@ def fill_span(way: Floats, t0: float, t1: float, ends: Floats, span: Floats) -> 
 
 
 @njit(cache=True, nogil=True, inline="always")
-def seen(ends: Floats, e: int, px: float, py: float, pz: float) -> tuple[float, float, float]:
+def point_in_tool_frame(
+    ends: Floats, e: int, px: float, py: float, pz: float
+) -> tuple[float, float, float]:
     """Return a point of space (mm) relative to the tip at end e (0, 1) of a span, in the frame of the
     span's middle."""
     x, y, z = px - ends[e, TIP], py - ends[e, TIP + 1], pz - ends[e, TIP + 2]
@@ -214,7 +216,7 @@ def seen(ends: Floats, e: int, px: float, py: float, pz: float) -> tuple[float, 
 
 
 @njit(cache=True, nogil=True)
-def spans_of(way: Floats, radius: float) -> int:
+def segment_count(way: Floats, radius: float) -> int:
     """Return into how many equal spans a block is cut for a body of a radius (mm).
 
     No span is longer than the body is wide, turns by more than MOST_TURN or sweeps more than
@@ -230,7 +232,7 @@ def spans_of(way: Floats, radius: float) -> int:
 
 
 @njit(cache=True, nogil=True, inline="always")
-def sag_of(span: Floats, far: float) -> float:
+def chord_sag(span: Floats, far: float) -> float:
     """Return how far (mm) a point that stays within `far` of the tip can leave the chord between its
     positions at both ends of a span, in the frame of the middle.
 

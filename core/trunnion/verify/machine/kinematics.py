@@ -14,7 +14,7 @@ import numpy as np
 
 from trunnion.geometry.arrays import Bools, Floats, Ints
 from trunnion.model.material import Axis, Machine
-from trunnion.verify.kernels.rotary import follow
+from trunnion.verify.kernels.rotary import choose_angles_greedy
 from trunnion.verify.motion import Moves
 
 STEP = math.radians(2.0)
@@ -27,7 +27,7 @@ UP = np.array([0.0, 0.0, 1.0])
 
 
 @dataclass(frozen=True, slots=True, eq=False, kw_only=True)
-class Stands:
+class AxisPositions:
     """How a machine stands along the moves of a setup, at poses k close enough to follow every turn.
 
     move (k,): the move that each pose belongs to; a move's first pose is its start. linear (k, 3) mm: the positions of X, Y, Z up to where
@@ -42,7 +42,7 @@ class Stands:
     turns: Bools
 
 
-def stands_of(moves: Moves, machine: Machine, foot: Floats) -> Stands:
+def stands_of(moves: Moves, machine: Machine, foot: Floats) -> AxisPositions:
     """Return how a machine stands along moves; `foot` (3,) is the place of the work, in the setup frame, on the middle of the table."""
     move, tip, axis = poses_of(moves)
     rotary, good = rotary_angles(axis, machine)
@@ -53,7 +53,7 @@ def stands_of(moves: Moves, machine: Machine, foot: Floats) -> Stands:
         if len(move)
         else np.zeros(0)
     )
-    return Stands(
+    return AxisPositions(
         move=move,
         linear=linear_positions(tip - foot, gauge, rotary, machine),
         rotary=rotary,
@@ -113,7 +113,7 @@ def rotary_angles(axis: Floats, machine: Machine) -> tuple[Floats, Bools]:
     tried = []
     for first in (0, 1):
         chosen = np.zeros((len(axis), len(rotary)))
-        turned, outside = follow(angles, free, low, high, first, SLACK, chosen)
+        turned, outside = choose_angles_greedy(angles, free, low, high, first, SLACK, chosen)
         tried.append((outside, turned, first, chosen))
     return min(tried, key=lambda t: t[:3])[3], good
 

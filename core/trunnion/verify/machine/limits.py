@@ -12,13 +12,17 @@ from trunnion.findings import Finding, error
 from trunnion.model.material import Axis, Machine
 from trunnion.model.program import ProgramSection
 from trunnion.model.toolpath import Motion
-from trunnion.verify.machine.kinematics import SLACK, UP, Stands, angle_between
+from trunnion.verify.machine.kinematics import SLACK, UP, AxisPositions, angle_between
 from trunnion.verify.machine.times import LINEAR
 from trunnion.verify.motion import Moves
 
 
 def limit_findings(
-    setup: str, sections: Sequence[ProgramSection], moves: Moves, stands: Stands, machine: Machine
+    setup: str,
+    sections: Sequence[ProgramSection],
+    moves: Moves,
+    stands: AxisPositions,
+    machine: Machine,
 ) -> list[Finding]:
     """Return an error for every limit of the machine that the sections of a setup exceed."""
     found = _travel(setup, stands, machine)
@@ -76,7 +80,7 @@ def _standing(section: ProgramSection) -> list[Finding]:
     ]
 
 
-def _travel(setup: str, stands: Stands, machine: Machine) -> list[Finding]:
+def _travel(setup: str, stands: AxisPositions, machine: Machine) -> list[Finding]:
     if not len(stands.move):
         return []
     found = []
@@ -96,7 +100,7 @@ def _travel(setup: str, stands: Stands, machine: Machine) -> list[Finding]:
 
 
 def _rotary(
-    section: ProgramSection, index: int, moves: Moves, stands: Stands, machine: Machine
+    section: ProgramSection, index: int, moves: Moves, stands: AxisPositions, machine: Machine
 ) -> list[Finding]:
     rows = moves.section == index
     lost = np.flatnonzero(rows & ~stands.reached)

@@ -14,26 +14,26 @@ from trunnion.geometry.arrays import Bools, Floats, Ints
 from trunnion.model.material import Machine
 from trunnion.units import SECONDS_PER_MINUTE
 from trunnion.verify.kernels.timing import block_times
-from trunnion.verify.machine.kinematics import Stands, stands_of
+from trunnion.verify.machine.kinematics import AxisPositions, stands_of
 from trunnion.verify.motion import Moves
 
 LINEAR = ("X", "Y", "Z")
 
 
 @dataclass(frozen=True, slots=True, eq=False, kw_only=True)
-class Times:
+class MachineTimes:
     """Machining time of moves n, tool changes not in it: seconds (n,); speed (n,) mm/s of the tip, the greatest that it reaches."""
 
     seconds: Floats
     speed: Floats
 
 
-def times_of(moves: Moves, stands: Stands, machine: Machine) -> Times:
+def times_of(moves: Moves, stands: AxisPositions, machine: Machine) -> MachineTimes:
     """Return the machining time of every move, with accelerations."""
     n = len(moves)
     seconds, top = np.zeros(n), np.zeros(n)
     if not n:
-        return Times(seconds=seconds, speed=top)
+        return MachineTimes(seconds=seconds, speed=top)
     slowest = min(a.acceleration for a in machine.axes if a.kind == "linear")
     weight = np.array([slowest / np.radians(a.acceleration) for a in machine.rotary])
     axes = np.column_stack([stands.linear, stands.rotary * weight])
@@ -58,7 +58,7 @@ def times_of(moves: Moves, stands: Stands, machine: Machine) -> Times:
     speed[arc] = np.minimum(speed[arc], np.sqrt(slowest * _radii(moves, arc)))
     turn = np.concatenate([[0.0], (first[1:] * last[:-1]).sum(axis=1)])
     block_times(length, speed, turn, slowest, seconds, top)
-    return Times(
+    return MachineTimes(
         seconds=seconds,
         speed=top * np.divide(moves.length, length, out=np.ones(n), where=length > 0.0),
     )
@@ -80,7 +80,7 @@ def _ways(axes: Floats, move: Ints, n: int) -> tuple[Floats, Floats, Floats]:
     return _unit(step[begin]), _unit(step[end]), way
 
 
-def _tangents(stands: Stands, axes: Floats, rows: Ints) -> tuple[Floats, Floats]:
+def _tangents(stands: AxisPositions, axes: Floats, rows: Ints) -> tuple[Floats, Floats]:
     """Return the directions at the beginning and the end of arcs: those of the circle through the first and the last three poses."""
     begin = np.searchsorted(stands.move, rows)
     end = np.searchsorted(stands.move, rows, side="right") - 1

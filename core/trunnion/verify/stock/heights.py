@@ -9,8 +9,8 @@ from trunnion.geometry.arrays import Floats
 from trunnion.geometry.frame import Frame
 from trunnion.progress import Progress
 from trunnion.verify.finish.sweep import Sweep
-from trunnion.verify.kernels import field as kernel
 from trunnion.verify.kernels import strips as columns
+from trunnion.verify.kernels import zmap as kernel
 from trunnion.verify.motion import Moves
 from trunnion.verify.profile import cones_of, profiles_of
 from trunnion.verify.stock.engagement import Probes
@@ -56,7 +56,7 @@ def run_heights(
         done = work[first - 1] if first else 0.0
         last = max(first + 1, int(np.searchsorted(work, done + CHUNK_CELLS)))
         rim_start[first] = 0
-        stop, why = kernel.stock_loop(
+        stop, why = kernel.zmap_cut_loop(
             first,
             min(last, n),
             field.top,

@@ -50,7 +50,7 @@ def mesh_of_field(field: Field, most: int = MOST) -> tuple[Floats, Ints]:
             field.pitch * every,
         )
         for bound in (EVEN * pitch, ROUGH * pitch):
-            points, triangles = meshing.mesh_heights(top, *map(float, field.low), pitch, bound)
+            points, triangles = meshing.mesh_zmap(top, *map(float, field.low), pitch, bound)
             if len(triangles) <= most or top.size < LEAST_CELLS:
                 return points, triangles
         every *= 2
@@ -74,14 +74,14 @@ def mesh_of_rays(stock: Stock, most: int = MOST) -> tuple[Floats, Ints]:
     step = max(
         1, math.ceil((float(cells.prod()) / MOST_NODES) ** (1.0 / 3.0) - tolerance.PARAMETRIC)
     )
-    n_points, n_faces = contouring.count_faces(
+    n_points, n_faces = contouring.count_dual_mesh(
         counts, lows, highs, cells, origin, stock.pitch, step
     )
     if 2 * n_faces > most:
         step = math.ceil(step * math.sqrt(2 * n_faces / most))
-        n_points, n_faces = contouring.count_faces(
+        n_points, n_faces = contouring.count_dual_mesh(
             counts, lows, highs, cells, origin, stock.pitch, step
         )
-    return contouring.mesh_rays(
+    return contouring.dual_contour(
         counts, lows, highs, has, cells, origin, stock.pitch, step, n_points, n_faces
     )

@@ -221,7 +221,7 @@ class _Job:
     def run(self) -> None:
         """Go on until all moves are done or a ray has no room."""
         own, b, m = slice(self.first, self.last), self.bundle, self.batch
-        self.done = kernel.cut_tile(
+        self.done = kernel.tridexel_cut_tile(
             self.last - self.first,
             m.spans[b.axis],
             m.start[self.first : self.last + 1],

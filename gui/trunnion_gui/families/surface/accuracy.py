@@ -11,7 +11,7 @@ from trunnion_gui.i18n import tr
 from trunnion_gui.look.colours import Theme
 from trunnion_gui.look.words import duration, grouped
 from trunnion_gui.widgets import table as tables
-from trunnion_gui.widgets.chart import Chart, Curve
+from trunnion_gui.widgets.chart import Chart, ChartCurve
 from trunnion_gui.widgets.panel import rule
 
 _REPAIR = -1
@@ -88,10 +88,10 @@ class AccuracyDock(QWidget):
         self.chart.show_curves(
             tr("points on an edge"),
             [str(r.on_edge) for r in spread],
-            Curve(
+            ChartCurve(
                 tr("largest error"), tuple(100.0 * r.largest for r in spread), "%", by_powers=True
             ),
-            Curve(tr("time"), tuple(r.seconds for r in spread), "s"),
+            ChartCurve(tr("time"), tuple(r.seconds for r in spread), "s"),
             (repair, tr("the paper's repair")) if repair is not None else None,
         )
 

@@ -5,7 +5,7 @@ from __future__ import annotations
 from PySide6.QtWidgets import QLabel, QVBoxLayout, QWidget
 
 from trunnion_gui.document import Document
-from trunnion_gui.families.surface.requests import Estimated
+from trunnion_gui.families.surface.requests import EstimatedTimes
 from trunnion_gui.i18n import tr
 from trunnion_gui.look.words import amount, duration
 from trunnion_gui.widgets import table as tables
@@ -32,7 +32,7 @@ class AreasBlock(QWidget):
         column.addWidget(self.gain)
         self.hide()
 
-    def show_estimate(self, found: Estimated | None) -> None:
+    def show_estimate(self, found: EstimatedTimes | None) -> None:
         """Show how long each area takes by its rate, and the gain over the slowest cutter alone; nothing where no areas are finished."""
         self.setVisible(found is not None)
         if found is None:

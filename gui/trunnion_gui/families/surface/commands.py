@@ -7,13 +7,13 @@ from functools import partial
 from typing import TYPE_CHECKING
 
 from trunnion_gui.actions import Command
-from trunnion_gui.menus.shell import Shell
+from trunnion_gui.menus.window_access import WindowAccess
 
 if TYPE_CHECKING:
     from trunnion_gui.families.surface.view import SurfaceView
 
 
-def add_commands(view: SurfaceView, shell: Shell) -> None:
+def add_commands(view: SurfaceView, shell: WindowAccess) -> None:
     """Add them to a window's registry."""
     document, tools = view.document, view.tools
 

@@ -20,10 +20,10 @@ from trunnion.findings import BadInput
 from trunnion.geometry.cut import Cut, plane_cut, way_cut
 from trunnion_gui.document import Document
 from trunnion_gui.families.surface.jobs import PatchJobs
-from trunnion_gui.form import Number
+from trunnion_gui.form import NumberField
 from trunnion_gui.i18n import tr
 from trunnion_gui.look import icons
-from trunnion_gui.viewport.scene import Click, Scene
+from trunnion_gui.viewport.scene import Click, ViewportScene
 from trunnion_gui.worker.drawing import box_of, plane_line, sampled
 
 AXES = ("x", "y", "z")
@@ -40,7 +40,7 @@ class CutBar(QWidget):
 
     ended = Signal()
 
-    def __init__(self, document: Document, jobs: PatchJobs, scene: Scene) -> None:
+    def __init__(self, document: Document, jobs: PatchJobs, scene: ViewportScene) -> None:
         super().__init__()
         self._document, self._jobs, self._scene = document, jobs, scene
         self.face = 0
@@ -149,7 +149,7 @@ class CutBar(QWidget):
         ):
             self.manner.addItem(words, kind)
         self.manner.currentIndexChanged.connect(self._change)
-        self.value = Number()
+        self.value = NumberField()
         self.value.setDecimals(4)
         self.value.setSuffix(" mm")
         self.value.setKeyboardTracking(False)

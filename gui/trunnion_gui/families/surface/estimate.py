@@ -15,12 +15,12 @@ class EstimateSource(QObject):
     """Keeps the estimate in step with the session; asks only while no job runs, and only of parts with groups of patches."""
 
     arrived = Signal(object)
-    """Another `Estimated`, or None."""
+    """Another `EstimatedTimes`, or None."""
 
     def __init__(self, document: Document) -> None:
         super().__init__(document)
         self._document = document
-        self.shown: requests.Estimated | None = None
+        self.shown: requests.EstimatedTimes | None = None
         self._source: tuple[object, object] = (None, None)
         self._asked = 0
         document.jobs.worker.replied.connect(self._receive)
@@ -47,7 +47,7 @@ class EstimateSource(QObject):
             self._asked = 0
             self._show(reply.value if reply.kind == "done" else None)
 
-    def _show(self, found: requests.Estimated | None) -> None:
+    def _show(self, found: requests.EstimatedTimes | None) -> None:
         if found is not self.shown:
             self.shown = found
             self.arrived.emit(found)

@@ -8,16 +8,16 @@ from typing import Any
 from trunnion.geometry.cut import Cut
 from trunnion.model.session import Session
 from trunnion.progress import Progress
-from trunnion_gui.worker.drawing import Drawing, drawing_of
-from trunnion_gui.worker.requests import State, Tell, writes_files
+from trunnion_gui.worker.drawing import DrawnMesh, drawing_of
+from trunnion_gui.worker.requests import SessionState, Tell, writes_files
 
 
 @dataclass(frozen=True, slots=True)
-class Patched:
+class PatchedSession:
     """A session after its part's patches were changed, and what the window draws of the part then."""
 
-    state: State
-    drawing: Drawing
+    state: SessionState
+    drawing: DrawnMesh
 
 
 @dataclass(frozen=True, slots=True)
@@ -52,7 +52,7 @@ class AreaRow:
 
 
 @dataclass(frozen=True, slots=True)
-class Estimated:
+class EstimatedTimes:
     """The time of finishing by area rates, s; that of the slowest cutter alone, and what cutters of their own gain and save, as shares.
 
     `is_measured`: the rates are those of toolpaths, not computed from feed and passes.
@@ -67,7 +67,7 @@ class Estimated:
     is_measured: bool
 
 
-def cut(engine: Any, progress: Progress, _tell: Tell, session: Session, cut: Cut) -> Patched:
+def cut(engine: Any, progress: Progress, _tell: Tell, session: Session, cut: Cut) -> PatchedSession:
     """Return the session after a face was cut in two."""
     from trunnion.pipeline.patches import with_cut
 
@@ -79,7 +79,9 @@ def cut(engine: Any, progress: Progress, _tell: Tell, session: Session, cut: Cut
     )
 
 
-def uncut(engine: Any, progress: Progress, _tell: Tell, session: Session, number: int) -> Patched:
+def uncut(
+    engine: Any, progress: Progress, _tell: Tell, session: Session, number: int
+) -> PatchedSession:
     """Return the session after a cut was taken back, counted from 0."""
     from trunnion.pipeline.patches import without_cut
 
@@ -91,11 +93,13 @@ def uncut(engine: Any, progress: Progress, _tell: Tell, session: Session, number
     )
 
 
-def _patched(engine: Any, before: Session, after: Session, progress: Progress) -> Patched:
+def _patched(engine: Any, before: Session, after: Session, progress: Progress) -> PatchedSession:
     """Return a session whose part has other faces with its features found anew, where they had been found before."""
     if engine.states(before)["recognize"] in ("done", "problem"):
         after = engine.run(after, until="recognize", progress=progress)
-    return Patched(State(after, engine.states(after)), drawing_of(engine.mesh(after, progress)))
+    return PatchedSession(
+        SessionState(after, engine.states(after)), drawing_of(engine.mesh(after, progress))
+    )
 
 
 def move(
@@ -105,12 +109,12 @@ def move(
     session: Session,
     faces: tuple[int, ...],
     group: str,
-) -> State:
+) -> SessionState:
     """Return the session after faces went to a group by its id, or to a new one."""
     from trunnion.pipeline.patches import with_moved
 
     after = with_moved(engine, session, faces, group)
-    return State(after, engine.states(after))
+    return SessionState(after, engine.states(after))
 
 
 @writes_files
@@ -141,15 +145,17 @@ def accuracy(engine: Any, progress: Progress, _tell: Tell, session: Session) -> 
     return Accuracy(rows, errors[worst], worst)
 
 
-def estimate(engine: Any, _progress: Progress, _tell: Tell, session: Session) -> Estimated | None:
+def estimate(
+    engine: Any, _progress: Progress, _tell: Tell, session: Session
+) -> EstimatedTimes | None:
     """Return the time of finishing by area rates, None where no areas are finished."""
-    from trunnion.pipeline.estimating import estimate as estimated
+    from trunnion.pipeline.finishing_estimate import estimate as estimated
 
     found = estimated(session, engine.context_of(session))
     if found is None:
         return None
     rows = tuple(AreaRow(a.operation, a.tool, a.area, a.rate, a.seconds) for a in found.areas)
-    return Estimated(
+    return EstimatedTimes(
         rows,
         found.seconds,
         found.alone,

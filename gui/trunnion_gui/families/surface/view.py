@@ -16,7 +16,7 @@ from trunnion_gui.families.contract import (
     FeatureClass,
     main_size,
 )
-from trunnion_gui.families.surface import looks
+from trunnion_gui.families.surface import appearance
 from trunnion_gui.families.surface.accuracy import AccuracyDock
 from trunnion_gui.families.surface.areas import AreasBlock
 from trunnion_gui.families.surface.commands import add_commands
@@ -29,7 +29,7 @@ from trunnion_gui.families.surface.tools import PatchTools
 from trunnion_gui.i18n import tr
 from trunnion_gui.look import icons
 from trunnion_gui.look.colours import Theme
-from trunnion_gui.menus.shell import Shell
+from trunnion_gui.menus.window_access import WindowAccess
 
 
 class SurfaceView(FamilyView):
@@ -38,7 +38,7 @@ class SurfaceView(FamilyView):
     name = "surface"
     kinds = (GROUP,)
     has_own_colours = True
-    by_radius = Colouring(looks.radii_by_face, looks.radius_legend)
+    by_radius = Colouring(appearance.radii_by_face, appearance.radius_legend)
 
     def __init__(self, document: Document) -> None:
         super().__init__(document)
@@ -54,7 +54,7 @@ class SurfaceView(FamilyView):
 
     def columns(self) -> tuple[Column, ...]:
         return (
-            *looks.radius_columns(),
+            *appearance.radius_columns(),
             Column(
                 title=tr("Local"),
                 tip=tr("A local feature gets a cutter of its own; click to change"),
@@ -64,7 +64,7 @@ class SurfaceView(FamilyView):
         )
 
     def classes(self, kind: str, features: Sequence[Feature]) -> tuple[FeatureClass, ...]:
-        return looks.classes(kind, features)
+        return appearance.classes(kind, features)
 
     def size(self, feature: Feature) -> str:
         return main_size(feature)
@@ -86,10 +86,10 @@ class SurfaceView(FamilyView):
                 lambda: self.jobs.move(chosen.faces, feature.id),
             )
 
-    def add_commands(self, shell: Shell) -> None:
+    def add_commands(self, shell: WindowAccess) -> None:
         add_commands(self, shell)
 
-    def begin(self, shell: Shell) -> None:
+    def begin(self, shell: WindowAccess) -> None:
         self.cutting = CutBar(self.document, self.jobs, shell.viewport.scene)
         shell.viewport.add_bar(self.cutting)
         shell.viewport.add_tool(self.cutting)

@@ -9,13 +9,13 @@ import numpy as np
 import pyvista as pv
 
 from trunnion_gui.look.colours import Theme, rgb
-from trunnion_gui.worker.drawing import Drawing
+from trunnion_gui.worker.drawing import DrawnMesh
 
 
 class PartLayer:
     """Draws one mesh; `paint` and `outline` change colours without making anything anew."""
 
-    def __init__(self, view: Any, drawing: Drawing, theme: Theme) -> None:
+    def __init__(self, view: Any, drawing: DrawnMesh, theme: Theme) -> None:
         mesh = drawing.mesh
         self._view = view
         self._mesh = mesh
@@ -85,7 +85,7 @@ class PartLayer:
         _pull_forward(actor, 6.0)
 
 
-def _surface(drawing: Drawing) -> pv.PolyData:
+def _surface(drawing: DrawnMesh) -> pv.PolyData:
     mesh = drawing.mesh
     cells = np.hstack([np.full((len(mesh.triangles), 1), 3), mesh.triangles])
     surface = pv.PolyData(np.asarray(mesh.points, dtype=np.float32), cells.ravel())

@@ -11,7 +11,7 @@ import numpy as np
 from trunnion.findings import BadInput
 from trunnion.geometry.arrays import Bools
 from trunnion.model.tool import Tool
-from trunnion.plan.freeform.reach import Places, reached
+from trunnion.plan.freeform.reach import AreaSamples, reached
 from trunnion.plan.freeform.space import SurfaceSpace
 from trunnion.plan.tool_choice import depth_reached
 from trunnion.progress import Progress
@@ -24,7 +24,7 @@ NEAR = 3
 
 
 @dataclass(frozen=True, slots=True, eq=False, kw_only=True)
-class Chosen:
+class AreaCutters:
     """The cutter of an area and the places (k,) it reaches, what any of the catalogue reaches, and the cutter for the `missed` ones."""
 
     tool: Tool | None
@@ -50,13 +50,13 @@ def named(shop: Shop, name: str) -> Tool:
 
 def cutter_for(
     space: SurfaceSpace,
-    places: Places,
+    places: AreaSamples,
     tools: Sequence[Tool],
     share: float,
     room: float,
     wanted: Tool | None,
     progress: Progress,
-) -> Chosen:
+) -> AreaCutters:
     """Return the largest cutter that reaches at least a share of what any one reaches of places, the shortest of its size; or the one
     that is `wanted`.
 
@@ -77,7 +77,7 @@ def cutter_for(
     none = np.zeros(len(places), dtype=bool)
     reachable = np.logical_or.reduce([none, *reach.values()])
     if not reachable.any():
-        return Chosen(tool=None, reached=none, reachable=reachable, missed=none, rest=None)
+        return AreaCutters(tool=None, reached=none, reachable=reachable, missed=none, rest=None)
     total = int(reachable.sum())
     tool = wanted or next(
         (t for t in ranked if reach[t.name].sum() >= share * total),
@@ -92,6 +92,6 @@ def cutter_for(
         if missed.any()
         else None
     )
-    return Chosen(
+    return AreaCutters(
         tool=tool, reached=reach[tool.name], reachable=reachable, missed=missed, rest=rest
     )

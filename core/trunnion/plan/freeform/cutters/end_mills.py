@@ -15,14 +15,14 @@ from trunnion.plan.freeform.areas import VERTICAL
 from trunnion.plan.freeform.lands import (
     SIDE,
     SKIM,
-    Keeping,
     Land,
-    Standing,
+    LandClearances,
+    PartAbove,
     covered,
     stands_free,
     without,
 )
-from trunnion.plan.freeform.reach import Places
+from trunnion.plan.freeform.reach import AreaSamples
 from trunnion.plan.tool_choice import covered_by_few, depth_reached
 from trunnion.progress import Progress
 
@@ -45,7 +45,7 @@ BEFORE = 0.05
 
 
 @dataclass(frozen=True, slots=True, eq=False, kw_only=True)
-class Chosen:
+class LandCutters:
     """The end mill of a land, another one for what that leaves (None: nothing worth it), and what of the land no end mill reaches.
 
     `flanks`: where their flats come right up to sides, and how high over the land (mm) their flanks then finish an upright one.
@@ -57,7 +57,7 @@ class Chosen:
     left: Region
     flanks: tuple[tuple[Region, float], ...]
 
-    def finishes(self, places: Places) -> Bools:
+    def finishes(self, places: AreaSamples) -> Bools:
         """Say which places (k,) lie on the foot of an upright side, which the end mills finish while they cut the land beside it."""
         found = np.zeros(len(places), dtype=bool)
         upright = np.abs(places.normal[:, 2]) < VERTICAL
@@ -80,7 +80,11 @@ class _Reach:
 
     @staticmethod
     def of(
-        standing: Standing, land: Land, tools: Sequence[Tool], keeping: Keeping, progress: Progress
+        standing: PartAbove,
+        land: Land,
+        tools: Sequence[Tool],
+        keeping: LandClearances,
+        progress: Progress,
     ) -> _Reach:
         """Return what tools cover of a land."""
         before, after = (
@@ -98,15 +102,15 @@ class _Reach:
 
 
 def end_mills_for(
-    standing: Standing,
+    standing: PartAbove,
     lands: Sequence[Land],
     tools: Sequence[Tool],
     ball: float,
     share: float,
-    keeping: Keeping,
+    keeping: LandClearances,
     kept: Sequence[Tool],
     progress: Progress,
-) -> tuple[Chosen, ...]:
+) -> tuple[LandCutters, ...]:
     """Return the lands that are worth an end mill, and small ones that the cutters of these finish as well, with their cutters.
 
     `ball`: radius of the smallest ball that would finish them instead; `kept`: cutters that are in use anyhow.
@@ -142,12 +146,12 @@ def end_mills_for(
     return tuple(sorted(found, key=lambda c: (-c.land.z, c.land.tags)))
 
 
-def _chosen(reach: _Reach, tool: Tool, rest: Tool | None) -> Chosen:
+def _chosen(reach: _Reach, tool: Tool, rest: Tool | None) -> LandCutters:
     missed, done = reach.missed(tool), reach.after[rest.name] if rest else EMPTY_REGION
     flanks = [(tool, reach.before[tool.name], SIDE)] + (
         [(rest, done, FOOT * rest.diameter)] if rest else []
     )
-    return Chosen(
+    return LandCutters(
         land=reach.land,
         tool=tool,
         rest=rest,
@@ -156,7 +160,7 @@ def _chosen(reach: _Reach, tool: Tool, rest: Tool | None) -> Chosen:
     )
 
 
-def _may_cover(standing: Standing, land: Land, tools: Sequence[Tool]) -> bool:
+def _may_cover(standing: PartAbove, land: Land, tools: Sequence[Tool]) -> bool:
     """Say whether the slimmest end mill would cover enough of a land with nothing above its flutes: others cover no more."""
     slimmest = min(tools, key=lambda t: (t.diameter, t.corner_radius))
     return _is_most(
@@ -169,7 +173,7 @@ def _is_most(region: Region, land: Land) -> bool:
 
 
 def _for_land(
-    standing: Standing, reach: _Reach, tools: Sequence[Tool], share: float, progress: Progress
+    standing: PartAbove, reach: _Reach, tools: Sequence[Tool], share: float, progress: Progress
 ) -> list[Tool]:
     """Return the end mills, largest first, that cover off its sides nearly all of a land that any does; none where that is too little."""
     most = max(r.area for r in reach.before.values())
@@ -188,7 +192,7 @@ def _for_land(
 
 
 def _for_rest(
-    standing: Standing,
+    standing: PartAbove,
     reach: _Reach,
     tool: Tool,
     tools: Sequence[Tool],
@@ -219,7 +223,7 @@ def _near(tools: list[Tool]) -> list[Tool]:
     return [t for t in tools if t.diameter >= NEAR * tools[0].diameter]
 
 
-def _is_worth(standing: Standing, land: Land, ball: float) -> bool:
+def _is_worth(standing: PartAbove, land: Land, ball: float) -> bool:
     """Say whether a land is large enough for an end mill, or a ball would leave too much of it beside what stands there."""
     if land.region.area >= WORTH:
         return True

@@ -1,0 +1,297 @@
+"""Follows the curve in which a plane meets a free surface, step by step in the surface's own parameters.
+
+A step is as long as an arc between its ends stays within `tolerance.FITTED` of the curve: for an arc both ends make the same angle with the
+chord, so half the difference of the two angles, times the chord, bounds what lies between.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterator
+from dataclasses import dataclass, field
+from typing import Any
+
+import numpy as np
+from OCP.BRep import BRep_Tool
+from OCP.gp import gp_Pnt, gp_Vec
+from OCP.ShapeAnalysis import ShapeAnalysis_Surface
+
+from trunnion import tolerance
+from trunnion.findings import BadInput
+from trunnion.geometry.arrays import Floats
+from trunnion.part.topology.faces import TrimmedFace
+
+_MOST_TURN = 0.5
+_LONGEST, _SHORTEST = 0.125, 1e-5
+_GROWTH = 1.6
+_MOST_STEPS, _NEWTON = 5000, 12
+_SEEDS = 21
+Node = tuple[int, int]
+Nodes = list[tuple[Node, Floats]]
+Piece = tuple[Node | None, Node | None, Floats, Floats]
+Triple = tuple[float, float, float]
+Place = tuple[float, float]
+
+
+@dataclass(slots=True, eq=False)
+class Tracer:
+    """One face cut by one plane; `size` (mm) is the face's. Inner loops use plain numbers: arrays of three cost more than they save."""
+
+    view: TrimmedFace
+    normal: Triple
+    offset: float
+    size: float
+    bounds: tuple[float, float, float, float] = field(init=False)
+    wraps: tuple[str, str] = field(init=False)
+    _places: Any = field(init=False)
+    _held: tuple[Any, Any, Any] = field(init=False)
+
+    def __post_init__(self) -> None:
+        surface = self.view.adaptor
+        self.bounds = self.view.bounds()
+        self.wraps = (
+            _wrap(surface.IsUPeriodic(), surface.IsUClosed()),
+            _wrap(surface.IsVPeriodic(), surface.IsVClosed()),
+        )
+        self._places = ShapeAnalysis_Surface(BRep_Tool.Surface_s(self.view.face))
+        self._held = (gp_Pnt(), gp_Vec(), gp_Vec())
+
+    def place(self, point: Floats) -> Place:
+        """Return the (u, v) under a point on the surface."""
+        found = self._places.ValueOfUV(gp_Pnt(*point.tolist()), tolerance.COINCIDENT)
+        return self._bounded(found.X(), found.Y())
+
+    def at(self, place: Place) -> tuple[Triple, Triple, Triple]:
+        """Return the point and the two first derivatives at (u, v)."""
+        point, du, dv = self._held
+        self.view.adaptor.D1(place[0], place[1], point, du, dv)
+        return point.Coord(), du.Coord(), dv.Coord()
+
+    def above(self, point: Triple) -> float:
+        """Return the height of a point above the plane."""
+        return _dot(point, self.normal) - self.offset
+
+    def direction(self, place: Place) -> Triple:
+        """Return the unit direction of the curve at (u, v)."""
+        _, du, dv = self.at(place)
+        return _unit(_cross(_cross(du, dv), self.normal))
+
+    def stepped(self, place: Place, along: Triple) -> Place:
+        """Return the place on the plane after a step in space."""
+        _, du, dv = self.at(place)
+        a, b = _solved(du, dv, along)
+        return self.onto_plane((place[0] + a, place[1] + b))
+
+    def onto_plane(self, place: Place) -> Place:
+        """Return the place pulled onto the plane along the surface's steepest direction."""
+        for _ in range(_NEWTON):
+            place = self._bounded(*place)
+            point, du, dv = self.at(place)
+            miss = self.above(point)
+            if abs(miss) < tolerance.PARAMETRIC:
+                break
+            across = _unit(_cross(du, dv))
+            lean = _dot(across, self.normal)
+            steep = 1.0 - lean * lean
+            if steep < tolerance.PARAMETRIC:
+                break
+            a, b = _solved(
+                du, dv, _scaled(_less(self.normal, _scaled(across, lean)), -miss / steep)
+            )
+            place = (place[0] + a, place[1] + b)
+        return self._bounded(*place)
+
+    def _bounded(self, u: float, v: float) -> Place:
+        u0, u1, v0, v1 = self.bounds
+        return _bounded(u, u0, u1, self.wraps[0]), _bounded(v, v0, v1, self.wraps[1])
+
+    def follow(
+        self, start: Place, way: float, targets: list[tuple[Node, Triple, Place]]
+    ) -> tuple[Node | None, Floats, Floats] | None:
+        """Return the node where the curve ends (None: where it began, when there are no targets), points to it and directions, or None."""
+        place, (point, _, _), step = start, self.at(start), self.size * _LONGEST
+        home, heading = point, _scaled(self.direction(start), way)
+        points, headings, travelled = [point], [heading], 0.0
+        for _ in range(_MOST_STEPS):
+            end = self._end(point, heading, step, targets)
+            if (
+                end is None
+                and not targets
+                and travelled > 0.25 * self.size
+                and _ahead(point, home, heading, step)
+            ):
+                return None, np.array([*points, home]), np.array([*headings, headings[0]])
+            after = (
+                targets[end][2] if end is not None else self.stepped(place, _scaled(heading, step))
+            )
+            there = targets[end][1] if end is not None else self.at(after)[0]
+            towards = _scaled(self.direction(after), way)
+            if not _follows(point, heading, there, towards) and step > self.size * _SHORTEST:
+                step *= 0.5
+                continue
+            points.append(there)
+            headings.append(towards)
+            if end is not None:
+                return targets[end][0], np.array(points), np.array(headings)
+            moved = math.dist(point, there)
+            if moved < 0.01 * step:
+                return None
+            travelled += moved
+            place, point, heading = after, there, towards
+            step = min(_GROWTH * step, self.size * _LONGEST)
+        return None
+
+    @staticmethod
+    def _end(
+        point: Triple, heading: Triple, step: float, targets: list[tuple[Node, Triple, Place]]
+    ) -> int | None:
+        near = [
+            (math.dist(point, p), n)
+            for n, (_, p, _) in enumerate(targets)
+            if _ahead(point, p, heading, step)
+        ]
+        return min(near)[1] if near else None
+
+
+def trace(
+    view: TrimmedFace, plane: Any, own: Nodes, seams: set[int], low: Floats, high: Floats
+) -> Iterator[Piece]:
+    """Yield the pieces of the curve in which a plane meets a trimmed face: nodes at both ends (None: a closed loop),
+    points (k, 3) from one to the other and the unit directions (k, 3) there.
+
+    `own` are the points where the plane meets the face's edges, `seams` the edges that are no boundary, `low` and `high` the face's box.
+    Raises `BadInput` when a curve can't be followed from edge to edge.
+    """
+    size = max(float(np.linalg.norm(high - low)), tolerance.COINCIDENT)
+    tracer = Tracer(view, tuple(plane.normal.tolist()), plane.offset, size)
+    left = [
+        (node, tuple(point.tolist()), tracer.place(point))
+        for node, point in own
+        if node[0] not in seams
+    ]
+    if not left:
+        yield from _loops(tracer)
+    while left:
+        node, point, place = left.pop(0)
+        nearest = min((math.dist(p, point) for _, p, _ in left), default=size)
+        nudge = 0.02 * min(size, nearest)
+        ways = sorted(
+            (1.0, -1.0),
+            key=lambda way: (
+                not view.holds(
+                    *tracer.stepped(place, _scaled(tracer.direction(place), way * nudge))
+                )
+            ),
+        )
+        found = (
+            next(
+                (f for f in (tracer.follow(place, way, left) for way in ways) if f is not None),
+                None,
+            )
+            if left
+            else None
+        )
+        if found is None:
+            raise BadInput(
+                "a section curve ends inside a free-form face; heal the part in the CAD system"
+            )
+        left = [item for item in left if item[0] != found[0]]
+        yield node, *found
+
+
+def _loops(tracer: Tracer) -> Iterator[Piece]:
+    """Yield the closed curves of a plane that meets a face but none of its edges, from places where samples change side."""
+    places = np.array(tracer.view.grid(_SEEDS)).reshape(_SEEDS, _SEEDS, 2)
+    heights = np.array(
+        [[tracer.above(tracer.at((u, v))[0]) for u, v in row] for row in places.tolist()]
+    )
+    done: list[Floats] = []
+    for k, m in zip(*np.nonzero((heights[:, :-1] > 0.0) != (heights[:, 1:] > 0.0)), strict=True):
+        share = heights[k, m] / (heights[k, m] - heights[k, m + 1])
+        u, v = (places[k, m] + share * (places[k, m + 1] - places[k, m])).tolist()
+        place = tracer.onto_plane((u, v))
+        point = np.array(tracer.at(place)[0])
+        if not tracer.view.holds(*place) or any(_beside(points, point) for points in done):
+            continue
+        found = tracer.follow(place, 1.0, [])
+        if found is None:
+            raise BadInput(
+                "a closed section curve can't be followed over a free-form face; heal the part in the CAD system"
+            )
+        done.append(found[1])
+        yield None, *found
+
+
+def _beside(points: Floats, point: Floats) -> bool:
+    """Say whether a point lies on a curve that was followed already: nearer to a chord than a tenth of its length."""
+    start, chord = points[:-1], np.diff(points, axis=0)
+    square = (chord * chord).sum(axis=1)
+    share = np.clip(
+        ((point - start) * chord).sum(axis=1) / np.maximum(square, tolerance.PARAMETRIC**2),
+        0.0,
+        1.0,
+    )
+    away = np.linalg.norm(start + share[:, None] * chord - point, axis=1)
+    return bool((away < 0.15 * np.sqrt(square)).any())
+
+
+def _follows(point: Triple, heading: Triple, there: Triple, towards: Triple) -> bool:
+    """Say whether an arc between two points with given directions is within `tolerance.FITTED` of the curve between."""
+    chord = _less(there, point)
+    size = math.sqrt(_dot(chord, chord))
+    if size < tolerance.COINCIDENT:
+        return True
+    first, last = _angle(heading, chord, size), _angle(towards, chord, size)
+    return first + last < _MOST_TURN and 0.2 * size * abs(first - last) < tolerance.FITTED
+
+
+def _angle(direction: Triple, chord: Triple, size: float) -> float:
+    across = _cross(direction, chord)
+    return math.atan2(math.sqrt(_dot(across, across)) / size, _dot(direction, chord) / size)
+
+
+def _ahead(point: Triple, target: Triple, heading: Triple, step: float) -> bool:
+    way = _less(target, point)
+    return math.sqrt(_dot(way, way)) <= step and _dot(way, heading) > -tolerance.COINCIDENT
+
+
+def _wrap(is_periodic: bool, is_closed: bool) -> str:
+    return "free" if is_periodic else "round" if is_closed else "bound"
+
+
+def _bounded(value: float, low: float, high: float, wrap: str) -> float:
+    """Return a parameter where the surface has it: one that is periodic goes on for ever, others end or begin again at their bounds."""
+    if wrap == "free" or low <= value <= high:
+        return value
+    return low + (value - low) % (high - low) if wrap == "round" else min(max(value, low), high)
+
+
+def _solved(du: Triple, dv: Triple, along: Triple) -> tuple[float, float]:
+    """Return the shares of two directions that come nearest to a vector."""
+    uu, uv, vv = _dot(du, du), _dot(du, dv), _dot(dv, dv)
+    a, b = _dot(du, along), _dot(dv, along)
+    det = uu * vv - uv * uv
+    if det <= tolerance.PARAMETRIC**2 * max(uu, vv) ** 2:
+        return (a / uu, 0.0) if uu >= vv and uu > 0.0 else (0.0, b / vv if vv > 0.0 else 0.0)
+    return (a * vv - b * uv) / det, (b * uu - a * uv) / det
+
+
+def _dot(a: Any, b: Any) -> float:
+    return a[0] * b[0] + a[1] * b[1] + a[2] * b[2]
+
+
+def _cross(a: Any, b: Any) -> Triple:
+    return a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]
+
+
+def _less(a: Triple, b: Triple) -> Triple:
+    return a[0] - b[0], a[1] - b[1], a[2] - b[2]
+
+
+def _scaled(a: Triple, by: float) -> Triple:
+    return a[0] * by, a[1] * by, a[2] * by
+
+
+def _unit(a: Triple) -> Triple:
+    size = math.sqrt(_dot(a, a))
+    return _scaled(a, 1.0 / size) if size > 0.0 else a

@@ -1,0 +1,112 @@
+"""From which directions a part is roughed where an upright tool doesn't come: the fewest that see what is hidden."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+
+from trunnion import tolerance
+from trunnion.model.setup import Setup
+from trunnion.model.tool import Tool
+from trunnion.plan.clearance import ClearanceScene
+from trunnion.plan.freeform.frames import Direction
+from trunnion.plan.freeform.reach import AreaSamples, reached
+from trunnion.plan.freeform.space import SurfaceSpace
+from trunnion.progress import Progress
+
+TILTS = (math.radians(90.0), math.radians(60.0))
+"""How far from upright directions are tried, all round."""
+ROUND = 8
+"""Directions all round: the setup's axes first."""
+WORTH = 0.1
+"""Share of what is hidden that another direction must see to be worth its turn."""
+FACING = math.sin(math.radians(10.0))
+"""Cosine of the angle from a direction from which on a place looks along it rather than at it: such a one says not how deep to go."""
+OFF = 0.3
+"""mm: how far from the faces it is looked whether a cutter comes there."""
+PROBE = 6.0
+"""mm: diameter of the cutter that says what a direction sees: about what comes after roughing."""
+
+
+@dataclass(frozen=True, slots=True, eq=False, kw_only=True)
+class RoughingDirection:
+    """A direction that something is roughed from, and the height in its cutting frame down to which it is worth it."""
+
+    space: SurfaceSpace
+    bottom: float
+
+
+def sides_for(
+    space: SurfaceSpace,
+    setup: Setup,
+    around: ClearanceScene,
+    hidden: AreaSamples,
+    tools: Sequence[Tool],
+    room: float,
+    progress: Progress,
+) -> list[RoughingDirection]:
+    """Return the directions that see hidden places best, each the one that sees most of what those before it don't."""
+    probe = max(
+        (t for t in tools if t.diameter <= PROBE),
+        key=lambda t: (t.diameter, t.reach, t.name),
+        default=None,
+    )
+    directions = [d for d in _directions() if bool(around.holds(np.array([d]))[0])]
+    if probe is None or not directions:
+        return []
+    seen, spaces, heights, facing = [], [], [], []
+    for n, direction in enumerate(directions):
+        progress.at(n / len(directions), "looking from the sides")
+        there = space.seen_from(setup, direction)
+        # Roughing stays off the faces: what the cutter only grazes along its side is seen as well.
+        beside = hidden.point + OFF * hidden.normal
+        local = AreaSamples(
+            point=there.frame.to_local(space.frame.to_world(beside)),
+            face=hidden.face,
+            area=hidden.area,
+            normal=there.frame.local_direction(space.frame.world_direction(hidden.normal)),
+        )
+        seen.append(reached(there, local, probe, room))
+        spaces.append(there)
+        heights.append(local.point[:, 2])
+        facing.append(local.normal[:, 2] > FACING)
+    found, left = [], np.ones(len(hidden), dtype=bool)
+    for tilt in range(len(TILTS)):
+        # Level directions first: they leave most room for the spindle, and what they see lies in even layers.
+        rows = [
+            k
+            for k, d in enumerate(directions)
+            if abs(d[2] - math.cos(TILTS[tilt])) < tolerance.ANGLE
+        ]
+        while rows and left.any():
+            best = max(rows, key=lambda k: (int((seen[k] & left).sum()), -k))
+            gained = seen[best] & left
+            if gained.sum() <= WORTH * len(hidden):
+                break
+            faces = gained & facing[best]
+            found.append(
+                RoughingDirection(
+                    space=spaces[best],
+                    bottom=float(heights[best][faces if faces.any() else gained].min()),
+                )
+            )
+            left &= ~gained
+    return found
+
+
+def _directions() -> list[Direction]:
+    """Return the directions that are tried, in the setup's frame."""
+    order = sorted(range(ROUND), key=lambda k: (k % 2, k))
+    return [
+        (
+            round(math.sin(tilt) * math.cos(a), 12),
+            round(math.sin(tilt) * math.sin(a), 12),
+            round(math.cos(tilt), 12),
+        )
+        for tilt in TILTS
+        for k in order
+        for a in (2.0 * math.pi * k / ROUND,)
+    ]

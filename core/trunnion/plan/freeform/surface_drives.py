@@ -1,0 +1,40 @@
+"""Surface drives of any part: its skin from the direction that an operation's tool comes from, made once a setup."""
+
+from __future__ import annotations
+
+from trunnion import tolerance
+from trunnion.model.operation import Operation
+from trunnion.plan.contract import DriveNeeds, OperationDrive, Scene
+from trunnion.plan.freeform.frames import Direction
+from trunnion.plan.freeform.keys import EARLIER
+from trunnion.plan.freeform.space import SurfaceSpace
+from trunnion.progress import Progress
+
+
+def space_from(
+    direction: Direction, chord: float, scene: Scene, progress: Progress
+) -> SurfaceSpace:
+    """Return the part's skin, within a chord error (mm), as a tool from a direction in the setup's frame sees it."""
+
+    def seen() -> SurfaceSpace:
+        return SurfaceSpace.of(
+            scene.context.part,
+            scene.context.skin(chord, progress),
+            scene.blank,
+            scene.setup,
+            direction,
+        )
+
+    return scene.once(("space", direction, chord), seen)
+
+
+def surface_driven(
+    operation: Operation, needs: DriveNeeds, scene: Scene, progress: Progress
+) -> OperationDrive:
+    """Return the surface drive of an operation, with the cutter that finished its faces before where the operation names one."""
+    space = space_from(operation.direction, tolerance.SKIN_CHORD, scene, progress)
+    around = scene.context.around(scene.setup, space.frame, space.skin, progress)
+    name = operation.choices.get(EARLIER, "")
+    earlier = next((t for t in scene.process.tools() if t.name == name), None)
+    drive = space.drive_of(operation, needs, earlier, around, progress)
+    return OperationDrive(setup=space.setup, drive=drive, told=(drive.digest, scene.fixtures))

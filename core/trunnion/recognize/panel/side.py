@@ -1,0 +1,80 @@
+"""A panel as it is seen from one side: the graph with z towards the eye, its classes and blends, and the slices."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from functools import cached_property
+
+import numpy as np
+import shapely
+
+from trunnion.geometry.arrays import Floats
+from trunnion.geometry.facegraph import FaceGraph
+from trunnion.recognize.grow import samples
+from trunnion.recognize.panel.blends import floor_fillets, is_corner
+from trunnion.recognize.panel.classes import FaceClass, FaceClasses
+from trunnion.recognize.panel.settings import PanelSettings
+from trunnion.recognize.panel.slices import Slices
+from trunnion.recognize.panel.tree import SpaceTree, build_tree
+from trunnion.tolerance import SLIVER
+
+ON_RIM = 0.05
+"""mm: a face whose samples are this near to the outline lies on it (the slices are on chords)."""
+
+
+@dataclass(frozen=True, eq=False, kw_only=True)
+class PanelSide:
+    """One side of a panel, z up to it; `height` of the part; `below` marks the side that the recognition's z points away from."""
+
+    graph: FaceGraph
+    classes: FaceClasses
+    slices: Slices
+    height: float
+    settings: PanelSettings
+    below: bool
+
+    @cached_property
+    def fillets(self) -> frozenset[int]:
+        """The rows of the floor fillets."""
+        return floor_fillets(self.graph, self.classes)
+
+    @cached_property
+    def tree(self) -> SpaceTree:
+        """The relationship tree of the spaces."""
+        return build_tree(self.slices)
+
+    @cached_property
+    def profile(self) -> tuple[int, ...]:
+        """The rows of the vertical faces that lie on the outline seen from above."""
+        return tuple(r for r in self.classes.rows(FaceClass.VERTICAL) if self._on_rim(r))
+
+    @cached_property
+    def corners(self) -> frozenset[int]:
+        """The rows of the blends between two steep faces."""
+        return frozenset(
+            int(r)
+            for r in np.flatnonzero(self.classes.rising)
+            if is_corner(self.graph, self.classes, int(r))
+        )
+
+    def z(self, face: int) -> float:
+        """Return the height of a horizontal face, of others that of their lowest point."""
+        return float(
+            self.graph.centre[face][2]
+            if self.classes.kind[face] is FaceClass.UP
+            else self.graph.box_low[face][2]
+        )
+
+    def points(self, face: int) -> Floats:
+        """Return points (k, 3) inside a face."""
+        return np.vstack([self.graph.centre[face], samples(self.graph, face)[0]])
+
+    def undercut(self, face: int) -> bool:
+        """Say whether material stands over the whole of a face: it can't be reached from this side."""
+        spots = [shapely.Point(p[0], p[1]) for p in self.points(face)]
+        layers = [s for s in self.slices.layers if s.z > self.graph.box_high[face][2] + SLIVER]
+        return bool(layers) and all(any(s.material.contains(p) for s in layers) for p in spots)
+
+    def _on_rim(self, face: int) -> bool:
+        points = self.points(face)
+        return all(self.slices.rim.distance(shapely.Point(p[0], p[1])) < ON_RIM for p in points)

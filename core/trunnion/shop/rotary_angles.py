@@ -1,0 +1,118 @@
+"""Rotary angles along a path: without a leap, inside the limits, turning least; windings and both ways to stand are looked at."""
+
+from __future__ import annotations
+
+import itertools
+import math
+
+import numpy as np
+
+from trunnion.findings import Refused
+from trunnion.geometry.arrays import Bools, Floats
+from trunnion.geometry.kernels.rotary_angles_compiled import choose_angles
+from trunnion.model.material import Machine
+from trunnion.shop.kinematics import POLE, SLACK, WorkPosition, pole_of, stands_of
+
+MOST_TURNS = 3
+"""Whole turns, each way, that another beginning is looked for; an axis with so many to spare needs none."""
+TURN = 2.0 * math.pi
+
+
+def followed(
+    axis: Floats, place: WorkPosition, stand: Floats | None, near: float, operation: str
+) -> Floats:
+    """Return the rotary angles (n, a) in rad at which a machine holds tool axes (n, 3), one after the other.
+
+    They go on from where the axes stand (a,) when that can be, else from the beginning that turns least. An axis within `near` rad of the
+    pole may be taken for the pole. Raises `Refused`, naming operation and block, for what the machine can't hold or can't reach.
+    """
+    machine = place.machine
+    through = _through_pole(axis, machine, near)
+    angles, free, held = stands_of(machine, axis)
+    lost = np.flatnonzero(~held)
+    if len(lost):
+        has = f"{' and '.join(a.name for a in machine.rotary)} can't hold"
+        raise Refused(
+            f"operation {operation}, block {lost[0] + 1}: a tool axis that {machine.title} with {has}; lean it another way or "
+            "choose another machine"
+        )
+    low, high = place.limits
+    chosen = np.zeros((len(axis), len(machine.rotary)))
+    home = np.zeros(len(machine.rotary)) if stand is None else stand
+    tries: list[tuple[int, float, int, Floats]] = []
+    # Spirals wind an axis up turn by turn: when it comes to its end it begins anew near the middle.
+    unwound = (
+        []
+        if stand is None
+        else _beginnings(angles, free, np.clip(np.zeros(len(home)), low, high), low, high)
+    )
+    for start in ([] if stand is None else [stand]) + [
+        *_beginnings(angles, free, home, low, high),
+        *unwound,
+    ]:
+        reached, turned = choose_angles(angles, free, through, low, high, SLACK, start, chosen)
+        if (
+            reached == len(axis)
+            and start is stand
+            and np.abs(chosen[:1] - stand).max(initial=0.0) <= 2.0 * POLE
+        ):
+            return chosen
+        tries.append(
+            (-reached, turned + float(np.abs(start - home).sum()), len(tries), np.array(chosen))
+        )
+    reached, _, _, best = min(tries, key=lambda t: t[:3])
+    if -reached < len(axis):
+        raise Refused(
+            f"operation {operation}, block {1 - reached}: {beyond(angles[-reached], place)}"
+        )
+    return best
+
+
+def _through_pole(axis: Floats, machine: Machine, near: float) -> Bools:
+    """Say on the way to which poses (n,) the tool axis comes so near to the pole that it may be taken for going through it."""
+    pole = pole_of(machine)
+    first, last = np.vstack([axis[:1], axis[:-1]]), axis
+    # Seen along the pole an even turn is a piece of an ellipse; where it passes close by it is as good as its chord.
+    a, b = (v - np.outer(v @ pole, pole) for v in (first, last))
+    run = b - a
+    share = np.clip(
+        -(a * run).sum(axis=1) / np.maximum((run * run).sum(axis=1), np.finfo(float).tiny), 0.0, 1.0
+    )
+    return np.asarray(np.linalg.norm(a + share[:, None] * run, axis=1) < 0.5 * near)
+
+
+def _beginnings(
+    angles: Floats, free: Bools, near: Floats, low: Floats, high: Floats
+) -> list[Floats]:
+    """Return the angles (a,) that a path may begin with: those of its first pose that leaves no axis free, within the limits."""
+    fixed = np.flatnonzero(~free[:, 0].any(axis=1))
+    if not len(fixed):
+        return [np.clip(near, low, high)]
+    found = []
+    for way in angles[fixed[0]]:
+        least, most = np.ceil((low - SLACK - way) / TURN), np.floor((high + SLACK - way) / TURN)
+        # Some turns about where the axes stand, and those at home when they are wound up to a limit.
+        turns = [
+            sorted(
+                {
+                    n + k
+                    for n in (np.round((v - w) / TURN), np.round(-w / TURN))
+                    for k in range(-MOST_TURNS, MOST_TURNS + 1)
+                    if a <= n + k <= b
+                }
+            )
+            for w, v, a, b in zip(way, near, least, most, strict=True)
+        ]
+        found += [way + TURN * np.array(n) for n in itertools.product(*turns)]
+    return found or [np.clip(near, low, high)]
+
+
+def beyond(ways: Floats, place: WorkPosition) -> str:
+    """Return what a pose asks of the axes and what they have."""
+    near = np.degrees(ways - TURN * np.round(ways / TURN))
+    asked = " or ".join(
+        " ".join(f"{a.name}{v:.1f}" for a, v in zip(place.machine.rotary, way, strict=True))
+        for way in near.tolist()
+    )
+    has = ", ".join(f"{a.name} {a.low:g} to {a.high:g}" for a in place.machine.rotary)
+    return f"its tool axis needs {asked}, which can't be reached from the block before; {place.machine.title} has {has}"
