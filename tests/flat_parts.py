@@ -10,7 +10,7 @@ import numpy as np
 from trunnion.geometry.facegraph import FaceGraph
 from trunnion.geometry.frame import WORLD, Frame
 from trunnion.geometry.plane.region import Region
-from trunnion.model.blank import Blank
+from trunnion.model.blank import Blank, Box
 from trunnion.model.feature import FaceRole, Feature, Recognition
 from trunnion.model.operation import CuttingData, Operation
 from trunnion.model.tool import Tool
@@ -265,7 +265,7 @@ def stepped_panel() -> tuple[FlatPart, Recognition]:
 def blank_of(part: FlatPart) -> Blank:
     """Return a blank with 5 mm on each side and 2 mm on top."""
     (x0, y0), (x1, y1) = part.outline.box()
-    return Blank(
+    return Box(
         frame=WORLD,
         low=np.array([x0 - 5, y0 - 5, 0.0]),
         high=np.array([x1 + 5, y1 + 5, part.height + 2.0]),

@@ -14,7 +14,7 @@ import numpy as np
 
 from trunnion.geometry.frame import WORLD
 from trunnion.geometry.plane.region import Region
-from trunnion.model.blank import Blank
+from trunnion.model.blank import Blank, Box
 from trunnion.model.operation import CuttingData
 from trunnion.model.setup import Setup
 from trunnion.model.tool import Holder, Tool
@@ -67,7 +67,7 @@ def cutting(depth: float, width: float, feed: float = 2400.0) -> CuttingData:
 
 def box_blank(low: tuple[float, float, float], high: tuple[float, float, float]) -> Blank:
     """Return a blank in the setup's own frame."""
-    return Blank(
+    return Box(
         frame=WORLD, low=np.array(low), high=np.array(high), material="aluminium", density=2.7
     )
 

@@ -11,7 +11,7 @@ from trunnion.findings import info, remark, warning
 from trunnion.geometry.cut import plane_cut, way_cut
 from trunnion.geometry.frame import WORLD, Frame
 from trunnion.geometry.mesh import Mesh
-from trunnion.model.blank import Blank
+from trunnion.model.blank import Box
 from trunnion.model.feature import FaceRole, Feature, Recognition
 from trunnion.model.fixture import Fixture
 from trunnion.model.operation import CuttingData, Operation, OperationPath
@@ -369,7 +369,7 @@ def verdict(outcome: Outcome = Outcome.PASSED) -> Verdict:
 
 def session() -> Session:
     """Return a session in which every field holds something."""
-    blank = Blank(
+    blank = Box(
         frame=WORLD,
         low=np.array([-5.0, -5.0, 0.0]),
         high=np.array([105.0, 65.0, 42.0]),

@@ -1,10 +1,11 @@
 """Shows that two states of the code program the same: posted text, tool list, features, process and verdict, byte for byte.
 
-    python tests/same_programs.py BEFORE AFTER [--parts ../shared/parts] [--seeds 10] [--renamed old=new ...]
+    python tests/same_programs.py BEFORE AFTER [--parts ../shared/parts] [--seeds 10] [--renamed old=new ...] [--without PATTERN]
 
 BEFORE and AFTER are checkouts (`git worktree add`); both run in this environment, each with its own sources in front. Programmed are B1, B4
 (panels) and D1, D2 (curved parts, by their plan; D1 with named cutters too) where the parts are there, and random small parts of both
-families. What differs is named with its first line; the exit code is 1 then. Settings whose keys were renamed are told by `--renamed`.
+families. What differs is named with its first line; the exit code is 1 then. Settings whose keys were renamed are told by `--renamed`;
+what a pattern matches, such as the digest of the plan, is left out by `--without`.
 """
 
 from __future__ import annotations
@@ -12,6 +13,7 @@ from __future__ import annotations
 import argparse
 import json
 import os
+import re
 import subprocess
 import sys
 import tempfile
@@ -100,7 +102,10 @@ def _renamed(word: str, renamed: Mapping[str, str]) -> str:
 
 
 def differences(
-    before: Mapping[str, bytes], after: Mapping[str, bytes], renamed: Mapping[str, str]
+    before: Mapping[str, bytes],
+    after: Mapping[str, bytes],
+    renamed: Mapping[str, str],
+    without: str = "",
 ) -> list[str]:
     """Return a line for each file that is not the same, with the first line in which it differs; renamed keys count as the same."""
     found = [
@@ -111,8 +116,11 @@ def differences(
         text = before[name].decode()
         for old, new in renamed.items():
             text = text.replace(old, new)
-        rows = zip(text.splitlines(), after[name].decode().splitlines(), strict=False)
-        if text != after[name].decode():
+        now = after[name].decode()
+        if without:
+            text, now = re.sub(without, "", text), re.sub(without, "", now)
+        rows = zip(text.splitlines(), now.splitlines(), strict=False)
+        if text != now:
             number, (old, new) = next(
                 ((n, pair) for n, pair in enumerate(rows, 1) if pair[0] != pair[1]), (0, ("", ""))
             )
@@ -140,6 +148,9 @@ def main() -> int:
         metavar="OLD=NEW",
         help="a key that has another name after",
     )
+    made.add_argument(
+        "--without", default="", metavar="PATTERN", help="what is left out of the comparison"
+    )
     made.add_argument("--jobs", type=int, default=2)
     chosen = made.parse_args()
     renamed = dict(word.split("=", 1) for word in chosen.renamed)
@@ -152,7 +163,8 @@ def main() -> int:
             own = Path(folder) / "out" / case.name
             before = programmed(chosen.before.resolve(), case, {}, own / "before")
             after = programmed(chosen.after.resolve(), case, renamed, own / "after")
-            return case, differences(before, after, renamed), len(before)
+            found = differences(before, after, renamed, chosen.without)
+            return case, found, len(before)
 
         different = 0
         for case, found, count in pool.map(

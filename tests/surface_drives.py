@@ -6,7 +6,7 @@ import numpy as np
 
 from trunnion.geometry.frame import WORLD
 from trunnion.geometry.sheet.skin import Skin
-from trunnion.model.blank import Blank
+from trunnion.model.blank import Box
 from trunnion.model.operation import CuttingData
 from trunnion.model.setup import Setup
 from trunnion.plan.freeform.drive import SurfaceDrive
@@ -93,6 +93,6 @@ def driven(skin, faces=(1,), exact=(), allowance=0.0, height=0.004, top=20.0, ea
         drive,
         setup,
         PlanningStock.of(
-            Blank(frame=WORLD, low=low, high=high, material="7050-T7451", density=2.83), setup
+            Box(frame=WORLD, low=low, high=high, material="7050-T7451", density=2.83), setup
         ),
     )

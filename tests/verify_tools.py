@@ -7,7 +7,7 @@ import math
 import numpy as np
 
 from trunnion.geometry.frame import WORLD
-from trunnion.model.blank import Blank
+from trunnion.model.blank import Box
 from trunnion.model.material import Axis, Machine
 from trunnion.model.program import Program, ProgramSection
 from trunnion.model.setup import Setup
@@ -381,7 +381,7 @@ def _swept(tag, guide, profile, u0, u1, s0, s1, side):
     )
 
 
-BLANK = Blank(frame=WORLD, low=BLOCK_LOW, high=(30.0, 18.0, 20.0), material="test", density=2.8)
+BLANK = Box(frame=WORLD, low=BLOCK_LOW, high=(30.0, 18.0, 20.0), material="test", density=2.8)
 SETUP = Setup(name="S1", frame=WORLD, work_offset="G54", clearance=30.0, machine="test mill")
 MACHINE = Machine(
     name="test mill",
@@ -457,7 +457,7 @@ def proof(
         (block_with_pocket(),),
         blank,
         tools,
-        machine,
+        (machine,),
         chosen,
         progress,
         planned_faces=range(1, 24),

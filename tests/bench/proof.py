@@ -19,7 +19,7 @@ import numpy as np
 
 from trunnion.geometry.arrays import Floats
 from trunnion.geometry.frame import WORLD
-from trunnion.model.blank import Blank
+from trunnion.model.blank import Box
 from trunnion.model.program import ProgramSection
 from trunnion.model.tool import Tool
 from trunnion.model.toolpath import Motion, Toolpath
@@ -169,7 +169,7 @@ def five_axes(quick: bool) -> Figures:
         "ratio": seconds / (60.0 * share),
         "goal": "< 1",
     }
-    blank = Blank(frame=WORLD, low=case.blank_low, high=case.blank_high, material="x", density=1.0)
+    blank = Box(frame=WORLD, low=case.blank_low, high=case.blank_high, material="x", density=1.0)
     cell = (case.blank_high[0] - case.blank_low[0]) / 400.0
     run_stock(Stock.of(blank, 10.0 * cell, ("x", "y", "z")), few, WORLD)
     seconds = _shared(lambda: run_stock(Stock.of(blank, cell, ("x", "y", "z")), moves, WORLD))
@@ -275,9 +275,7 @@ def stock_of(cell: float, bundles: tuple[str, ...] = ("z",)) -> Any:
     from trunnion.verify.stock import Stock
 
     return Stock.of(
-        Blank(
-            frame=WORLD, low=(0.0, 0.0, 0.0), high=(200.0, 200.0, 30.0), material="x", density=1.0
-        ),
+        Box(frame=WORLD, low=(0.0, 0.0, 0.0), high=(200.0, 200.0, 30.0), material="x", density=1.0),
         cell,
         bundles,
     )

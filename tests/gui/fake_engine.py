@@ -18,7 +18,7 @@ import numpy as np
 from trunnion.findings import BadInput, remark, warning
 from trunnion.geometry.frame import Frame
 from trunnion.geometry.mesh import Mesh
-from trunnion.model.blank import Blank
+from trunnion.model.blank import Box
 from trunnion.model.feature import FaceRole, Feature, Recognition, TakenFor
 from trunnion.model.operation import CuttingData, Operation, OperationPath
 from trunnion.model.process import ProcessTree
@@ -418,7 +418,7 @@ class FakeEngine:
         high = np.array([LENGTH + chosen.side, WIDTH + chosen.side, HEIGHT + chosen.top])
         return replace(
             session,
-            blank=Blank(
+            blank=Box(
                 frame=session.recognition.frame,
                 low=low,
                 high=high,

@@ -9,6 +9,7 @@ from PySide6.QtCore import QPoint, Qt
 from PySide6.QtTest import QTest
 
 from trunnion.geometry.frame import WORLD
+from trunnion.model.blank import Revolved
 from trunnion_gui.look.colours import kind_colour, motions, rgb
 from trunnion_gui.worker.drawing import border_edges
 
@@ -142,6 +143,16 @@ def test_the_blank_stands_around_the_part(recognized, idle):
     assert low == pytest.approx([-5, -5, 0]) and high == pytest.approx(
         [LENGTH + 5, WIDTH + 5, HEIGHT + 2]
     )
+
+
+def test_a_round_bar_is_drawn_round(recognized):
+    bar = Revolved.cylinder(WORLD, 30.0, (-10.0, 50.0), "EN AW-7075", 2.8, "y")
+    recognized.viewport.scene.show_blank(bar)
+    drawn = recognized.viewport.scene.view.actors["blank"]
+    across = np.linalg.norm(drawn.GetMapper().GetInput().points[:, [0, 2]], axis=1)
+    assert np.array(drawn.bounds)[2:4] == pytest.approx([-10.0, 50.0])
+    assert across.max() == pytest.approx(30.0, rel=1e-3)
+    assert np.sort(across)[2:].min() > 29.9
 
 
 def test_the_blank_is_fitted_into_the_picture_while_it_is_shown(recognized, idle):

@@ -10,7 +10,7 @@ from leaning_tools import EVERY_FORM, leaning_section
 from solids import box_solid, cutter_solid, swept
 from trunnion import tolerance
 from trunnion.geometry.frame import WORLD
-from trunnion.model.blank import Blank
+from trunnion.model.blank import Box
 from trunnion.model.toolpath import Motion
 from trunnion.verify.kernels import dexels as kernel
 from trunnion.verify.motion import moves_of
@@ -20,7 +20,7 @@ from trunnion.verify.stock.spans import spans_of
 from verify_tools import FORMS, plain_depth, supports_of
 
 LOW, HIGH = np.zeros(3), np.array([24.0, 20.0, 16.0])
-BLANK = Blank(frame=WORLD, low=LOW, high=HIGH, material="test", density=1.0)
+BLANK = Box(frame=WORLD, low=LOW, high=HIGH, material="test", density=1.0)
 TOOLS = st.sampled_from(sorted(FORMS))
 BOUND = 0.01
 """mm, of the reference: its steps over time, and the chords of spans."""

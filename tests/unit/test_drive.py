@@ -37,9 +37,7 @@ CORNERS = (4 - math.pi) * 64
 
 def drive(made, kind, feature, earlier=(), choices=None):
     part, recognition = made
-    (setup,) = make_setups(
-        recognition, blank_of(part), SHOP.machine("Mill 1200"), choose(SetupSettings, {})
-    )
+    (setup,) = make_setups(recognition, blank_of(part), choose(SetupSettings, {}))
     one = operation(kind, feature, D10, choices)
     process = ProcessTree(plan="", material="", setups=(setup,), operations=(*earlier, one))
     return drive_of(one, process, SetupSpace.of(part, recognition, blank_of(part), setup))
@@ -171,9 +169,7 @@ def test_the_same_drive_comes_out_in_a_setup_from_below():
         attributes={"direction": (0.0, 0.0, -1.0)},
     )
     recognition = Recognition(family="panel", frame=WORLD, features=(pocket,))
-    _, below = make_setups(
-        recognition, blank_of(part), SHOP.machine("Mill 1200"), choose(SetupSettings, {})
-    )
+    _, below = make_setups(recognition, blank_of(part), choose(SetupSettings, {}))
     process = ProcessTree(plan="", material="", setups=(below,))
     space = SetupSpace.of(part, recognition, blank_of(part), below)
     (level,) = drive_of(operation("rough", "pocket-01", D10), process, space).levels

@@ -13,7 +13,7 @@ from milling import mill
 from samples import read, written
 from trunnion import tolerance
 from trunnion.geometry.frame import WORLD
-from trunnion.model.blank import Blank
+from trunnion.model.blank import Box
 from trunnion.model.setup import Setup
 from trunnion.model.verdict import Outcome
 from trunnion.part.shape.skin import skin_of
@@ -59,9 +59,7 @@ def boss():
 def spaced(work):
     part = read(work.val().wrapped)
     high = np.ceil(part.high)
-    blank = Blank(
-        frame=WORLD, low=np.floor(part.low), high=high, material="EN AW-7075", density=2.8
-    )
+    blank = Box(frame=WORLD, low=np.floor(part.low), high=high, material="EN AW-7075", density=2.8)
     return SurfaceSpace(
         part=part,
         blank=blank,

@@ -9,7 +9,7 @@ import pytest
 
 from flat_parts import blank_of, narrow_panel, open_panel, panel, stepped_panel
 from trunnion.findings import Severity
-from trunnion.model.blank import Blank
+from trunnion.model.blank import Box
 from trunnion.model.feature import FaceRole, Feature
 from trunnion.plan.panel.route import RouteSettings, make_route
 from trunnion.plan.setups import SetupSettings, make_setups
@@ -23,7 +23,7 @@ SHOP = load_shop()
 def route(made, *, blank=None, **words):
     part, recognition = made
     blank = blank or blank_of(part)
-    setups = make_setups(recognition, blank, SHOP.machine("Mill 1200"), choose(SetupSettings, {}))
+    setups = make_setups(recognition, blank, choose(SetupSettings, {}))
     return make_route(
         recognition, (), blank, setups, SHOP, part, choose(RouteSettings, words), QUIET
     )
@@ -211,7 +211,7 @@ def test_a_fillet_no_cutter_has_is_stepped_and_told():
 def test_a_blank_larger_than_the_machine_is_an_error_and_nothing_is_planned():
     part, _ = panel()
     box = blank_of(part)
-    huge = Blank(
+    huge = Box(
         frame=box.frame,
         low=box.low,
         high=box.high + np.array([20000.0, 0, 0]),

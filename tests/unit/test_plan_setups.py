@@ -11,12 +11,11 @@ from flat_parts import blank_of, panel
 from trunnion.geometry.frame import WORLD, Frame
 from trunnion.model.feature import Feature
 from trunnion.plan.blank import BlankSettings, make_blank
-from trunnion.plan.setups import SetupSettings, box_in, make_setups
+from trunnion.plan.setups import SetupSettings, make_setups
 from trunnion.settings import choose
 from trunnion.shop import load_shop
 
 SHOP = load_shop()
-MACHINE = SHOP.machine("Mill 1200")
 BELOW = Feature(id="pocket-09", kind="pocket", faces=(), attributes={"direction": (0.0, 0.0, -1.0)})
 
 
@@ -34,7 +33,7 @@ def test_the_blank_is_larger_than_the_part_by_its_allowances():
 
 def test_zero_lies_on_the_blanks_top_corner_and_the_clearance_above_it():
     part, recognition = panel()
-    (setup,) = make_setups(recognition, blank_of(part), MACHINE, choose(SetupSettings, {}))
+    (setup,) = make_setups(recognition, blank_of(part), choose(SetupSettings, {}))
     assert setup.frame.origin == approx([-5, -5, 32])
     assert setup.clearance == 20.0 and setup.work_offset == "G54"
 
@@ -42,7 +41,7 @@ def test_zero_lies_on_the_blanks_top_corner_and_the_clearance_above_it():
 def test_zero_may_lie_in_the_middle_of_the_bottom():
     part, recognition = panel()
     (setup,) = make_setups(
-        recognition, blank_of(part), MACHINE, choose(SetupSettings, {"origin": "centre bottom"})
+        recognition, blank_of(part), choose(SetupSettings, {"origin": "centre bottom"})
     )
     assert setup.frame.origin == approx([100, 50, 0])
     assert setup.clearance == 52.0
@@ -51,10 +50,25 @@ def test_zero_may_lie_in_the_middle_of_the_bottom():
 def test_a_feature_reached_from_below_gets_a_setup_turned_about_x():
     part, recognition = panel()
     recognition = replace(recognition, features=(*recognition.features, BELOW))
-    _, below = make_setups(recognition, blank_of(part), MACHINE, choose(SetupSettings, {}))
+    _, below = make_setups(recognition, blank_of(part), choose(SetupSettings, {}))
     assert below.frame.z.tolist() == [0, 0, -1] and below.work_offset == "G55"
-    low, high = box_in(below.frame, blank_of(part))
+    low, high = blank_of(part).box_in(below.frame)
     assert low == approx([0, 0, -32]) and high == approx([210, 110, 0])
+
+
+def test_setups_after_the_first_may_stand_on_another_machine():
+    part, recognition = panel()
+    recognition = replace(recognition, features=(*recognition.features, BELOW))
+    words = {"machine": "Mill 1200", "next_machine": "Trunnion 650"}
+    made = make_setups(recognition, blank_of(part), choose(SetupSettings, words))
+    assert [s.machine for s in made] == ["Mill 1200", "Trunnion 650"]
+
+
+def test_setups_stand_on_one_machine_where_no_other_is_named():
+    part, recognition = panel()
+    recognition = replace(recognition, features=(*recognition.features, BELOW))
+    made = make_setups(recognition, blank_of(part), choose(SetupSettings, {}))
+    assert [s.machine for s in made] == ["Mill 1200", "Mill 1200"]
 
 
 def test_a_turned_part_has_its_blank_in_its_own_frame():
@@ -66,4 +80,4 @@ def test_a_turned_part_has_its_blank_in_its_own_frame():
         SHOP.material("C45"),
         choose(BlankSettings, {}),
     )
-    assert box_in(frame, blank)[1] == approx([105, 55, 22])
+    assert blank.box_in(frame)[1] == approx([105, 55, 22])

@@ -16,7 +16,7 @@ from surface_drives import grid, joined
 from trunnion.geometry.drop_surface import DropSurface
 from trunnion.geometry.frame import WORLD, Frame
 from trunnion.geometry.plane.region import Region
-from trunnion.model.blank import Blank
+from trunnion.model.blank import Box
 from trunnion.model.feature import FaceRole, Feature, Recognition
 from trunnion.model.setup import Setup
 from trunnion.model.toolpath import Mark, Motion, Toolpath
@@ -30,7 +30,7 @@ from trunnion.plan.freeform.areas import (
     on_outline,
     walls_of,
 )
-from trunnion.plan.freeform.frames import corners_in, cutting_setup
+from trunnion.plan.freeform.frames import cutting_setup
 from trunnion.plan.freeform.heights import HeightMap, region_below
 from trunnion.plan.freeform.layers import level_faces
 from trunnion.plan.freeform.reach import places_on, reached
@@ -38,7 +38,7 @@ from trunnion.plan.freeform.space import SurfaceSpace
 from trunnion.toolpath.stock.heightfield import PlanningStock
 from trunnion.toolpath.stock.views import StockViews
 
-BLANK = Blank(
+BLANK = Box(
     frame=WORLD,
     low=np.zeros(3),
     high=np.array([40.0, 30.0, 20.0]),
@@ -86,7 +86,7 @@ def test_an_upright_operation_is_cut_in_the_setup_itself():
 def test_a_tool_from_the_side_sees_the_blank_from_there_with_the_same_clearance():
     turned_setup = cutting_setup(SETUP, (1.0, 0.0, 0.0), BLANK)
     assert turned_setup.frame.z == pytest.approx([1.0, 0.0, 0.0])
-    assert corners_in(turned_setup.frame, BLANK)[:, 2].max() == pytest.approx(40.0)
+    assert BLANK.corners(turned_setup.frame)[:, 2].max() == pytest.approx(40.0)
     assert turned_setup.clearance == pytest.approx(60.0)
 
 

@@ -53,7 +53,12 @@ def two_setups(below):
     second = Program(name="below", setup=replace(SETUP, name="S2", frame=UNDER), sections=(below,))
     nothing = surfaces_from([])
     return prove_surfaces(
-        (above, second), (nothing, nothing), BLANK, (), MACHINE, ProofSettings(coverage=0.0)
+        (above, second),
+        (nothing, nothing),
+        BLANK,
+        (),
+        (MACHINE, MACHINE),
+        ProofSettings(coverage=0.0),
     )
 
 

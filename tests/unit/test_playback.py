@@ -11,7 +11,7 @@ import pytest
 
 from trunnion.findings import BadCall
 from trunnion.geometry.frame import WORLD, Frame
-from trunnion.model.blank import Blank
+from trunnion.model.blank import Box
 from trunnion.model.operation import CuttingData, Operation, OperationPath
 from trunnion.model.playback import Passage, Timeline
 from trunnion.model.process import ProcessTree
@@ -106,7 +106,7 @@ def session():
         )
         for id in "ab"
     )
-    blank = Blank(
+    blank = Box(
         frame=WORLD,
         low=np.zeros(3),
         high=np.array([60.0, 50.0, 10.0]),

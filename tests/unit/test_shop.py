@@ -216,6 +216,33 @@ def test_a_user_adds_a_cutter_of_any_form(tmp_path, form, fields, said):
     assert tool.form == form and {name: getattr(tool, name) for name in said} == said
 
 
+MACHINE = """
+["M"]
+title = "m"
+feed_max = 100
+tool_change_s = 1
+tool_places = 1
+axes = [
+    { name = "X", kind = "linear", low = 0, high = 9, rapid = 9, acceleration = 9 },
+    { name = "Y", kind = "linear", low = 0, high = 9, rapid = 9, acceleration = 9 },
+    { name = "Z", kind = "linear", low = 0, high = 9, rapid = 9, acceleration = 9 },
+]
+spindle = { low = 1, high = 2, power = [[1, 1]] }
+"""
+
+
+def test_a_machine_names_its_control_or_has_linuxcnc(tmp_path):
+    named = MACHINE.replace('"M"', '"N"') + 'control = "apt"\n'
+    shop = load_shop(folder(tmp_path, machines=MACHINE + named))
+    assert (shop.machine("M").control, shop.machine("N").control) == ("linuxcnc", "apt")
+
+
+def test_a_machine_of_a_control_that_nobody_writes_for_is_refused(tmp_path):
+    text = MACHINE + 'control = "abacus"\n'
+    with pytest.raises(BadInput, match="M: control must be one of apt, linuxcnc; got 'abacus'"):
+        load_shop(folder(tmp_path, machines=text))
+
+
 def test_a_user_replaces_a_machine_of_the_same_name(tmp_path):
     text = """["Mill 1200"]
 title = "Ours"

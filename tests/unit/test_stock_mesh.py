@@ -12,7 +12,7 @@ from pytest import approx
 from leaning_tools import leaning_section
 from trunnion.findings import BadInput
 from trunnion.geometry.frame import WORLD
-from trunnion.model.blank import Blank
+from trunnion.model.blank import Box
 from trunnion.verify.kernels.meshing import mesh_zmap
 from trunnion.verify.motion import moves_of
 from trunnion.verify.stock import Stock, run_stock
@@ -25,7 +25,7 @@ LEAN = np.array([[0.8, -0.6, 0.0], [0.48, 0.64, -0.6], [0.36, 0.48, 0.8]])
 
 
 def blank(*high):
-    return Blank(frame=WORLD, low=(0.0, 0.0, 0.0), high=high, material="test", density=2.8)
+    return Box(frame=WORLD, low=(0.0, 0.0, 0.0), high=high, material="test", density=2.8)
 
 
 def of_heights(top):

@@ -14,7 +14,7 @@ from leaning_tools import leaning_section
 from trunnion import tolerance
 from trunnion.findings import BadInput, Cancelled, OutOfMemory
 from trunnion.geometry.frame import WORLD, Frame
-from trunnion.model.blank import Blank
+from trunnion.model.blank import Box
 from trunnion.model.toolpath import Motion
 from trunnion.progress import QUIET, Progress
 from trunnion.verify.finish.sweep import Sweep
@@ -22,7 +22,7 @@ from trunnion.verify.motion import moves_of
 from trunnion.verify.stock import Stock, run_stock
 from verify_tools import FORMS, bull, flat, program_section, tool_of
 
-BOX = Blank(frame=WORLD, low=(0.0, 0.0, 0.0), high=(40.0, 32.0, 20.0), material="test", density=2.8)
+BOX = Box(frame=WORLD, low=(0.0, 0.0, 0.0), high=(40.0, 32.0, 20.0), material="test", density=2.8)
 UP = (0.0, 0.0, 1.0)
 XYZ = ("x", "y", "z")
 

@@ -10,7 +10,7 @@ import pytest
 from pytest import approx
 
 from trunnion.geometry.frame import WORLD
-from trunnion.model.blank import Blank
+from trunnion.model.blank import Box
 from trunnion.verify.kernels.engagement import engagement_in_zmap
 from trunnion.verify.motion import moves_of
 from trunnion.verify.stock import Stock, run_stock
@@ -25,9 +25,7 @@ from trunnion.verify.stock.engagement import (
 from verify_tools import FORMS, bull, flat, program_section
 
 PITCH = 0.25
-BOX = Blank(
-    frame=WORLD, low=(0.0, 0.0, 0.0), high=(100.0, 60.0, 20.0), material="test", density=2.8
-)
+BOX = Box(frame=WORLD, low=(0.0, 0.0, 0.0), high=(100.0, 60.0, 20.0), material="test", density=2.8)
 FLAT = flat(10.0)()
 STEP = 4.0
 """Degrees between two directions looked at."""

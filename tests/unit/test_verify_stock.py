@@ -11,16 +11,14 @@ from pytest import approx
 from trunnion import tolerance
 from trunnion.findings import OutOfMemory
 from trunnion.geometry.frame import WORLD, Frame
-from trunnion.model.blank import Blank
+from trunnion.model.blank import Box
 from trunnion.verify.cutter import lowest_height
 from trunnion.verify.finish.sweep import Sweep
 from trunnion.verify.motion import moves_of
-from trunnion.verify.stock import Stock, blank_box, run_stock
+from trunnion.verify.stock import Stock, run_stock
 from verify_tools import bull, flat, program_section
 
-BOX = Blank(
-    frame=WORLD, low=(0.0, 0.0, 0.0), high=(100.0, 60.0, 20.0), material="test", density=2.8
-)
+BOX = Box(frame=WORLD, low=(0.0, 0.0, 0.0), high=(100.0, 60.0, 20.0), material="test", density=2.8)
 
 
 def cut(tool, stops, cell=0.25, rapid_to=0):
@@ -120,7 +118,7 @@ def test_a_blank_is_found_in_a_turned_setup():
     turned = Frame(
         np.array([100.0, 0.0, 20.0]), np.array([-1.0, 0.0, 0.0]), np.array([0.0, 0.0, -1.0])
     )
-    low, high = blank_box(BOX, turned)
+    low, high = BOX.box_in(turned)
     assert (low, high) == (approx([0.0, 0.0, 0.0]), approx([100.0, 60.0, 20.0]))
 
 

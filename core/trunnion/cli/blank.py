@@ -21,10 +21,10 @@ def run(chosen: argparse.Namespace) -> int:
     blank = session.blank
     assert blank is not None
     if chosen.step:
-        from trunnion.part.build import box_blank
+        from trunnion.part.build import ShapeBuilder
         from trunnion.part.write import write_step
 
-        write_step(box_blank(blank.frame, blank.low, blank.high), chosen.step)
+        write_step(blank.built(ShapeBuilder()), chosen.step)
     if chosen.json:
         show_json(
             {
@@ -39,9 +39,9 @@ def run(chosen: argparse.Namespace) -> int:
             }
         )
     else:
-        a, b, c = blank.size
+        sizes = " x ".join(f"{sign}{v:.3f}" for sign, v in blank.measures())
         print(
-            f"{blank.kind} {a:.3f} x {b:.3f} x {c:.3f} mm of {blank.material}, {blank.volume / 1e3:.1f} cm3, {blank.mass:.2f} kg"
+            f"{blank.kind} {sizes} mm of {blank.material}, {blank.volume / 1e3:.1f} cm3, {blank.mass:.2f} kg"
         )
     show_findings(chosen, session.findings())
     return exit_code(session.findings())

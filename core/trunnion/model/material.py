@@ -5,6 +5,9 @@ from __future__ import annotations
 import itertools
 from dataclasses import dataclass
 
+CONTROL = "linuxcnc"
+"""The control of a machine whose catalogue entry names none: the one that the program has always written for."""
+
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Material:
@@ -52,9 +55,10 @@ class Axis:
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Machine:
-    """A machine: axes, spindle with its power curve (rows: 1/min, kW), largest feed mm/min, tool-change height and seconds.
+    """A machine: axes, spindle with its power curve (rows: 1/min, kW), largest feed mm/min, tool-change seconds and places, control.
 
-    Rotary axes that carry the same side stand in the order from the machine's bed outwards: the second one rides on the first.
+    `control` is the registered name of the dialect that its programs are written in. Rotary axes that carry the same side stand in the
+    order from the machine's bed outwards: the second one rides on the first.
     """
 
     name: str
@@ -66,6 +70,7 @@ class Machine:
     feed_max: float
     tool_change_s: float
     tool_places: int
+    control: str = CONTROL
 
     def power_at(self, spindle: float) -> float:
         """Return the power in kW at a spindle speed, straight between the rows of the curve."""

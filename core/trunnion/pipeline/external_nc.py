@@ -11,7 +11,13 @@ from trunnion.model.material import Machine
 from trunnion.model.program import Program
 from trunnion.model.session import PostedFile, Session, StepRecord
 from trunnion.pipeline.engine import Engine
-from trunnion.pipeline.proving import errors_of_part, held_back, prove_programs, read_back
+from trunnion.pipeline.proving import (
+    dialect_of,
+    errors_of_part,
+    held_back,
+    prove_programs,
+    read_back,
+)
 from trunnion.post.settings import PostSettings
 from trunnion.progress import Progress
 from trunnion.settings import checked, choose
@@ -33,12 +39,17 @@ def verify_texts(
         raise BadCall(
             f"{len(files)} programs given, but the part has {len(session.process.setups)} setups"
         )
-    dialect = checked(choose(PostSettings, session.choices)).dialect
+    chosen = checked(choose(PostSettings, session.choices))
+    machines = engine.context_of(session).shop.machines
     posted = [
-        PostedFile(suffix=file.name, dialect=dialect, setup=setup.name, text=text_of(file))
+        PostedFile(
+            suffix=file.name,
+            dialect=dialect_of(setup, chosen, machines),
+            setup=setup.name,
+            text=text_of(file),
+        )
         for file, setup in zip(files, session.process.setups, strict=False)
     ]
-    machines = engine.context_of(session).shop.machines
 
     def read(own: Progress) -> tuple[Program, ...]:
         return tuple(

@@ -8,7 +8,7 @@ playback may stop anywhere.
 from __future__ import annotations
 
 import time
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import replace
 
 import numpy as np
@@ -22,7 +22,7 @@ from trunnion.model.program import Program
 from trunnion.model.session import PostedFile, Session
 from trunnion.model.toolpath import Mark, Motion, Toolpath
 from trunnion.pipeline.context import Context
-from trunnion.pipeline.proving import programs_of, read_back
+from trunnion.pipeline.proving import machine_of, programs_of, read_back
 from trunnion.post.release import release
 from trunnion.progress import QUIET, Progress
 from trunnion.settings import checked, choose, digest
@@ -38,6 +38,10 @@ FINENESS = 900
 """Cells along the longest side of the blank when nobody chooses, for heights: as fine as a picture shows, and still cut at once."""
 COARSER = 400
 """The same for several bundles."""
+FLUSH = 1e-4
+"""Of a cell: what is so near to a flat side of the blank lies in it."""
+CURVED = 1.0
+"""Of a cell: the same beside a curved side, which cells follow in steps."""
 SNAPSHOTS = 32
 """Places of the plan that the stock is remembered at."""
 _LEAST = 1e-3
@@ -72,20 +76,22 @@ class Playback:
         self._moves = progress.aside(
             lambda _: [moves_of(p.sections) for p in programs], "putting the blocks in time"
         )
-        machine = context.shop.machines[programs[0].setup.machine]
+        machines = [machine_of(p.setup, context.shop.machines) for p in programs]
         self.timeline = progress.aside(
             lambda _: timeline_of(
                 programs,
                 self._moves,
                 files,
-                machine,
+                machines,
                 digest(self.cell, [f.text for f in files], _keys(session)),
             )
         )
         self._starts = np.cumsum([0, *(len(m) for m in self._moves)])
         self._every = max(1, -(-len(self.timeline) // SNAPSHOTS))
         self._chunk = _FIRST_CHUNK
-        self._stock = Stock.of(self.blank, self.cell, bundles)
+        self._stock = progress.aside(
+            lambda _: Stock.of(self.blank, self.cell, bundles), "filling the blank with rays"
+        )
         self._position, self._removed = 0.0, 0.0
         self._kept: dict[int, tuple[Snapshot, float]] = {0: (self._stock.snapshot(), 0.0)}
 
@@ -190,7 +196,7 @@ class Playback:
             position=self._position,
             points=self.blank.frame.to_world(points).astype(np.float32),
             triangles=triangles.astype(np.int32),
-            fresh=fresh_of(points, triangles, self.blank, 1e-4 * self.cell),
+            fresh=fresh_of(points, triangles, self.blank, self.cell),
             tip=tip,
             axis=axis,
             operation=line.passage(self._position).operation,
@@ -219,14 +225,14 @@ def timeline_of(
     programs: tuple[Program, ...],
     moves: list[Moves],
     files: tuple[PostedFile, ...],
-    machine: Machine,
+    machines: Sequence[Machine],
     key: str,
 ) -> Timeline:
-    """Return all blocks of some programs over time; a change of the tool counts to the first block after it."""
+    """Return all blocks of some programs over time, each on its own machine; a change of the tool counts to the first block after it."""
     passages: list[Passage] = []
     spans: list[Floats] = []
     lines: list[Ints] = []
-    for k, (program, own) in enumerate(zip(programs, moves, strict=True)):
+    for k, (program, own, machine) in enumerate(zip(programs, moves, machines, strict=True)):
         span = seconds_of(own, machine, np.zeros(3))
         begins = np.cumsum([0, *(len(s.path) for s in program.sections)])
         for n, section in enumerate(program.sections):
@@ -260,11 +266,11 @@ def timeline_of(
     )
 
 
-def fresh_of(points: Floats, triangles: Ints, blank: Blank, near: float) -> Bools:
-    """Say for each triangle (t,) of a stock's surface in the blank's frame whether it was cut: it doesn't lie in a side of the blank."""
-    sides = np.zeros(len(points), np.uint8)
-    for n in range(3):
-        sides |= (np.abs(points[:, n] - blank.low[n]) <= near).astype(np.uint8) << (2 * n)
-        sides |= (np.abs(points[:, n] - blank.high[n]) <= near).astype(np.uint8) << (2 * n + 1)
+def fresh_of(points: Floats, triangles: Ints, blank: Blank, cell: float) -> Bools:
+    """Say for each triangle (t,) of a stock's surface in the blank's frame whether it was cut: it doesn't lie in a side of the blank.
+
+    Round a curved side of the blank the surface of a stock with cells of `cell` mm is only near it.
+    """
+    sides = blank.sides(points, FLUSH * cell, CURVED * cell)
     a, b, c = (sides[triangles[:, k]] for k in range(3))
-    return np.asarray(a & b & c == 0)
+    return np.asarray(~(a & b & c).any(axis=1))

@@ -18,9 +18,10 @@ from trunnion.pipeline.context import Context
 from trunnion.pipeline.work_position import places_of
 from trunnion.post.header import Header
 from trunnion.post.readers import read_program
-from trunnion.post.settings import PostSettings
+from trunnion.post.settings import OF_MACHINE, PostSettings
 from trunnion.progress import QUIET, Progress
 from trunnion.settings import checked, choose
+from trunnion.shop.kinematics import Places
 from trunnion.verify.settings import ProofSettings
 
 
@@ -63,19 +64,10 @@ def programs_of(session: Session) -> tuple[Program, ...]:
 def post_texts(
     session: Session, header: Header, machines: Mapping[str, Machine], progress: Progress = QUIET
 ) -> tuple[PostedFile, ...]:
-    """Return the texts of every program: one for each setup in the control's dialect, and the CL of all setups."""
-    chosen = checked(choose(PostSettings, session.choices))
-    dialect, cl = registry.get("dialects", chosen.dialect)(), registry.get("dialects", "apt")()
+    """Return the texts of every program: one for each setup in the dialect of its machine's control, and the CL of all setups."""
+    chosen, cl = checked(choose(PostSettings, session.choices)), registry.get("dialects", "apt")()
     programs, places = programs_of(session), places_of(session, machines)
-    posted = [
-        PostedFile(
-            suffix=f"{p.setup.name}.{dialect.suffix}",
-            dialect=dialect.name,
-            setup=p.setup.name,
-            text=dialect.write((p,), header, chosen, places),
-        )
-        for p in progress.each(programs)
-    ]
+    posted = [_posted(p, header, chosen, machines, places) for p in progress.each(programs)]
     progress.check()
     if programs:
         posted.append(
@@ -87,6 +79,40 @@ def post_texts(
             )
         )
     return tuple(posted)
+
+
+def _posted(
+    program: Program,
+    header: Header,
+    chosen: PostSettings,
+    machines: Mapping[str, Machine],
+    places: Places,
+) -> PostedFile:
+    setup = program.setup
+    dialect = registry.get("dialects", dialect_of(setup, chosen, machines))()
+    return PostedFile(
+        suffix=f"{setup.name}.{dialect.suffix}",
+        dialect=dialect.name,
+        setup=setup.name,
+        text=dialect.write((program,), header, chosen, places),
+    )
+
+
+def dialect_of(setup: Setup, chosen: PostSettings, machines: Mapping[str, Machine]) -> str:
+    """Return the name of the dialect that a setup's program is written in: the one chosen for all, else that of its machine's control."""
+    if chosen.dialect != OF_MACHINE:
+        return chosen.dialect
+    return machine_of(setup, machines).control
+
+
+def machine_of(setup: Setup, machines: Mapping[str, Machine]) -> Machine:
+    """Return the machine of a setup; raise `BadInput` when the catalogue does not have it."""
+    if setup.machine not in machines:
+        raise BadInput(
+            f"setup {setup.name}: there is no machine {setup.machine} in the catalogue; "
+            f"known: {', '.join(sorted(machines))}"
+        )
+    return machines[setup.machine]
 
 
 def read_back(
@@ -184,7 +210,8 @@ def prove_programs(
         raise BadInput(
             f"fixture {strange.name} is for setup {strange.setup}; the part has {', '.join(names)}"
         )
-    machine = context.shop.machines[session.process.setups[0].machine]
+    machines = context.shop.machines
+    setups = [p.setup for p in programs] or session.process.setups[:1]
     planned = {
         tag
         for operation in session.process.operations
@@ -196,7 +223,7 @@ def prove_programs(
         context.part,
         session.blank,
         context.shop.tools,
-        machine,
+        [machine_of(s, machines) for s in setups],
         checked(choose(ProofSettings, session.choices)),
         progress,
         planned_faces=sorted(planned),

@@ -15,13 +15,14 @@ from trunnion import registry
 from trunnion.findings import BadCall, BadInput, Finding
 from trunnion.model.feature import Recognition
 from trunnion.model.session import Session
+from trunnion.pipeline.blank import blank_of, source_of, too_small
 from trunnion.pipeline.context import Context
 from trunnion.pipeline.family import RecognizeSettings, recognised
 from trunnion.pipeline.manual_edits import with_features_by_hand, with_operations_by_hand
 from trunnion.pipeline.proving import prove_session
 from trunnion.pipeline.scene import SessionContext
 from trunnion.pipeline.toolpaths import findings_of, make_paths, strategy_settings
-from trunnion.plan.blank import BlankSettings, make_blank
+from trunnion.plan.blank import BlankSettings
 from trunnion.plan.contract import RouteJob, planner_for
 from trunnion.plan.cutting.milling import CuttingSettings, balance
 from trunnion.plan.cutting.peak import overloads
@@ -162,19 +163,8 @@ def _size(session: Session, context: Context, progress: Progress) -> Result:
 def _blank(session: Session, context: Context, progress: Progress) -> Result:
     progress.at(0.0, "blank")
     recognition = _certain(session)
-    chosen = checked(choose(BlankSettings, session.choices))
-    if chosen.material not in context.shop.materials:
-        raise BadInput(
-            f"there is no material {chosen.material} in the catalogue; known: {', '.join(sorted(context.shop.materials))}"
-        )
-    frame = recognition.frame
-    low, high = context.box(frame)
-    return Result(
-        session=replace(
-            session,
-            blank=make_blank(frame, low, high, context.shop.materials[chosen.material], chosen),
-        )
-    )
+    blank = blank_of(session, context, recognition.frame, progress)
+    return Result(session=replace(session, blank=blank), findings=too_small(blank, context))
 
 
 def _route(session: Session, context: Context, progress: Progress) -> Result:
@@ -183,11 +173,12 @@ def _route(session: Session, context: Context, progress: Progress) -> Result:
         raise BadCall("no blank yet: create the blank first")
     planner = planner_for(recognition.family)
     setup = checked(choose(SetupSettings, session.choices))
-    if setup.machine not in context.shop.machines:
-        raise BadInput(
-            f"there is no machine {setup.machine} in the catalogue; known: {', '.join(sorted(context.shop.machines))}"
-        )
-    setups = make_setups(recognition, session.blank, context.shop.machines[setup.machine], setup)
+    for machine in filter(None, (setup.machine, setup.next_machine)):
+        if machine not in context.shop.machines:
+            raise BadInput(
+                f"there is no machine {machine} in the catalogue; known: {', '.join(sorted(context.shop.machines))}"
+            )
+    setups = make_setups(recognition, session.blank, setup)
     planner.can_plan(context.part)
     process = planner.route(
         RouteJob(
@@ -288,6 +279,7 @@ STEP_TABLE: tuple[Step, ...] = (
             b.part.digest,
             s.recognition.frame if s.recognition else None,
             b.shop.digest,
+            source_of(s),
         ),
         done=lambda s: s.blank is not None,
     ),

@@ -12,7 +12,7 @@ from trunnion.model.material import Machine
 from trunnion.model.session import Session
 from trunnion.model.setup import Setup
 from trunnion.shop.kinematics import Places, WorkPosition
-from trunnion.toolpath.motion.reorient import box_of, swing_of
+from trunnion.toolpath.motion.reorient import swing_of
 
 
 def places_of(session: Session, machines: Mapping[str, Machine]) -> Places:
@@ -29,7 +29,7 @@ def places_of(session: Session, machines: Mapping[str, Machine]) -> Places:
 
 def place_of(blank: Blank, setup: Setup, machine: Machine) -> WorkPosition:
     """Return where a setup's work stands: the middle of the blank's underside lies on the middle of the table."""
-    low, high = box_of(blank, setup)
+    low, high = blank.box_in(setup.frame)
     swing = swing_of(blank, setup)
     foot = np.array([*(0.5 * (low + high))[:2], low[2]])
     return WorkPosition(machine=machine, foot=foot, centre=swing.centre, radius=swing.radius)

@@ -1,27 +1,37 @@
-"""The blank: a box around the part with an allowance on each side."""
+"""The blank: a box or a round bar around the part with an allowance on each side, or what a file holds."""
 
 from __future__ import annotations
 
 import numpy as np
 
-from trunnion.geometry.arrays import Floats
+from trunnion.geometry.arrays import Floats, Ints
 from trunnion.geometry.frame import Frame
-from trunnion.model.blank import Blank
+from trunnion.model.blank import AXES, Blank, Box, Faceted, Revolved
 from trunnion.model.material import Material
 from trunnion.settings import setting, settings
+
+KINDS = ("box", "cylinder", "file")
+DECIMALS = 7
+"""Decimals of a radius in mm: ten times finer than two points are told apart."""
 
 
 @settings("blank")
 class BlankSettings:
-    """How much larger than the part the blank is, and what it is made of."""
+    """What the blank is, how much larger than the part, and what it is made of."""
 
+    kind: str = setting(
+        "box",
+        choices=KINDS,
+        label="Kind of blank",
+        help="A box or a round bar around the part, or the solid of a file.",
+    )
     side: float = setting(
         5.0,
         unit="mm",
         low=0.0,
         high=500.0,
         label="Side allowance",
-        help="Material on each of the four sides.",
+        help="Material on each of the four sides; on a round bar beyond the part, and at the ends of a lying one.",
     )
     top: float = setting(
         2.0,
@@ -39,6 +49,25 @@ class BlankSettings:
         label="Bottom allowance",
         help="Material under the part's bottom.",
     )
+    axis: str = setting(
+        "z",
+        choices=AXES,
+        label="Axis of the bar",
+        help="The axis of the part's frame that a round bar lies along; z: it stands.",
+    )
+    diameter: float = setting(
+        0.0,
+        unit="mm",
+        low=0.0,
+        high=10000.0,
+        label="Diameter of the bar",
+        help="Diameter of a round bar; 0: what the part needs and the side allowance.",
+    )
+    file: str = setting(
+        "",
+        label="File of the blank",
+        help="STEP, IGES or STL file of a blank of kind file, in the part's coordinates.",
+    )
     material: str = setting(
         "EN AW-7075",
         label="Material",
@@ -49,14 +78,60 @@ class BlankSettings:
 
 def make_blank(
     frame: Frame, low: Floats, high: Floats, material: Material, settings: BlankSettings
-) -> Blank:
+) -> Box:
     """Return the box blank of a part whose box in `frame` reaches from `low` to `high` (3,) mm."""
-    below = np.array([settings.side, settings.side, settings.bottom])
-    above = np.array([settings.side, settings.side, settings.top])
-    return Blank(
+    low, high = _allowed(low, high, settings)
+    return Box(frame=frame, low=low, high=high, material=material.name, density=material.density)
+
+
+def make_bar(
+    frame: Frame,
+    low: Floats,
+    high: Floats,
+    points: Floats,
+    material: Material,
+    settings: BlankSettings,
+) -> Revolved:
+    """Return the round bar of a part whose box in `frame` reaches from `low` to `high` (3,) mm; points (v, 3) are its own there.
+
+    Its axis goes through the middle of the box.
+    """
+    k = AXES.index(settings.axis)
+    across = [(k + 1) % 3, (k + 2) % 3]
+    middle = 0.5 * (np.asarray(low) + np.asarray(high))
+    middle[k] = 0.0
+    needed = float(np.linalg.norm((points - middle)[:, across], axis=1).max()) + settings.side
+    radius = 0.5 * settings.diameter or round(needed, DECIMALS)
+    first, last = _allowed(low, high, settings)
+    return Revolved.cylinder(
+        frame.moved(middle),
+        radius,
+        (float(first[k]), float(last[k])),
+        material.name,
+        material.density,
+        settings.axis,
+    )
+
+
+def make_faceted(
+    frame: Frame, points: Floats, triangles: Ints, material: Material, source: str
+) -> Blank:
+    """Return the blank inside triangles (t, 3) of points (v, 3) of the part's coordinates, in `frame`.
+
+    Raises `ValueError` when they enclose no solid.
+    """
+    return Faceted(
         frame=frame,
-        low=np.asarray(low) - below,
-        high=np.asarray(high) + above,
+        points=frame.to_local(points),
+        triangles=triangles,
         material=material.name,
         density=material.density,
+        source=source,
     )
+
+
+def _allowed(low: Floats, high: Floats, settings: BlankSettings) -> tuple[Floats, Floats]:
+    """Return the corners of a part's box with the allowances."""
+    below = np.array([settings.side, settings.side, settings.bottom])
+    above = np.array([settings.side, settings.side, settings.top])
+    return np.asarray(low) - below, np.asarray(high) + above

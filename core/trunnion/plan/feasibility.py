@@ -8,7 +8,6 @@ from trunnion.findings import Finding, error, warning
 from trunnion.model.blank import Blank
 from trunnion.model.operation import Operation
 from trunnion.model.setup import Setup
-from trunnion.plan.setups import box_in
 from trunnion.shop import Shop
 from trunnion.units import trimmed
 
@@ -18,7 +17,7 @@ def too_large(blank: Blank, setups: Sequence[Setup], shop: Shop) -> list[Finding
     found = []
     for setup in setups:
         machine = shop.machine(setup.machine)
-        low, high = box_in(setup.frame, blank)
+        low, high = blank.box_in(setup.frame)
         need = dict(
             zip("XYZ", (high[0] - low[0], high[1] - low[1], setup.clearance - low[2]), strict=True)
         )

@@ -4,11 +4,9 @@ from __future__ import annotations
 
 import numpy as np
 
-from trunnion.geometry.arrays import Floats
 from trunnion.geometry.frame import Frame
 from trunnion.model.blank import Blank
 from trunnion.model.feature import Feature, Recognition
-from trunnion.model.material import Machine
 from trunnion.model.setup import Setup
 from trunnion.settings import setting, settings
 
@@ -39,6 +37,12 @@ class SetupSettings:
         catalogue="machines",
         help="Name of a machine of the catalogue.",
     )
+    next_machine: str = setting(
+        "",
+        label="Machine of the next setups",
+        catalogue="machines",
+        help="The machine of the setups after the first; empty: the same.",
+    )
     work_offset: int = setting(
         54,
         unit="",
@@ -50,16 +54,17 @@ class SetupSettings:
 
 
 def make_setups(
-    recognition: Recognition, blank: Blank, machine: Machine, settings: SetupSettings
+    recognition: Recognition, blank: Blank, settings: SetupSettings
 ) -> tuple[Setup, ...]:
     """Return one setup from above, and a second from below when a feature is reached only from there.
 
-    The second one is the first turned about its x axis. Frames are the work offsets' (`Setup.frame`).
+    The second one is the first turned about its x axis. Frames are the work offsets' (`Setup.frame`). Each is on the machine that the
+    settings name for it.
     """
     frames = [blank.frame]
     if any(from_below(f) for f in recognition):
         frames.append(Frame(blank.frame.origin, blank.frame.x, -blank.frame.z))
-    return tuple(_setup(n, frame, blank, machine, settings) for n, frame in enumerate(frames))
+    return tuple(_setup(n, frame, blank, settings) for n, frame in enumerate(frames))
 
 
 def from_below(feature: Feature) -> bool:
@@ -68,14 +73,8 @@ def from_below(feature: Feature) -> bool:
     return isinstance(direction, tuple) and len(direction) == 3 and direction[2] < 0.0
 
 
-def box_in(frame: Frame, blank: Blank) -> tuple[Floats, Floats]:
-    """Return the lowest and highest corner (3,) of the blank in a frame whose axes are parallel to the blank's."""
-    corners = frame.to_local(blank.frame.to_world(np.stack([blank.low, blank.high])))
-    return corners.min(axis=0), corners.max(axis=0)
-
-
-def _setup(n: int, frame: Frame, blank: Blank, machine: Machine, settings: SetupSettings) -> Setup:
-    low, high = box_in(frame, blank)
+def _setup(n: int, frame: Frame, blank: Blank, settings: SetupSettings) -> Setup:
+    low, high = blank.box_in(frame)
     place, height = settings.origin.split()
     origin = low if place == "corner" else 0.5 * (low + high)
     z = high[2] if height == "top" else low[2]
@@ -85,5 +84,5 @@ def _setup(n: int, frame: Frame, blank: Blank, machine: Machine, settings: Setup
         frame=offset,
         work_offset=f"G{min(settings.work_offset + n, 59)}",
         clearance=float(high[2] - z + settings.clearance),
-        machine=machine.name,
+        machine=(settings.next_machine if n else "") or settings.machine,
     )

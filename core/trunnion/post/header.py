@@ -13,7 +13,7 @@ from trunnion.findings import BadCall, Severity
 from trunnion.model.program import Program
 from trunnion.model.session import Session
 from trunnion.model.setup import Setup
-from trunnion.model.tool import Tool
+from trunnion.model.tool import Tool, TurningTool
 from trunnion.model.verdict import Verdict
 from trunnion.settings import digest
 from trunnion.shop.kinematics import WorkPosition
@@ -175,15 +175,7 @@ def _frame(program: Program, units: str) -> str:
     return " ".join(f"{word} {' '.join(values)}" for word, values in numbers)
 
 
-def tool_line(tool: Tool, units: str) -> str:
+def tool_line(tool: Tool | TurningTool, units: str) -> str:
     """Return the line of the header that describes a tool; a reader compares it with the tool list."""
-    sizes = " ".join(
-        f"{word}{_length(value, units)}"
-        for word, value in (
-            ("D", tool.diameter),
-            ("R", tool.corner_radius),
-            ("LENGTH ", tool.gauge_length),
-            ("STICKOUT ", tool.stickout),
-        )
-    )
-    return f"TOOL {tool.number} {tool.name} {sizes} HOLDER {tool.holder.name}"
+    sizes = " ".join(f"{word}{_length(value, units)}" for word, value in tool.header_sizes())
+    return f"TOOL {tool.number} {tool.name} {sizes} HOLDER {tool.holder_name}"

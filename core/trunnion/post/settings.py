@@ -5,16 +5,19 @@ from __future__ import annotations
 from trunnion import registry, tolerance
 from trunnion.settings import setting, settings
 
+OF_MACHINE = "machine"
+"""The choice of a control that leaves it to each setup's machine."""
+
 
 @settings("post")
 class PostSettings:
     """The control and the form of its text."""
 
     dialect: str = setting(
-        "linuxcnc",
+        OF_MACHINE,
         label="Control",
-        help="The dialect that programs are written in.",
-        choices=registry.names("dialects"),
+        help="The dialect that programs are written in; machine: that of each setup's machine.",
+        choices=(OF_MACHINE, *registry.names("dialects")),
     )
     units: str = setting(
         "mm",

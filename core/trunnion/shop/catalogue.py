@@ -10,24 +10,29 @@ from typing import TypeVar
 
 from trunnion.findings import BadInput
 from trunnion.model.material import Machine, Material
-from trunnion.model.tool import Tool
+from trunnion.model.tool import Tool, TurningTool
 from trunnion.settings import digest
 from trunnion.shop.cutters import Cutter, load_cutters, load_holders
 from trunnion.shop.machines import load_machines
 from trunnion.shop.materials import load_materials
 from trunnion.shop.plans import TypicalPlan, load_plans
+from trunnion.shop.turning import load_turning
 
 T = TypeVar("T")
 
 
 @dataclass(frozen=True, kw_only=True)
 class Shop:
-    """Cutters, materials, machines and typical plans that a plan may choose from; `plans` in their order (`load_plans`)."""
+    """Cutters, materials, machines and typical plans that a plan may choose from; `plans` in their order (`load_plans`).
+
+    `turning` has the turning tools: no cutter that mills or drills is among them, and none of them among the cutters.
+    """
 
     cutters: tuple[Cutter, ...]
     materials: Mapping[str, Material]
     machines: Mapping[str, Machine]
     plans: Mapping[str, TypicalPlan]
+    turning: tuple[TurningTool, ...] = ()
 
     @property
     def tools(self) -> tuple[Tool, ...]:
@@ -37,7 +42,9 @@ class Shop:
     @cached_property
     def digest(self) -> str:
         """A short stable digest of everything in the catalogues: what was planned with another one is stale."""
-        return digest(self.cutters, self.materials, self.machines, self.plans, tuple(self.plans))
+        return digest(
+            self.cutters, self.materials, self.machines, self.plans, tuple(self.plans), self.turning
+        )
 
     def tools_for(self, iso_group: str, use: str) -> tuple[Tool, ...]:
         """Return the cutters made for a group of materials and a use (`face`, `rough`, `finish`)."""
@@ -68,14 +75,15 @@ class Shop:
 def load_shop(user_folder: Path | None = None) -> Shop:
     """Return the catalogues, checked; raise `BadInput` with file, entry and field of the first fault.
 
-    `user_folder` has the shape of the program's own (`tools`, `holders`, `materials`, `machines`, `plans`, each with TOML files) and adds
-    entries or replaces those of the same name. What is missing there is not asked for.
+    `user_folder` has the shape of the program's own (`tools`, `holders`, `turning`, `materials`, `machines`, `plans`, each with TOML files)
+    and adds entries or replaces those of the same name. What is missing there is not asked for.
     """
     return Shop(
         cutters=load_cutters(load_holders(user_folder), user_folder),
         materials=load_materials(user_folder),
         machines=load_machines(user_folder),
         plans=load_plans(user_folder),
+        turning=load_turning(user_folder),
     )
 
 

@@ -7,7 +7,8 @@ from itertools import pairwise
 from pathlib import Path
 from typing import Any
 
-from trunnion.model.material import Axis, Machine
+from trunnion import registry
+from trunnion.model.material import CONTROL, Axis, Machine
 from trunnion.shop.reading import CatalogueEntry, by_name, entries
 from trunnion.units import FARTHEST, FASTEST
 
@@ -54,9 +55,18 @@ def _machine(entry: CatalogueEntry) -> Machine:
         feed_max=entry.number("feed_max", 1.0, FASTEST),
         tool_change_s=entry.number("tool_change_s", 0.0, FASTEST),
         tool_places=entry.count("tool_places", 1, 10_000),
+        control=_control(entry),
     )
     entry.done()
     return machine
+
+
+def _control(entry: CatalogueEntry) -> str:
+    """Return the name of the dialect that a machine is programmed in."""
+    control, known = entry.text("control", CONTROL), registry.names("dialects")
+    if control not in known:
+        raise entry.wrong(f"control must be one of {', '.join(known)}; got {control!r}")
+    return control
 
 
 def _axis(entry: CatalogueEntry) -> Axis:

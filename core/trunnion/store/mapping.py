@@ -1,7 +1,8 @@
 """One mechanism between frozen dataclasses and XML: it walks fields and type hints, so a new field needs no line here.
 
-A dataclass is an element with a child a field; a tuple holds `item` children, a mapping `item` children with a `key`. A scalar says its
-type only when the hint leaves it open or it differs from the hint, so every value comes back as the type it was: digests stay equal.
+A dataclass is an element with a child a field, and the class's name as its type where the hint allows several and it is not the first; a
+tuple holds `item` children, a mapping `item` children with a `key`. A scalar says its type only when the hint leaves it open or it differs
+from the hint, so every value comes back as the type it was: digests stay equal.
 Small arrays stand in the text, large ones and long texts are members of the archive.
 """
 
@@ -110,6 +111,8 @@ def _write(element: etree._Element, value: Any, hint: Any, members: Members) -> 
     elif isinstance(value, np.ndarray):
         _write_array(element, value, members)
     elif dataclasses.is_dataclass(value):
+        if picked is not _first_data(choices):
+            element.set("type", picked.__name__)
         for name, own in hints_of(picked).items():
             _write(
                 etree.SubElement(element, name.replace("_", "-")),
@@ -144,6 +147,11 @@ def _pick(value: Any, choices: tuple[Any, ...]) -> Any:
     raise TypeError(
         f"a {type(value).__name__} stands where {' or '.join(str(c) for c in choices)} belongs"
     )
+
+
+def _first_data(choices: tuple[Any, ...]) -> Any:
+    """Return the dataclass that an element is of where it doesn't say, or None: the first one allowed."""
+    return next((c for c in choices if _is_data(c)), None)
 
 
 def _items(value: Any, hint: Any) -> Iterator[tuple[str | None, Any, Any]]:
@@ -200,7 +208,8 @@ def _read(element: etree._Element, hint: Any, members: Members) -> Any:
     if said in _BY_NAME:
         _allow(element, _BY_NAME[said], choices)
         return _read_scalar(element, _BY_NAME[said], members)
-    wanted = {"tuple": tuple, "mapping": Mapping}.get(said or "")
+    named = {c.__name__: c for c in choices if _is_data(c)}
+    wanted = {"tuple": tuple, "mapping": Mapping, **named}.get(said or "")
     picked = next(
         (c for c in choices if c is not type(None) and (wanted is None or _kind(c) is wanted)), None
     )

@@ -16,7 +16,7 @@ class BlankPanel(Panel):
         if blank is None:
             self.result.setText("")
             return
-        size = " × ".join(amount(v, 1) for v in blank.size)
+        size = " × ".join(sign + amount(v, 1) for sign, v in blank.measures())
         self.result.setText(
             f"{size} mm<br>{amount(blank.volume / 1e6, 2)} dm³ · {amount(blank.mass, 2)} kg {blank.material}"
         )

@@ -20,7 +20,7 @@ from trunnion.model.tool import Tool
 from trunnion.model.toolpath import Toolpath
 from trunnion.report.lines import MOTIONS
 from trunnion_gui.look.colours import Theme, mixed, rgb
-from trunnion_gui.viewport.layers.blank import corners, draw_blank
+from trunnion_gui.viewport.layers.blank import draw_blank
 from trunnion_gui.viewport.layers.cut import draw_cut
 from trunnion_gui.viewport.layers.deviation import DeviationLayer
 from trunnion_gui.viewport.layers.label import draw_label, draw_names
@@ -204,7 +204,7 @@ class ViewportScene(QWidget):
     def show_blank(self, blank: Blank | None) -> None:
         """Show the blank, or none. A picture that nobody has turned since it was fitted is fitted anew."""
         draw_blank(self.view, blank, self._theme)
-        self._blank = corners(blank) if blank is not None else np.zeros((0, 3))
+        self._blank = blank.corners(WORLD) if blank is not None else np.zeros((0, 3))
         self._fit_again()
         self.view.render()
 

@@ -8,7 +8,6 @@ from dataclasses import dataclass
 import numpy as np
 
 from trunnion import tolerance
-from trunnion.geometry.arrays import Floats
 from trunnion.geometry.facegraph import CONVEX, FaceGraph
 from trunnion.model.blank import Blank
 from trunnion.model.feature import Feature, Recognition
@@ -94,15 +93,17 @@ def connected(tags: Collection[int], graph: FaceGraph) -> list[tuple[int, ...]]:
 def blank_faces(part: Part, blank: Blank) -> tuple[int, ...]:
     """Return the faces that lie in a side of the blank: nothing of it is there to be cut."""
     graph = part.graph()
-    low, high = (blank.frame.to_local(box) for box in (graph.box_low, graph.box_high))
-    low, high = np.minimum(low, high), np.maximum(low, high)
-    near: Floats = np.stack(
-        [np.abs(np.maximum(high - side, side - low)) for side in (blank.low, blank.high)]
-    )
     flat = np.array([kind == "plane" for kind in graph.surface])
-    return tuple(
-        tag for tag in part.tags if flat[tag - 1] and (near[:, tag - 1] < tolerance.SLIVER).any()
+    ends = [graph.edge_face[:, k] for k in (0, 1)]
+    face = np.concatenate([graph.sample_face, *(e for e in ends for _ in range(3))])
+    along = [graph.start, graph.middle, graph.end]
+    near = blank.sides(
+        blank.frame.to_local(np.vstack([graph.sample_point, *along, *along])), tolerance.SLIVER
     )
+    misses = np.zeros((len(flat), near.shape[1]))
+    np.add.at(misses, face, ~near)
+    lies = flat & np.isin(np.arange(len(flat)), face) & (misses == 0).any(axis=1)
+    return tuple(tag for tag in part.tags if lies[tag - 1])
 
 
 def walls_of(places: AreaSamples, tags: Collection[int]) -> tuple[int, ...]:

@@ -7,7 +7,6 @@ from dataclasses import replace
 import numpy as np
 
 from trunnion import tolerance
-from trunnion.geometry.arrays import Floats
 from trunnion.geometry.frame import Frame
 from trunnion.model.blank import Blank
 from trunnion.model.setup import Setup
@@ -22,19 +21,6 @@ def is_upright(direction: Direction) -> bool:
     return direction[2] > np.cos(tolerance.ANGLE)
 
 
-def corners_in(frame: Frame, blank: Blank) -> Floats:
-    """Return the eight corners (8, 3) of a box blank in a frame, which may stand askew in it."""
-    corners = np.array(
-        [
-            [x, y, z]
-            for x in (blank.low[0], blank.high[0])
-            for y in (blank.low[1], blank.high[1])
-            for z in (blank.low[2], blank.high[2])
-        ]
-    )
-    return frame.to_local(blank.frame.to_world(corners))
-
-
 def cutting_setup(setup: Setup, direction: Direction, blank: Blank) -> Setup:
     """Return a setup as a tool from a direction (3,) in its frame sees it: the frame's z is that direction, its origin stays.
 
@@ -45,7 +31,5 @@ def cutting_setup(setup: Setup, direction: Direction, blank: Blank) -> Setup:
     z = setup.frame.world_direction(np.asarray(direction, dtype=np.float64))
     x = setup.frame.x if abs(setup.frame.x @ z) < abs(setup.frame.y @ z) else setup.frame.y
     frame = Frame(setup.frame.origin, x, z)
-    above = setup.clearance - float(corners_in(setup.frame, blank)[:, 2].max())
-    return replace(
-        setup, frame=frame, clearance=float(corners_in(frame, blank)[:, 2].max()) + above
-    )
+    above = setup.clearance - float(blank.box_in(setup.frame)[1][2])
+    return replace(setup, frame=frame, clearance=float(blank.box_in(frame)[1][2]) + above)

@@ -71,8 +71,7 @@ def _layers(
         space.skin.drop, space.low - margin, space.high + margin, cell, allowance, progress
     )
     top, chord = float(stock.heights.max()), max(STRAIGHT * allowance, LEAST_STRAIGHT)
-    blank = Region.rectangle(*space.low[:2], *space.high[:2])
-    around = space.around()
+    blank, around = space.blank_area(), space.around()
     outside = around.minus(
         Region.rectangle(
             *(tall.corner + cell),
@@ -168,7 +167,7 @@ def _outline(operation: Operation, space: SurfaceSpace) -> PlaneDrive:
     ]
     outline = union_all([s for s in sections if s]).holes_filled()
     around = space.around()
-    blank = Region.rectangle(*space.low[:2], *space.high[:2])
+    blank = space.blank_area()
     level = DriveLevel(
         top=top, bottom=bottom, wanted=blank.minus(outline), boundary=around.minus(outline)
     )

@@ -18,7 +18,7 @@ from trunnion.part.shape.exact import ExactFace
 from trunnion.plan.clearance import ClearanceQuery
 from trunnion.plan.contract import DriveNeeds
 from trunnion.plan.freeform.drive import SurfaceDrive
-from trunnion.plan.freeform.frames import UPRIGHT, Direction, corners_in, cutting_setup
+from trunnion.plan.freeform.frames import UPRIGHT, Direction, cutting_setup
 from trunnion.plan.freeform.keys import ALLOWANCE, SCALLOP, number
 from trunnion.plan.freeform.rest import left_by, without_met
 from trunnion.progress import QUIET, Progress
@@ -49,21 +49,25 @@ class SurfaceSpace:
     ) -> SurfaceSpace:
         """Return the space of a direction given in the setup's frame; `skin` is in the part's coordinates."""
         turned = cutting_setup(setup, direction, blank)
-        corners = corners_in(turned.frame, blank)
+        low, high = blank.box_in(turned.frame)
         return SurfaceSpace(
             part=part,
             blank=blank,
             setup=turned,
             direction=direction,
             skin=skin.moved(WORLD, turned.frame),
-            low=corners.min(axis=0),
-            high=corners.max(axis=0),
+            low=low,
+            high=high,
         )
 
     @property
     def frame(self) -> Frame:
         """The cutting frame."""
         return self.setup.frame
+
+    def blank_area(self) -> Region:
+        """Return the blank seen along the tool."""
+        return self.blank.plan_area(self.frame)
 
     def around(self) -> Region:
         """Return the plan area of the blank and of the free space around it."""
@@ -72,14 +76,14 @@ class SurfaceSpace:
     def seen_from(self, setup: Setup, direction: Direction) -> SurfaceSpace:
         """Return the same part seen from another direction given in the frame of the machine's setup."""
         turned = cutting_setup(setup, direction, self.blank)
-        corners = corners_in(turned.frame, self.blank)
+        low, high = self.blank.box_in(turned.frame)
         return replace(
             self,
             setup=turned,
             direction=direction,
             skin=self.skin.moved(self.frame, turned.frame),
-            low=corners.min(axis=0),
-            high=corners.max(axis=0),
+            low=low,
+            high=high,
         )
 
     def drive_of(

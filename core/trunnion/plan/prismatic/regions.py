@@ -24,7 +24,6 @@ from trunnion.geometry.plane.region import EMPTY_REGION, Piece, Region, union_al
 from trunnion.model.blank import Blank
 from trunnion.model.feature import Feature, Recognition
 from trunnion.model.setup import Setup
-from trunnion.plan.setups import box_in
 
 AROUND = 150.0
 """mm: how far free space is looked at around the blank; more than two diameters of the largest cutter."""
@@ -76,6 +75,7 @@ class SetupSpace:
     part: SectionSource
     recognition: Recognition
     setup: Setup
+    blank: Blank
     blank_low: Floats
     blank_high: Floats
     bottom: float
@@ -86,11 +86,13 @@ class SetupSpace:
     @staticmethod
     def of(part: SectionSource, recognition: Recognition, blank: Blank, setup: Setup) -> SetupSpace:
         """Return the part's space in a setup."""
-        low, high = box_in(setup.frame, blank)
+        low, high = blank.box_in(setup.frame)
         graph = part.graph()
         points = np.vstack([graph.start, graph.middle, graph.end, graph.sample_point])
         z = setup.frame.to_local(points)[:, 2]
-        return SetupSpace(part, recognition, setup, low, high, float(z.min()), float(z.max()))
+        return SetupSpace(
+            part, recognition, setup, blank, low, high, float(z.min()), float(z.max())
+        )
 
     def height(self, z: float) -> float:
         """Return the setup's height of a height in the recognition's frame."""
@@ -108,7 +110,7 @@ class SetupSpace:
 
     def blank_area(self) -> Region:
         """Return the blank seen from above."""
-        return Region.rectangle(*self.blank_low[:2], *self.blank_high[:2])
+        return self.blank.plan_area(self.setup.frame)
 
     def around(self) -> Region:
         """Return the blank's area and plenty around it."""

@@ -42,7 +42,7 @@ class SwingSphere:
 
 def swing_of(blank: Blank, setup: Setup) -> SwingSphere:
     """Return the sphere round the blank and the fixtures of a setup, as far from them as the clearance height is from the blank."""
-    corners = _corners(blank, setup)
+    corners = blank.corners(setup.frame)
     safe = max(setup.clearance - float(corners[:, 2].max()), LEAST_SAFE)
     points = np.vstack(
         [
@@ -57,20 +57,6 @@ def swing_of(blank: Blank, setup: Setup) -> SwingSphere:
     centre = 0.5 * (corners.min(axis=0) + corners.max(axis=0))
     radius = float(np.linalg.norm(points - centre, axis=1).max()) + safe
     return SwingSphere(centre=centre, radius=radius / math.cos(0.5 * STEP))
-
-
-def box_of(blank: Blank, setup: Setup) -> tuple[Floats, Floats]:
-    """Return the lowest and the highest corner (3,) of the box in the setup frame that holds the blank."""
-    corners = _corners(blank, setup)
-    return corners.min(axis=0), corners.max(axis=0)
-
-
-def _corners(blank: Blank, setup: Setup) -> Floats:
-    corners = (
-        np.array([[x, y, z] for x in (0, 1) for y in (0, 1) for z in (0, 1)]) * blank.size
-        + blank.low
-    )
-    return setup.frame.to_local(blank.frame.to_world(corners))
 
 
 def moved_over(path: Toolpath, before: Pose | None, swing: SwingSphere) -> Toolpath:

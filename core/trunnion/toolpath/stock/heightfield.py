@@ -50,17 +50,8 @@ class PlanningStock:
 
     @staticmethod
     def of(blank: Blank, setup: Setup, cell: float = CELL) -> PlanningStock:
-        """Return the stock of an uncut blank; of one that stands askew in the setup, the box around it."""
-        corners = np.array(
-            [
-                [x, y, z]
-                for x in (blank.low[0], blank.high[0])
-                for y in (blank.low[1], blank.high[1])
-                for z in (blank.low[2], blank.high[2])
-            ]
-        )
-        local = setup.frame.to_local(blank.frame.to_world(corners))
-        low, high = local.min(axis=0), local.max(axis=0)
+        """Return the stock of an uncut blank, each column as high as the blank is in it, or as low as it gets where there is none of it."""
+        low, high = blank.box_in(setup.frame)
         size = high[:2] - low[:2]
         cell = max(cell, float(np.sqrt(size[0] * size[1] / MOST_CELLS)))
         if cell > LARGEST_CELL:
@@ -70,12 +61,12 @@ class PlanningStock:
         # Whole cells that stand out past the blank's edge by a part of one, the same at both edges.
         count = np.maximum(np.ceil(size / cell - tolerance.COINCIDENT), 1).astype(int)
         corner = _fixed(low[:2] - 0.5 * (count * cell - size))
-        return PlanningStock(
-            heights=_fixed(np.full(tuple(count), high[2])),
-            corner=corner,
-            cell=cell,
-            digest=digest(tuple(count.tolist()), high[2].item(), corner, cell),
-        )
+        shape = (int(count[0]), int(count[1]))
+        heights = blank.tops(setup.frame, corner, cell, shape, float(low[2]))
+        told = digest(shape, high[2].item(), corner, cell)
+        if (heights < high[2]).any():
+            told = digest(told, heights)
+        return PlanningStock(heights=_fixed(heights), corner=corner, cell=cell, digest=told)
 
     def after(self, path: Toolpath, tool: Tool, progress: Progress = QUIET) -> PlanningStock:
         """Return the stock after the feed moves of a path."""

@@ -18,7 +18,6 @@ from trunnion.model.blank import Blank
 from trunnion.model.setup import Setup
 from trunnion.model.tool import Tool
 from trunnion.model.toolpath import Motion, Toolpath
-from trunnion.plan.freeform.frames import corners_in
 from trunnion.progress import QUIET, Progress
 from trunnion.settings import digest
 from trunnion.toolpath.stock.heightfield import PlanningStock
@@ -40,7 +39,10 @@ class StockViews:
         """Return the stock in the frame of a setup (a cutting frame is one), with all that was cut from other directions."""
         name = digest(setup.frame)
         if name not in self._stocks:
-            self._stocks[name], self._frames[name] = _uncut(self._blank, setup), setup.frame
+            self._stocks[name], self._frames[name] = (
+                PlanningStock.of(self._blank, setup),
+                setup.frame,
+            )
         for other, stock in list(self._stocks.items()):
             if other != name and self._known.get((name, other)) != stock.digest:
                 self._known[name, other] = stock.digest
@@ -57,26 +59,6 @@ class StockViews:
         ):
             name = digest(setup.frame)
             self._stocks[name] = self._stocks[name].after(path, tool, progress)
-
-
-def _uncut(blank: Blank, setup: Setup) -> PlanningStock:
-    """Return the stock of an uncut blank, each column as high as the blank is in it, or as low as it gets where there is none of it."""
-    stock = PlanningStock.of(blank, setup)
-    away = blank.frame.local_direction(setup.frame.z)
-    if np.abs(away).max() > 1.0 - tolerance.PARAMETRIC:
-        return stock
-    # Where the line through a column's middle leaves the box, grown so that a column which only grazes the blank counts.
-    places, reach = _centres(stock), 0.75 * stock.cell
-    start = blank.frame.to_local(
-        setup.frame.to_world(np.column_stack([places, np.zeros(len(places))]))
-    )
-    with np.errstate(divide="ignore", invalid="ignore"):
-        ends = np.stack([(blank.low - reach - start) / away, (blank.high + reach - start) / away])
-    ends = np.where(np.isnan(ends), np.array([-np.inf, np.inf])[:, None, None], ends)
-    first, last = ends.min(axis=0).max(axis=1), ends.max(axis=0).min(axis=1)
-    top = np.where(first < last, last, -np.inf).reshape(stock.heights.shape)
-    heights = np.clip(top, _lowest(blank, setup.frame), stock.heights)
-    return replace(stock, heights=_fixed(heights), digest=digest(stock.digest, heights))
 
 
 def _lowered(
@@ -103,7 +85,7 @@ def _lowered(
 
 
 def _lowest(blank: Blank, frame: Frame) -> float:
-    return float(corners_in(frame, blank)[:, 2].min())
+    return float(blank.box_in(frame)[0][2])
 
 
 def _centres(stock: PlanningStock) -> Floats:

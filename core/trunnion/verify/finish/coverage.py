@@ -13,6 +13,8 @@ import numpy as np
 from trunnion import tolerance
 from trunnion.findings import OutOfMemory
 from trunnion.geometry.arrays import Bools, Floats, Ints
+from trunnion.geometry.frame import Frame
+from trunnion.model.blank import Blank
 from trunnion.part.shape.facets import Facets, facet_samples
 from trunnion.part.shape.surfaces import (
     DX,
@@ -162,18 +164,13 @@ def _across(strip: Floats, s: Floats) -> Floats:
     return np.tile([-strip[DY], strip[DX]], (len(s), 1))
 
 
-def on_blank(samples: Samples, low: Floats, high: Floats, n_faces: int) -> Bools:
-    """Say for each face row whether all its samples lie in one of the blank's sides, given by corners in the samples' frame."""
+def on_blank(samples: Samples, blank: Blank, frame: Frame, n_faces: int) -> Bools:
+    """Say for each face row whether all its samples lie in one of the blank's sides; `frame` is the samples'."""
     out = np.zeros(n_faces, bool)
     if not len(samples):
         return out
-    near = np.abs(np.hstack([samples.point - low, samples.point - high])) < tolerance.SLIVER
-    misses = np.zeros((n_faces, 6))
+    near = blank.sides(blank.own(samples.point, frame), tolerance.SLIVER)
+    misses = np.zeros((n_faces, near.shape[1]))
     np.add.at(misses, samples.face, ~near)
     out[np.unique(samples.face)] = True
     return out & (misses == 0).any(axis=1)
-
-
-def depth_in_blank(points: Floats, low: Floats, high: Floats) -> Floats:
-    """Return how far points (s, 3) are below the blank's surface (s,), 0 outside: the most material that can be left on them."""
-    return np.clip(np.minimum(points - low, high - points).min(axis=1), 0.0, None)

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Collection, Sequence
 from dataclasses import dataclass
+from itertools import zip_longest
 
 import numpy as np
 
@@ -16,11 +17,10 @@ from trunnion.model.tool import Tool
 from trunnion.model.verdict import Deviation, FaceProof
 from trunnion.progress import QUIET, Progress
 from trunnion.verify.finish.accessibility import Accessibility
-from trunnion.verify.finish.coverage import Samples, depth_in_blank, on_blank
+from trunnion.verify.finish.coverage import Samples, on_blank
 from trunnion.verify.judge.setups import SetupProof
 from trunnion.verify.judge.sides import Side
 from trunnion.verify.settings import ProofSettings
-from trunnion.verify.stock import blank_box
 
 DECIMALS = 9
 """Decimals of a share of area: sums of thousands of areas differ in their last digits, and no goal is that fine."""
@@ -47,26 +47,26 @@ def covered(
     settings: ProofSettings,
     planned: Collection[int],
     progress: Progress = QUIET,
-    machine: Machine | None = None,
+    machines: Sequence[Machine] = (),
 ) -> CoverageResult:
     """Return what all setups together finish of the part.
 
     `samples` are in the frame of the first side; `tags` (f,) those of the face rows; `tools` the catalogue's, tried from every side where
-    something is not finished, as if nothing held the part. They lean where `machine` does, which needs facets of all faces.
+    something is not finished, as if nothing held the part. They lean where the side's own of `machines` does, which
+    needs facets of all faces; without machines they are upright.
     """
     frame = sides[0].frame
-    low, high = blank_box(blank, frame)
     n = len(tags)
     progress.at(0.0, "Adding up what is finished")
     left, blank_face = progress.aside(
-        lambda _: (depth_in_blank(samples.point, low, high), on_blank(samples, low, high, n))
+        lambda _: (blank.depth(samples.point, frame), on_blank(samples, blank, frame, n))
     )
     for p in proofs:
         left = np.minimum(left, p.left)
     finished = (np.abs(left) <= settings.tolerance + settings.allowance) & ~blank_face[samples.face]
     open_rows = np.flatnonzero(~finished & ~blank_face[samples.face] & (left > 0.0))
     lost = np.zeros(len(samples), bool)
-    lost[_unreached(samples, open_rows, sides, tools, settings, progress, machine)] = True
+    lost[_unreached(samples, open_rows, sides, tools, settings, progress, machines)] = True
     area, done, away = (
         _by_face(samples, samples.area * share, n) for share in (1.0, finished, lost)
     )
@@ -100,11 +100,11 @@ def _unreached(
     tools: Sequence[Tool],
     settings: ProofSettings,
     progress: Progress,
-    machine: Machine | None,
+    machines: Sequence[Machine],
 ) -> Ints:
     """Return the rows of samples that no cutter reaches from any side."""
     home = sides[0].frame
-    for k, side in enumerate(sides):
+    for k, (side, machine) in enumerate(zip_longest(sides, machines)):
         here = (
             samples
             if side.frame is home

@@ -6,7 +6,6 @@ import numpy as np
 
 from trunnion import tolerance
 from trunnion.geometry.arrays import Floats, Ints
-from trunnion.model.material import Machine
 from trunnion.model.verdict import BlockProof, OperationProof, Outcome
 from trunnion.units import MM_PER_METRE, SECONDS_PER_MINUTE
 from trunnion.verify.finish.sweep import left_by_block
@@ -15,7 +14,7 @@ from trunnion.verify.settings import ProofSettings
 
 
 def operation_proofs(
-    proof: SetupProof, tags: Ints, area: Floats, machine: Machine, settings: ProofSettings
+    proof: SetupProof, tags: Ints, area: Floats, settings: ProofSettings
 ) -> list[OperationProof]:
     """Return the measurements of every section of a setup's program, in order.
 
@@ -49,7 +48,7 @@ def operation_proofs(
                 rapids_in_stock=int(rapids.sum()),
                 time_s=float(proof.times.seconds[rows].sum())
                 + section.dwell
-                + machine.tool_change_s * new_tool,
+                + proof.machine.tool_change_s * new_tool,
                 removed=removed,
                 air_share=1.0
                 - _share(float(moves.length[cuts].sum()), float(moves.length[feeds].sum()), 1.0),
@@ -69,7 +68,7 @@ def operation_proofs(
                     float(proof.times.seconds[cuts].sum()),
                 ),
                 power=float(load.power[rows].max(initial=0.0)),
-                power_limit=machine.power_at(section.spindle),
+                power_limit=proof.machine.power_at(section.spindle),
                 torque=float(load.torque[rows].max(initial=0.0)),
                 chip=float(load.chip[rows].max(initial=0.0)),
             )

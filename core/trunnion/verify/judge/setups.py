@@ -17,14 +17,13 @@ from trunnion.model.program import Program
 from trunnion.model.tool import Tool
 from trunnion.progress import QUIET, Progress
 from trunnion.verify.contact import Contact, PartContact
-from trunnion.verify.finish.coverage import depth_in_blank
 from trunnion.verify.finish.sweep import Sweep
 from trunnion.verify.judge.load import Load, load_of
 from trunnion.verify.machine.kinematics import AxisPositions, stands_of
 from trunnion.verify.machine.times import MachineTimes, times_of
 from trunnion.verify.motion import Moves, moves_of
 from trunnion.verify.settings import ProofSettings
-from trunnion.verify.stock import Stock, StockRun, blank_box, run_stock
+from trunnion.verify.stock import Stock, StockRun, run_stock
 
 NEAR = 2.0
 """mm: material left up to this is measured to the last digit, more to a hundredth."""
@@ -33,10 +32,11 @@ BUNDLES = {"z": ("z",), "xyz": ("x", "y", "z")}
 
 @dataclass(frozen=True, slots=True, eq=False, kw_only=True)
 class SetupProof:
-    """What was measured in one setup: contact, stock, stands, times and load by move; left (s,) mm on the samples, and the move nearest to
-    each (-1: none)."""
+    """What was measured in one setup on its machine: contact, stock, stands, times and load by move; left (s,) mm on the samples, and the
+    move nearest to each (-1: none)."""
 
     program: Program
+    machine: Machine
     moves: Moves
     contact: Contact
     stock: StockRun
@@ -71,8 +71,7 @@ def prove_setup(
     sweep = progress.aside(lambda _: Sweep.of(moves, NEAR), "Making the moves ready for questions")
     touched = contact.along(moves, progress.part(0.02, 0.4), settings.threads)
     run = run_stock(stock, moves, frame, sweep, progress.part(0.4, 0.7), settings.threads)
-    low, high = blank_box(stock.blank, frame)
-    deep = progress.aside(lambda _: depth_in_blank(points, low, high))
+    deep = progress.aside(lambda _: stock.blank.depth(points, frame))
     left, nearest = sweep.left(points, deep, progress.part(0.7, 0.98), settings.threads)
     stands, times = progress.aside(
         lambda _: _timed(moves, machine, foot_of(stock.blank, frame)), "Timing the moves"
@@ -83,6 +82,7 @@ def prove_setup(
     )
     return SetupProof(
         program=program,
+        machine=machine,
         moves=moves,
         contact=touched,
         stock=run,
@@ -101,7 +101,7 @@ def _timed(moves: Moves, machine: Machine, foot: Floats) -> tuple[AxisPositions,
 
 def foot_of(blank: Blank, frame: Frame) -> Floats:
     """Return the middle of the blank's underside in a setup's frame (3,): it stands on the middle of the machine's table."""
-    low, high = blank_box(blank, frame)
+    low, high = blank.box_in(frame)
     return np.array([*(0.5 * (low + high))[:2], low[2]])
 
 

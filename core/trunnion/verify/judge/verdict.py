@@ -41,7 +41,7 @@ def prove(
     part: Part,
     blank: Blank,
     tools: Sequence[Tool],
-    machine: Machine,
+    machines: Sequence[Machine],
     settings: ProofSettings,
     progress: Progress = QUIET,
     planned_faces: Collection[int] = (),
@@ -49,18 +49,19 @@ def prove(
 ) -> Verdict:
     """Return the verdict on the programs of all setups, in the order they are cut: each finds the stock that those before it left.
 
-    `tools` are the catalogue's, for what could be reached at all; `planned_faces` the tags that some operation means to finish. Without a
-    material nothing is said of power.
+    `tools` are the catalogue's, for what could be reached at all; `machines` those of the programs, one each (without a program: the one
+    that the part could be reached on); `planned_faces` the tags that some operation means to finish. Without a material nothing is said
+    of power.
     """
     frames = [p.setup.frame for p in programs] or [blank.frame]
     surfaces = [surfaces_of(part, f, progress.part(0.0, 0.05)) for f in frames]
-    facets = _facets(programs, part, frames, surfaces, machine, progress.part(0.05, 0.1))
+    facets = _facets(programs, part, frames, surfaces, machines, progress.part(0.05, 0.1))
     return prove_surfaces(
         programs,
         surfaces,
         blank,
         tools,
-        machine,
+        machines,
         settings,
         progress.part(0.1, 1.0),
         planned_faces,
@@ -74,12 +75,12 @@ def _facets(
     part: Part,
     frames: Sequence[Frame],
     surfaces: Sequence[Surfaces],
-    machine: Machine,
+    machines: Sequence[Machine],
     progress: Progress,
 ) -> list[Facets]:
     """Return the part's faces as triangles in each frame: all for a tool that leans, or a machine on which one may be asked to, else those
     without closed form; none when none is."""
-    leans = bool(machine.rotary) or any(
+    leans = any(m.rotary for m in machines) or any(
         (np.abs(s.path.axis - [0.0, 0.0, 1.0]) > AXIS_LEAN).any()
         for p in programs
         for s in p.sections
@@ -96,7 +97,7 @@ def prove_surfaces(
     surfaces: Sequence[Surfaces],
     blank: Blank,
     tools: Sequence[Tool],
-    machine: Machine,
+    machines: Sequence[Machine],
     settings: ProofSettings,
     progress: Progress = QUIET,
     planned_faces: Collection[int] = (),
@@ -116,9 +117,12 @@ def prove_surfaces(
     samples = samples_of(
         surfaces[0], settings.spacing, progress.part(0.0, 0.05), facets[0] if facets else None
     )
-    stock = Stock.of(blank, settings.cell, bundles_of(programs, blank, settings))
+    stock = progress.aside(
+        lambda _: Stock.of(blank, settings.cell, bundles_of(programs, blank, settings)),
+        "Filling the blank with rays",
+    )
     proofs = []
-    for k, (program, side) in enumerate(zip(programs, sides, strict=False)):
+    for k, (program, side, machine) in enumerate(zip(programs, sides, machines, strict=False)):
         share = progress.part(
             0.05 + 0.75 * k / len(programs),
             0.05 + 0.75 * (k + 1) / len(programs),
@@ -132,7 +136,7 @@ def prove_surfaces(
     offers: list[Offer] = []
     for p in proofs:
         told, offered = progress.aside(
-            partial(_told, p, surfaces[0].tag, machine, material, settings), "Judging the moves"
+            partial(_told, p, surfaces[0].tag, material, settings), "Judging the moves"
         )
         findings, offers = findings + told, offers + offered
     whole = covered(
@@ -145,7 +149,7 @@ def prove_surfaces(
         settings,
         planned_faces,
         progress.part(0.8, 1.0),
-        machine if facets else None,
+        machines if facets else (),
     )
     findings += whole.findings
     operations, blocks = progress.aside(
@@ -153,7 +157,7 @@ def prove_surfaces(
             tuple(
                 o
                 for p in proofs
-                for o in operation_proofs(p, surfaces[0].tag, samples.area, machine, settings)
+                for o in operation_proofs(p, surfaces[0].tag, samples.area, settings)
             ),
             tuple(block_proof(p, samples.area) for p in proofs),
         ),
@@ -179,7 +183,6 @@ def prove_surfaces(
 def _told(
     proof: SetupProof,
     tags: Ints,
-    machine: Machine,
     material: Material | None,
     settings: ProofSettings,
     progress: Progress,
@@ -187,10 +190,10 @@ def _told(
     """Return the findings on one setup's moves, and what is offered against too much load."""
     findings = setup_findings(proof, tags, settings)
     progress.check()
-    said, offers = load_findings(proof, machine, material, settings)
+    said, offers = load_findings(proof, proof.machine, material, settings)
     progress.check()
     limits = limit_findings(
-        proof.program.setup.name, proof.program.sections, proof.moves, proof.stands, machine
+        proof.program.setup.name, proof.program.sections, proof.moves, proof.stands, proof.machine
     )
     return [*findings, *said, *limits], list(offers)
 

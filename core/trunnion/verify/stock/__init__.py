@@ -2,8 +2,7 @@
 
 from __future__ import annotations
 
-from trunnion.verify.stock.field import blank_box
 from trunnion.verify.stock.run import StockRun, run_stock
 from trunnion.verify.stock.stock import Stock
 
-__all__ = ["Stock", "StockRun", "blank_box", "run_stock"]
+__all__ = ["Stock", "StockRun", "run_stock"]

@@ -10,18 +10,16 @@ import numpy as np
 from trunnion import tolerance
 from trunnion.geometry.arrays import Bools, Floats, Ints
 from trunnion.model.blank import Blank
-from trunnion.verify.stock.field import Field, Part, cells_along, tiles_of
+from trunnion.verify.stock.field import UP, Field, Part, cells_along, rays_in, tiles_of
 
 AXES = ("x", "y", "z")
-UP = 2
-"""The axis whose rays tell how far the cutter is engaged."""
 ROOM = 4
 """Intervals that a ray has room for at first: two, and two more while it is cut."""
 
 
 @dataclass(slots=True, eq=False)
 class Bundle:
-    """Rays along one axis of a blank's box.
+    """Rays along one axis through a box in a blank's frame.
 
     Coordinates (u, v, w) of a bundle are the blank's turned in a cycle, w along the rays: (y, z, x) for x, (z, x, y) for y, (x, y, z)
     for z.
@@ -39,14 +37,20 @@ class Bundle:
     high: Floats
 
     @staticmethod
-    def of(blank: Blank, pitch: float, axis: int) -> Bundle:
-        """Return a whole blank as rays along an axis (0, 1, 2)."""
+    def of(blank: Blank, pitch: float, axis: int, box: tuple[Floats, Floats]) -> Bundle:
+        """Return what is of a blank in a box (low, high) of its frame as rays along an axis (0, 1, 2)."""
+        first, last = box
         turned = cycle(axis)
-        columns, rows = cells_along(blank.size[turned[:2]], pitch)
-        low, high = np.zeros((rows * columns, ROOM)), np.zeros((rows * columns, ROOM))
-        low[:, 0], high[:, 0] = blank.low[axis], blank.high[axis]
-        count = _in_blank(rows, columns, pitch, blank.size[turned[:2]])
-        return Bundle(axis, pitch, rows, columns, blank.low[turned[:2]].copy(), count, low, high)
+        columns, rows = cells_along((last - first)[turned[:2]], pitch)
+        origin = first[turned[:2]]
+        u, v = (
+            o + (np.arange(n) + 0.5) * pitch for o, n in zip(origin, (columns, rows), strict=True)
+        )
+        inside = rays_in(blank, axis, u, v, (first[axis], last[axis]))
+        room = max(ROOM, inside.low.shape[1])
+        low, high = (np.pad(a, ((0, 0), (0, room - a.shape[1]))) for a in (inside.low, inside.high))
+        count = inside.count * _in_box(rows, columns, pitch, (last - first)[turned[:2]])
+        return Bundle(axis, pitch, rows, columns, origin.copy(), count, low, high)
 
     @staticmethod
     def of_field(field: Field) -> Bundle:
@@ -54,10 +58,10 @@ class Bundle:
         rows, columns = field.top.shape
         low, high = np.zeros((rows * columns, ROOM)), np.zeros((rows * columns, ROOM))
         low[:, 0], high[:, 0] = field.low[2], field.top.ravel()
-        count = _in_blank(rows, columns, field.pitch, (field.high - field.low)[:2]) * (
+        count = _in_box(rows, columns, field.pitch, (field.high - field.low)[:2]) * (
             high[:, 0] > field.low[2]
         )
-        return Bundle(2, field.pitch, rows, columns, field.low[:2].copy(), count, low, high)
+        return Bundle(UP, field.pitch, rows, columns, field.low[:2].copy(), count, low, high)
 
     @property
     def room(self) -> int:
@@ -118,8 +122,8 @@ class Bundle:
         )
 
 
-def _in_blank(rows: int, columns: int, pitch: float, size: Floats) -> Ints:
-    """Return 1 for each ray that goes through a blank, 0 for those of the last row or column that pass it."""
+def _in_box(rows: int, columns: int, pitch: float, size: Floats) -> Ints:
+    """Return 1 for each ray that goes through a box, 0 for those of the last row or column that pass it."""
     across, along = (
         (np.arange(n) + 0.5) * pitch <= s + tolerance.PARAMETRIC
         for n, s in zip((columns, rows), size, strict=True)

@@ -11,11 +11,15 @@ from numpy.typing import NDArray
 
 from trunnion import tolerance
 from trunnion.geometry.arrays import Bools, Floats
-from trunnion.geometry.frame import Frame
+from trunnion.geometry.rays import Intervals, stacked
 from trunnion.model.blank import Blank
 
 Part = tuple[NDArray, ...]
 """A tile's copy: heights of columns, or of rays how many intervals each has, and all their lower and upper ends, closely packed."""
+UP = 2
+"""The axis whose rays tell how far the cutter is engaged."""
+RAYS = 500_000
+"""Rays sent through a blank together: some tens of MB of tables."""
 TILES = 16
 """Bands of rows that a bundle is cut in; fixed, so that nothing depends on the number of threads."""
 
@@ -30,10 +34,22 @@ class Field:
     high: Floats
 
     @staticmethod
-    def of(blank: Blank, pitch: float) -> Field:
-        """Return a blank as a field in its own frame."""
-        columns, rows = cells_along(blank.size[:2], pitch)
-        return Field(np.full((rows, columns), blank.high[2]), pitch, blank.low, blank.high)
+    def of(blank: Blank, pitch: float, box: tuple[Floats, Floats]) -> Field | None:
+        """Return what is of a blank in a box (low, high) of its frame as a field; None where a column is not solid from the box's floor up.
+
+        A column of the last row or column whose middle lies beside the box is as high as at the box's side.
+        """
+        low, high = box
+        columns, rows = cells_along((high - low)[:2], pitch)
+        x, y = (
+            np.minimum(low[k] + (np.arange(n) + 0.5) * pitch, high[k])
+            for k, n in enumerate((columns, rows))
+        )
+        inside = rays_in(blank, UP, x, y, (low[2], high[2]))
+        lifted = inside.low[:, 0] > low[2] + tolerance.PARAMETRIC
+        if (inside.count > 1).any() or (lifted & (inside.count > 0)).any():
+            return None
+        return Field(inside.tops(float(low[2])).reshape(rows, columns), pitch, low, high)
 
     @property
     def volume(self) -> float:
@@ -73,15 +89,17 @@ def tiles_of(rows: int) -> list[tuple[int, int]]:
     return [(int(a), int(b)) for a, b in pairwise(edges)]
 
 
-def blank_box(blank: Blank, frame: Frame) -> tuple[Floats, Floats]:
-    """Return the lowest and highest corner of a blank's box in a frame (of a frame turned by other than right angles: of its hull)."""
-    corners = np.array(
-        [
-            [x, y, z]
-            for x in (blank.low[0], blank.high[0])
-            for y in (blank.low[1], blank.high[1])
-            for z in (blank.low[2], blank.high[2])
-        ]
-    )
-    local = frame.to_local(blank.frame.to_world(corners))
-    return local.min(axis=0), local.max(axis=0)
+def rays_in(blank: Blank, axis: int, u: Floats, v: Floats, ends: tuple[float, float]) -> Intervals:
+    """Return where rays along an axis (0, 1, 2) of a blank's frame are in it, between two ends of that axis.
+
+    Ray row * columns + column stands at u[column] on the axis after it and v[row] on the one after that.
+    """
+    direction, rows = np.eye(3)[axis], max(1, RAYS // len(u))
+    parts = []
+    for first in range(0, len(v), rows):
+        some = v[first : first + rows]
+        start = np.zeros((len(some) * len(u), 3))
+        start[:, (axis + 1) % 3] = np.tile(u, len(some))
+        start[:, (axis + 2) % 3] = np.repeat(some, len(u))
+        parts.append(blank.intervals(start, direction).clipped(*ends))
+    return stacked(parts)

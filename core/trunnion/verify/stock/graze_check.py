@@ -56,7 +56,7 @@ def confirm_grazed(
 def _standing(stock: Stock, places: Floats, frame: Frame, sweep: Sweep, row: int) -> Bools:
     """Say which places (k, 3) in the blank's frame neither a setup before nor a move before `row` has cut."""
     world = stock.frame.to_world(places)
-    standing = np.asarray(((places > stock.blank.low) & (places < stock.blank.high)).all(axis=1))
+    standing = stock.was_solid(places)
     standing &= ~sweep.cut_before(frame.to_local(world), row)
     for before, own in stock.cut_by:
         standing &= ~before.cut_before(own.to_local(world), len(before.moves))

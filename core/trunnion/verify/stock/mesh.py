@@ -60,15 +60,16 @@ def mesh_of_rays(stock: Stock, most: int = MOST) -> tuple[Floats, Ints]:
     """Return points (v, 3) and triangles (t, 3) of three bundles by dual contouring: edges and corners stay sharp."""
     if "z" not in stock.rays:
         raise BadInput("stock: a mesh needs the rays along z")
-    none = Bundle.of(stock.blank, max(stock.blank.size), 0)
+    box = (stock.low, stock.high)
+    none = Bundle.of(stock.blank, max(stock.high - stock.low), 0, box)
     bundles = [stock.rays.get(axis, none) for axis in AXES]
     counts, lows, highs = (
         tuple(getattr(b, name) for b in bundles) for name in ("count", "low", "high")
     )
     has = np.array([axis in stock.rays for axis in AXES])
     cells, origin = (
-        np.array(cells_along(stock.blank.size, stock.pitch)),
-        np.asarray(stock.blank.low, dtype=np.float64),
+        np.array(cells_along(stock.high - stock.low, stock.pitch)),
+        np.asarray(stock.low, dtype=np.float64),
     )
     step = max(
         1, math.ceil((float(cells.prod()) / MOST_NODES) ** (1.0 / 3.0) - tolerance.PARAMETRIC)

@@ -10,13 +10,13 @@ import numpy as np
 from trunnion import tolerance
 from trunnion.findings import OutOfMemory
 from trunnion.geometry.arrays import Bools, Floats, Ints
-from trunnion.model.blank import Blank
 from trunnion.progress import Progress
 from trunnion.verify.cutter import Bodies
 from trunnion.verify.kernels import dexels as kernel
 from trunnion.verify.motion import Moves
-from trunnion.verify.stock.bundles import AXES, UP, Bundle, cycle
+from trunnion.verify.stock.bundles import AXES, Bundle, cycle
 from trunnion.verify.stock.engagement import Probes, Tally
+from trunnion.verify.stock.field import UP
 from trunnion.verify.stock.spans import Spans, spans_each, spans_of, whole_arcs
 from trunnion.verify.stock.stock import MOST_BYTES, Stock
 from trunnion.verify.threads import in_parallel
@@ -127,7 +127,7 @@ def run_rays(
             probes.start[row : rows[-1] + 2],
             fine,
         )
-        looks = np.cumsum(_looks(spans, stock.blank, bundles))
+        looks = np.cumsum(_looks(spans, (stock.low, stock.high), bundles))
         first = 0
         while first < len(rows):
             before = looks[first - 1] if first else 0.0
@@ -273,10 +273,11 @@ class _Job:
             found.grazed.append((rapids[listed // kernel.MOST_GRAZED], self.grazed[listed]))
 
 
-def _looks(spans: Spans, blank: Blank, bundles: Sequence[Bundle]) -> Floats:
+def _looks(spans: Spans, within: tuple[Floats, Floats], bundles: Sequence[Bundle]) -> Floats:
     """Return a bound for the rays that each move may have to look at."""
     box = spans.row[:, kernel.ALL_BOX : kernel.ALL_BOX + 6].reshape(-1, 2, 3)
-    size = np.minimum(box[:, 1], blank.high) - np.maximum(box[:, 0], blank.low)
+    low, high = within
+    size = np.minimum(box[:, 1], high) - np.maximum(box[:, 0], low)
     there = (size > 0.0).all(axis=1)
     rays = 50.0 + sum(there * size[:, cycle(b.axis)[:2]].prod(axis=1) / b.pitch**2 for b in bundles)
     return np.add.reduceat(rays, spans.start[:-1])

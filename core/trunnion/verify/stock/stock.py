@@ -5,7 +5,7 @@ from __future__ import annotations
 import dataclasses
 import math
 from collections.abc import Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 
 import numpy as np
 
@@ -43,10 +43,13 @@ class Stock:
     """What is left of a blank: rays `pitch` apart through it along some of its axes (`bundles`), and where material is on them.
 
     While every cut came from above, the z bundle is a height field (`field`), else one of intervals (`rays["z"]`), as the others always
-    are. `cut_by`: the sweeps that went through it, with their setups' frames.
+    are. `low`, `high` (3,): the box in the blank's frame that it is of, the blank's own but for a patch. `cut_by`: the sweeps that went
+    through it, with their setups' frames.
     """
 
     blank: Blank
+    low: Floats
+    high: Floats
     pitch: float
     bundles: tuple[str, ...]
     field: Field | None
@@ -55,22 +58,40 @@ class Stock:
     _last: Snapshot | None = None
 
     @staticmethod
-    def of(blank: Blank, pitch: float, bundles: Sequence[str] = ("z",)) -> Stock:
-        """Return a whole blank; raise `OutOfMemory` when rays so close would need too much memory."""
+    def of(
+        blank: Blank,
+        pitch: float,
+        bundles: Sequence[str] = ("z",),
+        box: tuple[Floats, Floats] | None = None,
+    ) -> Stock:
+        """Return a whole blank, or what is of it in a box (low, high) of its frame.
+
+        Raises `OutOfMemory` when rays so close would need too much memory.
+        """
         if not bundles or any(name not in AXES for name in bundles):
             raise BadInput(
                 f"stock: its bundles are some of {', '.join(AXES)}, not {', '.join(bundles) or 'none'}"
             )
-        _refuse(Stock.need(blank, pitch, bundles), pitch)
-        rays = {name: Bundle.of(blank, pitch, AXES.index(name)) for name in bundles if name != "z"}
-        return Stock(
-            blank, pitch, tuple(bundles), Field.of(blank, pitch) if "z" in bundles else None, rays
-        )
+        low, high = box or (blank.low, blank.high)
+        _refuse(Stock.need(blank, pitch, bundles, (low, high)), pitch)
+        field = Field.of(blank, pitch, (low, high)) if "z" in bundles else None
+        rays = {
+            name: Bundle.of(blank, pitch, AXES.index(name), (low, high))
+            for name in bundles
+            if name != "z" or field is None
+        }
+        return Stock(blank, low, high, pitch, tuple(bundles), field, rays)
 
     @staticmethod
-    def need(blank: Blank, pitch: float, bundles: Sequence[str] = ("z",)) -> int:
+    def need(
+        blank: Blank,
+        pitch: float,
+        bundles: Sequence[str] = ("z",),
+        box: tuple[Floats, Floats] | None = None,
+    ) -> int:
         """Return the bytes that a stock takes at its beginning; ragged ones grow, up to `MOST_BYTES`."""
-        x, y, z = cells_along(blank.size, pitch)
+        low, high = box or (blank.low, blank.high)
+        x, y, z = cells_along(high - low, pitch)
         rays = {"x": y * z, "y": z * x, "z": x * y}
         ray = 8 * (1 + 2 * ROOM)
         return sum(rays[name] * (8 if tuple(bundles) == ("z",) else ray) for name in bundles)
@@ -94,15 +115,20 @@ class Stock:
         said = [b.contains(points) for b in self.rays.values()] + (
             [self.field.contains(points)] if self.field is not None else []
         )
-        inside = ((points >= self.blank.low) & (points <= self.blank.high)).all(axis=1)
+        inside = ((points >= self.low) & (points <= self.high)).all(axis=1)
         return np.asarray(inside & (2 * np.sum(said, axis=0) > len(said)))
+
+    def was_solid(self, points: Floats) -> Bools:
+        """Say for points (k, 3) in the blank's frame whether they were inside before anything was cut."""
+        inside = ((points > self.low) & (points < self.high)).all(axis=1)
+        return np.asarray(inside & (self.blank.depth(points, self.frame) > 0.0))
 
     def patch(self, low: Floats, high: Floats, pitch: float) -> Stock:
         """Return a box of the blank, whole, with finer rays: cut it by the moves that touch it to see this place closely."""
-        low, high = np.maximum(low, self.blank.low), np.minimum(high, self.blank.high)
+        low, high = np.maximum(low, self.low), np.minimum(high, self.high)
         if not (high > low).all():
             raise BadInput("stock: a patch must have its box in the blank")
-        return Stock.of(replace(self.blank, low=low, high=high), pitch, self.bundles)
+        return Stock.of(self.blank, pitch, self.bundles, (low, high))
 
     def open_field(self) -> None:
         """Turn the height field into intervals: from now on anything may be cut."""
@@ -130,7 +156,8 @@ class Stock:
         """Go back to a snapshot of this stock."""
         if HEIGHTS in snapshot.parts:
             self.rays.pop("z", None)
-            self.field = self.field or Field.of(self.blank, self.pitch)
+            self.field = self.field or Field.of(self.blank, self.pitch, (self.low, self.high))
+            assert self.field is not None  # it was one when the snapshot was taken
             self.field.put(snapshot.parts[HEIGHTS])
         else:
             self.open_field()

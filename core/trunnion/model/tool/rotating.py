@@ -1,34 +1,21 @@
-"""Cutters with shank and holder, as the catalogue, the plan and the proof see them."""
+"""Rotating tools with shank and holder, as the catalogue, the plan and the proof see them."""
 
 from __future__ import annotations
 
 import math
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass
-from itertools import pairwise
 from typing import Any
 
-FORMS = ("flat", "bull", "ball", "taper", "barrel", "t-slot", "drill", "form")
+from trunnion.model.tool.drill import point_height, wrong_drill
+from trunnion.model.tool.holder import Holder
+from trunnion.model.tool.mill import MILLS
+
+CHECKS: Mapping[str, Callable[[Tool], str]] = {**MILLS, "drill": wrong_drill}
+"""What the numbers of each form lack, in words, or nothing."""
+FORMS = tuple(CHECKS)
 PLAIN_FORMS = ("flat", "bull", "ball")
 """Forms that are an end of a radius and a corner radius, and nothing else."""
-_ROUNDING = 1e-9
-
-
-@dataclass(frozen=True, slots=True, kw_only=True)
-class Holder:
-    """A holder as truncated cones stacked along the axis: rows (z0, r0, z1, r1), z from the holder's nose upwards, mm."""
-
-    name: str
-    rows: tuple[tuple[float, float, float, float], ...]
-
-    @property
-    def length(self) -> float:
-        """Height of the holder above its nose."""
-        return max((row[2] for row in self.rows), default=0.0)
-
-    @property
-    def radius(self) -> float:
-        """Largest radius of the holder."""
-        return max((max(row[1], row[3]) for row in self.rows), default=0.0)
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -81,62 +68,14 @@ class Tool:
             raise ValueError(
                 f"tool {self.name}: flute, neck, stickout and gauge length must grow in this order"
             )
-        wrong = self._wrong_form()
+        wrong = CHECKS[self.form](self)
         if wrong:
             raise ValueError(f"tool {self.name}: {wrong}")
-
-    def _wrong_form(self) -> str:
-        """Say what the numbers of a form lack, or nothing."""
-        c, r = self.corner_radius, self.radius
-        if self.form == "flat" and c != 0.0:
-            return "a flat end has no corner radius; the form is bull"
-        if self.form in PLAIN_FORMS and self.flute_length < c:
-            return f"its flutes must reach up to where the corner ends, {c:.3f} mm"
-        if self.form == "taper" and not 0.0 < self.taper_angle < 90.0:
-            return "a taper needs a taper angle between 0 and 90 degrees"
-        if self.form == "taper" and self.flute_length < c * (
-            1.0 - math.sin(math.radians(self.taper_angle))
-        ):
-            return "a taper's flutes must reach up to its flank"
-        if self.form == "barrel":
-            if not 0.0 < c < r < self.barrel_radius:
-                return "a barrel's tip radius, radius and barrel radius must grow in this order"
-            if self.flute_length <= self.widest_height:
-                return f"a barrel's flutes must reach above its widest circle, {self.widest_height:.3f} mm"
-            if self.flute_length >= self.widest_height + math.sqrt(
-                self.barrel_radius**2 - (self.barrel_radius - r) ** 2
-            ):
-                return "a barrel's flutes must end before its flank comes to the axis"
-        if self.form == "t-slot" and 2 * c > self.flute_length:
-            return "a T-slot cutter must be thicker than both its corner radii"
-        if self.form == "drill":
-            if not 0.0 < self.point_angle <= 180.0 or c != 0.0:
-                return "a drill needs a point angle up to 180 degrees and no corner radius"
-            if self.flute_length <= self.point_length:
-                return f"a drill's flutes must be longer than its point, {self.point_length:.3f} mm"
-        if self.form == "form":
-            rows = self.outline
-            if (
-                len(rows) < 2
-                or rows[0][1] != 0.0
-                or rows[-1][1] != self.flute_length
-                or any(b[1] < a[1] for a, b in pairwise(rows))
-            ):
-                return "the outline must rise from 0 to the flute length"
-            if not all(
-                0.0 <= row[0] <= r * (1.0 + _ROUNDING) and abs(row[2]) <= 1.0 for row in rows
-            ):
-                return "the outline must stay between the axis and the radius, with arcs up to half a circle"
-        return ""
 
     @property
     def point_length(self) -> float:
         """Height of a drill's point; 0 for other forms."""
-        return (
-            self.radius / math.tan(math.radians(self.point_angle / 2))
-            if self.form == "drill"
-            else 0.0
-        )
+        return point_height(self.diameter, self.point_angle) if self.form == "drill" else 0.0
 
     @property
     def widest_height(self) -> float:
@@ -187,6 +126,20 @@ class Tool:
         return (
             self.radius - self.corner_radius + math.sqrt(max(self.corner_radius**2 - depth**2, 0.0))
         )
+
+    def header_sizes(self) -> tuple[tuple[str, float], ...]:
+        """Return the lengths mm that a program's header names, each with the word before it."""
+        return (
+            ("D", self.diameter),
+            ("R", self.corner_radius),
+            ("LENGTH ", self.gauge_length),
+            ("STICKOUT ", self.stickout),
+        )
+
+    @property
+    def holder_name(self) -> str:
+        """What holds it."""
+        return self.holder.name
 
     def as_dict(self) -> dict[str, Any]:
         """Return the tool as `NAME.tools.json` has it."""

@@ -1,0 +1,102 @@
+"""The blank of a session: made around the part, or read from a file; and whether the part is in it."""
+
+from __future__ import annotations
+
+import hashlib
+from functools import lru_cache
+from pathlib import Path
+
+import numpy as np
+
+from trunnion import tolerance
+from trunnion.findings import BadInput, Finding, error
+from trunnion.geometry.frame import Frame
+from trunnion.geometry.mesh import welded
+from trunnion.model.blank import Blank
+from trunnion.model.material import Material
+from trunnion.model.session import Session
+from trunnion.pipeline.context import Context
+from trunnion.plan.blank import BlankSettings, make_bar, make_blank, make_faceted
+from trunnion.progress import Progress
+from trunnion.settings import checked, choose
+
+FILE, CYLINDER = "file", "cylinder"
+
+
+def blank_of(session: Session, context: Context, frame: Frame, progress: Progress) -> Blank:
+    """Return the blank that the session's settings ask for, in a frame; raise `BadInput` when there is no such one."""
+    chosen = checked(choose(BlankSettings, session.choices))
+    if chosen.material not in context.shop.materials:
+        raise BadInput(
+            f"there is no material {chosen.material} in the catalogue; known: {', '.join(sorted(context.shop.materials))}"
+        )
+    material = context.shop.materials[chosen.material]
+    if chosen.kind == FILE:
+        return _read(session, frame, material, chosen.file, progress)
+    low, high = context.box(frame)
+    if chosen.kind == CYLINDER:
+        points = frame.to_local(context.part.mesh().points)
+        return make_bar(frame, low, high, points, material, chosen)
+    return make_blank(frame, low, high, material, chosen)
+
+
+def _read(
+    session: Session, frame: Frame, material: Material, file: str, progress: Progress
+) -> Blank:
+    from trunnion.part.read.fixture import read_fixture
+
+    if not file:
+        raise BadInput(
+            "a blank of kind file needs one: choose blank.file, a STEP, IGES or STL file"
+        )
+    mesh = read_fixture(file, progress=progress)
+    try:
+        points, triangles = welded(mesh, tolerance.COINCIDENT)
+        return make_faceted(frame, points, triangles, material, file_digest(file))
+    except ValueError as reason:
+        raise BadInput(f"{file}: {reason}; give the file of one closed solid") from None
+
+
+def source_of(session: Session) -> str:
+    """Return the digest of the file that the blank is to be read from, empty where it is none.
+
+    A file that is gone counts as the one that the blank was read from: the session has all of it.
+    """
+    chosen = choose(BlankSettings, session.choices)
+    if chosen.kind != FILE:
+        return ""
+    return file_digest(chosen.file) or (session.blank.source if session.blank is not None else "")
+
+
+def file_digest(file: str) -> str:
+    """Return a short digest of a file's bytes, empty when it can't be read."""
+    path = Path(file)
+    try:
+        found = path.stat()
+        return _digest(str(path.resolve()), found.st_mtime_ns, found.st_size)
+    except OSError:
+        return ""
+
+
+@lru_cache(maxsize=4)
+def _digest(path: str, changed: int, size: int) -> str:
+    """Return the digest of a file as it was changed last: it is asked for whenever a window looks what is stale."""
+    return hashlib.sha256(Path(path).read_bytes()).hexdigest()[:16]
+
+
+def too_small(blank: Blank, context: Context) -> tuple[Finding, ...]:
+    """Return an error where the part stands out of its blank."""
+    points = context.part.mesh().points
+    inward = blank.inward(blank.frame.to_local(points))
+    if inward.min() >= -tolerance.SEW:
+        return ()
+    worst = int(np.argmin(inward))
+    place = ", ".join(f"{v:.2f}" for v in points[worst])
+    away = f"by {-inward[worst]:.2f} mm" if np.isfinite(inward[worst]) else "wholly"
+    return (
+        error(
+            "blank.too-small",
+            f"the part stands out of its blank {away} at ({place})",
+            remedy="choose a larger blank, or one in the part's coordinates",
+        ),
+    )
