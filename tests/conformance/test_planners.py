@@ -9,7 +9,6 @@ import pytest
 from subjects import PLANNERS, check_cancel, check_settings, is_one_line, own, until
 from trunnion import registry
 from trunnion.findings import Refused
-from trunnion.model.blank import Blank
 from trunnion.pipeline.scene import SessionContext, SetupScene
 from trunnion.pipeline.steps import step_named
 from trunnion.plan.contract import DriveNeeds, planner_for
@@ -193,7 +192,7 @@ def test_a_drive_that_it_does_not_make_is_refused_in_words(name):
 def test_a_blank_that_no_machine_takes_is_said(name):
     engine, session = own(name)[0], until(name, "blank")
     blank = session.blank
-    large = Blank(**{f: getattr(blank, f) for f in blank.__slots__} | {"high": blank.low + 9e4})
+    large = replace(blank, high=blank.low + 9e4)
     after = step_named("route").work(replace(session, blank=large), engine.context, QUIET).session
     assert "route.travel" in {f.code for f in after.process.findings}
 

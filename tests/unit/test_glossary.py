@@ -15,9 +15,9 @@ SOURCES = (ROOT / "core" / "trunnion", ROOT / "gui" / "trunnion_gui")
 MODULES = [path for source in SOURCES for path in sorted(source.rglob("*.py"))]
 
 PROGRAMS = """
-access actions app appearance arrays atomic attributes bars batch build builder cache call chart
+access actions app appearance arrays atomic attributes bars base batch build builder cache call chart
 check child choice class cli click code column command common compiled compiling context contract
-count declared dialog display document drawing drawn edits engine export file finder foldout form
+count declared dialog display document drawing drawn edits engine export fallback file finder foldout form
 gc gui handlers history html i18n icons identity info input interpreter job judge keys kind label
 language layout legend look main manual mapping members memory menus message metadata metric model
 notice number numbers offer owner painted palette pane parameters parser picker picture pipeline
