@@ -4,11 +4,13 @@ from __future__ import annotations
 
 import math
 from collections.abc import Mapping
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 from trunnion.findings import has_errors
-from trunnion.model.session import Session
 from trunnion.model.verdict import Offer, OperationProof
+
+if TYPE_CHECKING:
+    from trunnion.model.session import Session
 
 
 def proof_dict(
