@@ -229,6 +229,13 @@ def test_an_impeller_gives_one_group_for_each_kind_of_blade_face() -> None:
     assert {len(f.tags) for f in found.features} == {1, 2, 11}
 
 
+class Known(SimpleNamespace):
+    """What segmentation reads of a face graph."""
+
+    def __len__(self):
+        return len(self.surface)
+
+
 class Squares(Rectangles):
     """Flat square patches by their sides, with bends."""
 
@@ -242,7 +249,7 @@ class Squares(Rectangles):
 
     def graph(self):
         n = len(self.patches)
-        return SimpleNamespace(
+        return Known(
             area=np.array([w * h for w, h, _ in self.patches]),
             surface=("plane",) * n,
             bend=np.zeros(n, dtype=int),
