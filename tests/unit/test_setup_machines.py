@@ -5,9 +5,9 @@ from __future__ import annotations
 from dataclasses import replace
 
 import pytest
-from own_dialects import with_own_dialects
 from pytest import approx
 
+from own_packages import with_own_packages
 from trunnion.findings import BadInput
 from trunnion.model.verdict import Outcome
 from trunnion.pipeline import Engine
@@ -46,7 +46,7 @@ def shop_of(engine, **changes):
 def proven(planned, **changes):
     engine, session = planned
     context = Context(engine.context.part, shop_of(engine, **changes))
-    with with_own_dialects():
+    with with_own_packages():
         return prove_session(session, context, QUIET)
 
 
@@ -62,7 +62,7 @@ def findings(verdict, code):
 
 def test_each_setups_text_is_of_its_own_machines_control(planned):
     engine, session = planned
-    with with_own_dialects():
+    with with_own_packages():
         texts = post_texts(session, Header.of(session), shop_of(engine).machines)
     assert [(f.dialect, f.suffix) for f in texts] == [
         ("linuxcnc", "S1.nc"),
@@ -83,7 +83,7 @@ def test_a_control_chosen_for_all_is_that_of_all(planned):
 def test_texts_of_two_controls_are_read_back_each_by_its_own(planned):
     engine, session = planned
     machines = shop_of(engine).machines
-    with with_own_dialects():
+    with with_own_packages():
         posted = post_texts(session, Header.of(session), machines)
         read = read_back(session, posted, machines)
     assert [p.setup.name for p in read] == ["S1", "S2"]
@@ -153,7 +153,7 @@ def test_texts_from_outside_are_read_in_their_setups_control(planned, alike, tmp
         file.write_text(text.text)
     context = Context(engine.context.part, shop_of(engine))
     monkeypatch.setattr(engine, "context_of", lambda *_: context)
-    with with_own_dialects():
+    with with_own_packages():
         after = verify_texts(engine, session, files, QUIET)
     assert [p.dialect for p in after.posted] == ["linuxcnc", "kestrel"]
     assert after.verdict.outcome is not Outcome.FAILED
