@@ -11,7 +11,6 @@ from trunnion_gui.document import Document
 from trunnion_gui.i18n import tr
 from trunnion_gui.look.colours import Theme
 from trunnion_gui.look.words import grouped
-from trunnion_gui.release_preview import as_they_leave
 from trunnion_gui.widgets.code import CodeView
 
 
@@ -25,7 +24,6 @@ class CodeDock(QWidget):
         super().__init__()
         self._document = document
         self._shown: tuple[PostedFile, ...] = ()
-        self._source: tuple[object, object] = ((), None)
         self._at = ("", 0)
         self.choice = QComboBox()
         self.choice.setSizeAdjustPolicy(QComboBox.SizeAdjustPolicy.AdjustToContents)
@@ -79,10 +77,10 @@ class CodeDock(QWidget):
         self.stale.setVisible(
             bool(session.posted) and self._document.states.get("verify") not in ("done", "problem")
         )
-        if not self.isVisible() or (session.posted, session.verdict) == self._source:
+        posted = self._document.programs if session.posted else ()
+        if not self.isVisible() or posted == self._shown:
             return
-        self._source = (session.posted, session.verdict)
-        self._shown = posted = as_they_leave(session)
+        self._shown = posted
         self.choice.blockSignals(True)
         self.choice.clear()
         for file in posted:

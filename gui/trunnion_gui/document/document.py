@@ -17,7 +17,7 @@ from trunnion.geometry.cut import Cut
 from trunnion.geometry.mesh import Mesh
 from trunnion.model.feature import Feature
 from trunnion.model.operation import Operation
-from trunnion.model.session import Session
+from trunnion.model.session import PostedFile, Session
 from trunnion.settings import Value
 from trunnion_gui import edits
 from trunnion_gui.document.files import Files
@@ -50,11 +50,12 @@ class Document(QObject):
         self.history = History(Session())
         self.shown = self.history.session
         self.states: dict[str, str] = {}
+        self.programs: tuple[PostedFile, ...] = ()
         self.groups: Mapping[str, tuple[SettingsGroup, ...]] = {}
         self.drawing: DrawnMesh | None = None
         self.running_step = ""
         self._drawings: dict[tuple[Cut, ...], DrawnMesh] = {}
-        self._settled: dict[str, str] = {}
+        self._settled: tuple[dict[str, str], tuple[PostedFile, ...]] = {}, ()
         self.jobs = Jobs(factory, self.notice, self)
         self.files, self.selection = Files(self), SelectionModel(self)
         self.jobs.changed.connect(self._begin)
@@ -141,7 +142,7 @@ class Document(QObject):
         if drawing is not None:
             self._drawings[state.session.cuts] = drawing
         self.history.push(label, state.session)
-        self._show(state.session, state.steps)
+        self._show(state.session, state.steps, state.programs)
 
     def install(self, state: SessionState, drawing: DrawnMesh, is_saved: bool) -> None:
         """Take up the session of another part, with an empty history."""
@@ -149,7 +150,7 @@ class Document(QObject):
         if not is_saved:
             self.history.mark_saved(None)
         self.drawing, self._drawings = drawing, {state.session.cuts: drawing}
-        self.shown, self.states = state.session, state.steps
+        self.shown, self.states, self.programs = state.session, state.steps, state.programs
         self.mesh_changed.emit()
         self.selection.clear()
         self.changed.emit()
@@ -227,13 +228,19 @@ class Document(QObject):
 
     def _take_states(self, state: SessionState) -> None:
         if not self.is_busy:
-            self.states = state.steps
+            self.states, self.programs = state.steps, state.programs
             self.changed.emit()
 
-    def _show(self, session: Session, states: dict[str, str] | None = None) -> None:
+    def _show(
+        self,
+        session: Session,
+        states: dict[str, str] | None = None,
+        programs: tuple[PostedFile, ...] = (),
+    ) -> None:
+        """Show a session; where the worker has not told its states yet, those before it stay."""
         self.shown = session
         if states is not None:
-            self.states = states
+            self.states, self.programs = states, programs
         drawing = self._drawings.get(session.cuts, self.drawing)
         if drawing is not self.drawing:
             self.drawing = drawing
@@ -242,9 +249,9 @@ class Document(QObject):
         self.changed.emit()
 
     def _begin(self) -> None:
-        """Remember the states that a job begins with."""
+        """Remember the states and programs that a job begins with."""
         if self.is_busy:
-            self._settled = self.states
+            self._settled = self.states, self.programs
 
     def _take_stage(self, stage: tuple[str, SessionState | None]) -> None:
         step, state = stage
@@ -252,7 +259,7 @@ class Document(QObject):
             self.running_step = step
             self.changed.emit()
         else:
-            self._show(state.session, state.steps)
+            self._show(state.session, state.steps, state.programs)
 
     def _finish_run(self, label: str, state: SessionState) -> None:
         self.running_step = ""
@@ -270,9 +277,9 @@ class Document(QObject):
         ]
         if finished:
             self.history.push(job.label, self.shown)
-            self._show(self.shown, self.states)
+            self._show(self.shown, self.states, self.programs)
         else:
-            self._show(self.session, self._settled)
+            self._show(self.session, *self._settled)
         kept = (
             tr("finished and kept: {steps}").format(steps=", ".join(tr(t) for t in finished))
             if finished

@@ -5,11 +5,12 @@ from __future__ import annotations
 from PySide6.QtCore import Qt, Signal
 from PySide6.QtWidgets import QCheckBox, QGridLayout, QHBoxLayout, QLabel, QWidget
 
+from trunnion.model.session import PostedFile, Session
 from trunnion.model.verdict import Outcome
+from trunnion.post.header import REJECTED
 from trunnion_gui.i18n import tr
 from trunnion_gui.look.colours import motions
 from trunnion_gui.look.words import amount, duration, share
-from trunnion_gui.release_preview import rejected_names
 from trunnion_gui.widgets.layout import empty
 from trunnion_gui.widgets.panel import Panel, rule, swatch
 
@@ -24,7 +25,7 @@ class GeneratePanel(Panel):
     """Which kinds of motion are to be seen."""
 
     def build(self) -> None:
-        self._judged: tuple[object, object] = ((), None)
+        self._rejected_names: tuple[str, ...] | None = None
         self.content.addLayout(self._settings)
         self.content.addWidget(
             self.buttons("step.generate", "step.verify", primary="step.generate")
@@ -73,9 +74,9 @@ class GeneratePanel(Panel):
     def _name_rejected(self) -> None:
         """Say under which names the programs of a failed proof are written."""
         session = self.document.shown
-        if (session.posted, session.verdict) != self._judged:
-            self._judged = (session.posted, session.verdict)
-            names = rejected_names(session)
+        names = _rejected_names(session, self.document.programs)
+        if names != self._rejected_names:
+            self._rejected_names = names
             self.rejected.setText(
                 tr("Must not run, and is written as {files}").format(files=", ".join(names))
                 if names
@@ -105,3 +106,10 @@ class GeneratePanel(Panel):
             row.addWidget(box, 1)
             grid.addWidget(cell, n // 3, n % 3)
         return block
+
+
+def _rejected_names(session: Session, programs: tuple[PostedFile, ...]) -> tuple[str, ...]:
+    """Return the names of the files that the proof rejected, as they are written into a folder."""
+    if session.part is None or session.verdict is None:
+        return ()
+    return tuple(f"{session.part.name}.{p.suffix}" for p in programs if REJECTED in p.suffix)

@@ -11,7 +11,8 @@ from dataclasses import dataclass, replace
 from typing import Any
 
 from trunnion.findings import Cancelled, TrunnionError
-from trunnion.model.session import Session
+from trunnion.model.session import PostedFile, Session
+from trunnion.post.release import release
 from trunnion.progress import Progress
 from trunnion.settings import Declared, declared
 from trunnion_gui.worker.drawing import DrawnMesh, drawing_of, drawn_map
@@ -20,10 +21,12 @@ from trunnion_gui.worker.steps import share, until
 
 @dataclass(frozen=True, slots=True)
 class SessionState:
-    """A session, the state of each step, and the line of the step that refused after others were done."""
+    """A session, the state of each step, its programs with the stamps and names that they would leave with now, and the line of the step
+    that refused after others were done."""
 
     session: Session
     steps: dict[str, str]
+    programs: tuple[PostedFile, ...] = ()
     refusal: str = ""
 
 
@@ -66,15 +69,26 @@ def is_writing(verb: str | Work) -> bool:
     return work_of(verb) in _writing
 
 
+def state_of(engine: Any, session: Session, refusal: str = "") -> SessionState:
+    """Return a session with what the window shows of its steps and programs."""
+    return SessionState(session, engine.states(session), _as_they_leave(session), refusal)
+
+
+def _as_they_leave(session: Session) -> tuple[PostedFile, ...]:
+    """Return the programs with the stamp of their proof; what is not proven keeps the one that forbids running."""
+    try:
+        return release(session)
+    except TrunnionError:
+        return session.posted
+
+
 def _open(
     engine: Any, progress: Progress, tell: Tell, path: str, solid: int | None
 ) -> OpenedSession:
     session = engine.open(path, solid=solid, progress=progress.part(0.0, 0.8))
     tell("progress", (0.85, "preparing the picture"))
     mesh = engine.mesh(session, progress.part(0.85, 1.0))
-    return OpenedSession(
-        SessionState(session, engine.states(session)), drawing_of(mesh), engine.keep()
-    )
+    return OpenedSession(state_of(engine, session), drawing_of(mesh), engine.keep())
 
 
 def _run(engine: Any, progress: Progress, tell: Tell, session: Session, last: str) -> SessionState:
@@ -89,10 +103,10 @@ def _run(engine: Any, progress: Progress, tell: Tell, session: Session, last: st
         except TrunnionError as reason:
             if step == steps[0]:
                 raise
-            return SessionState(session, engine.states(session), str(reason))
+            return state_of(engine, session, str(reason))
         if step != steps[-1]:
-            tell("stage", (step, SessionState(session, engine.states(session))))
-    return SessionState(session, engine.states(session))
+            tell("stage", (step, state_of(engine, session)))
+    return state_of(engine, session)
 
 
 def _own_share(progress: Progress, step: str) -> Progress:
@@ -112,14 +126,14 @@ def _own_share(progress: Progress, step: str) -> Progress:
 
 
 def _states(engine: Any, _progress: Progress, _tell: Tell, session: Session) -> SessionState:
-    return SessionState(session, engine.states(session))
+    return state_of(engine, session)
 
 
 def _attach(
     engine: Any, progress: Progress, _tell: Tell, session: Session, data: bytes, suffix: str
 ) -> SessionState:
     engine.attach(session, data, suffix, progress=progress)
-    return SessionState(session, engine.states(session))
+    return state_of(engine, session)
 
 
 @writes_files

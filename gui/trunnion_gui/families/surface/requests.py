@@ -9,7 +9,7 @@ from trunnion.geometry.cut import Cut
 from trunnion.model.session import Session
 from trunnion.progress import Progress
 from trunnion_gui.worker.drawing import DrawnMesh, drawing_of
-from trunnion_gui.worker.requests import SessionState, Tell, writes_files
+from trunnion_gui.worker.requests import SessionState, Tell, state_of, writes_files
 
 
 @dataclass(frozen=True, slots=True)
@@ -97,9 +97,7 @@ def _patched(engine: Any, before: Session, after: Session, progress: Progress) -
     """Return a session whose part has other faces with its features found anew, where they had been found before."""
     if engine.states(before)["recognize"] in ("done", "problem"):
         after = engine.run(after, until="recognize", progress=progress)
-    return PatchedSession(
-        SessionState(after, engine.states(after)), drawing_of(engine.mesh(after, progress))
-    )
+    return PatchedSession(state_of(engine, after), drawing_of(engine.mesh(after, progress)))
 
 
 def move(
@@ -114,7 +112,7 @@ def move(
     from trunnion.pipeline.patches import with_moved
 
     after = with_moved(engine, session, faces, group)
-    return SessionState(after, engine.states(after))
+    return state_of(engine, after)
 
 
 @writes_files
