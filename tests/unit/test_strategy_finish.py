@@ -9,6 +9,7 @@ import numpy as np
 import pytest
 
 from milling import SETUP, Milled, box_blank, closed_pocket, cutting, mill, rounded
+from trunnion.findings import Severity
 from trunnion.geometry.plane.region import Region
 from trunnion.model.tool import Tool
 from trunnion.model.toolpath import Mark, Motion, Toolpath
@@ -261,7 +262,7 @@ def test_a_wall_where_the_cutter_has_no_room_is_an_error() -> None:
     assert [f.code for f in planned.findings] == ["wall.too-narrow"]
 
 
-def test_a_floor_where_the_cutter_has_no_room_is_an_error() -> None:
+def test_a_floor_where_the_cutter_has_no_room_is_left_with_a_warning() -> None:
     drive = closed_pocket(rounded(0, 0, 60, 10, 4), DEPTH)
     planned = floor(
         drive,
@@ -272,7 +273,9 @@ def test_a_floor_where_the_cutter_has_no_room_is_an_error() -> None:
         FloorSettings(),
         QUIET,
     )
-    assert [f.code for f in planned.findings] == ["floor.too-wide"]
+    assert [(f.code, f.severity) for f in planned.findings] == [
+        ("floor.too-wide", Severity.WARNING)
+    ]
 
 
 def test_a_sharp_foot_is_cut_without_touching_the_rounder_ones_beside_it() -> None:

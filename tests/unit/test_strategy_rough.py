@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from milling import SETUP, Milled, box_blank, closed_pocket, cutting, mill, rounded
-from trunnion.findings import Cancelled
+from trunnion.findings import Cancelled, Severity
 from trunnion.geometry.plane.region import Region
 from trunnion.model.toolpath import Mark, Motion, Toolpath
 from trunnion.plan.prismatic.drive import DriveLevel, PlaneDrive
@@ -126,9 +126,11 @@ def test_passes_climb_with_the_wall_on_the_right() -> None:
     assert 0.5 * float(np.sum(x * np.roll(y, -1) - np.roll(x, -1) * y)) > 0.0
 
 
-def test_a_cutter_that_does_not_fit_is_an_error_with_the_area_and_a_remedy() -> None:
+def test_a_cutter_that_does_not_fit_leaves_a_warning_with_the_area_and_a_remedy() -> None:
     planned, _ = cut(with_allowances(rounded(0, 0, 80, 10, 4.9), 8.0), mill(12))
-    assert [f.code for f in planned.findings] == ["rough.too-wide"]
+    assert [(f.code, f.severity) for f in planned.findings] == [
+        ("rough.too-wide", Severity.WARNING)
+    ]
     assert "779 mm2" in planned.findings[0].text
     assert planned.findings[0].remedy
 

@@ -19,6 +19,7 @@ from trunnion.model.process import ProcessTree
 from trunnion.plan.prismatic.regions import (
     Band,
     SetupSpace,
+    eased,
     floor_fillet,
     on_rim,
     parent_of,
@@ -180,11 +181,13 @@ def _face(operation: Operation, space: SetupSpace) -> PlaneDrive:
 def _pocket(
     operation: Operation, process: ProcessTree, feature: Feature, space: SetupSpace
 ) -> PlaneDrive:
-    bands, own = space.bands_of(feature), floor_fillet(feature)
+    bands = space.bands_of(feature)
+    feet = [space.fillet_at(feature, z) for z in space.floors_of(feature).values()]
+    own = max(feet, default=floor_fillet(feature))
     fillet = max([own, *map(floor_fillet, space.islands_of(feature))])
     earlier = _earlier(operation, process)
-    floors = _floors(feature, bands, space, fillet)
-    walls = _pocket_walls(feature, bands, space, own)
+    floors = _floors(feature, bands, space)
+    walls = _pocket_walls(feature, bands, space)
     beside: tuple[WallGuide, ...] = ()
     if operation.kind in ("rough", "corner"):
         floors += _island_tops(feature, bands, space)
@@ -208,10 +211,9 @@ def _pocket(
     )
 
 
-def _floors(
-    feature: Feature, bands: tuple[Band, ...], space: SetupSpace, fillet: float
-) -> tuple[Floor, ...]:
+def _floors(feature: Feature, bands: tuple[Band, ...], space: SetupSpace) -> tuple[Floor, ...]:
     found = []
+    islands = max(map(floor_fillet, space.islands_of(feature)), default=0.0)
     for tag, z in space.floors_of(feature).items():
         for n, band in enumerate(bands):
             if abs(band.bottom - z) < tolerance.SEW:
@@ -223,6 +225,7 @@ def _floors(
                     if below
                     else band.wanted
                 )
+                fillet = max(space.fillet_at(feature, z), islands)
                 found.append(Floor(z=z, region=region, fillet=fillet, face=tag))
     return tuple(found)
 
@@ -243,14 +246,16 @@ def _island_tops(feature: Feature, bands: tuple[Band, ...], space: SetupSpace) -
 
 
 def _pocket_walls(
-    feature: Feature, bands: tuple[Band, ...], space: SetupSpace, fillet: float
+    feature: Feature, bands: tuple[Band, ...], space: SetupSpace
 ) -> tuple[WallGuide, ...]:
     """Return the guide lines of a pocket, each as tall as the bands that share it; a lower one begins above the step's fillet."""
     floors = space.floors_of(feature).values()
+    fillets = {z: space.fillet_at(feature, z) for z in floors}
     guides: list[WallGuide] = []
     for n, band in enumerate(bands):
         stepped = n > 0 and any(abs(z - band.top) < tolerance.SEW for z in floors)
         on_floor = any(abs(z - band.bottom) < tolerance.SEW for z in floors)
+        fillet, over = (space.fillet_at(feature, z) for z in (band.bottom, band.top))
         for curve in _walled(feature, band):
             above = next(
                 (
@@ -261,14 +266,18 @@ def _pocket_walls(
                 None,
             )
             top = band.top if above is None else guides[above].top
-            if above is None and stepped:
-                top = min(band.top + fillet, bands[0].top)
+            if above is None and n > 0:
+                start = band.top + over if stepped else band.top
+                top = min(max(start, eased(band.top, fillets)), bands[0].top)
             island = _island_of(feature, curve, space)
             foot = fillet if island is None else floor_fillet(island)
+            bottom = band.bottom if on_floor else eased(band.bottom, fillets)
+            if bottom > top - tolerance.SEW:
+                continue
             guide = WallGuide(
                 curve=curve,
                 top=top,
-                bottom=band.bottom,
+                bottom=bottom,
                 fillet=foot if on_floor else 0.0,
                 faces=_wall_faces(feature, island),
             )

@@ -7,9 +7,8 @@ the ribs into the neighbours; there the region stays the one below the rim: the 
 
 from __future__ import annotations
 
-from collections.abc import Iterable
-from dataclasses import dataclass, field
-from itertools import pairwise
+from collections.abc import Iterable, Mapping
+from dataclasses import dataclass, field, replace
 from typing import Protocol
 
 import numpy as np
@@ -17,13 +16,14 @@ import numpy as np
 from trunnion import tolerance
 from trunnion.findings import Refused
 from trunnion.geometry.arrays import Bools, Floats
-from trunnion.geometry.facegraph import FaceGraph
+from trunnion.geometry.facegraph import CONVEX, FaceGraph
 from trunnion.geometry.frame import Frame
 from trunnion.geometry.plane.curve import Curve, joined
 from trunnion.geometry.plane.region import EMPTY_REGION, Piece, Region, union_all
 from trunnion.model.blank import Blank
 from trunnion.model.feature import Feature, Recognition
 from trunnion.model.setup import Setup
+from trunnion.recognize.grow import bend_radius
 
 AROUND = 150.0
 """mm: how far free space is looked at around the blank; more than two diameters of the largest cutter."""
@@ -183,6 +183,17 @@ class SetupSpace:
         found = {tag: float(self.centre(tag)[2]) for tag in feature.with_role("floor")}
         return dict(sorted(found.items(), key=lambda item: (-item[1], item[0])))
 
+    def fillet_at(self, feature: Feature, z: float) -> float:
+        """Return the largest radius between a feature's walls and its floors at a height; the feature's own where its faces tell none."""
+        graph, blends = self.part.graph(), {tag - 1 for tag in feature.with_role("floor_fillet")}
+        radii = [
+            bend_radius(graph, row)
+            for tag, height in self.floors_of(feature).items()
+            if abs(height - z) < tolerance.SEW
+            for row in blends.intersection(graph.neighbours(tag - 1))
+        ]
+        return max(filter(np.isfinite, radii), default=floor_fillet(feature))
+
     def islands_of(self, feature: Feature) -> tuple[Feature, ...]:
         """Return the islands that stand in a pocket."""
         return tuple(
@@ -213,14 +224,21 @@ class SetupSpace:
         )
         tops = {self.island_top(i): i for i in islands}
         breaks = _distinct([top, *points, *(z for z in tops if lowest < z < top)])
-        fillet = floor_fillet(feature)
+        fillets = {z: self.fillet_at(feature, z) for z in points}
         if len(breaks) < 2:
             raise Refused(
                 f"{feature.id}: its floor lies at the part's top in {self.setup.name}; correct the feature"
             )
-        bands = []
-        for high, low in pairwise(breaks):
-            z = _section_height(high, low, min(rim, top), fillet if low in points else 0.0)
+        rounding = max([*fillets.values(), *map(floor_fillet, islands)])
+        bands: list[Band] = []
+        peaks: set[float] = set()
+        while len(bands) + 1 < len(breaks):
+            high, low = breaks[len(bands) : len(bands) + 2]
+            z = (
+                low + tolerance.BESIDE_PLANE
+                if low in peaks
+                else _section_height(high, low, min(rim, top), fillets.get(low, 0.0))
+            )
             under = [points[f] for f in points if f <= low + tolerance.SEW]
             sunken = [
                 self.centre(tag)[:2]
@@ -228,8 +246,46 @@ class SetupSpace:
                 if height <= low + tolerance.SEW
                 for tag in island.with_role("top")
             ]
-            bands.append(self._band(feature, high, low, z, under, sunken))
+            band = self._band(feature, high, low, z, under, sunken)
+            peak = self._peak_in(band, z, feature, rounding)
+            if peak is None:
+                full = next((b for b in reversed(bands) if b.bottom not in peaks), None)
+                gap = fillets.get(low, 0.0) - (z - low)
+                if full is not None and gap > 0.0:
+                    grow = fillets[low] - (fillets[low] ** 2 - gap**2) ** 0.5
+                    band = _up_to_walls(band, full, points[low], grow)
+                bands.append(band)
+                continue
+            breaks.insert(len(bands) + 1, peak)
+            # Over a peak the fillets of floors on both sides meet: that much of it is taken as the section at the peak shows it.
+            rounded = eased(peak, fillets)
+            if rounded > peak + tolerance.BESIDE_PLANE:
+                peaks.add(peak)
+                if rounded < high - tolerance.SEW:
+                    breaks.insert(len(bands) + 1, rounded)
         return tuple(bands)
+
+    def _peak_in(self, band: Band, z: float, feature: Feature, rounding: float) -> float | None:
+        """Return the height of the highest edge that stands in a band below the section at `z` that speaks for it, or None.
+
+        The part's edges over the band's plan area, the strip of the fillets at its walls left out: a lip between two pockets that share
+        their space above it, the floor of a neighbour that broke through the wall between them. Below such an edge the section is wrong.
+        """
+        graph, own = self.part.graph(), {tag - 1 for tag in feature.tags}
+        inner = band.wanted.offset(-rounding - tolerance.SEW)
+        within = np.array([own.issuperset(faces) for faces in graph.edge_face.tolist()])
+        strange = ~within | (graph.convexity == CONVEX)
+        points = self.setup.frame.to_local(
+            np.vstack([graph.start[strange], graph.middle[strange], graph.end[strange]])
+        )
+        points = points[
+            (points[:, 2] > band.bottom + tolerance.SEW)
+            & (points[:, 2] < min(z, band.top) - tolerance.SEW)
+        ]
+        if not inner or not len(points):
+            return None
+        over = points[inner.contains(points[:, :2])]
+        return float(over[:, 2].max()) if len(over) else None
 
     def _band(
         self,
@@ -282,6 +338,36 @@ class SetupSpace:
             )
         point = np.array([centre[0], centre[1], centre[2] if len(centre) > 2 else 0.0])
         return self.setup.frame.to_local(self.recognition.frame.to_world(point))[:2]
+
+
+def _up_to_walls(band: Band, over: Band, on_floor: Floats, grow: float) -> Band:
+    """Return a band whose section still lies in the fillet of its floor, which holds a point (2,): grown to the walls it would reach.
+
+    The walls of the band over it, where they are not rounded, bound it; where a lip stands instead, its side is the wall that the fillet
+    rises to, as far as the space behind the lip.
+    """
+
+    def grown(area: Region, bound: Region) -> Region:
+        own = holding(area, [on_floor])
+        rest = area.minus(own.offset(tolerance.SEW))
+        return (
+            own.offset(grow).intersect(bound).minus(rest.offset(tolerance.BESIDE_PLANE)).union(rest)
+        )
+
+    return replace(
+        band,
+        wanted=grown(band.wanted, over.wanted),
+        boundary=grown(band.boundary, over.boundary),
+    )
+
+
+def eased(z: float, fillets: Mapping[float, float]) -> float:
+    """Return where the walls over a height are no more rounded by the fillets (radius by floor height) of floors at or below it.
+
+    >>> eased(9.0, {5.0: 6.0, 8.5: 1.0, 8.9: 0.05}), eased(9.0, {5.0: 2.0})
+    (11.0, 9.0)
+    """
+    return max([z, *(floor + radius for floor, radius in fillets.items() if floor <= z)])
 
 
 def number(feature: Feature, name: str, default: float = 0.0) -> float:

@@ -20,6 +20,7 @@ def floor_fillets(graph: FaceGraph, classes: FaceClasses) -> frozenset[int]:
             rises_from(graph, e, r) and _floor_side(graph, classes, e, r) for e in graph.edges_of[r]
         )
     ]
+    seeds += [r for r in classes.rows(FaceClass.CROSS) if _cut_off(graph, classes, r, seeds)]
     found = set(seeds)
     return frozenset(
         grown(
@@ -72,6 +73,24 @@ def _floor_side(graph: FaceGraph, classes: FaceClasses, edge: int, face: int) ->
         return False
     return classes.kind[other] is FaceClass.UP or (
         classes.kind[other] is FaceClass.CROSS and graph.surface[other] != "plane"
+    )
+
+
+def _cut_off(graph: FaceGraph, classes: FaceClasses, face: int, whole: list[int]) -> bool:
+    """Return whether a hollow round is the foot of a wall that is gone: it rises from a floor, rounded like a whole fillet there."""
+    if graph.bend[face] >= 0:
+        return False
+    floors = [
+        graph.across(e, face)
+        for e in graph.edges_of[face]
+        if rises_from(graph, e, face) and _floor_side(graph, classes, e, face)
+    ]
+    own = bend_radius(graph, face)
+    return any(
+        abs(bend_radius(graph, other) - own) <= (1.0 - SAME_RADIUS) * own
+        for floor in floors
+        for other in graph.neighbours(floor, SMOOTH)
+        if other in whole
     )
 
 

@@ -80,7 +80,8 @@ def pockets_of(view: PanelSide) -> GraphFeatures:
     sunk: dict[int, int] = {}
     owners: dict[int, list[int]] = {}
     for floor in floors:
-        for side in outer[floor].sides:
+        # A fillet that a higher floor cuts off below its wall is all that stands between the two.
+        for side in (*outer[floor].sides, *outer[floor].fillets):
             owners.setdefault(side, []).append(floor)
     group = {f: f for f in floors}
     for floor in floors:
@@ -98,6 +99,11 @@ def pockets_of(view: PanelSide) -> GraphFeatures:
                 )
         for drop in outer[floor].drops:
             for lower in owners.get(drop, ()):
+                _join(group, floor, lower)
+    for a, b in view.graph.edge_face[view.graph.convexity == CONVEX].tolist():
+        # Sides of two floors that meet in an outer edge, with no top between them: above that edge the two share their space.
+        for lower in owners.get(b, ()):
+            for floor in owners.get(a, ()):
                 _join(group, floor, lower)
     found = []
     for members in _groups(group, view):

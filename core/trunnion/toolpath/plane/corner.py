@@ -7,7 +7,7 @@ from collections.abc import Iterator
 from dataclasses import dataclass
 
 from trunnion import tolerance
-from trunnion.findings import Finding, error, info
+from trunnion.findings import Finding, info, warning
 from trunnion.geometry.plane.curve import Curve
 from trunnion.geometry.plane.region import Region
 from trunnion.model.operation import CuttingData
@@ -195,7 +195,7 @@ def _left(
     rest = Region(tuple(p for r in rests for p in r.pieces))
     if not room.region:
         return [
-            error(
+            warning(
                 "corner.too-wide",
                 f"{tool.name} does not fit into {drive.feature} below {level.top:.2f}: {rest.area:.1f} mm2 stay",
                 drive.feature,

@@ -8,7 +8,7 @@ from __future__ import annotations
 import math
 
 from trunnion import tolerance
-from trunnion.findings import Finding, error, info
+from trunnion.findings import Finding, error, info, warning
 from trunnion.model.operation import CuttingData
 from trunnion.model.setup import Setup
 from trunnion.model.tool import Tool
@@ -88,7 +88,7 @@ def floor(
         )
         if not passes.rings:
             findings.append(
-                error(
+                warning(
                     "floor.too-wide",
                     f"{tool.name} does not fit between the walls around the floor at {each.z:.2f}: "
                     f"{each.region.area:.0f} mm2 stay",

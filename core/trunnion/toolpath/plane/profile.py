@@ -191,7 +191,7 @@ def _left(drive: PlaneDrive, guide: WallGuide, tool: Tool, allowance: float) -> 
     room = AxisRegion.of(level_at(drive, guide.bottom).boundary, distance)
     if not room.region:
         return [
-            error(
+            warning(
                 "profile.no-room",
                 f"{tool.name} has no room around {drive.feature}: {guide.curve.length * height:.0f} mm2 stay",
                 drive.feature,

@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 
 from trunnion import tolerance
-from trunnion.findings import Finding, error, info
+from trunnion.findings import Finding, info, warning
 from trunnion.geometry.plane.region import Region
 from trunnion.model.operation import CuttingData
 from trunnion.model.setup import Setup
@@ -82,7 +82,7 @@ def rib_top(
         over = _over(level, room, tool, settings.overhang)
         if not over:
             findings.append(
-                error(
+                warning(
                     "rib.too-narrow",
                     f"{tool.name} does not fit over {drive.feature}: {level.wanted.area:.0f} mm2 stay",
                     drive.feature,

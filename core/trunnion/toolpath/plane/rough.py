@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 
 from trunnion import tolerance
-from trunnion.findings import Finding, error, face_tags, info
+from trunnion.findings import Finding, face_tags, info, warning
 from trunnion.geometry.plane.region import Region
 from trunnion.model.operation import CuttingData
 from trunnion.model.setup import Setup
@@ -136,7 +136,7 @@ def _is_clear(builder: PathBuilder, wanted: Region, z: float) -> bool:
 
 
 def _too_wide(drive: PlaneDrive, level: DriveLevel, tool: Tool) -> Finding:
-    return error(
+    return warning(
         "rough.too-wide",
         f"{tool.name} does not fit between the walls of {drive.feature} below {level.top:.2f}: "
         f"{level.wanted.area:.0f} mm2 stay",

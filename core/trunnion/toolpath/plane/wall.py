@@ -8,7 +8,7 @@ from collections.abc import Iterable
 import numpy as np
 
 from trunnion import tolerance
-from trunnion.findings import Finding, error, face_tags, info
+from trunnion.findings import Finding, error, face_tags, info, warning
 from trunnion.geometry.arrays import Floats
 from trunnion.geometry.plane.region import EMPTY_REGION, Region, union_all
 from trunnion.model.operation import CuttingData
@@ -228,7 +228,7 @@ def _left(
     height = guide.top - guide.bottom
     if not found:
         return [
-            error(
+            warning(
                 "wall.too-narrow",
                 f"{tool.name} can't come to a wall of {drive.feature}: {guide.curve.length * height:.0f} mm2 stay",
                 drive.feature,
