@@ -82,7 +82,12 @@ def _layers(
     for above, z in pairwise([top, *_heights(space, top, bottom, operation.data.depth, allowance)]):
         progress.check()
         free = outside.union(tall.below(z, chord))
-        wanted = free.intersect(blank).intersect(_standing(stock, z, above))
+        # Along walls the field keeps a strip of cells high that the cutter has been at: too narrow to be stock.
+        wanted = (
+            free.intersect(blank)
+            .intersect(_standing(stock, z, above))
+            .opened(0.5 * RIM * stock.cell)
+        )
         levels.append(
             DriveLevel(top=above, bottom=z, wanted=wanted, boundary=free if wanted else around)
         )

@@ -29,6 +29,7 @@ from trunnion.toolpath.offsetting.entry import (
 )
 from trunnion.toolpath.offsetting.lead import enter, fitting_lead, leave
 from trunnion.toolpath.offsetting.rings import OffsetRing
+from trunnion.toolpath.offsetting.trimming import PassTrimming
 
 RUN_OUTS = (0.5, 1.0, 2.0, 3.0, 4.0)
 """Of the radius: how far before an open pass a place that is certainly free is looked for."""
@@ -62,13 +63,18 @@ class ClearingParameters:
 @dataclass(frozen=True, slots=True, eq=False, kw_only=True)
 class ClearingLayer:
     """What is cleared at height `z`: the rings, the `room` that links and entries may use, the `clip` outside which nothing is wanted
-    (None: everything in the rings), and the height `top` under which material may begin (None: as the stock says)."""
+    (None: everything in the rings), and the height `top` under which material may begin (None: as the stock says).
+
+    `wanted`: the area whose stock a clipped pass must meet, `worth` how high over `z` it must stand there to count; where a pass meets
+    none it is left out (None: every pass is cut as a whole)."""
 
     z: float
     rings: tuple[OffsetRing, ...]
     room: AxisRegion
     clip: Region | None = None
     top: float | None = None
+    wanted: Region | None = None
+    worth: float = 0.0
 
     def wants(self, points: Floats) -> Floats:
         """Return how far points (k, 2) are inside the clip and the room, rims counted in (negative outside)."""
@@ -82,8 +88,13 @@ def clear(
     builder: PathBuilder, layer: ClearingLayer, manner: ClearingParameters, progress: Progress
 ) -> None:
     """Cut all passes of a layer."""
+    trimming = (
+        PassTrimming.of(builder, layer.wanted, layer.z + layer.worth)
+        if layer.clip is not None and layer.wanted is not None
+        else None
+    )
     for ring in nearest_first(layer.rings, lambda: builder.here, _ring_away):
-        _cut_ring(builder, layer, ring, manner, progress)
+        _cut_ring(builder, layer, ring, manner, trimming, progress)
     if len(builder):
         _step_off(builder, layer)
 
@@ -93,20 +104,22 @@ def _cut_ring(
     layer: ClearingLayer,
     ring: OffsetRing,
     manner: ClearingParameters,
+    trimming: PassTrimming | None,
     progress: Progress,
 ) -> None:
     for inner in nearest_first(ring.inner, lambda: builder.here, _ring_away):
-        _cut_ring(builder, layer, inner, manner, progress)
+        _cut_ring(builder, layer, inner, manner, trimming, progress)
     feed = builder.data.feed * (1.0 if ring.inner else manner.slot)
     passes: list[Curve] = []
     for curve in ring.curves():
         passes += [curve] if layer.clip is None else parts_near(curve, layer.clip, layer.wants)
-    for curve in nearest_first(passes, lambda: builder.here, _curve_away):
+    for whole in nearest_first(passes, lambda: builder.here, _curve_away):
         progress.check()
-        if curve.closed:
-            _cut_closed(builder, layer, ring, curve, manner, feed)
-        else:
-            _cut_open(builder, layer, curve, manner, feed)
+        for curve in [whole] if trimming is None else trimming.parts(builder, whole):
+            if curve.closed:
+                _cut_closed(builder, layer, ring, curve, manner, feed)
+            else:
+                _cut_open(builder, layer, curve, manner, feed)
 
 
 def _cut_closed(

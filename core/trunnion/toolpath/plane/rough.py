@@ -34,6 +34,9 @@ RIM = 3.0
 RIDGE = 0.3
 """mm: highest ridge between passes of a cutter with a rounded end; the next layer or the floor's finish takes it away."""
 
+WORTH = 0.2
+"""Of a layer: stock that stands no higher over it isn't worth a pass in it."""
+
 
 @settings("plane.rough")
 class RoughSettings:
@@ -92,7 +95,13 @@ def rough(
                 clear(
                     builder,
                     ClearingLayer(
-                        z=z, rings=passes.rings, room=passes.room, clip=passes.clip, top=known
+                        z=z,
+                        rings=passes.rings,
+                        room=passes.room,
+                        clip=passes.clip,
+                        top=known,
+                        wanted=level.wanted,
+                        worth=min(RIDGE, WORTH * (above - z)),
                     ),
                     manner,
                     progress,

@@ -12,7 +12,7 @@ from numpy.typing import ArrayLike
 
 from trunnion import tolerance
 from trunnion.findings import OutOfMemory
-from trunnion.geometry.arrays import Floats, Ints
+from trunnion.geometry.arrays import Bools, Floats, Ints
 from trunnion.geometry.kernels import heightfield
 from trunnion.geometry.plane.curve import turn
 from trunnion.geometry.plane.region import Region
@@ -128,6 +128,13 @@ class PlanningStock:
         """Return the centres (k, 2) of the cells in an area that are higher than `z`."""
         centres = self._above(z, area)
         return centres[area.contains(centres)] if len(centres) else centres
+
+    def cells_above(self, z: float, area: Region) -> Bools:
+        """Return which cells (nx, ny) are higher than `z` and have their centre in an area."""
+        found = np.zeros(self.heights.shape, dtype=np.bool_)
+        cells = np.floor((self.places_above(z, area) - self.corner) / self.cell).astype(np.int64)
+        found[cells[:, 0], cells[:, 1]] = True
+        return found
 
     def _above(self, z: float, area: Region) -> Floats:
         if not area:
