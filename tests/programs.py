@@ -19,7 +19,7 @@ from trunnion.model.process import ProcessTree
 from trunnion.model.program import Program, ProgramSection
 from trunnion.model.session import PartInfo, PostedFile, Session, SizeEntry, StepRecord
 from trunnion.model.setup import Setup
-from trunnion.model.tool import Holder, Tool
+from trunnion.model.tool import Holder, Insert, Tool, TurningTool
 from trunnion.model.toolpath import Mark, Motion, Toolpath
 from trunnion.model.verdict import (
     BlockProof,
@@ -60,6 +60,18 @@ BULL_10 = replace(
     neck_diameter=9.5,
     shank_diameter=10.0,
     gauge_length=120.25,
+)
+TURNING = TurningTool(
+    number=3,
+    name="DCLNR CNMG120408",
+    insert=Insert(designation="CNMG120408", inscribed_circle=12.7, thickness=4.76, nose_radius=0.8),
+    edge_angle=95.0,
+    hand="right",
+    shank_height=25.0,
+    shank_width=25.0,
+    functional_length=150.0,
+    functional_width=32.0,
+    holder_name="DCLNR2525M12",
 )
 S1 = Setup(name="S1", frame=WORLD, work_offset="G54", clearance=50.0, machine="mill-3-axis")
 S2 = Setup(

@@ -13,11 +13,12 @@ from hypothesis import given, settings
 from leaning_paths import TABLE, lean, standing
 from leaning_paths import path_of as leaning_path
 from own_packages import all_dialects
-from programs import BULL_10, FLAT_16, S1, WALL, program_1, section, verdict
+from programs import BULL_10, FLAT_16, S1, TURNING, WALL, program_1, section, verdict
 from random_programs import program_of, programs, same, spoils
 from trunnion.findings import BadCall, BadInput, Refused
 from trunnion.model.listing import listing
 from trunnion.model.program import Program
+from trunnion.model.spindle import FeedMode
 from trunnion.model.toolpath import EMPTY
 from trunnion.model.verdict import Outcome
 from trunnion.post.contract import Dialect
@@ -181,6 +182,42 @@ def test_a_coolant_is_written_so_that_it_is_read_or_refused(dialect, coolant):
         assert coolant in str(refused) and coolant not in ("flood", "off")
         return
     assert [s.coolant for s in read.sections] == ["flood", coolant]
+
+
+@pytest.mark.parametrize("mode", FeedMode)
+@pytest.mark.parametrize("units", ["mm", "inch"])
+def test_feeds_are_the_same_whatever_they_are_given_by(dialect, mode, units):
+    program = program_1()
+    given_so = replace(
+        program, sections=tuple(replace(s, feed_mode=mode) for s in program.sections)
+    )
+    for planned, read in zip(
+        program.sections, again(dialect, given_so, units=units).sections, strict=True
+    ):
+        # By the minute a feed has a decimal of mm or two of inches, in inverse time six digits.
+        assert read.path.feed == pytest.approx(planned.path.feed, abs=0.13, rel=2e-5)
+        assert read.feed_mode in (mode, FeedMode.MINUTE)
+
+
+@pytest.mark.parametrize("units", ["mm", "inch"])
+def test_a_constant_surface_speed_is_written_so_that_it_is_read_or_refused(dialect, units):
+    facing = replace(
+        section("face", TURNING, WALL, 2500.0), surface_speed=180.0, feed_mode=FeedMode.REVOLUTION
+    )
+    program = one(facing, section("wall", FLAT_16, WALL))
+    try:
+        text = written(dialect, program, units=units)
+    except Refused as refused:
+        assert "constant surface speed" in str(refused)
+        return
+    (read,) = dialect.read(text, (TURNING, FLAT_16), [S1])
+    assert [(s.spindle, s.feed_mode) for s in read.sections] == [
+        (2500.0, FeedMode.REVOLUTION),
+        (12000.0, FeedMode.MINUTE),
+    ]
+    assert [s.surface_speed for s in read.sections] == pytest.approx([180.0, 0.0], abs=0.02)
+    first, second = (p.sections[0].path.feed for p in (program, read))
+    assert second == pytest.approx(first, rel=1e-3)
 
 
 @pytest.mark.parametrize(

@@ -11,7 +11,7 @@ from trunnion.post.words import dialect_words
 
 CENTRES = ("start", "absolute")
 """Where I and J of an arc count from: its start, or the zero of the work offset."""
-ROLES = ("radius", "length", "dwell", "turns", "tolerance", "joining")
+ROLES = ("radius", "length", "dwell", "turns", "tolerance", "joining", "highest")
 """What a control may have letters for, beside N, F, S, T, X, Y, Z, I and J which are the same on all."""
 _PLACEHOLDERS = {
     "opening": ("program",),
@@ -20,6 +20,8 @@ _PLACEHOLDERS = {
     "tool_change": ("tool",),
     "tool_length": ("tool",),
     "spindle": ("spindle",),
+    "surface_speed": ("highest", "speed"),
+    "spindle_speed": ("spindle",),
     "top": (),
     "end": (),
 }
@@ -35,7 +37,8 @@ class IsoWords:
     `opening` are lines without number below the header; `start`, `restart`, `tool_change`, `tool_length`, `spindle`, `top` (straight up to
     the top of the machine) and `end` are lines with what stands in braces filled in. `codes` and `refused` have one or several codes as
     keys: what the control does at them (`readers.language.MEANINGS` and the dialect's own), and why the reader refuses them. Without
-    `inverse_time` the control has no rotary axes.
+    `inverse_time` the control has no rotary axes, without `per_revolution` no feeds by the revolution, without `surface_speed` no constant
+    surface speed; `spindle_speed` is `spindle` where one may have been in force.
     """
 
     title: str
@@ -64,6 +67,10 @@ class IsoWords:
     angle_decimals: int = 0
     per_minute: str = ""
     inverse_time: str = ""
+    per_revolution: str = ""
+    revolution_decimals: int = 0
+    surface_speed: str = ""
+    spindle_speed: str = ""
 
 
 def iso_words(name: str, package: str = "") -> IsoWords:

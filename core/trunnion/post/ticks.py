@@ -50,9 +50,17 @@ class TickScale:
 
     def feed(self, feed: float) -> str:
         """Return a feed in mm/min as it is written; never zero."""
-        least = 10.0**-self.feed_decimals
-        text = f"{max(feed / self.unit, least):.{self.feed_decimals}f}"
-        return text.rstrip("0").rstrip(".") if "." in text else text
+        return shortened(feed / self.unit, self.feed_decimals)
+
+
+def shortened(value: float, decimals: int) -> str:
+    """Return a number above zero with some decimals, without trailing zeros; never zero.
+
+    >>> shortened(0.2, 6), shortened(1e-9, 3)
+    ('0.2', '0.001')
+    """
+    text = f"{max(value, 10.0**-decimals):.{decimals}f}"
+    return text.rstrip("0").rstrip(".") if "." in text else text
 
 
 @dataclass(frozen=True, slots=True, eq=False, kw_only=True)
@@ -69,6 +77,19 @@ class WrittenPath:
     motion: Ints
     feed: Floats
     more: Ints
+
+    def in_mm(self, scale: TickScale) -> Toolpath:
+        """Return the path that the written numbers say, of an upright tool."""
+        mm = scale.unit / 10.0**scale.decimals
+        arcs = (self.motion >= Motion.ARC_CW)[:, None]
+        return Toolpath(
+            position=np.asarray(self.point * mm),
+            axis=np.tile([0.0, 0.0, 1.0], (len(self.motion), 1)),
+            motion=self.motion,
+            centre=np.where(arcs, self.centre * mm, np.nan),
+            feed=self.feed,
+            mark=np.zeros(len(self.motion), np.int64),
+        )
 
     def blocks(self) -> Iterator[tuple[list[int], list[int], int, float]]:
         """Yield end point, centre, motion and feed of each row."""

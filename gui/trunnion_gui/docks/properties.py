@@ -5,7 +5,8 @@ from __future__ import annotations
 from PySide6.QtWidgets import QLabel, QScrollArea, QTableWidget, QVBoxLayout, QWidget
 
 from trunnion.model.feature import Feature
-from trunnion.model.operation import Operation
+from trunnion.model.operation import CuttingData, Operation
+from trunnion.model.spindle import FeedMode, SpindleMode
 from trunnion_gui import edits
 from trunnion_gui.document import Document
 from trunnion_gui.form import Form
@@ -17,6 +18,16 @@ from trunnion_gui.widgets import table as tables
 Rows = list[tuple[str, str]]
 UPRIGHT = (0.0, 0.0, 1.0)
 """The direction of a tool that stands along its setup's z."""
+
+
+def mode_rows(data: CuttingData) -> Rows:
+    """Return what a program gives of speed and feed, where that is more than 1/min and mm/min."""
+    rows = []
+    if data.spindle_mode is SpindleMode.SURFACE:
+        rows.append((tr("Highest spindle speed"), f"{amount(data.highest_spindle, 0)} 1/min"))
+    if data.feed_mode is FeedMode.REVOLUTION:
+        rows.append((tr("Feed per revolution"), f"{amount(data.feed_per_revolution)} mm"))
+    return rows
 
 
 class PropertiesDock(QScrollArea):
@@ -119,6 +130,7 @@ class PropertiesDock(QScrollArea):
             (tr("Cutting speed"), f"{amount(data.speed, 0)} m/min"),
             (tr("Spindle speed"), f"{amount(data.spindle, 0)} 1/min"),
             (tr("Feed"), f"{amount(data.feed, 0)} mm/min"),
+            *mode_rows(data),
             (tr("Feed per tooth"), f"{amount(data.feed_per_tooth)} mm"),
             (tr("Depth of cut"), f"{amount(data.depth)} mm"),
             (tr("Width of cut"), f"{amount(data.width)} mm"),

@@ -9,6 +9,7 @@ from dataclasses import replace
 from trunnion.model.material import Machine, Material
 from trunnion.model.operation import CuttingData, Operation
 from trunnion.model.process import ProcessTree
+from trunnion.model.spindle import surface_speed, turns_of
 from trunnion.model.tool import Tool
 from trunnion.plan.cutting.peak import with_peak
 from trunnion.plan.cutting.power import NEWTON_METRES, cutting_power
@@ -171,11 +172,11 @@ def cutting_data(
     rules = [
         f"vc {trimmed(speed, 0)} m/min: {material.name}, {'roughing' if rough else 'finishing'}"
     ]
-    spindle = speed * MM_PER_METRE / (math.pi * tool.diameter)
+    spindle = turns_of(speed, tool.diameter)
     highest = min(machine.spindle_high, settings.spindle_limit)
     if not machine.spindle_low <= spindle <= highest:
         spindle = min(max(spindle, machine.spindle_low), highest)
-        speed = spindle * math.pi * tool.diameter / MM_PER_METRE
+        speed = surface_speed(spindle, tool.diameter)
         rules.append(
             f"n {trimmed(spindle, 0)} 1/min: the spindle's limit, so vc is {trimmed(speed, 0)} m/min"
         )

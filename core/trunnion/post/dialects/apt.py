@@ -5,7 +5,7 @@ Where any tool leans, every GOTO has the tool axis too (MULTAX/ON): between two 
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -14,6 +14,7 @@ from trunnion import tolerance
 from trunnion.findings import BadCall
 from trunnion.model.program import Program, ProgramSection
 from trunnion.model.setup import Setup
+from trunnion.model.spindle import FeedMode, per_revolution
 from trunnion.model.tool import Tool
 from trunnion.model.toolpath import Motion, Toolpath
 from trunnion.post.header import Header
@@ -21,6 +22,7 @@ from trunnion.post.linearize import lines_for_arcs
 from trunnion.post.settings import PostSettings
 from trunnion.post.ticks import TickScale, WrittenPath, upright, written
 from trunnion.post.words import dialect_words, plain, refuse_unwritable
+from trunnion.post.writer.feed import FeedFormat, revolution_text, surface_text
 from trunnion.shop.kinematics import NO_PLACES, Places
 from trunnion.units import trimmed
 
@@ -37,6 +39,9 @@ class AptWords:
     end: tuple[str, ...]
     units: dict[str, str]
     feed: dict[str, str]
+    feed_per_revolution: dict[str, str]
+    revolution_decimals: int
+    surface: dict[str, str]
     coolant: dict[str, str]
     axis_decimals: int
 
@@ -101,12 +106,12 @@ def _lines(
         yield _print(words, f"SETUP {program.setup.name} WORK OFFSET {program.setup.work_offset}")
         tool = None
         for section in program.sections:
-            yield from _section(words, section, scale, section.tool.number != tool)
+            yield from _section(words, section, scale, section.tool.number != tool, settings.units)
             yield from _motions(
                 _blocks(section, scale, axes, settings.straying),
                 scale,
                 axes,
-                words.feed[settings.units],
+                _feed_words(words, section, scale, settings.units),
             )
             tool = section.tool.number
     yield from words.end
@@ -118,18 +123,23 @@ def leaning(path: Toolpath) -> bool:
 
 
 def _section(
-    words: AptWords, section: ProgramSection, scale: TickScale, changes: bool
+    words: AptWords, section: ProgramSection, scale: TickScale, changes: bool, units: str
 ) -> Iterator[str]:
     """Yield the head of one operation: its name, the tool when it changes, spindle, coolant."""
     tool = section.tool
     refuse_unwritable(section, words.title, words.coolant)
     yield _print(words, f"OPERATION {section.operation}")
     if changes:
-        sizes = scale.ticks(np.array([tool.diameter, tool.corner_radius, tool.gauge_length]))
+        sizes = scale.ticks(np.array([*tool.cutter_sizes, tool.gauge_length]))
         diameter, radius, length = (scale.text(v) for v in sizes.tolist())
         yield f"LOADTL/{tool.number},LENGTH,{length}"
         yield f"CUTTER/{diameter},{radius}"
-    yield f"SPINDL/RPM,{trimmed(section.spindle, 0)},CLW"
+    turns = trimmed(section.spindle, 0)
+    if section.surface_speed > 0.0:
+        speed = f"{words.surface[units]},{surface_text(section.surface_speed, units)}"
+        yield f"SPINDL/{speed},CLW,MAXRPM,{turns}"
+    else:
+        yield f"SPINDL/RPM,{turns},CLW"
     yield words.coolant[section.coolant]
 
 
@@ -145,16 +155,35 @@ def _blocks(
     return written(path, scale, section.operation, axes.ticks(path.axis))
 
 
+FeedText = Callable[[float, int], str]
+"""Returns the FEDRAT statement of a feed in mm/min for a block that ends at an X in ticks."""
+
+
+def _feed_words(words: AptWords, section: ProgramSection, scale: TickScale, units: str) -> FeedText:
+    if section.feed_mode is not FeedMode.REVOLUTION:
+        return lambda feed, _: words.feed[units].format(feed=scale.feed(feed))
+    feeds = FeedFormat(
+        mode=section.feed_mode, spindle=section.spindle, surface_speed=section.surface_speed
+    )
+    mm = scale.unit / 10.0**scale.decimals
+
+    def by_revolution(feed: float, x: int) -> str:
+        share = per_revolution(feed, feeds.turns(x * mm))
+        return words.feed_per_revolution[units].format(feed=revolution_text(share, scale, words))
+
+    return by_revolution
+
+
 def _motions(
-    path: WrittenPath, scale: TickScale, axes: TickScale | None, feed_words: str
+    path: WrittenPath, scale: TickScale, axes: TickScale | None, feed_text: FeedText
 ) -> Iterator[str]:
     text, said, start = scale.text, "", [0, 0, 0]
     for (point, centre, motion, feed), axis in zip(path.blocks(), path.more.tolist(), strict=True):
         if motion == Motion.RAPID:
             yield "RAPID"
-        elif (now := scale.feed(feed)) != said:
+        elif (now := feed_text(feed, point[0])) != said:
             said = now
-            yield feed_words.format(feed=said)
+            yield said
         if motion >= Motion.ARC_CW:
             radius = int(round(((start[0] - centre[0]) ** 2 + (start[1] - centre[1]) ** 2) ** 0.5))
             sense = 1 if motion == Motion.ARC_CCW else -1

@@ -25,8 +25,6 @@ OPENED, OPENED_RAPID = 0.001, 0.01
 FIRST_PIECE = math.radians(10.0)
 """Turn of an axis in one piece before it is looked at how far it strays."""
 SHARES = (0.25, 0.5, 0.75)
-LEAST_FEED = 1e-3
-"""mm/min: what a block is fed at in which the tip stands while the axis turns; how long it takes the machine's axes say."""
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -58,8 +56,9 @@ class Joints:
         turning[1:] = (points[1:, 3:] != points[:-1, 3:]).any(axis=1)
         tip, axis = poses_of(self.place, words, angle, gauge)
         centre = self._centres(rows, motion, turning, angle)
+        whole = path_of(rows, tip, axis, centre)
         if not turning.any():
-            return path_of(rows, tip, axis, centre), tuple(rows.line)
+            return whole, tuple(rows.line)
         row, share = self._pieces(rows.tool, words, angle, motion, np.flatnonzero(turning))
         row, share = (
             np.concatenate([np.flatnonzero(~turning), row]),
@@ -77,7 +76,7 @@ class Joints:
             axis=direction,
             motion=motion[row],
             centre=centre[row],
-            feed=_feeds(rows, tip)[row],
+            feed=whole.feed[row],
             mark=marks_of(motion[row]),
         )
         return path, tuple(np.array(rows.line)[row].tolist())
@@ -167,11 +166,3 @@ def _between(
         angle[row - 1] + s * (angle[row] - angle[row - 1]),
         gauge,
     )
-
-
-def _feeds(rows: SectionBlocks, tip: Floats) -> Floats:
-    """Return the feed (n,) of the tip: what is said, or its way over the time that is said."""
-    feed, minutes = np.array(rows.feed), np.array(rows.minutes)
-    way = np.linalg.norm(np.diff(tip, axis=0, prepend=tip[:1]), axis=1)
-    timed = minutes > 0.0
-    return np.where(timed, np.maximum(way / np.where(timed, minutes, 1.0), LEAST_FEED), feed)

@@ -23,9 +23,10 @@ _TAKEN_BY = {
     "tolerance": "path tolerance",
     "joining": "path tolerance",
     "length": "length",
+    "highest": "surface speed",
 }
 """The meaning of the code that takes a letter of each role."""
-_NEEDED = {"dwell": "dwell", "path tolerance": "tolerance"}
+_NEEDED = {"dwell": "dwell", "path tolerance": "tolerance", "surface speed": "highest"}
 """The role without whose letter a meaning says nothing."""
 
 
@@ -44,11 +45,7 @@ class ControlLanguage:
         self.units = {words.units[name]: unit for name, unit in _UNITS.items()}
         self.coolants = {code: name for name, code in words.coolant.items()}
         self.refused = by_code(words.refused)
-        said = {
-            code: m
-            for code, m in self._checked(tuple(known)).items()
-            if place is not None or m != "inverse time"
-        }
+        said = self._checked(tuple(known))
         self.meanings = {
             **dict.fromkeys(self.motions, "motion"),
             **dict.fromkeys(self.units, "units"),

@@ -5,13 +5,15 @@ from __future__ import annotations
 from collections.abc import Callable
 
 from trunnion.findings import BadInput
+from trunnion.model.spindle import FeedMode, per_minute
 from trunnion.model.tool import Tool
 from trunnion.model.toolpath import Motion
 from trunnion.post.readers.arcs import centre_by_offset, centre_by_radius
 from trunnion.post.readers.blocks import Block
 from trunnion.post.readers.language import ControlLanguage, listed
+from trunnion.post.readers.numbers import FEED
 from trunnion.post.readers.rotary import Rotary
-from trunnion.post.readers.sections import NOWHERE, Point
+from trunnion.post.readers.sections import NOWHERE, Pace, Point
 from trunnion.post.readers.state import ModalState
 
 Offset = Callable[[float | None, float | None, Point], tuple[float, float]]
@@ -53,7 +55,7 @@ class ToolMover:
         if point is None:
             return
         if motion == Motion.RAPID:
-            state.sections.rapid(line, point, tool, (state.spindle, state.coolant))
+            state.sections.rapid(line, point, tool, state.cutting())
             return
         if not state.turning:
             raise BadInput(
@@ -62,12 +64,39 @@ class ToolMover:
         if state.feed <= 0.0:
             raise BadInput(f"line {line}: a feed move without a feed; give F")
         centre = NOWHERE if motion == Motion.LINE else self.centre(block, motion, point)
-        feed, minutes = (
-            (state.feed, 0.0) if not self.rotary.letters else self.rotary.pace(block, state, point)
-        )
+        if state.keeps_surface and tool.rotates:
+            raise BadInput(
+                f"line {line}: a constant surface speed with T{tool.number}, a tool that rotates; give the spindle speed"
+            )
         state.sections.feed(
-            line, motion, point, centre, feed, tool, (state.spindle, state.coolant), minutes
+            line, motion, point, centre, self.pace(block, point), tool, state.cutting()
         )
+
+    def pace(self, block: Block, end: Point) -> Pace:
+        """Return how fast a block is fed that ends at a point."""
+        state = self.state
+        if state.feed_mode is FeedMode.REVOLUTION:
+            return self.by_revolution(block, end)
+        if state.feed_mode is FeedMode.INVERSE or self.rotary.letters:
+            return self.rotary.pace(block, state, end)
+        return Pace(state.feed)
+
+    def by_revolution(self, block: Block, end: Point) -> Pace:
+        """Return how fast a block is fed whose feed is given by the revolution; raise `BadInput` where that is no feed."""
+        state, start = self.state, self.state.sections.at
+        turns = state.turns_at(end[0])
+        if turns <= 0.0:
+            raise BadInput(
+                f"line {block.line}: a feed by the revolution while the spindle stands; give S"
+            )
+        if start is not None and start[3:] != end[3:]:
+            raise BadInput(
+                f"line {block.line}: a feed by the revolution while {' or '.join(self.rotary.letters)} turns is not understood; "
+                f"use {self.language.inverse}"
+            )
+        feed = per_minute(state.feed, turns)
+        FEED.check(block.line, f"at S{turns:g} a feed a minute of ", feed / state.unit)
+        return Pace(feed, mode=FeedMode.REVOLUTION)
 
     @property
     def arc_letters(self) -> str:
@@ -164,7 +193,7 @@ class ToolMover:
                 "machine, is understood"
             )
         if state.tool is not None:
-            state.sections.lift(line, state.tool, (state.spindle, state.coolant))
+            state.sections.lift(line, state.tool, state.cutting())
         state.over = None
 
     def centre(self, block: Block, motion: Motion, end: Point) -> Point:

@@ -3,9 +3,11 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
+from dataclasses import replace
 
 from trunnion.findings import Refused
 from trunnion.model.program import Program, ProgramSection
+from trunnion.model.spindle import FeedMode
 from trunnion.post.header import Header, place_lines
 from trunnion.post.iso_words import IsoWords
 from trunnion.post.linearize import PathTolerance
@@ -13,6 +15,7 @@ from trunnion.post.settings import PostSettings
 from trunnion.post.ticks import TickScale
 from trunnion.post.words import plain, refuse_unwritable
 from trunnion.post.writer.approach import approach, coolant, tool_change
+from trunnion.post.writer.feed import FeedFormat, feed_word, surface_text
 from trunnion.post.writer.modal import WrittenState, degrees_of
 from trunnion.post.writer.rotary import AxisForm, JointForm, ThreeAxes
 from trunnion.shop.kinematics import WorkPosition
@@ -77,6 +80,7 @@ class ProgramWriter:
 
     def section(self, section: ProgramSection) -> Iterator[str]:
         """Yield one operation: its comment, the state it needs in full (so that a run may start here), its motions."""
+        section = self.with_known_feeds(section)
         words, modal, tool = self.words, self.modal, section.tool
         refuse_unwritable(section, words.title, words.coolant)
         yield comment(words, f"OPERATION {section.operation}")
@@ -88,10 +92,32 @@ class ProgramWriter:
         if changes:
             yield from map(self.numbered, tool_change(modal, tool))
         yield self.numbered(words.restart.format(offset=self.program.setup.work_offset))
-        yield self.numbered(words.spindle.format(spindle=trimmed(section.spindle, 0)))
+        yield self.numbered(self.spindle(section))
         yield from map(self.numbered, coolant(modal, section.coolant))
-        modal.inverse = False
+        modal.feed_mode = FeedMode.MINUTE
+        modal.feeds = FeedFormat(
+            mode=section.feed_mode, spindle=section.spindle, surface_speed=section.surface_speed
+        )
         yield from self.motions(section, changes)
+
+    def with_known_feeds(self, section: ProgramSection) -> ProgramSection:
+        """Return a section with feeds by the minute where the control has no word for another way: they say the same."""
+        known = feed_word(self.words, section.feed_mode)
+        return section if known else replace(section, feed_mode=FeedMode.MINUTE)
+
+    def spindle(self, section: ProgramSection) -> str:
+        """Return the words that turn the spindle; once a program has constant surface speeds, each section says what its S is."""
+        words, turns = self.words, trimmed(section.spindle, 0)
+        if section.surface_speed > 0.0:
+            if not words.surface_speed:
+                raise Refused(
+                    f"operation {section.operation}: {words.title} has no words for a constant surface speed; "
+                    "give a spindle speed or choose another control"
+                )
+            speed = surface_text(section.surface_speed, self.settings.units)
+            return words.surface_speed.format(highest=turns, speed=speed)
+        surfaces = any(s.surface_speed > 0.0 for s in self.program.sections)
+        return (words.spindle_speed if surfaces else words.spindle).format(spindle=turns)
 
     def motions(self, section: ProgramSection, changed: bool) -> Iterator[str]:
         """Yield the approach and the blocks of a section."""
