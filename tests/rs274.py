@@ -139,6 +139,15 @@ def compare_joints(
     return compared
 
 
+def _going(calls: Sequence[Call]) -> list[Call]:
+    """Return moves without the rapids of a line that end where the move before them in that line has ended: cycles have some."""
+    kept: list[Call] = []
+    for call in calls:
+        if not (kept and call[1] == "STRAIGHT_TRAVERSE" and kept[-1][0::2] == call[0::2]):
+            kept.append(call)
+    return kept
+
+
 def compare(
     text: str, tools: Sequence[Tool], setup: Setup, folder: Path, scale: float = 1.0
 ) -> int:
@@ -146,7 +155,9 @@ def compare(
     ours = motions_of(text, tools, setup)
     numbers = {number for number, _, _ in ours}
     moves = ("STRAIGHT_TRAVERSE", "STRAIGHT_FEED", "ARC_FEED")
-    theirs = [call for call in run(text, tools, folder) if call[0] in numbers and call[1] in moves]
+    theirs = _going(
+        [call for call in run(text, tools, folder) if call[0] in numbers and call[1] in moves]
+    )
     assert [call[:2] for call in ours] == [call[:2] for call in theirs]
     for (_, name, mine), (_, _, other) in zip(ours, theirs, strict=True):
         lengths = [0, 1, 2, 3, 5] if name == "ARC_FEED" else [0, 1, 2]

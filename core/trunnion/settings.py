@@ -13,7 +13,7 @@ from __future__ import annotations
 import dataclasses
 import hashlib
 import json
-from collections.abc import Callable, Hashable, Mapping
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 from functools import cache
 from typing import Any, TypeVar, dataclass_transform, get_type_hints
@@ -189,8 +189,9 @@ def added(default: Any, *, written: bool = True) -> Any:
 
 def unwritten(thing: Any) -> frozenset[str]:
     """Return the names of a dataclass's fields that files and JSON leave out: those that say so and have their default."""
+    kind: Any = type(thing)
     return frozenset(
-        name for name, default in _sometimes(type(thing)) if _is_same(getattr(thing, name), default)
+        name for name, default in _sometimes(kind) if _is_same(getattr(thing, name), default)
     )
 
 
@@ -198,7 +199,7 @@ _ADDED, _WRITTEN = "added", "written"
 
 
 @cache
-def _sometimes(cls: Hashable) -> tuple[tuple[str, Any], ...]:
+def _sometimes(cls: Any) -> tuple[tuple[str, Any], ...]:
     return tuple(
         (f.name, f.default) for f in dataclasses.fields(cls) if not f.metadata.get(_WRITTEN, True)
     )

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
@@ -13,8 +14,13 @@ from five_axis import five_axis_case
 from leaning_paths import ENDLESS_FORK, TABLE, joint_rows, lean, standing, text_of
 from leaning_paths import path_of as leaning_path
 from leaning_paths import program as leaning_program
-from programs import BULL_10, CCW, CW, FLAT_16, LINE, RAPID, S1, path_of, program_1, section
+from programs import BULL_10, CCW, CW, FLAT_16, LINE, RAPID, S1, WALL, path_of, program_1, section
+from random_programs import cycle
+from trunnion.model.cycle import CycleKind
+from trunnion.model.drilling import drilled
 from trunnion.model.program import Program
+from trunnion.model.spindle import FeedMode
+from trunnion.model.toolpath import Toolpath
 from trunnion.post.dialects.linuxcnc import LinuxCncDialect
 from trunnion.post.header import Header
 from trunnion.post.settings import PostSettings
@@ -117,6 +123,29 @@ def test_rs274_takes_inverse_time_as_we_mean(tmp_path):
                 minutes.append(math.dist(at, numbers[:3]) / feed)
             at = numbers[:3]
     assert minutes == pytest.approx([m for m in rows.minutes if m > 0.0], rel=2e-3)
+
+
+@pytest.mark.parametrize("lift", [0.0, 18.0, 48.0])
+@pytest.mark.parametrize("kind", CycleKind)
+def test_rs274_drills_as_we_mean(kind, lift, tmp_path):
+    tops = np.array([[10.0, 5.0, 2.0], [30.0, 5.0, 2.0], [30.0, 25.0, -4.5]])
+    path = drilled(np.array([0.0, 0.0, 50.0]), tops, cycle(kind, lift=lift), 500.0)
+    x, y, _ = path.position[-1]
+    whole = Toolpath.join([path, path_of((RAPID, x, y, 50.0))])
+    program = Program(name="B1.S1", setup=S1, sections=(section("a", FLAT_16, whole, 400.0),))
+    assert compare(program, tmp_path) >= 13
+
+
+def test_rs274_feeds_by_the_revolution_as_we_mean(tmp_path):
+    made = section("wall", FLAT_16, WALL, 8000.0)
+    by_turns = replace(made, feed_mode=FeedMode.REVOLUTION)
+    text = LinuxCncDialect().write(
+        [Program(name="B1.S1", setup=S1, sections=(by_turns,))], HEADER, PostSettings()
+    )
+    calls = run(text, tmp_path)
+    feeds = [n[-1] for _, name, n in calls if name == "SET_FEED_RATE" and n[-1] > 0.0]
+    assert feeds == [0.1]
+    assert any(name == "SET_FEED_MODE" and n[-1] == 1 for _, name, n in calls)
 
 
 def test_rs274_takes_random_arcs_lines_and_helices(tmp_path):

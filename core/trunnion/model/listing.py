@@ -66,9 +66,10 @@ def _blocks(section: ProgramSection, marks: bool) -> Iterator[str]:
         _feeds(section),
         path.mark.tolist(),
         tilted.tolist(),
+        path.dwells().tolist(),
         strict=True,
     )
-    for motion, position, axis, centre, feed, mark, leans in rows:
+    for motion, position, axis, centre, feed, mark, leans, dwell in rows:
         words = [f"{_MOTIONS[Motion(motion)]:7}", *_numbers("xyz", position)]
         if leans:
             words += _numbers("ijk", axis)
@@ -76,6 +77,8 @@ def _blocks(section: ProgramSection, marks: bool) -> Iterator[str]:
             words += ["centre", *_numbers("xy", centre[:2])]
         if motion != Motion.RAPID:
             words.append(feed)
+        if dwell > 0.0:
+            words.append(f"dwell {trimmed(dwell, 3)}")
         if marks:
             words.append(_MARKS[mark])
         yield " ".join(words)

@@ -22,8 +22,8 @@ class ProgramSection:
     """The motions of one operation with one tool. `spindle` 1/min; `block_lines` the text line of each block when read back, else empty.
 
     `width` ae and `depth` ap mm are the engagement that a `feed` in mm/min was chosen for; 0 where nothing is known of it. `dwell` s is how
-    long the text makes the tool wait in all. At a constant `surface_speed` in m/min (0: none) the work turns about the setup's z and
-    `spindle` is never passed. `feed_mode` is how a text gives the feeds, which the path has in mm/min.
+    long the text makes the tool wait in all, the path's own dwells in it. At a constant `surface_speed` in m/min (0: none) the work turns
+    about the setup's z and `spindle` is never passed. `feed_mode` is how a text gives the feeds, which the path has in mm/min.
     """
 
     operation: str
@@ -61,6 +61,7 @@ def section_of(operation: Operation, path: Toolpath) -> ProgramSection:
         tool=operation.tool,
         spindle=data.spindle_at(operation.tool.diameter),
         path=path,
+        dwell=float(path.dwells().sum()),
         width=data.width,
         depth=data.depth,
         feed=data.feed,

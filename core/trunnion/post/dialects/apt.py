@@ -22,7 +22,7 @@ from trunnion.post.linearize import lines_for_arcs
 from trunnion.post.settings import PostSettings
 from trunnion.post.ticks import TickScale, WrittenPath, upright, written
 from trunnion.post.words import dialect_words, plain, refuse_unwritable
-from trunnion.post.writer.feed import FeedFormat, revolution_text, surface_text
+from trunnion.post.writer.feed import FeedFormat, dwell_text, revolution_text, surface_text
 from trunnion.shop.kinematics import NO_PLACES, Places
 from trunnion.units import trimmed
 
@@ -178,7 +178,8 @@ def _motions(
     path: WrittenPath, scale: TickScale, axes: TickScale | None, feed_text: FeedText
 ) -> Iterator[str]:
     text, said, start = scale.text, "", [0, 0, 0]
-    for (point, centre, motion, feed), axis in zip(path.blocks(), path.more.tolist(), strict=True):
+    rows = zip(path.blocks(), path.more.tolist(), path.dwell.tolist(), strict=True)
+    for (point, centre, motion, feed), axis, dwell in rows:
         if motion == Motion.RAPID:
             yield "RAPID"
         elif (now := feed_text(feed, point[0])) != said:
@@ -190,4 +191,6 @@ def _motions(
             yield f"CIRCLE/{text(centre[0])},{text(centre[1])},{text(start[2])},0,0,{sense},{text(radius)}"
         leans = "".join(f",{axes.text(v)}" for v in axis) if axes is not None else ""
         yield f"GOTO/{text(point[0])},{text(point[1])},{text(point[2])}{leans}"
+        if dwell > 0.0:
+            yield f"DELAY/{dwell_text(dwell)}"
         start = point

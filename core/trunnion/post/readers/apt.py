@@ -14,7 +14,14 @@ from trunnion.model.spindle import FeedMode, limited_turns, per_minute
 from trunnion.model.tool import Tool
 from trunnion.model.toolpath import Motion
 from trunnion.post.readers.arcs import refuse_nearly_closed, refuse_no_radius
-from trunnion.post.readers.numbers import FEED, FEED_PER_REVOLUTION, LENGTH, SPINDLE, shown
+from trunnion.post.readers.numbers import (
+    DWELL,
+    FEED,
+    FEED_PER_REVOLUTION,
+    LENGTH,
+    SPINDLE,
+    shown,
+)
 from trunnion.post.readers.sections import (
     NOWHERE,
     CuttingState,
@@ -82,6 +89,7 @@ class _Reader:
             "FEDRAT": self.fedrat,
             "GOTO": self.goto,
             "CIRCLE": self.arc,
+            "DELAY": self.delay,
             "END": self.pause,
             "FINI": self.fini,
         }
@@ -353,6 +361,11 @@ class _Reader:
         if numbers[3:6] not in ([0.0, 0.0, 1.0], [0.0, 0.0, -1.0]):
             raise BadInput(f"line {line}: an arc about another axis than Z is not understood")
         self.circle = [v * scale for v in numbers[:3]] + numbers[3:6] + [numbers[6] * scale]
+
+    def delay(self, line: int, rest: str) -> None:
+        seconds = self.numbers(line, rest, 1)[0]
+        DWELL.check(line, "DELAY ", seconds)
+        self.sections.dwell(seconds)
 
     def pause(self, line: int, rest: str) -> None:
         if rest:

@@ -95,7 +95,7 @@ class Control:
             if not language.states.isdisjoint(words):
                 self.modes.speeds(block)
             if codes:
-                self.state.motion = language.motions[codes[0]]
+                self.state.motion, self.state.cycle = language.motions[codes[0]], None
         if not language.moves.isdisjoint(words):
             self.moves.move(block)
         if codes and any(code in codes for code in language.ends):

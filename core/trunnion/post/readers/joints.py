@@ -78,6 +78,7 @@ class Joints:
             centre=centre[row],
             feed=whole.feed[row],
             mark=marks_of(motion[row]),
+            dwell=whole.dwell_of(row),
         )
         return path, tuple(np.array(rows.line)[row].tolist())
 

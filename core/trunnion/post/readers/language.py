@@ -6,6 +6,7 @@ import math
 from collections.abc import Iterable
 
 from trunnion.findings import BadInput
+from trunnion.model.cycle import PECKING, WAITING, CycleKind
 from trunnion.model.tool import Tool
 from trunnion.model.toolpath import Motion
 from trunnion.post.iso_words import IsoWords, by_code
@@ -44,6 +45,8 @@ class ControlLanguage:
         self.motions = {code: Motion(n) for n, code in enumerate(words.motions)}
         self.units = {words.units[name]: unit for name, unit in _UNITS.items()}
         self.coolants = {code: name for name, code in words.coolant.items()}
+        self.cycles = {code: CycleKind(kind) for kind, code in words.cycles.items()}
+        levels = dict(zip(words.return_levels, ("initial level", "retract plane"), strict=True))
         self.refused = by_code(words.refused)
         said = self._checked(tuple(known))
         self.meanings = {
@@ -51,6 +54,8 @@ class ControlLanguage:
             **dict.fromkeys(self.units, "units"),
             **dict.fromkeys(self.coolants, "coolant"),
             **dict.fromkeys(words.work_offsets, "work offset"),
+            **dict.fromkeys(self.cycles, "cycle"),
+            **{code: meaning for code, meaning in levels.items() if code},
             **said,
         }
         self.dwell, self.length, self.tool_change = (
@@ -61,7 +66,7 @@ class ControlLanguage:
         )
         self.ends = tuple(code for code, meaning in said.items() if meaning == "end")
         self.groups = (
-            (*self.motions, *(c for c, m in said.items() if m == "no motion")),
+            (*self.motions, *self.cycles, *(c for c, m in said.items() if m == "no motion")),
             tuple(self.units),
             words.work_offsets,
             *(tuple(group.split()) for group in words.groups),
@@ -98,6 +103,11 @@ class ControlLanguage:
                 codes := tuple(code for code, m in self.meanings.items() if m == meaning)
             ):
                 self.takers[role[name]] = (*self.takers.get(role[name], ()), *codes)
+        for name, kinds in (("peck", PECKING), ("dwell", WAITING)):
+            if codes := tuple(code for code, kind in self.cycles.items() if kind in kinds):
+                self.takers[role[name]] = (*self.takers.get(role[name], ()), *codes)
+        self.retract = role.get("retract", "") if self.cycles else ""
+        self.moves |= set(self.retract)
         self.states = frozenset("FST") | (
             {self.length_letter} if self.length_letter and not self.length else set()
         )
@@ -107,9 +117,10 @@ class ControlLanguage:
             | self.takers.keys()
             | self.states
             | ({self.turns} if self.turns else set())
+            | ({self.retract} if self.retract else set())
         )
         self.ranges = {
-            **dict.fromkeys((*"XYZIJ", self.radius), LENGTH),
+            **dict.fromkeys((*"XYZIJ", self.radius, *self.retract), LENGTH),
             "T": COUNT,
             "N": LINE_NUMBER,
         }

@@ -14,7 +14,7 @@ from trunnion.post.readers.numbers import (
     INVERSE_TIME,
     SPINDLE,
 )
-from trunnion.post.readers.state import ModalState
+from trunnion.post.readers.state import ModalCycle, ModalState
 from trunnion.units import METRES_PER_FOOT
 
 FEED_RANGES = {
@@ -42,6 +42,9 @@ AFTER_SPEEDS = {
     "dwell": "wait",
     "no motion": "cancel_motion",
     "motion": "set_motion",
+    "cycle": "set_cycle",
+    "initial level": "return_to_level",
+    "retract plane": "return_to_plane",
 }
 """The methods of `Modes` by the meanings of codes, in the order in which a line is worked off; speeds come between the two."""
 ELSEWHERE = ("machine", "end", "nothing")
@@ -272,10 +275,27 @@ class Modes:
 
     def cancel_motion(self, block: Block) -> None:
         """Move no more until a motion is given."""
-        self.state.motion = None
+        self.state.motion = self.state.cycle = None
 
     def set_motion(self, block: Block) -> None:
         """Take over how positions are reached."""
         self.state.motion = next(
             motion for code, motion in self.language.motions.items() if code in block.codes
         )
+        self.state.cycle = None
+
+    def set_cycle(self, block: Block) -> None:
+        """Drill at each position from here on; a cycle that is in force already goes on."""
+        state = self.state
+        code = next(c for c in block.codes if c in self.language.cycles)
+        if state.cycle is None or state.cycle.code != code:
+            state.cycle = ModalCycle(code=code, kind=self.language.cycles[code])
+            state.motion = None
+
+    def return_to_level(self, block: Block) -> None:
+        """End cycles at the level where they began."""
+        self.state.returns_to_level = True
+
+    def return_to_plane(self, block: Block) -> None:
+        """End cycles at their retract plane."""
+        self.state.returns_to_level = False

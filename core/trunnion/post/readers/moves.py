@@ -4,17 +4,21 @@ from __future__ import annotations
 
 from collections.abc import Callable
 
+import numpy as np
+
 from trunnion.findings import BadInput
+from trunnion.model.cycle import expanded
 from trunnion.model.spindle import FeedMode, per_minute
 from trunnion.model.tool import Tool
 from trunnion.model.toolpath import Motion
 from trunnion.post.readers.arcs import centre_by_offset, centre_by_radius
 from trunnion.post.readers.blocks import Block
+from trunnion.post.readers.cycles import UP, hole_of
 from trunnion.post.readers.language import ControlLanguage, listed
 from trunnion.post.readers.numbers import FEED
 from trunnion.post.readers.rotary import Rotary
 from trunnion.post.readers.sections import NOWHERE, Pace, Point
-from trunnion.post.readers.state import ModalState
+from trunnion.post.readers.state import ModalCycle, ModalState
 
 Offset = Callable[[float | None, float | None, Point], tuple[float, float]]
 """Returns how far the centre of an arc lies from its start, by I and J in mm and the start."""
@@ -47,6 +51,9 @@ class ToolMover:
         if self.language.machine in block.codes:
             self.machine_move(block)
             return
+        if state.cycle is not None:
+            self.drill(block, state.cycle)
+            return
         motion = state.motion
         if motion is None:
             raise BadInput(f"line {line}: a position without {listed(self.language.motions)}")
@@ -57,20 +64,52 @@ class ToolMover:
         if motion == Motion.RAPID:
             state.sections.rapid(line, point, tool, state.cutting())
             return
+        self.check_feed(line, tool)
+        centre = NOWHERE if motion == Motion.LINE else self.centre(block, motion, point)
+        state.sections.feed(
+            line, motion, point, centre, self.pace(block, point), tool, state.cutting()
+        )
+
+    def check_feed(self, line: int, tool: Tool) -> None:
+        """Raise `BadInput` where a tool would feed without a turning spindle or a feed."""
+        state = self.state
         if not state.turning:
             raise BadInput(
                 f"line {line}: a feed move while the spindle stands; give S and {self.language.spindle} first"
             )
         if state.feed <= 0.0:
             raise BadInput(f"line {line}: a feed move without a feed; give F")
-        centre = NOWHERE if motion == Motion.LINE else self.centre(block, motion, point)
         if state.keeps_surface and tool.rotates:
             raise BadInput(
                 f"line {line}: a constant surface speed with T{tool.number}, a tool that rotates; give the spindle speed"
             )
-        state.sections.feed(
-            line, motion, point, centre, self.pace(block, point), tool, state.cutting()
-        )
+
+    def drill(self, block: Block, mode: ModalCycle) -> None:
+        """Drill a hole as the cycle in force says."""
+        state, line, start = self.state, block.line, self.state.sections.at
+        tool = self.ready(line)
+        if start is None or not state.length_on:
+            raise BadInput(
+                f"line {line}: a cycle before it is known where the tool is; begin with a rapid to X, Y and Z"
+            )
+        if state.feed_mode is FeedMode.INVERSE or self.rotary.turns(block.words):
+            raise BadInput(
+                f"line {line}: a cycle with {self.language.inverse} or a turning axis is not understood; write the moves out"
+            )
+        self.check_feed(line, tool)
+        cycle, top = hole_of(block, mode, state, self.language, start)
+        plain = expanded(cycle, np.array(start[:3]), np.array(top), UP)
+        pace = self.pace(block, (*top, *start[3:]))
+        for end, rapid, dwell in zip(
+            plain.position.tolist(), plain.rapid, plain.dwell, strict=True
+        ):
+            point = (*end, *start[3:])
+            if rapid:
+                state.sections.rapid(line, point, tool, state.cutting())
+            else:
+                state.sections.feed(line, Motion.LINE, point, NOWHERE, pace, tool, state.cutting())
+            if dwell > 0.0:
+                state.sections.dwell(dwell)
 
     def pace(self, block: Block, end: Point) -> Pace:
         """Return how fast a block is fed that ends at a point."""
@@ -127,6 +166,10 @@ class ToolMover:
             arcs = listed(language.words.motions[Motion.ARC_CW :])
             raise BadInput(
                 f"line {block.line}: {self.arc_letters} without an arc; put {arcs} first"
+            )
+        if language.retract != language.radius and language.retract in words:
+            raise BadInput(
+                f"line {block.line}: {language.retract} without {listed(language.cycles)}; remove it"
             )
         at, unit = state.sections.at, state.unit
         if at is None:

@@ -52,6 +52,7 @@ class SectionBlocks:
     feed: list[float] = field(default_factory=list)
     minutes: list[float] = field(default_factory=list)
     line: list[int] = field(default_factory=list)
+    dwell: list[float] = field(default_factory=list)
     modes: set[FeedMode] = field(default_factory=set)
 
     @property
@@ -134,6 +135,7 @@ def path_of(rows: SectionBlocks, position: Floats, axis: Floats, centre: Floats)
         centre=centre,
         feed=np.array(rows.feed),
         mark=marks_of(motion),
+        dwell=np.array(rows.dwell),
     )
     timed = minutes > 0.0
     if not timed.any():
@@ -260,6 +262,7 @@ class Sections:
         """Wait: a dwell between two sections belongs to the one that follows, after the last to that."""
         if self._open is not None:
             self._open.dwell += seconds
+            self._open.rows.dwell[-1] += seconds
         else:
             self._waits += seconds
 
@@ -299,6 +302,7 @@ class Sections:
         rows.feed.append(feed)
         rows.minutes.append(minutes)
         rows.line.append(line)
+        rows.dwell.append(0.0)
         self.at = point
 
     def _close(self) -> None:

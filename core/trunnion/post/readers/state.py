@@ -5,11 +5,26 @@ from __future__ import annotations
 from collections.abc import Mapping
 from dataclasses import dataclass
 
+from trunnion.model.cycle import CycleKind
 from trunnion.model.setup import Setup
 from trunnion.model.spindle import FeedMode, limited_turns
 from trunnion.model.tool import Tool
 from trunnion.model.toolpath import Motion
 from trunnion.post.readers.sections import CuttingState, Sections
+
+
+@dataclass(slots=True, kw_only=True)
+class ModalCycle:
+    """A drilling cycle that is in force: its code and kind; `level` Z in mm where it began, None before its first hole; `bottom` and
+    `retract` Z in mm, `peck` mm and `dwell` s as they were last given."""
+
+    code: str
+    kind: CycleKind
+    level: float | None = None
+    bottom: float | None = None
+    retract: float | None = None
+    peck: float = 0.0
+    dwell: float | None = None
 
 
 @dataclass(slots=True, kw_only=True)
@@ -19,7 +34,7 @@ class ModalState:
     `unit` mm of a written length; `feed` mm/min, mm a revolution or in inverse time 1/min, 0 when it must be given; `spindle` 1/min as it
     was given, or the highest while it `keeps_surface` at `surface_speed` in m/min; it turns while `turning`; `tool` is in the spindle,
     `next_tool` was chosen; `length_on` says that the tool's length counts; `over` is X and Y of a tool above everything whose height is not
-    known yet.
+    known yet. `cycle` is in force in place of a motion; it ends at the level where it began (`returns_to_level`) or at its retract plane.
     """
 
     tools: Mapping[int, Tool]
@@ -41,6 +56,8 @@ class ModalState:
     speed_given: bool = False
     turning: bool = False
     coolant: str = "off"
+    cycle: ModalCycle | None = None
+    returns_to_level: bool = True
 
     def cutting(self) -> CuttingState:
         """Return what a move runs with, for the section that it belongs to."""

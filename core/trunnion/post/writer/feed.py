@@ -12,6 +12,8 @@ from trunnion.units import METRES_PER_FOOT, trimmed
 
 SURFACE_DECIMALS = 1
 """Decimals of a constant surface speed in m/min or ft/min."""
+DWELL_DECIMALS = 3
+"""Decimals of a dwell in seconds."""
 
 
 class RevolutionWords(Protocol):
@@ -46,6 +48,11 @@ def feed_word(words: IsoWords, mode: FeedMode) -> str:
         FeedMode.REVOLUTION: words.per_revolution,
         FeedMode.INVERSE: words.inverse_time,
     }[mode]
+
+
+def dwell_text(seconds: float) -> str:
+    """Return a dwell as it is written; never zero."""
+    return shortened(seconds, DWELL_DECIMALS)
 
 
 def revolution_text(share: float, scale: TickScale, words: RevolutionWords) -> str:

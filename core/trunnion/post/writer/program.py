@@ -9,13 +9,14 @@ from trunnion.findings import Refused
 from trunnion.model.program import Program, ProgramSection
 from trunnion.model.spindle import FeedMode
 from trunnion.post.header import Header, place_lines
-from trunnion.post.iso_words import IsoWords
+from trunnion.post.iso_words import IsoWords, code_of
 from trunnion.post.linearize import PathTolerance
 from trunnion.post.settings import PostSettings
 from trunnion.post.ticks import TickScale
 from trunnion.post.words import plain, refuse_unwritable
 from trunnion.post.writer.approach import approach, coolant, tool_change
-from trunnion.post.writer.feed import FeedFormat, feed_word, surface_text
+from trunnion.post.writer.cycles import CycleWriter
+from trunnion.post.writer.feed import FeedFormat, dwell_text, feed_word, surface_text
 from trunnion.post.writer.modal import WrittenState, degrees_of
 from trunnion.post.writer.rotary import AxisForm, JointForm, ThreeAxes
 from trunnion.shop.kinematics import WorkPosition
@@ -123,12 +124,37 @@ class ProgramWriter:
         """Yield the approach and the blocks of a section."""
         modal = self.modal
         path, minutes = self.axes.blocks(section, modal.angle, not changed)
-        blocks = zip(path.blocks(), path.more.tolist(), minutes.tolist(), strict=True)
-        (first, _, _, _), angle, _ = next(blocks)
+        blocks = zip(
+            path.blocks(), path.more.tolist(), minutes.tolist(), path.dwell.tolist(), strict=True
+        )
+        (first, _, _, _), angle, _, dwell = next(blocks)
         yield from map(self.numbered, approach(modal, section.tool, first, angle, changed))
+        yield from map(self.numbered, self.waited(dwell, section))
         numbered, words_of = self.numbered, modal.block
-        for block, turned, time in blocks:
+        cycles, begins, after = CycleWriter(modal), {c.first: c for c in path.cycles}, 0
+        for row, (block, turned, time, dwell) in enumerate(blocks, 1):
+            if row < after:
+                continue
+            if row in begins and (lines := cycles.lines(path, begins[row])):
+                yield from map(numbered, lines)
+                after = begins[row].last + 1
+                continue
+            yield from map(numbered, cycles.ended())
             yield numbered(words_of(block, turned, time))
+            if dwell > 0.0:
+                yield from map(numbered, self.waited(dwell, section))
+        yield from map(numbered, cycles.ended())
+
+    def waited(self, seconds: float, section: ProgramSection) -> Iterator[str]:
+        """Yield the line that makes the tool stand; raise `Refused` where the control has no words for it."""
+        if seconds <= 0.0:
+            return
+        code, letter = code_of(self.words, "dwell"), self.words.letters.get("dwell", "")
+        if not code or not letter:
+            raise Refused(
+                f"operation {section.operation}: {self.words.title} has no words for a dwell"
+            )
+        yield f"{code} {letter}{dwell_text(seconds)}"
 
 
 def _axis_form(words: IsoWords, settings: PostSettings, place: WorkPosition | None) -> AxisForm:

@@ -91,6 +91,7 @@ class JointForm:
             centre=joints.centre,
             feed=joints.feed,
             mark=np.zeros(len(joints.words), np.int64),
+            dwell=joints.dwell,
         )
         path = written(
             moved, self.scale, section.operation, self.degrees.ticks(np.degrees(joints.angle))
