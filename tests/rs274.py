@@ -140,11 +140,16 @@ def compare_joints(
 
 
 def _going(calls: Sequence[Call]) -> list[Call]:
-    """Return moves without the rapids of a line that end where the move before them in that line has ended: cycles have some."""
+    """Return moves without rapids that end where the move before them has ended: cycles have some."""
     kept: list[Call] = []
+    at: list[float] = []
     for call in calls:
-        if not (kept and call[1] == "STRAIGHT_TRAVERSE" and kept[-1][0::2] == call[0::2]):
+        end = call[2][:3] if call[1] != "ARC_FEED" else [*call[2][:2], call[2][5]]
+        if not (
+            at and call[1] == "STRAIGHT_TRAVERSE" and np.abs(np.subtract(end, at)).max() < 1e-9
+        ):
             kept.append(call)
+        at = end
     return kept
 
 
@@ -158,9 +163,10 @@ def compare(
     theirs = _going(
         [call for call in run(text, tools, folder) if call[0] in numbers and call[1] in moves]
     )
+    read, ours = len(ours), _going(ours)
     assert [call[:2] for call in ours] == [call[:2] for call in theirs]
     for (_, name, mine), (_, _, other) in zip(ours, theirs, strict=True):
         lengths = [0, 1, 2, 3, 5] if name == "ARC_FEED" else [0, 1, 2]
         assert np.abs(np.array([mine[n] - other[n] * scale for n in lengths])).max() <= 1e-4 * scale
         assert name != "ARC_FEED" or mine[4] == other[4]
-    return len(ours)
+    return read

@@ -93,16 +93,27 @@ def test_an_end_that_no_return_reaches_is_written_out():
     ]
 
 
-def test_the_last_hole_may_return_to_where_the_series_began():
+def test_a_return_to_where_the_series_began_is_not_left_to_a_control_that_goes_there_aslant():
     low = drilled(HIGH, TOPS[:1], cycle(CycleKind.DRILL), 500.0)
     last = drilled(low.position[-1], TOPS[1:], cycle(CycleKind.DRILL, lift=48.0), 500.0)
-    path = Toolpath.join([low, replace(last, motion=last.motion)])
-    made = program(path)
-    assert words_of(made)[:2] == ["G99 G81 X10 Y5 Z-5 R2 F500", "G98 X30 Y5"]
-    (again,) = LinuxCncDialect().read(
-        LinuxCncDialect().write([made], HEADER, PostSettings()), [FLAT_16], [S1]
-    )
-    assert again.sections[0].path.position[-1].tolist() == [30.0, 5.0, 50.0]
+    path = Toolpath.join([low, last])
+    assert words_of(program(path)) == [
+        "G99 G81 X10 Y5 Z-5 R2 F500",
+        "G80",
+        "G0 X30",
+        "G1 Z-5",
+        "G0 Z50",
+    ]
+
+
+def test_a_hole_whose_plane_is_higher_begins_a_series():
+    tops = np.array([[10.0, 5.0, 2.0], [30.0, 5.0, 4.0]])
+    path = drilled(HIGH, tops, cycle(CycleKind.DRILL), 500.0)
+    assert words_of(program(path))[:3] == [
+        "G99 G81 X10 Y5 Z-5 R2 F500",
+        "G80",
+        "G81 X30 Y5 Z-3 R4",
+    ]
 
 
 def test_another_kind_is_a_series_of_its_own():
@@ -152,6 +163,16 @@ def test_without_a_word_for_it_cycles_return_to_where_they_began():
     assert moves("G81 X5 Y0 Z-3 R2 F100\nY7")[-1] == ("R", 5, 7, 10)
     assert moves("G99 G81 X5 Y0 Z-3 R2 F100\nG98 Y7")[-1] == ("R", 5, 7, 10)
     assert moves("G99 G81 X5 Y0 Z-3 R2 F100\nG80\nG98 G81 Y7 Z-3 R2")[-1] == ("R", 5, 7, 2)
+
+
+def test_a_hole_is_come_to_as_the_control_does_not_as_one_would_wish():
+    # Back to the level where the series began, from the retract plane: up and across at once.
+    assert moves("G99 G81 X5 Y0 Z-3 R2 F100\nG98 X9")[4] == ("R", 9, 0, 10)
+    # A plane above the tool: up and across at once.
+    assert moves("G99 G81 X5 Y0 Z-3 R2 F100\nX9 R4")[4:6] == [("R", 9, 0, 4), ("F", 9, 0, -3)]
+    # A series that began below its plane: down to the next plane before it goes across.
+    down = moves("G0 Z-4\nG81 X5 Y0 Z-5 R5 F100\nX9 R0")
+    assert down[5:8] == [("R", 5, 0, 0), ("R", 9, 0, 0), ("F", 9, 0, -5)]
 
 
 def test_chips_are_broken_by_the_back_off():

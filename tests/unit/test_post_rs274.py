@@ -136,6 +136,43 @@ def test_rs274_drills_as_we_mean(kind, lift, tmp_path):
     assert compare(program, tmp_path) >= 13
 
 
+def test_rs274_drills_random_holes_one_after_the_other(tmp_path):
+    rng, at, parts = np.random.default_rng(5), np.array([0.0, 0.0, 50.0]), []
+    for _ in range(300):
+        top = np.round(rng.uniform(-40, 40, 3), 4)
+        # It ends at its retract plane, where it began, where the one before began, or elsewhere.
+        ends = [top[2], at[2], parts[-1].position[0, 2] if parts else 0.0, 50.0]
+        lift = max(float(np.round(ends[rng.integers(4)] - top[2], 4)), 0.0)
+        kind = list(CycleKind)[rng.integers(7)] if rng.random() < 0.3 else CycleKind.DRILL
+        parts.append(drilled(at, top[None], cycle(kind, float(rng.integers(1, 30)), lift), 500.0))
+        at = parts[-1].position[-1]
+    whole = Toolpath.join([*parts, path_of((RAPID, *at[:2], 50.0))])
+    program = Program(name="B1.S1", setup=S1, sections=(section("a", FLAT_16, whole, 400.0),))
+    text = LinuxCncDialect().write([program], HEADER, PostSettings())
+    assert text.count("G98") > 20 and text.count("G80") > 50
+    assert compare(program, tmp_path) > 900
+
+
+@pytest.mark.parametrize(
+    "body",
+    [
+        "G99 G81 X10 Y0 Z-5 R2 F100;G98 X20;X30;G99 X40;X50",
+        "G99 G81 X10 Y0 Z-5 R2 F100;G98 X20 R5;X30 R-1",
+        "G99 G81 X10 Y0 Z-5 R2 F100;X20 R5;X30 R1",
+        "G0 Z-4;G98 G81 X10 Y0 Z-5 R2 F100;X20;X30 R5;X40 R0",
+        "G0 Z-4;G99 G73 X10 Y0 Z-5 R2 Q1 F100;X20;G98 Y30",
+        "G99 G81 X10 Y0 Z-5 R2 F100;G98 G82 X20 Z-5 R2 P0.1;G85 X30 Z-5 R2",
+        "G98 G81 X10 Y0 Z-5 R2 F100;X20 R30;X30 R2;Z-9",
+        "G99 G83 X10 Y0 Z-5 R2 Q2 F100;G80;G98 G84 X20 Y0 Z-5 R2",
+    ],
+)
+def test_rs274_drills_hand_written_holes_as_we_read_them(body, tmp_path):
+    lines = "G21 G90 G54 G64 P0.005;T1 M6;S400 M3;G0 G43 H1 X0 Y0 Z50;G0 Z20".split(";")
+    lines += [*body.split(";"), "G0 Z50", "M30"]
+    text = "\n".join(f"N{10 * k} {line}" for k, line in enumerate(lines, 1)) + "\n"
+    assert rs274.compare(text, TOOLS, S1, tmp_path) > 7
+
+
 def test_rs274_feeds_by_the_revolution_as_we_mean(tmp_path):
     made = section("wall", FLAT_16, WALL, 8000.0)
     by_turns = replace(made, feed_mode=FeedMode.REVOLUTION)

@@ -58,6 +58,22 @@ def hole_of(
         raise BadInput(f"line {line}: {code}: {reason}") from None
 
 
+def ways_over(mode: ModalCycle, start: Point, top: Point, cycle: Cycle) -> list[Point]:
+    """Return the ends of the rapids that bring a tool over a hole, mm; those that go nowhere are left out.
+
+    As LinuxCNC 2.9 does: where the series began below the retract plane, first straight to that plane, up or down; then to the hole at the
+    tool's height, or, where that is not above the retract plane, on the way up to where the cycle ends.
+    """
+    x, y, plane = top
+    at, over = start[:3], []
+    if mode.level is not None and mode.level < plane:
+        over.append((at[0], at[1], plane))
+        at = over[-1]
+    over.append((x, y, at[2] if at[2] > plane else plane + cycle.lift))
+    before = [start[:3], *over]
+    return [end for end, last in zip(over, before, strict=False) if end != last]
+
+
 def _pitch(state: ModalState, top: Point) -> float:
     """Return the pitch in mm that the feed is at the spindle's speed; 0 where that stands."""
     turns = state.turns_at(top[0])

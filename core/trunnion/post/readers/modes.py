@@ -285,11 +285,12 @@ class Modes:
         self.state.cycle = None
 
     def set_cycle(self, block: Block) -> None:
-        """Drill at each position from here on; a cycle that is in force already goes on."""
+        """Drill at each position from here on; a cycle that is in force already goes on, another keeps the level where the first began."""
         state = self.state
         code = next(c for c in block.codes if c in self.language.cycles)
         if state.cycle is None or state.cycle.code != code:
-            state.cycle = ModalCycle(code=code, kind=self.language.cycles[code])
+            level = None if state.cycle is None else state.cycle.level
+            state.cycle = ModalCycle(code=code, kind=self.language.cycles[code], level=level)
             state.motion = None
 
     def return_to_level(self, block: Block) -> None:

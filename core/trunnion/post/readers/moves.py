@@ -13,7 +13,7 @@ from trunnion.model.tool import Tool
 from trunnion.model.toolpath import Motion
 from trunnion.post.readers.arcs import centre_by_offset, centre_by_radius
 from trunnion.post.readers.blocks import Block
-from trunnion.post.readers.cycles import UP, hole_of
+from trunnion.post.readers.cycles import UP, hole_of, ways_over
 from trunnion.post.readers.language import ControlLanguage, listed
 from trunnion.post.readers.numbers import FEED
 from trunnion.post.readers.rotary import Rotary
@@ -98,7 +98,10 @@ class ToolMover:
             )
         self.check_feed(line, tool)
         cycle, top = hole_of(block, mode, state, self.language, start)
-        plain = expanded(cycle, np.array(start[:3]), np.array(top), UP)
+        over = ways_over(mode, start, top, cycle)
+        for end in over:
+            state.sections.rapid(line, (*end, *start[3:]), tool, state.cutting())
+        plain = expanded(cycle, np.array((over or [start])[-1][:3]), np.array(top), UP)
         pace = self.pace(block, (*top, *start[3:]))
         for end, rapid, dwell in zip(
             plain.position.tolist(), plain.rapid, plain.dwell, strict=True

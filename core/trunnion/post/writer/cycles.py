@@ -42,8 +42,8 @@ class CycleWriter:
         kind, modal = block.cycle.kind, self.modal
         if kind not in self.words.cycles or modal.feeds.mode is FeedMode.INVERSE:
             return []
-        above = max(path.point[block.first - 1].tolist()[2], block.retract)
-        series, before = self.series_of(block, above), self.series
+        height = path.point[block.first - 1].tolist()[2]
+        series, before = self.series_of(block, height), self.series
         if series is None:
             return []
         ended = self.ended() if series is not before else []
@@ -52,15 +52,19 @@ class CycleWriter:
         modal.reached(path.point[block.last].tolist(), modal.angle or [], -1)
         return [*ended, line]
 
-    def series_of(self, block: WrittenCycle, above: int) -> CycleSeries | None:
-        """Return the series that a cycle goes on with or begins, from a height in ticks; None where neither ends it where it does end."""
-        begun = CycleSeries(kind=block.cycle.kind, deep=self.deep(block), level=above)
-        known = self.series
-        goes_on = known is not None and (known.kind, known.deep) == (begun.kind, begun.deep)
-        for series in (*([known] if known is not None and goes_on else []), begun):
-            if block.end in (block.retract, max(series.level, block.retract)):
-                return series
-        return None
+    def series_of(self, block: WrittenCycle, height: int) -> CycleSeries | None:
+        """Return the series that a cycle goes on with or begins, from a height in ticks; None where neither goes and ends as it does.
+
+        A control that is below the level where a series began, and not above the retract plane, goes to the next hole and up at once; one
+        whose series began below the retract plane goes down to that before it goes to the hole. Both are left to the motions themselves.
+        """
+        begun = CycleSeries(kind=block.cycle.kind, deep=self.deep(block), level=height)
+        known, plane = self.series, block.retract
+        if known is not None and (known.kind, known.deep) == (begun.kind, begun.deep):
+            returns = height > plane and block.end == known.level
+            if min(height, known.level) >= plane and (block.end == plane or returns):
+                return known
+        return begun if block.end == plane or (height > plane and block.end == height) else None
 
     def deep(self, block: WrittenCycle) -> tuple[str, ...]:
         """Return the words of peck and dwell."""
