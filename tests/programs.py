@@ -20,7 +20,7 @@ from trunnion.model.program import Program, ProgramSection
 from trunnion.model.session import PartInfo, PostedFile, Session, SizeEntry, StepRecord
 from trunnion.model.setup import Setup
 from trunnion.model.tool import Holder, Insert, Tool, TurningTool
-from trunnion.model.toolpath import Mark, Motion, Toolpath
+from trunnion.model.toolpath import ACROSS, Mark, Motion, Toolpath
 from trunnion.model.verdict import (
     BlockProof,
     Deviation,
@@ -134,6 +134,30 @@ BACK = path_of(
     (LINE, 95.0, 5.0, -1.0, 1500.0),
     (RAPID, 95.0, 5.0, 30.0),
 )
+
+
+def turned_path(*blocks: tuple) -> Toolpath:
+    """Return a path of turning work of blocks as `path_of` has them, x from the work's axis and z in place of y."""
+    flat = path_of(*((b[0], b[1], b[2], 0.0, *b[3:]) for b in blocks))
+    return replace(
+        flat,
+        position=flat.position[:, [0, 2, 1]],
+        centre=flat.centre[:, [0, 2, 1]],
+        axis=np.tile(ACROSS, (len(blocks), 1)),
+        work_turns=True,
+    )
+
+
+FACING = turned_path(
+    (RAPID, 60.0, 50.0),
+    (RAPID, 60.0, 5.0),
+    (LINE, 60.0, -1.0, 191.0),
+    (LINE, 10.0, -1.0, 500.0),
+    (CW, 5.0, -6.0, 10.0, -6.0, 700.0),
+    (CCW, 0.0, -11.0, 0.0, -6.0, 700.0),
+    (RAPID, 0.0, 50.0),
+)
+"""A path of turning work: in, across the face, two quarters of circles."""
 
 
 def section(

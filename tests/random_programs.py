@@ -10,6 +10,7 @@ from hypothesis import strategies as st
 from programs import BULL_10, CCW, CW, FLAT_16, LINE, RAPID, S1, path_of, section
 from trunnion.model.cycle import BACK_OFF, PECKING, WAITING, Cycle, CycleKind
 from trunnion.model.program import Program
+from trunnion.post.writer.turning import in_plane
 
 coordinates = st.integers(-9_999_999, 9_999_999).map(lambda n: n / 10_000)
 feeds = st.integers(1, 200_000).map(lambda n: n / 10)
@@ -110,6 +111,7 @@ def program_of(parts, setup=S1) -> Program:
 def track(path) -> np.ndarray:
     """Return points along a path (n, 3): ends, and places within its arcs."""
     points = []
+    path = in_plane(path) if path.work_turns else path
     for row, (start, sweep) in enumerate(zip(path.starts(), path.sweeps(), strict=True)):
         if sweep:
             x, y = start[:2] - path.centre[row, :2]

@@ -47,7 +47,7 @@ def run(text: str, tools: Sequence[Tool], folder: Path) -> list[Call]:
     table = folder / "tools.tbl"
     table.write_text(
         "".join(
-            f"T{t.number} P{t.number} Z{t.gauge_length / 25.4:.8f} D{t.diameter / 25.4:.8f} ;{t.name}\n"
+            f"T{t.number} P{t.number} Z{t.gauge_length / 25.4:.8f} D{t.cutter_sizes[0] / 25.4:.8f} ;{t.name}\n"
             for t in tools
         )
     )

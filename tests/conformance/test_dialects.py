@@ -16,6 +16,7 @@ from leaning_paths import path_of as leaning_path
 from own_packages import all_dialects
 from programs import (
     BULL_10,
+    FACING,
     FLAT_16,
     RAPID,
     S1,
@@ -26,17 +27,28 @@ from programs import (
     section,
     verdict,
 )
-from random_programs import coordinates, cycle, cycles, program_of, programs, same, spoils
+from random_programs import (
+    coordinates,
+    cycle,
+    cycles,
+    farthest,
+    program_of,
+    programs,
+    same,
+    spoils,
+    track,
+)
 from trunnion.findings import BadCall, BadInput, Refused
 from trunnion.model.cycle import WAITING, CycleKind
 from trunnion.model.drilling import drilled
 from trunnion.model.listing import listing
 from trunnion.model.program import Program
 from trunnion.model.spindle import FeedMode
-from trunnion.model.toolpath import EMPTY, Toolpath
+from trunnion.model.toolpath import EMPTY, Motion, Toolpath
 from trunnion.model.verdict import Outcome
 from trunnion.post.contract import Dialect
 from trunnion.post.header import REJECTED, STAMP_LINES, Header
+from trunnion.post.linearize import lines_for_arcs
 from trunnion.post.release import is_released
 from trunnion.post.settings import PostSettings
 from trunnion.shop.kinematics import NO_PLACES, Places
@@ -78,6 +90,12 @@ def holes(kind: CycleKind, lift: float) -> Toolpath:
     """Return a path of three holes, the last one lower, with a feed of 480 mm/min: 1.25 mm a revolution at 384 1/min."""
     tops = np.array([[10.0, 5.0, 2.0], [30.0, 5.0, 2.0], [30.0, 25.0, -4.5]])
     return lifted(drilled(np.array([0.0, 0.0, 50.0]), tops, cycle(kind, lift=lift), 480.0))
+
+
+def opened(path: Toolpath) -> np.ndarray:
+    """Return the points (n, 3) of a path with its arcs as lines within 1 um."""
+    arcs = np.flatnonzero(path.motion >= Motion.ARC_CW)
+    return lines_for_arcs(path, arcs, 1e-3)[0].position
 
 
 def lifted(path: Toolpath) -> Toolpath:
@@ -283,13 +301,13 @@ def test_tapping_at_another_feed_than_its_pitch_is_refused(dialect):
 @pytest.mark.parametrize("units", ["mm", "inch"])
 def test_a_constant_surface_speed_is_written_so_that_it_is_read_or_refused(dialect, units):
     facing = replace(
-        section("face", TURNING, WALL, 2500.0), surface_speed=180.0, feed_mode=FeedMode.REVOLUTION
+        section("face", TURNING, FACING, 2500.0), surface_speed=180.0, feed_mode=FeedMode.REVOLUTION
     )
     program = one(facing, section("wall", FLAT_16, WALL))
     try:
         text = written(dialect, program, units=units)
     except Refused as refused:
-        assert "constant surface speed" in str(refused)
+        assert "no words for work that turns" in str(refused)
         return
     (read,) = dialect.read(text, (TURNING, FLAT_16), [S1])
     assert [(s.spindle, s.feed_mode) for s in read.sections] == [
@@ -297,8 +315,31 @@ def test_a_constant_surface_speed_is_written_so_that_it_is_read_or_refused(diale
         (12000.0, FeedMode.MINUTE),
     ]
     assert [s.surface_speed for s in read.sections] == pytest.approx([180.0, 0.0], abs=0.02)
-    first, second = (p.sections[0].path.feed for p in (program, read))
-    assert second == pytest.approx(first, rel=1e-3)
+    assert read.sections[0].path.feed.max() == pytest.approx(700.0, abs=0.5)
+
+
+@pytest.mark.parametrize("units", ["mm", "inch"])
+def test_work_that_turns_is_written_so_that_it_is_read_or_refused(dialect, units):
+    program = one(section("face", TURNING, FACING, 900.0), section("wall", FLAT_16, WALL))
+    try:
+        text = written(dialect, program, units=units)
+    except Refused as refused:
+        assert "no words for work that turns" in str(refused)
+        return
+    (read,) = dialect.read(text, (TURNING, FLAT_16), [S1])
+    turned, milled = (s.path for s in read.sections)
+    assert turned.work_turns and not milled.work_turns
+    assert np.abs(turned.position[-1] - FACING.position[-1]).max() <= 1e-3
+    # A dialect may write arcs as lines.
+    first, second = opened(FACING), opened(turned)
+    assert max(farthest(first, second), farthest(second, first)) <= 6e-3
+    assert farthest(track(milled), track(WALL)) <= 1e-3
+
+
+def test_a_tool_of_the_other_kind_is_refused(dialect):
+    for tool, path in ((FLAT_16, FACING), (TURNING, WALL)):
+        with pytest.raises(Refused, match="choose another tool|no words for work that turns"):
+            written(dialect, one(section("op", tool, path)))
 
 
 @pytest.mark.parametrize(

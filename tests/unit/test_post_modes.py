@@ -7,15 +7,13 @@ from dataclasses import replace
 import pytest
 from pytest import approx
 
+import programs
 from programs import (
     CCW,
     FLAT_16,
-    LINE,
-    RAPID,
     S1,
     TURNING,
     WALL,
-    path_of,
     process_tree,
     program_1,
     section,
@@ -39,12 +37,7 @@ FACING = replace(
     section(
         "face",
         TURNING,
-        path_of(
-            (RAPID, 60.0, 0.0, 5.0),
-            (LINE, 60.0, 0.0, -1.0, 191.0),
-            (LINE, 10.0, 0.0, -1.0, 500.0),
-            (RAPID, 10.0, 0.0, 5.0),
-        ),
+        programs.FACING,
         spindle=2500.0,
     ),
     surface_speed=180.0,

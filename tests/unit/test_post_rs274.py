@@ -14,7 +14,21 @@ from five_axis import five_axis_case
 from leaning_paths import ENDLESS_FORK, TABLE, joint_rows, lean, standing, text_of
 from leaning_paths import path_of as leaning_path
 from leaning_paths import program as leaning_program
-from programs import BULL_10, CCW, CW, FLAT_16, LINE, RAPID, S1, WALL, path_of, program_1, section
+from programs import (
+    BULL_10,
+    CCW,
+    CW,
+    FLAT_16,
+    LINE,
+    RAPID,
+    S1,
+    TURNING,
+    WALL,
+    path_of,
+    program_1,
+    section,
+    turned_path,
+)
 from random_programs import cycle
 from trunnion.model.cycle import CycleKind
 from trunnion.model.drilling import drilled
@@ -167,10 +181,37 @@ def test_rs274_drills_random_holes_one_after_the_other(tmp_path):
     ],
 )
 def test_rs274_drills_hand_written_holes_as_we_read_them(body, tmp_path):
-    lines = "G21 G90 G54 G64 P0.005;T1 M6;S400 M3;G0 G43 H1 X0 Y0 Z50;G0 Z20".split(";")
+    lines = ["G21 G90 G54 G64 P0.005", "T1 M6", "S400 M3", "G0 G43 H1 X0 Y0 Z50", "G0 Z20"]
     lines += [*body.split(";"), "G0 Z50", "M30"]
     text = "\n".join(f"N{10 * k} {line}" for k, line in enumerate(lines, 1)) + "\n"
     assert rs274.compare(text, TOOLS, S1, tmp_path) > 7
+
+
+def test_rs274_turns_as_we_mean(tmp_path):
+    path = turned_path(
+        *((b, x, z) for b, x, z in [(RAPID, 60, 50), (RAPID, 60, 5)]),
+        (LINE, 60.0, -1.0, 191.0),
+        (LINE, 10.0, -1.0, 500.0),
+        (CW, 5.0, -6.0, 10.0, -6.0, 700.0),
+        (CCW, 0.0, -11.0, 0.0, -6.0, 700.0),
+        (RAPID, 0.0, 50.0),
+    )
+    made = replace(
+        section("face", TURNING, path, 2500.0), surface_speed=180.0, feed_mode=FeedMode.REVOLUTION
+    )
+    program = Program(
+        name="B1.S1", setup=S1, sections=(made, section("wall", FLAT_16, WALL, 8000.0))
+    )
+    text = LinuxCncDialect().write([program], HEADER, PostSettings())
+    calls = rs274.run(text, (TURNING, FLAT_16), tmp_path)
+    ends = [n for _, name, n in calls if name in ("STRAIGHT_TRAVERSE", "STRAIGHT_FEED")]
+    assert [60.0, 0.0, 5.0] in [n[:3] for n in ends] and [10.0, 0.0, -1.0] in [n[:3] for n in ends]
+    # In the plane ZX an arc is told by z and x of its end and its centre, its sense, and y.
+    arcs = [n[:6] for _, name, n in calls if name == "ARC_FEED"]
+    assert np.allclose(arcs, [[-6, 5, -6, 10, -1, 0], [-11, 0, -6, 0, 1, 0]])
+    assert ("SET_SPINDLE_MODE", [0.0, 2500.0]) in [(name, n) for _, name, n in calls]
+    # The wall after it is milled where it was meant.
+    assert [33.3333, 0.0, -8.0] in [n[:3] for n in ends]
 
 
 def test_rs274_feeds_by_the_revolution_as_we_mean(tmp_path):

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterable, Iterator
 
 import numpy as np
 
@@ -33,7 +33,7 @@ def listing(program: Program, *, marks: bool = True) -> str:
     for section in program.sections:
         lines.append(
             f"operation {section.operation} tool {section.tool.number} spindle {_spindle(section)} "
-            f"coolant {section.coolant}{_FEED_MODES[section.feed_mode]}"
+            f"coolant {section.coolant}{_FEED_MODES[section.feed_mode]}{' turning' * section.path.work_turns}"
         )
         lines += _blocks(section, marks)
     return "\n".join(lines) + "\n"
@@ -57,7 +57,8 @@ def _feeds(section: ProgramSection) -> list[str]:
 
 def _blocks(section: ProgramSection, marks: bool) -> Iterator[str]:
     path = section.path
-    tilted = path.axis[:, 2] < np.cos(tolerance.ANGLE)
+    tilted = (path.axis[:, 2] < np.cos(tolerance.ANGLE)) & (not path.work_turns)
+    plane = [0, 2] if path.work_turns else [0, 1]
     rows = zip(
         path.motion.tolist(),
         path.position.tolist(),
@@ -74,7 +75,7 @@ def _blocks(section: ProgramSection, marks: bool) -> Iterator[str]:
         if leans:
             words += _numbers("ijk", axis)
         if motion >= Motion.ARC_CW:
-            words += ["centre", *_numbers("xy", centre[:2])]
+            words += ["centre", *_numbers(["xyz"[k] for k in plane], [centre[k] for k in plane])]
         if motion != Motion.RAPID:
             words.append(feed)
         if dwell > 0.0:
@@ -84,7 +85,7 @@ def _blocks(section: ProgramSection, marks: bool) -> Iterator[str]:
         yield " ".join(words)
 
 
-def _numbers(letters: str, values: list[float]) -> list[str]:
+def _numbers(letters: Iterable[str], values: list[float]) -> list[str]:
     """Return numbers with four decimals and their letters, without negative zeros."""
     return [
         f"{letter} {round(value, 4) + 0.0:.4f}"

@@ -8,7 +8,7 @@ from typing import Any
 
 from trunnion.findings import Finding
 from trunnion.model.spindle import FeedMode, SpindleMode, limited_turns, per_revolution
-from trunnion.model.tool import Tool
+from trunnion.model.tool import AnyTool, Tool, rotating
 from trunnion.model.toolpath import EMPTY, Toolpath
 from trunnion.settings import Value, added, unwritten
 
@@ -104,7 +104,7 @@ class Operation:
     strategy: str
     feature: str
     setup: str
-    tool: Tool
+    tool: AnyTool
     data: CuttingData
     faces: tuple[int, ...] = ()
     choices: Mapping[str, Value] = field(default_factory=dict)
@@ -114,6 +114,25 @@ class Operation:
     suppressed: bool = False
     group: str = ""
     direction: tuple[float, float, float] = (0.0, 0.0, 1.0)
+
+    @property
+    def cutter(self) -> Tool:
+        """The tool where it rotates; raises `BadInput` for a turning tool."""
+        return rotating(self.tool, self.id)
+
+    @property
+    def spindle(self) -> float:
+        """The spindle speed in 1/min; where turning work keeps its surface speed, the highest."""
+        data = self.data
+        if self.tool.rotates:
+            return data.spindle_at(self.cutter.diameter)
+        return data.highest_spindle if self.surface_speed > 0.0 else data.spindle
+
+    @property
+    def surface_speed(self) -> float:
+        """The speed in m/min that the surface of turning work keeps; 0 where the spindle's is kept."""
+        kept = not self.tool.rotates and self.data.spindle_mode is SpindleMode.SURFACE
+        return self.data.speed if kept else 0.0
 
 
 @dataclass(frozen=True, slots=True, eq=False, kw_only=True)

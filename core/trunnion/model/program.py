@@ -10,7 +10,7 @@ from trunnion.geometry.arrays import Floats
 from trunnion.model.operation import Operation
 from trunnion.model.setup import Setup
 from trunnion.model.spindle import FeedMode, limited_turns
-from trunnion.model.tool import Tool
+from trunnion.model.tool import AnyTool, Tool, rotating
 from trunnion.model.toolpath import Toolpath
 
 STANDING = 0.5
@@ -27,7 +27,7 @@ class ProgramSection:
     """
 
     operation: str
-    tool: Tool
+    tool: AnyTool
     spindle: float
     path: Toolpath
     coolant: str = "flood"
@@ -44,6 +44,11 @@ class ProgramSection:
         """Whether the spindle does not turn."""
         return self.spindle <= STANDING
 
+    @property
+    def cutter(self) -> Tool:
+        """The tool where it rotates; raises `BadInput` for a turning tool."""
+        return rotating(self.tool, self.operation)
+
     def turns(self) -> Floats:
         """Return the spindle speed (n,) in 1/min at the end of each block."""
         if self.surface_speed <= 0.0:
@@ -59,7 +64,8 @@ def section_of(operation: Operation, path: Toolpath) -> ProgramSection:
     return ProgramSection(
         operation=operation.id,
         tool=operation.tool,
-        spindle=data.spindle_at(operation.tool.diameter),
+        spindle=operation.spindle,
+        surface_speed=operation.surface_speed,
         path=path,
         dwell=float(path.dwells().sum()),
         width=data.width,

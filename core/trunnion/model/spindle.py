@@ -23,7 +23,7 @@ class SpindleMode(StrEnum):
     """What of the spindle stays the same along a path."""
 
     RPM = "rpm"
-    SURFACE = "surface"
+    SURFACE = "surface-speed"
     """The speed of the surface that is cut; the spindle turns faster where the diameter is smaller, up to a highest speed."""
 
 

@@ -16,6 +16,10 @@ _SAME_AXIS = 1e-9
 """Two axes that differ by less are written the same."""
 
 
+ACROSS = (0.0, 1.0, 0.0)
+"""The axis of a path of turning work: across the plane of its motions."""
+
+
 class Motion(IntEnum):
     """How a block moves from the end of the block before it."""
 
@@ -23,7 +27,7 @@ class Motion(IntEnum):
     LINE = 1
     """Straight with the tip; where the axis differs from the block before, it turns on the way at an even rate in their common plane."""
     ARC_CW = 2
-    """About the tool axis, which keeps still, clockwise seen along it towards the tip (G2 in G17 if that is z); a helix when it climbs."""
+    """About the axis, which keeps still, clockwise seen along it towards the tip (G2 in G17 if that is z); a helix when it climbs."""
     ARC_CCW = 3
 
 
@@ -59,7 +63,8 @@ class Toolpath:
     centre (n, 3): centre of an arc (its place along the axis doesn't matter), NaN otherwise. An arc turns less than a full turn unless it
     ends beside its centre where it starts: then one full turn.
     feed (n,) mm/min, 0 for rapids. dwell (n,) s that the tool stands at the end of each block, None where it never does. cycles: which rows
-    are drilling cycles; who knows none reads their motions.
+    are drilling cycles; who knows none reads their motions. work_turns: the work turns about the setup's z and the tool stands still; its
+    point moves in the plane y = 0 with x its distance from the work's axis, and the axis is +y, about which arcs go.
     """
 
     position: Floats
@@ -70,6 +75,7 @@ class Toolpath:
     mark: Ints
     dwell: Floats | None = added(None, written=False)
     cycles: tuple[CycleBlock, ...] = added((), written=False)
+    work_turns: bool = added(False, written=False)
 
     def __post_init__(self) -> None:
         n = len(np.asarray(self.motion))
@@ -92,6 +98,8 @@ class Toolpath:
         if (self.feed[self.motion != Motion.RAPID] <= 0.0).any():
             raise ValueError("toolpath: every feed move needs a feed above zero")
         self._check_dwell()
+        if self.work_turns:
+            self._check_turning()
         for block in self.cycles:
             self._check_cycle(block)
 
@@ -102,6 +110,16 @@ class Toolpath:
         if (dwell < 0.0).any():
             raise ValueError("toolpath: no dwell is below zero")
         object.__setattr__(self, "dwell", dwell if dwell.any() else None)
+
+    def _check_turning(self) -> None:
+        if (
+            (self.axis != ACROSS).any()
+            or self.position[:, 1].any()
+            or self.centre[arcs_of(self), 1].any()
+        ):
+            raise ValueError("toolpath: turning goes in the plane y = 0, about the axis +y")
+        if self.cycles:
+            raise ValueError("toolpath: no drilling cycle while the work turns")
 
     def _check_cycle(self, block: CycleBlock) -> None:
         """Raise `ValueError` unless the rows of a cycle are what it expands to."""
@@ -178,8 +196,11 @@ class Toolpath:
         """Return the paths one after the other."""
         if not paths:
             return EMPTY
+        if len({p.work_turns for p in paths}) > 1:
+            raise ValueError("toolpath: the work turns all along a path or not at all")
         before = np.cumsum([0, *(len(p) for p in paths)]).tolist()
         return Toolpath(
+            work_turns=paths[0].work_turns,
             dwell=np.concatenate([p.dwells() for p in paths]),
             cycles=tuple(
                 replace(block, first=block.first + n, last=block.last + n)
@@ -191,6 +212,11 @@ class Toolpath:
                 for n in ("position", "axis", "motion", "centre", "feed", "mark")
             },
         )
+
+
+def arcs_of(path: Toolpath) -> Ints:
+    """Return the rows (k,) of a path's arcs."""
+    return np.flatnonzero(path.motion >= Motion.ARC_CW)
 
 
 EMPTY = Toolpath(

@@ -244,7 +244,7 @@ def timeline_of(
                 Passage(
                     operation=section.operation,
                     setup=program.setup.name,
-                    tool=section.tool,
+                    tool=section.cutter,
                     file=files[k].suffix if files else "",
                 )
             )

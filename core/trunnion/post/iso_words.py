@@ -40,7 +40,8 @@ class IsoWords:
     keys: what the control does at them (`readers.language.MEANINGS` and the dialect's own), and why the reader refuses them. Without
     `inverse_time` the control has no rotary axes, without `per_revolution` no feeds by the revolution, without `surface_speed` no constant
     surface speed; `spindle_speed` is `spindle` where one may have been in force. `cycles` are the codes of drilling cycles by their kind,
-    and `return_levels` those that end them at the level where they began and at the retract plane.
+    and `return_levels` those that end them at the level where they began and at the retract plane. `turning` chooses the plane ZX with X
+    as a diameter, without it the control does not turn work; `milling` is said in the other sections of a program that does.
     """
 
     title: str
@@ -73,6 +74,8 @@ class IsoWords:
     revolution_decimals: int = 0
     surface_speed: str = ""
     spindle_speed: str = ""
+    turning: str = ""
+    milling: str = ""
     return_levels: tuple[str, str] = ("", "")
     cycles: dict[str, str] = field(default_factory=dict)
 

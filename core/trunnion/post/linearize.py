@@ -127,6 +127,7 @@ def lines_for_arcs(path: Toolpath, rows: Ints, within: float) -> tuple[Toolpath,
         feed=path.feed[row],
         mark=path.mark[row],
         dwell=path.dwell_of(row),
+        work_turns=path.work_turns,
     ), row
 
 

@@ -107,6 +107,13 @@ def refuse_unwritable(section: ProgramSection, title: str, coolant: Container[st
         raise Refused(f"operation {id}: a spindle speed of {section.spindle:g} turns nothing")
     if not len(section.path):
         raise Refused(f"operation {id} has no motion: nothing to write")
+    if section.path.work_turns == section.tool.rotates:
+        what = "can't turn work" if section.tool.rotates else "cuts only work that turns"
+        raise Refused(f"operation {id}: {section.tool.name} {what}; choose another tool")
+    if section.surface_speed > 0.0 and not section.path.work_turns:
+        raise Refused(
+            f"operation {id}: a constant surface speed is of work that turns; give a spindle speed"
+        )
     refuse_another_pitch(section)
 
 

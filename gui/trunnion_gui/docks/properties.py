@@ -20,6 +20,18 @@ UPRIGHT = (0.0, 0.0, 1.0)
 """The direction of a tool that stands along its setup's z."""
 
 
+def tool_rows(operation: Operation) -> Rows:
+    """Return the sizes of an operation's tool: of a turning tool those of its nose."""
+    diameter, corner = operation.tool.cutter_sizes
+    rows = [
+        (tr("Diameter"), f"{amount(diameter)} mm"),
+        (tr("Corner radius"), f"{amount(corner)} mm"),
+    ]
+    if operation.tool.rotates:
+        rows.append((tr("Stickout"), f"{amount(operation.cutter.stickout)} mm"))
+    return rows
+
+
 def mode_rows(data: CuttingData) -> Rows:
     """Return what a program gives of speed and feed, where that is more than 1/min and mm/min."""
     rows = []
@@ -123,10 +135,8 @@ class PropertiesDock(QScrollArea):
         )
         rows = [
             (tr("Tool"), f"T{o.tool.number} {o.tool.name}"),
-            (tr("Diameter"), f"{amount(o.tool.diameter)} mm"),
-            (tr("Corner radius"), f"{amount(o.tool.corner_radius)} mm"),
-            (tr("Stickout"), f"{amount(o.tool.stickout)} mm"),
-            (tr("Holder"), o.tool.holder.name),
+            *tool_rows(o),
+            (tr("Holder"), o.tool.holder_name),
             (tr("Cutting speed"), f"{amount(data.speed, 0)} m/min"),
             (tr("Spindle speed"), f"{amount(data.spindle, 0)} 1/min"),
             (tr("Feed"), f"{amount(data.feed, 0)} mm/min"),

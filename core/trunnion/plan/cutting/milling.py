@@ -258,10 +258,10 @@ def _balanced(
     machine = shop.machine(process.setup(operation.setup).machine)
     depth, width = operation.data.routed_depth or operation.data.depth, operation.data.width
     if operation.kind in ROUGHING and operation.kind != "face":
-        depth = min(depth, roughing_depth(operation.tool, material, settings))
-        width = min(width, roughing_width(operation.tool, material, settings))
+        depth = min(depth, roughing_depth(operation.cutter, material, settings))
+        width = min(width, roughing_width(operation.cutter, material, settings))
     data = cutting_data(
-        operation.tool,
+        operation.cutter,
         material,
         machine,
         operation.kind,

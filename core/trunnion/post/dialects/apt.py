@@ -6,7 +6,7 @@ Where any tool leans, every GOTO has the tool axis too (MULTAX/ON): between two 
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
@@ -15,7 +15,7 @@ from trunnion.findings import BadCall
 from trunnion.model.program import Program, ProgramSection
 from trunnion.model.setup import Setup
 from trunnion.model.spindle import FeedMode, per_revolution
-from trunnion.model.tool import Tool
+from trunnion.model.tool import AnyTool
 from trunnion.model.toolpath import Motion, Toolpath
 from trunnion.post.header import Header
 from trunnion.post.linearize import lines_for_arcs
@@ -77,7 +77,11 @@ class AptDialect:
         )
 
     def read(
-        self, text: str, tools: Sequence[Tool], setups: Sequence[Setup], places: Places = NO_PLACES
+        self,
+        text: str,
+        tools: Sequence[AnyTool],
+        setups: Sequence[Setup],
+        places: Places = NO_PLACES,
     ) -> tuple[Program, ...]:
         """Return the programs of the setups that the text names."""
         from trunnion.post.readers.apt import read_apt
@@ -119,7 +123,9 @@ def _lines(
 
 def leaning(path: Toolpath) -> bool:
     """Say whether the tool leans anywhere on a path."""
-    return bool((np.abs(path.axis[:, :2]).max(axis=1, initial=0.0) > tolerance.PARAMETRIC).any())
+    return not path.work_turns and bool(
+        (np.abs(path.axis[:, :2]).max(axis=1, initial=0.0) > tolerance.PARAMETRIC).any()
+    )
 
 
 def _section(
@@ -146,8 +152,13 @@ def _section(
 def _blocks(
     section: ProgramSection, scale: TickScale, axes: TickScale | None, within: float
 ) -> WrittenPath:
-    """Return the blocks of a section; arcs about a leaning axis are lines within a distance of them."""
+    """Return the blocks of a section; arcs about another axis than z are lines within a distance of them."""
     path = section.path
+    if path.work_turns:
+        arcs = np.flatnonzero(path.motion >= Motion.ARC_CW)
+        path, _ = lines_for_arcs(path, arcs, within)
+        up = np.tile([0.0, 0.0, 1.0], (len(path), 1))
+        path = replace(path, axis=up, work_turns=False)
     if axes is None:
         return written(upright(path, section.operation), scale, section.operation)
     leans = np.abs(path.axis[:, :2]).max(axis=1) > tolerance.PARAMETRIC

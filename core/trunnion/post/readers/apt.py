@@ -11,7 +11,7 @@ from trunnion.findings import BadInput
 from trunnion.model.program import Program
 from trunnion.model.setup import Setup
 from trunnion.model.spindle import FeedMode, limited_turns, per_minute
-from trunnion.model.tool import Tool
+from trunnion.model.tool import AnyTool
 from trunnion.model.toolpath import Motion
 from trunnion.post.readers.arcs import refuse_nearly_closed, refuse_no_radius
 from trunnion.post.readers.numbers import (
@@ -51,7 +51,7 @@ _UNIT = 1e-4
 """How far the length of a tool axis may be from 1: other systems write four decimals."""
 
 
-def read_apt(text: str, tools: Sequence[Tool], setups: Sequence[Setup]) -> tuple[Program, ...]:
+def read_apt(text: str, tools: Sequence[AnyTool], setups: Sequence[Setup]) -> tuple[Program, ...]:
     """Return the program of each setup that a CL text names; raise `BadInput` naming the line of what isn't understood.
 
     A text that names no setup belongs to the only one given.
@@ -65,13 +65,13 @@ def read_apt(text: str, tools: Sequence[Tool], setups: Sequence[Setup]) -> tuple
 class _Reader:
     """The modal state of a CL text while it is read; lengths in mm."""
 
-    def __init__(self, tools: dict[int, Tool], setups: Sequence[Setup]) -> None:
+    def __init__(self, tools: dict[int, AnyTool], setups: Sequence[Setup]) -> None:
         self.tools, self.setups = tools, {s.name: s for s in setups}
         self.programs: list[Program] = []
         self.setup: Setup | None = setups[0] if len(setups) == 1 else None
         self.sections = Sections(TiltedPoses(self.setup.clearance if self.setup else 0.0))
         self.named = self.rapid = self.ended = self.leans = self.turning = False
-        self.tool: Tool | None = None
+        self.tool: AnyTool | None = None
         self.unit, self.feed, self.spindle, self.coolant = 0.0, 0.0, 0.0, "off"
         self.surface_speed, self.feed_mode = 0.0, FeedMode.MINUTE
         self.circle: list[float] | None = None
@@ -289,6 +289,10 @@ class _Reader:
         if tool is None:
             raise BadInput(f"line {line}: a move before a tool is loaded; put LOADTL first")
         point = (x * scale, y * scale, z * scale, *self.axis(line, axis))
+        if not tool.rotates and point[1:2] + point[3:] != (0.0, *_UP):
+            raise BadInput(
+                f"line {line}: tool {tool.number} turns work in the plane of X and Z; Y must be 0, and no axis given"
+            )
         if self.rapid and self.circle is None:
             self.sections.rapid(line, point, tool, self.cutting())
             self.rapid = False
@@ -334,6 +338,10 @@ class _Reader:
             self.circle = None
             return Motion.LINE, NOWHERE
         (x, y, z, _, _, sense, radius), self.circle = self.circle, None
+        if self.tool is not None and not self.tool.rotates:
+            raise BadInput(
+                f"line {line}: an arc of a tool that turns work is not understood; write lines"
+            )
         if start[3:] != _UP or end[3:] != _UP:
             raise BadInput(
                 f"line {line}: an arc of a tool that leans is not understood; write lines"

@@ -25,8 +25,10 @@ def hole_of(
     Raises `BadInput` for what is missing, or makes no cycle.
     """
     line, code, words = block.line, mode.code, block.words
-    if words.keys().isdisjoint("XYZ") or not words.keys().isdisjoint("IJ"):
-        raise BadInput(f"line {line}: a hole of {code} is given by X, Y or Z; I and J are of arcs")
+    if words.keys().isdisjoint("XYZ") or not words.keys().isdisjoint("IJK"):
+        raise BadInput(
+            f"line {line}: a hole of {code} is given by X, Y or Z; I, J and K are of arcs"
+        )
     take_words(block, mode, state.unit, language)
     if mode.bottom is None or mode.retract is None:
         raise BadInput(
@@ -41,7 +43,7 @@ def hole_of(
     lift = max(mode.level - mode.retract, 0.0) if state.returns_to_level else 0.0
     x, y = words.get("X"), words.get("Y")
     top = (
-        start[0] if x is None else x * state.unit,
+        start[0] if x is None else x * state.x_unit,
         start[1] if y is None else y * state.unit,
         mode.retract,
     )

@@ -14,7 +14,7 @@ import numpy as np
 from trunnion import tolerance
 from trunnion.findings import BadInput
 from trunnion.geometry.arrays import Floats, Ints
-from trunnion.model.tool import Tool
+from trunnion.model.tool import AnyTool, Tool, rotating
 from trunnion.model.toolpath import Motion, Toolpath
 from trunnion.post.linearize import even_turn
 from trunnion.post.readers.sections import Point, SectionBlocks, marks_of, path_of
@@ -34,7 +34,7 @@ class Joints:
     place: WorkPosition
     clearance: float
 
-    def above(self, point: Point, tool: Tool) -> Point | None:
+    def above(self, point: Point, tool: AnyTool) -> Point | None:
         """See `PoseInterpreter`: an upright tool is lifted to the clearance height, a leaning one with the machine's Z beyond all that
         stands on the table."""
         words, angle = np.array([point[:3]]), np.radians([point[3:]])
@@ -59,7 +59,13 @@ class Joints:
         whole = path_of(rows, tip, axis, centre)
         if not turning.any():
             return whole, tuple(rows.line)
-        row, share = self._pieces(rows.tool, words, angle, motion, np.flatnonzero(turning))
+        row, share = self._pieces(
+            rotating(rows.tool, f"in line {rows.line[0]}"),
+            words,
+            angle,
+            motion,
+            np.flatnonzero(turning),
+        )
         row, share = (
             np.concatenate([np.flatnonzero(~turning), row]),
             np.concatenate([np.ones(int((~turning).sum())), share]),

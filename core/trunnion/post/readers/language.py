@@ -7,7 +7,7 @@ from collections.abc import Iterable
 
 from trunnion.findings import BadInput
 from trunnion.model.cycle import PECKING, WAITING, CycleKind
-from trunnion.model.tool import Tool
+from trunnion.model.tool import AnyTool
 from trunnion.model.toolpath import Motion
 from trunnion.post.iso_words import IsoWords, by_code
 from trunnion.post.readers.blocks import Block
@@ -64,6 +64,9 @@ class ControlLanguage:
         self.machine, self.inverse, self.spindle = (
             self._first(m) for m in ("machine", "inverse time", "spindle")
         )
+        self.turning_plane, self.milling_plane = (
+            self._first(m) for m in ("turning plane", "milling plane")
+        )
         self.ends = tuple(code for code, meaning in said.items() if meaning == "end")
         self.groups = (
             (*self.motions, *self.cycles, *(c for c, m in said.items() if m == "no motion")),
@@ -107,7 +110,8 @@ class ControlLanguage:
             if codes := tuple(code for code, kind in self.cycles.items() if kind in kinds):
                 self.takers[role[name]] = (*self.takers.get(role[name], ()), *codes)
         self.retract = role.get("retract", "") if self.cycles else ""
-        self.moves |= set(self.retract)
+        self.turns_work = place is None and "turning plane" in self.meanings.values()
+        self.moves |= set(self.retract) | ({"K"} if self.turns_work else set())
         self.states = frozenset("FST") | (
             {self.length_letter} if self.length_letter and not self.length else set()
         )
@@ -120,7 +124,7 @@ class ControlLanguage:
             | ({self.retract} if self.retract else set())
         )
         self.ranges = {
-            **dict.fromkeys((*"XYZIJ", self.radius, *self.retract), LENGTH),
+            **dict.fromkeys((*"XYZIJK", self.radius, *self.retract), LENGTH),
             "T": COUNT,
             "N": LINE_NUMBER,
         }
@@ -185,7 +189,7 @@ class ControlLanguage:
         if self.machine in codes and words.keys().isdisjoint("XYZ"):
             raise BadInput(f"line {line}: {self.machine} without a move")
 
-    def length_of(self, tool: Tool) -> str:
+    def length_of(self, tool: AnyTool) -> str:
         """Return the words that switch the length of a tool on."""
         return self.words.tool_length.format(tool=tool.number)
 

@@ -43,6 +43,10 @@ AFTER_SPEEDS = {
     "no motion": "cancel_motion",
     "motion": "set_motion",
     "cycle": "set_cycle",
+    "milling plane": "mill_in_xy",
+    "turning plane": "turn_in_zx",
+    "diameters": "take_diameters",
+    "radii": "take_radii",
     "initial level": "return_to_level",
     "retract plane": "return_to_plane",
 }
@@ -292,6 +296,22 @@ class Modes:
             level = None if state.cycle is None else state.cycle.level
             state.cycle = ModalCycle(code=code, kind=self.language.cycles[code], level=level)
             state.motion = None
+
+    def mill_in_xy(self, block: Block) -> None:
+        """Have arcs in the plane XY: the tool rotates."""
+        self.state.in_zx = False
+
+    def turn_in_zx(self, block: Block) -> None:
+        """Have arcs in the plane ZX: the work turns."""
+        self.state.in_zx = True
+
+    def take_diameters(self, block: Block) -> None:
+        """Take X as a diameter from here on; I stays a radius."""
+        self.state.diameters = True
+
+    def take_radii(self, block: Block) -> None:
+        """Take X as the distance from the work's axis from here on."""
+        self.state.diameters = False
 
     def return_to_level(self, block: Block) -> None:
         """End cycles at the level where they began."""

@@ -9,7 +9,7 @@ import numpy as np
 from trunnion.findings import BadInput
 from trunnion.model.cycle import expanded
 from trunnion.model.spindle import FeedMode, per_minute
-from trunnion.model.tool import Tool
+from trunnion.model.tool import AnyTool
 from trunnion.model.toolpath import Motion
 from trunnion.post.readers.arcs import centre_by_offset, centre_by_radius
 from trunnion.post.readers.blocks import Block
@@ -58,6 +58,7 @@ class ToolMover:
         if motion is None:
             raise BadInput(f"line {line}: a position without {listed(self.language.motions)}")
         tool = self.ready(line)
+        self.check_letters(block)
         point = self.target(block, motion, tool)
         if point is None:
             return
@@ -65,12 +66,15 @@ class ToolMover:
             state.sections.rapid(line, point, tool, state.cutting())
             return
         self.check_feed(line, tool)
-        centre = NOWHERE if motion == Motion.LINE else self.centre(block, motion, point)
+        centre: Point = NOWHERE
+        if motion != Motion.LINE:
+            centre = self.centre(block, motion, point)
+            centre = (centre[1], 0.0, centre[0]) if state.in_zx else centre
         state.sections.feed(
             line, motion, point, centre, self.pace(block, point), tool, state.cutting()
         )
 
-    def check_feed(self, line: int, tool: Tool) -> None:
+    def check_feed(self, line: int, tool: AnyTool) -> None:
         """Raise `BadInput` where a tool would feed without a turning spindle or a feed."""
         state = self.state
         if not state.turning:
@@ -91,6 +95,10 @@ class ToolMover:
         if start is None or not state.length_on:
             raise BadInput(
                 f"line {line}: a cycle before it is known where the tool is; begin with a rapid to X, Y and Z"
+            )
+        if state.in_zx:
+            raise BadInput(
+                f"line {line}: {mode.code} while the work turns is not understood; write the moves out"
             )
         if state.feed_mode is FeedMode.INVERSE or self.rotary.turns(block.words):
             raise BadInput(
@@ -145,7 +153,7 @@ class ToolMover:
         """The letters of an arc as a sentence lists them."""
         return listed(("I", "J", self.language.radius))
 
-    def ready(self, line: int) -> Tool:
+    def ready(self, line: int) -> AnyTool:
         """Return the tool when the control knows all it needs for a move in the work offset."""
         state = self.state
         if state.tool is None:
@@ -160,9 +168,39 @@ class ToolMover:
             raise BadInput(
                 f"line {line}: a move before its work offset is said; put {state.setup.work_offset} first"
             )
+        self.check_plane(line, state.tool)
         return state.tool
 
-    def target(self, block: Block, motion: Motion, tool: Tool) -> Point | None:
+    def check_plane(self, line: int, tool: AnyTool) -> None:
+        """Raise `BadInput` for a tool that rotates in the plane of turning, or one that stands still in another."""
+        language, state = self.language, self.state
+        if tool.rotates and state.in_zx:
+            raise BadInput(
+                f"line {line}: {language.turning_plane} with T{tool.number}, a tool that rotates; "
+                f"arcs in the plane ZX are of turning, use {language.milling_plane}"
+            )
+        if not tool.rotates and not (state.in_zx and language.turns_work):
+            raise BadInput(
+                f"line {line}: T{tool.number} is a turning tool; "
+                + (
+                    f"put {language.turning_plane} first"
+                    if language.turns_work
+                    else "this control turns no work here"
+                )
+            )
+
+    def check_letters(self, block: Block) -> None:
+        """Raise `BadInput` for letters that are of another plane than the one in force."""
+        strange = [
+            letter for letter in ("YJ" if self.state.in_zx else "K") if letter in block.words
+        ]
+        if strange:
+            raise BadInput(
+                f"line {block.line}: {strange[0]} while {'the work turns' if self.state.in_zx else 'arcs are in XY'}; "
+                f"it is not of the plane {'ZX' if self.state.in_zx else 'XY'}"
+            )
+
+    def target(self, block: Block, motion: Motion, tool: AnyTool) -> Point | None:
         """Return the end of a move; None for a rapid in XY while the tool is still above everything at an unknown height."""
         words, state, language = block.words, self.state, self.language
         if motion < Motion.ARC_CW and not language.arc.isdisjoint(words):
@@ -186,13 +224,13 @@ class ToolMover:
             )
         x, y, z = words.get("X"), words.get("Y"), words.get("Z")
         return (
-            at[0] if x is None else x * unit,
+            at[0] if x is None else x * state.x_unit,
             at[1] if y is None else y * unit,
             at[2] if z is None else z * unit,
             *angle,
         )
 
-    def first_target(self, block: Block, motion: Motion, tool: Tool) -> Point | None:
+    def first_target(self, block: Block, motion: Motion, tool: AnyTool) -> Point | None:
         """Return the end of a move after a tool change, once X, Y and Z are known; None until then."""
         words, state, rotary, line = block.words, self.state, self.rotary, block.line
         if motion != Motion.RAPID:
@@ -204,9 +242,9 @@ class ToolMover:
                 f"line {line}: turn {' and '.join(rotary.letters)} at the top of the machine, in a line before Z comes down"
             )
         angle = rotary.turned(words)
-        x, y = words.get("X"), words.get("Y")
+        x, y = words.get("X"), 0.0 if state.in_zx and "X" in words else words.get("Y")
         if x is not None and y is not None:
-            state.over = (x * state.unit, y * state.unit)
+            state.over = (x * state.x_unit, y * state.unit)
         elif (
             x is not None
             or y is not None
@@ -252,6 +290,9 @@ class ToolMover:
         )
         assert start is not None
         i, j, unit = words.get("I"), words.get("J"), self.state.unit
+        if self.state.in_zx:
+            i, j = words.get("K"), i
+            start, end = (start[2], start[0], 0.0), (end[2], end[0], 0.0)
         if radius in words:
             if i is not None or j is not None:
                 raise BadInput(

@@ -14,8 +14,8 @@ from trunnion.findings import BadInput
 from trunnion.geometry.arrays import Floats, Ints
 from trunnion.model.program import ProgramSection
 from trunnion.model.spindle import FeedMode
-from trunnion.model.tool import Tool
-from trunnion.model.toolpath import Mark, Motion, Toolpath
+from trunnion.model.tool import AnyTool
+from trunnion.model.toolpath import ACROSS, Mark, Motion, Toolpath
 
 Point = tuple[float, ...]
 """A place as a reader counts it: x, y, z mm, and after them what else says where the tool is (rotary angles, the tool axis)."""
@@ -45,7 +45,7 @@ class Pace(NamedTuple):
 class SectionBlocks:
     """The blocks of a section while it grows; `minutes` are those of blocks fed in inverse time, else 0; `modes` how feeds are given."""
 
-    tool: Tool
+    tool: AnyTool
     point: list[Point] = field(default_factory=list)
     motion: list[int] = field(default_factory=list)
     centre: list[Point] = field(default_factory=list)
@@ -64,7 +64,7 @@ class SectionBlocks:
 class PoseInterpreter(Protocol):
     """What the points of a text mean."""
 
-    def above(self, point: Point, tool: Tool) -> Point | None:
+    def above(self, point: Point, tool: AnyTool) -> Point | None:
         """Return where a tool at a point comes out when it is lifted above everything; None when it is as high already."""
         ...
 
@@ -79,7 +79,7 @@ class UprightPoses:
 
     clearance: float
 
-    def above(self, point: Point, tool: Tool) -> Point | None:
+    def above(self, point: Point, tool: AnyTool) -> Point | None:
         """See `PoseInterpreter`."""
         return (
             None
@@ -89,8 +89,7 @@ class UprightPoses:
 
     def opened(self, rows: SectionBlocks) -> tuple[Toolpath, tuple[int, ...]]:
         """See `PoseInterpreter`."""
-        axis = np.zeros((len(rows.motion), 3))
-        axis[:, 2] = 1.0
+        axis = np.tile((0.0, 0.0, 1.0) if rows.tool.rotates else ACROSS, (len(rows.motion), 1))
         return path_of(rows, np.array(rows.point), axis, np.array(rows.centre)), tuple(rows.line)
 
 
@@ -100,7 +99,7 @@ class TiltedPoses:
 
     clearance: float
 
-    def above(self, point: Point, tool: Tool) -> Point | None:
+    def above(self, point: Point, tool: AnyTool) -> Point | None:
         """See `PoseInterpreter`; a leaning tool comes from wherever the text's machine brings it from."""
         high = point[2] >= self.clearance - tolerance.WRITTEN
         return (
@@ -112,7 +111,8 @@ class TiltedPoses:
     def opened(self, rows: SectionBlocks) -> tuple[Toolpath, tuple[int, ...]]:
         """See `PoseInterpreter`."""
         points = np.array(rows.point)
-        return path_of(rows, points[:, :3], points[:, 3:], np.array(rows.centre)), tuple(rows.line)
+        axis = points[:, 3:] if rows.tool.rotates else np.tile(ACROSS, (len(points), 1))
+        return path_of(rows, points[:, :3], axis, np.array(rows.centre)), tuple(rows.line)
 
 
 def operation_of(comment: str) -> str | None:
@@ -136,6 +136,7 @@ def path_of(rows: SectionBlocks, position: Floats, axis: Floats, centre: Floats)
         feed=np.array(rows.feed),
         mark=marks_of(motion),
         dwell=np.array(rows.dwell),
+        work_turns=not rows.tool.rotates,
     )
     timed = minutes > 0.0
     if not timed.any():
@@ -209,14 +210,14 @@ class Sections:
             self._operation = "" if began_with_it else self._operation
         self.at = None
 
-    def lift(self, line: int, tool: Tool, state: CuttingState) -> None:
+    def lift(self, line: int, tool: AnyTool, state: CuttingState) -> None:
         """Take the tool straight up out of sight (G53 G0 Z0)."""
         if self.at is not None:
             if (up := self.reckoning.above(self.at, tool)) is not None:
                 self.rapid(line, up, tool, state)
             self.at = None
 
-    def rapid(self, line: int, point: Point, tool: Tool, state: CuttingState) -> None:
+    def rapid(self, line: int, point: Point, tool: AnyTool, state: CuttingState) -> None:
         """Add a rapid to a point; `state` is spindle and coolant, for a section that cuts nothing."""
         if self._open is None:
             self._begin(line, tool)
@@ -238,7 +239,7 @@ class Sections:
         point: Point,
         centre: Point,
         pace: Pace,
-        tool: Tool,
+        tool: AnyTool,
         cutting: CuttingState,
     ) -> None:
         """Add a feed move, a line or an arc, with the spindle and coolant it runs with."""
@@ -275,7 +276,7 @@ class Sections:
         self._waits = 0.0
         return tuple(self._done)
 
-    def _begin(self, line: int, tool: Tool) -> _Open:
+    def _begin(self, line: int, tool: AnyTool) -> _Open:
         self._open = _Open(
             operation=self._operation or f"line {line}",
             rows=SectionBlocks(tool=tool),

@@ -8,7 +8,7 @@ from dataclasses import dataclass
 from trunnion.model.cycle import CycleKind
 from trunnion.model.setup import Setup
 from trunnion.model.spindle import FeedMode, limited_turns
-from trunnion.model.tool import Tool
+from trunnion.model.tool import AnyTool
 from trunnion.model.toolpath import Motion
 from trunnion.post.readers.sections import CuttingState, Sections
 
@@ -35,17 +35,18 @@ class ModalState:
     was given, or the highest while it `keeps_surface` at `surface_speed` in m/min; it turns while `turning`; `tool` is in the spindle,
     `next_tool` was chosen; `length_on` says that the tool's length counts; `over` is X and Y of a tool above everything whose height is not
     known yet. `cycle` is in force in place of a motion; it ends at the level where it began (`returns_to_level`) or at its retract plane.
+    Arcs lie in the plane ZX while `in_zx`; `diameters`: X is one.
     """
 
-    tools: Mapping[int, Tool]
+    tools: Mapping[int, AnyTool]
     setup: Setup
     sections: Sections
     unit: float = 1.0
     units_given: bool = False
     offset: str = ""
     motion: Motion | None = None
-    tool: Tool | None = None
-    next_tool: Tool | None = None
+    tool: AnyTool | None = None
+    next_tool: AnyTool | None = None
     length_on: bool = False
     over: tuple[float, float] | None = None
     feed: float = 0.0
@@ -58,6 +59,13 @@ class ModalState:
     coolant: str = "off"
     cycle: ModalCycle | None = None
     returns_to_level: bool = True
+    in_zx: bool = False
+    diameters: bool = False
+
+    @property
+    def x_unit(self) -> float:
+        """mm from the work's axis of a written X."""
+        return 0.5 * self.unit if self.diameters else self.unit
 
     def cutting(self) -> CuttingState:
         """Return what a move runs with, for the section that it belongs to."""

@@ -18,7 +18,9 @@ from trunnion.post.writer.approach import approach, coolant, tool_change
 from trunnion.post.writer.cycles import CycleWriter
 from trunnion.post.writer.feed import FeedFormat, dwell_text, feed_word, surface_text
 from trunnion.post.writer.modal import WrittenState, degrees_of
+from trunnion.post.writer.plane import MILLING, TURNING
 from trunnion.post.writer.rotary import AxisForm, JointForm, ThreeAxes
+from trunnion.post.writer.turning import TurningForm
 from trunnion.shop.kinematics import WorkPosition
 from trunnion.units import trimmed
 
@@ -40,6 +42,7 @@ class ProgramWriter:
         self.axes = _axis_form(words, settings, self.place)
         self.modal = WrittenState(words, settings, self.axes.letters)
         self.number = 0
+        self.turns = any(s.path.work_turns for s in program.sections)
 
     def lines(self, header: Header) -> Iterator[str]:
         """Yield the lines of the text; raise `Refused` for what the control can't do."""
@@ -71,6 +74,8 @@ class ProgramWriter:
         """Yield the lines of the header in words, the stamp first."""
         yield from header.stamp(f"{header.name}.{self.program.setup.name}")
         yield from header.about([self.program], self.settings.units)
+        if self.turns:
+            yield "X IS A DIAMETER WHILE THE WORK TURNS"
         if self.place is not None:
             yield from place_lines(self.program.setup, self.place, self.settings.units)
 
@@ -93,6 +98,7 @@ class ProgramWriter:
         if changes:
             yield from map(self.numbered, tool_change(modal, tool))
         yield self.numbered(words.restart.format(offset=self.program.setup.work_offset))
+        yield from map(self.numbered, self.plane(section))
         yield self.numbered(self.spindle(section))
         yield from map(self.numbered, coolant(modal, section.coolant))
         modal.feed_mode = FeedMode.MINUTE
@@ -100,6 +106,18 @@ class ProgramWriter:
             mode=section.feed_mode, spindle=section.spindle, surface_speed=section.surface_speed
         )
         yield from self.motions(section, changes)
+
+    def plane(self, section: ProgramSection) -> Iterator[str]:
+        """Yield the words of a section's plane where the program turns work; raise `Refused` where the control can't."""
+        self.modal.plane = TURNING if section.path.work_turns else MILLING
+        if not self.turns:
+            return
+        if not self.words.turning or self.place is not None:
+            raise Refused(
+                f"operation {section.operation}: {self.words.title} has no words for work that turns"
+                + (" on a machine with rotary axes" if self.place is not None else "")
+            )
+        yield self.words.turning if section.path.work_turns else self.words.milling
 
     def with_known_feeds(self, section: ProgramSection) -> ProgramSection:
         """Return a section with feeds by the minute where the control has no word for another way: they say the same."""
@@ -123,7 +141,8 @@ class ProgramWriter:
     def motions(self, section: ProgramSection, changed: bool) -> Iterator[str]:
         """Yield the approach and the blocks of a section."""
         modal = self.modal
-        path, minutes = self.axes.blocks(section, modal.angle, not changed)
+        axes = TurningForm(scale=modal.scale) if section.path.work_turns else self.axes
+        path, minutes = axes.blocks(section, modal.angle, not changed)
         blocks = zip(
             path.blocks(), path.more.tolist(), minutes.tolist(), path.dwell.tolist(), strict=True
         )

@@ -82,7 +82,7 @@ class JointForm:
         """See `AxisForm`."""
         stand = None if angle is None else self.radians(np.array(angle))
         joints = joint_path(
-            section.path, section.tool, self.place, stand, self.straying, section.operation
+            section.path, section.cutter, self.place, stand, self.straying, section.operation
         )
         moved = Toolpath(
             position=joints.words,
@@ -98,7 +98,7 @@ class JointForm:
         )
         if goes_on and path.more[0].tolist() != angle:
             self.refuse_another_direction(angle, path.more[0], section.operation)
-        turning = self.minutes(path, section.tool)
+        turning = self.minutes(path, section.cutter)
         return path, np.where(turning > 0.0, turning, inverse_minutes(section, path, self.scale))
 
     def refuse_another_direction(
