@@ -19,8 +19,8 @@ from trunnion.model.process import ProcessTree
 from trunnion.model.program import Program, ProgramSection
 from trunnion.model.session import PartInfo, PostedFile, Session, SizeEntry, StepRecord
 from trunnion.model.setup import Setup
-from trunnion.model.tool import Holder, Tool
-from trunnion.model.toolpath import Mark, Motion, Toolpath
+from trunnion.model.tool import Holder, Insert, Tool, TurningTool
+from trunnion.model.toolpath import ACROSS, Mark, Motion, Toolpath
 from trunnion.model.verdict import (
     BlockProof,
     Deviation,
@@ -60,6 +60,18 @@ BULL_10 = replace(
     neck_diameter=9.5,
     shank_diameter=10.0,
     gauge_length=120.25,
+)
+TURNING = TurningTool(
+    number=3,
+    name="DCLNR CNMG120408",
+    insert=Insert(designation="CNMG120408", inscribed_circle=12.7, thickness=4.76, nose_radius=0.8),
+    edge_angle=95.0,
+    hand="right",
+    shank_height=25.0,
+    shank_width=25.0,
+    functional_length=150.0,
+    functional_width=32.0,
+    holder_name="DCLNR2525M12",
 )
 S1 = Setup(name="S1", frame=WORLD, work_offset="G54", clearance=50.0, machine="mill-3-axis")
 S2 = Setup(
@@ -122,6 +134,30 @@ BACK = path_of(
     (LINE, 95.0, 5.0, -1.0, 1500.0),
     (RAPID, 95.0, 5.0, 30.0),
 )
+
+
+def turned_path(*blocks: tuple) -> Toolpath:
+    """Return a path of turning work of blocks as `path_of` has them, x from the work's axis and z in place of y."""
+    flat = path_of(*((b[0], b[1], b[2], 0.0, *b[3:]) for b in blocks))
+    return replace(
+        flat,
+        position=flat.position[:, [0, 2, 1]],
+        centre=flat.centre[:, [0, 2, 1]],
+        axis=np.tile(ACROSS, (len(blocks), 1)),
+        work_turns=True,
+    )
+
+
+FACING = turned_path(
+    (RAPID, 60.0, 50.0),
+    (RAPID, 60.0, 5.0),
+    (LINE, 60.0, -1.0, 191.0),
+    (LINE, 10.0, -1.0, 500.0),
+    (CW, 5.0, -6.0, 10.0, -6.0, 700.0),
+    (CCW, 0.0, -11.0, 0.0, -6.0, 700.0),
+    (RAPID, 0.0, 50.0),
+)
+"""A path of turning work: in, across the face, two quarters of circles."""
 
 
 def section(

@@ -8,10 +8,14 @@ import numpy as np
 from hypothesis import strategies as st
 
 from programs import BULL_10, CCW, CW, FLAT_16, LINE, RAPID, S1, path_of, section
+from trunnion.model.cycle import BACK_OFF, PECKING, WAITING, Cycle, CycleKind
 from trunnion.model.program import Program
+from trunnion.post.writer.turning import in_plane
 
 coordinates = st.integers(-9_999_999, 9_999_999).map(lambda n: n / 10_000)
 feeds = st.integers(1, 200_000).map(lambda n: n / 10)
+ticks = st.integers(1, 400_000).map(lambda n: n / 10_000)
+"""Lengths above 0 with four decimals."""
 steps = st.one_of(
     st.tuples(st.just(RAPID), coordinates, coordinates, coordinates),
     st.tuples(st.just(LINE), coordinates, coordinates, coordinates, feeds),
@@ -25,6 +29,27 @@ steps = st.one_of(
         st.booleans(),
     ),
 )
+
+
+def cycle(kind, depth=7.0, lift=0.0, peck=3.0, dwell=0.5, pitch=1.25):
+    """Return a cycle with the numbers that are of its kind."""
+    return Cycle(
+        kind=kind,
+        depth=depth,
+        lift=lift,
+        peck=peck if kind in PECKING else 0.0,
+        dwell=dwell if kind in WAITING else 0.0,
+        pitch=pitch if kind is CycleKind.TAP else 0.0,
+    )
+
+
+@st.composite
+def cycles(draw):
+    """Return a cycle of any kind."""
+    depth, kind = draw(ticks), draw(st.sampled_from(CycleKind))
+    peck = max(draw(ticks), BACK_OFF + 1e-4, depth / 50)
+    lift, dwell, pitch = draw(st.sampled_from([0.0, 3.5])), draw(ticks), draw(ticks)
+    return cycle(kind, depth, lift, peck, max(dwell, 0.1), max(pitch, 0.1))
 
 
 @st.composite
@@ -86,6 +111,7 @@ def program_of(parts, setup=S1) -> Program:
 def track(path) -> np.ndarray:
     """Return points along a path (n, 3): ends, and places within its arcs."""
     points = []
+    path = in_plane(path) if path.work_turns else path
     for row, (start, sweep) in enumerate(zip(path.starts(), path.sweeps(), strict=True)):
         if sweep:
             x, y = start[:2] - path.centre[row, :2]

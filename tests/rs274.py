@@ -47,7 +47,7 @@ def run(text: str, tools: Sequence[Tool], folder: Path) -> list[Call]:
     table = folder / "tools.tbl"
     table.write_text(
         "".join(
-            f"T{t.number} P{t.number} Z{t.gauge_length / 25.4:.8f} D{t.diameter / 25.4:.8f} ;{t.name}\n"
+            f"T{t.number} P{t.number} Z{t.gauge_length / 25.4:.8f} D{t.cutter_sizes[0] / 25.4:.8f} ;{t.name}\n"
             for t in tools
         )
     )
@@ -139,6 +139,20 @@ def compare_joints(
     return compared
 
 
+def _going(calls: Sequence[Call]) -> list[Call]:
+    """Return moves without rapids that end where the move before them has ended: cycles have some."""
+    kept: list[Call] = []
+    at: list[float] = []
+    for call in calls:
+        end = call[2][:3] if call[1] != "ARC_FEED" else [*call[2][:2], call[2][5]]
+        if not (
+            at and call[1] == "STRAIGHT_TRAVERSE" and np.abs(np.subtract(end, at)).max() < 1e-9
+        ):
+            kept.append(call)
+        at = end
+    return kept
+
+
 def compare(
     text: str, tools: Sequence[Tool], setup: Setup, folder: Path, scale: float = 1.0
 ) -> int:
@@ -146,10 +160,13 @@ def compare(
     ours = motions_of(text, tools, setup)
     numbers = {number for number, _, _ in ours}
     moves = ("STRAIGHT_TRAVERSE", "STRAIGHT_FEED", "ARC_FEED")
-    theirs = [call for call in run(text, tools, folder) if call[0] in numbers and call[1] in moves]
+    theirs = _going(
+        [call for call in run(text, tools, folder) if call[0] in numbers and call[1] in moves]
+    )
+    read, ours = len(ours), _going(ours)
     assert [call[:2] for call in ours] == [call[:2] for call in theirs]
     for (_, name, mine), (_, _, other) in zip(ours, theirs, strict=True):
         lengths = [0, 1, 2, 3, 5] if name == "ARC_FEED" else [0, 1, 2]
         assert np.abs(np.array([mine[n] - other[n] * scale for n in lengths])).max() <= 1e-4 * scale
         assert name != "ARC_FEED" or mine[4] == other[4]
-    return len(ours)
+    return read

@@ -15,6 +15,7 @@ import hashlib
 import json
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass
+from functools import cache
 from typing import Any, TypeVar, dataclass_transform, get_type_hints
 
 from trunnion.findings import BadInput
@@ -178,16 +179,38 @@ def digest(*things: Any) -> str:
     ).hexdigest()[:16]
 
 
-def added(default: Any) -> Any:
-    """Return a dataclass field that older files don't have: at its default it is no part of a digest, so theirs stay what they were."""
-    return dataclasses.field(default=default, metadata={_ADDED: True})
+def added(default: Any, *, written: bool = True) -> Any:
+    """Return a dataclass field that older files don't have: at its default it is no part of a digest, so theirs stay what they were.
+
+    With `written=False` it is left out of files and JSON too where it has its default (`unwritten`).
+    """
+    return dataclasses.field(default=default, metadata={_ADDED: True, _WRITTEN: written})
 
 
-_ADDED = "added"
+def unwritten(thing: Any) -> frozenset[str]:
+    """Return the names of a dataclass's fields that files and JSON leave out: those that say so and have their default."""
+    kind: Any = type(thing)
+    return frozenset(
+        name for name, default in _sometimes(kind) if _is_same(getattr(thing, name), default)
+    )
+
+
+_ADDED, _WRITTEN = "added", "written"
+
+
+@cache
+def _sometimes(cls: Any) -> tuple[tuple[str, Any], ...]:
+    return tuple(
+        (f.name, f.default) for f in dataclasses.fields(cls) if not f.metadata.get(_WRITTEN, True)
+    )
+
+
+def _is_same(value: Any, default: Any) -> bool:
+    return value is default or (default is not None and bool(value == default))
 
 
 def _is_unused(field: Any, thing: Any) -> bool:
-    return _ADDED in field.metadata and getattr(thing, field.name) == field.default
+    return _ADDED in field.metadata and _is_same(getattr(thing, field.name), field.default)
 
 
 def _plain(thing: Any) -> Any:

@@ -8,6 +8,7 @@ MM_PER_INCH = 25.4
 SECONDS_PER_MINUTE = 60.0
 WATTS_PER_KILOWATT = 1000.0
 MM_PER_METRE = 1000.0
+METRES_PER_FOOT = 0.3048
 FARTHEST = 100_000.0
 """mm: no machine's axis goes farther from its zero; beyond, a number is a slip of the hand."""
 FASTEST = 500_000.0

@@ -9,19 +9,46 @@ from dataclasses import replace
 import numpy as np
 import pytest
 from hypothesis import given, settings
+from hypothesis import strategies as st
 
 from leaning_paths import TABLE, lean, standing
 from leaning_paths import path_of as leaning_path
 from own_packages import all_dialects
-from programs import BULL_10, FLAT_16, S1, WALL, program_1, section, verdict
-from random_programs import program_of, programs, same, spoils
+from programs import (
+    BULL_10,
+    FACING,
+    FLAT_16,
+    RAPID,
+    S1,
+    TURNING,
+    WALL,
+    path_of,
+    program_1,
+    section,
+    verdict,
+)
+from random_programs import (
+    coordinates,
+    cycle,
+    cycles,
+    farthest,
+    program_of,
+    programs,
+    same,
+    spoils,
+    track,
+)
 from trunnion.findings import BadCall, BadInput, Refused
+from trunnion.model.cycle import WAITING, CycleKind
+from trunnion.model.drilling import drilled
 from trunnion.model.listing import listing
 from trunnion.model.program import Program
-from trunnion.model.toolpath import EMPTY
+from trunnion.model.spindle import FeedMode
+from trunnion.model.toolpath import EMPTY, Motion, Toolpath
 from trunnion.model.verdict import Outcome
 from trunnion.post.contract import Dialect
 from trunnion.post.header import REJECTED, STAMP_LINES, Header
+from trunnion.post.linearize import lines_for_arcs
 from trunnion.post.release import is_released
 from trunnion.post.settings import PostSettings
 from trunnion.shop.kinematics import NO_PLACES, Places
@@ -32,6 +59,10 @@ PASSED = replace(HEADER, verdict=verdict())
 TOOLS = (FLAT_16, BULL_10)
 DIALECTS = all_dialects()
 OFFSETS = ("G54", "G57", "G58", "G59.3", "G70", "X5", "")
+TURNS = 400.0
+"""Spindle speed in 1/min of random cycles."""
+some_tops = st.lists(st.tuples(coordinates, coordinates, coordinates), min_size=1, max_size=4)
+starts = st.tuples(coordinates, coordinates)
 by_name = pytest.mark.parametrize("name", DIALECTS)
 
 
@@ -53,6 +84,24 @@ def again(dialect: Dialect, program: Program, places: Places = NO_PLACES, **chos
 
 def one(*sections, setup=S1) -> Program:
     return Program(name="B1.S1", setup=setup, sections=sections)
+
+
+def holes(kind: CycleKind, lift: float) -> Toolpath:
+    """Return a path of three holes, the last one lower, with a feed of 480 mm/min: 1.25 mm a revolution at 384 1/min."""
+    tops = np.array([[10.0, 5.0, 2.0], [30.0, 5.0, 2.0], [30.0, 25.0, -4.5]])
+    return lifted(drilled(np.array([0.0, 0.0, 50.0]), tops, cycle(kind, lift=lift), 480.0))
+
+
+def opened(path: Toolpath) -> np.ndarray:
+    """Return the points (n, 3) of a path with its arcs as lines within 1 um."""
+    arcs = np.flatnonzero(path.motion >= Motion.ARC_CW)
+    return lines_for_arcs(path, arcs, 1e-3)[0].position
+
+
+def lifted(path: Toolpath) -> Toolpath:
+    """Return a path that ends at the clearance height."""
+    x, y, _ = path.position[-1]
+    return Toolpath.join([path, path_of((RAPID, x, y, 50.0))])
 
 
 def test_a_dialect_of_ones_own_is_among_them():
@@ -181,6 +230,116 @@ def test_a_coolant_is_written_so_that_it_is_read_or_refused(dialect, coolant):
         assert coolant in str(refused) and coolant not in ("flood", "off")
         return
     assert [s.coolant for s in read.sections] == ["flood", coolant]
+
+
+@pytest.mark.parametrize("mode", FeedMode)
+@pytest.mark.parametrize("units", ["mm", "inch"])
+def test_feeds_are_the_same_whatever_they_are_given_by(dialect, mode, units):
+    program = program_1()
+    given_so = replace(
+        program, sections=tuple(replace(s, feed_mode=mode) for s in program.sections)
+    )
+    for planned, read in zip(
+        program.sections, again(dialect, given_so, units=units).sections, strict=True
+    ):
+        # By the minute a feed has a decimal of mm or two of inches, in inverse time six digits.
+        assert read.path.feed == pytest.approx(planned.path.feed, abs=0.13, rel=2e-5)
+        assert read.feed_mode in (mode, FeedMode.MINUTE)
+
+
+@pytest.mark.parametrize("kind", CycleKind)
+@pytest.mark.parametrize("lift", [0.0, 18.0, 48.0])
+@pytest.mark.parametrize("units", ["mm", "inch"])
+def test_a_cycle_is_written_so_that_its_motions_are_read_or_refused(dialect, kind, lift, units):
+    program = one(section("holes", FLAT_16, holes(kind, lift), 384.0))
+    try:
+        read = again(dialect, program, units=units).sections[0]
+    except Refused as refused:
+        assert "has no words for a dwell" in str(refused) and kind in WAITING
+        return
+    planned = program.sections[0].path
+    assert np.abs(read.path.position - planned.position).max() <= 1e-3
+    assert read.path.feed == pytest.approx(planned.feed, abs=0.13)
+    assert list(read.path.motion) == list(planned.motion)
+    assert read.path.dwells() == pytest.approx(planned.dwells())
+    assert read.dwell == pytest.approx(planned.dwells().sum())
+
+
+@by_name
+@settings(deadline=None, max_examples=60)
+@given(made=cycles(), tops=some_tops, start=starts)
+def test_whatever_the_cycles_their_motions_are_read_as_the_same(name, made, tops, start):
+    high = np.array([*start, 50.0])
+    path = lifted(drilled(high, np.array(tops), made, TURNS * (made.pitch or 1.2)))
+    program = one(section("holes", FLAT_16, path, TURNS))
+    try:
+        read = again(DIALECTS[name](), program)
+    except Refused as refused:
+        assert "has no words for a dwell" in str(refused) and made.kind in WAITING
+        return
+    # A peck is written with as many decimals as a length: so many of them go so far astray.
+    same(program, read, 5e-4 + 5e-5 * made.pecks)
+    assert read.sections[0].dwell == pytest.approx(path.dwells().sum(), abs=6e-4 * len(tops))
+
+
+def test_a_dwell_is_written_so_that_it_is_read_or_refused(dialect):
+    path = replace(WALL, dwell=np.array([0.0, 0.0, 1.5, 0.25]))
+    try:
+        read = again(dialect, one(section("wall", FLAT_16, path))).sections[0]
+    except Refused as refused:
+        assert "has no words for a dwell" in str(refused)
+        return
+    assert read.path.dwells().tolist() == [0.0, 0.0, 1.5, 0.25]
+
+
+def test_tapping_at_another_feed_than_its_pitch_is_refused(dialect):
+    tapped = holes(CycleKind.TAP, 0.0)
+    with pytest.raises(Refused, match=r"tapping at 480 mm/min is not 1.25 mm a revolution at 400"):
+        written(dialect, one(section("holes", FLAT_16, tapped, 400.0)))
+
+
+@pytest.mark.parametrize("units", ["mm", "inch"])
+def test_a_constant_surface_speed_is_written_so_that_it_is_read_or_refused(dialect, units):
+    facing = replace(
+        section("face", TURNING, FACING, 2500.0), surface_speed=180.0, feed_mode=FeedMode.REVOLUTION
+    )
+    program = one(facing, section("wall", FLAT_16, WALL))
+    try:
+        text = written(dialect, program, units=units)
+    except Refused as refused:
+        assert "no words for work that turns" in str(refused)
+        return
+    (read,) = dialect.read(text, (TURNING, FLAT_16), [S1])
+    assert [(s.spindle, s.feed_mode) for s in read.sections] == [
+        (2500.0, FeedMode.REVOLUTION),
+        (12000.0, FeedMode.MINUTE),
+    ]
+    assert [s.surface_speed for s in read.sections] == pytest.approx([180.0, 0.0], abs=0.02)
+    assert read.sections[0].path.feed.max() == pytest.approx(700.0, abs=0.5)
+
+
+@pytest.mark.parametrize("units", ["mm", "inch"])
+def test_work_that_turns_is_written_so_that_it_is_read_or_refused(dialect, units):
+    program = one(section("face", TURNING, FACING, 900.0), section("wall", FLAT_16, WALL))
+    try:
+        text = written(dialect, program, units=units)
+    except Refused as refused:
+        assert "no words for work that turns" in str(refused)
+        return
+    (read,) = dialect.read(text, (TURNING, FLAT_16), [S1])
+    turned, milled = (s.path for s in read.sections)
+    assert turned.work_turns and not milled.work_turns
+    assert np.abs(turned.position[-1] - FACING.position[-1]).max() <= 1e-3
+    # A dialect may write arcs as lines.
+    first, second = opened(FACING), opened(turned)
+    assert max(farthest(first, second), farthest(second, first)) <= 6e-3
+    assert farthest(track(milled), track(WALL)) <= 1e-3
+
+
+def test_a_tool_of_the_other_kind_is_refused(dialect):
+    for tool, path in ((FLAT_16, FACING), (TURNING, WALL)):
+        with pytest.raises(Refused, match="choose another tool|no words for work that turns"):
+            written(dialect, one(section("op", tool, path)))
 
 
 @pytest.mark.parametrize(

@@ -30,10 +30,12 @@ from programs import BULL_10, FLAT_16, S1, program_1
 from trunnion.findings import BadInput, Refused
 from trunnion.geometry.kernels import rotary_angles, rotary_angles_compiled
 from trunnion.model.listing import listing
+from trunnion.model.spindle import FeedMode
 from trunnion.model.toolpath import Motion, Toolpath
 from trunnion.post.dialects.apt import AptDialect
 from trunnion.post.dialects.linuxcnc import LinuxCncDialect
 from trunnion.post.linearize import PathTolerance, even_turn, joint_path
+from trunnion.post.readers.linuxcnc import read_linuxcnc
 from trunnion.post.settings import PostSettings
 from trunnion.shop.kinematics import SLACK, poses_of, stands_of, words_of
 from trunnion.shop.rotary_angles import followed
@@ -327,6 +329,37 @@ def test_a_block_is_never_faster_than_its_axes():
     )
     (rows,) = joint_rows(text_of(program(path), standing(TABLE)), standing(TABLE))
     assert sum(rows.minutes) >= 90.0 / 18000.0 - 1e-9
+
+
+@pytest.mark.parametrize("mode", FeedMode)
+def test_the_tip_has_its_feed_whatever_feeds_are_given_by(mode):
+    place = standing(TABLE)
+    path = path_of(
+        ((0.0, 0.0, 10.0), lean(5.0)),
+        ((20.0, 0.0, 10.0), lean(5.0)),
+        ((40.0, 0.0, 10.0), lean(25.0)),
+        ((40.0, 30.0, 10.0), lean(25.0)),
+        feed=600.0,
+    )
+    made = program(replace(path, dwell=np.array([0.0, 0.0, 0.5, 0.0])))
+    given_so = replace(made, sections=(replace(made.sections[0], feed_mode=mode),))
+    (again,) = read_linuxcnc(text_of(given_so, place), (FLAT_16,), S1, place).sections
+    fed = again.path.motion != Motion.RAPID
+    assert again.path.feed[fed] == pytest.approx(600.0, rel=1e-2)
+    waits = np.flatnonzero(again.path.dwells())
+    assert again.path.dwells()[waits].tolist() == [0.5]
+    assert again.path.position[waits[0]] == pytest.approx([40.0, 0.0, 10.0], abs=1e-3)
+
+
+def test_a_block_in_inverse_time_that_turns_nothing_has_its_feed_too():
+    # 30 mm in a twentieth of a minute.
+    place = standing(TABLE)
+    text = text_of(program(path_of(((0, 0, 10), lean(0.0)), ((30, 0, 10), lean(0.0)))), place)
+    assert "G1 X30 F1200" in text
+    (again,) = read_linuxcnc(
+        text.replace("G1 X30 F1200", "G93 G1 X30 F20"), (FLAT_16,), S1, place
+    ).sections
+    assert again.path.feed[-2] == pytest.approx(600.0)
 
 
 def test_an_operation_that_begins_in_another_direction_is_refused_unless_it_was_led_there():

@@ -127,3 +127,19 @@ def test_a_feed_is_never_written_as_zero(feed, said):
 def test_an_inch_has_one_decimal_more():
     scale = TickScale.of(PostSettings(units="inch"), 1, 1)
     assert (scale.decimals, scale.text(int(scale.ticks(25.4 * 1.00001)))) == (5, "1.00001")
+
+
+@pytest.mark.parametrize(
+    ("change", "message"),
+    [
+        ({"cycles": {"thread": "G76"}}, "dialect x: cycles knows drill, dwell, .*; got thread"),
+        (
+            {"letters": {"radius": "R", "dwell": "P", "retract": "R"}},
+            "dialect x: letters needs an entry peck for the cycle peck",
+        ),
+        ({"return_levels": ("", "")}, "dialect x: return_levels is missing for the cycle drill"),
+    ],
+)
+def test_words_of_cycles_that_say_too_little_are_refused(change, message):
+    with pytest.raises(BadInput, match=message):
+        checked_iso_words("x", replace(iso_words("linuxcnc"), **change))

@@ -205,7 +205,7 @@ def test_a_rotary_axis_may_unwind_any_number_of_turns_at_the_top_of_the_machine(
         (
             "A\x0bB/1",
             "line 7: A?B is not understood; known are PARTNO, PPRINT, REMARK, UNITS, MULTAX, LOADTL, CUTTER, SPINDL, COOLNT, RAPID, "
-            "FEDRAT, GOTO, CIRCLE, END, FINI",
+            "FEDRAT, GOTO, CIRCLE, DELAY, END, FINI",
         ),
     ],
 )

@@ -11,6 +11,7 @@ from lxml import etree
 import programs
 from trunnion.findings import BadCall, BadInput
 from trunnion.model.session import Session
+from trunnion.model.spindle import FeedMode, SpindleMode
 from trunnion.model.tool import Tool
 from trunnion.store import xml
 from trunnion.store.features import features_xml, read_features, write_features
@@ -33,6 +34,31 @@ def test_a_process_tree_comes_back_as_it_was(tmp_path):
         np.allclose(a.frame.axes, b.frame.axes) and np.allclose(a.frame.origin, b.frame.origin)
         for a, b in zip(again.setups, before.setups, strict=True)
     )
+
+
+def test_what_a_program_gives_of_speed_and_feed_comes_back_and_is_not_written_where_it_is_plain(
+    tmp_path,
+):
+    tree, words = programs.process_tree(), (b"spindle-mode", b"highest-spindle", b"feed-mode")
+    plain = process_xml(tree, SESSION.part)
+    assert not any(word in plain for word in words)
+    first = tree.operations[0]
+    data = replace(
+        first.data,
+        spindle_mode=SpindleMode.SURFACE,
+        highest_spindle=9000.0,
+        feed_mode=FeedMode.REVOLUTION,
+    )
+    changed = replace(SESSION, process=tree.with_operation(replace(first, data=data)))
+    write_process(changed, tmp_path / "a.xml")
+    assert all(word in (tmp_path / "a.xml").read_bytes() for word in words)
+    assert read_process(tmp_path / "a.xml").operations[0].data == data
+    for kept in (SESSION, changed):
+        members = Members()
+        text = to_xml(kept, Session, "session", members)
+        again = from_xml(text, Session, members)
+        assert again.process.operations == kept.process.operations
+        assert (text.find(".//spindle-mode") is None) == (kept is SESSION)
 
 
 @pytest.mark.parametrize("form", FORMS)

@@ -9,7 +9,14 @@ import numpy as np
 import pytest
 from pytest import approx
 
+from programs import S1
+from trunnion.model.program import Program
+from trunnion.model.spindle import FeedMode
 from trunnion.model.verdict import Outcome
+from trunnion.post.dialects.linuxcnc import LinuxCncDialect
+from trunnion.post.header import Header
+from trunnion.post.readers.linuxcnc import read_linuxcnc
+from trunnion.post.settings import PostSettings
 from trunnion.shop import load_shop
 from trunnion.verify.judge.load import least_angle, load_of, mean_share, stretched
 from trunnion.verify.judge.overload import chosen_load
@@ -17,6 +24,7 @@ from trunnion.verify.motion import moves_of
 from trunnion.verify.stock import StockRun
 from verify_tools import BLANK, MACHINE, TOP, flat, program_section, proof
 
+HEADER = Header(name="B1", part="B1", part_digest="ab12", plan_digest="cd34")
 MATERIAL = load_shop().material("EN AW-7075")
 SLOTTER = flat(10.0)(flute=25.0)
 DEPTH = 6.0
@@ -66,6 +74,22 @@ def test_a_full_slot_has_the_chips_and_the_power_of_the_formula():
     assert load.power[2] == approx(180.0 * force / 60_000.0)
     assert load.torque[2] == approx(load.power[2] * 60_000.0 / (2 * math.pi * 10000.0))
     assert not load.power[moves.rapid].any()
+
+
+def test_a_slot_fed_by_the_revolution_is_proven_like_one_fed_by_the_minute():
+    proofs = []
+    for mode in FeedMode:
+        program = Program(name="S1", setup=S1, sections=(replace(slot(), feed_mode=mode),))
+        text = LinuxCncDialect().write([program], HEADER, PostSettings())
+        (read,) = read_linuxcnc(text, (SLOTTER,), S1).sections
+        proofs.append(judged(replace(read, width=10.0, depth=DEPTH, feed=3000.0)).operations[0])
+    first, *others = proofs
+    assert first.power > 4.0
+    for other in others:
+        assert (other.power, other.torque, other.chip) == approx(
+            (first.power, first.torque, first.chip), rel=1e-4
+        )
+        assert (other.time_s, other.power_limit) == approx((first.time_s, first.power_limit))
 
 
 def test_a_move_through_the_air_beside_a_cut_has_no_load():

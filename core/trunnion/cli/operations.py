@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Iterable
-from dataclasses import asdict
 from typing import Any
 
 from trunnion.cli.common import table
@@ -21,7 +20,7 @@ def operation_dict(operation: Operation) -> dict[str, Any]:
         "direction": list(operation.direction),
         "tool": operation.tool.number,
         "faces": list(operation.faces),
-        "data": asdict(operation.data),
+        "data": operation.data.as_dict(),
         "choices": dict(operation.choices),
         "rules": list(operation.rules),
         "after": list(operation.after),

@@ -37,7 +37,7 @@ def run(chosen: argparse.Namespace) -> int:
         show_json(
             {
                 "operations": [
-                    {"id": o.id, "tool": o.tool.number, "data": asdict(o.data)}
+                    {"id": o.id, "tool": o.tool.number, "data": o.data.as_dict()}
                     for o in process.operations
                 ],
                 "estimate": asdict(areas) if areas else None,

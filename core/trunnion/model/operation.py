@@ -3,12 +3,14 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass, field
+from dataclasses import asdict, dataclass, field
+from typing import Any
 
 from trunnion.findings import Finding
-from trunnion.model.tool import Tool
+from trunnion.model.spindle import FeedMode, SpindleMode, limited_turns, per_revolution
+from trunnion.model.tool import AnyTool, Tool, rotating
 from trunnion.model.toolpath import EMPTY, Toolpath
-from trunnion.settings import Value, added
+from trunnion.settings import Value, added, unwritten
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -21,6 +23,8 @@ class CuttingData:
     its feed in full width that the spindle leaves a strategy; `peak_power` kW and `peak_torque` Nm at the largest engagement that the
     strategy can meet, and `peak_at`, in words, where that is; `routed_depth` mm: the depth that the route chose where
     the spindle allows less (0: the same).
+    `spindle_mode` and `feed_mode` say what a program gives of them: at a constant surface speed `spindle` is that of a rotating tool's own
+    diameter, and `highest_spindle` 1/min is never passed.
     """
 
     speed: float
@@ -41,11 +45,34 @@ class CuttingData:
     peak_torque: float = added(0.0)
     peak_at: str = added("")
     routed_depth: float = added(0.0)
+    spindle_mode: SpindleMode = added(SpindleMode.RPM, written=False)
+    highest_spindle: float = added(0.0, written=False)
+    feed_mode: FeedMode = added(FeedMode.MINUTE, written=False)
+
+    def __post_init__(self) -> None:
+        if self.spindle_mode is SpindleMode.SURFACE and self.highest_spindle <= 0.0:
+            raise ValueError("cutting data: a constant surface speed needs a highest spindle speed")
+
+    @property
+    def feed_per_revolution(self) -> float:
+        """The feed in mm a revolution."""
+        return per_revolution(self.feed, self.spindle)
 
     @property
     def highest_power(self) -> float:
         """The power in kW at steady cutting or at the largest engagement, whichever is more."""
         return max(self.power, self.peak_power)
+
+    def spindle_at(self, diameter: float) -> float:
+        """Return the spindle speed in 1/min of a rotating tool of a diameter in mm: it is the same all along a path in either mode."""
+        if self.spindle_mode is SpindleMode.RPM:
+            return self.spindle
+        return float(limited_turns(self.speed, diameter, self.highest_spindle))
+
+    def as_dict(self) -> dict[str, Any]:
+        """Return the data as JSON has them."""
+        left_out = unwritten(self)
+        return {name: value for name, value in asdict(self).items() if name not in left_out}
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -77,7 +104,7 @@ class Operation:
     strategy: str
     feature: str
     setup: str
-    tool: Tool
+    tool: AnyTool
     data: CuttingData
     faces: tuple[int, ...] = ()
     choices: Mapping[str, Value] = field(default_factory=dict)
@@ -87,6 +114,25 @@ class Operation:
     suppressed: bool = False
     group: str = ""
     direction: tuple[float, float, float] = (0.0, 0.0, 1.0)
+
+    @property
+    def cutter(self) -> Tool:
+        """The tool where it rotates; raises `BadInput` for a turning tool."""
+        return rotating(self.tool, self.id)
+
+    @property
+    def spindle(self) -> float:
+        """The spindle speed in 1/min; where turning work keeps its surface speed, the highest."""
+        data = self.data
+        if self.tool.rotates:
+            return data.spindle_at(self.cutter.diameter)
+        return data.highest_spindle if self.surface_speed > 0.0 else data.spindle
+
+    @property
+    def surface_speed(self) -> float:
+        """The speed in m/min that the surface of turning work keeps; 0 where the spindle's is kept."""
+        kept = not self.tool.rotates and self.data.spindle_mode is SpindleMode.SURFACE
+        return self.data.speed if kept else 0.0
 
 
 @dataclass(frozen=True, slots=True, eq=False, kw_only=True)

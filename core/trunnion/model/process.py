@@ -7,7 +7,7 @@ from dataclasses import dataclass, replace
 from trunnion.findings import Finding
 from trunnion.model.operation import Operation
 from trunnion.model.setup import Setup
-from trunnion.model.tool import Tool
+from trunnion.model.tool import AnyTool
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -42,7 +42,7 @@ class ProcessTree:
                 return o
         raise KeyError(id)
 
-    def tools(self) -> tuple[Tool, ...]:
+    def tools(self) -> tuple[AnyTool, ...]:
         """Return the tools in use, each once, by number."""
         return tuple(
             sorted(

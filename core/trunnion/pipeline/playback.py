@@ -238,11 +238,13 @@ def timeline_of(
         for n, section in enumerate(program.sections):
             if n == 0 or program.sections[n - 1].tool.number != section.tool.number:
                 span[begins[n]] += machine.tool_change_s
+            span[begins[n]] += section.dwell - section.path.dwells().sum()
+            span[begins[n] : begins[n + 1]] += section.path.dwells()
             passages.append(
                 Passage(
                     operation=section.operation,
                     setup=program.setup.name,
-                    tool=section.tool,
+                    tool=section.cutter,
                     file=files[k].suffix if files else "",
                 )
             )

@@ -10,7 +10,7 @@ from trunnion import registry
 from trunnion.findings import BadCall, BadInput, Finding, Severity, error
 from trunnion.model.material import Machine
 from trunnion.model.process import ProcessTree
-from trunnion.model.program import Program, ProgramSection
+from trunnion.model.program import Program, section_of
 from trunnion.model.session import PostedFile, Session
 from trunnion.model.setup import Setup
 from trunnion.model.verdict import Outcome, Verdict
@@ -33,17 +33,7 @@ def program_of(session: Session, setup: Setup) -> Program:
     for operation in session.process.of_setup(setup.name):
         made = session.path_of(operation.id)
         if made is not None and len(made.path):
-            sections.append(
-                ProgramSection(
-                    operation=operation.id,
-                    tool=operation.tool,
-                    spindle=operation.data.spindle,
-                    path=made.path,
-                    width=operation.data.width,
-                    depth=operation.data.depth,
-                    feed=operation.data.feed,
-                )
-            )
+            sections.append(section_of(operation, made.path))
     return Program(
         name=f"{session.part.name}.{setup.name}",
         setup=held(session, setup),

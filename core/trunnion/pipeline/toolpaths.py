@@ -87,7 +87,7 @@ def _settled(finding: Finding, own: Operation, process: ProcessTree) -> bool:
 def _make_one(
     session: Session, planner: Planner, scene: SetupScene, operation: Operation, progress: Progress
 ) -> OperationPath:
-    strategy = registry.get(STRATEGIES, operation.strategy)
+    strategy, cutter = registry.get(STRATEGIES, operation.strategy), operation.cutter
     chosen = checked(choose(strategy.settings, {**session.choices, **operation.choices}))
     needs = DriveNeeds(
         drive=strategy.drive,
@@ -100,7 +100,7 @@ def _make_one(
             driven.setup,
             driven.drive,
             scene.stock(driven.setup),
-            scene.before(operation.tool),
+            scene.before(cutter),
         )
         key = digest(
             operation.strategy,
@@ -124,7 +124,7 @@ def _make_one(
         if kept is None or kept.key != key:
             planned: Any = strategy(
                 drive,
-                operation.tool,
+                cutter,
                 operation.data,
                 stock,
                 setup,
@@ -143,10 +143,10 @@ def _make_one(
         scene.sides.cut(
             setup,
             turned(kept.path, scene.setup.frame, setup.frame),
-            operation.tool,
+            cutter,
             progress.part(1.0, 1.0),
         )
-        scene.last, scene.tool = kept, operation.tool
+        scene.last, scene.tool = kept, cutter
     return kept
 
 

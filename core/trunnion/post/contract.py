@@ -7,7 +7,7 @@ from typing import Protocol
 
 from trunnion.model.program import Program
 from trunnion.model.setup import Setup
-from trunnion.model.tool import Tool
+from trunnion.model.tool import AnyTool
 from trunnion.post.header import Header
 from trunnion.post.settings import PostSettings
 from trunnion.shop.kinematics import NO_PLACES, Places
@@ -38,7 +38,11 @@ class Dialect(Protocol):
         ...
 
     def read(
-        self, text: str, tools: Sequence[Tool], setups: Sequence[Setup], places: Places = NO_PLACES
+        self,
+        text: str,
+        tools: Sequence[AnyTool],
+        setups: Sequence[Setup],
+        places: Places = NO_PLACES,
     ) -> tuple[Program, ...]:
         """Return the programs that a text says; raise `BadInput` with the line of anything that isn't understood."""
         ...

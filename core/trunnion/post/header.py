@@ -13,7 +13,7 @@ from trunnion.findings import BadCall, Severity
 from trunnion.model.program import Program
 from trunnion.model.session import Session
 from trunnion.model.setup import Setup
-from trunnion.model.tool import Tool, TurningTool
+from trunnion.model.tool import AnyTool
 from trunnion.model.verdict import Verdict
 from trunnion.settings import digest
 from trunnion.shop.kinematics import WorkPosition
@@ -151,7 +151,7 @@ def plan_digest(session: Session) -> str:
     )
 
 
-def tools_of(programs: Sequence[Program]) -> tuple[Tool, ...]:
+def tools_of(programs: Sequence[Program]) -> tuple[AnyTool, ...]:
     """Return the tools of some programs, each once, by number."""
     return tuple(
         sorted(
@@ -175,7 +175,7 @@ def _frame(program: Program, units: str) -> str:
     return " ".join(f"{word} {' '.join(values)}" for word, values in numbers)
 
 
-def tool_line(tool: Tool | TurningTool, units: str) -> str:
+def tool_line(tool: AnyTool, units: str) -> str:
     """Return the line of the header that describes a tool; a reader compares it with the tool list."""
     sizes = " ".join(f"{word}{_length(value, units)}" for word, value in tool.header_sizes())
     return f"TOOL {tool.number} {tool.name} {sizes} HOLDER {tool.holder_name}"

@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING, ClassVar
 from trunnion.findings import BadCall
 from trunnion.model.program import Program
 from trunnion.model.setup import Setup
-from trunnion.model.tool import Tool
+from trunnion.model.tool import AnyTool
 from trunnion.post.header import Header
 from trunnion.post.iso_words import iso_words
 from trunnion.post.settings import PostSettings
@@ -55,7 +55,11 @@ class IsoDialect:
         return tuple(comment(self.words, line) for line in header.stamp(program))
 
     def read(
-        self, text: str, tools: Sequence[Tool], setups: Sequence[Setup], places: Places = NO_PLACES
+        self,
+        text: str,
+        tools: Sequence[AnyTool],
+        setups: Sequence[Setup],
+        places: Places = NO_PLACES,
     ) -> tuple[Program, ...]:
         """Return the program of the one setup."""
         from trunnion.post.readers.iso import read_iso

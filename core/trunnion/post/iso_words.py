@@ -3,15 +3,16 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass, fields
+from dataclasses import dataclass, field, fields
 from string import Formatter
 
 from trunnion.findings import BadInput
+from trunnion.model.cycle import PECKING, WAITING, CycleKind
 from trunnion.post.words import dialect_words
 
 CENTRES = ("start", "absolute")
 """Where I and J of an arc count from: its start, or the zero of the work offset."""
-ROLES = ("radius", "length", "dwell", "turns", "tolerance", "joining")
+ROLES = ("radius", "length", "dwell", "turns", "tolerance", "joining", "highest", "retract", "peck")
 """What a control may have letters for, beside N, F, S, T, X, Y, Z, I and J which are the same on all."""
 _PLACEHOLDERS = {
     "opening": ("program",),
@@ -20,6 +21,8 @@ _PLACEHOLDERS = {
     "tool_change": ("tool",),
     "tool_length": ("tool",),
     "spindle": ("spindle",),
+    "surface_speed": ("highest", "speed"),
+    "spindle_speed": ("spindle",),
     "top": (),
     "end": (),
 }
@@ -35,7 +38,10 @@ class IsoWords:
     `opening` are lines without number below the header; `start`, `restart`, `tool_change`, `tool_length`, `spindle`, `top` (straight up to
     the top of the machine) and `end` are lines with what stands in braces filled in. `codes` and `refused` have one or several codes as
     keys: what the control does at them (`readers.language.MEANINGS` and the dialect's own), and why the reader refuses them. Without
-    `inverse_time` the control has no rotary axes.
+    `inverse_time` the control has no rotary axes, without `per_revolution` no feeds by the revolution, without `surface_speed` no constant
+    surface speed; `spindle_speed` is `spindle` where one may have been in force. `cycles` are the codes of drilling cycles by their kind,
+    and `return_levels` those that end them at the level where they began and at the retract plane. `turning` chooses the plane ZX with X
+    as a diameter, without it the control does not turn work; `milling` is said in the other sections of a program that does.
     """
 
     title: str
@@ -64,6 +70,14 @@ class IsoWords:
     angle_decimals: int = 0
     per_minute: str = ""
     inverse_time: str = ""
+    per_revolution: str = ""
+    revolution_decimals: int = 0
+    surface_speed: str = ""
+    spindle_speed: str = ""
+    turning: str = ""
+    milling: str = ""
+    return_levels: tuple[str, str] = ("", "")
+    cycles: dict[str, str] = field(default_factory=dict)
 
 
 def iso_words(name: str, package: str = "") -> IsoWords:
@@ -88,6 +102,7 @@ def checked_iso_words(name: str, words: IsoWords) -> IsoWords:
             raise BadInput(
                 f"dialect {name}: letters must be one letter each for some of {', '.join(ROLES)}; got {role} = {letter!r}"
             )
+    _check_cycles(name, words)
     return words
 
 
@@ -100,10 +115,27 @@ def by_code(table: Mapping[str, str]) -> dict[str, str]:
     return {code: value for codes, value in table.items() for code in codes.split()}
 
 
+def code_of(words: IsoWords, meaning: str) -> str:
+    """Return the first code by which a control does what a meaning says, empty where it has none."""
+    return next((code for code, m in by_code(words.codes).items() if m == meaning), "")
+
+
 def _check_keys(name: str, word: str, table: Mapping[str, str]) -> None:
     for key in _KEYS[word]:
         if key not in table:
             raise BadInput(f"dialect {name}: {word} needs an entry {key}")
+
+
+def _check_cycles(name: str, words: IsoWords) -> None:
+    """Raise `BadInput` for cycles that are none, or that a control's other words leave nothing to say with."""
+    for kind in words.cycles:
+        if kind not in list(CycleKind):
+            raise BadInput(f"dialect {name}: cycles knows {', '.join(CycleKind)}; got {kind}")
+        needed = ["retract", *(["peck"] * (kind in PECKING)), *(["dwell"] * (kind in WAITING))]
+        missing = [role for role in needed if role not in words.letters]
+        if missing or "" in words.return_levels:
+            what = f"letters needs an entry {missing[0]}" if missing else "return_levels is missing"
+            raise BadInput(f"dialect {name}: {what} for the cycle {kind}")
 
 
 def _check_placeholders(name: str, word: str, lines: tuple[str, ...]) -> None:

@@ -50,13 +50,14 @@ class PathTolerance:
 @dataclass(frozen=True, slots=True, eq=False, kw_only=True)
 class JointPath:
     """Positions of a machine's axes, m blocks: words (m, 3) mm and centre (m, 3) of X, Y, Z; angle (m, a) rad; motion (m,); feed (m,)
-    mm/min of the tip, 0 for rapids."""
+    mm/min of the tip, 0 for rapids; dwell (m,) s at the ends, None where there is none."""
 
     words: Floats
     angle: Floats
     motion: Ints
     centre: Floats
     feed: Floats
+    dwell: Floats | None
 
 
 def joint_path(
@@ -125,6 +126,8 @@ def lines_for_arcs(path: Toolpath, rows: Ints, within: float) -> tuple[Toolpath,
         centre=centre,
         feed=path.feed[row],
         mark=path.mark[row],
+        dwell=path.dwell_of(row),
+        work_turns=path.work_turns,
     ), row
 
 
@@ -188,7 +191,12 @@ def _between(
     if len(arcs):
         centre[arcs] = words_of(place, path.centre[row[arcs]], angle[arcs], tool.gauge_length)
     return JointPath(
-        words=words, angle=angle, motion=path.motion[row], centre=centre, feed=path.feed[row]
+        words=words,
+        angle=angle,
+        motion=path.motion[row],
+        centre=centre,
+        feed=path.feed[row],
+        dwell=path.dwell_of(row),
     )
 
 

@@ -10,6 +10,7 @@ import numpy as np
 from trunnion import tolerance
 from trunnion.findings import Refused
 from trunnion.geometry.arrays import Floats, Ints
+from trunnion.model.cycle import Cycle
 from trunnion.model.toolpath import Motion, Toolpath
 from trunnion.post.settings import PostSettings
 from trunnion.units import MM_PER_INCH
@@ -50,9 +51,29 @@ class TickScale:
 
     def feed(self, feed: float) -> str:
         """Return a feed in mm/min as it is written; never zero."""
-        least = 10.0**-self.feed_decimals
-        text = f"{max(feed / self.unit, least):.{self.feed_decimals}f}"
-        return text.rstrip("0").rstrip(".") if "." in text else text
+        return shortened(feed / self.unit, self.feed_decimals)
+
+
+def shortened(value: float, decimals: int) -> str:
+    """Return a number above zero with some decimals, without trailing zeros; never zero.
+
+    >>> shortened(0.2, 6), shortened(1e-9, 3)
+    ('0.2', '0.001')
+    """
+    text = f"{max(value, 10.0**-decimals):.{decimals}f}"
+    return text.rstrip("0").rstrip(".") if "." in text else text
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class WrittenCycle:
+    """A drilling cycle along z of a written path: its rows `first` to `last`, and Z of its retract plane, bottom and end in ticks."""
+
+    first: int
+    last: int
+    cycle: Cycle
+    retract: int
+    bottom: int
+    end: int
 
 
 @dataclass(frozen=True, slots=True, eq=False, kw_only=True)
@@ -60,8 +81,8 @@ class WrittenPath:
     """A toolpath in ticks, row by row, without the blocks that rounding makes vanish.
 
     point (m, 3), centre (m, 3) and motion (m,) of the blocks kept; feed (m,) mm/min; more (m, c) what else is written of each, in whole
-    numbers of its own. A full turn ends exactly where it starts; an arc so
-    short that rounding would turn it round is a line.
+    numbers of its own; dwell (m,) s at the end of each; cycles by the rows that are kept. A full turn ends exactly where it starts; an arc
+    so short that rounding would turn it round is a line.
     """
 
     point: Ints
@@ -69,6 +90,21 @@ class WrittenPath:
     motion: Ints
     feed: Floats
     more: Ints
+    dwell: Floats
+    cycles: tuple[WrittenCycle, ...] = ()
+
+    def in_mm(self, scale: TickScale) -> Toolpath:
+        """Return the path that the written numbers say, of an upright tool."""
+        mm = scale.unit / 10.0**scale.decimals
+        arcs = (self.motion >= Motion.ARC_CW)[:, None]
+        return Toolpath(
+            position=np.asarray(self.point * mm),
+            axis=np.tile([0.0, 0.0, 1.0], (len(self.motion), 1)),
+            motion=self.motion,
+            centre=np.where(arcs, self.centre * mm, np.nan),
+            feed=self.feed,
+            mark=np.zeros(len(self.motion), np.int64),
+        )
 
     def blocks(self) -> Iterator[tuple[list[int], list[int], int, float]]:
         """Yield end point, centre, motion and feed of each row."""
@@ -118,13 +154,34 @@ def written(
             | (point[1:] != point[:-1]).any(axis=1)
             | (more[1:] != more[:-1]).any(axis=1)
         )
+    rows = np.flatnonzero(kept)
     return WrittenPath(
         point=point[kept],
         centre=centre[kept],
         motion=motion[kept],
         feed=path.feed[kept],
         more=more[kept],
+        dwell=np.add.reduceat(path.dwells(), rows) if len(rows) else np.zeros(0),
+        cycles=tuple(_written_cycles(path, scale, rows)),
     )
+
+
+def _written_cycles(path: Toolpath, scale: TickScale, rows: Ints) -> Iterator[WrittenCycle]:
+    """Yield the cycles of a path by their places among the rows that are kept; without those that rounding left no motion."""
+    for block in path.cycles:
+        first, last = np.searchsorted(rows, [block.first, block.last + 1]).tolist()
+        end, cycle = float(path.position[block.last, 2]), block.cycle
+        retract = end - cycle.lift
+        heights = scale.ticks(np.array([retract, retract - cycle.depth, end])).tolist()
+        if heights[1] < heights[0] and first < last:
+            yield WrittenCycle(
+                first=first,
+                last=last - 1,
+                cycle=cycle,
+                retract=heights[0],
+                bottom=heights[1],
+                end=heights[2],
+            )
 
 
 def _refuse_bad_arcs(path: Toolpath, arcs: Ints, operation: str) -> None:

@@ -11,7 +11,8 @@ from importlib.resources import files
 from typing import Any, TypeVar, get_args, get_origin, get_type_hints
 
 from trunnion.findings import BadInput, Refused
-from trunnion.model.program import ProgramSection
+from trunnion.model.program import STANDING, ProgramSection
+from trunnion.model.spindle import per_minute
 
 T = TypeVar("T")
 
@@ -36,7 +37,10 @@ def checked_words(cls: type[T], name: str, table: dict[str, Any]) -> T:
     Words whose fields have a default may be missing.
     """
     hints = get_type_hints(cls)
-    optional = {f.name: f.default is not MISSING for f in fields(cls)}  # type: ignore[arg-type]
+    optional = {
+        f.name: f.default is not MISSING or f.default_factory is not MISSING
+        for f in fields(cls)  # type: ignore[arg-type]
+    }
     wanted = list(optional)
     for key in table:
         if key not in wanted:
@@ -103,3 +107,25 @@ def refuse_unwritable(section: ProgramSection, title: str, coolant: Container[st
         raise Refused(f"operation {id}: a spindle speed of {section.spindle:g} turns nothing")
     if not len(section.path):
         raise Refused(f"operation {id} has no motion: nothing to write")
+    if section.path.work_turns == section.tool.rotates:
+        what = "can't turn work" if section.tool.rotates else "cuts only work that turns"
+        raise Refused(f"operation {id}: {section.tool.name} {what}; choose another tool")
+    if section.surface_speed > 0.0 and not section.path.work_turns:
+        raise Refused(
+            f"operation {id}: a constant surface speed is of work that turns; give a spindle speed"
+        )
+    refuse_another_pitch(section)
+
+
+def refuse_another_pitch(section: ProgramSection) -> None:
+    """Raise `Refused` for tapping at another feed than the pitch a revolution, but for what a written spindle speed is rounded by."""
+    for block in section.path.cycles:
+        pitch, feed = (
+            block.cycle.pitch,
+            float(section.path.feed[block.first : block.last + 1].max()),
+        )
+        if pitch > 0.0 and abs(feed - per_minute(pitch, section.spindle)) > pitch * STANDING:
+            raise Refused(
+                f"operation {section.operation}: tapping at {feed:g} mm/min is not {pitch:g} mm a revolution at "
+                f"{section.spindle:g} 1/min; feed at {per_minute(pitch, section.spindle):g}"
+            )

@@ -7,7 +7,9 @@ import math
 from collections.abc import Sequence
 from pathlib import Path
 
+from trunnion.model.operation import CuttingData
 from trunnion.model.session import Session
+from trunnion.model.spindle import FeedMode, SpindleMode
 from trunnion.report.pictures import Picture
 from trunnion.units import SECONDS_PER_MINUTE, degrees
 from trunnion_resources import folder as resource_folder
@@ -41,7 +43,25 @@ def report_html(
         share=share,
         degrees=degrees,
         left_faces=left_faces(session),
+        spindle=spindle,
+        feed=feed,
     )
+
+
+def spindle(data: CuttingData) -> str:
+    """Return a spindle speed as the setup sheet has it: 1/min, or the constant surface speed and the highest."""
+    if data.spindle_mode is SpindleMode.RPM:
+        return f"{data.spindle:.0f}"
+    return f"{data.speed:.0f} m/min, at most {data.highest_spindle:.0f}"
+
+
+def feed(data: CuttingData) -> str:
+    """Return a feed as the setup sheet has it: in mm/min, or as programs give it."""
+    return {
+        FeedMode.MINUTE: f"{data.feed:.0f}",
+        FeedMode.REVOLUTION: f"{data.feed_per_revolution:.3f} mm a revolution",
+        FeedMode.INVERSE: f"{data.feed:.0f} in inverse time",
+    }[data.feed_mode]
 
 
 def duration(seconds: float) -> str:

@@ -57,8 +57,8 @@ def opened(path: Toolpath) -> tuple[Floats, Ints]:
 
 
 def leans(path: Toolpath) -> bool:
-    """Say whether the tool stands other than upright anywhere on a path."""
-    return bool((np.abs(path.axis[:, :2]) > _UPRIGHT).any())
+    """Say whether a tool that rotates stands other than upright anywhere on a path."""
+    return not path.work_turns and bool((np.abs(path.axis[:, :2]) > _UPRIGHT).any())
 
 
 def strokes(path: Toolpath, every: float, length: float, most: int) -> Floats:

@@ -58,6 +58,10 @@ class Shop:
         """Return a machine; raise `BadInput` with the known names."""
         return _named(self.machines, name, "machine")
 
+    def turning_tool(self, name: str) -> TurningTool:
+        """Return a turning tool, `HOLDER INSERT`; raise `BadInput` with the known names."""
+        return _named({t.name: t for t in self.turning}, name, "turning tool")
+
     def plan_for(self, family: str, named: str = "") -> TypicalPlan:
         """Return the typical plan of a family that is named, or (empty) its first; raise `BadInput` when there is none."""
         known = {name: plan for name, plan in self.plans.items() if plan.family == family}

@@ -21,6 +21,7 @@ import numpy as np
 from lxml import etree
 
 from trunnion.findings import BadInput
+from trunnion.settings import unwritten
 
 SMALL_ARRAY = 16
 LONG_TEXT = 2000
@@ -113,7 +114,10 @@ def _write(element: etree._Element, value: Any, hint: Any, members: Members) -> 
     elif dataclasses.is_dataclass(value):
         if picked is not _first_data(choices):
             element.set("type", picked.__name__)
+        left_out = unwritten(value)
         for name, own in hints_of(picked).items():
+            if name in left_out:
+                continue
             _write(
                 etree.SubElement(element, name.replace("_", "-")),
                 getattr(value, name),

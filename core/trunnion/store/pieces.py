@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import re
 from collections.abc import Iterable, Iterator, Mapping
+from enum import Enum
 from typing import Any, TypeVar
 
 import numpy as np
@@ -11,16 +12,25 @@ from lxml import etree
 
 from trunnion.findings import Finding, Severity
 from trunnion.geometry.frame import Frame
+from trunnion.settings import unwritten
 from trunnion.store.mapping import hints_of
 
 T = TypeVar("T")
 _NOT_IN_XML = re.compile("[^\t\n\r\x20-\ud7ff\ue000-\ufffd\U00010000-\U0010ffff]")
 _SCALARS = (bool, int, float, str)
+
+
+def _is_scalar(kind: Any) -> bool:
+    return kind in _SCALARS or (isinstance(kind, type) and issubclass(kind, Enum))
+
+
 _TYPES = {bool: "truth", int: "integer", float: "number", str: "text", tuple: "list"}
 
 
 def text_of(value: Any) -> str:
     """Return a scalar as XML text; floats so that they come back to the last digit."""
+    if isinstance(value, Enum):
+        return str(value.value)
     if isinstance(value, bool):
         return "true" if value else "false"
     if isinstance(value, float):
@@ -34,19 +44,19 @@ def value_of(text: str, kind: type) -> Any:
 
 
 def attributes(data: Any) -> dict[str, str]:
-    """Return the scalar fields of a dataclass as XML attributes."""
-    hints = hints_of(type(data))
+    """Return the scalar fields of a dataclass as XML attributes, without those that files leave out."""
+    hints, left_out = hints_of(type(data)), unwritten(data)
     return {
         name.replace("_", "-"): xml_text(text_of(hint(getattr(data, name))))
         for name, hint in hints.items()
-        if hint in _SCALARS
+        if _is_scalar(hint) and name not in left_out
     }
 
 
 def made(cls: type[T], element: Any, **others: Any) -> T:
     """Return a dataclass from the attributes of an element (absent: the default) and the fields that are not scalars."""
     hints = hints_of(cls)
-    names = [name for name, hint in hints.items() if name not in others and hint in _SCALARS]
+    names = [name for name, hint in hints.items() if name not in others and _is_scalar(hint)]
     values = {
         n: value_of(element.get(n.replace("_", "-")), hints[n])
         for n in names

@@ -12,7 +12,7 @@ from trunnion.model.operation import CuttingData, Operation
 from trunnion.model.process import ProcessTree
 from trunnion.model.session import PartInfo, Session
 from trunnion.model.setup import Setup
-from trunnion.model.tool import Holder, Tool
+from trunnion.model.tool import AnyTool, Holder, Insert, Tool, TurningTool
 from trunnion.store import xml
 from trunnion.store.atomic import write_bytes
 from trunnion.store.pieces import (
@@ -49,8 +49,11 @@ def process_xml(process: ProcessTree, part: PartInfo) -> bytes:
     for setup in process.setups:
         element = etree.SubElement(root, "setup", attributes(setup))
         add_frame(element, setup.frame)
-    for tool in _tools(process).values():
-        _add_tool(root, tool)
+    tools = _tools(process).values()
+    for rotating in (t for t in tools if isinstance(t, Tool)):
+        _add_tool(root, rotating)
+    for turning in (t for t in tools if isinstance(t, TurningTool)):
+        _add_turning_tool(root, turning)
     for operation in process.operations:
         _add_operation(root, operation)
     for id in process.removed:
@@ -68,7 +71,11 @@ def read_process(path: str | Path) -> ProcessTree:
         raise BadInput(f"{path}: can't be read: {reason.strerror or reason}") from None
     root = xml.versioned(xml.parse(data, str(path)), "process", FORMAT, str(path))
     try:
-        tools = {int(e.get("number")): _tool(e) for e in root.findall("tool")}
+        tools: dict[int, AnyTool] = {
+            int(e.get("number")): read(e)
+            for tag, read in (("tool", _tool), ("turning-tool", _turning_tool))
+            for e in root.findall(tag)
+        }
         return ProcessTree(
             plan=root.get("plan"),
             material=root.get("material"),
@@ -81,8 +88,8 @@ def read_process(path: str | Path) -> ProcessTree:
         raise BadInput(f"{path}: can't be used: {reason}") from None
 
 
-def _tools(process: ProcessTree) -> dict[int, Tool]:
-    found: dict[int, Tool] = {}
+def _tools(process: ProcessTree) -> dict[int, AnyTool]:
+    found: dict[int, AnyTool] = {}
     for operation in process.operations:
         tool = operation.tool
         if found.setdefault(tool.number, tool) != tool:
@@ -121,6 +128,15 @@ def _tool(element: Any) -> Tool:
     return made(Tool, element, outline=outline, holder=Holder(name=holder.get("name"), rows=rows))
 
 
+def _add_turning_tool(root: Any, tool: TurningTool) -> None:
+    element = etree.SubElement(root, "turning-tool", attributes(tool))
+    etree.SubElement(element, "insert", attributes(tool.insert))
+
+
+def _turning_tool(element: Any) -> TurningTool:
+    return made(TurningTool, element, insert=made(Insert, element.find("insert")))
+
+
 def _add_operation(root: Any, operation: Operation) -> None:
     element = etree.SubElement(
         root, "operation", {**attributes(operation), "tool": str(operation.tool.number)}
@@ -140,7 +156,7 @@ def _add_operation(root: Any, operation: Operation) -> None:
         add(element, "direction", x=x, y=y, z=z)
 
 
-def _operation(element: Any, tools: dict[int, Tool]) -> Operation:
+def _operation(element: Any, tools: dict[int, AnyTool]) -> Operation:
     cutting = element.find("cutting")
     return made(
         Operation,

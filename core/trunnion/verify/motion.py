@@ -2,11 +2,12 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Iterable, Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
 
+from trunnion.findings import BadInput
 from trunnion.geometry.arrays import Bools, Floats, Ints
 from trunnion.geometry.frame import Frame
 from trunnion.model.program import ProgramSection
@@ -111,12 +112,23 @@ class Moves:
         return self.bodies.widest()[self.tool]
 
 
+def refuse_turning(sections: Iterable[ProgramSection]) -> None:
+    """Raise `BadInput` for a section that turns the work: nothing here can tell what it cuts."""
+    for section in sections:
+        if section.path.work_turns or not section.tool.rotates:
+            raise BadInput(
+                f"operation {section.operation} turns the work: turning can't be proven yet, and what is not proven is not released; "
+                "suppress the operation or mill instead"
+            )
+
+
 def moves_of(sections: Sequence[ProgramSection]) -> Moves:
     """Return the moves of a setup's sections in order.
 
     A section's first block starts where it ends, when the tool comes from its change; where the same tool goes on, it starts where the
-    section before has left it.
+    section before has left it. Raises `BadInput` for turning.
     """
+    refuse_turning(sections)
     starts: list[Floats] = []
     ends: list[Floats] = []
     start_axes: list[Floats] = []
@@ -146,7 +158,7 @@ def moves_of(sections: Sequence[ProgramSection]) -> Moves:
         rapid.append(path.motion == Motion.RAPID)
         feeds.append(path.feed)
         lengths.append(length)
-        tool_row.append(np.full(n, tools.setdefault(section.tool, len(tools))))
+        tool_row.append(np.full(n, tools.setdefault(section.cutter, len(tools))))
     first, last = _points(start_axes), _points(end_axes)
     return Moves(
         start=_points(starts),

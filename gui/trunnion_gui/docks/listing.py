@@ -5,7 +5,7 @@ from __future__ import annotations
 from PySide6.QtGui import QShowEvent
 from PySide6.QtWidgets import QPlainTextEdit
 
-from trunnion.model.program import Program, ProgramSection
+from trunnion.model.program import Program, section_of
 from trunnion.model.session import Session
 from trunnion_gui.document import Document
 from trunnion_gui.i18n import tr
@@ -47,5 +47,6 @@ def operation_listing(session: Session, id: str) -> str:
     if path is None or tree is None:
         return ""
     o = tree.operation(id)
-    section = ProgramSection(operation=id, tool=o.tool, spindle=o.data.spindle, path=path.path)
-    return listing(Program(name=id, setup=tree.setup(o.setup), sections=(section,)))
+    return listing(
+        Program(name=id, setup=tree.setup(o.setup), sections=(section_of(o, path.path),))
+    )

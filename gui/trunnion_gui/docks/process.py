@@ -151,7 +151,7 @@ class ProcessDock(QWidget):
 
     def _add(self, top: QTreeWidgetItem, o: Operation, session: Session) -> None:
         item = QTreeWidgetItem(
-            [label(o), o.feature, f"T{o.tool.number}", amount(o.tool.diameter, 2)]
+            [label(o), o.feature, f"T{o.tool.number}", amount(o.tool.cutter_sizes[0], 2)]
         )
         item.setData(0, _ID, o.id)
         item.setTextAlignment(3, RIGHT)

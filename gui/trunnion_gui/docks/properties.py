@@ -5,7 +5,8 @@ from __future__ import annotations
 from PySide6.QtWidgets import QLabel, QScrollArea, QTableWidget, QVBoxLayout, QWidget
 
 from trunnion.model.feature import Feature
-from trunnion.model.operation import Operation
+from trunnion.model.operation import CuttingData, Operation
+from trunnion.model.spindle import FeedMode, SpindleMode
 from trunnion_gui import edits
 from trunnion_gui.document import Document
 from trunnion_gui.form import Form
@@ -17,6 +18,28 @@ from trunnion_gui.widgets import table as tables
 Rows = list[tuple[str, str]]
 UPRIGHT = (0.0, 0.0, 1.0)
 """The direction of a tool that stands along its setup's z."""
+
+
+def tool_rows(operation: Operation) -> Rows:
+    """Return the sizes of an operation's tool: of a turning tool those of its nose."""
+    diameter, corner = operation.tool.cutter_sizes
+    rows = [
+        (tr("Diameter"), f"{amount(diameter)} mm"),
+        (tr("Corner radius"), f"{amount(corner)} mm"),
+    ]
+    if operation.tool.rotates:
+        rows.append((tr("Stickout"), f"{amount(operation.cutter.stickout)} mm"))
+    return rows
+
+
+def mode_rows(data: CuttingData) -> Rows:
+    """Return what a program gives of speed and feed, where that is more than 1/min and mm/min."""
+    rows = []
+    if data.spindle_mode is SpindleMode.SURFACE:
+        rows.append((tr("Highest spindle speed"), f"{amount(data.highest_spindle, 0)} 1/min"))
+    if data.feed_mode is FeedMode.REVOLUTION:
+        rows.append((tr("Feed per revolution"), f"{amount(data.feed_per_revolution)} mm"))
+    return rows
 
 
 class PropertiesDock(QScrollArea):
@@ -112,13 +135,12 @@ class PropertiesDock(QScrollArea):
         )
         rows = [
             (tr("Tool"), f"T{o.tool.number} {o.tool.name}"),
-            (tr("Diameter"), f"{amount(o.tool.diameter)} mm"),
-            (tr("Corner radius"), f"{amount(o.tool.corner_radius)} mm"),
-            (tr("Stickout"), f"{amount(o.tool.stickout)} mm"),
-            (tr("Holder"), o.tool.holder.name),
+            *tool_rows(o),
+            (tr("Holder"), o.tool.holder_name),
             (tr("Cutting speed"), f"{amount(data.speed, 0)} m/min"),
             (tr("Spindle speed"), f"{amount(data.spindle, 0)} 1/min"),
             (tr("Feed"), f"{amount(data.feed, 0)} mm/min"),
+            *mode_rows(data),
             (tr("Feed per tooth"), f"{amount(data.feed_per_tooth)} mm"),
             (tr("Depth of cut"), f"{amount(data.depth)} mm"),
             (tr("Width of cut"), f"{amount(data.width)} mm"),

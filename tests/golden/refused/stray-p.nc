@@ -1,4 +1,4 @@
-; line 6: P without G4, G64 or an arc; remove it
+; line 6: P without G4, G64, G82, G89 or an arc; remove it
 G21 G90 G17 G40 G94 G54
 T1 M6
 S9000 M3

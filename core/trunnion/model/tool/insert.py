@@ -136,6 +136,16 @@ class TurningTool:
             )
 
     @property
+    def cutter_sizes(self) -> tuple[float, float]:
+        """Diameter and radius in mm of the nose, as CUTTER of APT has them."""
+        return 2.0 * self.insert.nose_radius, self.insert.nose_radius
+
+    @property
+    def rotates(self) -> bool:
+        """Whether it turns in the spindle: it stands still, and the work turns."""
+        return False
+
+    @property
     def form(self) -> str:
         """The form that tool lists call it."""
         return "turning"

@@ -73,6 +73,16 @@ class Tool:
             raise ValueError(f"tool {self.name}: {wrong}")
 
     @property
+    def cutter_sizes(self) -> tuple[float, float]:
+        """Diameter and corner radius in mm, as CUTTER of APT has them."""
+        return self.diameter, self.corner_radius
+
+    @property
+    def rotates(self) -> bool:
+        """Whether it turns in the spindle, and the work stands still."""
+        return True
+
+    @property
     def point_length(self) -> float:
         """Height of a drill's point; 0 for other forms."""
         return point_height(self.diameter, self.point_angle) if self.form == "drill" else 0.0

@@ -9,6 +9,7 @@ from dataclasses import replace
 from trunnion.model.material import Machine, Material
 from trunnion.model.operation import CuttingData, Operation
 from trunnion.model.process import ProcessTree
+from trunnion.model.spindle import surface_speed, turns_of
 from trunnion.model.tool import Tool
 from trunnion.plan.cutting.peak import with_peak
 from trunnion.plan.cutting.power import NEWTON_METRES, cutting_power
@@ -171,11 +172,11 @@ def cutting_data(
     rules = [
         f"vc {trimmed(speed, 0)} m/min: {material.name}, {'roughing' if rough else 'finishing'}"
     ]
-    spindle = speed * MM_PER_METRE / (math.pi * tool.diameter)
+    spindle = turns_of(speed, tool.diameter)
     highest = min(machine.spindle_high, settings.spindle_limit)
     if not machine.spindle_low <= spindle <= highest:
         spindle = min(max(spindle, machine.spindle_low), highest)
-        speed = spindle * math.pi * tool.diameter / MM_PER_METRE
+        speed = surface_speed(spindle, tool.diameter)
         rules.append(
             f"n {trimmed(spindle, 0)} 1/min: the spindle's limit, so vc is {trimmed(speed, 0)} m/min"
         )
@@ -257,10 +258,10 @@ def _balanced(
     machine = shop.machine(process.setup(operation.setup).machine)
     depth, width = operation.data.routed_depth or operation.data.depth, operation.data.width
     if operation.kind in ROUGHING and operation.kind != "face":
-        depth = min(depth, roughing_depth(operation.tool, material, settings))
-        width = min(width, roughing_width(operation.tool, material, settings))
+        depth = min(depth, roughing_depth(operation.cutter, material, settings))
+        width = min(width, roughing_width(operation.cutter, material, settings))
     data = cutting_data(
-        operation.tool,
+        operation.cutter,
         material,
         machine,
         operation.kind,

@@ -102,13 +102,13 @@ def _roughed_by(operation: Operation, earlier: Iterable[Operation]) -> Operation
     """Return the operation with the largest cutter that roughed an operation's feature before, or the blank where none is the feature's."""
     roughing = [o for o in earlier if not o.suppressed and not o.faces and o.kind != "face"]
     own = [o for o in roughing if o.feature == operation.feature]
-    return max(own or roughing, key=lambda o: o.tool.diameter, default=None)
+    return max(own or roughing, key=lambda o: o.cutter.diameter, default=None)
 
 
 def _power(operation: Operation, data: CuttingData, met: Engagement, material: Material) -> float:
-    feed, teeth = met.share * data.feed, operation.tool.teeth * data.spindle
+    feed, teeth = met.share * data.feed, operation.cutter.teeth * data.spindle
     return cutting_power(
-        material, operation.tool.diameter, feed / teeth, met.depth, met.width, feed
+        material, operation.cutter.diameter, feed / teeth, met.depth, met.width, feed
     )
 
 
@@ -159,7 +159,8 @@ def _shallower(data: CuttingData, peak: Foresee, operation: Operation) -> Cuttin
     if not (_passes(found.power, data.power_limit) and found.met.slows and not operation.faces):
         return data
     share = max(
-        data.power_limit / found.power, min(LEAST_DEPTH * operation.tool.diameter / data.depth, 1.0)
+        data.power_limit / found.power,
+        min(LEAST_DEPTH * operation.cutter.diameter / data.depth, 1.0),
     )
     rule = f"ap {trimmed(data.depth * share, 2)} mm: the spindle's limit at full width"
     return replace(

@@ -203,7 +203,7 @@ def land_drive(
 
     Stock that is thicker than the operation's depth comes off in even steps.
     """
-    standing, keeping, tool = PartAbove(space, progress), keeping_of(operation), operation.tool
+    standing, keeping, tool = PartAbove(space, progress), keeping_of(operation), operation.cutter
     stock = number(operation, STOCK)
     steps = (
         max(1, math.ceil(stock / operation.data.depth - tolerance.COINCIDENT))
@@ -248,8 +248,8 @@ def left_by(standing: PartAbove, land: Land, before: Sequence[Operation]) -> Reg
                 left,
                 covered(
                     land,
-                    standing.free(land.z, operation.tool, keeping_of(operation)),
-                    operation.tool,
+                    standing.free(land.z, operation.cutter, keeping_of(operation)),
+                    operation.cutter,
                 ),
             )
     return left

@@ -103,7 +103,7 @@ class SurfaceSpace:
         if earlier is not None and not needs.finds_rest:
             skin, faces = left_by(skin, faces, earlier, lowest, height, progress)
         if not needs.leans:
-            skin, faces = without_met(skin, faces, operation.tool, lowest, height, progress)
+            skin, faces = without_met(skin, faces, operation.cutter, lowest, height, progress)
         told = digest(
             self.part.digest,
             self.part.solid,

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from trunnion import tolerance
 from trunnion.model.operation import Operation
+from trunnion.model.tool import rotating
 from trunnion.plan.contract import DriveNeeds, OperationDrive, Scene
 from trunnion.plan.freeform.frames import Direction
 from trunnion.plan.freeform.keys import EARLIER
@@ -35,6 +36,7 @@ def surface_driven(
     space = space_from(operation.direction, tolerance.SKIN_CHORD, scene, progress)
     around = scene.context.around(scene.setup, space.frame, space.skin, progress)
     name = operation.choices.get(EARLIER, "")
-    earlier = next((t for t in scene.process.tools() if t.name == name), None)
+    named = next((t for t in scene.process.tools() if t.name == name), None)
+    earlier = rotating(named, operation.id) if named is not None else None
     drive = space.drive_of(operation, needs, earlier, around, progress)
     return OperationDrive(setup=space.setup, drive=drive, told=(drive.digest, scene.fixtures))

@@ -96,7 +96,7 @@ def make_route(
             settings=settings,
             shop=shop,
             beside=near,
-            loaded=tuple(o.tool for o in operations),
+            loaded=tuple(o.cutter for o in operations),
         )
         mine = [f for f in planned if _from_below(f, recognition, part) == (n > 0)]
         share = progress.part(n / len(setups), (n + 1) / len(setups))

@@ -206,7 +206,7 @@ def _pocket(
         faces=operation.faces,
         wall_allowance=_choice(operation, WALL_ALLOWANCE),
         floor_allowance=_choice(operation, FLOOR_ALLOWANCE),
-        earlier_radius=earlier.tool.radius if earlier else 0.0,
+        earlier_radius=earlier.cutter.radius if earlier else 0.0,
         earlier_allowance=_choice(earlier, WALL_ALLOWANCE) if earlier else 0.0,
     )
 

@@ -81,7 +81,7 @@ def plan_lands(
             min((t.radius for t in balls), default=0.0),
             chosen.share,
             keeping,
-            [o.tool for o in draft.operations],
+            [o.cutter for o in draft.operations],
             progress,
         )
         found = tuple(c for c in found if not _is_for_balls(draft, c, balls))

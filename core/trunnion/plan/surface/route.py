@@ -232,7 +232,7 @@ def _rough(draft: SurfacePlanState, space: SurfaceSpace, bottom: float, name: st
         return
     _add_rough(draft, "rough", name, tool, space, bottom)
     smallest = min(
-        (o.tool.diameter for o in draft.operations if o.kind in ("finish", LAND, REST_LAND)),
+        (o.cutter.diameter for o in draft.operations if o.kind in ("finish", LAND, REST_LAND)),
         default=tool.diameter,
     )
     n = 1
@@ -579,7 +579,7 @@ def _in_order(draft: SurfacePlanState, stages: Sequence[Stage]) -> list[Operatio
             or (
                 o.kind in FALLING
                 and other.group == o.group
-                and other.tool.diameter > o.tool.diameter
+                and other.cutter.diameter > o.cutter.diameter
             )
         }
         done[o.id] = replace(o, after=tuple(sorted(before)))

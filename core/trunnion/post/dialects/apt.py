@@ -5,8 +5,8 @@ Where any tool leans, every GOTO has the tool axis too (MULTAX/ON): between two 
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
-from dataclasses import dataclass
+from collections.abc import Callable, Iterator, Sequence
+from dataclasses import dataclass, replace
 
 import numpy as np
 
@@ -14,13 +14,15 @@ from trunnion import tolerance
 from trunnion.findings import BadCall
 from trunnion.model.program import Program, ProgramSection
 from trunnion.model.setup import Setup
-from trunnion.model.tool import Tool
+from trunnion.model.spindle import FeedMode, per_revolution
+from trunnion.model.tool import AnyTool
 from trunnion.model.toolpath import Motion, Toolpath
 from trunnion.post.header import Header
 from trunnion.post.linearize import lines_for_arcs
 from trunnion.post.settings import PostSettings
 from trunnion.post.ticks import TickScale, WrittenPath, upright, written
 from trunnion.post.words import dialect_words, plain, refuse_unwritable
+from trunnion.post.writer.feed import FeedFormat, dwell_text, revolution_text, surface_text
 from trunnion.shop.kinematics import NO_PLACES, Places
 from trunnion.units import trimmed
 
@@ -37,6 +39,9 @@ class AptWords:
     end: tuple[str, ...]
     units: dict[str, str]
     feed: dict[str, str]
+    feed_per_revolution: dict[str, str]
+    revolution_decimals: int
+    surface: dict[str, str]
     coolant: dict[str, str]
     axis_decimals: int
 
@@ -72,7 +77,11 @@ class AptDialect:
         )
 
     def read(
-        self, text: str, tools: Sequence[Tool], setups: Sequence[Setup], places: Places = NO_PLACES
+        self,
+        text: str,
+        tools: Sequence[AnyTool],
+        setups: Sequence[Setup],
+        places: Places = NO_PLACES,
     ) -> tuple[Program, ...]:
         """Return the programs of the setups that the text names."""
         from trunnion.post.readers.apt import read_apt
@@ -101,12 +110,12 @@ def _lines(
         yield _print(words, f"SETUP {program.setup.name} WORK OFFSET {program.setup.work_offset}")
         tool = None
         for section in program.sections:
-            yield from _section(words, section, scale, section.tool.number != tool)
+            yield from _section(words, section, scale, section.tool.number != tool, settings.units)
             yield from _motions(
                 _blocks(section, scale, axes, settings.straying),
                 scale,
                 axes,
-                words.feed[settings.units],
+                _feed_words(words, section, scale, settings.units),
             )
             tool = section.tool.number
     yield from words.end
@@ -114,30 +123,42 @@ def _lines(
 
 def leaning(path: Toolpath) -> bool:
     """Say whether the tool leans anywhere on a path."""
-    return bool((np.abs(path.axis[:, :2]).max(axis=1, initial=0.0) > tolerance.PARAMETRIC).any())
+    return not path.work_turns and bool(
+        (np.abs(path.axis[:, :2]).max(axis=1, initial=0.0) > tolerance.PARAMETRIC).any()
+    )
 
 
 def _section(
-    words: AptWords, section: ProgramSection, scale: TickScale, changes: bool
+    words: AptWords, section: ProgramSection, scale: TickScale, changes: bool, units: str
 ) -> Iterator[str]:
     """Yield the head of one operation: its name, the tool when it changes, spindle, coolant."""
     tool = section.tool
     refuse_unwritable(section, words.title, words.coolant)
     yield _print(words, f"OPERATION {section.operation}")
     if changes:
-        sizes = scale.ticks(np.array([tool.diameter, tool.corner_radius, tool.gauge_length]))
+        sizes = scale.ticks(np.array([*tool.cutter_sizes, tool.gauge_length]))
         diameter, radius, length = (scale.text(v) for v in sizes.tolist())
         yield f"LOADTL/{tool.number},LENGTH,{length}"
         yield f"CUTTER/{diameter},{radius}"
-    yield f"SPINDL/RPM,{trimmed(section.spindle, 0)},CLW"
+    turns = trimmed(section.spindle, 0)
+    if section.surface_speed > 0.0:
+        speed = f"{words.surface[units]},{surface_text(section.surface_speed, units)}"
+        yield f"SPINDL/{speed},CLW,MAXRPM,{turns}"
+    else:
+        yield f"SPINDL/RPM,{turns},CLW"
     yield words.coolant[section.coolant]
 
 
 def _blocks(
     section: ProgramSection, scale: TickScale, axes: TickScale | None, within: float
 ) -> WrittenPath:
-    """Return the blocks of a section; arcs about a leaning axis are lines within a distance of them."""
+    """Return the blocks of a section; arcs about another axis than z are lines within a distance of them."""
     path = section.path
+    if path.work_turns:
+        arcs = np.flatnonzero(path.motion >= Motion.ARC_CW)
+        path, _ = lines_for_arcs(path, arcs, within)
+        up = np.tile([0.0, 0.0, 1.0], (len(path), 1))
+        path = replace(path, axis=up, work_turns=False)
     if axes is None:
         return written(upright(path, section.operation), scale, section.operation)
     leans = np.abs(path.axis[:, :2]).max(axis=1) > tolerance.PARAMETRIC
@@ -145,20 +166,42 @@ def _blocks(
     return written(path, scale, section.operation, axes.ticks(path.axis))
 
 
+FeedText = Callable[[float, int], str]
+"""Returns the FEDRAT statement of a feed in mm/min for a block that ends at an X in ticks."""
+
+
+def _feed_words(words: AptWords, section: ProgramSection, scale: TickScale, units: str) -> FeedText:
+    if section.feed_mode is not FeedMode.REVOLUTION:
+        return lambda feed, _: words.feed[units].format(feed=scale.feed(feed))
+    feeds = FeedFormat(
+        mode=section.feed_mode, spindle=section.spindle, surface_speed=section.surface_speed
+    )
+    mm = scale.unit / 10.0**scale.decimals
+
+    def by_revolution(feed: float, x: int) -> str:
+        share = per_revolution(feed, feeds.turns(x * mm))
+        return words.feed_per_revolution[units].format(feed=revolution_text(share, scale, words))
+
+    return by_revolution
+
+
 def _motions(
-    path: WrittenPath, scale: TickScale, axes: TickScale | None, feed_words: str
+    path: WrittenPath, scale: TickScale, axes: TickScale | None, feed_text: FeedText
 ) -> Iterator[str]:
     text, said, start = scale.text, "", [0, 0, 0]
-    for (point, centre, motion, feed), axis in zip(path.blocks(), path.more.tolist(), strict=True):
+    rows = zip(path.blocks(), path.more.tolist(), path.dwell.tolist(), strict=True)
+    for (point, centre, motion, feed), axis, dwell in rows:
         if motion == Motion.RAPID:
             yield "RAPID"
-        elif (now := scale.feed(feed)) != said:
+        elif (now := feed_text(feed, point[0])) != said:
             said = now
-            yield feed_words.format(feed=said)
+            yield said
         if motion >= Motion.ARC_CW:
             radius = int(round(((start[0] - centre[0]) ** 2 + (start[1] - centre[1]) ** 2) ** 0.5))
             sense = 1 if motion == Motion.ARC_CCW else -1
             yield f"CIRCLE/{text(centre[0])},{text(centre[1])},{text(start[2])},0,0,{sense},{text(radius)}"
         leans = "".join(f",{axes.text(v)}" for v in axis) if axes is not None else ""
         yield f"GOTO/{text(point[0])},{text(point[1])},{text(point[2])}{leans}"
+        if dwell > 0.0:
+            yield f"DELAY/{dwell_text(dwell)}"
         start = point

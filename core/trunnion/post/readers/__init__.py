@@ -7,12 +7,12 @@ from collections.abc import Sequence
 from trunnion import registry
 from trunnion.model.program import Program
 from trunnion.model.setup import Setup
-from trunnion.model.tool import Tool
+from trunnion.model.tool import AnyTool
 from trunnion.shop.kinematics import NO_PLACES, Places
 
 
 def read_program(
-    dialect: str, text: str, tools: Sequence[Tool], setup: Setup, places: Places = NO_PLACES
+    dialect: str, text: str, tools: Sequence[AnyTool], setup: Setup, places: Places = NO_PLACES
 ) -> Program:
     """Return the program of one setup that a text in a dialect says; raise `BadInput` with the line of what isn't understood."""
     (program,) = registry.get("dialects", dialect)().read(text, tools, [setup], places)

@@ -10,23 +10,48 @@ from trunnion import tolerance
 from trunnion.findings import BadInput
 from trunnion.model.program import Program
 from trunnion.model.setup import Setup
-from trunnion.model.tool import Tool
+from trunnion.model.spindle import FeedMode, limited_turns, per_minute
+from trunnion.model.tool import AnyTool
 from trunnion.model.toolpath import Motion
 from trunnion.post.readers.arcs import refuse_nearly_closed, refuse_no_radius
-from trunnion.post.readers.numbers import FEED, LENGTH, SPINDLE, shown
-from trunnion.post.readers.sections import NOWHERE, Point, Sections, TiltedPoses, operation_of
+from trunnion.post.readers.numbers import (
+    DWELL,
+    FEED,
+    FEED_PER_REVOLUTION,
+    LENGTH,
+    SPINDLE,
+    shown,
+)
+from trunnion.post.readers.sections import (
+    NOWHERE,
+    CuttingState,
+    Pace,
+    Point,
+    Sections,
+    TiltedPoses,
+    operation_of,
+)
 from trunnion.post.readers.statements import statements
 from trunnion.post.readers.tools import by_number, check_tool
-from trunnion.units import MM_PER_INCH
+from trunnion.units import METRES_PER_FOOT, MM_PER_INCH
 
 _SETUP = re.compile(r"SETUP\s+(\S+)\s+WORK OFFSET\s+(\S+)$", re.IGNORECASE)
+FEED_WORDS = {
+    "MMPM": (1.0, FeedMode.MINUTE),
+    "IPM": (MM_PER_INCH, FeedMode.MINUTE),
+    "MMPR": (1.0, FeedMode.REVOLUTION),
+    "IPR": (MM_PER_INCH, FeedMode.REVOLUTION),
+}
+"""Words of a feed: mm of its unit of length, and what it is given by."""
+SURFACE_WORDS = {"SMM": 1.0, "SFM": METRES_PER_FOOT}
+"""Words of a constant surface speed, and m/min of their units."""
 _NUMBER = re.compile(r"[-+]?(?:[0-9]+\.?[0-9]*|\.[0-9]+)(?:E[-+]?[0-9]+)?")
 _UP = (0.0, 0.0, 1.0)
 _UNIT = 1e-4
 """How far the length of a tool axis may be from 1: other systems write four decimals."""
 
 
-def read_apt(text: str, tools: Sequence[Tool], setups: Sequence[Setup]) -> tuple[Program, ...]:
+def read_apt(text: str, tools: Sequence[AnyTool], setups: Sequence[Setup]) -> tuple[Program, ...]:
     """Return the program of each setup that a CL text names; raise `BadInput` naming the line of what isn't understood.
 
     A text that names no setup belongs to the only one given.
@@ -40,14 +65,15 @@ def read_apt(text: str, tools: Sequence[Tool], setups: Sequence[Setup]) -> tuple
 class _Reader:
     """The modal state of a CL text while it is read; lengths in mm."""
 
-    def __init__(self, tools: dict[int, Tool], setups: Sequence[Setup]) -> None:
+    def __init__(self, tools: dict[int, AnyTool], setups: Sequence[Setup]) -> None:
         self.tools, self.setups = tools, {s.name: s for s in setups}
         self.programs: list[Program] = []
         self.setup: Setup | None = setups[0] if len(setups) == 1 else None
         self.sections = Sections(TiltedPoses(self.setup.clearance if self.setup else 0.0))
         self.named = self.rapid = self.ended = self.leans = self.turning = False
-        self.tool: Tool | None = None
+        self.tool: AnyTool | None = None
         self.unit, self.feed, self.spindle, self.coolant = 0.0, 0.0, 0.0, "off"
+        self.surface_speed, self.feed_mode = 0.0, FeedMode.MINUTE
         self.circle: list[float] | None = None
         self.words = {
             "PARTNO": self.text,
@@ -63,6 +89,7 @@ class _Reader:
             "FEDRAT": self.fedrat,
             "GOTO": self.goto,
             "CIRCLE": self.arc,
+            "DELAY": self.delay,
             "END": self.pause,
             "FINI": self.fini,
         }
@@ -148,7 +175,7 @@ class _Reader:
                 f"line {line}: length {shown(more[1])} is not that of tool {number}, {tool.gauge_length:g} mm"
             )
         self.sections.change_tool()
-        self.tool, self.spindle, self.turning = tool, 0.0, False
+        self.tool, self.spindle, self.turning, self.surface_speed = tool, 0.0, False, 0.0
 
     def cutter(self, line: int, rest: str) -> None:
         sizes = rest.split(",")
@@ -157,29 +184,51 @@ class _Reader:
             raise BadInput(f"line {line}: CUTTER before LOADTL; load the tool first")
         if (
             len(sizes) != 2
-            or not self.same(line, sizes[0], tool.diameter)
-            or not self.same(line, sizes[1], tool.corner_radius)
+            or not self.same(line, sizes[0], tool.cutter_sizes[0])
+            or not self.same(line, sizes[1], tool.cutter_sizes[1])
         ):
             raise BadInput(
                 f"line {line}: CUTTER/{shown(rest)} is not tool {tool.number}, "
-                f"CUTTER/{tool.diameter:g},{tool.corner_radius:g} in mm"
+                f"CUTTER/{tool.cutter_sizes[0]:g},{tool.cutter_sizes[1]:g} in mm"
             )
 
     def same(self, line: int, word: str, length: float) -> bool:
         return abs(self.numbers(line, word, 1)[0] * self.scale(line) - length) <= tolerance.WRITTEN
 
     def spindl(self, line: int, rest: str) -> None:
-        words = [w for w in rest.split(",") if w not in ("RPM", "CLW")]
         if rest == "OFF":
-            self.spindle, self.turning = 0.0, False
+            self.spindle, self.surface_speed, self.turning = 0.0, 0.0, False
             return
+        given = rest.split(",")
+        if any(w in given for w in SURFACE_WORDS):
+            self.keep_surface_speed(line, rest)
+            return
+        words = [w for w in given if w not in ("RPM", "CLW")]
         if len(words) != 1:
             raise BadInput(
                 f"line {line}: SPINDL/{shown(rest)} is not understood; write SPINDL/RPM,speed,CLW or SPINDL/OFF"
             )
         speed = self.numbers(line, words[0], 1)[0]
         SPINDLE.check(line, "SPINDL ", speed)
-        self.spindle, self.turning = speed, True
+        self.spindle, self.surface_speed, self.turning = speed, 0.0, True
+
+    def keep_surface_speed(self, line: int, rest: str) -> None:
+        """Take over a constant surface speed with the highest spindle speed."""
+        said = "SMM" if self.scale(line) == 1.0 else "SFM"
+        words = [w for w in rest.split(",") if w != "CLW"]
+        if len(words) != 4 or words[0] != said or words[2] != "MAXRPM":
+            raise BadInput(
+                f"line {line}: SPINDL/{shown(rest)} is not understood; write SPINDL/{said},speed,CLW,MAXRPM,speed"
+            )
+        speed, highest = self.numbers(line, f"{words[1]},{words[3]}", 2)
+        for value in (speed, highest):
+            SPINDLE.check(line, "SPINDL ", value)
+            if value <= 0.0:
+                raise BadInput(
+                    f"line {line}: a constant surface speed and its MAXRPM are above zero"
+                )
+        self.spindle, self.turning = highest, True
+        self.surface_speed = speed * SURFACE_WORDS[said]
 
     def coolnt(self, line: int, rest: str) -> None:
         if rest not in ("FLOOD", "MIST", "OFF", "ON"):
@@ -194,17 +243,39 @@ class _Reader:
         self.rapid = True
 
     def fedrat(self, line: int, rest: str) -> None:
-        words = [w for w in rest.split(",") if w not in ("MMPM", "IPM")]
-        said = "MMPM" if self.scale(line) == 1.0 else "IPM"
-        if len(words) != 1 or any(w in ("MMPM", "IPM") and w != said for w in rest.split(",")):
+        words = [w for w in rest.split(",") if w not in FEED_WORDS]
+        said = [w for w in rest.split(",") if w in FEED_WORDS]
+        known = [w for w, (unit, _) in FEED_WORDS.items() if unit == self.scale(line)]
+        if len(words) != 1 or len(said) > 1 or not set(said) <= set(known):
             raise BadInput(
-                f"line {line}: FEDRAT/{shown(rest)} is not understood; write FEDRAT/feed,{said}"
+                f"line {line}: FEDRAT/{shown(rest)} is not understood; write FEDRAT/feed,{known[0]}"
             )
         feed = self.numbers(line, words[0], 1)[0]
         if feed <= 0.0:
             raise BadInput(f"line {line}: the feed must be above zero")
-        FEED.check(line, "FEDRAT ", feed)
+        self.feed_mode = FEED_WORDS[said[0]][1] if said else FeedMode.MINUTE
+        by_revolution = self.feed_mode is FeedMode.REVOLUTION
+        (FEED_PER_REVOLUTION if by_revolution else FEED).check(line, "FEDRAT ", feed)
         self.feed, self.rapid = feed * self.unit, False
+
+    def pace(self, line: int, x: float) -> Pace:
+        """Return how fast a block is fed that ends at an X in mm."""
+        if self.feed_mode is not FeedMode.REVOLUTION:
+            return Pace(self.feed)
+        turns = self.spindle
+        if self.surface_speed > 0.0:
+            turns = float(limited_turns(self.surface_speed, 2.0 * abs(x), self.spindle))
+        if turns <= 0.0:
+            raise BadInput(
+                f"line {line}: a feed by the revolution while the spindle stands; give its speed"
+            )
+        feed = per_minute(self.feed, turns)
+        FEED.check(line, f"at {turns:g} 1/min a feed a minute of ", feed / self.unit)
+        return Pace(feed, mode=FeedMode.REVOLUTION)
+
+    def cutting(self) -> CuttingState:
+        """Return what a move runs with."""
+        return CuttingState(self.spindle, self.coolant, self.surface_speed)
 
     def goto(self, line: int, rest: str) -> None:
         x, y, z, *axis = self.numbers(line, rest, 3, 6)
@@ -218,8 +289,12 @@ class _Reader:
         if tool is None:
             raise BadInput(f"line {line}: a move before a tool is loaded; put LOADTL first")
         point = (x * scale, y * scale, z * scale, *self.axis(line, axis))
+        if not tool.rotates and point[1:2] + point[3:] != (0.0, *_UP):
+            raise BadInput(
+                f"line {line}: tool {tool.number} turns work in the plane of X and Z; Y must be 0, and no axis given"
+            )
         if self.rapid and self.circle is None:
-            self.sections.rapid(line, point, tool, (self.spindle, self.coolant))
+            self.sections.rapid(line, point, tool, self.cutting())
             self.rapid = False
             return
         self.rapid = False
@@ -227,9 +302,13 @@ class _Reader:
             raise BadInput(f"line {line}: a feed move while the spindle stands; put SPINDL first")
         if self.feed <= 0.0:
             raise BadInput(f"line {line}: a feed move without a feed; put FEDRAT first")
+        if self.surface_speed > 0.0 and tool.rotates:
+            raise BadInput(
+                f"line {line}: a constant surface speed with tool {tool.number}, which rotates; give the spindle speed"
+            )
         motion, centre = self.motion(line, point)
         self.sections.feed(
-            line, motion, point, centre, self.feed, tool, (self.spindle, self.coolant)
+            line, motion, point, centre, self.pace(line, point[0]), tool, self.cutting()
         )
 
     def axis(self, line: int, said: list[float]) -> tuple[float, ...]:
@@ -259,6 +338,10 @@ class _Reader:
             self.circle = None
             return Motion.LINE, NOWHERE
         (x, y, z, _, _, sense, radius), self.circle = self.circle, None
+        if self.tool is not None and not self.tool.rotates:
+            raise BadInput(
+                f"line {line}: an arc of a tool that turns work is not understood; write lines"
+            )
         if start[3:] != _UP or end[3:] != _UP:
             raise BadInput(
                 f"line {line}: an arc of a tool that leans is not understood; write lines"
@@ -286,6 +369,11 @@ class _Reader:
         if numbers[3:6] not in ([0.0, 0.0, 1.0], [0.0, 0.0, -1.0]):
             raise BadInput(f"line {line}: an arc about another axis than Z is not understood")
         self.circle = [v * scale for v in numbers[:3]] + numbers[3:6] + [numbers[6] * scale]
+
+    def delay(self, line: int, rest: str) -> None:
+        seconds = self.numbers(line, rest, 1)[0]
+        DWELL.check(line, "DELAY ", seconds)
+        self.sections.dwell(seconds)
 
     def pause(self, line: int, rest: str) -> None:
         if rest:

@@ -12,7 +12,7 @@ from typing import ClassVar
 from trunnion.findings import BadInput
 from trunnion.model.program import Program
 from trunnion.model.setup import Setup
-from trunnion.model.tool import Tool
+from trunnion.model.tool import AnyTool
 from trunnion.post.iso_words import IsoWords
 from trunnion.post.readers.blocks import Block, split_line
 from trunnion.post.readers.joints import Joints
@@ -36,7 +36,11 @@ class Control:
     brackets: ClassVar[bool] = True
 
     def __init__(
-        self, words: IsoWords, tools: Mapping[int, Tool], setup: Setup, place: WorkPosition | None
+        self,
+        words: IsoWords,
+        tools: Mapping[int, AnyTool],
+        setup: Setup,
+        place: WorkPosition | None,
     ) -> None:
         if place is not None and not words.inverse_time:
             raise BadInput(
@@ -95,7 +99,7 @@ class Control:
             if not language.states.isdisjoint(words):
                 self.modes.speeds(block)
             if codes:
-                self.state.motion = language.motions[codes[0]]
+                self.state.motion, self.state.cycle = language.motions[codes[0]], None
         if not language.moves.isdisjoint(words):
             self.moves.move(block)
         if codes and any(code in codes for code in language.ends):

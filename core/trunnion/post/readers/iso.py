@@ -6,7 +6,7 @@ from collections.abc import Sequence
 
 from trunnion.model.program import Program
 from trunnion.model.setup import Setup
-from trunnion.model.tool import Tool
+from trunnion.model.tool import AnyTool
 from trunnion.post.iso_words import IsoWords
 from trunnion.post.readers.control import Control
 from trunnion.post.readers.tools import by_number
@@ -15,7 +15,7 @@ from trunnion.shop.kinematics import WorkPosition
 
 def read_iso(
     text: str,
-    tools: Sequence[Tool],
+    tools: Sequence[AnyTool],
     setup: Setup,
     place: WorkPosition | None,
     words: IsoWords,

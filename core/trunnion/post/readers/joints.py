@@ -14,7 +14,7 @@ import numpy as np
 from trunnion import tolerance
 from trunnion.findings import BadInput
 from trunnion.geometry.arrays import Floats, Ints
-from trunnion.model.tool import Tool
+from trunnion.model.tool import AnyTool, Tool, rotating
 from trunnion.model.toolpath import Motion, Toolpath
 from trunnion.post.linearize import even_turn
 from trunnion.post.readers.sections import Point, SectionBlocks, marks_of, path_of
@@ -25,8 +25,6 @@ OPENED, OPENED_RAPID = 0.001, 0.01
 FIRST_PIECE = math.radians(10.0)
 """Turn of an axis in one piece before it is looked at how far it strays."""
 SHARES = (0.25, 0.5, 0.75)
-LEAST_FEED = 1e-3
-"""mm/min: what a block is fed at in which the tip stands while the axis turns; how long it takes the machine's axes say."""
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -36,7 +34,7 @@ class Joints:
     place: WorkPosition
     clearance: float
 
-    def above(self, point: Point, tool: Tool) -> Point | None:
+    def above(self, point: Point, tool: AnyTool) -> Point | None:
         """See `PoseInterpreter`: an upright tool is lifted to the clearance height, a leaning one with the machine's Z beyond all that
         stands on the table."""
         words, angle = np.array([point[:3]]), np.radians([point[3:]])
@@ -58,9 +56,16 @@ class Joints:
         turning[1:] = (points[1:, 3:] != points[:-1, 3:]).any(axis=1)
         tip, axis = poses_of(self.place, words, angle, gauge)
         centre = self._centres(rows, motion, turning, angle)
+        whole = path_of(rows, tip, axis, centre)
         if not turning.any():
-            return path_of(rows, tip, axis, centre), tuple(rows.line)
-        row, share = self._pieces(rows.tool, words, angle, motion, np.flatnonzero(turning))
+            return whole, tuple(rows.line)
+        row, share = self._pieces(
+            rotating(rows.tool, f"in line {rows.line[0]}"),
+            words,
+            angle,
+            motion,
+            np.flatnonzero(turning),
+        )
         row, share = (
             np.concatenate([np.flatnonzero(~turning), row]),
             np.concatenate([np.ones(int((~turning).sum())), share]),
@@ -77,8 +82,9 @@ class Joints:
             axis=direction,
             motion=motion[row],
             centre=centre[row],
-            feed=_feeds(rows, tip)[row],
+            feed=whole.feed[row],
             mark=marks_of(motion[row]),
+            dwell=whole.dwell_of(row),
         )
         return path, tuple(np.array(rows.line)[row].tolist())
 
@@ -167,11 +173,3 @@ def _between(
         angle[row - 1] + s * (angle[row] - angle[row - 1]),
         gauge,
     )
-
-
-def _feeds(rows: SectionBlocks, tip: Floats) -> Floats:
-    """Return the feed (n,) of the tip: what is said, or its way over the time that is said."""
-    feed, minutes = np.array(rows.feed), np.array(rows.minutes)
-    way = np.linalg.norm(np.diff(tip, axis=0, prepend=tip[:1]), axis=1)
-    timed = minutes > 0.0
-    return np.where(timed, np.maximum(way / np.where(timed, minutes, 1.0), LEAST_FEED), feed)

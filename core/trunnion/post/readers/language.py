@@ -6,7 +6,8 @@ import math
 from collections.abc import Iterable
 
 from trunnion.findings import BadInput
-from trunnion.model.tool import Tool
+from trunnion.model.cycle import PECKING, WAITING, CycleKind
+from trunnion.model.tool import AnyTool
 from trunnion.model.toolpath import Motion
 from trunnion.post.iso_words import IsoWords, by_code
 from trunnion.post.readers.blocks import Block
@@ -23,9 +24,10 @@ _TAKEN_BY = {
     "tolerance": "path tolerance",
     "joining": "path tolerance",
     "length": "length",
+    "highest": "surface speed",
 }
 """The meaning of the code that takes a letter of each role."""
-_NEEDED = {"dwell": "dwell", "path tolerance": "tolerance"}
+_NEEDED = {"dwell": "dwell", "path tolerance": "tolerance", "surface speed": "highest"}
 """The role without whose letter a meaning says nothing."""
 
 
@@ -43,17 +45,17 @@ class ControlLanguage:
         self.motions = {code: Motion(n) for n, code in enumerate(words.motions)}
         self.units = {words.units[name]: unit for name, unit in _UNITS.items()}
         self.coolants = {code: name for name, code in words.coolant.items()}
+        self.cycles = {code: CycleKind(kind) for kind, code in words.cycles.items()}
+        levels = dict(zip(words.return_levels, ("initial level", "retract plane"), strict=True))
         self.refused = by_code(words.refused)
-        said = {
-            code: m
-            for code, m in self._checked(tuple(known)).items()
-            if place is not None or m != "inverse time"
-        }
+        said = self._checked(tuple(known))
         self.meanings = {
             **dict.fromkeys(self.motions, "motion"),
             **dict.fromkeys(self.units, "units"),
             **dict.fromkeys(self.coolants, "coolant"),
             **dict.fromkeys(words.work_offsets, "work offset"),
+            **dict.fromkeys(self.cycles, "cycle"),
+            **{code: meaning for code, meaning in levels.items() if code},
             **said,
         }
         self.dwell, self.length, self.tool_change = (
@@ -62,9 +64,12 @@ class ControlLanguage:
         self.machine, self.inverse, self.spindle = (
             self._first(m) for m in ("machine", "inverse time", "spindle")
         )
+        self.turning_plane, self.milling_plane = (
+            self._first(m) for m in ("turning plane", "milling plane")
+        )
         self.ends = tuple(code for code, meaning in said.items() if meaning == "end")
         self.groups = (
-            (*self.motions, *(c for c, m in said.items() if m == "no motion")),
+            (*self.motions, *self.cycles, *(c for c, m in said.items() if m == "no motion")),
             tuple(self.units),
             words.work_offsets,
             *(tuple(group.split()) for group in words.groups),
@@ -101,6 +106,12 @@ class ControlLanguage:
                 codes := tuple(code for code, m in self.meanings.items() if m == meaning)
             ):
                 self.takers[role[name]] = (*self.takers.get(role[name], ()), *codes)
+        for name, kinds in (("peck", PECKING), ("dwell", WAITING)):
+            if codes := tuple(code for code, kind in self.cycles.items() if kind in kinds):
+                self.takers[role[name]] = (*self.takers.get(role[name], ()), *codes)
+        self.retract = role.get("retract", "") if self.cycles else ""
+        self.turns_work = place is None and "turning plane" in self.meanings.values()
+        self.moves |= set(self.retract) | ({"K"} if self.turns_work else set())
         self.states = frozenset("FST") | (
             {self.length_letter} if self.length_letter and not self.length else set()
         )
@@ -110,9 +121,10 @@ class ControlLanguage:
             | self.takers.keys()
             | self.states
             | ({self.turns} if self.turns else set())
+            | ({self.retract} if self.retract else set())
         )
         self.ranges = {
-            **dict.fromkeys((*"XYZIJ", self.radius), LENGTH),
+            **dict.fromkeys((*"XYZIJK", self.radius, *self.retract), LENGTH),
             "T": COUNT,
             "N": LINE_NUMBER,
         }
@@ -177,7 +189,7 @@ class ControlLanguage:
         if self.machine in codes and words.keys().isdisjoint("XYZ"):
             raise BadInput(f"line {line}: {self.machine} without a move")
 
-    def length_of(self, tool: Tool) -> str:
+    def length_of(self, tool: AnyTool) -> str:
         """Return the words that switch the length of a tool on."""
         return self.words.tool_length.format(tool=tool.number)
 

@@ -7,7 +7,7 @@ from collections.abc import Sequence
 from trunnion.findings import BadInput
 from trunnion.model.program import Program
 from trunnion.model.setup import Setup
-from trunnion.model.tool import Tool
+from trunnion.model.tool import AnyTool
 from trunnion.post.iso_words import iso_words
 from trunnion.post.readers.control import Control
 from trunnion.post.readers.iso import read_iso
@@ -15,7 +15,7 @@ from trunnion.shop.kinematics import WorkPosition
 
 
 def read_linuxcnc(
-    text: str, tools: Sequence[Tool], setup: Setup, place: WorkPosition | None = None
+    text: str, tools: Sequence[AnyTool], setup: Setup, place: WorkPosition | None = None
 ) -> Program:
     """Return the motions of one setup's text; see `read_iso`."""
     return read_iso(text, tools, setup, place, iso_words("linuxcnc"), LinuxCncControl)

@@ -4,15 +4,31 @@ from __future__ import annotations
 
 from trunnion import tolerance
 from trunnion.findings import BadInput
+from trunnion.model.spindle import FeedMode
 from trunnion.post.readers.blocks import Block
 from trunnion.post.readers.language import ControlLanguage
-from trunnion.post.readers.numbers import DWELL, FEED, INVERSE_TIME, SPINDLE
-from trunnion.post.readers.state import ModalState
+from trunnion.post.readers.numbers import (
+    DWELL,
+    FEED,
+    FEED_PER_REVOLUTION,
+    INVERSE_TIME,
+    SPINDLE,
+)
+from trunnion.post.readers.state import ModalCycle, ModalState
+from trunnion.units import METRES_PER_FOOT
 
+FEED_RANGES = {
+    FeedMode.MINUTE: FEED,
+    FeedMode.REVOLUTION: FEED_PER_REVOLUTION,
+    FeedMode.INVERSE: INVERSE_TIME,
+}
 BEFORE_SPEEDS = {
     "units": "change_units",
     "inverse time": "feed_by_time",
     "per minute": "feed_a_minute",
+    "per revolution": "feed_a_revolution",
+    "surface speed": "keep_surface_speed",
+    "spindle speed": "keep_spindle_speed",
 }
 AFTER_SPEEDS = {
     "tool change": "change_tool",
@@ -26,6 +42,13 @@ AFTER_SPEEDS = {
     "dwell": "wait",
     "no motion": "cancel_motion",
     "motion": "set_motion",
+    "cycle": "set_cycle",
+    "milling plane": "mill_in_xy",
+    "turning plane": "turn_in_zx",
+    "diameters": "take_diameters",
+    "radii": "take_radii",
+    "initial level": "return_to_level",
+    "retract plane": "return_to_plane",
 }
 """The methods of `Modes` by the meanings of codes, in the order in which a line is worked off; speeds come between the two."""
 ELSEWHERE = ("machine", "end", "nothing")
@@ -61,14 +84,13 @@ class Modes:
 
     def speeds(self, block: Block) -> None:
         """Take over F, S and T, and the tool's length where its letter alone switches it on."""
-        line, words, state = block.line, block.words, self.state
+        line, words = block.line, block.words
         if "F" in words:
             self.set_feed(line, words["F"])
         if "S" in words:
             if words["S"] < 0.0:
                 raise BadInput(f"line {line}: the spindle speed S must not be negative")
-            SPINDLE.check(line, "S", words["S"])
-            state.spindle, state.speed_given = words["S"], True
+            self.set_speed(line, words["S"])
         if "T" in words:
             self.choose_tool(block)
         if (letter := self.language.length_letter) in words and not self.language.length:
@@ -78,8 +100,19 @@ class Modes:
         """Take over F in the units of the feed mode."""
         if feed <= 0.0:
             raise BadInput(f"line {line}: the feed F must be above zero")
-        (INVERSE_TIME if self.state.inverse else FEED).check(line, "F", feed)
-        self.state.feed = feed if self.state.inverse else feed * self.state.unit
+        mode = self.state.feed_mode
+        FEED_RANGES[mode].check(line, "F", feed)
+        self.state.feed = feed if mode is FeedMode.INVERSE else feed * self.state.unit
+
+    def set_speed(self, line: int, speed: float) -> None:
+        """Take over S: the spindle's speed, or the surface's while that is kept."""
+        state = self.state
+        SPINDLE.check(line, "S", speed)
+        if state.keeps_surface:
+            state.surface_speed = speed * (METRES_PER_FOOT if state.unit != 1.0 else 1.0)
+        else:
+            state.spindle = speed
+        state.speed_given = True
 
     def choose_tool(self, block: Block) -> None:
         """Take over T; on a control without a code for it the tool comes into the spindle now."""
@@ -110,12 +143,43 @@ class Modes:
 
     def feed_by_time(self, block: Block) -> None:
         """Feed in inverse time from here on; F must be given."""
-        self.state.inverse, self.state.feed = True, 0.0
+        self.state.feed_mode, self.state.feed = FeedMode.INVERSE, 0.0
 
     def feed_a_minute(self, block: Block) -> None:
-        """Feed in units a minute from here on; after inverse time F must be given."""
-        if self.state.inverse:
-            self.state.inverse, self.state.feed = False, 0.0
+        """Feed in units a minute from here on; after another mode F must be given."""
+        if self.state.feed_mode is not FeedMode.MINUTE:
+            self.state.feed_mode, self.state.feed = FeedMode.MINUTE, 0.0
+
+    def feed_a_revolution(self, block: Block) -> None:
+        """Feed in units a revolution from here on; after another mode F must be given."""
+        if self.state.feed_mode is not FeedMode.REVOLUTION:
+            self.state.feed_mode, self.state.feed = FeedMode.REVOLUTION, 0.0
+
+    def keep_surface_speed(self, block: Block) -> None:
+        """Keep the speed of the work's surface from here on, with a highest spindle speed: S and that must be given."""
+        letter = self.language.words.letters.get("highest", "")
+        highest, line = block.words.get(letter), block.line
+        code = next(c for c in block.codes if self.language.meanings[c] == "surface speed")
+        if not highest or "S" not in block.words or block.words["S"] <= 0.0:
+            raise BadInput(
+                f"line {line}: {code} needs S above zero, the speed of the surface, and {letter or 'a word for the highest'} above "
+                "zero, the highest spindle speed"
+            )
+        if not self.state.units_given:
+            raise BadInput(
+                f"line {line}: {code} before the unit is said; put {' or '.join(self.language.units)} first"
+            )
+        SPINDLE.check(line, letter, highest)
+        self.state.spindle, self.state.keeps_surface = highest, True
+
+    def keep_spindle_speed(self, block: Block) -> None:
+        """Keep the spindle's speed from here on; after a constant surface speed S must be given."""
+        if self.state.keeps_surface and "S" not in block.words:
+            code = next(c for c in block.codes if self.language.meanings[c] == "spindle speed")
+            raise BadInput(
+                f"line {block.line}: {code} without S; give the spindle speed in its line"
+            )
+        self.state.keeps_surface = False
 
     def change_tool(self, block: Block) -> None:
         """Bring the chosen tool into the spindle; its length is off, the spindle stands."""
@@ -215,10 +279,44 @@ class Modes:
 
     def cancel_motion(self, block: Block) -> None:
         """Move no more until a motion is given."""
-        self.state.motion = None
+        self.state.motion = self.state.cycle = None
 
     def set_motion(self, block: Block) -> None:
         """Take over how positions are reached."""
         self.state.motion = next(
             motion for code, motion in self.language.motions.items() if code in block.codes
         )
+        self.state.cycle = None
+
+    def set_cycle(self, block: Block) -> None:
+        """Drill at each position from here on; a cycle that is in force already goes on, another keeps the level where the first began."""
+        state = self.state
+        code = next(c for c in block.codes if c in self.language.cycles)
+        if state.cycle is None or state.cycle.code != code:
+            level = None if state.cycle is None else state.cycle.level
+            state.cycle = ModalCycle(code=code, kind=self.language.cycles[code], level=level)
+            state.motion = None
+
+    def mill_in_xy(self, block: Block) -> None:
+        """Have arcs in the plane XY: the tool rotates."""
+        self.state.in_zx = False
+
+    def turn_in_zx(self, block: Block) -> None:
+        """Have arcs in the plane ZX: the work turns."""
+        self.state.in_zx = True
+
+    def take_diameters(self, block: Block) -> None:
+        """Take X as a diameter from here on; I stays a radius."""
+        self.state.diameters = True
+
+    def take_radii(self, block: Block) -> None:
+        """Take X as the distance from the work's axis from here on."""
+        self.state.diameters = False
+
+    def return_to_level(self, block: Block) -> None:
+        """End cycles at the level where they began."""
+        self.state.returns_to_level = True
+
+    def return_to_plane(self, block: Block) -> None:
+        """End cycles at their retract plane."""
+        self.state.returns_to_level = False

@@ -32,6 +32,8 @@ class NumberRange:
 LENGTH = NumberRange(-FARTHEST, FARTHEST, "mm or inch")
 FEED = NumberRange(1e-3, FASTEST, "mm or inch a minute")
 """The least is a hundredth of the smallest feed that posts write in mm."""
+FEED_PER_REVOLUTION = NumberRange(1e-7, 1000.0, "mm or inch a revolution")
+"""From below the last decimal that posts write to beyond the pitch of any thread."""
 INVERSE_TIME = NumberRange(SECONDS_PER_MINUTE / LONGEST_BLOCK, 1e12, "1/min")
 """Blocks from the last written decimal of an angle at `FASTEST` to `LONGEST_BLOCK`."""
 SPINDLE = NumberRange(0.0, FASTEST, "1/min")

@@ -6,9 +6,10 @@ import math
 from collections.abc import Mapping
 
 from trunnion.findings import BadInput
+from trunnion.model.spindle import FeedMode
 from trunnion.post.readers.blocks import Block
 from trunnion.post.readers.numbers import MOST_TURN
-from trunnion.post.readers.sections import Point
+from trunnion.post.readers.sections import Pace, Point
 from trunnion.post.readers.state import ModalState
 from trunnion.units import LONGEST_BLOCK, SECONDS_PER_MINUTE
 
@@ -50,20 +51,20 @@ class Rotary:
                 f"line {line}: it is not known where {' and '.join(lost)} stand; begin with a rapid that says so"
             )
 
-    def pace(self, block: Block, state: ModalState, end: Point) -> tuple[float, float]:
-        """Return the feed of a block, and its minutes where they are what is given: in inverse time, or where rotary axes turn.
+    def pace(self, block: Block, state: ModalState, end: Point) -> Pace:
+        """Return how fast a block is fed, with its minutes where they are what is given: in inverse time, or where rotary axes turn.
 
         In units a minute the control feeds along X, Y and Z, and by degrees where none of them moves.
         """
         start = state.sections.at
-        if state.inverse:
+        if state.feed_mode is FeedMode.INVERSE:
             if "F" not in block.words:
                 raise BadInput(
                     f"line {block.line}: a feed move in inverse time ({self.inverse}) needs an F word of its own"
                 )
-            return state.feed, 1.0 / state.feed
+            return Pace(state.feed, 1.0 / state.feed, FeedMode.INVERSE)
         if start is None or start[3:] == end[3:]:
-            return state.feed, 0.0
+            return Pace(state.feed)
         length = math.dist(start[:3], end[:3])
         minutes = (
             length / state.feed
@@ -75,4 +76,4 @@ class Rotary:
                 f"line {block.line}: at this feed the block takes {minutes:.0f} min, no block takes more than "
                 f"{LONGEST_BLOCK / SECONDS_PER_MINUTE:.0f}; check F"
             )
-        return state.feed, minutes
+        return Pace(state.feed, minutes)

@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 import re
 from dataclasses import dataclass, field, replace
-from typing import Protocol
+from typing import NamedTuple, Protocol
 
 import numpy as np
 
@@ -13,32 +13,58 @@ from trunnion import tolerance
 from trunnion.findings import BadInput
 from trunnion.geometry.arrays import Floats, Ints
 from trunnion.model.program import ProgramSection
-from trunnion.model.tool import Tool
-from trunnion.model.toolpath import Mark, Motion, Toolpath
+from trunnion.model.spindle import FeedMode
+from trunnion.model.tool import AnyTool
+from trunnion.model.toolpath import ACROSS, Mark, Motion, Toolpath
 
 Point = tuple[float, ...]
 """A place as a reader counts it: x, y, z mm, and after them what else says where the tool is (rotary angles, the tool axis)."""
 _OPERATION = re.compile(r"OPERATION\s+(\S+)$", re.IGNORECASE)
+LEAST_FEED = 1e-3
+"""mm/min: what a block is fed at in which the tip stands while an axis turns; how long it takes the machine's axes say."""
 NOWHERE = (math.nan, math.nan, math.nan)
+
+
+class CuttingState(NamedTuple):
+    """What a move runs with: spindle in 1/min (at a constant surface speed in m/min the highest), coolant."""
+
+    spindle: float
+    coolant: str
+    surface_speed: float = 0.0
+
+
+class Pace(NamedTuple):
+    """How fast a block is fed: its feed in mm/min, the minutes of one that is fed in inverse time, else 0, and what its text gives."""
+
+    feed: float
+    minutes: float = 0.0
+    mode: FeedMode = FeedMode.MINUTE
 
 
 @dataclass(slots=True, kw_only=True)
 class SectionBlocks:
-    """The blocks of a section while it grows; `minutes` are those of blocks fed in inverse time, else 0."""
+    """The blocks of a section while it grows; `minutes` are those of blocks fed in inverse time, else 0; `modes` how feeds are given."""
 
-    tool: Tool
+    tool: AnyTool
     point: list[Point] = field(default_factory=list)
     motion: list[int] = field(default_factory=list)
     centre: list[Point] = field(default_factory=list)
     feed: list[float] = field(default_factory=list)
     minutes: list[float] = field(default_factory=list)
     line: list[int] = field(default_factory=list)
+    dwell: list[float] = field(default_factory=list)
+    modes: set[FeedMode] = field(default_factory=set)
+
+    @property
+    def feed_mode(self) -> FeedMode:
+        """How the feeds are given: by the minute too where they are given in several ways."""
+        return next(iter(self.modes)) if len(self.modes) == 1 else FeedMode.MINUTE
 
 
 class PoseInterpreter(Protocol):
     """What the points of a text mean."""
 
-    def above(self, point: Point, tool: Tool) -> Point | None:
+    def above(self, point: Point, tool: AnyTool) -> Point | None:
         """Return where a tool at a point comes out when it is lifted above everything; None when it is as high already."""
         ...
 
@@ -53,7 +79,7 @@ class UprightPoses:
 
     clearance: float
 
-    def above(self, point: Point, tool: Tool) -> Point | None:
+    def above(self, point: Point, tool: AnyTool) -> Point | None:
         """See `PoseInterpreter`."""
         return (
             None
@@ -63,8 +89,7 @@ class UprightPoses:
 
     def opened(self, rows: SectionBlocks) -> tuple[Toolpath, tuple[int, ...]]:
         """See `PoseInterpreter`."""
-        axis = np.zeros((len(rows.motion), 3))
-        axis[:, 2] = 1.0
+        axis = np.tile((0.0, 0.0, 1.0) if rows.tool.rotates else ACROSS, (len(rows.motion), 1))
         return path_of(rows, np.array(rows.point), axis, np.array(rows.centre)), tuple(rows.line)
 
 
@@ -74,7 +99,7 @@ class TiltedPoses:
 
     clearance: float
 
-    def above(self, point: Point, tool: Tool) -> Point | None:
+    def above(self, point: Point, tool: AnyTool) -> Point | None:
         """See `PoseInterpreter`; a leaning tool comes from wherever the text's machine brings it from."""
         high = point[2] >= self.clearance - tolerance.WRITTEN
         return (
@@ -86,7 +111,8 @@ class TiltedPoses:
     def opened(self, rows: SectionBlocks) -> tuple[Toolpath, tuple[int, ...]]:
         """See `PoseInterpreter`."""
         points = np.array(rows.point)
-        return path_of(rows, points[:, :3], points[:, 3:], np.array(rows.centre)), tuple(rows.line)
+        axis = points[:, 3:] if rows.tool.rotates else np.tile(ACROSS, (len(points), 1))
+        return path_of(rows, points[:, :3], axis, np.array(rows.centre)), tuple(rows.line)
 
 
 def operation_of(comment: str) -> str | None:
@@ -101,20 +127,31 @@ def operation_of(comment: str) -> str | None:
 
 def path_of(rows: SectionBlocks, position: Floats, axis: Floats, centre: Floats) -> Toolpath:
     """Return the path of rows whose tips, axes and centres are known."""
-    motion = np.array(rows.motion)
-    return Toolpath(
+    motion, minutes = np.array(rows.motion), np.array(rows.minutes)
+    path = Toolpath(
         position=position,
         axis=axis,
         motion=motion,
         centre=centre,
         feed=np.array(rows.feed),
         mark=marks_of(motion),
+        dwell=np.array(rows.dwell),
+        work_turns=not rows.tool.rotates,
     )
+    timed = minutes > 0.0
+    if not timed.any():
+        return path
+    feed = path.lengths() / np.where(timed, minutes, 1.0)
+    return replace(path, feed=np.where(timed, np.maximum(feed, LEAST_FEED), path.feed))
 
 
 def marks_of(motion: Ints) -> Ints:
     """Return what blocks are for as far as a text says it: rapids retract, all else cuts."""
     return np.where(motion == Motion.RAPID, Mark.RETRACT, Mark.CUT)
+
+
+_IDLE = CuttingState(0.0, "off")
+"""While nothing runs."""
 
 
 @dataclass(slots=True, kw_only=True)
@@ -124,13 +161,13 @@ class _Open:
 
     operation: str
     rows: SectionBlocks
-    cutting: tuple[float, str] | None = None
-    idle: tuple[float, str] = (0.0, "off")
+    cutting: CuttingState | None = None
+    idle: CuttingState = _IDLE
     dwell: float = 0.0
 
     def closed(self, reckoning: PoseInterpreter) -> ProgramSection:
         path, lines = reckoning.opened(self.rows)
-        spindle, coolant = self.cutting or self.idle
+        spindle, coolant, surface_speed = self.cutting or self.idle
         return ProgramSection(
             operation=self.operation,
             tool=self.rows.tool,
@@ -139,6 +176,8 @@ class _Open:
             coolant=coolant,
             block_lines=lines,
             dwell=self.dwell,
+            surface_speed=surface_speed,
+            feed_mode=self.rows.feed_mode,
         )
 
 
@@ -171,14 +210,14 @@ class Sections:
             self._operation = "" if began_with_it else self._operation
         self.at = None
 
-    def lift(self, line: int, tool: Tool, state: tuple[float, str]) -> None:
+    def lift(self, line: int, tool: AnyTool, state: CuttingState) -> None:
         """Take the tool straight up out of sight (G53 G0 Z0)."""
         if self.at is not None:
             if (up := self.reckoning.above(self.at, tool)) is not None:
                 self.rapid(line, up, tool, state)
             self.at = None
 
-    def rapid(self, line: int, point: Point, tool: Tool, state: tuple[float, str]) -> None:
+    def rapid(self, line: int, point: Point, tool: AnyTool, state: CuttingState) -> None:
         """Add a rapid to a point; `state` is spindle and coolant, for a section that cuts nothing."""
         if self._open is None:
             self._begin(line, tool)
@@ -199,12 +238,11 @@ class Sections:
         motion: Motion,
         point: Point,
         centre: Point,
-        feed: float,
-        tool: Tool,
-        cutting: tuple[float, str],
-        minutes: float = 0.0,
+        pace: Pace,
+        tool: AnyTool,
+        cutting: CuttingState,
     ) -> None:
-        """Add a feed move, a line or an arc, with the spindle and coolant it runs with; `minutes` when it is fed in inverse time."""
+        """Add a feed move, a line or an arc, with the spindle and coolant it runs with."""
         if self.at is None:
             raise BadInput(
                 f"line {line}: a feed move before it is known where the tool is; begin with a rapid to X, Y and Z"
@@ -218,12 +256,14 @@ class Sections:
             opened = self._begin(line, tool)
             self._add(line, Motion.RAPID, start, NOWHERE, 0.0)
         opened.cutting = cutting
-        self._add(line, motion, point, centre, feed, minutes)
+        opened.rows.modes.add(pace.mode)
+        self._add(line, motion, point, centre, pace.feed, pace.minutes)
 
     def dwell(self, seconds: float) -> None:
         """Wait: a dwell between two sections belongs to the one that follows, after the last to that."""
         if self._open is not None:
             self._open.dwell += seconds
+            self._open.rows.dwell[-1] += seconds
         else:
             self._waits += seconds
 
@@ -236,7 +276,7 @@ class Sections:
         self._waits = 0.0
         return tuple(self._done)
 
-    def _begin(self, line: int, tool: Tool) -> _Open:
+    def _begin(self, line: int, tool: AnyTool) -> _Open:
         self._open = _Open(
             operation=self._operation or f"line {line}",
             rows=SectionBlocks(tool=tool),
@@ -263,6 +303,7 @@ class Sections:
         rows.feed.append(feed)
         rows.minutes.append(minutes)
         rows.line.append(line)
+        rows.dwell.append(0.0)
         self.at = point
 
     def _close(self) -> None:

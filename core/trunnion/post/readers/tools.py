@@ -7,7 +7,7 @@ from collections.abc import Mapping, Sequence
 
 from trunnion.findings import BadInput
 from trunnion.model.setup import Setup
-from trunnion.model.tool import Tool
+from trunnion.model.tool import AnyTool
 from trunnion.post.header import place_lines, tool_line
 from trunnion.post.readers.numbers import shown
 from trunnion.post.words import plain
@@ -16,9 +16,9 @@ from trunnion.shop.kinematics import WorkPosition
 _TOOL = re.compile(r"TOOL (\d+) .* HOLDER ")
 
 
-def by_number(tools: Sequence[Tool]) -> dict[int, Tool]:
+def by_number(tools: Sequence[AnyTool]) -> dict[int, AnyTool]:
     """Return tools by their number; raise `BadInput` when two have the same."""
-    found: dict[int, Tool] = {}
+    found: dict[int, AnyTool] = {}
     for tool in tools:
         if found.setdefault(tool.number, tool) != tool:
             raise BadInput(
@@ -27,7 +27,7 @@ def by_number(tools: Sequence[Tool]) -> dict[int, Tool]:
     return found
 
 
-def check_tool(line: int, comment: str, tools: Mapping[int, Tool]) -> None:
+def check_tool(line: int, comment: str, tools: Mapping[int, AnyTool]) -> None:
     """Raise `BadInput` when a comment is our header's line of a tool and the tool list has another tool of that number."""
     found = _TOOL.match(comment)
     if found is None:

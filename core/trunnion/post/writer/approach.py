@@ -8,12 +8,12 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 
-from trunnion.model.tool import Tool
+from trunnion.model.tool import AnyTool
 from trunnion.model.toolpath import Motion
 from trunnion.post.writer.modal import WrittenState
 
 
-def tool_change(modal: WrittenState, tool: Tool) -> Iterator[str]:
+def tool_change(modal: WrittenState, tool: AnyTool) -> Iterator[str]:
     """Yield the lines that bring a tool into the spindle; where it is is not known after them."""
     yield from (line.format(tool=tool.number) for line in modal.words.tool_change)
     modal.tool, modal.at, modal.coolant = tool.number, None, "off"
@@ -28,11 +28,13 @@ def coolant(modal: WrittenState, wanted: str) -> Iterator[str]:
 
 
 def approach(
-    modal: WrittenState, tool: Tool, point: list[int], angle: list[int], changed: bool
+    modal: WrittenState, tool: AnyTool, point: list[int], angle: list[int], changed: bool
 ) -> Iterator[str]:
     """Yield the lines of the first rapid, to a point and angles in ticks; `changed` after a tool change."""
     words, rapid = modal.words, modal.words.motions[Motion.RAPID]
-    x, y, z = (modal.scale.text(v) for v in point)
+    said = modal.plane.words(point, modal.scale.text)
+    across = " ".join(w for w in said if not w.startswith("Z"))
+    down = next(w for w in said if w.startswith("Z"))
     turn = "".join(
         f" {letter}{modal.degrees.text(v)}" for letter, v in zip(modal.letters, angle, strict=True)
     )
@@ -43,10 +45,10 @@ def approach(
     if changed or unwinds:
         if turn:
             yield f"{rapid}{turn}"
-        yield f"{rapid} X{x} Y{y}"
-        yield f"{rapid} {length} Z{z}"
+        yield f"{rapid} {across}"
+        yield f"{rapid} {length} {down}"
     else:
         yield length
-        yield f"{rapid} X{x} Y{y} Z{z}{turn}"
+        yield f"{rapid} {across} {down}{turn}"
     modal.reached(point, angle, Motion.RAPID)
     modal.feed = ""

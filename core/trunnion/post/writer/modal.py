@@ -2,11 +2,14 @@
 
 from __future__ import annotations
 
+from trunnion.model.spindle import FeedMode, per_revolution
 from trunnion.model.toolpath import Motion
 from trunnion.post.iso_words import IsoWords
 from trunnion.post.settings import PostSettings
 from trunnion.post.ticks import TickScale
 from trunnion.post.writer.arcs import CENTRES
+from trunnion.post.writer.feed import FeedFormat, feed_word, revolution_text
+from trunnion.post.writer.plane import MILLING
 from trunnion.post.writer.rotary import inverse_time
 
 Block = tuple[list[int], list[int], int, float]
@@ -17,7 +20,8 @@ class WrittenState:
     """What the control knows at this line of the text. Positions, centres and angles are in ticks of their last decimal.
 
     `at` is the tip's place, None when it is not known; `angle` that of the rotary axes whose letters are `letters`, None before the first;
-    `motion` -1 before the first; `feed` is as it was written, empty when it must be written again.
+    `motion` -1 before the first; `feed` is as it was written, empty when it must be written again, and `feed_mode` what it is given by.
+    `feeds` is how the section's feeds are written, `plane` which letters its points have.
     """
 
     def __init__(self, words: IsoWords, settings: PostSettings, letters: str) -> None:
@@ -29,7 +33,8 @@ class WrittenState:
         self.at: tuple[int, int, int] | None = None
         self.angle: list[int] | None = None
         self.motion, self.feed, self.coolant = -1, "", "off"
-        self.inverse = False
+        self.feed_mode, self.plane = FeedMode.MINUTE, MILLING
+        self.feeds = FeedFormat(mode=FeedMode.MINUTE, spindle=0.0, surface_speed=0.0)
 
     def reached(self, point: list[int], angle: list[int], motion: int) -> None:
         """Take over where a block ends and how it went."""
@@ -41,36 +46,45 @@ class WrittenState:
         `minutes` above 0 are how long a block takes that is fed in inverse time.
         """
         point, centre, motion, feed = block
-        text, (x, y, z) = self.scale.text, self.at or (0, 0, 0)
+        text, at, plane = self.scale.text, self.at or (0, 0, 0), self.plane
         arc, fed = motion >= Motion.ARC_CW, motion != Motion.RAPID
         parts = []
-        if fed and (minutes > 0.0) != self.inverse:
-            parts.append(self.switched())
+        mode = FeedMode.INVERSE if minutes > 0.0 else self.feeds.mode
+        if fed and mode is not self.feed_mode:
+            parts.append(self.switched(mode))
         if motion != self.motion:
             parts.append(self.words.motions[motion])
-        if arc or point[0] != x:
-            parts.append("X" + text(point[0]))
-        if arc or point[1] != y:
-            parts.append("Y" + text(point[1]))
-        if point[2] != z:
-            parts.append("Z" + text(point[2]))
+        first, second, third = plane.letters
+        if arc or point[0] != at[0]:
+            parts.append(first + text(point[0]))
+        if arc or point[1] != at[1]:
+            parts.append(second + text(plane.diameter * point[1]))
+        if point[2] != at[2]:
+            parts.append(third + text(point[2]))
         if angle != self.angle:
             parts += self.turned(angle)
         if arc:
-            i, j = self.centre_words(centre, x, y)
-            parts += ["I" + text(i), "J" + text(j)]
+            i, j = self.centre_words(centre, at[0], at[1])
+            parts += [plane.centres[0] + text(i), plane.centres[1] + text(j)]
         if minutes > 0.0:
             parts.append("F" + inverse_time(minutes))
-        elif fed and (said := self.scale.feed(feed)) != self.feed:
+        elif fed and (said := self.feed_text(feed, point[plane.radial])) != self.feed:
             parts.append("F" + said)
             self.feed = said
         self.at, self.angle, self.motion = (point[0], point[1], point[2]), angle, motion
         return " ".join(parts)
 
-    def switched(self) -> str:
-        """Return the word that switches between inverse time and feeds a minute; the feed must be written again after it."""
-        self.inverse, self.feed = not self.inverse, ""
-        return self.words.inverse_time if self.inverse else self.words.per_minute
+    def switched(self, mode: FeedMode) -> str:
+        """Return the word that switches to another way of giving feeds; the feed must be written again after it."""
+        self.feed_mode, self.feed = mode, ""
+        return feed_word(self.words, mode)
+
+    def feed_text(self, feed: float, x: int) -> str:
+        """Return a feed in mm/min as it is written for a block that ends at an X in ticks."""
+        if self.feeds.mode is not FeedMode.REVOLUTION:
+            return self.scale.feed(feed)
+        turns = self.feeds.turns(x * self.scale.unit / 10.0**self.scale.decimals)
+        return revolution_text(per_revolution(feed, turns), self.scale, self.words)
 
     def turned(self, angle: list[int]) -> list[str]:
         """Return the words of the rotary axes that turn."""

@@ -3,18 +3,24 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
+from dataclasses import replace
 
 from trunnion.findings import Refused
 from trunnion.model.program import Program, ProgramSection
+from trunnion.model.spindle import FeedMode
 from trunnion.post.header import Header, place_lines
-from trunnion.post.iso_words import IsoWords
+from trunnion.post.iso_words import IsoWords, code_of
 from trunnion.post.linearize import PathTolerance
 from trunnion.post.settings import PostSettings
 from trunnion.post.ticks import TickScale
 from trunnion.post.words import plain, refuse_unwritable
 from trunnion.post.writer.approach import approach, coolant, tool_change
+from trunnion.post.writer.cycles import CycleWriter
+from trunnion.post.writer.feed import FeedFormat, dwell_text, feed_word, surface_text
 from trunnion.post.writer.modal import WrittenState, degrees_of
+from trunnion.post.writer.plane import MILLING, TURNING
 from trunnion.post.writer.rotary import AxisForm, JointForm, ThreeAxes
+from trunnion.post.writer.turning import TurningForm
 from trunnion.shop.kinematics import WorkPosition
 from trunnion.units import trimmed
 
@@ -36,6 +42,7 @@ class ProgramWriter:
         self.axes = _axis_form(words, settings, self.place)
         self.modal = WrittenState(words, settings, self.axes.letters)
         self.number = 0
+        self.turns = any(s.path.work_turns for s in program.sections)
 
     def lines(self, header: Header) -> Iterator[str]:
         """Yield the lines of the text; raise `Refused` for what the control can't do."""
@@ -67,6 +74,8 @@ class ProgramWriter:
         """Yield the lines of the header in words, the stamp first."""
         yield from header.stamp(f"{header.name}.{self.program.setup.name}")
         yield from header.about([self.program], self.settings.units)
+        if self.turns:
+            yield "X IS A DIAMETER WHILE THE WORK TURNS"
         if self.place is not None:
             yield from place_lines(self.program.setup, self.place, self.settings.units)
 
@@ -77,6 +86,7 @@ class ProgramWriter:
 
     def section(self, section: ProgramSection) -> Iterator[str]:
         """Yield one operation: its comment, the state it needs in full (so that a run may start here), its motions."""
+        section = self.with_known_feeds(section)
         words, modal, tool = self.words, self.modal, section.tool
         refuse_unwritable(section, words.title, words.coolant)
         yield comment(words, f"OPERATION {section.operation}")
@@ -88,21 +98,82 @@ class ProgramWriter:
         if changes:
             yield from map(self.numbered, tool_change(modal, tool))
         yield self.numbered(words.restart.format(offset=self.program.setup.work_offset))
-        yield self.numbered(words.spindle.format(spindle=trimmed(section.spindle, 0)))
+        yield from map(self.numbered, self.plane(section))
+        yield self.numbered(self.spindle(section))
         yield from map(self.numbered, coolant(modal, section.coolant))
-        modal.inverse = False
+        modal.feed_mode = FeedMode.MINUTE
+        modal.feeds = FeedFormat(
+            mode=section.feed_mode, spindle=section.spindle, surface_speed=section.surface_speed
+        )
         yield from self.motions(section, changes)
+
+    def plane(self, section: ProgramSection) -> Iterator[str]:
+        """Yield the words of a section's plane where the program turns work; raise `Refused` where the control can't."""
+        self.modal.plane = TURNING if section.path.work_turns else MILLING
+        if not self.turns:
+            return
+        if not self.words.turning or self.place is not None:
+            raise Refused(
+                f"operation {section.operation}: {self.words.title} has no words for work that turns"
+                + (" on a machine with rotary axes" if self.place is not None else "")
+            )
+        yield self.words.turning if section.path.work_turns else self.words.milling
+
+    def with_known_feeds(self, section: ProgramSection) -> ProgramSection:
+        """Return a section with feeds by the minute where the control has no word for another way: they say the same."""
+        known = feed_word(self.words, section.feed_mode)
+        return section if known else replace(section, feed_mode=FeedMode.MINUTE)
+
+    def spindle(self, section: ProgramSection) -> str:
+        """Return the words that turn the spindle; once a program has constant surface speeds, each section says what its S is."""
+        words, turns = self.words, trimmed(section.spindle, 0)
+        if section.surface_speed > 0.0:
+            if not words.surface_speed:
+                raise Refused(
+                    f"operation {section.operation}: {words.title} has no words for a constant surface speed; "
+                    "give a spindle speed or choose another control"
+                )
+            speed = surface_text(section.surface_speed, self.settings.units)
+            return words.surface_speed.format(highest=turns, speed=speed)
+        surfaces = any(s.surface_speed > 0.0 for s in self.program.sections)
+        return (words.spindle_speed if surfaces else words.spindle).format(spindle=turns)
 
     def motions(self, section: ProgramSection, changed: bool) -> Iterator[str]:
         """Yield the approach and the blocks of a section."""
         modal = self.modal
-        path, minutes = self.axes.blocks(section, modal.angle, not changed)
-        blocks = zip(path.blocks(), path.more.tolist(), minutes.tolist(), strict=True)
-        (first, _, _, _), angle, _ = next(blocks)
+        axes = TurningForm(scale=modal.scale) if section.path.work_turns else self.axes
+        path, minutes = axes.blocks(section, modal.angle, not changed)
+        blocks = zip(
+            path.blocks(), path.more.tolist(), minutes.tolist(), path.dwell.tolist(), strict=True
+        )
+        (first, _, _, _), angle, _, dwell = next(blocks)
         yield from map(self.numbered, approach(modal, section.tool, first, angle, changed))
+        yield from map(self.numbered, self.waited(dwell, section))
         numbered, words_of = self.numbered, modal.block
-        for block, turned, time in blocks:
+        cycles, begins, after = CycleWriter(modal), {c.first: c for c in path.cycles}, 0
+        for row, (block, turned, time, dwell) in enumerate(blocks, 1):
+            if row < after:
+                continue
+            if row in begins and (lines := cycles.lines(path, begins[row])):
+                yield from map(numbered, lines)
+                after = begins[row].last + 1
+                continue
+            yield from map(numbered, cycles.ended())
             yield numbered(words_of(block, turned, time))
+            if dwell > 0.0:
+                yield from map(numbered, self.waited(dwell, section))
+        yield from map(numbered, cycles.ended())
+
+    def waited(self, seconds: float, section: ProgramSection) -> Iterator[str]:
+        """Yield the line that makes the tool stand; raise `Refused` where the control has no words for it."""
+        if seconds <= 0.0:
+            return
+        code, letter = code_of(self.words, "dwell"), self.words.letters.get("dwell", "")
+        if not code or not letter:
+            raise Refused(
+                f"operation {section.operation}: {self.words.title} has no words for a dwell"
+            )
+        yield f"{code} {letter}{dwell_text(seconds)}"
 
 
 def _axis_form(words: IsoWords, settings: PostSettings, place: WorkPosition | None) -> AxisForm:

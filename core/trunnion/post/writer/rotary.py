@@ -15,6 +15,7 @@ import numpy as np
 from trunnion.findings import Refused
 from trunnion.geometry.arrays import Floats, Ints
 from trunnion.model.program import ProgramSection
+from trunnion.model.spindle import FeedMode
 from trunnion.model.tool import Tool
 from trunnion.model.toolpath import Motion, Toolpath
 from trunnion.post.linearize import PathTolerance, joint_path
@@ -58,7 +59,7 @@ class ThreeAxes:
     ) -> tuple[WrittenPath, Floats]:
         """See `AxisForm`; a leaning tool is refused."""
         path = written(upright(section.path, section.operation), self.scale, section.operation)
-        return path, np.zeros(len(path.motion))
+        return path, inverse_minutes(section, path, self.scale)
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -81,7 +82,7 @@ class JointForm:
         """See `AxisForm`."""
         stand = None if angle is None else self.radians(np.array(angle))
         joints = joint_path(
-            section.path, section.tool, self.place, stand, self.straying, section.operation
+            section.path, section.cutter, self.place, stand, self.straying, section.operation
         )
         moved = Toolpath(
             position=joints.words,
@@ -90,13 +91,15 @@ class JointForm:
             centre=joints.centre,
             feed=joints.feed,
             mark=np.zeros(len(joints.words), np.int64),
+            dwell=joints.dwell,
         )
         path = written(
             moved, self.scale, section.operation, self.degrees.ticks(np.degrees(joints.angle))
         )
         if goes_on and path.more[0].tolist() != angle:
             self.refuse_another_direction(angle, path.more[0], section.operation)
-        return path, self.minutes(path, section.tool)
+        turning = self.minutes(path, section.cutter)
+        return path, np.where(turning > 0.0, turning, inverse_minutes(section, path, self.scale))
 
     def refuse_another_direction(
         self, before: list[int] | None, after: Ints, operation: str
@@ -129,6 +132,15 @@ class JointForm:
     def radians(self, ticks: Ints) -> Floats:
         """Return angles in radians from ticks."""
         return np.asarray(np.radians(ticks / 10.0**self.degrees.decimals))
+
+
+def inverse_minutes(section: ProgramSection, path: WrittenPath, scale: TickScale) -> Floats:
+    """Return how long (m,) the feed blocks of a section last whose feeds are given in inverse time, from what is written; else 0."""
+    if section.feed_mode is not FeedMode.INVERSE:
+        return np.zeros(len(path.motion))
+    feeds = path.motion != Motion.RAPID
+    length = path.in_mm(scale).lengths()
+    return np.divide(length, path.feed, out=np.zeros(len(feeds)), where=feeds)
 
 
 def inverse_time(minutes: float) -> str:

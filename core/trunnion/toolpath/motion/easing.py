@@ -85,6 +85,7 @@ def _eased(
             for name in ("position", "axis", "motion", "centre", "mark")
         },
         feed=feed[last],
+        dwell=None if pieces.dwell is None else pieces.dwell[last],
     )
 
 
@@ -105,6 +106,8 @@ def _in_pieces(path: Toolpath, piece: float) -> tuple[Toolpath, Ints]:
         centre=path.centre[rows],
         feed=path.feed[rows],
         mark=path.mark[rows],
+        dwell=path.dwell_of(rows),
+        cycles=(),
     ), rows
 
 

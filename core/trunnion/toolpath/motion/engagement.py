@@ -145,4 +145,4 @@ def _eased(tool: Tool, data: CuttingData, met: Engagement) -> Engagement:
 
 def _larger(tool: Tool, before: Operation | None) -> float:
     """Return by how much the radius of the cutter before is larger, in mm."""
-    return max(before.tool.radius - tool.radius, 0.0) if before is not None else 0.0
+    return max(before.cutter.radius - tool.radius, 0.0) if before is not None else 0.0

@@ -141,5 +141,7 @@ def _led(poses: Sequence[Pose], path: Toolpath) -> Toolpath:
         centre=np.full((n, 3), np.nan),
         feed=np.zeros(n),
         mark=np.full(n, Mark.RETRACT),
+        dwell=None,
+        cycles=(),
     )
     return Toolpath.join([lead, path])

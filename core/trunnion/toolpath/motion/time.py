@@ -40,12 +40,12 @@ def machining_time(
 def block_times(
     path: Toolpath, machine: Machine, place: WorkPosition | None = None, gauge: float = 0.0
 ) -> Floats:
-    """Return the seconds (n,) of each block; the first, whose start is unknown, takes none.
+    """Return the seconds (n,) of each block with its dwell; of the first, whose start is unknown, no more than that.
 
     On a machine with rotary axes `place` says where the work stands and `gauge` mm is the length of the tool from its tip to the spindle's
     face; raises `Refused` for what the machine can't hold or follow.
     """
-    times = np.zeros(len(path))
+    times = np.array(path.dwells())
     way = _way_of(path, place if place is not None and place.machine.rotary else None, gauge)
     rows = np.flatnonzero(way.length > 0.0)
     if len(rows) == 0:
@@ -75,7 +75,7 @@ def block_times(
         np.abs(first[:, 3:]).max(axis=1, initial=0.0) > 0.0, ROUNDING_TURNS, ROUNDING
     )
     joint = _joint_speeds(first, last, speed, acceleration, is_rapid, rounding)
-    times[rows] = _trapezoids(
+    times[rows] += _trapezoids(
         length, speed, acceleration, _looked_ahead(length, joint, acceleration)
     )
     return times

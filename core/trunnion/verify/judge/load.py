@@ -61,7 +61,9 @@ def load_of(
     power and no torque, whatever the tool is pushed through.
     """
     radius = np.array([t.radius for t in moves.tools])[moves.tool] if len(moves) else np.zeros(0)
-    teeth = np.array([s.tool.teeth for s in sections])[moves.section] if len(moves) else np.zeros(0)
+    teeth = (
+        np.array([s.cutter.teeth for s in sections])[moves.section] if len(moves) else np.zeros(0)
+    )
     spindle = np.array([s.spindle for s in sections])[moves.section] if len(moves) else np.zeros(0)
     flute = (
         np.array([t.flute_length for t in moves.tools])[moves.tool] if len(moves) else np.zeros(0)

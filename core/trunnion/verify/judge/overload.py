@@ -60,7 +60,7 @@ def load_findings(
 
 def chosen_load(section: ProgramSection, material: Material | None) -> AllowedLoad:
     """Return the load that a section's cutting data were chosen for, or the material's tables allow its cutter when that is more."""
-    tool = section.tool
+    tool = section.cutter
     feed = section.feed or float(section.path.feed.max(initial=0.0))
     area, angle = section.width * section.depth, _angle(section.width, tool.diameter)
     per_tooth = 0.0 if section.spindle_stands else feed / (tool.teeth * section.spindle)

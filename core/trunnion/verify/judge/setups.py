@@ -122,7 +122,7 @@ def _from_above(program: Program, blank: Blank) -> bool:
         np.linalg.norm(s.path.axis - up, axis=1).max(initial=0.0) < tolerance.PARAMETRIC
         for s in program.sections
     )
-    return upright and not any(undercuts(s.tool) for s in program.sections)
+    return upright and not any(undercuts(s.cutter) for s in program.sections)
 
 
 def undercuts(tool: Tool) -> bool:

@@ -31,7 +31,7 @@ from trunnion.verify.judge.overload import load_findings
 from trunnion.verify.judge.setups import SetupProof, bundles_of, prove_setup
 from trunnion.verify.judge.sides import sides_of
 from trunnion.verify.machine.limits import limit_findings
-from trunnion.verify.motion import AXIS_LEAN
+from trunnion.verify.motion import AXIS_LEAN, refuse_turning
 from trunnion.verify.settings import ProofSettings
 from trunnion.verify.stock import Stock
 
@@ -51,8 +51,9 @@ def prove(
 
     `tools` are the catalogue's, for what could be reached at all; `machines` those of the programs, one each (without a program: the one
     that the part could be reached on); `planned_faces` the tags that some operation means to finish. Without a material nothing is said
-    of power.
+    of power. Raises `BadInput` for turning.
     """
+    refuse_turning(section for program in programs for section in program.sections)
     frames = [p.setup.frame for p in programs] or [blank.frame]
     surfaces = [surfaces_of(part, f, progress.part(0.0, 0.05)) for f in frames]
     facets = _facets(programs, part, frames, surfaces, machines, progress.part(0.05, 0.1))
@@ -106,8 +107,9 @@ def prove_surfaces(
 ) -> Verdict:
     """Return the verdict as `prove` does, on faces given in each setup's frame (without a program: in the blank's).
 
-    `facets` are the same faces as triangles, one each: without them no tool may lean.
+    `facets` are the same faces as triangles, one each: without them no tool may lean. Raises `BadInput` for turning.
     """
+    refuse_turning(section for program in programs for section in program.sections)
     frames = [p.setup.frame for p in programs] or [blank.frame]
     held = [p.setup.fixtures for p in programs] or [()]
     sides = progress.aside(
