@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 
+import cadquery as cq
 import numpy as np
 import pytest
 
@@ -70,6 +71,16 @@ def test_a_leaning_cylinder_is_cut_to_an_ellipse_within_the_fit(suffix: str) -> 
 def test_a_ball_is_cut_to_a_circle(suffix: str) -> None:
     region = samples.read(samples.ball_shape(), suffix).section(WORLD, 6.0)
     assert region.area == pytest.approx(math.pi * 64, rel=1e-5)
+
+
+@pytest.mark.parametrize("turn", range(0, 360, 30))
+def test_a_ball_cut_off_by_a_plane_has_its_seam_anywhere(turn: int) -> None:
+    ball = cq.Workplane("XY").sphere(30.0).rotate((0, 0, 0), (0, 0, 1), turn)
+    shape = ball.intersect(cq.Workplane("XY").box(40.0, 200.0, 200.0).translate((12.0, 0.0, 0.0)))
+    region = samples.read(shape.val().wrapped, "step").section(WORLD, 6.0)
+    radius = math.sqrt(30.0**2 - 6.0**2)
+    cap = radius**2 * math.acos(8.0 / radius) - 8.0 * math.sqrt(radius**2 - 8.0**2)
+    assert region.area == pytest.approx(math.pi * radius**2 - cap, rel=1e-5)
 
 
 @BOTH

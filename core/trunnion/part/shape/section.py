@@ -43,6 +43,8 @@ from trunnion.progress import QUIET, Progress
 _SAMPLES = 33
 _TRIES = 50
 _HALVINGS = 60
+_INSIDE = (0.5, 0.35, 0.65)
+"""Shares of an arc that are asked whether they lie in a face: the middle, or beside it where a seam runs through the middle."""
 Node = tuple[int, int]
 
 
@@ -353,11 +355,12 @@ def _on_circles(
                 loops.append(Curve.circle(middle, radius))
             continue
         # A seam is no boundary: arcs go on across it.
+        across = [angle for angle, node, _ in track if node[0] in seams]
         track = [t for t in track if t[1][0] not in seams]
         for k, (angle, node, point) in enumerate(track):
             after, other, target = track[(k + 1) % len(track)]
             sweep = after - angle + (2.0 * math.pi if k + 1 == len(track) else 0.0)
-            if face.holds(_on(plane, centre, radius, angle + 0.5 * sweep)):
+            if face.holds(_on(plane, centre, radius, _clear_of(across, angle, sweep))):
                 links.append(
                     _arc(
                         node,
@@ -371,6 +374,14 @@ def _on_circles(
                     )
                 )
     return links, loops
+
+
+def _clear_of(seams: list[float], angle: float, sweep: float) -> float:
+    """Return an angle on an arc well inside it and off the seams, on which nobody can tell inside from outside."""
+    shares = np.array(_INSIDE)
+    at = angle + shares * sweep
+    off = [np.abs(np.sin(0.5 * (at - seam))) for seam in seams]
+    return float(at[int(np.argmax(np.min(off, axis=0)))] if off else at[0])
 
 
 def _angle(vector: Floats) -> float:
