@@ -154,6 +154,23 @@ def _swept_box(move: Floats, radius: float) -> tuple[float, float, float, float]
     return x0 - radius, y0 - radius, x1 + radius, y1 + radius
 
 
+@njit(cache=True, nogil=True, inline="always")
+def _lower(row: Floats, i: int, cut: float, upper: float) -> tuple[float, int]:
+    """Lower cell i of a row to the height `cut` (mm) where it is higher; return the removed height
+    (mm) and 1 where the cell is higher than `upper` and so is left standing, else 0.
+
+    Inlined: in five alternating runs of level, sloped, arc and helix moves no kind got slower than by
+    0.4 % against writing it out (`tests/bench/proof.py`, field).
+    """
+    h = row[i]
+    if cut >= h:
+        return 0.0, 0
+    if h > upper:
+        return 0.0, 1
+    row[i] = cut
+    return h - cut, 0
+
+
 @njit(cache=True, nogil=True)
 def _zmap_cut_row(
     row: Floats,
@@ -194,12 +211,8 @@ def _zmap_cut_row(
                     cut = max(
                         z + (corner - math.sqrt(max(corner * corner - out * out, 0.0))), floor
                     )
-                if cut < h:
-                    if h > upper:
-                        stands += 1
-                    else:
-                        removed += h - cut
-                        row[i] = cut
+                r, s = _lower(row, i, cut, upper)
+                removed, stands = removed + r, stands + s
     return removed, stands
 
 
@@ -232,12 +245,8 @@ def _zmap_cut_row_formed(
             d = ex * ex + ey * ey
             if d < limit:
                 cut = max(z + profile_height(d, profile, arcs, pieces), floor)
-                if cut < h:
-                    if h > upper:
-                        stands += 1
-                    else:
-                        removed += h - cut
-                        row[i] = cut
+                r, s = _lower(row, i, cut, upper)
+                removed, stands = removed + r, stands + s
     return removed, stands
 
 
@@ -447,12 +456,8 @@ def _zmap_cut_arc_row(
                     cut = max(z + _bull_height(d, inner, corner), floor)
                 else:
                     cut = max(z + profile_height(d, profile, arcs, pieces), floor)
-                if cut < h:
-                    if h > upper:
-                        stands += 1
-                    else:
-                        removed += h - cut
-                        row[i] = cut
+                r, s = _lower(row, i, cut, upper)
+                removed, stands = removed + r, stands + s
     return removed, stands
 
 
@@ -742,12 +747,8 @@ def _zmap_cut_slope(
                     + _profile_on_slope(abs(across), low, high, slope, profile, arcs, pieces),
                     floor,
                 )
-            if cut < h:
-                if h > upper:
-                    stands += 1
-                else:
-                    removed += h - cut
-                    row[i] = cut
+            r, s = _lower(row, i, cut, upper)
+            removed, stands = removed + r, stands + s
     return removed, stands
 
 
@@ -807,12 +808,8 @@ def _zmap_cut_helix(
                     if a < b:
                         z = min(z, z0 + (b if z1 < z0 else a) / sweep * (z1 - z0))
             cut = max(z, floor)
-            if cut < h:
-                if h > z + opening:
-                    stands += 1
-                else:
-                    removed += h - cut
-                    top[j, i] = cut
+            r, s = _lower(top[j], i, cut, z + opening)
+            removed, stands = removed + r, stands + s
     return removed, stands
 
 
