@@ -98,7 +98,7 @@ class Arrangement:
             self._size()
 
     def keep(self) -> None:
-        """Remember how things stand for the next start."""
+        """Remember the arrangement for the next start."""
         preferences.remember("geometry", self._window.saveGeometry())
         preferences.remember("state", self._window.saveState())
 

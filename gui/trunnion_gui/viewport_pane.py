@@ -35,7 +35,7 @@ from trunnion_gui.worker.drawing import DrawnMap, place_on
 _EDGE = 14
 _TIP_AWAY = 16
 _LONGEST_TRAIL = 20_000
-"""Chords of the way behind the tool that are shown: a surface's path has hundreds of thousands, and each frame sends them anew."""
+"""Chords of the path behind the tool that are shown: a surface's path has hundreds of thousands, and each frame sends them anew."""
 _MOST_IDS = 200
 """IDs that are written on the part at most."""
 _CLOSE_LOOK = 30.0

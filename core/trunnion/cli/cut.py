@@ -44,7 +44,7 @@ def add(commands: Any) -> None:
 
 
 def run(chosen: argparse.Namespace) -> int:
-    """Make the cut, write the project and say which faces there are now."""
+    """Make the cut, write the project and report which faces there are now."""
     from trunnion.geometry.cut import plane_cut, way_cut
     from trunnion.pipeline.engine import PROJECT_SUFFIX
     from trunnion.pipeline.patches import with_cut

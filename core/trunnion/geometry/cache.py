@@ -20,7 +20,7 @@ class Cache(Generic[Answer]):
         return len(self._answers)
 
     def answer(self, asked: Hashable, work_out: Callable[[], Answer]) -> Answer:
-        """Return the answer to what is asked, worked out when it is not known."""
+        """Return the result to what is asked, worked out when it is not known."""
         if asked in self._answers:
             self._answers.move_to_end(asked)
             return self._answers[asked]

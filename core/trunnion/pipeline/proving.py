@@ -176,7 +176,7 @@ def errors_of_part(session: Session) -> tuple[Finding, ...]:
 
 
 def errors_before(session: Session) -> tuple[Finding, ...]:
-    """Return the errors that the part and the steps before the proof have told."""
+    """Return the errors that the part and the steps before the proof have reported."""
     told = (
         f for step, record in session.records.items() if step != "verify" for f in record.findings
     )

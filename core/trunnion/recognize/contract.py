@@ -76,7 +76,7 @@ class PartKind(Protocol):
 class LegendClass:
     """Features of a kind that legends count together: those whose `attribute` is true, or (empty) all that no other class has.
 
-    `label` is what several of them are called; `colours` (`#rrggbb`) tell neighbours apart by turns, the first stands for the class.
+    `label` is what several of them are called; `colours` (`#rrggbb`) tell neighbours apart by turns, the first represents the class.
     """
 
     label: str
@@ -88,7 +88,7 @@ class LegendClass:
 class FeatureKind:
     """A kind of features as people meet it: `name` in features and files, `label` in words ("open pocket"), `colour` (`#rrggbb`).
 
-    `classes`, where features of the kind are told apart, have the colours instead, and `heading` says what they are together. `pocket`
+    `classes`, where features of the kind are distinguished, have the colours instead, and `heading` says what they are together. `pocket`
     gives the pocket paper's model of a feature of the kind, where it has one. `along_axes` are sizes taken along the axes of the part's
     file: they change when the part is turned, no other size does.
     """

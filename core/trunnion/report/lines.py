@@ -57,7 +57,7 @@ def opened(path: Toolpath) -> tuple[Floats, Ints]:
 
 
 def leans(path: Toolpath) -> bool:
-    """Say whether the tool stands other than upright anywhere on a path."""
+    """Return whether the tool stands other than upright anywhere on a path."""
     return bool((np.abs(path.axis[:, :2]) > _UPRIGHT).any())
 
 

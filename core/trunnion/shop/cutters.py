@@ -1,4 +1,4 @@
-"""Holders and cutters of the catalogue. A cutter has number 0 until a plan gives it a place."""
+"""Holders and cutters of the catalogue. A cutter has number 0 until a plan gives it a position."""
 
 from __future__ import annotations
 

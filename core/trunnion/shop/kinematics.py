@@ -147,7 +147,7 @@ def rotations(axis: Axis, angle: Floats) -> Floats:
 
 
 def _carried(machine: Machine, work: Floats, angle: Floats, gauge: float) -> tuple[Floats, Floats]:
-    """Return places in the work and the tip of the tool, each (k, 3) from the middle of the table and of the spindle's face."""
+    """Return positions in the work and the tip of the tool, each (k, 3) from the middle of the table and of the spindle's face."""
     tool = np.tile(-gauge * UP, (len(work), 1))
     for k, rotary in reversed(list(enumerate(machine.rotary))):
         turn, point = rotations(rotary, angle[:, k]), np.array(rotary.point)

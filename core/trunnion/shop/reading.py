@@ -30,7 +30,7 @@ class CatalogueEntry:
         return BadInput(f"{self.file}: {self.name}: {what}")
 
     def has(self, name: str) -> bool:
-        """Say whether a field is given."""
+        """Return whether a field is given."""
         return name in self.fields
 
     def text(self, name: str, default: str | None = None) -> str:

@@ -1,4 +1,4 @@
-"""Rotary angles along a path: without a leap, inside the limits, turning least; windings and both ways to stand are looked at."""
+"""Rotary angles along a path: without a leap, inside the limits, turning least; windings and both solutions are looked at."""
 
 from __future__ import annotations
 

@@ -115,7 +115,7 @@ class FamilyView:
         return f"{found} mm" if found else ""
 
     def remark(self, found: Recognition) -> str:
-        """Return what is said after the counts of a recognition."""
+        """Return what is reported after the counts of a recognition."""
         return ""
 
     # menus

@@ -1,6 +1,6 @@
 """The playback's clock: where the tool is, how fast it goes, and which stock is asked of the worker.
 
-The tool runs in the window's process; the stock arrives from the worker when it is ready. While playing, the stock of a place a little
+The tool runs in the window's process; the stock arrives from the worker when it is ready. While playing, the stock of a position a little
 ahead is asked for: the tool goes there meanwhile, waits when it gets there first, and the stock changes as it passes. So tool and stock
 never drift apart, and the window never waits.
 """

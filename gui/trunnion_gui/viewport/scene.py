@@ -248,7 +248,7 @@ class ViewportScene(QWidget):
         self.view.render()
 
     def show_trail(self, points: np.ndarray, rapid: np.ndarray) -> None:
-        """Show the way of the tip: points (k + 1, 3), and whether each chord (k,) was a rapid."""
+        """Show the path of the tip: points (k + 1, 3), and whether each chord (k,) was a rapid."""
         draw_trail(self.view, points, rapid)
 
     def look_at(self, place: Sequence[float], face: int, half_height: float) -> None:
@@ -282,11 +282,11 @@ class ViewportScene(QWidget):
         return self._mesh.normals()[rows[nearest]]
 
     def on_face(self, tag: int, points: np.ndarray) -> np.ndarray:
-        """Return the places (k, 3) on the drawn face that are nearest to points (k, 3)."""
+        """Return the positions (k, 3) on the drawn face that are nearest to points (k, 3)."""
         return self._part.on_face(tag, points) if self._part is not None else points
 
     def show_names(self, names: Sequence[tuple[str, tuple[float, float, float]]]) -> None:
-        """Write words at places of the part, or none."""
+        """Write words at positions of the part, or none."""
         draw_names(self.view, names, self._theme)
         self.view.render()
 

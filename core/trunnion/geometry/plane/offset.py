@@ -1,7 +1,7 @@
 """Parallels of curves and regions: lines stay lines, arcs stay arcs about the same centre, convex corners get round joins.
 
 Every segment moves to its side and neighbours are connected: by an arc about a convex corner, by a bridge over a concave one.
-The boundary of the answer is a part of these raw curves. They cut the plane into faces, each wholly nearer to the source than
+The boundary of the result is a part of these raw curves. They cut the plane into faces, each wholly nearer to the source than
 the distance or wholly farther, so one exact distance a face decides (`grown`); an open curve is cut at the crossings
 themselves (`parallel_curves`).
 """
@@ -155,7 +155,7 @@ def parallel_curves(curve: Curve, distance: float) -> list[Curve]:
     """Return the curves that run beside a curve at a distance to its left (negative: to its right), in the order of the curve.
 
     Convex corners get round joins about the corner, concave ones are trimmed; what would come nearer to the curve than the
-    distance is left out, so the answer may be empty or in several pieces. Arcs stay arcs.
+    distance is left out, so the result may be empty or in several pieces. Arcs stay arcs.
     """
     if abs(distance) <= tolerance.PARAMETRIC:
         return [curve]

@@ -128,7 +128,7 @@ class Region:
         return self._digest[0]
 
     def contains(self, points: ArrayLike, margin: float = 0.0) -> Bools:
-        """Say of each point (k, 2) whether it is inside by at least `margin` mm (negative: at most so far outside)."""
+        """Return for each point (k, 2) whether it is inside by at least `margin` mm (negative: at most so far outside)."""
         p = np.atleast_2d(np.asarray(points, dtype=np.float64))
         if not self:
             return np.zeros(len(p), dtype=bool)
@@ -318,7 +318,7 @@ def _boxed(boxes: Floats, n: int) -> list[int]:
 
 
 def _is_inside(inner: Curve, outer: Curve) -> bool:
-    """Say whether most of one curve is inside another; they may touch."""
+    """Return whether most of one curve is inside another; they may touch."""
     s = inner.segments()
     rows = np.arange(len(s))
     probes = np.concatenate([s.start, s.at(rows, 0.5 * s.length)])

@@ -209,7 +209,7 @@ def _chosen(bodies: list[Body], request: ReadRequest) -> int:
 
 
 def _size(body: Body) -> tuple[float, float]:
-    """Return volume and area to nine figures: solids that are alike must not be told apart by rounding."""
+    """Return volume and area to nine figures: solids that are alike must not be distinguished by rounding."""
     return float(f"{abs(body.volume):.9g}"), float(f"{body.area:.9g}")
 
 

@@ -522,7 +522,7 @@ def _extent(face: Any) -> float:
 
 
 def _flat_enough(slope: float, extent: float) -> bool:
-    """Say whether a slope over a face's extent stays far inside the bound of the contact engine."""
+    """Return whether a slope over a face's extent stays far inside the bound of the contact engine."""
     return abs(slope) * extent < tolerance.CONTACT_BOUND / 4
 
 

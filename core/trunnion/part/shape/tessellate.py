@@ -73,7 +73,8 @@ def _numbers(count: int, progress: Progress) -> Iterator[int]:
 
 
 def _looks_out(face: Shape, found: Any, points: np.ndarray, rows: np.ndarray) -> bool:
-    """Say whether triangles run anticlockwise seen from outside: on surfaces of revolution the mesher's order doesn't tell (measured)."""
+    """Return whether triangles run anticlockwise seen from outside: on surfaces of revolution the mesher's order doesn't tell
+    (measured)."""
     corners = points[rows]
     across = np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0])
     largest = int(np.argmax((across * across).sum(axis=1)))

@@ -45,7 +45,7 @@ class TrimmedFace:
         return a.FirstUParameter(), a.LastUParameter(), a.FirstVParameter(), a.LastVParameter()
 
     def holds(self, u: float, v: float) -> bool:
-        """Say whether (u, v) lies inside the trimmed area."""
+        """Return whether (u, v) lies inside the trimmed area."""
         return bool(self.inside.Perform(gp_Pnt2d(u, v)) == TopAbs_IN)
 
     def at(self, u: float, v: float) -> tuple[Floats, Floats]:

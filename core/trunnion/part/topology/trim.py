@@ -40,7 +40,7 @@ class Trim:
         self._tried = False
 
     def holds(self, places: Floats) -> Bools:
-        """Say which places (k, 2) lie inside."""
+        """Return which places (k, 2) lie inside."""
         if not self._tried and len(places) > FEW:
             self._tried = True
             self._outlines = self._opened()

@@ -28,7 +28,7 @@ HALVES = 12
 STICKOUT_STEP = 0.1
 """mm: stick-outs are set no finer."""
 POSES = 512
-"""Moves asked together, between two looks at cancel."""
+"""Moves queried together, between two looks at cancel."""
 
 
 @dataclass(frozen=True, slots=True, eq=False, kw_only=True)
@@ -61,7 +61,7 @@ def room(
     allowed: float = tolerance.GOUGE,
     progress: Progress = QUIET,
 ) -> PoseClearance:
-    """Return what poses of one tool may do: tips (k, 3), unit axes (k, 3), asked all together.
+    """Return what poses of one tool may do: tips (k, 3), unit axes (k, 3), queried all together.
 
     Leaning turns about `pivot` (k, 3), the tip when not given; the first direction is the setup's x (y where the axis lies along x) seen
     across the axis, the others follow anticlockwise. `longest` is the largest stick-out that is tried (by default 50 mm more than the
@@ -91,7 +91,7 @@ def room(
 
 @dataclass(slots=True, eq=False)
 class _Asker:
-    """Asks whether straight moves, whose axis turns evenly on the way, are clear."""
+    """Queries whether straight moves, whose axis turns evenly on the way, are clear."""
 
     contact: PartContact
     tool: Tool

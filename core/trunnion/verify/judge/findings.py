@@ -1,4 +1,4 @@
-"""What is said of a setup: gouges, collisions with part, stock and fixtures, rapids in stock, each with its block, place and depth."""
+"""What is reported of a setup: gouges, collisions with part, stock and fixtures, rapids in stock, each with its block, place and depth."""
 
 from __future__ import annotations
 

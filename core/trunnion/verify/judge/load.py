@@ -126,7 +126,7 @@ def specific_force(material: Material, chip: Floats) -> Floats:
 
 
 def stretched(moves: Moves, removed: Floats, stretch: Floats) -> Floats:
-    """Return the cross-section (n,) mm2 that each feed move takes away: volume over way, on a stretch (n,) mm around it.
+    """Return the cross-section (n,) mm2 that each feed move takes away: volume over path length, on a stretch (n,) mm around it.
 
     A stretch does not go beyond a rapid: it ends there.
     """

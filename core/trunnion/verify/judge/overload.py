@@ -42,7 +42,7 @@ class AllowedLoad:
 def load_findings(
     proof: SetupProof, machine: Machine, material: Material | None, settings: ProofSettings
 ) -> tuple[list[Finding], list[Offer]]:
-    """Return what is said of the load on cutter and spindle in a setup, and what is offered for it."""
+    """Return what is reported of the load on cutter and spindle in a setup, and what is offered for it."""
     found: list[Finding] = []
     offers: list[Offer] = []
     for k, section in enumerate(proof.program.sections):
@@ -182,7 +182,7 @@ def _feeds(
 
 
 def _feed_remedy(proof: SetupProof, section: ProgramSection, offers: list[Offer]) -> str:
-    """Say which feeds are offered."""
+    """Return which feeds are offered."""
     lines = section.block_lines
     places = [
         (

@@ -78,7 +78,7 @@ def _direction_in_tool_frame(
 def _distance_and_gradient(
     arcs: Floats, first: int, last: int, x: float, y: float, z: float
 ) -> tuple[float, float, float, float]:
-    """Return the signed distance (mm) to a body at a place seen from the tool, and its gradient there."""
+    """Return the signed distance (mm) to a body at a position seen from the tool, and its gradient there."""
     rho = math.sqrt(x * x + y * y)
     depth, nr, nz = depth_in_body(arcs, first, last, rho, z)
     return (-depth, nr * x / rho, nr * y / rho, nz) if rho > 0.0 else (-depth, 0.0, 0.0, nz)

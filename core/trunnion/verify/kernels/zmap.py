@@ -659,7 +659,7 @@ def _bull_on_slope(
     if gap <= 0.0:
         return np.inf
     half = math.sqrt(gap)
-    # w runs along the way, from the column's foot on it: there the cutter's axis is.
+    # w runs along the path, from the column's foot on it: there the cutter's axis is.
     low, high = max(-half, -along), min(half, length - along)
     if low > high:
         return np.inf

@@ -107,7 +107,7 @@ class Bundle:
         self.low, self.high = (np.pad(a, ((0, 0), (0, self.room))) for a in (self.low, self.high))
 
     def contains(self, points: Floats) -> Bools:
-        """Say for points (k, 3) in the blank's frame whether the nearest ray has material there."""
+        """Return for points (k, 3) in the blank's frame whether the nearest ray has material there."""
         u, v, w = points[:, cycle(self.axis)].T
         column = np.clip(
             np.floor((u - self.origin[0]) / self.pitch).astype(np.int64), 0, self.columns - 1

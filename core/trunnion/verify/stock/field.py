@@ -57,7 +57,7 @@ class Field:
         return float((self.top - self.low[2]).sum()) * self.pitch**2
 
     def contains(self, points: Floats) -> Bools:
-        """Say for points (k, 3) in the blank's box whether the nearest column reaches as high."""
+        """Return for points (k, 3) in the blank's box whether the nearest column reaches as high."""
         column, row = np.floor((points[:, :2] - self.low[:2]) / self.pitch).astype(np.int64).T
         rows, columns = self.top.shape
         return np.asarray(

@@ -31,7 +31,7 @@ class Spans:
 
 
 def whole_arcs(moves: Moves, along: Sequence[int]) -> Bools:
-    """Say which moves (n,) are arcs that go level about one of the blank's axes `along`: each is one span."""
+    """Return which moves (n,) are arcs that go level about one of the blank's axes `along`: each is one span."""
     climb = np.abs(((moves.end - moves.start) * moves.start_axis).sum(axis=1))
     axis = np.abs(moves.start_axis)
     straight = np.isin(axis.argmax(axis=1), along) & (
@@ -139,7 +139,7 @@ class _Poses:
         )
 
     def way_boxes(self, rows: Bools) -> Floats:
-        """Return boxes (k, 2, 3) of the tips' ways along some arcs."""
+        """Return boxes (k, 2, 3) of the tips' paths along some arcs."""
         away, over, sweep = self.away[rows], self.over[rows], self.sweep[rows, None]
         centre, reach, angle = self.start[rows] - away, np.hypot(away, over), np.arctan2(over, away)
         end = centre + np.cos(sweep) * away + np.sin(sweep) * over

@@ -61,7 +61,7 @@ class CutBar(QWidget):
 
     @property
     def is_on(self) -> bool:
-        """Whether a cut is being made, so that clicks on the part are its places."""
+        """Whether a cut is being made, so that clicks on the part are its points."""
         return not self.isHidden()
 
     def begin(self, face: int, by_plane: bool) -> None:

@@ -1,4 +1,4 @@
-"""The tool as bodies of revolution: cutter, shank with neck, and holder, standing where it cuts; and the way it came."""
+"""The tool as bodies of revolution: cutter, shank with neck, and holder, standing where it cuts; and the path it came by."""
 
 from __future__ import annotations
 
@@ -65,7 +65,7 @@ def place_tool(view: Any, tip: np.ndarray, axis: np.ndarray) -> None:
 
 
 def draw_trail(view: Any, points: np.ndarray, rapid: np.ndarray) -> None:
-    """Show the way of the tip so far: points (k + 1, 3), and for each chord (k,) whether it was a rapid."""
+    """Show the path of the tip so far: points (k + 1, 3), and for each chord (k,) whether it was a rapid."""
     k = len(points) - 1
     if k < 1:
         view.remove_actor("trail", render=False)
