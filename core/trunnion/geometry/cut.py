@@ -1,4 +1,4 @@
-"""A cut that divides one face of a part in two, as a person asked for it: plain data, done again when the part is opened."""
+"""A cut that divides one face of a part in two, as a person made it: plain data, done again when the part is opened."""
 
 from __future__ import annotations
 
@@ -39,7 +39,7 @@ def plane_cut(face: int, place: Place, normal: Place) -> Cut:
     return Cut(face=face, places=(place,), normal=normal)
 
 
-def way_cut(face: int, places: tuple[Place, ...]) -> Cut:
+def curve_cut(face: int, places: tuple[Place, ...]) -> Cut:
     """Return the cut of a face by the path through some places near it; raise `BadInput` for fewer than two."""
     if len(places) < 2:
         raise BadInput("a drawn cut needs two places at least")

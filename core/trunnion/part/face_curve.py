@@ -28,11 +28,11 @@ _BEYOND = 0.02
 _STEP = 0.01
 """Share of the face's parameters by which an end is led on until it is outside."""
 _MORE = 3
-"""Places before and after a way round the surface that make it run on smoothly where it closes."""
+"""Points before and after a curve round the surface that make it run on smoothly where it closes."""
 _BESIDE = 1e-4
-"""Share of the face's parameters beside the way at which pieces are asked for."""
+"""Share of the face's parameters beside the curve at which pieces are looked up."""
 _ASKED = 64
-"""Places along the way beside which pieces are asked for."""
+"""Points along the curve beside which pieces are looked up."""
 
 
 class DrawnCurve:

@@ -105,7 +105,7 @@ class Playback:
         return self.towards(position, np.inf, progress)
 
     def towards(self, position: float, seconds: float, progress: Progress = QUIET) -> Moment:
-        """Return the stock at a position, or on the way there when it is not reached in some seconds: ask again to go on."""
+        """Return the stock at a position, or on the way there when it is not reached in some seconds: call again to go on."""
         wanted = min(max(float(position), 0.0), float(self.n_blocks))
         if wanted < self._position:
             self._go_back(wanted)

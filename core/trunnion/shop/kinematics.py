@@ -104,7 +104,7 @@ def lift_of(place: WorkPosition, angle: Floats) -> Floats:
     return np.asarray(up[0])
 
 
-def stands_of(machine: Machine, axis: Floats) -> tuple[Floats, Bools, Bools]:
+def rotary_solutions(machine: Machine, axis: Floats) -> tuple[Floats, Bools, Bools]:
     """Return both ways (k, 2, a) in rad to hold tool axes (k, 3), which angles are free (k, 2, a), and which axes can be held (k,).
 
     Limits are not looked at. Two rotary axes one and two hold an axis where R1 R2 v = w; as R2 changes nothing along its own direction u2,

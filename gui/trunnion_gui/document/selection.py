@@ -37,7 +37,7 @@ class SelectionModel(QObject):
         self.current = NOTHING
 
     def clear(self) -> None:
-        """Select nothing of another part, and tell every view."""
+        """Select nothing of another part, and notify every view."""
         self.current = NOTHING
         self.changed.emit(NOTHING)
 

@@ -28,7 +28,7 @@ from trunnion_gui.viewport.layers.part import PartLayer
 from trunnion_gui.viewport.layers.paths import draw_paths
 from trunnion_gui.viewport.layers.setups import draw_setups
 from trunnion_gui.viewport.layers.stock import draw_stock
-from trunnion_gui.viewport.layers.tool import draw_tool, draw_trail, place_tool
+from trunnion_gui.viewport.layers.tool import draw_tool, draw_trail, move_tool_to
 from trunnion_gui.viewport.pick import FacePicker
 from trunnion_gui.viewport.view import make_view
 from trunnion_gui.worker.drawing import DrawnMap, DrawnMesh
@@ -244,7 +244,7 @@ class ViewportScene(QWidget):
 
     def move_tool(self, tip: np.ndarray, axis: np.ndarray) -> None:
         """Stand the tool somewhere (the part's coordinates)."""
-        place_tool(self.view, tip, axis)
+        move_tool_to(self.view, tip, axis)
         self.view.render()
 
     def show_trail(self, points: np.ndarray, rapid: np.ndarray) -> None:

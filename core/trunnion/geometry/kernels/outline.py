@@ -2,7 +2,7 @@
 with a strip index.
 
 Outlines are closed chains of short chords that represent curves; within `near` of them the chords
-can't tell inside from outside. Plain reference `points_in_polygon`. mm.
+can't distinguish inside from outside. Plain reference `points_in_polygon`. mm.
 """
 
 from __future__ import annotations

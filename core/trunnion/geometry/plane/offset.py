@@ -59,7 +59,8 @@ def grown(boundary: Segments, loops: Ints, distance: float) -> tuple[shapely.Geo
 
 
 def _margin(boundary: Segments, distance: float, faces: NDArray[np.object_]) -> Floats:
-    """Return how much deeper than asked a point inside each face lies, the most telling of several points where one says little."""
+    """Return how much deeper than the offset distance a point inside each face lies, the clearest of several points where one is close to
+    it."""
     margin = (
         signed_distance(boundary, shapely.get_coordinates(shapely.point_on_surface(faces)))
         + distance
@@ -139,7 +140,7 @@ def _neighbours(loop: Ints, closed: bool) -> tuple[Ints, Ints]:
 def _bends(s: Segments, before: Ints, after: Ints, u: Floats, v: Floats) -> Floats:
     """Return the signed turns (k,) from the directions `u` at the ends of segments `before` to `v` at the starts of `after`."""
     bend = np.arctan2(u[:, 0] * v[:, 1] - u[:, 1] * v[:, 0], (u * v).sum(axis=1))
-    # At a cusp the directions alone can't tell a left turn from a right one; the curvatures can.
+    # At a cusp the directions alone can't distinguish a left turn from a right one; the curvatures can.
     curvature = np.sign(s.sweep) / np.where(s.sweep != 0.0, s.radius, np.inf)
     side = -(curvature[before] + curvature[after])
     cusp = (np.abs(bend) > np.pi - tolerance.ANGLE) & (side != 0.0)

@@ -130,7 +130,7 @@ def _names(document: Any, shape: Shape) -> dict[int, str]:
         for k in range(1, inside.Length() + 1):
             label = inside.Value(k)
             tag = index.FindIndex(XCAFDoc_ShapeTool.GetShape_s(label))
-            # Asking for an attribute that is absent crashes the kernel, so it is asked for by its id first.
+            # Getting an absent attribute crashes the kernel, so its id is looked up first.
             if tag and label.IsAttribute(TDataStd_Name.GetID_s()):
                 name = TDataStd_Name()
                 label.FindAttribute(TDataStd_Name.GetID_s(), name)

@@ -99,7 +99,7 @@ def _extremes(
         here = centre[:, None] + around * reach
         found = bending.at(here.reshape(-1, 2)).reshape(2, -1, 2)
         for k, values in enumerate((-found[0, :, 0], found[1, :, 1])):
-            # Only what is better is asked for whether it lies inside the trim: that costs more than the curvature.
+            # Only a better candidate is tested against the trim: that costs more than the curvature.
             better = np.flatnonzero(values > best[k])
             better = better[bending.inside(here[k, better])]
             if len(better):

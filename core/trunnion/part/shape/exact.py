@@ -36,7 +36,7 @@ class ExactPoints:
 
 
 class ExactFace:
-    """One trimmed face of a part, asked in a frame."""
+    """One trimmed face of a part, evaluated in a frame."""
 
     def __init__(self, part: Part, tag: int, frame: Frame) -> None:
         from OCP.GeomAbs import GeomAbs_SurfaceType as Kind

@@ -26,7 +26,7 @@ if TYPE_CHECKING:
 MOST_TRIANGLES = 4_000_000
 """About 1 GB with the tree over them."""
 COARSE = 0.01
-"""mm: chord error asked of the kernel's mesher at least: finer ones take longer there than halving does (measured); from coarser ones
+"""mm: least chord error that the kernel's mesher is given: finer ones take longer there than halving does (measured); from coarser ones
 borders move past points beside them."""
 BETWEEN = 1.07
 """What a triangle may be further off than at its middle and those of its edges: 1.066 at most for an even bend (searched)."""
@@ -528,7 +528,7 @@ def _net_of(shape: Any) -> tuple[Floats, Floats, Ints, Any]:
 def _looks_out(
     evaluate: Evaluator, side: float, places: Floats, points: Floats, triangles: Ints
 ) -> bool:
-    """Return whether triangles run anticlockwise seen from outside: on surfaces of revolution the mesher's order doesn't tell
+    """Return whether triangles run anticlockwise seen from outside: on surfaces of revolution the mesher's order doesn't show it
     (measured)."""
     corners = points[triangles]
     across = np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0])

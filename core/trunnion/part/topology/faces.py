@@ -1,4 +1,4 @@
-"""A trimmed face and what is asked of it again and again: points, outward normals, what is inside."""
+"""A trimmed face with its queries: points, outward normals, what is inside."""
 
 from __future__ import annotations
 
@@ -19,7 +19,7 @@ from trunnion.part.topology.identity import Shape
 
 @dataclass(slots=True, eq=False)
 class TrimmedFace:
-    """A trimmed face with what is asked of it again and again."""
+    """A trimmed face whose kernel objects are kept between queries."""
 
     face: Shape
     row: int

@@ -49,7 +49,7 @@ class PatchRadii:
 
 
 def patch_bends(bounded: Bounded, graph: FaceGraph, sizes: PatchSizes) -> PatchRadii:
-    """Return how patches bend; of patches that are alike in every size one is asked."""
+    """Return how patches bend; of patches that are alike in every size one is measured."""
     kinds = _kinds(graph, sizes)
     first = np.unique(kinds, return_index=True)[1]
     bends = [bounded.bend(int(tag)) for tag in sizes.tag[first]]

@@ -45,7 +45,7 @@ LIFTS = 3
 
 
 class FineFace(Protocol):
-    """What the fine mode asks of a face: `part.exact.ExactFace`, or a surface in closed form."""
+    """What the fine mode needs of a face: `part.exact.ExactFace`, or a surface in closed form."""
 
     tag: int
 
@@ -415,7 +415,7 @@ class _Patch:
 def _within(face: FineFace, cells: _Cells, signs: Floats) -> Bools:
     """Return which places (c, s), at signs (s, 2) times the half sides from the middle, lie inside the trim of the face that cells are on.
 
-    All cells of a face are of one size, and neighbours share corners: each place is asked for once.
+    All cells of a face are of one size, and neighbours share corners: each place is evaluated once.
     """
     if not len(cells):
         return np.zeros((0, len(signs)), bool)

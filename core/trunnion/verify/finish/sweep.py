@@ -34,7 +34,7 @@ MOST_SPANS = 64
 LEFT_BOUND = tolerance.CONTACT_BOUND / 4
 """How much smaller than reported a distance may be, mm."""
 FAR_BOUND = 0.01
-"""The same for distances beyond what is listed by cells: nothing is finished there, and mean and largest are told in hundredths."""
+"""The same for distances beyond what is listed by cells: nothing is finished there, and mean and largest are reported in hundredths."""
 
 
 @dataclass(frozen=True, slots=True, eq=False, kw_only=True)
@@ -185,7 +185,7 @@ class Sweep:
 
     def cut_around(self, points: Floats, margin: float, move: int) -> Bools:
         """Return for each point (s, 3) whether one move before a row, of those with a closed form in plan, has removed all within a margin
-        in plan of it and all above. That others have is not asked."""
+        in plan of it and all above. Other moves are not looked at."""
         out, g = np.zeros(len(points), bool), self.grid
         points = np.ascontiguousarray(points, dtype=np.float64)
         kernel.surroundings_removed_loop(
@@ -295,7 +295,7 @@ def _cutting(bodies: Bodies, tool: int) -> list[Floats]:
     return runs
 
 
-def ways_of(moves: Moves, rows: Ints) -> Floats:
+def tool_motions(moves: Moves, rows: Ints) -> Floats:
     """Return how the tool moves in space along some moves (k, 18), as `kernels/residual.py` names the columns."""
     out = np.zeros((len(rows), kernel.WAY_COLUMNS))
     a, b = moves.start_axis[rows], moves.end_axis[rows]
@@ -334,7 +334,7 @@ def ways_of(moves: Moves, rows: Ints) -> Floats:
 
 def tree_of(moves: Moves, rows: Ints, flutes: Flutes) -> SpanTree:
     """Return some moves as spans in trees of poses, one a tool."""
-    way, tool = ways_of(moves, rows), moves.tool[rows]
+    way, tool = tool_motions(moves, rows), moves.tool[rows]
     run = moves.length[rows] + way[:, kernel.TURN] * flutes.middle[tool]
     count = np.clip(np.ceil(run / SPAN), 1, MOST_SPANS).astype(np.int64)
     of = np.repeat(np.arange(len(rows)), count)

@@ -1,4 +1,4 @@
-"""What cutting asks of cutter and spindle, move by move: depth, removal rate, thickest chip, power and torque.
+"""The load of cutting on cutter and spindle, move by move: depth, removal rate, thickest chip, power and torque.
 
 The stock engine says what a move removes and over which angle the cutter is engaged. Both come in steps of the stock's cells, so volumes
 are taken over a stretch of the path around each move. Power follows Kienzle: k_c = k_c1.1 h^-m with the mean chip thickness h over the arc

@@ -17,6 +17,6 @@ def block_of(proof: SetupProof, section: ProgramSection, row: int) -> str:
     )
 
 
-def place_of(point: Floats) -> str:
+def position_text(point: Floats) -> str:
     """Return a position in words."""
     return "x {:.2f} y {:.2f} z {:.2f}".format(*(float(v) + 0.0 for v in point))

@@ -1,4 +1,4 @@
-"""Whether cutter and spindle bear what they are asked, and what to offer where they don't: another feed, or a rest operation.
+"""Overload of cutter and spindle, and what to offer against it: another feed, or a rest operation.
 
 An operation's feed is chosen for an engagement: `ProgramSection` says which. Where more is in front of the cutter, its load is held against
 that of the chosen data, or of what the material's tables allow this cutter when that is more, with a margin.

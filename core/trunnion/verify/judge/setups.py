@@ -1,4 +1,4 @@
-"""The proof of one setup: its moves held against part and stock, timed, and asked what they load and leave."""
+"""The proof of one setup: its moves checked against part and stock, timed, with their load and the material they leave."""
 
 from __future__ import annotations
 
@@ -19,7 +19,7 @@ from trunnion.progress import QUIET, Progress
 from trunnion.verify.contact import Contact, PartContact
 from trunnion.verify.finish.sweep import Sweep
 from trunnion.verify.judge.load import Load, load_of
-from trunnion.verify.machine.kinematics import AxisPositions, stands_of
+from trunnion.verify.machine.kinematics import AxisPositions, axis_positions
 from trunnion.verify.machine.times import MachineTimes, times_of
 from trunnion.verify.motion import Moves, moves_of
 from trunnion.verify.settings import ProofSettings
@@ -95,7 +95,7 @@ def prove_setup(
 
 
 def _timed(moves: Moves, machine: Machine, foot: Floats) -> tuple[AxisPositions, MachineTimes]:
-    stands = stands_of(moves, machine, foot)
+    stands = axis_positions(moves, machine, foot)
     return stands, times_of(moves, stands, machine)
 
 

@@ -2,7 +2,7 @@
 Schaefer, Warren, Dual contouring of Hermite data, 2002).
 
 The rays cross at the nodes of a lattice. A node is in material or not, by the z rays; on an edge
-between two that differ, the ray along it tells where material ends, and its neighbours how the
+between two that differ, the ray along it gives where material ends, and its neighbours how the
 surface leans there (Hermite data). Each box of eight nodes that differ gets one point, as near as
 can be to the planes through its edges' ends, so edges and corners of the stock stay sharp; around
 each such edge four points make a face. Two layers of nodes and points are held at a time. Where a

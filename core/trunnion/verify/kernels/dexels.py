@@ -242,7 +242,7 @@ def _max_depth_turning(
     within 1e-5 mm, where the tool turns within SURE. One of at most `enough` need not be the largest.
 
     A tangent at w bounds F from above at w' by F(w) + slope (w' - w) + TWIST |w' - w|, the last for
-    the bilinear term where the tool turns. So from the lower end on each tangent tells how far on
+    the bilinear term where the tool turns. So from the lower end on each tangent bounds how far on
     nothing can be deeper than what is known by more than SURE (Piyavskii, 1972, with slopes).
     """
     best, place = _max_depth(arcs, first, last, limit, ray, low, high)
@@ -749,7 +749,7 @@ def _tridexel_cut_ray(
             continue
         # A cut may need one more interval, a gap another; the caller enlarges the rays and resumes.
         before = count[cell]
-        # Of a tool that turns, both entries in the body at one of their times tell that all between is.
+        # Of a tool that turns, both entries in the body at one of their times show that all between is.
         if turns and not (
             _both_inside_at(arcs, first, last, limit, ray, from_far, from_near, t_near)
             or _both_inside_at(arcs, first, last, limit, ray, from_near, from_far, t_far)
@@ -1091,7 +1091,7 @@ def tridexel_cut_tile(
                 continue
             ray[TWIST] = _ray_turn(span[s])
             if span[s, ARC_RADIUS] != 0.0 and abs(span[s, FRAME0 + 8]) < 0.5:
-                # Of an arc that is one span, the rays along the axis tell how deep it is.
+                # Of an arc that is one span, the rays along the axis give its depth.
                 continue
             for p in range(p0, p1):
                 cuts = piece[p, KIND] == 0.0

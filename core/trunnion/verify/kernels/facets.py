@@ -289,7 +289,7 @@ def _task_bound(
     if span[S_FROM] != task[T_FROM] or span[S_TO] != task[T_TO]:
         fill_swept_segment(way, task[T_FROM], task[T_TO], ends, span)
     # True positions lie within `drift` of the hull and D has slope 1: the hull's bound must be
-    # below what is asked by that much.
+    # below the queried depth by that much.
     ax, ay, az = span[S_AXIS], span[S_AXIS + 1], span[S_AXIS + 2]
     drift = _corners_in_tool_frame(task, ends, span, six)
     settled = max(enough, found[0] + bound) - drift

@@ -801,7 +801,7 @@ def surroundings_removed_loop(
     """Fill out[first:last] with whether one listed move with a row below `before` has removed all
     within a margin (mm) in plan of each point (s, 3), and all above that.
 
-    Only single moves are asked, so it errs towards material that stands.
+    Only single moves are tested, so it errs towards material that stands.
     """
     for n in range(first, last):
         # A cutter thinner by the margin that holds the middle: the cutter itself holds all around.

@@ -363,7 +363,7 @@ def cell_residual_loop(
     """Fill for cells `first` to `last` what is left at their middle, by which move, and bounds from
     above and below over the whole cell.
 
-    middle, a, b (c, 3), slack (c,) as in `cell_residual_bound`; far: no distance above it is told. Fills
+    middle, a, b (c, 3), slack (c,) as in `cell_residual_bound`; far: no distance above it is reported. Fills
     left (c,) mm, nearest (c,) rows or -1, upper and lower (c,) mm. Where a cell may fall by `bound`
     below both `lowest` and its middle, its `lower` only says so; with an infinite `lowest` it isn't
     searched for. Where `above` (c,) is false, no bound from above is searched for.

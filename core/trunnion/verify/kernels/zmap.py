@@ -267,8 +267,8 @@ def _zmap_cut_row_ball(
     """Lower the cells of a row under a ball end on a level line, as `_zmap_cut_row` does; without
     branches, so that it is vectorised.
 
-    Most cells ahead of a ball get lower at every move: computing them all is faster than asking
-    first. Reassociation moves a height by a few units in the last place.
+    Most cells ahead of a ball get lower at every move: computing them all is faster than a
+    branch. Reassociation moves a height by a few units in the last place.
     """
     removed, stands = 0.0, 0.0
     limit = radius * radius

@@ -1,7 +1,7 @@
 """Axis positions of a machine for each pose of the tool: rotary angles by the nearer turn, linear positions with the pivots in them.
 
-A pose asks that the tool's direction on the machine and the axis in the work agree: Rot(p, alpha) Rot(q, beta) v = w for two rotary axes,
-solved in closed form, with both solutions (Paden and Kahan's second subproblem; Murray, Li, Sastry, A Mathematical Introduction to
+A pose requires that the tool's direction on the machine and the axis in the work agree: Rot(p, alpha) Rot(q, beta) v = w for two rotary
+axes, solved in closed form, with both solutions (Paden and Kahan's second subproblem; Murray, Li, Sastry, A Mathematical Introduction to
 Robotic Manipulation, 1994, section 3.2).
 """
 
@@ -42,7 +42,7 @@ class AxisPositions:
     turns: Bools
 
 
-def stands_of(moves: Moves, machine: Machine, foot: Floats) -> AxisPositions:
+def axis_positions(moves: Moves, machine: Machine, foot: Floats) -> AxisPositions:
     """Return how a machine stands along moves; `foot` (3,) is the position of the work, in the setup frame, on the middle of the table."""
     move, tip, axis = poses_of(moves)
     rotary, good = rotary_angles(axis, machine)

@@ -17,7 +17,7 @@ from trunnion.model.blank import Blank
 Part = tuple[NDArray, ...]
 """A tile's copy: heights of columns, or of rays how many intervals each has, and all their lower and upper ends, closely packed."""
 UP = 2
-"""The axis whose rays tell how far the cutter is engaged."""
+"""The axis along whose rays the engagement is measured."""
 RAYS = 500_000
 """Rays sent through a blank together: some tens of MB of tables."""
 TILES = 16

@@ -74,7 +74,7 @@ def spans_of(moves: Moves, rows: Ints, each: Ints, whole: Bools) -> Spans:
     bent = np.repeat(whole, each)
     row[:, 14:] = 0.0
     row[bent, 14:] = poses.arcs()[bent]
-    row[bent, 12:14] = poses.way_boxes(bent)
+    row[bent, 12:14] = poses.path_boxes(bent)
     size = _sizes(moves)[moves.tool[move]]
     row[:, 8:10] = _boxes(row, size[:, 0], size[:, 2])
     row[:, 10:12] = _boxes(row, size[:, 1], size[:, 3])
@@ -138,7 +138,7 @@ class _Poses:
             axis=1,
         )
 
-    def way_boxes(self, rows: Bools) -> Floats:
+    def path_boxes(self, rows: Bools) -> Floats:
         """Return boxes (k, 2, 3) of the tips' paths along some arcs."""
         away, over, sweep = self.away[rows], self.over[rows], self.sweep[rows, None]
         centre, reach, angle = self.start[rows] - away, np.hypot(away, over), np.arctan2(over, away)

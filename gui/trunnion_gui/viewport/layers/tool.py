@@ -25,7 +25,7 @@ Outline = list[tuple[float, float]]
 
 
 def draw_tool(view: Any, tool: Tool | None, theme: Theme) -> None:
-    """Show a tool at the origin with its axis up, or none; `place_tool` puts it where it is."""
+    """Show a tool at the origin with its axis up, or none; `move_tool_to` puts it where it is."""
     for part in PARTS:
         view.remove_actor(part, render=False)
     if tool is None:
@@ -47,7 +47,7 @@ def draw_tool(view: Any, tool: Tool | None, theme: Theme) -> None:
             )
 
 
-def place_tool(view: Any, tip: np.ndarray, axis: np.ndarray) -> None:
+def move_tool_to(view: Any, tip: np.ndarray, axis: np.ndarray) -> None:
     """Stand the tool with its tip at a point and its axis along a direction."""
     across = np.cross(axis, (0.0, 0.0, 1.0) if abs(axis[2]) < 0.9 else (1.0, 0.0, 0.0))
     across /= np.linalg.norm(across)
