@@ -259,6 +259,7 @@ def count_dual_mesh(
         np.zeros((nodes[1] + 2, nodes[0] + 2), np.bool_),
     )
     points, faces = 0, 0
+    # Layer by layer from below: only two layers of nodes are kept at a time.
     for k in range(nodes[2] + 1):
         _classify_layer(k, counts[2], lows[2], highs[2], cells, nodes, origin, pitch, step, upper)
         for j in range(nodes[1] + 1):
@@ -331,6 +332,7 @@ def dual_contour(
     points, triangles = np.empty((n_points, 3)), np.empty((2 * n_faces, 3), np.int64)
     work, cell = np.empty((8, 3)), np.empty(3, np.int64)
     v, n = 0, 0
+    # Layer by layer from below: only two layers of nodes are kept at a time.
     for k in range(nodes[2] + 1):
         _classify_layer(k, counts[2], lows[2], highs[2], cells, nodes, origin, pitch, step, upper)
         for j in range(deep - 1):
@@ -370,6 +372,7 @@ def dual_contour(
         # of points (`over`).
         for j in range(1, deep - 1):
             for i in range(1, wide - 1):
+                # The face's sense of rotation follows which of both nodes is in material.
                 here = lower[j, i]
                 if here != upper[j, i]:
                     n = _add_quad(

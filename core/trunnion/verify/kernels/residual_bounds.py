@@ -252,6 +252,7 @@ def cell_residual_bound(
     while top > 0 and least >= stop:
         top -= 1
         n = nodes[top]
+        # Branch and bound: nothing below this node is nearer than the least so far.
         if lower[top] >= least:
             continue
         left, right = tree.link[n, 0], tree.link[n, 1]
@@ -270,6 +271,7 @@ def cell_residual_bound(
             w = tree.way[tree.of[k]]
             mx, my, mz = point_in_tool_frame(w, x, y, z, 0.5 * (tree.low[k] + tree.high[k]))
             turn = w[TURN] * (tree.high[k] - tree.low[k])
+            # A turn moves a point by at most the turn times its distance from the tip, here from the middle.
             reach = tree.reach[k] + 0.5 * turn * math.sqrt(mx * mx + my * my + mz * mz)
             if (
                 flute_signed_distance(
@@ -332,6 +334,7 @@ def _nearest_body(flutes: Flutes, tool: int, w: Floats, place: Floats, share: fl
     """
     x, y, z = point_in_tool_frame(w, place[0], place[1], place[2], share)
     best, deepest = flutes.start[tool], -np.inf
+    # The depth is the greatest over the bodies: that of a union inside of it.
     for k in range(flutes.start[tool], flutes.start[tool + 1]):
         depth, _r, _h = depth_in_body(
             flutes.arc, flutes.first[k], flutes.last[k], math.sqrt(x * x + y * y), z

@@ -452,6 +452,7 @@ def _zmap_cut_arc_row(
         if h > bottom:
             d = _arc_distance_squared(left + i * pitch, y, move)
             if d < limit:
+                # g over the squared distance to the arc: quarter circle of a plain cutter, else its bodies.
                 if profile[PLAIN] != 0.0:
                     cut = max(z + _bull_height(d, inner, corner), floor)
                 else:
@@ -600,6 +601,7 @@ def _profile_on_slope(
         if a > b:
             continue
         p, q = int(pieces[k, PIECE_FIRST]), int(pieces[k, PIECE_LAST])
+        # Golden section (Kiefer, 1953) on slope w + g, convex in w on one body.
         for _ in range(48):
             c, d = a + 0.382 * (b - a), a + 0.618 * (b - a)
             hc = heights_at(
@@ -729,6 +731,7 @@ def _zmap_cut_slope(
         py = y - y0
         first = max(int(math.floor((low - left) / pitch)), 0)
         row = top[j, first : min(int(math.ceil((high - left) / pitch)), top.shape[1] - 1) + 1]
+        # Invariant: no column of the row ends below the envelope of the cutter along the line.
         for i in range(len(row)):
             h = row[i]
             if h <= lowest:
@@ -737,6 +740,7 @@ def _zmap_cut_slope(
             along, across = px * ux + py * uy, px * uy - py * ux
             if done_behind and along < 0.0:
                 continue
+            # cut = min over the line of z + g: closed form for plain cutters, golden section for others.
             if plain:
                 cut = max(_bull_on_slope(along, across, length, z0, slope, radius, corner), floor)
             else:
@@ -860,6 +864,7 @@ def zmap_cut_move(
             arcs,
             pieces,
         )
+    # A sloped line: the lower envelope in closed form.
     if line:
         return _zmap_cut_slope(
             top,
@@ -1017,6 +1022,7 @@ def _max_depth_line(
     ):
         y = origin[1] + (j + 0.5) * pitch
         for i in range(i0, i1 + 1):
+            # A column that ends below the tip is clear of the cutter.
             if top[j, i] <= z:
                 continue
             d = _segment_distance_squared(origin[0] + (i + 0.5) * pitch, y, x0, y0, dx, dy, square)
@@ -1065,6 +1071,7 @@ def _boundary_cells(
             d = _segment_distance_squared(origin[0] + (i + 0.5) * pitch, y, x0, y0, dx, dy, square)
             if d >= reach * reach:
                 continue
+            # The cell and its eight neighbours: does any column stand above the sweep?
             stands = False
             for b in range(max(j - 1, 0), min(j + 1, top.shape[0] - 1) + 1):
                 for a in range(max(i - 1, 0), min(i + 1, top.shape[1] - 1) + 1):
@@ -1122,6 +1129,7 @@ def _max_cone_depth(
             x0, y0 = min(line[0], line[2]) - radius, min(line[1], line[3]) - radius
             x1, y1 = max(line[0], line[2]) + radius, max(line[1], line[3]) + radius
         i0, i1 = first_cell(x0, origin[0], pitch), last_cell(x1, origin[0], pitch, top.shape[1])
+        # Only columns that reach above the cone's lower end can enter it.
         low = z + cones[k, 2]
         for j in range(
             first_cell(y0, origin[1], pitch), last_cell(y1, origin[1], pitch, top.shape[0]) + 1
