@@ -8,7 +8,7 @@ from dataclasses import replace
 import numpy as np
 
 from trunnion.findings import info, remark, warning
-from trunnion.geometry.cut import plane_cut, way_cut
+from trunnion.geometry.cut import curve_cut, plane_cut
 from trunnion.geometry.frame import WORLD, Frame
 from trunnion.geometry.mesh import Mesh
 from trunnion.model.blank import Box
@@ -85,7 +85,7 @@ S2 = Setup(
 )
 CUTS = (
     plane_cut(3, (1.0, 2.0, 3.5), (0.0, 0.6, 0.8)),
-    way_cut(41, ((0.0, 0.0, 0.1), (5.0, 0.0, 0.2), (5.0, 4.0, 0.1))),
+    curve_cut(41, ((0.0, 0.0, 0.1), (5.0, 0.0, 0.2), (5.0, 4.0, 0.1))),
 )
 PART_BYTES = b"ISO-10303-21;\nHEADER;\nENDSEC;\nEND-ISO-10303-21;\n"
 

@@ -76,7 +76,7 @@ class Registry(QObject):
         self._actions[id].trigger()
 
     def refresh(self) -> None:
-        """Ask every command whether it can be done now."""
+        """Update whether each command can be done now."""
         for id, command in self._commands.items():
             if command.enabled is not None:
                 self._actions[id].setEnabled(bool(command.enabled()))

@@ -92,13 +92,13 @@ class Arrangement:
             self._window.restoreState(state)
 
     def settle(self) -> None:
-        """Put the docks right once the window is there: Qt forgets some sizes that were asked for before."""
+        """Put the docks right once the window is there: Qt forgets some sizes that were set before."""
         self._hide_old_tabs()
         if preferences.arrangement("state") is None:
             self._size()
 
     def keep(self) -> None:
-        """Remember how things stand for the next start."""
+        """Remember the arrangement for the next start."""
         preferences.remember("geometry", self._window.saveGeometry())
         preferences.remember("state", self._window.saveState())
 

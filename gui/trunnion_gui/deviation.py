@@ -1,4 +1,4 @@
-"""The deviation map of the shown verdict, asked of the worker when somebody looks at it."""
+"""The deviation map of the shown verdict, requested from the worker when somebody looks at it."""
 
 from __future__ import annotations
 
@@ -49,7 +49,7 @@ class DeviationSource(QObject):
         self._verdict, self.shown, self._asked = verdict, None, 0
         self.arrived.emit(None)
         if verdict is not None:
-            self._asked = self._document.jobs.worker.ask("deviation", self._document.session)
+            self._asked = self._document.jobs.worker.send("deviation", self._document.session)
 
     def _receive(self, reply: Reply) -> None:
         if not reply.is_last or reply.number != self._asked:

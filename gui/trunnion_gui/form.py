@@ -1,4 +1,4 @@
-"""Any declared settings to widgets and back: the only place that knows which widget suits which type."""
+"""Any declared settings to widgets and back: the only module that knows which widget suits which type."""
 
 from __future__ import annotations
 
@@ -54,7 +54,7 @@ class ChoiceField(QComboBox):
 
 
 class Form(QWidget):
-    """The settings of a group, one line each. A label in bold stands for a value that is not the default; its menu takes it back."""
+    """The settings of a group, one line each. A label in bold marks a value that is not the default; its menu takes it back."""
 
     changed = Signal(str, object, str)
     """Full key, new value, and the gesture: one visit to a field is one gesture."""

@@ -48,7 +48,7 @@ def opened(
 
     app = QApplication.instance() or QApplication(["trunnion"])
     window = Window(factory or ENGINE)
-    window.unsaved.asks = False
+    window.unsaved.confirms = False
     try:
         window.use_theme(colours.theme(theme))
         window.resize(*size)

@@ -30,12 +30,12 @@ from trunnion_gui.widgets.colour_bar import ColourBar
 from trunnion_gui.widgets.legend import Legend
 from trunnion_gui.widgets.notice import Notice
 from trunnion_gui.widgets.welcome import Welcome
-from trunnion_gui.worker.drawing import DrawnMap, place_on
+from trunnion_gui.worker.drawing import DrawnMap, point_on
 
 _EDGE = 14
 _TIP_AWAY = 16
 _LONGEST_TRAIL = 20_000
-"""Chords of the way behind the tool that are shown: a surface's path has hundreds of thousands, and each frame sends them anew."""
+"""Chords of the path behind the tool that are shown: a surface's path has hundreds of thousands, and each frame sends them anew."""
 _MOST_IDS = 200
 """IDs that are written on the part at most."""
 _CLOSE_LOOK = 30.0
@@ -299,11 +299,11 @@ class ViewportPane(QWidget):
             self.scene.show_names(())
         elif chosen.faces:
             self.scene.show_names(
-                [(str(tag), place_on(mesh, (tag,))) for tag in chosen.faces[:_MOST_IDS]]
+                [(str(tag), point_on(mesh, (tag,))) for tag in chosen.faces[:_MOST_IDS]]
             )
         else:
             self.scene.show_names(
-                [(f.id, place_on(mesh, f.tags)) for f in (found or ()) if f.tags][:_MOST_IDS]
+                [(f.id, point_on(mesh, f.tags)) for f in (found or ()) if f.tags][:_MOST_IDS]
             )
 
     def _use_frame(self, session: Session) -> None:
@@ -430,7 +430,7 @@ class ViewportPane(QWidget):
         self._point(None, QPointF())
         self.refresh()
 
-    def look_at_place(self, place: WorstPoint) -> None:
+    def look_at_worst_point(self, place: WorstPoint) -> None:
         """Go to a worst place of the map."""
         self.scene.look_at(place.point, place.face, _CLOSE_LOOK)
         self.scene.show_label(fine_amount(place.deviation), place.point)

@@ -186,7 +186,7 @@ class Window(QMainWindow):
         for changed in (self.player.opened, self.player.changed, self.deviation.arrived):
             changed.connect(lambda *_: self.registry.refresh())
         self.deviation.arrived.connect(self.docks.deviation.show_map)
-        self.docks.deviation.chosen.connect(self.viewport.look_at_place)
+        self.docks.deviation.chosen.connect(self.viewport.look_at_worst_point)
         self.viewport.hinted.connect(self.status.hint)
         generate.motions_changed.connect(self.viewport.show_motions)
 
@@ -217,7 +217,7 @@ class Window(QMainWindow):
         self.setWindowTitle(f"{part.name}{star} – Trunnion" if part is not None else "Trunnion")
 
     def _tell(self, finding: Finding) -> None:
-        self.viewport.notice.tell(finding)
+        self.viewport.notice.show_finding(finding)
 
     def _opened(self, path: str) -> None:
         preferences.add_recent(path)

@@ -19,7 +19,7 @@ from trunnion.model.listing import listing
 from trunnion.post.header import Header
 from trunnion.post.settings import PostSettings
 from trunnion.shop import load_shop
-from trunnion.shop.kinematics import NO_PLACES, axes_of, poses_of, stands_of, words_of
+from trunnion.shop.kinematics import NO_PLACES, axes_of, poses_of, rotary_solutions, words_of
 
 HEADER = Header(name="B1", part="B1", part_digest="ab12", plan_digest="cd34")
 GAUGE = 120.0
@@ -113,7 +113,7 @@ def test_a_direction_leads_to_angles_that_hold_it(name, machine):
     if not machine.rotary:
         assert axes == pytest.approx(np.tile([0.0, 0.0, 1.0], (len(axes), 1)))
         return
-    stands, _, held = stands_of(machine, axes)
+    stands, _, held = rotary_solutions(machine, axes)
     assert held.all()
     for way in (0, 1):
         assert axes_of(place, stands[:, way]) == pytest.approx(axes, abs=1e-6)

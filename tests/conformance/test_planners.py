@@ -9,6 +9,7 @@ import pytest
 from subjects import PLANNERS, check_cancel, check_settings, is_one_line, own, until
 from trunnion import registry
 from trunnion.findings import Refused
+from trunnion.model.process import ProcessTree
 from trunnion.pipeline.scene import SessionContext, SetupScene
 from trunnion.pipeline.steps import step_named
 from trunnion.plan.contract import DriveNeeds, planner_for
@@ -18,7 +19,8 @@ from trunnion.plan.typical import typical_plan
 from trunnion.progress import QUIET
 from trunnion.recognize.contract import feature_kinds
 from trunnion.settings import GROUPS, declared, digest
-from trunnion.store.process import process_xml, read_process
+from trunnion.store.mapping import Members, from_xml, to_xml
+from trunnion.store.process import process_xml
 
 by_name = pytest.mark.parametrize("name", PLANNERS)
 BLANK = "blank"
@@ -198,12 +200,11 @@ def test_a_blank_that_no_machine_takes_is_said(name):
 
 
 @by_name
-def test_its_process_is_read_back_as_it_was_written(name, tmp_path):
-    session = routed(name)[1]
-    file = tmp_path / "process.xml"
-    file.write_bytes(process_xml(session.process, session.part))
-    again = read_process(file)
-    assert process_xml(again, session.part) == file.read_bytes()
+def test_its_process_is_read_back_from_a_project_and_fits_the_schema(name):
+    session, members = routed(name)[1], Members()
+    kept = to_xml(session.process, ProcessTree, "process", members)
+    again = from_xml(kept, ProcessTree, Members(members.files))
+    assert process_xml(again, session.part) == process_xml(session.process, session.part)
     assert [o.id for o in again.operations] == [o.id for o in session.process.operations]
     assert digest(*again.operations) == digest(*session.process.operations)
 

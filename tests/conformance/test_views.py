@@ -32,7 +32,7 @@ def shown(packages, qapp, tmp_path_factory):
     with pytest.MonkeyPatch.context() as patch:
         patch.setenv("TRUNNION_SETTINGS", str(tmp_path_factory.mktemp("settings")))
         window = Window("fake_engine:FakeEngine")
-        window.unsaved.asks = False
+        window.unsaved.confirms = False
         window.show()
         yield window
         window.close()

@@ -39,7 +39,7 @@ def make_window(qtbot):
 
     def make(factory="fake_engine:FakeEngine", wait=True):
         window = Window(factory)
-        window.unsaved.asks = False
+        window.unsaved.confirms = False
         window.resize(1440, 900)
         qtbot.addWidget(window)
         made.append(window)
@@ -65,7 +65,7 @@ def idle(qtbot):
 
     def wait(window, timeout=30000):
         qtbot.waitUntil(
-            lambda: not window.document.is_busy and not window.document.jobs.is_asking,
+            lambda: not window.document.is_busy and not window.document.jobs.is_querying,
             timeout=timeout,
         )
 

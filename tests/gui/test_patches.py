@@ -57,7 +57,7 @@ def segmented(qapp, tmp_path_factory):
     with pytest.MonkeyPatch.context() as patch:
         patch.setenv("TRUNNION_SETTINGS", str(tmp_path_factory.mktemp("settings")))
         window = Window()
-        window.unsaved.asks = False
+        window.unsaved.confirms = False
         window.resize(1440, 900)
         window.show()
         window.document.files.open(written(domed_plate(), name="domes"))
@@ -82,7 +82,7 @@ def shown(segmented, qtbot):
     while window.document.session is not before and window.document.history.undo_label:
         window.registry.run("edit.undo")
     qtbot.waitUntil(
-        lambda: not window.document.is_busy and not window.document.jobs.is_asking, timeout=30000
+        lambda: not window.document.is_busy and not window.document.jobs.is_querying, timeout=30000
     )
 
 
@@ -115,7 +115,7 @@ def group_at(window, place):
 def done(window, qtbot) -> None:
     """Wait until a job that a click began is done."""
     qtbot.waitUntil(
-        lambda: not window.document.is_busy and not window.document.jobs.is_asking, timeout=60000
+        lambda: not window.document.is_busy and not window.document.jobs.is_querying, timeout=60000
     )
 
 

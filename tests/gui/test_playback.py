@@ -32,7 +32,7 @@ def programmed(qapp, tmp_path_factory):
     with pytest.MonkeyPatch.context() as patch:
         patch.setenv("TRUNNION_SETTINGS", str(tmp_path_factory.mktemp("settings")))
         window = Window("fake_engine:FakeEngine")
-        window.unsaved.asks = False
+        window.unsaved.confirms = False
         window.resize(1440, 900)
         window.show()
         part = tmp_path_factory.mktemp("parts") / "tray.step"

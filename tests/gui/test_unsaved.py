@@ -66,8 +66,8 @@ WAYS = (by_dialog, by_drop, by_recent, by_welcome)
 def answering(window, monkeypatch, answer) -> list[int]:
     """Let a person answer the question; return a list that grows with every time it is asked."""
     asked = []
-    window.unsaved.asks = True
-    monkeypatch.setattr(window.unsaved, "ask", lambda: asked.append(1) or answer)
+    window.unsaved.confirms = True
+    monkeypatch.setattr(window.unsaved, "confirm", lambda: asked.append(1) or answer)
     return asked
 
 
@@ -157,7 +157,7 @@ def test_the_dialog_offers_to_save_to_discard_and_to_go_back(programmed, qtbot):
         QTest.keyClick(box, Qt.Key.Key_Escape)
 
     QTimer.singleShot(200, look)
-    assert programmed.unsaved.ask() == CANCEL
+    assert programmed.unsaved.confirm() == CANCEL
     assert seen == ["Save", "Discard", "Cancel", "Save the changes to tray.step?"]
 
 
@@ -174,7 +174,7 @@ def test_closing_asks_the_same(programmed, tmp_path, monkeypatch, qtbot, answer,
         and programmed.isVisible() != closes
         and project.exists() == (answer == SAVE)
     )
-    programmed.unsaved.asks = False
+    programmed.unsaved.confirms = False
 
 
 def test_closing_while_a_run_goes_on_saves_what_was_finished(

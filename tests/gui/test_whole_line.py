@@ -60,7 +60,7 @@ def programmed(tmp_path_factory, qapp):
     with pytest.MonkeyPatch.context() as patch, as_file(trunnion_resources.sample("B1")) as part:
         patch.setenv("TRUNNION_SETTINGS", str(tmp_path_factory.mktemp("settings")))
         window = Window()
-        window.unsaved.asks = False
+        window.unsaved.confirms = False
         window.resize(1440, 900)
         window.show()
         person = Person(window)

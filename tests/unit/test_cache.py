@@ -13,7 +13,7 @@ def test_an_answer_is_worked_out_once() -> None:
     memo: Cache[str] = Cache(2)
 
     def ask(what: str) -> str:
-        return memo.answer(what, lambda: worked.append(what) or what.upper())  # type: ignore[func-returns-value]
+        return memo.get(what, lambda: worked.append(what) or what.upper())  # type: ignore[func-returns-value]
 
     assert [ask("a"), ask("a"), ask("b")] == ["A", "A", "B"]
     assert worked == ["a", "b"]
@@ -23,7 +23,7 @@ def test_the_longest_unused_answer_is_forgotten_first() -> None:
     worked: list[str] = []
     memo: Cache[str] = Cache(2)
     for what in "abacab":
-        memo.answer(what, lambda asked=what: worked.append(asked) or asked)  # type: ignore[misc]
+        memo.get(what, lambda asked=what: worked.append(asked) or asked)  # type: ignore[misc]
     assert worked == ["a", "b", "c", "b"]
     assert len(memo) == 2
 

@@ -9,6 +9,7 @@ from pathlib import Path
 from types import SimpleNamespace
 
 import pytest
+from lxml import etree
 
 import programs
 import round_parts
@@ -21,7 +22,7 @@ from trunnion.pipeline import Engine, family
 from trunnion.progress import QUIET
 from trunnion.recognize.contract import Suitability
 from trunnion.settings import settings
-from trunnion.store.features import features_xml, read_features
+from trunnion.store.features import features_xml
 from trunnion.store.project import load_project, save_project
 
 
@@ -226,9 +227,10 @@ def test_features_xml_and_the_project_keep_what_a_part_was_taken_for(tmp_path) -
     from dataclasses import replace
 
     found = replace(programs.recognition(), taken_for=DOUBTED, doubt="no family: choose one")
-    (tmp_path / "a.xml").write_bytes(features_xml(found, programs.part_info()))
-    again = read_features(tmp_path / "a.xml")
-    assert (again.taken_for, again.doubt) == (DOUBTED, "no family: choose one")
+    root = etree.fromstring(features_xml(found, programs.part_info()))
+    taken = root.find("taken-for")
+    assert dict(taken.attrib) == {"kind": "casing", "noun": "a casing", "score": "0.875"}
+    assert (taken.text, root.findtext("doubt")) == (DOUBTED.reason, "no family: choose one")
     save_project(
         replace(programs.session(), recognition=found),
         tmp_path / "a.trunnion",

@@ -11,7 +11,7 @@ from hypothesis import strategies as st
 
 from shaped_parts import bowl, cylinder, face_towards, plate, sphere
 from trunnion.findings import BadInput
-from trunnion.geometry.cut import plane_cut, way_cut
+from trunnion.geometry.cut import curve_cut, plane_cut
 from trunnion.part.cut import divided
 from trunnion.part.part import Part
 from trunnion.part.topology.identity import faces_of
@@ -95,16 +95,16 @@ def test_a_plane_through_a_hole_cuts_on_both_sides_of_it():
 def test_a_drawn_way_is_led_on_to_the_edges_and_its_left_keeps_the_tag():
     part = plate(30.0, 20.0, 5.0)
     top = face_towards(part, 0, 0, 1)
-    cut = divided(part, way_cut(top, ((5.0, 8.0, 5.0), (25.0, 8.0, 5.0))))
+    cut = divided(part, curve_cut(top, ((5.0, 8.0, 5.0), (25.0, 8.0, 5.0))))
     assert areas(cut, top, 7) == pytest.approx([360.0, 240.0])
-    back = divided(part, way_cut(top, ((25.0, 8.0, 5.0), (5.0, 8.0, 5.0))))
+    back = divided(part, curve_cut(top, ((25.0, 8.0, 5.0), (5.0, 8.0, 5.0))))
     assert areas(back, top, 7) == pytest.approx([240.0, 360.0])
 
 
 def test_left_is_as_seen_from_outside_below_too():
     part = plate(30.0, 20.0, 5.0)
     bottom = face_towards(part, 0, 0, -1)
-    cut = divided(part, way_cut(bottom, ((5.0, 8.0, 0.0), (25.0, 8.0, 0.0))))
+    cut = divided(part, curve_cut(bottom, ((5.0, 8.0, 0.0), (25.0, 8.0, 0.0))))
     assert areas(cut, bottom, 7) == pytest.approx([240.0, 360.0])
 
 
@@ -115,7 +115,7 @@ def test_a_closed_way_cuts_an_area_out():
         (30.0 + 10.0 * math.cos(a), 30.0 + 10.0 * math.sin(a), 5.0)
         for a in np.linspace(0.0, 2.0 * math.pi, 33)[:-1]
     ]
-    cut = divided(part, way_cut(top, (*circle, circle[0])))
+    cut = divided(part, curve_cut(top, (*circle, circle[0])))
     assert areas(cut, top, 7) == pytest.approx(
         [100.0 * math.pi, 3600.0 - 100.0 * math.pi], abs=0.01
     )
@@ -127,7 +127,7 @@ def test_a_way_round_a_cylinder_closes_over_its_seam(start):
         5.0,
         *((a, 8.0 + math.sin(2.0 * a)) for a in np.linspace(start, start + 2.0 * math.pi, 25)[:-1]),
     )
-    cut = divided(cylinder(5.0, 20.0), way_cut(1, (*ring, ring[0])))
+    cut = divided(cylinder(5.0, 20.0), curve_cut(1, (*ring, ring[0])))
     assert areas(cut, 1, 4) == pytest.approx([120.0 * math.pi, 80.0 * math.pi], abs=1e-3)
 
 
@@ -137,7 +137,7 @@ def test_places_of_a_click_need_not_lie_on_the_face():
         (10.05 * math.cos(a) * 0.8, 10.05 * math.sin(a) * 0.8, 6.03)
         for a in np.linspace(0.0, 2.0 * math.pi, 25)[:-1]
     )
-    cut = divided(part, way_cut(1, (*ring, ring[0])))
+    cut = divided(part, curve_cut(1, (*ring, ring[0])))
     assert areas(cut, 1, 2) == pytest.approx([80.0 * math.pi, 320.0 * math.pi], abs=0.01)
 
 
@@ -173,12 +173,12 @@ def test_names_and_colours_of_a_face_are_those_of_its_pieces():
     [
         (plane_cut(9, (0.0, 0.0, 0.0), (1.0, 0.0, 0.0)), "no such face; its faces are 1 to 3"),
         (plane_cut(1, (0.0, 0.0, 99.0), (0.0, 0.0, 1.0)), "doesn't divide it"),
-        (way_cut(1, ((0.0, 0.0, 5.0), (0.0, 0.1, 5.0))), "away from the face"),
+        (curve_cut(1, ((0.0, 0.0, 5.0), (0.0, 0.1, 5.0))), "away from the face"),
         (
-            way_cut(1, ((8.0, 0.0, 5.0), (0.0, 5.0, 5.0))),
+            curve_cut(1, ((8.0, 0.0, 5.0), (0.0, 5.0, 5.0))),
             "3 mm away from the face; .* nearest place is 5.000 0.000 5.000",
         ),
-        (way_cut(1, ((5.0, 0.0, 5.0), (5.0, 0.0, 5.0))), "fall together"),
+        (curve_cut(1, ((5.0, 0.0, 5.0), (5.0, 0.0, 5.0))), "fall together"),
     ],
 )
 def test_a_cut_that_can_not_be_made_is_refused_in_one_line(cut, words):
@@ -193,7 +193,7 @@ def test_a_plane_without_a_normal_and_a_way_of_one_place_are_refused():
     with pytest.raises(BadInput, match="needs numbers; got nan 0 0 1 0 0"):
         plane_cut(1, (float("nan"), 0.0, 0.0), (1.0, 0.0, 0.0))
     with pytest.raises(BadInput, match="two places"):
-        way_cut(1, ((0.0, 0.0, 0.0),))
+        curve_cut(1, ((0.0, 0.0, 0.0),))
 
 
 @settings(deadline=None, max_examples=12)

@@ -6,6 +6,7 @@ import math
 from dataclasses import fields, make_dataclass, replace
 from typing import Any
 
+import numpy as np
 import pytest
 from pytest import approx
 
@@ -26,7 +27,7 @@ from trunnion.plan.cutting.power import cutting_power
 from trunnion.settings import choose, digest
 from trunnion.shop import load_shop
 from trunnion.toolpath.contract import strategy
-from trunnion.toolpath.motion.engagement import corner_width, segment
+from trunnion.toolpath.motion.engagement import corner_width, segment, step_width
 
 SHOP = load_shop()
 ALUMINIUM = SHOP.material("EN AW-7075")
@@ -166,6 +167,16 @@ def test_every_strategy_says_what_it_meets(name):
     made = registry.get("strategies", name)
     met = made.meets(D10, one(cutter=D10).data, choose(made.settings, {}), one())
     assert 0.0 < met.width <= 10.0 and met.depth > 0.0 and 0.0 < met.share <= 1.0
+
+
+def test_a_roughing_cutters_corner_leaves_its_square_less_its_quarter_circle_on_a_wall():
+    bull = replace(D20, name="bull", form="bull", corner_radius=2.0)
+    before = one(cutter=bull, depth=5.0)
+    assert step_width(before) == approx((4.0 - math.pi) / 5.0)
+    # A layer of half the radius: the mean of r - sqrt(r^2 - (r - z)^2) over it.
+    mean = np.mean([2.0 - math.sqrt(4.0 - (2.0 - z) ** 2) for z in np.linspace(0.0, 1.0, 100_001)])
+    assert step_width(one(cutter=bull, depth=1.0)) == approx(mean, abs=1e-4)
+    assert step_width(one(cutter=D20)) == step_width(None) == 0.0
 
 
 def test_into_a_square_corner_half_a_segment_comes_to_the_layer():

@@ -21,7 +21,7 @@ from leaning import (
 from trunnion import tolerance
 from trunnion.model.program import Program
 from trunnion.model.toolpath import Motion, Toolpath
-from trunnion.pipeline.work_position import place_of
+from trunnion.pipeline.work_position import work_position_of
 from trunnion.post.dialects.linuxcnc import LinuxCncDialect
 from trunnion.post.header import Header
 from trunnion.post.readers.linuxcnc import read_linuxcnc
@@ -195,7 +195,7 @@ def test_the_verdict_is_the_same_for_any_number_of_threads():
 
 def as_posted(*sections):
     """Return sections written for LinuxCNC, each led from where the one before has left the tool, and read back."""
-    place = place_of(BLANK, SETUP, FIVE_AXES)
+    place = work_position_of(BLANK, SETUP, FIVE_AXES)
     changes = [
         not n or s.tool.number != sections[n - 1].tool.number for n, s in enumerate(sections)
     ]

@@ -37,7 +37,7 @@ from trunnion.post.dialects.linuxcnc import LinuxCncDialect
 from trunnion.post.linearize import PathTolerance, even_turn, joint_path
 from trunnion.post.readers.linuxcnc import read_linuxcnc
 from trunnion.post.settings import PostSettings
-from trunnion.shop.kinematics import SLACK, poses_of, stands_of, words_of
+from trunnion.shop.kinematics import SLACK, poses_of, rotary_solutions, words_of
 from trunnion.shop.rotary_angles import followed
 from trunnion.verify.machine.kinematics import linear_positions
 
@@ -54,7 +54,7 @@ def axes(n: int, seed: int = 1) -> np.ndarray:
 def test_both_ways_to_stand_bring_the_tool_where_the_words_mean(machine):
     place, axis = standing(machine), np.vstack([UP, axes(300)])
     tip = np.random.default_rng(2).normal(size=(301, 3)) * 50.0
-    angle, _, held = stands_of(machine, axis)
+    angle, _, held = rotary_solutions(machine, axis)
     assert held.all() or machine.name == "nutating table"
     for way in range(2):
         words = words_of(place, tip, angle[:, way], 140.0)
@@ -68,7 +68,7 @@ def test_the_words_differ_from_the_proofs_own_positions_by_the_work_offset_and_t
     machine,
 ):
     place, tip = standing(machine), np.random.default_rng(3).normal(size=(200, 3)) * 50.0
-    angle = stands_of(machine, axes(200))[0][:, 0]
+    angle = rotary_solutions(machine, axes(200))[0][:, 0]
     own = linear_positions(tip - place.foot, np.full(200, 140.0), angle, machine)
     assert own - words_of(place, tip, angle, 140.0) == approx(
         np.tile([0.0, 0.0, 140.0] - place.foot, (200, 1)), abs=1e-9

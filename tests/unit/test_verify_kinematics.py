@@ -18,10 +18,10 @@ from trunnion.verify.kernels.rotary import choose_angles_greedy
 from trunnion.verify.kernels.timing import block_times
 from trunnion.verify.machine.kinematics import (
     UP,
+    axis_positions,
     linear_positions,
     poses_of,
     rotary_angles,
-    stands_of,
     turned,
     turned_axes,
 )
@@ -83,7 +83,9 @@ def lean(degrees, around=0.0):
 
 def said(section, machine):
     moves = moves_of((section,))
-    return limit_findings("S1", (section,), moves, stands_of(moves, machine, np.zeros(3)), machine)
+    return limit_findings(
+        "S1", (section,), moves, axis_positions(moves, machine, np.zeros(3)), machine
+    )
 
 
 def test_a_fork_leans_the_tool_by_its_own_angles():
@@ -171,14 +173,14 @@ def test_turning_about_the_tip_takes_what_the_rotary_axis_needs():
     # 60 degrees at 150 degrees/s and 600 degrees/s2 about the A axis, on which the tip stands: 60/150 + 150/600 s.
     section = leaning(((0.0, 0.0, 50.0), lean(0.0)), ((0.0, 0.0, 50.0), lean(60.0, 90.0)))
     moves = moves_of((section,))
-    times = times_of(moves, stands_of(moves, TABLE, np.zeros(3)), TABLE)
+    times = times_of(moves, axis_positions(moves, TABLE, np.zeros(3)), TABLE)
     assert times.seconds.sum() == approx(0.65, abs=1e-6)
 
 
 def test_a_long_cut_takes_its_length_over_the_feed_and_the_ramps():
     # 200 mm at 6000 mm/min = 100 mm/s with 3000 mm/s2: 2 s and one ramp's 1/30 s.
     moves = moves_of((leaning(((0.0, 0.0, 0.0), UP), ((200.0, 0.0, 0.0), UP), feed=6000.0),))
-    times = times_of(moves, stands_of(moves, MACHINE, np.zeros(3)), MACHINE)
+    times = times_of(moves, axis_positions(moves, MACHINE, np.zeros(3)), MACHINE)
     assert times.seconds.sum() == approx(2.0 + 1.0 / 30.0)
     assert times.speed.max() == approx(100.0)
 
@@ -194,9 +196,9 @@ def test_an_arc_is_no_faster_than_its_radius_allows():
         mark=[0, 0],
     )
     moves = moves_of((replace(leaning(((0, 0, 0), UP)), path=path),))
-    assert times_of(moves, stands_of(moves, MACHINE, np.zeros(3)), MACHINE).speed.max() == approx(
-        math.sqrt(3000.0)
-    )
+    assert times_of(
+        moves, axis_positions(moves, MACHINE, np.zeros(3)), MACHINE
+    ).speed.max() == approx(math.sqrt(3000.0))
 
 
 def test_three_axes_refuse_a_leaning_tool_in_words():

@@ -12,7 +12,7 @@ from leaning_tools import contact_of
 from trunnion.findings import Cancelled
 from trunnion.model.tool import Holder, Tool
 from trunnion.progress import Progress
-from trunnion.verify.contact.query import STICKOUT_STEP, room
+from trunnion.verify.contact.query import STICKOUT_STEP, pose_clearance
 
 UP = np.array([[0.0, 0.0, 1.0]])
 ALLOWED = 0.001
@@ -50,7 +50,7 @@ def lean_to_an_edge(gap, height, radius=5.0):
 
 
 def test_beside_a_wall_the_flank_meets_its_upper_edge():
-    found = room(
+    found = pose_clearance(
         contact_of(WALL),
         tool(holder=5.0),
         np.array([[0.0, 0.0, 10.0]]),
@@ -66,7 +66,7 @@ def test_beside_a_wall_the_flank_meets_its_upper_edge():
 
 def test_in_a_slot_both_sides_stop_it_alike():
     other = ((-60.0, -200.0, 0.0), (-8.0, 200.0, 30.0))
-    found = room(
+    found = pose_clearance(
         contact_of(WALL, other),
         tool(holder=5.0),
         np.array([[0.0, 0.0, 10.0]]),
@@ -79,7 +79,7 @@ def test_in_a_slot_both_sides_stop_it_alike():
 
 def test_over_a_floor_the_rim_comes_down_as_it_leans_and_the_tip_as_it_plunges():
     floor = contact_of(((-200.0, -200.0, -10.0), (200.0, 200.0, 0.0)))
-    found = room(
+    found = pose_clearance(
         floor,
         tool(),
         np.array([[0.0, 0.0, 2.0], [0.0, 0.0, 1.0]]),
@@ -98,7 +98,7 @@ def test_leaning_about_a_ball_end_never_enters_its_floor():
     ball = Tool(
         **{**{n: getattr(tool(), n) for n in Tool.__slots__}, "form": "ball", "corner_radius": 5.0}
     )
-    found = room(
+    found = pose_clearance(
         floor,
         ball,
         np.zeros((1, 3)),
@@ -118,7 +118,7 @@ def test_leaning_about_a_ball_end_never_enters_its_floor():
 def test_a_thin_rib_on_the_way_is_not_jumped_over():
     # A rib 0.2 mm thick, thinner than any step: the flank meets its edge, though a pose far beyond it would be clear.
     rib = ((20.0, -0.5, 0.0), (20.2, 0.5, 18.0))
-    found = room(
+    found = pose_clearance(
         contact_of(rib),
         tool(holder=5.0),
         np.array([[0.0, 0.0, 10.0]]),
@@ -130,7 +130,7 @@ def test_a_thin_rib_on_the_way_is_not_jumped_over():
 
 
 def test_a_holder_beside_a_wall_may_come_down_to_its_top():
-    found = room(
+    found = pose_clearance(
         contact_of(WALL), tool(), np.array([[0.0, 0.0, 0.5]]), UP, directions=1, allowed=ALLOWED
     )
     # The wall stands 29.5 above the tip, and the holder's radius of 20 reaches over it.
@@ -140,19 +140,21 @@ def test_a_holder_beside_a_wall_may_come_down_to_its_top():
 
 def test_a_pose_whose_holder_touches_is_told_how_long_it_must_be():
     deep = ((8.0, -200.0, 0.0), (60.0, 200.0, 75.0))
-    found = room(
+    found = pose_clearance(
         contact_of(deep), tool(), np.array([[0.0, 0.0, 0.5]]), UP, directions=2, allowed=ALLOWED
     )
     assert not found.clear[0] and found.lean.max() == 0.0 and found.plunge[0] == 0.0
     assert found.stickout == approx([74.5], abs=1.01 * STICKOUT_STEP)
     assert np.isnan(
-        room(contact_of(deep), tool(), np.array([[5.0, 0.0, 0.5]]), UP, directions=2).stickout[0]
+        pose_clearance(
+            contact_of(deep), tool(), np.array([[5.0, 0.0, 0.5]]), UP, directions=2
+        ).stickout[0]
     )
 
 
 def test_asking_stops_when_told_to():
     with pytest.raises(Cancelled):
-        room(
+        pose_clearance(
             contact_of(WALL),
             tool(),
             np.zeros((1, 3)),

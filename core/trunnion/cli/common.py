@@ -192,7 +192,7 @@ def show_json(data: Any) -> None:
 
 
 def show_findings(chosen: argparse.Namespace, findings: Iterable[Finding]) -> None:
-    """Print findings on standard error, one a line, unless asked to be quiet or to print JSON; what only informs is counted."""
+    """Print findings on standard error, one a line, unless told to be quiet by --quiet or to print JSON; what only informs is counted."""
     if chosen.quiet or chosen.json:
         return
     notes = 0

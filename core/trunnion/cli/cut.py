@@ -44,8 +44,8 @@ def add(commands: Any) -> None:
 
 
 def run(chosen: argparse.Namespace) -> int:
-    """Make the cut, write the project and say which faces there are now."""
-    from trunnion.geometry.cut import plane_cut, way_cut
+    """Make the cut, write the project and report which faces there are now."""
+    from trunnion.geometry.cut import curve_cut, plane_cut
     from trunnion.pipeline.engine import PROJECT_SUFFIX
     from trunnion.pipeline.patches import with_cut
 
@@ -61,7 +61,7 @@ def run(chosen: argparse.Namespace) -> int:
     cut = (
         plane_cut(chosen.face, tuple(chosen.plane[:3]), tuple(chosen.plane[3:]))
         if chosen.plane
-        else way_cut(chosen.face, tuple(tuple(p) for p in chosen.place))
+        else curve_cut(chosen.face, tuple(tuple(p) for p in chosen.place))
     )
     after = with_cut(engine, session, cut)
     assert after.part is not None

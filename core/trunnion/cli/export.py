@@ -45,7 +45,7 @@ def add(commands: Any) -> None:
 
 
 def run(chosen: argparse.Namespace) -> int:
-    """Write the faces and say how many they are."""
+    """Write the faces and report how many they are."""
     from trunnion.pipeline.patches import export, tags_of
 
     if not chosen.out.parent.is_dir():

@@ -6,26 +6,26 @@ from collections import OrderedDict
 from collections.abc import Callable, Hashable
 from typing import Generic, TypeVar
 
-Answer = TypeVar("Answer")
+Result = TypeVar("Result")
 
 
-class Cache(Generic[Answer]):
+class Cache(Generic[Result]):
     """The last `most` results by key. Results must be immutable: every caller gets the same object."""
 
     def __init__(self, most: int) -> None:
         self._most = most
-        self._answers: OrderedDict[Hashable, Answer] = OrderedDict()
+        self._results: OrderedDict[Hashable, Result] = OrderedDict()
 
     def __len__(self) -> int:
-        return len(self._answers)
+        return len(self._results)
 
-    def answer(self, asked: Hashable, work_out: Callable[[], Answer]) -> Answer:
-        """Return the answer to what is asked, worked out when it is not known."""
-        if asked in self._answers:
-            self._answers.move_to_end(asked)
-            return self._answers[asked]
-        found = work_out()
-        self._answers[asked] = found
-        if len(self._answers) > self._most:
-            self._answers.popitem(last=False)
+    def get(self, key: Hashable, compute: Callable[[], Result]) -> Result:
+        """Return the result of a key, computed by `compute` when it is not kept."""
+        if key in self._results:
+            self._results.move_to_end(key)
+            return self._results[key]
+        found = compute()
+        self._results[key] = found
+        if len(self._results) > self._most:
+            self._results.popitem(last=False)
         return found

@@ -13,7 +13,7 @@ from trunnion.geometry.arrays import Floats, floats
 class FaceCurvature:
     """How one face bends, in 1/mm, above 0 where it bulges out of the material and below where it is hollow.
 
-    spread (k, 2) the lesser and the greater principal curvature at places spread over the trimmed face; least and most the extremes of
+    spread (k, 2) the lesser and the greater principal curvature at positions spread over the trimmed face; least and most the extremes of
     all of it.
     """
 

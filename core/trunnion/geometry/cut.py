@@ -1,4 +1,4 @@
-"""A cut that divides one face of a part in two, as a person asked for it: plain data, done again when the part is opened."""
+"""A cut that divides one face of a part in two, as a person made it: plain data, done again when the part is opened."""
 
 from __future__ import annotations
 
@@ -13,9 +13,9 @@ Place = tuple[float, float, float]
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Cut:
     """Where a face, named by tag, is cut: by the plane through the one place of `places` that has a `normal`, or, without a normal, by the
-    way through two or more places that are brought onto the face. mm, the part's coordinates as read.
+    path through two or more places that are brought onto the face. mm, the part's coordinates as read.
 
-    What lies behind the plane (left of the way, seen from outside) keeps the tag, what lies before it (right) takes the next free one.
+    What lies behind the plane (left of the path, seen from outside) keeps the tag, what lies before it (right) takes the next free one.
     """
 
     face: int
@@ -39,8 +39,8 @@ def plane_cut(face: int, place: Place, normal: Place) -> Cut:
     return Cut(face=face, places=(place,), normal=normal)
 
 
-def way_cut(face: int, places: tuple[Place, ...]) -> Cut:
-    """Return the cut of a face by the way through some places near it; raise `BadInput` for fewer than two."""
+def curve_cut(face: int, places: tuple[Place, ...]) -> Cut:
+    """Return the cut of a face by the path through some places near it; raise `BadInput` for fewer than two."""
     if len(places) < 2:
         raise BadInput("a drawn cut needs two places at least")
     return Cut(face=face, places=places)

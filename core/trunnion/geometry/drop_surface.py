@@ -145,7 +145,7 @@ class DropSurface:
         return np.cumsum([0, *(len(f) for f in found)]), np.vstack([np.zeros((0, 2)), *found])
 
     def _cells(self) -> Lattice:
-        """Return the lattice over the facets' boxes; made when it is first asked for."""
+        """Return the lattice over the facets' boxes; made on first use."""
         if not self._lattice:
             low, high = (
                 self.facets[:, kernel.LOW_X : kernel.LOW_Y + 1],

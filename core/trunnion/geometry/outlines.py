@@ -12,7 +12,7 @@ from trunnion.geometry.kernels.outline import points_in_polygon_loop
 
 @dataclass(frozen=True, slots=True, eq=False, kw_only=True)
 class Outlines:
-    """Pieces (s, 4) from x, y to x, y of outlines that close, listed by strips of y; `near`: how near is too near to tell."""
+    """Pieces (s, 4) from x, y to x, y of outlines that close, listed by strips of y; `near`: how near a point is too near to classify."""
 
     pieces: Floats
     near: float
@@ -23,7 +23,7 @@ class Outlines:
 
     @staticmethod
     def of(pieces: Floats, near: float) -> Outlines:
-        """Return outlines ready to be asked; at least one piece."""
+        """Return outlines ready for queries; at least one piece."""
         bottom, top = pieces[:, [1, 3]].min(axis=1) - near, pieces[:, [1, 3]].max(axis=1) + near
         low = float(bottom.min())
         count = max(1, min(4 * len(pieces), 4096))

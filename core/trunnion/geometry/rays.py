@@ -25,7 +25,7 @@ class Intervals:
     high: Floats
 
     def clipped(self, lowest: float, highest: float) -> Intervals:
-        """Return what lies between two places along the rays."""
+        """Return what lies between two positions along the rays."""
         low, high = np.maximum(self.low, lowest), np.minimum(self.high, highest)
         kept = high > low
         kept &= np.arange(self.low.shape[1]) < self.count[:, None]
@@ -143,7 +143,7 @@ def _crossings(points: Floats, triangles: Ints, plan: Floats) -> tuple[Ints, Flo
 
 
 def _over(plan: Floats, triangles: Ints, at: Floats) -> tuple[Bools, Ints]:
-    """Return which triangles (m, 3) are over places (m, 2), and whether they turn anticlockwise (+1) or clockwise (-1) there."""
+    """Return which triangles (m, 3) are over positions (m, 2), and whether they turn anticlockwise (+1) or clockwise (-1) there."""
     sides = []
     for k in range(3):
         a, b = triangles[:, k], triangles[:, (k + 1) % 3]
@@ -160,7 +160,7 @@ def _over(plan: Floats, triangles: Ints, at: Floats) -> tuple[Bools, Ints]:
 
 
 def _height(corner: Floats, at: Floats) -> Floats:
-    """Return the heights (m,) of the planes of triangles (m, 3, 3) over places (m, 2)."""
+    """Return the heights (m,) of the planes of triangles (m, 3, 3) over positions (m, 2)."""
     normal = np.cross(corner[:, 1] - corner[:, 0], corner[:, 2] - corner[:, 0])
     away = at - corner[:, 0, :2]
     slope = (normal[:, :2] * away).sum(axis=1)
@@ -171,7 +171,7 @@ def _height(corner: Floats, at: Floats) -> Floats:
 
 
 class _Bins:
-    """Places (n, 2) sorted into the squares of a grid."""
+    """Positions (n, 2) sorted into the squares of a grid."""
 
     def __init__(self, plan: Floats) -> None:
         self.low = plan.min(axis=0)
@@ -189,7 +189,7 @@ class _Bins:
         return np.clip(cell, 0, self.shape - 1)
 
     def pairs(self, corners: Floats) -> list[tuple[Ints, Ints]]:
-        """Return triangles and places near one another, in portions; corners (t, 3, 2)."""
+        """Return triangles and positions near one another, in portions; corners (t, 3, 2)."""
         low, high = corners.min(axis=1), corners.max(axis=1)
         first, last = self._cell(low), self._cell(high)
         n_cells = (last - first + 1).prod(axis=1)

@@ -45,7 +45,7 @@ REACH = 1.0
 
 
 def divided(part: Part, cut: Cut) -> Part:
-    """Return the part with one face cut: what lies behind the plane or left of the way keeps its tag, the rest takes the next free ones.
+    """Return the part with one face cut: what lies behind the plane or left of the path keeps its tag, the rest takes the next free ones.
 
     Several pieces on one side are faces of their own, the largest first. Raises `BadInput` when the part has no such face, or when the cut
     doesn't divide it.

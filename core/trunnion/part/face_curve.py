@@ -28,11 +28,11 @@ _BEYOND = 0.02
 _STEP = 0.01
 """Share of the face's parameters by which an end is led on until it is outside."""
 _MORE = 3
-"""Places before and after a way round the surface that make it run on smoothly where it closes."""
+"""Points before and after a curve round the surface that make it run on smoothly where it closes."""
 _BESIDE = 1e-4
-"""Share of the face's parameters beside the way at which pieces are asked for."""
+"""Share of the face's parameters beside the curve at which pieces are looked up."""
 _ASKED = 64
-"""Places along the way beside which pieces are asked for."""
+"""Points along the curve beside which pieces are looked up."""
 
 
 class DrawnCurve:
@@ -69,7 +69,7 @@ class DrawnCurve:
             )
 
     def edge(self) -> Shape:
-        """Return the way as an edge on the face's surface."""
+        """Return the path as an edge on the face's surface."""
         made = BRepBuilderAPI_MakeEdge(self._curve, self._surface)
         if not made.IsDone():
             raise BadInput("the drawn cut can't be laid on the face; draw it elsewhere")
@@ -78,7 +78,7 @@ class DrawnCurve:
         return edge
 
     def is_left(self, piece: Shape) -> bool:
-        """Say whether a piece of the face lies left of the way, seen from outside."""
+        """Return whether a piece of the face lies left of the path, seen from outside."""
         inside = BRepTopAdaptor_FClass2d(piece, tolerance.COINCIDENT)
         votes = 0
         for share in (np.arange(_ASKED) + 0.5) / _ASKED:
@@ -125,7 +125,8 @@ class DrawnCurve:
         return (s.UPeriod() if s.IsUPeriodic() else 0.0), (s.VPeriod() if s.IsVPeriodic() else 0.0)
 
     def _led_out(self, at: Floats, steps: Floats) -> tuple[Floats, Floats]:
-        """Return the places (k, 2) of an open way and the steps between them (k - 1,), led straight on from both ends out of the face."""
+        """Return the positions (k, 2) of an open path and the steps between them (k - 1,), led straight on from both ends out of the
+        face."""
         for _ in range(2):
             end = self._outside(at[-1], at[-1] - at[-2])
             if end is not None:
@@ -140,7 +141,7 @@ class DrawnCurve:
         return at, steps
 
     def _outside(self, end: Floats, way: Floats) -> Floats | None:
-        """Return the place (2,) straight on from an end of the way that lies outside the face, None when the end does already."""
+        """Return the position (2,) straight on from an end of the way that lies outside the face, None when the end does already."""
         inside: Any = BRepTopAdaptor_FClass2d(self._face, tolerance.COINCIDENT)
         if inside.Perform(gp_Pnt2d(*end.tolist())) == TopAbs_OUT:
             return None
@@ -174,7 +175,7 @@ def _onto(at: Floats, step: Floats, limits: tuple[Floats, Floats]) -> Floats:
 
 
 def _around(at: Floats, along: Floats) -> Any:
-    """Return the plane curve through places (k, 2) that come back to the first one round a surface that closes on itself, or None."""
+    """Return the plane curve through positions (k, 2) that come back to the first one round a surface that closes on itself, or None."""
     round_trip, length = at[-1] - at[0], along[-1]
     more = min(_MORE, len(at) - 1)
     at = np.vstack([at[-1 - more : -1] - round_trip, at, at[1 : 1 + more] + round_trip])

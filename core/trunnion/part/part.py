@@ -75,7 +75,7 @@ class Part:
     """One chosen solid of a part file, in mm, with the face tags of the file as read.
 
     `shape` is the solid that is programmed (healed or sewn where that was needed), `as_read` everything the file holds. What is
-    computed from them is kept: ask as often as you like.
+    computed from them is cached.
     """
 
     def __init__(self, facts: PartMetadata, shape: Shape, as_read: Shape) -> None:

@@ -24,7 +24,7 @@ FILE, CYLINDER = "file", "cylinder"
 
 
 def blank_of(session: Session, context: Context, frame: Frame, progress: Progress) -> Blank:
-    """Return the blank that the session's settings ask for, in a frame; raise `BadInput` when there is no such one."""
+    """Return the blank by the session's settings, in a frame; raise `BadInput` when there is no such one."""
     chosen = checked(choose(BlankSettings, session.choices))
     if chosen.material not in context.shop.materials:
         raise BadInput(
@@ -80,7 +80,7 @@ def file_digest(file: str) -> str:
 
 @lru_cache(maxsize=4)
 def _digest(path: str, changed: int, size: int) -> str:
-    """Return the digest of a file as it was changed last: it is asked for whenever a window looks what is stale."""
+    """Return the digest of a file as it was changed last: it is needed whenever a window looks what is stale."""
     return hashlib.sha256(Path(path).read_bytes()).hexdigest()[:16]
 
 

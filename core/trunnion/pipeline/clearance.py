@@ -32,7 +32,7 @@ if TYPE_CHECKING:
 BATCH = 1024
 """Moves between two looks at cancel."""
 CHUNK = 128
-"""Moves that one thread asks before it looks for more."""
+"""Moves that one thread queries before it looks for more."""
 
 
 class PartClearance:

@@ -22,7 +22,7 @@ if TYPE_CHECKING:
 
 
 DECIMALS = 7
-"""Decimals of a box in mm: ten times finer than two points are told apart."""
+"""Decimals of a box in mm: ten times finer than two points are distinguished."""
 
 
 @dataclass(frozen=True)

@@ -92,7 +92,7 @@ def ratings(graph: FaceGraph) -> tuple[Rated, ...]:
 
 
 def recognised(session: Session, context: Context, progress: Progress) -> Recognition:
-    """Return what is recognised on the part of a session as the family that it asks for, or as the one that suits it best.
+    """Return what is recognised on the part of a session as the chosen family, or as the one that suits it best.
 
     Raises `BadInput` when the family can't work on the part, `Cancelled` when a person asked to stop.
     """
@@ -170,7 +170,7 @@ def _unexplained(best: Rated, found: Recognition) -> tuple[Finding, ...]:
 
 
 def _milder(finding: Finding) -> Finding:
-    """Return an error as the warning that it is to who chose the family."""
+    """Return an error as a warning, for a person who chose the family."""
     return warning(
         finding.code,
         finding.text,

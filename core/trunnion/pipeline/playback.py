@@ -43,7 +43,7 @@ FLUSH = 1e-4
 CURVED = 1.0
 """Of a cell: the same beside a curved side, which cells follow in steps."""
 SNAPSHOTS = 32
-"""Places of the plan that the stock is remembered at."""
+"""Positions of the plan that the stock is remembered at."""
 _LEAST = 1e-3
 """mm: a part of a block shorter than this is not cut on its own."""
 _FIRST_CHUNK = 256
@@ -105,7 +105,7 @@ class Playback:
         return self.towards(position, np.inf, progress)
 
     def towards(self, position: float, seconds: float, progress: Progress = QUIET) -> Moment:
-        """Return the stock at a position, or on the way there when it is not reached in some seconds: ask again to go on."""
+        """Return the stock at a position, or on the way there when it is not reached in some seconds: call again to go on."""
         wanted = min(max(float(position), 0.0), float(self.n_blocks))
         if wanted < self._position:
             self._go_back(wanted)
@@ -269,7 +269,7 @@ def timeline_of(
 
 
 def fresh_of(points: Floats, triangles: Ints, blank: Blank, cell: float) -> Bools:
-    """Say for each triangle (t,) of a stock's surface in the blank's frame whether it was cut: it doesn't lie in a side of the blank.
+    """Return for each triangle (t,) of a stock's surface in the blank's frame whether it was cut: it doesn't lie in a side of the blank.
 
     Round a curved side of the blank the surface of a stock with cells of `cell` mm is only near it.
     """

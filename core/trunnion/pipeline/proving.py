@@ -15,7 +15,7 @@ from trunnion.model.session import PostedFile, Session
 from trunnion.model.setup import Setup
 from trunnion.model.verdict import Outcome, Verdict
 from trunnion.pipeline.context import Context
-from trunnion.pipeline.work_position import places_of
+from trunnion.pipeline.work_position import work_positions_of
 from trunnion.post.header import Header
 from trunnion.post.readers import read_program
 from trunnion.post.settings import OF_MACHINE, PostSettings
@@ -56,7 +56,7 @@ def post_texts(
 ) -> tuple[PostedFile, ...]:
     """Return the texts of every program: one for each setup in the dialect of its machine's control, and the CL of all setups."""
     chosen, cl = checked(choose(PostSettings, session.choices)), registry.get("dialects", "apt")()
-    programs, places = programs_of(session), places_of(session, machines)
+    programs, places = programs_of(session), work_positions_of(session, machines)
     posted = [_posted(p, header, chosen, machines, places) for p in progress.each(programs)]
     progress.check()
     if programs:
@@ -114,7 +114,7 @@ def read_back(
     """Return the motions that the posted texts of the control's dialect say, setup by setup."""
     if session.process is None:
         raise BadCall("no operations yet: generate the route first")
-    tools, places = session.process.tools(), places_of(session, machines)
+    tools, places = session.process.tools(), work_positions_of(session, machines)
     read = (
         read_program(
             f.dialect, f.text, tools, held(session, session.process.setup(f.setup)), places
@@ -166,7 +166,7 @@ def errors_of_part(session: Session) -> tuple[Finding, ...]:
 
 
 def errors_before(session: Session) -> tuple[Finding, ...]:
-    """Return the errors that the part and the steps before the proof have told."""
+    """Return the errors that the part and the steps before the proof have reported."""
     told = (
         f for step, record in session.records.items() if step != "verify" for f in record.findings
     )

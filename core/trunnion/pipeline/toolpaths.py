@@ -65,7 +65,8 @@ def make_paths(session: Session, context: Context, progress: Progress) -> tuple[
 
 
 def findings_of(paths: Sequence[OperationPath], process: ProcessTree) -> tuple[Finding, ...]:
-    """Return what toolpaths have told, without what is said of slopes and corners that another operation on the same faces is there for."""
+    """Return what toolpaths have reported, without what is reported of slopes and corners that another operation on the same faces is there
+    for."""
     return tuple(
         f
         for path in paths
@@ -75,7 +76,7 @@ def findings_of(paths: Sequence[OperationPath], process: ProcessTree) -> tuple[F
 
 
 def _settled(finding: Finding, own: Operation, process: ProcessTree) -> bool:
-    """Say whether a finding is of what its strategy leaves to others, and another operation on the same faces is there for it."""
+    """Return whether a finding is of what its strategy leaves to others, and another operation on the same faces is there for it."""
     return finding.code in registry.get(STRATEGIES, own.strategy).leaves and any(
         finding.code in registry.get(STRATEGIES, o.strategy).settles
         and set(o.faces) & set(own.faces)

@@ -15,19 +15,19 @@ from trunnion.shop.kinematics import Places, WorkPosition
 from trunnion.toolpath.motion.reorient import swing_of
 
 
-def places_of(session: Session, machines: Mapping[str, Machine]) -> Places:
+def work_positions_of(session: Session, machines: Mapping[str, Machine]) -> Places:
     """Return where the work of every setup stands; setups on machines that the catalogue doesn't know are left out."""
     if session.blank is None:
         return {}
     held = (replace(s, fixtures=session.fixtures_of(s.name)) for s in session.setups)
     return {
-        s.name: place_of(session.blank, s, machines[s.machine])
+        s.name: work_position_of(session.blank, s, machines[s.machine])
         for s in held
         if s.machine in machines
     }
 
 
-def place_of(blank: Blank, setup: Setup, machine: Machine) -> WorkPosition:
+def work_position_of(blank: Blank, setup: Setup, machine: Machine) -> WorkPosition:
     """Return where a setup's work stands: the middle of the blank's underside lies on the middle of the table."""
     low, high = blank.box_in(setup.frame)
     swing = swing_of(blank, setup)

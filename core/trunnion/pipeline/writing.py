@@ -62,7 +62,7 @@ def write_documents(
 
 
 def name_of(session: Session, name: str) -> str:
-    """Return the NAME of a session's files: what was asked for, else the part's; raise `BadInput` when it can't be a file name."""
+    """Return the NAME of a session's files: the given one, else the part's; raise `BadInput` when it can't be a file name."""
     return checked_name(name or (session.part.name if session.part else ""))
 
 

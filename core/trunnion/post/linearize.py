@@ -22,8 +22,8 @@ from trunnion.shop.kinematics import (
     WorkPosition,
     axes_of,
     poses_of,
+    rotary_solutions,
     spindle_of,
-    stands_of,
     words_of,
 )
 from trunnion.shop.rotary_angles import TURN, beyond, followed
@@ -248,7 +248,7 @@ def _axis_strays(path: Toolpath, pieces: _Pieces, place: WorkPosition) -> Floats
 def _halved(path: Toolpath, pieces: _Pieces, place: WorkPosition) -> _Pieces:
     middle = 0.5 * (pieces.start + pieces.end)
     between = 0.5 * (pieces.first + pieces.last)
-    angles, free, _ = stands_of(place.machine, turned(path, pieces.block, middle))
+    angles, free, _ = rotary_solutions(place.machine, turned(path, pieces.block, middle))
     angles = angles + TURN * np.round((between[:, None] - angles) / TURN)
     angles = np.where(free, between[:, None], angles)
     way = np.abs(angles - between[:, None]).sum(axis=2).argmin(axis=1)

@@ -1,4 +1,4 @@
-"""What a family of parts has to offer, and what it may ask of a part beside its face graph."""
+"""The protocol of a family of parts, and the queries of a part beside its face graph."""
 
 from __future__ import annotations
 
@@ -58,8 +58,8 @@ class Suitability:
 
 
 class PartKind(Protocol):
-    """A kind of part that can be told from others before anything is recognised: the name it is registered under, and what a part of
-    it is called, with its article ("a panel").
+    """A kind of part that can be distinguished from others before anything is recognised: the name it is registered under, and what a part
+    of it is called, with its article ("a panel").
 
     A package adds one that no family serves through the entry points `trunnion.part_kinds`; every family is one too.
     """
@@ -76,7 +76,7 @@ class PartKind(Protocol):
 class LegendClass:
     """Features of a kind that legends count together: those whose `attribute` is true, or (empty) all that no other class has.
 
-    `label` is what several of them are called; `colours` (`#rrggbb`) tell neighbours apart by turns, the first stands for the class.
+    `label` is what several of them are called; `colours` (`#rrggbb`) distinguish neighbours, used in turn, the first represents the class.
     """
 
     label: str
@@ -88,7 +88,7 @@ class LegendClass:
 class FeatureKind:
     """A kind of features as people meet it: `name` in features and files, `label` in words ("open pocket"), `colour` (`#rrggbb`).
 
-    `classes`, where features of the kind are told apart, have the colours instead, and `heading` says what they are together. `pocket`
+    `classes`, where features of the kind are distinguished, have the colours instead, and `heading` says what they are together. `pocket`
     gives the pocket paper's model of a feature of the kind, where it has one. `along_axes` are sizes taken along the axes of the part's
     file: they change when the part is turned, no other size does.
     """
@@ -124,7 +124,7 @@ class Family(PartKind, Protocol):
     def recognize(
         self, graph: FaceGraph, slicer: Any, settings: Any, progress: Progress
     ) -> Recognition:
-        """Return the features of a part, given as a face graph and as what may be asked of it (`Slicer`, `Bounded`).
+        """Return the features of a part, given as a face graph and as a part to query (`Slicer`, `Bounded`).
 
         Every face is in a feature or in `unexplained`, with a finding that names it.
 

@@ -9,7 +9,7 @@ from trunnion.geometry.facegraph import FaceGraph
 from trunnion.tolerance import ANGLE, COINCIDENT
 
 ARC_PIECES = 16
-"""Chords an arc is opened into where points on it are asked for; the box is exact on arcs."""
+"""Chords an arc is opened into where points on it are needed; the box is exact on arcs."""
 
 
 def box(graph: FaceGraph) -> tuple[Floats, Floats]:

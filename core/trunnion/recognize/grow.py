@@ -68,7 +68,7 @@ def bend_radius(graph: FaceGraph, face: int) -> float:
 
 
 def same_surface(graph: FaceGraph, a: int, b: int, distance: float, angle: float) -> bool:
-    """Say whether two faces lie on one plane or one cylinder, to a distance in mm and an angle in radians."""
+    """Return whether two faces lie on one plane or one cylinder, to a distance in mm and an angle in radians."""
     if graph.surface[a] != graph.surface[b] or graph.surface[a] not in ("plane", "cylinder"):
         return False
     away = graph.axis_point[b] - graph.axis_point[a]

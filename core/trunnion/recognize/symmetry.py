@@ -30,7 +30,7 @@ MOST = 120
 
 @dataclass(frozen=True, slots=True, eq=False, kw_only=True)
 class CircularPattern:
-    """Equal faces evenly about an axis: the number of places around it, and the rows (k,) of the faces."""
+    """Equal faces evenly about an axis: the number of positions around it, and the rows (k,) of the faces."""
 
     count: int
     rows: Ints

@@ -83,7 +83,7 @@ def _deviation_map(
         low=low,
         high=high,
         limit=limit,
-        worst=worst_places(deviation, low, high),
+        worst=worst_points(deviation, low, high),
     )
 
 
@@ -197,7 +197,7 @@ def values_at(
     return value
 
 
-def worst_places(deviation: Deviation, low: float, high: float) -> tuple[WorstPoint, ...]:
+def worst_points(deviation: Deviation, low: float, high: float) -> tuple[WorstPoint, ...]:
     """Return where each face is gouged deepest and where most is left on it, as far as they are outside `low` to `high`."""
     found: list[WorstPoint] = []
     for sign, bad in ((1.0, deviation.deviation < low), (-1.0, deviation.deviation > high)):

@@ -57,7 +57,7 @@ def opened(path: Toolpath) -> tuple[Floats, Ints]:
 
 
 def leans(path: Toolpath) -> bool:
-    """Say whether a tool that rotates stands other than upright anywhere on a path."""
+    """Return whether a tool that rotates stands other than upright anywhere on a path."""
     return not path.work_turns and bool((np.abs(path.axis[:, :2]) > _UPRIGHT).any())
 
 

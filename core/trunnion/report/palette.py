@@ -59,7 +59,7 @@ class RadiusColours:
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class ClassColours:
-    """A class of features in legends: what several are called, and its colours, which tell neighbours apart by turns."""
+    """A class of features in legends: what several are called, and its colours, which distinguish neighbours, used in turn."""
 
     label: str
     colours: tuple[Colour, ...]

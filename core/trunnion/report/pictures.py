@@ -95,7 +95,7 @@ def write_pictures(
 def _plotter() -> Plotter:
     if sys.platform.startswith("linux"):
         os.environ.setdefault("VTK_DEFAULT_OPENGL_WINDOW", "vtkEGLRenderWindow")
-        # Without it pyvista asks an X server and opens a window on trial, for a warning that a window without a screen does not need.
+        # Without it pyvista opens a window of an X server on trial, for a warning that a window without a screen does not need.
         os.environ.setdefault("ALLOW_PLOTTING", "true")
     import pyvista
 

@@ -80,7 +80,7 @@ def load_shop(user_folder: Path | None = None) -> Shop:
     """Return the catalogues, checked; raise `BadInput` with file, entry and field of the first fault.
 
     `user_folder` has the shape of the program's own (`tools`, `holders`, `turning`, `materials`, `machines`, `plans`, each with TOML files)
-    and adds entries or replaces those of the same name. What is missing there is not asked for.
+    and adds entries or replaces those of the same name. What is missing there is not needed.
     """
     return Shop(
         cutters=load_cutters(load_holders(user_folder), user_folder),

@@ -1,4 +1,4 @@
-"""Holders and cutters of the catalogue. A cutter has number 0 until a plan gives it a place."""
+"""Holders and cutters of the catalogue. A cutter has number 0 until a plan gives it a position."""
 
 from __future__ import annotations
 
@@ -139,7 +139,7 @@ def _kind(entry: CatalogueEntry, default: str | None = None) -> str:
 
 
 def _size_name(tool: Tool) -> str:
-    """Return what tells a size apart from others of its series and diameter."""
+    """Return what distinguishes a size from others of its series and diameter."""
     corner = f" R{trimmed(tool.corner_radius, 3)}"
     return {
         "taper": f"{corner} A{trimmed(tool.taper_angle, 3)}",

@@ -104,7 +104,7 @@ def lift_of(place: WorkPosition, angle: Floats) -> Floats:
     return np.asarray(up[0])
 
 
-def stands_of(machine: Machine, axis: Floats) -> tuple[Floats, Bools, Bools]:
+def rotary_solutions(machine: Machine, axis: Floats) -> tuple[Floats, Bools, Bools]:
     """Return both ways (k, 2, a) in rad to hold tool axes (k, 3), which angles are free (k, 2, a), and which axes can be held (k,).
 
     Limits are not looked at. Two rotary axes one and two hold an axis where R1 R2 v = w; as R2 changes nothing along its own direction u2,
@@ -147,7 +147,7 @@ def rotations(axis: Axis, angle: Floats) -> Floats:
 
 
 def _carried(machine: Machine, work: Floats, angle: Floats, gauge: float) -> tuple[Floats, Floats]:
-    """Return places in the work and the tip of the tool, each (k, 3) from the middle of the table and of the spindle's face."""
+    """Return positions in the work and the tip of the tool, each (k, 3) from the middle of the table and of the spindle's face."""
     tool = np.tile(-gauge * UP, (len(work), 1))
     for k, rotary in reversed(list(enumerate(machine.rotary))):
         turn, point = rotations(rotary, angle[:, k]), np.array(rotary.point)

@@ -18,7 +18,7 @@ SUFFIX = ".toml"
 
 @dataclass(slots=True, kw_only=True)
 class CatalogueEntry:
-    """One table of a catalogue file. Fields are asked for by name and checked; `done` refuses those that nobody asked for."""
+    """One table of a catalogue file. Fields are read by name and checked; `done` refuses those that were not read."""
 
     file: str
     name: str
@@ -30,7 +30,7 @@ class CatalogueEntry:
         return BadInput(f"{self.file}: {self.name}: {what}")
 
     def has(self, name: str) -> bool:
-        """Say whether a field is given."""
+        """Return whether a field is given."""
         return name in self.fields
 
     def text(self, name: str, default: str | None = None) -> str:
@@ -106,7 +106,7 @@ class CatalogueEntry:
         )
 
     def done(self) -> None:
-        """Raise `BadInput` when a field is given that nobody asked for: mostly a misspelt one."""
+        """Raise `BadInput` when a field is given that was not read: mostly a misspelt one."""
         strange = sorted(set(self.fields) - self._asked)
         if strange:
             raise self.wrong(

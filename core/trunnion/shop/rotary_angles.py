@@ -1,4 +1,4 @@
-"""Rotary angles along a path: without a leap, inside the limits, turning least; windings and both ways to stand are looked at."""
+"""Rotary angles along a path: without a leap, inside the limits, turning least; windings and both solutions are looked at."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ from trunnion.findings import Refused
 from trunnion.geometry.arrays import Bools, Floats
 from trunnion.geometry.kernels.rotary_angles_compiled import choose_angles
 from trunnion.model.material import Machine
-from trunnion.shop.kinematics import POLE, SLACK, WorkPosition, pole_of, stands_of
+from trunnion.shop.kinematics import POLE, SLACK, WorkPosition, pole_of, rotary_solutions
 
 MOST_TURNS = 3
 """Whole turns, each way, that another beginning is looked for; an axis with so many to spare needs none."""
@@ -28,7 +28,7 @@ def followed(
     """
     machine = place.machine
     through = _through_pole(axis, machine, near)
-    angles, free, held = stands_of(machine, axis)
+    angles, free, held = rotary_solutions(machine, axis)
     lost = np.flatnonzero(~held)
     if len(lost):
         has = f"{' and '.join(a.name for a in machine.rotary)} can't hold"
@@ -108,7 +108,7 @@ def _beginnings(
 
 
 def beyond(ways: Floats, place: WorkPosition) -> str:
-    """Return what a pose asks of the axes and what they have."""
+    """Return the angles that a pose needs and the limits of the axes."""
     near = np.degrees(ways - TURN * np.round(ways / TURN))
     asked = " or ".join(
         " ".join(f"{a.name}{v:.1f}" for a, v in zip(place.machine.rotary, way, strict=True))

@@ -7,8 +7,8 @@ from typing import Any
 
 from lxml import etree
 
-from trunnion.findings import BadCall, BadInput
-from trunnion.model.feature import FaceRole, Feature, GeneralizedPocket, Recognition, TakenFor
+from trunnion.findings import BadCall
+from trunnion.model.feature import Feature, GeneralizedPocket, Recognition
 from trunnion.model.session import PartInfo, Session
 from trunnion.recognize.contract import FeatureKind, feature_kinds
 from trunnion.store import xml
@@ -18,11 +18,7 @@ from trunnion.store.pieces import (
     add_findings,
     add_frame,
     add_values,
-    findings_of,
-    frame_of,
-    made,
     text_of,
-    values_of,
 )
 
 FORMAT = 1
@@ -63,32 +59,6 @@ def features_xml(recognition: Recognition, part: PartInfo) -> bytes:
     return xml.written(xml.validated(root, "features", "features"))
 
 
-def read_features(path: str | Path) -> Recognition:
-    """Return what a features XML says was recognised; raise `BadInput` with the line of what is wrong."""
-    path = Path(path)
-    try:
-        data = path.read_bytes()
-    except OSError as reason:
-        raise BadInput(f"{path}: can't be read: {reason.strerror or reason}") from None
-    root = xml.versioned(xml.parse(data, str(path)), "features", FORMAT, str(path))
-    try:
-        return Recognition(
-            family=root.get("family"),
-            frame=frame_of(root),
-            features=tuple(_feature(e) for e in root.findall("feature")),
-            unexplained=tuple(int(e.get("tag")) for e in root.findall("unexplained/face")),
-            unexplained_share=float(root.find("unexplained").get("area-share")),
-            findings=tuple(findings_of(root)),
-            removed=tuple(
-                tuple(int(f.get("tag")) for f in e.findall("face")) for e in root.findall("removed")
-            ),
-            taken_for=_taken_for(root),
-            doubt=root.findtext("doubt") or "",
-        )
-    except ValueError as reason:
-        raise BadInput(f"{path}: can't be used: {reason}") from None
-
-
 def _add_taken_for(root: Any, recognition: Recognition) -> None:
     """Add what kind of part it was taken for, and why the steps after recognition wait for a person, where that is known."""
     if (taken := recognition.taken_for) is not None:
@@ -102,11 +72,6 @@ def _add_taken_for(root: Any, recognition: Recognition) -> None:
         )
     if recognition.doubt:
         add(root, "doubt", recognition.doubt)
-
-
-def _taken_for(root: Any) -> TakenFor | None:
-    element = root.find("taken-for")
-    return None if element is None else made(TakenFor, element, reason=element.text or "")
 
 
 def _add_feature(
@@ -146,16 +111,3 @@ def _add_pocket(element: Any, model: GeneralizedPocket) -> None:
     for other in (*model.islands, *model.auxiliary):
         tag = "island" if other in model.islands else "auxiliary"
         add(pocket, tag, feature=other.id, kind=other.kind)
-
-
-def _feature(element: Any) -> Feature:
-    faces = tuple(
-        FaceRole(role=f.get("role"), face=int(f.get("tag"))) for f in element.findall("face")
-    )
-    return made(
-        Feature,
-        element,
-        faces=faces,
-        sizes=values_of(element, "size", "name"),
-        attributes=values_of(element, "attribute", "name"),
-    )

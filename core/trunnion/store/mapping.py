@@ -284,7 +284,7 @@ def _read_array(element: etree._Element, members: Members) -> np.ndarray:
 
 
 def load_array(data: bytes, name: str) -> np.ndarray:
-    """Return the array of a `.npy` member; raise `BadInput` when its header lies, or asks for anything but plain numbers."""
+    """Return the array of a `.npy` member; raise `BadInput` when its header lies, or declares anything but plain numbers."""
     file = io.BytesIO(data)
     try:
         if np.lib.format.read_magic(file) != (1, 0):

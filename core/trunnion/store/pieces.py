@@ -3,19 +3,18 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Iterable, Iterator, Mapping
+from collections.abc import Iterable, Mapping
 from enum import Enum
-from typing import Any, TypeVar
+from typing import Any
 
 import numpy as np
 from lxml import etree
 
-from trunnion.findings import Finding, Severity
+from trunnion.findings import Finding
 from trunnion.geometry.frame import Frame
 from trunnion.settings import unwritten
 from trunnion.store.mapping import hints_of
 
-T = TypeVar("T")
 _NOT_IN_XML = re.compile("[^\t\n\r\x20-\ud7ff\ue000-\ufffd\U00010000-\U0010ffff]")
 _SCALARS = (bool, int, float, str)
 
@@ -38,11 +37,6 @@ def text_of(value: Any) -> str:
     return str(value)
 
 
-def value_of(text: str, kind: type) -> Any:
-    """Return the scalar of a type that an XML text says."""
-    return text.strip() in ("true", "1") if kind is bool else kind(text)
-
-
 def attributes(data: Any) -> dict[str, str]:
     """Return the scalar fields of a dataclass as XML attributes, without those that files leave out."""
     hints, left_out = hints_of(type(data)), unwritten(data)
@@ -51,18 +45,6 @@ def attributes(data: Any) -> dict[str, str]:
         for name, hint in hints.items()
         if _is_scalar(hint) and name not in left_out
     }
-
-
-def made(cls: type[T], element: Any, **others: Any) -> T:
-    """Return a dataclass from the attributes of an element (absent: the default) and the fields that are not scalars."""
-    hints = hints_of(cls)
-    names = [name for name, hint in hints.items() if name not in others and _is_scalar(hint)]
-    values = {
-        n: value_of(element.get(n.replace("_", "-")), hints[n])
-        for n in names
-        if element.get(n.replace("_", "-")) is not None
-    }
-    return cls(**values, **others)
 
 
 def add(parent: Any, tag: str, text: str = "", /, **words: str) -> Any:
@@ -93,15 +75,6 @@ def add_frame(parent: Any, frame: Frame) -> None:
         )
 
 
-def frame_of(parent: Any) -> Frame:
-    """Return the frame that stands in an element."""
-    origin, x, z = (
-        np.array([float(parent.find(f"frame/{name}").get(axis)) for axis in "xyz"])
-        for name in ("origin", "x", "z")
-    )
-    return Frame(origin, x, z)
-
-
 def add_findings(parent: Any, findings: Iterable[Finding]) -> None:
     """Add findings."""
     for finding in findings:
@@ -111,18 +84,6 @@ def add_findings(parent: Any, findings: Iterable[Finding]) -> None:
             add(element, "where", where)
         if finding.remedy:
             add(element, "remedy", finding.remedy)
-
-
-def findings_of(parent: Any) -> Iterator[Finding]:
-    """Yield the findings that stand in an element."""
-    for element in parent.findall("finding"):
-        yield Finding(
-            severity=Severity(element.get("severity")),
-            code=element.get("code"),
-            text=element.findtext("text") or "",
-            where=tuple(w.text or "" for w in element.findall("where")),
-            remedy=element.findtext("remedy") or "",
-        )
 
 
 def add_values(parent: Any, tag: str, key: str, values: Mapping[str, Any]) -> None:
@@ -141,15 +102,3 @@ def add_values(parent: Any, tag: str, key: str, values: Mapping[str, Any]) -> No
             else text_of(plain)
         )
         add(parent, tag, text, **{key: name, "type": _TYPES[type(plain)]})
-
-
-def values_of(parent: Any, tag: str, key: str) -> dict[str, Any]:
-    """Return the mapping that elements of a tag hold."""
-    kinds = {name: kind for kind, name in _TYPES.items()}
-    found: dict[str, Any] = {}
-    for element in parent.findall(tag):
-        kind, text = kinds[element.get("type")], element.text or ""
-        found[element.get(key)] = (
-            tuple(float(v) for v in text.split()) if kind is tuple else value_of(text, kind)
-        )
-    return found

@@ -1,4 +1,4 @@
-"""The process-tree XML: setups, tools and operations in the order they are cut, each choice with its rule; read back as it was."""
+"""The process-tree XML: setups, tools and operations in the order they are cut, each choice with its rule."""
 
 from __future__ import annotations
 
@@ -8,11 +8,10 @@ from typing import Any
 from lxml import etree
 
 from trunnion.findings import BadCall, BadInput
-from trunnion.model.operation import CuttingData, Operation
+from trunnion.model.operation import Operation
 from trunnion.model.process import ProcessTree
 from trunnion.model.session import PartInfo, Session
-from trunnion.model.setup import Setup
-from trunnion.model.tool import AnyTool, Holder, Insert, Tool, TurningTool
+from trunnion.model.tool import AnyTool, Tool, TurningTool
 from trunnion.store import xml
 from trunnion.store.atomic import write_bytes
 from trunnion.store.pieces import (
@@ -21,11 +20,7 @@ from trunnion.store.pieces import (
     add_frame,
     add_values,
     attributes,
-    findings_of,
-    frame_of,
-    made,
     text_of,
-    values_of,
 )
 
 FORMAT = 1
@@ -62,32 +57,6 @@ def process_xml(process: ProcessTree, part: PartInfo) -> bytes:
     return xml.written(xml.validated(root, "process", "process tree"))
 
 
-def read_process(path: str | Path) -> ProcessTree:
-    """Return the process tree of an XML; raise `BadInput` with the line of what is wrong."""
-    path = Path(path)
-    try:
-        data = path.read_bytes()
-    except OSError as reason:
-        raise BadInput(f"{path}: can't be read: {reason.strerror or reason}") from None
-    root = xml.versioned(xml.parse(data, str(path)), "process", FORMAT, str(path))
-    try:
-        tools: dict[int, AnyTool] = {
-            int(e.get("number")): read(e)
-            for tag, read in (("tool", _tool), ("turning-tool", _turning_tool))
-            for e in root.findall(tag)
-        }
-        return ProcessTree(
-            plan=root.get("plan"),
-            material=root.get("material"),
-            findings=tuple(findings_of(root)),
-            setups=tuple(made(Setup, e, frame=frame_of(e)) for e in root.findall("setup")),
-            operations=tuple(_operation(e, tools) for e in root.findall("operation")),
-            removed=tuple(e.get("operation") for e in root.findall("removed")),
-        )
-    except ValueError as reason:
-        raise BadInput(f"{path}: can't be used: {reason}") from None
-
-
 def _tools(process: ProcessTree) -> dict[int, AnyTool]:
     found: dict[int, AnyTool] = {}
     for operation in process.operations:
@@ -115,26 +84,9 @@ def _add_tool(root: Any, tool: Tool) -> None:
         )
 
 
-def _tool(element: Any) -> Tool:
-    holder = element.find("holder")
-    rows = tuple(
-        (float(c.get("z0")), float(c.get("r0")), float(c.get("z1")), float(c.get("r1")))
-        for c in holder.findall("cone")
-    )
-    outline = tuple(
-        (float(p.get("r")), float(p.get("z")), float(p.get("bulge")))
-        for p in element.findall("point")
-    )
-    return made(Tool, element, outline=outline, holder=Holder(name=holder.get("name"), rows=rows))
-
-
 def _add_turning_tool(root: Any, tool: TurningTool) -> None:
     element = etree.SubElement(root, "turning-tool", attributes(tool))
     etree.SubElement(element, "insert", attributes(tool.insert))
-
-
-def _turning_tool(element: Any) -> TurningTool:
-    return made(TurningTool, element, insert=made(Insert, element.find("insert")))
 
 
 def _add_operation(root: Any, operation: Operation) -> None:
@@ -154,30 +106,3 @@ def _add_operation(root: Any, operation: Operation) -> None:
     if operation.direction != UPRIGHT:
         x, y, z = (text_of(float(v)) for v in operation.direction)
         add(element, "direction", x=x, y=y, z=z)
-
-
-def _operation(element: Any, tools: dict[int, AnyTool]) -> Operation:
-    cutting = element.find("cutting")
-    return made(
-        Operation,
-        element,
-        tool=tools[int(element.get("tool"))],
-        data=made(CuttingData, cutting, rules=_rules(cutting)),
-        faces=tuple(int(f.get("tag")) for f in element.findall("face")),
-        rules=_rules(element),
-        after=tuple(a.get("operation") for a in element.findall("after")),
-        choices=values_of(element, "choice", "key"),
-        direction=_direction(element.find("direction")),
-    )
-
-
-def _direction(element: Any) -> tuple[float, float, float]:
-    return (
-        UPRIGHT
-        if element is None
-        else (float(element.get("x")), float(element.get("y")), float(element.get("z")))
-    )
-
-
-def _rules(element: Any) -> tuple[str, ...]:
-    return tuple(r.text or "" for r in element.findall("rule"))

@@ -64,13 +64,3 @@ def validated(root: Any, schema: str, where: str) -> Any:
         first = checker.error_log[0]
         raise BadInput(f"{where}, line {first.line}: {first.message}")
     return root
-
-
-def versioned(root: Any, schema: str, version: int, where: str) -> Any:
-    """Return the root of a document when it is of the version that is read and fits its schema; raise `BadInput` otherwise."""
-    said = root.get("version")
-    if said is not None and said != str(version):
-        raise BadInput(
-            f"{where}: written in format {said}; this Trunnion reads format {version}: use the Trunnion that wrote it"
-        )
-    return validated(root, schema, where)

@@ -50,7 +50,7 @@ class Bodies:
         return self.piece[self.start[tool] : self.start[tool + 1]]
 
     def widest(self, *, cutting: bool = False) -> Floats:
-        """Return the largest radius of each tool (t,), of its cutting pieces alone if so asked."""
+        """Return the largest radius of each tool (t,), of its cutting pieces alone when `cutting`."""
         rows = [self.of(k) for k in range(len(self.start) - 1)]
         return np.array(
             [float(p[(p[:, kernel.KIND] == 0.0) | (not cutting), kernel.R_MAX].max()) for p in rows]
@@ -93,7 +93,7 @@ def bodies_of(tools: Sequence[Tool]) -> Bodies:
 
 @lru_cache(maxsize=256)
 def bodies_of_one(tool: Tool) -> Bodies:
-    """Return the bodies of one tool, kept for those who ask about it again and again: not to be changed."""
+    """Return the bodies of one tool, cached: not to be changed."""
     return bodies_of((tool,))
 
 

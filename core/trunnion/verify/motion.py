@@ -63,7 +63,7 @@ class Moves:
     start, end (n, 3) tips and start_axis, end_axis (n, 3) unit tool axes, in the setup frame; between them the tip runs straight (or along
     an arc about the axis) and the axis turns at an even rate in the plane of both. centre (n, 3) of arcs, NaN otherwise; sweep (n,) the
     signed angle an arc turns, rad. upright (n,): the axis is +z all along; row (n, 15): those as the strip kernel reads them.
-    section (n,), block (n,) where each comes from; rapid (n,); feed (n,) mm/min; length (n,) mm of the tip's way.
+    section (n,), block (n,) where each comes from; rapid (n,); feed (n,) mm/min; length (n,) mm of the tip's path.
     tools: the tools in use, tool (n,) their rows, bodies theirs.
     """
 
@@ -208,7 +208,7 @@ def _upright(first: Floats, last: Floats) -> Bools:
 
 
 def upright_axes(axes: Floats) -> Bools:
-    """Say which tool axes (..., 3) stand on +z."""
+    """Return which tool axes (..., 3) stand on +z."""
     return np.asarray((np.abs(axes[..., :2]) <= AXIS_LEAN).all(axis=-1) & (axes[..., 2] > 0.0))
 
 

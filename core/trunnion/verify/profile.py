@@ -1,4 +1,4 @@
-"""How high above its tip a cutter begins, as the height field asks for it: row by row of a table, one row a tool."""
+"""How high above its tip a cutter begins, as the height field needs it: row by row of a table, one row a tool."""
 
 from __future__ import annotations
 

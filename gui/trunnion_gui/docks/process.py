@@ -28,7 +28,7 @@ _ID = Qt.ItemDataRole.UserRole
 
 
 class _Tree(QTreeWidget):
-    """A tree that tells of a drop instead of moving rows by itself: the session is what moves."""
+    """A tree that signals a drop instead of moving rows by itself: the session is what moves."""
 
     dropped = Signal(str, object)
     """The id of the dragged operation, and the id it was dropped in front of (None: at the end)."""
@@ -200,7 +200,7 @@ class ProcessDock(QWidget):
 
 
 def label(o: Operation) -> str:
-    """Return what tells an operation from others of its feature: its kind, with what else its id says."""
+    """Return what distinguishes an operation from others of its feature: its kind, with what else its id says."""
     rest = (
         o.id.replace(f"-{o.feature}", "")
         .removeprefix(o.kind.replace("_", "-"))

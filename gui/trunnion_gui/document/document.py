@@ -1,7 +1,7 @@
 """The session with its history, and the runs that compute its steps. Views read it and repaint.
 
 A slot builds an edit and hands it over (`edit`), or asks for a run or a family's own work (`run`, `request`); the worker computes and the
-signals tell. While a run goes on, `shown` holds what is done so far; `session` stays as it was until the run ends. Steps that a run
+signals report it. While a run goes on, `shown` holds what is done so far; `session` stays as it was until the run ends. Steps that a run
 finished before it was cancelled, refused or crashed are kept, as one entry of the history.
 """
 
@@ -62,7 +62,7 @@ class Document(QObject):
         self.jobs.staged.connect(self._take_stage)
         self.jobs.stopped.connect(self._stop)
         self.jobs.worker.restarted.connect(self._attach)
-        self.jobs.ask("settings", finish=self._take_groups)
+        self.jobs.query("settings", finish=self._take_groups)
 
     @property
     def session(self) -> Session:
@@ -90,7 +90,7 @@ class Document(QObject):
         return self.has_part and (self.history.is_dirty or self.shown is not self.session)
 
     def is_ready(self) -> bool:
-        """Return whether there is a part and no job runs; tell a person what is in the way."""
+        """Return whether there is a part and no job runs; show a person what prevents work."""
         return self.jobs.is_free() and self._needs_part()
 
     def feature(self, id: str) -> Feature | None:
@@ -103,13 +103,13 @@ class Document(QObject):
         return next((o for o in (process.operations if process else ()) if o.id == id), None)
 
     def notice(self, text: str, remedy: str = "", severity: Severity = Severity.ERROR) -> None:
-        """Tell the person something about the program itself."""
+        """Show the person a message about the program itself."""
         self.noticed.emit(Finding(severity=severity, code="window", text=text, remedy=remedy))
 
     # runs
 
     def run(self, last: str, label: str) -> None:
-        """Compute what is stale up to and including a step. Asked while a file is being opened, it runs right after."""
+        """Compute what is stale up to and including a step. Called while a file is being opened, it runs right after."""
         if self.jobs.job is not None and self.jobs.job.verb == "open":
             self.jobs.after(lambda: self.run(last, tr("Program")))
         elif self.is_ready():
@@ -156,7 +156,7 @@ class Document(QObject):
         self.changed.emit()
 
     def edit(self, label: str, edit: Edit, gesture: str = "") -> None:
-        """Do an undoable edit; a refusal, or a job that runs, is told in a message."""
+        """Do an undoable edit; a refusal, or a job that runs, is shown in a message."""
         if self.is_busy:
             self.notice(
                 tr("{label}: not while {job} runs").format(
@@ -205,22 +205,22 @@ class Document(QObject):
         return self.has_part
 
     def _is_done(self, last: str) -> bool:
-        """Whether nothing is stale up to a step; while the states of a fresh edit are still asked for, nobody knows."""
-        return not self.jobs.asks("states") and all(
+        """Whether nothing is stale up to a step; unknown while the states of a fresh edit are awaited."""
+        return not self.jobs.awaits("states") and all(
             self.states.get(s) in ("done", "problem") for s in until(last)
         )
 
     def _ask_states(self) -> None:
         self.jobs.forget("states")
         if self.has_part:
-            self.jobs.ask("states", self.session, finish=self._take_states)
+            self.jobs.query("states", self.session, finish=self._take_states)
 
     def _attach(self) -> None:
-        """Give a fresh worker the part, and ask it again for what was not answered."""
+        """Give a fresh worker the part, and send it again the queries without a reply."""
         if self.has_part:
-            self.jobs.ask("attach", self.session, *self.files.kept, finish=lambda _: None)
+            self.jobs.query("attach", self.session, *self.files.kept, finish=lambda _: None)
         if not self.groups:
-            self.jobs.ask("settings", finish=self._take_groups)
+            self.jobs.query("settings", finish=self._take_groups)
 
     def _take_groups(self, groups: Mapping[str, tuple[SettingsGroup, ...]]) -> None:
         self.groups = groups
@@ -237,7 +237,7 @@ class Document(QObject):
         states: dict[str, str] | None = None,
         programs: tuple[PostedFile, ...] = (),
     ) -> None:
-        """Show a session; where the worker has not told its states yet, those before it stay."""
+        """Show a session; while the worker has not sent its states yet, those before it stay."""
         self.shown = session
         if states is not None:
             self.states, self.programs = states, programs
@@ -268,7 +268,7 @@ class Document(QObject):
             self.notice(state.refusal)
 
     def _stop(self, job: Job, reply: Reply, doing: str) -> None:
-        """Keep the steps that a job finished before it stopped short, and tell where it stopped and what is kept."""
+        """Keep the steps that a job finished before it stopped short, and show where it stopped and what is kept."""
         step, self.running_step = self.running_step, ""
         finished = [
             TITLES[s]

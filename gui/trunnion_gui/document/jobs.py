@@ -1,6 +1,6 @@
-"""What the worker is asked for: one job at a time that a person sees and can cancel, and questions that nobody waits for.
+"""Requests to the worker: one job at a time that a person sees and can cancel, and queries that block nothing.
 
-The worker computes and the signals tell; late replies are dropped.
+The worker computes and the signals report it; late replies are dropped.
 """
 
 from __future__ import annotations
@@ -20,7 +20,7 @@ from trunnion_gui.worker.worker import Reply, Worker
 Finish = Callable[[Any], None]
 """What is done with the value of a reply."""
 Notice = Callable[[str, str, Severity], None]
-"""Tells a person a text, a remedy and how grave it is."""
+"""Shows a person a text, a remedy and how grave it is."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -41,7 +41,7 @@ class Jobs(QObject):
     """A job began or ended."""
     progressed = Signal(float, str)
     staged = Signal(object)
-    """A step of the job begins or is done, as the verb tells."""
+    """A step of the job begins or is done, as the verb reports."""
     stopped = Signal(object, object, str)
     """A job stopped short: the `Job`, its last `Reply`, and the words on what it was doing."""
 
@@ -50,7 +50,7 @@ class Jobs(QObject):
         self.job: Job | None = None
         self._notice = notice
         self._doing = ""
-        self._quiet: dict[int, tuple[str, Finish]] = {}
+        self._queries: dict[int, tuple[str, Finish]] = {}
         self._then: Callable[[], None] | None = None
         self.worker = Worker(factory, self)
         self.worker.replied.connect(self._receive)
@@ -61,12 +61,12 @@ class Jobs(QObject):
         return self.job is not None
 
     @property
-    def is_asking(self) -> bool:
-        """Whether a question that nobody waits for is not answered yet."""
-        return bool(self._quiet)
+    def is_querying(self) -> bool:
+        """Whether a query has no reply yet."""
+        return bool(self._queries)
 
     def is_free(self) -> bool:
-        """Return whether no job runs; tell a person which one does."""
+        """Return whether no job runs; report to a person which one does."""
         if self.job is not None:
             self._notice(
                 tr("{job} still runs").format(job=self.job.label),
@@ -78,12 +78,12 @@ class Jobs(QObject):
     def start(self, verb: str | Work, label: str, *arguments: Any, finish: Finish) -> None:
         """Begin a job; `finish` gets what it returns when it is done."""
         self._doing = ""
-        self.job = Job(self.worker.ask(verb, *arguments), verb, label, time.monotonic(), finish)
+        self.job = Job(self.worker.send(verb, *arguments), verb, label, time.monotonic(), finish)
         self.changed.emit()
         self.progressed.emit(0.0, label)
 
     def cancel(self) -> None:
-        """Ask the running job to stop."""
+        """Request that the running job stops."""
         if self.job is not None:
             self._then = None
             self.worker.cancel(self.job.number)
@@ -93,19 +93,19 @@ class Jobs(QObject):
         """Do something right after the running job is done; never when it stops short."""
         self._then = go_on
 
-    def ask(self, verb: str, *arguments: Any, finish: Finish) -> None:
-        """Ask a question that nobody waits for; `finish` gets its answer."""
-        self._quiet[self.worker.ask(verb, *arguments)] = verb, finish
+    def query(self, verb: str, *arguments: Any, finish: Finish) -> None:
+        """Send a query that blocks nothing; `finish` gets its reply."""
+        self._queries[self.worker.send(verb, *arguments)] = verb, finish
 
-    def asks(self, verb: str) -> bool:
-        """Return whether such a question is not answered yet."""
-        return any(asked == verb for asked, _ in self._quiet.values())
+    def awaits(self, verb: str) -> bool:
+        """Return whether a query of a verb has no reply yet."""
+        return any(asked == verb for asked, _ in self._queries.values())
 
     def forget(self, verb: str) -> None:
-        """Drop such questions."""
-        for number in [n for n, (asked, _) in self._quiet.items() if asked == verb]:
+        """Drop the queries of a verb."""
+        for number in [n for n, (asked, _) in self._queries.items() if asked == verb]:
             self.worker.forget(number)
-            del self._quiet[number]
+            del self._queries[number]
 
     def close(self) -> None:
         """End the worker."""
@@ -114,15 +114,15 @@ class Jobs(QObject):
     # replies
 
     def _receive(self, reply: Reply) -> None:
-        if reply.number in self._quiet:
+        if reply.number in self._queries:
             if reply.is_last:
-                self._answer(self._quiet.pop(reply.number)[1], reply)
+                self._finish(self._queries.pop(reply.number)[1], reply)
         elif self.job is not None and reply.number == self.job.number:
             self._follow(self.job, reply)
         elif reply.kind == "crashed":
             self._notice(reply.text, "", Severity.WARNING)
 
-    def _answer(self, finish: Finish, reply: Reply) -> None:
+    def _finish(self, finish: Finish, reply: Reply) -> None:
         if reply.kind in ("failed", "crashed"):
             self._notice(reply.text, "", Severity.ERROR)
         elif reply.kind == "done":

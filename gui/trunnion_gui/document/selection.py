@@ -37,7 +37,7 @@ class SelectionModel(QObject):
         self.current = NOTHING
 
     def clear(self) -> None:
-        """Select nothing of another part, and tell every view."""
+        """Select nothing of another part, and notify every view."""
         self.current = NOTHING
         self.changed.emit(NOTHING)
 
@@ -68,7 +68,7 @@ class SelectionModel(QObject):
             self.select(Selection("faces", f"face {tag}", (tag,)) if tag else NOTHING)
 
     def select_ids(self, words: Sequence[str]) -> bool:
-        """Select features and faces by their ids (`group-05`, `face 12`, `12`), all together; say whether there was any."""
+        """Select features and faces by their ids (`group-05`, `face 12`, `12`), all together; return whether there was any."""
         features = [f for f in (self._document.shown.recognition or ()) if f.id in words]
         known = (
             set(np.unique(self._document.mesh.face).tolist())

@@ -22,7 +22,7 @@ if TYPE_CHECKING:
     from trunnion_gui.menus.window_access import WindowAccess
 
 SIZES = ("depth", "thickness", "height", "diameter", "feature_size")
-"""Names of sizes, from the one that tells most about a feature on."""
+"""Names of sizes, the most important one of a feature first."""
 LegendRow = tuple[str, str, str]
 """Colour, words and count; without a colour a heading, without words either a gap."""
 
@@ -49,7 +49,7 @@ class Column:
 
 @dataclass(frozen=True, slots=True)
 class FeatureClass:
-    """Features that stand together in table and legend, never none: `name` tells classes apart, the rest is shown."""
+    """Features that stand together in table and legend, never none: `name` distinguishes classes, the rest is shown."""
 
     name: str
     words: str
@@ -110,12 +110,12 @@ class FamilyView:
         )
 
     def size(self, feature: Feature) -> str:
-        """Return the one size that tells most about a feature, in mm; empty without one."""
+        """Return the most important size of a feature, in mm; empty without one."""
         found = main_size(feature)
         return f"{found} mm" if found else ""
 
     def remark(self, found: Recognition) -> str:
-        """Return what is said after the counts of a recognition."""
+        """Return what is reported after the counts of a recognition."""
         return ""
 
     # menus

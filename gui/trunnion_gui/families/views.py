@@ -58,7 +58,7 @@ class Views:
             yield from self.of(features[0]).classes(kind, features)
 
     def remarks(self, found: Recognition) -> str:
-        """Return what is said after the counts of a recognition."""
+        """Return what is reported after the counts of a recognition."""
         return "".join(view.remark(found) for view in self.present(found))
 
     def offers(self, group: str, found: Recognition | None) -> bool:

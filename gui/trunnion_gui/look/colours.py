@@ -68,7 +68,7 @@ def theme(name: str) -> Theme:
 
 
 def kinds() -> tuple[str, ...]:
-    """Return the kinds of feature that families declare, and the one that stands for all others."""
+    """Return the kinds of feature that families declare, and the one that represents all others."""
     return (*palette().kinds, OTHER)
 
 
@@ -88,7 +88,7 @@ def axis_colour() -> str:
 
 
 def tool_colours() -> dict[str, str]:
-    """Return the colours of cutter, shank and holder, and of the way the tip came by feed and by rapid."""
+    """Return the colours of cutter, shank and holder, and of the tip's path by feed and by rapid."""
     return _palette()["tool"]
 
 

@@ -22,7 +22,7 @@ def names() -> dict[str, str]:
 
 
 def use_theme(chosen: Theme) -> None:
-    """Draw icons asked for from now on in the colours of a theme."""
+    """Draw icons from now on in the colours of a theme."""
     global _theme
     _theme = chosen
 

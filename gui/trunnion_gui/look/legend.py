@@ -46,7 +46,7 @@ def paths(shown: Sequence[str], any_leans: bool) -> list[LegendRow]:
 
 
 def playing(theme: Theme) -> list[LegendRow]:
-    """Return the rows of the playback: stock, tool, and the way of the tip."""
+    """Return the rows of the playback: stock, tool, and the path of the tip."""
     raw, cut = stock_colours(theme)
     tool = tool_colours()
     return [

@@ -23,11 +23,11 @@ def sentence(words: str) -> str:
     return words[:1].upper() + words[1:]
 
 
-def told(words: str) -> str:
+def message_sentence(words: str) -> str:
     """Return a message with a capital first letter, unless it begins with the name of a file, a part, an operation or a setting.
 
-    >>> told("the part is open"), told("tray.step: no solid"), told("op-03 must wait"), told("blade: no faces")
-    ('The part is open', 'tray.step: no solid', 'op-03 must wait', 'blade: no faces')
+    >>> message_sentence("the part is open"), message_sentence("tray.step: no solid"), message_sentence("op-03 must wait"),
+    message_sentence("blade: no faces") ('The part is open', 'tray.step: no solid', 'op-03 must wait', 'blade: no faces')
     """
     first = words.partition(" ")[0]
     is_name = first.endswith(":") or any(letter in "._/" or letter.isdigit() for letter in first)

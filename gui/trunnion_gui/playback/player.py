@@ -1,7 +1,7 @@
-"""The playback's clock: where the tool is, how fast it goes, and which stock is asked of the worker.
+"""The playback's clock: where the tool is, how fast it goes, and which stock is requested from the worker.
 
-The tool runs in the window's process; the stock arrives from the worker when it is ready. While playing, the stock of a place a little
-ahead is asked for: the tool goes there meanwhile, waits when it gets there first, and the stock changes as it passes. So tool and stock
+The tool runs in the window's process; the stock arrives from the worker when it is ready. While playing, the stock of a position a little
+ahead is requested: the tool goes there meanwhile, waits when it gets there first, and the stock changes as it passes. So tool and stock
 never drift apart, and the window never waits.
 """
 
@@ -25,7 +25,7 @@ _TICK_MS = 33
 _LONGEST_TICK_S = 0.25
 """A tick that was held up moves the tool no further than this."""
 _LEAST_LEAD_S, _MOST_LEAD_S = 0.08, 1.0
-"""How far ahead of the tool, in the person's time, the stock is asked for: a little more than the worker needs."""
+"""How far ahead of the tool, in the person's time, the stock is requested: a little more than the worker needs."""
 _ANSWER_S = 0.25
 """Time after which the worker shows how far it got."""
 
@@ -106,7 +106,7 @@ class Player(QObject):
             self.forget()
 
     def forget(self) -> None:
-        """Let the timeline go; it is asked for again when it is wanted."""
+        """Let the timeline go; it is requested again when needed."""
         self.pause()
         self.timeline, self._source, self._opening, self._asked, self._ahead = None, (), 0, 0, None
         self._stock_at = -1.0
@@ -198,7 +198,7 @@ class Player(QObject):
         self._follow()
 
     def _follow(self) -> None:
-        """Ask for the timeline when the plan is another one; nothing is asked while a job runs."""
+        """Request the timeline when the plan is another one; nothing is requested while a job runs."""
         if self._document.is_busy:
             self.pause()
         if not self.is_on or self._document.is_busy:
@@ -212,7 +212,7 @@ class Player(QObject):
             self.forget()
             return
         self._source = source
-        self._opening = self._document.jobs.worker.ask("playback", session)
+        self._opening = self._document.jobs.worker.send("playback", session)
 
     def _after(self, position: float, seconds: float) -> float:
         """Return the position some of the person's seconds later."""
@@ -249,13 +249,13 @@ class Player(QObject):
         self.cut.emit(moment)
 
     def _ask(self) -> None:
-        """Ask for the stock where the tool is, or where it will be when the answer comes; one question at a time."""
+        """Request the stock where the tool is, or where it will be when the reply comes; one request at a time."""
         if self.timeline is None or self._asked or self._document.is_busy:
             return
         wanted = self._after(self.position, self._lead) if self.is_playing else self.position
         if wanted != self._stock_at:
             self._asked_at, self._asked_for = time.perf_counter(), wanted
-            self._asked = self._document.jobs.worker.ask(
+            self._asked = self._document.jobs.worker.send(
                 "moment", self.timeline.key, wanted, _ANSWER_S
             )
 

@@ -1,7 +1,7 @@
 """The file that work in progress is kept in, written in a thread of its own: neither the window nor the worker waits for it. No Qt.
 
 Beside `autosave-PID.trunnion` lies `autosave-PID.json`, which says whose work it is: the project's and the part's path, and when it was
-kept. Writing and forgetting happen one after the other, in the order they were asked for; of writings that wait only the newest is done.
+kept. Writing and forgetting happen one after the other, in the order of their requests; of writings that wait only the newest is done.
 """
 
 from __future__ import annotations
@@ -35,7 +35,8 @@ class AutosaveOwner:
 
 
 class Autosave:
-    """One autosave file and what is done to it. `failed` is told, from the thread that writes, why work could not be kept."""
+    """One autosave file and what is done to it. `failed` is called, from the thread that writes, with the reason why work could not be
+    kept."""
 
     def __init__(self, path: Path, failed: Callable[[str], None]) -> None:
         self._path, self._failed = path, failed
@@ -45,7 +46,7 @@ class Autosave:
     def keep(
         self, session: Session, data: bytes, suffix: str, whose: AutosaveOwner
     ) -> Future[None]:
-        """Write a session with its part file's bytes and suffix, unless a newer one is asked for before its turn comes."""
+        """Write a session with its part file's bytes and suffix, unless a newer one is requested before its turn comes."""
         self._newest += 1
         return self._writer.submit(self._keep, self._newest, session, data, suffix, whose)
 

@@ -76,7 +76,7 @@ class Recovery(QObject):
                 text=text,
                 remedy=tr("take it up where it ended, or throw it away"),
             )
-            self._notice.tell(
+            self._notice.show_finding(
                 finding,
                 {
                     tr("Recover"): partial(self._recover, left),

@@ -27,22 +27,22 @@ class UnsavedWork(QObject):
         self._document, self._save, self._window = document, save, window
         self._waiting: GoOn | None = None
         self._saves_when_free = False
-        self.asks = True
+        self.confirms = True
         """Whether a person is there to be asked."""
         document.files.saved.connect(self._saved)
         document.jobs.changed.connect(self._job_ended)
 
     def holds(self, go_on: GoOn) -> bool:
         """Return whether there is unsaved work that a person does not give up: then `go_on` is called once it is saved, or never."""
-        if not (self.asks and self._document.has_unsaved_work):
+        if not (self.confirms and self._document.has_unsaved_work):
             return False
-        answer = self.ask()
+        answer = self.confirm()
         if answer == SAVE:
             self._waiting = go_on
             self._save_soon()
         return answer != DISCARD
 
-    def ask(self) -> QMessageBox.StandardButton:
+    def confirm(self) -> QMessageBox.StandardButton:
         """Ask what shall become of the work: `SAVE`, `DISCARD` or `CANCEL`. Tests answer in a person's place."""
         job, box = self._document.jobs.job, QMessageBox(self._window)
         box.setWindowTitle("Trunnion")

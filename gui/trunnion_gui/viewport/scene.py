@@ -28,7 +28,7 @@ from trunnion_gui.viewport.layers.part import PartLayer
 from trunnion_gui.viewport.layers.paths import draw_paths
 from trunnion_gui.viewport.layers.setups import draw_setups
 from trunnion_gui.viewport.layers.stock import draw_stock
-from trunnion_gui.viewport.layers.tool import draw_tool, draw_trail, place_tool
+from trunnion_gui.viewport.layers.tool import draw_tool, draw_trail, move_tool_to
 from trunnion_gui.viewport.pick import FacePicker
 from trunnion_gui.viewport.view import make_view
 from trunnion_gui.worker.drawing import DrawnMap, DrawnMesh
@@ -244,11 +244,11 @@ class ViewportScene(QWidget):
 
     def move_tool(self, tip: np.ndarray, axis: np.ndarray) -> None:
         """Stand the tool somewhere (the part's coordinates)."""
-        place_tool(self.view, tip, axis)
+        move_tool_to(self.view, tip, axis)
         self.view.render()
 
     def show_trail(self, points: np.ndarray, rapid: np.ndarray) -> None:
-        """Show the way of the tip: points (k + 1, 3), and whether each chord (k,) was a rapid."""
+        """Show the path of the tip: points (k + 1, 3), and whether each chord (k,) was a rapid."""
         draw_trail(self.view, points, rapid)
 
     def look_at(self, place: Sequence[float], face: int, half_height: float) -> None:
@@ -282,11 +282,11 @@ class ViewportScene(QWidget):
         return self._mesh.normals()[rows[nearest]]
 
     def on_face(self, tag: int, points: np.ndarray) -> np.ndarray:
-        """Return the places (k, 3) on the drawn face that are nearest to points (k, 3)."""
+        """Return the positions (k, 3) on the drawn face that are nearest to points (k, 3)."""
         return self._part.on_face(tag, points) if self._part is not None else points
 
     def show_names(self, names: Sequence[tuple[str, tuple[float, float, float]]]) -> None:
-        """Write words at places of the part, or none."""
+        """Write words at positions of the part, or none."""
         draw_names(self.view, names, self._theme)
         self.view.render()
 

@@ -27,7 +27,7 @@ class ScreenView(QtInteractor):
             self.render_window.SetMultiSamples(0)
 
     def render(self) -> None:
-        """Draw when the event loop is back, once however often it was asked."""
+        """Draw when the event loop is back, once however often it was called."""
         if self._due is not None:
             self._due.start()
 

@@ -9,7 +9,7 @@ from PySide6.QtWidgets import QFrame, QHBoxLayout, QLabel, QPushButton, QToolBut
 from trunnion.findings import Finding, Severity
 from trunnion_gui.i18n import tr
 from trunnion_gui.look import icons
-from trunnion_gui.look.words import told
+from trunnion_gui.look.words import message_sentence
 from trunnion_gui.widgets.layout import empty
 
 _SIDES = {Severity.ERROR: "error", Severity.WARNING: "warning"}
@@ -51,14 +51,16 @@ class Notice(QFrame):
         """What it says to do, or what became of the work."""
         return self._remedy.text()
 
-    def tell(self, finding: Finding, answers: dict[str, Callable[[], None]] | None = None) -> None:
+    def show_finding(
+        self, finding: Finding, answers: dict[str, Callable[[], None]] | None = None
+    ) -> None:
         """Show a finding with buttons for what can be done."""
         self.setProperty("severity", _SIDES.get(finding.severity, "info"))
         self.style().unpolish(self)
         self.style().polish(self)
         self.close_button.setIcon(icons.icon("close"))
-        self._text.setText(told(finding.text))
-        self._remedy.setText(told(finding.remedy))
+        self._text.setText(message_sentence(finding.text))
+        self._remedy.setText(message_sentence(finding.remedy))
         self._remedy.setVisible(bool(finding.remedy))
         empty(self._answers)
         for words, answer in (answers or {}).items():

@@ -41,7 +41,7 @@ def tree(headers: Sequence[str], stretched: int = 0, kind: type[Tree] = QTreeWid
 
 
 def select_row(made: QTreeWidget, item: QTreeWidgetItem | None) -> None:
-    """Select a row of a tree and bring it into view, or none; nobody is told of it."""
+    """Select a row of a tree and bring it into view, or none; without a signal."""
     made.blockSignals(True)
     if item is None:
         made.clearSelection()

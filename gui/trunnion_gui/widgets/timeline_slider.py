@@ -90,7 +90,7 @@ class TimelineSlider(QWidget):
         return _EDGE + (value / self._end if self._end else 0.0) * max(self.width() - 2 * _EDGE, 1)
 
     def value_at(self, x: float) -> float:
-        """Return the whole position at a place of the widget."""
+        """Return the whole position at a point of the widget."""
         share = (x - _EDGE) / max(self.width() - 2 * _EDGE, 1)
         return float(round(min(max(share, 0.0), 1.0) * self._end))
 
@@ -161,7 +161,7 @@ class TimelineSlider(QWidget):
         return super().event(event)
 
     def words_at(self, x: float) -> str:
-        """Return the words of the segment at a place of the widget."""
+        """Return the words of the segment at a point of the widget."""
         value = self.value_at(x)
         row = sum(first <= value for first in self._firsts) - 1
         return self._words[row] if 0 <= row < len(self._words) else ""

@@ -1,1 +1,1 @@
-"""The process that computes: its requests and replies, what it can be asked for, and what it sends to be drawn."""
+"""The process that computes: its requests and replies, its verbs, and what it sends to be drawn."""

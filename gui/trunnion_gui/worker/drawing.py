@@ -77,8 +77,8 @@ def normals_of(points: np.ndarray, triangles: np.ndarray) -> np.ndarray:
     return np.divide(total, length, out=np.zeros_like(total), where=length > 0).astype(np.float32)
 
 
-def place_on(mesh: Mesh, tags: Iterable[int]) -> tuple[float, float, float]:
-    """Return a place near the middle of the largest of some faces, on it."""
+def point_on(mesh: Mesh, tags: Iterable[int]) -> tuple[float, float, float]:
+    """Return a position near the middle of the largest of some faces, on it."""
     area = np.bincount(mesh.face, weights=mesh.areas())
     rows = np.flatnonzero(mesh.face == max(tags, key=lambda t: area[t] if t < len(area) else 0.0))
     if not len(rows):

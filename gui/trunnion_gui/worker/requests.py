@@ -1,7 +1,7 @@
-"""What the worker can be asked for: each verb calls the engine and answers with plain data that the window draws or shows. No Qt.
+"""Requests that the worker knows: each verb calls the engine and replies with plain data that the window draws or shows. No Qt.
 
-Verbs take the engine, a progress, a way to tell of what is done so far, and their own arguments; `VERBS` lists those of every part. A
-family's own ones are asked for by the function itself, which the worker imports.
+Verbs take the engine, a progress, a function that sends what is done so far, and their own arguments; `VERBS` lists those of every part. A
+family's own ones are requested by the function itself, which the worker imports.
 """
 
 from __future__ import annotations
@@ -48,7 +48,7 @@ class SettingsGroup:
     settings: tuple[Declared, ...]
 
 
-Tell = Callable[[str, Any], None]
+SendEvent = Callable[[str, Any], None]
 Work = Callable[..., Any]
 _writing: set[Work] = set()
 
@@ -83,19 +83,21 @@ def _as_they_leave(session: Session) -> tuple[PostedFile, ...]:
 
 
 def _open(
-    engine: Any, progress: Progress, tell: Tell, path: str, solid: int | None
+    engine: Any, progress: Progress, send_event: SendEvent, path: str, solid: int | None
 ) -> OpenedSession:
     session = engine.open(path, solid=solid, progress=progress.part(0.0, 0.8))
-    tell("progress", (0.85, "preparing the picture"))
+    send_event("progress", (0.85, "preparing the picture"))
     mesh = engine.mesh(session, progress.part(0.85, 1.0))
     return OpenedSession(state_of(engine, session), drawing_of(mesh), engine.keep())
 
 
-def _run(engine: Any, progress: Progress, tell: Tell, session: Session, last: str) -> SessionState:
+def _run(
+    engine: Any, progress: Progress, send_event: SendEvent, session: Session, last: str
+) -> SessionState:
     before = engine.states(session)
     steps = [s for s in until(last) if before[s] in ("empty", "stale")] or [last]
     for step in steps:
-        tell("stage", (step, None))
+        send_event("stage", (step, None))
         try:
             session = engine.run(
                 session, until=step, progress=_own_share(progress.part(*share(step, steps)), step)
@@ -105,7 +107,7 @@ def _run(engine: Any, progress: Progress, tell: Tell, session: Session, last: st
                 raise
             return state_of(engine, session, str(reason))
         if step != steps[-1]:
-            tell("stage", (step, state_of(engine, session)))
+            send_event("stage", (step, state_of(engine, session)))
     return state_of(engine, session)
 
 
@@ -125,46 +127,60 @@ def _own_share(progress: Progress, step: str) -> Progress:
     )
 
 
-def _states(engine: Any, _progress: Progress, _tell: Tell, session: Session) -> SessionState:
+def _states(
+    engine: Any, _progress: Progress, _send_event: SendEvent, session: Session
+) -> SessionState:
     return state_of(engine, session)
 
 
 def _attach(
-    engine: Any, progress: Progress, _tell: Tell, session: Session, data: bytes, suffix: str
+    engine: Any,
+    progress: Progress,
+    _send_event: SendEvent,
+    session: Session,
+    data: bytes,
+    suffix: str,
 ) -> SessionState:
     engine.attach(session, data, suffix, progress=progress)
     return state_of(engine, session)
 
 
 @writes_files
-def _save(engine: Any, progress: Progress, _tell: Tell, session: Session, path: str) -> str:
+def _save(
+    engine: Any, progress: Progress, _send_event: SendEvent, session: Session, path: str
+) -> str:
     engine.save(session, path, progress)
     return path
 
 
 @writes_files
 def _write(
-    engine: Any, progress: Progress, _tell: Tell, session: Session, folder: str
+    engine: Any, progress: Progress, _send_event: SendEvent, session: Session, folder: str
 ) -> tuple[str, ...]:
     return tuple(str(name) for name in engine.write(session, folder, progress=progress))
 
 
-def _playback(engine: Any, progress: Progress, _tell: Tell, session: Session) -> Any:
+def _playback(engine: Any, progress: Progress, _send_event: SendEvent, session: Session) -> Any:
     return engine.playback(session, progress=progress)
 
 
 def _moment(
-    engine: Any, progress: Progress, _tell: Tell, key: str, position: float, seconds: float
+    engine: Any,
+    progress: Progress,
+    _send_event: SendEvent,
+    key: str,
+    position: float,
+    seconds: float,
 ) -> Any:
     return engine.moment(key, position, seconds, progress)
 
 
-def _deviation(engine: Any, progress: Progress, _tell: Tell, session: Session) -> Any:
+def _deviation(engine: Any, progress: Progress, _send_event: SendEvent, session: Session) -> Any:
     return drawn_map(engine.deviation_map(session, progress))
 
 
 def _settings(
-    engine: Any, _progress: Progress, _tell: Tell
+    engine: Any, _progress: Progress, _send_event: SendEvent
 ) -> dict[str, tuple[SettingsGroup, ...]]:
     return {
         step: tuple(

@@ -21,7 +21,7 @@ class SharedMessage:
 
 
 def packed(thing: Any) -> SharedMessage:
-    """Return a thing ready to be sent. Who receives it must call `unpacked` once: that frees the block."""
+    """Return a thing ready to be sent. The receiver must call `unpacked` once: that frees the block."""
     buffers: list[pickle.PickleBuffer] = []
     data = pickle.dumps(thing, protocol=5, buffer_callback=buffers.append)
     views = [b.raw() for b in buffers]

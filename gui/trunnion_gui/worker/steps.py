@@ -35,7 +35,7 @@ _WORST = ("problem", "running", "stale", "empty", "done")
 
 @dataclass(frozen=True, slots=True)
 class PanelStage:
-    """One foldout panel: its name, title and the steps it stands for."""
+    """One foldout panel: its name, title and the steps it represents."""
 
     name: str
     title: str
@@ -65,7 +65,7 @@ def share(step: str, steps: Sequence[str]) -> tuple[float, float]:
 
 
 def joined_state(states: Mapping[str, str], steps: Sequence[str]) -> str:
-    """Return the state of a panel that stands for several steps: the one that asks for most attention."""
+    """Return the state of a panel that represents several steps: the one that needs most attention."""
     own = [states.get(s, "empty") for s in steps]
     if "done" in own and "empty" in own:
         return "stale" if "problem" not in own else "problem"

@@ -33,7 +33,7 @@ GRACE_S = 0.35
 """s: a person who cancels waits for half a second at most, the end of a process that hears nothing and the start of another included."""
 WRITING_GRACE_S = 5.0
 """s: half a folder of programs is worse than a late answer."""
-_TELL_EVERY_S, _TELL_NEWS_S = 0.05, 0.01
+_SEND_EVERY_S, _SEND_NEWS_S = 0.05, 0.01
 """s between two reports of progress at least: the same words, and other ones, which must not be missing when the work then stands still."""
 _CRASHES_IN_A_ROW = 3
 
@@ -81,7 +81,7 @@ def serve(pipe: Connection, factory: str, cancelled: Any) -> None:
             if engine is None:
                 module, _, name = factory.partition(":")
                 engine = getattr(importlib.import_module(module), name)()
-            reply = _answer(engine, request, pipe, cancelled)
+            reply = _reply_to(engine, request, pipe, cancelled)
         except Cancelled:
             reply = Reply(request.number, "cancelled")
         except TrunnionError as reason:
@@ -103,17 +103,17 @@ def _fault_line(request: Request, fault: Exception) -> str:
     return f"{what} met a fault of the program ({type(fault).__name__} at {where}: {fault})"
 
 
-def _answer(engine: Any, request: Request, pipe: Connection, cancelled: Any) -> Reply:
-    told, words = 0.0, ""
+def _reply_to(engine: Any, request: Request, pipe: Connection, cancelled: Any) -> Reply:
+    sent_at, words = 0.0, ""
 
     def report(fraction: float, text: str) -> None:
-        nonlocal told, words
+        nonlocal sent_at, words
         now = time.monotonic()
-        if now - told >= (_TELL_EVERY_S if text == words else _TELL_NEWS_S):
-            told, words = now, text
+        if now - sent_at >= (_SEND_EVERY_S if text == words else _SEND_NEWS_S):
+            sent_at, words = now, text
             pipe.send(packed(Reply(request.number, "progress", text=text, fraction=fraction)))
 
-    def tell(kind: str, value: Any) -> None:
+    def send_event(kind: str, value: Any) -> None:
         if kind == "progress":
             pipe.send(packed(Reply(request.number, kind, text=value[1], fraction=value[0])))
         else:
@@ -124,7 +124,7 @@ def _answer(engine: Any, request: Request, pipe: Connection, cancelled: Any) -> 
     return Reply(
         request.number,
         "done",
-        value=work_of(request.verb)(engine, progress, tell, *request.arguments),
+        value=work_of(request.verb)(engine, progress, send_event, *request.arguments),
     )
 
 
@@ -161,7 +161,7 @@ class Worker(QObject):
         """The id of the process, 0 when none runs."""
         return self._process.pid if self._process is not None else 0
 
-    def ask(self, verb: str | Work, *arguments: Any) -> int:
+    def send(self, verb: str | Work, *arguments: Any) -> int:
         """Send a request and return its number; starts the process again when it had given up."""
         if self._process is None:
             self._crashes = 0
@@ -174,7 +174,7 @@ class Worker(QObject):
         return self._number
 
     def cancel(self, number: int) -> None:
-        """Ask a request to stop; end its process when it does not obey in time."""
+        """Request that a job stops; end its process when it does not obey in time."""
         asked = next((r for r in self._awaited if r.number == number), None)
         if self._process is None or asked is None:
             return
@@ -227,7 +227,7 @@ class Worker(QObject):
             self._replace("cancelled", "", number)
 
     def _replace(self, kind: str, text: str, number: int) -> None:
-        """Start a fresh process; the request that ran is answered with `kind`, those that waited behind it are asked again."""
+        """Start a fresh process; the request that ran gets the reply `kind`, those that waited behind it are sent again."""
         waiting = [r for r in self._awaited if r.number != number]
         self._awaited = []
         self._end()

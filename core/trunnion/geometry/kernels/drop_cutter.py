@@ -94,7 +94,7 @@ def _vertex_drop(point: Floats, corners: Floats, pieces: Floats) -> float:
 
 def _facet_drop(point: Floats, corners: Floats, pieces: Floats) -> float:
     """Return the greatest height of the tip where it touches a triangle's plane inside the triangle;
-    vertical triangles have no such place."""
+    vertical triangles have no such position."""
     a, b, c = corners[:, 0], corners[:, 1], corners[:, 2]
     normal = np.cross(b - a, c - a)
     up = normal[:, 2] != 0.0

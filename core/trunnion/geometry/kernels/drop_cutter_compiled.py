@@ -378,10 +378,10 @@ def _height_bound(
 
 @njit(cache=True, nogil=True, inline="always")
 def _ball_clearance(square: float, lift: Floats, ball: float) -> float:
-    """Return how far (mm) at least a ball that touches a plane stands above places of the plane at a
+    """Return how far (mm) at least a ball that touches a plane stands above positions of the plane at a
     squared distance `square` (mm2) from where it touches, measured along z.
 
-    Along the line from the ball's centre to the place the gap is sqrt(ball^2 + d^2) - ball; the
+    Along the line from the ball's centre to the position the gap is sqrt(ball^2 + d^2) - ball; the
     tangent plane there is below the ball, and the gap along z to it is that over the z part of its
     normal, at most (ball + d slope) / (secant away).
     """

@@ -4,7 +4,7 @@ Sethian, Computing geodesic paths on manifolds, 1998). Plain reference.
 A stencil is a point and two others before it: (c, a, b) with the lengths |ca|, |cb| and |ab|. A
 front that passes a and b as a straight line reaches c between them; where a triangle is obtuse at
 c, its neighbours are unfolded into its plane until a point lies in the sector that both sides leave
-free (causality asks for acute stencils), and two stencils stand for one. Lengths and times in one
+free (causality requires acute stencils), and two stencils represent one. Lengths and times in one
 unit: the front has speed 1.
 """
 

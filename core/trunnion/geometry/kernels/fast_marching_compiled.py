@@ -1,7 +1,7 @@
 """The loops of `kernels.fast_marching` compiled, with an indexed binary heap.
 
 The heap holds each waiting point once and knows its place, so a lowered time moves the entry up
-instead of adding another. Equal times are ordered by the point's row: the same answer every time.
+instead of adding another. Equal times are ordered by the point's row: the same result every time.
 """
 
 from __future__ import annotations

@@ -1,8 +1,8 @@
-"""Point in polygon by ray crossing, with a third answer for points too near to the boundary; compiled
+"""Point in polygon by ray crossing, with a third result for points too near to the boundary; compiled
 with a strip index.
 
-Outlines are closed chains of short chords that stand for curves; within `near` of them the chords
-can't tell inside from outside. Plain reference `points_in_polygon`. mm.
+Outlines are closed chains of short chords that represent curves; within `near` of them the chords
+can't distinguish inside from outside. Plain reference `points_in_polygon`. mm.
 """
 
 from __future__ import annotations

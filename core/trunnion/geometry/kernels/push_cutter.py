@@ -17,7 +17,7 @@ from trunnion.geometry.arrays import Floats
 from trunnion.geometry.kernels.drop_cutter import HALVINGS, RHO1, drop_cutter
 
 SAMPLES, CLOSER = 21, 12
-"""Places along a line that are searched for the highest one, and how often they are drawn closer round it."""
+"""Positions along a line that are searched for the highest one, and how often they are drawn closer round it."""
 NOWHERE = -1e9
 """mm: how low a cutter falls that meets nothing."""
 
@@ -35,12 +35,12 @@ def push_cutter(lines: Floats, corners: Floats, pieces: Floats) -> Floats:
 def _triangle_interval(triangle: Floats, y: float, z: float, pieces: Floats) -> tuple[float, float]:
     """Return the interval in which one triangle (1, 3, 3) blocks the line.
 
-    A grid drawn closer round the highest place finds a blocked one, if there is any; then bisection
+    A grid drawn closer round the highest position finds a blocked one, if there is any; then bisection
     of both ends.
     """
 
     def height(x: Floats) -> Floats:
-        """Return the tip's height over the triangle at places x (n,) of the line."""
+        """Return the tip's height over the triangle at positions x (n,) of the line."""
         return drop_cutter(np.column_stack([x, np.full(len(x), y)]), triangle, pieces, NOWHERE)
 
     radius = pieces[-1, RHO1]
@@ -52,7 +52,7 @@ def _triangle_interval(triangle: Floats, y: float, z: float, pieces: Floats) -> 
         x = np.linspace(a, b, SAMPLES)
         top = height(x)
         k = int(np.argmax(top))
-        # A blocked place splits the search: one end of the interval on either side of it.
+        # A blocked position splits the search: one end of the interval on either side of it.
         if top[k] >= z:
             return _bisect_end(height, z, float(x[k]), low), _bisect_end(
                 height, z, float(x[k]), high
@@ -64,7 +64,7 @@ def _triangle_interval(triangle: Floats, y: float, z: float, pieces: Floats) -> 
 def _bisect_end(
     height: Callable[[Floats], Floats], z: float, inside: float, outside: float
 ) -> float:
-    """Return the last blocked x between a blocked place and a free one, by bisection to the last
+    """Return the last blocked x between a blocked position and a free one, by bisection to the last
     digit."""
     for _ in range(HALVINGS):
         middle = 0.5 * (inside + outside)

@@ -87,9 +87,9 @@ def _edge_push(
     """Return the larger of `best` and how far (x, mm) an edge, relative to the line, blocks it towards
     +x.
 
-    Two golden sections (Kiefer, 1953): one of the room, to find any place that the cutter extends
+    Two golden sections (Kiefer, 1953): one of the room, to find any position that the cutter extends
     over, one of the blocked x, which is concave over the stretch between the first and the last
-    such place.
+    such position.
     """
     dx, dy, dz = x1 - x0, y1 - y0, z1 - z0
     radius = pieces[len(pieces) - 1, RHO1]

@@ -40,7 +40,7 @@ class Chords:
 def chorded(
     source: Segments, is_bridge: Bools | None = None, chord: float = tolerance.PLANE_REGION
 ) -> Chords:
-    """Return segments opened into chords so that places where they lie on each other get the same chords."""
+    """Return segments opened into chords so that positions where they lie on each other get the same chords."""
     m = len(source)
     ends = pulled_together(np.concatenate([source.start, source.end]))
     start, end = ends[:m], ends[m:]

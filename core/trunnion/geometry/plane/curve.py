@@ -318,7 +318,7 @@ class Curve:
         return distance_to(self.segments(), np.atleast_2d(np.asarray(points, dtype=np.float64)))
 
     def nearest(self, point: ArrayLike) -> float:
-        """Return the arc length of the place on the curve that is nearest to a point (2,)."""
+        """Return the arc length of the position on the curve that is nearest to a point (2,)."""
         p = np.asarray(point, dtype=np.float64)
         seg = self.segments()
         row = int(_loops(seg, p[None, :]).nearest_segment(p[None, :], *_rows(seg))[1][0])

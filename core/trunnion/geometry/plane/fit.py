@@ -118,7 +118,7 @@ class _Edges:
 
 
 def _changes(carrier: Ints, turned: Ints) -> Ints:
-    """Return the places in a ring where another carrier, or the same one in the other direction, begins."""
+    """Return the positions in a ring where another carrier, or the same one in the other direction, begins."""
     before_carrier, before_turned = (
         np.concatenate([carrier[-1:], carrier[:-1]]),
         np.concatenate([turned[-1:], turned[:-1]]),
@@ -152,7 +152,8 @@ def _ring_size(points: Floats) -> tuple[float, float]:
 
 @dataclass(slots=True)
 class _Run:
-    """Edges on one carrier: the source row, the way round (0 for a line), the point where it starts, and whether that is an old one."""
+    """Edges on one carrier: the source row, the sense of rotation (0 for a line), the point where it starts, and whether that is an old
+    one."""
 
     row: int
     turned: int
@@ -251,7 +252,7 @@ def _turned_back(source: Segments, runs: list[_Run], starts: list[Floats]) -> in
 
 
 def _goes_round(source: Segments, run: _Run, after: _Run) -> bool:
-    """Say whether a run whose ends meet is nearly a full circle rather than a speck."""
+    """Return whether a run whose ends meet is nearly a full circle rather than a speck."""
     return bool(run.turned) and abs(_sweep(source, run, run.start, after.start)) > math.pi
 
 

@@ -40,7 +40,7 @@ def crossings(s: Segments, pairs: tuple[Ints, Ints] | None = None) -> tuple[Ints
     )
     touches = _off_carrier(s, row, point) <= CLOSE
     row, point = np.concatenate([*rows, row[touches]]), np.concatenate([*points, point[touches]])
-    key = place_on(s, row, point)
+    key = share_on(s, row, point)
     real = ~np.isnan(key)
     # A meeting is one only when it lies inside both.
     begin = 0
@@ -73,7 +73,7 @@ def _off_carrier(s: Segments, rows: Ints, points: Floats) -> Floats:
     )
 
 
-def place_on(s: Segments, rows: Ints, points: Floats) -> Floats:
+def share_on(s: Segments, rows: Ints, points: Floats) -> Floats:
     """Return the shares (k,) of the length at which points (k, 2) lie inside segments `rows`; NaN at the ends and beyond."""
     place = np.full(len(rows), np.nan)
     line = s.sweep[rows] == 0.0

@@ -1,7 +1,7 @@
 """Parallels of curves and regions: lines stay lines, arcs stay arcs about the same centre, convex corners get round joins.
 
 Every segment moves to its side and neighbours are connected: by an arc about a convex corner, by a bridge over a concave one.
-The boundary of the answer is a part of these raw curves. They cut the plane into faces, each wholly nearer to the source than
+The boundary of the result is a part of these raw curves. They cut the plane into faces, each wholly nearer to the source than
 the distance or wholly farther, so one exact distance a face decides (`grown`); an open curve is cut at the crossings
 themselves (`parallel_curves`).
 """
@@ -59,7 +59,8 @@ def grown(boundary: Segments, loops: Ints, distance: float) -> tuple[shapely.Geo
 
 
 def _margin(boundary: Segments, distance: float, faces: NDArray[np.object_]) -> Floats:
-    """Return how much deeper than asked a point inside each face lies, the most telling of several points where one says little."""
+    """Return how much deeper than the offset distance a point inside each face lies, the clearest of several points where one is close to
+    it."""
     margin = (
         signed_distance(boundary, shapely.get_coordinates(shapely.point_on_surface(faces)))
         + distance
@@ -139,7 +140,7 @@ def _neighbours(loop: Ints, closed: bool) -> tuple[Ints, Ints]:
 def _bends(s: Segments, before: Ints, after: Ints, u: Floats, v: Floats) -> Floats:
     """Return the signed turns (k,) from the directions `u` at the ends of segments `before` to `v` at the starts of `after`."""
     bend = np.arctan2(u[:, 0] * v[:, 1] - u[:, 1] * v[:, 0], (u * v).sum(axis=1))
-    # At a cusp the directions alone can't tell a left turn from a right one; the curvatures can.
+    # At a cusp the directions alone can't distinguish a left turn from a right one; the curvatures can.
     curvature = np.sign(s.sweep) / np.where(s.sweep != 0.0, s.radius, np.inf)
     side = -(curvature[before] + curvature[after])
     cusp = (np.abs(bend) > np.pi - tolerance.ANGLE) & (side != 0.0)
@@ -155,7 +156,7 @@ def parallel_curves(curve: Curve, distance: float) -> list[Curve]:
     """Return the curves that run beside a curve at a distance to its left (negative: to its right), in the order of the curve.
 
     Convex corners get round joins about the corner, concave ones are trimmed; what would come nearer to the curve than the
-    distance is left out, so the answer may be empty or in several pieces. Arcs stay arcs.
+    distance is left out, so the result may be empty or in several pieces. Arcs stay arcs.
     """
     if abs(distance) <= tolerance.PARAMETRIC:
         return [curve]

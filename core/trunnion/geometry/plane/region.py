@@ -26,7 +26,7 @@ from trunnion.geometry.plane.curve import (
 from trunnion.geometry.plane.offset import grown
 
 KEPT_ANSWERS = 4096
-"""Answers of offsets and of overlays that are kept, of some kB each: a large panel asks less than this in one step."""
+"""Results of offsets and of overlays that are kept, of some kB each: a large panel needs fewer in one step."""
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -128,7 +128,7 @@ class Region:
         return self._digest[0]
 
     def contains(self, points: ArrayLike, margin: float = 0.0) -> Bools:
-        """Say of each point (k, 2) whether it is inside by at least `margin` mm (negative: at most so far outside)."""
+        """Return for each point (k, 2) whether it is inside by at least `margin` mm (negative: at most so far outside)."""
         p = np.atleast_2d(np.asarray(points, dtype=np.float64))
         if not self:
             return np.zeros(len(p), dtype=bool)
@@ -151,7 +151,7 @@ class Region:
         low, high = self.box()
         if distance < 0.0 and 2.0 * -distance >= (high - low).min():
             return EMPTY_REGION
-        return _OFFSETS.answer(
+        return _OFFSETS.get(
             (self.digest(), distance),
             lambda: restored_region(*grown(self.segments(), self.loops(), distance)),
         )
@@ -245,7 +245,7 @@ def overlay(a: Region, b: Region, operation: Callable[..., shapely.Geometry]) ->
         chords, (first, second) = _opened_into_chords([a, b])
         return restored_region(operation(first, second), chords)
 
-    return _OVERLAYS.answer((a.digest(), b.digest(), operation.__name__), work_out)
+    return _OVERLAYS.get((a.digest(), b.digest(), operation.__name__), work_out)
 
 
 def restored_region(geometry: shapely.Geometry, chords: Chords) -> Region:
@@ -274,7 +274,7 @@ def _opened_into_chords(regions: Sequence[Region]) -> tuple[Chords, list[shapely
 
 
 def _beside(region: Region, low: Floats, high: Floats) -> Region:
-    """Return a region without the pieces and islands that lie wholly outside a box: what is asked there doesn't hang on them."""
+    """Return a region without the pieces and islands that lie wholly outside a box: queries inside the box don't depend on them."""
 
     def near(curve: Curve) -> bool:
         first, last = curve.box()
@@ -318,7 +318,7 @@ def _boxed(boxes: Floats, n: int) -> list[int]:
 
 
 def _is_inside(inner: Curve, outer: Curve) -> bool:
-    """Say whether most of one curve is inside another; they may touch."""
+    """Return whether most of one curve is inside another; they may touch."""
     s = inner.segments()
     rows = np.arange(len(s))
     probes = np.concatenate([s.start, s.at(rows, 0.5 * s.length)])

@@ -74,7 +74,7 @@ class Metric:
 def distances(
     metric: Metric, rows: Ints, times: Floats | float = 0.0, farthest: float = np.inf
 ) -> tuple[Floats, Floats]:
-    """Return how far all points are from some, by rows, that have distances of their own: (v,), and the place (v, 3) each came from.
+    """Return how far all points are from some, by rows, that have distances of their own: (v,), and the position (v, 3) each came from.
 
     Distances are true along the surface to a few hundredths of an edge; farther than `farthest` they are infinite.
     """

@@ -1,6 +1,6 @@
 """Where fronts meet: the lines over a sheet on which a distance has its ridges.
 
-A distance rises along the ways that its fronts took. Across a ridge these ways run towards each other, so the distance's level lines have
+A distance rises along the paths that its fronts took. Across a ridge these paths run towards each other, so the distance's level lines have
 corners there: between the corners of neighbouring lines it is farther than between the lines. Triangles that a ridge crosses are parted
 along it, for inside of them the distance is not even.
 """
@@ -19,7 +19,7 @@ from trunnion.geometry.sheet.fields import Metric
 from trunnion.geometry.sheet.sheet import Sheet
 
 MEETING = math.cos(math.radians(36.0))
-"""Cosine of the least angle between two ways that meet: level lines less sharp than 144 degrees are five hundredths farther apart at
+"""Cosine of the least angle between two paths that meet: level lines less sharp than 144 degrees are five hundredths farther apart at
 their corners than between."""
 
 
@@ -39,7 +39,8 @@ class RidgedSheet:
 
 
 def ridged(metric: Metric, time: Floats, foot: Floats, gap: float) -> RidgedSheet:
-    """Return the sheet parted along the ridges of distances (v,) that came from places (v, 3), as `geometry.fields.distances` gives them.
+    """Return the sheet parted along the ridges of distances (v,) that came from positions (v, 3), as `geometry.fields.distances` gives
+    them.
 
     Ridges whose ends lie within `gap` mm of each other are one.
     """
@@ -118,7 +119,7 @@ def _chained(points: Floats, lines: list[Ints], gap: float) -> list[Ints]:
 def _meeting(
     metric: Metric, ends: Ints, side: Ints, time: Floats, foot: Floats
 ) -> tuple[Floats, Floats, Bools]:
-    """Return where on each edge (e,) fronts from both ends meet, as a share of its way, when, and whether they do."""
+    """Return where on each edge (e,) fronts from both ends meet, as a share of its path, when, and whether they do."""
     sheet = metric.sheet
     length = np.empty(len(ends))
     length[side] = metric.lengths

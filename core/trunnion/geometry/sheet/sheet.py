@@ -357,7 +357,7 @@ def _turned(
 
 
 def _upright(points: Floats, normals: Floats, triangles: Ints) -> Bools:
-    """Say which triangles (t,) face, all but a little, as the faces do at their corners."""
+    """Return which triangles (t,) face, all but a little, as the faces do at their corners."""
     a, b, c = np.moveaxis(points[triangles], 1, 0)
     normal = _unit(np.cross(b - a, c - a))
     return np.asarray((np.einsum("tk,tck->tc", normal, normals[triangles]) > SMOOTH).all(axis=1))

@@ -37,13 +37,13 @@ class Skin:
 
     @property
     def drop(self) -> DropSurface:
-        """The whole skin ready for dropping cutters along -z; made when first asked for."""
+        """The whole skin ready for dropping cutters along -z; made on first use."""
         if not self._drop:
             self._drop.append(DropSurface.of(self.points, self.triangles))
         return self._drop[0]
 
     def of(self, tags: tuple[int, ...]) -> Bools:
-        """Say which triangles (t,) lie on faces of some tags."""
+        """Return which triangles (t,) lie on faces of some tags."""
         return np.isin(self.face, tags)
 
     def moved(self, frame: Frame, other: Frame) -> Skin:

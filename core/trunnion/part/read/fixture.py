@@ -76,7 +76,7 @@ def stl_mesh(data: bytes, name: str) -> Mesh:
 
 
 def _is_binary(data: bytes) -> bool:
-    """Say whether the length of a file is what its count of triangles asks for: text may begin with any word, also with `solid`."""
+    """Return whether the length of a file fits its count of triangles: text may begin with any word, also with `solid`."""
     return (
         len(data) >= _HEADER
         and len(data)

@@ -26,7 +26,7 @@ def read_part(
     limits: ReadLimits | None = None,
     progress: Progress = QUIET,
 ) -> Part:
-    """Return the part of a STEP, gzipped STEP or IGES file, told by its content.
+    """Return the part of a STEP, gzipped STEP or IGES file, recognised by its content.
 
     `solid` chooses one of several solids, from 1; without it the largest is taken and a finding names the others. Raises `BadInput`
     with one line for a file that can't be used, `OutOfMemory` when reading needs more than `limits` allow, `Cancelled` on request.

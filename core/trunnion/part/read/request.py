@@ -1,4 +1,4 @@
-"""What a reading process is told of the file it reads."""
+"""The request to a reading process: the file it reads."""
 
 from __future__ import annotations
 
@@ -7,7 +7,7 @@ from dataclasses import dataclass
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class ReadRequest:
-    """What the reading process is told: the file's name and path, digest, kind ("step" or "iges"), the faces its text lists."""
+    """The request to a reading process: the file's name and path, digest, kind ("step" or "iges"), the faces its text lists."""
 
     file: str
     path: str

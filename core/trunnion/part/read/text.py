@@ -1,4 +1,4 @@
-"""What can be told of a part file from its text, before the CAD kernel sees it.
+"""What a part file shows in its text, before the CAD kernel sees it.
 
 The kernel's readers take damage in silence: a file cut off gives fewer faces, a number that is none may keep them for ever.
 """

@@ -130,7 +130,7 @@ def _names(document: Any, shape: Shape) -> dict[int, str]:
         for k in range(1, inside.Length() + 1):
             label = inside.Value(k)
             tag = index.FindIndex(XCAFDoc_ShapeTool.GetShape_s(label))
-            # Asking for an attribute that is absent crashes the kernel, so it is asked for by its id first.
+            # Getting an absent attribute crashes the kernel, so its id is looked up first.
             if tag and label.IsAttribute(TDataStd_Name.GetID_s()):
                 name = TDataStd_Name()
                 label.FindAttribute(TDataStd_Name.GetID_s(), name)
@@ -209,7 +209,7 @@ def _chosen(bodies: list[Body], request: ReadRequest) -> int:
 
 
 def _size(body: Body) -> tuple[float, float]:
-    """Return volume and area to nine figures: solids that are alike must not be told apart by rounding."""
+    """Return volume and area to nine figures: solids that are alike must not be distinguished by rounding."""
     return float(f"{abs(body.volume):.9g}"), float(f"{body.area:.9g}")
 
 

@@ -33,7 +33,7 @@ class _Bending:
         self._trim = BRepTopAdaptor_FClass2d(face, tolerance.COINCIDENT)
 
     def inside(self, places: Floats) -> Bools:
-        """Say which places (k, 2) lie inside the trim."""
+        """Return which places (k, 2) lie inside the trim."""
         return np.array(
             [self._trim.Perform(gp_Pnt2d(u, v)) == TopAbs_IN for u, v in places.tolist()],
             dtype=bool,
@@ -46,7 +46,7 @@ class _Bending:
         return -bends[:, ::-1] if self._hollow else bends
 
     def grid(self) -> tuple[Floats, Floats]:
-        """Return places in the middles of cells over the face's bounds, and a cell's size."""
+        """Return positions in the middles of cells over the face's bounds, and a cell's size."""
         a = self.adaptor
         low = np.array([a.FirstUParameter(), a.FirstVParameter()])
         step = (np.array([a.LastUParameter(), a.LastVParameter()]) - low) / _GRID
@@ -75,7 +75,7 @@ def bend_of(face: Shape) -> FaceCurvature:
 
 
 def _along_edges(shape: Shape) -> Floats:
-    """Return places along the edges of a face: surfaces often bend most where they end."""
+    """Return positions along the edges of a face: surfaces often bend most where they end."""
     found = []
     for edge in edges_of(shape):
         curve = BRepAdaptor_Curve2d(edge, TopoDS.Face_s(shape))
@@ -99,7 +99,7 @@ def _extremes(
         here = centre[:, None] + around * reach
         found = bending.at(here.reshape(-1, 2)).reshape(2, -1, 2)
         for k, values in enumerate((-found[0, :, 0], found[1, :, 1])):
-            # Only what is better is asked for whether it lies inside the trim: that costs more than the curvature.
+            # Only a better candidate is tested against the trim: that costs more than the curvature.
             better = np.flatnonzero(values > best[k])
             better = better[bending.inside(here[k, better])]
             if len(better):

@@ -22,7 +22,7 @@ ROUND = 1.1
 
 @dataclass(frozen=True, slots=True, eq=False, kw_only=True)
 class ExactPoints:
-    """Points of a face at k places: point, outward unit normal (k, 3), their derivatives by the face's parameters du, dv and normal_du,
+    """Points of a face at k positions: point, outward unit normal (k, 3), their derivatives by the face's parameters du, dv and normal_du,
     normal_dv (k, 3), and the lengths of the point's second derivatives bend (k, 3): by u twice, by both, by v twice; those with what they
     may grow to nearby."""
 
@@ -36,7 +36,7 @@ class ExactPoints:
 
 
 class ExactFace:
-    """One trimmed face of a part, asked in a frame."""
+    """One trimmed face of a part, evaluated in a frame."""
 
     def __init__(self, part: Part, tag: int, frame: Frame) -> None:
         from OCP.GeomAbs import GeomAbs_SurfaceType as Kind
@@ -65,7 +65,7 @@ class ExactFace:
         return self._view.bounds()
 
     def inside(self, places: Floats) -> Bools:
-        """Say which places (k, 2) lie inside the trim."""
+        """Return which places (k, 2) lie inside the trim."""
         return self._trim.holds(np.asarray(places, dtype=np.float64))
 
     def at(self, places: Floats) -> ExactPoints:

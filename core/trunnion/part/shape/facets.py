@@ -89,7 +89,7 @@ def facet_samples(
 ) -> tuple[Ints, Floats, Floats, Floats]:
     """Return samples of some faces about `spacing` mm apart: face (s,) rows, point and outward normal (s, 3), area (s,) mm2.
 
-    Triangles wider than that are cut into equal ones; of those that share a cell of a grid one stands for all.
+    Triangles wider than that are cut into equal ones; of those that share a cell of a grid one represents all.
     """
     found = [
         _face_samples(facets, int(row), spacing, progress)

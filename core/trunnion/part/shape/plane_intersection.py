@@ -223,7 +223,7 @@ def _loops(tracer: Tracer) -> Iterator[Piece]:
 
 
 def _beside(points: Floats, point: Floats) -> bool:
-    """Say whether a point lies on a curve that was followed already: nearer to a chord than a tenth of its length."""
+    """Return whether a point lies on a curve that was followed already: nearer to a chord than a tenth of its length."""
     start, chord = points[:-1], np.diff(points, axis=0)
     square = (chord * chord).sum(axis=1)
     share = np.clip(
@@ -236,7 +236,7 @@ def _beside(points: Floats, point: Floats) -> bool:
 
 
 def _follows(point: Triple, heading: Triple, there: Triple, towards: Triple) -> bool:
-    """Say whether an arc between two points with given directions is within `tolerance.FITTED` of the curve between."""
+    """Return whether an arc between two points with given directions is within `tolerance.FITTED` of the curve between."""
     chord = _less(there, point)
     size = math.sqrt(_dot(chord, chord))
     if size < tolerance.COINCIDENT:

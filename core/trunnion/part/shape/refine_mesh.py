@@ -26,7 +26,7 @@ if TYPE_CHECKING:
 MOST_TRIANGLES = 4_000_000
 """About 1 GB with the tree over them."""
 COARSE = 0.01
-"""mm: chord error asked of the kernel's mesher at least: finer ones take longer there than halving does (measured); from coarser ones
+"""mm: least chord error that the kernel's mesher is given: finer ones take longer there than halving does (measured); from coarser ones
 borders move past points beside them."""
 BETWEEN = 1.07
 """What a triangle may be further off than at its middle and those of its edges: 1.066 at most for an even bend (searched)."""
@@ -528,7 +528,8 @@ def _net_of(shape: Any) -> tuple[Floats, Floats, Ints, Any]:
 def _looks_out(
     evaluate: Evaluator, side: float, places: Floats, points: Floats, triangles: Ints
 ) -> bool:
-    """Say whether triangles run anticlockwise seen from outside: on surfaces of revolution the mesher's order doesn't tell (measured)."""
+    """Return whether triangles run anticlockwise seen from outside: on surfaces of revolution the mesher's order doesn't show it
+    (measured)."""
     corners = points[triangles]
     across = np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0])
     largest = np.argsort(-(across * across).sum(axis=1), kind="stable")[:1]
@@ -569,7 +570,7 @@ def _border_of(
             curves.append(BRepAdaptor_Curve(edge))
         nodes = np.array([chain.Node(k) for k in range(1, chain.NbNodes() + 1)], dtype=np.int64) - 1
         t = np.array([chain.Parameter(k) for k in range(1, chain.NbNodes() + 1)])
-        # A seam has two lines, and which one goes with the net's own nodes isn't told.
+        # A seam has two lines, and which one goes with the net's own nodes isn't known.
         sides = (
             [edge, TopoDS.Edge_s(edge.Reversed())] if BRep_Tool.IsClosed_s(edge, shape) else [edge]
         )

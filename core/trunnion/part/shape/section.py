@@ -99,7 +99,7 @@ class SectionFace:
     places: Any = None
 
     def holds(self, point: Floats) -> bool:
-        """Say whether a point on the surface lies inside the trimmed area."""
+        """Return whether a point on the surface lies inside the trimmed area."""
         if self.places is None:
             self.places = ShapeAnalysis_Surface(BRep_Tool.Surface_s(self.view.face))
         place = self.places.ValueOfUV(gp_Pnt(*point.tolist()), tolerance.COINCIDENT)

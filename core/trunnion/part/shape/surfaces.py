@@ -378,7 +378,7 @@ def _line_strip(start: Sequence[float], end: Sequence[float], z: float) -> Float
 def closed_up(outline: Floats) -> tuple[Floats, Floats]:
     """Return an outline's edges (c, 7) with lines drawn to the ends that they meet, and lines (b, 7) that bridge what gaps remain.
 
-    Whether a point is inside is told by counting the edges a ray crosses; through a gap of one rounding error a ray slips uncounted, and
+    Whether a point is inside is decided by counting the edges a ray crosses; through a gap of one rounding error a ray slips uncounted, and
     the face would seem to cover its own openings. Ends meet when each is the other's nearest, no further than trimmed surfaces are sewn.
     Lines are moved by `tolerance.COINCIDENT` at most, arcs not at all: an end beside its circle would open the cap over its chord.
     """
@@ -522,7 +522,7 @@ def _extent(face: Any) -> float:
 
 
 def _flat_enough(slope: float, extent: float) -> bool:
-    """Say whether a slope over a face's extent stays far inside the bound of the contact engine."""
+    """Return whether a slope over a face's extent stays far inside the bound of the contact engine."""
     return abs(slope) * extent < tolerance.CONTACT_BOUND / 4
 
 

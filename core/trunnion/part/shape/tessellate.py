@@ -26,7 +26,7 @@ def tessellated(
     """Return the triangles of a solid's faces (by tag), anticlockwise seen from outside.
 
     `chord` (mm) and `angle` (radians) bound the distance from the surface and the turn from chord to chord. A face that the mesher
-    can't do is missing from the mesh; `Mesh.face` tells which are there.
+    can't do is missing from the mesh; `Mesh.face` has those that are there.
     """
     BRepTools.Clean_s(shape)
     progress.doing("triangles of the faces")
@@ -73,7 +73,8 @@ def _numbers(count: int, progress: Progress) -> Iterator[int]:
 
 
 def _looks_out(face: Shape, found: Any, points: np.ndarray, rows: np.ndarray) -> bool:
-    """Say whether triangles run anticlockwise seen from outside: on surfaces of revolution the mesher's order doesn't tell (measured)."""
+    """Return whether triangles run anticlockwise seen from outside: on surfaces of revolution the mesher's order doesn't show it
+    (measured)."""
     corners = points[rows]
     across = np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0])
     largest = int(np.argmax((across * across).sum(axis=1)))

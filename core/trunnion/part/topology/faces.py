@@ -1,4 +1,4 @@
-"""A trimmed face and what is asked of it again and again: points, outward normals, what is inside."""
+"""A trimmed face with its queries: points, outward normals, what is inside."""
 
 from __future__ import annotations
 
@@ -19,7 +19,7 @@ from trunnion.part.topology.identity import Shape
 
 @dataclass(slots=True, eq=False)
 class TrimmedFace:
-    """A trimmed face with what is asked of it again and again."""
+    """A trimmed face whose kernel objects are kept between queries."""
 
     face: Shape
     row: int
@@ -45,7 +45,7 @@ class TrimmedFace:
         return a.FirstUParameter(), a.LastUParameter(), a.FirstVParameter(), a.LastVParameter()
 
     def holds(self, u: float, v: float) -> bool:
-        """Say whether (u, v) lies inside the trimmed area."""
+        """Return whether (u, v) lies inside the trimmed area."""
         return bool(self.inside.Perform(gp_Pnt2d(u, v)) == TopAbs_IN)
 
     def at(self, u: float, v: float) -> tuple[Floats, Floats]:

@@ -329,7 +329,7 @@ def _samples(view: TrimmedFace, progress: Progress) -> tuple[Floats, Floats]:
 
 
 def _beside_rim(view: TrimmedFace, wanted: int) -> list[tuple[float, float]]:
-    """Return up to `wanted` places (u, v) a little inside the boundary: a thin face falls between the cells of any grid."""
+    """Return up to `wanted` positions (u, v) a little inside the boundary: a thin face falls between the cells of any grid."""
     found: list[tuple[float, float]] = []
     around = TopExp_Explorer(view.face, TopAbs_EDGE)
     u0, u1, v0, v1 = view.bounds()

@@ -20,7 +20,7 @@ def _listed(shape: Shape, kind: Any) -> list[Shape]:
 
 
 def faces_of(shape: Shape) -> list[Shape]:
-    """Return the faces of a shape, each once; the face of tag N of a shape as read is at place N - 1."""
+    """Return the faces of a shape, each once; the face of tag N of a shape as read is at position N - 1."""
     return [TopoDS.Face_s(s) for s in _listed(shape, TopAbs_FACE)]
 
 
@@ -40,14 +40,14 @@ def solids_of(shape: Shape) -> list[Shape]:
 
 
 def edge_index(shape: Shape) -> Any:
-    """Return the kernel's indexed map of a shape's edges: `FindIndex(edge)` is the 1-based place, 0 when it is not there."""
+    """Return the kernel's indexed map of a shape's edges: `FindIndex(edge)` is the 1-based position, 0 when it is not there."""
     found = TopTools_IndexedMapOfShape()
     TopExp.MapShapes_s(shape, TopAbs_EDGE, found)
     return found
 
 
 def face_index(shape: Shape) -> Any:
-    """Return the kernel's indexed map of a shape's faces: `FindIndex(face)` is the 1-based place, 0 when it is not there."""
+    """Return the kernel's indexed map of a shape's faces: `FindIndex(face)` is the 1-based position, 0 when it is not there."""
     found = TopTools_IndexedMapOfShape()
     TopExp.MapShapes_s(shape, TopAbs_FACE, found)
     return found

@@ -13,8 +13,8 @@ from OCP.TopTools import TopTools_IndexedDataMapOfShapeListOfShape
 from trunnion.part.topology.identity import Shape
 
 ACCURACY = 1e-3
-"""Accuracy asked of the kernel's area integrals face by face: they come out within 4e-6 (measured). Asking for more takes twenty times as
-long; asking for none is off by 1.6e-4 on trimmed free-form faces, but by less than 1e-4 in volumes, where asking makes it worse."""
+"""Accuracy that the kernel's area integrals are given face by face: they come out within 4e-6 (measured). A higher one takes twenty times
+as long; none is off by 1.6e-4 on trimmed free-form faces, but by less than 1e-4 in volumes, where one makes it worse."""
 
 
 def volume_of(shape: Shape) -> float:

@@ -1,5 +1,5 @@
-"""What a face's trim holds, for many places at once: its outline as short pieces in the face's own parameters tells nearly all of them, and
-the CAD kernel those beside it."""
+"""What a face's trim holds, for many places at once: its outline as short pieces in the face's own parameters decides nearly all of them,
+and the CAD kernel those beside it."""
 
 from __future__ import annotations
 
@@ -22,14 +22,14 @@ from trunnion.progress import QUIET, Progress
 SAG = 1e-4
 """Of the face's size in its parameters: how far a piece may be from the outline."""
 FEW = 40
-"""Fewer places are told by the kernel alone: that is as quick as opening the outline."""
+"""Fewer places are classified by the kernel alone: that is as quick as opening the outline."""
 HALVINGS = 8
 TRIED = 8
 """Places along both sides of a grid at which the outline must say the same as the kernel."""
 
 
 class Trim:
-    """The trimmed area of a face; `progress` is looked at while the kernel is asked."""
+    """The trimmed area of a face; `progress` is looked at while the kernel is queried."""
 
     def __init__(self, view: TrimmedFace, progress: Progress = QUIET) -> None:
         self._view, self._progress = view, progress
@@ -40,7 +40,7 @@ class Trim:
         self._tried = False
 
     def holds(self, places: Floats) -> Bools:
-        """Say which places (k, 2) lie inside."""
+        """Return which places (k, 2) lie inside."""
         if not self._tried and len(places) > FEW:
             self._tried = True
             self._outlines = self._opened()
@@ -48,7 +48,7 @@ class Trim:
             return self._by_kernel(places)
         share = (places - self._low) / self._size
         told = self._outlines.within(share)
-        # The kernel brings places beyond a seam back; it is asked for those as well.
+        # The kernel brings places beyond a seam back; it is queried for those as well.
         unsure = (told == NEAR) | (((share < 0.0) | (share > 1.0)) & self._turns).any(axis=1)
         inside = told == IN
         inside[unsure] = self._by_kernel(places[unsure])

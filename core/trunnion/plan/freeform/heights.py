@@ -45,7 +45,7 @@ class HeightMap:
     ) -> HeightMap:
         """Return the map of a surface over a box with corners (3,), which should hold it with room to spare; nothing is below `low`."""
         size = high[:2] - low[:2]
-        cell = max(cell, math.sqrt(float(size[0] * size[1]) / MOST_PLACES))
+        cell = cell_over(low, high, cell)
         count = np.ceil(size / cell).astype(int) + 1
         corner = 0.5 * (low[:2] + high[:2]) - 0.5 * cell * (count - 1)
         places = corner + cell * np.argwhere(np.ones(tuple(count), dtype=bool))
@@ -57,6 +57,21 @@ class HeightMap:
     def below(self, z: float, chord: float) -> Region:
         """Return the area of the map that lies at a height or below it, with rims straightened by at most `chord` mm, always inwards."""
         return region_below(self.height, self.corner, self.cell, z, chord)
+
+
+def cell_over(low: Floats, high: Floats, cell: float) -> float:
+    """Return the side in mm of the cells of a map over a box with corners (3,): `cell`, or what keeps the map small enough."""
+    size = high[:2] - low[:2]
+    return max(cell, math.sqrt(float(size[0] * size[1]) / MOST_PLACES))
+
+
+def gap_beside_walls(cell: float, chord: float) -> float:
+    """Return by how much, in mm and in the mean, the rims of `HeightMap.below` stay farther from upright walls than the map's allowance.
+
+    A place is low from a cell's diagonal off the wall on. The rim crosses the edge to a place that isn't, on either side of that
+    distance by less than a cell, and straightening moves it off by the chord error. So no rim is farther off than twice this.
+    """
+    return math.sqrt(2.0) * cell + chord
 
 
 def region_below(height: Floats, corner: Floats, cell: float, z: float, chord: float) -> Region:

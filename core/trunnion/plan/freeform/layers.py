@@ -8,11 +8,17 @@ import numpy as np
 
 from trunnion import tolerance
 from trunnion.findings import Refused
+from trunnion.geometry.arrays import Floats
 from trunnion.geometry.plane.region import EMPTY_REGION, Region, union_all
 from trunnion.model.operation import Operation
 from trunnion.model.process import ProcessTree
 from trunnion.plan.contract import StockHeights
-from trunnion.plan.freeform.heights import HeightMap, region_below
+from trunnion.plan.freeform.heights import (
+    HeightMap,
+    cell_over,
+    gap_beside_walls,
+    region_below,
+)
 from trunnion.plan.freeform.keys import ALLOWANCE, BOTTOM, CELL, number
 from trunnion.plan.freeform.lands import LAND, REST_LAND, land_drive
 from trunnion.plan.freeform.space import SurfaceSpace
@@ -57,6 +63,27 @@ def plane_drive_of(
     )
 
 
+def left_on_walls(space: SurfaceSpace, allowance: float, cell: float) -> float:
+    """Return how thick, in mm and in the mean, layers with an allowance from a map with these cells (mm) leave material on upright walls.
+
+    Nowhere is it twice as thick.
+    """
+    return allowance + gap_beside_walls(
+        cell_over(*_mapped_box(space, cell), cell), _chord(allowance)
+    )
+
+
+def _chord(allowance: float) -> float:
+    """Return how far in mm the rims of layers with an allowance may be straightened."""
+    return max(STRAIGHT * allowance, LEAST_STRAIGHT)
+
+
+def _mapped_box(space: SurfaceSpace, cell: float) -> tuple[Floats, Floats]:
+    """Return the corners (3,) of the box that layers map the part over: the blank and two cells all round."""
+    margin = np.array([1.0, 1.0, 0.0]) * 2.0 * cell
+    return space.low - margin, space.high + margin
+
+
 def _layers(
     operation: Operation, space: SurfaceSpace, stock: StockHeights, progress: Progress
 ) -> PlaneDrive:
@@ -66,11 +93,9 @@ def _layers(
     """
     allowance, bottom = number(operation, ALLOWANCE), number(operation, BOTTOM)
     cell = number(operation, CELL)
-    margin = np.array([1.0, 1.0, 0.0]) * 2.0 * cell
-    tall = HeightMap.of(
-        space.skin.drop, space.low - margin, space.high + margin, cell, allowance, progress
-    )
-    top, chord = float(stock.heights.max()), max(STRAIGHT * allowance, LEAST_STRAIGHT)
+    low, high = _mapped_box(space, cell)
+    tall = HeightMap.of(space.skin.drop, low, high, cell, allowance, progress)
+    top, chord = float(stock.heights.max()), _chord(allowance)
     blank, around = space.blank_area(), space.around()
     outside = around.minus(
         Region.rectangle(

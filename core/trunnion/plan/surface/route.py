@@ -34,8 +34,10 @@ from trunnion.plan.freeform.areas import (
 )
 from trunnion.plan.freeform.cutters.choice import AreaCutters, cutter_for, named
 from trunnion.plan.freeform.estimate.scallop import stepover_on_plane
+from trunnion.plan.freeform.hollows import hollow_depths
 from trunnion.plan.freeform.keys import ALLOWANCE, BOTTOM, CELL, EARLIER, SCALLOP
 from trunnion.plan.freeform.lands import LAND, REST_LAND
+from trunnion.plan.freeform.layers import left_on_walls
 from trunnion.plan.freeform.reach import AreaSamples, clear_beside, leans, places_on, reached
 from trunnion.plan.freeform.roughing_directions import sides_for
 from trunnion.plan.freeform.space import SurfaceSpace
@@ -65,6 +67,12 @@ NEAR_FINISH = 1.6
 """Largest cutter of the last roughing over the smallest finishing cutter."""
 LEAST_REST = 4.0
 """mm: rest roughing with a smaller cutter than this costs more than it spares the finishing."""
+ON_SKIN = ("semi", "finish", "rest_finish")
+"""Kinds of operations on curved faces."""
+FULL = 2.0
+"""Times what layers leave over a slope: as deep as passes on a skin meet material in an inner edge, where both faces have left theirs."""
+OPENED = 0.5
+"""Of the square of a cutter's diameter: area of hollows that are worth roughing with it."""
 MISSED = 1.0
 """mm2 that an area's cutter may leave without a further cutter for it."""
 MOST = 0.9
@@ -158,7 +166,7 @@ def _plan(draft: SurfacePlanState, progress: Progress) -> None:
         else:
             _area(draft, area, level, share)
     progress.at(0.8, "roughing")
-    _rough(draft, space, float(space.skin.points[:, 2].min()))
+    _rough(draft, space, float(space.skin.points[:, 2].min()), "part", progress.part(0.8, 0.85))
     if hidden:
         seen = places.of(np.isin(places.face, hidden))
         for n, side in enumerate(
@@ -169,11 +177,11 @@ def _plan(draft: SurfacePlanState, progress: Progress) -> None:
                 seen,
                 _finishers(draft),
                 draft.route.reach_clearance,
-                progress.part(0.8, 1.0),
+                progress.part(0.85, 0.98),
             ),
             1,
         ):
-            _rough(draft, side.space, side.bottom, f"side-{n}")
+            _rough(draft, side.space, side.bottom, f"side-{n}", progress.part(0.98, 1.0))
 
 
 def _add_slivers(draft: SurfacePlanState) -> None:
@@ -214,9 +222,11 @@ def _leaning_finishers(draft: SurfacePlanState) -> tuple[Tool, ...]:
     return tuple(longest[d] for d in sorted(longest) if d <= LARGEST_LEANING)
 
 
-def _rough(draft: SurfacePlanState, space: SurfaceSpace, bottom: float, name: str = "part") -> None:
+def _rough(
+    draft: SurfacePlanState, space: SurfaceSpace, bottom: float, name: str, progress: Progress
+) -> None:
     """Plan roughing by layers with a large cutter from a direction, and with falling sizes what those before left: down to about the size
-    of the smallest finishing cutter, so that this one finds little."""
+    of the smallest finishing cutter, so that this one finds little, and on into hollows that are too narrow for that size."""
     size, deep = float((space.high - space.low)[:2].min()), float(space.high[2]) - bottom
     most = min(draft.route.largest, ROUGH_SHARE * size)
     tool = _rougher(draft, most, deep, draft.chosen.rough_cutter)
@@ -236,12 +246,38 @@ def _rough(draft: SurfacePlanState, space: SurfaceSpace, bottom: float, name: st
         default=tool.diameter,
     )
     n = 1
-    while tool.diameter > NEAR_FINISH * smallest:
+    while True:
         rest = _rougher(draft, REST_SHARE * tool.diameter, deep, "")
         if rest is None or rest.diameter < LEAST_REST:
             break
-        _add_rough(draft, "rest", f"{name}-{n}", rest, space, bottom)
+        if tool.diameter > NEAR_FINISH * smallest:
+            _add_rough(draft, "rest", f"{name}-{n}", rest, space, bottom)
+        else:
+            opened = _hollows(draft, space, tool, progress) - _hollows(draft, space, rest, progress)
+            if opened < OPENED * rest.diameter**2:
+                break
+            why = (
+                f"It opens hollows of {trimmed(opened, 0)} mm2 that {tool.name} doesn't come into."
+            )
+            _add_rough(draft, "rest", f"{name}-{n}", rest, space, bottom, why)
         tool, n = rest, n + 1
+
+
+def _hollows(draft: SurfacePlanState, space: SurfaceSpace, tool: Tool, progress: Progress) -> float:
+    """Return the area in mm2 of curved faces that roughing with a cutter leaves more material over than their cutters are meant for: it
+    is too wide for what they lie in."""
+    chosen = draft.chosen
+    tags = {t for o in draft.operations if o.kind in ON_SKIN for t in o.faces}
+    places = places_on(space.skin, tuple(sorted(tags)))
+    places = places.of(places.normal[:, 2] > 0.0)
+    radius = tool.radius + left_on_walls(space, chosen.rough_allowance, chosen.cell)
+    depths = hollow_depths(space, places.point, radius, progress)
+    return places.area * float((depths > FULL * _left_by_layers(space, chosen)).sum())
+
+
+def _left_by_layers(space: SurfaceSpace, chosen: SurfaceRouteSettings) -> float:
+    """Return how thick, in mm and in the mean, roughing by layers leaves material on a slope: what it leaves on walls, and its steps."""
+    return left_on_walls(space, chosen.rough_allowance, chosen.cell) + 0.5 * chosen.layer
 
 
 def _rougher(draft: SurfacePlanState, most: float, deep: float, name: str) -> Tool | None:
@@ -268,7 +304,13 @@ def _rougher(draft: SurfacePlanState, most: float, deep: float, name: str) -> To
 
 
 def _add_rough(
-    draft: SurfacePlanState, kind: str, name: str, tool: Tool, space: SurfaceSpace, bottom: float
+    draft: SurfacePlanState,
+    kind: str,
+    name: str,
+    tool: Tool,
+    space: SurfaceSpace,
+    bottom: float,
+    *why: str,
 ) -> None:
     stage, chosen, cutting = draft.stages[kind], draft.chosen, choose(CuttingSettings, {})
     depth = min(chosen.layer, roughing_depth(tool, draft.material, cutting))
@@ -276,6 +318,7 @@ def _add_rough(
     rules = (
         stage.rule,
         f"{tool.name}: reaches {trimmed(depth_reached(tool), 1)} mm deep.",
+        *why,
         f"It leaves {trimmed(chosen.rough_allowance, 2)} mm all round, in layers of {trimmed(depth, 2)} mm.",
     )
     choices: dict[str, Value] = {
@@ -343,7 +386,7 @@ def _outline(draft: SurfacePlanState, tags: tuple[int, ...]) -> None:
         tool,
         tags,
         height / steps,
-        max(draft.chosen.rough_allowance, 0.1),
+        left_on_walls(space, draft.chosen.rough_allowance, draft.chosen.cell),
         {},
         rules,
     )
@@ -501,7 +544,7 @@ def _add_finish(
     allowance = chosen.semi_allowance if semi else 0.0
     height = chosen.semi_scallop if semi else chosen.height()
     after_rough = semi or chosen.semi_allowance <= 0.0
-    depth = chosen.rough_allowance + 0.5 * chosen.layer if after_rough else chosen.semi_allowance
+    depth = _left_by_layers(draft.space, chosen) if after_rough else chosen.semi_allowance
     width = stepover_on_plane(tool.corner_radius or 0.5 * tool.radius, height)
     area = places.area * float(np.isin(places.face, tags).sum())
     rules = (

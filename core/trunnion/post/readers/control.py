@@ -22,7 +22,7 @@ from trunnion.post.readers.moves import ToolMover
 from trunnion.post.readers.rotary import Rotary
 from trunnion.post.readers.sections import Sections, UprightPoses, operation_of
 from trunnion.post.readers.state import ModalState
-from trunnion.post.readers.tools import check_place, check_tool
+from trunnion.post.readers.tools import check_tool, check_work_position
 from trunnion.shop.kinematics import WorkPosition
 
 
@@ -86,7 +86,7 @@ class Control:
         elif comment.startswith("TOOL "):
             check_tool(line, comment, self.state.tools)
         elif comment.startswith("STANDS "):
-            check_place(line, comment, self.state.setup, self.place)
+            check_work_position(line, comment, self.state.setup, self.place)
 
     def run(self, block: Block) -> None:
         """Do what one line says."""

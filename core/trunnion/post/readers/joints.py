@@ -145,7 +145,7 @@ class Joints:
         end: Floats,
         reach: Floats,
     ) -> Floats:
-        """Return by how much (k,) mm tip or flutes leave a straight way with an even turn between shares of blocks."""
+        """Return by how much (k,) mm tip or flutes leave a straight path with an even turn between shares of blocks."""
         tip0, axis0 = _between(self.place, words, angle, gauge, row, start)
         tip1, axis1 = _between(self.place, words, angle, gauge, row, end)
         most = np.zeros(len(row))

@@ -30,7 +30,7 @@ def from_start(i: float | None, j: float | None, start: Point) -> tuple[float, f
 
 
 def absolute(i: float | None, j: float | None, start: Point) -> tuple[float, float]:
-    """Return the way to a centre whose I and J count from the zero of the work offset; one that is missing is that of the start."""
+    """Return the vector to a centre whose I and J count from the zero of the work offset; one that is missing is that of the start."""
     return (0.0 if i is None else i - start[0]), (0.0 if j is None else j - start[1])
 
 

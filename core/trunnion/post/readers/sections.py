@@ -18,7 +18,7 @@ from trunnion.model.tool import AnyTool
 from trunnion.model.toolpath import ACROSS, Mark, Motion, Toolpath
 
 Point = tuple[float, ...]
-"""A place as a reader counts it: x, y, z mm, and after them what else says where the tool is (rotary angles, the tool axis)."""
+"""A position as a reader counts it: x, y, z mm, and after them what else says where the tool is (rotary angles, the tool axis)."""
 _OPERATION = re.compile(r"OPERATION\s+(\S+)$", re.IGNORECASE)
 LEAST_FEED = 1e-3
 """mm/min: what a block is fed at in which the tip stands while an axis turns; how long it takes the machine's axes say."""
@@ -185,8 +185,8 @@ class Sections:
     """The sections of one setup while its text is read.
 
     A section ends where an operation begins, the tool changes, or spindle or coolant change between feed moves. Its first block is a rapid:
-    when the text goes on from a place that is not up at the clearance height, that place is the first block, so that what follows is judged
-    from where it really starts; after a tool change the tool comes from above, at the clearance height or higher.
+    when the text goes on from a position that is not up at the clearance height, that position is the first block, so that what follows is
+    judged from where it really starts; after a tool change the tool comes from above, at the clearance height or higher.
     """
 
     def __init__(self, reckoning: PoseInterpreter) -> None:
@@ -203,7 +203,7 @@ class Sections:
         self._operation = name
 
     def change_tool(self) -> None:
-        """End the section: the tool that follows comes from an unknown place above everything."""
+        """End the section: the tool that follows comes from an unknown position above everything."""
         if self._open is not None:
             began_with_it = self._open.cutting is not None
             self._close()

@@ -42,7 +42,7 @@ def check_tool(line: int, comment: str, tools: Mapping[int, AnyTool]) -> None:
         )
 
 
-def check_place(line: int, comment: str, setup: Setup, place: WorkPosition | None) -> None:
+def check_work_position(line: int, comment: str, setup: Setup, place: WorkPosition | None) -> None:
     """Raise `BadInput` when a comment is our header's line of where the work stands and it stands elsewhere now."""
     if place is None:
         raise BadInput(

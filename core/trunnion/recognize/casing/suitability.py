@@ -64,7 +64,7 @@ def _wall(graph: FaceGraph, axis: RevolutionAxis, turned: Bools) -> tuple[float,
 
 
 def _weights(graph: FaceGraph) -> Floats:
-    """Return the area (s,) that each sample stands for, mm2."""
+    """Return the area (s,) that each sample represents, mm2."""
     number = np.bincount(graph.sample_face, minlength=len(graph))
     return np.asarray((graph.area / np.maximum(number, 1))[graph.sample_face])
 

@@ -77,7 +77,7 @@ def _away(graph: FaceGraph, axis: RevolutionAxis) -> Floats:
 
 
 def _may_be_blade(graph: FaceGraph, axis: RevolutionAxis, row: int) -> bool:
-    """Say whether a repeated face is a side of a blade: twisted or leaning, or upright with both ends in hub and shroud.
+    """Return whether a repeated face is a side of a blade: twisted or leaning, or upright with both ends in hub and shroud.
 
     Other upright faces are teeth, spokes and the walls of pockets, which a flat part has too.
     """
@@ -90,7 +90,7 @@ def _may_be_blade(graph: FaceGraph, axis: RevolutionAxis, row: int) -> bool:
 
 
 def _enclosed(graph: FaceGraph, axis: RevolutionAxis, row: int) -> bool:
-    """Say whether most of the edges at either end of a face along the axis are inner corners."""
+    """Return whether most of the edges at either end of a face along the axis are inner corners."""
     edges = list(graph.edges_of[row])
     if not edges:
         return False

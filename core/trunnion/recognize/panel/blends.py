@@ -36,13 +36,13 @@ def floor_fillets(graph: FaceGraph, classes: FaceClasses) -> frozenset[int]:
 
 
 def rises_from(graph: FaceGraph, edge: int, face: int) -> bool:
-    """Say whether a face goes up from one of its edges."""
+    """Return whether a face goes up from one of its edges."""
     highest = max(graph.start[edge][2], graph.middle[edge][2], graph.end[edge][2])
     return bool(graph.box_high[face][2] > highest + SLIVER)
 
 
 def is_corner(graph: FaceGraph, classes: FaceClasses, face: int) -> bool:
-    """Say whether a rising face is a blend of two walls: curved, smooth to rising faces at two sides, each of a wider bend."""
+    """Return whether a rising face is a blend of two walls: curved, smooth to rising faces at two sides, each of a wider bend."""
     if not classes.rising[face] or graph.surface[face] == "plane":
         return False
     beside = {
@@ -58,7 +58,7 @@ def is_corner(graph: FaceGraph, classes: FaceClasses, face: int) -> bool:
 
 
 def is_rounding(graph: FaceGraph, classes: FaceClasses, face: int) -> bool:
-    """Say whether a face of the outer profile rounds a corner off: it bulges, and a wall of a wider bend runs smoothly into it."""
+    """Return whether a face of the outer profile rounds a corner off: it bulges, and a wall of a wider bend runs smoothly into it."""
     beside = [graph.across(e, face) for e in graph.edges_of[face] if graph.convexity[e] == SMOOTH]
     own = bend_radius(graph, face)
     return bool(
@@ -95,7 +95,7 @@ def _cut_off(graph: FaceGraph, classes: FaceClasses, face: int, whole: list[int]
 
 
 def _patch(graph: FaceGraph, classes: FaceClasses, face: int) -> bool:
-    """Say whether a blend touches no floor and no top of its own: the ball in a corner between two fillets. A dome over them bulges."""
+    """Return whether a blend touches no floor and no top of its own: the ball in a corner between two fillets. A dome over them bulges."""
     level = (FaceClass.UP, FaceClass.DOWN)
     return bool(graph.bend[face] <= 0) and not any(
         classes.kind[graph.across(e, face)] in level
@@ -105,7 +105,7 @@ def _patch(graph: FaceGraph, classes: FaceClasses, face: int) -> bool:
 
 
 def _stacked(graph: FaceGraph, face: int, other: int) -> bool:
-    """Say whether two faces only meet above each other (the same wall, split at a height)."""
+    """Return whether two faces only meet above each other (the same wall, split at a height)."""
     return bool(
         graph.box_low[other][2] >= graph.box_high[face][2] - SLIVER
         or graph.box_high[other][2] <= graph.box_low[face][2] + SLIVER

@@ -29,7 +29,7 @@ ROW = 0.01
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class SideFeatures:
-    """The features of one side and what is to be said about them."""
+    """The features of one side and what is to be reported of them."""
 
     features: tuple[Feature, ...]
     findings: tuple[Finding, ...]

@@ -98,7 +98,7 @@ def _has_floor(view: PanelSide, blend: int) -> bool:
 
 
 def _continues_up(view: PanelSide, edge: int, face: int, other: int) -> bool:
-    """Say whether another face carries a wall on, on the same surface, above the wall's top."""
+    """Return whether another face carries a wall on, on the same surface, above the wall's top."""
     graph = view.graph
     at_top = min(graph.start[edge][2], graph.end[edge][2]) > graph.box_high[face][2] - SLIVER
     return bool(

@@ -201,7 +201,7 @@ def island_on(view: PanelSide, floor: int, foot: WallRing) -> Island:
 
 
 def is_bore(view: PanelSide, floor: int, around: WallRing) -> bool:
-    """Say whether a floor is the bottom of a bore: round, sharp, its side one hollow cylinder no wider than a hole may be."""
+    """Return whether a floor is the bottom of a bore: round, sharp, its side one hollow cylinder no wider than a hole may be."""
     return bool(
         not around.fillets
         and not around.drops
@@ -211,7 +211,7 @@ def is_bore(view: PanelSide, floor: int, around: WallRing) -> bool:
 
 
 def is_round(view: PanelSide, sides: tuple[int, ...]) -> bool:
-    """Say whether sides are one hollow cylinder, no wider than a hole may be."""
+    """Return whether sides are one hollow cylinder, no wider than a hole may be."""
     graph = view.graph
     return bool(sides) and all(
         graph.surface[s] == "cylinder"

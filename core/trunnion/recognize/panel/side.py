@@ -70,7 +70,7 @@ class PanelSide:
         return np.vstack([self.graph.centre[face], samples(self.graph, face)[0]])
 
     def undercut(self, face: int) -> bool:
-        """Say whether material stands over the whole of a face: it can't be reached from this side."""
+        """Return whether material stands over the whole of a face: it can't be reached from this side."""
         spots = [shapely.Point(p[0], p[1]) for p in self.points(face)]
         layers = [s for s in self.slices.layers if s.z > self.graph.box_high[face][2] + SLIVER]
         return bool(layers) and all(any(s.material.contains(p) for s in layers) for p in spots)

@@ -32,7 +32,7 @@ NARROW = 0.05
 
 
 TRIES = (0.5, 0.37, 0.71)
-"""Where between two levels a slice lies; the next place is tried when the part can't be cut there (a seam or a vertex in the plane)."""
+"""Where between two levels a slice lies; the next position is tried when the part can't be cut there (a seam or a vertex in the plane)."""
 
 
 @dataclass(frozen=True, slots=True, eq=False, kw_only=True)

@@ -54,7 +54,7 @@ def mean_width(view: PanelSide, face: int) -> float:
 
 
 def is_curved_floor(view: PanelSide, face: int) -> bool:
-    """Say whether a curved face that looks up lies at the foot of walls all round."""
+    """Return whether a curved face that looks up lies at the foot of walls all round."""
     outer = loops(view.graph, face).get(0, ())
     return bool(outer) and all(_is_foot(view, e, face) for e in outer)
 

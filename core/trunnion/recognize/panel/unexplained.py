@@ -79,7 +79,7 @@ def _sort(graph: FaceGraph, classes: FaceClasses, row: int) -> str:
 
 
 def _round(graph: FaceGraph, row: int) -> bool:
-    """Say whether a face is the side of a hole: hollow, round about an upright axis, closed about it."""
+    """Return whether a face is the side of a hole: hollow, round about an upright axis, closed about it."""
     if (
         graph.surface[row] not in ("cylinder", "cone")
         or graph.bend[row] >= 0
@@ -91,5 +91,5 @@ def _round(graph: FaceGraph, row: int) -> bool:
 
 
 def _small_bottom(graph: FaceGraph, row: int) -> bool:
-    """Say whether a face is bounded by circles only, as the bottom of a hole is."""
+    """Return whether a face is bounded by circles only, as the bottom of a hole is."""
     return all(graph.curve[e] == "circle" for e in graph.edges_of[row])

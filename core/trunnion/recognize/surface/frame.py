@@ -14,7 +14,7 @@ from trunnion.tolerance import ANGLE
 from trunnion.units import radians
 
 FACING = radians(5.0)
-"""A place is seen from a direction when its normal rises by this at least: upright walls are cut from the side anyway, in radians."""
+"""A position is seen from a direction when its normal rises by this at least: upright walls are cut from the side anyway, in radians."""
 AWAY = 0.02
 """Share of the curved area that may look away from a direction that sees the part's curved side: edges rounded on the back."""
 AS_GOOD = 0.9
@@ -38,7 +38,7 @@ def frame_of(graph: FaceGraph) -> Frame:
 
 
 def _seen(graph: FaceGraph, curved: Bools, way: Floats) -> float:
-    """Return the curved area (mm2) whose normals rise towards a direction; each sample of a face stands for its share of it."""
+    """Return the curved area (mm2) whose normals rise towards a direction; each sample of a face represents its share of it."""
     each = np.bincount(graph.sample_face, minlength=len(graph.surface))[graph.sample_face]
     rises = (graph.sample_normal @ way > np.sin(FACING)) & curved[graph.sample_face]
     return float((graph.area[graph.sample_face] / each)[rises].sum())

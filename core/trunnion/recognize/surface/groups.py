@@ -34,7 +34,7 @@ def divided(
 def aligned_groups(
     sizes: PatchSizes, rows: Ints, tolerance: float, *, relative: bool, subdivide: bool
 ) -> list[Ints]:
-    """Group by the diagonal of the box along the axes; where asked, divide by its sides, the longest first."""
+    """Group by the diagonal of the box along the axes; where chosen, divide by its sides, the longest first."""
     groups = grouped(rows, sizes.diagonal, tolerance, relative=relative)
     if subdivide:
         sides = np.sort(sizes.sides, axis=1)[:, ::-1]

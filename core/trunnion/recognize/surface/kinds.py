@@ -16,7 +16,7 @@ KINDS = (
         colour="#56b4e9",
         heading="Groups of equal patches",
         along_axes=("diagonal",),
-        # Told apart within their class by light and dark, the classes by cold and warm.
+        # Distinguished within their class by light and dark, the classes by cold and warm.
         classes=(
             LegendClass(
                 label="groups of the remaining area",

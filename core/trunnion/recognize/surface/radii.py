@@ -14,11 +14,11 @@ from trunnion.recognize.contract import Bounded
 from trunnion.recognize.surface.size import PatchSizes
 
 EVEN = 1.1
-"""A fillet's radius is the same all along it: that of all but a fifth of its places lies within this ratio."""
+"""A fillet's radius is the same all along it: that of all but a fifth of its positions lies within this ratio."""
 OTHER = 1.02
 """A fillet runs out smoothly into faces of another radius, different by more than this ratio; a cylinder in two halves does not."""
 ALIKE = 1e-4
-"""Patches whose length, area and diameter differ by less than this share are one patch in several places."""
+"""Patches whose length, area and diameter differ by less than this share are one patch in several positions."""
 FLAT = 1e-9
 """1/mm: a bend below this is noise of the arithmetic."""
 
@@ -49,7 +49,7 @@ class PatchRadii:
 
 
 def patch_bends(bounded: Bounded, graph: FaceGraph, sizes: PatchSizes) -> PatchRadii:
-    """Return how patches bend; of patches that are alike in every size one is asked."""
+    """Return how patches bend; of patches that are alike in every size one is measured."""
     kinds = _kinds(graph, sizes)
     first = np.unique(kinds, return_index=True)[1]
     bends = [bounded.bend(int(tag)) for tag in sizes.tag[first]]

@@ -1,4 +1,4 @@
-"""The feature size of every patch: what tells equal patches from others (quick segmentation, section on feature size)."""
+"""The feature size of every patch: what distinguishes equal patches from others (quick segmentation, section on feature size)."""
 
 from __future__ import annotations
 

@@ -63,8 +63,9 @@ def inner_corner(
 def contour_leftovers(
     tool: Tool, data: CuttingData, settings: Any, before: Operation | None
 ) -> Engagement:
-    """Return what a finishing pass along walls meets in a corner: both walls' allowance and what a larger cutter left there."""
-    width = corner_width(tool, BOTH_WALLS * data.width + _larger(tool, before))
+    """Return what a finishing pass along walls meets in a corner: both walls' allowance, the steps of roughing by layers on one, and what
+    a larger cutter left there."""
+    width = corner_width(tool, BOTH_WALLS * data.width + _larger(tool, before) + step_width(before))
     return Engagement(
         width=width,
         depth=data.depth,
@@ -118,6 +119,20 @@ def corner_width(tool: Tool, width: float) -> float:
     To the layer along the wall comes what the cutter's front takes of the other: half the segment of its circle that lies in the layer.
     """
     return min(width + 0.5 * segment(tool.radius, width) / tool.diameter, tool.diameter)
+
+
+def step_width(before: Operation | None) -> float:
+    """Return the mean width in mm of the steps that the rounded corner of a roughing cutter leaves on a wall, layer by layer.
+
+    At a height z over a layer's bottom a corner of radius r leaves r - sqrt(r^2 - (r - z)^2), up to r; the mean is over a layer.
+    """
+    if before is None:
+        return 0.0
+    radius = before.cutter.corner_radius
+    height = min(radius, before.data.depth)
+    if height <= 0.0:
+        return 0.0
+    return (radius * height - 0.5 * segment(radius, height)) / before.data.depth
 
 
 def segment(radius: float, height: float) -> float:

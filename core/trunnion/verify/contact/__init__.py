@@ -115,7 +115,7 @@ class PartContact:
         )
 
     def clear(self, moves: Moves, allowed: float) -> Bools:
-        """Say for each move or pose (n,) whether nothing of its tool enters part or fixtures deeper than allowed."""
+        """Return for each move or pose (n,) whether nothing of its tool enters part or fixtures deeper than allowed."""
         return np.isnan(self.stopped(moves, allowed)[:, 0])
 
     def stopped(self, moves: Moves, allowed: float) -> Floats:
@@ -142,7 +142,7 @@ class PartContact:
         text: str = "",
         threads: int = 0,
     ) -> Bools:
-        """Say for k places whether one of the poses (k, a, 3) of a tool that are wanted (k, a) is clear as `clear` has it.
+        """Return for k places whether one of the poses (k, a, 3) of a tool that are wanted (k, a) is clear as `clear` has it.
 
         Much quicker where most poses are stopped: `obstacles`, those of the k places, remembers by what, for the next tool too. The part
         must have no fixtures, and poses that lean need its facets.

@@ -101,7 +101,7 @@ class FacetContact:
 
     @cached_property
     def tree(self) -> FacetTree:
-        """The tree over the triangles, built when first asked for."""
+        """The tree over the triangles, built on first use."""
         return tree_of(self.facets.points, self.facets.triangles, self.facets.face)
 
     def _ready(self, progress: Progress) -> FacetTree:
@@ -117,7 +117,8 @@ class FacetContact:
         return self._measure(moves, rows, progress, threads)
 
     def stopped(self, moves: Moves, rows: Ints, allowed: float) -> Floats:
-        """Return a place (k, 3) of the faces that the tool enters deeper than allowed, for the moves of some rows (k,); NaN where none."""
+        """Return a position (k, 3) of the faces that the tool enters deeper than allowed, for the moves of some rows (k,); NaN where
+        none."""
         return self._measure(moves, rows, QUIET, 1, allowed).deeper_than(allowed)
 
     def any_clear(
@@ -132,7 +133,7 @@ class FacetContact:
         text: str = "",
         threads: int = 0,
     ) -> Bools:
-        """Say for k places whether one of the poses (k, a, 3) of a tool that are wanted (k, a) enters no face deeper than allowed.
+        """Return for k places whether one of the poses (k, a, 3) of a tool that are wanted (k, a) enters no face deeper than allowed.
 
         `obstacles` are the places'; what stops a pose is added to them.
         """

@@ -1,4 +1,4 @@
-"""Boxes listed by the cells of a plan grid: what lies near a place is found without looking at the rest."""
+"""Boxes listed by the cells of a plan grid: what lies near a position is found without looking at the rest."""
 
 from __future__ import annotations
 

@@ -30,7 +30,7 @@ class Obstacles:
 
     @staticmethod
     def none(k: int) -> Obstacles:
-        """Return that nothing is known at k places."""
+        """Return that nothing is known at k positions."""
         return Obstacles(np.zeros((k, KEPT, 3)), np.zeros(k, np.int64))
 
     def of(self, rows: Ints) -> Obstacles:
@@ -42,7 +42,7 @@ class Obstacles:
         self.place[rows], self.count[rows] = known.place, known.count
 
     def stop(self, tool: Tool, tips: Floats, axes: Floats, rows: Ints, allowed: float) -> Bools:
-        """Say for poses (n, 3) of a tool, each of one of the places, whether what is known there is deeper in the tool than allowed."""
+        """Return for poses (n, 3) of a tool, each of one of the places, whether what is known there is deeper in the tool than allowed."""
         bodies, stopped = bodies_of_one(tool), np.zeros(len(tips), bool)
         kernel.blocked_by_known_loop(
             tips,

@@ -1,6 +1,6 @@
 """Clearance of poses for planners: how far a pose may tilt, plunge or lengthen before its tool touches part or fixtures.
 
-Leaning and plunging are asked as motions, not as poses at their end: a thin rib on the way is not jumped over. A lean goes on in steps,
+Leaning and plunging are queried as motions, not as poses at their end: a thin rib on the way is not jumped over. A lean goes on in steps,
 each a turning move about the pivot, until one touches; within it, and for what only grows, halves close in on the first touch.
 """
 
@@ -28,7 +28,7 @@ HALVES = 12
 STICKOUT_STEP = 0.1
 """mm: stick-outs are set no finer."""
 POSES = 512
-"""Moves asked together, between two looks at cancel."""
+"""Moves queried together, between two looks at cancel."""
 
 
 @dataclass(frozen=True, slots=True, eq=False, kw_only=True)
@@ -47,7 +47,7 @@ class PoseClearance:
     stickout: Floats
 
 
-def room(
+def pose_clearance(
     contact: PartContact,
     tool: Tool,
     tip: Floats,
@@ -61,7 +61,7 @@ def room(
     allowed: float = tolerance.GOUGE,
     progress: Progress = QUIET,
 ) -> PoseClearance:
-    """Return what poses of one tool may do: tips (k, 3), unit axes (k, 3), asked all together.
+    """Return what poses of one tool may do: tips (k, 3), unit axes (k, 3), queried all together.
 
     Leaning turns about `pivot` (k, 3), the tip when not given; the first direction is the setup's x (y where the axis lies along x) seen
     across the axis, the others follow anticlockwise. `longest` is the largest stick-out that is tried (by default 50 mm more than the
@@ -69,29 +69,29 @@ def room(
     """
     tip, axis = (np.asarray(v, dtype=np.float64).reshape(-1, 3) for v in (tip, axis))
     pivot = tip if pivot is None else np.asarray(pivot, dtype=np.float64).reshape(-1, 3)
-    ask = _Asker(contact, tool, allowed, progress)
+    query = _MotionQuery(contact, tool, allowed, progress)
     k = len(tip)
-    clear = ask(tip, tip, axis, axis)
+    clear = query(tip, tip, axis, axis)
     towards = _around(axis, directions)
     lean = np.zeros((k, directions))
     of = np.repeat(np.arange(k), directions)
     lean[...] = _leans(
-        ask, tip[of], axis[of], pivot[of], towards.reshape(-1, 3), clear[of], most_lean
+        query, tip[of], axis[of], pivot[of], towards.reshape(-1, 3), clear[of], most_lean
     ).reshape(k, directions)
     plunge = _furthest(
-        lambda rows, by: ask(
+        lambda rows, by: query(
             tip[rows], tip[rows] - by[:, None] * axis[rows], axis[rows], axis[rows]
         ),
         clear,
         np.full(k, most_plunge),
     )
-    stickout = _stickouts(ask, tip, axis, tool.stickout + 50.0 if longest is None else longest)
+    stickout = _stickouts(query, tip, axis, tool.stickout + 50.0 if longest is None else longest)
     return PoseClearance(clear=clear, towards=towards, lean=lean, plunge=plunge, stickout=stickout)
 
 
 @dataclass(slots=True, eq=False)
-class _Asker:
-    """Asks whether straight moves, whose axis turns evenly on the way, are clear."""
+class _MotionQuery:
+    """Queries whether straight moves, whose axis turns evenly on the way, are clear."""
 
     contact: PartContact
     tool: Tool
@@ -137,7 +137,7 @@ def _around(axis: Floats, count: int) -> Floats:
 
 
 def _leans(
-    ask: _Asker,
+    query: _MotionQuery,
     tip: Floats,
     axis: Floats,
     pivot: Floats,
@@ -156,7 +156,7 @@ def _leans(
 
     def between(rows: Ints, a: Floats, b: Floats) -> Bools:
         (start, first), (end, last) = leaned(rows, a), leaned(rows, b)
-        return ask(start, end, first, last)
+        return query(start, end, first, last)
 
     reached, going = np.zeros(len(tip)), clear.copy()
     steps = max(1, math.ceil(most / STEP - tolerance.PARAMETRIC))
@@ -193,16 +193,16 @@ def _furthest(fits: Callable[[Ints, Floats], Bools], possible: Bools, most: Floa
     return low
 
 
-def _stickouts(ask: _Asker, tip: Floats, axis: Floats, longest: float) -> Floats:
+def _stickouts(query: _MotionQuery, tip: Floats, axis: Floats, longest: float) -> Floats:
     """Return the shortest stick-outs (k,) that are clear, in steps of `STICKOUT_STEP`; the neck stays out of the holder."""
-    tool = ask.tool
+    tool = query.tool
     most = max(math.floor((longest - tool.neck_length) / STICKOUT_STEP + tolerance.PARAMETRIC), 0)
 
     def fits(rows: Ints, steps: Ints) -> Bools:
         each, which = np.unique(steps, return_inverse=True)
         tools = tuple(_stuck_out(tool, tool.neck_length + STICKOUT_STEP * int(n)) for n in each)
         poses = poses_of(tool, tip[rows], axis[rows])
-        return ask.of(
+        return query.of(
             replace(poses, tools=tools, tool=which.astype(np.int64), bodies=bodies_of(tools))
         )
 

@@ -84,8 +84,8 @@ class StripContact:
         return progress.aside(lambda _: self._touch(moves, rows, found))
 
     def stopped(self, moves: Moves, rows: Ints, allowed: float) -> Floats:
-        """Return a place (k, 3) of the faces about where the tool enters them deeper than allowed, for the moves of some rows (k,), which
-        must stand upright; NaN where it doesn't."""
+        """Return a position (k, 3) of the faces about where the tool enters them deeper than allowed, for the moves of some rows (k,),
+        which must stand upright; NaN where it doesn't."""
         return self._touch(moves, rows, self._measure(moves, rows, QUIET, 1, allowed)).deeper_than(
             allowed
         )

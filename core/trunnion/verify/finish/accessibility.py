@@ -55,9 +55,9 @@ class Accessibility:
         self._tools = sorted(reaching_furthest(plain), key=lambda t: (t.radius, -t.reach, t.number))
 
     def reached(self, samples: Samples, rows: Ints, progress: Progress = QUIET) -> Bools:
-        """Say for each of the samples' rows whether some cutter reaches it.
+        """Return for each of the samples' rows whether some cutter reaches it.
 
-        Of very many rows, evenly chosen ones of every face are tried, and the others share the answer of the nearest on their face.
+        Of very many rows, evenly chosen ones of every face are tried, and the others share the result of the nearest on their face.
         """
         machine = self._machine
         if machine is None or not machine.rotary:
@@ -102,7 +102,7 @@ class Accessibility:
         progress: Progress,
         text: str,
     ) -> Bools:
-        """Say for each of k places whether some tool has a clear pose there; `poses` gives a tool's at some rows of them."""
+        """Return for each of k positions whether some tool has a clear pose there; `poses` gives a tool's at some rows of them."""
         found, obstacles = np.zeros(k, bool), Obstacles.none(k)
         for n, tool in enumerate(self._tools):
             share = progress.part(n / len(self._tools), (n + 1) / len(self._tools))
@@ -188,7 +188,7 @@ def _shared(
     answer = ask(samples, rows[tried], progress)
     if len(tried) == len(rows):
         return answer
-    # Faces are told apart by a fourth coordinate longer than any part.
+    # Faces are distinguished by a fourth coordinate longer than any part.
     place = np.column_stack([samples.point[rows], samples.face[rows] * 4.0 * np.ptp(samples.point)])
     return np.asarray(answer[progress.aside(lambda _: cKDTree(place[tried]).query(place)[1])])
 

@@ -1,6 +1,6 @@
 """Which of the part's area is finished: samples on the exact trimmed faces, each with the material that the program leaves on it.
 
-A sample stands for an area. Material left is the smallest signed distance from the sample to the fluted cutter over every feed move; a
+A sample represents an area. Material left is the smallest signed distance from the sample to the fluted cutter over every feed move; a
 sample is finished when that is within tolerance and allowance. A face that lies in the blank's own surface has nothing to be finished.
 """
 
@@ -165,7 +165,7 @@ def _across(strip: Floats, s: Floats) -> Floats:
 
 
 def on_blank(samples: Samples, blank: Blank, frame: Frame, n_faces: int) -> Bools:
-    """Say for each face row whether all its samples lie in one of the blank's sides; `frame` is the samples'."""
+    """Return for each face row whether all its samples lie in one of the blank's sides; `frame` is the samples'."""
     out = np.zeros(n_faces, bool)
     if not len(samples):
         return out

@@ -30,7 +30,7 @@ from trunnion.verify.threads import in_parallel
 FINE_BOUND = 2e-4
 """mm: how far the fine mode's figures may be from the truth."""
 FAR = 2.0
-"""mm: what is left beyond this is not a scallop; it is only told to be so much."""
+"""mm: what is left beyond this is not a scallop; it is only reported to be so much."""
 MOST_CELLS = 1_000_000
 """Cells looked at in one round, about 300 MB."""
 CHUNK = 50
@@ -45,7 +45,7 @@ LIFTS = 3
 
 
 class FineFace(Protocol):
-    """What the fine mode asks of a face: `part.exact.ExactFace`, or a surface in closed form."""
+    """What the fine mode needs of a face: `part.exact.ExactFace`, or a surface in closed form."""
 
     tag: int
 
@@ -53,7 +53,7 @@ class FineFace(Protocol):
         """Return the least and greatest u and v."""
 
     def inside(self, places: Floats) -> Bools:
-        """Say which places (k, 2) lie inside the trim."""
+        """Return which places (k, 2) lie inside the trim."""
 
     def at(self, places: Floats) -> ExactPoints:
         """Return the surface at places (k, 2)."""
@@ -282,7 +282,8 @@ class _Patch:
     def look(
         self, placed: _Placed, lift: float, progress: Progress, least: float = -np.inf
     ) -> _Looked:
-        """Return what is left over cells of the surface, lifted along its normals; by how much a cell falls below `least` is not told."""
+        """Return what is left over cells of the surface, lifted along its normals; by how much a cell falls below `least` is not
+        reported."""
         n, at, (u, v) = len(placed.cells), placed.at, placed.cells.half.T
         a, b = (
             u[:, None] * (at.du + lift * at.normal_du),
@@ -412,9 +413,9 @@ class _Patch:
 
 
 def _within(face: FineFace, cells: _Cells, signs: Floats) -> Bools:
-    """Say which places (c, s), at signs (s, 2) times the half sides from the middle, lie inside the trim of the face that cells are on.
+    """Return which places (c, s), at signs (s, 2) times the half sides from the middle, lie inside the trim of the face that cells are on.
 
-    All cells of a face are of one size, and neighbours share corners: each place is asked for once.
+    All cells of a face are of one size, and neighbours share corners: each place is evaluated once.
     """
     if not len(cells):
         return np.zeros((0, len(signs)), bool)
@@ -438,7 +439,7 @@ class _Best:
         self.face, self.uv, self.half = -1, np.full(2, np.nan), np.zeros(2)
 
     def raised(self, placed: _Placed, looked: _Looked) -> bool:
-        """Take what is left at the cells' middles into account; say whether that changed anything."""
+        """Take what is left at the cells' middles into account; return whether that changed anything."""
         rows = np.flatnonzero(placed.holds)
         if not len(rows) or not self.take(
             looked.left[rows], looked.nearest[rows], placed.cells.uv[rows], placed.at.point[rows]
@@ -471,7 +472,7 @@ class _Best:
 def _step(
     point: Floats, label: Ints, left: Floats, nearest: Ints, spacing: float, window: float
 ) -> ExtremeFigure:
-    """Return the largest difference between the lowest places on both sides of a seam, where neighbours have other labels (m, 2)."""
+    """Return the largest difference between the lowest positions on both sides of a seam, where neighbours have other labels (m, 2)."""
     none = ExtremeFigure(value=0.0, place=np.full(3, np.nan), move=-1)
     if len(point) < 2:
         return none

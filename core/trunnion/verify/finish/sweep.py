@@ -34,7 +34,7 @@ MOST_SPANS = 64
 LEFT_BOUND = tolerance.CONTACT_BOUND / 4
 """How much smaller than reported a distance may be, mm."""
 FAR_BOUND = 0.01
-"""The same for distances beyond what is listed by cells: nothing is finished there, and mean and largest are told in hundredths."""
+"""The same for distances beyond what is listed by cells: nothing is finished there, and mean and largest are reported in hundredths."""
 
 
 @dataclass(frozen=True, slots=True, eq=False, kw_only=True)
@@ -157,7 +157,7 @@ class Sweep:
         in_parallel(some, len(rows), CHUNK, progress, "Measuring material left", threads)
 
     def cut_before(self, points: Floats, move: int, threads: int = 0) -> Bools:
-        """Say for each point (s, 3) whether a feed move before a row has removed it. Upright plain cutters also remove all above."""
+        """Return for each point (s, 3) whether a feed move before a row has removed it. Upright plain cutters also remove all above."""
         out, g = np.zeros(len(points), bool), self.grid
         points = np.ascontiguousarray(points, dtype=np.float64)
 
@@ -184,8 +184,8 @@ class Sweep:
         return out
 
     def cut_around(self, points: Floats, margin: float, move: int) -> Bools:
-        """Say for each point (s, 3) whether one move before a row, of those with a closed form in plan, has removed all within a margin in
-        plan of it and all above. That others have is not asked."""
+        """Return for each point (s, 3) whether one move before a row, of those with a closed form in plan, has removed all within a margin
+        in plan of it and all above. Other moves are not looked at."""
         out, g = np.zeros(len(points), bool), self.grid
         points = np.ascontiguousarray(points, dtype=np.float64)
         kernel.surroundings_removed_loop(
@@ -240,7 +240,8 @@ def left_by_block(
 
 
 def _in_plan(moves: Moves) -> Bools:
-    """Say which moves have a closed form in plan: upright, level or straight up and down, and of a plain cutter with room on its flank."""
+    """Return which moves have a closed form in plan: upright, level or straight up and down, and of a plain cutter with room on its
+    flank."""
     row = moves.row
     up = (
         (row[:, columns.KIND] == 0.0)
@@ -294,7 +295,7 @@ def _cutting(bodies: Bodies, tool: int) -> list[Floats]:
     return runs
 
 
-def ways_of(moves: Moves, rows: Ints) -> Floats:
+def tool_motions(moves: Moves, rows: Ints) -> Floats:
     """Return how the tool moves in space along some moves (k, 18), as `kernels/residual.py` names the columns."""
     out = np.zeros((len(rows), kernel.WAY_COLUMNS))
     a, b = moves.start_axis[rows], moves.end_axis[rows]
@@ -333,7 +334,7 @@ def ways_of(moves: Moves, rows: Ints) -> Floats:
 
 def tree_of(moves: Moves, rows: Ints, flutes: Flutes) -> SpanTree:
     """Return some moves as spans in trees of poses, one a tool."""
-    way, tool = ways_of(moves, rows), moves.tool[rows]
+    way, tool = tool_motions(moves, rows), moves.tool[rows]
     run = moves.length[rows] + way[:, kernel.TURN] * flutes.middle[tool]
     count = np.clip(np.ceil(run / SPAN), 1, MOST_SPANS).astype(np.int64)
     of = np.repeat(np.arange(len(rows)), count)
@@ -365,7 +366,8 @@ def tree_of(moves: Moves, rows: Ints, flutes: Flutes) -> SpanTree:
 
 
 def _along_curve(points: Floats) -> Ints:
-    """Return the place of each point (k, 3) along a curve that fills space (Morton's), so that neighbours on it are neighbours in space."""
+    """Return the position of each point (k, 3) along a curve that fills space (Morton's), so that neighbours on it are neighbours in
+    space."""
     if not len(points):
         return np.zeros(0, np.int64)
     low, size = points.min(axis=0), max(float(np.ptp(points, axis=0).max()), tolerance.PARAMETRIC)

@@ -1,4 +1,4 @@
-"""How much of the part is finished, face by face, and what is said of the rest."""
+"""How much of the part is finished, face by face, and what is reported of the rest."""
 
 from __future__ import annotations
 

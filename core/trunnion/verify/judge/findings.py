@@ -1,4 +1,4 @@
-"""What is said of a setup: gouges, collisions with part, stock and fixtures, rapids in stock, each with its block, place and depth."""
+"""What is reported of a setup: gouges, collisions with part, stock and fixtures, rapids in stock, each with its block, place and depth."""
 
 from __future__ import annotations
 
@@ -8,7 +8,7 @@ from trunnion.findings import Finding, error
 from trunnion.geometry.arrays import Floats, Ints
 from trunnion.model.program import ProgramSection
 from trunnion.units import LONGEST_BLOCK, SECONDS_PER_MINUTE
-from trunnion.verify.judge.locations import block_of, place_of
+from trunnion.verify.judge.locations import block_of, position_text
 from trunnion.verify.judge.setups import SetupProof
 from trunnion.verify.settings import ProofSettings
 
@@ -40,7 +40,7 @@ def _gouges(
             error(
                 "verify.gouge",
                 f"{section.operation} cuts {proof.contact.depth[row, 0]:.3f} mm into face "
-                f"{tags[face]} at {place_of(proof.contact.place[row, 0])}",
+                f"{tags[face]} at {position_text(proof.contact.place[row, 0])}",
                 section.operation,
                 block_of(proof, section, row),
                 f"face {tags[face]}",
@@ -61,7 +61,7 @@ def _collisions(
             error(
                 "verify.collision",
                 f"shank or holder of {section.tool.name} enters face {tags[face]} by "
-                f"{proof.contact.depth[row, 1]:.3f} mm at {place_of(proof.contact.place[row, 1])}",
+                f"{proof.contact.depth[row, 1]:.3f} mm at {position_text(proof.contact.place[row, 1])}",
                 section.operation,
                 block_of(proof, section, row),
                 f"face {tags[face]}",
@@ -75,7 +75,7 @@ def _collisions(
             error(
                 "verify.collision-stock",
                 f"shank or holder of {section.tool.name} enters standing stock by {body.max():.3f} mm "
-                f"near {place_of(proof.moves.end[row])}",
+                f"near {position_text(proof.moves.end[row])}",
                 section.operation,
                 block_of(proof, section, row),
                 remedy="clear the stock around first, or choose a longer tool",
@@ -96,7 +96,7 @@ def _fixtures(
             error(
                 "verify.fixture",
                 f"{section.tool.name} enters fixture {name} by {proof.contact.fixture_depth[row]:.3f} mm at "
-                f"{place_of(proof.contact.fixture_place[row])}",
+                f"{position_text(proof.contact.fixture_place[row])}",
                 section.operation,
                 block_of(proof, section, row),
                 name,
@@ -120,7 +120,7 @@ def _rapids(proof: SetupProof, section: ProgramSection, rows: Ints) -> list[Find
         error(
             "verify.rapid-in-stock",
             f"a rapid of {section.operation} goes {depth[row]:.3f} mm into stock at "
-            f"{place_of(proof.stock.rapid_place[row])}",
+            f"{position_text(proof.stock.rapid_place[row])}",
             section.operation,
             block_of(proof, section, row),
             remedy="lift the rapid, or make it a feed move",

@@ -1,4 +1,4 @@
-"""What cutting asks of cutter and spindle, move by move: depth, removal rate, thickest chip, power and torque.
+"""The load of cutting on cutter and spindle, move by move: depth, removal rate, thickest chip, power and torque.
 
 The stock engine says what a move removes and over which angle the cutter is engaged. Both come in steps of the stock's cells, so volumes
 are taken over a stretch of the path around each move. Power follows Kienzle: k_c = k_c1.1 h^-m with the mean chip thickness h over the arc
@@ -128,7 +128,7 @@ def specific_force(material: Material, chip: Floats) -> Floats:
 
 
 def stretched(moves: Moves, removed: Floats, stretch: Floats) -> Floats:
-    """Return the cross-section (n,) mm2 that each feed move takes away: volume over way, on a stretch (n,) mm around it.
+    """Return the cross-section (n,) mm2 that each feed move takes away: volume over path length, on a stretch (n,) mm around it.
 
     A stretch does not go beyond a rapid: it ends there.
     """

@@ -1,4 +1,4 @@
-"""Places in words: where in a program a move stands, and where in space."""
+"""Positions in words: where in a program a move stands, and where in space."""
 
 from __future__ import annotations
 
@@ -17,6 +17,6 @@ def block_of(proof: SetupProof, section: ProgramSection, row: int) -> str:
     )
 
 
-def place_of(point: Floats) -> str:
-    """Return a place in words."""
+def position_text(point: Floats) -> str:
+    """Return a position in words."""
     return "x {:.2f} y {:.2f} z {:.2f}".format(*(float(v) + 0.0 for v in point))

@@ -18,7 +18,7 @@ def operation_proofs(
 ) -> list[OperationProof]:
     """Return the measurements of every section of a setup's program, in order.
 
-    tags (f,) are those of the face rows; area (s,) mm2 that each sample stands for.
+    tags (f,) are those of the face rows; area (s,) mm2 that each sample represents.
     """
     collides = proof.collides(settings.tolerance)
     load, stock, moves = proof.load, proof.stock, proof.moves
@@ -77,7 +77,7 @@ def operation_proofs(
 
 
 def block_proof(proof: SetupProof, area: Floats) -> BlockProof:
-    """Return what was measured block by block; area (s,) mm2 that each sample stands for."""
+    """Return what was measured block by block; area (s,) mm2 that each sample represents."""
     left = left_by_block(proof.left, proof.nearest, len(proof.moves), area)
 
     def small(values: Floats) -> np.ndarray:

@@ -1,4 +1,4 @@
-"""Whether cutter and spindle bear what they are asked, and what to offer where they don't: another feed, or a rest operation.
+"""Overload of cutter and spindle, and what to offer against it: another feed, or a rest operation.
 
 An operation's feed is chosen for an engagement: `ProgramSection` says which. Where more is in front of the cutter, its load is held against
 that of the chosen data, or of what the material's tables allow this cutter when that is more, with a margin.
@@ -42,7 +42,7 @@ class AllowedLoad:
 def load_findings(
     proof: SetupProof, machine: Machine, material: Material | None, settings: ProofSettings
 ) -> tuple[list[Finding], list[Offer]]:
-    """Return what is said of the load on cutter and spindle in a setup, and what is offered for it."""
+    """Return what is reported of the load on cutter and spindle in a setup, and what is offered for it."""
     found: list[Finding] = []
     offers: list[Offer] = []
     for k, section in enumerate(proof.program.sections):
@@ -182,7 +182,7 @@ def _feeds(
 
 
 def _feed_remedy(proof: SetupProof, section: ProgramSection, offers: list[Offer]) -> str:
-    """Say which feeds are offered."""
+    """Return which feeds are offered."""
     lines = section.block_lines
     places = [
         (

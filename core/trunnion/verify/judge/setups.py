@@ -1,4 +1,4 @@
-"""The proof of one setup: its moves held against part and stock, timed, and asked what they load and leave."""
+"""The proof of one setup: its moves checked against part and stock, timed, with their load and the material they leave."""
 
 from __future__ import annotations
 
@@ -19,7 +19,7 @@ from trunnion.progress import QUIET, Progress
 from trunnion.verify.contact import Contact, PartContact
 from trunnion.verify.finish.sweep import Sweep
 from trunnion.verify.judge.load import Load, load_of
-from trunnion.verify.machine.kinematics import AxisPositions, stands_of
+from trunnion.verify.machine.kinematics import AxisPositions, axis_positions
 from trunnion.verify.machine.times import MachineTimes, times_of
 from trunnion.verify.motion import Moves, moves_of
 from trunnion.verify.settings import ProofSettings
@@ -47,7 +47,7 @@ class SetupProof:
     nearest: Ints
 
     def collides(self, allowed: float) -> Bools:
-        """Say for each move whether shank or holder enter part or stock, or anything of the tool a fixture, deeper than allowed."""
+        """Return for each move whether shank or holder enter part or stock, or anything of the tool a fixture, deeper than allowed."""
         return np.asarray(
             (self.contact.depth[:, 1] > allowed)
             | (self.stock.body_depth > allowed)
@@ -95,7 +95,7 @@ def prove_setup(
 
 
 def _timed(moves: Moves, machine: Machine, foot: Floats) -> tuple[AxisPositions, MachineTimes]:
-    stands = stands_of(moves, machine, foot)
+    stands = axis_positions(moves, machine, foot)
     return stands, times_of(moves, stands, machine)
 
 
@@ -116,7 +116,7 @@ def bundles_of(
 
 
 def _from_above(program: Program, blank: Blank) -> bool:
-    """Say whether every cut of a setup comes straight from above on the blank, by a cutter that is nowhere wider below than above."""
+    """Return whether every cut of a setup comes straight from above on the blank, by a cutter that is nowhere wider below than above."""
     up = program.setup.frame.local_direction(blank.frame.z)
     upright = all(
         np.linalg.norm(s.path.axis - up, axis=1).max(initial=0.0) < tolerance.PARAMETRIC
@@ -126,6 +126,6 @@ def _from_above(program: Program, blank: Blank) -> bool:
 
 
 def undercuts(tool: Tool) -> bool:
-    """Say whether a cutter leaves material over a part of its flutes when it comes from the side."""
+    """Return whether a cutter leaves material over a part of its flutes when it comes from the side."""
     radii = [row[0] for row in tool.outline]
     return tool.form in ("t-slot", "barrel") or any(b < a for a, b in pairwise(radii))

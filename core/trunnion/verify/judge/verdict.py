@@ -79,7 +79,7 @@ def _facets(
     machines: Sequence[Machine],
     progress: Progress,
 ) -> list[Facets]:
-    """Return the part's faces as triangles in each frame: all for a tool that leans, or a machine on which one may be asked to, else those
+    """Return the part's faces as triangles in each frame: all for a tool that leans, or a machine on which one may lean, else those
     without closed form; none when none is."""
     leans = any(m.rotary for m in machines) or any(
         (np.abs(s.path.axis - [0.0, 0.0, 1.0]) > AXIS_LEAN).any()

@@ -130,7 +130,7 @@ def support(arcs: Floats, first: int, last: int, nr: float, nz: float) -> float:
     """
     most = -np.inf
     for k in range(first, last):
-        # Inside its cone an arc reaches furthest; elsewhere its nearer end stands for it.
+        # Inside its cone an arc reaches furthest; elsewhere its nearer end is taken.
         if (
             arcs[k, A0R] * nz - arcs[k, A0Z] * nr >= 0.0
             and nr * arcs[k, A1Z] - nz * arcs[k, A1R] >= 0.0

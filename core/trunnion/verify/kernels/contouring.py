@@ -2,7 +2,7 @@
 Schaefer, Warren, Dual contouring of Hermite data, 2002).
 
 The rays cross at the nodes of a lattice. A node is in material or not, by the z rays; on an edge
-between two that differ, the ray along it tells where material ends, and its neighbours how the
+between two that differ, the ray along it gives where material ends, and its neighbours how the
 surface leans there (Hermite data). Each box of eight nodes that differ gets one point, as near as
 can be to the planes through its edges' ends, so edges and corners of the stock stay sharp; around
 each such edge four points make a face. Two layers of nodes and points are held at a time. Where a
@@ -259,6 +259,7 @@ def count_dual_mesh(
         np.zeros((nodes[1] + 2, nodes[0] + 2), np.bool_),
     )
     points, faces = 0, 0
+    # Layer by layer from below: only two layers of nodes are kept at a time.
     for k in range(nodes[2] + 1):
         _classify_layer(k, counts[2], lows[2], highs[2], cells, nodes, origin, pitch, step, upper)
         for j in range(nodes[1] + 1):
@@ -331,6 +332,7 @@ def dual_contour(
     points, triangles = np.empty((n_points, 3)), np.empty((2 * n_faces, 3), np.int64)
     work, cell = np.empty((8, 3)), np.empty(3, np.int64)
     v, n = 0, 0
+    # Layer by layer from below: only two layers of nodes are kept at a time.
     for k in range(nodes[2] + 1):
         _classify_layer(k, counts[2], lows[2], highs[2], cells, nodes, origin, pitch, step, upper)
         for j in range(deep - 1):
@@ -370,6 +372,7 @@ def dual_contour(
         # of points (`over`).
         for j in range(1, deep - 1):
             for i in range(1, wide - 1):
+                # The face's sense of rotation follows which of both nodes is in material.
                 here = lower[j, i]
                 if here != upper[j, i]:
                     n = _add_quad(

@@ -2,7 +2,7 @@
 revolution that move and turn.
 
 A ray (dexel) keeps its material as sorted disjoint intervals; up to three bundles along x, y and z
-stand for the stock (van Hook, 1986; Benouamer and Michelucci, Bridging the gap between CSG and Brep
+represent the stock (van Hook, 1986; Benouamer and Michelucci, Bridging the gap between CSG and Brep
 via a triple ray representation, 1997). A bundle's rays run along w and stand at cell centres in (u,
 v): its coordinates are the blank's, turned in a cycle.
 
@@ -171,7 +171,7 @@ def _swept_depth(
 def _bisect_entry(
     arcs: Floats, first: int, last: int, limit: float, ray: Floats, outside: float, inside: float
 ) -> float:
-    """Return where a ray enters what is swept, between a place outside and one inside, to within THIN
+    """Return where a ray enters what is swept, between a position outside and one inside, to within THIN
     (mm); the inner side, so not too much is cut."""
     while abs(inside - outside) > THIN:
         w = 0.5 * (inside + outside)
@@ -217,7 +217,7 @@ def _newton_entry(
 def _depth_bound(
     arcs: Floats, first: int, last: int, limit: float, ray: Floats, w: float, end: float
 ) -> float:
-    """Return an upper bound (mm) of the depth between two places over a span, from one evaluation at w
+    """Return an upper bound (mm) of the depth between two positions over a span, from one evaluation at w
     and t = 0.
 
     Tangents in w and t, plus the bilinear term: TWIST is how far a unit of w is turned over the
@@ -242,7 +242,7 @@ def _max_depth_turning(
     within 1e-5 mm, where the tool turns within SURE. One of at most `enough` need not be the largest.
 
     A tangent at w bounds F from above at w' by F(w) + slope (w' - w) + TWIST |w' - w|, the last for
-    the bilinear term where the tool turns. So from the lower end on each tangent tells how far on
+    the bilinear term where the tool turns. So from the lower end on each tangent bounds how far on
     nothing can be deeper than what is known by more than SURE (Piyavskii, 1972, with slopes).
     """
     best, place = _max_depth(arcs, first, last, limit, ray, low, high)
@@ -380,7 +380,7 @@ def _swept_box(box: Floats, span: Floats, piece: Floats, turns: bool) -> None:
 def _ray_misses(
     count: Ints, low: Floats, high: Floats, cell: int, bottom: float, top: float
 ) -> bool:
-    """Return whether a ray has no material between two places, or no more than what SHRINK leaves of a
+    """Return whether a ray has no material between two positions, or no more than what SHRINK leaves of a
     cut."""
     for k in range(count[cell]):
         if high[cell, k] > bottom + 2.0 * SHRINK:
@@ -480,7 +480,7 @@ def _swept_disc_interval(
 
 @njit(cache=True, nogil=True)
 def _insert_sorted(ray: Floats, n: int, w: float) -> int:
-    """Insert a place into those marked on a ray, in order; return how many there are."""
+    """Insert a position into those marked on a ray, in order; return how many there are."""
     k = MARKS + n
     while k > MARKS and ray[k - 1] > w:
         ray[k] = ray[k - 1]
@@ -585,7 +585,7 @@ def _subtract_from_ray(
 def _both_inside_at(
     arcs: Floats, first: int, last: int, limit: float, ray: Floats, a: float, b: float, t: float
 ) -> bool:
-    """Return whether two places of a ray are in a body at a time, to within GAP (mm)."""
+    """Return whether two positions of a ray are in a body at a time, to within GAP (mm)."""
     return (
         _body_depth(arcs, first, last, limit, ray, a, t)[0] >= -GAP
         and _body_depth(arcs, first, last, limit, ray, b, t)[0] >= -GAP
@@ -596,11 +596,11 @@ def _both_inside_at(
 def _inside_together(
     arcs: Floats, first: int, last: int, limit: float, ray: Floats, a: float, b: float
 ) -> bool:
-    """Return whether two places of a ray are found in a body, to within GAP (mm), at one time of a span:
+    """Return whether two positions of a ray are found in a body, to within GAP (mm), at one time of a span:
     then all between them is, as the depth is concave along the ray at any time.
 
-    The depth of each place is concave in time. Where it is below -GAP at t, its tangent keeps all
-    times of that place on one side of t, and at least so far away; the two sides meet, or leave
+    The depth of each position is concave in time. Where it is below -GAP at t, its tangent keeps all
+    times of that position on one side of t, and at least so far away; the two sides meet, or leave
     none. Undecided after 30 steps counts as no.
     """
     t0, t1, t = 0.0, 1.0, 0.5
@@ -631,10 +631,10 @@ def _inside_together(
 def _certain_interval(
     arcs: Floats, first: int, last: int, limit: float, ray: Floats, a: float, b: float
 ) -> tuple[float, float]:
-    """Return up to where from a on, towards b, a ray lies in what is swept for certain, and a place
+    """Return up to where from a on, towards b, a ray lies in what is swept for certain, and a position
     behind that, at most b, where it doesn't; that is NaN when all up to b does.
 
-    Both places are inside to within GAP (mm). Steps are halved until two places are in the body at
+    Both positions are inside to within GAP (mm). Steps are halved until two positions are in the body at
     one time, or so near that the turn hardly counts: without the bilinear term about the middle of
     a step, at most TWIST step / 4, F is concave, so in a step of 4 GAP / TWIST it is at most 2 GAP
     below its ends.
@@ -666,7 +666,7 @@ def _tridexel_cut_turning(
     high: Floats,
     cell: int,
 ) -> tuple[float, bool]:
-    """Cut a ray between two places that a body which turns reaches, but for the gaps between its
+    """Cut a ray between two positions that a body which turns reaches, but for the gaps between its
     lobes; return as `_tridexel_cut_ray` does."""
     gone = 0.0
     while a < b:
@@ -749,7 +749,7 @@ def _tridexel_cut_ray(
             continue
         # A cut may need one more interval, a gap another; the caller enlarges the rays and resumes.
         before = count[cell]
-        # Of a tool that turns, both entries in the body at one of their times tell that all between is.
+        # Of a tool that turns, both entries in the body at one of their times show that all between is.
         if turns and not (
             _both_inside_at(arcs, first, last, limit, ray, from_far, from_near, t_near)
             or _both_inside_at(arcs, first, last, limit, ray, from_near, from_far, t_far)
@@ -781,7 +781,7 @@ def _neighbour_material(
     a: float,
     b: float,
 ) -> float:
-    """Return a place (w) between a and b where a ray of a cell, or of one beside it in the tile, has
+    """Return a position (w) between a and b where a ray of a cell, or of one beside it in the tile, has
     material; NaN when none has."""
     for y in range(max(j - 1, row), min(j + 2, end_row)):
         for x in range(max(i - 1, 0), min(i + 2, columns)):
@@ -813,7 +813,7 @@ def _may_hide(
     """Return whether somewhere in a cell a body may be in material that is as the rays around have it;
     `ray` is the cell's middle.
 
-    The tangent at the deepest place bounds the depth across the cell: its gradient has length 1 at
+    The tangent at the deepest position bounds the depth across the cell: its gradient has length 1 at
     most, so with `slope` along the ray it grows by sqrt(1 - slope^2) times half a diagonal at most.
     """
     for y in range(max(j - 1, row), min(j + 2, end_row)):
@@ -1091,7 +1091,7 @@ def tridexel_cut_tile(
                 continue
             ray[TWIST] = _ray_turn(span[s])
             if span[s, ARC_RADIUS] != 0.0 and abs(span[s, FRAME0 + 8]) < 0.5:
-                # Of an arc that is one span, the rays along the axis tell how deep it is.
+                # Of an arc that is one span, the rays along the axis give its depth.
                 continue
             for p in range(p0, p1):
                 cuts = piece[p, KIND] == 0.0

@@ -127,7 +127,7 @@ def _curvature_centre(
     centre ring, or the axis beside a straight flank.
 
     The contact of a triangle with that side is near the triangle's point nearest to the core. Only
-    a guess of where to place the next tangent: no bound depends on it.
+    a guess of where to put the next tangent: no bound depends on it.
     """
     h = x * ax + y * ay + z * az
     ex, ey, ez = x - h * ax, y - h * ay, z - h * az
@@ -203,7 +203,7 @@ def _safe_ratio(part: float, whole: float) -> float:
 
 @njit(cache=True, nogil=True)
 def _closest_point_on_triangle(p: Floats, x: float, y: float, z: float) -> tuple[float, float]:
-    """Return the place (v, w) of the point a + v (b - a) + w (c - a) of a triangle (3, 3) that is
+    """Return the position (v, w) of the point a + v (b - a) + w (c - a) of a triangle (3, 3) that is
     nearest to a point.
 
     By the Voronoi regions of corners, edges and face (Ericson, Real-Time Collision Detection, 2005,
@@ -254,7 +254,7 @@ def _raise_attained(
     pz: float,
     found: Floats,
 ) -> None:
-    """Raise found (4,), depth and place, to the depth of a point of space at a share of the block
+    """Raise found (4,), depth and position, to the depth of a point of space at a share of the block
     where that is deeper."""
     depth = swept_depth_at(way, t, arcs, first, last, px, py, pz)
     if depth > found[0]:
@@ -281,7 +281,7 @@ def _task_bound(
     """Return an upper bound (mm) on the depth of a task (13,), -inf when that is settled: at most
     `enough`, or at most `bound` above what is attained.
 
-    found (4,), depth and place, is raised to what is attained at the place looked at; the task gets
+    found (4,), depth and position, is raised to what is attained at the position looked at; the task gets
     its bound (UPPER) and how to halve it (HALVE). ends, span: the cached span, filled anew where
     the task's time differs; six (6, 3), cuts (3, 6) the bounds at the six points, flat (3, 3):
     workspace.
@@ -289,7 +289,7 @@ def _task_bound(
     if span[S_FROM] != task[T_FROM] or span[S_TO] != task[T_TO]:
         fill_swept_segment(way, task[T_FROM], task[T_TO], ends, span)
     # True positions lie within `drift` of the hull and D has slope 1: the hull's bound must be
-    # below what is asked by that much.
+    # below the queried depth by that much.
     ax, ay, az = span[S_AXIS], span[S_AXIS + 1], span[S_AXIS + 2]
     drift = _corners_in_tool_frame(task, ends, span, six)
     settled = max(enough, found[0] + bound) - drift
@@ -308,7 +308,7 @@ def _task_bound(
     upper = min(upper, least, _minimax_combination(cuts[0], cuts[1]))
     if upper <= settled:
         return -np.inf
-    # Third: the tangent at the place and time of the triangle nearest to the body's core there. The
+    # Third: the tangent at the position and time of the triangle nearest to the body's core there. The
     # depth attained there, on the true motion, raises what is known.
     cx, cy, cz = _curvature_centre(arcs, first, last, ax, ay, az, x, y, z)
     v, w, s = _closest_point_and_share(six, cx, cy, cz, flat)
@@ -396,7 +396,7 @@ def _half_space_bound(
 def _closest_point_and_share(
     six: Floats, cx: float, cy: float, cz: float, flat: Floats
 ) -> tuple[float, float, float]:
-    """Return the place (v, w) in the triangle and the share s of the span at which it is nearest to a
+    """Return the position (v, w) in the triangle and the share s of the span at which it is nearest to a
     point.
 
     Two rounds of alternating minimisation, triangle then time, from the span's middle: a guess, as
@@ -482,7 +482,7 @@ def _split_task(task: Floats, one: Floats, other: Floats) -> None:
 
 @njit(cache=True, nogil=True)
 def _accept_bound(task: Floats, found: Floats) -> None:
-    """Raise found (4,), depth and place, to a task's bound, at the middle of its triangle."""
+    """Raise found (4,), depth and position, to a task's bound, at the middle of its triangle."""
     found[0] = task[UPPER]
     for k in range(3):
         found[1 + k] = (task[CORNERS + k] + task[CORNERS + 3 + k] + task[CORNERS + 6 + k]) / 3.0
@@ -510,7 +510,7 @@ def triangle_contact(
     cuts: Floats,
     flat: Floats,
 ) -> None:
-    """Raise found (4,), depth (mm) and place, to the deepest that a body enters a triangle between two
+    """Raise found (4,), depth (mm) and position, to the deepest that a body enters a triangle between two
     shares of a block.
 
     corners (9,), normal (3,) unit. What it ends with is attained and at most `bound` below the
@@ -669,7 +669,7 @@ def triangle_contact_loop(
     piece_start as in `kernels/body.py`. boxes (m, 6), skip (m,), leaves (m, 2), node_face (m,): the
     tree, as `tree.py` has it, over triangles in its order: corners (t, 9), normals (t, 3), face
     (t,). bound (k,) mm: how far a depth may be below the true one; enough (k,) mm: depths up to it
-    are not told.
+    are not reported.
 
     Fills depth (k, 2) mm, of what cuts and what does not, which (k, 2) faces, place (k, 2, 3), and
     face_depth, face_move (f, 2). A move deeper than `settle` may stop there, and depths beyond
@@ -744,7 +744,7 @@ def triangle_contact_loop(
                                 done = True
                                 break
                     node += 1
-        # Of equal depths the lower face row: the answer doesn't depend on the order of the tree.
+        # Of equal depths the lower face row: the result doesn't depend on the order of the tree.
         for i in range(n_touched):
             f = touched[i]
             for column in range(2):

@@ -115,7 +115,7 @@ def corner_heights(top: Floats, floor: float, pitch: float) -> Floats:
 
 @njit(cache=True, nogil=True)
 def _largest_rectangle(free: Bools, top: Floats, j: int, i: int, same: bool) -> tuple[int, int]:
-    """Return the row and column after a rectangle of free cells (of one height, if so asked) that
+    """Return the row and column after a rectangle of free cells (of one height, where required) that
     begins at cell (j, i): as wide as its first row goes, then as deep."""
     rows, columns = top.shape
     i1 = i + 1

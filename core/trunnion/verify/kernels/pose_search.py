@@ -177,7 +177,7 @@ def pose_search_loop(
     for k in range(first, last):
         if count[k] == 0 and k > first:
             # Neighbouring positions share obstacles: an empty list starts as a copy of the previous
-            # one. The first of a chunk starts empty, so that the answer doesn't depend on how the
+            # one. The first of a chunk starts empty, so that the result doesn't depend on how the
             # work is divided.
             places[k], count[k] = places[k - 1], count[k - 1]
         for n in range(tips.shape[1]):

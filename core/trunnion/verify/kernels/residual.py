@@ -7,10 +7,10 @@ straight chord while the tool moves straight with a still axis, and leaves that 
 of second order where the tip follows an arc or the axis turns. The signed distance to a convex body
 is convex along a chord, so tangents at both ends bound it from below; a span whose sag is too large
 is halved (branch and bound). A value that is returned is attained somewhere on the move, so
-residual material is never told too small; the true value is at most the stated bound smaller.
+residual material is never reported too small; the true value is at most the stated bound smaller.
 
 Level and upright moves of plain cutters have a closed form in plan and are listed by the cells of a
-plan grid. All others are spans in a bounding volume hierarchy of poses: each node stands for poses
+plan grid. All others are spans in a bounding volume hierarchy of poses: each node represents poses
 within a distance and an angle of its own, and since a signed distance changes no faster than the
 point moves, the distance at the node's pose less that bounds all of them from below.
 
@@ -52,7 +52,7 @@ class Flutes(NamedTuple):
 
     arc (a, 7) as `kernels/body.py` names its columns; first, last (b,) the arcs of each body,
     endless (b,) its last without the top of the flutes (of plain cutters); start (t + 1,) the
-    bodies of each tool; middle (t,) mm, height of the place on the axis by which its poses are
+    bodies of each tool; middle (t,) mm, height of the position on the axis by which its poses are
     compared.
     """
 
@@ -69,7 +69,7 @@ class SpanTree(NamedTuple):
 
     way (w, 18), move (w,) their rows among the moves, tool (w,). Spans: of (k,) the row of the way,
     low and high (k,) shares of it, reach (k,) mm how far its tip moves from its middle. Nodes: pose
-    (m, 8) a place on the axis, the unit axis, and how far (mm) and by what chord of angle (|a - a'|
+    (m, 8) a position on the axis, the unit axis, and how far (mm) and by what chord of angle (|a - a'|
     of two axes) poses below it differ; link (m, 5) children or -1, first and last span, tool. root
     (r,) nodes.
     """
@@ -257,7 +257,7 @@ def chord_distance_bound(
 def _level_rho(
     w: Floats, x: float, y: float, z: float, t0: float, t1: float
 ) -> tuple[float, float, float]:
-    """Return the least distance (mm) of a point from the axis along a way across the axis, its height
+    """Return the least distance (mm) of a point from the axis along a path across the axis, its height
     above the tip, and the share where.
 
     At a constant height f never falls with rho, so the least rho gives the least distance.
@@ -291,7 +291,7 @@ def _level_rho(
 @njit(cache=True, nogil=True)
 def _chord_sag(w: Floats, span: float, far: float) -> float:
     """Return how far (mm) a point at most `far` from the tip leaves its chord, seen from the tool,
-    over a share of the way.
+    over a share of the path.
 
     Arc: radius (1 - cos(turn / 2)) <= radius turn^2 / 8. Turning axis: turn (turn far / 8 + length
     / 4), as in `kernels/tool_motion.py`.
@@ -324,7 +324,7 @@ def span_signed_distance(
     spans: Floats,
 ) -> tuple[float, float]:
     """Return the smaller of `best` and the signed distance (mm) of a point to what cuts of a tool
-    along a way between two shares, and the share where.
+    along a path between two shares, and the share where.
 
     What is returned is attained; the true one is at most `bound` smaller. spans (k, 2): workspace;
     where it is full a span is not divided further. With `endless` the flutes have no top.
@@ -481,11 +481,11 @@ def nearest_span(
 def span_poses(
     way: Floats, of: Ints, low: Floats, high: Floats, middle: Floats
 ) -> tuple[Floats, Floats]:
-    """Return the middle pose of spans (k, 6), a place on the axis and the unit axis, and how far (mm)
+    """Return the middle pose of spans (k, 6), a position on the axis and the unit axis, and how far (mm)
     and by what chord of angle (k, 2) the others of the span differ.
 
-    middle (k,) mm is the height of that place above the tip: in the middle of the flutes the turn
-    moves points of the tool least. Half the angle stands for its chord, which is shorter.
+    middle (k,) mm is the height of that position above the tip: in the middle of the flutes the turn
+    moves points of the tool least. Half the angle is taken for its chord, which is shorter.
     """
     pose, reach = np.empty((len(of), 6)), np.empty((len(of), 2))
     for k in range(len(of)):
@@ -553,7 +553,7 @@ def build_pose_bvh(
 
 @njit(cache=True, nogil=True)
 def _bounding_pose(pose: Floats, reach: Floats, first: int, last: int, out: Floats) -> None:
-    """Fill a node's row (8,): the middle of its places' box and of their axes, and the radius and
+    """Fill a node's row (8,): the middle of its positions' box and of their axes, and the radius and
     chord of angle that hold all its spans.
 
     Both are greatest sums over the spans: how far a span's pose is from the node's, plus how far
@@ -801,7 +801,7 @@ def surroundings_removed_loop(
     """Fill out[first:last] with whether one listed move with a row below `before` has removed all
     within a margin (mm) in plan of each point (s, 3), and all above that.
 
-    Only single moves are asked, so it errs towards material that stands.
+    Only single moves are tested, so it errs towards material that stands.
     """
     for n in range(first, last):
         # A cutter thinner by the margin that holds the middle: the cutter itself holds all around.

@@ -78,7 +78,7 @@ def _direction_in_tool_frame(
 def _distance_and_gradient(
     arcs: Floats, first: int, last: int, x: float, y: float, z: float
 ) -> tuple[float, float, float, float]:
-    """Return the signed distance (mm) to a body at a place seen from the tool, and its gradient there."""
+    """Return the signed distance (mm) to a body at a position seen from the tool, and its gradient there."""
     rho = math.sqrt(x * x + y * y)
     depth, nr, nz = depth_in_body(arcs, first, last, rho, z)
     return (-depth, nr * x / rho, nr * y / rho, nz) if rho > 0.0 else (-depth, 0.0, 0.0, nz)
@@ -252,6 +252,7 @@ def cell_residual_bound(
     while top > 0 and least >= stop:
         top -= 1
         n = nodes[top]
+        # Branch and bound: nothing below this node is nearer than the least so far.
         if lower[top] >= least:
             continue
         left, right = tree.link[n, 0], tree.link[n, 1]
@@ -270,6 +271,7 @@ def cell_residual_bound(
             w = tree.way[tree.of[k]]
             mx, my, mz = point_in_tool_frame(w, x, y, z, 0.5 * (tree.low[k] + tree.high[k]))
             turn = w[TURN] * (tree.high[k] - tree.low[k])
+            # A turn moves a point by at most the turn times its distance from the tip, here from the middle.
             reach = tree.reach[k] + 0.5 * turn * math.sqrt(mx * mx + my * my + mz * mz)
             if (
                 flute_signed_distance(
@@ -332,6 +334,7 @@ def _nearest_body(flutes: Flutes, tool: int, w: Floats, place: Floats, share: fl
     """
     x, y, z = point_in_tool_frame(w, place[0], place[1], place[2], share)
     best, deepest = flutes.start[tool], -np.inf
+    # The depth is the greatest over the bodies: that of a union inside of it.
     for k in range(flutes.start[tool], flutes.start[tool + 1]):
         depth, _r, _h = depth_in_body(
             flutes.arc, flutes.first[k], flutes.last[k], math.sqrt(x * x + y * y), z
@@ -363,7 +366,7 @@ def cell_residual_loop(
     """Fill for cells `first` to `last` what is left at their middle, by which move, and bounds from
     above and below over the whole cell.
 
-    middle, a, b (c, 3), slack (c,) as in `cell_residual_bound`; far: no distance above it is told. Fills
+    middle, a, b (c, 3), slack (c,) as in `cell_residual_bound`; far: no distance above it is reported. Fills
     left (c,) mm, nearest (c,) rows or -1, upper and lower (c,) mm. Where a cell may fall by `bound`
     below both `lowest` and its middle, its `lower` only says so; with an infinite `lowest` it isn't
     searched for. Where `above` (c,) is false, no bound from above is searched for.

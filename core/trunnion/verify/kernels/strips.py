@@ -425,7 +425,7 @@ def strip_depth(
         most += arch
         if most <= max(enough, best + bound):
             continue
-        # A candidate at the place where the bound is greatest.
+        # A candidate at the position where the bound is greatest.
         at = u0 + share * (u1 - u0)
         depth = _depth_at(s, at, path, z_low, rise, arcs, piece, guide)
         if depth > best:
@@ -530,7 +530,7 @@ def move_depth(
         # Not deeper than what is known: the part is done.
         if most <= max(enough, best):
             continue
-        # The swept body itself stands for the part once its rise is a fraction of the bound. Not a
+        # The swept body itself represents the part once its rise is a fraction of the bound. Not a
         # larger one: where a trim leans more than the move climbs, the contact moves faster than
         # the tip.
         if z_high - z_low <= 0.125 * bound or top + 2 > len(spans):
@@ -571,7 +571,7 @@ def _inside(x: float, y: float, outline: Floats) -> bool:
     A ray towards +x crosses each chord or not (Sunday, Inclusion of a point in a polygon, 2001); an
     arc, of less than half a turn, changes the parity once more in the cap between its chord and
     itself. Both go by the same side of the chord, so that one rounding serves both: the chord
-    itself, far inside of a face, is nothing to the answer.
+    itself, far inside of a face, is nothing to the result.
     """
     odd = False
     for k in range(len(outline)):
@@ -747,7 +747,7 @@ def strip_contact_loop(
 
     Fills depth (k, 2) mm for what cuts and for what does not; which (k, 2) strip rows or -2 -
     region; where (k, 2) profile parameters, of a region the share of the move; face_depth (f, 2)
-    and face_move (f, 2), rows of moves. Depths up to `enough` are not told. A move found deeper
+    and face_move (f, 2), rows of moves. Depths up to `enough` are not reported. A move found deeper
     than `settle` is not searched further: its depth is then only known to be above that.
 
     All that is skipped is skipped by a bound: depth <= h over the tool's lowest tip, depth <= R_MAX

@@ -7,7 +7,7 @@ from 0 to 1 over the block.
 
 A span is a part of a block. Seen in the frame that the tool has in the middle of the span, a fixed
 point of space follows q(t) = M(t) (p - tip(t)). It stays close to the chord between its positions
-at both ends of the span: the deviation is bounded by `chord_sag`, so a span stands for a continuous
+at both ends of the span: the deviation is bounded by `chord_sag`, so a span represents a continuous
 motion without sampling it. Lengths mm, angles rad, all in the frame of the moves.
 """
 

@@ -154,6 +154,23 @@ def _swept_box(move: Floats, radius: float) -> tuple[float, float, float, float]
     return x0 - radius, y0 - radius, x1 + radius, y1 + radius
 
 
+@njit(cache=True, nogil=True, inline="always")
+def _lower(row: Floats, i: int, cut: float, upper: float) -> tuple[float, int]:
+    """Lower cell i of a row to the height `cut` (mm) where it is higher; return the removed height
+    (mm) and 1 where the cell is higher than `upper` and so is left standing, else 0.
+
+    Inlined: in five alternating runs of level, sloped, arc and helix moves no kind got slower than by
+    0.4 % against writing it out (`tests/bench/proof.py`, field).
+    """
+    h = row[i]
+    if cut >= h:
+        return 0.0, 0
+    if h > upper:
+        return 0.0, 1
+    row[i] = cut
+    return h - cut, 0
+
+
 @njit(cache=True, nogil=True)
 def _zmap_cut_row(
     row: Floats,
@@ -194,12 +211,8 @@ def _zmap_cut_row(
                     cut = max(
                         z + (corner - math.sqrt(max(corner * corner - out * out, 0.0))), floor
                     )
-                if cut < h:
-                    if h > upper:
-                        stands += 1
-                    else:
-                        removed += h - cut
-                        row[i] = cut
+                r, s = _lower(row, i, cut, upper)
+                removed, stands = removed + r, stands + s
     return removed, stands
 
 
@@ -232,12 +245,8 @@ def _zmap_cut_row_formed(
             d = ex * ex + ey * ey
             if d < limit:
                 cut = max(z + profile_height(d, profile, arcs, pieces), floor)
-                if cut < h:
-                    if h > upper:
-                        stands += 1
-                    else:
-                        removed += h - cut
-                        row[i] = cut
+                r, s = _lower(row, i, cut, upper)
+                removed, stands = removed + r, stands + s
     return removed, stands
 
 
@@ -258,8 +267,8 @@ def _zmap_cut_row_ball(
     """Lower the cells of a row under a ball end on a level line, as `_zmap_cut_row` does; without
     branches, so that it is vectorised.
 
-    Most cells ahead of a ball get lower at every move: computing them all is faster than asking
-    first. Reassociation moves a height by a few units in the last place.
+    Most cells ahead of a ball get lower at every move: computing them all is faster than a
+    branch. Reassociation moves a height by a few units in the last place.
     """
     removed, stands = 0.0, 0.0
     limit = radius * radius
@@ -443,16 +452,13 @@ def _zmap_cut_arc_row(
         if h > bottom:
             d = _arc_distance_squared(left + i * pitch, y, move)
             if d < limit:
+                # g over the squared distance to the arc: quarter circle of a plain cutter, else its bodies.
                 if profile[PLAIN] != 0.0:
                     cut = max(z + _bull_height(d, inner, corner), floor)
                 else:
                     cut = max(z + profile_height(d, profile, arcs, pieces), floor)
-                if cut < h:
-                    if h > upper:
-                        stands += 1
-                    else:
-                        removed += h - cut
-                        row[i] = cut
+                r, s = _lower(row, i, cut, upper)
+                removed, stands = removed + r, stands + s
     return removed, stands
 
 
@@ -595,6 +601,7 @@ def _profile_on_slope(
         if a > b:
             continue
         p, q = int(pieces[k, PIECE_FIRST]), int(pieces[k, PIECE_LAST])
+        # Golden section (Kiefer, 1953) on slope w + g, convex in w on one body.
         for _ in range(48):
             c, d = a + 0.382 * (b - a), a + 0.618 * (b - a)
             hc = heights_at(
@@ -654,7 +661,7 @@ def _bull_on_slope(
     if gap <= 0.0:
         return np.inf
     half = math.sqrt(gap)
-    # w runs along the way, from the column's foot on it: there the cutter's axis is.
+    # w runs along the path, from the column's foot on it: there the cutter's axis is.
     low, high = max(-half, -along), min(half, length - along)
     if low > high:
         return np.inf
@@ -724,6 +731,7 @@ def _zmap_cut_slope(
         py = y - y0
         first = max(int(math.floor((low - left) / pitch)), 0)
         row = top[j, first : min(int(math.ceil((high - left) / pitch)), top.shape[1] - 1) + 1]
+        # Invariant: no column of the row ends below the envelope of the cutter along the line.
         for i in range(len(row)):
             h = row[i]
             if h <= lowest:
@@ -732,6 +740,7 @@ def _zmap_cut_slope(
             along, across = px * ux + py * uy, px * uy - py * ux
             if done_behind and along < 0.0:
                 continue
+            # cut = min over the line of z + g: closed form for plain cutters, golden section for others.
             if plain:
                 cut = max(_bull_on_slope(along, across, length, z0, slope, radius, corner), floor)
             else:
@@ -742,12 +751,8 @@ def _zmap_cut_slope(
                     + _profile_on_slope(abs(across), low, high, slope, profile, arcs, pieces),
                     floor,
                 )
-            if cut < h:
-                if h > upper:
-                    stands += 1
-                else:
-                    removed += h - cut
-                    row[i] = cut
+            r, s = _lower(row, i, cut, upper)
+            removed, stands = removed + r, stands + s
     return removed, stands
 
 
@@ -807,12 +812,8 @@ def _zmap_cut_helix(
                     if a < b:
                         z = min(z, z0 + (b if z1 < z0 else a) / sweep * (z1 - z0))
             cut = max(z, floor)
-            if cut < h:
-                if h > z + opening:
-                    stands += 1
-                else:
-                    removed += h - cut
-                    top[j, i] = cut
+            r, s = _lower(top[j], i, cut, z + opening)
+            removed, stands = removed + r, stands + s
     return removed, stands
 
 
@@ -863,6 +864,7 @@ def zmap_cut_move(
             arcs,
             pieces,
         )
+    # A sloped line: the lower envelope in closed form.
     if line:
         return _zmap_cut_slope(
             top,
@@ -1020,6 +1022,7 @@ def _max_depth_line(
     ):
         y = origin[1] + (j + 0.5) * pitch
         for i in range(i0, i1 + 1):
+            # A column that ends below the tip is clear of the cutter.
             if top[j, i] <= z:
                 continue
             d = _segment_distance_squared(origin[0] + (i + 0.5) * pitch, y, x0, y0, dx, dy, square)
@@ -1068,6 +1071,7 @@ def _boundary_cells(
             d = _segment_distance_squared(origin[0] + (i + 0.5) * pitch, y, x0, y0, dx, dy, square)
             if d >= reach * reach:
                 continue
+            # The cell and its eight neighbours: does any column stand above the sweep?
             stands = False
             for b in range(max(j - 1, 0), min(j + 1, top.shape[0] - 1) + 1):
                 for a in range(max(i - 1, 0), min(i + 1, top.shape[1] - 1) + 1):
@@ -1125,6 +1129,7 @@ def _max_cone_depth(
             x0, y0 = min(line[0], line[2]) - radius, min(line[1], line[3]) - radius
             x1, y1 = max(line[0], line[2]) + radius, max(line[1], line[3]) + radius
         i0, i1 = first_cell(x0, origin[0], pitch), last_cell(x1, origin[0], pitch, top.shape[1])
+        # Only columns that reach above the cone's lower end can enter it.
         low = z + cones[k, 2]
         for j in range(
             first_cell(y0, origin[1], pitch), last_cell(y1, origin[1], pitch, top.shape[0]) + 1

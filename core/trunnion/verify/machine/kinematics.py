@@ -1,7 +1,7 @@
 """Axis positions of a machine for each pose of the tool: rotary angles by the nearer turn, linear positions with the pivots in them.
 
-A pose asks that the tool's direction on the machine and the axis in the work agree: Rot(p, alpha) Rot(q, beta) v = w for two rotary axes,
-solved in closed form with both ways to stand (Paden and Kahan's second subproblem; Murray, Li, Sastry, A Mathematical Introduction to
+A pose requires that the tool's direction on the machine and the axis in the work agree: Rot(p, alpha) Rot(q, beta) v = w for two rotary
+axes, solved in closed form, with both solutions (Paden and Kahan's second subproblem; Murray, Li, Sastry, A Mathematical Introduction to
 Robotic Manipulation, 1994, section 3.2).
 """
 
@@ -42,8 +42,8 @@ class AxisPositions:
     turns: Bools
 
 
-def stands_of(moves: Moves, machine: Machine, foot: Floats) -> AxisPositions:
-    """Return how a machine stands along moves; `foot` (3,) is the place of the work, in the setup frame, on the middle of the table."""
+def axis_positions(moves: Moves, machine: Machine, foot: Floats) -> AxisPositions:
+    """Return how a machine stands along moves; `foot` (3,) is the position of the work, in the setup frame, on the middle of the table."""
     move, tip, axis = poses_of(moves)
     rotary, good = rotary_angles(axis, machine)
     reached = np.ones(len(moves), bool)
@@ -119,7 +119,7 @@ def rotary_angles(axis: Floats, machine: Machine) -> tuple[Floats, Bools]:
 
 
 def can_hold(axis: Floats, machine: Machine) -> Bools:
-    """Say which tool axes (k, 3) a machine can hold within the limits of its rotary axes, each by itself."""
+    """Return which tool axes (k, 3) a machine can hold within the limits of its rotary axes, each by itself."""
     rotary = machine.rotary
     if not rotary:
         return np.asarray(np.linalg.norm(axis - UP, axis=1) < STANDS)

@@ -14,7 +14,7 @@ from trunnion.geometry.arrays import Bools, Floats, Ints
 from trunnion.model.material import Machine
 from trunnion.units import SECONDS_PER_MINUTE
 from trunnion.verify.kernels.timing import block_times
-from trunnion.verify.machine.kinematics import AxisPositions, stands_of
+from trunnion.verify.machine.kinematics import AxisPositions, axis_positions
 from trunnion.verify.motion import Moves
 
 LINEAR = ("X", "Y", "Z")
@@ -66,7 +66,7 @@ def times_of(moves: Moves, stands: AxisPositions, machine: Machine) -> MachineTi
 
 def seconds_of(moves: Moves, machine: Machine, foot: Floats) -> Floats:
     """Return the machining time of every move in s (n,); `foot` (3,) stands on the middle of the table, in the setup frame."""
-    return times_of(moves, stands_of(moves, machine, foot), machine).seconds
+    return times_of(moves, axis_positions(moves, machine, foot), machine).seconds
 
 
 def _ways(axes: Floats, move: Ints, n: int) -> tuple[Floats, Floats, Floats]:
@@ -92,7 +92,7 @@ def _tangents(stands: AxisPositions, axes: Floats, rows: Ints) -> tuple[Floats, 
 
 
 def _axis_seconds(axes: Floats, rates: Floats, move: Ints, n: int) -> Floats:
-    """Return the seconds (n,) that the axes' own greatest rates ask for."""
+    """Return the seconds (n,) that the axes' own greatest rates require."""
     step = np.abs(np.diff(axes, axis=0)) / rates
     inner = np.flatnonzero(move[1:] == move[:-1])
     return np.asarray(np.bincount(move[inner], step[inner].max(axis=1), n))

@@ -64,8 +64,8 @@ class Bundle:
         return Bundle(UP, field.pitch, rows, columns, field.low[:2].copy(), count, low, high)
 
     @property
-    def room(self) -> int:
-        """Intervals that each ray has room for."""
+    def capacity(self) -> int:
+        """Intervals that each ray can hold."""
         return self.low.shape[1]
 
     @property
@@ -76,7 +76,7 @@ class Bundle:
     @property
     def volume(self) -> float:
         """Volume in mm3 as these rays see it."""
-        there = np.arange(self.room) < self.count[:, None]
+        there = np.arange(self.capacity) < self.count[:, None]
         return float(np.where(there, self.high - self.low, 0.0).sum()) * self.pitch**2
 
     def tiles(self) -> list[tuple[int, int]]:
@@ -85,7 +85,7 @@ class Bundle:
 
     def parts(self) -> list[Part]:
         """Return a copy of each tile."""
-        there = np.arange(self.room) < self.count[:, None]
+        there = np.arange(self.capacity) < self.count[:, None]
         found: list[Part] = []
         for first, last in self.tiles():
             own = slice(first * self.columns, last * self.columns)
@@ -97,17 +97,19 @@ class Bundle:
     def put(self, parts: Sequence[Part]) -> None:
         """Become what copies of all tiles say."""
         self.count = np.concatenate([p[0] for p in parts])
-        while self.count.max(initial=0) > self.room:
+        while self.count.max(initial=0) > self.capacity:
             self.grow()
-        there = np.arange(self.room) < self.count[:, None]
+        there = np.arange(self.capacity) < self.count[:, None]
         self.low[there], self.high[there] = (np.concatenate([p[k] for p in parts]) for k in (1, 2))
 
     def grow(self) -> None:
-        """Give every ray twice the room."""
-        self.low, self.high = (np.pad(a, ((0, 0), (0, self.room))) for a in (self.low, self.high))
+        """Double the capacity of every ray."""
+        self.low, self.high = (
+            np.pad(a, ((0, 0), (0, self.capacity))) for a in (self.low, self.high)
+        )
 
     def contains(self, points: Floats) -> Bools:
-        """Say for points (k, 3) in the blank's frame whether the nearest ray has material there."""
+        """Return for points (k, 3) in the blank's frame whether the nearest ray has material there."""
         u, v, w = points[:, cycle(self.axis)].T
         column = np.clip(
             np.floor((u - self.origin[0]) / self.pitch).astype(np.int64), 0, self.columns - 1
@@ -116,7 +118,7 @@ class Bundle:
             np.floor((v - self.origin[1]) / self.pitch).astype(np.int64), 0, self.rows - 1
         )
         cell = row * self.columns + column
-        there = np.arange(self.room) < self.count[cell][:, None]
+        there = np.arange(self.capacity) < self.count[cell][:, None]
         return np.asarray(
             (there & (self.low[cell] <= w[:, None]) & (w[:, None] <= self.high[cell])).any(axis=1)
         )

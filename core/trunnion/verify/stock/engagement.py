@@ -1,7 +1,7 @@
 """How much of a cutter's circumference is in material on the way, and how deep: where to look, and what the counts mean.
 
 The compiled loops (`kernels/engagement.py`) count, tile by tile, which directions of the cutter's front are in material; counts of tiles
-are added, so the answer is the same for any number of them. Of the rings the widest counts that is no higher than half the depth of the
+are added, so the result is the same for any number of them. Of the rings the widest counts that is no higher than half the depth of the
 material there: the circle at which a rounded end cuts on average.
 """
 
@@ -64,7 +64,7 @@ class Tally:
 class Engagement:
     """A row a move: largest (n,) and mean (n,) angle of the circumference in material, rad, 0 for rapids and in air; depth (n,) the
     largest depth of the material along the axis, mm; widest (n,) mm how wide the cut is, from the cutter's side, over the diameter's length
-    where it is widest, and peak (n,) how many times as wide as on the mean of the way, 1 in air."""
+    where it is widest, and peak (n,) how many times as wide as on the mean of the path, 1 in air."""
 
     largest: Floats
     mean: Floats

@@ -17,7 +17,7 @@ from trunnion.model.blank import Blank
 Part = tuple[NDArray, ...]
 """A tile's copy: heights of columns, or of rays how many intervals each has, and all their lower and upper ends, closely packed."""
 UP = 2
-"""The axis whose rays tell how far the cutter is engaged."""
+"""The axis along whose rays the engagement is measured."""
 RAYS = 500_000
 """Rays sent through a blank together: some tens of MB of tables."""
 TILES = 16
@@ -57,7 +57,7 @@ class Field:
         return float((self.top - self.low[2]).sum()) * self.pitch**2
 
     def contains(self, points: Floats) -> Bools:
-        """Say for points (k, 3) in the blank's box whether the nearest column reaches as high."""
+        """Return for points (k, 3) in the blank's box whether the nearest column reaches as high."""
         column, row = np.floor((points[:, :2] - self.low[:2]) / self.pitch).astype(np.int64).T
         rows, columns = self.top.shape
         return np.asarray(

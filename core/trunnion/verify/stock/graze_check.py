@@ -54,7 +54,7 @@ def confirm_grazed(
 
 
 def _standing(stock: Stock, places: Floats, frame: Frame, sweep: Sweep, row: int) -> Bools:
-    """Say which places (k, 3) in the blank's frame neither a setup before nor a move before `row` has cut."""
+    """Return which places (k, 3) in the blank's frame neither a setup before nor a move before `row` has cut."""
     world = stock.frame.to_world(places)
     standing = stock.was_solid(places)
     standing &= ~sweep.cut_before(frame.to_local(world), row)
@@ -74,7 +74,7 @@ def look_closer(
     depth: Floats,
     place: Floats,
 ) -> None:
-    """Judge the cells of a height field that an upright rapid grazes by fine columns; those below zero stand for -1 - cell, where the
+    """Judge the cells of a height field that an upright rapid grazes by fine columns; those below zero encode -1 - cell, where the
     columns around are gone too and only a fin between them can stand."""
     fins = cells < 0
     cells = np.where(fins, -1 - cells, cells)
@@ -109,8 +109,8 @@ def look_closer(
 
 
 def _places(moves: Moves, row: int, points: Floats, around: float) -> tuple[Floats, Floats]:
-    """Return the lowest place over each plan point (k, 2) that an upright rapid enters by more than is allowed, or at most as high as any
-    such place within `around` mm of it, and the point's distance from its way; infinite where it enters nothing."""
+    """Return the lowest position over each plan point (k, 2) that an upright rapid enters by more than is allowed, or at most as high as
+    any such position within `around` mm of it, and the point's distance from its path; infinite where it enters nothing."""
     allowed, move, tool = tolerance.RAPID_DEPTH, moves.row[row], moves.tools[moves.tool[row]]
     start, end = (
         move[[getattr(columns, name) for name in names]]

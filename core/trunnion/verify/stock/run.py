@@ -26,7 +26,7 @@ class StockRun:
     removed (n,) mm3; rapid_depth (n,) how deep a rapid goes into stock, 0 when clear; rapid_place (n, 3) in the setup frame, NaN when
     clear; body_depth (n,) how deep shank or holder enter stock; engagement (n,) rad, the largest angle of the cutter's circumference in
     material along a feed move, and depth_of_cut (n,) mm along the axis, both 0 for rapids; widest (n,) mm how wide the cut is over the
-    diameter's length where it is widest, peak (n,) how many times as wide as on the mean of the way.
+    diameter's length where it is widest, peak (n,) how many times as wide as on the mean of the path.
     """
 
     removed: Floats
@@ -47,7 +47,7 @@ def run_stock(
     progress: Progress = QUIET,
     threads: int = 0,
 ) -> StockRun:
-    """Cut moves given in a setup frame out of the stock (changed in place) and say what each did.
+    """Cut moves given in a setup frame out of the stock (changed in place) and return what each did.
 
     `sweep` of the same moves answers for rapids that graze material between rays; without it they are judged by the rays alone.
     `threads` 0: one a core; the result is the same for any number. Cancelled or out of memory half-way, the stock is of no use any more:

@@ -31,7 +31,7 @@ class Spans:
 
 
 def whole_arcs(moves: Moves, along: Sequence[int]) -> Bools:
-    """Say which moves (n,) are arcs that go level about one of the blank's axes `along`: each is one span."""
+    """Return which moves (n,) are arcs that go level about one of the blank's axes `along`: each is one span."""
     climb = np.abs(((moves.end - moves.start) * moves.start_axis).sum(axis=1))
     axis = np.abs(moves.start_axis)
     straight = np.isin(axis.argmax(axis=1), along) & (
@@ -74,7 +74,7 @@ def spans_of(moves: Moves, rows: Ints, each: Ints, whole: Bools) -> Spans:
     bent = np.repeat(whole, each)
     row[:, 14:] = 0.0
     row[bent, 14:] = poses.arcs()[bent]
-    row[bent, 12:14] = poses.way_boxes(bent)
+    row[bent, 12:14] = poses.path_boxes(bent)
     size = _sizes(moves)[moves.tool[move]]
     row[:, 8:10] = _boxes(row, size[:, 0], size[:, 2])
     row[:, 10:12] = _boxes(row, size[:, 1], size[:, 3])
@@ -138,8 +138,8 @@ class _Poses:
             axis=1,
         )
 
-    def way_boxes(self, rows: Bools) -> Floats:
-        """Return boxes (k, 2, 3) of the tips' ways along some arcs."""
+    def path_boxes(self, rows: Bools) -> Floats:
+        """Return boxes (k, 2, 3) of the tips' paths along some arcs."""
         away, over, sweep = self.away[rows], self.over[rows], self.sweep[rows, None]
         centre, reach, angle = self.start[rows] - away, np.hypot(away, over), np.arctan2(over, away)
         end = centre + np.cos(sweep) * away + np.sin(sweep) * over

@@ -110,7 +110,7 @@ class Stock:
         return float(np.mean(volumes))
 
     def contains(self, points: Floats) -> Bools:
-        """Say for points (k, 3) in the blank's frame whether they are in material: what most of the nearest rays say."""
+        """Return for points (k, 3) in the blank's frame whether they are in material: what most of the nearest rays say."""
         points = np.asarray(points, dtype=np.float64).reshape(-1, 3)
         said = [b.contains(points) for b in self.rays.values()] + (
             [self.field.contains(points)] if self.field is not None else []
@@ -119,12 +119,12 @@ class Stock:
         return np.asarray(inside & (2 * np.sum(said, axis=0) > len(said)))
 
     def was_solid(self, points: Floats) -> Bools:
-        """Say for points (k, 3) in the blank's frame whether they were inside before anything was cut."""
+        """Return for points (k, 3) in the blank's frame whether they were inside before anything was cut."""
         inside = ((points > self.low) & (points < self.high)).all(axis=1)
         return np.asarray(inside & (self.blank.depth(points, self.frame) > 0.0))
 
     def patch(self, low: Floats, high: Floats, pitch: float) -> Stock:
-        """Return a box of the blank, whole, with finer rays: cut it by the moves that touch it to see this place closely."""
+        """Return a box of the blank, whole, with finer rays: cut it by the moves that touch it to see this position closely."""
         low, high = np.maximum(low, self.low), np.minimum(high, self.high)
         if not (high > low).all():
             raise BadInput("stock: a patch must have its box in the blank")

@@ -15,11 +15,11 @@ from trunnion_gui.widgets.chart import Chart, ChartCurve
 from trunnion_gui.widgets.panel import rule
 
 _REPAIR = -1
-"""Stands for the points that the paper's repair puts on an edge, as many as its length asks for."""
+"""Stands for the points that the paper's repair puts on an edge, as many as its length requires."""
 
 
 class AccuracyDock(QWidget):
-    """A table and a chart of the last measurement; empty until somebody asks for one."""
+    """A table and a chart of the last measurement; empty until one is requested."""
 
     def __init__(self, document: Document, jobs: PatchJobs) -> None:
         super().__init__()

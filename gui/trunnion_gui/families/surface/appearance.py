@@ -28,7 +28,7 @@ def classes(kind: str, features: Sequence[Feature]) -> tuple[FeatureClass, ...]:
 
 
 def class_colours() -> tuple[str, str]:
-    """Return the colours that stand for the groups of the remaining area, and for local features."""
+    """Return the colours that represent the groups of the remaining area, and for local features."""
     remaining, local = palette().kinds[GROUP].classes
     return remaining.colours[0], local.colours[0]
 

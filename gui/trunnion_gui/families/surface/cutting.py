@@ -17,7 +17,7 @@ from PySide6.QtWidgets import (
 )
 
 from trunnion.findings import BadInput
-from trunnion.geometry.cut import Cut, plane_cut, way_cut
+from trunnion.geometry.cut import Cut, curve_cut, plane_cut
 from trunnion_gui.document import Document
 from trunnion_gui.families.surface.jobs import PatchJobs
 from trunnion_gui.form import NumberField
@@ -61,7 +61,7 @@ class CutBar(QWidget):
 
     @property
     def is_on(self) -> bool:
-        """Whether a cut is being made, so that clicks on the part are its places."""
+        """Whether a cut is being made, so that clicks on the part are its points."""
         return not self.isHidden()
 
     def begin(self, face: int, by_plane: bool) -> None:
@@ -116,7 +116,7 @@ class CutBar(QWidget):
                     if len(self.places) == 3
                     else None
                 )
-            return way_cut(self.face, tuple(self.places)) if len(self.places) > 1 else None
+            return curve_cut(self.face, tuple(self.places)) if len(self.places) > 1 else None
         except BadInput:
             return None
 

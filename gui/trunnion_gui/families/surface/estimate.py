@@ -1,4 +1,4 @@
-"""The time of finishing by area rates, asked of the worker whenever the plan of a curved part is another one."""
+"""The time of finishing by area rates, requested from the worker whenever the plan of a curved part is another one."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ from trunnion_gui.worker.worker import Reply
 
 
 class EstimateSource(QObject):
-    """Keeps the estimate in step with the session; asks only while no job runs, and only of parts with groups of patches."""
+    """Keeps the estimate in step with the session; requests only while no job runs, and only of parts with groups of patches."""
 
     arrived = Signal(object)
     """Another `EstimatedTimes`, or None."""
@@ -38,7 +38,7 @@ class EstimateSource(QObject):
             return
         self._source, self._asked = source, 0
         if _has_areas(session):
-            self._asked = self._document.jobs.worker.ask(requests.estimate, session)
+            self._asked = self._document.jobs.worker.send(requests.estimate, session)
         else:
             self._show(None)
 

@@ -1,4 +1,4 @@
-"""What the window asks of the worker for curved parts, and what it does with the answers."""
+"""Requests of the window to the worker for curved parts, and the handling of their replies."""
 
 from __future__ import annotations
 

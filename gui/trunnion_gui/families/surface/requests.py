@@ -9,7 +9,7 @@ from trunnion.geometry.cut import Cut
 from trunnion.model.session import Session
 from trunnion.progress import Progress
 from trunnion_gui.worker.drawing import DrawnMesh, drawing_of
-from trunnion_gui.worker.requests import SessionState, Tell, state_of, writes_files
+from trunnion_gui.worker.requests import SendEvent, SessionState, state_of, writes_files
 
 
 @dataclass(frozen=True, slots=True)
@@ -67,7 +67,9 @@ class EstimatedTimes:
     is_measured: bool
 
 
-def cut(engine: Any, progress: Progress, _tell: Tell, session: Session, cut: Cut) -> PatchedSession:
+def cut(
+    engine: Any, progress: Progress, _send_event: SendEvent, session: Session, cut: Cut
+) -> PatchedSession:
     """Return the session after a face was cut in two."""
     from trunnion.pipeline.patches import with_cut
 
@@ -80,7 +82,7 @@ def cut(engine: Any, progress: Progress, _tell: Tell, session: Session, cut: Cut
 
 
 def uncut(
-    engine: Any, progress: Progress, _tell: Tell, session: Session, number: int
+    engine: Any, progress: Progress, _send_event: SendEvent, session: Session, number: int
 ) -> PatchedSession:
     """Return the session after a cut was taken back, counted from 0."""
     from trunnion.pipeline.patches import without_cut
@@ -103,7 +105,7 @@ def _patched(engine: Any, before: Session, after: Session, progress: Progress) -
 def move(
     engine: Any,
     _progress: Progress,
-    _tell: Tell,
+    _send_event: SendEvent,
     session: Session,
     faces: tuple[int, ...],
     group: str,
@@ -119,7 +121,7 @@ def move(
 def export(
     engine: Any,
     _progress: Progress,
-    _tell: Tell,
+    _send_event: SendEvent,
     session: Session,
     what: tuple[str, ...],
     path: str,
@@ -130,7 +132,7 @@ def export(
     return export_patches(engine, session, what, path)
 
 
-def accuracy(engine: Any, progress: Progress, _tell: Tell, session: Session) -> Accuracy:
+def accuracy(engine: Any, progress: Progress, _send_event: SendEvent, session: Session) -> Accuracy:
     """Return how exact the feature sizes are by the number of points on each edge."""
     from trunnion.recognize.surface.accuracy import COUNTS, size_errors
 
@@ -145,7 +147,7 @@ def accuracy(engine: Any, progress: Progress, _tell: Tell, session: Session) -> 
 
 
 def estimate(
-    engine: Any, _progress: Progress, _tell: Tell, session: Session
+    engine: Any, _progress: Progress, _send_event: SendEvent, session: Session
 ) -> EstimatedTimes | None:
     """Return the time of finishing by area rates, None where no areas are finished."""
     from trunnion.pipeline.finishing_estimate import estimate as estimated

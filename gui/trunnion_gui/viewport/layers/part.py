@@ -58,7 +58,7 @@ class PartLayer:
         self._surface.Modified()
 
     def on_face(self, tag: int, points: np.ndarray) -> np.ndarray:
-        """Return the places (k, 3) on a face that are nearest to points (k, 3)."""
+        """Return the positions (k, 3) on a face that are nearest to points (k, 3)."""
         face = self._surface.extract_cells(np.flatnonzero(self._mesh.face == tag))
         if not face.n_cells or not len(points):
             return points

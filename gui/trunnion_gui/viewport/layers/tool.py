@@ -1,4 +1,4 @@
-"""The tool as bodies of revolution: cutter, shank with neck, and holder, standing where it cuts; and the way it came."""
+"""The tool as bodies of revolution: cutter, shank with neck, and holder, standing where it cuts; and the path it came by."""
 
 from __future__ import annotations
 
@@ -25,7 +25,7 @@ Outline = list[tuple[float, float]]
 
 
 def draw_tool(view: Any, tool: Tool | None, theme: Theme) -> None:
-    """Show a tool at the origin with its axis up, or none; `place_tool` puts it where it is."""
+    """Show a tool at the origin with its axis up, or none; `move_tool_to` puts it where it is."""
     for part in PARTS:
         view.remove_actor(part, render=False)
     if tool is None:
@@ -47,7 +47,7 @@ def draw_tool(view: Any, tool: Tool | None, theme: Theme) -> None:
             )
 
 
-def place_tool(view: Any, tip: np.ndarray, axis: np.ndarray) -> None:
+def move_tool_to(view: Any, tip: np.ndarray, axis: np.ndarray) -> None:
     """Stand the tool with its tip at a point and its axis along a direction."""
     across = np.cross(axis, (0.0, 0.0, 1.0) if abs(axis[2]) < 0.9 else (1.0, 0.0, 0.0))
     across /= np.linalg.norm(across)
@@ -65,7 +65,7 @@ def place_tool(view: Any, tip: np.ndarray, axis: np.ndarray) -> None:
 
 
 def draw_trail(view: Any, points: np.ndarray, rapid: np.ndarray) -> None:
-    """Show the way of the tip so far: points (k + 1, 3), and for each chord (k,) whether it was a rapid."""
+    """Show the path of the tip so far: points (k + 1, 3), and for each chord (k,) whether it was a rapid."""
     k = len(points) - 1
     if k < 1:
         view.remove_actor("trail", render=False)
