@@ -12,6 +12,7 @@ from trunnion.findings import BadCall, BadInput
 from trunnion.model.session import Session
 from trunnion.model.spindle import FeedMode, SpindleMode
 from trunnion.model.tool import Tool
+from trunnion.settings import unwritten
 from trunnion.store import xml
 from trunnion.store.features import features_xml, write_features
 from trunnion.store.mapping import Members, from_xml, to_xml
@@ -33,8 +34,9 @@ def says(element, data):
 
 
 def scalars(data, *others):
-    """Return the scalar fields of a dataclass, but for some."""
-    every = {f.name: getattr(data, f.name) for f in fields(data) if f.name not in others}
+    """Return the scalar fields of a dataclass, but for some and for those that files leave out."""
+    left_out = {*others, *unwritten(data)}
+    every = {f.name: getattr(data, f.name) for f in fields(data) if f.name not in left_out}
     return {name: v for name, v in every.items() if isinstance(v, (bool, int, float, str))}
 
 

@@ -115,6 +115,22 @@ def test_the_profile_is_roughed_to_its_allowance_and_finished_exactly() -> None:
     assert first.findings == last.findings == ()
 
 
+@pytest.mark.parametrize(("flute", "passes"), [(20.5, 2), (30.0, 1)])
+def test_the_flutes_not_the_shank_meet_what_roughing_left_over_a_wall(flute, passes) -> None:
+    roughed = STOCK.after(
+        profile_rough(
+            profile(0.3), mill(12), cutting(6, 4), STOCK, SETUP, ProfileRoughSettings(), QUIET
+        ).path,
+        mill(12),
+    )
+    # The wall is 20 mm tall, its allowance stands 2 mm higher.
+    path = profile_finish(
+        profile(), mill(12, flute_length=flute), cutting(20, 4), roughed, SETUP,
+        ProfileFinishSettings(), QUIET,
+    ).path  # fmt: skip
+    assert len(np.unique(path.position[path.mark == Mark.CUT, 2].round(3))) == passes
+
+
 def test_the_profile_is_cut_clockwise_so_that_it_climbs() -> None:
     path = profile_finish(
         profile(), mill(12), cutting(20, 4), STOCK, SETUP, ProfileFinishSettings(), QUIET

@@ -8,6 +8,7 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
+from lxml import etree
 from pytest import approx
 
 import programs
@@ -42,7 +43,7 @@ from trunnion.post.settings import PostSettings
 from trunnion.shop import load_shop
 from trunnion.shop.kinematics import NO_PLACES
 from trunnion.store.mapping import Members, from_xml, to_xml
-from trunnion.store.process import read_process, write_process
+from trunnion.store.process import write_process
 from trunnion.verify.motion import moves_of
 from verify_tools import program_section, proof
 
@@ -197,7 +198,11 @@ def test_a_plan_with_a_turning_tool_comes_back_from_its_files(tmp_path):
         paths=(*plain.paths, replace(plain.paths[0], operation="turn-01", path=FACING)),
     )
     write_process(changed, tmp_path / "a.xml")
-    assert read_process(tmp_path / "a.xml").operations == tree.operations
+    root, tool = etree.parse(tmp_path / "a.xml").getroot(), turning_operation().tool
+    (element,) = root.findall("turning-tool")
+    (operation,) = (o for o in root.findall("operation") if o.get("id") == "turn-01")
+    assert operation.get("tool") == element.get("number") == str(tool.number)
+    assert float(element.find("insert").get("nose-radius")) == tool.insert.nose_radius
     members = Members()
     again = from_xml(to_xml(changed, Session, "session", members), Session, members)
     assert again.process.operations == tree.operations

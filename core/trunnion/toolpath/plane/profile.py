@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from itertools import pairwise
 
 import numpy as np
 
@@ -16,7 +17,7 @@ from trunnion.model.tool import Tool
 from trunnion.plan.prismatic.drive import PlaneDrive, WallGuide
 from trunnion.progress import Progress
 from trunnion.settings import setting, settings
-from trunnion.toolpath.axis_region import AxisRegion, level_at, parts_where
+from trunnion.toolpath.axis_region import AxisRegion, level_at, parts_where, points_along
 from trunnion.toolpath.contract import Planned, strategy
 from trunnion.toolpath.motion.builder import PathBuilder
 from trunnion.toolpath.motion.choices import safety
@@ -130,7 +131,7 @@ def profile_finish(
     findings: list[Finding] = []
     for guide in drive.walls:
         distance = tool.radius + drive.wall_allowance
-        for z in steps_down(guide.top, guide.bottom, min(data.depth, tool.flute_length)):
+        for z in _steps(builder, drive, guide, distance):
             progress.at(
                 (guide.top - z) / max(guide.top - guide.bottom, tolerance.SEW),
                 f"{drive.feature}: pass at {z:.3f}",
@@ -149,6 +150,25 @@ def profile_finish(
             )
         findings += _left(drive, guide, tool, drive.wall_allowance)
     return _planned(drive, builder, findings)
+
+
+def _steps(
+    builder: PathBuilder, drive: PlaneDrive, guide: WallGuide, distance: float
+) -> tuple[float, ...]:
+    """Return the heights of the passes along a wall: so many that the flutes, not the shank, meet what roughing left over the wall too."""
+    tool, data, stock = builder.tool, builder.data, builder.stock()
+    height = guide.top - guide.bottom
+    step = min(data.depth, tool.flute_length)
+    if data.depth >= height - tolerance.SEW:
+        step = tool.flute_length
+    room = AxisRegion.of(level_at(drive, guide.bottom).boundary, distance)
+    # The disc a cell short of the wall: the cells at its rim are the part's own.
+    standing = [
+        stock.height(a, b, max(tool.radius - stock.cell, stock.cell))
+        for part in contour_parts(room, guide.curve, distance)
+        for a, b in pairwise(points_along(part, tool.radius)[1])
+    ]
+    return steps_down(max([guide.top, *standing]), guide.bottom, step)
 
 
 def _planned(drive: PlaneDrive, builder: PathBuilder, findings: list[Finding]) -> Planned:
