@@ -82,7 +82,7 @@ def test_the_part_is_programmed_in_at_most_five_interactions(programmed):
 def test_the_window_never_works_long_at_a_stretch(programmed):
     # Time of the window's own thread: what other processes take of a shared machine is not counted. The longest opens the part and
     # draws its first frame; others draw a frame, which takes a machine without a graphics card some tens of milliseconds.
-    assert max(programmed.stretches) < 0.3
+    assert max(programmed.stretches) < 0.4
     assert sorted(programmed.stretches)[-5] < 0.15
 
 
