@@ -19,7 +19,7 @@ from trunnion.model.process import ProcessTree
 from trunnion.plan.prismatic.regions import (
     Band,
     SetupSpace,
-    eased,
+    above_fillets,
     floor_fillet,
     on_rim,
     parent_of,
@@ -268,10 +268,10 @@ def _pocket_walls(
             top = band.top if above is None else guides[above].top
             if above is None and n > 0:
                 start = band.top + over if stepped else band.top
-                top = min(max(start, eased(band.top, fillets)), bands[0].top)
+                top = min(max(start, above_fillets(band.top, fillets)), bands[0].top)
             island = _island_of(feature, curve, space)
             foot = fillet if island is None else floor_fillet(island)
-            bottom = band.bottom if on_floor else eased(band.bottom, fillets)
+            bottom = band.bottom if on_floor else above_fillets(band.bottom, fillets)
             if bottom > top - tolerance.SEW:
                 continue
             guide = WallGuide(

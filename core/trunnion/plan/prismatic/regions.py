@@ -258,7 +258,7 @@ class SetupSpace:
                 continue
             breaks.insert(len(bands) + 1, peak)
             # Over a peak the fillets of floors on both sides meet: that much of it is taken as the section at the peak shows it.
-            rounded = eased(peak, fillets)
+            rounded = above_fillets(peak, fillets)
             if rounded > peak + tolerance.BESIDE_PLANE:
                 peaks.add(peak)
                 if rounded < high - tolerance.SEW:
@@ -361,10 +361,10 @@ def _up_to_walls(band: Band, over: Band, on_floor: Floats, grow: float) -> Band:
     )
 
 
-def eased(z: float, fillets: Mapping[float, float]) -> float:
+def above_fillets(z: float, fillets: Mapping[float, float]) -> float:
     """Return where the walls over a height are no more rounded by the fillets (radius by floor height) of floors at or below it.
 
-    >>> eased(9.0, {5.0: 6.0, 8.5: 1.0, 8.9: 0.05}), eased(9.0, {5.0: 2.0})
+    >>> above_fillets(9.0, {5.0: 6.0, 8.5: 1.0, 8.9: 0.05}), above_fillets(9.0, {5.0: 2.0})
     (11.0, 9.0)
     """
     return max([z, *(floor + radius for floor, radius in fillets.items() if floor <= z)])
