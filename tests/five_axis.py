@@ -12,9 +12,9 @@ from dataclasses import dataclass
 import numpy as np
 
 from trunnion.geometry.arrays import Floats, Ints
-from trunnion.model.program import ProgramSection
+from trunnion.model.motion.program import ProgramSection
+from trunnion.model.motion.toolpath import Motion, Toolpath
 from trunnion.model.tool import Holder, Tool
-from trunnion.model.toolpath import Motion, Toolpath
 
 SIDE, BASE, BLANK_TOP = 200.0, -30.0, 8.0
 """mm: side of the block, height of its bottom, and how high the blank it is cut from stands."""

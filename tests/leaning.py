@@ -8,8 +8,8 @@ from dataclasses import replace
 import numpy as np
 
 from trunnion.model.material import Axis
-from trunnion.model.program import ProgramSection
-from trunnion.model.toolpath import Motion, Toolpath
+from trunnion.model.motion.program import ProgramSection
+from trunnion.model.motion.toolpath import Motion, Toolpath
 from trunnion.part.shape.facets import Facets
 from trunnion.part.shape.surfaces import GUIDE, L_KIND, PROFILE, R_KIND, U0, U1
 from trunnion.verify.contact import guide_points

@@ -12,16 +12,16 @@ import numpy as np
 from programs import FLAT_16, S1
 from trunnion.geometry.arrays import Floats
 from trunnion.model.material import Axis, Machine
-from trunnion.model.program import Program, ProgramSection
+from trunnion.model.motion.program import Program, ProgramSection
+from trunnion.model.motion.toolpath import Mark, Motion, Toolpath
 from trunnion.model.setup import Setup
 from trunnion.model.tool import Tool
-from trunnion.model.toolpath import Mark, Motion, Toolpath
 from trunnion.post.dialects.linuxcnc import LinuxCncDialect
 from trunnion.post.header import Header
-from trunnion.post.readers import control
-from trunnion.post.readers.joints import Joints
 from trunnion.post.readers.linuxcnc import read_linuxcnc
 from trunnion.post.readers.sections import SectionBlocks
+from trunnion.post.readers.word_address import interpreter as control
+from trunnion.post.readers.word_address.joints import Joints
 from trunnion.post.settings import PostSettings
 from trunnion.shop import load_shop
 from trunnion.shop.kinematics import WorkPosition

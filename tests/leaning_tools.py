@@ -7,9 +7,9 @@ import math
 import numpy as np
 import shapely
 
-from trunnion.model.program import ProgramSection
+from trunnion.model.motion.program import ProgramSection
+from trunnion.model.motion.toolpath import Motion, Toolpath
 from trunnion.model.tool import Tool
-from trunnion.model.toolpath import Motion, Toolpath
 from trunnion.part.shape.facets import Facets
 from trunnion.part.shape.surfaces import STRIP_COLUMNS, ContactFace, surfaces_from
 from trunnion.verify.contact import PartContact

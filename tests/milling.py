@@ -15,10 +15,10 @@ import numpy as np
 from trunnion.geometry.frame import WORLD
 from trunnion.geometry.plane.region import Region
 from trunnion.model.blank import Blank, Box
+from trunnion.model.motion.toolpath import Motion, Toolpath
 from trunnion.model.operation import CuttingData
 from trunnion.model.setup import Setup
 from trunnion.model.tool import Holder, Tool
-from trunnion.model.toolpath import Motion, Toolpath
 from trunnion.plan.prismatic.drive import DriveLevel, Floor, PlaneDrive, WallGuide
 
 SETUP = Setup(name="S1", frame=WORLD, work_offset="G54", clearance=50.0, machine="Mill")

@@ -12,7 +12,7 @@ import numpy as np
 
 from trunnion.findings import BadInput
 from trunnion.model.material import Material
-from trunnion.model.program import Program
+from trunnion.model.motion.program import Program
 from trunnion.model.verdict import BlockProof, Verdict
 from trunnion.post.dialects.apt import AptDialect
 from trunnion.post.dialects.linuxcnc import LinuxCncDialect

@@ -14,13 +14,13 @@ from trunnion.geometry.mesh import Mesh
 from trunnion.model.blank import Box
 from trunnion.model.feature import FaceRole, Feature, Recognition
 from trunnion.model.fixture import Fixture
+from trunnion.model.motion.program import Program, ProgramSection
+from trunnion.model.motion.toolpath import ACROSS, Mark, Motion, Toolpath
 from trunnion.model.operation import CuttingData, Operation, OperationPath
 from trunnion.model.process import ProcessTree
-from trunnion.model.program import Program, ProgramSection
 from trunnion.model.session import PartInfo, PostedFile, Session, SizeEntry, StepRecord
 from trunnion.model.setup import Setup
 from trunnion.model.tool import Holder, Insert, Tool, TurningTool
-from trunnion.model.toolpath import ACROSS, Mark, Motion, Toolpath
 from trunnion.model.verdict import (
     BlockProof,
     Deviation,

@@ -8,8 +8,8 @@ import numpy as np
 from hypothesis import strategies as st
 
 from programs import BULL_10, CCW, CW, FLAT_16, LINE, RAPID, S1, path_of, section
-from trunnion.model.cycle import BACK_OFF, PECKING, WAITING, Cycle, CycleKind
-from trunnion.model.program import Program
+from trunnion.model.motion.cycle import BACK_OFF, PECKING, WAITING, Cycle, CycleKind
+from trunnion.model.motion.program import Program
 from trunnion.post.writer.turning import in_plane
 
 coordinates = st.integers(-9_999_999, 9_999_999).map(lambda n: n / 10_000)

@@ -17,9 +17,9 @@ import numpy as np
 import pytest
 
 from parts import ROOT
+from trunnion.model.motion.toolpath import Motion
 from trunnion.model.setup import Setup
 from trunnion.model.tool import Tool
-from trunnion.model.toolpath import Motion
 from trunnion.post.readers.linuxcnc import read_linuxcnc
 from trunnion.post.readers.sections import SectionBlocks
 

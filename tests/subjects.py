@@ -22,7 +22,7 @@ from trunnion.findings import BadInput, Cancelled
 from trunnion.model.session import Session
 from trunnion.part.part import Part
 from trunnion.pipeline import Engine
-from trunnion.pipeline.family import ratings
+from trunnion.pipeline.planning.family import ratings
 from trunnion.progress import Progress
 from trunnion.settings import checked, choose, declared
 

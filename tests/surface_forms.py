@@ -12,7 +12,7 @@ from trunnion.geometry.sheet.fields import distances
 from trunnion.geometry.sheet.sheet import sheet_of, split_finely
 from trunnion.geometry.sheet.skin import Skin
 from trunnion.plan.freeform.drive import SurfaceDrive
-from trunnion.toolpath.contact_passes.stepovers import metric_of, stepover_measure
+from trunnion.toolpath.contact_passes.stepover.metric import metric_of, stepover_measure
 
 
 def grid(place, normal, u, v, tag=1) -> Skin:

@@ -9,10 +9,10 @@ import numpy as np
 from trunnion.geometry.frame import WORLD
 from trunnion.model.blank import Box
 from trunnion.model.material import Axis, Machine
-from trunnion.model.program import Program, ProgramSection
+from trunnion.model.motion.program import Program, ProgramSection
+from trunnion.model.motion.toolpath import Motion, Toolpath
 from trunnion.model.setup import Setup
 from trunnion.model.tool import Holder, Tool
-from trunnion.model.toolpath import Motion, Toolpath
 from trunnion.part.shape.surfaces import (
     STRIP_COLUMNS,
     ContactFace,

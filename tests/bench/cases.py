@@ -124,7 +124,7 @@ def roughing(path: Path, folder: Path, compared: Compare) -> Iterator[Any]:
 def contact(path: Path, folder: Path, compared: Compare) -> Iterator[Any]:
     """Contact of the whole program in closed form, beside sampled points against a hundredth of its blocks in numpy."""
     from trunnion.part.shape.surfaces import surfaces_of
-    from trunnion.pipeline.proving import program_of
+    from trunnion.pipeline.proof.posted_programs import program_of
     from trunnion.verify.contact import PartContact
     from trunnion.verify.motion import moves_of
 

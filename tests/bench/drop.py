@@ -9,8 +9,8 @@ from typing import Any
 import numpy as np
 
 from trunnion.geometry.arrays import Floats, Ints
-from trunnion.geometry.drop_surface import DropSurface
-from trunnion.geometry.kernels.drop_cutter import drop_cutter as plain_drop
+from trunnion.geometry.kernels.cutter_contact.drop_cutter import drop_cutter as plain_drop
+from trunnion.geometry.surface.drop_surface import DropSurface
 from trunnion.plan.freeform.cutters.cutter import lower_side
 from verify_tools import bull
 

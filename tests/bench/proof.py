@@ -20,9 +20,9 @@ import numpy as np
 from trunnion.geometry.arrays import Floats
 from trunnion.geometry.frame import WORLD
 from trunnion.model.blank import Box
-from trunnion.model.program import ProgramSection
+from trunnion.model.motion.program import ProgramSection
+from trunnion.model.motion.toolpath import Motion, Toolpath
 from trunnion.model.tool import Tool
-from trunnion.model.toolpath import Motion, Toolpath
 from trunnion.verify.motion import Moves, moves_of
 
 Figures = Iterator[dict[str, Any]]

@@ -39,12 +39,12 @@ from random_programs import (
     track,
 )
 from trunnion.findings import BadCall, BadInput, Refused
-from trunnion.model.cycle import WAITING, CycleKind
-from trunnion.model.drilling import drilled
-from trunnion.model.listing import listing
-from trunnion.model.program import Program
+from trunnion.model.motion.cycle import WAITING, CycleKind
+from trunnion.model.motion.drilling import drilled
+from trunnion.model.motion.listing import listing
+from trunnion.model.motion.program import Program
+from trunnion.model.motion.toolpath import EMPTY, Motion, Toolpath
 from trunnion.model.spindle import FeedMode
-from trunnion.model.toolpath import EMPTY, Motion, Toolpath
 from trunnion.model.verdict import Outcome
 from trunnion.post.contract import Dialect
 from trunnion.post.header import REJECTED, STAMP_LINES, Header

@@ -24,7 +24,7 @@ from trunnion import registry
 from trunnion.findings import BadInput
 from trunnion.geometry.facegraph import FaceGraph
 from trunnion.model.feature import Recognition
-from trunnion.pipeline.family import ratings
+from trunnion.pipeline.planning.family import ratings
 from trunnion.progress import QUIET
 from trunnion.recognize.contract import exclusive_kinds, feature_kinds, smallest_sizes
 from trunnion.report.palette import rgb

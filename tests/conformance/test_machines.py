@@ -15,7 +15,7 @@ from programs import BULL_10, FLAT_16, S1, program_1
 from subjects import is_one_line
 from trunnion import registry
 from trunnion.findings import Refused
-from trunnion.model.listing import listing
+from trunnion.model.motion.listing import listing
 from trunnion.post.header import Header
 from trunnion.post.settings import PostSettings
 from trunnion.shop import load_shop

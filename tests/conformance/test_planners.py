@@ -10,7 +10,7 @@ from subjects import PLANNERS, check_cancel, check_settings, is_one_line, own, u
 from trunnion import registry
 from trunnion.findings import Refused
 from trunnion.model.process import ProcessTree
-from trunnion.pipeline.scene import SessionContext, SetupScene
+from trunnion.pipeline.planning.scene import SessionContext, SetupScene
 from trunnion.pipeline.steps import step_named
 from trunnion.plan.contract import DriveNeeds, planner_for
 from trunnion.plan.settings import RouteSettings

@@ -14,11 +14,11 @@ import pytest
 
 from subjects import PLANNERS, STRATEGIES, check_cancel, check_settings, is_one_line, own, until
 from trunnion import registry
+from trunnion.model.motion.program import ProgramSection
+from trunnion.model.motion.toolpath import Motion
 from trunnion.model.operation import Operation, OperationPath
-from trunnion.model.program import ProgramSection
 from trunnion.model.session import Session
 from trunnion.model.tool import Tool
-from trunnion.model.toolpath import Motion
 from trunnion.pipeline import Engine
 from trunnion.pipeline.toolpaths import make_paths
 from trunnion.plan.freeform.reach import places_on

@@ -20,12 +20,12 @@ from trunnion.geometry.frame import Frame
 from trunnion.geometry.mesh import Mesh
 from trunnion.model.blank import Box
 from trunnion.model.feature import FaceRole, Feature, Recognition, TakenFor
+from trunnion.model.motion.toolpath import Mark, Motion, Toolpath
 from trunnion.model.operation import CuttingData, Operation, OperationPath
 from trunnion.model.process import ProcessTree
 from trunnion.model.session import PartInfo, PostedFile, Session, SizeEntry, StepRecord
 from trunnion.model.setup import Setup
 from trunnion.model.tool import Holder, Tool
-from trunnion.model.toolpath import Mark, Motion, Toolpath
 from trunnion.model.verdict import Deviation, OperationProof, Outcome, Verdict
 from trunnion.post.header import STAMP_LINES, plan_digest
 from trunnion.post.release import release
@@ -259,7 +259,7 @@ class FakeEngine:
         self._playback = None
 
     def playback(self, session, cell=0.0, progress=QUIET):
-        from trunnion.pipeline.playback import Playback
+        from trunnion.pipeline.proof.playback import Playback
         from trunnion.shop import load_shop
 
         machine = next(iter(load_shop().machines.values()))
@@ -679,7 +679,7 @@ class DoubtingEngine(FakeEngine):
     """Takes the plate for a casing, which no family serves, until a person chooses a family."""
 
     def settings(self) -> dict[str, tuple[type, ...]]:
-        from trunnion.pipeline.family import RecognizeSettings
+        from trunnion.pipeline.planning.family import RecognizeSettings
 
         return super().settings() | {"recognize": (RecognizeSettings,)}
 

@@ -25,7 +25,7 @@ from trunnion.part.shape.surfaces import (
 )
 from trunnion.verify.contact import PartContact, grid_of
 from trunnion.verify.contact.strips import StripContact
-from trunnion.verify.kernels import strips as kernel
+from trunnion.verify.kernels.contact import strips as kernel
 from trunnion.verify.motion import moves_of, poses_of
 from verify_tools import (
     FORMS,

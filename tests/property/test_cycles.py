@@ -11,9 +11,9 @@ from hypothesis import strategies as st
 from pytest import approx
 
 from random_programs import cycle, cycles, ticks
-from trunnion.model.cycle import BACK_OFF, MOST_PECKS, Cycle, CycleKind, expanded
-from trunnion.model.drilling import drilled
-from trunnion.model.toolpath import Motion
+from trunnion.model.motion.cycle import BACK_OFF, MOST_PECKS, Cycle, CycleKind, expanded
+from trunnion.model.motion.drilling import drilled
+from trunnion.model.motion.toolpath import Motion
 
 UP = np.array([0.0, 0.0, 1.0])
 TOP = np.array([10.0, 5.0, 2.0])

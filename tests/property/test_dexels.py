@@ -11,8 +11,8 @@ from solids import box_solid, cutter_solid, swept
 from trunnion import tolerance
 from trunnion.geometry.frame import WORLD
 from trunnion.model.blank import Box
-from trunnion.model.toolpath import Motion
-from trunnion.verify.kernels import dexels as kernel
+from trunnion.model.motion.toolpath import Motion
+from trunnion.verify.kernels.stock import dexels as kernel
 from trunnion.verify.motion import moves_of
 from trunnion.verify.stock import Stock, run_stock
 from trunnion.verify.stock.bundles import cycle

@@ -11,14 +11,14 @@ from hypothesis import strategies as st
 from samples import block_with_pocket_shape, read
 from trunnion import tolerance
 from trunnion.geometry.frame import WORLD
-from trunnion.model.program import ProgramSection
-from trunnion.model.toolpath import Motion, Toolpath
+from trunnion.model.motion.program import ProgramSection
+from trunnion.model.motion.toolpath import Motion, Toolpath
 from trunnion.part.shape.facets import Facets, facets_of
 from trunnion.part.shape.surfaces import surfaces_of
 from trunnion.verify.contact import PartContact
 from trunnion.verify.contact.facets import FacetContact
 from trunnion.verify.kernels import body, tool_motion
-from trunnion.verify.kernels import facets as kernel
+from trunnion.verify.kernels.contact import facets as kernel
 from trunnion.verify.motion import moves_of
 from verify_tools import FORMS, bull, flat, plain_depth, program_section, supports_of
 

@@ -21,7 +21,7 @@ from leaning_paths import (
 )
 from programs import FLAT_16, S1
 from trunnion.findings import BadInput
-from trunnion.model.toolpath import Motion
+from trunnion.model.motion.toolpath import Motion
 from trunnion.post.dialects.apt import AptDialect
 from trunnion.post.dialects.linuxcnc import LinuxCncDialect
 from trunnion.post.linearize import even_turn

@@ -12,8 +12,8 @@ from hypothesis import strategies as st
 from leaning_paths import TABLE, again, standing
 from nc_numbers import AWKWARD, DIALECTS, judged, lines_of, not_finite, read
 from trunnion.findings import BadInput
-from trunnion.model.program import Program
-from trunnion.model.toolpath import Motion
+from trunnion.model.motion.program import Program
+from trunnion.model.motion.toolpath import Motion
 from trunnion.model.verdict import Outcome
 from trunnion.units import FARTHEST, FASTEST, LONGEST_BLOCK, MM_PER_INCH
 

@@ -9,7 +9,7 @@ from hypothesis import Phase, given, settings
 from hypothesis import strategies as st
 
 from leaning_tools import EVERY_FORM, PlainCutter, leaning_section
-from trunnion.model.toolpath import Motion
+from trunnion.model.motion.toolpath import Motion
 from trunnion.verify.finish.sweep import Sweep
 from trunnion.verify.motion import moves_of
 

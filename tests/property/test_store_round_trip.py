@@ -13,9 +13,9 @@ from hypothesis import strategies as st
 import programs
 from trunnion.findings import Finding, Severity
 from trunnion.model.feature import FaceRole, Feature
+from trunnion.model.motion.toolpath import Toolpath
 from trunnion.model.operation import OperationPath
 from trunnion.model.session import PostedFile, Session
-from trunnion.model.toolpath import Toolpath
 from trunnion.settings import digest
 from trunnion.store.project import load_project, project_bytes
 

@@ -8,7 +8,7 @@ from hypothesis import strategies as st
 
 from milling import SETUP, Milled, box_blank, closed_pocket, cutting, mill
 from trunnion.geometry.plane.region import Region
-from trunnion.model.toolpath import Motion, Toolpath
+from trunnion.model.motion.toolpath import Motion, Toolpath
 from trunnion.progress import QUIET
 from trunnion.toolpath.plane.floor import FloorSettings, floor
 from trunnion.toolpath.plane.rough import RoughSettings, rough

@@ -163,7 +163,7 @@ def add_by_hand(made: argparse.ArgumentParser) -> None:
 
 def with_by_hand(chosen: argparse.Namespace, engine: Engine, session: Session) -> Session:
     """Return the session with the changes that the options of `add_by_hand` say."""
-    from trunnion.pipeline.patches import with_local, with_moved
+    from trunnion.pipeline.planning.patches import with_local, with_moved
 
     for word in chosen.moves:
         faces, equals, group = word.partition("=")

@@ -47,7 +47,7 @@ def run(chosen: argparse.Namespace) -> int:
     """Make the cut, write the project and report which faces there are now."""
     from trunnion.geometry.cut import curve_cut, plane_cut
     from trunnion.pipeline.engine import PROJECT_SUFFIX
-    from trunnion.pipeline.patches import with_cut
+    from trunnion.pipeline.planning.patches import with_cut
 
     if (chosen.plane is None) == (not chosen.place):
         raise BadCall("a cut wants --plane, or --place twice or more; not both")

@@ -46,7 +46,7 @@ def add(commands: Any) -> None:
 
 def run(chosen: argparse.Namespace) -> int:
     """Write the faces and report how many they are."""
-    from trunnion.pipeline.patches import export, tags_of
+    from trunnion.pipeline.planning.patches import export, tags_of
 
     if not chosen.out.parent.is_dir():
         raise BadInput(f"{chosen.out}: there is no folder {chosen.out.parent}")

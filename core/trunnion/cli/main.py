@@ -18,21 +18,21 @@ DONE, PROBLEMS, BAD, CANCELLED = 0, 1, 2, 130
 
 GENERAL = (
     "info",
-    "recognize",
-    "size",
-    "blank",
-    "route",
-    "optimize",
-    "program",
-    "verify",
-    "post",
-    "batch",
+    "planning.recognize",
+    "planning.size",
+    "planning.blank",
+    "planning.route",
+    "planning.optimize",
+    "programs.program",
+    "programs.verify",
+    "programs.post",
+    "programs.batch",
     "cut",
     "export",
     "settings",
     "gui",
 )
-"""Commands for parts of every family; families and packages add theirs by entry points (`registry.COMMANDS`)."""
+"""Modules of the commands for parts of every family; families and packages add theirs by entry points (`registry.COMMANDS`)."""
 
 
 class OneLineParser(argparse.ArgumentParser):

@@ -7,9 +7,9 @@ from dataclasses import asdict, dataclass, field
 from typing import Any
 
 from trunnion.findings import Finding
+from trunnion.model.motion.toolpath import EMPTY, Toolpath
 from trunnion.model.spindle import FeedMode, SpindleMode, limited_turns, per_revolution
 from trunnion.model.tool import AnyTool, Tool, rotating
-from trunnion.model.toolpath import EMPTY, Toolpath
 from trunnion.settings import Value, added, unwritten
 
 

@@ -15,11 +15,11 @@ from trunnion import tolerance
 from trunnion.findings import BadInput, Finding, Severity
 from trunnion.geometry.arrays import Floats, Ints
 from trunnion.geometry.boundary import Boundary
-from trunnion.geometry.curvature import FaceCurvature
 from trunnion.geometry.facegraph import FaceGraph
 from trunnion.geometry.frame import Frame
 from trunnion.geometry.mesh import Mesh
 from trunnion.geometry.plane.region import Region
+from trunnion.geometry.surface.curvature import FaceCurvature
 from trunnion.part.topology.identity import Shape, faces_of
 from trunnion.progress import QUIET, Progress
 

@@ -26,7 +26,7 @@ from trunnion.shop import load_shop
 from trunnion.verify.settings import ProofSettings
 
 if TYPE_CHECKING:
-    from trunnion.pipeline.playback import Playback
+    from trunnion.pipeline.proof.playback import Playback
     from trunnion.report.deviation import DeviationMap
 
 PROJECT_SUFFIX = ".trunnion"
@@ -236,7 +236,7 @@ class Engine:
 
     def playback(self, session: Session, cell: float = 0.0, progress: Progress = QUIET) -> Timeline:
         """Take up a plan for playback and return its blocks over time; `moment` then shows its stock."""
-        from trunnion.pipeline.playback import Playback
+        from trunnion.pipeline.proof.playback import Playback
 
         progress = progress.afresh()
         with compiling(progress):

@@ -15,12 +15,12 @@ from trunnion import registry
 from trunnion.findings import BadCall, BadInput, Finding
 from trunnion.model.feature import Recognition
 from trunnion.model.session import Session
-from trunnion.pipeline.blank import blank_of, source_of, too_small
 from trunnion.pipeline.context import Context
-from trunnion.pipeline.family import RecognizeSettings, recognised
-from trunnion.pipeline.manual_edits import with_features_by_hand, with_operations_by_hand
-from trunnion.pipeline.proving import prove_session
-from trunnion.pipeline.scene import SessionContext
+from trunnion.pipeline.planning.blank import blank_of, source_of, too_small
+from trunnion.pipeline.planning.family import RecognizeSettings, recognised
+from trunnion.pipeline.planning.manual_edits import with_features_by_hand, with_operations_by_hand
+from trunnion.pipeline.planning.scene import SessionContext
+from trunnion.pipeline.proof.posted_programs import prove_session
 from trunnion.pipeline.toolpaths import findings_of, make_paths, strategy_settings
 from trunnion.plan.blank import BlankSettings
 from trunnion.plan.contract import RouteJob, planner_for

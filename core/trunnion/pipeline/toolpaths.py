@@ -15,12 +15,12 @@ import numpy as np
 from trunnion import registry
 from trunnion.findings import BadCall, Finding, Refused, error, info
 from trunnion.geometry.frame import Frame
+from trunnion.model.motion.toolpath import Toolpath
 from trunnion.model.operation import Operation, OperationPath
 from trunnion.model.process import ProcessTree
 from trunnion.model.session import Session
-from trunnion.model.toolpath import Toolpath
 from trunnion.pipeline.context import Context
-from trunnion.pipeline.scene import SessionContext, SetupScene
+from trunnion.pipeline.planning.scene import SessionContext, SetupScene
 from trunnion.plan.contract import DriveNeeds, Planner, planner_for
 from trunnion.progress import Progress
 from trunnion.registry import STRATEGIES

@@ -1,6 +1,6 @@
 """Protocols of clearance queries for tilted tools: contact of a pose with part and fixtures, and the machine's axis limits.
 
-`pipeline.clearance` meets them.
+`pipeline.planning.clearance` meets them.
 """
 
 from __future__ import annotations

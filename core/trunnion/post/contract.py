@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 from typing import Protocol
 
-from trunnion.model.program import Program
+from trunnion.model.motion.program import Program
 from trunnion.model.setup import Setup
 from trunnion.model.tool import AnyTool
 from trunnion.post.header import Header

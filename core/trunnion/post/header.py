@@ -10,7 +10,7 @@ from dataclasses import dataclass
 from typing import Any
 
 from trunnion.findings import BadCall, Severity
-from trunnion.model.program import Program
+from trunnion.model.motion.program import Program
 from trunnion.model.session import Session
 from trunnion.model.setup import Setup
 from trunnion.model.tool import AnyTool

@@ -10,7 +10,7 @@ from collections.abc import Sequence
 from typing import TYPE_CHECKING, ClassVar
 
 from trunnion.findings import BadCall
-from trunnion.model.program import Program
+from trunnion.model.motion.program import Program
 from trunnion.model.setup import Setup
 from trunnion.model.tool import AnyTool
 from trunnion.post.header import Header
@@ -20,7 +20,7 @@ from trunnion.post.writer.program import ProgramWriter, comment
 from trunnion.shop.kinematics import NO_PLACES, Places
 
 if TYPE_CHECKING:
-    from trunnion.post.readers.control import Control
+    from trunnion.post.readers.word_address.interpreter import Control
 
 
 class IsoDialect:
@@ -73,7 +73,7 @@ class IsoDialect:
 
     def control(self) -> type[Control]:
         """Return the control that reads the dialect's texts."""
-        from trunnion.post.readers.control import Control
+        from trunnion.post.readers.word_address.interpreter import Control
 
         return Control
 

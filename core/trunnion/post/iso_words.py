@@ -7,7 +7,7 @@ from dataclasses import dataclass, field, fields
 from string import Formatter
 
 from trunnion.findings import BadInput
-from trunnion.model.cycle import PECKING, WAITING, CycleKind
+from trunnion.model.motion.cycle import PECKING, WAITING, CycleKind
 from trunnion.post.words import dialect_words
 
 CENTRES = ("start", "absolute")

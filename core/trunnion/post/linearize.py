@@ -14,8 +14,8 @@ import numpy as np
 
 from trunnion.findings import Refused
 from trunnion.geometry.arrays import Bools, Floats, Ints
+from trunnion.model.motion.toolpath import Motion, Toolpath
 from trunnion.model.tool import Tool
-from trunnion.model.toolpath import Motion, Toolpath
 from trunnion.shop.kinematics import (
     SLACK,
     UPRIGHT,

@@ -10,8 +10,8 @@ import numpy as np
 from trunnion import tolerance
 from trunnion.findings import Refused
 from trunnion.geometry.arrays import Floats, Ints
-from trunnion.model.cycle import Cycle
-from trunnion.model.toolpath import Motion, Toolpath
+from trunnion.model.motion.cycle import Cycle
+from trunnion.model.motion.toolpath import Motion, Toolpath
 from trunnion.post.settings import PostSettings
 from trunnion.units import MM_PER_INCH
 

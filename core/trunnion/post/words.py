@@ -11,7 +11,7 @@ from importlib.resources import files
 from typing import Any, TypeVar, get_args, get_origin, get_type_hints
 
 from trunnion.findings import BadInput, Refused
-from trunnion.model.program import STANDING, ProgramSection
+from trunnion.model.motion.program import STANDING, ProgramSection
 from trunnion.model.spindle import per_minute
 
 T = TypeVar("T")

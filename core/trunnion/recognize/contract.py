@@ -10,10 +10,10 @@ from trunnion import registry
 from trunnion.findings import BadCall
 from trunnion.geometry.arrays import Floats, Ints
 from trunnion.geometry.boundary import Boundary
-from trunnion.geometry.curvature import FaceCurvature
 from trunnion.geometry.facegraph import FaceGraph
 from trunnion.geometry.frame import Frame
 from trunnion.geometry.plane.region import Region
+from trunnion.geometry.surface.curvature import FaceCurvature
 from trunnion.model.feature import Feature, GeneralizedPocket, Recognition
 from trunnion.progress import Progress
 from trunnion.registry import FAMILIES

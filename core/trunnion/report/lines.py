@@ -5,8 +5,8 @@ from __future__ import annotations
 import numpy as np
 
 from trunnion.geometry.arrays import Floats, Ints
+from trunnion.model.motion.toolpath import Mark, Motion, Toolpath
 from trunnion.model.playback import CHORD_ANGLE, turned_axes
-from trunnion.model.toolpath import Mark, Motion, Toolpath
 
 MOTIONS = ("cut", "entry", "lead", "link", "retract", "rapid")
 """Kinds of motion by the palette's words: those of the marks in their order, and rapids."""

@@ -19,9 +19,9 @@ import numpy as np
 from trunnion.geometry.arrays import Floats, Ints
 from trunnion.geometry.mesh import Mesh
 from trunnion.model.feature import Recognition
+from trunnion.model.motion.toolpath import Toolpath
 from trunnion.model.session import Session
 from trunnion.model.setup import Setup
-from trunnion.model.toolpath import Toolpath
 from trunnion.progress import QUIET, Progress
 from trunnion.report.deviation import DeviationMap, deviation_map
 from trunnion.report.lines import (

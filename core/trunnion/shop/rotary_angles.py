@@ -9,7 +9,7 @@ import numpy as np
 
 from trunnion.findings import Refused
 from trunnion.geometry.arrays import Bools, Floats
-from trunnion.geometry.kernels.rotary_angles_compiled import choose_angles
+from trunnion.geometry.kernels.shortest_paths.rotary_angles_compiled import choose_angles
 from trunnion.model.material import Machine
 from trunnion.shop.kinematics import POLE, SLACK, WorkPosition, pole_of, rotary_solutions
 

@@ -23,10 +23,10 @@ from enum import Enum
 from typing import Any, Protocol, TypeVar
 
 from trunnion.findings import Finding
+from trunnion.model.motion.toolpath import EMPTY, Toolpath
 from trunnion.model.operation import CuttingData, Engagement, Operation
 from trunnion.model.setup import Setup
 from trunnion.model.tool import Tool
-from trunnion.model.toolpath import EMPTY, Toolpath
 from trunnion.plan.prismatic.drive import PlaneDrive
 from trunnion.progress import Progress
 from trunnion.toolpath.stock.heightfield import PlanningStock

@@ -10,11 +10,11 @@ import numpy as np
 from trunnion.findings import BadInput
 from trunnion.geometry.arrays import Bools, Floats, Ints
 from trunnion.geometry.frame import Frame
-from trunnion.model.program import ProgramSection
+from trunnion.model.motion.program import ProgramSection
+from trunnion.model.motion.toolpath import Motion
 from trunnion.model.tool import Tool
-from trunnion.model.toolpath import Motion
 from trunnion.verify.cutter import Bodies, bodies_of, bodies_of_one
-from trunnion.verify.kernels.strips import (
+from trunnion.verify.kernels.contact.strips import (
     COS_HALF,
     CX,
     CY,

@@ -16,7 +16,7 @@ PROFILE_COLUMNS = 6
 
 
 def profiles_of(tools: Sequence[Tool], bodies: Bodies) -> Floats:
-    """Return rows (t, 6): RADIUS, CORNER, OPEN, PLAIN, FIRST, LAST, as `kernels/zmap.py` names them.
+    """Return rows (t, 6): RADIUS, CORNER, OPEN, PLAIN, FIRST, LAST, as `kernels/stock/zmap.py` names them.
 
     Up to the height OPEN above its tip a cutter does not get thinner; a column that it cuts below that has nothing left above the cut, so a
     field of heights says all. PLAIN 1 is an end of a radius and a corner radius; other forms are the bodies FIRST to LAST.

@@ -5,7 +5,7 @@ from __future__ import annotations
 from PySide6.QtGui import QShowEvent
 from PySide6.QtWidgets import QPlainTextEdit
 
-from trunnion.model.program import Program, section_of
+from trunnion.model.motion.program import Program, section_of
 from trunnion.model.session import Session
 from trunnion_gui.document import Document
 from trunnion_gui.i18n import tr
@@ -41,7 +41,7 @@ class ListingDock(QPlainTextEdit):
 
 def operation_listing(session: Session, id: str) -> str:
     """Return the listing of one operation of a session that has its toolpath."""
-    from trunnion.model.listing import listing
+    from trunnion.model.motion.listing import listing
 
     path, tree = session.path_of(id), session.process
     if path is None or tree is None:

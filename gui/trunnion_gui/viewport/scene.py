@@ -14,10 +14,10 @@ from PySide6.QtWidgets import QVBoxLayout, QWidget
 from trunnion.geometry.frame import WORLD, Frame
 from trunnion.geometry.mesh import Mesh
 from trunnion.model.blank import Blank
+from trunnion.model.motion.toolpath import Toolpath
 from trunnion.model.playback import Moment
 from trunnion.model.setup import Setup
 from trunnion.model.tool import Tool
-from trunnion.model.toolpath import Toolpath
 from trunnion.report.lines import MOTIONS
 from trunnion_gui.look.colours import Theme, mixed, rgb
 from trunnion_gui.viewport.layers.blank import draw_blank

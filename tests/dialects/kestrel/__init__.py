@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from trunnion.findings import BadInput
 from trunnion.post.iso import IsoDialect
-from trunnion.post.readers.control import Control
+from trunnion.post.readers.word_address.interpreter import Control
 
 
 class KestrelControl(Control):

@@ -6,7 +6,7 @@ import math
 from dataclasses import dataclass
 
 from trunnion.findings import error
-from trunnion.model.toolpath import Mark
+from trunnion.model.motion.toolpath import Mark
 from trunnion.settings import setting, settings
 from trunnion.toolpath.contract import Planned, strategy
 from trunnion.toolpath.motion.builder import PathBuilder

@@ -7,7 +7,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from trunnion.geometry.arrays import Bools, Floats, Ints
-from trunnion.geometry.kernels.fast_marching_compiled import chain_loop
+from trunnion.geometry.kernels.shortest_paths.fast_marching_compiled import chain_loop
 from trunnion.geometry.sheet.sheet import Sheet
 
 

@@ -16,7 +16,7 @@ from scipy.sparse.csgraph import dijkstra
 from scipy.sparse.linalg import factorized
 
 from trunnion.geometry.arrays import Floats, Ints
-from trunnion.geometry.kernels import fast_marching_compiled as kernel
+from trunnion.geometry.kernels.shortest_paths import fast_marching_compiled as kernel
 from trunnion.geometry.sheet.sheet import Sheet
 from trunnion.progress import QUIET, Progress
 

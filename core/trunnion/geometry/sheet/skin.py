@@ -7,8 +7,8 @@ from dataclasses import dataclass, field, replace
 import numpy as np
 
 from trunnion.geometry.arrays import Bools, Floats, Ints, floats, ints
-from trunnion.geometry.drop_surface import DropSurface
 from trunnion.geometry.frame import Frame
+from trunnion.geometry.surface.drop_surface import DropSurface
 
 
 @dataclass(frozen=True, slots=True, eq=False, kw_only=True)

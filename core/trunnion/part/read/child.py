@@ -73,7 +73,7 @@ def _wait(
 def _load() -> None:
     """Load what the part is wanted with next: that costs no time now, the other process is at work."""
     import trunnion.part.topology.boundary  # noqa: F401
-    from trunnion.geometry.spline import SplineSurface
+    from trunnion.geometry.surface.spline import SplineSurface
 
     flat = SplineSurface(
         knots_u=np.array([0.0, 0.0, 1.0, 1.0]),

@@ -12,7 +12,7 @@ from OCP.TopoDS import TopoDS
 
 from trunnion import tolerance
 from trunnion.geometry.arrays import Bools, Floats
-from trunnion.geometry.curvature import FaceCurvature, principal_curvatures
+from trunnion.geometry.surface.curvature import FaceCurvature, principal_curvatures
 from trunnion.part.shape.evaluate import evaluator_of
 from trunnion.part.topology.identity import Shape, edges_of
 

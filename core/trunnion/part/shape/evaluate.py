@@ -9,7 +9,7 @@ import numpy as np
 from OCP.GeomAbs import GeomAbs_SurfaceType as Kind
 
 from trunnion.geometry.arrays import Floats
-from trunnion.geometry.spline import SplineSurface
+from trunnion.geometry.surface.spline import SplineSurface
 
 Evaluator = Callable[[Floats], Floats]
 """From places (k, 2) to (k, 6, 3): point, derivatives by u and v, second ones by u twice, by both, by v twice."""

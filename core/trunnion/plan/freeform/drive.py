@@ -68,8 +68,8 @@ class SurfaceDrive:
     `faces`: tags to be finished; `exact` their exact surfaces in the same order; `skin`: the whole part. `low`, `high` (3,): the box of the
     blank. `frame`: the cutting frame in the part's coordinates. `allowance`: mm left on the faces on purpose; `height`: the scallop height
     in mm that is wanted. `clearance`: the height in the cutting frame above everything. `digest` tells all of this apart. `ask`: who
-    says for a tool whether poses are clear of part and fixtures and within the machine's rotary limits (`pipeline.clearance`); None
-    where no tool may lean.
+    says for a tool whether poses are clear of part and fixtures and within the machine's rotary limits (`pipeline.planning.clearance`);
+    None where no tool may lean.
     """
 
     feature: str

@@ -18,10 +18,10 @@ from trunnion.geometry.arrays import Floats
 from trunnion.geometry.plane.region import EMPTY_REGION, Region, union_all
 from trunnion.model.operation import Operation
 from trunnion.model.tool import Tool
-from trunnion.plan.freeform.areas import connected
 from trunnion.plan.freeform.cutters.cutter import level_disc
-from trunnion.plan.freeform.heights import region_of
+from trunnion.plan.freeform.finishing.areas import connected
 from trunnion.plan.freeform.keys import number
+from trunnion.plan.freeform.roughing.heights import region_of
 from trunnion.plan.freeform.space import SurfaceSpace
 from trunnion.plan.prismatic.drive import DriveLevel, Floor, PlaneDrive
 from trunnion.progress import QUIET, Progress

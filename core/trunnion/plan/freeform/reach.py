@@ -12,7 +12,7 @@ from trunnion.geometry.arrays import Bools, Floats, Ints
 from trunnion.geometry.sheet.skin import Skin
 from trunnion.model.tool import Tool
 from trunnion.plan.freeform.cutters.cutter import level_disc, lower_side, tip_at
-from trunnion.plan.freeform.rest import BESIDE, LIFTED
+from trunnion.plan.freeform.finishing.rest import BESIDE, LIFTED
 from trunnion.plan.freeform.space import SurfaceSpace
 from trunnion.progress import QUIET, Progress
 

@@ -18,9 +18,9 @@ from trunnion.part.shape.exact import ExactFace
 from trunnion.plan.clearance import ClearanceQuery
 from trunnion.plan.contract import DriveNeeds
 from trunnion.plan.freeform.drive import SurfaceDrive
+from trunnion.plan.freeform.finishing.rest import left_by, without_met
 from trunnion.plan.freeform.frames import UPRIGHT, Direction, cutting_setup
 from trunnion.plan.freeform.keys import ALLOWANCE, SCALLOP, number
-from trunnion.plan.freeform.rest import left_by, without_met
 from trunnion.progress import QUIET, Progress
 from trunnion.settings import digest
 

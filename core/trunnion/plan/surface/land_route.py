@@ -11,6 +11,7 @@ import numpy as np
 from trunnion.findings import BadInput, face_tags, info
 from trunnion.model.tool import Tool
 from trunnion.plan.freeform.cutters.end_mills import MISSED, LandCutters, end_mills_for
+from trunnion.plan.freeform.finishing.rest import BESIDE
 from trunnion.plan.freeform.lands import (
     ABOVE_TOOL,
     AROUND_TOOL,
@@ -24,7 +25,6 @@ from trunnion.plan.freeform.lands import (
     lands_of,
 )
 from trunnion.plan.freeform.reach import AreaSamples, places_on, reached
-from trunnion.plan.freeform.rest import BESIDE
 from trunnion.plan.surface.plan_state import SurfacePlanState, face_name
 from trunnion.progress import Progress
 from trunnion.settings import Value

@@ -10,7 +10,7 @@ from trunnion.model.operation import Operation
 from trunnion.model.process import ProcessTree
 from trunnion.plan.contract import DriveNeeds, OperationDrive, RouteJob, Scene, driven_by
 from trunnion.plan.freeform.drive import SurfaceDrive
-from trunnion.plan.freeform.layers import plane_drive_of
+from trunnion.plan.freeform.roughing.layers import plane_drive_of
 from trunnion.plan.freeform.space import SurfaceSpace
 from trunnion.plan.freeform.surface_drives import space_from, surface_driven
 from trunnion.plan.prismatic.drive import PlaneDrive

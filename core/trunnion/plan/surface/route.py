@@ -23,7 +23,9 @@ from trunnion.model.tool import Tool
 from trunnion.plan.clearance import ClearanceScene
 from trunnion.plan.cutting.milling import CuttingSettings, roughing_depth, roughing_width
 from trunnion.plan.feasibility import too_large
-from trunnion.plan.freeform.areas import (
+from trunnion.plan.freeform.cutters.choice import AreaCutters, cutter_for, named
+from trunnion.plan.freeform.estimate.scallop import stepover_on_plane
+from trunnion.plan.freeform.finishing.areas import (
     Area,
     areas_of,
     blank_faces,
@@ -32,14 +34,12 @@ from trunnion.plan.freeform.areas import (
     on_outline,
     walls_of,
 )
-from trunnion.plan.freeform.cutters.choice import AreaCutters, cutter_for, named
-from trunnion.plan.freeform.estimate.scallop import stepover_on_plane
-from trunnion.plan.freeform.hollows import hollow_depths
 from trunnion.plan.freeform.keys import ALLOWANCE, BOTTOM, CELL, EARLIER, SCALLOP
 from trunnion.plan.freeform.lands import LAND, REST_LAND
-from trunnion.plan.freeform.layers import left_on_walls
 from trunnion.plan.freeform.reach import AreaSamples, clear_beside, leans, places_on, reached
-from trunnion.plan.freeform.roughing_directions import sides_for
+from trunnion.plan.freeform.roughing.directions import sides_for
+from trunnion.plan.freeform.roughing.hollows import hollow_depths
+from trunnion.plan.freeform.roughing.layers import left_on_walls
 from trunnion.plan.freeform.space import SurfaceSpace
 from trunnion.plan.freeform.tilted_reach import SAMPLES as LEANING_SAMPLES
 from trunnion.plan.freeform.tilted_reach import leaning_cutter

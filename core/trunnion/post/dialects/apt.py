@@ -12,11 +12,11 @@ import numpy as np
 
 from trunnion import tolerance
 from trunnion.findings import BadCall
-from trunnion.model.program import Program, ProgramSection
+from trunnion.model.motion.program import Program, ProgramSection
+from trunnion.model.motion.toolpath import Motion, Toolpath
 from trunnion.model.setup import Setup
 from trunnion.model.spindle import FeedMode, per_revolution
 from trunnion.model.tool import AnyTool
-from trunnion.model.toolpath import Motion, Toolpath
 from trunnion.post.header import Header
 from trunnion.post.linearize import lines_for_arcs
 from trunnion.post.settings import PostSettings

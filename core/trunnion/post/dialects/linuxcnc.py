@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING
 from trunnion.post.iso import IsoDialect
 
 if TYPE_CHECKING:
-    from trunnion.post.readers.control import Control
+    from trunnion.post.readers.word_address.interpreter import Control
 
 
 class LinuxCncDialect(IsoDialect):

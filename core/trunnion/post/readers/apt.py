@@ -8,12 +8,11 @@ from collections.abc import Sequence
 
 from trunnion import tolerance
 from trunnion.findings import BadInput
-from trunnion.model.program import Program
+from trunnion.model.motion.program import Program
+from trunnion.model.motion.toolpath import Motion
 from trunnion.model.setup import Setup
 from trunnion.model.spindle import FeedMode, limited_turns, per_minute
 from trunnion.model.tool import AnyTool
-from trunnion.model.toolpath import Motion
-from trunnion.post.readers.arcs import refuse_nearly_closed, refuse_no_radius
 from trunnion.post.readers.numbers import (
     DWELL,
     FEED,
@@ -33,6 +32,7 @@ from trunnion.post.readers.sections import (
 )
 from trunnion.post.readers.statements import statements
 from trunnion.post.readers.tools import by_number, check_tool
+from trunnion.post.readers.word_address.arcs import refuse_nearly_closed, refuse_no_radius
 from trunnion.units import METRES_PER_FOOT, MM_PER_INCH
 
 _SETUP = re.compile(r"SETUP\s+(\S+)\s+WORK OFFSET\s+(\S+)$", re.IGNORECASE)

@@ -4,12 +4,12 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 
-from trunnion.model.program import Program
+from trunnion.model.motion.program import Program
 from trunnion.model.setup import Setup
 from trunnion.model.tool import AnyTool
 from trunnion.post.iso_words import IsoWords
-from trunnion.post.readers.control import Control
 from trunnion.post.readers.tools import by_number
+from trunnion.post.readers.word_address.interpreter import Control
 from trunnion.shop.kinematics import WorkPosition
 
 

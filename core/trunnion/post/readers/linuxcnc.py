@@ -5,12 +5,12 @@ from __future__ import annotations
 from collections.abc import Sequence
 
 from trunnion.findings import BadInput
-from trunnion.model.program import Program
+from trunnion.model.motion.program import Program
 from trunnion.model.setup import Setup
 from trunnion.model.tool import AnyTool
 from trunnion.post.iso_words import iso_words
-from trunnion.post.readers.control import Control
 from trunnion.post.readers.iso import read_iso
+from trunnion.post.readers.word_address.interpreter import Control
 from trunnion.shop.kinematics import WorkPosition
 
 

@@ -12,10 +12,10 @@ import numpy as np
 from trunnion import tolerance
 from trunnion.findings import BadInput
 from trunnion.geometry.arrays import Floats, Ints
-from trunnion.model.program import ProgramSection
+from trunnion.model.motion.program import ProgramSection
+from trunnion.model.motion.toolpath import ACROSS, Mark, Motion, Toolpath
 from trunnion.model.spindle import FeedMode
 from trunnion.model.tool import AnyTool
-from trunnion.model.toolpath import ACROSS, Mark, Motion, Toolpath
 
 Point = tuple[float, ...]
 """A position as a reader counts it: x, y, z mm, and after them what else says where the tool is (rotary angles, the tool axis)."""

@@ -8,8 +8,8 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 
+from trunnion.model.motion.toolpath import Motion
 from trunnion.model.tool import AnyTool
-from trunnion.model.toolpath import Motion
 from trunnion.post.writer.modal import WrittenState
 
 

@@ -6,9 +6,9 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from trunnion.model.cycle import CycleKind
+from trunnion.model.motion.cycle import CycleKind
+from trunnion.model.motion.toolpath import Motion
 from trunnion.model.spindle import FeedMode
-from trunnion.model.toolpath import Motion
 from trunnion.post.iso_words import code_of
 from trunnion.post.ticks import WrittenCycle, WrittenPath
 from trunnion.post.writer.feed import dwell_text

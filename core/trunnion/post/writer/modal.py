@@ -2,8 +2,8 @@
 
 from __future__ import annotations
 
+from trunnion.model.motion.toolpath import Motion
 from trunnion.model.spindle import FeedMode, per_revolution
-from trunnion.model.toolpath import Motion
 from trunnion.post.iso_words import IsoWords
 from trunnion.post.settings import PostSettings
 from trunnion.post.ticks import TickScale

@@ -6,7 +6,7 @@ from collections.abc import Iterator
 from dataclasses import replace
 
 from trunnion.findings import Refused
-from trunnion.model.program import Program, ProgramSection
+from trunnion.model.motion.program import Program, ProgramSection
 from trunnion.model.spindle import FeedMode
 from trunnion.post.header import Header, place_lines
 from trunnion.post.iso_words import IsoWords, code_of

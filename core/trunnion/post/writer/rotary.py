@@ -14,10 +14,10 @@ import numpy as np
 
 from trunnion.findings import Refused
 from trunnion.geometry.arrays import Floats, Ints
-from trunnion.model.program import ProgramSection
+from trunnion.model.motion.program import ProgramSection
+from trunnion.model.motion.toolpath import Motion, Toolpath
 from trunnion.model.spindle import FeedMode
 from trunnion.model.tool import Tool
-from trunnion.model.toolpath import Motion, Toolpath
 from trunnion.post.linearize import PathTolerance, joint_path
 from trunnion.post.ticks import TickScale, WrittenPath, upright, written
 from trunnion.shop.kinematics import UPRIGHT, WorkPosition, axes_of, poses_of

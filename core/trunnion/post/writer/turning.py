@@ -7,8 +7,8 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from trunnion.geometry.arrays import Floats
-from trunnion.model.program import ProgramSection
-from trunnion.model.toolpath import Toolpath
+from trunnion.model.motion.program import ProgramSection
+from trunnion.model.motion.toolpath import Toolpath
 from trunnion.post.ticks import TickScale, WrittenPath, written
 from trunnion.post.writer.rotary import inverse_minutes
 

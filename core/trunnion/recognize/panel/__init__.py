@@ -23,10 +23,10 @@ from trunnion.recognize.panel.features import (
 )
 from trunnion.recognize.panel.frame import choose_frame, flipped, height_frame
 from trunnion.recognize.panel.kinds import KINDS
-from trunnion.recognize.panel.rules import GraphFeatures, pockets_of, without
+from trunnion.recognize.panel.pockets.rules import GraphFeatures, pockets_of, without
 from trunnion.recognize.panel.settings import PanelSettings
 from trunnion.recognize.panel.side import PanelSide
-from trunnion.recognize.panel.slices import cut, heights
+from trunnion.recognize.panel.slicing.slices import cut, heights
 from trunnion.recognize.panel.unexplained import rest_findings
 from trunnion.settings import choose
 from trunnion.units import percent

@@ -9,10 +9,9 @@ from typing import TypeVar
 from trunnion.findings import Finding, face_tags, warning
 from trunnion.geometry.facegraph import CONVEX, FaceGraph
 from trunnion.model.feature import FaceRole, Feature, Size
-from trunnion.recognize.panel.blends import is_rounding
 from trunnion.recognize.panel.classes import FaceClass
-from trunnion.recognize.panel.confirm import LEANING_REMEDY, ConfirmedPocket, confirm, refusal
-from trunnion.recognize.panel.rules import GraphFeatures, Island, Pocket
+from trunnion.recognize.panel.pockets.blends import is_rounding
+from trunnion.recognize.panel.pockets.rules import GraphFeatures, Island, Pocket
 from trunnion.recognize.panel.side import PanelSide
 from trunnion.recognize.panel.sizes import (
     corner_radius,
@@ -20,6 +19,12 @@ from trunnion.recognize.panel.sizes import (
     pocket_sizes,
     rib_sizes,
     tidy,
+)
+from trunnion.recognize.panel.slicing.confirm import (
+    LEANING_REMEDY,
+    ConfirmedPocket,
+    confirm,
+    refusal,
 )
 
 T = TypeVar("T")

@@ -11,11 +11,11 @@ import shapely
 from trunnion.geometry.arrays import Floats
 from trunnion.geometry.facegraph import FaceGraph
 from trunnion.recognize.grow import samples
-from trunnion.recognize.panel.blends import floor_fillets, is_corner
 from trunnion.recognize.panel.classes import FaceClass, FaceClasses
+from trunnion.recognize.panel.pockets.blends import floor_fillets, is_corner
 from trunnion.recognize.panel.settings import PanelSettings
-from trunnion.recognize.panel.slices import Slices
-from trunnion.recognize.panel.tree import SpaceTree, build_tree
+from trunnion.recognize.panel.slicing.slices import Slices
+from trunnion.recognize.panel.slicing.tree import SpaceTree, build_tree
 from trunnion.tolerance import SLIVER
 
 ON_RIM = 0.05

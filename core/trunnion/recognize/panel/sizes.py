@@ -11,9 +11,9 @@ from trunnion.geometry.facegraph import CONCAVE, CONVEX
 from trunnion.model.feature import Size
 from trunnion.recognize.grow import bend_radius
 from trunnion.recognize.panel.classes import FaceClass
-from trunnion.recognize.panel.rules import Island, Pocket
+from trunnion.recognize.panel.pockets.rules import Island, Pocket
+from trunnion.recognize.panel.pockets.tops import mean_width
 from trunnion.recognize.panel.side import PanelSide
-from trunnion.recognize.panel.tops import mean_width
 from trunnion.tolerance import ANGLE, SLIVER
 
 DECIMALS = 4

@@ -8,8 +8,8 @@ from dataclasses import dataclass
 import numpy as np
 
 from trunnion.geometry.arrays import Floats, Ints
-from trunnion.geometry.curvature import FaceCurvature
 from trunnion.geometry.facegraph import SMOOTH, FaceGraph
+from trunnion.geometry.surface.curvature import FaceCurvature
 from trunnion.recognize.contract import Bounded
 from trunnion.recognize.surface.size import PatchSizes
 

@@ -18,7 +18,7 @@ import numpy as np
 
 from trunnion.findings import Finding, Refused, warning
 from trunnion.geometry.arrays import Bools, Floats, Ints
-from trunnion.geometry.kernels.least_cost_path_compiled import least_cost_path
+from trunnion.geometry.kernels.shortest_paths.least_cost_path_compiled import least_cost_path
 from trunnion.geometry.sphere import angle_between, directions, neighbours
 from trunnion.model.tool import Holder, Tool
 from trunnion.plan.clearance import ClearanceQuery

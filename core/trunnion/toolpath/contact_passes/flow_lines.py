@@ -28,7 +28,7 @@ from trunnion.toolpath.contact_passes.guides import (
     holes_of,
     tags_named,
 )
-from trunnion.toolpath.contact_passes.stepovers import metric_of, spread, stepover_measure
+from trunnion.toolpath.contact_passes.stepover.metric import metric_of, spread, stepover_measure
 
 FINENESS = 1.0
 """Stepovers: the longest edge of the triangles that a blend is laid over, if not so many are needed that it takes seconds."""

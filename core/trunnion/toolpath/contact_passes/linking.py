@@ -17,15 +17,15 @@ import numpy as np
 from trunnion import tolerance
 from trunnion.findings import Refused
 from trunnion.geometry.arrays import Bools, Floats, unit
+from trunnion.model.motion.toolpath import EMPTY, Mark, Motion, Toolpath
 from trunnion.model.operation import CuttingData
 from trunnion.model.setup import Setup
 from trunnion.model.tool import Tool
-from trunnion.model.toolpath import EMPTY, Mark, Motion, Toolpath
 from trunnion.plan.freeform.cutters.cutter import lower_side
 from trunnion.plan.freeform.drive import SurfaceDrive
 from trunnion.progress import QUIET, Progress
 from trunnion.toolpath.contact_passes.passes import UPRIGHT, Pass
-from trunnion.toolpath.contact_passes.tracing import follow, thinned
+from trunnion.toolpath.contact_passes.upright.tracing import follow, thinned
 from trunnion.toolpath.motion.builder import PathBuilder
 from trunnion.toolpath.motion.link import is_free, lowest_tip
 from trunnion.toolpath.stock.heightfield import PlanningStock

@@ -14,10 +14,10 @@ from numpy.typing import ArrayLike
 from trunnion import tolerance
 from trunnion.geometry.arrays import Floats
 from trunnion.geometry.plane.curve import Curve
+from trunnion.model.motion.toolpath import EMPTY, Mark, Motion, Toolpath
 from trunnion.model.operation import CuttingData
 from trunnion.model.setup import Setup
 from trunnion.model.tool import Tool
-from trunnion.model.toolpath import EMPTY, Mark, Motion, Toolpath
 from trunnion.toolpath.motion.feed import arc_feed
 from trunnion.toolpath.stock.heightfield import PlanningStock
 

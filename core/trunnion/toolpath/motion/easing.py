@@ -12,9 +12,9 @@ import numpy as np
 
 from trunnion import tolerance
 from trunnion.geometry.arrays import Floats, Ints
+from trunnion.model.motion.toolpath import Mark, Motion, Toolpath
 from trunnion.model.operation import CuttingData
 from trunnion.model.tool import Tool
-from trunnion.model.toolpath import Mark, Motion, Toolpath
 from trunnion.progress import QUIET, Progress
 from trunnion.toolpath.stock.heightfield import PlanningStock, places_on
 

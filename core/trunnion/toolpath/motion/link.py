@@ -10,7 +10,7 @@ from numpy.typing import ArrayLike
 
 from trunnion import tolerance
 from trunnion.geometry.arrays import Floats
-from trunnion.model.toolpath import Mark
+from trunnion.model.motion.toolpath import Mark
 from trunnion.toolpath.axis_region import AxisRegion
 from trunnion.toolpath.motion.builder import PathBuilder
 

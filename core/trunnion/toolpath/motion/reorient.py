@@ -16,8 +16,8 @@ import numpy as np
 from trunnion import tolerance
 from trunnion.geometry.arrays import Floats
 from trunnion.model.blank import Blank
+from trunnion.model.motion.toolpath import Mark, Motion, Toolpath
 from trunnion.model.setup import Setup
-from trunnion.model.toolpath import Mark, Motion, Toolpath
 
 STEP = math.radians(5.0)
 """Largest turn in one block: the straight ways of the tip between stay outside the sphere because it is taken a thousandth larger."""

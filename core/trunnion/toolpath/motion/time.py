@@ -17,7 +17,7 @@ import numpy as np
 
 from trunnion.geometry.arrays import Bools, Floats
 from trunnion.model.material import Machine
-from trunnion.model.toolpath import Motion, Toolpath
+from trunnion.model.motion.toolpath import Motion, Toolpath
 from trunnion.shop.kinematics import WorkPosition, spindle_of, words_of
 from trunnion.shop.rotary_angles import followed
 from trunnion.units import SECONDS_PER_MINUTE

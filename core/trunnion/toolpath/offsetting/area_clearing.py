@@ -14,7 +14,7 @@ from trunnion import tolerance
 from trunnion.geometry.arrays import Floats
 from trunnion.geometry.plane.curve import Curve
 from trunnion.geometry.plane.region import Region
-from trunnion.model.toolpath import Mark
+from trunnion.model.motion.toolpath import Mark
 from trunnion.progress import Progress
 from trunnion.toolpath.axis_region import AxisRegion, parts_near
 from trunnion.toolpath.motion.builder import PathBuilder

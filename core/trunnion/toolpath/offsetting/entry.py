@@ -9,7 +9,7 @@ import numpy as np
 from trunnion import tolerance
 from trunnion.geometry.arrays import Floats
 from trunnion.geometry.plane.curve import Curve
-from trunnion.model.toolpath import Mark
+from trunnion.model.motion.toolpath import Mark
 from trunnion.toolpath.axis_region import AxisRegion
 from trunnion.toolpath.motion.builder import PathBuilder
 from trunnion.toolpath.motion.link import travel

@@ -9,10 +9,10 @@ import numpy as np
 from trunnion import tolerance
 from trunnion.findings import error
 from trunnion.geometry.arrays import Floats
+from trunnion.model.motion.toolpath import Mark
 from trunnion.model.operation import CuttingData, Engagement, Operation
 from trunnion.model.setup import Setup
 from trunnion.model.tool import Tool
-from trunnion.model.toolpath import Mark
 from trunnion.plan.prismatic.drive import PlaneDrive
 from trunnion.progress import Progress
 from trunnion.settings import setting, settings

@@ -17,9 +17,9 @@ from trunnion.geometry.kernels import heightfield
 from trunnion.geometry.plane.curve import turn
 from trunnion.geometry.plane.region import Region
 from trunnion.model.blank import Blank
+from trunnion.model.motion.toolpath import Motion, Toolpath
 from trunnion.model.setup import Setup
 from trunnion.model.tool import Tool
-from trunnion.model.toolpath import Motion, Toolpath
 from trunnion.progress import QUIET, Progress
 from trunnion.settings import digest
 

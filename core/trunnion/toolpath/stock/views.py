@@ -15,9 +15,9 @@ from trunnion import tolerance
 from trunnion.geometry.arrays import Floats
 from trunnion.geometry.frame import Frame
 from trunnion.model.blank import Blank
+from trunnion.model.motion.toolpath import Motion, Toolpath
 from trunnion.model.setup import Setup
 from trunnion.model.tool import Tool
-from trunnion.model.toolpath import Motion, Toolpath
 from trunnion.progress import QUIET, Progress
 from trunnion.settings import digest
 from trunnion.toolpath.stock.heightfield import PlanningStock

@@ -12,9 +12,9 @@ from trunnion.progress import QUIET, Progress
 from trunnion.settings import setting, settings
 from trunnion.toolpath.contact_passes import choices
 from trunnion.toolpath.contact_passes.choices import TOO_SHALLOW, TOO_STEEP
-from trunnion.toolpath.contact_passes.fixed_axis import stood
-from trunnion.toolpath.contact_passes.fronts import scallop_passes
-from trunnion.toolpath.contact_passes.upright_path import upright_path
+from trunnion.toolpath.contact_passes.stepover.fronts import scallop_passes
+from trunnion.toolpath.contact_passes.upright.fixed_axis import stood
+from trunnion.toolpath.contact_passes.upright.upright_path import upright_path
 from trunnion.toolpath.contract import Planned, strategy
 from trunnion.toolpath.motion.choices import safety
 from trunnion.toolpath.motion.engagement import surface_leftovers

@@ -16,8 +16,8 @@ import shapely
 from trunnion import tolerance
 from trunnion.findings import Finding, Refused, face_tags, warning
 from trunnion.geometry.arrays import Bools, Floats, Ints
-from trunnion.geometry.drop_surface import DropSurface
 from trunnion.geometry.sheet.skin import Skin
+from trunnion.geometry.surface.drop_surface import DropSurface
 from trunnion.model.operation import CuttingData
 from trunnion.model.setup import Setup
 from trunnion.model.tool import Tool
@@ -31,14 +31,14 @@ from trunnion.toolpath.contact_passes.choices import TOO_SHALLOW, TOO_STEEP
 from trunnion.toolpath.contact_passes.linking import LinkParameters, linked
 from trunnion.toolpath.contact_passes.overrun import OverrunStrip
 from trunnion.toolpath.contact_passes.passes import UPRIGHT, Pass
-from trunnion.toolpath.contact_passes.spacing import (
+from trunnion.toolpath.contact_passes.stepover.spacing import (
     FacetSlopes,
     marched,
     places_of,
     strips_over,
     tip_spacing,
 )
-from trunnion.toolpath.contact_passes.tracing import follow
+from trunnion.toolpath.contact_passes.upright.tracing import follow
 from trunnion.toolpath.contract import Planned, lead_and_tilt, strategy
 from trunnion.toolpath.motion.engagement import surface_leftovers
 from trunnion.toolpath.stock.heightfield import PlanningStock

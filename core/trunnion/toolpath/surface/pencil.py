@@ -26,9 +26,9 @@ from trunnion.progress import QUIET, Progress
 from trunnion.settings import setting, settings
 from trunnion.toolpath.contact_passes.linking import LinkParameters, linked
 from trunnion.toolpath.contact_passes.passes import UPRIGHT, Pass
-from trunnion.toolpath.contact_passes.spacing import places_of
-from trunnion.toolpath.contact_passes.tip_grid import grid_around, spread
-from trunnion.toolpath.contact_passes.tracing import follow
+from trunnion.toolpath.contact_passes.stepover.spacing import places_of
+from trunnion.toolpath.contact_passes.upright.tip_grid import grid_around, spread
+from trunnion.toolpath.contact_passes.upright.tracing import follow
 from trunnion.toolpath.contract import Planned, strategy
 from trunnion.toolpath.motion.engagement import surface_leftovers
 from trunnion.toolpath.stock.heightfield import PlanningStock

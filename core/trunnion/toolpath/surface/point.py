@@ -18,11 +18,11 @@ from trunnion import tolerance
 from trunnion.findings import BadInput, Finding, Refused, info, warning
 from trunnion.geometry.arrays import Bools, Floats
 from trunnion.geometry.frame import Frame
-from trunnion.geometry.kernels.drop_cutter import ROUND, C
+from trunnion.geometry.kernels.cutter_contact.drop_cutter import ROUND, C
+from trunnion.model.motion.toolpath import Mark, Toolpath
 from trunnion.model.operation import CuttingData
 from trunnion.model.setup import Setup
 from trunnion.model.tool import Tool
-from trunnion.model.toolpath import Mark, Toolpath
 from trunnion.plan.clearance import ClearanceQuery
 from trunnion.plan.freeform.cutters.cutter import lower_side, tip_at, touching
 from trunnion.plan.freeform.drive import SurfaceDrive
@@ -46,9 +46,9 @@ from trunnion.toolpath.contact_passes.axis_search import (
 )
 from trunnion.toolpath.contact_passes.contacts import Contacts, between, slerp
 from trunnion.toolpath.contact_passes.flow_lines import DenseFlowLines, FlowParameters, flow_lines
-from trunnion.toolpath.contact_passes.fronts import scallop_passes
 from trunnion.toolpath.contact_passes.linking import LinkParameters, linked
 from trunnion.toolpath.contact_passes.passes import Pass
+from trunnion.toolpath.contact_passes.stepover.fronts import scallop_passes
 from trunnion.toolpath.contract import Planned, leaning_axis, strategy
 from trunnion.toolpath.motion.engagement import surface_leftovers
 from trunnion.toolpath.stock.heightfield import PlanningStock

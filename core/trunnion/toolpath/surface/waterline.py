@@ -17,7 +17,7 @@ from scipy.spatial import cKDTree
 from trunnion import tolerance
 from trunnion.findings import Finding, Refused, warning
 from trunnion.geometry.arrays import Bools, Floats, Ints
-from trunnion.geometry.kernels.drop_cutter import radius_at
+from trunnion.geometry.kernels.cutter_contact.drop_cutter import radius_at
 from trunnion.geometry.sheet.contours import SheetLine, whole_levels
 from trunnion.model.operation import CuttingData
 from trunnion.model.setup import Setup
@@ -29,9 +29,14 @@ from trunnion.settings import setting, settings
 from trunnion.toolpath.contact_passes.choices import TOO_SHALLOW, TOO_STEEP
 from trunnion.toolpath.contact_passes.linking import LinkParameters, linked
 from trunnion.toolpath.contact_passes.passes import UPRIGHT, Pass
-from trunnion.toolpath.contact_passes.spacing import FacetSlopes, level_spacing, marched, places_of
-from trunnion.toolpath.contact_passes.tip_grid import grid_around, spread
-from trunnion.toolpath.contact_passes.tracing import thinned
+from trunnion.toolpath.contact_passes.stepover.spacing import (
+    FacetSlopes,
+    level_spacing,
+    marched,
+    places_of,
+)
+from trunnion.toolpath.contact_passes.upright.tip_grid import grid_around, spread
+from trunnion.toolpath.contact_passes.upright.tracing import thinned
 from trunnion.toolpath.contract import Planned, strategy
 from trunnion.toolpath.motion.engagement import surface_leftovers
 from trunnion.toolpath.stock.heightfield import PlanningStock

@@ -1,4 +1,5 @@
-"""A tool whose axis leans or turns, or faces of any form: the deepest contact with triangles, by a tree and bounds (`kernels/facets.py`).
+"""A tool whose axis leans or turns, or faces of any form: the deepest contact with triangles, by a tree and bounds
+(`kernels/contact/facets.py`).
 
 A reported depth is attained on a triangle at a moment of the move; the true one is at most `tolerance.CONTACT_BOUND` deeper where the axis
 keeps still and `tolerance.TURNING_BOUND` where it turns, plus `Facets.bound`, which is how far the triangles may be from the faces. Depths
@@ -21,9 +22,9 @@ from trunnion.progress import QUIET, Progress
 from trunnion.verify.contact.obstacles import Obstacles
 from trunnion.verify.contact.penetration import Penetration, deepen
 from trunnion.verify.cutter import bodies_of_one
-from trunnion.verify.kernels import facets as kernel
-from trunnion.verify.kernels import pose_search
-from trunnion.verify.kernels.bvh import build_bvh
+from trunnion.verify.kernels.contact import facets as kernel
+from trunnion.verify.kernels.contact import pose_search
+from trunnion.verify.kernels.contact.bvh import build_bvh
 from trunnion.verify.motion import Moves
 from trunnion.verify.threads import in_parallel
 
@@ -39,7 +40,7 @@ LEAF = 4
 
 @dataclass(frozen=True, slots=True, eq=False, kw_only=True)
 class FacetTree:
-    """Triangles in the order of the leaves of a tree of boxes, in preorder; `kernels/bvh.py` names the columns."""
+    """Triangles in the order of the leaves of a tree of boxes, in preorder; `kernels/contact/bvh.py` names the columns."""
 
     boxes: Floats
     skip: Ints

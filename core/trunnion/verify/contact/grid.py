@@ -7,7 +7,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from trunnion.geometry.arrays import Floats, Ints
-from trunnion.verify.kernels import strips as kernel
+from trunnion.verify.kernels.contact import strips as kernel
 
 GRID_CELLS = 1_000_000
 """Most cells of a grid; the pitch grows when what it covers is larger than that."""

@@ -15,7 +15,7 @@ from trunnion import tolerance
 from trunnion.geometry.arrays import Bools, Floats, Ints
 from trunnion.model.tool import Tool
 from trunnion.verify.cutter import bodies_of_one
-from trunnion.verify.kernels import pose_search as kernel
+from trunnion.verify.kernels.contact import pose_search as kernel
 
 KEPT = 24
 """Obstacles that are remembered at a place, those that stopped a tool last: a pit is closed by about so many from all sides."""

@@ -18,7 +18,7 @@ from trunnion.model.tool import Tool
 from trunnion.progress import QUIET, Progress
 from trunnion.verify.contact import PartContact
 from trunnion.verify.cutter import bodies_of
-from trunnion.verify.kernels import strips as columns
+from trunnion.verify.kernels.contact import strips as columns
 from trunnion.verify.motion import Moves, poses_of
 
 STEP = math.radians(5.0)

@@ -1,7 +1,7 @@
 """Closed forms: a body of revolution that stands upright, against faces that are strips and level regions (`part/shape/surfaces.py`).
 
-Closed forms in plan and a bounded search over the profile (`kernels/strips.py`): a reported depth is attained, and the true one is at
-most `tolerance.CONTACT_BOUND` deeper. A move along its own axis counts as one body, swept from its lowest to its highest place.
+Closed forms in plan and a bounded search over the profile (`kernels/contact/strips.py`): a reported depth is attained, and the true one is
+at most `tolerance.CONTACT_BOUND` deeper. A move along its own axis counts as one body, swept from its lowest to its highest place.
 """
 
 from __future__ import annotations
@@ -37,7 +37,7 @@ from trunnion.part.shape.surfaces import (
 from trunnion.progress import QUIET, Progress
 from trunnion.verify.contact.grid import Grid, grid_of
 from trunnion.verify.contact.penetration import Penetration, deepen
-from trunnion.verify.kernels import strips as kernel
+from trunnion.verify.kernels.contact import strips as kernel
 from trunnion.verify.motion import Moves
 from trunnion.verify.threads import in_parallel
 

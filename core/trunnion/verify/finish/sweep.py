@@ -18,7 +18,7 @@ from trunnion.verify.contact import Grid, grid_of
 from trunnion.verify.cutter import Bodies
 from trunnion.verify.kernels import body
 from trunnion.verify.kernels import residual as kernel
-from trunnion.verify.kernels import strips as columns
+from trunnion.verify.kernels.contact import strips as columns
 from trunnion.verify.kernels.residual import Flutes, SpanTree
 from trunnion.verify.motion import Moves
 from trunnion.verify.threads import in_parallel

@@ -6,7 +6,7 @@ import numpy as np
 
 from trunnion.findings import Finding, error
 from trunnion.geometry.arrays import Floats, Ints
-from trunnion.model.program import ProgramSection
+from trunnion.model.motion.program import ProgramSection
 from trunnion.units import LONGEST_BLOCK, SECONDS_PER_MINUTE
 from trunnion.verify.judge.locations import block_of, position_text
 from trunnion.verify.judge.setups import SetupProof

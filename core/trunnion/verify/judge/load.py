@@ -16,7 +16,7 @@ import numpy as np
 
 from trunnion.geometry.arrays import Floats
 from trunnion.model.material import Material
-from trunnion.model.program import STANDING, ProgramSection
+from trunnion.model.motion.program import STANDING, ProgramSection
 from trunnion.units import MM_PER_METRE, SECONDS_PER_MINUTE, WATTS_PER_KILOWATT
 from trunnion.verify.motion import Moves
 from trunnion.verify.stock import StockRun

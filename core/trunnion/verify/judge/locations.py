@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from trunnion.geometry.arrays import Floats
-from trunnion.model.program import ProgramSection
+from trunnion.model.motion.program import ProgramSection
 from trunnion.verify.judge.setups import SetupProof
 
 

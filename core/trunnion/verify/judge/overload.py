@@ -16,7 +16,7 @@ from trunnion import tolerance
 from trunnion.findings import Finding, error, remark, warning
 from trunnion.geometry.arrays import Bools, Floats, Ints
 from trunnion.model.material import Machine, Material
-from trunnion.model.program import ProgramSection
+from trunnion.model.motion.program import ProgramSection
 from trunnion.model.verdict import Offer
 from trunnion.shop.materials import feed_at
 from trunnion.units import MM_PER_METRE, SECONDS_PER_MINUTE

@@ -13,7 +13,7 @@ from trunnion.geometry.arrays import Bools, Floats, Ints
 from trunnion.geometry.frame import Frame
 from trunnion.model.blank import Blank
 from trunnion.model.material import Machine, Material
-from trunnion.model.program import Program
+from trunnion.model.motion.program import Program
 from trunnion.model.tool import Tool
 from trunnion.progress import QUIET, Progress
 from trunnion.verify.contact import Contact, PartContact

@@ -16,7 +16,7 @@ from trunnion.geometry.arrays import Floats, Ints
 from trunnion.geometry.frame import Frame
 from trunnion.model.blank import Blank
 from trunnion.model.material import Machine, Material
-from trunnion.model.program import Program
+from trunnion.model.motion.program import Program
 from trunnion.model.tool import Tool
 from trunnion.model.verdict import Offer, Outcome, Verdict
 from trunnion.part.part import Part

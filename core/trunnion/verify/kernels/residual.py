@@ -27,7 +27,7 @@ from numba import njit
 
 from trunnion.geometry.arrays import Bools, Floats, Ints
 from trunnion.verify.kernels.body import depth_in_body
-from trunnion.verify.kernels.strips import Z_END, Z_START, move_box, point_distance
+from trunnion.verify.kernels.contact.strips import Z_END, Z_START, move_box, point_distance
 
 # Columns of a way: how a tool moves in space, as the chord of a point seen from it needs it.
 PX, PY, PZ, DX, DY, DZ, AX, AY, AZ, EX, EY, EZ, TURN, CENTRE_E, CENTRE_N, RADIUS, PHASE, SWEEP = (

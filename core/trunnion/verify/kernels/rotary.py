@@ -3,7 +3,7 @@ before.
 
 The inverse kinematics of a five-axis machine have two solutions for a tool axis, each repeated
 every full turn of an axis. From pose to pose the solution within the limits that turns the axes
-least is taken (nearest-neighbour; the planner's `geometry/kernels/rotary_angles.py` optimises over the
+least is taken (nearest-neighbour; the planner's `geometry/kernels/shortest_paths/rotary_angles.py` optimises over the
 whole path, this one represents a control that looks one block ahead). Angles in rad.
 """
 

@@ -10,8 +10,8 @@ import numpy as np
 from trunnion import tolerance
 from trunnion.findings import Finding, error
 from trunnion.model.material import Axis, Machine
-from trunnion.model.program import ProgramSection
-from trunnion.model.toolpath import Motion
+from trunnion.model.motion.program import ProgramSection
+from trunnion.model.motion.toolpath import Motion
 from trunnion.verify.machine.kinematics import SLACK, UP, AxisPositions, angle_between
 from trunnion.verify.machine.times import LINEAR
 from trunnion.verify.motion import Moves

@@ -1,8 +1,8 @@
 """How much of a cutter's circumference is in material on the way, and how deep: where to look, and what the counts mean.
 
-The compiled loops (`kernels/engagement.py`) count, tile by tile, which directions of the cutter's front are in material; counts of tiles
-are added, so the result is the same for any number of them. Of the rings the widest counts that is no higher than half the depth of the
-material there: the circle at which a rounded end cuts on average.
+The compiled loops (`kernels/stock/engagement.py`) count, tile by tile, which directions of the cutter's front are in material;
+counts of tiles are added, so the result is the same for any number of them. Of the rings the widest counts that
+is no higher than half the depth of the material there: the circle at which a rounded end cuts on average.
 """
 
 from __future__ import annotations
@@ -17,7 +17,7 @@ from trunnion import tolerance
 from trunnion.geometry.arrays import Floats, Ints
 from trunnion.model.tool import PLAIN_FORMS, Tool
 from trunnion.verify.cutter import outline_of
-from trunnion.verify.kernels.engagement import FLUTE_STEPS, RINGS
+from trunnion.verify.kernels.stock.engagement import FLUTE_STEPS, RINGS
 from trunnion.verify.motion import Moves
 
 DIRECTIONS = 45

@@ -14,7 +14,7 @@ from trunnion.geometry.frame import Frame
 from trunnion.progress import Progress
 from trunnion.verify.cutter import lowest_height
 from trunnion.verify.finish.sweep import Sweep
-from trunnion.verify.kernels import strips as columns
+from trunnion.verify.kernels.contact import strips as columns
 from trunnion.verify.motion import Moves
 from trunnion.verify.stock.field import Field
 from trunnion.verify.stock.rays import Passed

@@ -9,8 +9,8 @@ from trunnion.geometry.arrays import Floats
 from trunnion.geometry.frame import Frame
 from trunnion.progress import Progress
 from trunnion.verify.finish.sweep import Sweep
-from trunnion.verify.kernels import strips as columns
-from trunnion.verify.kernels import zmap as kernel
+from trunnion.verify.kernels.contact import strips as columns
+from trunnion.verify.kernels.stock import zmap as kernel
 from trunnion.verify.motion import Moves
 from trunnion.verify.profile import cones_of, profiles_of
 from trunnion.verify.stock.engagement import Probes

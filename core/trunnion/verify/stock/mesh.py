@@ -10,7 +10,7 @@ from trunnion import tolerance
 from trunnion.findings import BadInput
 from trunnion.geometry.arrays import Floats, Ints
 from trunnion.geometry.mesh import Mesh
-from trunnion.verify.kernels import contouring, meshing
+from trunnion.verify.kernels.stock import contouring, meshing
 from trunnion.verify.stock.bundles import AXES, Bundle
 from trunnion.verify.stock.field import Field, cells_along
 from trunnion.verify.stock.stock import Stock

@@ -12,7 +12,7 @@ from trunnion.findings import OutOfMemory
 from trunnion.geometry.arrays import Bools, Floats, Ints
 from trunnion.progress import Progress
 from trunnion.verify.cutter import Bodies
-from trunnion.verify.kernels import dexels as kernel
+from trunnion.verify.kernels.stock import dexels as kernel
 from trunnion.verify.motion import Moves
 from trunnion.verify.stock.bundles import AXES, Bundle, cycle
 from trunnion.verify.stock.engagement import Probes, Tally

@@ -10,7 +10,7 @@ import numpy as np
 from trunnion import tolerance
 from trunnion.geometry.arrays import Bools, Floats, Ints
 from trunnion.verify.kernels import body as body_kernel
-from trunnion.verify.kernels import dexels as kernel
+from trunnion.verify.kernels.stock import dexels as kernel
 from trunnion.verify.motion import AXIS_LEAN, Moves
 from trunnion.verify.stock.bundles import cycle
 
@@ -19,7 +19,7 @@ VECTORS = kernel.SPAN_COLUMNS // 3
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Spans:
-    """Spans of some moves, in the blank's frame: row (s, `SPAN_COLUMNS`) as `kernels/dexels.py` names its columns; start (n + 1,)."""
+    """Spans of some moves, in the blank's frame: row (s, `SPAN_COLUMNS`) as `kernels/stock/dexels.py` names its columns; start (n + 1,)."""
 
     row: Floats
     start: Ints

@@ -71,7 +71,7 @@ def cut(
     engine: Any, progress: Progress, _send_event: SendEvent, session: Session, cut: Cut
 ) -> PatchedSession:
     """Return the session after a face was cut in two."""
-    from trunnion.pipeline.patches import with_cut
+    from trunnion.pipeline.planning.patches import with_cut
 
     return _patched(
         engine,
@@ -85,7 +85,7 @@ def uncut(
     engine: Any, progress: Progress, _send_event: SendEvent, session: Session, number: int
 ) -> PatchedSession:
     """Return the session after a cut was taken back, counted from 0."""
-    from trunnion.pipeline.patches import without_cut
+    from trunnion.pipeline.planning.patches import without_cut
 
     return _patched(
         engine,
@@ -111,7 +111,7 @@ def move(
     group: str,
 ) -> SessionState:
     """Return the session after faces went to a group by its id, or to a new one."""
-    from trunnion.pipeline.patches import with_moved
+    from trunnion.pipeline.planning.patches import with_moved
 
     after = with_moved(engine, session, faces, group)
     return state_of(engine, after)
@@ -127,7 +127,7 @@ def export(
     path: str,
 ) -> int:
     """Write `local`, `remaining` or groups by their ids as STEP or IGES; return the number of faces."""
-    from trunnion.pipeline.patches import export as export_patches
+    from trunnion.pipeline.planning.patches import export as export_patches
 
     return export_patches(engine, session, what, path)
 
@@ -150,7 +150,7 @@ def estimate(
     engine: Any, _progress: Progress, _send_event: SendEvent, session: Session
 ) -> EstimatedTimes | None:
     """Return the time of finishing by area rates, None where no areas are finished."""
-    from trunnion.pipeline.finishing_estimate import estimate as estimated
+    from trunnion.pipeline.planning.finishing_estimate import estimate as estimated
 
     found = estimated(session, engine.context_of(session))
     if found is None:

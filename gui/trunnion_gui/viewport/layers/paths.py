@@ -9,7 +9,7 @@ import numpy as np
 import pyvista as pv
 
 from trunnion.geometry.frame import Frame
-from trunnion.model.toolpath import Toolpath
+from trunnion.model.motion.toolpath import Toolpath
 from trunnion.report.lines import (
     MOST_STROKES,
     MOTIONS,

@@ -1,8 +1,8 @@
 """A cutter as surface strategies see it: its lower side for drops, and where it touches a face of a given inclination.
 
 The lower side (design: drop along the axis) is the cutting part's profile from the tip to its widest circle, as pieces over the distance
-from the axis (`geometry.kernels.drop_cutter`). An allowance makes the profile thicker all round by as much: a drop of the thicker
-cutter keeps the allowance in every direction.
+from the axis (`geometry.kernels.cutter_contact.drop_cutter`). An allowance makes the profile thicker all round by as much: a drop of
+the thicker cutter keeps the allowance in every direction.
 """
 
 from __future__ import annotations
@@ -13,7 +13,7 @@ import numpy as np
 
 from trunnion.findings import Refused
 from trunnion.geometry.arrays import Floats
-from trunnion.geometry.kernels.drop_cutter import RHO1, ROUND, A, B, C
+from trunnion.geometry.kernels.cutter_contact.drop_cutter import RHO1, ROUND, A, B, C
 from trunnion.model.tool import Tool
 
 SURFACE_FORMS = ("flat", "bull", "ball", "taper", "barrel")

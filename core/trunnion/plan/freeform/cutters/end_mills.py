@@ -11,7 +11,7 @@ from trunnion import tolerance
 from trunnion.geometry.arrays import Bools
 from trunnion.geometry.plane.region import EMPTY_REGION, Region
 from trunnion.model.tool import Tool
-from trunnion.plan.freeform.areas import VERTICAL
+from trunnion.plan.freeform.finishing.areas import VERTICAL
 from trunnion.plan.freeform.lands import (
     SIDE,
     SKIM,

@@ -1,0 +1,1 @@
+"""The commands of planning, a step each: from features to cutting data."""

@@ -1,0 +1,1 @@
+"""The commands of programs: written, proven, posted again, many parts at once."""

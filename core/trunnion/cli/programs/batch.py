@@ -1,0 +1,72 @@
+"""`trunnion batch`: program many parts, each into a folder of its own; one bad part does not stop the others."""
+
+from __future__ import annotations
+
+import argparse
+import sys
+from pathlib import Path
+from typing import Any
+
+from trunnion.cli.common import (
+    add_options,
+    add_output,
+    check_output,
+    open_session,
+    progress_of,
+    show_json,
+    table,
+)
+from trunnion.cli.programs.proof import verdict_code
+from trunnion.findings import TrunnionError
+
+
+def add(commands: Any) -> None:
+    """Add the command to the command line."""
+    made = commands.add_parser(
+        "batch",
+        help="program many parts",
+        description="Programs many parts, each into a folder named after it.",
+    )
+    made.add_argument("parts", nargs="+", metavar="PART", help="part files")
+    add_output(made)
+    add_options(made)
+    made.set_defaults(run=run, name="", date="")
+
+
+def run(chosen: argparse.Namespace) -> int:
+    """Program every part and print a line for each."""
+    check_output(chosen.output)
+    results, worst = [], 0
+    for part in chosen.parts:
+        code, words = _one(chosen, part)
+        worst = max(worst, code)
+        results.append((part, *words))
+    if chosen.json:
+        show_json(
+            {
+                "parts": [
+                    {"part": p, "verdict": v, "coverage": c, "gouge_mm": g}
+                    for p, v, c, g in results
+                ]
+            }
+        )
+    else:
+        print(table([("part", "verdict", "coverage", "gouge mm"), *results], right=(2, 3)))
+    return worst
+
+
+def _one(chosen: argparse.Namespace, part: str) -> tuple[int, tuple[str, str, str]]:
+    chosen.part = part
+    try:
+        engine, session = open_session(chosen, "verify")
+        engine.write(session, chosen.output / Path(part).stem, progress=progress_of(chosen))
+    except TrunnionError as reason:
+        print(f"trunnion: {reason}", file=sys.stderr)
+        return 2, ("refused", "", "")
+    verdict = session.verdict
+    assert verdict is not None
+    return verdict_code(session), (
+        str(verdict.outcome),
+        f"{verdict.coverage:.4f}",
+        f"{verdict.gouge:.4f}",
+    )

@@ -1,0 +1,56 @@
+"""`trunnion post`: write the NC text of a project again, in a dialect of choice."""
+
+from __future__ import annotations
+
+import argparse
+from typing import Any
+
+from trunnion.cli.common import (
+    add_output,
+    check_output,
+    open_session,
+    part_command,
+    progress_of,
+    show_findings,
+    show_json,
+)
+from trunnion.cli.programs.proof import verdict_code
+
+
+def add(commands: Any) -> None:
+    """Add the command to the command line."""
+    made = part_command(
+        commands,
+        "post",
+        "write the NC text of a project (choose the dialect with --set post.dialect=NAME)",
+    )
+    add_output(made)
+    made.add_argument(
+        "--name", default="", help="name of the program and its files (default: the part's)"
+    )
+    made.add_argument("--date", default="", help="date for the programs' headers")
+    made.set_defaults(run=run)
+
+
+def run(chosen: argparse.Namespace) -> int:
+    """Write the programs; a failed proof writes them as REJECTED."""
+    from trunnion.pipeline.writing import checked_name, write_programs
+
+    check_output(chosen.output)
+    if chosen.name:
+        checked_name(chosen.name)
+    _, session = open_session(chosen, "verify")
+    files = write_programs(
+        session, chosen.output, name=chosen.name, date=chosen.date, progress=progress_of(chosen)
+    )
+    if chosen.json:
+        show_json(
+            {
+                "files": list(files),
+                "verdict": str(session.verdict.outcome) if session.verdict else "none",
+            }
+        )
+    else:
+        print("\n".join(files))
+    show_findings(chosen, session.findings())
+    return verdict_code(session)

@@ -1,0 +1,59 @@
+"""`trunnion program`: the whole line, from the part file to proven NC text in a folder."""
+
+from __future__ import annotations
+
+import argparse
+import time
+from typing import Any
+
+from trunnion.cli.common import (
+    add_output,
+    check_output,
+    open_session,
+    part_command,
+    progress_of,
+    show_findings,
+    show_json,
+)
+from trunnion.cli.programs.proof import proof_dict, proof_text, verdict_code
+
+
+def add(commands: Any) -> None:
+    """Add the command to the command line."""
+    made = part_command(
+        commands, "program", "program a part: features, route, toolpaths, proof, NC text, report"
+    )
+    add_output(made)
+    made.add_argument(
+        "--name", default="", help="name of the program and its files (default: the part's)"
+    )
+    made.add_argument(
+        "--date",
+        default="",
+        help="date for the programs' headers; without it same input gives same bytes",
+    )
+    made.set_defaults(run=run)
+
+
+def run(chosen: argparse.Namespace) -> int:
+    """Run the whole line and write its files."""
+    from trunnion.pipeline.writing import checked_name
+
+    began = time.perf_counter()
+    check_output(chosen.output)
+    if chosen.name:
+        checked_name(chosen.name)
+    engine, session = open_session(chosen, "verify")
+    files = engine.write(
+        session, chosen.output, name=chosen.name, date=chosen.date, progress=progress_of(chosen)
+    )
+    seconds = {name: record.seconds for name, record in session.records.items()} | {
+        "all": time.perf_counter() - began
+    }
+    if chosen.json:
+        show_json(proof_dict(session, files, seconds))
+    else:
+        print(proof_text(session))
+        print(f"{len(files)} files in {chosen.output}, {seconds['all']:.1f} s")
+    show_findings(chosen, session.findings())
+    return verdict_code(session)

@@ -1,0 +1,1 @@
+"""Where a cutter touches triangles: dropped along its axis, pushed across it."""

@@ -1,0 +1,1 @@
+"""Least-cost paths: over triangles, through tables, along rotary angles."""

@@ -1,0 +1,78 @@
+"""The dynamic programme of `kernels.shortest_paths.rotary_angles` compiled; same arguments and answers."""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+from numba import njit
+
+from trunnion.geometry.arrays import Bools, Floats
+
+TURN = 2.0 * math.pi
+
+
+@njit(cache=True, nogil=True)
+def _nearest_congruent(angle: float, before: float, low: float, high: float, slack: float) -> float:
+    """Return the angle congruent to `angle` modulo a full turn (rad) that is nearest to the one before
+    and inside the limits within slack; infinity where none is."""
+    turns = round((before - angle) / TURN)
+    least, most = math.ceil((low - slack - angle) / TURN), math.floor((high + slack - angle) / TURN)
+    if least > most:
+        return math.inf
+    return angle + TURN * min(max(turns, least), most)
+
+
+@njit(cache=True, nogil=True)
+def choose_angles(
+    angles: Floats,
+    free: Bools,
+    through: Bools,
+    low: Floats,
+    high: Floats,
+    slack: float,
+    start: Floats,
+    chosen: Floats,
+) -> tuple[int, float]:
+    """Fill chosen (m, a) with rotary angles (rad); return how many poses could be followed and how far
+    (rad) the axes turned; see `kernels.shortest_paths.rotary_angles.choose_angles`."""
+    m, ways, axes = angles.shape
+    stand = np.zeros((m, ways, axes))
+    cost = np.full((m, ways), math.inf)
+    origin = np.zeros((m, ways), np.int8)
+    there = np.zeros(axes)
+    # cost[k, way]: least turning to reach pose k by a solution; infinite: not at all. The first
+    # pose has no predecessor but the start.
+    for k in range(m):
+        for way in range(ways):
+            for other in range(ways):
+                if (k == 0 and other != way) or (
+                    k > 0 and (cost[k - 1, other] == math.inf or (way != other and not through[k]))
+                ):
+                    continue
+                spent = cost[k - 1, other] if k else 0.0
+                for a in range(axes):
+                    before = stand[k - 1, other, a] if k else start[a]
+                    there[a] = (
+                        before
+                        if free[k, way, a]
+                        else _nearest_congruent(angles[k, way, a], before, low[a], high[a], slack)
+                    )
+                    turn = abs(there[a] - before)
+                    # Beyond half a turn the machine would swing the tool round between two
+                    # neighbouring poses.
+                    spent += math.inf if k > 0 and turn > math.pi + slack else turn
+                if spent < cost[k, way]:
+                    cost[k, way], origin[k, way] = spent, other
+                    stand[k, way] = there
+        if min(cost[k, 0], cost[k, 1]) == math.inf:
+            return k, math.inf
+    if m == 0:
+        return 0, 0.0
+    # Trace back from the cheaper end.
+    last = 0 if cost[m - 1, 0] <= cost[m - 1, 1] else 1
+    spent = cost[m - 1, last]
+    for k in range(m - 1, -1, -1):
+        chosen[k] = stand[k, last]
+        last = origin[k, last]
+    return m, spent

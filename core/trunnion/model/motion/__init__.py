@@ -1,0 +1,1 @@
+"""Motions as arrays and as programs: toolpaths, drilling cycles, their neutral text."""

@@ -1,0 +1,98 @@
+"""What planners are given of a session: the part with its queries, and the scene that a setup's operations are made in."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Hashable
+from dataclasses import dataclass, field
+from typing import TYPE_CHECKING, Any, TypeVar
+
+from trunnion.geometry.frame import Frame
+from trunnion.geometry.sheet.skin import Skin
+from trunnion.model.blank import Blank
+from trunnion.model.feature import Recognition
+from trunnion.model.fixture import Fixture
+from trunnion.model.operation import OperationPath
+from trunnion.model.process import ProcessTree
+from trunnion.model.session import Session
+from trunnion.model.setup import Setup
+from trunnion.model.tool import Tool
+from trunnion.pipeline.context import Context
+from trunnion.pipeline.planning.clearance import PartClearance
+from trunnion.plan.contract import PartContext
+from trunnion.progress import Progress
+from trunnion.settings import digest
+from trunnion.toolpath.motion.reorient import Pose
+from trunnion.toolpath.stock.heightfield import PlanningStock
+from trunnion.toolpath.stock.views import StockViews
+
+if TYPE_CHECKING:
+    from trunnion.part.part import Part
+
+T = TypeVar("T")
+
+
+class SessionContext:
+    """The part of a session, with its skins and the clearance queries of its setups; queries are kept for each cutting frame."""
+
+    def __init__(self, context: Context, session: Session) -> None:
+        self.part: Part = context.part
+        self._context, self._session = context, session
+        self._around: dict[tuple[str, str], PartClearance] = {}
+
+    def skin(self, chord: float, progress: Progress) -> Skin:
+        """Return the part's skin in its own coordinates within a chord error (mm)."""
+        return self._context.skin(chord, progress)
+
+    def around(self, setup: Setup, cutting: Frame, skin: Skin, progress: Progress) -> PartClearance:
+        """Return the clearance queries of a setup for a cutting frame, in which `skin` is the part's.
+
+        `progress` is looked at from now on.
+        """
+        key = (setup.name, digest(cutting))
+        if key not in self._around:
+            self._around[key] = PartClearance(
+                self.part,
+                skin,
+                cutting,
+                setup.frame,
+                self._context.shop.machine(setup.machine),
+                self._session.fixtures_of(setup.name),
+            )
+        self._around[key].progress = progress
+        return self._around[key]
+
+
+@dataclass(slots=True, kw_only=True)
+class SetupScene:
+    """What the operations of one setup are made in: the part, the stock that is left, and the last path with its tool."""
+
+    context: PartContext
+    recognition: Recognition
+    blank: Blank
+    setup: Setup
+    process: ProcessTree
+    fixtures: tuple[Fixture, ...]
+    sides: StockViews = field(init=False)
+    last: OperationPath | None = None
+    tool: Tool | None = None
+    _made: dict[Hashable, Any] = field(default_factory=dict)
+
+    def __post_init__(self) -> None:
+        self.sides = StockViews(self.blank)
+
+    def stock(self, setup: Setup) -> PlanningStock:
+        """Return the stock that is left at this moment, in the frame of a setup (a cutting frame is one)."""
+        return self.sides.seen(setup)
+
+    def once(self, key: Hashable, make: Callable[[], T]) -> T:
+        """Return what is made once for all operations of the setup, kept under a key."""
+        if key not in self._made:
+            self._made[key] = make()
+        made: T = self._made[key]
+        return made
+
+    def before(self, tool: Tool) -> Pose | None:
+        """Return the pose that a tool was left in, or None when it comes from its change."""
+        if self.last is None or self.tool is None or self.tool.number != tool.number:
+            return None
+        return self.last.path.position[-1], self.last.path.axis[-1]

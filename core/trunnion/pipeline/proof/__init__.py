@@ -1,0 +1,1 @@
+"""What the steps after the toolpaths are made of: programs posted, read back and proven; stock over time."""

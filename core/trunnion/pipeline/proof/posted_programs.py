@@ -1,0 +1,222 @@
+"""From toolpaths to a verdict: the programs are posted, read back, and what was read is proven, not what was planned."""
+
+from __future__ import annotations
+
+import importlib
+from collections.abc import Mapping, Sequence
+from dataclasses import replace
+
+from trunnion import registry
+from trunnion.findings import BadCall, BadInput, Finding, Severity, error
+from trunnion.model.material import Machine
+from trunnion.model.motion.program import Program, section_of
+from trunnion.model.process import ProcessTree
+from trunnion.model.session import PostedFile, Session
+from trunnion.model.setup import Setup
+from trunnion.model.verdict import Outcome, Verdict
+from trunnion.pipeline.context import Context
+from trunnion.pipeline.work_position import work_positions_of
+from trunnion.post.header import Header
+from trunnion.post.readers import read_program
+from trunnion.post.settings import OF_MACHINE, PostSettings
+from trunnion.progress import QUIET, Progress
+from trunnion.settings import checked, choose
+from trunnion.shop.kinematics import Places
+from trunnion.verify.settings import ProofSettings
+
+
+def program_of(session: Session, setup: Setup) -> Program:
+    """Return the motions of one setup: a section for each operation that has a toolpath, in the order they are cut."""
+    if session.process is None or session.part is None:
+        raise BadCall("no operations yet: generate the route first")
+    sections = []
+    for operation in session.process.of_setup(setup.name):
+        made = session.path_of(operation.id)
+        if made is not None and len(made.path):
+            sections.append(section_of(operation, made.path))
+    return Program(
+        name=f"{session.part.name}.{setup.name}",
+        setup=held(session, setup),
+        sections=tuple(sections),
+    )
+
+
+def held(session: Session, setup: Setup) -> Setup:
+    """Return a setup with the fixtures that hold the part in it."""
+    return replace(setup, fixtures=session.fixtures_of(setup.name))
+
+
+def programs_of(session: Session) -> tuple[Program, ...]:
+    """Return the programs of all setups that cut anything."""
+    return tuple(p for p in (program_of(session, s) for s in session.setups) if p.sections)
+
+
+def post_texts(
+    session: Session, header: Header, machines: Mapping[str, Machine], progress: Progress = QUIET
+) -> tuple[PostedFile, ...]:
+    """Return the texts of every program: one for each setup in the dialect of its machine's control, and the CL of all setups."""
+    chosen, cl = checked(choose(PostSettings, session.choices)), registry.get("dialects", "apt")()
+    programs, places = programs_of(session), work_positions_of(session, machines)
+    posted = [_posted(p, header, chosen, machines, places) for p in progress.each(programs)]
+    progress.check()
+    if programs:
+        posted.append(
+            PostedFile(
+                suffix=cl.suffix,
+                dialect=cl.name,
+                setup="",
+                text=cl.write(programs, header, chosen, places),
+            )
+        )
+    return tuple(posted)
+
+
+def _posted(
+    program: Program,
+    header: Header,
+    chosen: PostSettings,
+    machines: Mapping[str, Machine],
+    places: Places,
+) -> PostedFile:
+    setup = program.setup
+    dialect = registry.get("dialects", dialect_of(setup, chosen, machines))()
+    return PostedFile(
+        suffix=f"{setup.name}.{dialect.suffix}",
+        dialect=dialect.name,
+        setup=setup.name,
+        text=dialect.write((program,), header, chosen, places),
+    )
+
+
+def dialect_of(setup: Setup, chosen: PostSettings, machines: Mapping[str, Machine]) -> str:
+    """Return the name of the dialect that a setup's program is written in: the one chosen for all, else that of its machine's control."""
+    if chosen.dialect != OF_MACHINE:
+        return chosen.dialect
+    return machine_of(setup, machines).control
+
+
+def machine_of(setup: Setup, machines: Mapping[str, Machine]) -> Machine:
+    """Return the machine of a setup; raise `BadInput` when the catalogue does not have it."""
+    if setup.machine not in machines:
+        raise BadInput(
+            f"setup {setup.name}: there is no machine {setup.machine} in the catalogue; "
+            f"known: {', '.join(sorted(machines))}"
+        )
+    return machines[setup.machine]
+
+
+def read_back(
+    session: Session,
+    posted: tuple[PostedFile, ...],
+    machines: Mapping[str, Machine],
+    progress: Progress = QUIET,
+) -> tuple[Program, ...]:
+    """Return the motions that the posted texts of the control's dialect say, setup by setup."""
+    if session.process is None:
+        raise BadCall("no operations yet: generate the route first")
+    tools, places = session.process.tools(), work_positions_of(session, machines)
+    read = (
+        read_program(
+            f.dialect, f.text, tools, held(session, session.process.setup(f.setup)), places
+        )
+        for f in progress.each(posted)
+        if f.setup
+    )
+    return tuple(with_engagement(p, session.process) for p in read)
+
+
+def with_engagement(program: Program, process: ProcessTree) -> Program:
+    """Return a program whose sections know the engagement that their operations' feeds were chosen for: no text says that."""
+    known = {o.id: o.data for o in process.operations}
+    sections = tuple(
+        replace(
+            s,
+            width=known[s.operation].width,
+            depth=known[s.operation].depth,
+            feed=known[s.operation].feed,
+        )
+        if s.operation in known
+        else s
+        for s in program.sections
+    )
+    return replace(program, sections=sections)
+
+
+def prove_session(
+    session: Session, context: Context, progress: Progress
+) -> tuple[Verdict, tuple[PostedFile, ...]]:
+    """Return the verdict on the posted text of a session, and that text."""
+    if session.process is None or session.blank is None or session.part is None:
+        raise BadCall("no toolpaths yet: generate them first")
+    progress.at(0.0, "posting")
+    posted = progress.aside(
+        lambda own: post_texts(session, Header.of(session), context.shop.machines, own)
+    )
+    progress.at(0.05, "reading the text back")
+    programs = progress.aside(lambda own: read_back(session, posted, context.shop.machines, own))
+    verdict = prove_programs(session, context, programs, progress.part(0.1, 1.0, "proof"))
+    return held_back(verdict, errors_before(session)), posted
+
+
+def errors_of_part(session: Session) -> tuple[Finding, ...]:
+    """Return the errors of the part itself: what they name can't be proven against."""
+    return tuple(
+        f for f in (session.part.findings if session.part else ()) if f.severity is Severity.ERROR
+    )
+
+
+def errors_before(session: Session) -> tuple[Finding, ...]:
+    """Return the errors that the part and the steps before the proof have reported."""
+    told = (
+        f for step, record in session.records.items() if step != "verify" for f in record.findings
+    )
+    return errors_of_part(session) + tuple(f for f in told if f.severity is Severity.ERROR)
+
+
+def held_back(verdict: Verdict, errors: Sequence[Finding]) -> Verdict:
+    """Return the verdict, failed when there were errors before the proof: a plan that could not be made whole is not released."""
+    if not errors:
+        return verdict
+    codes = ", ".join(dict.fromkeys(f.code for f in errors))
+    held = error(
+        "verify.errors-before",
+        f"{len(errors)} errors were told before the proof ({codes}): {errors[0].text}",
+        *errors[0].where,
+        remedy="mend what they name, then program the part again",
+    )
+    return replace(verdict, outcome=Outcome.FAILED, findings=(held, *verdict.findings))
+
+
+def prove_programs(
+    session: Session, context: Context, programs: tuple[Program, ...], progress: Progress
+) -> Verdict:
+    """Return the verdict on programs, wherever their motions come from."""
+    if session.process is None or session.blank is None:
+        raise BadCall("no blank or operations: nothing to prove against")
+    prove = progress.aside(lambda _: importlib.import_module("trunnion.verify.judge.verdict").prove)
+    names = [s.name for s in session.process.setups]
+    strange = next((f for f in session.fixtures if f.setup and f.setup not in names), None)
+    if strange is not None:
+        raise BadInput(
+            f"fixture {strange.name} is for setup {strange.setup}; the part has {', '.join(names)}"
+        )
+    machines = context.shop.machines
+    setups = [p.setup for p in programs] or session.process.setups[:1]
+    planned = {
+        tag
+        for operation in session.process.operations
+        if not operation.suppressed
+        for tag in operation.faces
+    }
+    verdict: Verdict = prove(
+        programs,
+        context.part,
+        session.blank,
+        context.shop.tools,
+        [machine_of(s, machines) for s in setups],
+        checked(choose(ProofSettings, session.choices)),
+        progress,
+        planned_faces=sorted(planned),
+        material=context.shop.materials.get(session.process.material),
+    )
+    return verdict

@@ -1,0 +1,1 @@
+"""Roughing of curved parts: heights, layers, hollows, and the directions to come from."""

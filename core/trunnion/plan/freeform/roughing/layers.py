@@ -1,0 +1,217 @@
+"""Plane drives of parts of curved surfaces: layers from how high the part stands, and outlines of upright walls from its sections."""
+
+from __future__ import annotations
+
+from itertools import pairwise
+
+import numpy as np
+
+from trunnion import tolerance
+from trunnion.findings import Refused
+from trunnion.geometry.arrays import Floats
+from trunnion.geometry.plane.region import EMPTY_REGION, Region, union_all
+from trunnion.model.operation import Operation
+from trunnion.model.process import ProcessTree
+from trunnion.plan.contract import StockHeights
+from trunnion.plan.freeform.keys import ALLOWANCE, BOTTOM, CELL, number
+from trunnion.plan.freeform.lands import LAND, REST_LAND, land_drive
+from trunnion.plan.freeform.roughing.heights import (
+    HeightMap,
+    cell_over,
+    gap_beside_walls,
+    region_below,
+)
+from trunnion.plan.freeform.space import SurfaceSpace
+from trunnion.plan.prismatic.drive import DriveLevel, PlaneDrive, WallGuide
+from trunnion.progress import Progress
+
+STRAIGHT = 0.5
+"""Of the allowance: how far the rims of layers may be straightened."""
+LEAST_STRAIGHT = 0.02
+"""mm: the same where hardly anything is left."""
+LEVEL_AREA = 4.0
+"""mm2: level faces together at a height at least this large end a layer on them."""
+WORTH = 0.2
+"""Of a layer: stock that stands no higher over it isn't worth a pass in it."""
+RIM = 2.0
+"""Cells of the stock that walls keep high though everything beside them is cut."""
+
+
+def plane_drive_of(
+    operation: Operation,
+    space: SurfaceSpace,
+    stock: StockHeights,
+    progress: Progress,
+    process: ProcessTree | None = None,
+) -> PlaneDrive:
+    """Return the drive of a plane operation on a part of curved surfaces, in the cutting frame; `process` says what was cut before."""
+    if operation.kind == REST_LAND:
+        before = (
+            [o for o in process.operations if o.kind == LAND and not o.suppressed]
+            if process
+            else []
+        )
+        return land_drive(operation, space, before, float(stock.heights.max()))
+    if operation.kind == LAND:
+        return land_drive(operation, space, (), float(stock.heights.max()))
+    if operation.kind == "rough":
+        return _layers(operation, space, stock, progress)
+    if operation.kind == "profile_finish":
+        return _outline(operation, space)
+    raise Refused(
+        f"{operation.id}: parts of curved surfaces have no drive for plane operations of kind {operation.kind}"
+    )
+
+
+def left_on_walls(space: SurfaceSpace, allowance: float, cell: float) -> float:
+    """Return how thick, in mm and in the mean, layers with an allowance from a map with these cells (mm) leave material on upright walls.
+
+    Nowhere is it twice as thick.
+    """
+    return allowance + gap_beside_walls(
+        cell_over(*_mapped_box(space, cell), cell), _chord(allowance)
+    )
+
+
+def _chord(allowance: float) -> float:
+    """Return how far in mm the rims of layers with an allowance may be straightened."""
+    return max(STRAIGHT * allowance, LEAST_STRAIGHT)
+
+
+def _mapped_box(space: SurfaceSpace, cell: float) -> tuple[Floats, Floats]:
+    """Return the corners (3,) of the box that layers map the part over: the blank and two cells all round."""
+    margin = np.array([1.0, 1.0, 0.0]) * 2.0 * cell
+    return space.low - margin, space.high + margin
+
+
+def _layers(
+    operation: Operation, space: SurfaceSpace, stock: StockHeights, progress: Progress
+) -> PlaneDrive:
+    """Return layers down to the operation's bottom: what stands over each that the part, its allowance all round, doesn't need.
+
+    A layer that nothing stands over wants nothing.
+    """
+    allowance, bottom = number(operation, ALLOWANCE), number(operation, BOTTOM)
+    cell = number(operation, CELL)
+    low, high = _mapped_box(space, cell)
+    tall = HeightMap.of(space.skin.drop, low, high, cell, allowance, progress)
+    top, chord = float(stock.heights.max()), _chord(allowance)
+    blank, around = space.blank_area(), space.around()
+    outside = around.minus(
+        Region.rectangle(
+            *(tall.corner + cell),
+            *(tall.corner + tall.cell * (np.array(tall.height.shape) - 1) - cell),
+        )
+    )
+    levels = []
+    for above, z in pairwise([top, *_heights(space, top, bottom, operation.data.depth, allowance)]):
+        progress.check()
+        free = outside.union(tall.below(z, chord))
+        # Along walls the field keeps a strip of cells high that the cutter has been at: too narrow to be stock.
+        wanted = (
+            free.intersect(blank)
+            .intersect(_standing(stock, z, above))
+            .opened(0.5 * RIM * stock.cell)
+        )
+        levels.append(
+            DriveLevel(top=above, bottom=z, wanted=wanted, boundary=free if wanted else around)
+        )
+    return PlaneDrive(
+        feature=operation.feature,
+        kind=operation.kind,
+        levels=tuple(levels),
+        stock_top=top,
+        faces=operation.faces,
+    )
+
+
+def _heights(
+    space: SurfaceSpace, top: float, bottom: float, step: float, allowance: float
+) -> list[float]:
+    """Return the heights of layers from the top down, none thicker than a step: each level face ends one, its allowance kept."""
+    breaks = [
+        top,
+        *(
+            z + allowance
+            for z in level_faces(space)
+            if bottom + tolerance.SEW < z + allowance < top - tolerance.SEW
+        ),
+        bottom,
+    ]
+    found: list[float] = []
+    for high, low in pairwise(breaks):
+        count = max(1, int(np.ceil((high - low) / step - tolerance.COINCIDENT)))
+        found += [high + (low - high) * (n + 1) / count for n in range(count)]
+    return found
+
+
+def level_faces(space: SurfaceSpace) -> list[float]:
+    """Return the heights of level faces that look up, from the highest down; those that lie within a sliver are one."""
+    skin = space.skin
+    a, b, c = np.moveaxis(skin.points[skin.triangles], 1, 0)
+    normal = np.cross(b - a, c - a)
+    area = 0.5 * np.linalg.norm(normal, axis=1)
+    level = normal[:, 2] > 2.0 * area * np.cos(tolerance.ANGLE)
+    heights, areas = a[level, 2], area[level]
+    order = np.argsort(-heights, kind="stable")
+    heights, areas = heights[order], areas[order]
+    found = []
+    for group in np.split(
+        np.arange(len(heights)), np.flatnonzero(np.diff(heights) < -tolerance.SLIVER) + 1
+    ):
+        if len(group) and areas[group].sum() > LEVEL_AREA:
+            found.append(float(heights[group].max()))
+    return found
+
+
+def _standing(stock: StockHeights, z: float, above: float) -> Region:
+    """Return where the stock stands over a layer by more than is worth nothing; rims beside walls, which are never certain, left out."""
+    most = float(stock.heights.max())
+    higher = stock.heights > z + WORTH * (above - z)
+    if higher.all():
+        low, high = stock.corner, stock.corner + stock.cell * np.array(stock.heights.shape)
+        return Region.rectangle(*low, *high)
+    if not higher.any():
+        return EMPTY_REGION
+    # Each cell of the stock as a place of a grid: low where it stands high.
+    grid = np.pad(np.where(higher, most - 1.0, most + 1.0), 1, constant_values=most + 1.0)
+    found = region_below(grid, stock.corner - 0.5 * stock.cell, stock.cell, most, LEAST_STRAIGHT)
+    return found.opened(RIM * stock.cell)
+
+
+def _outline(operation: Operation, space: SurfaceSpace) -> PlaneDrive:
+    """Return the outline that the part's sections make from a bottom up, as walls from there to the highest of the operation's faces."""
+    rows = np.isin(space.skin.face, operation.faces)
+    z = space.skin.points[space.skin.triangles[rows], 2]
+    bottom, top, beside = float(z.min()), float(z.max()), tolerance.BESIDE_PLANE
+    highest = float(space.skin.points[:, 2].max())
+    heights = [
+        bottom + beside,
+        0.5 * (bottom + top),
+        top - beside,
+        *np.linspace(top, highest, 4)[1:-1],
+        highest - beside,
+    ]
+    sections = [
+        space.part.section(space.frame, h).holes_filled() for h in heights if bottom < h < highest
+    ]
+    outline = union_all([s for s in sections if s]).holes_filled()
+    around = space.around()
+    blank = space.blank_area()
+    level = DriveLevel(
+        top=top, bottom=bottom, wanted=blank.minus(outline), boundary=around.minus(outline)
+    )
+    walls = tuple(
+        WallGuide(
+            curve=piece.outer.reversed(), top=top, bottom=bottom, fillet=0.0, faces=operation.faces
+        )
+        for piece in outline.pieces
+    )
+    return PlaneDrive(
+        feature=operation.feature,
+        kind=operation.kind,
+        levels=(level,),
+        walls=walls,
+        stock_top=top,
+        faces=operation.faces,
+    )

@@ -1,0 +1,145 @@
+"""A control in word-address format: runs the lines of a text, and refuses with its line what it doesn't understand; nothing is skipped.
+
+The order of work inside a line: feed, spindle speed, tool, spindle and coolant, units and offsets, motion, end. On a machine with rotary
+axes the words are positions of its axes; what the tool does is reckoned from where the work stands.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from typing import ClassVar
+
+from trunnion.findings import BadInput
+from trunnion.model.motion.program import Program
+from trunnion.model.setup import Setup
+from trunnion.model.tool import AnyTool
+from trunnion.post.iso_words import IsoWords
+from trunnion.post.readers.sections import Sections, UprightPoses, operation_of
+from trunnion.post.readers.tools import check_tool, check_work_position
+from trunnion.post.readers.word_address.blocks import Block, split_line
+from trunnion.post.readers.word_address.joints import Joints
+from trunnion.post.readers.word_address.language import ControlLanguage, listed
+from trunnion.post.readers.word_address.modes import MEANINGS, Modes
+from trunnion.post.readers.word_address.moves import ToolMover
+from trunnion.post.readers.word_address.rotary import Rotary
+from trunnion.post.readers.word_address.state import ModalState
+from trunnion.shop.kinematics import WorkPosition
+
+
+class Control:
+    """The control of one text. What only one control does is in a class derived from this.
+
+    `modes_class` works off its codes; `brackets` says that comments stand in brackets too, beside those after a semicolon.
+    """
+
+    modes_class: ClassVar[type[Modes]] = Modes
+    brackets: ClassVar[bool] = True
+
+    def __init__(
+        self,
+        words: IsoWords,
+        tools: Mapping[int, AnyTool],
+        setup: Setup,
+        place: WorkPosition | None,
+    ) -> None:
+        if place is not None and not words.inverse_time:
+            raise BadInput(
+                f"setup {setup.name}: {words.title} has no words for the rotary axes of {place.machine.title}; "
+                "choose another control or machine"
+            )
+        self.place = place
+        self.language = ControlLanguage(words, place, (*MEANINGS, *self.modes_class.own))
+        sections = Sections(
+            UprightPoses(setup.clearance) if place is None else Joints(place, setup.clearance)
+        )
+        self.state = ModalState(tools=tools, setup=setup, sections=sections)
+        self.modes = self.modes_class(self.language, self.state)
+        self.moves = ToolMover(
+            self.language, self.state, Rotary(self.language.rotary, self.language.inverse)
+        )
+        self.last_n = -1.0
+        self.begun = self.ended = False
+
+    def read(self, text: str) -> Program:
+        """Return the motions of a text; raise `BadInput` naming the line of what isn't understood."""
+        for number, line in enumerate(text.split("\n"), 1):
+            self.read_line(number, line)
+        if not self.ended:
+            raise BadInput(
+                f"the program has no end ({listed(self.language.ends)}): is the text complete?"
+            )
+        setup = self.state.setup
+        return Program(name=setup.name, setup=setup, sections=self.state.sections.finished())
+
+    def read_line(self, number: int, line: str) -> None:
+        """Take the comments of a line, then do what its words say."""
+        block, comments = split_line(number, line, self.brackets)
+        for comment in comments:
+            self.remark(number, comment)
+        if block is not None:
+            self.run(block)
+
+    def remark(self, line: int, comment: str) -> None:
+        """Take a comment: those of operations and of our own header mean something."""
+        if (operation := operation_of(comment)) is not None:
+            self.state.sections.operation(operation)
+        elif comment.startswith("TOOL "):
+            check_tool(line, comment, self.state.tools)
+        elif comment.startswith("STANDS "):
+            check_work_position(line, comment, self.state.setup, self.place)
+
+    def run(self, block: Block) -> None:
+        """Do what one line says."""
+        words, codes, language = block.words, block.codes, self.language
+        self.begun = True
+        self.check(block)
+        if len(codes) > 1 or (codes and codes[0] not in language.motions):
+            self.modes.run(block)
+        else:
+            if not language.states.isdisjoint(words):
+                self.modes.speeds(block)
+            if codes:
+                self.state.motion, self.state.cycle = language.motions[codes[0]], None
+        if not language.moves.isdisjoint(words):
+            self.moves.move(block)
+        if codes and any(code in codes for code in language.ends):
+            self.ended = True
+
+    def check(self, block: Block) -> None:
+        """Refuse what can't be understood or stands in a wrong place."""
+        line, words, codes = block.line, block.words, block.codes
+        if self.ended:
+            raise BadInput(
+                f"line {line}: stands after the end of the program; remove it or the {self.language.ends[0]} before it"
+            )
+        for code in codes:
+            if code not in self.language.meanings:
+                raise BadInput(f"line {line}: {self.language.why_not(code)}")
+        self.check_words(line, words)
+        if len(codes) > 1:
+            self.language.refuse_two_of_a_group(line, codes)
+        if not self.language.takers.keys().isdisjoint(words) or len(codes) > 1:
+            self.language.refuse_stray_letters(block)
+        if codes:
+            self.language.refuse_lonely_codes(block)
+
+    def check_words(self, line: int, words: Mapping[str, float]) -> None:
+        """Refuse letters that no word of this program begins with, numbers out of range, and lines out of order."""
+        letters, ranges = self.language.letters, self.language.ranges
+        for letter, value in words.items():
+            if letter not in letters:
+                rotary = self.language.rotary
+                axes = f"a program for the axes XYZ{rotary}" if rotary else "a three-axis program"
+                raise BadInput(
+                    f"line {line}: the word {letter} is not understood by {axes}; remove it"
+                )
+            if letter in ranges:
+                ranges[letter].check(line, letter, value)
+        n = words.get("N")
+        if n is not None:
+            if n <= self.last_n:
+                raise BadInput(
+                    f"line {line}: N{n:.10g} comes after N{self.last_n:.10g}: lines are out of order; put them back or renumber "
+                    "them"
+                )
+            self.last_n = n

@@ -1,0 +1,1 @@
+"""Generalized pockets from the face graph: blends, rings of walls, tops, and the rules."""

@@ -1,0 +1,1 @@
+"""How far apart passes lie for a scallop height, in planes and over faces."""

@@ -1,0 +1,1 @@
+"""Passes of an upright tool: dropped on the skin, followed, linked."""

@@ -1,0 +1,140 @@
+"""Following a dropped cutter along lines in plan: where its tip goes, in as few straight moves as a chord error allows.
+
+All lines are worked on together. Places are put in between (halving) until every chord's middle is on the way and no chord climbs so
+differently from its neighbours that a kink could hide in it. Then those that aren't needed are taken out (Douglas and Peucker), which keeps
+kinks since they lie farthest from any chord.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+import numpy as np
+
+from trunnion import tolerance
+from trunnion.geometry.arrays import Bools, Floats, Ints
+from trunnion.geometry.kernels.cutter_contact.drop_cutter import RHO1, height_at
+from trunnion.geometry.surface.drop_surface import DropSurface
+from trunnion.progress import QUIET, Progress
+
+UNSEEN = 0.5
+"""Of the chord error: what stands up between two places of a way, too narrow to be seen from either, is at most so high."""
+WIDEST = 0.06
+"""Of the cutter's radius: places of a way are never farther apart, whatever would be seen; a wave could hide between them."""
+HALVINGS = 30
+SEEN, THINNED = 0.1, 0.3
+"""Shares of the chord error: how far a middle may be from its chord, and how far a place that is taken out."""
+
+
+def follow(
+    drop: DropSurface,
+    pieces: Floats,
+    curves: Sequence[Floats],
+    chord: float,
+    lowest: float,
+    progress: Progress = QUIET,
+) -> list[Floats]:
+    """Return the tips (n, 3) of a cutter that follows each plan polyline (k, 2), as high as `DropSurface.drop` puts them.
+
+    Between two tips lies a straight move that leaves the cutter's way by at most `chord` mm; the ends and every kink of the way stay.
+    Where nothing is under the cutter its tip is at `lowest`.
+    """
+    if not len(curves):
+        return []
+    places, line = _spaced(curves, 2.0 * _sight(pieces, chord))
+    tips = np.column_stack([places, drop.drop(places, pieces, lowest, progress.part(0.0, 0.3))])
+    is_open = np.append(line[1:] == line[:-1], False)
+    for k in range(HALVINGS):
+        rows = np.flatnonzero(is_open)
+        if not len(rows):
+            break
+        middles = 0.5 * (tips[rows, :2] + tips[rows + 1, :2])
+        share = progress.part(1.0 - 0.7 * 0.5**k, 1.0 - 0.7 * 0.5 ** (k + 1))
+        found = np.column_stack([middles, drop.drop(middles, pieces, lowest, share)])
+        is_open[rows] = beside(found, tips[rows], tips[rows + 1]) > SEEN * chord
+        tips, line = np.insert(tips, rows + 1, found, axis=0), np.insert(line, rows + 1, line[rows])
+        is_open = np.insert(is_open, rows + 1, is_open[rows])
+        is_open |= _bent(tips, line, chord)
+        is_open[:-1] &= (line[1:] == line[:-1]) & (
+            np.hypot(*np.diff(tips[:, :2], axis=0).T) > chord
+        )
+    progress.check()
+    kept = thinned(tips, line, THINNED * chord)
+    return np.split(tips[kept], np.flatnonzero(np.diff(line[kept])) + 1)
+
+
+def thinned(points: Floats, line: Ints, chord: float) -> Bools:
+    """Say which points (n, 3) of lines, numbered (n,) in ascending order, are needed so that none is farther than `chord` from its line.
+
+    The first and last point of each line are.
+    """
+    n = len(points)
+    kept = np.ones(n, dtype=bool)
+    kept[1:-1] = (line[1:-1] != line[:-2]) | (line[1:-1] != line[2:])
+    rows = np.flatnonzero(~kept)
+    while len(rows):
+        ends = np.flatnonzero(kept)
+        after = np.searchsorted(ends, rows)
+        off = beside(points[rows], points[ends[after - 1]], points[ends[after]])
+        first = np.flatnonzero(np.diff(after, prepend=-1))
+        most = np.maximum.reduceat(off, first)
+        owner = np.repeat(np.arange(len(first)), np.diff(np.append(first, len(rows))))
+        too_far = most > chord
+        farthest = np.flatnonzero((off == most[owner]) & too_far[owner])
+        farthest = farthest[np.diff(owner[farthest], prepend=-1) != 0]
+        kept[rows[farthest]] = True
+        rows = rows[too_far[owner] & ~kept[rows]]
+    return kept
+
+
+def beside(points: Floats, start: Floats, end: Floats) -> Floats:
+    """Return how far points (n, 3) are from the straight ways (n, 3) from a start to an end."""
+    way, to = end - start, points - start
+    square = (way * way).sum(axis=1)
+    share = np.clip(
+        np.divide((to * way).sum(axis=1), square, out=np.zeros(len(way)), where=square > 0.0),
+        0.0,
+        1.0,
+    )
+    off: Floats = np.linalg.norm(to - share[:, None] * way, axis=1)
+    return off
+
+
+def _bent(tips: Floats, line: Ints, chord: float) -> Bools:
+    """Say of each tip (n,) whether the chord from it to the next climbs so differently from its neighbours that a kink may hide in it."""
+    way = np.diff(tips, axis=0)
+    level = np.hypot(way[:, 0], way[:, 1])
+    turn = np.abs(np.diff(np.arctan2(way[:, 2], level)))
+    turn[line[2:] != line[:-2]] = 0.0
+    length = np.hypot(level, way[:, 2])
+    hidden = 0.25 * length * np.maximum(np.append(turn, 0.0), np.insert(turn, 0, 0.0))
+    return np.append(hidden > SEEN * chord, False)
+
+
+def _sight(pieces: Floats, chord: float) -> float:
+    """Return how far apart places may be so that nothing higher than `UNSEEN` chords hides between them: as wide as the cutter is there."""
+    radius = float(pieces[-1, RHO1])
+    low, high = 0.0, radius
+    for _ in range(HALVINGS):
+        middle = 0.5 * (low + high)
+        low, high = (
+            (middle, high)
+            if height_at(pieces, np.array([middle]))[0] < UNSEEN * chord
+            else (low, middle)
+        )
+    return min(max(2.0 * low, tolerance.SHORT_MOVE), WIDEST * radius)
+
+
+def _spaced(curves: Sequence[Floats], step: float) -> tuple[Floats, Ints]:
+    """Return points (n, 2) of all polylines, their own ones and others between no farther than `step` apart, and which line (n,) each is
+    on."""
+    line = np.repeat(np.arange(len(curves)), [len(c) for c in curves])
+    points = np.concatenate([np.asarray(c, dtype=np.float64) for c in curves])
+    inside = np.append(line[1:] == line[:-1], False)
+    way = np.vstack([np.diff(points, axis=0), np.zeros((1, 2))])
+    count = np.where(
+        inside, np.maximum(np.ceil(np.hypot(way[:, 0], way[:, 1]) / step), 1.0), 1.0
+    ).astype(np.int64)
+    rows = np.repeat(np.arange(len(points)), count)
+    share = (np.arange(len(rows)) - np.repeat(np.cumsum(count) - count, count)) / count[rows]
+    return points[rows] + share[:, None] * np.where(inside[rows, None], way[rows], 0.0), line[rows]

@@ -1,0 +1,55 @@
+"""From passes of an upright tool to what its strategy returns: linked at the scallop's stepover, with findings on what they leave."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from typing import Protocol
+
+from trunnion.model.operation import CuttingData
+from trunnion.model.setup import Setup
+from trunnion.model.tool import Tool
+from trunnion.plan.freeform.drive import SurfaceDrive
+from trunnion.plan.freeform.estimate.scallop import stepover_on_plane
+from trunnion.progress import Progress
+from trunnion.toolpath.contact_passes.linking import LinkParameters, linked
+from trunnion.toolpath.contact_passes.passes import Pass
+from trunnion.toolpath.contact_passes.upright.fixed_axis import UprightPasses
+from trunnion.toolpath.contract import Planned
+from trunnion.toolpath.stock.heightfield import PlanningStock
+
+
+class LinkSettings(Protocol):
+    """Settings of a strategy that links passes: `safety` and `lead_radius` in mm, as `LinkParameters` has them."""
+
+    @property
+    def safety(self) -> float: ...
+
+    @property
+    def lead_radius(self) -> float: ...
+
+
+def upright_path(
+    passes: Sequence[Pass],
+    made: UprightPasses,
+    drive: SurfaceDrive,
+    tool: Tool,
+    data: CuttingData,
+    stock: PlanningStock,
+    setup: Setup,
+    settings: LinkSettings,
+    progress: Progress,
+    *,
+    order: str = "given",
+    reversing: bool = False,
+) -> Planned:
+    """Return the motions over `passes`, those that were `made` in the order that a strategy wants, and findings on what these leave."""
+    stepover = stepover_on_plane(tool.corner_radius, drive.height)
+    parameters = LinkParameters(
+        stepover=stepover,
+        safety=settings.safety,
+        lead_radius=settings.lead_radius,
+        order=order,
+        reversing=reversing,
+    )
+    path = linked(passes, drive, tool, data, stock, setup, parameters, progress)
+    return Planned(path=path, findings=made.left(drive, tool, stepover))

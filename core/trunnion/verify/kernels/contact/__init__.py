@@ -1,0 +1,1 @@
+"""Compiled contact of tools with faces and triangles, and the search for free poses."""

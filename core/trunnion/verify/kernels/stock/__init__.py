@@ -1,0 +1,1 @@
+"""Compiled stock: material removal, engagement, and the mesh of what remains."""

@@ -1,0 +1,235 @@
+"""The route of parts of curved surfaces: every face is planned or told of, local features have their own cutter, sides are found."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import cadquery as cq
+import pytest
+from lxml import etree
+
+from samples import written
+from trunnion.findings import BadInput
+from trunnion.geometry.cut import plane_cut
+from trunnion.pipeline import Engine
+from trunnion.pipeline.planning.patches import with_cut
+from trunnion.plan.freeform.cutters.choice import named
+from trunnion.plan.freeform.keys import ALLOWANCE, SCALLOP
+from trunnion.shop import load_shop
+from trunnion.store.process import process_xml
+
+CURVED = {"recognize.family": "surface"}
+
+
+def routed(shape, **words):
+    engine = Engine()
+    session = engine.open(written(shape))
+    return engine.run(engine.with_choices(session, {**CURVED, **words}), "route")
+
+
+def hilly():
+    """Return a block with a wide, gentle hill and a small dome on it."""
+    hill = (
+        cq.Workplane("XY")
+        .sphere(60)
+        .translate((30, 20, -48))
+        .intersect(cq.Workplane("XY").box(60, 40, 40, centered=False))
+    )
+    dome = cq.Workplane("XY").sphere(4).translate((20, 20, 10.5))
+    return cq.Workplane("XY").box(60, 40, 8, centered=False).union(hill).union(dome).val().wrapped
+
+
+@pytest.fixture(scope="module")
+def session():
+    return routed(hilly())
+
+
+def planned(process):
+    return {tag for o in process.operations for tag in o.faces}
+
+
+def test_every_face_is_planned_or_lies_in_the_blank(session):
+    tags = {tag for f in session.recognition for tag in f.tags}
+    told = {
+        int(w.removeprefix("face "))
+        for f in session.process.findings
+        if f.code == "route.not-planned"
+        for w in f.where
+    }
+    assert len(tags - planned(session.process) - told) == 1
+    assert not told
+
+
+def test_layers_come_first_and_finishing_last(session):
+    kinds = [o.kind for o in session.process.operations]
+    assert kinds[0] == "rough"
+    assert kinds.index("profile_finish") < kinds.index("finish")
+    for o in session.process.operations:
+        done = {b.id for b in session.process.operations[: session.process.operations.index(o)]}
+        assert set(o.after) <= done
+
+
+def test_a_local_feature_has_a_cutter_and_operations_of_its_own(session):
+    by_id = {o.id: o for o in session.process.operations}
+    dome = next(f for f in session.recognition if f.attributes["local"])
+    assert set(by_id["finish-local-01"].faces) <= set(dome.tags)
+    assert by_id["finish-remaining"].tool.diameter > by_id["finish-local-01"].tool.diameter or (
+        by_id["finish-remaining"].tool.name == by_id["finish-local-01"].tool.name
+    )
+
+
+def test_finishing_leaves_the_wanted_scallop_and_semi_finishing_its_allowance(session):
+    for o in session.process.operations:
+        if o.kind == "finish":
+            assert (o.choices[SCALLOP], o.choices[ALLOWANCE]) == (0.004, 0.0)
+        if o.kind == "semi":
+            assert (o.choices[SCALLOP], o.choices[ALLOWANCE]) == (0.05, 0.1)
+
+
+def test_tools_are_numbered_in_the_order_of_use(session):
+    numbers = [o.tool.number for o in session.process.operations]
+    assert numbers == sorted(numbers) or [
+        n for k, n in enumerate(numbers) if n not in numbers[:k]
+    ] == sorted(set(numbers))
+
+
+def test_a_person_may_name_the_cutters():
+    chosen = routed(hilly(), **{"surface.cutter": "AL2-ball D10 R5", "surface.ra": 3.2})
+    finish = chosen.process.operation("finish-remaining")
+    assert finish.tool.name == "AL2-ball D10 R5"
+    assert finish.choices[SCALLOP] == pytest.approx(0.008)
+
+
+def test_a_cutter_that_is_not_there_is_named_with_those_it_is_nearest_to():
+    with pytest.raises(
+        BadInput, match="no cutter al2-ball d6 r5 in the catalogue; .*AL2-ball D6 R3"
+    ):
+        named(load_shop(), "al2-ball d6 r5")
+
+
+def test_semi_finishing_that_leaves_more_than_roughing_is_refused():
+    with pytest.raises(
+        BadInput, match=r"surface.semi_allowance.* 0.5 mm, .*surface.rough_allowance"
+    ):
+        routed(hilly(), **{"surface.semi_allowance": 0.5})
+
+
+def test_patches_that_enclose_nothing_are_segmented_but_not_planned():
+    engine = Engine()
+    sheet = cq.Face.makeSplineApprox(
+        [[cq.Vector(x, y, 0.02 * x * y) for y in range(0, 30, 5)] for x in range(0, 30, 5)]
+    )
+    found = engine.run(
+        engine.with_choices(engine.open(written(sheet.wrapped)), CURVED), "recognize"
+    )
+    assert [f.kind for f in found.recognition] == ["group"]
+    with pytest.raises(
+        BadInput,
+        match="nothing can be planned for faces that enclose no material.*; found before: the part is not closed",
+    ):
+        engine.run(found, "route")
+
+
+def spool():
+    """Return a post between two plates: what lies between them is hidden from above."""
+    plate = cq.Workplane("XY").box(30, 30, 6)
+    return (
+        plate.translate((0, 0, 3))
+        .union(cq.Workplane("XY").circle(6).extrude(30))
+        .union(plate.translate((0, 0, 29)))
+        .val()
+        .wrapped
+    )
+
+
+def test_without_rotary_axes_what_is_hidden_is_told_of_with_a_remedy():
+    process = routed(spool()).process
+    (told,) = [f for f in process.findings if f.code == "route.not-planned"]
+    assert len(told.where) == 3
+    assert "rotary axes" in told.remedy
+    assert all(o.direction == (0.0, 0.0, 1.0) for o in process.operations)
+
+
+def test_with_rotary_axes_it_is_roughed_from_two_sides_and_finished_leaning():
+    process = routed(spool(), **{"setup.machine": "Trunnion 650"}).process
+    sides = [o for o in process.operations if o.direction != (0.0, 0.0, 1.0)]
+    assert {round(o.direction[2], 9) for o in sides} == {0.0}
+    first, second = {o.direction for o in sides}
+    assert first == pytest.approx(tuple(-v for v in second))
+    leaning = [
+        o for o in process.operations if o.strategy == "surface.point" and o.kind == "finish"
+    ]
+    assert sorted(len(o.faces) for o in leaning) == [1, 1, 1]
+    assert not [f for f in process.findings if f.code == "route.not-planned"]
+
+
+def test_an_operations_direction_is_in_the_xml_where_it_is_not_the_setups_z(session):
+    process = session.process
+    tilted = replace(process.operations[0], direction=(0.6, 0.0, 0.8))
+    root = etree.fromstring(process_xml(process.with_operation(tilted), session.part))
+    first, second = root.findall("operation")[:2]
+    assert dict(first.find("direction").attrib) == {"x": "0.6", "y": "0.0", "z": "0.8"}
+    assert second.find("direction") is None
+
+
+@pytest.fixture(scope="module")
+def speckled():
+    """The hilly block with a patch of 0.3 mm cut out of its hill, which joins no group."""
+    engine = Engine()
+    session = engine.with_choices(engine.open(written(hilly())), CURVED)
+    hill = max(
+        (t for t in engine.context_of(session).part.tags),
+        key=lambda t: _round_area(engine, session, t),
+    )
+    session = with_cut(engine, session, plane_cut(hill, (34.0, 0.0, 0.0), (1.0, 0.0, 0.0)))
+    for point, normal in (
+        ((34.3, 0.0, 0.0), (1.0, 0.0, 0.0)),
+        ((0.0, 22.3, 0.0), (0.0, 1.0, 0.0)),
+        ((0.0, 22.0, 0.0), (0.0, 1.0, 0.0)),
+    ):
+        graph = engine.context_of(session).part.graph()
+        face = next(
+            t
+            for t in engine.context_of(session).part.tags
+            if graph.surface[t - 1] == "sphere" and _holds(graph, t, (34.15, 22.15))
+        )
+        session = with_cut(engine, session, plane_cut(face, point, normal))
+    return engine.run(session, "route"), engine
+
+
+def _round_area(engine, session, tag):
+    graph = engine.context_of(session).part.graph()
+    return graph.area[tag - 1] if graph.surface[tag - 1] == "sphere" else 0.0
+
+
+def _holds(graph, tag, at):
+    return (
+        all(graph.box_low[tag - 1][k] <= at[k] <= graph.box_high[tag - 1][k] for k in (0, 1))
+        and graph.box_high[tag - 1][2] > 9.0
+    )
+
+
+def test_a_speck_on_a_curved_face_joins_no_group_and_is_told(speckled):
+    session, _ = speckled
+    (speck,) = session.recognition.unexplained
+    told = next(f for f in session.findings() if f.code == "surface.small")
+    assert told.where == (f"face {speck}",)
+    assert "0.42" in told.text and "0.5 mm" in told.text and "mm2" in told.text
+
+
+def test_a_speck_is_finished_with_the_area_around_it(speckled):
+    session, engine = speckled
+    (speck,) = session.recognition.unexplained
+    graph = engine.context_of(session).part.graph()
+    around = {row + 1 for row in graph.neighbours(speck - 1)}
+    mine = [o for o in session.process.operations if speck in o.faces]
+    assert {"semi", "finish"} <= {o.kind for o in mine}
+    assert all(around & set(o.faces) for o in mine)
+    assert not [f for f in session.process.findings if f.code == "route.not-planned"]
+
+
+def test_a_group_that_a_person_deleted_is_not_cut(speckled):
+    session, engine = speckled
+    gone = next(f for f in session.recognition if f.attributes.get("local"))
+    after = engine.run(replace(session, recognition=session.recognition.without(gone.id)), "route")
+    assert not set(gone.tags) & planned(after.process)

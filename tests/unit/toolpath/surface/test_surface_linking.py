@@ -1,0 +1,161 @@
+"""From passes to toolpaths: leads that touch, ways that stay down or go over, and an order that saves air."""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+import pytest
+
+from surface_drives import DATA, driven, grid
+from trunnion.model.motion.toolpath import Mark, Motion
+from trunnion.plan.freeform.cutters.cutter import lower_side
+from trunnion.toolpath.contact_passes.linking import LinkParameters, linked
+from trunnion.toolpath.contact_passes.passes import UPRIGHT, Pass
+from verify_tools import bull
+
+BALL = bull(6.0, 3.0)()
+MANNER = LinkParameters(stepover=0.5, lead_radius=1.0)
+
+
+def straight(start, end, axis=UPRIGHT, normal=UPRIGHT, closed=False):
+    tips = np.array([start, end], dtype=float)
+    return Pass(tip=tips, axis=np.tile(axis, (2, 1)), normal=np.tile(normal, (2, 1)), closed=closed)
+
+
+def level_drive():
+    return driven(grid(lambda x, y: 0.0 * x, n=4))
+
+
+def made(passes, manner=MANNER, drive=None):
+    drive, setup, stock = drive or level_drive()
+    return linked(passes, drive, BALL, DATA, stock, setup, manner), drive, setup
+
+
+def test_a_path_begins_and_ends_at_clearance_and_comes_in_on_a_quarter_circle() -> None:
+    path, _, setup = made([straight((5, 10, 0), (25, 10, 0))])
+    assert path.position[0] == pytest.approx([4.0, 10.0, setup.clearance])
+    assert path.motion[[0, -1]].tolist() == [Motion.RAPID] * 2
+    assert path.position[-1] == pytest.approx([26.0, 10.0, setup.clearance])
+    leads = path.position[path.mark == Mark.LEAD]
+    ahead = leads[:15]
+    # A circle of 1 mm about (5, 10, 1) that ends level, at the pass.
+    assert np.hypot(ahead[:, 0] - 5.0, ahead[:, 2] - 1.0) == pytest.approx(np.ones(len(ahead)))
+    cut = path.position[path.mark == Mark.CUT]
+    assert cut[-1] == pytest.approx([25.0, 10.0, 0.0])
+
+
+def test_a_pass_that_begins_nearby_is_reached_over_the_surface() -> None:
+    path, *_ = made([straight((5, 10, 0), (25, 10, 0)), straight((25, 10.5, 0), (5, 10.5, 0))])
+    assert (path.motion == Motion.RAPID).sum() == 3
+    assert path.position[path.mark == Mark.LINK][:, 2].max() == pytest.approx(0.0)
+
+
+def test_a_far_pass_is_reached_above_the_stock() -> None:
+    path, drive, _ = made([straight((5, 5, 0), (25, 5, 0)), straight((5, 20, 0), (25, 20, 0))])
+    over = path.position[1:-1][path.motion[1:-1] == Motion.RAPID]
+    assert over[:, 2].min() == pytest.approx(drive.high[2] + MANNER.safety)
+
+
+def test_a_link_over_a_ridge_is_lifted_and_one_over_a_dip_is_not_lowered() -> None:
+    ridge = driven(grid(lambda x, y: np.maximum(0.0, 1.0 - np.abs(y - 15.0)), n=60))
+    wide = LinkParameters(stepover=3.0)
+    path, drive, _ = made(
+        [straight((5, 11, 0), (15, 11, 0)), straight((15, 19, 0), (5, 19, 0))], wide, ridge
+    )
+    way = path.position[path.mark == Mark.LINK]
+    floor = drive.skin.drop.drop(way[:, :2], lower_side(BALL), -9.0)
+    assert way[:, 2].max() == pytest.approx(1.0, abs=1e-2) and (way[:, 2] >= floor - 1e-9).all()
+    dip = driven(grid(lambda x, y: -2.0 * np.exp(-0.5 * (y - 15.0) ** 2), n=60))
+    path, *_ = made(
+        [straight((5, 11, 0), (15, 11, 0)), straight((15, 19, 0), (5, 19, 0))], wide, dip
+    )
+    assert path.position[path.mark == Mark.LINK][:, 2].min() == pytest.approx(0.0, abs=0.01)
+
+
+def test_leads_never_come_below_the_dropped_cutter() -> None:
+    drive = driven(grid(lambda x, y: 0.05 * (x - 15.0) ** 2))
+    x = np.linspace(8.0, 22.0, 40)
+    tip = np.column_stack(
+        [
+            x,
+            np.full(40, 15.0),
+            drive[0].skin.drop.drop(
+                np.column_stack([x, np.full(40, 15.0)]), lower_side(BALL), -9.0
+            ),
+        ]
+    )
+    path, drive, _ = made(
+        [Pass(tip=tip, axis=np.tile(UPRIGHT, (40, 1)), normal=np.tile(UPRIGHT, (40, 1)))],
+        LinkParameters(stepover=1.0, lead_radius=5.0),
+        drive,
+    )
+    leads = path.position[path.mark == Mark.LEAD]
+    assert (leads[:, 2] >= drive.skin.drop.drop(leads[:, :2], lower_side(BALL), -9.0) - 1e-9).all()
+
+
+def test_nearest_passes_come_first_and_may_be_turned_round() -> None:
+    passes = [
+        straight((0, 0, 0), (10, 0, 0)),
+        straight((0, 2, 0), (10, 2, 0)),
+        straight((0, 0.5, 0), (10, 0.5, 0)),
+    ]
+    path, *_ = made(passes, LinkParameters(stepover=0.5, order="nearest", reversing=True))
+    ends = path.position[path.mark == Mark.CUT]
+    # A pass's first tip is the end of the way to it.
+    assert ends[:, :2].tolist() == [[10.0, 0.0], [0.0, 0.5], [10.0, 2.0]]
+
+
+def test_a_closed_pass_begins_where_it_is_nearest_to_the_one_before() -> None:
+    turn = np.linspace(0.0, 2 * math.pi, 41)
+    circle = np.column_stack([15 + 5 * np.cos(turn), 15 + 5 * np.sin(turn), 0 * turn])
+    loop = Pass(
+        tip=circle, axis=np.tile(UPRIGHT, (41, 1)), normal=np.tile(UPRIGHT, (41, 1)), closed=True
+    )
+    path, *_ = made([straight((2, 15, 0), (9.5, 15, 0)), loop])
+    cuts = path.position[path.mark == Mark.CUT]
+    assert cuts[-1] == pytest.approx([10.0, 15.0, 0.0], abs=1e-6)
+
+
+def test_a_leaning_tool_leaves_along_its_axis_and_turns_only_at_clearance() -> None:
+    lean = math.radians(30.0)
+    one = np.array([math.sin(lean), 0.0, math.cos(lean)])
+    passes = [
+        straight((5, 5, 0), (25, 5, 0), axis=one),
+        straight((25, 20, 0), (5, 20, 0), axis=one * [-1, 1, 1]),
+    ]
+    path, _, setup = made(passes)
+    turns = np.flatnonzero(np.abs(np.diff(path.axis, axis=0)).max(axis=1) > 1e-9) + 1
+    assert len(turns) == 1 and path.motion[turns[0]] == Motion.RAPID
+    assert path.position[turns[0] - 1 : turns[0] + 1, 2].min() >= setup.clearance
+    # The first lead-out ends 1 mm ahead and above; from there straight along the axis.
+    off = path.position[turns[0] - 1] - [26.0, 5.0, 1.0]
+    assert off / np.linalg.norm(off) == pytest.approx(one)
+
+
+def test_a_tool_that_lies_flat_leaves_past_the_side_of_the_blank_and_turns_upright_above() -> None:
+    flat = np.array([1.0, 0.0, 0.0])
+    path, drive, setup = made(
+        [straight((20, 5, 10), (20, 25, 10), axis=flat), straight((22, 25, 10), (22, 5, 10))]
+    )
+    lying = path.axis[:, 0] > 0.5
+    rising = lying & (path.position[:, 2] > 12.0)
+    assert (path.position[rising, 0] > drive.high[0] + BALL.holder.radius).all()
+    assert path.position[lying][-1, 2] >= setup.clearance
+
+
+def test_a_pass_that_begins_by_turning_about_its_tip_has_leads_along_its_way() -> None:
+    turning = straight((5, 10, 0), (25, 10, 0))
+    standing = Pass(
+        tip=np.vstack([turning.tip[:1], turning.tip]),
+        axis=np.tile(UPRIGHT, (3, 1)),
+        normal=np.tile(UPRIGHT, (3, 1)),
+    )
+    assert made([standing])[0].position[0] == pytest.approx(made([turning])[0].position[0])
+    # One that only turns is come to and left along its axis.
+    spot = Pass(
+        tip=np.tile(turning.tip[:1], (2, 1)),
+        axis=np.tile(UPRIGHT, (2, 1)),
+        normal=np.tile(UPRIGHT, (2, 1)),
+    )
+    assert made([spot])[0].position[0, :2] == pytest.approx([5.0, 10.0])

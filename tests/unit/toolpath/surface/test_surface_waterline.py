@@ -1,0 +1,211 @@
+"""Waterlines: level passes round walls and slopes, on the free side, as far apart as the scallop allows."""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+import pytest
+
+from surface_drives import DATA, driven, grid, joined
+from trunnion.findings import Refused
+from trunnion.geometry.sheet.skin import Skin
+from trunnion.model.motion.toolpath import Mark, Motion
+from trunnion.plan.freeform.cutters.cutter import lower_side
+from trunnion.progress import QUIET
+from trunnion.toolpath.surface.waterline import WaterlineSettings, waterline
+from verify_tools import bull, flat
+
+FLAT, BALL = flat(10.0)(flute=20.0), bull(6.0, 3.0)()
+
+
+def round_wall(radius, foot, top, n=90, lean=0.0, tag=1):
+    """Return the skin of a round boss about (15, 15), its wall leaning in by an angle (radians), with a top of tag + 1."""
+    turn = np.linspace(0.0, 2 * math.pi, n, endpoint=False)
+    rows, width = [], [radius, radius - (top - foot) * math.tan(lean)]
+    for z, r in zip((foot, top), width, strict=True):
+        rows.append(
+            np.column_stack([15.0 + r * np.cos(turn), 15.0 + r * np.sin(turn), np.full(n, z)])
+        )
+    points = np.vstack([*rows, rows[1], [[15.0, 15.0, top]]])
+    out = np.column_stack(
+        [math.cos(lean) * np.cos(turn), math.cos(lean) * np.sin(turn), np.full(n, math.sin(lean))]
+    )
+    normals = np.vstack([out, out, np.tile([0.0, 0.0, 1.0], (n + 1, 1))])
+    a, b = np.arange(n), (np.arange(n) + 1) % n
+    triangles = np.vstack(
+        [
+            np.column_stack([a, b, b + n]),
+            np.column_stack([a, b + n, a + n]),
+            np.column_stack([2 * n + a, 2 * n + b, np.full(n, 3 * n)]),
+        ]
+    )
+    return Skin(
+        points=points,
+        normals=normals,
+        triangles=triangles,
+        face=np.repeat([tag, tag + 1], [2 * n, n]),
+        bound=0.0,
+    )
+
+
+def planned(skin, tool, faces=(1,), allowance=0.0, height=0.01, **chosen):
+    drive, setup, stock = driven(skin, faces=faces, allowance=allowance, height=height)
+    return waterline(drive, tool, DATA, stock, setup, WaterlineSettings(**chosen), QUIET), drive
+
+
+def cut_tips(path):
+    return path.position[path.mark == Mark.CUT]
+
+
+def test_an_upright_wall_is_cut_once_at_its_foot_with_the_flank() -> None:
+    made, _ = planned(round_wall(8.0, 0.0, 10.0), FLAT, chord=0.005)
+    tips = cut_tips(made.path)
+    assert np.unique(tips[:, 2]).tolist() == [0.0]
+    away = np.hypot(tips[:, 0] - 15.0, tips[:, 1] - 15.0)
+    # A polygon of 90 sides lies inside its circle by 8 (1 - cos 2 deg), 5 um.
+    assert away.min() > 12.99 and away.max() < 13.0 + 1e-4
+
+
+def test_a_ball_goes_down_an_upright_wall_to_the_floor_it_stands_on() -> None:
+    skin = joined(round_wall(8.0, 0.0, 10.0), grid(lambda x, y: 0.0 * x, tag=3))
+    levels = np.unique(
+        cut_tips(planned(skin, bull(6.0, 3.0)(flute=8.0), chord=0.005)[0].path)[:, 2].round(4)
+    )
+    assert levels[0] == pytest.approx(0.0, abs=1e-3)
+
+
+def test_the_flank_above_a_ball_leaves_no_band_of_an_upright_wall() -> None:
+    ball = bull(6.0, 3.0)(flute=8.0)
+    skin = joined(round_wall(8.0, 0.0, 17.0), grid(lambda x, y: 0.0 * x, tag=3))
+    levels = np.unique(cut_tips(planned(skin, ball, chord=0.005)[0].path)[:, 2].round(4))
+    # Up to the end of the ball the flank does not touch yet, and above the flutes it no longer cuts.
+    assert np.diff(levels).max() <= ball.flute_length - ball.corner_radius
+    assert levels[-1] + ball.flute_length >= 17.0
+
+
+def test_the_wall_is_on_the_right_of_the_feed() -> None:
+    tips = cut_tips(planned(round_wall(8.0, 0.0, 10.0), FLAT, chord=0.005)[0].path)[:, :2] - 15.0
+    turn = tips[:-1, 0] * tips[1:, 1] - tips[:-1, 1] * tips[1:, 0]
+    assert (turn < 0.0).mean() > 0.99
+
+
+def test_levels_on_a_slope_are_one_stepover_apart() -> None:
+    lean = math.radians(30.0)
+    made, _ = planned(round_wall(9.0, 0.0, 5.0, lean=lean), BALL, chord=0.01)
+    levels = np.unique(cut_tips(made.path)[:, 2].round(6))
+    # Where a wall bends, levels are laid for a twentieth less.
+    across = 2.0 * math.sqrt(2.0 * 3.0 * 0.0095 - 0.0095**2) * math.cos(lean)
+    assert np.diff(levels).max() == pytest.approx(across, rel=1e-2)
+
+
+def test_a_flat_end_leaves_steps_as_high_as_wanted() -> None:
+    lean = math.radians(20.0)
+    made, _ = planned(round_wall(9.0, 0.0, 4.0, lean=lean), FLAT, height=0.05, chord=0.01)
+    levels = np.unique(cut_tips(made.path)[:, 2].round(6))
+    assert np.diff(levels).max() == pytest.approx(0.05 / math.sin(lean), rel=1e-3)
+
+
+def test_nothing_is_gouged_and_the_tips_touch() -> None:
+    made, drive = planned(round_wall(9.0, 0.0, 5.0, lean=math.radians(30.0)), BALL, height=0.05)
+    tips = cut_tips(made.path)
+    over = tips[:, 2] - drive.skin.drop.drop(tips[:, :2], lower_side(BALL), -9.0)
+    # Tips are on the free side; the end of an overlap lies on a chord.
+    assert np.sort(over)[len(over) // 50] > -2e-6 and over.min() > -0.0005 and over.max() < 2e-3
+    moves = made.path.position[made.path.motion != Motion.RAPID]
+    assert (moves[:, 2] - drive.skin.drop.drop(moves[:, :2], lower_side(BALL), -9.0)).min() > -1e-3
+
+
+@pytest.mark.parametrize(
+    ("skin", "tool"),
+    [
+        (round_wall(9.0, 0.0, 5.0, lean=math.radians(30.0)), BALL),
+        (round_wall(8.0, 0.0, 10.0), FLAT),
+        (round_wall(8.0, 0.0, 5.0, n=7), BALL),
+        (grid(lambda x, y: 4.0 * np.sin(0.4 * x) * np.cos(0.3 * y)), BALL),
+    ],
+)
+def test_no_chord_leaves_the_rim_of_what_is_blocked_by_more_than_the_chord_error(
+    skin, tool
+) -> None:
+    chord = 0.002
+    made, drive = planned(skin, tool, step=1.0, chord=chord)
+    tips, cut = made.path.position, made.path.mark == Mark.CUT
+    rows = np.flatnonzero(cut[1:] & cut[:-1] & (np.hypot(*np.diff(tips[:, :2], axis=0).T) > 0.01))
+    start, way = tips[rows], np.diff(tips, axis=0)[rows]
+    left = np.column_stack([-way[:, 1], way[:, 0]]) / np.hypot(way[:, 0], way[:, 1])[:, None]
+    for share in (0.2, 0.5, 0.8):
+        place = start + share * way
+        over = [
+            drive.skin.drop.drop(place[:, :2] + side * chord * left, lower_side(tool), -9.0)
+            - place[:, 2]
+            for side in (-1.0, 1.0)
+        ]
+        assert (over[1] <= 1e-9).all() and (over[0] > -1e-9).all()
+
+
+def test_an_allowance_keeps_the_cutter_off_the_wall() -> None:
+    tips = cut_tips(planned(round_wall(8.0, 0.0, 10.0), FLAT, allowance=0.5, chord=0.005)[0].path)
+    assert np.hypot(tips[:, 0] - 15.0, tips[:, 1] - 15.0).max() == pytest.approx(13.5, abs=1e-3)
+
+
+def test_a_set_step_is_kept() -> None:
+    levels = np.unique(
+        cut_tips(planned(round_wall(8.0, 0.0, 10.0), FLAT, step=2.5, chord=0.01)[0].path)[
+            :, 2
+        ].round(6)
+    )
+    assert levels.tolist() == [0.0, 2.5, 5.0, 7.5]
+
+
+def test_levels_are_cut_downwards() -> None:
+    heights = cut_tips(planned(round_wall(8.0, 0.0, 10.0), FLAT, step=2.5, chord=0.01)[0].path)[
+        :, 2
+    ]
+    assert (np.diff(heights) <= 1e-9).all()
+
+
+def test_what_is_shallow_is_left_and_said() -> None:
+    made, _ = planned(round_wall(8.0, 0.0, 10.0), FLAT, faces=(1, 2), chord=0.01)
+    (finding,) = made.findings
+    assert finding.code == "surface.too-shallow" and finding.text.startswith("20")
+
+
+def test_a_level_face_alone_has_no_path_but_a_finding() -> None:
+    made, _ = planned(grid(lambda x, y: 0.0 * x, n=4), BALL)
+    assert not len(made.path) and made.findings[0].code == "surface.too-shallow"
+
+
+def test_without_a_scallop_height_or_a_step_it_refuses() -> None:
+    with pytest.raises(Refused, match="scallop height"):
+        planned(round_wall(8.0, 0.0, 10.0), FLAT, height=0.0)
+
+
+def block(low, high):
+    """Return the skin of the four sides (tag 1) and the top (tag 2) of a block."""
+    (x0, y0, z0), (x1, y1, z1) = low, high
+    ring = np.array([[x0, y0], [x1, y0], [x1, y1], [x0, y1]])
+    points, normals, triangles = [], [], []
+    for k, out in enumerate(((0, -1), (1, 0), (0, 1), (-1, 0))):
+        a, b = ring[k], ring[(k + 1) % 4]
+        points += [[*a, z0], [*b, z0], [*b, z1], [*a, z1]]
+        normals += [[*out, 0.0]] * 4
+        triangles += [[4 * k, 4 * k + 1, 4 * k + 2], [4 * k, 4 * k + 2, 4 * k + 3]]
+    points += [[*p, z1] for p in ring]
+    normals += [[0.0, 0.0, 1.0]] * 4
+    triangles += [[16, 17, 18], [16, 18, 19]]
+    return Skin(
+        points=np.array(points, dtype=float),
+        normals=np.array(normals, dtype=float),
+        triangles=np.array(triangles),
+        face=np.repeat([1, 2], [8, 2]),
+        bound=0.0,
+    )
+
+
+def test_the_cutter_rolls_round_the_corners_of_a_block_in_one_closed_pass() -> None:
+    made, _ = planned(block((5, 5, 0), (25, 20, 8)), FLAT, chord=0.005)
+    assert (made.path.motion == Motion.RAPID).sum() == 3
+    around = made.path.lengths()[made.path.mark == Mark.CUT].sum()
+    # And over its start by half a millimetre.
+    assert around == pytest.approx(2 * 20 + 2 * 15 + 2 * math.pi * 5.0 + 0.5, abs=0.01)
