@@ -21,6 +21,8 @@ WALLS = (2.0, 2.5, 3.0, 4.0, 6.0)
 """mm: thickness of walls between pockets."""
 DEEPEST = 12.0
 """Corner radii that a pocket is deep at most."""
+STEP_CORNERS = 2.2
+"""Corner radii that the lower step of a pocket is wide at least: two of them have to fit side by side."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -94,7 +96,8 @@ def _cell(draw: Random, plan: _Plan, column: int, row: int, counts: dict[str, in
             body = body.cut(_island(draw, plan, depth))
             counts["island"] += 1
         elif kind < 0.4 and depth > 10.0:
-            step = _rounded(plan, (0.4 * plan.cell[0], plan.cell[1], depth), False)
+            across = max(0.4 * plan.cell[0], STEP_CORNERS * plan.corner)
+            step = _rounded(plan, (across, plan.cell[1], depth), False)
             high = draw.uniform(0.3, 0.6) * depth
             body = (
                 _rounded(plan, (*plan.cell, depth - high), False)
