@@ -249,11 +249,12 @@ class SetupSpace:
             band = self._band(feature, high, low, z, under, sunken)
             peak = self._peak_in(band, z, feature, rounding)
             if peak is None:
-                full = next((b for b in reversed(bands) if b.bottom not in peaks), None)
                 gap = fillets.get(low, 0.0) - (z - low)
-                if full is not None and gap > 0.0:
+                if gap > 0.0:
+                    full = next((b for b in reversed(bands) if b.bottom not in peaks), None)
+                    over = full or self._above_foot(feature, high, low + fillets[low])
                     grow = fillets[low] - (fillets[low] ** 2 - gap**2) ** 0.5
-                    band = _up_to_walls(band, full, points[low], grow)
+                    band = _up_to_walls(band, over, points[low], grow)
                 bands.append(band)
                 continue
             breaks.insert(len(bands) + 1, peak)
@@ -313,6 +314,13 @@ class SetupSpace:
             )
         wanted, boundary = filled_over(wanted, sunken), filled_over(boundary, sunken)
         return Band(top=high, bottom=low, wanted=wanted, boundary=boundary)
+
+    def _above_foot(self, feature: Feature, top: float, foot: float) -> Band:
+        """Return the free space around a pocket over the fillets at its foot: what bounds it where its rim is lower than they are high."""
+        z = min(foot + tolerance.BESIDE_PLANE, top - tolerance.BESIDE_PLANE)
+        free = self.around().minus(self.standing_over(z, self._over(feature)))
+        inside = free.intersect(self.silhouette()) if feature.kind == "open_pocket" else free
+        return Band(top=top, bottom=foot, wanted=inside, boundary=free)
 
     def _over(self, feature: Feature) -> Region:
         """Return the plan box of a feature's faces."""

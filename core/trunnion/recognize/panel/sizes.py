@@ -49,7 +49,8 @@ def pocket_sizes(view: PanelSide, pocket: Pocket, ribs: Iterable[int]) -> dict[s
     }
     sizes.update(side_sizes(view, pocket.walls, pocket.corners))
     sizes["floor_fillet"] = fillet_radius(view, pocket.fillets, pocket.sharp)
-    rims = [view.z(r) for r in ribs if _meets(view, r, pocket.sides)]
+    # A rib that is lower than the fillets at its foot are high meets these, and no wall.
+    rims = [view.z(r) for r in ribs if _meets(view, r, (*pocket.sides, *pocket.fillets))]
     if rims and min(rims) < top - SLIVER:
         sizes["lowest_rim_z"] = main_z(view, min(rims))
     flat = [f for f in pocket.floors if view.classes.kind[f] is FaceClass.UP]
