@@ -11,7 +11,7 @@ Cancelled                not an error: a person asked to stop; the session stays
 from __future__ import annotations
 
 from collections.abc import Iterable
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from enum import StrEnum
 
 
@@ -39,6 +39,8 @@ class Cancelled(Exception):
     """A person asked to stop."""
 
 
+ADDED_UNWRITTEN = {"added": True, "written": False}
+"""What `settings.added(written=False)` says of a field, for this floor below it: no part of digests and files at its default."""
 MOST_SHOWN = 8
 """Names that a line about a finding shows."""
 
@@ -53,11 +55,38 @@ class Severity(StrEnum):
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
+class Fix:
+    """A change of the plan that a finding asks for: an input of the planner, never an edit of motions.
+
+    `kind` is a registered name (`registry.FIXES`), `operation` the id of the operation to be changed (empty where `faces` say what is to be
+    finished), `reason` the code of the finding; `amount` what was measured: how deep something enters, mm, or for `feed` the share of the
+    feed that a limit leaves.
+    """
+
+    kind: str
+    operation: str = ""
+    reason: str = ""
+    amount: float = 0.0
+    faces: tuple[int, ...] = ()
+
+    def as_dict(self) -> dict[str, object]:
+        """Return the fix as the JSON that other programs rely on."""
+        return {
+            "kind": self.kind,
+            "operation": self.operation,
+            "reason": self.reason,
+            "amount": self.amount,
+            "faces": list(self.faces),
+        }
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
 class Finding:
     """One thing a person should know.
 
     `code` is stable and dotted (`panel.leaning-wall`), `where` names faces, features, operations or blocks in words
-    that the window and the report can show (`face 12`, `pocket-03`, `block 118`), `remedy` says what to do.
+    that the window and the report can show (`face 12`, `pocket-03`, `block 118`), `remedy` says what to do, and `fix` the
+    same for the planner where it can be said so.
     """
 
     severity: Severity
@@ -65,6 +94,7 @@ class Finding:
     text: str
     where: tuple[str, ...] = ()
     remedy: str = ""
+    fix: Fix | None = field(default=None, metadata=ADDED_UNWRITTEN)
 
     @property
     def place(self) -> str:
@@ -74,13 +104,14 @@ class Finding:
 
     def as_dict(self) -> dict[str, object]:
         """Return the finding as the JSON that other programs rely on."""
-        return {
+        told: dict[str, object] = {
             "severity": self.severity.value,
             "code": self.code,
             "text": self.text,
             "where": list(self.where),
             "remedy": self.remedy,
         }
+        return told if self.fix is None else {**told, "fix": self.fix.as_dict()}
 
     def __str__(self) -> str:
         where = f" ({self.place})" if self.where else ""
@@ -103,9 +134,11 @@ def warning(code: str, text: str, *where: str, remedy: str = "") -> Finding:
     return Finding(severity=Severity.WARNING, code=code, text=text, where=where, remedy=remedy)
 
 
-def error(code: str, text: str, *where: str, remedy: str = "") -> Finding:
+def error(code: str, text: str, *where: str, remedy: str = "", fix: Fix | None = None) -> Finding:
     """Return a finding that keeps a program from being released."""
-    return Finding(severity=Severity.ERROR, code=code, text=text, where=where, remedy=remedy)
+    return Finding(
+        severity=Severity.ERROR, code=code, text=text, where=where, remedy=remedy, fix=fix
+    )
 
 
 def has_errors(findings: Iterable[Finding]) -> bool:

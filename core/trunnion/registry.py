@@ -26,11 +26,23 @@ DIALECTS = "dialects"
 """Dialects of controls, by name."""
 VIEWS = "views"
 """What families bring to the window, by the family's name."""
+FIXES = "fixes"
+"""Kinds of fixes that findings ask for: functions that change a process, by the kind's name."""
 COMMANDS = "commands"
 """Functions that add a command to the command line (a module's `add(commands)`), by the command's name."""
 RESOURCES = "resources"
 """Packages with data of their own, in folders like those of `trunnion_resources`."""
-KINDS = (FAMILIES, PART_KINDS, PLANNERS, STRATEGIES, DIALECTS, VIEWS, COMMANDS, RESOURCES)
+KINDS = (
+    FAMILIES,
+    PART_KINDS,
+    PLANNERS,
+    STRATEGIES,
+    DIALECTS,
+    VIEWS,
+    FIXES,
+    COMMANDS,
+    RESOURCES,
+)
 OWN_RESOURCES = "trunnion_resources"
 """The program's own package of data."""
 

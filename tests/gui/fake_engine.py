@@ -35,7 +35,7 @@ from trunnion.store.project import load_project, save_project
 
 PART_BYTES = b"a made-up part"
 PART_DIGEST = hashlib.sha256(PART_BYTES).hexdigest()
-STEPS = ("recognize", "size", "blank", "route", "optimize", "toolpath", "verify")
+STEPS = ("recognize", "size", "blank", "route", "optimize", "toolpath", "verify", "repair")
 LENGTH, WIDTH, HEIGHT, FLOOR = 240.0, 140.0, 30.0, 6.0
 FINDINGS = {
     "recognize": (
@@ -340,7 +340,7 @@ class FakeEngine:
             states[step] = "empty" if record is None else "stale" if is_stale else "done"
         return states
 
-    def run(self, session, until="verify", progress=QUIET) -> Session:
+    def run(self, session, until="repair", progress=QUIET) -> Session:
         for step in STEPS[: STEPS.index(until) + 1]:
             if self.states(session)[step] == "done":
                 continue
@@ -501,6 +501,13 @@ class FakeEngine:
             for o in session.process.operations
         )
         return replace(session, paths=paths)
+
+    def _repair(self, session: Session) -> Session:
+        return session
+
+    def with_fix(self, session: Session, fix) -> Session:
+        changed = replace(session.process.operation(fix.operation), suppressed=True)
+        return replace(session, process=session.process.with_operation(changed))
 
     def _verify(self, session: Session) -> Session:
         proofs = tuple(

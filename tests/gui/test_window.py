@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import sys
+from dataclasses import replace
 from pathlib import Path
 
 import pytest
@@ -11,7 +12,7 @@ from PySide6.QtGui import QDropEvent
 from PySide6.QtTest import QTest
 from PySide6.QtWidgets import QPushButton, QToolButton
 
-from trunnion.findings import face_tags, warning
+from trunnion.findings import Fix, error, face_tags, warning
 from trunnion_gui.look import icons
 from trunnion_gui.storage import preferences
 from trunnion_gui.widgets.finder import score
@@ -426,6 +427,26 @@ def test_a_message_has_the_room_that_the_columns_beside_it_do_not_need(window, q
     )
     table = window.docks.messages.table
     qtbot.waitUntil(lambda: table.columnWidth(1) > 0.5 * table.viewport().width())
+
+
+def test_the_fix_of_a_finding_is_applied_beside_it_and_undone(programmed, idle, qtbot):
+    document = programmed.document
+    operation = document.session.process.operations[0].id
+    fix = Fix(kind="drop", operation=operation, reason="verify.gouge")
+    gouge = replace(error("verify.gouge", "a gouge", operation), fix=fix)
+    before = document.session
+    document.noticed.emit(gouge)
+    programmed.show_dock("messages")
+    table = programmed.docks.messages.table
+    row = programmed.docks.messages.findings.index(gouge)
+    others = [r for r in range(table.rowCount()) if r != row]
+    assert all(table.cellWidget(r, 5) is None for r in others)
+    QTest.mouseClick(table.cellWidget(row, 5), LEFT)
+    idle(programmed)
+    assert document.session.process.operation(operation).suppressed
+    assert document.states["verify"] == "stale"
+    document.undo()
+    assert document.session is before
 
 
 @pytest.mark.parametrize(

@@ -13,9 +13,10 @@ from trunnion.model.feature import Recognition
 from trunnion.model.fixture import Fixture
 from trunnion.model.operation import OperationPath
 from trunnion.model.process import ProcessTree
+from trunnion.model.repair import RepairRound
 from trunnion.model.setup import Setup
 from trunnion.model.verdict import Verdict
-from trunnion.settings import Value
+from trunnion.settings import Value, added
 
 
 @dataclass(frozen=True, slots=True, eq=False, kw_only=True)
@@ -100,6 +101,7 @@ class Session:
     paths: tuple[OperationPath, ...] = ()
     posted: tuple[PostedFile, ...] = ()
     verdict: Verdict | None = None
+    repairs: tuple[RepairRound, ...] = added((), written=False)
     records: Mapping[str, StepRecord] = field(default_factory=dict)
 
     def path_of(self, operation: str) -> OperationPath | None:

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import re
-import time
 from collections.abc import Mapping, Sequence
 from dataclasses import replace
 from functools import partial
@@ -11,15 +10,20 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from trunnion import tolerance
-from trunnion.findings import BadCall, BadInput, Severity, TrunnionError, has_errors
+from trunnion.findings import BadCall, BadInput, Fix, has_errors
 from trunnion.geometry.cut import Cut
 from trunnion.geometry.kernels.compiling import compiling
 from trunnion.geometry.mesh import Mesh
 from trunnion.model.fixture import Fixture
 from trunnion.model.playback import Moment, Timeline
-from trunnion.model.session import Session, StepRecord
+from trunnion.model.repair import words_of
+from trunnion.model.session import Session
 from trunnion.pipeline.context import Context, Contexts
-from trunnion.pipeline.steps import STEP_TABLE, STEPS, Step, step_named
+from trunnion.pipeline.execution import run_step
+from trunnion.pipeline.step import Step
+from trunnion.pipeline.steps import STEP_TABLE, STEPS, step_named
+from trunnion.plan.repair.alternatives import fixes_after
+from trunnion.plan.repair.contract import RepairJob, applied
 from trunnion.progress import QUIET, Progress
 from trunnion.settings import Value, checked, choose, declared
 from trunnion.shop import load_shop
@@ -184,6 +188,21 @@ class Engine:
             found.append(Fixture(name=file.stem, mesh=mesh, setup=setup))
         return replace(session, fixtures=tuple(found))
 
+    def with_fix(self, session: Session, fix: Fix) -> Session:
+        """Return the session with one fix in its process, to be computed and proven again; raise `BadInput` where nothing can be done."""
+        if session.process is None:
+            raise BadCall("no operations yet: generate the route first")
+        job = RepairJob(shop=self.context_of(session).shop, choices=session.choices)
+        if fix.operation and fix.operation not in {o.id for o in session.process.operations}:
+            raise BadInput(f"{fix.operation} is not in the plan any more: verify again")
+        for step in fixes_after(fix):
+            changed = applied(session.process, step, job)
+            if changed is not None:
+                return replace(session, process=changed)
+        raise BadInput(
+            f"{words_of(fix)}: no tool of the catalogue serves, or a person set the operation by hand; follow the remedy by hand"
+        )
+
     def states(self, session: Session) -> dict[str, str]:
         """Return for each step whether it is `empty`, `stale`, `done`, or done with a `problem`."""
         found: dict[str, str] = {}
@@ -209,30 +228,9 @@ class Engine:
                 continue
             share = progress.part(n / (last + 1), (n + 1) / (last + 1))
             share.at(0.0, step.title)
-            session = self._run_one(session, step, share)
+            session = run_step(session, step, self.context_of(session, share), share, STEPS)
         progress.at(1.0, "done")
         return session
-
-    def _run_one(self, session: Session, step: Step, progress: Progress) -> Session:
-        began = time.perf_counter()
-        context = self.context_of(session, progress)
-        try:
-            with compiling(progress), context.part.watched(progress):
-                result = step.work(session, context, progress)
-        except TrunnionError as reason:
-            raise type(reason)(_whole_line(session, str(reason))) from None
-        # What a step uses may depend on its own result: the settings of the family that was recognised.
-        key = progress.aside(lambda _: step.key(result.session, context))
-        record = StepRecord(key=key, seconds=time.perf_counter() - began, findings=result.findings)
-        kept = {name: session.records[name] for name in STEPS if name in session.records}
-        return replace(
-            result.session,
-            records={
-                name: record if name == step.name else kept[name]
-                for name in STEPS
-                if name == step.name or name in kept
-            },
-        )
 
     def playback(self, session: Session, cell: float = 0.0, progress: Progress = QUIET) -> Timeline:
         """Take up a plan for playback and return its blocks over time; `moment` then shows its stock."""
@@ -313,13 +311,3 @@ def fixture_word(word: str) -> tuple[str, Path]:
     if equals and re.fullmatch(r"S[0-9]+", setup):
         return setup, Path(file)
     return "", Path(word)
-
-
-def _whole_line(session: Session, reason: str) -> str:
-    """Return why a step stopped, with the part's file named and the errors found before it, which are the likely cause."""
-    file = Path(session.part.path).name if session.part else ""
-    line = reason if not file or file in reason else f"{file}: {reason}"
-    before = [
-        f.text for f in session.findings() if f.severity is Severity.ERROR and f.text not in line
-    ]
-    return f"{line}; found before: {'; '.join(before)}" if before else line

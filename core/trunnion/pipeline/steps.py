@@ -7,63 +7,39 @@ strategies a session uses its own ones' settings alone.
 
 from __future__ import annotations
 
-from collections.abc import Callable
-from dataclasses import dataclass, replace
+from dataclasses import replace
+from functools import partial
 from typing import Any
 
 from trunnion import registry
-from trunnion.findings import BadCall, BadInput, Finding
+from trunnion.findings import BadCall, BadInput
 from trunnion.model.feature import Recognition
 from trunnion.model.session import Session
 from trunnion.pipeline.context import Context
+from trunnion.pipeline.execution import run_step
 from trunnion.pipeline.planning.blank import blank_of, source_of, too_small
 from trunnion.pipeline.planning.family import RecognizeSettings, recognised
 from trunnion.pipeline.planning.manual_edits import with_features_by_hand, with_operations_by_hand
 from trunnion.pipeline.planning.scene import SessionContext
 from trunnion.pipeline.proof.posted_programs import prove_session
+from trunnion.pipeline.repair.findings import repair_findings
+from trunnion.pipeline.repair.rounds import repaired
+from trunnion.pipeline.repair.settings import RepairSettings
+from trunnion.pipeline.step import Result, Step
 from trunnion.pipeline.toolpaths import findings_of, make_paths, strategy_settings
 from trunnion.plan.blank import BlankSettings
 from trunnion.plan.contract import RouteJob, planner_for
 from trunnion.plan.cutting.milling import CuttingSettings, balance
 from trunnion.plan.cutting.peak import overloads
+from trunnion.plan.repair.contract import RepairJob
 from trunnion.plan.setups import SetupSettings, make_setups
 from trunnion.plan.size import size_table
 from trunnion.post.settings import PostSettings
 from trunnion.progress import Progress
 from trunnion.recognize.contract import Measuring
-from trunnion.registry import FAMILIES, PART_KINDS, PLANNERS, STRATEGIES
-from trunnion.settings import checked, choose, digest
+from trunnion.registry import FAMILIES, FIXES, PART_KINDS, PLANNERS, STRATEGIES
+from trunnion.settings import checked, choose
 from trunnion.verify.settings import ProofSettings
-
-
-@dataclass(frozen=True, slots=True, kw_only=True)
-class Result:
-    """What a step gives: the changed session and the findings that live and go stale with the step."""
-
-    session: Session
-    findings: tuple[Finding, ...] = ()
-
-
-@dataclass(frozen=True, slots=True, kw_only=True)
-class Step:
-    """One step: name, title, the steps whose results it reads (`after`), the settings it declares and those among them that a session
-    uses (all where `uses` is None), what it reads, the work, and whether its result is there."""
-
-    name: str
-    title: str
-    after: tuple[str, ...]
-    settings: Callable[[], tuple[type, ...]]
-    reads: Callable[[Session, Context], tuple[Any, ...]]
-    work: Callable[[Session, Context, Progress], Result]
-    done: Callable[[Session], bool]
-    version: int = 1
-    uses: Callable[[Session], tuple[type, ...]] | None = None
-
-    def key(self, session: Session, context: Context) -> str:
-        """Return the digest of everything the step would be given now."""
-        used = self.settings() if self.uses is None else self.uses(session)
-        chosen: tuple[Any, ...] = tuple(checked(choose(group, session.choices)) for group in used)
-        return digest(self.name, self.version, chosen, self.reads(session, context), *session.cuts)
 
 
 def _family_settings() -> tuple[type, ...]:
@@ -224,6 +200,29 @@ def _verify(session: Session, context: Context, progress: Progress) -> Result:
     )
 
 
+def _repair(session: Session, context: Context, progress: Progress) -> Result:
+    after = repaired(
+        session,
+        RepairJob(shop=context.shop, choices=session.choices),
+        checked(choose(RepairSettings, session.choices)).rounds,
+        partial(_proven, context),
+        progress,
+    )
+    return Result(session=after, findings=repair_findings(after))
+
+
+def _proven(context: Context, session: Session, progress: Progress) -> Session:
+    """Return a session whose process was changed with data, toolpaths and proof made again."""
+    for n, name in enumerate(PROVING):
+        share = progress.part(n / len(PROVING), (n + 1) / len(PROVING))
+        session = run_step(session, step_named(name), context, share, STEPS)
+    return session
+
+
+PROVING = ("optimize", "toolpath", "verify")
+"""The steps that a changed process goes through before it is judged."""
+
+
 def _record_key(session: Session, step: str) -> str:
     record = session.records.get(step)
     return record.key if record else ""
@@ -334,6 +333,15 @@ STEP_TABLE: tuple[Step, ...] = (
         ),
         done=lambda s: s.verdict is not None,
         version=2,
+    ),
+    Step(
+        name="repair",
+        title="Repair",
+        after=("verify",),
+        settings=lambda: (RepairSettings,),
+        work=_repair,
+        reads=lambda s, b: (_record_key(s, "verify"), registry.names(FIXES)),
+        done=lambda s: "repair" in s.records,
     ),
 )
 

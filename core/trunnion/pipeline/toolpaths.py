@@ -13,7 +13,7 @@ from typing import Any
 import numpy as np
 
 from trunnion import registry
-from trunnion.findings import BadCall, Finding, Refused, error, info
+from trunnion.findings import BadCall, Finding, Fix, Refused, error, info
 from trunnion.geometry.frame import Frame
 from trunnion.model.motion.toolpath import Toolpath
 from trunnion.model.operation import Operation, OperationPath
@@ -138,7 +138,13 @@ def _make_one(
                 operation=operation.id, path=path, findings=tuple(planned.findings), key=key
             )
     except Refused as reason:
-        left = error("toolpath.refused", str(reason), operation.id, operation.feature)
+        left = error(
+            "toolpath.refused",
+            str(reason),
+            operation.id,
+            operation.feature,
+            fix=Fix(kind="tool", operation=operation.id, reason="toolpath.refused"),
+        )
         return OperationPath(operation=operation.id, findings=(left,))
     if len(kept.path):
         scene.sides.cut(

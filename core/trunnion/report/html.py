@@ -8,6 +8,7 @@ from collections.abc import Sequence
 from pathlib import Path
 
 from trunnion.model.operation import CuttingData
+from trunnion.model.repair import words_of
 from trunnion.model.session import Session
 from trunnion.model.spindle import FeedMode, SpindleMode
 from trunnion.report.pictures import Picture
@@ -45,6 +46,7 @@ def report_html(
         left_faces=left_faces(session),
         spindle=spindle,
         feed=feed,
+        fix_words=words_of,
     )
 
 

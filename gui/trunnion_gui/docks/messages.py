@@ -4,9 +4,9 @@ from __future__ import annotations
 
 from PySide6.QtCore import Signal
 from PySide6.QtGui import QResizeEvent, QShowEvent
-from PySide6.QtWidgets import QHeaderView, QTableWidget, QVBoxLayout, QWidget
+from PySide6.QtWidgets import QHeaderView, QPushButton, QTableWidget, QVBoxLayout, QWidget
 
-from trunnion.findings import Finding, Severity
+from trunnion.findings import Finding, Fix, Severity
 from trunnion_gui.document import Document
 from trunnion_gui.i18n import tr
 from trunnion_gui.look import icons
@@ -15,7 +15,7 @@ from trunnion_gui.widgets import table as tables
 
 _ORDER = (Severity.ERROR, Severity.WARNING, Severity.REMARK, Severity.INFO)
 _MOST_NOTICES = 20
-_WHERE, _REMEDY, _CODE = 2, 3, 4
+_WHERE, _REMEDY, _CODE, _FIX = 2, 3, 4, 5
 _MOST_SHARES = {_WHERE: 0.16, _REMEDY: 0.3, _CODE: 0.13}
 """How much of the width these columns take at most; what they don't need is the message's."""
 
@@ -32,7 +32,7 @@ class MessagesDock(QWidget):
         self._notices: list[Finding] = []
         self.findings: tuple[Finding, ...] = ()
         self.table: QTableWidget = tables.table(
-            ["", tr("Message"), tr("Where"), tr("What to do"), tr("Code")], stretched=(1,)
+            ["", tr("Message"), tr("Where"), tr("What to do"), tr("Code"), ""], stretched=(1,)
         )
         for shared in _MOST_SHARES:
             self.table.horizontalHeader().setSectionResizeMode(
@@ -41,6 +41,7 @@ class MessagesDock(QWidget):
         column = QVBoxLayout(self)
         column.setContentsMargins(0, 0, 0, 0)
         column.addWidget(self.table)
+        self.table.setColumnHidden(_FIX, True)
         self.table.cellClicked.connect(
             lambda row, _: document.selection.select_where(self.findings[row].where)
         )
@@ -66,11 +67,24 @@ class MessagesDock(QWidget):
         self.findings = listed
         tables.fill(
             self.table,
-            [("", f.text, f.place, f.remedy, f.code) for f in listed],
+            [("", f.text, f.place, f.remedy, f.code, "") for f in listed],
             icons=[icons.icon(f.severity.value, self._colour(f.severity)) for f in listed],
         )
+        for row, finding in enumerate(listed):
+            if finding.fix is not None:
+                self.table.setCellWidget(row, _FIX, self._button(finding.fix))
+            else:
+                self.table.removeCellWidget(row, _FIX)
+        self.table.setColumnHidden(_FIX, all(f.fix is None for f in listed))
         self._share_width()
         self.counted.emit(len(listed))
+
+    def _button(self, fix: Fix) -> QPushButton:
+        """Return the button that lets the planner take up a finding's fix."""
+        button = QPushButton(tr("Apply"))
+        button.setToolTip(tr("Change the plan as the remedy says; run and prove it again after it"))
+        button.clicked.connect(lambda: self._document.apply_fix(fix))
+        return button
 
     def resizeEvent(self, event: QResizeEvent) -> None:
         super().resizeEvent(event)

@@ -12,7 +12,7 @@ from typing import Any
 
 from PySide6.QtCore import QObject, Signal
 
-from trunnion.findings import Finding, Severity, TrunnionError
+from trunnion.findings import Finding, Fix, Severity, TrunnionError
 from trunnion.geometry.cut import Cut
 from trunnion.geometry.mesh import Mesh
 from trunnion.model.feature import Feature
@@ -128,12 +128,20 @@ class Document(QObject):
 
     def program(self) -> None:
         """Do the whole line."""
-        self.run("verify", tr("Program"))
+        self.run("repair", tr("Program"))
 
-    def request(self, work: Work, label: str, *arguments: Any, finish: Finish) -> None:
-        """Do a family's own work on the session in the worker; `finish` gets what it returns. Refused in words while a job runs."""
+    def request(self, work: str | Work, label: str, *arguments: Any, finish: Finish) -> None:
+        """Do work on the session in the worker, by a verb's name or a family's own function; `finish` gets what it returns.
+
+        Refused in words while a job runs.
+        """
         if self.is_ready():
             self.jobs.start(work, label, self.session, *arguments, finish=finish)
+
+    def apply_fix(self, fix: Fix) -> None:
+        """Let the planner take up the fix of a finding: one entry of the history; what it changes is stale until it is run again."""
+        label = tr("Fix {what}").format(what=fix.operation or fix.reason)
+        self.request("fix", label, fix, finish=lambda state: self.keep(label, state))
 
     # the session
 

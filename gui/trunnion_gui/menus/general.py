@@ -26,7 +26,7 @@ _STEPS = (
     ("step.route", "Generate route", "route", "route", "F9"),
     ("step.optimize", "Optimize", "optimize", "optimize", "F10"),
     ("step.generate", "Generate", "toolpath", "generate", "F11"),
-    ("step.verify", "Verify", "verify", "verify", "F12"),
+    ("step.verify", "Verify", "repair", "verify", "F12"),
 )
 """Id, words, the last step that runs, icon, keys."""
 _VIEWS = ("isometric", "top", "bottom", "front", "back", "left", "right")

@@ -10,7 +10,7 @@ from collections.abc import Callable
 from dataclasses import dataclass, replace
 from typing import Any
 
-from trunnion.findings import Cancelled, TrunnionError
+from trunnion.findings import Cancelled, Fix, TrunnionError
 from trunnion.model.session import PostedFile, Session
 from trunnion.post.release import release
 from trunnion.progress import Progress
@@ -145,6 +145,12 @@ def _attach(
     return state_of(engine, session)
 
 
+def _fix(
+    engine: Any, _progress: Progress, _send_event: SendEvent, session: Session, fix: Fix
+) -> SessionState:
+    return state_of(engine, engine.with_fix(session, fix))
+
+
 @writes_files
 def _save(
     engine: Any, progress: Progress, _send_event: SendEvent, session: Session, path: str
@@ -211,6 +217,7 @@ VERBS: dict[str, Callable[..., Any]] = {
     "run": _run,
     "states": _states,
     "attach": _attach,
+    "fix": _fix,
     "save": _save,
     "write": _write,
     "settings": _settings,

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 
-STEPS = ("recognize", "size", "blank", "route", "optimize", "toolpath", "verify")
+STEPS = ("recognize", "size", "blank", "route", "optimize", "toolpath", "verify", "repair")
 """The pipeline's steps in order (the window's process does not import the pipeline; a test compares)."""
 
 TITLES = {
@@ -16,6 +16,7 @@ TITLES = {
     "optimize": "Optimize",
     "toolpath": "Toolpaths",
     "verify": "Verify and post",
+    "repair": "Repair",
 }
 """What a person calls each step; the pipeline's own titles."""
 
@@ -26,7 +27,8 @@ SHARES = {
     "route": 0.08,
     "optimize": 0.05,
     "toolpath": 0.35,
-    "verify": 0.40,
+    "verify": 0.35,
+    "repair": 0.05,
 }
 """About which share of a whole run each step takes, for the progress bar."""
 
@@ -48,7 +50,7 @@ STAGES = (
     PanelStage("blank", "Blank", ("blank",)),
     PanelStage("route", "Process route", ("route",)),
     PanelStage("optimize", "Optimize", ("optimize",)),
-    PanelStage("generate", "Generate", ("toolpath", "verify")),
+    PanelStage("generate", "Generate", ("toolpath", "verify", "repair")),
 )
 
 

@@ -58,7 +58,7 @@ def run(chosen: argparse.Namespace) -> int:
 def _one(chosen: argparse.Namespace, part: str) -> tuple[int, tuple[str, str, str]]:
     chosen.part = part
     try:
-        engine, session = open_session(chosen, "verify")
+        engine, session = open_session(chosen, "repair")
         engine.write(session, chosen.output / Path(part).stem, progress=progress_of(chosen))
     except TrunnionError as reason:
         print(f"trunnion: {reason}", file=sys.stderr)

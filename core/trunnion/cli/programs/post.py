@@ -39,7 +39,7 @@ def run(chosen: argparse.Namespace) -> int:
     check_output(chosen.output)
     if chosen.name:
         checked_name(chosen.name)
-    _, session = open_session(chosen, "verify")
+    _, session = open_session(chosen, "repair")
     files = write_programs(
         session, chosen.output, name=chosen.name, date=chosen.date, progress=progress_of(chosen)
     )

@@ -43,7 +43,7 @@ def run(chosen: argparse.Namespace) -> int:
     check_output(chosen.output)
     if chosen.name:
         checked_name(chosen.name)
-    engine, session = open_session(chosen, "verify")
+    engine, session = open_session(chosen, "repair")
     files = engine.write(
         session, chosen.output, name=chosen.name, date=chosen.date, progress=progress_of(chosen)
     )

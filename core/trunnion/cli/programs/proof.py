@@ -70,6 +70,7 @@ def proof_dict(
         ],
         "operations": operations,
         "offers": [offer_dict(o) for o in verdict.offers],
+        "repairs": [entry for r in session.repairs for entry in r.as_dicts()],
         "files": list(files),
         "findings": [f.as_dict() for f in session.findings()],
     }

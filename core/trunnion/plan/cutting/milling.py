@@ -13,7 +13,7 @@ from trunnion.model.spindle import surface_speed, turns_of
 from trunnion.model.tool import Tool
 from trunnion.plan.cutting.peak import with_peak
 from trunnion.plan.cutting.power import NEWTON_METRES, cutting_power
-from trunnion.settings import Value, setting, settings
+from trunnion.settings import Value, choose, declared, setting, settings
 from trunnion.shop import Shop
 from trunnion.shop.materials import feed_at
 from trunnion.units import MM_PER_METRE, trimmed
@@ -239,11 +239,19 @@ def balance(
     """
     material, done = shop.material(process.material), list[Operation]()
     for operation in process.operations:
-        balanced = _balanced(operation, process, material, shop, settings)
+        own = choose(CuttingSettings, {**choices, **operation.choices})
+        balanced = _balanced(
+            operation, process, material, shop, own if _of_its_own(operation) else settings
+        )
         done.append(
             with_peak(balanced, [o for o in done if o.setup == operation.setup], material, choices)
         )
     return replace(process, operations=tuple(done))
+
+
+def _of_its_own(operation: Operation) -> bool:
+    """Return whether an operation has limits of its own."""
+    return any(d.key in operation.choices for d in declared(CuttingSettings))
 
 
 def _balanced(

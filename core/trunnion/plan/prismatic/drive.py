@@ -149,7 +149,11 @@ def drive_of(operation: Operation, process: ProcessTree, space: SetupSpace) -> P
     """
     if operation.kind == "face":
         return _face(operation, space)
-    feature = space.recognition.feature(operation.feature)
+    feature = next((f for f in space.recognition if f.id == operation.feature), None)
+    if feature is None:
+        raise Refused(
+            f"{operation.id}: its feature {operation.feature} is not there any more; delete the operation, or route again"
+        )
     if operation.kind in OF_POCKETS:
         return _pocket(operation, process, feature, space)
     if operation.kind == "rib_top":

@@ -9,7 +9,7 @@ from itertools import zip_longest
 import numpy as np
 
 from trunnion import tolerance
-from trunnion.findings import Finding, error, face_tags, info, warning
+from trunnion.findings import Finding, Fix, error, face_tags, info, warning
 from trunnion.geometry.arrays import Bools, Floats, Ints
 from trunnion.model.blank import Blank
 from trunnion.model.material import Machine
@@ -174,6 +174,14 @@ def _findings(
                 f"{100 * settings.coverage:.2f} %",
                 *face_tags(f.face for f in open_faces),
                 remedy="add operations for these faces, or accept the shortfall by name",
+                fix=Fix(
+                    kind="add_operation",
+                    reason="verify.coverage",
+                    amount=settings.coverage - of_reachable,
+                    faces=tuple(
+                        f.face for f in sorted(open_faces, key=lambda f: f.finished - f.area)
+                    ),
+                ),
             )
         )
     elif open_faces:

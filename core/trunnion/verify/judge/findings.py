@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from trunnion.findings import Finding, error
+from trunnion.findings import Finding, Fix, error
 from trunnion.geometry.arrays import Floats, Ints
 from trunnion.model.motion.program import ProgramSection
 from trunnion.units import LONGEST_BLOCK, SECONDS_PER_MINUTE
@@ -45,6 +45,12 @@ def _gouges(
                 block_of(proof, section, row),
                 f"face {tags[face]}",
                 remedy="keep the cutter off this face, or choose a cutter that fits",
+                fix=Fix(
+                    kind="tolerance",
+                    operation=section.operation,
+                    reason="verify.gouge",
+                    amount=float(proof.contact.depth[row, 0]),
+                ),
             )
         )
     return found
@@ -66,6 +72,12 @@ def _collisions(
                 block_of(proof, section, row),
                 f"face {tags[face]}",
                 remedy="choose a longer or slimmer tool",
+                fix=Fix(
+                    kind="tool",
+                    operation=section.operation,
+                    reason="verify.collision",
+                    amount=float(proof.contact.depth[row, 1]),
+                ),
             )
         )
     body = proof.stock.body_depth[rows]
@@ -79,6 +91,12 @@ def _collisions(
                 section.operation,
                 block_of(proof, section, row),
                 remedy="clear the stock around first, or choose a longer tool",
+                fix=Fix(
+                    kind="clear_first",
+                    operation=section.operation,
+                    reason="verify.collision-stock",
+                    amount=float(body.max()),
+                ),
             )
         )
     return found
@@ -124,6 +142,12 @@ def _rapids(proof: SetupProof, section: ProgramSection, rows: Ints) -> list[Find
             section.operation,
             block_of(proof, section, row),
             remedy="lift the rapid, or make it a feed move",
+            fix=Fix(
+                kind="clear_first",
+                operation=section.operation,
+                reason="verify.rapid-in-stock",
+                amount=float(depth[row]),
+            ),
         )
         for row in worst
         if depth[row] > 0.0

@@ -13,7 +13,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from trunnion import tolerance
-from trunnion.findings import Finding, error, remark, warning
+from trunnion.findings import Finding, Fix, error, remark, warning
 from trunnion.geometry.arrays import Bools, Floats, Ints
 from trunnion.model.material import Machine, Material
 from trunnion.model.motion.program import ProgramSection
@@ -117,6 +117,14 @@ def _power(
             section.operation,
             block_of(proof, section, worst),
             remedy=_feed_remedy(proof, section, offers),
+            fix=Fix(
+                kind="feed",
+                operation=section.operation,
+                reason="verify.power",
+                amount=float(
+                    (limit / proof.load.power[worst]) ** (1.0 / (1.0 - material.force_exponent))
+                ),
+            ),
         )
     ], offers
 

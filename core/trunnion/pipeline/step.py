@@ -1,0 +1,43 @@
+"""A step of the work: what it is called, what it reads, and the plain function behind it."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass
+from typing import Any
+
+from trunnion.findings import Finding
+from trunnion.model.session import Session
+from trunnion.pipeline.context import Context
+from trunnion.progress import Progress
+from trunnion.settings import checked, choose, digest
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Result:
+    """What a step gives: the changed session and the findings that live and go stale with the step."""
+
+    session: Session
+    findings: tuple[Finding, ...] = ()
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Step:
+    """One step: name, title, the steps whose results it reads (`after`), the settings it declares and those among them that a session
+    uses (all where `uses` is None), what it reads, the work, and whether its result is there."""
+
+    name: str
+    title: str
+    after: tuple[str, ...]
+    settings: Callable[[], tuple[type, ...]]
+    reads: Callable[[Session, Context], tuple[Any, ...]]
+    work: Callable[[Session, Context, Progress], Result]
+    done: Callable[[Session], bool]
+    version: int = 1
+    uses: Callable[[Session], tuple[type, ...]] | None = None
+
+    def key(self, session: Session, context: Context) -> str:
+        """Return the digest of everything the step would be given now."""
+        used = self.settings() if self.uses is None else self.uses(session)
+        chosen: tuple[Any, ...] = tuple(checked(choose(group, session.choices)) for group in used)
+        return digest(self.name, self.version, chosen, self.reads(session, context), *session.cuts)

@@ -1,0 +1,31 @@
+"""What is tried against a finding, the likeliest first: the fix that it asks for, then what else serves against its cause."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import replace
+
+from trunnion.findings import Finding, Fix
+
+ALTERNATIVES: Mapping[str, tuple[str, ...]] = {
+    "verify.collision-stock": ("clear_first", "tool", "drop"),
+    "verify.collision": ("tool", "drop"),
+    "verify.gouge": ("tolerance", "smaller_tool", "drop"),
+    "verify.rapid-in-stock": ("clear_first", "drop"),
+    "verify.power": ("feed",),
+    "verify.coverage": ("add_operation", "add_slim"),
+    "toolpath.refused": ("smaller_tool", "drop"),
+}
+"""Kinds of fixes by the code of the finding. `drop` stands last: what the operation was for must be finished by others, or coverage falls
+and the round is not kept."""
+
+
+def fixes_for(finding: Finding) -> tuple[Fix, ...]:
+    """Return the fixes that are tried against a finding, in this order; none where it asks for none."""
+    return () if finding.fix is None else fixes_after(finding.fix)
+
+
+def fixes_after(fix: Fix) -> tuple[Fix, ...]:
+    """Return a fix and what else serves against its reason, in the order that they are tried in."""
+    kinds = ALTERNATIVES.get(fix.reason, (fix.kind,))
+    return tuple(replace(fix, kind=kind) for kind in kinds)
