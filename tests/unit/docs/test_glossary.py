@@ -39,11 +39,11 @@ time timing tracing
 """Plain words of geometry and arithmetic."""
 
 EVERY_DAY = """
-accuracy allowed alternatives arrangement attempts bad bar cancelled candidates colour colouring confirm confirmed
+accuracy allowed alternatives arrangement attempts bad bar cancelled candidates change colour colouring confirm confirmed
 contouring dense estimated evaluate execution external finish finished for free generate going linking
 milled milling moment mover moves needs offsetting opened optimize passed patched pick planning
 posted rated recognize refine refined refused ridged round row rough run scale score shortest slicer slicing slider
-taken tally trial unexplained unsaved verify worst
+suppression taken tally trial unexplained unsaved verify worst
 """
 """Plain words of a workshop and of every day."""
 
