@@ -25,6 +25,8 @@ from pathlib import Path
 SOURCES = ("core", "gui", "resources")
 NAMED = ("surface.cutter=AL2-ball D8 R4", "surface.local_cutter=AL2-ball D5 R2.5")
 """Two ball mills of the catalogue, other ones than the plan of D1 would take."""
+COARSE = ("surface.scallop=0.05", "surface.semi_scallop=0.3")
+"""Random curved plates are programmed with coarse passes: sameness needs no fineness, and twenty parts take long."""
 COMMAND = "from trunnion.cli.main import run; run()"
 UNTIMED = ("seconds", "files")
 """Keys of the verdict's JSON that are not of the plan: how long it took, where it was written."""
@@ -52,9 +54,9 @@ def cases(parts: Path, seeds: int, folder: Path) -> Iterator[Case]:
     from seeded.panels import panel
     from seeded.plates import plate
 
-    for make in (panel, plate):
+    for make, words in ((panel, ()), (plate, COARSE)):
         for made in map(make, range(seeds)):
-            yield Case(made.name, made.written(folder))
+            yield Case(made.name, made.written(folder), words)
 
 
 def programmed(

@@ -27,6 +27,7 @@ from trunnion.toolpath.offsetting import choices
 from trunnion.toolpath.offsetting.contour import ContourApproach, cut_open, cut_parts
 from trunnion.toolpath.offsetting.levels import fillet_steps, steps_down
 from trunnion.toolpath.offsetting.rings import depth_first, ring_tree, safe_step
+from trunnion.toolpath.offsetting.trimming import PassTrimming
 from trunnion.toolpath.stock.heightfield import PlanningStock
 
 SMALLEST_REST = 0.02
@@ -38,6 +39,9 @@ SMALLEST_LEFTOVER = 0.05
 OVERRUN = 1.0
 """mm that the whole cutter runs past a rest along the wall."""
 
+WORTH = 0.1
+"""mm: stock of a rest that stands no higher over a pass is not worth it."""
+
 TOUCH = 0.02
 """mm: a pass that would enter a rest by less is not made."""
 
@@ -47,7 +51,7 @@ class CornerSettings:
     """How corners are cleared and finished. Width and depth of cut come with the cutting data, allowances with the drive."""
 
     lead_radius: float = choices.lead_radius(
-        2.0,
+        1.0,
         "Radius of the tangential arcs onto the wall and off it; smaller where there is no room.",
     )
     scallop: float = choices.fillet_scallop()
@@ -101,7 +105,7 @@ def corner(
                 room, rims = rooms[height.distance]
                 if height.distance not in beside:
                     beside[height.distance] = list(_beside(rims, rest, tool))
-                for part in beside[height.distance]:
+                for part in _standing(builder, beside[height.distance], rest, height.z, drive):
                     if part.closed:
                         cut_parts(builder, [part], height.z, room, approach)
                     else:
@@ -110,6 +114,19 @@ def corner(
     return Planned(
         path=eased_finish(builder.finished(), tool, data, stock, progress), findings=tuple(findings)
     )
+
+
+def _standing(
+    builder: PathBuilder, passes: list[Curve], rest: Region, z: float, drive: PlaneDrive
+) -> Iterator[Curve]:
+    """Yield the parts of passes beside a rest at a height where its stock stands before the cutter; finishing passes whole, for what they
+    take off is finer than the planner's stock."""
+    if drive.wall_allowance <= 0.0 or not passes:
+        yield from passes
+        return
+    trimming = PassTrimming.of(builder, rest, z + WORTH)
+    for curve in passes:
+        yield from trimming.parts(builder, curve)
 
 
 def _rests(drive: PlaneDrive, level: DriveLevel) -> Region:
