@@ -67,7 +67,7 @@ class Finding:
     remedy: str = ""
 
     @property
-    def place(self) -> str:
+    def location(self) -> str:
         """The first `MOST_SHOWN` names of `where` and how many more there are, as a line on a screen has room for; JSON has all."""
         shown, more = ", ".join(self.where[:MOST_SHOWN]), len(self.where) - MOST_SHOWN
         return f"{shown} and {more} more" if more > 0 else shown
@@ -83,7 +83,7 @@ class Finding:
         }
 
     def __str__(self) -> str:
-        where = f" ({self.place})" if self.where else ""
+        where = f" ({self.location})" if self.where else ""
         remedy = f": {self.remedy}" if self.remedy else ""
         return f"{self.severity.value} {self.code}: {self.text}{where}{remedy}"
 

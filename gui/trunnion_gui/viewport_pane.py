@@ -430,10 +430,10 @@ class ViewportPane(QWidget):
         self._point(None, QPointF())
         self.refresh()
 
-    def look_at_worst_point(self, place: WorstPoint) -> None:
+    def look_at_worst_point(self, worst: WorstPoint) -> None:
         """Go to a worst place of the map."""
-        self.scene.look_at(place.point, place.face, _CLOSE_LOOK)
-        self.scene.show_label(fine_amount(place.deviation), place.point)
+        self.scene.look_at(worst.point, worst.face, _CLOSE_LOOK)
+        self.scene.show_label(fine_amount(worst.deviation), worst.point)
 
     def _point(
         self, found: tuple[int, float, tuple[float, float, float]] | None, at: QPointF
@@ -444,10 +444,10 @@ class ViewportPane(QWidget):
         if found is None:
             self.hinted.emit("")
             return
-        face, value, place = found
+        face, value, position = found
         owners = [f for f in self._document.shown.recognition or () if face in f.tags]
         owner = min(owners, key=lambda f: len(f.tags)).id if owners else ""
-        where = "x {:.2f}  y {:.2f}  z {:.2f}".format(*place)
+        where = "x {:.2f}  y {:.2f}  z {:.2f}".format(*position)
         self.hinted.emit(
             " · ".join(w for w in (fine_amount(value), f"{tr('face')} {face}", owner, where) if w)
         )

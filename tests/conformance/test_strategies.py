@@ -21,7 +21,7 @@ from trunnion.model.session import Session
 from trunnion.model.tool import Tool
 from trunnion.pipeline import Engine
 from trunnion.pipeline.toolpaths import make_paths
-from trunnion.plan.freeform.reach import places_on
+from trunnion.plan.freeform.reach import samples_on
 from trunnion.progress import QUIET
 from trunnion.settings import choose
 from trunnion.toolpath.contract import ToolAxis
@@ -237,7 +237,7 @@ def standing(name: str, tool: Tool, found: OperationPath | None) -> float:
     ]
     cut += [] if found is None else [(tool, found.path)]
     tags = operation.faces or at.engine.context.part.tags
-    points = places_on(at.engine.context.skin(), tuple(tags), PLACES).point
+    points = samples_on(at.engine.context.skin(), tuple(tags), PLACES).point
     far = np.full(len(points), FAR)
     sections = [
         ProgramSection(operation="", tool=t, spindle=1000.0, path=p) for t, p in cut if len(p)

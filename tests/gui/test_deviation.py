@@ -83,11 +83,11 @@ def test_the_worst_places_are_listed_and_a_click_goes_there(mapped):
     assert [table.item(r, 3).text() for r in range(table.rowCount())] == ["pocket-02", "pocket-03"]
     QTest.mouseClick(table.viewport(), BUTTON, pos=table.visualItemRect(table.item(0, 1)).center())
     scene = mapped.viewport.scene
-    at = scene.where(mapped.docks.deviation.places[0].point)
+    at = scene.where(mapped.docks.deviation.worst_points[0].point)
     assert abs(at.x() - scene.width() / 2) < 3 and abs(at.y() - scene.height() / 2) < 3
     assert scene.view.camera.parallel_scale < 50.0
     # Beside the number that is written at the place.
-    x, y, z = mapped.docks.deviation.places[0].point
+    x, y, z = mapped.docks.deviation.worst_points[0].point
     inside = np.array([GOUGE[0] - x, GOUGE[1] - y, 0.0]) * 0.8 + (x, y, z)
     assert hue(pixel(mapped, inside)) @ hue(load_palette().deviation.gouge[-1]) > 0.9
 

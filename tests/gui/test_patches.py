@@ -294,9 +294,9 @@ def test_a_line_drawn_with_clicks_cuts_a_patch_and_the_cut_can_be_taken_back(sho
     assert bar.manner.currentData() == DRAWN and not bar.apply.isEnabled()
     for dx, dy in ((-4.0, 0.0), (0.0, 1.5), (3.0, 1.0), (4.0, 0.0)):
         click(shown, (x + dx, y + dy, z))
-    assert len(bar.places) == 4
+    assert len(bar.positions) == 4
     QTest.mouseClick(bar.back, LEFT)
-    assert len(bar.places) == 3
+    assert len(bar.positions) == 3
     QTest.mouseClick(bar.apply, LEFT)
     done(shown, qtbot)
     assert shown.document.session.part.n_faces == n + 1

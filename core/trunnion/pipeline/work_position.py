@@ -11,11 +11,11 @@ from trunnion.model.blank import Blank
 from trunnion.model.material import Machine
 from trunnion.model.session import Session
 from trunnion.model.setup import Setup
-from trunnion.shop.kinematics import Places, WorkPosition
+from trunnion.shop.kinematics import WorkPosition, WorkPositions
 from trunnion.toolpath.motion.reorient import swing_of
 
 
-def work_positions_of(session: Session, machines: Mapping[str, Machine]) -> Places:
+def work_positions_of(session: Session, machines: Mapping[str, Machine]) -> WorkPositions:
     """Return where the work of every setup stands; setups on machines that the catalogue doesn't know are left out."""
     if session.blank is None:
         return {}

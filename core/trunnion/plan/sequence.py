@@ -13,7 +13,7 @@ class OrderedOperation:
     id: str
     tool: str
     stage: int
-    place: tuple[float, float]
+    position: tuple[float, float]
     after: frozenset[str]
 
 
@@ -72,10 +72,10 @@ def _walked(jobs: Mapping[str, OrderedOperation], tools: Sequence[str]) -> tuple
                 ready,
                 key=lambda j: (
                     j.stage,
-                    (j.place[0] - here[0]) ** 2 + (j.place[1] - here[1]) ** 2,
+                    (j.position[0] - here[0]) ** 2 + (j.position[1] - here[1]) ** 2,
                     j.id,
                 ),
             )
             order.append(chosen.id)
-            at, left = chosen.place, left - {chosen.id}
+            at, left = chosen.position, left - {chosen.id}
     return tuple(order)

@@ -75,8 +75,8 @@ def from_below(feature: Feature) -> bool:
 
 def _setup(n: int, frame: Frame, blank: Blank, settings: SetupSettings) -> Setup:
     low, high = blank.box_in(frame)
-    place, height = settings.origin.split()
-    origin = low if place == "corner" else 0.5 * (low + high)
+    position, height = settings.origin.split()
+    origin = low if position == "corner" else 0.5 * (low + high)
     z = high[2] if height == "top" else low[2]
     offset = frame.moved(np.array([origin[0], origin[1], z]))
     return Setup(

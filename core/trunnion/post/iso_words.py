@@ -140,15 +140,15 @@ def _check_cycles(name: str, words: IsoWords) -> None:
 
 def _check_placeholders(name: str, word: str, lines: tuple[str, ...]) -> None:
     try:
-        places = [
-            place
+        field_names = [
+            field_name
             for line in lines
-            for _, place, _, _ in Formatter().parse(line)
-            if place is not None
+            for _, field_name, _, _ in Formatter().parse(line)
+            if field_name is not None
         ]
     except ValueError as reason:
         raise BadInput(f"dialect {name}: {word}: {reason}; write braces as {{{{ and }}}}") from None
-    for place in places:
-        if place not in _PLACEHOLDERS[word]:
+    for field_name in field_names:
+        if field_name not in _PLACEHOLDERS[word]:
             known = ", ".join(_PLACEHOLDERS[word]) or "none"
-            raise BadInput(f"dialect {name}: {word}: {{{place}}} is not known; known: {known}")
+            raise BadInput(f"dialect {name}: {word}: {{{field_name}}} is not known; known: {known}")

@@ -19,7 +19,7 @@ RANGE = 2.5
 """Where the colours end, in tolerances."""
 EVEN = 1e-3
 """mm: a face whose samples differ by less has one colour anyway."""
-MOST_PLACES = 60
+MOST_POINTS = 60
 _ROUNDS = 14
 _APART = 1e5
 """mm added between two faces in a search for neighbours, so that none is found on another face."""
@@ -177,16 +177,16 @@ def values_at(
     owner = np.zeros(len(points), np.int64)
     owner[triangles.ravel()] = np.repeat(face, 3)
     known = np.isin(owner, deviation.face)
-    samples, places = (
+    samples, positions = (
         np.column_stack([p, tags * _APART])
         for p, tags in ((deviation.point, deviation.face), (points, owner))
     )
-    _, nearest = cKDTree(samples).query(places[known])
+    _, nearest = cKDTree(samples).query(positions[known])
     value[known] = deviation.deviation[nearest]
     bad = np.flatnonzero((deviation.deviation < low) | (deviation.deviation > high))
     if len(bad):
         around = np.flatnonzero(known)
-        _, rows = cKDTree(places[known]).query(samples[bad], k=min(3, len(around)))
+        _, rows = cKDTree(positions[known]).query(samples[bad], k=min(3, len(around)))
         rows = around[np.asarray(rows).reshape(len(bad), -1)]
         spread = np.repeat(deviation.deviation[bad], rows.shape[1])
         # The gravest last: a gouge is never painted over by what is left beside it.
@@ -213,4 +213,4 @@ def worst_points(deviation: Deviation, low: float, high: float) -> tuple[WorstPo
                     deviation=float(deviation.deviation[row]),
                 )
             )
-    return tuple(found[:MOST_PLACES])
+    return tuple(found[:MOST_POINTS])

@@ -44,7 +44,7 @@ if TYPE_CHECKING:
 SIZE = (1600, 1000)
 FILLED = 0.92
 """How far what is drawn may reach from the middle of a picture towards its border."""
-_NAMED_PLACES = 5
+_NAMED_POINTS = 5
 """Worst places whose figure is written on the deviation's picture."""
 
 
@@ -138,10 +138,10 @@ def _reach(plotter: Plotter) -> float:
     bounds = np.reshape(plotter.bounds, (3, 2))
     corners = np.array([(*corner, 1.0) for corner in product(*bounds)])
     seen = plotter.camera.GetCompositeProjectionTransformMatrix(SIZE[0] / SIZE[1], -1.0, 1.0)
-    places = corners @ np.array(
+    projected = corners @ np.array(
         [[seen.GetElement(row, column) for row in range(4)] for column in range(4)]
     )
-    return float(np.abs(places[:, :2] / places[:, 3:]).max())
+    return float(np.abs(projected[:, :2] / projected[:, 3:]).max())
 
 
 def _legend(plotter: Plotter, entries: Mapping[str, Colour]) -> None:
@@ -254,7 +254,7 @@ def _deviation(session: Session, mesh: Mesh, palette: Palette, progress: Progres
     plotter.add_mesh(surface, scalars="colour", rgb=True, ambient=0.35, diffuse=0.7)
     _outline(plotter, _surface(mesh.points, mesh.triangles))
     _legend(plotter, deviation_legend(shown, palette))
-    worst = shown.worst[:_NAMED_PLACES]
+    worst = shown.worst[:_NAMED_POINTS]
     if worst:
         plotter.add_point_labels(
             np.array([w.point for w in worst]),

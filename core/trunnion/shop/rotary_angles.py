@@ -19,14 +19,14 @@ TURN = 2.0 * math.pi
 
 
 def followed(
-    axis: Floats, place: WorkPosition, stand: Floats | None, near: float, operation: str
+    axis: Floats, work_position: WorkPosition, stand: Floats | None, near: float, operation: str
 ) -> Floats:
     """Return the rotary angles (n, a) in rad at which a machine holds tool axes (n, 3), one after the other.
 
     They go on from where the axes stand (a,) when that can be, else from the beginning that turns least. An axis within `near` rad of the
     pole may be taken for the pole. Raises `Refused`, naming operation and block, for what the machine can't hold or can't reach.
     """
-    machine = place.machine
+    machine = work_position.machine
     through = _through_pole(axis, machine, near)
     angles, free, held = rotary_solutions(machine, axis)
     lost = np.flatnonzero(~held)
@@ -36,7 +36,7 @@ def followed(
             f"operation {operation}, block {lost[0] + 1}: a tool axis that {machine.title} with {has}; lean it another way or "
             "choose another machine"
         )
-    low, high = place.limits
+    low, high = work_position.limits
     chosen = np.zeros((len(axis), len(machine.rotary)))
     home = np.zeros(len(machine.rotary)) if stand is None else stand
     tries: list[tuple[int, float, int, Floats]] = []
@@ -63,7 +63,7 @@ def followed(
     reached, _, _, best = min(tries, key=lambda t: t[:3])
     if -reached < len(axis):
         raise Refused(
-            f"operation {operation}, block {1 - reached}: {beyond(angles[-reached], place)}"
+            f"operation {operation}, block {1 - reached}: {beyond(angles[-reached], work_position)}"
         )
     return best
 
@@ -107,12 +107,12 @@ def _beginnings(
     return found or [np.clip(near, low, high)]
 
 
-def beyond(ways: Floats, place: WorkPosition) -> str:
+def beyond(ways: Floats, work_position: WorkPosition) -> str:
     """Return the angles that a pose needs and the limits of the axes."""
     near = np.degrees(ways - TURN * np.round(ways / TURN))
     asked = " or ".join(
-        " ".join(f"{a.name}{v:.1f}" for a, v in zip(place.machine.rotary, way, strict=True))
+        " ".join(f"{a.name}{v:.1f}" for a, v in zip(work_position.machine.rotary, way, strict=True))
         for way in near.tolist()
     )
-    has = ", ".join(f"{a.name} {a.low:g} to {a.high:g}" for a in place.machine.rotary)
-    return f"its tool axis needs {asked}, which can't be reached from the block before; {place.machine.title} has {has}"
+    has = ", ".join(f"{a.name} {a.low:g} to {a.high:g}" for a in work_position.machine.rotary)
+    return f"its tool axis needs {asked}, which can't be reached from the block before; {work_position.machine.title} has {has}"

@@ -110,7 +110,7 @@ class Click:
     was held down."""
 
     face: int
-    place: tuple[float, float, float]
+    position: tuple[float, float, float]
     with_ctrl: bool = False
 
 
@@ -251,10 +251,10 @@ class ViewportScene(QWidget):
         """Show the path of the tip: points (k + 1, 3), and whether each chord (k,) was a rapid."""
         draw_trail(self.view, points, rapid)
 
-    def look_at(self, place: Sequence[float], face: int, half_height: float) -> None:
+    def look_at(self, position: Sequence[float], face: int, half_height: float) -> None:
         """Bring a place on a face into the middle of the picture, from above its face, showing so many mm above and below it."""
         camera = self.view.camera
-        normal = self._normal(face, np.asarray(place))
+        normal = self._normal(face, np.asarray(position))
         away = normal + self._frame.z if normal @ self._frame.z > -0.5 else normal
         away = away + _ASIDE * self._frame.world_direction(np.array([-0.6, -0.8, 0.0]))
         away = (
@@ -263,22 +263,24 @@ class ViewportScene(QWidget):
             * np.linalg.norm(np.subtract(camera.position, camera.focal_point))
         )
         camera.focal_point, camera.position, camera.up = (
-            tuple(place),
-            tuple(np.add(place, away)),
+            tuple(position),
+            tuple(np.add(position, away)),
             tuple(self._frame.z),
         )
         camera.parallel_scale = half_height
         self.view.renderer.ResetCameraClippingRange()
         self.view.render()
 
-    def _normal(self, face: int, place: np.ndarray) -> np.ndarray:
+    def _normal(self, face: int, position: np.ndarray) -> np.ndarray:
         """Return the direction that a face looks in at a place."""
         rows = (
             np.flatnonzero(self._mesh.face == face) if self._mesh is not None else np.zeros(0, int)
         )
         if self._mesh is None or not len(rows):
             return np.asarray(self._frame.z)
-        nearest = np.argmin(np.linalg.norm(self._mesh.corners()[rows].mean(axis=1) - place, axis=1))
+        nearest = np.argmin(
+            np.linalg.norm(self._mesh.corners()[rows].mean(axis=1) - position, axis=1)
+        )
         return self._mesh.normals()[rows[nearest]]
 
     def on_face(self, tag: int, points: np.ndarray) -> np.ndarray:
@@ -290,9 +292,9 @@ class ViewportScene(QWidget):
         draw_names(self.view, names, self._theme)
         self.view.render()
 
-    def show_cut(self, places: Sequence[tuple[float, float, float]], line: np.ndarray) -> None:
+    def show_cut(self, positions: Sequence[tuple[float, float, float]], line: np.ndarray) -> None:
         """Show places that were clicked, and the line (k, 2, 3) that a cut will follow; both may be empty."""
-        draw_cut(self.view, places, line, self._theme)
+        draw_cut(self.view, positions, line, self._theme)
         self.view.render()
 
     def show_label(self, text: str, at: tuple[float, ...] = ()) -> None:
@@ -380,8 +382,8 @@ class ViewportScene(QWidget):
 
     def _click(self, event: QMouseEvent) -> None:
         face = self.face_at(event.position())
-        place = self._picker.point if face and self._picker is not None else (0.0, 0.0, 0.0)
-        click = Click(face, place, bool(event.modifiers() & Qt.KeyboardModifier.ControlModifier))
+        position = self._picker.point if face and self._picker is not None else (0.0, 0.0, 0.0)
+        click = Click(face, position, bool(event.modifiers() & Qt.KeyboardModifier.ControlModifier))
         if event.button() == Qt.MouseButton.LeftButton:
             self.clicked.emit(click)
         else:

@@ -36,7 +36,7 @@ def test_a_line_names_eight_places_and_json_all_of_them() -> None:
 
 
 def test_eight_places_are_all_named() -> None:
-    assert findings.info("a.b", "so", *face_tags(range(1, 9))).place.endswith("face 7, face 8")
+    assert findings.info("a.b", "so", *face_tags(range(1, 9))).location.endswith("face 7, face 8")
 
 
 def test_a_part_of_progress_reports_its_own_share() -> None:

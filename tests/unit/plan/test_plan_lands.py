@@ -20,7 +20,7 @@ from trunnion.part.shape.skin import skin_of
 from trunnion.pipeline import Engine
 from trunnion.plan.freeform.cutters.end_mills import end_mills_for
 from trunnion.plan.freeform.lands import SKIM, LandClearances, PartAbove, covered, lands_of, without
-from trunnion.plan.freeform.reach import places_on
+from trunnion.plan.freeform.reach import samples_on
 from trunnion.plan.freeform.roughing.layers import plane_drive_of
 from trunnion.plan.freeform.space import SurfaceSpace
 from trunnion.progress import QUIET
@@ -210,7 +210,7 @@ def test_the_foot_of_the_wall_is_finished_with_the_land_and_no_more_of_it() -> N
     space = spaced(walled())
     found = at(chosen(space), 6.0)
     wall = next(t for t in space.part.tags if abs(space.part.graph().centre[t - 1][0] - 5.0) < 1e-6)
-    places = places_on(space.skin, (wall,))
+    places = samples_on(space.skin, (wall,))
     done = found.finishes(places)
     assert places.point[done, 2].max() <= 6.0 + 8.0
     assert (done == (places.point[:, 2] <= 14.0)).all()

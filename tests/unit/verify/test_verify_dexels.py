@@ -307,7 +307,7 @@ def test_a_leaning_rapid_through_stock_is_as_deep_as_it_goes(depth):
     # The rim's corner is square: of the material's triangle in it the deepest is on the top, as far from end as from flank.
     deepest = depth / (math.sin(lean) + math.cos(lean))
     assert 0.5 * deepest < run.rapid_depth[2] <= deepest + 1e-6
-    assert run.rapid_place[2, 2] == approx(20.0, abs=depth)
+    assert run.rapid_position[2, 2] == approx(20.0, abs=depth)
 
 
 def with_rapids(section):

@@ -173,7 +173,7 @@ def test_two_operations_5_microns_apart_make_a_step_of_5_microns():
     ]
     found = fine_measure([Plane(end=(4.0, 9.0))], moves_of(sections), 0.2)
     assert found.step.value == approx(0.005, abs=FINE_BOUND)
-    assert found.step.place[1] == approx(5.0, abs=0.3) and found.gouge.value == approx(
+    assert found.step.position[1] == approx(5.0, abs=0.3) and found.gouge.value == approx(
         0.005, abs=FINE_BOUND
     )
     assert found.scallop.value == approx(0.0, abs=FINE_BOUND)

@@ -58,7 +58,7 @@ def test_a_full_slot_has_the_chips_and_the_power_of_the_formula():
     run = StockRun(
         removed=np.where(moves.rapid, 0.0, 60.0 * moves.length),
         rapid_depth=np.zeros(4),
-        rapid_place=np.zeros((4, 3)),
+        rapid_position=np.zeros((4, 3)),
         body_depth=np.zeros(4),
         engagement=np.full(4, math.pi),
         depth_of_cut=np.full(4, 6.0),
@@ -131,7 +131,7 @@ def test_a_short_widening_counts_for_no_more_than_its_own_section():
     run = StockRun(
         removed=np.where(moves.rapid, 0.0, 3.4 * moves.length),
         rapid_depth=np.zeros(4),
-        rapid_place=np.zeros((4, 3)),
+        rapid_position=np.zeros((4, 3)),
         body_depth=np.zeros(4),
         engagement=np.full(4, 2.0),
         depth_of_cut=np.full(4, 6.5),

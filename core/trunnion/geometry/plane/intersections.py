@@ -75,11 +75,11 @@ def _off_carrier(s: Segments, rows: Ints, points: Floats) -> Floats:
 
 def share_on(s: Segments, rows: Ints, points: Floats) -> Floats:
     """Return the shares (k,) of the length at which points (k, 2) lie inside segments `rows`; NaN at the ends and beyond."""
-    place = np.full(len(rows), np.nan)
+    position = np.full(len(rows), np.nan)
     line = s.sweep[rows] == 0.0
     a = rows[line]
     along = (s.end[a] - s.start[a]) / np.maximum(s.length[a], np.finfo(float).tiny)[:, None]
-    place[line] = ((points[line] - s.start[a]) * along).sum(axis=1)
+    position[line] = ((points[line] - s.start[a]) * along).sum(axis=1)
     a = rows[~line]
     if len(a):
         ray, q = s.start[a] - s.centre[a], points[~line] - s.centre[a]
@@ -88,11 +88,11 @@ def share_on(s: Segments, rows: Ints, points: Floats) -> Floats:
             * np.arctan2(ray[:, 0] * q[:, 1] - ray[:, 1] * q[:, 0], (ray * q).sum(axis=1))
             % FULL
         )
-        place[~line] = angle * s.radius[a]
+        position[~line] = angle * s.radius[a]
     length = s.length[rows]
     with np.errstate(invalid="ignore"):
-        place[(place <= CLOSE) | (place >= length - CLOSE)] = np.nan
-        return place / length
+        position[(position <= CLOSE) | (position >= length - CLOSE)] = np.nan
+        return position / length
 
 
 def _lines_meet(s: Segments, a: Ints, b: Ints) -> list[Floats]:

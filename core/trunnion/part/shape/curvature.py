@@ -32,16 +32,16 @@ class _Bending:
         self._hollow = face.Orientation() == TopAbs_REVERSED
         self._trim = BRepTopAdaptor_FClass2d(face, tolerance.COINCIDENT)
 
-    def inside(self, places: Floats) -> Bools:
-        """Return which places (k, 2) lie inside the trim."""
+    def inside(self, uv: Floats) -> Bools:
+        """Return which uv (k, 2) lie inside the trim."""
         return np.array(
-            [self._trim.Perform(gp_Pnt2d(u, v)) == TopAbs_IN for u, v in places.tolist()],
+            [self._trim.Perform(gp_Pnt2d(u, v)) == TopAbs_IN for u, v in uv.tolist()],
             dtype=bool,
         )
 
-    def at(self, places: Floats) -> Floats:
-        """Return the lesser and the greater principal curvature (k, 2) at places (k, 2)."""
-        rows = self._evaluate(places)
+    def at(self, uv: Floats) -> Floats:
+        """Return the lesser and the greater principal curvature (k, 2) at uv (k, 2)."""
+        rows = self._evaluate(uv)
         bends = principal_curvatures(*(rows[:, n] for n in range(1, 6)))
         return -bends[:, ::-1] if self._hollow else bends
 
@@ -64,13 +64,13 @@ def bend_of(face: Shape) -> FaceCurvature:
         spread = bending.at(grid[:1])
         return FaceCurvature(spread=spread, least=float(spread[0, 0]), most=float(spread[0, 1]))
     inside = grid[bending.inside(grid)]
-    places = np.vstack([inside, _along_edges(face)])
-    bends = bending.at(places)
+    uv = np.vstack([inside, _along_edges(face)])
+    bends = bending.at(uv)
     known = np.asarray(np.isfinite(bends).all(axis=1))
     if not known.any():
         return FaceCurvature(spread=np.zeros((0, 2)), least=0.0, most=0.0)
     within = bends[: len(inside)][known[: len(inside)]]
-    least, most = _extremes(bending, places[known], bends[known], step)
+    least, most = _extremes(bending, uv[known], bends[known], step)
     return FaceCurvature(spread=within if len(within) else bends[known], least=least, most=most)
 
 
@@ -86,12 +86,10 @@ def _along_edges(shape: Shape) -> Floats:
     return np.array(found).reshape(-1, 2)
 
 
-def _extremes(
-    bending: _Bending, places: Floats, bends: Floats, reach: Floats
-) -> tuple[float, float]:
-    """Return the least and the greatest curvature at places (k, 2) and around the best of them, in smaller and smaller steps."""
+def _extremes(bending: _Bending, uv: Floats, bends: Floats, reach: Floats) -> tuple[float, float]:
+    """Return the least and the greatest curvature at uv (k, 2) and around the best of them, in smaller and smaller steps."""
     best = np.array([-bends[:, 0].min(), bends[:, 1].max()])
-    centre = places[[int(bends[:, 0].argmin()), int(bends[:, 1].argmax())]]
+    centre = uv[[int(bends[:, 0].argmin()), int(bends[:, 1].argmax())]]
     share = np.linspace(-1.0, 1.0, _ZOOM)
     around = np.stack(np.meshgrid(share, share, indexing="ij"), axis=-1).reshape(-1, 2)
     for _ in range(_ZOOMS):

@@ -96,14 +96,14 @@ class SectionFace:
     edges: tuple[int, ...]
     low: Floats
     high: Floats
-    places: Any = None
+    projection: Any = None
 
     def holds(self, point: Floats) -> bool:
         """Return whether a point on the surface lies inside the trimmed area."""
-        if self.places is None:
-            self.places = ShapeAnalysis_Surface(BRep_Tool.Surface_s(self.view.face))
-        place = self.places.ValueOfUV(gp_Pnt(*point.tolist()), tolerance.COINCIDENT)
-        return self.view.holds(place.X(), place.Y())
+        if self.projection is None:
+            self.projection = ShapeAnalysis_Surface(BRep_Tool.Surface_s(self.view.face))
+        uv = self.projection.ValueOfUV(gp_Pnt(*point.tolist()), tolerance.COINCIDENT)
+        return self.view.holds(uv.X(), uv.Y())
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -209,13 +209,14 @@ class SolidSlicer:
             edge = self.edges[n]
             heights = plane.above(edge.extremes)
             if heights.min() < 0.0 < heights.max():
-                places = (
+                parameters = (
                     _on_circle(edge, plane)
                     if edge.kind == GeomAbs_Circle
                     else _on_curve(edge, plane)
                 )
                 found[n] = [
-                    ((n, k), np.array(edge.adaptor.Value(t).Coord())) for k, t in enumerate(places)
+                    ((n, k), np.array(edge.adaptor.Value(t).Coord()))
+                    for k, t in enumerate(parameters)
                 ]
         return found
 
@@ -248,11 +249,11 @@ def _on_circle(edge: SectionEdge, plane: Plane) -> list[float]:
 
 def _on_curve(edge: SectionEdge, plane: Plane) -> list[float]:
     """Return the parameters where a free edge meets the plane, ascending, by halving between samples of unlike side."""
-    places = np.linspace(edge.first, edge.last, _SAMPLES)
+    parameters = np.linspace(edge.first, edge.last, _SAMPLES)
     heights = plane.above(edge.points)
     found = []
     for k in np.nonzero((heights[:-1] > 0.0) != (heights[1:] > 0.0))[0]:
-        low, high, was = float(places[k]), float(places[k + 1]), heights[k] > 0.0
+        low, high, was = float(parameters[k]), float(parameters[k + 1]), heights[k] > 0.0
         for _ in range(_HALVINGS):
             middle = 0.5 * (low + high)
             if (plane.above(np.array(edge.adaptor.Value(middle).Coord())) > 0.0) == was:

@@ -417,10 +417,10 @@ def _outline_box(outline: Floats) -> list[float]:
         arcs[:, EX1:ECX] - arcs[:, :EX1],
     )
     for x, y in ((1.0, 0.0), (0.0, 1.0), (-1.0, 0.0), (0.0, -1.0)):
-        place = centre + radius[:, None] * [x, y]
-        away = place - arcs[:, :EX1]
+        position = centre + radius[:, None] * [x, y]
+        away = position - arcs[:, :EX1]
         left = chord[:, 0] * away[:, 1] - chord[:, 1] * away[:, 0]
-        points.append(place[left * arcs[:, ERADIUS] <= 0.0])
+        points.append(position[left * arcs[:, ERADIUS] <= 0.0])
     every = np.vstack(points)
     return [*every.min(axis=0).tolist(), *every.max(axis=0).tolist()]
 
@@ -647,8 +647,8 @@ def _edges(face: Any, matrix: Floats, shift: Floats, progress: Progress) -> list
         if curve.GetType() == Kind.GeomAbs_Line or BRep_Tool.Degenerated_s(edge):
             found += line_edges(_mapped(curve, np.array([first, last]), matrix, shift))
         elif curve.GetType() == Kind.GeomAbs_Circle and isometric:
-            place = curve.Circle()
-            centre = np.array([place.Location().X(), place.Location().Y()]) @ matrix + shift
+            position = curve.Circle()
+            centre = np.array([position.Location().X(), position.Location().Y()]) @ matrix + shift
             mid = (
                 _mapped(curve, np.array([first, 0.5 * (first + last), last]), matrix, shift)
                 - centre
@@ -661,7 +661,7 @@ def _edges(face: Any, matrix: Floats, shift: Floats, progress: Progress) -> list
                 else last - first
             )
             found += circle_edges(
-                centre[0], centre[1], place.Radius(), angles[0], angles[0] + sweep
+                centre[0], centre[1], position.Radius(), angles[0], angles[0] + sweep
             )
         else:
             found += _sampled(curve, first, last, matrix, shift)

@@ -23,7 +23,7 @@ _SAMPLES, _ROUNDS = 33, 24
 """Points an edge is searched at for its extremes, and how often the span around the best is narrowed at most."""
 _NODES, _NEARER = 17, 4
 """Nodes on an edge, and steps towards the nearest point of its curve: they start beside it."""
-_PLACES = (0.0, 0.25, 0.5, 0.75, 1.0)
+_SHARES = (0.0, 0.25, 0.5, 0.75, 1.0)
 """Shares of a curve's parameters at which two curves in the same place are compared."""
 
 
@@ -80,10 +80,8 @@ def approximation_of(face: Shape) -> float:
             continue
         trim, curve = BRepAdaptor_Curve2d(edge, TopoDS.Face_s(face)), BRepAdaptor_Curve(edge)
         for t in np.linspace(trim.FirstParameter(), trim.LastParameter(), _NODES).tolist():
-            place = trim.Value(t)
-            most = max(
-                most, _distance(curve, np.array(surface.Value(place.X(), place.Y()).Coord()), t)
-            )
+            uv = trim.Value(t)
+            most = max(most, _distance(curve, np.array(surface.Value(uv.X(), uv.Y()).Coord()), t))
     return most
 
 
@@ -109,25 +107,28 @@ def _bounding(face: Shape) -> list[BRepAdaptor_Curve]:
         for e in edges_of(face)
         if not BRep_Tool.Degenerated_s(e) and not BRep_Tool.IsClosed_s(e, TopoDS.Face_s(face))
     ]
-    places = np.array(
+    positions = np.array(
         [
             [
                 c.Value(
                     c.FirstParameter() + share * (c.LastParameter() - c.FirstParameter())
                 ).Coord()
-                for share in _PLACES
+                for share in _SHARES
             ]
             for c in curves
         ]
-    ).reshape(-1, len(_PLACES), 3)
+    ).reshape(-1, len(_SHARES), 3)
     seam = set()
     for a, b in (
-        cKDTree(places[:, len(_PLACES) // 2]).query_pairs(tolerance.SLIVER)
+        cKDTree(positions[:, len(_SHARES) // 2]).query_pairs(tolerance.SLIVER)
         if len(curves) > 1
         else ()
     ):
         if (
-            min(np.abs(places[a] - places[b]).max(), np.abs(places[a] - places[b][::-1]).max())
+            min(
+                np.abs(positions[a] - positions[b]).max(),
+                np.abs(positions[a] - positions[b][::-1]).max(),
+            )
             < tolerance.SLIVER
         ):
             seam |= {a, b}

@@ -87,10 +87,10 @@ def _with_candidates(view: TrimmedFace, boundary: Floats, points: Floats) -> Box
         axis=1
     )
     if beyond.any():
-        places = ShapeAnalysis_Surface(BRep_Tool.Surface_s(view.face))
+        projection = ShapeAnalysis_Surface(BRep_Tool.Surface_s(view.face))
         for point in points[beyond]:
-            place = places.ValueOfUV(gp_Pnt(*point.tolist()), tolerance.COINCIDENT)
-            if places.Gap() < tolerance.FITTED and view.holds(place.X(), place.Y()):
+            uv = projection.ValueOfUV(gp_Pnt(*point.tolist()), tolerance.COINCIDENT)
+            if projection.Gap() < tolerance.FITTED and view.holds(uv.X(), uv.Y()):
                 low, high = np.minimum(low, point), np.maximum(high, point)
     return low, high
 
@@ -101,15 +101,15 @@ def _searched(view: TrimmedFace, boundary: Floats, progress: Progress) -> Box:
     step = np.array([(u1 - u0) / _GRID, (v1 - v0) / _GRID])
     trim, evaluate = Trim(view, progress), evaluator_of(view.adaptor)
 
-    def inside(places: Floats) -> tuple[Floats, Floats]:
-        kept = places[trim.holds(places)]
+    def inside(uv: Floats) -> tuple[Floats, Floats]:
+        kept = uv[trim.holds(uv)]
         return kept, evaluate(kept)[:, 0]
 
-    places, points = inside(np.array(view.grid(_GRID)))
+    projection, points = inside(np.array(view.grid(_GRID)))
     found = [boundary, points]
     for axis in range(3):
         for way in (1.0, -1.0):
-            here, reach = places, step
+            here, reach = projection, step
             best = points
             for _ in range(_ZOOMS if len(points) else 0):
                 centre = here[int(np.argmax(way * best[:, axis]))]

@@ -242,8 +242,8 @@ def _tangent(edge: TopologyEdge) -> Floats:
 def _normal_beside(edge: TopologyEdge, view: TrimmedFace) -> Floats:
     if view.plane_normal is not None:
         return view.plane_normal
-    place = BRepAdaptor_Curve2d(edge.edge, view.face).Value(edge.middle)
-    return view.at(place.X(), place.Y())[1]
+    uv = BRepAdaptor_Curve2d(edge.edge, view.face).Value(edge.middle)
+    return view.at(uv.X(), uv.Y())[1]
 
 
 def _length(edge: TopologyEdge, curve: CanonicalCurve) -> float:

@@ -39,23 +39,23 @@ class Trim:
         self._outlines: Outlines | None = None
         self._tried = False
 
-    def holds(self, places: Floats) -> Bools:
-        """Return which places (k, 2) lie inside."""
-        if not self._tried and len(places) > FEW:
+    def holds(self, uv: Floats) -> Bools:
+        """Return which uv (k, 2) lie inside."""
+        if not self._tried and len(uv) > FEW:
             self._tried = True
             self._outlines = self._opened()
         if self._outlines is None:
-            return self._by_kernel(places)
-        share = (places - self._low) / self._size
+            return self._by_kernel(uv)
+        share = (uv - self._low) / self._size
         told = self._outlines.within(share)
         # The kernel brings places beyond a seam back; it is queried for those as well.
         unsure = (told == NEAR) | (((share < 0.0) | (share > 1.0)) & self._turns).any(axis=1)
         inside = told == IN
-        inside[unsure] = self._by_kernel(places[unsure])
+        inside[unsure] = self._by_kernel(uv[unsure])
         return inside
 
-    def _by_kernel(self, places: Floats) -> Bools:
-        return np.array([self._holds(u, v) for u, v in places.tolist()], dtype=bool)
+    def _by_kernel(self, uv: Floats) -> Bools:
+        return np.array([self._holds(u, v) for u, v in uv.tolist()], dtype=bool)
 
     def _holds(self, u: float, v: float) -> bool:
         self._progress.check()

@@ -91,12 +91,12 @@ def too_small(blank: Blank, context: Context) -> tuple[Finding, ...]:
     if inward.min() >= -tolerance.SEW:
         return ()
     worst = int(np.argmin(inward))
-    place = ", ".join(f"{v:.2f}" for v in points[worst])
+    position = ", ".join(f"{v:.2f}" for v in points[worst])
     away = f"by {-inward[worst]:.2f} mm" if np.isfinite(inward[worst]) else "wholly"
     return (
         error(
             "blank.too-small",
-            f"the part stands out of its blank {away} at ({place})",
+            f"the part stands out of its blank {away} at ({position})",
             remedy="choose a larger blank, or one in the part's coordinates",
         ),
     )

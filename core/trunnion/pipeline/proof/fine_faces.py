@@ -78,11 +78,11 @@ def measure_fine(
     return FineResult(
         faces=tuple(faces),
         scallop=found.scallop.value,
-        scallop_at=home.to_world(found.scallop.place),
+        scallop_at=home.to_world(found.scallop.position),
         gouge=found.gouge.value,
-        gouge_at=home.to_world(found.gouge.place),
+        gouge_at=home.to_world(found.gouge.position),
         step=found.step.value,
-        step_at=home.to_world(found.step.place),
+        step_at=home.to_world(found.step.position),
         lower=lower,
         bound=found.bound,
     )
@@ -114,18 +114,18 @@ def _unit(axes: Floats) -> Floats:
 def fine_dict(found: FineResult) -> dict[str, object]:
     """Return the figures as JSON data."""
 
-    def place(at: Floats) -> list[float] | None:
+    def position(at: Floats) -> list[float] | None:
         return [float(v) + 0.0 for v in at] if np.isfinite(at).all() else None
 
     return {
         "faces": [f"face {tag}" for tag in found.faces],
         "bound_mm": found.bound,
         "scallop_mm": found.scallop,
-        "scallop_at": place(found.scallop_at),
+        "scallop_at": position(found.scallop_at),
         "gouge_mm": found.gouge,
-        "gouge_at": place(found.gouge_at),
+        "gouge_at": position(found.gouge_at),
         "step_mm": found.step,
-        "step_at": place(found.step_at),
+        "step_at": position(found.step_at),
         "step_below": found.lower,
     }
 

@@ -21,7 +21,7 @@ from trunnion.post.readers import read_program
 from trunnion.post.settings import OF_MACHINE, PostSettings
 from trunnion.progress import QUIET, Progress
 from trunnion.settings import checked, choose
-from trunnion.shop.kinematics import Places
+from trunnion.shop.kinematics import WorkPositions
 from trunnion.verify.settings import ProofSettings
 
 
@@ -56,8 +56,8 @@ def post_texts(
 ) -> tuple[PostedFile, ...]:
     """Return the texts of every program: one for each setup in the dialect of its machine's control, and the CL of all setups."""
     chosen, cl = checked(choose(PostSettings, session.choices)), registry.get("dialects", "apt")()
-    programs, places = programs_of(session), work_positions_of(session, machines)
-    posted = [_posted(p, header, chosen, machines, places) for p in progress.each(programs)]
+    programs, work_positions = programs_of(session), work_positions_of(session, machines)
+    posted = [_posted(p, header, chosen, machines, work_positions) for p in progress.each(programs)]
     progress.check()
     if programs:
         posted.append(
@@ -65,7 +65,7 @@ def post_texts(
                 suffix=cl.suffix,
                 dialect=cl.name,
                 setup="",
-                text=cl.write(programs, header, chosen, places),
+                text=cl.write(programs, header, chosen, work_positions),
             )
         )
     return tuple(posted)
@@ -76,7 +76,7 @@ def _posted(
     header: Header,
     chosen: PostSettings,
     machines: Mapping[str, Machine],
-    places: Places,
+    work_positions: WorkPositions,
 ) -> PostedFile:
     setup = program.setup
     dialect = registry.get("dialects", dialect_of(setup, chosen, machines))()
@@ -84,7 +84,7 @@ def _posted(
         suffix=f"{setup.name}.{dialect.suffix}",
         dialect=dialect.name,
         setup=setup.name,
-        text=dialect.write((program,), header, chosen, places),
+        text=dialect.write((program,), header, chosen, work_positions),
     )
 
 
@@ -114,10 +114,10 @@ def read_back(
     """Return the motions that the posted texts of the control's dialect say, setup by setup."""
     if session.process is None:
         raise BadCall("no operations yet: generate the route first")
-    tools, places = session.process.tools(), work_positions_of(session, machines)
+    tools, work_positions = session.process.tools(), work_positions_of(session, machines)
     read = (
         read_program(
-            f.dialect, f.text, tools, held(session, session.process.setup(f.setup)), places
+            f.dialect, f.text, tools, held(session, session.process.setup(f.setup)), work_positions
         )
         for f in progress.each(posted)
         if f.setup

@@ -26,11 +26,11 @@ class ExactFace(Protocol):
     def bounds(self) -> tuple[float, float, float, float]:
         """Return the least and greatest u and v."""
 
-    def inside(self, places: Floats) -> Bools:
-        """Say which places (k, 2) lie inside the trim."""
+    def inside(self, uv: Floats) -> Bools:
+        """Say which uv (k, 2) lie inside the trim."""
 
-    def at(self, places: Floats) -> ExactPoints:
-        """Return the surface at places (k, 2)."""
+    def at(self, uv: Floats) -> ExactPoints:
+        """Return the surface at uv (k, 2)."""
 
 
 class ExactPoints(Protocol):

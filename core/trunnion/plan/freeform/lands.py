@@ -44,7 +44,7 @@ TOUCHING = 0.02
 """mm: a disc that is smaller by this stands free wherever the cutter only touches what is beside it."""
 HAIR = 0.02
 """mm: half the width up to which what is left along the rim of what is done is none."""
-PLACES = 0.5
+RIM_SPACING = 0.5
 """mm between the places along a rim that are asked whether a cutter stands free there."""
 LAND, REST_LAND = "land", "rest_land"
 """Kinds of operations on lands: with a large end mill, and with another one of what that left."""
@@ -178,7 +178,7 @@ def stands_free(standing: PartAbove, land: Land, tool: Tool, progress: Progress 
     if not room:
         return True
     rim = room.segments()
-    count = np.maximum(np.ceil(rim.length / PLACES), 1.0).astype(np.int64)
+    count = np.maximum(np.ceil(rim.length / RIM_SPACING), 1.0).astype(np.int64)
     row = np.repeat(np.arange(len(rim)), count)
     share = (np.arange(len(row)) - np.repeat(np.cumsum(count) - count, count)) / count[row]
     disc = level_disc(max(tool.radius - TOUCHING, 0.5 * tool.radius))

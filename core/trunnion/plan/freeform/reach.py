@@ -41,7 +41,7 @@ class AreaSamples:
         )
 
 
-def places_on(skin: Skin, tags: tuple[int, ...], count: int = SAMPLES) -> AreaSamples:
+def samples_on(skin: Skin, tags: tuple[int, ...], count: int = SAMPLES) -> AreaSamples:
     """Return places spread evenly over faces: a place stands for an equal share of their area, the same ones each time."""
     rows = np.flatnonzero(skin.of(tags))
     corners = skin.points[skin.triangles[rows]]
@@ -69,31 +69,31 @@ def places_on(skin: Skin, tags: tuple[int, ...], count: int = SAMPLES) -> AreaSa
     )
 
 
-def leans(places: AreaSamples) -> Floats:
+def leans(samples: AreaSamples) -> Floats:
     """Return how far the normals of places lean from the tool's axis (k,), rad."""
-    return np.asarray(np.arccos(np.clip(places.normal[:, 2], -1.0, 1.0)))
+    return np.asarray(np.arccos(np.clip(samples.normal[:, 2], -1.0, 1.0)))
 
 
 def reached(
     space: SurfaceSpace,
-    places: AreaSamples,
+    samples: AreaSamples,
     tool: Tool,
     room: float,
     allowance: float = 0.0,
     progress: Progress = QUIET,
 ) -> Bools:
-    """Say which places (k,) an upright cutter touches without being lifted off by other faces, with its shank and holder at least `room`
+    """Say which samples (k,) an upright cutter touches without being lifted off by other faces, with its shank and holder at least `room`
     mm above the part, and without going lower than the blank.
 
     With an allowance it is the faces thickened by so much that it touches.
     """
     steepest = math.pi / 2.0 + tolerance.ANGLE
-    found = leans(places) < steepest
+    found = leans(samples) < steepest
     rows = np.flatnonzero(found)
     axis = np.tile([0.0, 0.0, 1.0], (len(rows), 1))
     # Off the face by what its triangles may be too high: beside steep faces a little of that lifts a cutter far.
     off = allowance + 2.0 * space.skin.bound
-    tip = tip_at(tool, places.point[rows] + off * places.normal[rows], places.normal[rows], axis)
+    tip = tip_at(tool, samples.point[rows] + off * samples.normal[rows], samples.normal[rows], axis)
     plan, lowest = tip[:, :2], float(space.low[2]) - space.setup.clearance - tool.gauge_length
     top = space.skin.drop.drop(plan, lower_side(tool, allowance), lowest, progress) + allowance
     highest = float(space.skin.points[:, 2].max())
@@ -112,7 +112,7 @@ def reached(
 
 def clear_beside(
     space: SurfaceSpace,
-    places: AreaSamples,
+    samples: AreaSamples,
     tool: Tool,
     bottom: float,
     room: float,
@@ -120,7 +120,7 @@ def clear_beside(
 ) -> bool:
     """Say whether shank and holder of a cutter that goes along upright walls, its tip at a height, stay `room` mm over what stands beside:
     the part with an allowance all round."""
-    beside = places.point[:, :2] + tool.radius * places.normal[:, :2]
+    beside = samples.point[:, :2] + tool.radius * samples.normal[:, :2]
     lowest = float(space.low[2]) - 1.0
     for z0, r0, _, r1 in tool.profile():
         if max(r0, r1) > tool.radius + tolerance.COINCIDENT:

@@ -25,15 +25,15 @@ SAMPLES = 200
 
 
 def reached_leaning(
-    places: AreaSamples, tool: Tool, ask: ClearanceQuery, progress: Progress = QUIET
+    samples: AreaSamples, tool: Tool, ask: ClearanceQuery, progress: Progress = QUIET
 ) -> Bools:
-    """Say which places (k,) a cutter touches with some lean, nothing of the tool in the part, and an axis that the machine can hold."""
-    found = np.zeros(len(places), dtype=bool)
-    tried = list(_axes(places.normal))
+    """Say which samples (k,) a cutter touches with some lean, nothing of the tool in the part, and an axis that the machine can hold."""
+    found = np.zeros(len(samples), dtype=bool)
+    tried = list(_axes(samples.normal))
     for n, axis in enumerate(tried):
         progress.at(n / len(tried), f"leaning {tool.name}")
         rows = np.flatnonzero(~found)
-        tip = tip_at(tool, places.point[rows], places.normal[rows], axis[rows])
+        tip = tip_at(tool, samples.point[rows], samples.normal[rows], axis[rows])
         found[rows] = ask(tip, axis[rows])
         if found.all():
             break
@@ -41,7 +41,7 @@ def reached_leaning(
 
 
 def leaning_cutter(
-    places: AreaSamples,
+    samples: AreaSamples,
     tools: Sequence[Tool],
     asking: Callable[[Tool], ClearanceQuery],
     share: float,
@@ -55,10 +55,10 @@ def leaning_cutter(
 
     def of(tool: Tool) -> Bools:
         if tool.name not in reach:
-            reach[tool.name] = reached_leaning(places, tool, asking(tool), progress)
+            reach[tool.name] = reached_leaning(samples, tool, asking(tool), progress)
         return reach[tool.name]
 
-    none = np.zeros(len(places), dtype=bool)
+    none = np.zeros(len(samples), dtype=bool)
     # The smallest cutter of each length says what can be reached at all.
     reachable = np.logical_or.reduce(
         [none, *(of(t) for t in ranked[-2:]), *([of(wanted)] if wanted else [])]

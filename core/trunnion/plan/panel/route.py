@@ -157,7 +157,7 @@ def _sequenced(
             id=w.id,
             tool=draft.tools[w.id].name,
             stage=rank[w.stage.name],
-            place=w.place,
+            position=w.position,
             after=after[w.id],
         )
         for w in tasks

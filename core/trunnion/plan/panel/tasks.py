@@ -58,7 +58,7 @@ class OperationTask:
     id: str
     stage: Stage
     feature: str
-    place: tuple[float, float]
+    position: tuple[float, float]
     requirement: ToolRequirement
     faces: tuple[int, ...]
     height: float
@@ -121,7 +121,7 @@ def _wishes_face(
             id=f"face-{space.setup.name}",
             stage=stage,
             feature="blank",
-            place=(float(middle[0]), float(middle[1])),
+            position=(float(middle[0]), float(middle[1])),
             requirement=requirement,
             faces=tops,
             height=height,
@@ -350,7 +350,7 @@ def _wishes_top(
                 warning("route.not-planned", str(reason), feature.id, *face_tags(tops))
             )
             continue
-        place = draft.space.centre(tops[0])
+        position = draft.space.centre(tops[0])
         requirement = ToolRequirement(
             depth=draft.space.top - z, room=room, wanted=wanted, corner_radius=0.0, near=NEAR_FLOOR
         )
@@ -359,7 +359,7 @@ def _wishes_top(
                 id=f"{stage.kind}-{feature.id}",
                 stage=stage,
                 feature=feature.id,
-                place=(float(place[0]), float(place[1])),
+                position=(float(position[0]), float(position[1])),
                 requirement=requirement,
                 faces=tops,
                 height=draft.space.top - z,
@@ -418,7 +418,7 @@ def _wishes_profile(
                     feature=feature.id,
                     requirement=requirement,
                     width=side,
-                    place=(float(space.blank_low[0]), float(space.blank_low[1])),
+                    position=(float(space.blank_low[0]), float(space.blank_low[1])),
                     faces=feature.with_role("wall", "corner"),
                     height=space.top - space.bottom,
                 )
@@ -454,7 +454,7 @@ def _wish(
         id=f"{stage.kind}-{feature.id}",
         stage=stage,
         feature=feature.id,
-        place=(float(middle[0]), float(middle[1])),
+        position=(float(middle[0]), float(middle[1])),
         requirement=requirement,
         faces=faces,
         height=bands[0].top - bands[-1].bottom,

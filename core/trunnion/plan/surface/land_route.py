@@ -24,7 +24,7 @@ from trunnion.plan.freeform.lands import (
     PartAbove,
     lands_of,
 )
-from trunnion.plan.freeform.reach import AreaSamples, places_on, reached
+from trunnion.plan.freeform.reach import AreaSamples, reached, samples_on
 from trunnion.plan.surface.plan_state import SurfacePlanState, face_name
 from trunnion.progress import Progress
 from trunnion.settings import Value
@@ -51,12 +51,12 @@ class FinishedLands:
     lands: tuple[LandCutters, ...] = ()
     tags: frozenset[int] = frozenset()
 
-    def without_feet(self, places: AreaSamples) -> AreaSamples:
+    def without_feet(self, samples: AreaSamples) -> AreaSamples:
         """Return the places that are not on the feet of sides that end mills finish."""
-        done = np.zeros(len(places), dtype=bool)
+        done = np.zeros(len(samples), dtype=bool)
         for each in self.lands:
-            done |= each.finishes(places)
-        return places.of(~done)
+            done |= each.finishes(samples)
+        return samples.of(~done)
 
 
 def plan_lands(
@@ -133,12 +133,12 @@ def _is_for_balls(draft: SurfacePlanState, chosen: LandCutters, balls: Sequence[
     """Say whether balls come to too much of a land that no end mill does: into slits that run out from it."""
     if chosen.left.area <= MISSED:
         return False
-    places = places_on(draft.space.skin, chosen.land.tags)
-    places = places.of(chosen.left.contains(places.point[:, :2]))
-    seen = np.zeros(len(places), dtype=bool)
+    samples = samples_on(draft.space.skin, chosen.land.tags)
+    samples = samples.of(chosen.left.contains(samples.point[:, :2]))
+    seen = np.zeros(len(samples), dtype=bool)
     for ball in sorted(balls, key=lambda t: t.diameter):
-        seen[~seen] = reached(draft.space, places.of(~seen), ball, draft.route.reach_clearance)
-    return float(seen.sum()) * places.area > max(MISSED, SLITS * chosen.land.region.area)
+        seen[~seen] = reached(draft.space, samples.of(~seen), ball, draft.route.reach_clearance)
+    return float(seen.sum()) * samples.area > max(MISSED, SLITS * chosen.land.region.area)
 
 
 def _low_sides(
@@ -147,8 +147,8 @@ def _low_sides(
     """Return the upright faces that the end mills of a land finish all over, with that land."""
     found = {}
     for tag in sorted(tags) if lands else ():
-        places = places_on(draft.space.skin, (tag,), FEW)
-        done = next((c for c in lands if len(places) and c.finishes(places).all()), None)
+        samples = samples_on(draft.space.skin, (tag,), FEW)
+        done = next((c for c in lands if len(samples) and c.finishes(samples).all()), None)
         if done is not None:
             found[tag] = done
     return found

@@ -36,7 +36,7 @@ from trunnion.plan.freeform.finishing.areas import (
 )
 from trunnion.plan.freeform.keys import ALLOWANCE, BOTTOM, CELL, EARLIER, SCALLOP
 from trunnion.plan.freeform.lands import LAND, REST_LAND
-from trunnion.plan.freeform.reach import AreaSamples, clear_beside, leans, places_on, reached
+from trunnion.plan.freeform.reach import AreaSamples, clear_beside, leans, reached, samples_on
 from trunnion.plan.freeform.roughing.directions import sides_for
 from trunnion.plan.freeform.roughing.hollows import hollow_depths
 from trunnion.plan.freeform.roughing.layers import left_on_walls
@@ -143,14 +143,14 @@ def _plan(draft: SurfacePlanState, progress: Progress) -> None:
     outside = blank_faces(part, space.blank)
     mine = sorted({tag for f in draft.recognition for tag in f.tags} - set(outside))
     progress.at(0.0, "looking at faces")
-    places = places_on(space.skin, tuple(mine))
-    upright = walls_of(places, mine)
-    walls = on_outline(space, places, upright, progress)
+    samples = samples_on(space.skin, tuple(mine))
+    upright = walls_of(samples, mine)
+    walls = on_outline(space, samples, upright, progress)
     for tags in progress.each(connected(walls, part.graph())):
         _outline(draft, tags)
     level = plan_lands(draft, set(mine) - set(walls), _finishers(draft), progress.part(0.0, 0.05))
     hidden = (
-        _hidden(draft, places, set(mine) - set(walls) - level.tags, progress.part(0.05, 0.1))
+        _hidden(draft, samples, set(mine) - set(walls) - level.tags, progress.part(0.05, 0.1))
         if draft.machine.rotary
         else ()
     )
@@ -168,7 +168,7 @@ def _plan(draft: SurfacePlanState, progress: Progress) -> None:
     progress.at(0.8, "roughing")
     _rough(draft, space, float(space.skin.points[:, 2].min()), "part", progress.part(0.8, 0.85))
     if hidden:
-        seen = places.of(np.isin(places.face, hidden))
+        seen = samples.of(np.isin(samples.face, hidden))
         for n, side in enumerate(
             sides_for(
                 space,
@@ -203,14 +203,14 @@ def _add_slivers(draft: SurfacePlanState) -> None:
 
 
 def _hidden(
-    draft: SurfacePlanState, places: AreaSamples, tags: set[int], progress: Progress
+    draft: SurfacePlanState, samples: AreaSamples, tags: set[int], progress: Progress
 ) -> tuple[int, ...]:
     """Return the faces that no upright cutter finishes most of."""
-    seen = np.zeros(len(places), dtype=bool)
+    seen = np.zeros(len(samples), dtype=bool)
     slender = sorted(_finishers(draft), key=lambda t: (t.diameter, -depth_reached(t)))[:SLENDER]
     for tool in slender:
-        seen |= reached(draft.space, places, tool, draft.route.reach_clearance, 0.0, progress)
-    return tuple(sorted(t for t in tags if seen[places.face == t].mean() < MOST))
+        seen |= reached(draft.space, samples, tool, draft.route.reach_clearance, 0.0, progress)
+    return tuple(sorted(t for t in tags if seen[samples.face == t].mean() < MOST))
 
 
 def _leaning_finishers(draft: SurfacePlanState) -> tuple[Tool, ...]:
@@ -268,11 +268,11 @@ def _hollows(draft: SurfacePlanState, space: SurfaceSpace, tool: Tool, progress:
     is too wide for what they lie in."""
     chosen = draft.chosen
     tags = {t for o in draft.operations if o.kind in ON_SKIN for t in o.faces}
-    places = places_on(space.skin, tuple(sorted(tags)))
-    places = places.of(places.normal[:, 2] > 0.0)
+    samples = samples_on(space.skin, tuple(sorted(tags)))
+    samples = samples.of(samples.normal[:, 2] > 0.0)
     radius = tool.radius + left_on_walls(space, chosen.rough_allowance, chosen.cell)
-    depths = hollow_depths(space, places.point, radius, progress)
-    return places.area * float((depths > FULL * _left_by_layers(space, chosen)).sum())
+    depths = hollow_depths(space, samples.point, radius, progress)
+    return samples.area * float((depths > FULL * _left_by_layers(space, chosen)).sum())
 
 
 def _left_by_layers(space: SurfaceSpace, chosen: SurfaceRouteSettings) -> float:
@@ -355,7 +355,7 @@ def _outline(draft: SurfacePlanState, tags: tuple[int, ...]) -> None:
         and depth_reached(t) >= top - float(z.min()) + draft.route.reach_clearance
         and clear_beside(
             space,
-            places_on(space.skin, tags, FEW),
+            samples_on(space.skin, tags, FEW),
             t,
             float(z.min()),
             draft.route.reach_clearance,
@@ -398,29 +398,29 @@ def _area(draft: SurfacePlanState, area: Area, level: FinishedLands, progress: P
     The feet of sides that end mills finish with lands are no matter of its cutter.
     """
     chosen = draft.chosen
-    places = places_on(draft.space.skin, area.tags)
-    draft.unsampled.update(set(area.tags) - set(places.face.tolist()))
-    places = level.without_feet(places)
-    area = replace(area, tags=tuple(t for t in area.tags if (places.face == t).any()))
+    samples = samples_on(draft.space.skin, area.tags)
+    draft.unsampled.update(set(area.tags) - set(samples.face.tolist()))
+    samples = level.without_feet(samples)
+    area = replace(area, tags=tuple(t for t in area.tags if (samples.face == t).any()))
     wanted = chosen.local_cutter if area.local else chosen.cutter
     found = cutter_for(
         draft.space,
-        places,
+        samples,
         _finishers(draft),
         chosen.share,
         draft.route.reach_clearance,
         named(draft.shop, wanted) if wanted else None,
         progress,
     )
-    _tell_unreached(draft, area, places, found)
+    _tell_unreached(draft, area, samples, found)
     if found.tool is None:
         return
-    tags = tuple(t for t in area.tags if found.reached[places.face == t].any())
+    tags = tuple(t for t in area.tags if found.reached[samples.face == t].any())
     for kind in ("semi", "finish") if chosen.semi_allowance > 0.0 else ("finish",):
-        for name, mine, strategy in _by_slope(area, tags, places, math.radians(chosen.steep)):
-            _add_finish(draft, kind, name, mine, found.tool, strategy, places)
+        for name, mine, strategy in _by_slope(area, tags, samples, math.radians(chosen.steep)):
+            _add_finish(draft, kind, name, mine, found.tool, strategy, samples)
     if found.rest is not None:
-        missed = places.of(found.missed)
+        missed = samples.of(found.missed)
         left = Area(
             id=area.id, tags=tuple(t for t in area.tags if (missed.face == t).any()), local=True
         )
@@ -440,9 +440,9 @@ def _area(draft: SurfacePlanState, area: Area, level: FinishedLands, progress: P
 def _hidden_area(draft: SurfacePlanState, area: Area, progress: Progress) -> None:
     """Plan semi-finishing and finishing of an area with a leaning cutter."""
     chosen = draft.chosen
-    places, few = (
-        places_on(draft.space.skin, area.tags),
-        places_on(draft.space.skin, area.tags, LEANING_SAMPLES),
+    samples, few = (
+        samples_on(draft.space.skin, area.tags),
+        samples_on(draft.space.skin, area.tags, LEANING_SAMPLES),
     )
     wanted = chosen.local_cutter if area.local else chosen.cutter
     own = named(draft.shop, wanted) if wanted else None
@@ -453,8 +453,8 @@ def _hidden_area(draft: SurfacePlanState, area: Area, progress: Progress) -> Non
     if found.tool is None:
         return
     if chosen.semi_allowance > 0.0:
-        _add_finish(draft, "semi", area.id, area.tags, found.tool, "surface.point", places)
-    _add_finish(draft, "finish", area.id, area.tags, found.tool, "surface.point", places)
+        _add_finish(draft, "semi", area.id, area.tags, found.tool, "surface.point", samples)
+    _add_finish(draft, "finish", area.id, area.tags, found.tool, "surface.point", samples)
     if found.rest is not None:
         left = tuple(t for t in area.tags if (found.missed & (few.face == t)).any())
         _add_finish(
@@ -464,24 +464,24 @@ def _hidden_area(draft: SurfacePlanState, area: Area, progress: Progress) -> Non
             left,
             found.rest,
             "surface.point",
-            places,
+            samples,
             earlier=found.tool,
         )
 
 
 def _by_slope(
-    area: Area, tags: Sequence[int], places: AreaSamples, limit: float
+    area: Area, tags: Sequence[int], samples: AreaSamples, limit: float
 ) -> list[tuple[str, tuple[int, ...], str]]:
     """Return the operations of an area: name, faces, strategy. Local features are of many slopes, which constant scallop suits best.
 
     Places that lean by more than a limit (rad) are cut by waterlines: a face with some of both is in both operations.
     """
-    above = leans(places) > limit
-    steep = tuple(t for t in tags if above[places.face == t].mean() > SOME)
+    above = leans(samples) > limit
+    steep = tuple(t for t in tags if above[samples.face == t].mean() > SOME)
     if STEEP not in registry.names("strategies"):
         steep = ()
     shallow = tuple(
-        t for t in tags if t not in steep or above[places.face == t].mean() < 1.0 - SOME
+        t for t in tags if t not in steep or above[samples.face == t].mean() < 1.0 - SOME
     )
     found = (
         [(area.id, shallow, first_known(FOR_LOCAL if area.local else FOR_SHALLOW))]
@@ -526,7 +526,7 @@ def _add_finish(
     tags: tuple[int, ...],
     tool: Tool,
     strategy: str,
-    places: AreaSamples,
+    samples: AreaSamples,
     earlier: Tool | None = None,
 ) -> None:
     stage, chosen = draft.stages[kind], draft.chosen
@@ -546,7 +546,7 @@ def _add_finish(
     after_rough = semi or chosen.semi_allowance <= 0.0
     depth = _left_by_layers(draft.space, chosen) if after_rough else chosen.semi_allowance
     width = stepover_on_plane(tool.corner_radius or 0.5 * tool.radius, height)
-    area = places.area * float(np.isin(places.face, tags).sum())
+    area = samples.area * float(np.isin(samples.face, tags).sum())
     rules = (
         stage.rule,
         f"{tool.name} over {trimmed(area, 0)} mm2: scallops of {trimmed(1000.0 * height, 1)} um, "
@@ -584,12 +584,12 @@ def _finishers(draft: SurfacePlanState) -> tuple[Tool, ...]:
 
 
 def _tell_unreached(
-    draft: SurfacePlanState, area: Area, places: AreaSamples, found: AreaCutters
+    draft: SurfacePlanState, area: Area, samples: AreaSamples, found: AreaCutters
 ) -> None:
     """Say which faces no cutter reaches, or not the one that was asked for."""
-    lost = [t for t in area.tags if not found.reachable[places.face == t].any()]
+    lost = [t for t in area.tags if not found.reachable[samples.face == t].any()]
     if lost:
-        size = places.area * float(np.isin(places.face, lost).sum())
+        size = samples.area * float(np.isin(samples.face, lost).sum())
         remedy = (
             "turn the part in another setup"
             if draft.machine.rotary
@@ -631,14 +631,14 @@ def _in_order(draft: SurfacePlanState, stages: Sequence[Stage]) -> list[Operatio
                 id=o.id,
                 tool=o.tool.name,
                 stage=rank[o.group],
-                place=_place(draft, o.faces),
+                position=_position(draft, o.faces),
                 after=frozenset(before),
             )
         )
     return [done[id] for id in ordered(jobs)]
 
 
-def _place(draft: SurfacePlanState, tags: tuple[int, ...]) -> tuple[float, float]:
+def _position(draft: SurfacePlanState, tags: tuple[int, ...]) -> tuple[float, float]:
     if not tags:
         return 0.0, 0.0
     at = draft.space.frame.to_local(draft.space.part.graph().centre[tags[0] - 1])

@@ -23,7 +23,7 @@ from trunnion.post.settings import PostSettings
 from trunnion.post.ticks import TickScale, WrittenPath, upright, written
 from trunnion.post.words import dialect_words, plain, refuse_unwritable
 from trunnion.post.writer.feed import FeedFormat, dwell_text, revolution_text, surface_text
-from trunnion.shop.kinematics import NO_PLACES, Places
+from trunnion.shop.kinematics import NO_WORK_POSITIONS, WorkPositions
 from trunnion.units import trimmed
 
 
@@ -60,7 +60,7 @@ class AptDialect:
         programs: Sequence[Program],
         header: Header,
         settings: PostSettings,
-        places: Places = NO_PLACES,
+        work_positions: WorkPositions = NO_WORK_POSITIONS,
     ) -> str:
         """Return the text of all setups' programs."""
         if not programs:
@@ -81,7 +81,7 @@ class AptDialect:
         text: str,
         tools: Sequence[AnyTool],
         setups: Sequence[Setup],
-        places: Places = NO_PLACES,
+        work_positions: WorkPositions = NO_WORK_POSITIONS,
     ) -> tuple[Program, ...]:
         """Return the programs of the setups that the text names."""
         from trunnion.post.readers.apt import read_apt

@@ -39,9 +39,9 @@ def fixed(direction: ArrayLike) -> AxisField:
     return field
 
 
-def from_point(place: ArrayLike, away: bool = True) -> AxisField:
-    """Return the field of axes that point away from a place (3,), as spokes do, or towards it."""
-    point = np.asarray(place, dtype=np.float64)
+def from_point(position: ArrayLike, away: bool = True) -> AxisField:
+    """Return the field of axes that point away from a position (3,), as spokes do, or towards it."""
+    point = np.asarray(position, dtype=np.float64)
     return from_curve(np.stack([point, point]), away)
 
 
@@ -61,10 +61,10 @@ def from_curve(curve: ArrayLike, away: bool = True) -> AxisField:
     return field
 
 
-def interpolated(places: ArrayLike, axes: ArrayLike) -> AxisField:
-    """Return the field between chosen vectors: axes (m, 3) at places (m, 3), weighed by the inverse square of the distance to each."""
+def interpolated(positions: ArrayLike, axes: ArrayLike) -> AxisField:
+    """Return the field between chosen vectors: axes (m, 3) at positions (m, 3), weighed by the inverse square of the distance to each."""
     where, chosen = (
-        np.asarray(places, dtype=np.float64).reshape(-1, 3),
+        np.asarray(positions, dtype=np.float64).reshape(-1, 3),
         unit(axes, "tool axis").reshape(-1, 3),
     )
 

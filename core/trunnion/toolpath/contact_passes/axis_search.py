@@ -63,12 +63,12 @@ class LeanLimits:
 
 @dataclass(frozen=True, slots=True, eq=False, kw_only=True)
 class FreeAxes:
-    """Free axes of one pass: at places (k,) along its contacts (2.25: a quarter of the way from the third to the next) axis (k, 3).
+    """Free axes of one pass: at samples (k,) along its contacts (2.25: a quarter of the way from the third to the next) axis (k, 3).
 
     free (k,): whether there is one; leap (k,): whether the axis is not reached from the place before without lifting the tool.
     """
 
-    place: Floats
+    position: Floats
     axis: Floats
     free: Bools
     leap: Bools
@@ -77,15 +77,15 @@ class FreeAxes:
         """Return the pieces that are cut without lifting the tool, those of two places and more."""
         ends = np.flatnonzero(self.leap | ~self.free | ~np.concatenate([[False], self.free[:-1]]))
         found = []
-        for a, b in pairwise([*ends.tolist(), len(self.place)]):
+        for a, b in pairwise([*ends.tolist(), len(self.position)]):
             # After a leap the way that leads up to it is cut again, with the new axis.
             rows = np.arange(a, b) if not self.leap[a] else np.concatenate([[a], np.arange(a, b)])
-            place = self.place[rows]
-            place[0] = self.place[a - 1] if self.leap[a] else place[0]
+            position = self.position[rows]
+            position[0] = self.position[a - 1] if self.leap[a] else position[0]
             if self.free[a] and len(rows) > 1:
                 found.append(
                     FreeAxes(
-                        place=place,
+                        position=position,
                         axis=self.axis[rows],
                         free=self.free[rows],
                         leap=self.leap[rows],
@@ -93,10 +93,12 @@ class FreeAxes:
                 )
         return found
 
-    def at(self, place: Floats) -> Floats:
-        """Return the axes (m, 3) at places (m,) of the pass."""
+    def at(self, position: Floats) -> Floats:
+        """Return the axes (m, 3) at samples (m,) of the pass."""
         row = np.clip(
-            np.interp(place, self.place, np.arange(len(self.place))), 0.0, len(self.place) - 1.0
+            np.interp(position, self.position, np.arange(len(self.position))),
+            0.0,
+            len(self.position) - 1.0,
         )
         return axis_between(self.axis, row)
 
@@ -141,14 +143,14 @@ def leaned(
     ):
         centre = origin.tip + radius * origin.axis
         for run in free.runs():
-            place = _finely(
+            position = _finely(
                 run, np.arange(len(way), dtype=np.float64), math.sqrt(8.0 * chord / radius)
             )
-            row = np.clip(place.astype(np.int64), 0, len(way) - 2)
-            share = (place - row)[:, None]
-            axis = run.at(place)
-            normal = slerp(way.normal[row], way.normal[row + 1], place - row)
-            whole = origin.closed and len(run.place) == len(free.place)
+            row = np.clip(position.astype(np.int64), 0, len(way) - 2)
+            share = (position - row)[:, None]
+            axis = run.at(position)
+            normal = slerp(way.normal[row], way.normal[row + 1], position - row)
+            whole = origin.closed and len(run.position) == len(free.position)
             found.append(
                 Pass(
                     tip=(1.0 - share) * centre[row] + share * centre[row + 1] - radius * axis,
@@ -215,21 +217,21 @@ def roomy(tool: Tool, room: float) -> Tool:
 
 def _finely(run: FreeAxes, rows: Floats, turn: float) -> Floats:
     """Return the places of a run at which its pass has rows, and as many between as keep the axis from turning further than `turn`."""
-    low, high = run.place[0], run.place[-1]
-    place = np.unique(np.concatenate([[low], rows[(rows > low) & (rows < high)], [high]]))
-    axis = run.at(place)
+    low, high = run.position[0], run.position[-1]
+    position = np.unique(np.concatenate([[low], rows[(rows > low) & (rows < high)], [high]]))
+    axis = run.at(position)
     count = np.maximum(1, np.ceil(angle_between(axis[:-1], axis[1:]) / turn)).astype(np.int64)
     owner = np.repeat(np.arange(len(count)), count)
     share = (np.arange(len(owner)) - np.repeat(np.cumsum(count) - count, count)) / count[owner]
-    return np.append(place[owner] + share * np.diff(place)[owner], high)
+    return np.append(position[owner] + share * np.diff(position)[owner], high)
 
 
 @dataclass(frozen=True, slots=True, eq=False, kw_only=True)
-class _Places:
+class _AxisSamples:
     """The places of all courses together: where (k,) along which contacts; point, normal, wanted axis (k, 3) there; from `start` (p + 1,)
     on those of a pass; `pitch` (p,) mm of travel from place to place."""
 
-    place: Floats
+    position: Floats
     point: Floats
     normal: Floats
     wanted: Floats
@@ -243,33 +245,33 @@ class _Places:
         tool: Tool,
         limits: LeanLimits,
         allowance: float,
-    ) -> _Places:
+    ) -> _AxisSamples:
         """Return places at even steps of what the cutter travels."""
         radius = max(tool.corner_radius, 0.25 * tool.radius)
-        places, points, normals, wanted, pitches = [], [], [], [], []
+        positions, points, normals, wanted, pitches = [], [], [], [], []
         for way in passes:
             travel, feed = way.travel(radius), way.feed
             steps = max(1, math.ceil(travel[-1] * limits.turn / STEP))
-            place = np.interp(
+            position = np.interp(
                 np.linspace(0.0, travel[-1], steps + 1),
                 travel,
                 np.arange(len(way), dtype=np.float64),
             )
-            point, normal = between(way.point, way.normal, feed, place)
-            row = np.clip(np.round(place).astype(np.int64), 0, len(way) - 1)
-            wish = field(point, normal, feed[row])
-            places.append(place)
+            point, normal = between(way.point, way.normal, feed, position)
+            row = np.clip(np.round(position).astype(np.int64), 0, len(way) - 1)
+            desired = field(point, normal, feed[row])
+            positions.append(position)
             points.append(point + allowance * normal)
             normals.append(normal)
-            wanted.append(wish)
+            wanted.append(desired)
             pitches.append(travel[-1] / steps)
         empty = np.zeros((0, 3))
-        return _Places(
-            place=np.concatenate([np.zeros(0), *places]),
+        return _AxisSamples(
+            position=np.concatenate([np.zeros(0), *positions]),
             point=np.vstack([empty, *points]),
             normal=np.vstack([empty, *normals]),
             wanted=np.vstack([empty, *wanted]),
-            start=np.cumsum([0, *(len(p) for p in places)]),
+            start=np.cumsum([0, *(len(p) for p in positions)]),
             pitch=np.array(pitches),
         )
 
@@ -289,19 +291,19 @@ class AxisSearch:
         limits: LeanLimits,
         allowance: float = 0.0,
     ) -> None:
-        self.places = places = _Places.of(passes, field, tool, limits, allowance)
+        self.samples = samples = _AxisSamples.of(passes, field, tool, limits, allowance)
         self.tool, self.ask, self.limits = tool, ask, limits
-        k = len(places.place)
+        k = len(samples.position)
         self.axis, self.free, self.leap = np.zeros((k, 3)), np.zeros(k, bool), np.zeros(k, bool)
         self.clear, self.chosen = np.zeros(k, bool), np.zeros(k, dtype=np.int64)
         # Whether a place has an answer of its own, and whether it takes a direction as asked, not eased.
         self.own, self.raw = np.zeros(k, bool), np.zeros(k, bool)
-        self.dirty = np.ones(max(len(places.start) - 1, 0), bool)
+        self.dirty = np.ones(max(len(samples.start) - 1, 0), bool)
         # Row 0: nothing is known, all that the machine can hold is free.
         self.table = self._held()[None]
         self.row = np.zeros(k, dtype=np.int64)
         alike = np.column_stack(
-            [np.floor(places.point / CLOSE), np.floor(places.normal / ALIKE)]
+            [np.floor(samples.point / CLOSE), np.floor(samples.normal / ALIKE)]
         ).astype(np.int64)
         self.first, self.node = (
             np.unique(alike, axis=0, return_index=True, return_inverse=True)[1:]
@@ -311,9 +313,9 @@ class AxisSearch:
 
     def _held(self) -> Bools:
         point = _sphere()[0]
-        if self.ask is None or not len(self.places.place):
+        if self.ask is None or not len(self.samples.position):
             return np.ones(len(point), bool)
-        return self.ask(self.places.point.mean(axis=0) + AWAY * point, point)
+        return self.ask(self.samples.point.mean(axis=0) + AWAY * point, point)
 
     def courses(self, progress: Progress = QUIET) -> list[FreeAxes]:
         """Return the courses of all passes."""
@@ -321,18 +323,18 @@ class AxisSearch:
             progress.at(n / ROUNDS, "Leaning the tool clear")
             if not self._improved():
                 break
-        at = [slice(a, b) for a, b in pairwise(self.places.start.tolist())]
+        at = [slice(a, b) for a, b in pairwise(self.samples.start.tolist())]
         # The search may go on: what is given away is a copy.
         axis, free, leap = self.axis.copy(), self.free.copy(), self.leap.copy()
         return [
-            FreeAxes(place=self.places.place[s], axis=axis[s], free=free[s], leap=leap[s])
+            FreeAxes(position=self.samples.position[s], axis=axis[s], free=free[s], leap=leap[s])
             for s in at
         ]
 
-    def met(self, number: int, places: Floats) -> None:
-        """Take in that on the pass of a number something was met at places (k,): the axes to both sides of them won't do."""
-        start, end = self.places.start[number : number + 2]
-        after = np.searchsorted(self.places.place[start:end], places)
+    def met(self, number: int, positions: Floats) -> None:
+        """Take in that on the pass of a number something was met at samples (k,): the axes to both sides of them won't do."""
+        start, end = self.samples.start[number : number + 2]
+        after = np.searchsorted(self.samples.position[start:end], positions)
         rows = start + np.unique(np.clip(np.concatenate([after - 1, after]), 0, end - start - 1))
         rows = rows[self.free[rows]]
         self.clear[rows] = self.free[rows] = False
@@ -342,8 +344,8 @@ class AxisSearch:
         """Choose the courses of passes about which something new is known; say whether what they met is worth another try."""
         for n in np.flatnonzero(self.dirty).tolist():
             self._choose(
-                slice(int(self.places.start[n]), int(self.places.start[n + 1])),
-                float(self.places.pitch[n]),
+                slice(int(self.samples.start[n]), int(self.samples.start[n + 1])),
+                float(self.samples.pitch[n]),
             )
         self.dirty[:] = False
         rows = np.flatnonzero(self.free & ~self.clear)
@@ -357,7 +359,7 @@ class AxisSearch:
     def _choose(self, rows: slice, pitch: float) -> None:
         """Choose the course of the places of one pass."""
         point, near, turn = _sphere()
-        normal, allowed = self.places.normal[rows], self.table[self.row[rows]]
+        normal, allowed = self.samples.normal[rows], self.table[self.row[rows]]
         upright = normal @ point.T >= math.cos(self.limits.steepest)
         # The normal may turn away between two places: half the way to the next ones is kept in sight too.
         for beside in (np.vstack([normal[1:], normal[-1:]]), np.vstack([normal[:1], normal[:-1]])):
@@ -365,7 +367,7 @@ class AxisSearch:
                 self.limits.steepest
             ) * np.linalg.norm(normal + beside, axis=1)[:, None]
         allowed = allowed & upright
-        off = np.arccos(np.clip(self.places.wanted[rows] @ point.T, -1.0, 1.0))
+        off = np.arccos(np.clip(self.samples.wanted[rows] @ point.T, -1.0, 1.0))
         taken = 1.0 - _share_near(allowed, near)
         cost = np.where(allowed, (off * off + RIM * taken) * pitch, np.inf)
         chosen, leap = least_cost_path(cost, near, STIFFNESS**2 * turn**2 / pitch, LEAP)
@@ -373,7 +375,7 @@ class AxisSearch:
         # The direction next to the wanted axis stands for it.
         near_wanted = off[np.arange(len(chosen)), chosen] < STEP
         axis = np.where(
-            (near_wanted & ~self.raw[rows])[:, None], self.places.wanted[rows], point[chosen]
+            (near_wanted & ~self.raw[rows])[:, None], self.samples.wanted[rows], point[chosen]
         )
         axis = self._eased(rows, axis, chosen >= 0, leap)
         self.clear[rows] &= (axis == self.axis[rows]).all(axis=1)
@@ -387,7 +389,7 @@ class AxisSearch:
         )
         for a, b in pairwise([*ends.tolist(), len(axis)]):
             out[a:b] = eased(axis[a:b], EASING) if free[a] else axis[a:b]
-        steep = (out * self.places.normal[rows]).sum(axis=1) < math.cos(self.limits.steepest)
+        steep = (out * self.samples.normal[rows]).sum(axis=1) < math.cos(self.limits.steepest)
         raw = (self.raw[rows] | steep) & free
         beside = (np.append(raw[1:], False) | np.append(False, raw[:-1])) & ~raw
         out[beside] = slerp(out[beside], axis[beside], np.full(int(beside.sum()), 0.5))
@@ -397,7 +399,7 @@ class AxisSearch:
         """Return those of some rows whose axes touch something."""
         if self.ask is None:
             return rows[:0]
-        p = self.places
+        p = self.samples
         return rows[
             ~self.ask(
                 tip_at(self.tool, p.point[rows], p.normal[rows], self.axis[rows]), self.axis[rows]
@@ -407,7 +409,7 @@ class AxisSearch:
     def _learn(self, met: Ints) -> None:
         """Ask what is free where something was met: once for contacts that are alike, then for the contact itself; a contact that has been
         asked takes its directions as they are, and strikes out the one that failed."""
-        k, owner = len(self.row), np.repeat(np.arange(len(self.dirty)), np.diff(self.places.start))
+        k, owner = len(self.row), np.repeat(np.arange(len(self.dirty)), np.diff(self.samples.start))
         struck = met[self.own[met]]
         self.table[self.row[struck[self.raw[struck]]], self.chosen[struck[self.raw[struck]]]] = (
             False
@@ -433,7 +435,7 @@ class AxisSearch:
             return np.repeat(self.table[:1], len(rows), axis=0)
         point, parents = directions(FINE)
         coarse = len(directions(COARSE)[0])
-        p, free = self.places, np.zeros((len(rows), len(point)), bool)
+        p, free = self.samples, np.zeros((len(rows), len(point)), bool)
         able = (
             p.normal[rows] @ point[:coarse].T >= math.cos(self.limits.steepest + STEP)
         ) & self.table[0, :coarse]

@@ -66,13 +66,13 @@ class Contacts:
         return Contacts(point=self.point[::-1], normal=self.normal[::-1], closed=self.closed)
 
 
-def between(point: Floats, normal: Floats, feed: Floats, place: Floats) -> tuple[Floats, Floats]:
+def between(point: Floats, normal: Floats, feed: Floats, position: Floats) -> tuple[Floats, Floats]:
     """Return points and unit normals (k, 3) at places (k,) along contacts (n, 3).
 
     Place 2.25 is a quarter of the way from the third contact to the next; `feed` (n, 3) are the unit directions of the way.
     """
-    row = np.clip(place.astype(np.int64), 0, len(point) - 2)
-    u = (place - row)[:, None]
+    row = np.clip(position.astype(np.int64), 0, len(point) - 2)
+    u = (position - row)[:, None]
     a, b, start, end = point[row], point[row + 1], feed[row], feed[row + 1]
     # As long as the tangents of an arc's cubic: chord / cos^2(turn / 4).
     half = np.sqrt(0.5 * (1.0 + np.clip((start * end).sum(axis=1, keepdims=True), -1.0, 1.0)))
@@ -85,10 +85,10 @@ def between(point: Floats, normal: Floats, feed: Floats, place: Floats) -> tuple
     return found, _scaled((1.0 - u) * normal[row] + u * normal[row + 1])
 
 
-def axis_between(axis: Floats, place: Floats) -> Floats:
+def axis_between(axis: Floats, position: Floats) -> Floats:
     """Return unit axes (k, 3) at places (k,) along axes (n, 3), each turning evenly to the next."""
-    row = np.clip(place.astype(np.int64), 0, len(axis) - 2)
-    return slerp(axis[row], axis[row + 1], place - row)
+    row = np.clip(position.astype(np.int64), 0, len(axis) - 2)
+    return slerp(axis[row], axis[row + 1], position - row)
 
 
 def slerp(start: Floats, end: Floats, share: Floats) -> Floats:

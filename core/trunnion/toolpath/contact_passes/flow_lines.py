@@ -146,10 +146,12 @@ def _wound(
     return [_joined([_begun(metric.sheet, first, start), middle, _begun(metric.sheet, last, end)])]
 
 
-def _begun(sheet: Sheet, ring: SheetLine, place: Floats) -> SheetLine:
-    """Return a closed line that begins and ends where it comes nearest to a place (1, 3)."""
+def _begun(sheet: Sheet, ring: SheetLine, position: Floats) -> SheetLine:
+    """Return a closed line that begins and ends where it comes nearest to a position (1, 3)."""
     points, _ = sheet.on_edges(ring.ends[:-1], ring.share[:-1])
-    order = np.roll(np.arange(len(points)), -int(np.argmin(np.linalg.norm(points - place, axis=1))))
+    order = np.roll(
+        np.arange(len(points)), -int(np.argmin(np.linalg.norm(points - position, axis=1)))
+    )
     order = np.append(order, order[0])
     return SheetLine(ends=ring.ends[order], share=ring.share[order], closed=True, level=ring.level)
 

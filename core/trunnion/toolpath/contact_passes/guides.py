@@ -102,14 +102,14 @@ def _beside(rim: Floats, skin: Skin, triangles: Ints) -> Bools:
     used = np.unique(triangles)
     if not len(used):
         return np.zeros(len(rim), bool)
-    gap, place = cKDTree(skin.points[used]).query(rim)
+    gap, position = cKDTree(skin.points[used]).query(rim)
     on = np.asarray(gap <= tolerance.JOINED_POINTS)
     sides = {
         frozenset(side)
         for k in range(3)
         for side in zip(triangles[:, k].tolist(), triangles[:, (k + 1) % 3].tolist(), strict=True)
     }
-    rows, number, n = np.flatnonzero(on), used[np.asarray(place)].tolist(), len(rim)
+    rows, number, n = np.flatnonzero(on), used[np.asarray(position)].tolist(), len(rim)
     for row, after in zip(rows.tolist(), np.roll(rows, -1).tolist(), strict=True):
         width = (after - row) % n
         if 2 * width <= n and frozenset((number[row], number[after])) in sides:

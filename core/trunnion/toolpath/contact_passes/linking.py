@@ -137,11 +137,11 @@ class _Blocks:
                 (tips, np.broadcast_to(axis, tips.shape), Motion.LINE, self._data.feed, mark)
             )
 
-    def travel(self, place: Floats, axis: Floats) -> None:
-        """Bring the tip to a place (3,) through the air, at the end by a feed."""
-        stops = self._outside(place, axis)
+    def travel(self, position: Floats, axis: Floats) -> None:
+        """Bring the tip to a position (3,) through the air, at the end by a feed."""
+        stops = self._outside(position, axis)
         if self._parts and _is_upright(self.axis) and _is_upright(axis):
-            self._lift(place)
+            self._lift(position)
         else:
             if self._parts:
                 self._leave()
@@ -151,9 +151,9 @@ class _Blocks:
             for stop in stops[::-1]:
                 self._rapid(stop, axis)
         if _is_upright(axis):
-            self._down(place)
+            self._down(position)
         else:
-            self._add(place, axis, Motion.LINE, self._data.feed, Mark.LEAD)
+            self._add(position, axis, Motion.LINE, self._data.feed, Mark.LEAD)
 
     def finished(self) -> Toolpath:
         """Return the path, its last block a retract to the clearance height."""
@@ -171,21 +171,24 @@ class _Blocks:
             centre=np.full((int(kept.sum()), 3), np.nan),
         )
 
-    def _lift(self, place: Floats) -> None:
+    def _lift(self, position: Floats) -> None:
         """Go over a place, upright: no higher than what may be on the way demands."""
-        safe = lowest_tip(self._air, self.here[:2], place[:2]) + self._air.safety
-        height = min(max(safe, float(self.here[2]), float(place[2])), self._air.clearance)
+        safe = lowest_tip(self._air, self.here[:2], position[:2]) + self._air.safety
+        height = min(max(safe, float(self.here[2]), float(position[2])), self._air.clearance)
         self._rapid(np.append(self.here[:2], height), UPRIGHT)
-        self._rapid(np.append(place[:2], height), UPRIGHT)
+        self._rapid(np.append(position[:2], height), UPRIGHT)
 
-    def _down(self, place: Floats) -> None:
+    def _down(self, position: Floats) -> None:
         """Come down upright: at rapid as far as the stock allows, then at feed, slowly where there is material."""
-        safe = max(lowest_tip(self._air, place[:2], place[:2]), float(place[2])) + self._air.safety
-        self._rapid(np.append(place[:2], min(safe, float(self.here[2]))), UPRIGHT)
-        if is_free(self._air, place[:2], float(place[2])):
-            self._add(place, UPRIGHT, Motion.LINE, self._data.feed, Mark.LEAD)
+        safe = (
+            max(lowest_tip(self._air, position[:2], position[:2]), float(position[2]))
+            + self._air.safety
+        )
+        self._rapid(np.append(position[:2], min(safe, float(self.here[2]))), UPRIGHT)
+        if is_free(self._air, position[:2], float(position[2])):
+            self._add(position, UPRIGHT, Motion.LINE, self._data.feed, Mark.LEAD)
         else:
-            self._add(place, UPRIGHT, Motion.LINE, self._data.plunge_feed, Mark.ENTRY)
+            self._add(position, UPRIGHT, Motion.LINE, self._data.plunge_feed, Mark.ENTRY)
 
     def _leave(self) -> None:
         axis = self.axis
@@ -214,11 +217,11 @@ class _Blocks:
         stop = here + max(beside, 0.0) * axis
         return [stop, np.append(stop[:2], max(height, stop[2]))]
 
-    def _rapid(self, place: Floats, axis: Floats) -> None:
-        self._add(place, axis, Motion.RAPID, 0.0, Mark.RETRACT)
+    def _rapid(self, position: Floats, axis: Floats) -> None:
+        self._add(position, axis, Motion.RAPID, 0.0, Mark.RETRACT)
 
-    def _add(self, place: Floats, axis: Floats, motion: Motion, feed: float, mark: Mark) -> None:
-        self._parts.append((np.asarray(place)[None], np.asarray(axis)[None], motion, feed, mark))
+    def _add(self, position: Floats, axis: Floats, motion: Motion, feed: float, mark: Mark) -> None:
+        self._parts.append((np.asarray(position)[None], np.asarray(axis)[None], motion, feed, mark))
 
 
 def _below(tool: Tool, upright: float) -> float:
@@ -279,9 +282,9 @@ def _nearest(passes: Sequence[Pass], reversing: bool, progress: Progress) -> lis
     return out
 
 
-def _begun(one: Pass, place: Floats) -> Pass:
+def _begun(one: Pass, position: Floats) -> Pass:
     """Return a closed pass that begins at its tip nearest to a place."""
-    row = int(np.argmin(np.linalg.norm(one.tip[:-1] - place, axis=1)))
+    row = int(np.argmin(np.linalg.norm(one.tip[:-1] - position, axis=1)))
     order = np.append(np.roll(np.arange(len(one) - 1), -row), row)
     return Pass(tip=one.tip[order], axis=one.axis[order], normal=one.normal[order], closed=True)
 

@@ -16,7 +16,7 @@ from trunnion.model.motion.toolpath import Mark, Motion, Toolpath
 from trunnion.model.operation import CuttingData
 from trunnion.model.tool import Tool
 from trunnion.progress import QUIET, Progress
-from trunnion.toolpath.stock.heightfield import PlanningStock, places_on
+from trunnion.toolpath.stock.heightfield import PlanningStock, positions_on
 
 PIECE = 0.5
 """Of the cutter's radius: length of the pieces that a path is looked at in."""
@@ -94,9 +94,9 @@ def _in_pieces(path: Toolpath, piece: float) -> tuple[Toolpath, Ints]:
     cuts = (path.motion != Motion.RAPID) & (path.mark != Mark.ENTRY)
     count = np.where(cuts, np.maximum(np.ceil(path.lengths() / piece), 1.0), 1.0).astype(np.int64)
     rows = np.repeat(np.arange(len(path)), count)
-    place = np.arange(len(rows)) - np.repeat(np.cumsum(count) - count, count)
-    position = places_on(path, rows, (place + 1) / count[rows])
-    ends = place + 1 == count[rows]
+    step_index = np.arange(len(rows)) - np.repeat(np.cumsum(count) - count, count)
+    position = positions_on(path, rows, (step_index + 1) / count[rows])
+    ends = step_index + 1 == count[rows]
     position[ends] = path.position[rows[ends]]
     return replace(
         path,

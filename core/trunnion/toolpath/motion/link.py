@@ -56,17 +56,17 @@ def top_under(
     )
 
 
-def may_plunge(builder: PathBuilder, place: ArrayLike, z: float) -> bool:
+def may_plunge(builder: PathBuilder, position: ArrayLike, z: float) -> bool:
     """Say whether so little material is under the cutter at a place that it may go straight down to height `z`."""
-    return top_under(builder, place) - z <= SKIN
+    return top_under(builder, position) - z <= SKIN
 
 
-def travel(builder: PathBuilder, place: ArrayLike, z: float) -> None:
-    """Bring the tip to a place (2,) at height `z`: rapid as far as it is safe, then feed down.
+def travel(builder: PathBuilder, position: ArrayLike, z: float) -> None:
+    """Bring the tip to a position (2,) at height `z`: rapid as far as it is safe, then feed down.
 
     The feed is the plunge feed where material may be in the way.
     """
-    x, y = (float(v) for v in np.asarray(place, dtype=np.float64)[:2])
+    x, y = (float(v) for v in np.asarray(position, dtype=np.float64)[:2])
     below = lowest_tip(builder, (x, y), (x, y))
     near = min(max(below, z) + builder.safety, builder.clearance)
     if builder.here is None:
@@ -109,5 +109,5 @@ def step_aside(
             return
 
 
-def _apart(here: Floats, place: tuple[float, float]) -> bool:
-    return max(abs(here[0] - place[0]), abs(here[1] - place[1])) > tolerance.SHORT_MOVE
+def _apart(here: Floats, position: tuple[float, float]) -> bool:
+    return max(abs(here[0] - position[0]), abs(here[1] - position[1])) > tolerance.SHORT_MOVE

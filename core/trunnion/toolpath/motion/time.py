@@ -31,22 +31,26 @@ NEAR_POLE = 1e-4
 
 
 def machining_time(
-    path: Toolpath, machine: Machine, place: WorkPosition | None = None, gauge: float = 0.0
+    path: Toolpath, machine: Machine, work_position: WorkPosition | None = None, gauge: float = 0.0
 ) -> float:
     """Return the seconds that a machine takes for a path, rapids included, from where its first block ends."""
-    return float(block_times(path, machine, place, gauge).sum())
+    return float(block_times(path, machine, work_position, gauge).sum())
 
 
 def block_times(
-    path: Toolpath, machine: Machine, place: WorkPosition | None = None, gauge: float = 0.0
+    path: Toolpath, machine: Machine, work_position: WorkPosition | None = None, gauge: float = 0.0
 ) -> Floats:
     """Return the seconds (n,) of each block with its dwell; of the first, whose start is unknown, no more than that.
 
-    On a machine with rotary axes `place` says where the work stands and `gauge` mm is the length of the tool from its tip to the spindle's
-    face; raises `Refused` for what the machine can't hold or follow.
+    On a machine with rotary axes `work_position` says where the work stands and `gauge` mm is the length of the tool from its tip to the
+    spindle's face; raises `Refused` for what the machine can't hold or follow.
     """
     times = np.array(path.dwells())
-    way = _way_of(path, place if place is not None and place.machine.rotary else None, gauge)
+    way = _way_of(
+        path,
+        work_position if work_position is not None and work_position.machine.rotary else None,
+        gauge,
+    )
     rows = np.flatnonzero(way.length > 0.0)
     if len(rows) == 0:
         return times
@@ -96,20 +100,26 @@ class _Way:
     radius: Floats
 
 
-def _way_of(path: Toolpath, place: WorkPosition | None, gauge: float) -> _Way:
+def _way_of(path: Toolpath, work_position: WorkPosition | None, gauge: float) -> _Way:
     """Return the way of a path: on a machine with rotary axes that of the positions of all its axes."""
     tip, sweep = path.lengths(), path.sweeps()
     arcs = np.flatnonzero(path.motion >= Motion.ARC_CW)
     position, axis, centre = path.position, path.axis[arcs], path.centre[arcs]
     turn = np.zeros((len(path), 0))
-    if place is not None:
-        angle = followed(path.axis, place, None, NEAR_POLE, "of the path")
+    if work_position is not None:
+        angle = followed(path.axis, work_position, None, NEAR_POLE, "of the path")
         turn = np.diff(np.degrees(angle), axis=0, prepend=np.degrees(angle[:1])) * _weights(
-            place.machine
+            work_position.machine
         )
-        position, axis = words_of(place, position, angle, gauge), spindle_of(place, angle[arcs])
+        position, axis = (
+            words_of(work_position, position, angle, gauge),
+            spindle_of(work_position, angle[arcs]),
+        )
         centre = words_of(
-            place, np.where(np.isnan(centre), path.position[arcs], centre), angle[arcs], gauge
+            work_position,
+            np.where(np.isnan(centre), path.position[arcs], centre),
+            angle[arcs],
+            gauge,
         )
     start = np.vstack([position[:1], position[:-1]])
     way = np.column_stack([position - start, turn])

@@ -21,7 +21,7 @@ from trunnion.toolpath.motion.builder import PathBuilder
 from trunnion.toolpath.motion.link import is_free, step_aside, top_under, travel
 from trunnion.toolpath.motion.order import nearest_first
 from trunnion.toolpath.offsetting.entry import (
-    deepest_place,
+    deepest_position,
     helix,
     helix_radius,
     ramp_along,
@@ -134,7 +134,7 @@ def _cut_closed(
     s = loop.nearest(here[:2]) if here is not None else 0.0
     start, _ = loop.at(s)
     if not _stays_down(builder, layer, start, manner):
-        free = _free_place(builder, layer, loop, s)
+        free = _free_position(builder, layer, loop, s)
         if free is not None:
             s = free
             travel(builder, loop.at(s)[0], layer.z)
@@ -145,7 +145,7 @@ def _cut_closed(
     builder.curve(loop.split(s, s), layer.z, feed)
 
 
-def _free_place(
+def _free_position(
     builder: PathBuilder, layer: ClearingLayer, loop: Curve, first: float
 ) -> float | None:
     count = 8
@@ -161,9 +161,9 @@ def _from_inner(builder: PathBuilder, layer: ClearingLayer, ring: OffsetRing, lo
     seeds = [c.points[0] for inner in ring.inner for c in inner.curves()]
     near = min(seeds, key=lambda p: float(loop.distance(p)[0]))
     s = loop.nearest(near)
-    place, _ = loop.at(s)
-    travel(builder, near if layer.room.holds_line(near, place) else place, layer.z)
-    builder.line((*place, layer.z), builder.data.plunge_feed, Mark.LINK)
+    position, _ = loop.at(s)
+    travel(builder, near if layer.room.holds_line(near, position) else position, layer.z)
+    builder.line((*position, layer.z), builder.data.plunge_feed, Mark.LINK)
     return s
 
 
@@ -174,21 +174,21 @@ def _open_up(
     loop: Curve,
     manner: ClearingParameters,
 ) -> float:
-    centre, depth = deepest_place(AxisRegion(ring.region), layer.room)
+    centre, depth = deepest_position(AxisRegion(ring.region), layer.room)
     radius = helix_radius(builder, depth)
     s = loop.nearest(centre)
-    place, _ = loop.at(s)
-    if radius > 0.0 and layer.room.holds_line(centre, place):
+    position, _ = loop.at(s)
+    if radius > 0.0 and layer.room.holds_line(centre, position):
         helix(
             builder,
             centre,
             radius,
-            place,
+            position,
             _top(builder, layer, centre, radius),
             layer.z,
             manner.ramp,
         )
-        builder.line((*place, layer.z), builder.data.feed * manner.slot, Mark.LINK)
+        builder.line((*position, layer.z), builder.data.feed * manner.slot, Mark.LINK)
     else:
         top = max(_top(builder, layer, p, 0.0) for p in loop.points)
         ramp_round(builder, loop, s, top, layer.z, manner.ramp)
@@ -275,13 +275,15 @@ def _stays_down(
     return True
 
 
-def _top(builder: PathBuilder, layer: ClearingLayer, place: Floats, radius: float) -> float:
-    found = top_under(builder, place, radius)
+def _top(builder: PathBuilder, layer: ClearingLayer, position: Floats, radius: float) -> float:
+    found = top_under(builder, position, radius)
     return max(found if layer.top is None else min(found, layer.top), layer.z)
 
 
-def _is_off(layer: ClearingLayer, place: Floats) -> bool:
-    return layer.clip is None or float(layer.clip.signed_distance(place)[0]) <= tolerance.ON_REGION
+def _is_off(layer: ClearingLayer, position: Floats) -> bool:
+    return (
+        layer.clip is None or float(layer.clip.signed_distance(position)[0]) <= tolerance.ON_REGION
+    )
 
 
 def _step_off(builder: PathBuilder, layer: ClearingLayer) -> None:
@@ -290,8 +292,8 @@ def _step_off(builder: PathBuilder, layer: ClearingLayer) -> None:
     step_aside(builder, builder.heading(), layer.room)
 
 
-def _ring_away(ring: OffsetRing, place: Floats) -> float:
-    return _nearest([_innermost(ring).region], place)
+def _ring_away(ring: OffsetRing, position: Floats) -> float:
+    return _nearest([_innermost(ring).region], position)
 
 
 def _innermost(ring: OffsetRing) -> OffsetRing:
@@ -300,11 +302,13 @@ def _innermost(ring: OffsetRing) -> OffsetRing:
     return ring
 
 
-def _nearest(regions: Sequence[Region], place: Floats) -> float:
-    return min(abs(float(r.signed_distance(place)[0])) for r in regions)
+def _nearest(regions: Sequence[Region], position: Floats) -> float:
+    return min(abs(float(r.signed_distance(position)[0])) for r in regions)
 
 
-def _curve_away(curve: Curve, place: Floats) -> float:
+def _curve_away(curve: Curve, position: Floats) -> float:
     return (
-        float(curve.distance(place)[0]) if curve.closed else float(np.hypot(*(curve.start - place)))
+        float(curve.distance(position)[0])
+        if curve.closed
+        else float(np.hypot(*(curve.start - position)))
     )

@@ -150,5 +150,5 @@ def _past(builder: PathBuilder, end: Floats, way: Floats, room: AxisRegion) -> F
     return end
 
 
-def _away(curve: Curve, place: Floats) -> float:
-    return float(curve.distance(place)[0]) if curve.closed else math.dist(curve.start, place)
+def _away(curve: Curve, position: Floats) -> float:
+    return float(curve.distance(position)[0]) if curve.closed else math.dist(curve.start, position)

@@ -27,7 +27,7 @@ GRID = 24
 """Places along each side of a box that are tried for the deepest place of a room."""
 
 
-def deepest_place(area: AxisRegion, room: AxisRegion) -> tuple[Floats, float]:
+def deepest_position(area: AxisRegion, room: AxisRegion) -> tuple[Floats, float]:
     """Return the place (2,) in `area` that is deepest inside `room`, and how deep it is there."""
     low, high = area.region.box()
     best, depth = 0.5 * (low + high), -math.inf

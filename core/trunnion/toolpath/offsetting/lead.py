@@ -109,7 +109,7 @@ def leave(builder: PathBuilder, lead: Lead | None, z: float, feed: float) -> Non
         builder.arc((*lead.outside, z), lead.centre, QUARTER, feed, Mark.LEAD)
 
 
-def start_places(loop: Curve) -> list[float]:
+def start_positions(loop: Curve) -> list[float]:
     """Return arc lengths where a closed contour may be begun: the middles of its longest lines and arcs, straight ones first."""
     seg = loop.segments()
     before = np.cumsum(seg.length) - seg.length
@@ -133,7 +133,7 @@ def _best_start(
     builder: PathBuilder, loop: Curve, z: float, room: AxisRegion, radius: float
 ) -> tuple[float, Lead] | None:
     best: tuple[tuple[bool, float], float, Lead] | None = None
-    for s in start_places(loop):
+    for s in start_positions(loop):
         point, tangent = loop.at(s)
         found = fitting_lead(point, tangent, radius, room, leaves=False)
         if found is None:

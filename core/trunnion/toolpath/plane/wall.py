@@ -159,13 +159,13 @@ def _cut_floor_rest(
     """Cut what a larger floor cutter left where it had no room: floor that neither it nor the wall passes have certainly reached."""
     stock = builder.stock()
     inner = each.region.offset(-each.fillet - RIM * stock.cell)
-    places = stock.places_above(each.z + tolerance.COINCIDENT, inner)
-    if not len(places):
+    positions = stock.positions_above(each.z + tolerance.COINCIDENT, inner)
+    if not len(positions):
         return
     rest = union_all(
         [
             Region.rectangle(*(low - stock.cell), *(high + stock.cell))
-            for low, high in _clusters(places, tool.radius)
+            for low, high in _clusters(positions, tool.radius)
         ]
     )
     distance = (
@@ -179,12 +179,13 @@ def _cut_floor_rest(
     clear(builder, layer, ClearingParameters(step=step, ramp=approach.ramp, slot=1.0), progress)
 
 
-def _clusters(places: Floats, apart: float) -> list[tuple[Floats, Floats]]:
-    """Return the boxes (low, high) around groups of places (k, 2) that are nearer to one another than `apart`, by squares of that size."""
-    squares = np.floor(places / apart).astype(int)
+def _clusters(positions: Floats, apart: float) -> list[tuple[Floats, Floats]]:
+    """Return the boxes (low, high) around groups of positions (k, 2) that are nearer to one another than `apart`, by squares of that
+    size."""
+    squares = np.floor(positions / apart).astype(int)
     boxes = []
     for square in np.unique(squares, axis=0):
-        inside = places[(squares == square).all(axis=1)]
+        inside = positions[(squares == square).all(axis=1)]
         boxes.append((inside.min(axis=0), inside.max(axis=0)))
     return boxes
 

@@ -124,7 +124,7 @@ class PlanningStock:
             len(some) and area.contains(some).any()
         )
 
-    def places_above(self, z: float, area: Region) -> Floats:
+    def positions_above(self, z: float, area: Region) -> Floats:
         """Return the centres (k, 2) of the cells in an area that are higher than `z`."""
         centres = self._above(z, area)
         return centres[area.contains(centres)] if len(centres) else centres
@@ -132,7 +132,7 @@ class PlanningStock:
     def cells_above(self, z: float, area: Region) -> Bools:
         """Return which cells (nx, ny) are higher than `z` and have their centre in an area."""
         found = np.zeros(self.heights.shape, dtype=np.bool_)
-        cells = np.floor((self.places_above(z, area) - self.corner) / self.cell).astype(np.int64)
+        cells = np.floor((self.positions_above(z, area) - self.corner) / self.cell).astype(np.int64)
         found[cells[:, 0], cells[:, 1]] = True
         return found
 
@@ -168,18 +168,18 @@ def chords(path: Toolpath) -> tuple[Floats, Floats, Ints, float]:
     count[arcs] = np.maximum(np.ceil(np.abs(sweep[arcs]) / step), 1).astype(np.int64)
     count[path.motion == Motion.RAPID] = 0
     rows = np.repeat(np.arange(len(path)), count)
-    place = np.arange(len(rows)) - np.repeat(np.cumsum(count) - count, count)
-    share = np.stack([place, place + 1], axis=1) / count[rows][:, None]
-    ends = [_places(path, start, sweep, rows, share[:, k]) for k in (0, 1)]
+    step_index = np.arange(len(rows)) - np.repeat(np.cumsum(count) - count, count)
+    share = np.stack([step_index, step_index + 1], axis=1) / count[rows][:, None]
+    ends = [_positions(path, start, sweep, rows, share[:, k]) for k in (0, 1)]
     return ends[0], ends[1], rows, ARC_CHORD if arcs.any() else 0.0
 
 
-def places_on(path: Toolpath, rows: Ints, share: Floats) -> Floats:
+def positions_on(path: Toolpath, rows: Ints, share: Floats) -> Floats:
     """Return places (m, 3) on blocks (m,) of a path, at shares (m,) of their way."""
-    return _places(path, path.starts(), path.sweeps(), rows, share)
+    return _positions(path, path.starts(), path.sweeps(), rows, share)
 
 
-def _places(path: Toolpath, start: Floats, sweep: Floats, rows: Ints, share: Floats) -> Floats:
+def _positions(path: Toolpath, start: Floats, sweep: Floats, rows: Ints, share: Floats) -> Floats:
     points = start[rows] + share[:, None] * (path.position[rows] - start[rows])
     arcs = np.flatnonzero(path.motion[rows] >= Motion.ARC_CW)
     at = rows[arcs]

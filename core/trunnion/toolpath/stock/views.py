@@ -66,13 +66,13 @@ def _lowered(
 ) -> PlanningStock:
     """Return a stock without what another one, seen from elsewhere, knows to be gone; nothing is lower than `lowest`."""
     material = maximum_filter(other.heights, BESIDE, mode="nearest")
-    places, heights = _centres(stock), stock.heights.ravel().copy()
+    positions, heights = _centres(stock), stock.heights.ravel().copy()
     step, last = stock.cell, np.array(material.shape) - 1
     rows = np.flatnonzero(heights > lowest)
     while len(rows):
         # The middle of the uppermost step of each column: gone when all around it is.
         there = other_frame.to_local(
-            frame.to_world(np.column_stack([places[rows], heights[rows] - 0.5 * step]))
+            frame.to_world(np.column_stack([positions[rows], heights[rows] - 0.5 * step]))
         )
         cell = np.floor((there[:, :2] - other.corner) / other.cell).astype(np.int64)
         outside = ((cell < 0) | (cell > last)).any(axis=1)

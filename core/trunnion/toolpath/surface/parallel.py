@@ -34,7 +34,7 @@ from trunnion.toolpath.contact_passes.passes import UPRIGHT, Pass
 from trunnion.toolpath.contact_passes.stepover.spacing import (
     FacetSlopes,
     marched,
-    places_of,
+    slopes_of,
     strips_over,
     tip_spacing,
 )
@@ -50,7 +50,7 @@ CLOSER = 7
 SMALLEST_LEFTOVER = 0.5
 """mm2: less than this is the rim of an area."""
 Touches = Callable[[Ints, Floats, Progress], Bools]
-"""Says for planes (n,) and places (n,) along them whether the cutter touches the area there."""
+"""Says for planes (n,) and positions (n,) along them whether the cutter touches the area there."""
 
 
 @settings("surface.parallel")
@@ -166,12 +166,12 @@ def parallel(
         raise Refused(
             f"{drive.feature}: parallel passes need a scallop height or a stepover above zero"
         )
-    places = places_of(drive, tool)
-    places = places.some(places.normal[:, 2] >= math.cos(math.radians(settings.steepest)))
-    found = _too_steep(drive, places)
-    if not len(places.row):
+    slopes = slopes_of(drive, tool)
+    slopes = slopes.some(slopes.normal[:, 2] >= math.cos(math.radians(settings.steepest)))
+    found = _too_steep(drive, slopes)
+    if not len(slopes.row):
         return Planned(findings=found)
-    planes = _planes(places, tool, drive.height, settings)
+    planes = _planes(slopes, tool, drive.height, settings)
     passes = _passes(planes, drive, tool, settings, progress.part(0.0, 0.6))
     if not passes:
         return Planned(findings=(*found, _untouched(drive, tool)))
@@ -224,18 +224,18 @@ class _Planes:
     triangles: Ints
 
 
-def _planes(places: FacetSlopes, tool: Tool, height: float, settings: ParallelSettings) -> _Planes:
+def _planes(slopes: FacetSlopes, tool: Tool, height: float, settings: ParallelSettings) -> _Planes:
     """Return the planes of the direction that is asked for, or of the better one of both sides of the box around the area."""
     if settings.direction == "angle":
-        return _laid(places, tool, height, math.radians(settings.angle), settings.stepover)
+        return _laid(slopes, tool, height, math.radians(settings.angle), settings.stepover)
     box = shapely.get_coordinates(
-        shapely.oriented_envelope(shapely.MultiPoint(places.tips.reshape(-1, 3)[:, :2]))
+        shapely.oriented_envelope(shapely.MultiPoint(slopes.tips.reshape(-1, 3)[:, :2]))
     )
     sides = np.diff(box[:3], axis=0)
     longest = sides[np.argmax(np.hypot(*sides.T))]
     angle = math.atan2(longest[1], longest[0]) % math.pi
     both = [
-        _laid(places, tool, height, a, settings.stepover)
+        _laid(slopes, tool, height, a, settings.stepover)
         for a in (angle, (angle + 0.5 * math.pi) % math.pi)
     ]
     return min(
@@ -246,18 +246,18 @@ def _planes(places: FacetSlopes, tool: Tool, height: float, settings: ParallelSe
     )
 
 
-def _laid(places: FacetSlopes, tool: Tool, height: float, angle: float, stepover: float) -> _Planes:
+def _laid(slopes: FacetSlopes, tool: Tool, height: float, angle: float, stepover: float) -> _Planes:
     """Return the planes at an angle (radians), from one side of the area to the other, as far apart as any place near both allows."""
     along, across = (
         np.array([math.cos(angle), math.sin(angle)]),
         np.array([-math.sin(angle), math.cos(angle)]),
     )
-    run, beside = places.tips[:, :, :2] @ along, places.tips[:, :, :2] @ across
+    run, beside = slopes.tips[:, :, :2] @ along, slopes.tips[:, :, :2] @ across
     low, high = beside.min(axis=1), beside.max(axis=1)
     spacing = (
         np.full(len(low), stepover)
         if stepover > 0.0
-        else tip_spacing(places, tool, height, np.append(across, 0.0))
+        else tip_spacing(slopes, tool, height, np.append(across, 0.0))
     )
     at = marched(low, high, spacing, float(low.min()), float(high.max()))
     # From where to where along a plane the tips of the triangles are that it passes.
@@ -283,7 +283,7 @@ def _laid(places: FacetSlopes, tool: Tool, height: float, angle: float, stepover
         reach=np.column_stack([least[rows], most[rows]])[kept],
         widest=float(np.diff(at).max(initial=width)),
         beyond=beyond,
-        triangles=places.row,
+        triangles=slopes.row,
     )
 
 
@@ -376,8 +376,8 @@ def _runs(
         np.ceil((planes.reach[:, 1] - planes.reach[:, 0]) / step).astype(np.int64) + 1 + 2 * before
     )
     plane = np.repeat(np.arange(len(count)), count)
-    place = np.arange(len(plane)) - np.repeat(np.cumsum(count) - count, count) - before
-    run = planes.reach[plane, 0] + place * step
+    step_index = np.arange(len(plane)) - np.repeat(np.cumsum(count) - count, count) - before
+    run = planes.reach[plane, 0] + step_index * step
     on = touches(plane, run, progress.part(0.0, 0.8))
     on[[*(np.cumsum(count) - count), *(np.cumsum(count) - 1)]] = False
     edge = np.flatnonzero((on[1:] != on[:-1]) & (plane[1:] == plane[:-1]))

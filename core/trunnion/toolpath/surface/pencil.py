@@ -26,7 +26,7 @@ from trunnion.progress import QUIET, Progress
 from trunnion.settings import setting, settings
 from trunnion.toolpath.contact_passes.linking import LinkParameters, linked
 from trunnion.toolpath.contact_passes.passes import UPRIGHT, Pass
-from trunnion.toolpath.contact_passes.stepover.spacing import places_of
+from trunnion.toolpath.contact_passes.stepover.spacing import slopes_of
 from trunnion.toolpath.contact_passes.upright.tip_grid import grid_around, spread
 from trunnion.toolpath.contact_passes.upright.tracing import follow
 from trunnion.toolpath.contract import Planned, strategy
@@ -120,8 +120,8 @@ def pencil(
         raise Refused(
             f"{tool.name}: a flat end can't follow valleys of curved faces; choose a ball, bull, taper or barrel end"
         )
-    places = places_of(drive, tool)
-    if not len(places.row):
+    slopes = slopes_of(drive, tool)
+    if not len(slopes.row):
         return Planned(findings=(_nothing(drive, tool),))
     cell = float(np.clip(CELL * tool.radius, FINEST, COARSEST))
     ground = _Ground(
@@ -130,7 +130,7 @@ def pencil(
         lowest=float(drive.low[2]) - tool.flute_length,
     )
     valleys = _valleys(
-        spread(places.tips, cell),
+        spread(slopes.tips, cell),
         cell,
         ground,
         math.radians(settings.angle),
@@ -210,11 +210,11 @@ def _valleys(
             found - contact[b[rows]], axis=1
         )
         near, far = np.where(stays[:, None], middle, near), np.where(stays[:, None], far, middle)
-    place = np.full((len(ends), 2), np.nan)
-    place[rows] = 0.5 * (near + far)
+    position = np.full((len(ends), 2), np.nan)
+    position[rows] = 0.5 * (near + far)
     both = jumps[side].sum(axis=1) == 2
     pairs = np.sort(np.where(jumps[side[both]], side[both], -1), axis=1)[:, 1:]
-    return [place[line] for line in _chained(pairs)]
+    return [position[line] for line in _chained(pairs)]
 
 
 def _angle(a: Floats, b: Floats) -> Floats:
@@ -266,8 +266,8 @@ def _sides(
     )
     far = 0.0
     for aside in (-0.05 * tool.radius, 0.05 * tool.radius):
-        places = valley + aside * left
-        (_, _, theirs), (_, _, ours) = (g.touch(places, QUIET) for g in (larger, ground))
+        positions = valley + aside * left
+        (_, _, theirs), (_, _, ours) = (g.touch(positions, QUIET) for g in (larger, ground))
         beyond = np.abs(((theirs - ours)[:, :2] * left).sum(axis=1))
         far = max(far, float(np.nanmax(beyond, initial=0.0)))
     return min(math.ceil(far / stepover) + 1, MOST_SIDES)

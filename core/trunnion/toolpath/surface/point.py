@@ -316,7 +316,7 @@ def milled(
         again = np.flatnonzero(search.dirty).tolist()
         courses = search.courses(share) if again else courses
     gaps = [
-        _gaps(len(way) - 1.0, [(float(place[0]), float(place[-1])) for place, _ in pieces])
+        _gaps(len(way) - 1.0, [(float(position[0]), float(position[-1])) for position, _ in pieces])
         for way, pieces in zip(ways, found, strict=True)
     ]
     whole, left = (
@@ -350,7 +350,7 @@ def rest_of(
         [
             np.zeros((0, 3)),
             *(
-                between(way.point, way.normal, way.feed, course.place[~course.free])[0]
+                between(way.point, way.normal, way.feed, course.position[~course.free])[0]
                 for way, course in zip(ways, courses, strict=True)
             ),
         ]
@@ -371,16 +371,16 @@ def located(
     """Return where a cutter stands along a run of a contact pass: the places (k,) of the way and the pass itself."""
     radius, feed = max(tool.corner_radius, 0.25 * tool.radius), way.feed
     travel = way.travel(radius)
-    place = run.place
+    position = run.position
     rows = np.arange(len(way), dtype=np.float64)
-    rows = rows[(rows > place[0]) & (rows < place[-1])]
-    normal, axis, tip = _standing(way, feed, run, tool, allowance, place)
+    rows = rows[(rows > position[0]) & (rows < position[-1])]
+    normal, axis, tip = _standing(way, feed, run, tool, allowance, position)
     for _ in range(HALVINGS):
-        share = np.concatenate([place[:-1] + s * np.diff(place) for s in SHARES])
+        share = np.concatenate([position[:-1] + s * np.diff(position) for s in SHARES])
         probe = np.concatenate([rows, share])
-        block = np.clip(np.searchsorted(place, probe, side="right") - 1, 0, len(place) - 2)
+        block = np.clip(np.searchsorted(position, probe, side="right") - 1, 0, len(position) - 2)
         gone = np.interp(probe, np.arange(len(way)), travel)
-        ends = np.interp(place, np.arange(len(way)), travel)
+        ends = np.interp(position, np.arange(len(way)), travel)
         part = np.clip(
             (gone - ends[block]) / np.maximum(ends[block + 1] - ends[block], tolerance.PARAMETRIC),
             0.0,
@@ -390,7 +390,7 @@ def located(
         at, out = between(way.point, way.normal, feed, probe)
         stands = tip[block] + part[:, None] * (tip[block + 1] - tip[block])
         off = np.abs(((stands - tip_at(tool, at + allowance * out, out, turned)) * out).sum(axis=1))
-        worst = np.zeros(len(place) - 1)
+        worst = np.zeros(len(position) - 1)
         np.maximum.at(worst, block, off)
         split = np.flatnonzero(
             (worst > chord)
@@ -398,9 +398,11 @@ def located(
         )
         if not len(split):
             break
-        place = np.sort(np.concatenate([place, 0.5 * (place[split] + place[split + 1])]))
-        normal, axis, tip = _standing(way, feed, run, tool, allowance, place)
-    return place, Pass(tip=tip, axis=axis, normal=normal)
+        position = np.sort(
+            np.concatenate([position, 0.5 * (position[split] + position[split + 1])])
+        )
+        normal, axis, tip = _standing(way, feed, run, tool, allowance, position)
+    return position, Pass(tip=tip, axis=axis, normal=normal)
 
 
 def grooving(tool: Tool, lead: float, tilt: float) -> Tool:
@@ -527,11 +529,11 @@ def _numbers(text: str) -> list[float]:
 
 
 def _standing(
-    way: Contacts, feed: Floats, run: FreeAxes, tool: Tool, allowance: float, place: Floats
+    way: Contacts, feed: Floats, run: FreeAxes, tool: Tool, allowance: float, position: Floats
 ) -> tuple[Floats, Floats, Floats]:
     """Return the normals, axes and tips (k, 3) at places (k,) of a run."""
-    point, normal = between(way.point, way.normal, feed, place)
-    axis = run.at(place)
+    point, normal = between(way.point, way.normal, feed, position)
+    axis = run.at(position)
     return normal, axis, tip_at(tool, point + allowance * normal, normal, axis)
 
 
@@ -542,10 +544,10 @@ def _cut(
     if ask is None:
         return list(runs), np.zeros(0)
     pieces, met = [], [np.zeros(0)]
-    for place, one in runs:
+    for position, one in runs:
         clear = ask(one.tip[1:], one.axis[1:], start_tip=one.tip[:-1], start_axis=one.axis[:-1])
-        pieces += [(place[s], one.of(s)) for s in _stretches(clear)]
-        met.append(0.5 * (place[:-1] + place[1:])[~clear])
+        pieces += [(position[s], one.of(s)) for s in _stretches(clear)]
+        met.append(0.5 * (position[:-1] + position[1:])[~clear])
     return pieces, np.concatenate(met)
 
 

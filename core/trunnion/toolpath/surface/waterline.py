@@ -33,7 +33,7 @@ from trunnion.toolpath.contact_passes.stepover.spacing import (
     FacetSlopes,
     level_spacing,
     marched,
-    places_of,
+    slopes_of,
 )
 from trunnion.toolpath.contact_passes.upright.tip_grid import grid_around, spread
 from trunnion.toolpath.contact_passes.upright.tracing import thinned
@@ -153,16 +153,16 @@ def waterline(
     """Return the motions that finish the drive's faces level by level, and the area that is too shallow for it or hangs over."""
     if drive.height <= 0.0 and settings.step <= 0.0:
         raise Refused(f"{drive.feature}: waterlines need a scallop height or a step above zero")
-    places = progress.aside(lambda _: places_of(drive, tool, UPWARD), "Looking at steep faces")
-    places = places.some(places.normal[:, 2] <= math.cos(math.radians(settings.shallowest)))
-    found = _left(drive, places)
-    if not len(places.row):
+    slopes = progress.aside(lambda _: slopes_of(drive, tool, UPWARD), "Looking at steep faces")
+    slopes = slopes.some(slopes.normal[:, 2] <= math.cos(math.radians(settings.shallowest)))
+    found = _left(drive, slopes)
+    if not len(slopes.row):
         return Planned(findings=found)
-    feet = _feet(places, drive, tool, progress.part(0.0, 0.1))
+    feet = _feet(slopes, drive, tool, progress.part(0.0, 0.1))
     levels = progress.aside(
-        lambda _: _levels(places, feet, tool, drive.height, settings.step), "Laying levels"
+        lambda _: _levels(slopes, feet, tool, drive.height, settings.step), "Laying levels"
     )
-    loops = _loops(levels, places, drive, tool, settings, progress.part(0.1, 0.8))
+    loops = _loops(levels, slopes, drive, tool, settings, progress.part(0.1, 0.8))
     passes = _in_order(loops, tool, both=settings.way == "both")
     if not passes:
         nothing = warning(
@@ -203,11 +203,11 @@ def _left(drive: SurfaceDrive, steep: FacetSlopes) -> tuple[Finding, ...]:
     )
 
 
-def _feet(places: FacetSlopes, drive: SurfaceDrive, tool: Tool, progress: Progress) -> Floats:
+def _feet(slopes: FacetSlopes, drive: SurfaceDrive, tool: Tool, progress: Progress) -> Floats:
     """Return how low (m,) the tip comes that touches each triangle: lower than it only where the foot of an upright one stops it."""
-    low, high = places.tips[:, :, 2].min(axis=1), places.tips[:, :, 2].max(axis=1)
-    upright = np.flatnonzero(places.normal[:, 2] <= -UPWARD)
-    beside = (places.tips[upright] + OFF * places.normal[upright, None])[:, :, :2].reshape(-1, 2)
+    low, high = slopes.tips[:, :, 2].min(axis=1), slopes.tips[:, :, 2].max(axis=1)
+    upright = np.flatnonzero(slopes.normal[:, 2] <= -UPWARD)
+    beside = (slopes.tips[upright] + OFF * slopes.normal[upright, None])[:, :, :2].reshape(-1, 2)
     over = drive.skin.drop.drop(
         beside, lower_side(tool, drive.allowance), float(drive.low[2]) - tool.flute_length, progress
     )
@@ -220,16 +220,16 @@ def _feet(places: FacetSlopes, drive: SurfaceDrive, tool: Tool, progress: Progre
     return low
 
 
-def _levels(places: FacetSlopes, feet: Floats, tool: Tool, height: float, step: float) -> Floats:
+def _levels(slopes: FacetSlopes, feet: Floats, tool: Tool, height: float, step: float) -> Floats:
     """Return the heights of the tip (p,) upwards, from the lowest place that is touched; `feet` is how low the tip comes (m,)."""
-    low, high = places.tips[:, :, 2].min(axis=1), places.tips[:, :, 2].max(axis=1)
-    spacing = np.full(len(low), step) if step > 0.0 else level_spacing(places, tool, height)
+    low, high = slopes.tips[:, :, 2].min(axis=1), slopes.tips[:, :, 2].max(axis=1)
+    spacing = np.full(len(low), step) if step > 0.0 else level_spacing(slopes, tool, height)
     spacing = np.minimum(
         spacing, FLANK * max(tool.flute_length - tool.corner_radius, tool.corner_radius)
     )
     levels = marched(low, high, spacing, float(feet.min()), float(high.max()))
     if len(levels) > 1:
-        if not (places.normal[high > levels[-2], 2] > -UPWARD).any():
+        if not (slopes.normal[high > levels[-2], 2] > -UPWARD).any():
             # The flank of the level below goes up an upright wall to its top.
             levels = levels[:-1]
         else:
@@ -273,9 +273,9 @@ class _Blocked:
         low, high = np.zeros(len(z)), np.full(len(z), np.inf)
         at, rows = low.copy(), np.arange(len(z))
         for k in range(STEPS):
-            places = start[rows] + at[rows, None] * way[rows]
+            positions = start[rows] + at[rows, None] * way[rows]
             _, facet, contact = self.drive.skin.drop.touch(
-                places, self.pieces, z[rows] + tolerance.COINCIDENT, self.progress
+                positions, self.pieces, z[rows] + tolerance.COINCIDENT, self.progress
             )
             hits = facet >= 0
             high[rows[~hits]] = at[rows[~hits]]
@@ -313,7 +313,7 @@ class _Loop:
 
 def _loops(
     levels: Floats,
-    places: FacetSlopes,
+    slopes: FacetSlopes,
     drive: SurfaceDrive,
     tool: Tool,
     settings: WaterlineSettings,
@@ -328,7 +328,7 @@ def _loops(
         progress=progress,
     )
     # Tips are compared as drops put them, without the allowance that lifts the tool.
-    tips = spread(places.tips, cell) - drive.allowance * UPRIGHT
+    tips = spread(slopes.tips, cell) - drive.allowance * UPRIGHT
     levels = levels - drive.allowance
     grid = grid_around(tips, cell, MARGIN)
     heights = blocked.heights(grid.points[:, :2])
@@ -396,9 +396,9 @@ def _pieces(
     if near.all():
         return [(rows, closed)] if len(rows) > 1 else []
     run = np.concatenate([[0.0], np.cumsum(np.hypot(*np.diff(plan, axis=0).T))])
-    places = np.concatenate([[-np.inf], run[near], [np.inf]])
-    after = np.clip(np.searchsorted(places, run), 1, len(places) - 1)
-    wanted = np.minimum(places[after] - run, run - places[after - 1]) <= overlap
+    limits = np.concatenate([[-np.inf], run[near], [np.inf]])
+    after = np.clip(np.searchsorted(limits, run), 1, len(limits) - 1)
+    wanted = np.minimum(limits[after] - run, run - limits[after - 1]) <= overlap
     if wanted.all():
         return [(rows, closed)]
     if closed:
@@ -410,8 +410,8 @@ def _pieces(
 
 
 def _rolls(plan: Floats, near: Bools, radius: float) -> Bools:
-    """Say of places (k, 2) between two that are near the area whether the cutter rolls round an edge there: the way is as long as the arc
-    of its radius between both."""
+    """Say of positions (k, 2) between two that are near the area whether the cutter rolls round an edge there: the way is as long as the
+    arc of its radius between both."""
     out = np.zeros(len(plan), dtype=bool)
     rows = np.flatnonzero(near)
     run = np.concatenate([[0.0], np.cumsum(np.hypot(*np.diff(plan, axis=0).T))])

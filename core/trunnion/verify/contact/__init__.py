@@ -37,19 +37,19 @@ POSES = 1024
 class Contact:
     """What was measured. n moves, f faces; column 0 is what cuts, column 1 what does not (neck, shank, holder).
 
-    depth (n, 2) mm, 0 when clear; face (n, 2) rows of the deepest face or -1; place (n, 2, 3) where, NaN when clear; face_depth (f, 2),
+    depth (n, 2) mm, 0 when clear; face (n, 2) rows of the deepest face or -1; position (n, 2, 3) where, NaN when clear; face_depth (f, 2),
     face_move (f, 2) the move that is deepest in each face (of equal ones the first) or -1. fixture_depth (n,) how deep any part of the
-    tool enters a fixture, 0 when clear; fixture (n,) its row or -1; fixture_place (n, 3), NaN when clear.
+    tool enters a fixture, 0 when clear; fixture (n,) its row or -1; fixture_position (n, 3), NaN when clear.
     """
 
     depth: Floats
     face: Ints
-    place: Floats
+    position: Floats
     face_depth: Floats
     face_move: Ints
     fixture_depth: Floats
     fixture: Ints
-    fixture_place: Floats
+    fixture_position: Floats
 
 
 class PartContact:
@@ -106,12 +106,12 @@ class PartContact:
         return Contact(
             depth=np.maximum(found.depth, 0.0),
             face=found.face,
-            place=found.place,
+            position=found.position,
             face_depth=np.maximum(found.face_depth, 0.0),
             face_move=found.face_move,
             fixture_depth=np.maximum(fixed.depth[rows, kind], 0.0),
             fixture=fixed.face[rows, kind],
-            fixture_place=fixed.place[rows, kind],
+            fixture_position=fixed.position[rows, kind],
         )
 
     def clear(self, moves: Moves, allowed: float) -> Bools:
@@ -119,16 +119,16 @@ class PartContact:
         return np.isnan(self.stopped(moves, allowed)[:, 0])
 
     def stopped(self, moves: Moves, allowed: float) -> Floats:
-        """Return a place (n, 3) of part or fixtures, on it, where something of the tool of each move or pose is deeper than allowed, or
+        """Return a position (n, 3) of part or fixtures, on it, where something of the tool of each move or pose is deeper than allowed, or
         beside the deepest such place; NaN where there is none."""
-        place = np.full((len(moves), 3), np.nan)
+        position = np.full((len(moves), 3), np.nan)
         engines = self._engines(moves) + (
             [(self._fixtures, np.arange(len(moves)))] if self._fixtures else []
         )
         for engine, rows in engines:
-            still = rows[np.isnan(place[rows, 0])]
-            place[still] = engine.stopped(moves, still, allowed)
-        return place
+            still = rows[np.isnan(position[rows, 0])]
+            position[still] = engine.stopped(moves, still, allowed)
+        return position
 
     def any_clear(
         self,
@@ -173,13 +173,13 @@ class PartContact:
             ]
             if len(some):
                 progress.check()
-                place = self.stopped(
+                position = self.stopped(
                     poses_of(tool, tips[row[some], pose[some]], axes[row[some], pose[some]]),
                     allowed,
                 )
                 progress.check()
-                obstacles.add(place, row[some])
-                found[row[some[np.isnan(place[:, 0])]]] = True
+                obstacles.add(position, row[some])
+                found[row[some[np.isnan(position[:, 0])]]] = True
         return found
 
     def _engines(self, moves: Moves) -> list[tuple[StripContact | FacetContact, Ints]]:

@@ -32,7 +32,7 @@ CHUNK = 100
 """Moves between two looks at cancel, fewer when they are long."""
 SHORT = 10.0
 """mm: a move so much longer than this counts as several."""
-PLACES = 16
+BATCH = 16
 """Places whose poses are tried between two looks at cancel: some tens of milliseconds when nothing is known of what is in the way."""
 LEAF = 4
 """Most triangles of a leaf."""
@@ -158,12 +158,12 @@ class FacetContact:
                 len(self.facets.tag),
                 allowed,
                 tolerance.CONTACT_BOUND,
-                obstacles.place,
+                obstacles.position,
                 obstacles.count,
                 found,
             )
 
-        in_parallel(some, len(tips), PLACES, progress, text, threads)
+        in_parallel(some, len(tips), BATCH, progress, text, threads)
         return found
 
     def _measure(
@@ -175,7 +175,7 @@ class FacetContact:
         touch = Penetration(
             depth=np.full((k, 2), -np.inf),
             face=np.full((k, 2), -1),
-            place=np.full((k, 2, 3), np.nan),
+            position=np.full((k, 2, 3), np.nan),
             face_depth=np.full((f, 2), -np.inf),
             face_move=np.full((f, 2), -1),
         )
@@ -212,7 +212,7 @@ class FacetContact:
                 settle,
                 touch.depth,
                 touch.face,
-                touch.place,
+                touch.position,
                 face_depth,
                 face_move,
             )

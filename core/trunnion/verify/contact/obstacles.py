@@ -23,9 +23,9 @@ KEPT = 24
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Obstacles:
-    """Points place (k, w, 3) of the part that were in a tool's way at each of k places, the first count (k,) of them known."""
+    """Points position (k, w, 3) of the part that were in a tool's way at each of k places, the first count (k,) of them known."""
 
-    place: Floats
+    position: Floats
     count: Ints
 
     @staticmethod
@@ -35,11 +35,11 @@ class Obstacles:
 
     def of(self, rows: Ints) -> Obstacles:
         """Return a copy for some of the places; `put` takes what it learns back."""
-        return Obstacles(self.place[rows], self.count[rows])
+        return Obstacles(self.position[rows], self.count[rows])
 
     def put(self, rows: Ints, known: Obstacles) -> None:
         """Take what is known of some of the places."""
-        self.place[rows], self.count[rows] = known.place, known.count
+        self.position[rows], self.count[rows] = known.position, known.count
 
     def stop(self, tool: Tool, tips: Floats, axes: Floats, rows: Ints, allowed: float) -> Bools:
         """Return for poses (n, 3) of a tool, each of one of the places, whether what is known there is deeper in the tool than allowed."""
@@ -50,7 +50,7 @@ class Obstacles:
             rows,
             bodies.arc,
             bodies.piece,
-            self.place,
+            self.position,
             self.count,
             allowed + tolerance.CONTACT_BOUND,
             stopped,
@@ -59,4 +59,4 @@ class Obstacles:
 
     def add(self, found: Floats, rows: Ints) -> None:
         """Remember what stopped poses, each of one of the places: points (n, 3), NaN where nothing did."""
-        kernel.insert_obstacle_loop(found, rows, self.place, self.count)
+        kernel.insert_obstacle_loop(found, rows, self.position, self.count)

@@ -91,7 +91,7 @@ class StripContact:
         )
 
     def _touch(self, moves: Moves, rows: Ints, found: _Measured) -> Penetration:
-        s, face, place = (
+        s, face, position = (
             self.surfaces,
             np.full((len(rows), 2), -1),
             np.full((len(rows), 2, 3), np.nan),
@@ -106,12 +106,12 @@ class StripContact:
             s.region_z,
             s.region_face,
             face,
-            place,
+            position,
         )
         return Penetration(
             depth=found.depth,
             face=face,
-            place=place,
+            position=position,
             face_depth=found.face_depth,
             face_move=found.face_move,
         )

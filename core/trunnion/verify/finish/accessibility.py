@@ -189,8 +189,10 @@ def _shared(
     if len(tried) == len(rows):
         return answer
     # Faces are distinguished by a fourth coordinate longer than any part.
-    place = np.column_stack([samples.point[rows], samples.face[rows] * 4.0 * np.ptp(samples.point)])
-    return np.asarray(answer[progress.aside(lambda _: cKDTree(place[tried]).query(place)[1])])
+    position = np.column_stack(
+        [samples.point[rows], samples.face[rows] * 4.0 * np.ptp(samples.point)]
+    )
+    return np.asarray(answer[progress.aside(lambda _: cKDTree(position[tried]).query(position)[1])])
 
 
 def reaching_furthest(tools: Sequence[Tool]) -> list[Tool]:

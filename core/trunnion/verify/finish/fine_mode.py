@@ -52,11 +52,11 @@ class FineFace(Protocol):
     def bounds(self) -> tuple[float, float, float, float]:
         """Return the least and greatest u and v."""
 
-    def inside(self, places: Floats) -> Bools:
-        """Return which places (k, 2) lie inside the trim."""
+    def inside(self, uv: Floats) -> Bools:
+        """Return which uv (k, 2) lie inside the trim."""
 
-    def at(self, places: Floats) -> ExactPoints:
-        """Return the surface at places (k, 2)."""
+    def at(self, uv: Floats) -> ExactPoints:
+        """Return the surface at uv (k, 2)."""
 
 
 @dataclass(frozen=True, slots=True, eq=False, kw_only=True)
@@ -64,7 +64,7 @@ class ExtremeFigure:
     """A figure in mm and where it is attained (3,), by which move (-1: none)."""
 
     value: float
-    place: Floats
+    position: Floats
     move: int
 
 
@@ -151,7 +151,7 @@ def fine_measure(
     labels = np.column_stack([row, move_of[first.nearest[held]]])
     return FineMap(
         scallop=scallop,
-        gouge=ExtremeFigure(value=max(-least.value, 0.0), place=least.place, move=least.move),
+        gouge=ExtremeFigure(value=max(-least.value, 0.0), position=least.position, move=least.move),
         step=_step(at.point[held], labels, first.left[held], first.nearest[held], spacing, window),
         bound=bound,
         face=np.array([f.tag for f in faces])[row],
@@ -164,7 +164,7 @@ def fine_measure(
 
 
 @dataclass(slots=True, eq=False)
-class _Placed:
+class _LocatedCells:
     """Cells with the surface at their middles, and whether those are on the patch (c,)."""
 
     cells: _Cells
@@ -242,7 +242,7 @@ class _Patch:
             *(np.concatenate([getattr(m, name) for m in made]) for name in _Cells.__slots__)
         )
 
-    def inside(self, cells: _Cells) -> _Placed:
+    def inside(self, cells: _Cells) -> _LocatedCells:
         """Return the cells that touch the patch."""
         if len(cells) > MOST_CELLS:
             raise OutOfMemory(
@@ -272,7 +272,7 @@ class _Patch:
         whole = _Cells(
             *(np.concatenate([getattr(m, name) for m in parts]) for name in _Cells.__slots__)
         )
-        return _Placed(whole, joined, np.concatenate(holds))
+        return _LocatedCells(whole, joined, np.concatenate(holds))
 
     def _in_box(self, points: Floats, margin: Floats) -> Bools:
         low = -np.inf if self.low is None else np.asarray(self.low)
@@ -280,11 +280,11 @@ class _Patch:
         return np.asarray(((points >= low - margin) & (points <= high + margin)).all(axis=1))
 
     def look(
-        self, placed: _Placed, lift: float, progress: Progress, least: float = -np.inf
+        self, located: _LocatedCells, lift: float, progress: Progress, least: float = -np.inf
     ) -> _Looked:
         """Return what is left over cells of the surface, lifted along its normals; by how much a cell falls below `least` is not
         reported."""
-        n, at, (u, v) = len(placed.cells), placed.at, placed.cells.half.T
+        n, at, (u, v) = len(located.cells), located.at, located.cells.half.T
         a, b = (
             u[:, None] * (at.du + lift * at.normal_du),
             v[:, None] * (at.dv + lift * at.normal_dv),
@@ -322,7 +322,7 @@ class _Patch:
                 FAR,
                 least,
                 self.bound,
-                placed.cells.above,
+                located.cells.above,
                 left,
                 nearest,
                 upper,
@@ -334,7 +334,7 @@ class _Patch:
 
     def search(
         self,
-        placed: _Placed,
+        located: _LocatedCells,
         looked: _Looked,
         lift: float,
         wanted: Sequence[_Best],
@@ -343,9 +343,9 @@ class _Patch:
         """Quarter cells until none may beat what is wanted by more than the bound."""
         lowest = -np.inf
         for k in range(ROUNDS):
-            above, below = np.zeros((2, len(placed.cells)), bool)
+            above, below = np.zeros((2, len(located.cells)), bool)
             for best in wanted:
-                if best.raised(placed, looked):
+                if best.raised(located, looked):
                     self.climb(best, lift)
                 lowest = best.value if best.sign < 0.0 else lowest
             for best in wanted:
@@ -357,8 +357,10 @@ class _Patch:
             if not (above | below).any():
                 return
             share = progress.part(1.0 - 0.8**k, 1.0 - 0.8 ** (k + 1))
-            placed = self.inside(replace(placed.cells, above=above).some(above | below).quartered())
-            looked = self.look(placed, lift, share, lowest if lowest > -np.inf else np.inf)
+            located = self.inside(
+                replace(located.cells, above=above).some(above | below).quartered()
+            )
+            looked = self.look(located, lift, share, lowest if lowest > -np.inf else np.inf)
 
     def climb(self, best: _Best, lift: float) -> None:
         """Raise what was found last to the ridge or dip beside it: no middle of a cell lies on one, and what is found decides which cells
@@ -367,10 +369,10 @@ class _Patch:
         share = np.linspace(-1.0, 1.0, CLIMB)
         grid = np.stack(np.meshgrid(share, share), axis=-1).reshape(-1, 2)
         for _ in range(CLIMBS):
-            places = best.uv + grid * half
-            places = places[face.inside(places)]
-            at = face.at(places)
-            inside = self._in_box(at.point, np.zeros((len(places), 3)))
+            uv = best.uv + grid * half
+            uv = uv[face.inside(uv)]
+            at = face.at(uv)
+            inside = self._in_box(at.point, np.zeros((len(uv), 3)))
             points = (at.point + lift * at.normal)[inside]
             left, nearest = np.full(len(points), FAR), np.full(len(points), -1)
             left_kernel.residual_bvh_loop(
@@ -384,10 +386,10 @@ class _Patch:
                 left,
                 nearest,
             )
-            best.take(left, nearest, places[inside], at.point[inside])
+            best.take(left, nearest, uv[inside], at.point[inside])
             half = 0.4 * half
 
-    def ridge(self, placed: _Placed, most: _Best, progress: Progress) -> ExtremeFigure:
+    def ridge(self, located: _LocatedCells, most: _Best, progress: Progress) -> ExtremeFigure:
         """Return how high the highest ridge stands along the normals: where the lifted surface just leaves all material behind.
 
         The distance to a cutter beside is shorter than the way up along the normal, by the more the steeper the ridge.
@@ -399,8 +401,8 @@ class _Patch:
             share = progress.part(k / LIFTS, (k + 1) / LIFTS)
             over = _Best(1.0)
             self.search(
-                placed,
-                self.look(placed, height, share.part(0.0, 0.5), np.inf),
+                located,
+                self.look(located, height, share.part(0.0, 0.5), np.inf),
                 height,
                 (over,),
                 share.part(0.5, 1.0),
@@ -409,11 +411,11 @@ class _Patch:
                 height, best = height + over.value, over
             if over.value <= self.bound:
                 break
-        return ExtremeFigure(value=height, place=best.place, move=best.move)
+        return ExtremeFigure(value=height, position=best.position, move=best.move)
 
 
 def _within(face: FineFace, cells: _Cells, signs: Floats) -> Bools:
-    """Return which places (c, s), at signs (s, 2) times the half sides from the middle, lie inside the trim of the face that cells are on.
+    """Return which uv (c, s), at signs (s, 2) times the half sides from the middle, lie inside the trim of the face that cells are on.
 
     All cells of a face are of one size, and neighbours share corners: each place is evaluated once.
     """
@@ -422,8 +424,8 @@ def _within(face: FineFace, cells: _Cells, signs: Floats) -> Bools:
     u0, _, v0, _ = face.bounds()
     start, half = np.array([u0, v0]), cells.half[0]
     steps = np.rint((cells.uv[:, None] - start) / half + signs)
-    place, row = np.unique(steps[..., 0] + 1j * steps[..., 1], return_inverse=True)
-    inside = face.inside(start + np.column_stack([place.real, place.imag]) * half)
+    position, row = np.unique(steps[..., 0] + 1j * steps[..., 1], return_inverse=True)
+    inside = face.inside(start + np.column_stack([position.real, position.imag]) * half)
     return np.asarray(inside[row.reshape(len(cells), len(signs))])
 
 
@@ -435,18 +437,23 @@ class _Best:
     """The most (sign 1) or least (sign -1) found, with its place on its face, and the half sides of its cell."""
 
     def __init__(self, sign: float) -> None:
-        self.value, self.place, self.move, self.sign = -sign * np.inf, np.full(3, np.nan), -1, sign
+        self.value, self.position, self.move, self.sign = (
+            -sign * np.inf,
+            np.full(3, np.nan),
+            -1,
+            sign,
+        )
         self.face, self.uv, self.half = -1, np.full(2, np.nan), np.zeros(2)
 
-    def raised(self, placed: _Placed, looked: _Looked) -> bool:
+    def raised(self, located: _LocatedCells, looked: _Looked) -> bool:
         """Take what is left at the cells' middles into account; return whether that changed anything."""
-        rows = np.flatnonzero(placed.holds)
+        rows = np.flatnonzero(located.holds)
         if not len(rows) or not self.take(
-            looked.left[rows], looked.nearest[rows], placed.cells.uv[rows], placed.at.point[rows]
+            looked.left[rows], looked.nearest[rows], located.cells.uv[rows], located.at.point[rows]
         ):
             return False
         row = rows[np.argmax(self.sign * looked.left[rows])]
-        self.face, self.half = int(placed.cells.face[row]), placed.cells.half[row]
+        self.face, self.half = int(located.cells.face[row]), located.cells.half[row]
         return True
 
     def take(self, left: Floats, nearest: Ints, uv: Floats, point: Floats) -> bool:
@@ -456,7 +463,7 @@ class _Best:
         row = int(np.argmax(self.sign * left))
         if self.sign * left[row] <= self.sign * self.value:
             return False
-        self.value, self.place, self.move, self.uv = (
+        self.value, self.position, self.move, self.uv = (
             float(left[row]),
             point[row],
             int(nearest[row]),
@@ -466,14 +473,14 @@ class _Best:
 
     def extreme(self) -> ExtremeFigure:
         """Return it as a figure."""
-        return ExtremeFigure(value=self.value, place=self.place, move=self.move)
+        return ExtremeFigure(value=self.value, position=self.position, move=self.move)
 
 
 def _step(
     point: Floats, label: Ints, left: Floats, nearest: Ints, spacing: float, window: float
 ) -> ExtremeFigure:
     """Return the largest difference between the lowest positions on both sides of a seam, where neighbours have other labels (m, 2)."""
-    none = ExtremeFigure(value=0.0, place=np.full(3, np.nan), move=-1)
+    none = ExtremeFigure(value=0.0, position=np.full(3, np.nan), move=-1)
     if len(point) < 2:
         return none
     tree = cKDTree(point)
@@ -496,5 +503,5 @@ def _step(
         jump = abs(float(left[lows[0]] - left[lows[1]]))
         if jump > best.value:
             lower = lows[int(left[lows[0]] > left[lows[1]])]
-            best = ExtremeFigure(value=jump, place=middle[row], move=int(nearest[lower]))
+            best = ExtremeFigure(value=jump, position=middle[row], move=int(nearest[lower]))
     return best

@@ -40,7 +40,7 @@ def _gouges(
             error(
                 "verify.gouge",
                 f"{section.operation} cuts {proof.contact.depth[row, 0]:.3f} mm into face "
-                f"{tags[face]} at {position_text(proof.contact.place[row, 0])}",
+                f"{tags[face]} at {position_text(proof.contact.position[row, 0])}",
                 section.operation,
                 block_of(proof, section, row),
                 f"face {tags[face]}",
@@ -61,7 +61,7 @@ def _collisions(
             error(
                 "verify.collision",
                 f"shank or holder of {section.tool.name} enters face {tags[face]} by "
-                f"{proof.contact.depth[row, 1]:.3f} mm at {position_text(proof.contact.place[row, 1])}",
+                f"{proof.contact.depth[row, 1]:.3f} mm at {position_text(proof.contact.position[row, 1])}",
                 section.operation,
                 block_of(proof, section, row),
                 f"face {tags[face]}",
@@ -96,7 +96,7 @@ def _fixtures(
             error(
                 "verify.fixture",
                 f"{section.tool.name} enters fixture {name} by {proof.contact.fixture_depth[row]:.3f} mm at "
-                f"{position_text(proof.contact.fixture_place[row])}",
+                f"{position_text(proof.contact.fixture_position[row])}",
                 section.operation,
                 block_of(proof, section, row),
                 name,
@@ -120,7 +120,7 @@ def _rapids(proof: SetupProof, section: ProgramSection, rows: Ints) -> list[Find
         error(
             "verify.rapid-in-stock",
             f"a rapid of {section.operation} goes {depth[row]:.3f} mm into stock at "
-            f"{position_text(proof.stock.rapid_place[row])}",
+            f"{position_text(proof.stock.rapid_position[row])}",
             section.operation,
             block_of(proof, section, row),
             remedy="lift the rapid, or make it a feed move",

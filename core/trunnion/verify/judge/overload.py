@@ -184,7 +184,7 @@ def _feeds(
 def _feed_remedy(proof: SetupProof, section: ProgramSection, offers: list[Offer]) -> str:
     """Return which feeds are offered."""
     lines = section.block_lines
-    places = [
+    positions = [
         (
             f"line {lines[o.first]} to {lines[o.last]}"
             if lines
@@ -195,7 +195,7 @@ def _feed_remedy(proof: SetupProof, section: ProgramSection, offers: list[Offer]
     ]
     return (
         "feed at most "
-        + ", ".join(f"{feed:.0f} mm/min from {place}" for place, feed in places)
+        + ", ".join(f"{feed:.0f} mm/min from {position}" for position, feed in positions)
         + "; or clear the material before"
     )
 

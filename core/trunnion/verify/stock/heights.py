@@ -98,7 +98,7 @@ def run_heights(
                     row,
                     rims[rim_start[row] : rim_start[row + 1]],
                     depth,
-                    found.place,
+                    found.position,
                 )
         if why == _RIMS_FULL and stop == first:
             rims = np.zeros(2 * len(rims), np.int64)
@@ -106,11 +106,11 @@ def run_heights(
     for row in map(
         int,
         np.flatnonzero(
-            (depth > tolerance.RAPID_DEPTH) & (cell >= 0) & np.isnan(found.place[:n, 0])
+            (depth > tolerance.RAPID_DEPTH) & (cell >= 0) & np.isnan(found.position[:n, 0])
         ),
     ):
         at = field.centre(int(cell[row]))
-        found.place[row] = *at, moves.row[row, [columns.Z_START, columns.Z_END]].min()
+        found.position[row] = *at, moves.row[row, [columns.Z_START, columns.Z_END]].min()
     found.removed[:n] += removed * (field.pitch**2 / len(stock.bundles))
     found.depth[:n], found.body[:n] = np.maximum(depth, 0.0), np.maximum(body, 0.0)
     return first, why == _STANDING

@@ -29,13 +29,13 @@ LOOKS = 8_000_000
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Passed:
-    """What moves (n,) did: removed mm3 (the mean of the bundles), depth and place (n, 3) in the blank's frame of rapids, how deep what
+    """What moves (n,) did: removed mm3 (the mean of the bundles), depth and position (n, 3) in the blank's frame of rapids, how deep what
     doesn't cut went, and what the probes saw. grazed: moves (k,), and places with depths (k, 4), where rapids may be in material between
     rays."""
 
     removed: Floats
     depth: Floats
-    place: Floats
+    position: Floats
     body: Floats
     tally: Tally
     grazed: list[tuple[Ints, Floats]] = field(default_factory=list)
@@ -200,7 +200,7 @@ class _Job:
             False,
         )
         self.resume = np.array([0, 0, 0, 0, 0, int(looked)])
-        self.removed, self.depth, self.place, self.body = (
+        self.removed, self.depth, self.position, self.body = (
             np.zeros(n),
             np.zeros(n),
             np.full((n, 3), np.nan),
@@ -240,7 +240,7 @@ class _Job:
             self.resume,
             self.removed,
             self.depth,
-            self.place,
+            self.position,
             self.body,
             m.way[own],
             m.probes.rings,
@@ -261,7 +261,7 @@ class _Job:
         found.body[own] = np.maximum(found.body[own], self.body)
         deeper = np.flatnonzero(self.depth > found.depth[own])
         found.depth[own][deeper] = self.depth[deeper]
-        found.place[own][deeper[:, None], cycle(self.bundle.axis)] = self.place[deeper]
+        found.position[own][deeper[:, None], cycle(self.bundle.axis)] = self.position[deeper]
         seen = slice(self.probe[0], self.probe[-1])
         found.tally.counted[seen] += self.tally.counted
         found.tally.spans[seen] = (

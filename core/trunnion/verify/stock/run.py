@@ -23,7 +23,7 @@ from trunnion.verify.stock.stock import Stock
 class StockRun:
     """What happened on the way, a row a move.
 
-    removed (n,) mm3; rapid_depth (n,) how deep a rapid goes into stock, 0 when clear; rapid_place (n, 3) in the setup frame, NaN when
+    removed (n,) mm3; rapid_depth (n,) how deep a rapid goes into stock, 0 when clear; rapid_position (n, 3) in the setup frame, NaN when
     clear; body_depth (n,) how deep shank or holder enter stock; engagement (n,) rad, the largest angle of the cutter's circumference in
     material along a feed move, and depth_of_cut (n,) mm along the axis, both 0 for rapids; widest (n,) mm how wide the cut is over the
     diameter's length where it is widest, peak (n,) how many times as wide as on the mean of the path.
@@ -31,7 +31,7 @@ class StockRun:
 
     removed: Floats
     rapid_depth: Floats
-    rapid_place: Floats
+    rapid_position: Floats
     body_depth: Floats
     engagement: Floats
     depth_of_cut: Floats
@@ -69,12 +69,12 @@ def run_stock(
         confirm_grazed(stock, found, frame, sweep, progress.part(1.0, 1.0))
         stock.cut_by.append((sweep, frame))
     rapid_depth = np.where(found.depth > tolerance.RAPID_DEPTH, found.depth, 0.0)
-    place = np.where(rapid_depth[:, None] > 0.0, found.place, np.nan)
+    position = np.where(rapid_depth[:, None] > 0.0, found.position, np.nan)
     engaged = progress.aside(lambda _: engagement_of(probes, found.tally, moves))
     return StockRun(
         removed=found.removed,
         rapid_depth=rapid_depth,
-        rapid_place=frame.to_local(stock.frame.to_world(place)),
+        rapid_position=frame.to_local(stock.frame.to_world(position)),
         body_depth=found.body,
         engagement=engaged.largest,
         depth_of_cut=engaged.depth,

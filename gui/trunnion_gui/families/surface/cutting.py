@@ -32,7 +32,7 @@ _CLOSING = 9.0
 """Pixels: a click this near to the first place of a drawn line closes it."""
 _FINE = 24
 """Pieces of the line that is shown between two places."""
-Place = tuple[float, float, float]
+Position = tuple[float, float, float]
 
 
 class CutBar(QWidget):
@@ -44,7 +44,7 @@ class CutBar(QWidget):
         super().__init__()
         self._document, self._jobs, self._scene = document, jobs, scene
         self.face = 0
-        self.places: list[Place] = []
+        self.positions: list[Position] = []
         self._make_widgets()
         row = QHBoxLayout(self)
         row.setContentsMargins(14, 2, 14, 6)
@@ -66,7 +66,7 @@ class CutBar(QWidget):
 
     def begin(self, face: int, by_plane: bool) -> None:
         """Begin a cut of a face (0: of the one that is clicked next)."""
-        self.places = []
+        self.positions = []
         self.face = 0
         self._take_manner(AXES[0] if by_plane else DRAWN)
         self.show()
@@ -76,7 +76,7 @@ class CutBar(QWidget):
         """Put the bar away."""
         if self.is_on:
             self.hide()
-            self.face, self.places = 0, []
+            self.face, self.positions = 0, []
             self._scene.show_cut((), np.zeros((0, 2, 3)))
             self.ended.emit()
 
@@ -88,17 +88,19 @@ class CutBar(QWidget):
             self._choose(click.face)
         kind = self._kind()
         if kind in AXES:
-            self.value.setValue(click.place[AXES.index(kind)])
+            self.value.setValue(click.position[AXES.index(kind)])
         elif kind == THREE:
-            self.places = [*self.places, click.place] if len(self.places) < 3 else [click.place]
+            self.positions = (
+                [*self.positions, click.position] if len(self.positions) < 3 else [click.position]
+            )
         elif not self._is_closed():
-            self.places.append(self._closed(click.place))
+            self.positions.append(self._closed(click.position))
         self.refresh()
 
     def take_back(self) -> None:
         """Forget the last place."""
-        if self.places:
-            self.places.pop()
+        if self.positions:
+            self.positions.pop()
             self.refresh()
 
     def cut(self) -> Cut | None:
@@ -112,11 +114,11 @@ class CutBar(QWidget):
                 return plane_cut(self.face, tuple(self.value.value() * v for v in normal), normal)  # type: ignore[arg-type]
             if kind == THREE:
                 return (
-                    plane_cut(self.face, self.places[0], self._normal())
-                    if len(self.places) == 3
+                    plane_cut(self.face, self.positions[0], self._normal())
+                    if len(self.positions) == 3
                     else None
                 )
-            return curve_cut(self.face, tuple(self.places)) if len(self.places) > 1 else None
+            return curve_cut(self.face, tuple(self.positions)) if len(self.positions) > 1 else None
         except BadInput:
             return None
 
@@ -127,10 +129,10 @@ class CutBar(QWidget):
         kind, cut = self._kind(), self.cut()
         self.value.setVisible(kind in AXES)
         self.back.setVisible(kind not in AXES)
-        self.back.setEnabled(bool(self.places))
+        self.back.setEnabled(bool(self.positions))
         self.apply.setEnabled(cut is not None and not self._document.is_busy)
         self.words.setText(self._wanted(kind))
-        self._scene.show_cut(self.places, self._line(cut))
+        self._scene.show_cut(self.positions, self._line(cut))
 
     # inside
 
@@ -182,7 +184,7 @@ class CutBar(QWidget):
         return str(self.manner.currentData())
 
     def _change(self) -> None:
-        self.places = []
+        self.positions = []
         self._reach()
         self.refresh()
 
@@ -209,19 +211,19 @@ class CutBar(QWidget):
         self.value.setValue(0.5 * (low + high))
         self.value.blockSignals(False)
 
-    def _closed(self, place: Place) -> Place:
+    def _closed(self, position: Position) -> Position:
         """Return a place, or the very first one when it is clicked again."""
-        if len(self.places) > 2:
-            away = self._scene.where(place) - self._scene.where(self.places[0])
+        if len(self.positions) > 2:
+            away = self._scene.where(position) - self._scene.where(self.positions[0])
             if abs(away.x()) + abs(away.y()) < _CLOSING:
-                return self.places[0]
-        return place
+                return self.positions[0]
+        return position
 
     def _is_closed(self) -> bool:
-        return len(self.places) > 3 and self.places[-1] == self.places[0]
+        return len(self.positions) > 3 and self.positions[-1] == self.positions[0]
 
-    def _normal(self) -> Place:
-        a, b, c = (np.array(p) for p in self.places)
+    def _normal(self) -> Position:
+        a, b, c = (np.array(p) for p in self.positions)
         x, y, z = np.cross(b - a, c - a)
         return float(x), float(y), float(z)
 
@@ -243,13 +245,13 @@ class CutBar(QWidget):
             return tr("{face}: type where, or click a place of the plane.").format(face=where)
         if kind == THREE:
             return tr("{face}: click three places, {n} are there.").format(
-                face=where, n=len(self.places)
+                face=where, n=len(self.positions)
             )
         if self._is_closed():
             return tr("{face}: the line is closed.").format(face=where)
         return tr(
             "{face}: click places of the line, {n} are there; it is led on to the edge, or closed by a click on the first."
-        ).format(face=where, n=len(self.places))
+        ).format(face=where, n=len(self.positions))
 
     def _cut(self) -> None:
         cut = self.cut()

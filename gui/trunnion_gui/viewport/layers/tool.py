@@ -76,9 +76,9 @@ def draw_trail(view: Any, points: np.ndarray, rapid: np.ndarray) -> None:
         numpy_to_vtkIdTypeArray(np.repeat(np.arange(k + 1), 2)[1:-1].astype(np.int64), deep=True),
     )
     line = pv.PolyData()
-    places = vtkPoints()
-    places.SetData(numpy_to_vtk(np.ascontiguousarray(points, dtype=np.float32), deep=True))
-    line.SetPoints(places)
+    vtk_points = vtkPoints()
+    vtk_points.SetData(numpy_to_vtk(np.ascontiguousarray(points, dtype=np.float32), deep=True))
+    line.SetPoints(vtk_points)
     line.SetLines(cells)
     palette = np.array([rgb(tool_colours()[name]) for name in ("feed", "rapid")], np.uint8)
     shown = numpy_to_vtk(palette[rapid.astype(int)], deep=True)

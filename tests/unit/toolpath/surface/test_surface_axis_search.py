@@ -77,7 +77,7 @@ WALL = ((-50.0, 4.0, -5.0), (90.0, 20.0, 60.0))
 
 
 def poses(way, course, tool=BALL):
-    at = np.clip(np.round(course.place).astype(int), 0, len(way) - 1)
+    at = np.clip(np.round(course.position).astype(int), 0, len(way) - 1)
     return tip_at(tool, way.point[at], way.normal[at], course.axis)
 
 
@@ -112,7 +112,7 @@ def test_in_a_deep_slot_no_axis_is_free_and_the_pass_has_a_gap() -> None:
         asker(*slot),
         LeanLimits(steepest=math.radians(30.0)),
     )
-    gone = course.place[~course.free]
+    gone = course.position[~course.free]
     assert 20.0 < gone.min() < 45.0 and 55.0 < gone.max() < 80.0
     assert len(course.runs()) == 2
     assert all(run.free.all() for run in course.runs())
@@ -136,10 +136,10 @@ def test_round_an_edge_axes_turn_no_faster_than_allowed() -> None:
     way, limits = edge(), LeanLimits(turn=math.radians(10.0))
     (course,) = free_axes([way], WANTED, BALL, None, limits)
     assert course.free.all() and not course.leap[1:].any()
-    travel = np.interp(course.place, np.arange(len(way)), way.travel(3.0))
+    travel = np.interp(course.position, np.arange(len(way)), way.travel(3.0))
     rate = angle_between(course.axis[1:], course.axis[:-1]) / np.diff(travel)
     assert np.degrees(rate.max()) < 10.0
-    at = np.clip(np.round(course.place).astype(int), 0, len(way) - 1)
+    at = np.clip(np.round(course.position).astype(int), 0, len(way) - 1)
     assert np.degrees(angle_between(course.axis, way.normal[at])).max() < 75.0 + 5.0
 
 

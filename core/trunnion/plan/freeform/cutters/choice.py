@@ -25,7 +25,7 @@ NEAR = 3
 
 @dataclass(frozen=True, slots=True, eq=False, kw_only=True)
 class AreaCutters:
-    """The cutter of an area and the places (k,) it reaches, what any of the catalogue reaches, and the cutter for the `missed` ones."""
+    """The cutter of an area and the samples (k,) it reaches, what any of the catalogue reaches, and the cutter for the `missed` ones."""
 
     tool: Tool | None
     reached: Bools
@@ -50,7 +50,7 @@ def named(shop: Shop, name: str) -> Tool:
 
 def cutter_for(
     space: SurfaceSpace,
-    places: AreaSamples,
+    samples: AreaSamples,
     tools: Sequence[Tool],
     share: float,
     room: float,
@@ -68,13 +68,13 @@ def cutter_for(
         if tool.name not in reach:
             reach[tool.name] = reached(
                 space,
-                places,
+                samples,
                 tool,
                 room,
                 0.0,
                 progress.part(n / (len(ranked) + 1), (n + 1) / (len(ranked) + 1)),
             )
-    none = np.zeros(len(places), dtype=bool)
+    none = np.zeros(len(samples), dtype=bool)
     reachable = np.logical_or.reduce([none, *reach.values()])
     if not reachable.any():
         return AreaCutters(tool=None, reached=none, reachable=reachable, missed=none, rest=None)

@@ -57,15 +57,15 @@ class LandCutters:
     left: Region
     flanks: tuple[tuple[Region, float], ...]
 
-    def finishes(self, places: AreaSamples) -> Bools:
-        """Say which places (k,) lie on the foot of an upright side, which the end mills finish while they cut the land beside it."""
-        found = np.zeros(len(places), dtype=bool)
-        upright = np.abs(places.normal[:, 2]) < VERTICAL
+    def finishes(self, samples: AreaSamples) -> Bools:
+        """Say which samples (k,) lie on the foot of an upright side, which the end mills finish while they cut the land beside it."""
+        found = np.zeros(len(samples), dtype=bool)
+        upright = np.abs(samples.normal[:, 2]) < VERTICAL
         for region, height in self.flanks:
-            above = places.point[:, 2] - self.land.z
+            above = samples.point[:, 2] - self.land.z
             rows = np.flatnonzero(upright & (above > -tolerance.SLIVER) & (above <= height))
             found[rows] |= region.contains(
-                places.point[rows, :2] + BEFORE * places.normal[rows, :2]
+                samples.point[rows, :2] + BEFORE * samples.normal[rows, :2]
             )
         return found
 

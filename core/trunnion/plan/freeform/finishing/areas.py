@@ -106,20 +106,20 @@ def blank_faces(part: Part, blank: Blank) -> tuple[int, ...]:
     return tuple(tag for tag in part.tags if lies[tag - 1])
 
 
-def walls_of(places: AreaSamples, tags: Collection[int]) -> tuple[int, ...]:
+def walls_of(samples: AreaSamples, tags: Collection[int]) -> tuple[int, ...]:
     """Return the faces that stand upright all over."""
     return tuple(
         sorted(
             t
             for t in tags
-            if (own := places.face == t).any()
-            and bool((np.abs(places.normal[own, 2]) < VERTICAL).all())
+            if (own := samples.face == t).any()
+            and bool((np.abs(samples.normal[own, 2]) < VERTICAL).all())
         )
     )
 
 
 def on_outline(
-    space: SurfaceSpace, places: AreaSamples, tags: Collection[int], progress: Progress = QUIET
+    space: SurfaceSpace, samples: AreaSamples, tags: Collection[int], progress: Progress = QUIET
 ) -> tuple[int, ...]:
     """Return the upright faces that nothing of the part stands in front of at their height: an end mill beside them is out in the free.
 
@@ -130,7 +130,7 @@ def on_outline(
         edges = [e for e in graph.edges_of[tag - 1] if graph.across(e, tag - 1) + 1 not in tags]
         if any(graph.convexity[e] != CONVEX for e in edges):
             continue
-        own = places.of(places.face == tag)
+        own = samples.of(samples.face == tag)
         beside = own.point[:, :2] + (END_MILL + tolerance.SEW) * own.normal[:, :2]
         over = space.skin.drop.drop(
             beside, level_disc(END_MILL), float(space.low[2]) - 1.0, progress.part(0.0, 0.0)

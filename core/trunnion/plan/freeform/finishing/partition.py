@@ -42,10 +42,10 @@ def parted_near(
     is near gets finer ones, and triangles beside it no longer share all their corners with it.
     """
     rows = np.flatnonzero(skin.of(tags))
-    place, normal, of = progress.aside(lambda _: _places(skin, rows), "Parting the faces")
-    certain = over(place, normal) > 0.0
+    position, normal, of = progress.aside(lambda _: _positions(skin, rows), "Parting the faces")
+    certain = over(position, normal) > 0.0
     near = rows[
-        progress.aside(lambda _: _with_those_near(place, of, certain, (1.0 + FILLED) * around))
+        progress.aside(lambda _: _with_those_near(position, of, certain, (1.0 + FILLED) * around))
     ]
     if not len(near):
         return skin, ()
@@ -133,7 +133,7 @@ def _length(a: Floats, a_normal: Floats, b: Floats, b_normal: Floats) -> Floats:
     return np.asarray(np.linalg.norm(b - a, axis=1))
 
 
-def _places(skin: Skin, rows: Ints) -> tuple[Floats, Floats, Ints]:
+def _positions(skin: Skin, rows: Ints) -> tuple[Floats, Floats, Ints]:
     """Return places (p, 3) on triangles, the faces' unit normals there, and which of them (k, 7) are the corners, the middles of the sides
     and the middle of each triangle: what a cutter leaves beside a rim may be narrower than a triangle."""
     used, corners = np.unique(skin.triangles[rows], return_inverse=True)
@@ -143,16 +143,17 @@ def _places(skin: Skin, rows: Ints) -> tuple[Floats, Floats, Ints]:
         (x, x[ends].mean(axis=1), x[corners].mean(axis=1))
         for x in (skin.points[used], skin.normals[used])
     ]
-    place, normal = (np.concatenate(part) for part in parts)
+    position, normal = (np.concatenate(part) for part in parts)
     of = np.column_stack([corners, len(used) + side, len(used) + len(ends) + np.arange(len(rows))])
-    return place, normal / np.linalg.norm(normal, axis=1, keepdims=True), of
+    return position, normal / np.linalg.norm(normal, axis=1, keepdims=True), of
 
 
-def _with_those_near(place: Floats, of: Ints, certain: Bools, around: float) -> Bools:
-    """Say which triangles, with places (k, 7) of all (p, 3), come as near as that to a certain place (p,): wide ones may between theirs."""
+def _with_those_near(position: Floats, of: Ints, certain: Bools, around: float) -> Bools:
+    """Say which triangles, with places (k, 7) of all (p, 3), come as near as that to a certain position (p,): wide ones may between
+    theirs."""
     if not certain.any():
         return np.zeros(len(of), dtype=bool)
-    away = np.asarray(cKDTree(place[certain]).query(place)[0])
-    corners = place[of[:, :3]]
+    away = np.asarray(cKDTree(position[certain]).query(position)[0])
+    corners = position[of[:, :3]]
     longest = np.linalg.norm(corners - np.roll(corners, 1, axis=1), axis=2).max(axis=1)
     return np.asarray(away[of].min(axis=1) <= around + BETWEEN * longest)

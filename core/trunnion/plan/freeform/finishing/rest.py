@@ -43,10 +43,10 @@ def left_by(
     in mm that is wanted."""
     limit = min(UNSEEN * height, LIFTED)
 
-    def over(place: Floats, normal: Floats) -> Floats:
-        lift = np.full(len(place), np.inf)
+    def over(position: Floats, normal: Floats) -> Floats:
+        lift = np.full(len(position), np.inf)
         up = normal[:, 2] > 0.0
-        tip, top = _stood(skin, place[up], normal[up], earlier, lowest, progress)
+        tip, top = _stood(skin, position[up], normal[up], earlier, lowest, progress)
         lift[up] = top - tip[:, 2] - limit
         return lift
 
@@ -76,10 +76,10 @@ def without_met(
     ]
     highest = float(skin.points[:, 2].max())
 
-    def over(place: Floats, normal: Floats, more: float = 0.0) -> Floats:
-        met = np.full(len(place), -np.inf)
+    def over(position: Floats, normal: Floats, more: float = 0.0) -> Floats:
+        met = np.full(len(position), -np.inf)
         up = normal[:, 2] > -math.sin(tolerance.ANGLE)
-        tip, top = _stood(skin, place[up], normal[up], tool, lowest, progress)
+        tip, top = _stood(skin, position[up], normal[up], tool, lowest, progress)
         stands = np.maximum(top, tip[:, 2])
         deepest = np.full(len(tip), -np.inf)
         for z, radius in wider:
@@ -116,10 +116,10 @@ def without_met(
 
 
 def _stood(
-    skin: Skin, place: Floats, normal: Floats, tool: Tool, lowest: float, progress: Progress
+    skin: Skin, position: Floats, normal: Floats, tool: Tool, lowest: float, progress: Progress
 ) -> tuple[Floats, Floats]:
     """Return the tips (p, 3) of an upright cutter that touches at places (p, 3) with normals (p, 3), and the heights (p,) that the part
     lifts it to there."""
-    at = place + 2.0 * skin.bound * normal
+    at = position + 2.0 * skin.bound * normal
     tip = tip_at(tool, at, normal, np.tile([0.0, 0.0, 1.0], (len(at), 1)))
     return tip, skin.drop.drop(tip[:, :2], lower_side(tool), lowest, progress)

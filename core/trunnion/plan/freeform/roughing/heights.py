@@ -20,7 +20,7 @@ from trunnion.geometry.plane.region import EMPTY_REGION, Region
 from trunnion.geometry.surface.drop_surface import DropSurface
 from trunnion.progress import QUIET, Progress
 
-MOST_PLACES = 60_000
+MOST_SAMPLES = 60_000
 """Places of a map: about a second of dropping; beyond, cells grow."""
 CORNERS = ((0, 0), (1, 0), (1, 1), (0, 1))
 """Corners of a cell, anticlockwise."""
@@ -48,9 +48,9 @@ class HeightMap:
         cell = cell_over(low, high, cell)
         count = np.ceil(size / cell).astype(int) + 1
         corner = 0.5 * (low[:2] + high[:2]) - 0.5 * cell * (count - 1)
-        places = corner + cell * np.argwhere(np.ones(tuple(count), dtype=bool))
+        positions = corner + cell * np.argwhere(np.ones(tuple(count), dtype=bool))
         top = drop.drop(
-            places, _disc(math.sqrt(2.0) * cell, allowance), float(low[2]) - allowance, progress
+            positions, _disc(math.sqrt(2.0) * cell, allowance), float(low[2]) - allowance, progress
         )
         return HeightMap(height=top.reshape(tuple(count)) + allowance, corner=corner, cell=cell)
 
@@ -62,7 +62,7 @@ class HeightMap:
 def cell_over(low: Floats, high: Floats, cell: float) -> float:
     """Return the side in mm of the cells of a map over a box with corners (3,): `cell`, or what keeps the map small enough."""
     size = high[:2] - low[:2]
-    return max(cell, math.sqrt(float(size[0] * size[1]) / MOST_PLACES))
+    return max(cell, math.sqrt(float(size[0] * size[1]) / MOST_SAMPLES))
 
 
 def gap_beside_walls(cell: float, chord: float) -> float:
@@ -128,16 +128,16 @@ def _slices(
         return []
     at = np.stack([np.column_stack([i + a, j + b]) for a, b in CORNERS], axis=1)
     value = height[at[:, :, 0], at[:, :, 1]] - z
-    place, after, next_value = (
+    position, after, next_value = (
         at.astype(np.float64),
         np.roll(at, -1, axis=1),
         np.roll(value, -1, axis=1),
     )
     crossed = (value <= 0.0) != (next_value <= 0.0)
     share = np.divide(value, value - next_value, out=np.zeros_like(value), where=crossed)
-    crossing = place + share[:, :, None] * (after - place)
+    crossing = position + share[:, :, None] * (after - position)
     # Corner, crossing, corner, ... : what isn't there takes the place of what was before it, which adds no area.
-    ring = np.stack([place, crossing], axis=2).reshape(len(i), 8, 2)
+    ring = np.stack([position, crossing], axis=2).reshape(len(i), 8, 2)
     there = np.stack([value <= 0.0, crossed], axis=2).reshape(len(i), 8)
     twice = np.concatenate([there, there], axis=1)
     rows = np.maximum.accumulate(np.where(twice, np.arange(16), -1), axis=1)[:, 8:] % 8

@@ -18,7 +18,7 @@ from trunnion.progress import QUIET, Progress
 
 CELLS = 8.0
 """Cells of the grid over the disc's radius."""
-MOST_PLACES = 20_000
+MOST_SAMPLES = 20_000
 """Places of the grid: some tenths of a second of dropping; beyond, cells grow."""
 
 
@@ -33,11 +33,13 @@ def hollow_depths(
     if not len(points):
         return np.zeros(0)
     low, high = points[:, :2].min(axis=0) - radius, points[:, :2].max(axis=0) + radius
-    cell = max(radius / CELLS, math.sqrt(float(np.prod(high - low)) / MOST_PLACES))
+    cell = max(radius / CELLS, math.sqrt(float(np.prod(high - low)) / MOST_SAMPLES))
     count = np.ceil((high - low) / cell).astype(int) + 1
-    places = low + cell * np.argwhere(np.ones(tuple(count), dtype=bool))
+    positions = low + cell * np.argwhere(np.ones(tuple(count), dtype=bool))
     lowest = float(space.low[2])
-    disc = space.skin.drop.drop(places, level_disc(radius), lowest, progress).reshape(tuple(count))
+    disc = space.skin.drop.drop(positions, level_disc(radius), lowest, progress).reshape(
+        tuple(count)
+    )
     # A place is up to half a diagonal from a point, and from where the disc would come lowest.
     closed = minimum_filter(
         disc, footprint=_disc(radius / cell + math.sqrt(2.0)), mode="constant", cval=np.inf

@@ -40,7 +40,9 @@ class ControlLanguage:
     `known` are the meanings that the control understands.
     """
 
-    def __init__(self, words: IsoWords, place: WorkPosition | None, known: Iterable[str]) -> None:
+    def __init__(
+        self, words: IsoWords, work_position: WorkPosition | None, known: Iterable[str]
+    ) -> None:
         self.words = words
         self.motions = {code: Motion(n) for n, code in enumerate(words.motions)}
         self.units = {words.units[name]: unit for name, unit in _UNITS.items()}
@@ -74,7 +76,7 @@ class ControlLanguage:
             words.work_offsets,
             *(tuple(group.split()) for group in words.groups),
         )
-        self._find_letters(words.letters, place)
+        self._find_letters(words.letters, work_position)
 
     def _checked(self, known: tuple[str, ...]) -> dict[str, str]:
         """Return the meanings of codes as the words give them; raise `BadInput` for an unknown one, or a letter that is missing."""
@@ -90,9 +92,9 @@ class ControlLanguage:
                 )
         return said
 
-    def _find_letters(self, role: dict[str, str], place: WorkPosition | None) -> None:
+    def _find_letters(self, role: dict[str, str], work_position: WorkPosition | None) -> None:
         """Find out which letters a text may have, what numbers follow them, and which codes take those that need one."""
-        self.rotary = place.names if place else ""
+        self.rotary = work_position.names if work_position else ""
         self.radius, self.turns, self.length_letter = (
             role["radius"],
             role.get("turns", ""),
@@ -110,7 +112,7 @@ class ControlLanguage:
             if codes := tuple(code for code, kind in self.cycles.items() if kind in kinds):
                 self.takers[role[name]] = (*self.takers.get(role[name], ()), *codes)
         self.retract = role.get("retract", "") if self.cycles else ""
-        self.turns_work = place is None and "turning plane" in self.meanings.values()
+        self.turns_work = work_position is None and "turning plane" in self.meanings.values()
         self.moves |= set(self.retract) | ({"K"} if self.turns_work else set())
         self.states = frozenset("FST") | (
             {self.length_letter} if self.length_letter and not self.length else set()
@@ -130,10 +132,10 @@ class ControlLanguage:
         }
         if self.length_letter:
             self.ranges[self.length_letter] = COUNT
-        if place is not None:
+        if work_position is not None:
             self.ranges |= {
                 a.name: NumberRange(a.low, a.high, "degrees", math.degrees(SLACK))
-                for a in place.machine.rotary
+                for a in work_position.machine.rotary
             }
 
     def _first(self, meaning: str) -> str:

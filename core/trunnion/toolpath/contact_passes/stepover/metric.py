@@ -143,14 +143,14 @@ def _held_past_jumps(sheet: Sheet, ends: Ints, side: Ints, lengths: Floats) -> F
     # The rounder side holds no farther than the flatter one's stepovers are wide.
     density, middle = lengths / size, 0.5 * (sheet.points[ends[:, 0]] + sheet.points[ends[:, 1]])
     near = np.flatnonzero(tree.query(middle)[0] <= 0.5 * size + PAST / density)
-    place = (
+    position = (
         sheet.points[ends[near, 0]][:, None]
         + ((np.arange(SHARES) + 0.5) / SHARES)[:, None] * run[near][:, None]
     )
     farthest = PAST / float(density[near].min(initial=np.inf))
     away, found = (
         np.asarray(x)
-        for x in tree.query(place.reshape(-1, 3), k=NEARBY, distance_upper_bound=farthest)
+        for x in tree.query(position.reshape(-1, 3), k=NEARBY, distance_upper_bound=farthest)
     )
     of, which = np.nonzero(np.isfinite(away))
     mine = near[of // SHARES]

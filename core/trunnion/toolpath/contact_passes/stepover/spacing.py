@@ -57,7 +57,7 @@ class FacetSlopes:
         ] + second * moves[:, 1]
 
 
-def places_of(drive: SurfaceDrive, tool: Tool, least: float = 0.0) -> FacetSlopes:
+def slopes_of(drive: SurfaceDrive, tool: Tool, least: float = 0.0) -> FacetSlopes:
     """Return the triangles of the faces to be finished that an upright cutter can come to from above: those that look upwards, their
     normals' part along z above `least`."""
     skin = drive.skin
@@ -81,17 +81,17 @@ def places_of(drive: SurfaceDrive, tool: Tool, least: float = 0.0) -> FacetSlope
     )
 
 
-def tip_spacing(places: FacetSlopes, tool: Tool, height: float, across: Floats) -> Floats:
+def tip_spacing(slopes: FacetSlopes, tool: Tool, height: float, across: Floats) -> Floats:
     """Return how far apart (m,) passes in planes across a unit direction (3,) may lie at each triangle, measured between tips."""
-    lean = places.normal @ across
+    lean = slopes.normal @ across
     # Along the face, square to the feed: what is left of the direction in the tangent plane.
     share = np.sqrt(np.maximum(1.0 - lean * lean, np.finfo(float).tiny))
-    way = (across - lean[:, None] * places.normal) / share[:, None]
-    turn, move = places.along(way)
+    way = (across - lean[:, None] * slopes.normal) / share[:, None]
+    turn, move = slopes.along(way)
     bend = (turn * way).sum(axis=1, keepdims=True)
-    bends = np.abs(places.turns).max(axis=(1, 2), initial=0.0) > tolerance.ANGLE
+    bends = np.abs(slopes.turns).max(axis=(1, 2), initial=0.0) > tolerance.ANGLE
     passes = stepover_measure(tool, height)(
-        np.zeros_like(way), places.normal, way, places.normal + bend * way
+        np.zeros_like(way), slopes.normal, way, slopes.normal + bend * way
     )
     stepover = np.where(bends, math.sqrt(AIM), 1.0) / passes
     # Tips are nearer to each other than contacts in a hollow, and wider apart on a hill.
@@ -103,24 +103,24 @@ def tip_spacing(places: FacetSlopes, tool: Tool, height: float, across: Floats) 
     )
 
 
-def level_spacing(places: FacetSlopes, tool: Tool, height: float) -> Floats:
+def level_spacing(slopes: FacetSlopes, tool: Tool, height: float) -> Floats:
     """Return how far apart (m,) level passes may lie at each triangle, measured between tips; infinite beside an upright wall.
 
     The flank of the upper pass and the end of the lower one leave a step as well, of the drop between them times how much the wall leans:
     whatever is larger of the two holds, and a flat end leaves nothing else.
     """
-    lean = np.maximum(places.normal[:, 2], 0.0)
+    lean = np.maximum(slopes.normal[:, 2], 0.0)
     step = np.divide(height, lean, out=np.full(lean.shape, np.inf), where=lean > 0.0)
     return (
         step
         if tool.corner_radius <= 0.0
-        else np.maximum(step, tip_spacing(places, tool, height, UPRIGHT))
+        else np.maximum(step, tip_spacing(slopes, tool, height, UPRIGHT))
     )
 
 
 def marched(low: Floats, high: Floats, spacing: Floats, begin: float, end: float) -> Floats:
-    """Return places (p,) from `begin` to `end`, each as far from the one before as is allowed by all that lies between the two: things from
-    low to high (m,) with a spacing (m,) each."""
+    """Return positions (p,) from `begin` to `end`, each as far from the one before as is allowed by all that lies between the two: things
+    from low to high (m,) with a spacing (m,) each."""
     width = max(FINENESS * float(spacing.min()), (end - begin) / MOST_STRIPS)
     count = int((end - begin) / width) + 1
     begins, ends = (

@@ -135,18 +135,19 @@ def _lifted(
     """Return over what length in mm tips (k, 3) on contacts can't stand, for another face would lift them by more than an error."""
     if not tips:
         return 0.0
-    places = np.concatenate(tips)
+    positions = np.concatenate(tips)
     lifted = (
-        drive.skin.drop.drop(places[:, :2], pieces, lowest) + drive.allowance > places[:, 2] + error
+        drive.skin.drop.drop(positions[:, :2], pieces, lowest) + drive.allowance
+        > positions[:, 2] + error
     )
     line = np.repeat(np.arange(len(tips)), [len(t) for t in tips])
     both = lifted[1:] & lifted[:-1] & (line[1:] == line[:-1])
-    return float(np.linalg.norm(np.diff(places, axis=0), axis=1)[both].sum())
+    return float(np.linalg.norm(np.diff(positions, axis=0), axis=1)[both].sum())
 
 
 def _runs(wanted: Bools, closed: bool) -> list[Ints]:
-    """Return the rows of each run of places (k,) that are wanted; on a closed way, whose last place is its first one, a run may pass over
-    where it begins."""
+    """Return the rows of each run of positions (k,) that are wanted; on a closed way, whose last place is its first one, a run may pass
+    over where it begins."""
     if wanted.all():
         return [np.arange(len(wanted))]
     rows = np.arange(len(wanted))

@@ -41,8 +41,10 @@ def follow(
     """
     if not len(curves):
         return []
-    places, line = _spaced(curves, 2.0 * _sight(pieces, chord))
-    tips = np.column_stack([places, drop.drop(places, pieces, lowest, progress.part(0.0, 0.3))])
+    positions, line = _spaced(curves, 2.0 * _sight(pieces, chord))
+    tips = np.column_stack(
+        [positions, drop.drop(positions, pieces, lowest, progress.part(0.0, 0.3))]
+    )
     is_open = np.append(line[1:] == line[:-1], False)
     for k in range(HALVINGS):
         rows = np.flatnonzero(is_open)

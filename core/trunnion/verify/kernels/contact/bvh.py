@@ -99,9 +99,9 @@ def _partition_rows(rows: Ints, low: Floats, high: Floats, middle: Floats, keep:
         for r in rows:
             first, last = min(first, middle[r, k]), max(last, middle[r, k])
         if last > first:
-            weight, place = _cheapest_split(rows, low, high, middle[:, k], first, last - first)
+            weight, position = _cheapest_split(rows, low, high, middle[:, k], first, last - first)
             if weight < cost:
-                cost, along, at, least, size = weight, k, place, first, last - first
+                cost, along, at, least, size = weight, k, position, first, last - first
     if along < 0:
         # All are about one place: halved by count.
         return len(rows) // 2

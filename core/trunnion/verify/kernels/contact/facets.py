@@ -659,7 +659,7 @@ def triangle_contact_loop(
     settle: float,
     depth: Floats,
     which: Ints,
-    place: Floats,
+    position: Floats,
     face_depth: Floats,
     face_move: Ints,
 ) -> None:
@@ -671,7 +671,7 @@ def triangle_contact_loop(
     (t,). bound (k,) mm: how far a depth may be below the true one; enough (k,) mm: depths up to it
     are not reported.
 
-    Fills depth (k, 2) mm, of what cuts and what does not, which (k, 2) faces, place (k, 2, 3), and
+    Fills depth (k, 2) mm, of what cuts and what does not, which (k, 2) faces, position (k, 2, 3), and
     face_depth, face_move (f, 2). A move deeper than `settle` may stop there, and depths beyond
     `DEEP` are only known to be at least that.
     """
@@ -679,7 +679,7 @@ def triangle_contact_loop(
     near_ends, near = np.zeros((2, END_COLUMNS)), np.zeros(SPAN_COLUMNS)
     tasks, task, found = np.zeros((TASKS, TASK_COLUMNS)), np.zeros(TASK_COLUMNS), np.zeros(4)
     six, cuts, flat = np.zeros((6, 3)), np.zeros((3, 6)), np.zeros((3, 3))
-    best, best_place, stamp = (
+    best, best_position, stamp = (
         np.full((n_faces, 2), -np.inf),
         np.zeros((n_faces, 2, 3)),
         np.full(n_faces, -1),
@@ -739,7 +739,7 @@ def triangle_contact_loop(
                         )
                         if found[0] > before:
                             best[f, column] = found[0]
-                            best_place[f, column] = found[1:]
+                            best_position[f, column] = found[1:]
                             if found[0] > settle:
                                 done = True
                                 break
@@ -753,6 +753,6 @@ def triangle_contact_loop(
                     continue
                 if d > depth[k, column] or (d == depth[k, column] and f < which[k, column]):
                     depth[k, column], which[k, column] = d, f
-                    place[k, column] = best_place[f, column]
+                    position[k, column] = best_position[f, column]
                 if d > face_depth[f, column]:
                     face_depth[f, column], face_move[f, column] = d, n

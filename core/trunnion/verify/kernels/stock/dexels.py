@@ -245,19 +245,19 @@ def _max_depth_turning(
     the bilinear term where the tool turns. So from the lower end on each tangent bounds how far on
     nothing can be deeper than what is known by more than SURE (Piyavskii, 1972, with slopes).
     """
-    best, place = _max_depth(arcs, first, last, limit, ray, low, high)
+    best, position = _max_depth(arcs, first, last, limit, ray, low, high)
     if ray[TWIST] == 0.0:
-        return best, place
+        return best, position
     w = low
     while w < high:
         f, slope, _t = _swept_depth(arcs, first, last, limit, ray, w)
         if f > best:
-            best, place = f, w
+            best, position = f, w
         steep = slope + ray[TWIST]
         if steep <= 0.0:
             break
         w += (max(best, enough) + SURE - f) / steep
-    return best, place
+    return best, position
 
 
 @njit(cache=True, nogil=True)
@@ -271,9 +271,9 @@ def _max_depth(
     """
     f0, s0, _t = _swept_depth(arcs, first, last, limit, ray, low)
     f1, s1, _t = _swept_depth(arcs, first, last, limit, ray, high)
-    best, place = (f0, low) if f0 >= f1 else (f1, high)
+    best, position = (f0, low) if f0 >= f1 else (f1, high)
     if s0 <= 0.0 or s1 >= 0.0:
-        return best, place
+        return best, position
     for step in range(60):
         w = (f1 - f0 + s0 * low - s1 * high) / (s0 - s1)
         if f0 + s0 * (w - low) - best <= 1e-5:
@@ -283,12 +283,12 @@ def _max_depth(
         w = min(max(w, low + 1e-3 * (high - low)), high - 1e-3 * (high - low))
         f, s, _t = _swept_depth(arcs, first, last, limit, ray, w)
         if f > best:
-            best, place = f, w
+            best, position = f, w
         if s > 0.0:
             low, f0, s0 = w, f, s
         else:
             high, f1, s1 = w, f, s
-    return best, place
+    return best, position
 
 
 @njit(cache=True, nogil=True, inline="always")
@@ -851,9 +851,9 @@ def _graze_candidates(
     pitch: float,
     box: Floats,
     fine: int,
-    places: Floats,
+    positions: Floats,
 ) -> None:
-    """List in places (r, 4), u, v, w and depth, where a body may be in material between the rays of a
+    """List in positions (r, 4), u, v, w and depth, where a body may be in material between the rays of a
     bundle, going by the material of the rays around.
 
     Within a suspicious cell fine x fine rays are tested, and the deepest of each quarter is kept.
@@ -864,7 +864,7 @@ def _graze_candidates(
     j0, j1 = _cell_range(box[1] - 0.5 * pitch, box[4] + 0.5 * pitch, origin[1], pitch, row, end_row)
     # Behind what earlier spans have listed.
     listed = 0
-    while listed < len(places) and places[listed, 3] > 0.0:
+    while listed < len(positions) and positions[listed, 3] > 0.0:
         listed += 1
     best = np.zeros((4, 4))
     for j in range(j0, j1):
@@ -902,8 +902,8 @@ def _graze_candidates(
                             deep,
                         )
             for m in range(4):
-                if best[m, 3] > 0.0 and listed < len(places):
-                    places[listed] = best[m]
+                if best[m, 3] > 0.0 and listed < len(positions):
+                    positions[listed] = best[m]
                     listed += 1
 
 
@@ -937,7 +937,7 @@ def tridexel_cut_tile(
     resume: Ints,
     removed: Floats,
     depth: Floats,
-    place: Floats,
+    position: Floats,
     body: Floats,
     way: Floats,
     rings: Floats,
@@ -959,12 +959,12 @@ def tridexel_cut_tile(
     cells.
 
     resume (6,): move, span, piece, row and column to begin with, and whether that move has been
-    looked at; changed. removed (n,) gets the length (mm) that is gone, depth (n,) and place (n, 3)
+    looked at; changed. removed (n,) gets the length (mm) that is gone, depth (n,) and position (n, 3)
     how deep a rapid's cutter is in material and where (u, v, w), body (n,) how deep what doesn't
     cut is. way (n, 16): start, end, both axes, centre and sweep as `Moves` has them; rings, flute,
     circle, probe_start (n + 1,), counted and seen: see `kernels/stock/engagement.py`; without probes
     nothing is looked at. fine: rays along each side of a cell where a rapid may go deeper than
-    `allowed` in between, 0 for none; grazed (r, 4) gets such places (u, v, w) and depths,
+    `allowed` in between, 0 for none; grazed (r, 4) gets such positions (u, v, w) and depths,
     `MOST_GRAZED` rows for each rapid in turn, depth 0 where there is none.
 
     Returns whether all is done: when rays have no room for one more interval, `resume` says where
@@ -1122,7 +1122,12 @@ def tridexel_cut_tile(
                                 arcs, first, end, np.inf, ray, a, b, best
                             )
                             if deepest > best and cuts:
-                                depth[n], place[n, 0], place[n, 1], place[n, 2] = deepest, u, v, w
+                                depth[n], position[n, 0], position[n, 1], position[n, 2] = (
+                                    deepest,
+                                    u,
+                                    v,
+                                    w,
+                                )
                             elif deepest > best:
                                 body[n] = deepest
                 # Rapids that miss the rays may still enter between them.
