@@ -245,7 +245,7 @@ def standing(name: str, tool: Tool, found: OperationPath | None) -> float:
     if not sections:
         return FAR
     sweep = Sweep.of(moves_of(sections), NEAR)
-    return float(sweep.left(setup.frame.to_local(points), far)[0].mean())
+    return float(sweep.residual(setup.frame.to_local(points), far)[0].mean())
 
 
 @pytest.mark.parametrize("times", (LARGER, LITTLE_LARGER))

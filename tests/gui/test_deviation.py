@@ -38,7 +38,7 @@ def test_a_planted_gouge_has_the_gouges_colour(mapped):
 
 
 def test_what_is_left_has_the_other_colour(mapped):
-    assert hue(pixel(mapped, (*LEFT, FLOOR))) @ hue(load_palette().deviation.left[-1]) > 0.9
+    assert hue(pixel(mapped, (*LEFT, FLOOR))) @ hue(load_palette().deviation.residual[-1]) > 0.9
 
 
 def test_what_is_finished_is_grey(mapped):
@@ -60,7 +60,7 @@ def test_the_scale_stands_in_the_legends_place(mapped):
         )
 
     assert hue(colour(-0.9 * shown.limit)) @ hue(load_palette().deviation.gouge[-1]) > 0.9
-    assert hue(colour(0.9 * shown.limit)) @ hue(load_palette().deviation.left[-1]) > 0.9
+    assert hue(colour(0.9 * shown.limit)) @ hue(load_palette().deviation.residual[-1]) > 0.9
     assert np.ptp(colour(0.0)) < 25
 
 

@@ -343,7 +343,7 @@ def test_an_autosave_is_left_behind_when_another_program_got_its_number(tmp_path
     left = preferences.autosave_file().with_name("autosave-1.trunnion")
     left.write_bytes(b"")
     os.utime(left, (1.0, 1.0))  # older than the program that has the number now
-    assert preferences.left_behind() == left
+    assert preferences.leftover_file() == left
 
 
 def test_work_that_can_not_be_kept_is_told(opened, monkeypatch, qtbot):

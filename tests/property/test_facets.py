@@ -196,7 +196,7 @@ def test_the_deepest_of_a_random_move_is_within_the_bound_of_a_far_finer_search(
     form=st.sampled_from(sorted(FORMS)), move=ways(), triangles=TRIANGLES, room=st.integers(1, 3)
 )
 def test_a_search_without_room_for_its_open_tasks_errs_deep(form, move, triangles, room):
-    moves, row = moves_for(FORMS[form], move), np.zeros(tool_motion.WAY_COLUMNS)
+    moves, row = moves_for(FORMS[form], move), np.zeros(tool_motion.MOTION_COLUMNS)
     tool_motion.fill_tool_motion(
         *(
             a[1]

@@ -140,13 +140,13 @@ class DrawnCurve:
             at, steps = at[::-1], steps[::-1]
         return at, steps
 
-    def _outside(self, end: Floats, way: Floats) -> Floats | None:
+    def _outside(self, end: Floats, direction: Floats) -> Floats | None:
         """Return the position (2,) straight on from an end of the way that lies outside the face, None when the end does already."""
         inside: Any = BRepTopAdaptor_FClass2d(self._face, tolerance.COINCIDENT)
         if inside.Perform(gp_Pnt2d(*end.tolist())) == TopAbs_OUT:
             return None
         limits = self._limits()
-        step = way / max(np.abs(way / self._size).max(), tolerance.PARAMETRIC) * _STEP
+        step = direction / max(np.abs(direction / self._size).max(), tolerance.PARAMETRIC) * _STEP
         at, beyond = end, 0.0
         while beyond < _BEYOND:
             further = np.clip(at + step, *limits)

@@ -138,8 +138,8 @@ def _make_one(
                 operation=operation.id, path=path, findings=tuple(planned.findings), key=key
             )
     except Refused as reason:
-        left = error("toolpath.refused", str(reason), operation.id, operation.feature)
-        return OperationPath(operation=operation.id, findings=(left,))
+        refusal = error("toolpath.refused", str(reason), operation.id, operation.feature)
+        return OperationPath(operation=operation.id, findings=(refusal,))
     if len(kept.path):
         scene.sides.cut(
             setup,

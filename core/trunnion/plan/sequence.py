@@ -64,9 +64,9 @@ def _walked(jobs: Mapping[str, OrderedOperation], tools: Sequence[str]) -> tuple
     order: list[str] = []
     at = (0.0, 0.0)
     for tool in tools:
-        left = _exhausted(jobs, tool, frozenset(order))
-        while left:
-            ready = [jobs[i] for i in left if jobs[i].after <= set(order)]
+        remaining = _exhausted(jobs, tool, frozenset(order))
+        while remaining:
+            ready = [jobs[i] for i in remaining if jobs[i].after <= set(order)]
             here = at
             chosen = min(
                 ready,
@@ -77,5 +77,5 @@ def _walked(jobs: Mapping[str, OrderedOperation], tools: Sequence[str]) -> tuple
                 ),
             )
             order.append(chosen.id)
-            at, left = chosen.position, left - {chosen.id}
+            at, remaining = chosen.position, remaining - {chosen.id}
     return tuple(order)

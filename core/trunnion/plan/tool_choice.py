@@ -135,17 +135,17 @@ def _fitting(requirement: ToolRequirement, tools: Sequence[Tool], progress: Prog
             -requirement.spare * tool.radius
         ):
             continue
-        if _left(requirement, tool) <= most(tool):
+        if _missed_area(requirement, tool) <= most(tool):
             return [t for t in tools if t.diameter <= tool.diameter]
     return []
 
 
 def fits_through(requirement: ToolRequirement, tool: Tool, tools: Sequence[Tool]) -> bool:
     """Say whether a cutter covers what is wanted, but for what may be missed, as well as the others of the catalogue would."""
-    return _left(requirement, tool) <= _missable(requirement, tools)(tool)
+    return _missed_area(requirement, tool) <= _missable(requirement, tools)(tool)
 
 
-def _left(requirement: ToolRequirement, tool: Tool) -> float:
+def _missed_area(requirement: ToolRequirement, tool: Tool) -> float:
     """Return the area of what is wanted that a cutter doesn't cover."""
     wanted, covered = requirement.wanted or requirement.room, _covered(requirement, tool)
     return wanted.minus(covered).area if covered else wanted.area
@@ -158,7 +158,7 @@ def _missable(requirement: ToolRequirement, tools: Sequence[Tool]) -> Callable[[
     if not requirement.cusps:
         return lambda tool: most + slack
     smallest = min(tools, key=lambda t: t.diameter)
-    cusps = CUSP_SPREAD * _left(requirement, smallest)
+    cusps = CUSP_SPREAD * _missed_area(requirement, smallest)
     return lambda tool: min(most, cusps * (tool.radius / smallest.radius) ** 2) + slack
 
 
@@ -197,15 +197,15 @@ def covered_by_few(
         own = [t for t in tools if any(t.name == k.name for k in kept)]
         if own:
             chosen[requirement] = own[0]
-    left = {
+    remaining = {
         requirement: tools
         for requirement, tools in fits.items()
         if requirement not in chosen and tools
     }
-    while left:
+    while remaining:
         served: dict[str, int] = {}
         named: dict[str, Tool] = {}
-        for tools in left.values():
+        for tools in remaining.values():
             for tool in tools:
                 served[tool.name] = served.get(tool.name, 0) + 1
                 named[tool.name] = tool
@@ -221,9 +221,9 @@ def covered_by_few(
         )
         for requirement in [
             requirement
-            for requirement, tools in left.items()
+            for requirement, tools in remaining.items()
             if any(t.name == best.name for t in tools)
         ]:
             chosen[requirement] = best
-            del left[requirement]
+            del remaining[requirement]
     return chosen

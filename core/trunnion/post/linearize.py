@@ -255,8 +255,8 @@ def _halved(path: Toolpath, pieces: _Pieces, work_position: WorkPosition) -> _Pi
     angles, free, _ = rotary_solutions(work_position.machine, turned(path, pieces.block, middle))
     angles = angles + TURN * np.round((between[:, None] - angles) / TURN)
     angles = np.where(free, between[:, None], angles)
-    way = np.abs(angles - between[:, None]).sum(axis=2).argmin(axis=1)
-    chosen = angles[np.arange(len(way)), way]
+    solution = np.abs(angles - between[:, None]).sum(axis=2).argmin(axis=1)
+    chosen = angles[np.arange(len(solution)), solution]
     return _ordered(
         [
             _Pieces(pieces.block, pieces.start, middle, pieces.first, chosen),

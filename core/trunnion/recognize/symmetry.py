@@ -41,14 +41,14 @@ def patterns(graph: FaceGraph, axis: RevolutionAxis) -> tuple[CircularPattern, .
     rows, position, angle = _signatures(graph, axis)
     near = SAME_POSITION * reach(graph)
     found = []
-    left = np.ones(len(rows), dtype=bool)
+    remaining = np.ones(len(rows), dtype=bool)
     for k in np.argsort(-position[:, 0], kind="stable"):
-        if left[k]:
+        if remaining[k]:
             allowed = np.array(
                 [SAME_AREA * position[k, 0], near, near, SAME_NORMAL, SAME_NORMAL, SAME_NORMAL]
             )
-            alike = left & (np.abs(position - position[k]) <= allowed).all(axis=1)
-            left &= ~alike
+            alike = remaining & (np.abs(position - position[k]) <= allowed).all(axis=1)
+            remaining &= ~alike
             count = fold(angle[alike])
             if count:
                 found.append(CircularPattern(count=count, rows=rows[alike]))
@@ -82,9 +82,9 @@ def _signatures(graph: FaceGraph, axis: RevolutionAxis) -> tuple[Ints, Floats, F
     out = axis.away(graph.sample_point)
     out /= np.maximum(np.linalg.norm(out, axis=1), 1e-12)[:, None]
     around = np.cross(axis.direction, out)
-    normal = [np.einsum("ij,ij->i", graph.sample_normal, way) for way in (out, around)] + [
-        graph.sample_normal @ axis.direction
-    ]
+    normal = [
+        np.einsum("ij,ij->i", graph.sample_normal, direction) for direction in (out, around)
+    ] + [graph.sample_normal @ axis.direction]
     middle = (
         np.column_stack([np.bincount(of, graph.sample_point[:, k], len(graph)) for k in range(3)])[
             rows

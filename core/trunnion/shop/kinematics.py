@@ -177,10 +177,12 @@ def _both(one: Axis, two: Axis, v: Floats, w: Floats, sign: float) -> tuple[Floa
     middle = np.where(is_free, 0.0, np.arctan2(-q, p))
     held = np.where(is_free, np.abs(s) < POLE, np.abs(ratio) < 1.0 + POLE)
     angle, free = np.zeros((len(v), 2, 2)), np.zeros((len(v), 2, 2), bool)
-    for way, side in enumerate((1.0, -1.0)):
+    for solution, side in enumerate((1.0, -1.0)):
         first = middle + side * beside
-        angle[:, way, 0], free[:, way, 0] = sign * first, is_free
-        angle[:, way, 1], free[:, way, 1] = _about(u2, v, _turned(rotations(one, -first), w))
+        angle[:, solution, 0], free[:, solution, 0] = sign * first, is_free
+        angle[:, solution, 1], free[:, solution, 1] = _about(
+            u2, v, _turned(rotations(one, -first), w)
+        )
     return angle, free, held
 
 

@@ -89,8 +89,11 @@ def _beginnings(
     if not len(fixed):
         return [np.clip(near, low, high)]
     found = []
-    for way in angles[fixed[0]]:
-        least, most = np.ceil((low - SLACK - way) / TURN), np.floor((high + SLACK - way) / TURN)
+    for solution in angles[fixed[0]]:
+        least, most = (
+            np.ceil((low - SLACK - solution) / TURN),
+            np.floor((high + SLACK - solution) / TURN),
+        )
         # Some turns about where the axes stand, and those at home when they are wound up to a limit.
         turns = [
             sorted(
@@ -101,18 +104,20 @@ def _beginnings(
                     if a <= n + k <= b
                 }
             )
-            for w, v, a, b in zip(way, near, least, most, strict=True)
+            for w, v, a, b in zip(solution, near, least, most, strict=True)
         ]
-        found += [way + TURN * np.array(n) for n in itertools.product(*turns)]
+        found += [solution + TURN * np.array(n) for n in itertools.product(*turns)]
     return found or [np.clip(near, low, high)]
 
 
-def beyond(ways: Floats, work_position: WorkPosition) -> str:
+def beyond(solutions: Floats, work_position: WorkPosition) -> str:
     """Return the angles that a pose needs and the limits of the axes."""
-    near = np.degrees(ways - TURN * np.round(ways / TURN))
+    near = np.degrees(solutions - TURN * np.round(solutions / TURN))
     asked = " or ".join(
-        " ".join(f"{a.name}{v:.1f}" for a, v in zip(work_position.machine.rotary, way, strict=True))
-        for way in near.tolist()
+        " ".join(
+            f"{a.name}{v:.1f}" for a, v in zip(work_position.machine.rotary, solution, strict=True)
+        )
+        for solution in near.tolist()
     )
     has = ", ".join(f"{a.name} {a.low:g} to {a.high:g}" for a in work_position.machine.rotary)
     return f"its tool axis needs {asked}, which can't be reached from the block before; {work_position.machine.title} has {has}"

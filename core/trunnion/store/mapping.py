@@ -114,9 +114,9 @@ def _write(element: etree._Element, value: Any, hint: Any, members: Members) -> 
     elif dataclasses.is_dataclass(value):
         if picked is not _first_data(choices):
             element.set("type", picked.__name__)
-        left_out = unwritten(value)
+        omitted = unwritten(value)
         for name, own in hints_of(picked).items():
-            if name in left_out:
+            if name in omitted:
                 continue
             _write(
                 etree.SubElement(element, name.replace("_", "-")),

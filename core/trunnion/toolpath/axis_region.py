@@ -76,11 +76,13 @@ def _mitres(boundary: Region, distance: float) -> list[Region]:
         seg = curve.segments()
         straight = np.isnan(seg.radius)
         before = np.roll(np.arange(len(seg)), 1)
-        ways = np.divide(seg.end - seg.start, seg.length[:, None])
-        turns = ways[before, 0] * ways[:, 1] - ways[before, 1] * ways[:, 0]
+        directions = np.divide(seg.end - seg.start, seg.length[:, None])
+        turns = directions[before, 0] * directions[:, 1] - directions[before, 1] * directions[:, 0]
         # The region lies on the left: where its rim turns right by more than a blend does, the part has a sharp edge.
         for k in np.flatnonzero(straight & straight[before] & (turns < -np.sin(tolerance.TANGENT))):
-            left = np.array([[-w[1], w[0]] for w in (ways[before[k]], ways[k])]) * distance
+            left = (
+                np.array([[-w[1], w[0]] for w in (directions[before[k]], directions[k])]) * distance
+            )
             along = left.sum(axis=0)
             tip = along * (2.0 * distance**2 / (along @ along))
             kites.append(

@@ -92,9 +92,9 @@ def whose_work(path: Path) -> AutosaveOwner:
         return AutosaveOwner(time=time)
 
 
-def take_over(left: Path, path: Path) -> None:
+def take_over(leftover: Path, path: Path) -> None:
     """Make the autosave of a program that ended one's own, its notes too."""
-    for before, after in ((left, path), (notes_of(left), notes_of(path))):
+    for before, after in ((leftover, path), (notes_of(leftover), notes_of(path))):
         with contextlib.suppress(FileNotFoundError):
             before.replace(after)
 

@@ -63,9 +63,9 @@ class Recovery(QObject):
 
     def offer(self) -> None:
         """Offer what an earlier program left behind, if there is something; the next one when a person throws it away."""
-        left = preferences.left_behind()
-        if left is not None:
-            whose = whose_work(left)
+        leftover = preferences.leftover_file()
+        if leftover is not None:
+            whose = whose_work(leftover)
             day, _, clock = whose.time.partition("T")
             text = tr(
                 "{name} was not saved when the program ended; its work was kept on {day} at {time}"
@@ -79,8 +79,8 @@ class Recovery(QObject):
             self._notice.show_finding(
                 finding,
                 {
-                    tr("Recover"): partial(self._recover, left),
-                    tr("Discard"): partial(self._discard, left),
+                    tr("Recover"): partial(self._recover, leftover),
+                    tr("Discard"): partial(self._discard, leftover),
                 },
             )
 
@@ -105,19 +105,19 @@ class Recovery(QObject):
             self._is_kept = False
             self.file.forget()
 
-    def _recover(self, left: Path) -> None:
+    def _recover(self, leftover: Path) -> None:
         """Take up work that was left behind; its file becomes this program's own until the work is saved."""
 
         def taken(_path: str) -> None:
             self._document.files.opened.disconnect(taken)
-            take_over(left, preferences.autosave_file())
+            take_over(leftover, preferences.autosave_file())
             self._is_kept = True
 
         self._document.files.opened.connect(taken)
-        self._document.files.recover(left, whose_work(left).project)
+        self._document.files.recover(leftover, whose_work(leftover).project)
 
-    def _discard(self, left: Path) -> None:
-        remove(left)
+    def _discard(self, leftover: Path) -> None:
+        remove(leftover)
         self.offer()
 
     def _tell(self, reason: str) -> None:

@@ -169,7 +169,7 @@ def test_the_largest_that_covers_nearly_all_is_taken_and_comes_back_to_the_foot_
     found = at(chosen(spaced(walled())), 6.0)
     assert found.tool.diameter == 16.0
     assert found.rest.diameter == 16.0
-    assert found.left.area < 0.1
+    assert found.remaining.area < 0.1
 
 
 def test_a_narrow_passage_asks_for_a_smaller_one() -> None:

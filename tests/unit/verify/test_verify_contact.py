@@ -544,13 +544,15 @@ def test_material_left_is_the_distance_to_the_nearest_sweep():
         flat(10.0)(flute=8.0), [(0, 0, 20), (0, 0, 2), (50, 0, 2), (50, 0, 20)]
     )
     points = np.array([[25, 0, 0.0], [25, 6, 5], [25, 0, 11.0], [25, 4.5, 2.25], [25, 90, 5]])
-    left, _ = Sweep.of(moves_of([section]), 3.0).left(points, np.full(5, 3.0))
+    left, _ = Sweep.of(moves_of([section]), 3.0).residual(points, np.full(5, 3.0))
     # Below by 2; beside by 1; above the flutes by 1; inside by a quarter; too far to be looked at.
     assert left == approx([2.0, 1.0, 1.0, -0.25, 3.0])
 
 
 def test_material_left_by_a_ramp_is_within_the_bound():
     section = program_section(flat(10.0)(), [(0, 0, 10), (100, 0, 0)])
-    left, _ = Sweep.of(moves_of([section]), 3.0).left(np.array([[50.0, 0.0, 4.0]]), np.array([3.0]))
+    left, _ = Sweep.of(moves_of([section]), 3.0).residual(
+        np.array([[50.0, 0.0, 4.0]]), np.array([3.0])
+    )
     # The rim of the flat end reaches (50, z) last when its centre is at 55: 4.5 high.
     assert left == approx([0.5 * 10 / math.hypot(10.0, 1.0)], abs=0.01)

@@ -272,7 +272,7 @@ def test_the_tree_holds_every_triangle_once_inside_its_boxes():
 
 
 def test_compiled_loops_agree_with_themselves_uncompiled():
-    way, plain = np.zeros(kernel.WAY_COLUMNS), np.zeros(kernel.WAY_COLUMNS)
+    way, plain = np.zeros(kernel.MOTION_COLUMNS), np.zeros(kernel.MOTION_COLUMNS)
     start, end, centre = np.array([1.0, 2.0, 3.0]), np.array([4.0, 1.0, 2.0]), np.full(3, np.nan)
     for turned in (leaning(30), leaning(-170), (0.0, 0.0, -1.0)):
         args = start, end, np.array(leaning(0)), np.array(turned), centre, 0.0

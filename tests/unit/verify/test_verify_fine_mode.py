@@ -270,7 +270,10 @@ def test_rings_leave_the_scallop_of_their_pitch():
 def test_any_number_of_threads_measures_the_same_and_it_stops_when_asked():
     moves = moves_of([passes(EVERY_FORM["ball"], np.arange(-1.0, 5.0, 0.7))])
     one, three = (fine_measure([Plane(end=(2.0, 2.0))], moves, 0.2, threads=n) for n in (1, 3))
-    assert one.left.tobytes() == three.left.tobytes() and one.scallop.value == three.scallop.value
+    assert (
+        one.residual.tobytes() == three.residual.tobytes()
+        and one.scallop.value == three.scallop.value
+    )
     with pytest.raises(Cancelled):
         fine_measure([Plane()], moves, 0.05, progress=Progress(cancelled=lambda: True))
 

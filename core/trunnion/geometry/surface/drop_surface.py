@@ -83,9 +83,9 @@ class DropSurface:
         `pieces` (p, 6) is the cutter's lower side as `kernels/drop_cutter.py` describes it. Points that follow a
         path are quicker than loose ones.
         """
-        return self.touch(points, pieces, lowest, progress)[0]
+        return self.contacts(points, pieces, lowest, progress)[0]
 
-    def touch(
+    def contacts(
         self, points: Floats, pieces: Floats, lowest: float | Floats, progress: Progress = QUIET
     ) -> tuple[Floats, Ints, Floats]:
         """Return what `drop` does, the triangle (n,) that is touched at each point, and where (n, 3).

@@ -91,12 +91,14 @@ def _distance(curve: BRepAdaptor_Curve, node: Floats, t: float) -> float:
     nearest = np.inf
     for _ in range(_NEARER):
         curve.D1(t, point, along)
-        away, way = node - np.array(point.Coord()), np.array(along.Coord())
+        away, tangent = node - np.array(point.Coord()), np.array(along.Coord())
         nearest = min(nearest, float(np.linalg.norm(away)))
-        speed = float(way @ way)
+        speed = float(tangent @ tangent)
         if speed <= 0.0:
             break
-        t = min(max(t + float(away @ way) / speed, curve.FirstParameter()), curve.LastParameter())
+        t = min(
+            max(t + float(away @ tangent) / speed, curve.FirstParameter()), curve.LastParameter()
+        )
     return nearest
 
 
@@ -165,14 +167,14 @@ def _farthest(curves: list[BRepAdaptor_Curve], owner: Ints) -> list[Floats]:
             np.maximum.at(best, owner, most)
             for k in np.flatnonzero((slack > 0.0) & (most + slack > best[owner])):
                 n = int(np.argmax(sign * points[k][:_SAMPLES, axis]))
-                found = _closer(
+                found = _refined(
                     curves[k], at[k][max(n - 1, 0)], at[k][min(n + 1, _SAMPLES - 1)], axis, sign
                 )
                 points[k] = np.vstack([points[k], found])
     return points
 
 
-def _closer(
+def _refined(
     curve: BRepAdaptor_Curve, low: float, high: float, axis: int, sign: float
 ) -> tuple[float, float, float]:
     """Return the farthest point of a span that holds one extreme: there the curve runs across the axis (Newton, kept between halvings)."""

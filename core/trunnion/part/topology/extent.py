@@ -72,10 +72,10 @@ def _candidates(surface: CanonicalSurface) -> Iterator[Floats]:
         if size < tolerance.ANGLE:
             across = np.cross(surface.axis, np.eye(3)[np.argmin(np.abs(surface.axis))])
             size = float(np.linalg.norm(across))
-        for way in (1.0, -1.0):
+        for sense in (1.0, -1.0):
             yield (
                 surface.axis_point
-                + way * surface.radius * across / size
+                + sense * surface.radius * across / size
                 + surface.minor * direction
             )
 
@@ -108,11 +108,11 @@ def _searched(view: TrimmedFace, boundary: Floats, progress: Progress) -> Box:
     projection, points = inside(np.array(view.grid(_GRID)))
     found = [boundary, points]
     for axis in range(3):
-        for way in (1.0, -1.0):
+        for sense in (1.0, -1.0):
             here, reach = projection, step
             best = points
             for _ in range(_ZOOMS if len(points) else 0):
-                centre = here[int(np.argmax(way * best[:, axis]))]
+                centre = here[int(np.argmax(sense * best[:, axis]))]
                 share = np.linspace(-1.0, 1.0, _ZOOM)
                 around = np.stack(np.meshgrid(share, share), axis=-1).reshape(-1, 2)
                 here, best = inside(np.clip(centre + around * reach, [u0, v0], [u1, v1]))

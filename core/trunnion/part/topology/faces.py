@@ -56,11 +56,11 @@ class TrimmedFace:
         size = normal.Magnitude()
         if size <= tolerance.PARAMETRIC * max(du.Magnitude(), dv.Magnitude(), tolerance.COINCIDENT):
             u0, u1, v0, v1 = self.bounds()
-            beside = (
+            nearby = (
                 u + tolerance.ANGLE * (0.5 * (u0 + u1) - u),
                 v + tolerance.ANGLE * (0.5 * (v0 + v1) - v),
             )
-            self.adaptor.D1(*beside, gp_Pnt(), du, dv)
+            self.adaptor.D1(*nearby, gp_Pnt(), du, dv)
             normal = du.Crossed(dv)
             size = normal.Magnitude() or 1.0
         return np.array(point.Coord()), np.array(normal.Coord()) * (self.side / size)

@@ -122,19 +122,19 @@ class PartAbove:
     def free(self, z: float, tool: Tool, keeping: LandClearances) -> Region:
         """Return the plan area that the envelope of an end mill may be in, its tip at a height: what is in its way, and in that of shank
         and holder, is left out. It goes on past the blank."""
-        ways = [self.over(z + SKIM)]
+        obstacles = [self.over(z + SKIM)]
         if keeping.beside > 0.0:
-            ways.append(self.over(z + SIDE).offset(keeping.beside))
+            obstacles.append(self.over(z + SIDE).offset(keeping.beside))
         for z0, r0, _, r1 in tool.profile():
             more, height = (
                 max(r0, r1) - tool.radius,
                 z + max(SKIM, STEP * math.floor((z0 - keeping.above) / STEP)),
             )
             if more > -tolerance.COINCIDENT:
-                ways.append(self.over(height).offset(more + keeping.around))
+                obstacles.append(self.over(height).offset(more + keeping.around))
             elif keeping.beside > 0.0:
-                ways.append(self.over(height).offset(max(NECK, keeping.beside)))
-        return self.space.around().minus(union_all(ways))
+                obstacles.append(self.over(height).offset(max(NECK, keeping.beside)))
+        return self.space.around().minus(union_all(obstacles))
 
 
 def lands_of(space: SurfaceSpace, tags: Collection[int]) -> tuple[Land, ...]:
@@ -214,7 +214,7 @@ def land_drive(
     floors: list[Floor] = []
     for lands in progress.each(_together(lands_of(space, operation.faces))):
         z = min(land.z for land in lands)
-        wanted = [left_by(standing, land, before) for land in lands]
+        wanted = [remaining_of(standing, land, before) for land in lands]
         levels.append(
             DriveLevel(
                 top=levels[-1].bottom if levels else max(stock_top, z),
@@ -239,20 +239,20 @@ def land_drive(
     )
 
 
-def left_by(standing: PartAbove, land: Land, before: Sequence[Operation]) -> Region:
+def remaining_of(standing: PartAbove, land: Land, before: Sequence[Operation]) -> Region:
     """Return what operations on a land leave of it: but for hairs along their rims all of it where there are none."""
-    left = land.region
+    remaining = land.region
     for operation in before:
         if set(operation.faces) & set(land.tags):
-            left = without(
-                left,
+            remaining = without(
+                remaining,
                 covered(
                     land,
                     standing.free(land.z, operation.cutter, keeping_of(operation)),
                     operation.cutter,
                 ),
             )
-    return left
+    return remaining
 
 
 def without(region: Region, done: Region) -> Region:

@@ -18,7 +18,7 @@ from trunnion.part.shape.exact import ExactFace
 from trunnion.plan.clearance import ClearanceQuery
 from trunnion.plan.contract import DriveNeeds
 from trunnion.plan.freeform.drive import SurfaceDrive
-from trunnion.plan.freeform.finishing.rest import left_by, without_met
+from trunnion.plan.freeform.finishing.rest import remaining_of, without_met
 from trunnion.plan.freeform.frames import UPRIGHT, Direction, cutting_setup
 from trunnion.plan.freeform.keys import ALLOWANCE, SCALLOP, number
 from trunnion.progress import QUIET, Progress
@@ -101,7 +101,7 @@ class SurfaceSpace:
         height, allowance = (number(operation, key) for key in (SCALLOP, ALLOWANCE))
         skin, faces, lowest = self.skin, operation.faces, float(self.low[2]) - self.setup.clearance
         if earlier is not None and not needs.finds_rest:
-            skin, faces = left_by(skin, faces, earlier, lowest, height, progress)
+            skin, faces = remaining_of(skin, faces, earlier, lowest, height, progress)
         if not needs.leans:
             skin, faces = without_met(skin, faces, operation.cutter, lowest, height, progress)
         told = digest(

@@ -10,7 +10,7 @@ import numpy as np
 from trunnion.geometry.arrays import Bools, Floats
 from trunnion.model.tool import Tool
 from trunnion.plan.clearance import ClearanceQuery
-from trunnion.plan.freeform.cutters.choice import LEFT, AreaCutters
+from trunnion.plan.freeform.cutters.choice import NEGLIGIBLE, AreaCutters
 from trunnion.plan.freeform.cutters.cutter import tip_at
 from trunnion.plan.freeform.reach import AreaSamples
 from trunnion.plan.tool_choice import depth_reached
@@ -70,7 +70,7 @@ def leaning_cutter(
     )
     reachable = np.logical_or.reduce([none, *reach.values()])
     missed = reachable & ~of(tool)
-    missed = missed if missed.sum() > LEFT * reachable.sum() else none
+    missed = missed if missed.sum() > NEGLIGIBLE * reachable.sum() else none
     smaller = [t for t in ranked if t.diameter < tool.diameter]
     rest = (
         next((t for t in smaller if (of(t) & missed).sum() >= share * missed.sum()), None)

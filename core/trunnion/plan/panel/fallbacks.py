@@ -37,9 +37,9 @@ def best_fit(draft: PanelPlanState, task: OperationTask) -> tuple[OperationTask,
 
 def _ladder(draft: PanelPlanState, task: OperationTask) -> list[tuple[ToolRequirement, str]]:
     """Return what may be asked for instead, best first, each with what becomes of it in words."""
-    asked, rule = task.requirement, task.stage.cutter
+    requirement, rule = task.requirement, task.stage.cutter
     if rule == "rough":
-        tight = replace(asked, spare=1.0)
+        tight = replace(requirement, spare=1.0)
         return [
             (tight, "it is roughed by a cutter that has little room to turn"),
             (
@@ -47,19 +47,19 @@ def _ladder(draft: PanelPlanState, task: OperationTask) -> list[tuple[ToolRequir
                 "what the roughing cutter leaves is roughed by smaller ones",
             ),
         ]
-    if rule not in ("rest", "wall", "corner") or not asked.radius:
+    if rule not in ("rest", "wall", "corner") or not requirement.radius:
         return []
-    round_as_corner = replace(asked, radius=asked.radius / draft.settings.corner_share)
+    round_as_corner = replace(requirement, radius=requirement.radius / draft.settings.corner_share)
     ladder = [(round_as_corner, "its cutter is as round as the corners")]
     if rule == "wall":
-        loose = replace(asked, radius=0.0, missable=draft.settings.missable, cusps=False)
+        loose = replace(requirement, radius=0.0, missable=draft.settings.missable, cusps=False)
         return [*ladder, (loose, "its corners are left to another cutter")]
     slimmest, before = _slimmest(draft, task), _before(draft, task)
     if before is not None and slimmest < before.radius:
-        left = replace(asked, radius=slimmest, missable=1.0, cusps=False, near=0.0)
+        coarser = replace(requirement, radius=slimmest, missable=1.0, cusps=False, near=0.0)
         ladder.append(
             (
-                left,
+                coarser,
                 f"the slimmest that reaches leaves a radius of {trimmed(slimmest, 2)} mm in the corners",
             )
         )

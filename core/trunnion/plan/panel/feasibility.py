@@ -67,11 +67,14 @@ def without_lonely_ribs(
     """Return the same without ribs beside a space that is not planned: their cutter would run in solid material."""
     kinds = {f.id: f.kind for f in recognition}
     for feature in planned:
-        left = sorted(
+        remaining = sorted(
             i for i in beside.get(feature.id, ()) if i in refusals and kinds[i] in POCKETS
         )
-        if feature.kind == "rib" and left:
-            refusals = {**refusals, feature.id: f"it stands beside {left[0]}, which is not planned"}
+        if feature.kind == "rib" and remaining:
+            refusals = {
+                **refusals,
+                feature.id: f"it stands beside {remaining[0]}, which is not planned",
+            }
     return [f for f in planned if f.id not in refusals], refusals
 
 

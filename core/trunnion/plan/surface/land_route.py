@@ -95,11 +95,11 @@ def plan_lands(
         )
         return FinishedLands()
     for c in found:
-        if c.left.area > MISSED:
+        if c.remaining.area > MISSED:
             draft.findings.append(
                 info(
                     "route.land-left",
-                    f"{trimmed(c.left.area, 1)} mm2 of the land at {trimmed(c.land.z, 2)} stay in "
+                    f"{trimmed(c.remaining.area, 1)} mm2 of the land at {trimmed(c.land.z, 2)} stay in "
                     "corners that no end mill gets into",
                     *face_tags(c.land.tags),
                     remedy="finish them by other means",
@@ -131,10 +131,10 @@ def plan_lands(
 
 def _is_for_balls(draft: SurfacePlanState, chosen: LandCutters, balls: Sequence[Tool]) -> bool:
     """Say whether balls come to too much of a land that no end mill does: into slits that run out from it."""
-    if chosen.left.area <= MISSED:
+    if chosen.remaining.area <= MISSED:
         return False
     samples = samples_on(draft.space.skin, chosen.land.tags)
-    samples = samples.of(chosen.left.contains(samples.point[:, :2]))
+    samples = samples.of(chosen.remaining.contains(samples.point[:, :2]))
     seen = np.zeros(len(samples), dtype=bool)
     for ball in sorted(balls, key=lambda t: t.diameter):
         seen[~seen] = reached(draft.space, samples.of(~seen), ball, draft.route.reach_clearance)

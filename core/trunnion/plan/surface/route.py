@@ -39,7 +39,7 @@ from trunnion.plan.freeform.lands import LAND, REST_LAND
 from trunnion.plan.freeform.reach import AreaSamples, clear_beside, leans, reached, samples_on
 from trunnion.plan.freeform.roughing.directions import sides_for
 from trunnion.plan.freeform.roughing.hollows import hollow_depths
-from trunnion.plan.freeform.roughing.layers import left_on_walls
+from trunnion.plan.freeform.roughing.layers import remaining_on_walls
 from trunnion.plan.freeform.space import SurfaceSpace
 from trunnion.plan.freeform.tilted_reach import SAMPLES as LEANING_SAMPLES
 from trunnion.plan.freeform.tilted_reach import leaning_cutter
@@ -190,13 +190,15 @@ def _add_slivers(draft: SurfacePlanState) -> None:
     mine = (slivers_of(draft.recognition) | draft.unsampled) & set(part.tags) - set(
         blank_faces(part, draft.space.blank)
     )
-    draft.operations, left = with_slivers(draft.operations, mine, part.graph(), draft.space.skin)
-    if left:
+    draft.operations, remaining = with_slivers(
+        draft.operations, mine, part.graph(), draft.space.skin
+    )
+    if remaining:
         draft.findings.append(
             warning(
                 "route.not-planned",
-                f"{len(left)} small faces lie beside nothing that is cut",
-                *face_tags(left),
+                f"{len(remaining)} small faces lie beside nothing that is cut",
+                *face_tags(remaining),
                 remedy="lower recognize.surface.smallest and recognize.surface.sliver_width to plan them by themselves",
             )
         )
@@ -270,14 +272,14 @@ def _hollows(draft: SurfacePlanState, space: SurfaceSpace, tool: Tool, progress:
     tags = {t for o in draft.operations if o.kind in ON_SKIN for t in o.faces}
     samples = samples_on(space.skin, tuple(sorted(tags)))
     samples = samples.of(samples.normal[:, 2] > 0.0)
-    radius = tool.radius + left_on_walls(space, chosen.rough_allowance, chosen.cell)
+    radius = tool.radius + remaining_on_walls(space, chosen.rough_allowance, chosen.cell)
     depths = hollow_depths(space, samples.point, radius, progress)
-    return samples.area * float((depths > FULL * _left_by_layers(space, chosen)).sum())
+    return samples.area * float((depths > FULL * _remaining_after_layers(space, chosen)).sum())
 
 
-def _left_by_layers(space: SurfaceSpace, chosen: SurfaceRouteSettings) -> float:
+def _remaining_after_layers(space: SurfaceSpace, chosen: SurfaceRouteSettings) -> float:
     """Return how thick, in mm and in the mean, roughing by layers leaves material on a slope: what it leaves on walls, and its steps."""
-    return left_on_walls(space, chosen.rough_allowance, chosen.cell) + 0.5 * chosen.layer
+    return remaining_on_walls(space, chosen.rough_allowance, chosen.cell) + 0.5 * chosen.layer
 
 
 def _rougher(draft: SurfacePlanState, most: float, deep: float, name: str) -> Tool | None:
@@ -386,7 +388,7 @@ def _outline(draft: SurfacePlanState, tags: tuple[int, ...]) -> None:
         tool,
         tags,
         height / steps,
-        left_on_walls(space, draft.chosen.rough_allowance, draft.chosen.cell),
+        remaining_on_walls(space, draft.chosen.rough_allowance, draft.chosen.cell),
         {},
         rules,
     )
@@ -421,15 +423,19 @@ def _area(draft: SurfacePlanState, area: Area, level: FinishedLands, progress: P
             _add_finish(draft, kind, name, mine, found.tool, strategy, samples)
     if found.rest is not None:
         missed = samples.of(found.missed)
-        left = Area(
+        remaining = Area(
             id=area.id, tags=tuple(t for t in area.tags if (missed.face == t).any()), local=True
         )
-        for name, mine, strategy in _by_slope(left, left.tags, missed, math.radians(chosen.steep)):
+        for name, mine, strategy in _by_slope(
+            remaining, remaining.tags, missed, math.radians(chosen.steep)
+        ):
             _add_finish(
                 draft, "rest_finish", name, mine, found.rest, strategy, missed, earlier=found.tool
             )
         # Faces that the larger cutter never touches are still as roughing left them.
-        raw = replace(left, id=f"{area.id}-rest", tags=tuple(t for t in left.tags if t not in tags))
+        raw = replace(
+            remaining, id=f"{area.id}-rest", tags=tuple(t for t in remaining.tags if t not in tags)
+        )
         if raw.tags and chosen.semi_allowance > 0.0:
             for name, mine, strategy in _by_slope(
                 raw, raw.tags, missed, math.radians(chosen.steep)
@@ -456,12 +462,12 @@ def _hidden_area(draft: SurfacePlanState, area: Area, progress: Progress) -> Non
         _add_finish(draft, "semi", area.id, area.tags, found.tool, "surface.point", samples)
     _add_finish(draft, "finish", area.id, area.tags, found.tool, "surface.point", samples)
     if found.rest is not None:
-        left = tuple(t for t in area.tags if (found.missed & (few.face == t)).any())
+        remaining = tuple(t for t in area.tags if (found.missed & (few.face == t)).any())
         _add_finish(
             draft,
             "rest_finish",
             area.id,
-            left,
+            remaining,
             found.rest,
             "surface.point",
             samples,
@@ -544,7 +550,7 @@ def _add_finish(
     allowance = chosen.semi_allowance if semi else 0.0
     height = chosen.semi_scallop if semi else chosen.height()
     after_rough = semi or chosen.semi_allowance <= 0.0
-    depth = _left_by_layers(draft.space, chosen) if after_rough else chosen.semi_allowance
+    depth = _remaining_after_layers(draft.space, chosen) if after_rough else chosen.semi_allowance
     width = stepover_on_plane(tool.corner_radius or 0.5 * tool.radius, height)
     area = samples.area * float(np.isin(samples.face, tags).sum())
     rules = (

@@ -31,18 +31,18 @@ def with_slivers(
     Slivers beside slivers follow one after the other. Neighbours that a cutter follows in any shape come first; an operation on levels
     and walls takes a sliver only from within its faces' heights.
     """
-    made, left = list(operations), sorted(slivers)
+    made, remaining = list(operations), sorted(slivers)
     grown = True
-    while left and grown:
+    while remaining and grown:
         grown = False
-        for tag in list(left):
+        for tag in list(remaining):
             hosts = _hosts(made, tag, graph, skin)
             for n in hosts:
                 made[n] = replace(made[n], faces=(*made[n].faces, tag))
             if hosts:
-                left.remove(tag)
+                remaining.remove(tag)
                 grown = True
-    return made, tuple(left)
+    return made, tuple(remaining)
 
 
 def _hosts(operations: Sequence[Operation], tag: int, graph: FaceGraph, skin: Skin) -> list[int]:

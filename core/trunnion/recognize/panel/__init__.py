@@ -105,7 +105,7 @@ class PanelFamily:
         features.extend(around.features)
         findings.extend(around.findings)
         explained = {tag - 1 for f in features for tag in f.tags}
-        left = tuple(
+        remaining = tuple(
             r
             for r, k in enumerate(above.classes.kind)
             if r not in explained and k is not FaceClass.ABSENT
@@ -113,15 +113,18 @@ class PanelFamily:
         findings.extend(above.slices.findings)
         findings.extend(
             rest_findings(
-                above.graph, above.classes, left, {f for seen in shown for f in seen.tops.undercut}
+                above.graph,
+                above.classes,
+                remaining,
+                {f for seen in shown for f in seen.tops.undercut},
             )
         )
         return Recognition(
             family=self.name,
             frame=frame,
             features=tuple(features),
-            unexplained=tuple(r + 1 for r in left),
-            unexplained_share=float(graph.area[list(left)].sum() / graph.area.sum()),
+            unexplained=tuple(r + 1 for r in remaining),
+            unexplained_share=float(graph.area[list(remaining)].sum() / graph.area.sum()),
             findings=tuple(findings),
         )
 

@@ -133,37 +133,39 @@ def strip(view: PanelSide, face: int) -> tuple[float, float]:
     ]
     best: tuple[float, float, Floats, Floats] | None = None
     for i, a in enumerate(sides):
-        way = graph.end[a] - graph.start[a]
-        way = way / np.linalg.norm(way)
+        direction = graph.end[a] - graph.start[a]
+        direction = direction / np.linalg.norm(direction)
         for b in sides[i + 1 :]:
             other = (graph.end[b] - graph.start[b]) / np.linalg.norm(graph.end[b] - graph.start[b])
             gap = (graph.middle[b] - graph.middle[a]) - (
-                (graph.middle[b] - graph.middle[a]) @ way
-            ) * way
+                (graph.middle[b] - graph.middle[a]) @ direction
+            ) * direction
             width = float(np.linalg.norm(gap))
-            spans = [np.sort([p[e] @ way for p in (graph.start, graph.end)]) for e in (a, b)]
+            spans = [np.sort([p[e] @ direction for p in (graph.start, graph.end)]) for e in (a, b)]
             beside = float(min(s[1] for s in spans) - max(s[0] for s in spans))
             parallel = (
-                np.linalg.norm(np.cross(way, other)) < ANGLE and width > SLIVER and beside > width
+                np.linalg.norm(np.cross(direction, other)) < ANGLE
+                and width > SLIVER
+                and beside > width
             )
             if parallel and (
                 best is None or (round(beside, 3), -width) > (round(best[1], 3), -best[0])
             ):
-                best = (width, beside, way, graph.middle[a] + 0.5 * gap)
+                best = (width, beside, direction, graph.middle[a] + 0.5 * gap)
     if best is None:
         width = mean_width(view, face)
         return width, float(graph.area[face] / width)
-    width, _, way, middle = best
+    width, _, direction, middle = best
     reach = [
-        _crossing(graph.start[e], graph.end[e], middle, way)
+        _crossing(graph.start[e], graph.end[e], middle, direction)
         for end in _ends(view, face)
         for e in end
-        if np.linalg.norm(np.cross(graph.end[e] - graph.start[e], way)) > SLIVER
+        if np.linalg.norm(np.cross(graph.end[e] - graph.start[e], direction)) > SLIVER
     ]
     across = [t for t in reach if t is not None]
     if len(across) < 2:
         along = [
-            float((p[e] - middle) @ way)
+            float((p[e] - middle) @ direction)
             for e in graph.edges_of[face]
             for p in (graph.start, graph.end)
         ]
@@ -171,11 +173,15 @@ def strip(view: PanelSide, face: int) -> tuple[float, float]:
     return width, max(across) - min(across)
 
 
-def _crossing(start: Floats, end: Floats, point: Floats, way: Floats) -> float | None:
+def _crossing(start: Floats, end: Floats, point: Floats, direction: Floats) -> float | None:
     """Return where a line through a point meets the line of an edge, seen along z; None when it passes the edge by."""
-    edge, normal = end - start, np.array([-way[1], way[0], 0.0])
+    edge, normal = end - start, np.array([-direction[1], direction[0], 0.0])
     share = float((point - start) @ normal / (edge @ normal))
-    return float((start + share * edge - point) @ way) if -SLIVER < share < 1.0 + SLIVER else None
+    return (
+        float((start + share * edge - point) @ direction)
+        if -SLIVER < share < 1.0 + SLIVER
+        else None
+    )
 
 
 def _ends(view: PanelSide, face: int) -> list[list[int]]:

@@ -85,10 +85,10 @@ def interpolated(positions: ArrayLike, axes: ArrayLike) -> AxisField:
 
 def nearest(curve: Floats, point: Floats) -> Floats:
     """Return the nearest point (k, 3) of a polyline (m, 3) to each point (k, 3)."""
-    start, way = curve[:-1], np.diff(curve, axis=0)
-    square = (way * way).sum(axis=1)
-    share = ((point[:, None] - start) * way).sum(axis=2) / np.where(square > 0.0, square, 1.0)
-    on = start + np.clip(share, 0.0, 1.0)[:, :, None] * way
+    start, direction = curve[:-1], np.diff(curve, axis=0)
+    square = (direction * direction).sum(axis=1)
+    share = ((point[:, None] - start) * direction).sum(axis=2) / np.where(square > 0.0, square, 1.0)
+    on = start + np.clip(share, 0.0, 1.0)[:, :, None] * direction
     row = np.argmin(np.linalg.norm(point[:, None] - on, axis=2), axis=1)
     return on[np.arange(len(point)), row]
 

@@ -133,23 +133,26 @@ def leaned(
     Turning the axis while the tip goes straight bends the centre's way: blocks are cut so short that it stays within `chord` mm.
     """
     radius, some = tool.corner_radius, [p for p in passes if len(p) > 1]
-    ways = [
+    contact_lines = [
         Contacts(point=p.tip + radius * (p.axis - p.normal), normal=p.normal, closed=p.closed)
         for p in some
     ]
     found = []
-    for origin, way, free in zip(
-        some, ways, free_axes(ways, field, tool, ask, limits, 0.0, progress), strict=True
+    for origin, contacts, free in zip(
+        some,
+        contact_lines,
+        free_axes(contact_lines, field, tool, ask, limits, 0.0, progress),
+        strict=True,
     ):
         centre = origin.tip + radius * origin.axis
         for run in free.runs():
             position = _finely(
-                run, np.arange(len(way), dtype=np.float64), math.sqrt(8.0 * chord / radius)
+                run, np.arange(len(contacts), dtype=np.float64), math.sqrt(8.0 * chord / radius)
             )
-            row = np.clip(position.astype(np.int64), 0, len(way) - 2)
+            row = np.clip(position.astype(np.int64), 0, len(contacts) - 2)
             share = (position - row)[:, None]
             axis = run.at(position)
-            normal = slerp(way.normal[row], way.normal[row + 1], position - row)
+            normal = slerp(contacts.normal[row], contacts.normal[row + 1], position - row)
             whole = origin.closed and len(run.position) == len(free.position)
             found.append(
                 Pass(
@@ -249,16 +252,16 @@ class _AxisSamples:
         """Return places at even steps of what the cutter travels."""
         radius = max(tool.corner_radius, 0.25 * tool.radius)
         positions, points, normals, wanted, pitches = [], [], [], [], []
-        for way in passes:
-            travel, feed = way.travel(radius), way.feed
+        for contacts in passes:
+            travel, feed = contacts.travel(radius), contacts.feed
             steps = max(1, math.ceil(travel[-1] * limits.turn / STEP))
             position = np.interp(
                 np.linspace(0.0, travel[-1], steps + 1),
                 travel,
-                np.arange(len(way), dtype=np.float64),
+                np.arange(len(contacts), dtype=np.float64),
             )
-            point, normal = between(way.point, way.normal, feed, position)
-            row = np.clip(np.round(position).astype(np.int64), 0, len(way) - 1)
+            point, normal = between(contacts.point, contacts.normal, feed, position)
+            row = np.clip(np.round(position).astype(np.int64), 0, len(contacts) - 1)
             desired = field(point, normal, feed[row])
             positions.append(position)
             points.append(point + allowance * normal)

@@ -42,12 +42,18 @@ class Contacts:
         """The unit direction of the way at each contact (k, 3), along the face."""
         step = np.diff(self.point, axis=0)
         size = np.linalg.norm(step, axis=1, keepdims=True)
-        way = _scaled(step)
+        direction = _scaled(step)
         if self.closed:
-            before, after = np.vstack([way[-1:], way]), np.vstack([way, way[:1]])
+            before, after = (
+                np.vstack([direction[-1:], direction]),
+                np.vstack([direction, direction[:1]]),
+            )
             length_before, length_after = np.vstack([size[-1:], size]), np.vstack([size, size[:1]])
         else:
-            before, after = np.vstack([way[:1], way]), np.vstack([way, way[-1:]])
+            before, after = (
+                np.vstack([direction[:1], direction]),
+                np.vstack([direction, direction[-1:]]),
+            )
             length_before, length_after = np.vstack([size[:1], size]), np.vstack([size, size[-1:]])
         # The circle through three contacts: the shorter chord says more of the direction at the middle one.
         return _along(length_after * before + length_before * after, self.normal)
@@ -101,9 +107,9 @@ def slerp(start: Floats, end: Floats, share: Floats) -> Floats:
     return _scaled(a[:, None] * start + b[:, None] * end)
 
 
-def _along(way: Floats, normal: Floats) -> Floats:
+def _along(direction: Floats, normal: Floats) -> Floats:
     """Return the unit directions (k, 3) of a way seen along faces with normals (k, 3)."""
-    return _scaled(way - (way * normal).sum(axis=1, keepdims=True) * normal)
+    return _scaled(direction - (direction * normal).sum(axis=1, keepdims=True) * normal)
 
 
 def _scaled(vectors: Floats) -> Floats:

@@ -36,7 +36,7 @@ ENOUGH = 6000
 """Squares, as wide as the longest edge, that an area is cut in at most: a blend is smooth, a finer one is no better."""
 SMALLEST = 0.002
 """Share of the area whose steps may be wider than the passes' own: a blend stands still in a sharp corner between guide and rim."""
-CROWDED = 8.0
+MOST_DENSE = 8.0
 """Passes in the room of one, on the average over an area and one more, from which on flow lines are no way to cut it: guides run into each
 other, or it is a scrap whose guides have little to do with its shape."""
 
@@ -108,7 +108,7 @@ def _lines(metric: Metric, guides: Guides, spiral: bool, progress: Progress) -> 
     slope, area = metric.slope(field)[real], metric.sheet.area()[real]
     order = np.argsort(slope)
     narrowest = slope[order[np.searchsorted(np.cumsum(area[order]), SMALLEST * area.sum())]]
-    if CROWDED * narrowest * (1.0 + float(area.sum() / (slope @ area))) < 1.0:
+    if MOST_DENSE * narrowest * (1.0 + float(area.sum() / (slope @ area))) < 1.0:
         raise DenseFlowLines(
             "flow lines between these guides would lie far closer than the scallop wants; passes at a constant scallop don't, "
             "nor may those between other guides"
@@ -132,12 +132,12 @@ def _wound(
             for line in whole_levels(metric.sheet, field * count + sign * angle, sign * turns)
         ]
         spiral = max(turning, key=lambda line: len(line.share))
-        way = spiral.value(field)
-        if way[-1] > way[0]:
+        field_value = spiral.value(field)
+        if field_value[-1] > field_value[0]:
             break
     first, last = lines[0], lines[-1]
-    between = np.flatnonzero((way > 0.5 / count) & (way < 1.0 - 0.5 / count))
-    if way[0] >= way[-1] or not len(between) or not first.closed or not last.closed:
+    between = np.flatnonzero((field_value > 0.5 / count) & (field_value < 1.0 - 0.5 / count))
+    if field_value[0] >= field_value[-1] or not len(between) or not first.closed or not last.closed:
         return lines
     middle = spiral.of(slice(int(between[0]), int(between[-1]) + 1))
     start, end = (

@@ -80,19 +80,19 @@ def linked(
     leads_in, leads_out, has_room = _leads(passes, drive, tool, manner, progress.part(0.2, 0.4))
     if manner.arcs:
         near &= has_room
-        ways = iter(
+        links = iter(
             [
                 np.vstack([leads_out[k], leads_in[k + 1], passes[k + 1].tip[:1]])
                 for k in np.flatnonzero(near).tolist()
             ]
         )
     else:
-        ways = iter(_links(passes, near, drive, tool, manner, progress.part(0.4, 0.9)))
+        links = iter(_links(passes, near, drive, tool, manner, progress.part(0.4, 0.9)))
     blocks = _Blocks(tool, data, stock, setup, drive, manner.safety)
     for k, one in enumerate(passes):
         progress.at(0.9 + 0.1 * k / len(passes), "Linking passes")
         if k and near[k - 1]:
-            blocks.feed(next(ways), one.axis[0], Mark.LINK)
+            blocks.feed(next(links), one.axis[0], Mark.LINK)
         else:
             if k:
                 blocks.feed(leads_out[k - 1], passes[k - 1].axis[-1], Mark.LEAD)
@@ -268,17 +268,17 @@ def _ordered(passes: Sequence[Pass], manner: LinkParameters, progress: Progress)
 def _nearest(passes: Sequence[Pass], reversing: bool, progress: Progress) -> list[Pass]:
     """Return the passes so that each begins near where the one before ends, from the first on."""
     starts, ends = (np.array([p.tip[k] for p in passes]) for k in (0, -1))
-    out, left = [passes[0]], np.ones(len(passes), dtype=bool)
-    left[0] = False
-    while left.any():
+    out, remaining = [passes[0]], np.ones(len(passes), dtype=bool)
+    remaining[0] = False
+    while remaining.any():
         progress.at(len(out) / len(passes), "Ordering passes")
-        rows, here = np.flatnonzero(left), out[-1].tip[-1]
+        rows, here = np.flatnonzero(remaining), out[-1].tip[-1]
         ahead = np.linalg.norm(starts[rows] - here, axis=1)
         back = np.linalg.norm(ends[rows] - here, axis=1)
         turns = reversing and back.min() < ahead.min() - tolerance.COINCIDENT
         row = int(rows[np.argmin(back if turns else ahead)])
         out.append(passes[row].reversed() if turns else passes[row])
-        left[row] = False
+        remaining[row] = False
     return out
 
 
@@ -350,14 +350,14 @@ def _links(
     ]
 
 
-def _bridged(way: Floats, chord: Floats, allowance: float, error: float) -> Floats:
+def _bridged(points: Floats, chord: Floats, allowance: float, error: float) -> Floats:
     """Return a way over the surface (k, 3), the height of the chord (2, 3) between its ends where that is higher."""
-    run = np.hypot(*(way[:, :2] - chord[0, :2]).T)
-    share = run / run[-1] if run[-1] > 0.0 else np.linspace(0.0, 1.0, len(way))
+    run = np.hypot(*(points[:, :2] - chord[0, :2]).T)
+    share = run / run[-1] if run[-1] > 0.0 else np.linspace(0.0, 1.0, len(points))
     lifted = np.column_stack(
         [
-            way[:, :2],
-            np.maximum(way[:, 2] + allowance, chord[0, 2] + share * (chord[1, 2] - chord[0, 2])),
+            points[:, :2],
+            np.maximum(points[:, 2] + allowance, chord[0, 2] + share * (chord[1, 2] - chord[0, 2])),
         ]
     )
     return lifted[thinned(lifted, np.zeros(len(lifted), np.int64), error)]
@@ -370,7 +370,7 @@ def _leads(
     manner: LinkParameters,
     progress: Progress,
 ) -> tuple[Floats, Floats, Bools]:
-    """Return the ways (m, k, 3) onto all passes, up to the first tip, and off them, after the last: quarter circles, lifted where they
+    """Return the links (m, k, 3) onto all passes, up to the first tip, and off them, after the last: quarter circles, lifted where they
     would gouge. And say of each pass but the last whether the way off it and onto the next one needs no lifting (m - 1,)."""
     coming = _arcs(
         np.array([p.tip[0] for p in passes]),
@@ -389,8 +389,8 @@ def _leads(
     upright = np.array([[_is_upright(p.axis[row]) for p in passes] for row in (0, -1)])
     share = np.linspace(0.0, 1.0, BETWEEN)[:, None]
     between = going[:-1, -1:] + share * (coming[1:, :1] - going[:-1, -1:])
-    ways = (coming, going, between)
-    flat = np.concatenate([w.reshape(-1, 3) for w in ways])
+    links = (coming, going, between)
+    flat = np.concatenate([w.reshape(-1, 3) for w in links])
     floor = drive.skin.drop.drop(
         flat[:, :2],
         lower_side(tool, drive.allowance),
@@ -401,7 +401,7 @@ def _leads(
     lifts = [
         x.reshape(w.shape[:2])
         for x, w in zip(
-            np.split(lift, np.cumsum([w[..., 0].size for w in ways])[:-1]), ways, strict=True
+            np.split(lift, np.cumsum([w[..., 0].size for w in links])[:-1]), links, strict=True
         )
     ]
     for arcs, up, stands, nearest, row in zip(
@@ -433,7 +433,7 @@ def _leads(
 
 
 def _off(tip: Floats, axis: Floats) -> Floats:
-    """Return the way (3,) on which a pass that begins with tips (k, 3) is left, or come to, there: straight on, or along the axis where
+    """Return the points (3,) on which a pass that begins with tips (k, 3) is left, or come to, there: straight on, or along the axis where
     the tool only turns about its tip, as a ball does in a hollow as round as it is."""
     away = tip[0] - tip
     moved = np.flatnonzero(np.linalg.norm(away, axis=1) > tolerance.COINCIDENT)

@@ -114,9 +114,9 @@ def turn(first: Floats, last: Floats) -> Floats:
         )
     angle = math.atan2(float(np.linalg.norm(np.cross(first, last))), float(first @ last))
     share = np.linspace(0.0, angle, max(1, math.ceil(angle / STEP)) + 1)[:, None]
-    way = np.cos(share) * first + np.sin(share) * (across / size)
-    way[-1] = last
-    return np.asarray(way)
+    axes = np.cos(share) * first + np.sin(share) * (across / size)
+    axes[-1] = last
+    return np.asarray(axes)
 
 
 def _led(poses: Sequence[Pose], path: Toolpath) -> Toolpath:

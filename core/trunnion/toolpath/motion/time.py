@@ -46,22 +46,22 @@ def block_times(
     spindle's face; raises `Refused` for what the machine can't hold or follow.
     """
     times = np.array(path.dwells())
-    way = _way_of(
+    travel = _axis_travel(
         path,
         work_position if work_position is not None and work_position.machine.rotary else None,
         gauge,
     )
-    rows = np.flatnonzero(way.length > 0.0)
+    rows = np.flatnonzero(travel.length > 0.0)
     if len(rows) == 0:
         return times
-    length, first, last = way.length[rows], way.first[rows], way.last[rows]
+    length, first, last = travel.length[rows], travel.first[rows], travel.last[rows]
     axes = [*(machine.axis(name) for name in "XYZ"), *machine.rotary][: first.shape[1]]
     weight = np.array([1.0, 1.0, 1.0, *_weights(machine)])[: first.shape[1]]
     rate = np.array([a.rapid / SECONDS_PER_MINUTE for a in axes]) * weight
     push = np.array([a.acceleration for a in axes]) * weight
     share = np.maximum(np.abs(first), np.abs(last))
     is_arc = path.motion[rows] >= Motion.ARC_CW
-    share[is_arc, :3] = np.maximum(share[is_arc, :3], way.across[rows[is_arc]])
+    share[is_arc, :3] = np.maximum(share[is_arc, :3], travel.across[rows[is_arc]])
     with np.errstate(divide="ignore"):
         acceleration = (push / share).min(axis=1)
         limit = (rate / share).min(axis=1)
@@ -69,11 +69,11 @@ def block_times(
     feed = np.minimum(path.feed[rows], machine.feed_max) / SECONDS_PER_MINUTE
     # In a block that turns the tip has its feed, however far the machine's axes go for it.
     stretch = np.divide(
-        length, way.tip[rows], out=np.full(len(rows), np.inf), where=way.tip[rows] > 0.0
+        length, travel.tip[rows], out=np.full(len(rows), np.inf), where=travel.tip[rows] > 0.0
     )
     speed = np.where(is_rapid, limit, np.minimum(feed * np.where(is_rapid, 1.0, stretch), limit))
     speed[is_arc] = np.minimum(
-        speed[is_arc], np.sqrt(acceleration[is_arc] * way.radius[rows[is_arc]])
+        speed[is_arc], np.sqrt(acceleration[is_arc] * travel.radius[rows[is_arc]])
     )
     rounding = np.where(
         np.abs(first[:, 3:]).max(axis=1, initial=0.0) > 0.0, ROUNDING_TURNS, ROUNDING
@@ -86,7 +86,7 @@ def block_times(
 
 
 @dataclass(frozen=True, slots=True, eq=False, kw_only=True)
-class _Way:
+class _AxisTravel:
     """How a machine's axes go along blocks: length (n,) of their common way, of the tip's alone (n,), and the unit directions (n, 3 + a) in
     which they begin and end it. of arcs also across (n, 3), how much of it each linear axis takes, and radius (n,).
 
@@ -100,7 +100,7 @@ class _Way:
     radius: Floats
 
 
-def _way_of(path: Toolpath, work_position: WorkPosition | None, gauge: float) -> _Way:
+def _axis_travel(path: Toolpath, work_position: WorkPosition | None, gauge: float) -> _AxisTravel:
     """Return the way of a path: on a machine with rotary axes that of the positions of all its axes."""
     tip, sweep = path.lengths(), path.sweeps()
     arcs = np.flatnonzero(path.motion >= Motion.ARC_CW)
@@ -122,16 +122,16 @@ def _way_of(path: Toolpath, work_position: WorkPosition | None, gauge: float) ->
             gauge,
         )
     start = np.vstack([position[:1], position[:-1]])
-    way = np.column_stack([position - start, turn])
-    first, last = way.copy(), way.copy()
+    travel = np.column_stack([position - start, turn])
+    first, last = travel.copy(), travel.copy()
     for out, point in ((first, start[arcs]), (last, position[arcs])):
         out[arcs, :3] = np.cross(axis, point - centre) * sweep[arcs, None]
     turns = np.abs(turn).max(axis=1, initial=0.0) > 0.0
     across, radius = np.zeros((len(path), 3)), np.zeros(len(path))
     across[arcs] = np.sqrt(np.maximum(1.0 - axis * axis, 0.0))
     radius[arcs] = np.linalg.norm(np.cross(axis, position[arcs] - centre), axis=1)
-    return _Way(
-        length=np.where(turns, np.linalg.norm(way, axis=1), tip),
+    return _AxisTravel(
+        length=np.where(turns, np.linalg.norm(travel, axis=1), tip),
         tip=tip,
         first=_units(first),
         last=_units(last),

@@ -34,7 +34,7 @@ from trunnion.toolpath.offsetting.trimming import PassTrimming
 RUN_OUTS = (0.5, 1.0, 2.0, 3.0, 4.0)
 """Of the radius: how far before an open pass a place that is certainly free is looked for."""
 
-RUN_OUT_WAYS = (
+RUN_OUT_DIRECTIONS = (
     (-1.0, 0.0),
     (-0.7, 0.7),
     (-0.7, -0.7),
@@ -233,7 +233,7 @@ def _come_to(
         return
     left = np.array([-tangent[1], tangent[0]])
     for share in RUN_OUTS:
-        for along, aside in RUN_OUT_WAYS:
+        for along, aside in RUN_OUT_DIRECTIONS:
             before = start + share * builder.tool.radius * (along * tangent + aside * left)
             if is_free(builder, before, layer.z) and layer.room.holds_line(before, start):
                 travel(builder, before, layer.z)

@@ -54,10 +54,10 @@ def _beside(guide: Curve, points: Floats, distance: float) -> Floats:
     beyond = [
         np.where(
             np.linalg.norm(points - end, axis=1) <= distance + tolerance.SEW,
-            (points - end) @ way,
+            (points - end) @ direction,
             -np.inf,
         )
-        for end, way in ((first, -heading), (last, leaving))
+        for end, direction in ((first, -heading), (last, leaving))
     ]
     # Ends a little before the half discs, so that the last direction is the wall's and not that of the arc round its end.
     return -tolerance.ON_REGION - np.maximum(*beyond)
@@ -142,9 +142,9 @@ def _cut_loop(
     step_aside(builder, loop.at(0.0)[1], room)
 
 
-def _past(builder: PathBuilder, end: Floats, way: Floats, room: AxisRegion) -> Floats:
+def _past(builder: PathBuilder, end: Floats, direction: Floats, room: AxisRegion) -> Floats:
     for share in PAST:
-        past = end + share * builder.tool.radius * way
+        past = end + share * builder.tool.radius * direction
         if room.holds_line(end, past):
             return past
     return end

@@ -63,8 +63,8 @@ def helix(
     angle: float,
 ) -> None:
     """Go down anticlockwise round `centre` from just above `top` to `z` and once round there, ending on the side of `towards` (2,)."""
-    way = towards - centre
-    first = math.atan2(way[1], way[0])
+    direction = towards - centre
+    first = math.atan2(direction[1], direction[0])
     begin = top + GAP
     turns = max(
         1, math.ceil((begin - z) / (math.tau * radius * math.tan(angle)) - tolerance.COINCIDENT)

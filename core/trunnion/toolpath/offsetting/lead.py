@@ -41,13 +41,13 @@ class Lead:
 
 def lead_in(point: Floats, tangent: Floats, radius: float) -> Lead:
     """Return the quarter arc that ends at a point of a contour in its direction, anticlockwise from the left."""
-    centre = point + radius * _left(tangent)
+    centre = point + radius * _left_normal(tangent)
     return Lead(centre - radius * tangent, centre, radius, centre - radius * tangent)
 
 
 def lead_out(point: Floats, tangent: Floats, radius: float) -> Lead:
     """Return the quarter arc that begins at a point of a contour in its direction and leaves to the left."""
-    centre = point + radius * _left(tangent)
+    centre = point + radius * _left_normal(tangent)
     return Lead(centre + radius * tangent, centre, radius, centre + radius * tangent)
 
 
@@ -123,7 +123,7 @@ def from_free(
 ) -> tuple[Lead, bool]:
     """Return a lead that begins where no material is, lengthened by a straight when that takes it there, and say whether it does."""
     for share in RUN_INS:
-        before = lead.outside + share * builder.tool.radius * _left(tangent)
+        before = lead.outside + share * builder.tool.radius * _left_normal(tangent)
         if is_free(builder, before, z) and room.holds_line(before, lead.outside):
             return replace(lead, before=before), True
     return lead, False
@@ -155,5 +155,5 @@ def _arc_points(lead: Lead, point: Floats) -> Floats:
     return lead.centre + np.cos(share)[:, None] * a + np.sin(share)[:, None] * b
 
 
-def _left(tangent: Floats) -> Floats:
+def _left_normal(tangent: Floats) -> Floats:
     return np.array([-tangent[1], tangent[0]])

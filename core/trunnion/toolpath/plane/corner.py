@@ -106,7 +106,7 @@ def corner(
                         cut_parts(builder, [part], height.z, room, approach)
                     else:
                         cut_open(builder, part, height.z, room, approach, past=False)
-        findings += _left(drive, level, tool, rests)
+        findings += _remaining_findings(drive, level, tool, rests)
     return Planned(
         path=eased_finish(builder.finished(), tool, data, stock, progress), findings=tuple(findings)
     )
@@ -185,7 +185,7 @@ def _beside(rims: tuple[Curve, ...], rest: Region, tool: Tool) -> Iterator[Curve
                 yield part
 
 
-def _left(
+def _remaining_findings(
     drive: PlaneDrive, level: DriveLevel, tool: Tool, rests: tuple[Region, ...]
 ) -> list[Finding]:
     if not rests:
@@ -202,13 +202,13 @@ def _left(
                 remedy="choose a smaller cutter",
             )
         ]
-    left = rest.minus(room.region.offset(tool.radius + tolerance.SEW)).area
-    if left < SMALLEST_LEFTOVER:
+    remaining = rest.minus(room.region.offset(tool.radius + tolerance.SEW)).area
+    if remaining < SMALLEST_LEFTOVER:
         return []
     return [
         info(
             "corner.left",
-            f"{left:.1f} mm2 in corners of {drive.feature} between {level.bottom:.2f} and {level.top:.2f} stay: they "
+            f"{remaining:.1f} mm2 in corners of {drive.feature} between {level.bottom:.2f} and {level.top:.2f} stay: they "
             f"are sharper than {tool.name}",
             drive.feature,
             remedy="choose a smaller cutter for the corners",

@@ -104,12 +104,12 @@ def floor(
             manner,
             progress,
         )
-        left = each.region.minus(passes.room.region.offset(distance + tolerance.SEW)).area
-        if left > SMALLEST_LEFTOVER:
+        remaining = each.region.minus(passes.room.region.offset(distance + tolerance.SEW)).area
+        if remaining > SMALLEST_LEFTOVER:
             findings.append(
                 info(
                     "floor.left",
-                    f"{left:.0f} mm2 of the floor at {each.z:.2f} stay in corners that {tool.name} can't reach",
+                    f"{remaining:.0f} mm2 of the floor at {each.z:.2f} stay in corners that {tool.name} can't reach",
                     drive.feature,
                     f"face {each.face}",
                     remedy="finish them with the corners, by a smaller cutter",

@@ -106,7 +106,7 @@ def profile_rough(
                         _touching(contour_parts(room, guide.curve, distance), stock, tool.radius),
                     )
                 cut_parts(builder, rooms[key][1], z, rooms[key][0], approach)
-        findings += _left(drive, guide, tool, drive.wall_allowance)
+        findings += _remaining_findings(drive, guide, tool, drive.wall_allowance)
     return _planned(drive, builder, findings)
 
 
@@ -148,7 +148,7 @@ def profile_finish(
                     remedy="choose a flat cutter",
                 )
             )
-        findings += _left(drive, guide, tool, drive.wall_allowance)
+        findings += _remaining_findings(drive, guide, tool, drive.wall_allowance)
     return _planned(drive, builder, findings)
 
 
@@ -206,7 +206,9 @@ def _touching(parts: list[Curve], stock: PlanningStock, radius: float) -> list[C
     return [piece for part in parts for piece in parts_where(part, near)]
 
 
-def _left(drive: PlaneDrive, guide: WallGuide, tool: Tool, allowance: float) -> list[Finding]:
+def _remaining_findings(
+    drive: PlaneDrive, guide: WallGuide, tool: Tool, allowance: float
+) -> list[Finding]:
     distance, height = tool.radius + allowance, guide.top - guide.bottom
     room = AxisRegion.of(level_at(drive, guide.bottom).boundary, distance)
     if not room.region:

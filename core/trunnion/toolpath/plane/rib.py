@@ -101,12 +101,12 @@ def rib_top(
                     builder, ClearingLayer(z=z, rings=rings, room=room, top=None), manner, progress
                 )
             above = z
-        left = level.wanted.minus(over.offset(_flat(tool) + tolerance.SEW)).area
-        if left > SMALLEST_LEFTOVER:
+        remaining = level.wanted.minus(over.offset(_flat(tool) + tolerance.SEW)).area
+        if remaining > SMALLEST_LEFTOVER:
             findings.append(
                 info(
                     "rib.left",
-                    f"{left:.0f} mm2 of the top of {drive.feature} stay beside walls",
+                    f"{remaining:.0f} mm2 of the top of {drive.feature} stay beside walls",
                     drive.feature,
                     remedy="choose a flat cutter, or a smaller one",
                 )

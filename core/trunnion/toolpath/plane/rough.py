@@ -67,7 +67,7 @@ def rough(
         slot=settings.slot_feed * data.slot_share,
     )
     findings: list[Finding] = []
-    left: list[tuple[DriveLevel, float]] = []
+    remaining: list[tuple[DriveLevel, float]] = []
     above, first = max(drive.top, drive.stock_top), True
     for n, level in enumerate(drive.levels):
         heights = layers(
@@ -90,7 +90,7 @@ def rough(
                     mitred=drive.fillet > 0.0,
                 )
             passes = made[distance]
-            if passes.rings and not _is_clear(builder, level.wanted, z):
+            if passes.rings and not _is_cleared(builder, level.wanted, z):
                 known = None if first or passes.clip is not None else above
                 clear(
                     builder,
@@ -110,9 +110,11 @@ def rough(
         if made and not made[max(made)].room.region:
             findings.append(_too_wide(drive, level, tool))
         elif made:
-            left.append((level, _left(level, max(made), made[max(made)].room.region)))
+            remaining.append(
+                (level, _remaining_area(level, max(made), made[max(made)].room.region))
+            )
     findings += _corners(
-        drive, tool, [(level, area) for level, area in left if area >= SMALLEST_LEFTOVER]
+        drive, tool, [(level, area) for level, area in remaining if area >= SMALLEST_LEFTOVER]
     )
     return Planned(
         path=eased(builder.finished(), tool, data, stock, manner.slot, progress),
@@ -137,7 +139,7 @@ def _foot(drive: PlaneDrive, tool: Tool, z: float) -> float:
     return max((foot_clearance(drive.fillet, tool.corner_radius, t) for t in above), default=0.0)
 
 
-def _is_clear(builder: PathBuilder, wanted: Region, z: float) -> bool:
+def _is_cleared(builder: PathBuilder, wanted: Region, z: float) -> bool:
     """Say whether the stock has nothing left above `z` over an area, its rim not looked at."""
     stock = builder.stock()
     inner = wanted.offset(-RIM * stock.cell)
@@ -155,21 +157,23 @@ def _too_wide(drive: PlaneDrive, level: DriveLevel, tool: Tool) -> Finding:
     )
 
 
-def _left(level: DriveLevel, distance: float, room: Region) -> float:
+def _remaining_area(level: DriveLevel, distance: float, room: Region) -> float:
     """Return the area in mm2 that a cutter leaves of what is wanted, its axis everywhere in a room that keeps a distance from the rim."""
     return level.wanted.minus(room.offset(distance + tolerance.SEW)).area
 
 
-def _corners(drive: PlaneDrive, tool: Tool, left: list[tuple[DriveLevel, float]]) -> list[Finding]:
+def _corners(
+    drive: PlaneDrive, tool: Tool, remaining: list[tuple[DriveLevel, float]]
+) -> list[Finding]:
     """Return one finding for all bands with corners that are left."""
-    if not left:
+    if not remaining:
         return []
     most, low, high = (
-        max(area for _, area in left),
-        min(level.bottom for level, _ in left),
-        max(level.top for level, _ in left),
+        max(area for _, area in remaining),
+        min(level.bottom for level, _ in remaining),
+        max(level.top for level, _ in remaining),
     )
-    size = f"{most:.0f} mm2" if len(left) == 1 else f"up to {most:.0f} mm2"
+    size = f"{most:.0f} mm2" if len(remaining) == 1 else f"up to {most:.0f} mm2"
     return [
         info(
             "rough.left",

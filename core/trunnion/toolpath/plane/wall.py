@@ -99,7 +99,7 @@ def wall(
             parts = contour_parts(room, guide.curve, distance)
             cut_parts(builder, parts, z, room, approach)
             found = found or bool(parts)
-        findings += _left(drive, guide, tool, found, rooms)
+        findings += _remaining_findings(drive, guide, tool, found, rooms)
     if settings.floor_rest:
         for each in drive.floors:
             progress.check()
@@ -219,7 +219,7 @@ def _room(
     return rooms[key]
 
 
-def _left(
+def _remaining_findings(
     drive: PlaneDrive,
     guide: WallGuide,
     tool: Tool,

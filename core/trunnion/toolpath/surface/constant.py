@@ -60,9 +60,14 @@ def constant(
     progress: Progress = QUIET,
 ) -> Planned:
     """Return the motions of passes at a constant scallop height over the drive's faces, and what they leave."""
-    ways = scallop_passes(drive, tool, settings.chord, progress.part(0.0, 0.4))
+    contact_lines = scallop_passes(drive, tool, settings.chord, progress.part(0.0, 0.4))
     done = stood(
-        ways, drive, tool, settings.chord, math.radians(settings.steepest), progress.part(0.4, 0.8)
+        contact_lines,
+        drive,
+        tool,
+        settings.chord,
+        math.radians(settings.steepest),
+        progress.part(0.4, 0.8),
     )
     inwards = settings.order == "inwards"
     passes = list(done.passes if inwards else done.passes[::-1])

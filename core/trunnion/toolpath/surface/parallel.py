@@ -45,11 +45,11 @@ from trunnion.toolpath.stock.heightfield import PlanningStock
 
 ALONG = 0.1
 """Of the cutter's radius: distance of the places along a plane that are asked for what the cutter touches."""
-CLOSER = 7
+HALVINGS = 7
 """Times the distance between a place that touches the area and one that doesn't is halved."""
 SMALLEST_LEFTOVER = 0.5
 """mm2: less than this is the rim of an area."""
-Touches = Callable[[Ints, Floats, Progress], Bools]
+HasContact = Callable[[Ints, Floats, Progress], Bools]
 """Says for planes (n,) and positions (n,) along them whether the cutter touches the area there."""
 
 
@@ -252,8 +252,8 @@ def _laid(slopes: FacetSlopes, tool: Tool, height: float, angle: float, stepover
         np.array([math.cos(angle), math.sin(angle)]),
         np.array([-math.sin(angle), math.cos(angle)]),
     )
-    run, beside = slopes.tips[:, :, :2] @ along, slopes.tips[:, :, :2] @ across
-    low, high = beside.min(axis=1), beside.max(axis=1)
+    run, sideways = slopes.tips[:, :, :2] @ along, slopes.tips[:, :, :2] @ across
+    low, high = sideways.min(axis=1), sideways.max(axis=1)
     spacing = (
         np.full(len(low), stepover)
         if stepover > 0.0
@@ -297,9 +297,9 @@ def _passes(
     area = DropSurface.of(drive.skin.points, drive.skin.triangles[on_area])
     strip = OverrunStrip.of(drive.skin, drive.faces, planes.beyond)
 
-    def asked(plane: Ints, run: Floats, share: Progress) -> tuple[Bools, Bools]:
+    def contacted(plane: Ints, run: Floats, share: Progress) -> tuple[Bools, Bools]:
         plan = run[:, None] * planes.along + planes.at[plane, None] * planes.across
-        z, facet, contact = drive.skin.drop.touch(plan, pieces, lowest, share)
+        z, facet, contact = drive.skin.drop.contacts(plan, pieces, lowest, share)
         found = (facet >= 0) & on_area[np.maximum(facet, 0)]
         # On the rim either of two faces may be named.
         other = np.flatnonzero((facet >= 0) & ~found)
@@ -310,17 +310,21 @@ def _passes(
         within = (run >= planes.reach[plane, 0]) & (run <= planes.reach[plane, 1])
         return np.asarray(found & within), np.asarray(~found & strip.has(contact, facet))
 
-    def touches(plane: Ints, run: Floats, share: Progress) -> Bools:
-        area, beside = asked(plane, run, share)
-        return area | beside
+    def has_contact(plane: Ints, run: Floats, share: Progress) -> Bools:
+        area, others = contacted(plane, run, share)
+        return area | others
 
     # While the contact goes over the strip, the tip of a cutter that rolls over something tight goes its radius farther at most.
     plane, runs = _runs(
-        planes, ALONG * tool.radius, planes.beyond + tool.radius, touches, progress.part(0.0, 0.4)
+        planes,
+        ALONG * tool.radius,
+        planes.beyond + tool.radius,
+        has_contact,
+        progress.part(0.0, 0.4),
     )
     # A run that ends past a smooth join has gone on over it.
-    beside = asked(np.repeat(plane, 2), runs.ravel(), progress.part(0.4, 0.4))[1].reshape(-1, 2)
-    overlap = np.where(beside, max(settings.overlap - planes.beyond, 0.0), settings.overlap)
+    others = contacted(np.repeat(plane, 2), runs.ravel(), progress.part(0.4, 0.4))[1].reshape(-1, 2)
+    overlap = np.where(others, max(settings.overlap - planes.beyond, 0.0), settings.overlap)
     plane, runs = _joined(plane, runs, overlap, tool.radius)
     if not len(runs):
         return []
@@ -331,7 +335,7 @@ def _passes(
     tips = follow(drive.skin.drop, pieces, lines, settings.chord, lowest, progress.part(0.4, 0.9))
     count = np.cumsum([len(t) for t in tips])[:-1]
     plan = np.concatenate([np.zeros((0, 2)), *(t[:, :2] for t in tips)])
-    facet = drive.skin.drop.touch(plan, pieces, lowest, progress.part(0.9, 1.0))[1]
+    facet = drive.skin.drop.contacts(plan, pieces, lowest, progress.part(0.9, 1.0))[1]
     normals = np.split(_facing(drive.skin, facet), count)
     lift = drive.allowance * UPRIGHT
     return [
@@ -367,7 +371,7 @@ def _too_steep(drive: SurfaceDrive, level: FacetSlopes) -> tuple[Finding, ...]:
 
 
 def _runs(
-    planes: _Planes, step: float, past: float, touches: Touches, progress: Progress
+    planes: _Planes, step: float, past: float, has_contact: HasContact, progress: Progress
 ) -> tuple[Ints, Floats]:
     """Return the plane (k,) and from where to where (k, 2) along it the cutter touches the area, one run after the other; it is
     looked for on places a step apart, and no farther than `past` mm beyond the area's tips."""
@@ -378,17 +382,19 @@ def _runs(
     plane = np.repeat(np.arange(len(count)), count)
     step_index = np.arange(len(plane)) - np.repeat(np.cumsum(count) - count, count) - before
     run = planes.reach[plane, 0] + step_index * step
-    on = touches(plane, run, progress.part(0.0, 0.8))
+    on = has_contact(plane, run, progress.part(0.0, 0.8))
     on[[*(np.cumsum(count) - count), *(np.cumsum(count) - 1)]] = False
     edge = np.flatnonzero((on[1:] != on[:-1]) & (plane[1:] == plane[:-1]))
     inside, outside = (
         np.where(on[edge], run[edge], run[edge + 1]),
         np.where(on[edge], run[edge + 1], run[edge]),
     )
-    for k in range(CLOSER):
+    for k in range(HALVINGS):
         middle = 0.5 * (inside + outside)
-        found = touches(
-            plane[edge], middle, progress.part(0.8 + 0.2 * k / CLOSER, 0.8 + 0.2 * (k + 1) / CLOSER)
+        found = has_contact(
+            plane[edge],
+            middle,
+            progress.part(0.8 + 0.2 * k / HALVINGS, 0.8 + 0.2 * (k + 1) / HALVINGS),
         )
         inside, outside = np.where(found, middle, inside), np.where(found, outside, middle)
     return plane[edge[::2]], inside.reshape(-1, 2)

@@ -37,7 +37,7 @@ CELL, FINEST, COARSEST = 0.1, 0.05, 0.5
 """Of the cutter's radius, and mm at least and at most: side of the grid's cells."""
 MARGIN = 3
 """Cells round the area's tips that are looked at."""
-CLOSER = 14
+HALVINGS = 14
 """Times the distance between two places on both sides of a valley is halved."""
 JUMP = 2.0
 """Cells that touched places on both sides of a valley are apart at least, beyond what a turn of the face explains."""
@@ -143,7 +143,9 @@ def pencil(
     lines = [
         line
         for valley in valleys
-        for line in _beside(valley, stepover, _sides(valley, stepover, ground, tool, settings))
+        for line in _parallel_passes(
+            valley, stepover, _sides(valley, stepover, ground, tool, settings)
+        )
     ]
     passes = _passes(lines, ground, settings.chord, progress.part(0.5, 0.8))
     manner = LinkParameters(
@@ -167,9 +169,9 @@ class _Ground:
     pieces: Floats
     lowest: float
 
-    def touch(self, plan: Floats, progress: Progress) -> tuple[Floats, Bools, Floats]:
+    def contacts(self, plan: Floats, progress: Progress) -> tuple[Floats, Bools, Floats]:
         """Return over plan points (n, 2) how high the tip stands, whether it touches the area, and where it touches (n, 3)."""
-        z, facet, contact = self.drive.skin.drop.touch(plan, self.pieces, self.lowest, progress)
+        z, facet, contact = self.drive.skin.drop.contacts(plan, self.pieces, self.lowest, progress)
         return (
             z,
             np.asarray((facet >= 0) & self.drive.skin.of(self.drive.faces)[np.maximum(facet, 0)]),
@@ -191,7 +193,7 @@ def _valleys(
 ) -> list[Floats]:
     """Return the valleys (k, 2) near tips (n, 3), in plan: what the cutter touches jumps across them."""
     grid = grid_around(tips, cell, MARGIN)
-    z, on_area, contact = ground.touch(grid.points[:, :2], progress.part(0.0, 0.5))
+    z, on_area, contact = ground.contacts(grid.points[:, :2], progress.part(0.0, 0.5))
     ends, side = edges_of(grid.triangles, len(grid.points))
     a, b = ends.T
     apart = np.linalg.norm(contact[a] - contact[b], axis=1)
@@ -201,10 +203,10 @@ def _valleys(
     jumps = turned & (apart > JUMP * cell) & (on_area[a] | on_area[b]) & np.isfinite(apart)
     rows = np.flatnonzero(jumps)
     near, far = grid.points[a[rows], :2].copy(), grid.points[b[rows], :2].copy()
-    for k in range(CLOSER):
+    for k in range(HALVINGS):
         middle = 0.5 * (near + far)
-        _, _, found = ground.touch(
-            middle, progress.part(0.5 + 0.5 * k / CLOSER, 0.5 + 0.5 * (k + 1) / CLOSER)
+        _, _, found = ground.contacts(
+            middle, progress.part(0.5 + 0.5 * k / HALVINGS, 0.5 + 0.5 * (k + 1) / HALVINGS)
         )
         stays = np.linalg.norm(found - contact[a[rows]], axis=1) <= np.linalg.norm(
             found - contact[b[rows]], axis=1
@@ -224,25 +226,25 @@ def _angle(a: Floats, b: Floats) -> Floats:
 
 def _chained(pairs: Ints) -> list[Ints]:
     """Return the lines of nodes that pairs (p, 2) of neighbours make, none of which has more than two."""
-    beside: dict[int, list[int]] = {}
+    neighbours: dict[int, list[int]] = {}
     for a, b in pairs.tolist():
-        beside.setdefault(a, []).append(b)
-        beside.setdefault(b, []).append(a)
+        neighbours.setdefault(a, []).append(b)
+        neighbours.setdefault(b, []).append(a)
     lines, used = [], set()
     # Open lines first, from their lower end; what is left then is closed.
-    for first in sorted(beside, key=lambda node: (len(beside[node]), node)):
+    for first in sorted(neighbours, key=lambda node: (len(neighbours[node]), node)):
         if first in used:
             continue
         line, here = [first], first
         used.add(first)
         while True:
-            ahead = [n for n in beside[here] if n not in used]
+            ahead = [n for n in neighbours[here] if n not in used]
             if not ahead:
                 break
             here = min(ahead)
             used.add(here)
             line.append(here)
-        if len(line) > 2 and first in beside[here]:
+        if len(line) > 2 and first in neighbours[here]:
             line.append(first)
         if len(line) > 1:
             lines.append(np.array(line))
@@ -259,21 +261,21 @@ def _sides(
     larger = _Ground(
         drive=ground.drive, pieces=lower_side(earlier, ground.drive.allowance), lowest=ground.lowest
     )
-    way = np.gradient(valley, axis=0)
+    direction = np.gradient(valley, axis=0)
     left = (
-        np.column_stack([-way[:, 1], way[:, 0]])
-        / np.maximum(np.hypot(way[:, 0], way[:, 1]), np.finfo(float).tiny)[:, None]
+        np.column_stack([-direction[:, 1], direction[:, 0]])
+        / np.maximum(np.hypot(direction[:, 0], direction[:, 1]), np.finfo(float).tiny)[:, None]
     )
     far = 0.0
     for aside in (-0.05 * tool.radius, 0.05 * tool.radius):
         positions = valley + aside * left
-        (_, _, theirs), (_, _, ours) = (g.touch(positions, QUIET) for g in (larger, ground))
+        (_, _, theirs), (_, _, ours) = (g.contacts(positions, QUIET) for g in (larger, ground))
         beyond = np.abs(((theirs - ours)[:, :2] * left).sum(axis=1))
         far = max(far, float(np.nanmax(beyond, initial=0.0)))
     return min(math.ceil(far / stepover) + 1, MOST_SIDES)
 
 
-def _beside(valley: Floats, stepover: float, sides: int) -> list[Floats]:
+def _parallel_passes(valley: Floats, stepover: float, sides: int) -> list[Floats]:
     """Return a valley and the lines (k, 2) beside it, from one side to the other."""
     line = shapely.LineString(valley)
     found = []
@@ -291,7 +293,7 @@ def _passes(lines: list[Floats], ground: _Ground, chord: float, progress: Progre
         ground.drive.skin.drop, ground.pieces, lines, chord, ground.lowest, progress.part(0.0, 0.8)
     )
     plan = np.concatenate([tip[:, :2] for tip in tips])
-    _, on_area, contact = ground.touch(plan, progress.part(0.8, 1.0))
+    _, on_area, contact = ground.contacts(plan, progress.part(0.8, 1.0))
     passes, first = [], 0
     for tip in tips:
         rows = np.arange(first, first + len(tip))

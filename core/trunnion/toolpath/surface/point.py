@@ -180,7 +180,7 @@ class PointMilledPasses:
 
     passes: tuple[Pass, ...]
     rest: tuple[Contacts, ...]
-    left: float
+    remaining: float
 
 
 @strategy(
@@ -202,14 +202,16 @@ def point(
         )
     ask, lead, tilt = drive.ask(tool), math.radians(settings.lead), math.radians(settings.tilt)
     ball = grooving(tool, lead, tilt)
-    ways, told = _ways(drive, ball, settings, progress.part(0.0, 0.3))
+    contact_lines, told = _contact_lines(drive, ball, settings, progress.part(0.0, 0.3))
     if settings.way == "both":
-        ways = tuple(way.reversed() if k % 2 else way for k, way in enumerate(ways))
+        contact_lines = tuple(
+            contacts.reversed() if k % 2 else contacts for k, contacts in enumerate(contact_lines)
+        )
     limits = LeanLimits(turn=math.radians(settings.turn), steepest=math.radians(settings.steepest))
     field = field_of(settings, drive.frame)
     if drive.earlier is not None:
-        ways = rest_of(
-            ways,
+        contact_lines = rest_of(
+            contact_lines,
             drive.earlier,
             field,
             drive.ask(drive.earlier),
@@ -217,7 +219,7 @@ def point(
             drive.allowance,
             progress.part(0.3, 0.4),
         )
-        if not ways:
+        if not contact_lines:
             return Planned(
                 findings=(
                     info(
@@ -230,7 +232,14 @@ def point(
     # Clear of what still stands beside the faces, and where no lean is, clear of the part itself.
     wide = drive.ask(roomy(tool, max(STANDING * data.depth, LEAST_STANDING)))
     done = milled(
-        ways, tool, field, wide, limits, settings.chord, drive.allowance, progress.part(0.4, 0.7)
+        contact_lines,
+        tool,
+        field,
+        wide,
+        limits,
+        settings.chord,
+        drive.allowance,
+        progress.part(0.4, 0.7),
     )
     tight = milled(
         done.rest,
@@ -243,10 +252,12 @@ def point(
         progress.part(0.7, 0.9),
     )
     done = PointMilledPasses(
-        passes=(*done.passes, *tight.passes), rest=tight.rest, left=done.left * tight.left
+        passes=(*done.passes, *tight.passes),
+        rest=tight.rest,
+        remaining=done.remaining * tight.remaining,
     )
     stepover = stepover_on_plane(max(ball.radius, drive.height), drive.height)
-    findings = _left(done, drive, tool)
+    findings = _remaining_findings(done, drive, tool)
     if not done.passes:
         return Planned(findings=(*told, *findings))
     manner = LinkParameters(
@@ -256,7 +267,7 @@ def point(
     return Planned(path=path, findings=(*told, *findings, *met, *_low(path, drive, tool)))
 
 
-def _ways(
+def _contact_lines(
     drive: SurfaceDrive, ball: Tool, settings: PointSettings, progress: Progress
 ) -> tuple[tuple[Contacts, ...], tuple[Finding, ...]]:
     """Return the ways of contacts that the pattern asks for, or those of constant scallop where flow lines don't suit the area, and then
@@ -281,12 +292,12 @@ def _ways(
             )
     # They run with what is inside on their left: the other way round a cutter that turns clockwise climbs.
     return tuple(
-        way.reversed() for way in scallop_passes(drive, ball, settings.chord, progress)
+        contacts.reversed() for contacts in scallop_passes(drive, ball, settings.chord, progress)
     ), told
 
 
 def milled(
-    ways: Sequence[Contacts],
+    contact_lines: Sequence[Contacts],
     tool: Tool,
     field: AxisField,
     ask: ClearanceQuery | None,
@@ -299,44 +310,51 @@ def milled(
 
     The cutter stays within `chord` mm of where it touches, thicker by the allowance. Moves that touch what they must not are left out.
     """
-    if not ways:
-        return PointMilledPasses(passes=(), rest=(), left=0.0)
-    search = AxisSearch(ways, field, tool, ask, limits, allowance)
+    if not contact_lines:
+        return PointMilledPasses(passes=(), rest=(), remaining=0.0)
+    search = AxisSearch(contact_lines, field, tool, ask, limits, allowance)
     courses = search.courses(progress.part(0.0, 0.5))
-    found: list[list[tuple[Floats, Pass]]] = [[] for _ in ways]
-    again = list(range(len(ways)))
+    found: list[list[tuple[Floats, Pass]]] = [[] for _ in contact_lines]
+    again = list(range(len(contact_lines)))
     for n in range(TRIES):
         share = progress.part(1.0 - 0.5 ** (n + 1), 1.0 - 0.5 ** (n + 2))
         for k in share.over(again, "Following flow lines with a leaning tool"):
             found[k], met = _cut(
-                [located(ways[k], run, tool, chord, allowance) for run in courses[k].runs()], ask
+                [
+                    located(contact_lines[k], run, tool, chord, allowance)
+                    for run in courses[k].runs()
+                ],
+                ask,
             )
             if len(met) and n + 1 < TRIES:
                 search.met(k, met)
         again = np.flatnonzero(search.dirty).tolist()
         courses = search.courses(share) if again else courses
     gaps = [
-        _gaps(len(way) - 1.0, [(float(position[0]), float(position[-1])) for position, _ in pieces])
-        for way, pieces in zip(ways, found, strict=True)
+        _gaps(
+            len(contacts) - 1.0,
+            [(float(position[0]), float(position[-1])) for position, _ in pieces],
+        )
+        for contacts, pieces in zip(contact_lines, found, strict=True)
     ]
-    whole, left = (
-        sum(_run(way, 0.0, len(way) - 1.0) for way in ways),
-        sum(_run(way, *g) for way, some in zip(ways, gaps) for g in some),
+    whole, remaining = (
+        sum(_run(contacts, 0.0, len(contacts) - 1.0) for contacts in contact_lines),
+        sum(_run(contacts, *g) for contacts, some in zip(contact_lines, gaps) for g in some),
     )
     rest = tuple(
-        way.of(slice(math.floor(a), math.ceil(b) + 1))
-        for way, some in zip(ways, gaps, strict=True)
+        contacts.of(slice(math.floor(a), math.ceil(b) + 1))
+        for contacts, some in zip(contact_lines, gaps, strict=True)
         for a, b in some
     )
     return PointMilledPasses(
         passes=tuple(one for pieces in found for _, one in pieces),
         rest=rest,
-        left=left / whole if whole > 0.0 else 0.0,
+        remaining=remaining / whole if whole > 0.0 else 0.0,
     )
 
 
 def rest_of(
-    ways: Sequence[Contacts],
+    contact_lines: Sequence[Contacts],
     earlier: Tool,
     field: AxisField,
     ask: ClearanceQuery,
@@ -345,49 +363,51 @@ def rest_of(
     progress: Progress = QUIET,
 ) -> tuple[Contacts, ...]:
     """Return the stretches of contact passes where an earlier cutter had no free axis, and a little more all round."""
-    courses = free_axes(ways, field, earlier, ask, limits, allowance, progress)
+    courses = free_axes(contact_lines, field, earlier, ask, limits, allowance, progress)
     gone = np.vstack(
         [
             np.zeros((0, 3)),
             *(
-                between(way.point, way.normal, way.feed, course.position[~course.free])[0]
-                for way, course in zip(ways, courses, strict=True)
+                between(
+                    contacts.point, contacts.normal, contacts.feed, course.position[~course.free]
+                )[0]
+                for contacts, course in zip(contact_lines, courses, strict=True)
             ),
         ]
     )
     if not len(gone):
         return ()
     tree, beside, found = cKDTree(gone), OVERLAP * earlier.radius + STEP / limits.turn, []
-    for way in ways:
-        near = tree.query(way.point)[0] <= beside
+    for contacts in contact_lines:
+        near = tree.query(contacts.point)[0] <= beside
         edges = np.flatnonzero(np.diff(np.concatenate([[False], near, [False]]).astype(np.int64)))
-        found += [way.of(slice(a, b)) for a, b in edges.reshape(-1, 2).tolist() if b - a > 1]
+        found += [contacts.of(slice(a, b)) for a, b in edges.reshape(-1, 2).tolist() if b - a > 1]
     return tuple(found)
 
 
 def located(
-    way: Contacts, run: FreeAxes, tool: Tool, chord: float, allowance: float = 0.0
+    contacts: Contacts, run: FreeAxes, tool: Tool, chord: float, allowance: float = 0.0
 ) -> tuple[Floats, Pass]:
     """Return where a cutter stands along a run of a contact pass: the places (k,) of the way and the pass itself."""
-    radius, feed = max(tool.corner_radius, 0.25 * tool.radius), way.feed
-    travel = way.travel(radius)
+    radius, feed = max(tool.corner_radius, 0.25 * tool.radius), contacts.feed
+    travel = contacts.travel(radius)
     position = run.position
-    rows = np.arange(len(way), dtype=np.float64)
+    rows = np.arange(len(contacts), dtype=np.float64)
     rows = rows[(rows > position[0]) & (rows < position[-1])]
-    normal, axis, tip = _standing(way, feed, run, tool, allowance, position)
+    normal, axis, tip = _standing(contacts, feed, run, tool, allowance, position)
     for _ in range(HALVINGS):
         share = np.concatenate([position[:-1] + s * np.diff(position) for s in SHARES])
         probe = np.concatenate([rows, share])
         block = np.clip(np.searchsorted(position, probe, side="right") - 1, 0, len(position) - 2)
-        gone = np.interp(probe, np.arange(len(way)), travel)
-        ends = np.interp(position, np.arange(len(way)), travel)
+        gone = np.interp(probe, np.arange(len(contacts)), travel)
+        ends = np.interp(position, np.arange(len(contacts)), travel)
         part = np.clip(
             (gone - ends[block]) / np.maximum(ends[block + 1] - ends[block], tolerance.PARAMETRIC),
             0.0,
             1.0,
         )
         turned = slerp(axis[block], axis[block + 1], part)
-        at, out = between(way.point, way.normal, feed, probe)
+        at, out = between(contacts.point, contacts.normal, feed, probe)
         stands = tip[block] + part[:, None] * (tip[block + 1] - tip[block])
         off = np.abs(((stands - tip_at(tool, at + allowance * out, out, turned)) * out).sum(axis=1))
         worst = np.zeros(len(position) - 1)
@@ -401,7 +421,7 @@ def located(
         position = np.sort(
             np.concatenate([position, 0.5 * (position[split] + position[split + 1])])
         )
-        normal, axis, tip = _standing(way, feed, run, tool, allowance, position)
+        normal, axis, tip = _standing(contacts, feed, run, tool, allowance, position)
     return position, Pass(tip=tip, axis=axis, normal=normal)
 
 
@@ -529,10 +549,10 @@ def _numbers(text: str) -> list[float]:
 
 
 def _standing(
-    way: Contacts, feed: Floats, run: FreeAxes, tool: Tool, allowance: float, position: Floats
+    contacts: Contacts, feed: Floats, run: FreeAxes, tool: Tool, allowance: float, position: Floats
 ) -> tuple[Floats, Floats, Floats]:
     """Return the normals, axes and tips (k, 3) at places (k,) of a run."""
-    point, normal = between(way.point, way.normal, feed, position)
+    point, normal = between(contacts.point, contacts.normal, feed, position)
     axis = run.at(position)
     return normal, axis, tip_at(tool, point + allowance * normal, normal, axis)
 
@@ -567,16 +587,18 @@ def _gaps(end: float, done: Sequence[tuple[float, float]]) -> list[tuple[float, 
     return found
 
 
-def _run(way: Contacts, start: float, end: float) -> float:
+def _run(contacts: Contacts, start: float, end: float) -> float:
     """Return the length in mm of the contact way from a place to another."""
-    length = way.travel(0.0)
-    return float(np.diff(np.interp([start, end], np.arange(len(way)), length))[0])
+    length = contacts.travel(0.0)
+    return float(np.diff(np.interp([start, end], np.arange(len(contacts)), length))[0])
 
 
-def _left(done: PointMilledPasses, drive: SurfaceDrive, tool: Tool) -> tuple[Finding, ...]:
+def _remaining_findings(
+    done: PointMilledPasses, drive: SurfaceDrive, tool: Tool
+) -> tuple[Finding, ...]:
     corners = drive.skin.points[drive.skin.triangles[drive.skin.of(drive.faces)]]
     across = np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0])
-    area = done.left * 0.5 * float(np.linalg.norm(across, axis=1).sum())
+    area = done.remaining * 0.5 * float(np.linalg.norm(across, axis=1).sum())
     if area < SMALLEST_LEFTOVER:
         return ()
     return (

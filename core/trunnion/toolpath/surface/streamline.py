@@ -70,10 +70,15 @@ def streamline(
         spiral=settings.spiral,
         chord=settings.chord,
     )
-    ways = flow_lines(drive, tool, flow, progress.part(0.0, 0.4))
+    contact_lines = flow_lines(drive, tool, flow, progress.part(0.0, 0.4))
     to_and_fro = settings.pattern == "zigzag"
     done = stood(
-        ways, drive, tool, settings.chord, math.radians(settings.steepest), progress.part(0.4, 0.8)
+        contact_lines,
+        drive,
+        tool,
+        settings.chord,
+        math.radians(settings.steepest),
+        progress.part(0.4, 0.8),
     )
     return upright_path(
         done.passes,

@@ -155,7 +155,7 @@ def waterline(
         raise Refused(f"{drive.feature}: waterlines need a scallop height or a step above zero")
     slopes = progress.aside(lambda _: slopes_of(drive, tool, UPWARD), "Looking at steep faces")
     slopes = slopes.some(slopes.normal[:, 2] <= math.cos(math.radians(settings.shallowest)))
-    found = _left(drive, slopes)
+    found = _unreached_findings(drive, slopes)
     if not len(slopes.row):
         return Planned(findings=found)
     feet = _feet(slopes, drive, tool, progress.part(0.0, 0.1))
@@ -187,7 +187,7 @@ def waterline(
     )
 
 
-def _left(drive: SurfaceDrive, steep: FacetSlopes) -> tuple[Finding, ...]:
+def _unreached_findings(drive: SurfaceDrive, steep: FacetSlopes) -> tuple[Finding, ...]:
     """Return a finding of the area that no steep place stands for."""
     a, b, c = np.moveaxis(drive.skin.points[drive.skin.triangles[drive.skin.of(drive.faces)]], 1, 0)
     area = float(0.5 * np.linalg.norm(np.cross(b - a, c - a), axis=1).sum() - steep.area.sum())
@@ -207,9 +207,12 @@ def _feet(slopes: FacetSlopes, drive: SurfaceDrive, tool: Tool, progress: Progre
     """Return how low (m,) the tip comes that touches each triangle: lower than it only where the foot of an upright one stops it."""
     low, high = slopes.tips[:, :, 2].min(axis=1), slopes.tips[:, :, 2].max(axis=1)
     upright = np.flatnonzero(slopes.normal[:, 2] <= -UPWARD)
-    beside = (slopes.tips[upright] + OFF * slopes.normal[upright, None])[:, :, :2].reshape(-1, 2)
+    shifted = (slopes.tips[upright] + OFF * slopes.normal[upright, None])[:, :, :2].reshape(-1, 2)
     over = drive.skin.drop.drop(
-        beside, lower_side(tool, drive.allowance), float(drive.low[2]) - tool.flute_length, progress
+        shifted,
+        lower_side(tool, drive.allowance),
+        float(drive.low[2]) - tool.flute_length,
+        progress,
     )
     over = over + drive.allowance
     stopped = over.reshape(-1, 3).min(axis=1) + FOOT
@@ -267,24 +270,26 @@ class _Blocked:
         """Return how high the tip stands over plan points (n, 2)."""
         return self.drive.skin.drop.drop(plan, self.pieces, self.lowest, self.progress)
 
-    def rim(self, start: Floats, way: Floats, z: Floats, most: Floats) -> tuple[Floats, Bools]:
+    def rim(
+        self, start: Floats, direction: Floats, z: Floats, most: Floats
+    ) -> tuple[Floats, Bools]:
         """Return how far (n,) the rim of what is blocked is from blocked plan points (n, 2) along unit ways (n, 2): as far as the free
         side, no more than `CLOSE` from it. And say whether it is there, no farther than `most` (n,); from a free place it isn't."""
         low, high = np.zeros(len(z)), np.full(len(z), np.inf)
         at, rows = low.copy(), np.arange(len(z))
         for k in range(STEPS):
-            positions = start[rows] + at[rows, None] * way[rows]
-            _, facet, contact = self.drive.skin.drop.touch(
+            positions = start[rows] + at[rows, None] * direction[rows]
+            _, facet, contact = self.drive.skin.drop.contacts(
                 positions, self.pieces, z[rows] + tolerance.COINCIDENT, self.progress
             )
             hits = facet >= 0
             high[rows[~hits]] = at[rows[~hits]]
             aside = contact[hits, :2] - start[rows[hits]]
-            ahead = (aside * way[rows[hits]]).sum(axis=1)
-            beside = (aside * aside).sum(axis=1) - ahead * ahead
+            ahead = (aside * direction[rows[hits]]).sum(axis=1)
+            lateral = (aside * aside).sum(axis=1) - ahead * ahead
             reach = radius_at(self.pieces, contact[hits, 2] - z[rows[hits]])
             low[rows[hits]] = np.maximum(
-                ahead + np.sqrt(np.maximum(reach * reach - beside, 0.0)), at[rows[hits]]
+                ahead + np.sqrt(np.maximum(reach * reach - lateral, 0.0)), at[rows[hits]]
             )
             rows = rows[(low[rows] < most[rows]) & (high[rows] - low[rows] > CLOSE)]
             if not len(rows):
@@ -303,7 +308,7 @@ class _Blocked:
 
 @dataclass(frozen=True, slots=True, eq=False, kw_only=True)
 class _Loop:
-    """A way (k, 2) in plan at a height, the number of its level counted upwards; what is closed ends where it begins."""
+    """A direction (k, 2) in plan at a height, the number of its level counted upwards; what is closed ends where it begins."""
 
     plan: Floats
     z: float
@@ -340,12 +345,12 @@ def _loops(
         progress.check()
         line = replace(line, ends=line.ends[::-1], share=line.share[::-1])
         plan = line.value(grid.points)[:, :2]
-        touches = _apart(near, plan, float(levels[line.level])) <= ROUGHLY * cell
+        near_area = _apart(near, plan, float(levels[line.level])) <= ROUGHLY * cell
         # So far only roughly, and as far as an edge may be rolled round.
         reach = settings.overlap + math.pi * radius
         found += [
             (line, rows, closed)
-            for rows, closed in _pieces(plan, touches, line.closed, reach, radius)
+            for rows, closed in _pieces(plan, near_area, line.closed, reach, radius)
         ]
     if not found:
         return []
@@ -369,7 +374,7 @@ def _loops(
             rows = rows[np.append(True, np.hypot(*np.diff(way[rows], axis=0).T) > CLOSE)]
             if len(rows) > 1:
                 lines.append(_Loop(plan=way[rows], z=z, level=line.level, closed=whole))
-    ways = _closer(lines, blocked, settings.chord)
+    ways = _refined(lines, blocked, settings.chord)
     return [
         replace(line, plan=way, z=line.z + drive.allowance)
         for line, way in zip(lines, ways, strict=True)
@@ -384,8 +389,8 @@ def _apart(tips: cKDTree, plan: Floats, z: float) -> Floats:
 def _pieces(
     plan: Floats, near: Bools, closed: bool, overlap: float, radius: float
 ) -> list[tuple[Ints, bool]]:
-    """Return the rows of the pieces of a way (k, 2) that are near the area, roll round an edge of it, or are no farther along the way than
-    an overlap from such, and whether each is closed."""
+    """Return the rows of the pieces of a direction (k, 2) that are near the area, roll round an edge of it, or are no farther along the way
+    than an overlap from such, and whether each is closed."""
     rows = np.arange(len(plan))
     if not near.any():
         return []
@@ -423,7 +428,7 @@ def _rolls(plan: Floats, near: Bools, radius: float) -> Bools:
     return out
 
 
-def _closer(loops: list[_Loop], blocked: _Blocked, chord: float) -> list[Floats]:
+def _refined(loops: list[_Loop], blocked: _Blocked, chord: float) -> list[Floats]:
     """Return the ways with places put in until no chord leaves the rim of what is blocked by more than a chord error."""
     if not loops:
         return []
@@ -476,7 +481,7 @@ def _middles(
     start: Floats, end: Floats, off: Floats, z: Floats, blocked: _Blocked, chord: float
 ) -> tuple[Floats, Floats, Bools]:
     """Return the directions (n, 2) to the left of chords, which have what is blocked on their right, how far the rim is from their middles
-    that way (n,), expected `off` (n,), and whether one is found."""
+    that direction (n,), expected `off` (n,), and whether one is found."""
     way, middle = end - start, 0.5 * (start + end)
     length = np.maximum(np.hypot(way[:, 0], way[:, 1]), CLOSE)
     left = np.column_stack([-way[:, 1], way[:, 0]]) / length[:, None]

@@ -21,7 +21,7 @@ from trunnion.geometry.arrays import Bools, Floats, Ints
 from trunnion.part.shape.exact import ExactPoints
 from trunnion.progress import QUIET, Progress
 from trunnion.verify.finish.sweep import flutes_of, tree_of
-from trunnion.verify.kernels import residual as left_kernel
+from trunnion.verify.kernels import residual as residual_kernel
 from trunnion.verify.kernels import residual_bounds as kernel
 from trunnion.verify.kernels.residual import Flutes, SpanTree
 from trunnion.verify.motion import Moves
@@ -74,7 +74,7 @@ class FineMap:
 
     scallop: how high the highest ridge stands along the normals, or the most left where that is `FAR`; gouge: how deep the deepest cut is,
     0 when none; both within `bound` mm. step: the largest difference in height where two operations or faces meet, with the move of the
-    lower side. m samples about `spacing` apart for a map: face tags (m,), point and outward normal (m, 3), left (m,) mm, negative below
+    lower side. m samples about `spacing` apart for a map: face tags (m,), point and outward normal (m, 3), residual (m,) mm, negative below
     the surface, nearest (m,) move rows or -1, area (m,) mm2.
     """
 
@@ -85,7 +85,7 @@ class FineMap:
     face: Ints
     point: Floats
     normal: Floats
-    left: Floats
+    residual: Floats
     nearest: Ints
     area: Floats
 
@@ -152,12 +152,14 @@ def fine_measure(
     return FineMap(
         scallop=scallop,
         gouge=ExtremeFigure(value=max(-least.value, 0.0), position=least.position, move=least.move),
-        step=_step(at.point[held], labels, first.left[held], first.nearest[held], spacing, window),
+        step=_step(
+            at.point[held], labels, first.residual[held], first.nearest[held], spacing, window
+        ),
         bound=bound,
         face=np.array([f.tag for f in faces])[row],
         point=at.point[held],
         normal=at.normal[held],
-        left=first.left[held],
+        residual=first.residual[held],
         nearest=first.nearest[held],
         area=cells.area[held],
     )
@@ -185,7 +187,7 @@ class _LocatedCells:
 class _Looked:
     """What is left at the middles of cells, by which move, and bounds over each cell (c,)."""
 
-    left: Floats
+    residual: Floats
     nearest: Ints
     upper: Floats
     lower: Floats
@@ -301,7 +303,7 @@ class _Patch:
                 )
                 for t, d in ((at.normal_du, at.du), (at.normal_dv, at.dv))
             )
-        left, nearest, upper, lower = (
+        residual, nearest, upper, lower = (
             np.full(n, FAR),
             np.full(n, -1),
             np.full(n, FAR),
@@ -323,14 +325,14 @@ class _Patch:
                 least,
                 self.bound,
                 located.cells.above,
-                left,
+                residual,
                 nearest,
                 upper,
                 lower,
             )
 
         in_parallel(some, n, CHUNK, progress, "Measuring scallops", self.threads)
-        return _Looked(left, nearest, upper, lower)
+        return _Looked(residual, nearest, upper, lower)
 
     def search(
         self,
@@ -374,8 +376,8 @@ class _Patch:
             at = face.at(uv)
             inside = self._in_box(at.point, np.zeros((len(uv), 3)))
             points = (at.point + lift * at.normal)[inside]
-            left, nearest = np.full(len(points), FAR), np.full(len(points), -1)
-            left_kernel.residual_bvh_loop(
+            residual, nearest = np.full(len(points), FAR), np.full(len(points), -1)
+            residual_kernel.residual_bvh_loop(
                 0,
                 len(points),
                 points,
@@ -383,10 +385,10 @@ class _Patch:
                 self.tree,
                 self.flutes,
                 kernel.CLOSE * self.bound,
-                left,
+                residual,
                 nearest,
             )
-            best.take(left, nearest, uv[inside], at.point[inside])
+            best.take(residual, nearest, uv[inside], at.point[inside])
             half = 0.4 * half
 
     def ridge(self, located: _LocatedCells, most: _Best, progress: Progress) -> ExtremeFigure:
@@ -449,22 +451,25 @@ class _Best:
         """Take what is left at the cells' middles into account; return whether that changed anything."""
         rows = np.flatnonzero(located.holds)
         if not len(rows) or not self.take(
-            looked.left[rows], looked.nearest[rows], located.cells.uv[rows], located.at.point[rows]
+            looked.residual[rows],
+            looked.nearest[rows],
+            located.cells.uv[rows],
+            located.at.point[rows],
         ):
             return False
-        row = rows[np.argmax(self.sign * looked.left[rows])]
+        row = rows[np.argmax(self.sign * looked.residual[rows])]
         self.face, self.half = int(located.cells.face[row]), located.cells.half[row]
         return True
 
-    def take(self, left: Floats, nearest: Ints, uv: Floats, point: Floats) -> bool:
-        """Take what is left (k,) at places uv (k, 2) of one face into account."""
-        if not len(left):
+    def take(self, residual: Floats, nearest: Ints, uv: Floats, point: Floats) -> bool:
+        """Take what is residual (k,) at places uv (k, 2) of one face into account."""
+        if not len(residual):
             return False
-        row = int(np.argmax(self.sign * left))
-        if self.sign * left[row] <= self.sign * self.value:
+        row = int(np.argmax(self.sign * residual))
+        if self.sign * residual[row] <= self.sign * self.value:
             return False
         self.value, self.position, self.move, self.uv = (
-            float(left[row]),
+            float(residual[row]),
             point[row],
             int(nearest[row]),
             uv[row],
@@ -477,7 +482,7 @@ class _Best:
 
 
 def _step(
-    point: Floats, label: Ints, left: Floats, nearest: Ints, spacing: float, window: float
+    point: Floats, label: Ints, residual: Floats, nearest: Ints, spacing: float, window: float
 ) -> ExtremeFigure:
     """Return the largest difference between the lowest positions on both sides of a seam, where neighbours have other labels (m, 2)."""
     none = ExtremeFigure(value=0.0, position=np.full(3, np.nan), move=-1)
@@ -499,9 +504,9 @@ def _step(
     for row in np.sort(rows):
         around = np.array(tree.query_ball_point(middle[row], window))
         sides = [around[(label[around] == label[k]).all(axis=1)] for k in pairs[row]]
-        lows = [side[np.argmin(left[side])] for side in sides]
-        jump = abs(float(left[lows[0]] - left[lows[1]]))
+        lows = [side[np.argmin(residual[side])] for side in sides]
+        jump = abs(float(residual[lows[0]] - residual[lows[1]]))
         if jump > best.value:
-            lower = lows[int(left[lows[0]] > left[lows[1]])]
+            lower = lows[int(residual[lows[0]] > residual[lows[1]])]
             best = ExtremeFigure(value=jump, position=middle[row], move=int(nearest[lower]))
     return best

@@ -135,11 +135,11 @@ def stretched(moves: Moves, removed: Floats, stretch: Floats) -> Floats:
     feeds = ~moves.rapid
     length, volume = np.where(feeds, moves.length, 0.0), np.where(feeds, removed, 0.0)
     # Rapids are given a way that no stretch bridges, along which neither way nor volume grows.
-    room = float(stretch.max(initial=0.0))
-    at = np.concatenate([[0.0], np.cumsum(length + np.where(feeds, 0.0, room))])
+    gap = float(stretch.max(initial=0.0))
+    at = np.concatenate([[0.0], np.cumsum(length + np.where(feeds, 0.0, gap))])
     run, taken = (np.concatenate([[0.0], np.cumsum(v)]) for v in (length, volume))
     spare = 0.5 * np.maximum(stretch - length, 0.0)
     low, high = at[:-1] - spare, at[1:] + spare
-    way = np.interp(high, at, run) - np.interp(low, at, run)
+    distance = np.interp(high, at, run) - np.interp(low, at, run)
     cut = np.interp(high, at, taken) - np.interp(low, at, taken)
-    return np.divide(cut, way, out=np.zeros(len(moves)), where=feeds & (way > 0.0))
+    return np.divide(cut, distance, out=np.zeros(len(moves)), where=feeds & (distance > 0.0))

@@ -32,8 +32,8 @@ BUNDLES = {"z": ("z",), "xyz": ("x", "y", "z")}
 
 @dataclass(frozen=True, slots=True, eq=False, kw_only=True)
 class SetupProof:
-    """What was measured in one setup on its machine: contact, stock, stands, times and load by move; left (s,) mm on the samples, and the
-    move nearest to each (-1: none)."""
+    """What was measured in one setup on its machine: contact, stock, stands, times and load by move; residual (s,) mm on the samples, and
+    the move nearest to each (-1: none)."""
 
     program: Program
     machine: Machine
@@ -43,7 +43,7 @@ class SetupProof:
     stands: AxisPositions
     times: MachineTimes
     load: Load
-    left: Floats
+    residual: Floats
     nearest: Ints
 
     def collides(self, allowed: float) -> Bools:
@@ -72,7 +72,7 @@ def prove_setup(
     touched = contact.along(moves, progress.part(0.02, 0.4), settings.threads)
     run = run_stock(stock, moves, frame, sweep, progress.part(0.4, 0.7), settings.threads)
     deep = progress.aside(lambda _: stock.blank.depth(points, frame))
-    left, nearest = sweep.left(points, deep, progress.part(0.7, 0.98), settings.threads)
+    residual, nearest = sweep.residual(points, deep, progress.part(0.7, 0.98), settings.threads)
     stands, times = progress.aside(
         lambda _: _timed(moves, machine, foot_of(stock.blank, frame)), "Timing the moves"
     )
@@ -89,7 +89,7 @@ def prove_setup(
         stands=stands,
         times=times,
         load=load,
-        left=left,
+        residual=residual,
         nearest=nearest,
     )
 

@@ -268,7 +268,7 @@ def cell_residual_bound(
             top += 2
             continue
         for k in range(tree.link[n, 2], tree.link[n, 3]):
-            w = tree.way[tree.of[k]]
+            w = tree.motion[tree.of[k]]
             mx, my, mz = point_in_tool_frame(w, x, y, z, 0.5 * (tree.low[k] + tree.high[k]))
             turn = w[TURN] * (tree.high[k] - tree.low[k])
             # A turn moves a point by at most the turn times its distance from the tip, here from the middle.
@@ -358,7 +358,7 @@ def cell_residual_loop(
     lowest: float,
     bound: float,
     above: Bools,
-    left: Floats,
+    residual: Floats,
     nearest: Ints,
     upper: Floats,
     lower: Floats,
@@ -367,7 +367,7 @@ def cell_residual_loop(
     above and below over the whole cell.
 
     middle, a, b (c, 3), slack (c,) as in `cell_residual_bound`; far: no distance above it is reported. Fills
-    left (c,) mm, nearest (c,) rows or -1, upper and lower (c,) mm. Where a cell may fall by `bound`
+    residual (c,) mm, nearest (c,) rows or -1, upper and lower (c,) mm. Where a cell may fall by `bound`
     below both `lowest` and its middle, its `lower` only says so; with an infinite `lowest` it isn't
     searched for. Where `above` (c,) is false, no bound from above is searched for.
     """
@@ -406,12 +406,12 @@ def cell_residual_loop(
                 spans,
             )
             if k == 0:
-                left[n], nearest[n] = value, move
+                residual[n], nearest[n] = value, move
         upper[n] = far if above[n] else -np.inf
         for k in range(POSES if above[n] else 0):
             if rows[k] < 0:
                 continue
-            w, tool = tree.way[rows[k]], tree.tool[rows[k]]
+            w, tool = tree.motion[rows[k]], tree.tool[rows[k]]
             body = _nearest_body(flutes, tool, w, positions[k], shares[k])
             # Distances of this pose at the four corners: their largest is a bound; so is each mean
             # with an earlier pose.
@@ -437,8 +437,8 @@ def cell_residual_loop(
                 slack[n],
                 tree,
                 flutes,
-                left[n],
-                min(lowest, left[n]) - bound,
+                residual[n],
+                min(lowest, residual[n]) - bound,
                 close,
                 nodes,
                 least,

@@ -47,33 +47,33 @@ def choose_angles_greedy(
     it passes its limit by more than `slack`. `first`: the solution taken by the first pose, which
     starts from 0 on every axis.
     """
-    m, ways, axes = angles.shape
+    m, solutions, axes = angles.shape
     turned, outside = 0.0, 0
     for k in range(m):
         # Fewest axes outside their limits first, then the least turning; of equals the first
         # solution.
-        best, best_out, best_way = math.inf, axes + 1, 0
-        for way in range(ways):
-            if k == 0 and way != first:
+        best, best_out, best_solution = math.inf, axes + 1, 0
+        for solution in range(solutions):
+            if k == 0 and solution != first:
                 continue
             cost, out = 0.0, 0
             for a in range(axes):
                 before = chosen[k - 1, a] if k else 0.0
                 angle = (
                     before
-                    if free[k, way, a]
-                    else nearest_congruent(angles[k, way, a], before, low[a], high[a])
+                    if free[k, solution, a]
+                    else nearest_congruent(angles[k, solution, a], before, low[a], high[a])
                 )
                 cost += abs(angle - before)
                 out += angle < low[a] - slack or angle > high[a] + slack
             if out < best_out or (out == best_out and cost < best):
-                best, best_out, best_way = cost, out, way
+                best, best_out, best_solution = cost, out, solution
         for a in range(axes):
             before = chosen[k - 1, a] if k else 0.0
             chosen[k, a] = (
                 before
-                if free[k, best_way, a]
-                else nearest_congruent(angles[k, best_way, a], before, low[a], high[a])
+                if free[k, best_solution, a]
+                else nearest_congruent(angles[k, best_solution, a], before, low[a], high[a])
             )
         turned += best
         outside += best_out > 0

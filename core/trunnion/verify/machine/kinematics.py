@@ -108,7 +108,7 @@ def rotary_angles(axis: Floats, machine: Machine) -> tuple[Floats, Bools]:
         return np.zeros((len(axis), 0)), np.asarray(np.linalg.norm(axis - UP, axis=1) < STANDS)
     if (axis == UP).all():
         return np.zeros((len(axis), len(rotary))), np.ones(len(axis), bool)
-    angles, free, good = _both_ways(axis, rotary)
+    angles, free, good = _both_solutions(axis, rotary)
     low, high = (np.radians([getattr(a, end) for a in rotary]) for end in ("low", "high"))
     tried = []
     for first in (0, 1):
@@ -123,7 +123,7 @@ def can_hold(axis: Floats, machine: Machine) -> Bools:
     rotary = machine.rotary
     if not rotary:
         return np.asarray(np.linalg.norm(axis - UP, axis=1) < STANDS)
-    angles, free, good = _both_ways(axis, rotary)
+    angles, free, good = _both_solutions(axis, rotary)
     low, high = (np.radians([getattr(a, end) for a in rotary]) for end in ("low", "high"))
     # The least of an angle's full turns that is not below the limit.
     least = low + np.mod(angles - low + SLACK, 2.0 * np.pi) - SLACK
@@ -174,7 +174,7 @@ def _on_arcs(moves: Moves, move: Ints, share: Floats) -> Floats:
     )
 
 
-def _both_ways(axis: Floats, rotary: tuple[Axis, ...]) -> tuple[Floats, Bools, Bools]:
+def _both_solutions(axis: Floats, rotary: tuple[Axis, ...]) -> tuple[Floats, Bools, Bools]:
     """Return both ways (k, 2, a) of rotary angles, which of them are free (k, 2, a), and which poses can be held (k,)."""
     up = np.broadcast_to(UP, axis.shape)
     first = rotary[0]
@@ -208,10 +208,10 @@ def _second_subproblem(p: Floats, q: Floats, v: Floats, w: Floats) -> tuple[Floa
     rest = (1.0 - a * a - b * b - 2.0 * a * b * pq) / float(across @ across)
     side = np.sqrt(np.maximum(rest, 0.0))
     angles, free = np.zeros((len(v), 2, 2)), np.zeros((len(v), 2, 2), bool)
-    for way, sign in enumerate((1.0, -1.0)):
+    for solution, sign in enumerate((1.0, -1.0)):
         middle = np.outer(a, p) + np.outer(b, q) + np.outer(sign * side, across)
-        angles[:, way, 0], free[:, way, 0] = _about(p, middle, w)
-        angles[:, way, 1], free[:, way, 1] = _about(q, v, middle)
+        angles[:, solution, 0], free[:, solution, 0] = _about(p, middle, w)
+        angles[:, solution, 1], free[:, solution, 1] = _about(q, v, middle)
     return angles, free, rest > -math.sqrt(STANDS)
 
 

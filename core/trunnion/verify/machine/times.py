@@ -37,11 +37,11 @@ def times_of(moves: Moves, stands: AxisPositions, machine: Machine) -> MachineTi
     slowest = min(a.acceleration for a in machine.axes if a.kind == "linear")
     weight = np.array([slowest / np.radians(a.acceleration) for a in machine.rotary])
     axes = np.column_stack([stands.linear, stands.rotary * weight])
-    first, last, way = _ways(axes, stands.move, n)
+    first, last, distance = _distances(axes, stands.move, n)
     arc = moves.sweep != 0.0
     if arc.any():
         first[arc], last[arc] = _tangents(stands, axes, np.flatnonzero(arc))
-    length = np.where(stands.turns, way, moves.length)
+    length = np.where(stands.turns, distance, moves.length)
     rates = (
         np.array(
             [machine.axis(name).rapid for name in LINEAR]
@@ -69,15 +69,15 @@ def seconds_of(moves: Moves, machine: Machine, foot: Floats) -> Floats:
     return times_of(moves, axis_positions(moves, machine, foot), machine).seconds
 
 
-def _ways(axes: Floats, move: Ints, n: int) -> tuple[Floats, Floats, Floats]:
+def _distances(axes: Floats, move: Ints, n: int) -> tuple[Floats, Floats, Floats]:
     """Return the unit directions (n, a) at the beginning and the end of every move, and how far its axes go (n,)."""
     step = np.diff(axes, axis=0)
     inner = np.flatnonzero(move[1:] == move[:-1])
     step, owner = step[inner], move[inner]
     begin = np.searchsorted(owner, np.arange(n))
     end = np.searchsorted(owner, np.arange(n), side="right") - 1
-    way = np.bincount(owner, np.linalg.norm(step, axis=1), n).astype(np.float64)
-    return _unit(step[begin]), _unit(step[end]), way
+    distance = np.bincount(owner, np.linalg.norm(step, axis=1), n).astype(np.float64)
+    return _unit(step[begin]), _unit(step[end]), distance
 
 
 def _tangents(stands: AxisPositions, axes: Floats, rows: Ints) -> tuple[Floats, Floats]:

@@ -71,7 +71,7 @@ class _Batch:
     bodies: Bodies
     tool: Ints
     rapid: Bools
-    way: Floats
+    motion: Floats
     probes: Probes
     probe_start: Ints
     fine: int
@@ -103,7 +103,7 @@ def run_rays(
         begun = ends[row] - each[row]
         rows = np.arange(row, max(row + 1, int(np.searchsorted(ends, begun + SPANS, side="right"))))
         spans = spans_of(moves, rows, each[rows], whole[rows])
-        way = np.column_stack(
+        motion = np.column_stack(
             [
                 a[rows]
                 for a in (
@@ -122,7 +122,7 @@ def run_rays(
             moves.bodies,
             moves.tool[rows],
             moves.rapid[rows],
-            way,
+            motion,
             probes,
             probes.start[row : rows[-1] + 2],
             fine,
@@ -242,7 +242,7 @@ class _Job:
             self.depth,
             self.position,
             self.body,
-            m.way[own],
+            m.motion[own],
             m.probes.rings,
             m.probes.flute,
             m.probes.circle,

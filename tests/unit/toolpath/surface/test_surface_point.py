@@ -91,7 +91,7 @@ def test_a_ball_stays_within_the_chord_error_of_a_face_all_along_its_blocks(face
     way, distance = FACES[face]
     done = milled([way], BALL, LEAD, None, LeanLimits(turn=math.radians(40.0)), CHORD)
     off = np.concatenate([distance(centres(one, BALL.radius)) for one in done.passes]) - BALL.radius
-    assert done.left == approx(0.0, abs=1e-9)
+    assert done.remaining == approx(0.0, abs=1e-9)
     # Between contacts the way is a cubic: it leaves the face by a little.
     assert np.abs(off).max() < 1.2 * CHORD + 2e-5
 

@@ -36,10 +36,10 @@ def least_cost_path(cost: Floats, near: Ints, turn: Floats, leap: float) -> tupl
                 total[row, column] = cost[row, column]
                 continue
             least, source, jumped = total[row - 1, best] + leap, best, True
-            for way, angle in zip(near[column], turn[column], strict=True):
-                price = total[row - 1, way] + angle if way >= 0 else np.inf
+            for neighbour, angle in zip(near[column], turn[column], strict=True):
+                price = total[row - 1, neighbour] + angle if neighbour >= 0 else np.inf
                 if price < least or (jumped and price == least < np.inf):
-                    least, source, jumped = price, int(way), False
+                    least, source, jumped = price, int(neighbour), False
             total[row, column], back[row, column], leapt[row, column] = (
                 cost[row, column] + least,
                 source,

@@ -40,12 +40,12 @@ def least_cost_path(cost: Floats, near: Ints, turn: Floats, leap: float) -> tupl
             # -1.
             least, source, jumped = before[best] + leap, best, True
             for q in range(near.shape[1]):
-                way = near[column, q]
-                if way < 0:
+                neighbour = near[column, q]
+                if neighbour < 0:
                     break
-                price = before[way] + turn[column, q]
+                price = before[neighbour] + turn[column, q]
                 if price < least or (jumped and price == least):
-                    least, source, jumped = price, way, False
+                    least, source, jumped = price, neighbour, False
             total[column], back[row, column], leapt[row, column] = (
                 cost[row, column] + least,
                 source,

@@ -47,33 +47,35 @@ def choose_angles(
         cost.append([math.inf, math.inf])
         origin.append([0, 0])
         # cost[k][way]: least turning to reach pose k by a solution, over both of the pose before.
-        for way in range(2):
-            for other in range(2) if k else (way,):
+        for solution in range(2):
+            for other in range(2) if k else (solution,):
                 before = stand[k - 1][other] if k else [float(s) for s in start]
-                if before is None or (k and way != other and not through[k]):
+                if before is None or (k and solution != other and not through[k]):
                     continue
                 there = [
                     before[a]
-                    if free[k, way, a]
-                    else nearest_congruent(angles[k, way, a], before[a], low[a], high[a], slack)
+                    if free[k, solution, a]
+                    else nearest_congruent(
+                        angles[k, solution, a], before[a], low[a], high[a], slack
+                    )
                     for a in range(axes)
                 ]
                 turns = [abs(t - b) for t, b in zip(there, before, strict=True)]
                 if not all(math.isfinite(t) for t in turns) or (k and max(turns) > math.pi + slack):
                     continue
                 spent = (cost[k - 1][other] if k else 0.0) + sum(turns)
-                if spent < cost[k][way]:
-                    stand[k][way], cost[k][way], origin[k][way] = there, spent, other
+                if spent < cost[k][solution]:
+                    stand[k][solution], cost[k][solution], origin[k][solution] = there, spent, other
         if stand[k] == [None, None]:
             return k, math.inf
     if not m:
         return 0, 0.0
     # Trace back from the cheaper end.
-    way = int(np.argmin(cost[-1]))
-    spent = cost[-1][way]
+    solution = int(np.argmin(cost[-1]))
+    spent = cost[-1][solution]
     for k in reversed(range(m)):
-        chosen[k] = stand[k][way]
-        way = origin[k][way]
+        chosen[k] = stand[k][solution]
+        solution = origin[k][solution]
     return m, spent
 
 

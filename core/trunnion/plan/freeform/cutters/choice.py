@@ -17,7 +17,7 @@ from trunnion.plan.tool_choice import depth_reached
 from trunnion.progress import Progress
 from trunnion.shop import Shop
 
-LEFT = 0.002
+NEGLIGIBLE = 0.002
 """Share of an area that is left to no further cutter when its own one misses it."""
 NEAR = 3
 """Names of cutters that are offered in place of one that is not there."""
@@ -84,7 +84,7 @@ def cutter_for(
         max(ranked, key=lambda t: int(reach[t.name].sum())),
     )
     missed = reachable & ~reach[tool.name]
-    if missed.sum() <= LEFT * total:
+    if missed.sum() <= NEGLIGIBLE * total:
         missed = none
     smaller = [t for t in ranked if t.diameter < tool.diameter]
     rest = (

@@ -32,7 +32,7 @@ HALF = 0.5
 """Share of a land that an end mill must cover off its sides: else it is a slot, with sides all over."""
 WORTH = 100.0
 """mm2: a ball finishes a smaller land in the time of a tool change."""
-WORTH_LEFT = 4.0
+WORTH_REMAINING = 4.0
 """mm2: where balls leave more of a small land than this it is worth an end mill all the same."""
 MISSED = 1.0
 """mm2 that the end mill of a land may leave without another one for it."""
@@ -54,7 +54,7 @@ class LandCutters:
     land: Land
     tool: Tool
     rest: Tool | None
-    left: Region
+    remaining: Region
     flanks: tuple[tuple[Region, float], ...]
 
     def finishes(self, samples: AreaSamples) -> Bools:
@@ -155,7 +155,7 @@ def _chosen(reach: _Reach, tool: Tool, rest: Tool | None) -> LandCutters:
         land=reach.land,
         tool=tool,
         rest=rest,
-        left=without(missed, done),
+        remaining=without(missed, done),
         flanks=tuple((region, height) for mill, region, height in flanks if mill.form == "flat"),
     )
 
@@ -228,4 +228,4 @@ def _is_worth(standing: PartAbove, land: Land, ball: float) -> bool:
     if land.region.area >= WORTH:
         return True
     room = standing.space.around().minus(standing.over(land.z + ball)).offset(-ball)
-    return without(land.region, room.intersect(land.region)).area > WORTH_LEFT
+    return without(land.region, room.intersect(land.region)).area > WORTH_REMAINING

@@ -39,12 +39,12 @@ class Area:
 
 
 def areas_of(
-    recognition: Recognition, graph: FaceGraph, left_out: Collection[int] = ()
+    recognition: Recognition, graph: FaceGraph, omitted: Collection[int] = ()
 ) -> tuple[Area, ...]:
     """Return each connected set of local faces as an area of its own, by its largest face's tag, and the remaining faces as one."""
     groups = recognition.of_kind(*exclusive_kinds(recognition.family))
-    local = {tag for f in groups if f.attributes.get("local") for tag in f.tags} - set(left_out)
-    remaining = sorted({tag for f in groups for tag in f.tags} - local - set(left_out))
+    local = {tag for f in groups if f.attributes.get("local") for tag in f.tags} - set(omitted)
+    remaining = sorted({tag for f in groups for tag in f.tags} - local - set(omitted))
     sets = connected(local, graph)
     found = [Area(id=f"{LOCAL}-{n:02}", tags=tags, local=True) for n, tags in enumerate(sets, 1)]
     return (
@@ -77,13 +77,13 @@ def _radius(feature: Feature) -> float:
 
 def connected(tags: Collection[int], graph: FaceGraph) -> list[tuple[int, ...]]:
     """Return faces in sets that hang together by edges, each in ascending order, the sets by their first tag."""
-    left, found = set(tags), []
-    while left:
-        mine, border = set(), [min(left)]
+    remaining, found = set(tags), []
+    while remaining:
+        mine, border = set(), [min(remaining)]
         while border:
             tag = border.pop()
-            if tag in left:
-                left.discard(tag)
+            if tag in remaining:
+                remaining.discard(tag)
                 mine.add(tag)
                 border += [graph.across(e, tag - 1) + 1 for e in graph.edges_of[tag - 1]]
         found.append(tuple(sorted(mine)))

@@ -31,7 +31,7 @@ BESIDE = 0.2
 """mm that shank and holder keep from walls beside them."""
 
 
-def left_by(
+def remaining_of(
     skin: Skin,
     tags: tuple[int, ...],
     earlier: Tool,

@@ -73,7 +73,7 @@ def sides_for(
         spaces.append(there)
         heights.append(local.point[:, 2])
         facing.append(local.normal[:, 2] > FACING)
-    found, left = [], np.ones(len(hidden), dtype=bool)
+    found, remaining = [], np.ones(len(hidden), dtype=bool)
     for tilt in range(len(TILTS)):
         # Level directions first: they leave most room for the spindle, and what they see lies in even layers.
         rows = [
@@ -81,9 +81,9 @@ def sides_for(
             for k, d in enumerate(directions)
             if abs(d[2] - math.cos(TILTS[tilt])) < tolerance.ANGLE
         ]
-        while rows and left.any():
-            best = max(rows, key=lambda k: (int((seen[k] & left).sum()), -k))
-            gained = seen[best] & left
+        while rows and remaining.any():
+            best = max(rows, key=lambda k: (int((seen[k] & remaining).sum()), -k))
+            gained = seen[best] & remaining
             if gained.sum() <= WORTH * len(hidden):
                 break
             faces = gained & facing[best]
@@ -93,7 +93,7 @@ def sides_for(
                     bottom=float(heights[best][faces if faces.any() else gained].min()),
                 )
             )
-            left &= ~gained
+            remaining &= ~gained
     return found
 
 

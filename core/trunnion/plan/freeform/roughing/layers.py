@@ -63,7 +63,7 @@ def plane_drive_of(
     )
 
 
-def left_on_walls(space: SurfaceSpace, allowance: float, cell: float) -> float:
+def remaining_on_walls(space: SurfaceSpace, allowance: float, cell: float) -> float:
     """Return how thick, in mm and in the mean, layers with an allowance from a map with these cells (mm) leave material on upright walls.
 
     Nowhere is it twice as thick.

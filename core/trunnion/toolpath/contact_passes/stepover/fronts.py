@@ -165,7 +165,7 @@ def _along_ridges(
             ]
         )
     )
-    ways = []
+    stretches = []
     for ridge in found.ridges:
         point, normal = _smoothed(
             found.sheet.points[ridge], found.sheet.normals[ridge], bool(ridge[0] == ridge[-1])
@@ -181,8 +181,8 @@ def _along_ridges(
             edges = np.flatnonzero(np.diff(wanted.astype(np.int8), prepend=0, append=0)).reshape(
                 -1, 2
             )
-            ways += [(point[a:b], normal[a:b]) for a, b in edges.tolist() if b - a > 1]
-    return _in_turn(ways)
+            stretches += [(point[a:b], normal[a:b]) for a, b in edges.tolist() if b - a > 1]
+    return _in_turn(stretches)
 
 
 def _away(point: Floats, away: Floats, passes: cKDTree, stepover: float) -> tuple[Floats, Floats]:
@@ -207,14 +207,16 @@ def _dense(point: Floats, step: float) -> Floats:
     return np.column_stack([np.interp(at, run, point[:, k]) for k in range(3)])
 
 
-def _in_turn(ways: list[tuple[Floats, Floats]]) -> list[tuple[Floats, Floats]]:
+def _in_turn(stretches: list[tuple[Floats, Floats]]) -> list[tuple[Floats, Floats]]:
     """Return ways in an order in which each begins near the end of the one before, some of them the other way round."""
-    ways, order = list(ways), list[tuple[Floats, Floats]]()
-    while ways:
-        here = order[-1][0][-1] if order else ways[0][0][0]
-        gaps = np.array([[np.linalg.norm(point[k] - here) for k in (0, -1)] for point, _ in ways])
+    stretches, order = list(stretches), list[tuple[Floats, Floats]]()
+    while stretches:
+        here = order[-1][0][-1] if order else stretches[0][0][0]
+        gaps = np.array(
+            [[np.linalg.norm(point[k] - here) for k in (0, -1)] for point, _ in stretches]
+        )
         row, end = divmod(int(np.argmin(gaps)), 2)
-        point, normal = ways.pop(row)
+        point, normal = stretches.pop(row)
         order.append((point[::-1], normal[::-1]) if end else (point, normal))
     return order
 

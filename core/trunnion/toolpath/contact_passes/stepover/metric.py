@@ -60,29 +60,32 @@ def stepover_measure(tool: Tool, height: float) -> Measure:
     depth = height * (1.0 - 0.5 * min(height / tool.corner_radius, 1.0))
 
     def measure(a: Floats, a_normal: Floats, b: Floats, b_normal: Floats) -> Floats:
-        way = b - a
+        direction = b - a
         own, bend = (
-            _own_curvature(tool, way, a_normal + b_normal),
-            (way * (b_normal - a_normal)).sum(axis=1),
+            _own_curvature(tool, direction, a_normal + b_normal),
+            (direction * (b_normal - a_normal)).sum(axis=1),
         )
         gap = own + bend + UNSURE * np.maximum(-bend - SNUG * own, 0.0)
-        return np.sqrt(np.maximum(gap / (8.0 * depth), least * (way * way).sum(axis=1)))
+        return np.sqrt(np.maximum(gap / (8.0 * depth), least * (direction * direction).sum(axis=1)))
 
     return measure
 
 
-def _own_curvature(tool: Tool, way: Floats, normal: Floats) -> Floats:
+def _own_curvature(tool: Tool, direction: Floats, normal: Floats) -> Floats:
     """Return the second fundamental form (e,) of ways (e, 3) on the cutter's own surface where it touches faces of normals (e, 3)."""
-    square = (way * way).sum(axis=1)
+    square = (direction * direction).sum(axis=1)
     if tool.form == "ball":
         return np.asarray(square / tool.radius)
     sine, cosine = np.hypot(normal[:, 0], normal[:, 1]), normal[:, 2]
     rho, _ = touching(tool, np.arctan2(sine, cosine))
     # Round about the axis, and along the profile.
-    cross = way[:, 1] * normal[:, 0] - way[:, 0] * normal[:, 1]
-    level = np.divide(cross, sine, out=np.zeros(len(way)), where=sine > 0.0) ** 2
+    cross = direction[:, 1] * normal[:, 0] - direction[:, 0] * normal[:, 1]
+    level = np.divide(cross, sine, out=np.zeros(len(direction)), where=sine > 0.0) ** 2
     around = np.divide(
-        sine, np.hypot(sine, cosine) * rho, out=np.zeros(len(way)), where=rho > tolerance.COINCIDENT
+        sine,
+        np.hypot(sine, cosine) * rho,
+        out=np.zeros(len(direction)),
+        where=rho > tolerance.COINCIDENT,
     )
     return np.asarray(
         level * around + np.maximum(square - level, 0.0) * _profile_curvature(tool, rho)
@@ -111,9 +114,9 @@ def _held_past_jumps(sheet: Sheet, ends: Ints, side: Ints, lengths: Floats) -> F
     """Return the lengths (e,) of edges, `PAST` stepovers past each jump at least as long as on its rounder side."""
     slope, form = _forms(sheet, lengths[side])
 
-    def along(triangle: Ints, way: Floats) -> Floats:
+    def along(triangle: Ints, direction: Floats) -> Floats:
         """Return the square of the length of ways (k, 3) in triangles (k,)."""
-        part = np.einsum("kij,kj->ki", slope[triangle], way)
+        part = np.einsum("kij,kj->ki", slope[triangle], direction)
         return np.asarray(
             np.maximum(-(part * np.roll(part, -1, axis=1) * form[triangle]).sum(axis=1), 0.0)
         )
@@ -155,8 +158,8 @@ def _held_past_jumps(sheet: Sheet, ends: Ints, side: Ints, lengths: Floats) -> F
     of, which = np.nonzero(np.isfinite(away))
     mine = near[of // SHARES]
     jump = row[found[of, which]]
-    way = run[mine] / size[mine, None]
-    here = np.sqrt(along(rounder[jump], way))
+    direction = run[mine] / size[mine, None]
+    here = np.sqrt(along(rounder[jump], direction))
     facing = (sheet.normals[ends[mine, 0]] * sheet.normals[ends[edge[jump], 0]]).sum(axis=1) > 0.5
     holds = facing & (away[of, which] * here <= PAST)
     most = np.repeat(density[near], SHARES)
@@ -187,9 +190,9 @@ def spread(
     if not kept[-1]:
         kept[-1], kept[np.flatnonzero(kept)[-1]] = True, kept.sum() < 2
     point, normal = point[kept], normal[kept]
-    way = np.diff(point, axis=0)
-    size, turn = np.linalg.norm(way, axis=1), np.linalg.norm(np.diff(normal, axis=0), axis=1)
-    along = way / size[:, None]
+    direction = np.diff(point, axis=0)
+    size, turn = np.linalg.norm(direction, axis=1), np.linalg.norm(np.diff(normal, axis=0), axis=1)
+    along = direction / size[:, None]
     cosine = (along[1:] * along[:-1]).sum(axis=1)
     bend = np.where(cosine < CORNER, 0.0, np.arccos(np.clip(cosine, -1.0, 1.0)))
     bend = 0.5 * (np.append(bend, 0.0) + np.insert(bend, 0, 0.0))

@@ -44,11 +44,11 @@ class FacetSlopes:
         """Return some of the places."""
         return FacetSlopes(**{f.name: getattr(self, f.name)[which] for f in fields(self)})
 
-    def along(self, way: Floats) -> tuple[Floats, Floats]:
+    def along(self, direction: Floats) -> tuple[Floats, Floats]:
         """Return how the normal turns and how the tip moves for each mm that the contact goes along unit tangents (m, 3), each (m, 3)."""
         a, b = self.edges[:, 0], self.edges[:, 1]
         aa, ab, bb = (a * a).sum(axis=1), (a * b).sum(axis=1), (b * b).sum(axis=1)
-        wa, wb = (way * a).sum(axis=1), (way * b).sum(axis=1)
+        wa, wb = (direction * a).sum(axis=1), (direction * b).sum(axis=1)
         size = np.maximum(aa * bb - ab * ab, np.finfo(float).tiny)
         first, second = ((bb * wa - ab * wb) / size)[:, None], ((aa * wb - ab * wa) / size)[:, None]
         moves = self.tips[:, 1:] - self.tips[:, :1]
@@ -86,12 +86,12 @@ def tip_spacing(slopes: FacetSlopes, tool: Tool, height: float, across: Floats) 
     lean = slopes.normal @ across
     # Along the face, square to the feed: what is left of the direction in the tangent plane.
     share = np.sqrt(np.maximum(1.0 - lean * lean, np.finfo(float).tiny))
-    way = (across - lean[:, None] * slopes.normal) / share[:, None]
-    turn, move = slopes.along(way)
-    bend = (turn * way).sum(axis=1, keepdims=True)
+    direction = (across - lean[:, None] * slopes.normal) / share[:, None]
+    turn, move = slopes.along(direction)
+    bend = (turn * direction).sum(axis=1, keepdims=True)
     bends = np.abs(slopes.turns).max(axis=(1, 2), initial=0.0) > tolerance.ANGLE
     passes = stepover_measure(tool, height)(
-        np.zeros_like(way), slopes.normal, way, slopes.normal + bend * way
+        np.zeros_like(direction), slopes.normal, direction, slopes.normal + bend * direction
     )
     stepover = np.where(bends, math.sqrt(AIM), 1.0) / passes
     # Tips are nearer to each other than contacts in a hollow, and wider apart on a hill.

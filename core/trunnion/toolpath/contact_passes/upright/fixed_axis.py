@@ -40,7 +40,9 @@ class UprightPasses:
     steep: float
     hidden: float
 
-    def left(self, drive: SurfaceDrive, tool: Tool, stepover: float) -> tuple[Finding, ...]:
+    def remaining_findings(
+        self, drive: SurfaceDrive, tool: Tool, stepover: float
+    ) -> tuple[Finding, ...]:
         """Return what was left, as areas: lengths times a stepover (mm)."""
         steep, hidden = self.steep * stepover, self.hidden * stepover
         found = []
@@ -68,7 +70,7 @@ class UprightPasses:
 
 
 def stood(
-    ways: Sequence[Contacts],
+    contact_lines: Sequence[Contacts],
     drive: SurfaceDrive,
     tool: Tool,
     chord: float,
@@ -80,17 +82,17 @@ def stood(
     What leans by more than `steepest` (radians) from level is left out: there a tip says little of where it touches.
     """
     runs, source = [], []
-    for k, way in enumerate(ways):
-        for piece in _runs(way.normal[:, 2] >= math.cos(steepest), way.closed):
+    for k, contacts in enumerate(contact_lines):
+        for piece in _runs(contacts.normal[:, 2] >= math.cos(steepest), contacts.closed):
             runs.append(
                 Contacts(
-                    point=way.point[piece],
-                    normal=way.normal[piece],
-                    closed=way.closed and len(piece) == len(way),
+                    point=contacts.point[piece],
+                    normal=contacts.normal[piece],
+                    closed=contacts.closed and len(piece) == len(contacts),
                 )
             )
             source.append(k)
-    whole, kept = (sum(_length(w.point) for w in some) for some in (ways, runs))
+    whole, kept = (sum(_length(w.point) for w in some) for some in (contact_lines, runs))
     tips = [
         tip_at(
             tool,
@@ -105,21 +107,21 @@ def stood(
         drive.skin.drop, pieces, [t[:, :2] for t in tips], chord, lowest, progress.part(0.0, 0.7)
     )
     plan = np.concatenate([np.zeros((0, 2)), *(f[:, :2] for f in followed)])
-    facet = drive.skin.drop.touch(plan, pieces, lowest, progress.part(0.7, 0.95))[1]
+    facet = drive.skin.drop.contacts(plan, pieces, lowest, progress.part(0.7, 0.95))[1]
     on_area = (facet >= 0) & drive.skin.of(drive.faces)[np.maximum(facet, 0)]
     passes, owner, begin = [], [], 0
-    for way, tip, k, asked in zip(runs, followed, source, tips, strict=True):
+    for contacts, tip, k, asked in zip(runs, followed, source, tips, strict=True):
         touches, begin = on_area[begin : begin + len(tip)], begin + len(tip)
         tip = tip + drive.allowance * UPRIGHT
-        normal = way.normal[cKDTree(asked[:, :2]).query(tip[:, :2])[1]]
-        for piece in _runs(touches, way.closed):
+        normal = contacts.normal[cKDTree(asked[:, :2]).query(tip[:, :2])[1]]
+        for piece in _runs(touches, contacts.closed):
             if len(piece) > 1 and _length(tip[piece]) >= SHORTEST:
                 passes.append(
                     Pass(
                         tip=tip[piece],
                         axis=np.broadcast_to(UPRIGHT, (len(piece), 3)),
                         normal=normal[piece],
-                        closed=way.closed and len(piece) == len(tip),
+                        closed=contacts.closed and len(piece) == len(tip),
                     )
                 )
                 owner.append(k)

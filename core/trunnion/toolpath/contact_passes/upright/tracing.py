@@ -91,24 +91,26 @@ def thinned(points: Floats, line: Ints, chord: float) -> Bools:
 
 def beside(points: Floats, start: Floats, end: Floats) -> Floats:
     """Return how far points (n, 3) are from the straight ways (n, 3) from a start to an end."""
-    way, to = end - start, points - start
-    square = (way * way).sum(axis=1)
+    direction, to = end - start, points - start
+    square = (direction * direction).sum(axis=1)
     share = np.clip(
-        np.divide((to * way).sum(axis=1), square, out=np.zeros(len(way)), where=square > 0.0),
+        np.divide(
+            (to * direction).sum(axis=1), square, out=np.zeros(len(direction)), where=square > 0.0
+        ),
         0.0,
         1.0,
     )
-    off: Floats = np.linalg.norm(to - share[:, None] * way, axis=1)
+    off: Floats = np.linalg.norm(to - share[:, None] * direction, axis=1)
     return off
 
 
 def _bent(tips: Floats, line: Ints, chord: float) -> Bools:
     """Say of each tip (n,) whether the chord from it to the next climbs so differently from its neighbours that a kink may hide in it."""
-    way = np.diff(tips, axis=0)
-    level = np.hypot(way[:, 0], way[:, 1])
-    turn = np.abs(np.diff(np.arctan2(way[:, 2], level)))
+    direction = np.diff(tips, axis=0)
+    level = np.hypot(direction[:, 0], direction[:, 1])
+    turn = np.abs(np.diff(np.arctan2(direction[:, 2], level)))
     turn[line[2:] != line[:-2]] = 0.0
-    length = np.hypot(level, way[:, 2])
+    length = np.hypot(level, direction[:, 2])
     hidden = 0.25 * length * np.maximum(np.append(turn, 0.0), np.insert(turn, 0, 0.0))
     return np.append(hidden > SEEN * chord, False)
 
@@ -133,10 +135,12 @@ def _spaced(curves: Sequence[Floats], step: float) -> tuple[Floats, Ints]:
     line = np.repeat(np.arange(len(curves)), [len(c) for c in curves])
     points = np.concatenate([np.asarray(c, dtype=np.float64) for c in curves])
     inside = np.append(line[1:] == line[:-1], False)
-    way = np.vstack([np.diff(points, axis=0), np.zeros((1, 2))])
+    direction = np.vstack([np.diff(points, axis=0), np.zeros((1, 2))])
     count = np.where(
-        inside, np.maximum(np.ceil(np.hypot(way[:, 0], way[:, 1]) / step), 1.0), 1.0
+        inside, np.maximum(np.ceil(np.hypot(direction[:, 0], direction[:, 1]) / step), 1.0), 1.0
     ).astype(np.int64)
     rows = np.repeat(np.arange(len(points)), count)
     share = (np.arange(len(rows)) - np.repeat(np.cumsum(count) - count, count)) / count[rows]
-    return points[rows] + share[:, None] * np.where(inside[rows, None], way[rows], 0.0), line[rows]
+    return points[rows] + share[:, None] * np.where(inside[rows, None], direction[rows], 0.0), line[
+        rows
+    ]

@@ -37,10 +37,10 @@ from trunnion.verify.kernels.contact.facets import (
 )
 from trunnion.verify.kernels.tool_motion import (
     END_COLUMNS,
+    MOTION_COLUMNS,
     S_FROM,
     S_TO,
     SPAN_COLUMNS,
-    WAY_COLUMNS,
     fill_swept_segment,
     fill_tool_motion,
 )
@@ -169,7 +169,11 @@ def pose_search_loop(
     `allowed` and `bound` finds nothing deeper, since both visit the triangles in the same order
     with the same pruning: the deepest contact of a clear pose is at most allowed + bound.
     """
-    way, ends, span = np.zeros(WAY_COLUMNS), np.zeros((2, END_COLUMNS)), np.zeros(SPAN_COLUMNS)
+    motion, ends, span = (
+        np.zeros(MOTION_COLUMNS),
+        np.zeros((2, END_COLUMNS)),
+        np.zeros(SPAN_COLUMNS),
+    )
     near_ends, near = np.zeros((2, END_COLUMNS)), np.zeros(SPAN_COLUMNS)
     tasks, task, deepest = np.zeros((TASKS, TASK_COLUMNS)), np.zeros(TASK_COLUMNS), np.zeros(4)
     six, cuts, flat, nowhere = (
@@ -191,8 +195,8 @@ def pose_search_loop(
             ):
                 continue
             # A static pose is a motion of no length: one span over its whole path.
-            fill_tool_motion(tips[k, n], tips[k, n], axes[k, n], axes[k, n], nowhere, 0.0, way)
-            fill_swept_segment(way, 0.0, 1.0, ends, span)
+            fill_tool_motion(tips[k, n], tips[k, n], axes[k, n], axes[k, n], nowhere, 0.0, motion)
+            fill_swept_segment(motion, 0.0, 1.0, ends, span)
             # A share no span has: the cached span of the previous pose must not be taken for this
             # one's.
             near[S_FROM] = near[S_TO] = -1.0
@@ -217,7 +221,7 @@ def pose_search_loop(
                         triangle_contact(
                             corners[m],
                             normals[m],
-                            way,
+                            motion,
                             0.0,
                             1.0,
                             arcs,

@@ -85,15 +85,15 @@ def _edge_crossing(
     # else the smaller, as the other is beyond an edge of the stock.
     for side in range(2):
         across, slope, sides = u if side == 0 else v, 0.0, 0
-        for way in range(-1, 2, 2):
-            beside = cell[across] + way
+        for sense in range(-1, 2, 2):
+            beside = cell[across] + sense
             if not 0 <= beside < cells[across]:
                 continue
             ray = cell[v] * cells[u] + beside if side == 0 else beside * cells[u] + cell[u]
             other = _nearest_crossing(count, ends, ray, end, REACH * pitch)
             if np.isnan(other):
                 continue
-            rise = (other - end) / (way * pitch)
+            rise = (other - end) / (sense * pitch)
             if sides == 0:
                 slope = rise
             elif abs(rise - slope) <= BEND:

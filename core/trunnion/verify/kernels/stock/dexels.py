@@ -50,7 +50,7 @@ from trunnion.verify.kernels.stock.engagement import engagement_in_dexels
 # of the blank, the whole is one span: centre, direction of its middle, then radius and cosine of
 # half its angle (each three times, so that turning coordinates changes nothing); the radius is 0
 # for all others.
-TIP0, FRAME0, TIP1, FRAME1, CUT_BOX, ALL_BOX, WAY_BOX, CENTRE, MIDDLE, ARC_RADIUS, COS_HALF = (
+TIP0, FRAME0, TIP1, FRAME1, CUT_BOX, ALL_BOX, MOTION_BOX, CENTRE, MIDDLE, ARC_RADIUS, COS_HALF = (
     0,
     3,
     12,
@@ -192,7 +192,7 @@ def _newton_entry(
     Newton's method on F from outside: F(w) + slope (w' - w) bounds F, so its root is not beyond the
     entry.
     """
-    way = 1.0 if end > w else -1.0
+    sense = 1.0 if end > w else -1.0
     before = w
     for step in range(100):
         f, slope, t = _swept_depth(arcs, first, last, limit, ray, w)
@@ -203,12 +203,12 @@ def _newton_entry(
         if f > NOISE or (f >= -NOISE and step > 0):
             return w, t
         # F no longer rises towards the end: concave, so it never becomes positive.
-        slope *= way
+        slope *= sense
         if slope <= 1e-12:
             return np.nan, 0.5
         before = w
-        w += way * max(-f / slope, NOISE)
-        if (end - w) * way < 0.0:
+        w += sense * max(-f / slope, NOISE)
+        if (end - w) * sense < 0.0:
             return np.nan, 0.5
     return np.nan, 0.5
 
@@ -361,8 +361,8 @@ def _swept_box(box: Floats, span: Floats, piece: Floats, turns: bool) -> None:
             a = span[FRAME0 + 6 + m]
             across, p, q = r * math.sqrt(max(1.0 - a * a, 0.0)), a * piece[Z_LOW], a * piece[Z_HIGH]
             box[m], box[3 + m] = (
-                span[WAY_BOX + m] + min(p, q) - across,
-                span[WAY_BOX + 3 + m] + max(p, q) + across,
+                span[MOTION_BOX + m] + min(p, q) - across,
+                span[MOTION_BOX + 3 + m] + max(p, q) + across,
             )
         return
     for m in range(3):
@@ -939,7 +939,7 @@ def tridexel_cut_tile(
     depth: Floats,
     position: Floats,
     body: Floats,
-    way: Floats,
+    motion: Floats,
     rings: Floats,
     flute: Floats,
     circle: Floats,
@@ -961,7 +961,7 @@ def tridexel_cut_tile(
     resume (6,): move, span, piece, row and column to begin with, and whether that move has been
     looked at; changed. removed (n,) gets the length (mm) that is gone, depth (n,) and position (n, 3)
     how deep a rapid's cutter is in material and where (u, v, w), body (n,) how deep what doesn't
-    cut is. way (n, 16): start, end, both axes, centre and sweep as `Moves` has them; rings, flute,
+    cut is. motion (n, 16): start, end, both axes, centre and sweep as `Moves` has them; rings, flute,
     circle, probe_start (n + 1,), counted and seen: see `kernels/stock/engagement.py`; without probes
     nothing is looked at. fine: rays along each side of a cell where a rapid may go deeper than
     `allowed` in between, 0 for none; grazed (r, 4) gets such positions (u, v, w) and depths,
@@ -1006,12 +1006,12 @@ def tridexel_cut_tile(
                     pitch,
                     end_row - row,
                     columns,
-                    way[n, 0:3],
-                    way[n, 3:6],
-                    way[n, 6:9],
-                    way[n, 9:12],
-                    way[n, 12:15],
-                    way[n, 15],
+                    motion[n, 0:3],
+                    motion[n, 3:6],
+                    motion[n, 6:9],
+                    motion[n, 9:12],
+                    motion[n, 12:15],
+                    motion[n, 15],
                     rings[tool[n]],
                     flute[tool[n]],
                     circle,
