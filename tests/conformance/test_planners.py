@@ -177,7 +177,7 @@ def test_its_drives_can_be_told_apart_and_lie_in_a_setups_frame(name):
         first, again = (planner_for(name).drive(o, needs_of(o), scene, QUIET) for _ in (0, 1))
         assert isinstance(first.drive, needs_of(o).drive)
         assert first.drive.is_empty in (True, False)
-        assert digest(first.told) == digest(again.told)
+        assert digest(first.identity) == digest(again.identity)
         assert first.setup.name == o.setup and first.setup.frame is not None
 
 

@@ -210,7 +210,7 @@ def test_the_tool_never_runs_ahead_of_the_stock_that_was_asked_for(played, qtbot
     ahead = []
     played.player.set_speed(1000)
     played.player.moved.connect(
-        lambda p: ahead.append(p - max(played.player._asked_for, played.player._stock_at))
+        lambda p: ahead.append(p - max(played.player._requested_for, played.player._stock_at))
     )
     played.player.play()
     qtbot.waitUntil(lambda: not played.player.is_playing, timeout=60000)

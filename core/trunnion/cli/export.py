@@ -44,21 +44,21 @@ def add(commands: Any) -> None:
     made.set_defaults(run=run)
 
 
-def run(chosen: argparse.Namespace) -> int:
+def run(options: argparse.Namespace) -> int:
     """Write the faces and report how many they are."""
     from trunnion.pipeline.planning.patches import export, tags_of
 
-    if not chosen.out.parent.is_dir():
-        raise BadInput(f"{chosen.out}: there is no folder {chosen.out.parent}")
-    check_output(chosen.out.parent)
-    engine, session = open_session(chosen, "recognize")
-    session = with_by_hand(chosen, engine, session)
-    what = listed(chosen.groups)
+    if not options.out.parent.is_dir():
+        raise BadInput(f"{options.out}: there is no folder {options.out.parent}")
+    check_output(options.out.parent)
+    engine, session = open_session(options, "recognize")
+    session = with_by_hand(options, engine, session)
+    what = listed(options.groups)
     tags = tags_of(session, what)
-    export(engine, session, what, chosen.out)
-    if chosen.json:
-        show_json({"file": str(chosen.out), "groups": list(what), "faces": list(tags)})
+    export(engine, session, what, options.out)
+    if options.json:
+        show_json({"file": str(options.out), "groups": list(what), "faces": list(tags)})
     else:
-        print(f"{len(tags)} faces written to {chosen.out}")
-    show_findings(chosen, session.findings())
+        print(f"{len(tags)} faces written to {options.out}")
+    show_findings(options, session.findings())
     return exit_code(session.findings())

@@ -60,12 +60,12 @@ def parser() -> argparse.ArgumentParser:
 def main(arguments: list[str] | None = None) -> int:
     """Run one command and return its exit code."""
     top = parser()
-    chosen = top.parse_args(arguments)
-    if chosen.command is None:
+    options = top.parse_args(arguments)
+    if options.command is None:
         top.print_help()
         return BAD
     try:
-        return int(chosen.run(chosen))
+        return int(options.run(options))
     except TrunnionError as reason:
         print(f"trunnion: {reason}", file=sys.stderr)
         return BAD

@@ -152,8 +152,8 @@ def _over(plan: Floats, triangles: Ints, at: Floats) -> tuple[Bools, Ints]:
         p, d = plan[first], plan[last] - plan[first]
         side = np.sign(d[:, 0] * (at[:, 1] - p[:, 1]) - d[:, 1] * (at[:, 0] - p[:, 0]))
         # On the edge: as a hair (e, e^2) beside.
-        beside = np.where(d[:, 1] != 0.0, -np.sign(d[:, 1]), np.sign(d[:, 0]))
-        side = np.where(side == 0.0, beside, side)
+        hair_side = np.where(d[:, 1] != 0.0, -np.sign(d[:, 1]), np.sign(d[:, 0]))
+        side = np.where(side == 0.0, hair_side, side)
         sides.append(np.where(swapped, -side, side))
     total = np.sum(sides, axis=0)
     return np.abs(total) == 3.0, np.sign(total).astype(np.int64)

@@ -143,7 +143,7 @@ class Engine:
             for group in groups
             for d in declared(group)
         }
-        chosen: dict[str, Value] = {}
+        values: dict[str, Value] = {}
         for key, value in words.items():
             if key not in known:
                 near = [k for k in known if k.rsplit(".", 1)[-1] == key.rsplit(".", 1)[-1]]
@@ -155,8 +155,8 @@ class Engine:
                     )
                     raise BadInput(f"unknown setting {key}; {advice}")
                 key = near[0]
-            chosen[key] = known[key].parse(value)
-        return replace(session, choices={**session.choices, **chosen})
+            values[key] = known[key].parse(value)
+        return replace(session, choices={**session.choices, **values})
 
     def with_cuts(
         self, session: Session, cuts: tuple[Cut, ...], progress: Progress = QUIET
@@ -259,14 +259,14 @@ class Engine:
 
         if session.verdict is None:
             raise BadCall("nothing is proven yet: verify first")
-        chosen = checked(choose(ProofSettings, session.choices))
+        values = checked(choose(ProofSettings, session.choices))
         progress = progress.afresh()
         mesh = self.mesh(session, progress.part(0.0, 0.2))
         return deviation_map(
             mesh,
             session.verdict.deviation,
-            chosen.tolerance,
-            chosen.allowance,
+            values.tolerance,
+            values.allowance,
             progress.part(0.2, 1.0),
         )
 

@@ -62,8 +62,10 @@ class Step:
     def key(self, session: Session, context: Context) -> str:
         """Return the digest of everything the step would be given now."""
         used = self.settings() if self.uses is None else self.uses(session)
-        chosen: tuple[Any, ...] = tuple(checked(choose(group, session.choices)) for group in used)
-        return digest(self.name, self.version, chosen, self.reads(session, context), *session.cuts)
+        settings: tuple[Any, ...] = tuple(checked(choose(group, session.choices)) for group in used)
+        return digest(
+            self.name, self.version, settings, self.reads(session, context), *session.cuts
+        )
 
 
 def _family_settings() -> tuple[type, ...]:
@@ -133,9 +135,9 @@ def measured_anew(session: Session, context: Context) -> Session:
     )
     if not isinstance(family, Measuring):
         return session
-    chosen: Any = checked(choose(family.settings, session.choices))
+    settings: Any = checked(choose(family.settings, session.choices))
     return replace(
-        session, recognition=family.measured(found, context.part.graph(), context.part, chosen)
+        session, recognition=family.measured(found, context.part.graph(), context.part, settings)
     )
 
 
@@ -238,7 +240,7 @@ def _operations_without_data(session: Session) -> tuple[Any, ...]:
     )
 
 
-def _strategies_chosen(session: Session) -> tuple[Any, ...]:
+def _strategy_settings(session: Session) -> tuple[Any, ...]:
     """Return what is chosen for the strategies in use: it says how large an engagement each can meet."""
     return tuple(checked(choose(group, session.choices)) for group in _strategies_used(session))
 
@@ -302,7 +304,7 @@ STEP_TABLE: tuple[Step, ...] = (
         reads=lambda s, b: (
             _record_key(s, "route"),
             _operations_without_data(s),
-            _strategies_chosen(s),
+            _strategy_settings(s),
             b.shop.digest,
         ),
         done=lambda s: s.process is not None,

@@ -68,7 +68,7 @@ def _walked(jobs: Mapping[str, OrderedOperation], tools: Sequence[str]) -> tuple
         while remaining:
             ready = [jobs[i] for i in remaining if jobs[i].after <= set(order)]
             here = at
-            chosen = min(
+            job = min(
                 ready,
                 key=lambda j: (
                     j.stage,
@@ -76,6 +76,6 @@ def _walked(jobs: Mapping[str, OrderedOperation], tools: Sequence[str]) -> tuple
                     j.id,
                 ),
             )
-            order.append(chosen.id)
-            at, remaining = chosen.position, remaining - {chosen.id}
+            order.append(job.id)
+            at, remaining = job.position, remaining - {job.id}
     return tuple(order)

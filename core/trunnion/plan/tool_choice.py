@@ -19,8 +19,8 @@ CUSP_SPREAD = 1.1
 class ToolRequirement:
     """What a cutter is wanted for.
 
-    `depth`: how far below the highest surroundings its tip goes; `room`: the plane area its envelope must keep in; `wanted`: what it
-    should cover there (the room itself when empty). `corner_radius`: largest corner radius that leaves no material at the foot;
+    `depth`: how far below the highest surroundings its tip goes; `envelope_area`: the plane area its envelope must keep in; `wanted`: what
+    it should cover there (the room itself when empty). `corner_radius`: largest corner radius that leaves no material at the foot;
     `exact`: the corner radius has to be that one. `radius`: largest radius of the cutter (0: no bound). `missable`: share of the wanted
     area that may be left to smaller cutters. `spare`: how many of its radii must fit from rim to middle where the room is widest, so
     that it can enter and turn. `keep`: for floors, the distance from the finished walls beside the fillet's own; then it is the cutter's
@@ -30,7 +30,7 @@ class ToolRequirement:
     """
 
     depth: float
-    room: Region
+    envelope_area: Region
     wanted: Region
     corner_radius: float
     exact: bool = False
@@ -131,7 +131,7 @@ def _fitting(requirement: ToolRequirement, tools: Sequence[Tool], progress: Prog
     """
     most = _missable(requirement, tools)
     for tool in progress.each(sorted(tools, key=lambda t: -t.diameter)):
-        if requirement.spare > 1.0 and not requirement.room.offset(
+        if requirement.spare > 1.0 and not requirement.envelope_area.offset(
             -requirement.spare * tool.radius
         ):
             continue
@@ -147,13 +147,13 @@ def fits_through(requirement: ToolRequirement, tool: Tool, tools: Sequence[Tool]
 
 def _missed_area(requirement: ToolRequirement, tool: Tool) -> float:
     """Return the area of what is wanted that a cutter doesn't cover."""
-    wanted, covered = requirement.wanted or requirement.room, _covered(requirement, tool)
+    wanted, covered = requirement.wanted or requirement.envelope_area, _covered(requirement, tool)
     return wanted.minus(covered).area if covered else wanted.area
 
 
 def _missable(requirement: ToolRequirement, tools: Sequence[Tool]) -> Callable[[Tool], float]:
     """Return the area that each cutter may leave: in sharp edges it grows with the square of the cutter's radius."""
-    total = (requirement.wanted or requirement.room).area
+    total = (requirement.wanted or requirement.envelope_area).area
     most, slack = requirement.missable * total, tolerance.AREA * max(total, 1.0)
     if not requirement.cusps:
         return lambda tool: most + slack
@@ -177,11 +177,11 @@ def _fitting_floor(
 def _covered(requirement: ToolRequirement, tool: Tool) -> Region:
     """Return what a cutter reaches: its disc in the room, or for a floor its flat, kept off the walls and their fillet."""
     if requirement.keep < 0.0:
-        return requirement.room.opened(tool.radius)
+        return requirement.envelope_area.opened(tool.radius)
     flat = tool.radius - tool.corner_radius
-    return requirement.room.offset(-(requirement.keep + requirement.corner_radius + flat)).offset(
-        flat
-    )
+    return requirement.envelope_area.offset(
+        -(requirement.keep + requirement.corner_radius + flat)
+    ).offset(flat)
 
 
 def covered_by_few(
@@ -192,15 +192,15 @@ def covered_by_few(
 
     Among cutters that serve equally many the larger, then the shorter, then the one with the larger corner radius is taken.
     """
-    chosen: dict[str, Tool] = {}
+    assigned: dict[str, Tool] = {}
     for requirement, tools in fits.items():
         own = [t for t in tools if any(t.name == k.name for k in kept)]
         if own:
-            chosen[requirement] = own[0]
+            assigned[requirement] = own[0]
     remaining = {
         requirement: tools
         for requirement, tools in fits.items()
-        if requirement not in chosen and tools
+        if requirement not in assigned and tools
     }
     while remaining:
         served: dict[str, int] = {}
@@ -224,6 +224,6 @@ def covered_by_few(
             for requirement, tools in remaining.items()
             if any(t.name == best.name for t in tools)
         ]:
-            chosen[requirement] = best
+            assigned[requirement] = best
             del remaining[requirement]
-    return chosen
+    return assigned

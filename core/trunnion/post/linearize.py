@@ -64,20 +64,24 @@ def joint_path(
     path: Toolpath,
     tool: Tool,
     work_position: WorkPosition,
-    stand: Floats | None,
-    straying: PathTolerance,
+    start_angle: Floats | None,
+    path_tolerance: PathTolerance,
     operation: str,
 ) -> JointPath:
     """Return the positions of the axes along a path.
 
-    `stand` (a,) rad are the angles that the rotary axes have; the path goes on from there when it can, else it begins with others. None:
-    it may begin with any. Raises `Refused` for what the machine can't hold or can't follow.
+    `start_angle` (a,) rad are the angles that the rotary axes have; the path goes on from there when it can, else it begins with others.
+    None: it may begin with any. Raises `Refused` for what the machine can't hold or can't follow.
     """
     angle = followed(
-        path.axis, work_position, stand, MARGIN * straying.feed / tool.flute_length, operation
+        path.axis,
+        work_position,
+        start_angle,
+        MARGIN * path_tolerance.feed / tool.flute_length,
+        operation,
     )
-    path, angle = _arcs_opened(path, angle, work_position, straying)
-    return _between(path, angle, tool, work_position, straying, operation)
+    path, angle = _arcs_opened(path, angle, work_position, path_tolerance)
+    return _between(path, angle, tool, work_position, path_tolerance, operation)
 
 
 def arc_points(path: Toolpath, rows: Ints, within: float) -> tuple[Ints, Floats]:
@@ -134,15 +138,15 @@ def lines_for_arcs(path: Toolpath, rows: Ints, within: float) -> tuple[Toolpath,
 
 
 def _arcs_opened(
-    path: Toolpath, angle: Floats, work_position: WorkPosition, straying: PathTolerance
+    path: Toolpath, angle: Floats, work_position: WorkPosition, path_tolerance: PathTolerance
 ) -> tuple[Toolpath, Floats]:
     """Return a path without the arcs that don't lie across the machine's Z, and its angles."""
     arcs = np.flatnonzero(path.motion >= Motion.ARC_CW)
     if not len(arcs):
         return path, angle
-    beside = np.linalg.norm(spindle_of(work_position, angle[arcs])[:, :2], axis=1) > UPRIGHT
+    is_off_axis = np.linalg.norm(spindle_of(work_position, angle[arcs])[:, :2], axis=1) > UPRIGHT
     turned = np.abs(angle[arcs] - angle[arcs - 1]).max(axis=1, initial=0.0) > SLACK
-    opened, row = lines_for_arcs(path, arcs[beside | turned], MARGIN * straying.feed)
+    opened, row = lines_for_arcs(path, arcs[is_off_axis | turned], MARGIN * path_tolerance.feed)
     return opened, angle[row]
 
 
@@ -167,14 +171,14 @@ def _between(
     angle: Floats,
     tool: Tool,
     work_position: WorkPosition,
-    straying: PathTolerance,
+    path_tolerance: PathTolerance,
     operation: str,
 ) -> JointPath:
     """Return the positions of the axes at a path's poses and at those that must come between them."""
     turning = np.zeros(len(path), bool)
     turning[1:] = np.abs(np.diff(angle, axis=0)).max(axis=1, initial=0.0) > 0.0
     rapid = path.motion == Motion.RAPID
-    allowed = np.where(rapid, straying.rapid, straying.feed)
+    allowed = np.where(rapid, path_tolerance.rapid, path_tolerance.feed)
     reach = np.where(rapid, tool.gauge_length, tool.flute_length)
     block = np.flatnonzero(turning)
     pieces = _Pieces(
@@ -256,11 +260,11 @@ def _halved(path: Toolpath, pieces: _Pieces, work_position: WorkPosition) -> _Pi
     angles = angles + TURN * np.round((between[:, None] - angles) / TURN)
     angles = np.where(free, between[:, None], angles)
     solution = np.abs(angles - between[:, None]).sum(axis=2).argmin(axis=1)
-    chosen = angles[np.arange(len(solution)), solution]
+    nearest = angles[np.arange(len(solution)), solution]
     return _ordered(
         [
-            _Pieces(pieces.block, pieces.start, middle, pieces.first, chosen),
-            _Pieces(pieces.block, middle, pieces.end, chosen, pieces.last),
+            _Pieces(pieces.block, pieces.start, middle, pieces.first, nearest),
+            _Pieces(pieces.block, middle, pieces.end, nearest, pieces.last),
         ]
     )
 

@@ -106,9 +106,9 @@ class Palette:
         found: dict[str, Colour] = {}
         met: Counter[ClassColours] = Counter()
         for f in features:
-            stands = self.class_of(f)
-            found[f.id] = stands.colours[met[stands] % len(stands.colours)]
-            met[stands] += 1
+            colour_class = self.class_of(f)
+            found[f.id] = colour_class.colours[met[colour_class] % len(colour_class.colours)]
+            met[colour_class] += 1
         return found
 
     def motion(self, name: str) -> Colour:

@@ -184,8 +184,8 @@ def features_caption(recognition: Recognition, palette: Palette) -> str:
 def feature_legend(recognition: Recognition, palette: Palette) -> dict[str, Colour]:
     """Return what the colours of features mean: kinds with their number, or the classes of a kind with theirs."""
     return {
-        f"{stands.label} {n}": stands.colours[0]
-        for stands, n in palette.classes(recognition.features).items()
+        f"{colour_class.label} {n}": colour_class.colours[0]
+        for colour_class, n in palette.classes(recognition.features).items()
     }
 
 
@@ -222,10 +222,10 @@ def _gather(gathered: dict[str, list[Floats]], path: Toolpath, setup: Setup, siz
     ends = np.stack([world[:-1], world[1:]], axis=1)
     for row in dict.fromkeys(kind.tolist()):
         gathered.setdefault(MOTIONS[row], []).append(ends[kind == row])
-    standing = strokes(path, STROKE_EVERY * size, STROKE_LENGTH * size, MOST_STROKES)
-    if len(standing):
+    axis_strokes = strokes(path, STROKE_EVERY * size, STROKE_LENGTH * size, MOST_STROKES)
+    if len(axis_strokes):
         gathered.setdefault(AXIS, []).append(
-            setup.frame.to_world(standing.reshape(-1, 3)).reshape(-1, 2, 3)
+            setup.frame.to_world(axis_strokes.reshape(-1, 3)).reshape(-1, 2, 3)
         )
 
 
@@ -241,9 +241,9 @@ def _segments(pieces: Iterable[Floats]) -> Any:
 
 def _deviation(session: Session, mesh: Mesh, palette: Palette, progress: Progress) -> Plotter:
     assert session.verdict is not None
-    chosen = checked(choose(ProofSettings, session.choices))
+    settings = checked(choose(ProofSettings, session.choices))
     shown = deviation_map(
-        mesh, session.verdict.deviation, chosen.tolerance, chosen.allowance, progress
+        mesh, session.verdict.deviation, settings.tolerance, settings.allowance, progress
     )
     progress.check()
     plotter = _plotter()

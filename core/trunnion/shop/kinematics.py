@@ -171,14 +171,14 @@ def _both(one: Axis, two: Axis, v: Floats, w: Floats, sign: float) -> tuple[Floa
     size = np.hypot(p, q)
     is_free = size < POLE
     ratio = s / np.where(is_free, 1.0, size)
-    beside = np.where(
+    half_angle = np.where(
         is_free, 0.0, np.arctan2(np.sqrt(np.maximum((1.0 - ratio) * (1.0 + ratio), 0.0)), ratio)
     )
     middle = np.where(is_free, 0.0, np.arctan2(-q, p))
     held = np.where(is_free, np.abs(s) < POLE, np.abs(ratio) < 1.0 + POLE)
     angle, free = np.zeros((len(v), 2, 2)), np.zeros((len(v), 2, 2), bool)
     for solution, side in enumerate((1.0, -1.0)):
-        first = middle + side * beside
+        first = middle + side * half_angle
         angle[:, solution, 0], free[:, solution, 0] = sign * first, is_free
         angle[:, solution, 1], free[:, solution, 1] = _about(
             u2, v, _turned(rotations(one, -first), w)

@@ -19,12 +19,16 @@ TURN = 2.0 * math.pi
 
 
 def followed(
-    axis: Floats, work_position: WorkPosition, stand: Floats | None, near: float, operation: str
+    axis: Floats,
+    work_position: WorkPosition,
+    start_angle: Floats | None,
+    near: float,
+    operation: str,
 ) -> Floats:
     """Return the rotary angles (n, a) in rad at which a machine holds tool axes (n, 3), one after the other.
 
-    They go on from where the axes stand (a,) when that can be, else from the beginning that turns least. An axis within `near` rad of the
-    pole may be taken for the pole. Raises `Refused`, naming operation and block, for what the machine can't hold or can't reach.
+    They go on from where the axes start_angle (a,) when that can be, else from the beginning that turns least. An axis within `near` rad of
+    the pole may be taken for the pole. Raises `Refused`, naming operation and block, for what the machine can't hold or can't reach.
     """
     machine = work_position.machine
     through = _through_pole(axis, machine, near)
@@ -37,28 +41,33 @@ def followed(
             "choose another machine"
         )
     low, high = work_position.limits
-    chosen = np.zeros((len(axis), len(machine.rotary)))
-    home = np.zeros(len(machine.rotary)) if stand is None else stand
+    angles_used = np.zeros((len(axis), len(machine.rotary)))
+    home = np.zeros(len(machine.rotary)) if start_angle is None else start_angle
     tries: list[tuple[int, float, int, Floats]] = []
     # Spirals wind an axis up turn by turn: when it comes to its end it begins anew near the middle.
     unwound = (
         []
-        if stand is None
+        if start_angle is None
         else _beginnings(angles, free, np.clip(np.zeros(len(home)), low, high), low, high)
     )
-    for start in ([] if stand is None else [stand]) + [
+    for start in ([] if start_angle is None else [start_angle]) + [
         *_beginnings(angles, free, home, low, high),
         *unwound,
     ]:
-        reached, turned = choose_angles(angles, free, through, low, high, SLACK, start, chosen)
+        reached, turned = choose_angles(angles, free, through, low, high, SLACK, start, angles_used)
         if (
             reached == len(axis)
-            and start is stand
-            and np.abs(chosen[:1] - stand).max(initial=0.0) <= 2.0 * POLE
+            and start is start_angle
+            and np.abs(angles_used[:1] - start_angle).max(initial=0.0) <= 2.0 * POLE
         ):
-            return chosen
+            return angles_used
         tries.append(
-            (-reached, turned + float(np.abs(start - home).sum()), len(tries), np.array(chosen))
+            (
+                -reached,
+                turned + float(np.abs(start - home).sum()),
+                len(tries),
+                np.array(angles_used),
+            )
         )
     reached, _, _, best = min(tries, key=lambda t: t[:3])
     if -reached < len(axis):
@@ -113,11 +122,11 @@ def _beginnings(
 def beyond(solutions: Floats, work_position: WorkPosition) -> str:
     """Return the angles that a pose needs and the limits of the axes."""
     near = np.degrees(solutions - TURN * np.round(solutions / TURN))
-    asked = " or ".join(
+    ranges = " or ".join(
         " ".join(
             f"{a.name}{v:.1f}" for a, v in zip(work_position.machine.rotary, solution, strict=True)
         )
         for solution in near.tolist()
     )
     has = ", ".join(f"{a.name} {a.low:g} to {a.high:g}" for a in work_position.machine.rotary)
-    return f"its tool axis needs {asked}, which can't be reached from the block before; {work_position.machine.title} has {has}"
+    return f"its tool axis needs {ranges}, which can't be reached from the block before; {work_position.machine.title} has {has}"

@@ -44,9 +44,11 @@ class AxisRegion:
         Round a sharp edge of the part the axis may go in an arc; when `mitred`, only straight on to where both its walls' passes meet: a
         fillet at the foot of such walls is mitred at their edge, and a cutter that went round would cut into the mitre.
         """
-        room = boundary.offset(-distance)
+        axis_region = boundary.offset(-distance)
         return AxisRegion(
-            room.minus(union_all(_mitres(boundary, distance))) if mitred and room else room
+            axis_region.minus(union_all(_mitres(boundary, distance)))
+            if mitred and axis_region
+            else axis_region
         )
 
     def depth(self, points: ArrayLike) -> Floats:

@@ -18,7 +18,7 @@ from trunnion_gui.worker.drawing import DrawnMap
 class DeviationDock(QWidget):
     """One row a place: what is wrong, how much, on which face of which feature, where."""
 
-    chosen = Signal(object)
+    picked = Signal(object)
     """A `WorstPoint` that a person wants to see."""
 
     def __init__(self, document: Document) -> None:
@@ -37,7 +37,7 @@ class DeviationDock(QWidget):
         self._stack = QStackedLayout(self)
         self._stack.addWidget(self.table)
         self._stack.addWidget(self.empty)
-        self.table.cellClicked.connect(lambda row, _: self.chosen.emit(self.worst_points[row]))
+        self.table.cellClicked.connect(lambda row, _: self.picked.emit(self.worst_points[row]))
 
     def use_theme(self, theme: Theme) -> None:
         """Draw in the colours of a theme."""

@@ -60,7 +60,7 @@ class PlaybackBar(QWidget):
         self._soon = QTimer(self)
         self._soon.setSingleShot(True)
         self._soon.setInterval(_WORDS_MS)
-        self._soon.timeout.connect(self._say)
+        self._soon.timeout.connect(self._show_position)
         self.track.wanted.connect(player.go)
         self.track.stepped.connect(player.step)
         player.opened.connect(self._open)
@@ -155,7 +155,7 @@ class PlaybackBar(QWidget):
             )
             + 8
         )
-        self._say()
+        self._show_position()
 
     def _move(self, position: float) -> None:
         self.track.show_value(position)
@@ -168,7 +168,7 @@ class PlaybackBar(QWidget):
         if not self._soon.isActive():
             self._soon.start()
 
-    def _say(self) -> None:
+    def _show_position(self) -> None:
         line, position = self._player.timeline, self._player.position
         if line is None:
             return

@@ -17,7 +17,7 @@ from trunnion.model.session import Session
 from trunnion_gui.document import Document
 from trunnion_gui.i18n import tr
 from trunnion_gui.storage import preferences
-from trunnion_gui.storage.autosave import Autosave, AutosaveOwner, remove, take_over, whose_work
+from trunnion_gui.storage.autosave import Autosave, AutosaveOwner, autosave_owner, remove, take_over
 from trunnion_gui.widgets.notice import Notice
 
 LATEST_MS = 4000
@@ -40,7 +40,7 @@ class Recovery(QObject):
         self._soon.setSingleShot(True)
         self._soon.setInterval(LATEST_MS)
         self._soon.timeout.connect(self.keep)
-        self._failed.connect(self._tell)
+        self._failed.connect(self._report)
         document.changed.connect(self._changed)
         document.files.saved.connect(lambda _: self._changed())
         document.files.opened.connect(lambda _: self._changed())
@@ -56,20 +56,20 @@ class Recovery(QObject):
         document, self._edits, self._is_kept = self._document, 0, True
         part = document.shown.part
         time = datetime.now().isoformat(timespec="seconds")
-        whose = AutosaveOwner(
+        owner = AutosaveOwner(
             project=document.files.project, part=part.path if part else "", time=time
         )
-        self.file.keep(document.shown, *document.files.kept, whose)
+        self.file.keep(document.shown, *document.files.kept, owner)
 
     def offer(self) -> None:
         """Offer what an earlier program left behind, if there is something; the next one when a person throws it away."""
         leftover = preferences.leftover_file()
         if leftover is not None:
-            whose = whose_work(leftover)
-            day, _, clock = whose.time.partition("T")
+            owner = autosave_owner(leftover)
+            day, _, clock = owner.time.partition("T")
             text = tr(
                 "{name} was not saved when the program ended; its work was kept on {day} at {time}"
-            ).format(name=whose.name or tr("A part"), day=day, time=clock)
+            ).format(name=owner.name or tr("A part"), day=day, time=clock)
             finding = Finding(
                 severity=Severity.INFO,
                 code="window",
@@ -114,13 +114,13 @@ class Recovery(QObject):
             self._is_kept = True
 
         self._document.files.opened.connect(taken)
-        self._document.files.recover(leftover, whose_work(leftover).project)
+        self._document.files.recover(leftover, autosave_owner(leftover).project)
 
     def _discard(self, leftover: Path) -> None:
         remove(leftover)
         self.offer()
 
-    def _tell(self, reason: str) -> None:
+    def _report(self, reason: str) -> None:
         self._document.notice(
             tr("Your work is not kept for recovery: {reason}").format(reason=reason),
             tr("save the project yourself (Ctrl+S), or make room"),

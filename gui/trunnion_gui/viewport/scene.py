@@ -44,9 +44,9 @@ VIEWS: dict[str, tuple[tuple[float, float, float], tuple[float, float, float]]] 
 }
 """Where the eye stands and what is up, in the frame of the recognition."""
 
-_ROOM = 1.12
+_MARGIN = 1.12
 """How much more than the part a fitted picture shows."""
-_LEAST_ROOM = 120.0
+_LEAST_SPACE = 120.0
 """Pixels: a narrower or lower strip beside a legend is no place for a part."""
 _DIRECTIONS = 24
 _ASIDE = 0.45
@@ -69,7 +69,8 @@ def best_fit(
 
     def fitted(free: QRectF) -> tuple[float, tuple[float, float]]:
         scale = float(
-            max((high[0] - low[0]) / free.width(), (high[1] - low[1]) / free.height(), 1e-9) * _ROOM
+            max((high[0] - low[0]) / free.width(), (high[1] - low[1]) / free.height(), 1e-9)
+            * _MARGIN
         )
         away = free.center() - QPointF(width / 2, height / 2)
         middle = (low + high) / 2
@@ -83,15 +84,15 @@ def best_fit(
     )
     if covered.isEmpty() or not outline(x, y).intersects(QPolygonF(covered)):
         return best
-    beside, below = (
+    right, below = (
         whole.adjusted(covered.right(), 0, 0, 0),
         whole.adjusted(0, covered.bottom(), 0, 0),
     )
     return min(
         (
             fitted(free)
-            for free in (beside, below)
-            if free.width() > _LEAST_ROOM and free.height() > _LEAST_ROOM
+            for free in (right, below)
+            if free.width() > _LEAST_SPACE and free.height() > _LEAST_SPACE
         ),
         default=best,
     )
@@ -119,7 +120,7 @@ class ViewportScene(QWidget):
 
     clicked = Signal(object)
     """A `Click`."""
-    asked = Signal(object, QPoint)
+    menu_requested = Signal(object, QPoint)
     """A `Click` with the right button, and where on the screen: what can be done there?"""
     hovered = Signal(int)
     pointed = Signal(object, QPointF)
@@ -140,7 +141,7 @@ class ViewportScene(QWidget):
         self._picker: FacePicker | None = None
         self._frame = WORLD
         self._colours: Mapping[int, str] = {}
-        self._chosen: tuple[int, ...] = ()
+        self._selected: tuple[int, ...] = ()
         self._is_filled = True
         self._hover: tuple[int, ...] = ()
         self._is_faded = False
@@ -186,7 +187,7 @@ class ViewportScene(QWidget):
 
     def choose(self, faces: tuple[int, ...], *, filled: bool = True) -> None:
         """Mark faces as the selection: filled, or only by their border where toolpaths are to be seen on them."""
-        self._chosen, self._is_filled = faces, filled
+        self._selected, self._is_filled = faces, filled
         if self._part is not None:
             self._part.outline(
                 "chosen",
@@ -321,7 +322,7 @@ class ViewportScene(QWidget):
         self._fitted = self._camera()
         self.view.render()
 
-    def keep_clear(self, covered: QRectF) -> None:
+    def set_covered(self, covered: QRectF) -> None:
         """Say which part of the picture something lies over; a picture that nobody has turned since it was fitted is fitted anew."""
         if covered != self._covered:
             self._covered = covered
@@ -387,7 +388,7 @@ class ViewportScene(QWidget):
         if event.button() == Qt.MouseButton.LeftButton:
             self.clicked.emit(click)
         else:
-            self.asked.emit(click, event.globalPosition().toPoint())
+            self.menu_requested.emit(click, event.globalPosition().toPoint())
 
     def _point(self, at: QPointF) -> None:
         if self._map is None or self._is_playing:
@@ -434,10 +435,10 @@ class ViewportScene(QWidget):
         for tag, colour in self._colours.items():
             if tag <= n_faces:
                 colours[tag] = rgb(mixed(colour, theme.part, _FADED) if self._is_faded else colour)
-        if self._is_isolated and self._chosen:
-            others = np.setdiff1d(np.arange(n_faces + 1), self._chosen)
+        if self._is_isolated and self._selected:
+            others = np.setdiff1d(np.arange(n_faces + 1), self._selected)
             colours[others] = rgb(mixed(theme.part, theme.view_bottom, 0.7))
-        for tag in self._chosen:
+        for tag in self._selected:
             if tag <= n_faces:
                 own = "#{:02x}{:02x}{:02x}".format(*colours[tag])
                 colours[tag] = rgb(mixed(own, theme.selection, 0.85 if self._is_filled else 0.0))

@@ -15,7 +15,7 @@ from trunnion.part.shape.exact import ExactPoints
 from trunnion.plan.freeform.cutters.cutter import lower_side
 from trunnion.plan.freeform.estimate.scallop import stepover_on_plane
 from trunnion.plan.freeform.finishing.partition import PART
-from trunnion.plan.freeform.finishing.rest import BESIDE, remaining_of, without_met
+from trunnion.plan.freeform.finishing.rest import HOLDER_CLEARANCE, remaining_of, without_met
 from trunnion.progress import QUIET
 from trunnion.settings import choose
 from trunnion.shop import load_shop
@@ -220,7 +220,7 @@ def test_where_a_shank_would_meet_the_part_is_none_of_a_cutters_area() -> None:
     kept = found.points[found.triangles[found.of(tags)]]
     around = 2.0 * max(0.3, stepover_on_plane(wide.corner_radius, HEIGHT))
     assert tags == (1,) and reach > wide.radius
-    assert kept[:, :, 1].min() == pytest.approx(reach + BESIDE + around, abs=0.5)
+    assert kept[:, :, 1].min() == pytest.approx(reach + HOLDER_CLEARANCE + around, abs=0.5)
     # All that is kept hangs together as one piece with one rim.
     assert len(sheet_of(found, tags).components()) == 1 and len(sheet_of(found, tags).rims()) == 1
     # Away from walls nothing changes.

@@ -27,7 +27,7 @@ from trunnion.progress import QUIET
 from trunnion.toolpath.stock.heightfield import PlanningStock
 
 SETUP = Setup(name="S1", frame=WORLD, work_offset="G54", clearance=40.0, machine="Mill 1200")
-BARE, KEEPING = (LandClearances(beside=beside, around=0.5, above=1.0) for beside in (0.0, 0.4))
+BARE, KEEPING = (LandClearances(lateral=beside, around=0.5, above=1.0) for beside in (0.0, 0.4))
 MILLS = [mill(d) for d in (4.0, 6.0, 8.0, 12.0, 16.0)]
 CURVED = {"recognize.family": "surface", "surface.scallop": 0.02, "surface.semi_allowance": 0.0}
 

@@ -19,7 +19,7 @@ from trunnion.post.readers.linuxcnc import read_linuxcnc
 from trunnion.post.settings import PostSettings
 from trunnion.shop import load_shop
 from trunnion.verify.judge.load import least_angle, load_of, mean_share, stretched
-from trunnion.verify.judge.overload import chosen_load
+from trunnion.verify.judge.overload import allowed_load
 from trunnion.verify.motion import moves_of
 from trunnion.verify.stock import StockRun
 from verify_tools import BLANK, MACHINE, TOP, flat, program_section, proof
@@ -221,10 +221,10 @@ def test_a_feed_that_makes_chips_too_thick_is_excess_even_where_little_is_remove
 
 
 def test_the_tables_of_the_material_widen_what_a_finishing_cut_may_meet():
-    finishing = chosen_load(slot(width=0.3, depth=2.0), MATERIAL)
+    finishing = allowed_load(slot(width=0.3, depth=2.0), MATERIAL)
     assert finishing.rate == approx(0.6 * 0.25 * 100.0 * 3.0)
     assert finishing.chip == approx(0.12)
-    assert chosen_load(slot(width=0.3, depth=2.0), None).rate == approx(0.6 * 3.0)
+    assert allowed_load(slot(width=0.3, depth=2.0), None).rate == approx(0.6 * 3.0)
 
 
 def test_nothing_is_said_of_loads_where_nothing_is_known():

@@ -138,8 +138,10 @@ def zmap_highest_reference(
     heights: Floats, x0: float, y0: float, cell: float, start: Floats, end: Floats, radius: float
 ) -> float:
     """Plain numpy form of `zmap_highest`."""
-    touched = _distance(_centres(heights, x0, y0, cell), start, end) < radius + cell * HALF_DIAGONAL
-    return float(heights[touched].max(initial=-np.inf))
+    is_covered = (
+        _distance(_centres(heights, x0, y0, cell), start, end) < radius + cell * HALF_DIAGONAL
+    )
+    return float(heights[is_covered].max(initial=-np.inf))
 
 
 def _centres(heights: Floats, x0: float, y0: float, cell: float) -> Floats:

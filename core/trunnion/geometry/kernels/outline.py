@@ -38,8 +38,8 @@ def points_in_polygon(positions: Floats, pieces: Floats, near: float) -> Ints:
             continue
         # Chords whose ends lie on different sides of the ray, and those of them that cross it to
         # the right.
-        beside = (ay > y) != (by > y)
-        at = ax[beside] + (y - ay[beside]) / (by - ay)[beside] * (bx - ax)[beside]
+        straddles = (ay > y) != (by > y)
+        at = ax[straddles] + (y - ay[straddles]) / (by - ay)[straddles] * (bx - ax)[straddles]
         out[k] = IN if (at > x).sum() % 2 else OUT
     return out
 

@@ -78,13 +78,13 @@ def evaluate_surface_loop(
     """Fill out[first:last] (k, 6, 3) with points and derivatives at uv (k, 2); see
     `kernels.spline.evaluate_surface`."""
     along, across = np.zeros((3, degree_u + 1)), np.zeros((3, degree_v + 1))
-    room = np.zeros((3, max(degree_u, degree_v) + 1))
+    work = np.zeros((3, max(degree_u, degree_v) + 1))
     p = np.zeros((6, 4))
     for n in range(first, last):
         u, v = uv[n, 0], uv[n, 1]
         su, sv = _knot_span(knots_u, degree_u, u), _knot_span(knots_v, degree_v, v)
-        _basis_functions(knots_u, degree_u, u, su, room, along)
-        _basis_functions(knots_v, degree_v, v, sv, room, across)
+        _basis_functions(knots_u, degree_u, u, su, work, along)
+        _basis_functions(knots_v, degree_v, v, sv, work, across)
         p[:] = 0.0
         # Tensor product: sums over v first, then over u, of the homogeneous coordinates A and w and
         # their derivatives.

@@ -16,7 +16,7 @@ from trunnion import tolerance
 from trunnion.geometry.arrays import Bools, Floats, Ints
 from trunnion.geometry.plane.chords import Chords
 from trunnion.geometry.plane.curve import FULL, Curve, Segments, turn
-from trunnion.geometry.plane.intersections import CLOSE, meeting
+from trunnion.geometry.plane.intersections import CLOSE, intersection
 
 
 def restored(geometry: shapely.Geometry, chords: Chords) -> list[tuple[Curve, list[Curve]]]:
@@ -177,7 +177,7 @@ def _closed_curve(chords: Chords, runs: list[_Run]) -> Curve | None:
     starts = [run.start for run in runs]
     while len(runs) > 1:
         starts = [
-            run.start if run.is_exact else meeting(source, before.row, run.row, run.start)
+            run.start if run.is_exact else intersection(source, before.row, run.row, run.start)
             for before, run in zip([runs[-1], *runs[:-1]], runs, strict=True)
         ]
         turned_back = _turned_back(source, runs, starts)

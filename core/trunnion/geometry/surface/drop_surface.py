@@ -22,7 +22,7 @@ from trunnion.progress import QUIET, Progress
 
 CHUNK = 2000
 """Points between two looks at cancel."""
-LINES, FIRST_ROOM = 20, 256
+LINES, FIRST_CAPACITY = 20, 256
 """Lines between two looks at cancel, and spans that each has room for at first."""
 FACETS_A_LEAF = 2
 """How many facets the last nodes of a tree hold, or up to twice as many."""
@@ -122,13 +122,13 @@ class DropSurface:
 
         The spans of a line are apart from each other and ascend. `pieces` as for `drop`.
         """
-        found, g, room = [], self._cells(), FIRST_ROOM
+        found, g, capacity = [], self._cells(), FIRST_CAPACITY
         lines = np.ascontiguousarray(lines, dtype=np.float64)
         for first in range(0, len(lines), LINES):
             progress.at(first / len(lines), "Pushing the cutter")
             last = min(first + LINES, len(lines))
             count = np.zeros(len(lines), np.int64)
-            spans = np.empty((last - first, room, 2))
+            spans = np.empty((last - first, capacity, 2))
             while not push_cutter_loop(
                 first,
                 last,
@@ -143,8 +143,8 @@ class DropSurface:
                 count,
                 spans,
             ):
-                room *= 2
-                spans = np.empty((last - first, room, 2))
+                capacity *= 2
+                spans = np.empty((last - first, capacity, 2))
             found += [_merged(spans[k, : count[first + k]]) for k in range(last - first)]
         return np.cumsum([0, *(len(f) for f in found)]), np.vstack([np.zeros((0, 2)), *found])
 

@@ -104,12 +104,12 @@ def _response(code: int, directory: Path, request: ReadRequest, limits: ReadLimi
 def main(folder: str) -> int:
     """Read the part that a folder's request names and write the answer there; return the exit code."""
     directory = Path(folder)
-    told = json.loads((directory / "request.json").read_text(encoding="utf-8"))
-    limit_memory(told["memory"])
+    order = json.loads((directory / "request.json").read_text(encoding="utf-8"))
+    limit_memory(order["memory"])
     try:
         from trunnion.part.read.transfer import read_file
 
-        part = read_file(directory / "part", ReadRequest(**told["request"]))
+        part = read_file(directory / "part", ReadRequest(**order["request"]))
         (directory / "answer").write_bytes(part.to_bytes())
     except TrunnionError as reason:
         (directory / "refused").write_text(str(reason), encoding="utf-8")

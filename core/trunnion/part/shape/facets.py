@@ -107,8 +107,8 @@ def _face_samples(
     facets: Facets, row: int, spacing: float, progress: Progress
 ) -> tuple[Ints, Floats, Floats, Floats]:
     """Return the samples of one face."""
-    chosen = facets.face == row
-    corners, face = facets.points[facets.triangles[chosen]], facets.face[chosen]
+    own = facets.face == row
+    corners, face = facets.points[facets.triangles[own]], facets.face[own]
     normal, area = _normals(corners)
     width = np.linalg.norm(np.roll(corners, -1, axis=1) - corners, axis=2).max(axis=1, initial=0.0)
     cuts = np.maximum(np.ceil(width / spacing), 1.0).astype(np.int64)

@@ -185,10 +185,10 @@ class _Net:
         """Return uv (k, 2) at shares (n,) between nodes (k, n); what means nothing at a pole doesn't count."""
         uv = sum(s * self.uv[n] for s, n in zip(share, nodes.T, strict=True))
         whole = np.asarray(self.fixed.all(axis=1))
-        beside = np.flatnonzero(~whole[nodes].all(axis=1))
-        counts = self.fixed[nodes[beside]] * share[:, None]
+        partly = np.flatnonzero(~whole[nodes].all(axis=1))
+        counts = self.fixed[nodes[partly]] * share[:, None]
         counts = np.where(counts.sum(axis=1, keepdims=True) > 0.0, counts, share[:, None])
-        uv[beside] = (self.uv[nodes[beside]] * counts).sum(axis=1) / counts.sum(axis=1)
+        uv[partly] = (self.uv[nodes[partly]] * counts).sum(axis=1) / counts.sum(axis=1)
         return np.asarray(uv)
 
     def off(self, nodes: Ints, shares: Floats) -> Floats:
@@ -252,11 +252,11 @@ class _Net:
 
     def bounded(self) -> Floats:
         """Add to the bounds how far points on edges are from the faces' surfaces; return the normals (v, 3) at all points."""
-        normals, beside = self.normals(), np.zeros(len(self.bound))
+        normals, partly = self.normals(), np.zeros(len(self.bound))
         np.maximum.at(
-            beside, self.owner, np.abs(((self.points - self.surface) * normals).sum(axis=1))
+            partly, self.owner, np.abs(((self.points - self.surface) * normals).sum(axis=1))
         )
-        self.bound += beside
+        self.bound += partly
         return normals
 
     def _agree(self, split: Bools, border: Ints) -> None:
@@ -399,10 +399,10 @@ class _Net:
         lost = np.flatnonzero(~there)
         if len(lost):
             # Beside a pole, where the surface has no normal, the one next to it.
-            beside = self.uv[lost] + tolerance.ANGLE * (
+            partly = self.uv[lost] + tolerance.ANGLE * (
                 self.middles[self.owner[lost]] - self.uv[lost]
             )
-            normals[lost] = self.normal(self.on(self.owner[lost], beside))[0]
+            normals[lost] = self.normal(self.on(self.owner[lost], partly))[0]
         return np.asarray(normals * self.sides[self.owner][:, None])
 
     def result(self, tags: list[int], normals: Floats) -> RefinedMesh:

@@ -178,8 +178,8 @@ class SolidSlicer:
         for n in range(_TRIES):
             plane = Plane.at(frame, z + n * tolerance.SECTION_STEP)
             near = np.searchsorted(heights, plane.offset)
-            beside = heights[max(near - 1, 0) : near + 1]
-            if not (np.abs(beside - plane.offset) < 2.0 * tolerance.COINCIDENT).any():
+            near_heights = heights[max(near - 1, 0) : near + 1]
+            if not (np.abs(near_heights - plane.offset) < 2.0 * tolerance.COINCIDENT).any():
                 return plane
         raise BadInput(
             f"no section at z = {z:g}: the part has corners at every height there; choose another height"
@@ -237,10 +237,10 @@ def _on_circle(edge: SectionEdge, plane: Plane) -> list[float]:
         np.array(circle.YAxis().Direction().Coord()),
     )
     a, b = circle.Radius() * float(x @ plane.normal), circle.Radius() * float(y @ plane.normal)
-    height, swing = float(plane.above(np.array(circle.Location().Coord()))), math.hypot(a, b)
-    if abs(height) >= swing:
+    height, amplitude = float(plane.above(np.array(circle.Location().Coord()))), math.hypot(a, b)
+    if abs(height) >= amplitude:
         return []
-    middle, half = math.atan2(b, a), math.acos(-height / swing)
+    middle, half = math.atan2(b, a), math.acos(-height / amplitude)
     turns = [
         edge.first + (t - edge.first) % (2.0 * math.pi) for t in (middle - half, middle + half)
     ]

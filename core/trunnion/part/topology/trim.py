@@ -47,10 +47,12 @@ class Trim:
         if self._outlines is None:
             return self._by_kernel(uv)
         share = (uv - self._low) / self._size
-        told = self._outlines.within(share)
+        position_class = self._outlines.within(share)
         # The kernel brings places beyond a seam back; it is queried for those as well.
-        unsure = (told == NEAR) | (((share < 0.0) | (share > 1.0)) & self._turns).any(axis=1)
-        inside = told == IN
+        unsure = (position_class == NEAR) | (((share < 0.0) | (share > 1.0)) & self._turns).any(
+            axis=1
+        )
+        inside = position_class == IN
         inside[unsure] = self._by_kernel(uv[unsure])
         return inside
 
@@ -78,11 +80,13 @@ class Trim:
         made = Outlines.of(np.vstack(pieces), 3.0 * SAG)
         share = (np.arange(TRIED) + 0.5) / TRIED
         grid = np.stack(np.meshgrid(share, share), axis=-1).reshape(-1, 2)
-        told = made.within(grid)
-        sure = told != NEAR
+        position_class = made.within(grid)
+        sure = position_class != NEAR
         return (
             made
-            if ((told[sure] == IN) == self._by_kernel(self._low + grid[sure] * self._size)).all()
+            if (
+                (position_class[sure] == IN) == self._by_kernel(self._low + grid[sure] * self._size)
+            ).all()
             else None
         )
 

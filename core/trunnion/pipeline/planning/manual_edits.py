@@ -38,7 +38,7 @@ def with_features_by_hand(before: Recognition | None, found: Recognition) -> Rec
         kept = tuple(sorted(kept, key=lambda f: f.id))
     loose = there - {tag for f in kept for tag in f.tags}
     deleted = [f for f in found.features if _claims_most(f, [set(tags) for tags in before.removed])]
-    told = [
+    notes = [
         info(
             "recognize.deleted",
             f"{f.id} was deleted by hand and is not taken up again",
@@ -50,7 +50,7 @@ def with_features_by_hand(before: Recognition | None, found: Recognition) -> Rec
     return replace(
         found.with_unexplained(loose),
         features=kept,
-        findings=(*found.findings, *told),
+        findings=(*found.findings, *notes),
         removed=before.removed,
     )
 

@@ -55,9 +55,11 @@ def post_texts(
     session: Session, header: Header, machines: Mapping[str, Machine], progress: Progress = QUIET
 ) -> tuple[PostedFile, ...]:
     """Return the texts of every program: one for each setup in the dialect of its machine's control, and the CL of all setups."""
-    chosen, cl = checked(choose(PostSettings, session.choices)), registry.get("dialects", "apt")()
+    settings, cl = checked(choose(PostSettings, session.choices)), registry.get("dialects", "apt")()
     programs, work_positions = programs_of(session), work_positions_of(session, machines)
-    posted = [_posted(p, header, chosen, machines, work_positions) for p in progress.each(programs)]
+    posted = [
+        _posted(p, header, settings, machines, work_positions) for p in progress.each(programs)
+    ]
     progress.check()
     if programs:
         posted.append(
@@ -65,7 +67,7 @@ def post_texts(
                 suffix=cl.suffix,
                 dialect=cl.name,
                 setup="",
-                text=cl.write(programs, header, chosen, work_positions),
+                text=cl.write(programs, header, settings, work_positions),
             )
         )
     return tuple(posted)
@@ -74,24 +76,24 @@ def post_texts(
 def _posted(
     program: Program,
     header: Header,
-    chosen: PostSettings,
+    settings: PostSettings,
     machines: Mapping[str, Machine],
     work_positions: WorkPositions,
 ) -> PostedFile:
     setup = program.setup
-    dialect = registry.get("dialects", dialect_of(setup, chosen, machines))()
+    dialect = registry.get("dialects", dialect_of(setup, settings, machines))()
     return PostedFile(
         suffix=f"{setup.name}.{dialect.suffix}",
         dialect=dialect.name,
         setup=setup.name,
-        text=dialect.write((program,), header, chosen, work_positions),
+        text=dialect.write((program,), header, settings, work_positions),
     )
 
 
-def dialect_of(setup: Setup, chosen: PostSettings, machines: Mapping[str, Machine]) -> str:
+def dialect_of(setup: Setup, settings: PostSettings, machines: Mapping[str, Machine]) -> str:
     """Return the name of the dialect that a setup's program is written in: the one chosen for all, else that of its machine's control."""
-    if chosen.dialect != OF_MACHINE:
-        return chosen.dialect
+    if settings.dialect != OF_MACHINE:
+        return settings.dialect
     return machine_of(setup, machines).control
 
 
@@ -167,10 +169,10 @@ def errors_of_part(session: Session) -> tuple[Finding, ...]:
 
 def errors_before(session: Session) -> tuple[Finding, ...]:
     """Return the errors that the part and the steps before the proof have reported."""
-    told = (
+    notes = (
         f for step, record in session.records.items() if step != "verify" for f in record.findings
     )
-    return errors_of_part(session) + tuple(f for f in told if f.severity is Severity.ERROR)
+    return errors_of_part(session) + tuple(f for f in notes if f.severity is Severity.ERROR)
 
 
 def held_back(verdict: Verdict, errors: Sequence[Finding]) -> Verdict:

@@ -67,7 +67,7 @@ class SurfaceDrive:
 
     `faces`: tags to be finished; `exact` their exact surfaces in the same order; `skin`: the whole part. `low`, `high` (3,): the box of the
     blank. `frame`: the cutting frame in the part's coordinates. `allowance`: mm left on the faces on purpose; `height`: the scallop height
-    in mm that is wanted. `clearance`: the height in the cutting frame above everything. `digest` tells all of this apart. `ask`: who
+    in mm that is wanted. `clearance`: the height in the cutting frame above everything. `digest` tells all of this apart. `query_for`: who
     says for a tool whether poses are clear of part and fixtures and within the machine's rotary limits (`pipeline.planning.clearance`);
     None where no tool may lean.
     """
@@ -85,7 +85,7 @@ class SurfaceDrive:
     height: float
     digest: str
     earlier: Tool | None = None
-    ask: Callable[[Tool], ClearanceQuery] | None = None
+    query_for: Callable[[Tool], ClearanceQuery] | None = None
 
     @property
     def is_empty(self) -> bool:

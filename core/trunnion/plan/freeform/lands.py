@@ -48,7 +48,7 @@ RIM_SPACING = 0.5
 """mm between the places along a rim that are asked whether a cutter stands free there."""
 LAND, REST_LAND = "land", "rest_land"
 """Kinds of operations on lands: with a large end mill, and with another one of what that left."""
-STOCK, BESIDE_SIDES, AROUND_TOOL, ABOVE_TOOL = (
+STOCK, LATERAL, AROUND_TOOL, ABOVE_TOOL = (
     "surface.stock",
     "surface.beside",
     "surface.around",
@@ -68,10 +68,10 @@ class Land:
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class LandClearances:
-    """What an end mill keeps, in mm: `beside` from sides of the part that are not finished yet, `around` shank and holder from the part all
-    round, `above` them over it."""
+    """What an end mill keeps, in mm: `lateral` from sides of the part that are not finished yet, `around` shank and holder from the part
+    all round, `above` them over it."""
 
-    beside: float
+    lateral: float
     around: float
     above: float
 
@@ -119,21 +119,21 @@ class PartAbove:
             )
         )
 
-    def free(self, z: float, tool: Tool, keeping: LandClearances) -> Region:
+    def free(self, z: float, tool: Tool, clearances: LandClearances) -> Region:
         """Return the plan area that the envelope of an end mill may be in, its tip at a height: what is in its way, and in that of shank
         and holder, is left out. It goes on past the blank."""
         obstacles = [self.over(z + SKIM)]
-        if keeping.beside > 0.0:
-            obstacles.append(self.over(z + SIDE).offset(keeping.beside))
+        if clearances.lateral > 0.0:
+            obstacles.append(self.over(z + SIDE).offset(clearances.lateral))
         for z0, r0, _, r1 in tool.profile():
             more, height = (
                 max(r0, r1) - tool.radius,
-                z + max(SKIM, STEP * math.floor((z0 - keeping.above) / STEP)),
+                z + max(SKIM, STEP * math.floor((z0 - clearances.above) / STEP)),
             )
             if more > -tolerance.COINCIDENT:
-                obstacles.append(self.over(height).offset(more + keeping.around))
-            elif keeping.beside > 0.0:
-                obstacles.append(self.over(height).offset(max(NECK, keeping.beside)))
+                obstacles.append(self.over(height).offset(more + clearances.around))
+            elif clearances.lateral > 0.0:
+                obstacles.append(self.over(height).offset(max(NECK, clearances.lateral)))
         return self.space.around().minus(union_all(obstacles))
 
 
@@ -157,27 +157,29 @@ def _is_level(space: SurfaceSpace, tag: int) -> bool:
 
 def covered(land: Land, free: Region, tool: Tool) -> Region:
     """Return what of a land the flat of an end mill covers that stays in a free area."""
-    room = free.offset(-tool.radius)
+    axis_region = free.offset(-tool.radius)
     return (
-        room.offset(tool.radius - tool.corner_radius).intersect(land.region)
-        if room
+        axis_region.offset(tool.radius - tool.corner_radius).intersect(land.region)
+        if axis_region
         else EMPTY_REGION
     )
 
 
-def stands_free(standing: PartAbove, land: Land, tool: Tool, progress: Progress = QUIET) -> bool:
+def is_free_of_part(
+    part_above: PartAbove, land: Land, tool: Tool, progress: Progress = QUIET
+) -> bool:
     """Say whether the part, as triangles, is nowhere in the way of an end mill that comes right up to what stands beside a land: a section
     that misses something would let it in."""
-    space = standing.space
-    room = (
-        standing.space.around()
-        .minus(standing.over(land.z + SKIM))
+    space = part_above.space
+    axis_region = (
+        part_above.space.around()
+        .minus(part_above.over(land.z + SKIM))
         .offset(-tool.radius)
         .intersect(land.region.offset(tool.radius))
     )
-    if not room:
+    if not axis_region:
         return True
-    rim = room.segments()
+    rim = axis_region.segments()
     count = np.maximum(np.ceil(rim.length / RIM_SPACING), 1.0).astype(np.int64)
     row = np.repeat(np.arange(len(rim)), count)
     share = (np.arange(len(row)) - np.repeat(np.cumsum(count) - count, count)) / count[row]
@@ -203,7 +205,11 @@ def land_drive(
 
     Stock that is thicker than the operation's depth comes off in even steps.
     """
-    standing, keeping, tool = PartAbove(space, progress), keeping_of(operation), operation.cutter
+    part_above, clearances, tool = (
+        PartAbove(space, progress),
+        clearances_of(operation),
+        operation.cutter,
+    )
     stock = number(operation, STOCK)
     steps = (
         max(1, math.ceil(stock / operation.data.depth - tolerance.COINCIDENT))
@@ -214,13 +220,13 @@ def land_drive(
     floors: list[Floor] = []
     for lands in progress.each(_together(lands_of(space, operation.faces))):
         z = min(land.z for land in lands)
-        wanted = [remaining_of(standing, land, before) for land in lands]
+        wanted = [remaining_of(part_above, land, before) for land in lands]
         levels.append(
             DriveLevel(
                 top=levels[-1].bottom if levels else max(stock_top, z),
                 bottom=z,
                 wanted=union_all(wanted),
-                boundary=standing.free(z, tool, keeping),
+                boundary=part_above.free(z, tool, clearances),
             )
         )
         floors += [
@@ -239,7 +245,7 @@ def land_drive(
     )
 
 
-def remaining_of(standing: PartAbove, land: Land, before: Sequence[Operation]) -> Region:
+def remaining_of(part_above: PartAbove, land: Land, before: Sequence[Operation]) -> Region:
     """Return what operations on a land leave of it: but for hairs along their rims all of it where there are none."""
     remaining = land.region
     for operation in before:
@@ -248,7 +254,7 @@ def remaining_of(standing: PartAbove, land: Land, before: Sequence[Operation]) -
                 remaining,
                 covered(
                     land,
-                    standing.free(land.z, operation.cutter, keeping_of(operation)),
+                    part_above.free(land.z, operation.cutter, clearances_of(operation)),
                     operation.cutter,
                 ),
             )
@@ -260,12 +266,10 @@ def without(region: Region, done: Region) -> Region:
     return region.minus(done).opened(HAIR) if done else region
 
 
-def keeping_of(operation: Operation) -> LandClearances:
+def clearances_of(operation: Operation) -> LandClearances:
     """Return what an operation on lands keeps, from its choices."""
-    beside, around, above = (
-        number(operation, key) for key in (BESIDE_SIDES, AROUND_TOOL, ABOVE_TOOL)
-    )
-    return LandClearances(beside=beside, around=around, above=above)
+    lateral, around, above = (number(operation, key) for key in (LATERAL, AROUND_TOOL, ABOVE_TOOL))
+    return LandClearances(lateral=lateral, around=around, above=above)
 
 
 def _together(lands: Sequence[Land]) -> list[list[Land]]:

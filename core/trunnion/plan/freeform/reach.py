@@ -12,7 +12,7 @@ from trunnion.geometry.arrays import Bools, Floats, Ints
 from trunnion.geometry.sheet.skin import Skin
 from trunnion.model.tool import Tool
 from trunnion.plan.freeform.cutters.cutter import level_disc, lower_side, tip_at
-from trunnion.plan.freeform.finishing.rest import BESIDE, LIFTED
+from trunnion.plan.freeform.finishing.rest import HOLDER_CLEARANCE, LIFTED
 from trunnion.plan.freeform.space import SurfaceSpace
 from trunnion.progress import QUIET, Progress
 
@@ -78,12 +78,12 @@ def reached(
     space: SurfaceSpace,
     samples: AreaSamples,
     tool: Tool,
-    room: float,
+    clearance: float,
     allowance: float = 0.0,
     progress: Progress = QUIET,
 ) -> Bools:
-    """Say which samples (k,) an upright cutter touches without being lifted off by other faces, with its shank and holder at least `room`
-    mm above the part, and without going lower than the blank.
+    """Say which samples (k,) an upright cutter touches without being lifted off by other faces, with its shank and holder at least
+    `clearance` mm above the part, and without going lower than the blank.
 
     With an allowance it is the faces thickened by so much that it touches.
     """
@@ -101,32 +101,32 @@ def reached(
     for z0, r0, _, r1 in tool.profile():
         # What is no wider than the cutter goes where it has been.
         if max(r0, r1) > tool.radius + tolerance.COINCIDENT:
-            some = np.flatnonzero(clear)[tip[clear, 2] + z0 - room < highest]
+            some = np.flatnonzero(clear)[tip[clear, 2] + z0 - clearance < highest]
             over = space.skin.drop.drop(
-                plan[some], level_disc(max(r0, r1) + BESIDE), lowest, progress
+                plan[some], level_disc(max(r0, r1) + HOLDER_CLEARANCE), lowest, progress
             )
-            clear[some] = over + room < tip[some, 2] + z0
+            clear[some] = over + clearance < tip[some, 2] + z0
     found[rows] = clear
     return found
 
 
-def clear_beside(
+def is_clear_of_walls(
     space: SurfaceSpace,
     samples: AreaSamples,
     tool: Tool,
     bottom: float,
-    room: float,
+    clearance: float,
     allowance: float,
 ) -> bool:
-    """Say whether shank and holder of a cutter that goes along upright walls, its tip at a height, stay `room` mm over what stands beside:
-    the part with an allowance all round."""
-    beside = samples.point[:, :2] + tool.radius * samples.normal[:, :2]
+    """Say whether shank and holder of a cutter that goes along upright walls, its tip at a height, stay `clearance` mm over what stands
+    beside: the part with an allowance all round."""
+    shifted = samples.point[:, :2] + tool.radius * samples.normal[:, :2]
     lowest = float(space.low[2]) - 1.0
     for z0, r0, _, r1 in tool.profile():
         if max(r0, r1) > tool.radius + tolerance.COINCIDENT:
             over = space.skin.drop.drop(
-                beside, level_disc(max(r0, r1) + BESIDE + allowance), lowest
+                shifted, level_disc(max(r0, r1) + HOLDER_CLEARANCE + allowance), lowest
             )
-            if (over + allowance + room >= bottom + z0).any():
+            if (over + allowance + clearance >= bottom + z0).any():
                 return False
     return True

@@ -91,10 +91,11 @@ class SurfaceSpace:
         operation: Operation,
         needs: DriveNeeds,
         earlier: Tool | None = None,
-        ask: Callable[[Tool], ClearanceQuery] | None = None,
+        query_for: Callable[[Tool], ClearanceQuery] | None = None,
         progress: Progress = QUIET,
     ) -> SurfaceDrive:
-        """Return what an operation on curved faces is driven by; `earlier` is the cutter that finished them before, `ask` makes askers.
+        """Return what an operation on curved faces is driven by; `earlier` is the cutter that finished them before, `query_for` makes
+        askers.
 
         Unless the tool leans, what it can't come to without its shank or holder meeting the part is none of its area.
         """
@@ -104,7 +105,7 @@ class SurfaceSpace:
             skin, faces = remaining_of(skin, faces, earlier, lowest, height, progress)
         if not needs.leans:
             skin, faces = without_met(skin, faces, operation.cutter, lowest, height, progress)
-        told = digest(
+        identity = digest(
             self.part.digest,
             self.part.solid,
             operation.feature,
@@ -132,7 +133,7 @@ class SurfaceSpace:
             clearance=self.setup.clearance,
             allowance=allowance,
             height=height,
-            digest=told,
+            digest=identity,
             earlier=earlier,
-            ask=ask,
+            query_for=query_for,
         )

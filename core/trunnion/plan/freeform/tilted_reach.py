@@ -25,7 +25,7 @@ SAMPLES = 200
 
 
 def reached_leaning(
-    samples: AreaSamples, tool: Tool, ask: ClearanceQuery, progress: Progress = QUIET
+    samples: AreaSamples, tool: Tool, query: ClearanceQuery, progress: Progress = QUIET
 ) -> Bools:
     """Say which samples (k,) a cutter touches with some lean, nothing of the tool in the part, and an axis that the machine can hold."""
     found = np.zeros(len(samples), dtype=bool)
@@ -34,7 +34,7 @@ def reached_leaning(
         progress.at(n / len(tried), f"leaning {tool.name}")
         rows = np.flatnonzero(~found)
         tip = tip_at(tool, samples.point[rows], samples.normal[rows], axis[rows])
-        found[rows] = ask(tip, axis[rows])
+        found[rows] = query(tip, axis[rows])
         if found.all():
             break
     return found
@@ -43,7 +43,7 @@ def reached_leaning(
 def leaning_cutter(
     samples: AreaSamples,
     tools: Sequence[Tool],
-    asking: Callable[[Tool], ClearanceQuery],
+    query_for: Callable[[Tool], ClearanceQuery],
     share: float,
     wanted: Tool | None = None,
     progress: Progress = QUIET,
@@ -55,7 +55,7 @@ def leaning_cutter(
 
     def of(tool: Tool) -> Bools:
         if tool.name not in reach:
-            reach[tool.name] = reached_leaning(samples, tool, asking(tool), progress)
+            reach[tool.name] = reached_leaning(samples, tool, query_for(tool), progress)
         return reach[tool.name]
 
     none = np.zeros(len(samples), dtype=bool)

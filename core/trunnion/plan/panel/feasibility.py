@@ -62,13 +62,13 @@ def without_lonely_ribs(
     planned: list[Feature],
     refusals: dict[str, str],
     recognition: Recognition,
-    beside: Mapping[str, frozenset[str]],
+    adjacent: Mapping[str, frozenset[str]],
 ) -> tuple[list[Feature], dict[str, str]]:
     """Return the same without ribs beside a space that is not planned: their cutter would run in solid material."""
     kinds = {f.id: f.kind for f in recognition}
     for feature in planned:
         remaining = sorted(
-            i for i in beside.get(feature.id, ()) if i in refusals and kinds[i] in POCKETS
+            i for i in adjacent.get(feature.id, ()) if i in refusals and kinds[i] in POCKETS
         )
         if feature.kind == "rib" and remaining:
             refusals = {
@@ -99,7 +99,7 @@ def not_planned(refusals: Mapping[str, str], recognition: Recognition) -> list[F
     return found
 
 
-def beside(recognition: Recognition, part: SectionSource) -> dict[str, frozenset[str]]:
+def adjacent(recognition: Recognition, part: SectionSource) -> dict[str, frozenset[str]]:
     """Return for each feature those whose faces share an edge with its own, and those it stands in or holds."""
     graph = part.graph()
     owners: dict[int, set[str]] = {}
@@ -124,8 +124,8 @@ def beside(recognition: Recognition, part: SectionSource) -> dict[str, frozenset
 def no_cutter(task: OperationTask, found: Candidates) -> Finding:
     """Return the finding that no cutter of the catalogue fits an operation: an error where a whole feature stays, else a warning on what
     the proof will measure as left."""
-    tell = warning if task.stage.cutter in ("corner", "foot") else error
-    return tell(
+    make_finding = warning if task.stage.cutter in ("corner", "foot") else error
+    return make_finding(
         "route.no-cutter",
         f"{task.feature}: {found.reason} ({task.stage.name})",
         task.feature,

@@ -116,7 +116,7 @@ class SetupSpace:
         """Return the blank's area and plenty around it."""
         return Region.rectangle(*(self.blank_low[:2] - AROUND), *(self.blank_high[:2] + AROUND))
 
-    def standing_over(self, z: float, near: Region) -> Region:
+    def material_over(self, z: float, near: Region) -> Region:
         """Return the part's material at a height, with all that hangs over it near a region: what an upright cutter must stay out of.
 
         A section through a recess in a wall shows free space that no upright cutter gets into; the section just over the recess closes it.
@@ -131,9 +131,9 @@ class SetupSpace:
             if c.hangs > z and (c.low <= high).all() and (c.high >= low).all()
         ]
         above = [
-            self.section(c + tolerance.BESIDE_PLANE)
+            self.section(c + tolerance.OFF_PLANE)
             for c in _distinct(over)
-            if c + tolerance.BESIDE_PLANE < self.top
+            if c + tolerance.OFF_PLANE < self.top
         ]
         return union_all([material, *above]) if above else material
 
@@ -162,13 +162,13 @@ class SetupSpace:
     def free_near(self, z: float, region: Region) -> Region:
         """Return where nothing of the part stands at a height or hangs over it, around a region by plenty for a cutter over it."""
         low, high = region.box()
-        room = Region.rectangle(*(low - NEAR), *(high + NEAR))
-        return room.minus(self.standing_over(z, room))
+        window = Region.rectangle(*(low - NEAR), *(high + NEAR))
+        return window.minus(self.material_over(z, window))
 
     def silhouette(self) -> Region:
         """Return the part's outline seen from above, its openings filled."""
-        beside = tolerance.BESIDE_PLANE
-        heights = (self.bottom + beside, 0.5 * (self.bottom + self.top), self.top - beside)
+        margin = tolerance.OFF_PLANE
+        heights = (self.bottom + margin, 0.5 * (self.bottom + self.top), self.top - margin)
         return union_all([self.section(z).holes_filled() for z in heights]).holes_filled()
 
     def top_of(self, feature: Feature) -> float:
@@ -235,7 +235,7 @@ class SetupSpace:
         while len(bands) + 1 < len(breaks):
             high, low = breaks[len(bands) : len(bands) + 2]
             z = (
-                low + tolerance.BESIDE_PLANE
+                low + tolerance.OFF_PLANE
                 if low in peaks
                 else _section_height(high, low, min(rim, top), fillets.get(low, 0.0))
             )
@@ -259,7 +259,7 @@ class SetupSpace:
             breaks.insert(len(bands) + 1, peak)
             # Over a peak the fillets of floors on both sides meet: that much of it is taken as the section at the peak shows it.
             rounded = above_fillets(peak, fillets)
-            if rounded > peak + tolerance.BESIDE_PLANE:
+            if rounded > peak + tolerance.OFF_PLANE:
                 peaks.add(peak)
                 if rounded < high - tolerance.SEW:
                     breaks.insert(len(bands) + 1, rounded)
@@ -296,7 +296,7 @@ class SetupSpace:
         points: list[Floats],
         sunken: list[Floats],
     ) -> Band:
-        material = self.standing_over(z, self._over(feature))
+        material = self.material_over(z, self._over(feature))
         if feature.kind == "open_pocket":
             wanted = holding(self.silhouette().minus(material), points)
             boundary = (
@@ -350,9 +350,7 @@ def _up_to_walls(band: Band, over: Band, on_floor: Floats, grow: float) -> Band:
     def grown(area: Region, bound: Region) -> Region:
         own = holding(area, [on_floor])
         rest = area.minus(own.offset(tolerance.SEW))
-        return (
-            own.offset(grow).intersect(bound).minus(rest.offset(tolerance.BESIDE_PLANE)).union(rest)
-        )
+        return own.offset(grow).intersect(bound).minus(rest.offset(tolerance.OFF_PLANE)).union(rest)
 
     return replace(
         band,
@@ -411,12 +409,12 @@ def enclosed(material: Region, points: Iterable[Floats]) -> Region:
     for hole in (h.reversed() for p in material.pieces for h in p.holes):
         space = Region((Piece(hole),))
         if space.contains(where).any():
-            standing = tuple(
+            island_walls = tuple(
                 p.outer.reversed()
                 for p in material.pieces
                 if space.contains(p.outer.points[:1]).all()
             )
-            inner = Region((Piece(hole, standing),))
+            inner = Region((Piece(hole, island_walls),))
             if inner.contains(where).any():
                 found.append(inner.pieces[0])
     return Region(tuple(found))
@@ -504,11 +502,11 @@ def _distinct(heights: Iterable[float]) -> list[float]:
 def _section_height(high: float, low: float, rim: float, fillet: float) -> float:
     """Return the height of the section that speaks for a band: over the fillet at its foot and below the lowest rim."""
     ceiling = min(high, rim)
-    if ceiling - low <= tolerance.BESIDE_PLANE:
-        return rim - tolerance.BESIDE_PLANE
+    if ceiling - low <= tolerance.OFF_PLANE:
+        return rim - tolerance.OFF_PLANE
     foot = low + fillet
     return (
         0.5 * (foot + ceiling)
-        if ceiling - foot > tolerance.BESIDE_PLANE
-        else ceiling - 0.5 * tolerance.BESIDE_PLANE
+        if ceiling - foot > tolerance.OFF_PLANE
+        else ceiling - 0.5 * tolerance.OFF_PLANE
     )

@@ -33,7 +33,7 @@ class SurfacePlanState:
     machine: Machine
     shop: Shop
     route: RouteSettings
-    chosen: SurfaceRouteSettings
+    settings: SurfaceRouteSettings
     stages: dict[str, Stage]
     operations: list[Operation] = field(default_factory=list)
     findings: list[Finding] = field(default_factory=list)

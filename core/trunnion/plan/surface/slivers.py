@@ -47,9 +47,11 @@ def with_slivers(
 
 def _hosts(operations: Sequence[Operation], tag: int, graph: FaceGraph, skin: Skin) -> list[int]:
     """Return which operations cut the neighbour of a face that it goes with, none when no neighbour is cut."""
-    beside = sorted(graph.neighbours(tag - 1), key=lambda row: (-_common(graph, tag - 1, row), row))
+    neighbours = sorted(
+        graph.neighbours(tag - 1), key=lambda row: (-_common(graph, tag - 1, row), row)
+    )
     for whole in (True, False):
-        for row in beside:
+        for row in neighbours:
             found = [
                 n
                 for n, o in enumerate(operations)

@@ -112,7 +112,7 @@ def _lines(
         for section in program.sections:
             yield from _section(words, section, scale, section.tool.number != tool, settings.units)
             yield from _motions(
-                _blocks(section, scale, axes, settings.straying),
+                _blocks(section, scale, axes, settings.path_tolerance),
                 scale,
                 axes,
                 _feed_words(words, section, scale, settings.units),
@@ -188,14 +188,14 @@ def _feed_words(words: AptWords, section: ProgramSection, scale: TickScale, unit
 def _motions(
     path: WrittenPath, scale: TickScale, axes: TickScale | None, feed_text: FeedText
 ) -> Iterator[str]:
-    text, said, start = scale.text, "", [0, 0, 0]
+    text, last_axis_text, start = scale.text, "", [0, 0, 0]
     rows = zip(path.blocks(), path.more.tolist(), path.dwell.tolist(), strict=True)
     for (point, centre, motion, feed), axis, dwell in rows:
         if motion == Motion.RAPID:
             yield "RAPID"
-        elif (now := feed_text(feed, point[0])) != said:
-            said = now
-            yield said
+        elif (now := feed_text(feed, point[0])) != last_axis_text:
+            last_axis_text = now
+            yield last_axis_text
         if motion >= Motion.ARC_CW:
             radius = int(round(((start[0] - centre[0]) ** 2 + (start[1] - centre[1]) ** 2) ** 0.5))
             sense = 1 if motion == Motion.ARC_CCW else -1

@@ -214,11 +214,11 @@ class _Reader:
 
     def keep_surface_speed(self, line: int, rest: str) -> None:
         """Take over a constant surface speed with the highest spindle speed."""
-        said = "SMM" if self.scale(line) == 1.0 else "SFM"
+        unit_word = "SMM" if self.scale(line) == 1.0 else "SFM"
         words = [w for w in rest.split(",") if w != "CLW"]
-        if len(words) != 4 or words[0] != said or words[2] != "MAXRPM":
+        if len(words) != 4 or words[0] != unit_word or words[2] != "MAXRPM":
             raise BadInput(
-                f"line {line}: SPINDL/{shown(rest)} is not understood; write SPINDL/{said},speed,CLW,MAXRPM,speed"
+                f"line {line}: SPINDL/{shown(rest)} is not understood; write SPINDL/{unit_word},speed,CLW,MAXRPM,speed"
             )
         speed, highest = self.numbers(line, f"{words[1]},{words[3]}", 2)
         for value in (speed, highest):
@@ -228,7 +228,7 @@ class _Reader:
                     f"line {line}: a constant surface speed and its MAXRPM are above zero"
                 )
         self.spindle, self.turning = highest, True
-        self.surface_speed = speed * SURFACE_WORDS[said]
+        self.surface_speed = speed * SURFACE_WORDS[unit_word]
 
     def coolnt(self, line: int, rest: str) -> None:
         if rest not in ("FLOOD", "MIST", "OFF", "ON"):
@@ -244,16 +244,16 @@ class _Reader:
 
     def fedrat(self, line: int, rest: str) -> None:
         words = [w for w in rest.split(",") if w not in FEED_WORDS]
-        said = [w for w in rest.split(",") if w in FEED_WORDS]
+        unit_word = [w for w in rest.split(",") if w in FEED_WORDS]
         known = [w for w, (unit, _) in FEED_WORDS.items() if unit == self.scale(line)]
-        if len(words) != 1 or len(said) > 1 or not set(said) <= set(known):
+        if len(words) != 1 or len(unit_word) > 1 or not set(unit_word) <= set(known):
             raise BadInput(
                 f"line {line}: FEDRAT/{shown(rest)} is not understood; write FEDRAT/feed,{known[0]}"
             )
         feed = self.numbers(line, words[0], 1)[0]
         if feed <= 0.0:
             raise BadInput(f"line {line}: the feed must be above zero")
-        self.feed_mode = FEED_WORDS[said[0]][1] if said else FeedMode.MINUTE
+        self.feed_mode = FEED_WORDS[unit_word[0]][1] if unit_word else FeedMode.MINUTE
         by_revolution = self.feed_mode is FeedMode.REVOLUTION
         (FEED_PER_REVOLUTION if by_revolution else FEED).check(line, "FEDRAT ", feed)
         self.feed, self.rapid = feed * self.unit, False
@@ -311,16 +311,16 @@ class _Reader:
             line, motion, point, centre, self.pace(line, point[0]), tool, self.cutting()
         )
 
-    def axis(self, line: int, said: list[float]) -> tuple[float, ...]:
+    def axis(self, line: int, numbers: list[float]) -> tuple[float, ...]:
         """Return the unit tool axis that a GOTO says: z where it says none or three axes are on; raise `BadInput` for what can't be."""
-        if not said:
+        if not numbers:
             return _UP
-        length = math.hypot(*said)
+        length = math.hypot(*numbers)
         if abs(length - 1.0) > _UNIT:
             raise BadInput(
                 f"line {line}: the tool axis has the length {length:.4f}; it must be a unit vector"
             )
-        axis = tuple(v / length for v in said)
+        axis = tuple(v / length for v in numbers)
         if math.hypot(*axis[:2]) <= tolerance.PARAMETRIC and axis[2] > 0.0:
             return _UP
         if not self.leans:

@@ -68,9 +68,9 @@ class WrittenState:
             parts += [plane.centres[0] + text(i), plane.centres[1] + text(j)]
         if minutes > 0.0:
             parts.append("F" + inverse_time(minutes))
-        elif fed and (said := self.feed_text(feed, point[plane.radial])) != self.feed:
-            parts.append("F" + said)
-            self.feed = said
+        elif fed and (feed_words := self.feed_text(feed, point[plane.radial])) != self.feed:
+            parts.append("F" + feed_words)
+            self.feed = feed_words
         self.at, self.angle, self.motion = (point[0], point[1], point[2]), angle, motion
         return " ".join(parts)
 

@@ -194,7 +194,10 @@ def _axis_form(
         raise Refused(
             f"{words.title} has no words for the rotary axes of {work_position.machine.title}; choose another control or machine"
         )
-    straying = PathTolerance(feed=settings.straying, rapid=settings.rapid_straying)
+    path_tolerance = PathTolerance(feed=settings.straying, rapid=settings.rapid_straying)
     return JointForm(
-        work_position=work_position, scale=scale, degrees=degrees_of(words), straying=straying
+        work_position=work_position,
+        scale=scale,
+        degrees=degrees_of(words),
+        path_tolerance=path_tolerance,
     )

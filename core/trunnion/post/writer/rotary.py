@@ -69,7 +69,7 @@ class JointForm:
     work_position: WorkPosition
     scale: TickScale
     degrees: TickScale
-    straying: PathTolerance
+    path_tolerance: PathTolerance
 
     @property
     def letters(self) -> str:
@@ -80,13 +80,13 @@ class JointForm:
         self, section: ProgramSection, angle: list[int] | None, goes_on: bool
     ) -> tuple[WrittenPath, Floats]:
         """See `AxisForm`."""
-        stand = None if angle is None else self.radians(np.array(angle))
+        start_angle = None if angle is None else self.radians(np.array(angle))
         joints = joint_path(
             section.path,
             section.cutter,
             self.work_position,
-            stand,
-            self.straying,
+            start_angle,
+            self.path_tolerance,
             section.operation,
         )
         moved = Toolpath(

@@ -87,8 +87,8 @@ def _on_wall(graph: FaceGraph, turned: Bools) -> Bools:
         border, mine = [remaining.pop()], []
         while border:
             mine.append(border.pop())
-            beside = remaining.intersection(graph.neighbours(mine[-1]))
-            remaining -= beside
-            border += beside
+            adjacent = remaining.intersection(graph.neighbours(mine[-1]))
+            remaining -= adjacent
+            border += adjacent
         found[mine] = float(graph.area[mine].sum()) <= ON_WALL * whole
     return found

@@ -76,7 +76,7 @@ class SurfaceFamily:
             _feature(f"group-{k:02}", g, sizes, bends, settings) for k, g in enumerate(groups, 1)
         )
         apart = sliver | small
-        narrow = _told(
+        narrow = _findings(
             "surface.sliver",
             sizes,
             size,
@@ -84,7 +84,7 @@ class SurfaceFamily:
             "sliver_width",
             f"narrower than {sliver_width:.3g} mm on average",
         )
-        tiny = _told(
+        tiny = _findings(
             "surface.small",
             sizes,
             size,
@@ -160,7 +160,7 @@ def _feature(
     )
 
 
-def _told(
+def _findings(
     code: str, sizes: PatchSizes, size: Floats, rows: Bools, limit: str, words: str
 ) -> tuple[Finding, ...]:
     """Return what patches join no group, and why: how many, how large across, and how much area; nothing when there are none."""

@@ -63,7 +63,7 @@ def from_curve(curve: ArrayLike, away: bool = True) -> AxisField:
 
 def interpolated(positions: ArrayLike, axes: ArrayLike) -> AxisField:
     """Return the field between chosen vectors: axes (m, 3) at positions (m, 3), weighed by the inverse square of the distance to each."""
-    where, chosen = (
+    where, directions = (
         np.asarray(positions, dtype=np.float64).reshape(-1, 3),
         unit(axes, "tool axis").reshape(-1, 3),
     )
@@ -71,13 +71,13 @@ def interpolated(positions: ArrayLike, axes: ArrayLike) -> AxisField:
     def field(point: Floats, normal: Floats, feed: Floats) -> Floats:
         away = np.linalg.norm(point[:, None] - where[None], axis=2)
         weight = 1.0 / np.maximum(away, _AT_VECTOR) ** 2
-        mean = (weight / weight.sum(axis=1, keepdims=True)) @ chosen
+        mean = (weight / weight.sum(axis=1, keepdims=True)) @ directions
         size = np.linalg.norm(mean, axis=1, keepdims=True)
         # Vectors that cancel each other say nothing: the nearest one counts.
         return np.where(
             size > math.sqrt(_AT_VECTOR),
             mean / np.maximum(size, _AT_VECTOR),
-            chosen[np.argmin(away, axis=1)],
+            directions[np.argmin(away, axis=1)],
         )
 
     return field

@@ -107,23 +107,23 @@ def free_axes(
     passes: Sequence[Contacts],
     field: AxisField,
     tool: Tool,
-    ask: ClearanceQuery | None,
+    query: ClearanceQuery | None,
     limits: LeanLimits,
     allowance: float = 0.0,
     progress: Progress = QUIET,
 ) -> list[FreeAxes]:
     """Return the free axes of contact passes, as near as can be to what a field wants.
 
-    `ask` says what is free; without it only the limits count. `allowance`: mm that the cutter keeps from the contacts.
+    `query` says what is free; without it only the limits count. `allowance`: mm that the cutter keeps from the contacts.
     """
-    return AxisSearch(passes, field, tool, ask, limits, allowance).courses(progress)
+    return AxisSearch(passes, field, tool, query, limits, allowance).found_axes(progress)
 
 
 def leaned(
     passes: Sequence[Pass],
     tool: Tool,
     field: AxisField,
-    ask: ClearanceQuery | None,
+    query: ClearanceQuery | None,
     limits: LeanLimits,
     chord: float,
     progress: Progress = QUIET,
@@ -141,7 +141,7 @@ def leaned(
     for origin, contacts, free in zip(
         some,
         contact_lines,
-        free_axes(contact_lines, field, tool, ask, limits, 0.0, progress),
+        free_axes(contact_lines, field, tool, query, limits, 0.0, progress),
         strict=True,
     ):
         centre = origin.tip + radius * origin.axis
@@ -178,14 +178,14 @@ def leaned_by(
     both are 0. Raises `Refused` for a cutter that is no ball and where no tool may lean."""
     if lead == 0.0 and tilt == 0.0:
         return list(passes), ()
-    if drive.ask is None:
+    if drive.query_for is None:
         raise Refused(f"{drive.feature}: a lead or tilt angle needs a machine with rotary axes")
     if tool.corner_radius < tool.radius:
         raise Refused(
             f"{tool.name}: only passes of a ball keep their place when it leans; choose a ball, or point milling"
         )
     found = leaned(
-        passes, tool, leaning(lead, tilt), drive.ask(tool), LeanLimits(), chord, progress
+        passes, tool, leaning(lead, tilt), drive.query_for(tool), LeanLimits(), chord, progress
     )
     whole, done = (
         sum(
@@ -207,13 +207,13 @@ def leaned_by(
     )
 
 
-def roomy(tool: Tool, room: float) -> Tool:
+def thickened(tool: Tool, clearance: float) -> Tool:
     """Return a tool whose neck, shank and holder are thicker by a room in mm; its cutting part stays as it is."""
-    rows = tuple((z0, r0 + room, z1, r1 + room) for z0, r0, z1, r1 in tool.holder.rows)
+    rows = tuple((z0, r0 + clearance, z1, r1 + clearance) for z0, r0, z1, r1 in tool.holder.rows)
     return replace(
         tool,
-        neck_diameter=tool.neck_diameter + 2.0 * room,
-        shank_diameter=tool.shank_diameter + 2.0 * room,
+        neck_diameter=tool.neck_diameter + 2.0 * clearance,
+        shank_diameter=tool.shank_diameter + 2.0 * clearance,
         holder=Holder(name=tool.holder.name, rows=rows),
     )
 
@@ -290,15 +290,15 @@ class AxisSearch:
         passes: Sequence[Contacts],
         field: AxisField,
         tool: Tool,
-        ask: ClearanceQuery | None,
+        query: ClearanceQuery | None,
         limits: LeanLimits,
         allowance: float = 0.0,
     ) -> None:
         self.samples = samples = _AxisSamples.of(passes, field, tool, limits, allowance)
-        self.tool, self.ask, self.limits = tool, ask, limits
+        self.tool, self.query, self.limits = tool, query, limits
         k = len(samples.position)
         self.axis, self.free, self.leap = np.zeros((k, 3)), np.zeros(k, bool), np.zeros(k, bool)
-        self.clear, self.chosen = np.zeros(k, bool), np.zeros(k, dtype=np.int64)
+        self.clear, self.column = np.zeros(k, bool), np.zeros(k, dtype=np.int64)
         # Whether a place has an answer of its own, and whether it takes a direction as asked, not eased.
         self.own, self.raw = np.zeros(k, bool), np.zeros(k, bool)
         self.dirty = np.ones(max(len(samples.start) - 1, 0), bool)
@@ -316,11 +316,11 @@ class AxisSearch:
 
     def _held(self) -> Bools:
         point = _sphere()[0]
-        if self.ask is None or not len(self.samples.position):
+        if self.query is None or not len(self.samples.position):
             return np.ones(len(point), bool)
-        return self.ask(self.samples.point.mean(axis=0) + AWAY * point, point)
+        return self.query(self.samples.point.mean(axis=0) + AWAY * point, point)
 
-    def courses(self, progress: Progress = QUIET) -> list[FreeAxes]:
+    def found_axes(self, progress: Progress = QUIET) -> list[FreeAxes]:
         """Return the courses of all passes."""
         for n in range(ROUNDS):
             progress.at(n / ROUNDS, "Leaning the tool clear")
@@ -365,24 +365,27 @@ class AxisSearch:
         normal, allowed = self.samples.normal[rows], self.table[self.row[rows]]
         upright = normal @ point.T >= math.cos(self.limits.steepest)
         # The normal may turn away between two places: half the way to the next ones is kept in sight too.
-        for beside in (np.vstack([normal[1:], normal[-1:]]), np.vstack([normal[:1], normal[:-1]])):
-            upright &= (normal + beside) @ point.T >= math.cos(
+        for neighbour in (
+            np.vstack([normal[1:], normal[-1:]]),
+            np.vstack([normal[:1], normal[:-1]]),
+        ):
+            upright &= (normal + neighbour) @ point.T >= math.cos(
                 self.limits.steepest
-            ) * np.linalg.norm(normal + beside, axis=1)[:, None]
+            ) * np.linalg.norm(normal + neighbour, axis=1)[:, None]
         allowed = allowed & upright
         off = np.arccos(np.clip(self.samples.wanted[rows] @ point.T, -1.0, 1.0))
         taken = 1.0 - _share_near(allowed, near)
         cost = np.where(allowed, (off * off + RIM * taken) * pitch, np.inf)
-        chosen, leap = least_cost_path(cost, near, STIFFNESS**2 * turn**2 / pitch, LEAP)
-        self.free[rows], self.leap[rows] = chosen >= 0, leap
+        column, leap = least_cost_path(cost, near, STIFFNESS**2 * turn**2 / pitch, LEAP)
+        self.free[rows], self.leap[rows] = column >= 0, leap
         # The direction next to the wanted axis stands for it.
-        near_wanted = off[np.arange(len(chosen)), chosen] < STEP
+        near_wanted = off[np.arange(len(column)), column] < STEP
         axis = np.where(
-            (near_wanted & ~self.raw[rows])[:, None], self.samples.wanted[rows], point[chosen]
+            (near_wanted & ~self.raw[rows])[:, None], self.samples.wanted[rows], point[column]
         )
-        axis = self._eased(rows, axis, chosen >= 0, leap)
+        axis = self._eased(rows, axis, column >= 0, leap)
         self.clear[rows] &= (axis == self.axis[rows]).all(axis=1)
-        self.axis[rows], self.chosen[rows] = axis, chosen
+        self.axis[rows], self.column[rows] = axis, column
 
     def _eased(self, rows: slice, axis: Floats, free: Bools, leap: Bools) -> Floats:
         """Return a course's axes eased, run by run, as far as they stay within the steepest lean."""
@@ -394,17 +397,17 @@ class AxisSearch:
             out[a:b] = eased(axis[a:b], EASING) if free[a] else axis[a:b]
         steep = (out * self.samples.normal[rows]).sum(axis=1) < math.cos(self.limits.steepest)
         raw = (self.raw[rows] | steep) & free
-        beside = (np.append(raw[1:], False) | np.append(False, raw[:-1])) & ~raw
-        out[beside] = slerp(out[beside], axis[beside], np.full(int(beside.sum()), 0.5))
+        neighbour = (np.append(raw[1:], False) | np.append(False, raw[:-1])) & ~raw
+        out[neighbour] = slerp(out[neighbour], axis[neighbour], np.full(int(neighbour.sum()), 0.5))
         return np.where(raw[:, None], axis, out)
 
     def _touching(self, rows: Ints) -> Ints:
         """Return those of some rows whose axes touch something."""
-        if self.ask is None:
+        if self.query is None:
             return rows[:0]
         p = self.samples
         return rows[
-            ~self.ask(
+            ~self.query(
                 tip_at(self.tool, p.point[rows], p.normal[rows], self.axis[rows]), self.axis[rows]
             )
         ]
@@ -414,7 +417,7 @@ class AxisSearch:
         asked takes its directions as they are, and strikes out the one that failed."""
         k, owner = len(self.row), np.repeat(np.arange(len(self.dirty)), np.diff(self.samples.start))
         struck = met[self.own[met]]
-        self.table[self.row[struck[self.raw[struck]]], self.chosen[struck[self.raw[struck]]]] = (
+        self.table[self.row[struck[self.raw[struck]]], self.column[struck[self.raw[struck]]]] = (
             False
         )
         self.raw[struck] = True
@@ -422,7 +425,9 @@ class AxisSearch:
         around = np.unique(np.clip(met[:, None] + np.arange(-AHEAD, AHEAD + 1), 0, k - 1))
         shared = np.unique(self.node[around[self.row[around] == 0]])
         base = len(self.table)
-        self.table = np.vstack([self.table, self._asked(np.concatenate([self.first[shared], own]))])
+        self.table = np.vstack(
+            [self.table, self._queried(np.concatenate([self.first[shared], own]))]
+        )
         of_node = np.full(int(self.node.max(initial=-1)) + 1, -1, dtype=np.int64)
         of_node[shared] = base + np.arange(len(shared))
         new = (of_node[self.node] >= 0) & (self.row == 0)
@@ -432,9 +437,9 @@ class AxisSearch:
         new[own] = new[struck] = True
         self.dirty[np.unique(owner[new])] = True
 
-    def _asked(self, rows: Ints) -> Bools:
+    def _queried(self, rows: Ints) -> Bools:
         """Return which directions (k, m) are free at some places: the coarse ones as asked, one between two of them where both are."""
-        if self.ask is None:
+        if self.query is None:
             return np.repeat(self.table[:1], len(rows), axis=0)
         point, parents = directions(FINE)
         coarse = len(directions(COARSE)[0])
@@ -444,7 +449,7 @@ class AxisSearch:
         ) & self.table[0, :coarse]
         which, column = np.nonzero(able)
         at, axis = rows[which], point[column]
-        free[which, column] = self.ask(tip_at(self.tool, p.point[at], p.normal[at], axis), axis)
+        free[which, column] = self.query(tip_at(self.tool, p.point[at], p.normal[at], axis), axis)
         free[:, coarse:] = (
             free[:, parents[coarse:, 0]] & free[:, parents[coarse:, 1]] & self.table[0, coarse:]
         )

@@ -23,7 +23,7 @@ from trunnion.progress import QUIET, Progress
 from trunnion.toolpath.contact_passes.contacts import Contacts
 from trunnion.toolpath.contact_passes.guides import (
     Guides,
-    guides_beside,
+    adjacent_guides,
     guides_of,
     holes_of,
     tags_named,
@@ -98,7 +98,7 @@ def _guides(sheet: Sheet, drive: SurfaceDrive, flow: FlowParameters) -> Guides:
     first, second = tags_named(flow.first_guide), tags_named(flow.second_guide)
     if bool(first) != bool(second):
         raise BadInput("flow lines need both guides, or none of them to have them chosen")
-    return guides_beside(sheet, drive.skin, first, second) if first else guides_of(sheet)
+    return adjacent_guides(sheet, drive.skin, first, second) if first else guides_of(sheet)
 
 
 def _lines(metric: Metric, guides: Guides, spiral: bool, progress: Progress) -> list[SheetLine]:

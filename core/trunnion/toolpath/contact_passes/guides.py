@@ -76,17 +76,18 @@ def guides_of(sheet: Sheet) -> Guides:
     return Guides(first=sides[i], second=sides[j], rings=False)
 
 
-def guides_beside(
+def adjacent_guides(
     sheet: Sheet, skin: Skin, first: tuple[int, ...], second: tuple[int, ...]
 ) -> Guides:
     """Return the guides along which a sheet meets faces (tags) of the skin; raise `BadInput` where it does not."""
     rims = sheet.rims()
     found = []
     for tags in (first, second):
-        beside = [
-            rim[_beside(sheet.points[rim], skin, skin.triangles[skin.of(tags)])] for rim in rims
+        rim_rows = [
+            rim[_on_triangles(sheet.points[rim], skin, skin.triangles[skin.of(tags)])]
+            for rim in rims
         ]
-        rows = np.concatenate([np.zeros(0, np.int64), *beside])
+        rows = np.concatenate([np.zeros(0, np.int64), *rim_rows])
         if len(rows) < 2:
             raise BadInput(
                 f"no rim of the area lies along {', '.join(f'face {t}' for t in tags)}: name faces next to it as guides"
@@ -96,7 +97,7 @@ def guides_beside(
     return Guides(**_apart(found[0], found[1]), rings=rings)
 
 
-def _beside(rim: Floats, skin: Skin, triangles: Ints) -> Bools:
+def _on_triangles(rim: Floats, skin: Skin, triangles: Ints) -> Bools:
     """Say which points (k,) of a rim lie on triangles (t, 3) of a skin: on a point of these, or between two that one of their sides
     joins."""
     used = np.unique(triangles)

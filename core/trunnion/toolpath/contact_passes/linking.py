@@ -40,7 +40,7 @@ LIFT_STEP = 0.02
 """mm: the difference of what two neighbours on a lead are lifted by, from which on the lead is left out."""
 SAME = 1e-9
 """Two directions that differ by less are one."""
-SWING = math.cos(math.radians(60.0))
+REORIENT = math.cos(math.radians(60.0))
 """The least part along z of an axis that may turn on its way over the work; a tool that leans more is set upright before."""
 
 
@@ -68,18 +68,20 @@ def linked(
     data: CuttingData,
     stock: PlanningStock,
     setup: Setup,
-    manner: LinkParameters,
+    parameters: LinkParameters,
     progress: Progress = QUIET,
 ) -> Toolpath:
     """Return the toolpath that cuts all passes, in the cutting frame; it begins and ends at the setup's clearance height."""
     passes = [p for p in passes if len(p) > 1]
     if not passes:
         return EMPTY
-    passes = _ordered(passes, manner, progress.part(0.0, 0.2))
-    near = _near(passes, manner)
-    leads_in, leads_out, has_room = _leads(passes, drive, tool, manner, progress.part(0.2, 0.4))
-    if manner.arcs:
-        near &= has_room
+    passes = _ordered(passes, parameters, progress.part(0.0, 0.2))
+    near = _near(passes, parameters)
+    leads_in, leads_out, has_links = _leads(
+        passes, drive, tool, parameters, progress.part(0.2, 0.4)
+    )
+    if parameters.arcs:
+        near &= has_links
         links = iter(
             [
                 np.vstack([leads_out[k], leads_in[k + 1], passes[k + 1].tip[:1]])
@@ -87,8 +89,8 @@ def linked(
             ]
         )
     else:
-        links = iter(_links(passes, near, drive, tool, manner, progress.part(0.4, 0.9)))
-    blocks = _Blocks(tool, data, stock, setup, drive, manner.safety)
+        links = iter(_links(passes, near, drive, tool, parameters, progress.part(0.4, 0.9)))
+    blocks = _Blocks(tool, data, stock, setup, drive, parameters.safety)
     for k, one in enumerate(passes):
         progress.at(0.9 + 0.1 * k / len(passes), "Linking passes")
         if k and near[k - 1]:
@@ -127,7 +129,7 @@ class _Blocks:
 
     @property
     def axis(self) -> Floats:
-        """How the tool stands (3,)."""
+        """How the tool is_upright (3,)."""
         return self._parts[-1][1][-1]
 
     def feed(self, tips: Floats, axis: Floats, mark: Mark) -> None:
@@ -145,7 +147,7 @@ class _Blocks:
         else:
             if self._parts:
                 self._leave()
-                if min(self.axis[2], axis[2]) < SWING:
+                if min(self.axis[2], axis[2]) < REORIENT:
                     self._rapid(self.here, UPRIGHT)
                     self._rapid(np.append(stops[-1][:2], self.here[2]), UPRIGHT)
             for stop in stops[::-1]:
@@ -205,16 +207,16 @@ class _Blocks:
             + self._air.safety
         )
         wall = np.where(axis[:2] > 0.0, self._drive.high[:2] + aside, self._drive.low[:2] - aside)
-        beside = np.divide(
+        to_wall = np.divide(
             wall - here[:2], axis[:2], out=np.full(2, math.inf), where=axis[:2] != 0.0
         ).min()
-        if axis[2] >= SWING or up <= beside:
+        if axis[2] >= REORIENT or up <= to_wall:
             return [here + up * axis]
-        if beside == math.inf:
+        if to_wall == math.inf:
             raise Refused(
                 f"{self._drive.feature}: a tool that points straight up can't be brought to the part"
             )
-        stop = here + max(beside, 0.0) * axis
+        stop = here + max(to_wall, 0.0) * axis
         return [stop, np.append(stop[:2], max(height, stop[2]))]
 
     def _rapid(self, position: Floats, axis: Floats) -> None:
@@ -253,14 +255,16 @@ def _goes(position: Floats, axis: Floats) -> Bools:
         kept[rows[1:][still]] = False
 
 
-def _ordered(passes: Sequence[Pass], manner: LinkParameters, progress: Progress) -> list[Pass]:
+def _ordered(passes: Sequence[Pass], parameters: LinkParameters, progress: Progress) -> list[Pass]:
     """Return the passes in the order they are cut, closed ones begun where they come nearest to the end of the one before."""
-    if manner.order == "nearest":
-        passes = _nearest(passes, manner.reversing, progress)
+    if parameters.order == "nearest":
+        passes = _nearest(passes, parameters.reversing, progress)
     out: list[Pass] = []
     for one in passes:
         if one.closed:
-            one = _overlapped(_begun(one, out[-1].tip[-1] if out else one.tip[0]), manner.overlap)
+            one = _overlapped(
+                _begun(one, out[-1].tip[-1] if out else one.tip[0]), parameters.overlap
+            )
         out.append(one)
     return out
 
@@ -307,14 +311,14 @@ def _overlapped(one: Pass, overlap: float) -> Pass:
     return Pass(tip=tip, axis=unit(axis), normal=normal)
 
 
-def _near(passes: Sequence[Pass], manner: LinkParameters) -> Bools:
+def _near(passes: Sequence[Pass], parameters: LinkParameters) -> Bools:
     """Say of each pass but the last whether the next one is reached without lifting."""
     ends, starts = (
         np.array([p.tip[-1] for p in passes[:-1]]).reshape(-1, 3),
         np.array([p.tip[0] for p in passes[1:]]).reshape(-1, 3),
     )
     turned = np.array([np.abs(a.axis[-1] - b.axis[0]).max() for a, b in pairwise(passes)])
-    near = np.linalg.norm(starts - ends, axis=1) <= NEAR * manner.stepover
+    near = np.linalg.norm(starts - ends, axis=1) <= NEAR * parameters.stepover
     return np.asarray(near & (turned < SAME))
 
 
@@ -323,7 +327,7 @@ def _links(
     near: Bools,
     drive: SurfaceDrive,
     tool: Tool,
-    manner: LinkParameters,
+    parameters: LinkParameters,
     progress: Progress,
 ) -> list[Floats]:
     """Return the ways over the surface (k, 3) from the ends of near passes to the next ones: straight, lifted where that would gouge.
@@ -339,13 +343,13 @@ def _links(
             drive.skin.drop,
             lower_side(tool, drive.allowance),
             [c[:, :2] for c, up in zip(chords, upright) if up],
-            manner.chord,
+            parameters.chord,
             lowest,
             progress,
         )
     )
     return [
-        _bridged(next(over), chord, drive.allowance, manner.chord) if up else chord
+        _bridged(next(over), chord, drive.allowance, parameters.chord) if up else chord
         for chord, up in zip(chords, upright)
     ]
 
@@ -367,7 +371,7 @@ def _leads(
     passes: Sequence[Pass],
     drive: SurfaceDrive,
     tool: Tool,
-    manner: LinkParameters,
+    parameters: LinkParameters,
     progress: Progress,
 ) -> tuple[Floats, Floats, Bools]:
     """Return the links (m, k, 3) onto all passes, up to the first tip, and off them, after the last: quarter circles, lifted where they
@@ -377,19 +381,19 @@ def _leads(
         np.array([_off(p.tip, p.axis[0]) for p in passes]),
         np.array([p.normal[0] for p in passes]),
         np.array([p.axis[0] for p in passes]),
-        manner.lead_radius,
+        parameters.lead_radius,
     )[:, ::-1]
-    going = _arcs(
+    leaving = _arcs(
         np.array([p.tip[-1] for p in passes]),
         np.array([_off(p.tip[::-1], p.axis[-1]) for p in passes]),
         np.array([p.normal[-1] for p in passes]),
         np.array([p.axis[-1] for p in passes]),
-        manner.lead_radius,
+        parameters.lead_radius,
     )
     upright = np.array([[_is_upright(p.axis[row]) for p in passes] for row in (0, -1)])
     share = np.linspace(0.0, 1.0, BETWEEN)[:, None]
-    between = going[:-1, -1:] + share * (coming[1:, :1] - going[:-1, -1:])
-    links = (coming, going, between)
+    between = leaving[:-1, -1:] + share * (coming[1:, :1] - leaving[:-1, -1:])
+    links = (coming, leaving, between)
     flat = np.concatenate([w.reshape(-1, 3) for w in links])
     floor = drive.skin.drop.drop(
         flat[:, :2],
@@ -404,28 +408,28 @@ def _leads(
             np.split(lift, np.cumsum([w[..., 0].size for w in links])[:-1]), links, strict=True
         )
     ]
-    for arcs, up, stands, nearest, row in zip(
-        (coming, going), lifts, upright, (-1, 0), (0, -1), strict=False
+    for arcs, up, is_upright, nearest, row in zip(
+        (coming, leaving), lifts, upright, (-1, 0), (0, -1), strict=False
     ):
-        arcs[:, :, 2] += np.where(stands[:, None], up, 0.0)
+        arcs[:, :, 2] += np.where(is_upright[:, None], up, 0.0)
         # Lifted unevenly an arc runs along something steep, which its chords would enter: the tool then comes and goes along its axis.
-        uneven = stands & (
+        uneven = is_upright & (
             np.abs(np.diff(up, axis=1)).max(axis=1, initial=0.0) + up[:, nearest] > LIFT_STEP
         )
         tips = np.array([p.tip[row] for p in passes])[uneven]
-        rise = np.arange(1, QUARTER + 1) * (manner.lead_radius / QUARTER)
+        rise = np.arange(1, QUARTER + 1) * (parameters.lead_radius / QUARTER)
         arcs[uneven] = (
             tips[:, None] + (rise if nearest == 0 else rise[::-1])[None, :, None] * UPRIGHT
         )
-    has_room = (lifts[0][1:].max(axis=1, initial=0.0) <= manner.chord) & (
-        lifts[1][:-1].max(axis=1, initial=0.0) <= manner.chord
+    has_links = (lifts[0][1:].max(axis=1, initial=0.0) <= parameters.chord) & (
+        lifts[1][:-1].max(axis=1, initial=0.0) <= parameters.chord
     )
     return (
         coming,
-        going,
+        leaving,
         np.asarray(
-            has_room
-            & (lifts[2].max(axis=1, initial=0.0) <= manner.chord)
+            has_links
+            & (lifts[2].max(axis=1, initial=0.0) <= parameters.chord)
             & upright[1, :-1]
             & upright[0, 1:]
         ),

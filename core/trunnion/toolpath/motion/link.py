@@ -95,7 +95,7 @@ def travel(builder: PathBuilder, position: ArrayLike, z: float) -> None:
 
 
 def step_aside(
-    builder: PathBuilder, tangent: ArrayLike, room: AxisRegion, mark: Mark = Mark.LEAD
+    builder: PathBuilder, tangent: ArrayLike, axis_region: AxisRegion, mark: Mark = Mark.LEAD
 ) -> None:
     """Leave the wall on the right: feed a little to the left of the direction just cut, where there is room."""
     if builder.here is None:
@@ -104,7 +104,7 @@ def step_aside(
     left = np.array([-t[1], t[0]])
     for share in (1.0, 0.5):
         to = builder.here[:2] + share * ASIDE * left
-        if room.holds_line(builder.here[:2], to):
+        if axis_region.holds_line(builder.here[:2], to):
             builder.line((to[0], to[1], builder.here[2]), builder.data.feed, mark)
             return
 

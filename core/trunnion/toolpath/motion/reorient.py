@@ -28,7 +28,7 @@ Pose = tuple[Floats, Floats]
 
 
 @dataclass(frozen=True, slots=True, eq=False, kw_only=True)
-class SwingSphere:
+class ClearanceSphere:
     """The sphere that a turning tool stays out of: `centre` (3,) and `radius` mm, in the setup frame."""
 
     centre: Floats
@@ -40,7 +40,7 @@ class SwingSphere:
         return np.asarray(tip + max(out, 0.0) * axis)
 
 
-def swing_of(blank: Blank, setup: Setup) -> SwingSphere:
+def clearance_sphere(blank: Blank, setup: Setup) -> ClearanceSphere:
     """Return the sphere round the blank and the fixtures of a setup, as far from them as the clearance height is from the blank."""
     corners = blank.corners(setup.frame)
     safe = max(setup.clearance - float(corners[:, 2].max()), LEAST_SAFE)
@@ -56,10 +56,10 @@ def swing_of(blank: Blank, setup: Setup) -> SwingSphere:
     )
     centre = 0.5 * (corners.min(axis=0) + corners.max(axis=0))
     radius = float(np.linalg.norm(points - centre, axis=1).max()) + safe
-    return SwingSphere(centre=centre, radius=radius / math.cos(0.5 * STEP))
+    return ClearanceSphere(centre=centre, radius=radius / math.cos(0.5 * STEP))
 
 
-def moved_over(path: Toolpath, before: Pose | None, swing: SwingSphere) -> Toolpath:
+def moved_over(path: Toolpath, before: Pose | None, sphere: ClearanceSphere) -> Toolpath:
     """Return a path with the rapids in front that bring the tool safely to its first pose.
 
     `before` is the pose that the tool was left in, or None when it comes from its change: then it comes in along its axis from outside the
@@ -70,7 +70,7 @@ def moved_over(path: Toolpath, before: Pose | None, swing: SwingSphere) -> Toolp
     tip, axis = path.position[0], path.axis[0]
     upright = float(np.linalg.norm(axis - np.array([0.0, 0.0, 1.0]))) <= tolerance.PARAMETRIC
     if before is None:
-        return path if upright else _led([(swing.above(tip, axis), axis)], path)
+        return path if upright else _led([(sphere.above(tip, axis), axis)], path)
     start, direction = np.asarray(before[0]), np.asarray(before[1])
     if float(np.linalg.norm(axis - direction)) <= tolerance.PARAMETRIC:
         return path
@@ -79,14 +79,15 @@ def moved_over(path: Toolpath, before: Pose | None, swing: SwingSphere) -> Toolp
         # Lower than either end a machine may not lean: over the top instead.
         upright_axis = np.array([0.0, 0.0, 1.0])
         turned = np.vstack([turn(direction, upright_axis), turn(upright_axis, axis)[1:]])
-    around = [(swing.centre + swing.radius * a, a) for a in turned]
+    around = [(sphere.centre + sphere.radius * a, a) for a in turned]
     return _led(
-        [(swing.above(start, direction), direction), *around, (swing.above(tip, axis), axis)], path
+        [(sphere.above(start, direction), direction), *around, (sphere.above(tip, axis), axis)],
+        path,
     )
 
 
 def joined(
-    paths: Sequence[Toolpath], changes: Sequence[bool], swing: SwingSphere
+    paths: Sequence[Toolpath], changes: Sequence[bool], sphere: ClearanceSphere
 ) -> tuple[Toolpath, ...]:
     """Return paths that are cut one after the other, each led from where the one before has left the tool.
 
@@ -95,7 +96,7 @@ def joined(
     led: list[Toolpath] = []
     before: Pose | None = None
     for path, change in zip(paths, changes, strict=True):
-        led.append(moved_over(path, None if change else before, swing))
+        led.append(moved_over(path, None if change else before, sphere))
         if len(path):
             before = (path.position[-1], path.axis[-1])
     return tuple(led)

@@ -27,8 +27,8 @@ GRID = 24
 """Places along each side of a box that are tried for the deepest place of a room."""
 
 
-def deepest_position(area: AxisRegion, room: AxisRegion) -> tuple[Floats, float]:
-    """Return the place (2,) in `area` that is deepest inside `room`, and how deep it is there."""
+def deepest_position(area: AxisRegion, axis_region: AxisRegion) -> tuple[Floats, float]:
+    """Return the place (2,) in `area` that is deepest inside `axis_region`, and how deep it is there."""
     low, high = area.region.box()
     best, depth = 0.5 * (low + high), -math.inf
     for _ in range(2):
@@ -36,7 +36,7 @@ def deepest_position(area: AxisRegion, room: AxisRegion) -> tuple[Floats, float]
             np.linspace(low[0], high[0], GRID), np.linspace(low[1], high[1], GRID), indexing="ij"
         )
         points = np.stack([x.ravel(), y.ravel()], axis=1)
-        found = np.where(area.depth(points) >= 0.0, room.depth(points), -math.inf)
+        found = np.where(area.depth(points) >= 0.0, axis_region.depth(points), -math.inf)
         row = int(np.argmax(found))
         if found[row] > depth:
             best, depth = points[row], float(found[row])

@@ -52,12 +52,12 @@ def lead_out(point: Floats, tangent: Floats, radius: float) -> Lead:
 
 
 def fitting_lead(
-    point: Floats, tangent: Floats, radius: float, room: AxisRegion, *, leaves: bool
+    point: Floats, tangent: Floats, radius: float, axis_region: AxisRegion, *, leaves: bool
 ) -> Lead | None:
     """Return the largest lead up to `radius` that stays in the room, or None."""
     for share in SHARES:
         lead = (lead_out if leaves else lead_in)(point, tangent, share * radius)
-        if room.holds(_arc_points(lead, point)):
+        if axis_region.holds(_arc_points(lead, point)):
             return lead
     return None
 
@@ -66,7 +66,7 @@ def cut_closed(
     builder: PathBuilder,
     loop: Curve,
     z: float,
-    room: AxisRegion,
+    axis_region: AxisRegion,
     feed: float,
     *,
     radius: float,
@@ -78,7 +78,7 @@ def cut_closed(
     The best start has room for the largest lead, in a place that is certainly free, in the middle of a long straight. Say whether
     a lead was found that begins in the room and in no full material; nothing is cut otherwise.
     """
-    start = _best_start(builder, loop, z, room, radius)
+    start = _best_start(builder, loop, z, axis_region, radius)
     if start is None:
         return False
     s, lead = start
@@ -92,7 +92,7 @@ def cut_closed(
         over = loop.split(s, s + min(overlap, 0.5 * loop.length))
         builder.curve(over, z, feed)
         last, tangent = loop.at(s + over.length)
-    leave(builder, fitting_lead(last, tangent, lead.radius, room, leaves=True), z, feed)
+    leave(builder, fitting_lead(last, tangent, lead.radius, axis_region, leaves=True), z, feed)
     return True
 
 
@@ -119,26 +119,26 @@ def start_positions(loop: Curve) -> list[float]:
 
 
 def from_free(
-    builder: PathBuilder, lead: Lead, tangent: Floats, z: float, room: AxisRegion
+    builder: PathBuilder, lead: Lead, tangent: Floats, z: float, axis_region: AxisRegion
 ) -> tuple[Lead, bool]:
     """Return a lead that begins where no material is, lengthened by a straight when that takes it there, and say whether it does."""
     for share in RUN_INS:
         before = lead.outside + share * builder.tool.radius * _left_normal(tangent)
-        if is_free(builder, before, z) and room.holds_line(before, lead.outside):
+        if is_free(builder, before, z) and axis_region.holds_line(before, lead.outside):
             return replace(lead, before=before), True
     return lead, False
 
 
 def _best_start(
-    builder: PathBuilder, loop: Curve, z: float, room: AxisRegion, radius: float
+    builder: PathBuilder, loop: Curve, z: float, axis_region: AxisRegion, radius: float
 ) -> tuple[float, Lead] | None:
     best: tuple[tuple[bool, float], float, Lead] | None = None
     for s in start_positions(loop):
         point, tangent = loop.at(s)
-        found = fitting_lead(point, tangent, radius, room, leaves=False)
+        found = fitting_lead(point, tangent, radius, axis_region, leaves=False)
         if found is None:
             continue
-        lead, free = from_free(builder, found, tangent, z, room)
+        lead, free = from_free(builder, found, tangent, z, axis_region)
         if not free and not may_plunge(builder, lead.before, z):
             continue
         worth = (free, lead.radius)

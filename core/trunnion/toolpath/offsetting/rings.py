@@ -43,14 +43,14 @@ def safe_step(tool: Tool, width: float, ridge: float = 0.0) -> float:
     return min(width, SAFE_SHARE * max(tool.radius - corner + at_ridge, 0.5 * tool.radius))
 
 
-def ring_tree(room: Region, step: float, clip: Region | None = None) -> tuple[OffsetRing, ...]:
+def ring_tree(region: Region, step: float, clip: Region | None = None) -> tuple[OffsetRing, ...]:
     """Return the rings of a room, a step apart; with a clip, only those that can touch it."""
     rim = (
         None
         if clip is None
         else _Clip(clip, tuple(points_along(c, CLIP_SPACING)[1] for c in clip.curves()))
     )
-    return tuple(_ring(piece, step, rim) for piece in room.split() if _touches(piece, rim))
+    return tuple(_ring(piece, step, rim) for piece in region.split() if _overlaps(piece, rim))
 
 
 def depth_first(rings: tuple[OffsetRing, ...]) -> Iterator[OffsetRing]:
@@ -70,10 +70,10 @@ class _Clip:
 
 def _ring(piece: Region, step: float, clip: _Clip | None) -> OffsetRing:
     inside = piece.offset(-step).split()
-    return OffsetRing(piece, tuple(_ring(p, step, clip) for p in inside if _touches(p, clip)))
+    return OffsetRing(piece, tuple(_ring(p, step, clip) for p in inside if _overlaps(p, clip)))
 
 
-def _touches(piece: Region, clip: _Clip | None) -> bool:
+def _overlaps(piece: Region, clip: _Clip | None) -> bool:
     """Say whether a piece has some of a clip's rim in it or lies inside the clip, as a closed space beside open ones does."""
     return (
         clip is None

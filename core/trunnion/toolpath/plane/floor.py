@@ -68,7 +68,7 @@ def floor(
 ) -> Planned:
     """Return the motions that finish every floor of the drive, from the highest down, and what they leave."""
     builder = PathBuilder(tool, data, stock, setup, settings.safety)
-    manner = ClearingParameters(
+    parameters = ClearingParameters(
         step=safe_step(tool, data.width),
         ramp=math.radians(settings.ramp_angle),
         slot=settings.slot_feed,
@@ -84,7 +84,7 @@ def floor(
             + foot_clearance(each.fillet, tool.corner_radius, 0.0)
         )
         passes = passes_over(
-            each.region, level.boundary, tool, distance, manner.step, mitred=each.fillet > 0.0
+            each.region, level.boundary, tool, distance, parameters.step, mitred=each.fillet > 0.0
         )
         if not passes.rings:
             findings.append(
@@ -100,11 +100,15 @@ def floor(
             continue
         clear(
             builder,
-            ClearingLayer(z=each.z, rings=passes.rings, room=passes.room, clip=passes.clip),
-            manner,
+            ClearingLayer(
+                z=each.z, rings=passes.rings, axis_region=passes.axis_region, clip=passes.clip
+            ),
+            parameters,
             progress,
         )
-        remaining = each.region.minus(passes.room.region.offset(distance + tolerance.SEW)).area
+        remaining = each.region.minus(
+            passes.axis_region.region.offset(distance + tolerance.SEW)
+        ).area
         if remaining > SMALLEST_LEFTOVER:
             findings.append(
                 info(

@@ -61,7 +61,7 @@ def rough(
 ) -> Planned:
     """Return the motions that clear every band of the drive layer by layer down to the floors' allowance, and what the cutter leaves."""
     builder = PathBuilder(tool, data, stock, setup, settings.safety)
-    manner = ClearingParameters(
+    parameters = ClearingParameters(
         step=safe_step(tool, data.width, RIDGE),
         ramp=math.radians(settings.ramp_angle),
         slot=settings.slot_feed * data.slot_share,
@@ -86,7 +86,7 @@ def rough(
                     level.boundary,
                     tool,
                     distance,
-                    manner.step,
+                    parameters.step,
                     mitred=drive.fillet > 0.0,
                 )
             passes = made[distance]
@@ -97,27 +97,27 @@ def rough(
                     ClearingLayer(
                         z=z,
                         rings=passes.rings,
-                        room=passes.room,
+                        axis_region=passes.axis_region,
                         clip=passes.clip,
                         top=known,
                         wanted=level.wanted,
                         worth=min(RIDGE, WORTH * (above - z)),
                     ),
-                    manner,
+                    parameters,
                     progress,
                 )
             above, first = z, False
-        if made and not made[max(made)].room.region:
+        if made and not made[max(made)].axis_region.region:
             findings.append(_too_wide(drive, level, tool))
         elif made:
             remaining.append(
-                (level, _remaining_area(level, max(made), made[max(made)].room.region))
+                (level, _remaining_area(level, max(made), made[max(made)].axis_region.region))
             )
     findings += _corners(
         drive, tool, [(level, area) for level, area in remaining if area >= SMALLEST_LEFTOVER]
     )
     return Planned(
-        path=eased(builder.finished(), tool, data, stock, manner.slot, progress),
+        path=eased(builder.finished(), tool, data, stock, parameters.slot, progress),
         findings=tuple(findings),
     )
 
@@ -157,9 +157,9 @@ def _too_wide(drive: PlaneDrive, level: DriveLevel, tool: Tool) -> Finding:
     )
 
 
-def _remaining_area(level: DriveLevel, distance: float, room: Region) -> float:
+def _remaining_area(level: DriveLevel, distance: float, region: Region) -> float:
     """Return the area in mm2 that a cutter leaves of what is wanted, its axis everywhere in a room that keeps a distance from the rim."""
-    return level.wanted.minus(room.offset(distance + tolerance.SEW)).area
+    return level.wanted.minus(region.offset(distance + tolerance.SEW)).area
 
 
 def _corners(

@@ -86,20 +86,20 @@ def wall(
         rounds=2 if settings.spring else 1,
     )
     findings: list[Finding] = []
-    rooms: dict[tuple[int, float, bool], AxisRegion] = {}
+    axis_regions: dict[tuple[int, float, bool], AxisRegion] = {}
     for n, guide in enumerate(drive.walls):
         found = False
         for z, extra in _heights(guide, tool, min(data.depth, tool.flute_length), settings.scallop):
             progress.at(n / len(drive.walls), f"{drive.feature}: wall at {z:.3f}")
             boundary = _off_other_feet(level_at(drive, z).boundary, drive, guide, tool, z)
             distance = tool.radius + drive.wall_allowance + extra
-            room = _room(
-                rooms, boundary, distance, mitred=guide.fillet > 0.0 and guide.curve.closed
+            axis_region = _axis_region(
+                axis_regions, boundary, distance, mitred=guide.fillet > 0.0 and guide.curve.closed
             )
-            parts = contour_parts(room, guide.curve, distance)
-            cut_parts(builder, parts, z, room, approach)
+            parts = contour_parts(axis_region, guide.curve, distance)
+            cut_parts(builder, parts, z, axis_region, approach)
             found = found or bool(parts)
-        findings += _remaining_findings(drive, guide, tool, found, rooms)
+        findings += _remaining_findings(drive, guide, tool, found, axis_regions)
     if settings.floor_rest:
         for each in drive.floors:
             progress.check()
@@ -137,8 +137,8 @@ def _off_other_feet(
         elif more > tolerance.COINCIDENT:
             islands = islands.union(Region.of([other.curve]).offset(more))
     if pocket > tolerance.COINCIDENT:
-        standing = _inside_of(w for w in (*drive.walls, *drive.beside) if w.is_around)
-        boundary = boundary.union(standing).offset(-pocket).minus(standing)
+        material_inside = _inside_of(w for w in (*drive.walls, *drive.beside) if w.is_around)
+        boundary = boundary.union(material_inside).offset(-pocket).minus(material_inside)
     return boundary.minus(islands) if islands else boundary
 
 
@@ -172,10 +172,17 @@ def _cut_floor_rest(
         tool.radius + drive.wall_allowance + foot_clearance(each.fillet, tool.corner_radius, 0.0)
     )
     level = level_at(drive, each.z)
-    room = AxisRegion.of(level.boundary, distance, mitred=each.fillet > 0.0 and is_closed(level))
+    axis_region = AxisRegion.of(
+        level.boundary, distance, mitred=each.fillet > 0.0 and is_closed(level)
+    )
     step = safe_step(tool, tool.radius)
     clip = rest.offset(step)
-    layer = ClearingLayer(z=each.z, rings=ring_tree(room.region, step, clip), room=room, clip=clip)
+    layer = ClearingLayer(
+        z=each.z,
+        rings=ring_tree(axis_region.region, step, clip),
+        axis_region=axis_region,
+        clip=clip,
+    )
     clear(builder, layer, ClearingParameters(step=step, ramp=approach.ramp, slot=1.0), progress)
 
 
@@ -206,17 +213,17 @@ def _heights(
     ]
 
 
-def _room(
-    rooms: dict[tuple[int, float, bool], AxisRegion],
+def _axis_region(
+    axis_regions: dict[tuple[int, float, bool], AxisRegion],
     boundary: Region,
     distance: float,
     *,
     mitred: bool = False,
 ) -> AxisRegion:
     key = (id(boundary), distance, mitred)
-    if key not in rooms:
-        rooms[key] = AxisRegion.of(boundary, distance, mitred=mitred)
-    return rooms[key]
+    if key not in axis_regions:
+        axis_regions[key] = AxisRegion.of(boundary, distance, mitred=mitred)
+    return axis_regions[key]
 
 
 def _remaining_findings(
@@ -224,7 +231,7 @@ def _remaining_findings(
     guide: WallGuide,
     tool: Tool,
     found: bool,
-    rooms: dict[tuple[int, float, bool], AxisRegion],
+    axis_regions: dict[tuple[int, float, bool], AxisRegion],
 ) -> list[Finding]:
     height = guide.top - guide.bottom
     if not found:
@@ -251,7 +258,9 @@ def _remaining_findings(
         )
     distance = tool.radius + drive.wall_allowance
     missed = length_out_of_reach(
-        _room(rooms, level_at(drive, guide.bottom).boundary, distance), guide.curve, distance
+        _axis_region(axis_regions, level_at(drive, guide.bottom).boundary, distance),
+        guide.curve,
+        distance,
     )
     if missed * height > SMALLEST_LEFTOVER:
         findings.append(

@@ -63,10 +63,10 @@ class PlanningStock:
         corner = _fixed(low[:2] - 0.5 * (count * cell - size))
         shape = (int(count[0]), int(count[1]))
         heights = blank.tops(setup.frame, corner, cell, shape, float(low[2]))
-        told = digest(shape, high[2].item(), corner, cell)
+        key = digest(shape, high[2].item(), corner, cell)
         if (heights < high[2]).any():
-            told = digest(told, heights)
-        return PlanningStock(heights=_fixed(heights), corner=corner, cell=cell, digest=told)
+            key = digest(key, heights)
+        return PlanningStock(heights=_fixed(heights), corner=corner, cell=cell, digest=key)
 
     def after(self, path: Toolpath, tool: Tool, progress: Progress = QUIET) -> PlanningStock:
         """Return the stock after the feed moves of a path."""

@@ -22,7 +22,7 @@ from trunnion.progress import QUIET, Progress
 from trunnion.settings import digest
 from trunnion.toolpath.stock.heightfield import PlanningStock
 
-BESIDE = 3
+NEIGHBOURHOOD = 3
 """Cells that a place is compared with in another field, in each of its directions: the cells it may lie in for all of its own cell."""
 
 
@@ -65,7 +65,7 @@ def _lowered(
     stock: PlanningStock, frame: Frame, other: PlanningStock, other_frame: Frame, lowest: float
 ) -> PlanningStock:
     """Return a stock without what another one, seen from elsewhere, knows to be gone; nothing is lower than `lowest`."""
-    material = maximum_filter(other.heights, BESIDE, mode="nearest")
+    material = maximum_filter(other.heights, NEIGHBOURHOOD, mode="nearest")
     positions, heights = _centres(stock), stock.heights.ravel().copy()
     step, last = stock.cell, np.array(material.shape) - 1
     rows = np.flatnonzero(heights > lowest)

@@ -13,7 +13,7 @@ from trunnion.settings import setting, settings
 from trunnion.toolpath.contact_passes import choices
 from trunnion.toolpath.contact_passes.choices import TOO_SHALLOW, TOO_STEEP
 from trunnion.toolpath.contact_passes.stepover.fronts import scallop_passes
-from trunnion.toolpath.contact_passes.upright.fixed_axis import stood
+from trunnion.toolpath.contact_passes.upright.fixed_axis import upright_passes
 from trunnion.toolpath.contact_passes.upright.upright_path import upright_path
 from trunnion.toolpath.contract import Planned, strategy
 from trunnion.toolpath.motion.choices import safety
@@ -61,7 +61,7 @@ def constant(
 ) -> Planned:
     """Return the motions of passes at a constant scallop height over the drive's faces, and what they leave."""
     contact_lines = scallop_passes(drive, tool, settings.chord, progress.part(0.0, 0.4))
-    done = stood(
+    done = upright_passes(
         contact_lines,
         drive,
         tool,

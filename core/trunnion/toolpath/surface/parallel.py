@@ -184,7 +184,7 @@ def parallel(
         settings.chord,
         progress.part(0.6, 0.7),
     )
-    manner = LinkParameters(
+    parameters = LinkParameters(
         stepover=planes.widest,
         safety=settings.safety,
         lead_radius=settings.lead_radius,
@@ -193,7 +193,7 @@ def parallel(
         chord=settings.chord,
     )
     return Planned(
-        path=linked(passes, drive, tool, data, stock, setup, manner, progress.part(0.7, 1.0)),
+        path=linked(passes, drive, tool, data, stock, setup, parameters, progress.part(0.7, 1.0)),
         findings=(*found, *lost),
     )
 

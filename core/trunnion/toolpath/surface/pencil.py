@@ -148,7 +148,7 @@ def pencil(
         )
     ]
     passes = _passes(lines, ground, settings.chord, progress.part(0.5, 0.8))
-    manner = LinkParameters(
+    parameters = LinkParameters(
         stepover=stepover,
         safety=settings.safety,
         lead_radius=settings.lead_radius,
@@ -157,7 +157,7 @@ def pencil(
         chord=settings.chord,
     )
     return Planned(
-        path=linked(passes, drive, tool, data, stock, setup, manner, progress.part(0.8, 1.0))
+        path=linked(passes, drive, tool, data, stock, setup, parameters, progress.part(0.8, 1.0))
     )
 
 

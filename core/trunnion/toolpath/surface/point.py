@@ -42,7 +42,7 @@ from trunnion.toolpath.contact_passes.axis_search import (
     FreeAxes,
     LeanLimits,
     free_axes,
-    roomy,
+    thickened,
 )
 from trunnion.toolpath.contact_passes.contacts import Contacts, between, slerp
 from trunnion.toolpath.contact_passes.flow_lines import DenseFlowLines, FlowParameters, flow_lines
@@ -59,7 +59,7 @@ SHARES = (0.25, 0.5, 0.75)
 HALVINGS = 12
 TRIES = 4
 """Times that axes are chosen again where a move between two clear ones touched something."""
-STANDING, LEAST_STANDING = 2.0, 1.0
+STOCK_SHARE, LEAST_STOCK = 2.0, 1.0
 """How much material neck, shank and holder are kept clear of where there is room: times the depth of cut, and mm at least. Earlier cutters
 leave more in corners than on faces."""
 OVERLAP = 0.25
@@ -196,13 +196,17 @@ def point(
     progress: Progress = QUIET,
 ) -> Planned:
     """Return the path of a leaning tool over the drive's faces, or over what an earlier cutter left of them, and what it must leave."""
-    if drive.ask is None:
+    if drive.query_for is None:
         raise Refused(
             f"{drive.feature}: point milling leans the tool; choose a machine with rotary axes, or another strategy"
         )
-    ask, lead, tilt = drive.ask(tool), math.radians(settings.lead), math.radians(settings.tilt)
+    query, lead, tilt = (
+        drive.query_for(tool),
+        math.radians(settings.lead),
+        math.radians(settings.tilt),
+    )
     ball = grooving(tool, lead, tilt)
-    contact_lines, told = _contact_lines(drive, ball, settings, progress.part(0.0, 0.3))
+    contact_lines, pattern_findings = _contact_lines(drive, ball, settings, progress.part(0.0, 0.3))
     if settings.way == "both":
         contact_lines = tuple(
             contacts.reversed() if k % 2 else contacts for k, contacts in enumerate(contact_lines)
@@ -214,7 +218,7 @@ def point(
             contact_lines,
             drive.earlier,
             field,
-            drive.ask(drive.earlier),
+            drive.query_for(drive.earlier),
             limits,
             drive.allowance,
             progress.part(0.3, 0.4),
@@ -230,7 +234,7 @@ def point(
                 )
             )
     # Clear of what still stands beside the faces, and where no lean is, clear of the part itself.
-    wide = drive.ask(roomy(tool, max(STANDING * data.depth, LEAST_STANDING)))
+    wide = drive.query_for(thickened(tool, max(STOCK_SHARE * data.depth, LEAST_STOCK)))
     done = milled(
         contact_lines,
         tool,
@@ -245,7 +249,7 @@ def point(
         done.rest,
         tool,
         field,
-        ask,
+        query,
         limits,
         settings.chord,
         drive.allowance,
@@ -259,12 +263,16 @@ def point(
     stepover = stepover_on_plane(max(ball.radius, drive.height), drive.height)
     findings = _remaining_findings(done, drive, tool)
     if not done.passes:
-        return Planned(findings=(*told, *findings))
-    manner = LinkParameters(
+        return Planned(findings=(*pattern_findings, *findings))
+    parameters = LinkParameters(
         stepover=stepover, safety=settings.safety, lead_radius=settings.lead_radius
     )
-    path, met = _linked(done, drive, tool, data, stock, setup, manner, ask, progress.part(0.9, 1.0))
-    return Planned(path=path, findings=(*told, *findings, *met, *_low(path, drive, tool)))
+    path, met = _linked(
+        done, drive, tool, data, stock, setup, parameters, query, progress.part(0.9, 1.0)
+    )
+    return Planned(
+        path=path, findings=(*pattern_findings, *findings, *met, *_low(path, drive, tool))
+    )
 
 
 def _contact_lines(
@@ -272,7 +280,7 @@ def _contact_lines(
 ) -> tuple[tuple[Contacts, ...], tuple[Finding, ...]]:
     """Return the ways of contacts that the pattern asks for, or those of constant scallop where flow lines don't suit the area, and then
     a finding that says so."""
-    told: tuple[Finding, ...] = ()
+    pattern_findings: tuple[Finding, ...] = ()
     if settings.pattern == "flow":
         flow = FlowParameters(
             first_guide=settings.first_guide,
@@ -280,9 +288,9 @@ def _contact_lines(
             spiral=settings.spiral,
         )
         try:
-            return flow_lines(drive, ball, flow, progress), told
+            return flow_lines(drive, ball, flow, progress), pattern_findings
         except DenseFlowLines as reason:
-            told = (
+            pattern_findings = (
                 info(
                     "point.pattern",
                     f"{drive.feature}: cut at a constant scallop, for {reason}",
@@ -293,27 +301,27 @@ def _contact_lines(
     # They run with what is inside on their left: the other way round a cutter that turns clockwise climbs.
     return tuple(
         contacts.reversed() for contacts in scallop_passes(drive, ball, settings.chord, progress)
-    ), told
+    ), pattern_findings
 
 
 def milled(
     contact_lines: Sequence[Contacts],
     tool: Tool,
     field: AxisField,
-    ask: ClearanceQuery | None,
+    query: ClearanceQuery | None,
     limits: LeanLimits,
     chord: float,
     allowance: float = 0.0,
     progress: Progress = QUIET,
 ) -> PointMilledPasses:
-    """Return the passes of a cutter over contact passes, its axis as near to a field as `ask` and the limits let it.
+    """Return the passes of a cutter over contact passes, its axis as near to a field as `query` and the limits let it.
 
     The cutter stays within `chord` mm of where it touches, thicker by the allowance. Moves that touch what they must not are left out.
     """
     if not contact_lines:
         return PointMilledPasses(passes=(), rest=(), remaining=0.0)
-    search = AxisSearch(contact_lines, field, tool, ask, limits, allowance)
-    courses = search.courses(progress.part(0.0, 0.5))
+    search = AxisSearch(contact_lines, field, tool, query, limits, allowance)
+    axes_of_lines = search.found_axes(progress.part(0.0, 0.5))
     found: list[list[tuple[Floats, Pass]]] = [[] for _ in contact_lines]
     again = list(range(len(contact_lines)))
     for n in range(TRIES):
@@ -322,14 +330,14 @@ def milled(
             found[k], met = _cut(
                 [
                     located(contact_lines[k], run, tool, chord, allowance)
-                    for run in courses[k].runs()
+                    for run in axes_of_lines[k].runs()
                 ],
-                ask,
+                query,
             )
             if len(met) and n + 1 < TRIES:
                 search.met(k, met)
         again = np.flatnonzero(search.dirty).tolist()
-        courses = search.courses(share) if again else courses
+        axes_of_lines = search.found_axes(share) if again else axes_of_lines
     gaps = [
         _gaps(
             len(contacts) - 1.0,
@@ -357,29 +365,29 @@ def rest_of(
     contact_lines: Sequence[Contacts],
     earlier: Tool,
     field: AxisField,
-    ask: ClearanceQuery,
+    query: ClearanceQuery,
     limits: LeanLimits,
     allowance: float = 0.0,
     progress: Progress = QUIET,
 ) -> tuple[Contacts, ...]:
     """Return the stretches of contact passes where an earlier cutter had no free axis, and a little more all round."""
-    courses = free_axes(contact_lines, field, earlier, ask, limits, allowance, progress)
+    axes_of_lines = free_axes(contact_lines, field, earlier, query, limits, allowance, progress)
     gone = np.vstack(
         [
             np.zeros((0, 3)),
             *(
-                between(
-                    contacts.point, contacts.normal, contacts.feed, course.position[~course.free]
-                )[0]
-                for contacts, course in zip(contact_lines, courses, strict=True)
+                between(contacts.point, contacts.normal, contacts.feed, axes.position[~axes.free])[
+                    0
+                ]
+                for contacts, axes in zip(contact_lines, axes_of_lines, strict=True)
             ),
         ]
     )
     if not len(gone):
         return ()
-    tree, beside, found = cKDTree(gone), OVERLAP * earlier.radius + STEP / limits.turn, []
+    tree, overlap, found = cKDTree(gone), OVERLAP * earlier.radius + STEP / limits.turn, []
     for contacts in contact_lines:
-        near = tree.query(contacts.point)[0] <= beside
+        near = tree.query(contacts.point)[0] <= overlap
         edges = np.flatnonzero(np.diff(np.concatenate([[False], near, [False]]).astype(np.int64)))
         found += [contacts.of(slice(a, b)) for a, b in edges.reshape(-1, 2).tolist() if b - a > 1]
     return tuple(found)
@@ -394,7 +402,7 @@ def located(
     position = run.position
     rows = np.arange(len(contacts), dtype=np.float64)
     rows = rows[(rows > position[0]) & (rows < position[-1])]
-    normal, axis, tip = _standing(contacts, feed, run, tool, allowance, position)
+    normal, axis, tip = _poses_at(contacts, feed, run, tool, allowance, position)
     for _ in range(HALVINGS):
         share = np.concatenate([position[:-1] + s * np.diff(position) for s in SHARES])
         probe = np.concatenate([rows, share])
@@ -408,8 +416,10 @@ def located(
         )
         turned = slerp(axis[block], axis[block + 1], part)
         at, out = between(contacts.point, contacts.normal, feed, probe)
-        stands = tip[block] + part[:, None] * (tip[block + 1] - tip[block])
-        off = np.abs(((stands - tip_at(tool, at + allowance * out, out, turned)) * out).sum(axis=1))
+        tip_at_block = tip[block] + part[:, None] * (tip[block + 1] - tip[block])
+        off = np.abs(
+            ((tip_at_block - tip_at(tool, at + allowance * out, out, turned)) * out).sum(axis=1)
+        )
         worst = np.zeros(len(position) - 1)
         np.maximum.at(worst, block, off)
         split = np.flatnonzero(
@@ -421,7 +431,7 @@ def located(
         position = np.sort(
             np.concatenate([position, 0.5 * (position[split] + position[split + 1])])
         )
-        normal, axis, tip = _standing(contacts, feed, run, tool, allowance, position)
+        normal, axis, tip = _poses_at(contacts, feed, run, tool, allowance, position)
     return position, Pass(tip=tip, axis=axis, normal=normal)
 
 
@@ -459,25 +469,25 @@ def grooving(tool: Tool, lead: float, tilt: float) -> Tool:
     )
 
 
-def field_of(chosen: PointSettings, frame: Frame) -> AxisField:
+def field_of(settings: PointSettings, frame: Frame) -> AxisField:
     """Return the axis field that settings ask for; places and directions are given in the part's coordinates."""
-    numbers = _numbers(chosen.axis_from)
-    if chosen.axis == "normal":
-        return leaning(math.radians(chosen.lead), math.radians(chosen.tilt))
-    if chosen.axis == "vectors" and len(numbers) and len(numbers) % 6 == 0:
+    numbers = _numbers(settings.axis_from)
+    if settings.axis == "normal":
+        return leaning(math.radians(settings.lead), math.radians(settings.tilt))
+    if settings.axis == "vectors" and len(numbers) and len(numbers) % 6 == 0:
         rows = np.array(numbers).reshape(-1, 6)
         return interpolated(frame.to_local(rows[:, :3]), frame.local_direction(rows[:, 3:]))
-    if chosen.axis != "vectors" and len(numbers) == 3:
-        if chosen.axis == "fixed":
+    if settings.axis != "vectors" and len(numbers) == 3:
+        if settings.axis == "fixed":
             return fixed(frame.local_direction(np.array(numbers)))
-        return from_point(frame.to_local(np.array(numbers)), chosen.axis == "away")
+        return from_point(frame.to_local(np.array(numbers)), settings.axis == "away")
     wanted = (
         "vectors as x y z > i j k; x y z > i j k"
-        if chosen.axis == "vectors"
+        if settings.axis == "vectors"
         else "three numbers x y z"
     )
     raise BadInput(
-        f"Axis from (surface.point.axis_from) must be {wanted} while the tool axis is {chosen.axis}; got {chosen.axis_from!r}"
+        f"Axis from (surface.point.axis_from) must be {wanted} while the tool axis is {settings.axis}; got {settings.axis_from!r}"
     )
 
 
@@ -488,12 +498,12 @@ def _linked(
     data: CuttingData,
     stock: PlanningStock,
     setup: Setup,
-    manner: LinkParameters,
-    ask: ClearanceQuery,
+    parameters: LinkParameters,
+    query: ClearanceQuery,
     progress: Progress,
 ) -> tuple[Toolpath, tuple[Finding, ...]]:
     """Return the path through all passes; leads that touch something are tried shorter, what touches in the end is a finding."""
-    path, touched = Toolpath.join([]), np.zeros(0, dtype=bool)
+    path, has_contact = Toolpath.join([]), np.zeros(0, dtype=bool)
     for n, share in enumerate(LEADS):
         path = linked(
             done.passes,
@@ -502,22 +512,22 @@ def _linked(
             data,
             stock,
             setup,
-            replace(manner, lead_radius=share * manner.lead_radius),
+            replace(parameters, lead_radius=share * parameters.lead_radius),
             progress.part(n / len(LEADS), (n + 1) / len(LEADS)),
         )
         between_cuts = np.flatnonzero(path.mark[1:] != Mark.CUT) + 1
-        touched = ~ask(
+        has_contact = ~query(
             path.position[between_cuts],
             path.axis[between_cuts],
             start_tip=path.position[between_cuts - 1],
             start_axis=path.axis[between_cuts - 1],
         )
-        if not touched.any():
+        if not has_contact.any():
             return path, ()
     return path, (
         warning(
             "point.link",
-            f"{int(touched.sum())} moves between the passes of {drive.feature} touch part or fixtures",
+            f"{int(has_contact.sum())} moves between the passes of {drive.feature} touch part or fixtures",
             drive.feature,
             remedy="choose a smaller cutter or another lead, or cut fewer faces in one operation",
         ),
@@ -548,7 +558,7 @@ def _numbers(text: str) -> list[float]:
         return []
 
 
-def _standing(
+def _poses_at(
     contacts: Contacts, feed: Floats, run: FreeAxes, tool: Tool, allowance: float, position: Floats
 ) -> tuple[Floats, Floats, Floats]:
     """Return the normals, axes and tips (k, 3) at places (k,) of a run."""
@@ -558,14 +568,14 @@ def _standing(
 
 
 def _cut(
-    runs: Sequence[tuple[Floats, Pass]], ask: ClearanceQuery | None
+    runs: Sequence[tuple[Floats, Pass]], query: ClearanceQuery | None
 ) -> tuple[list[tuple[Floats, Pass]], Floats]:
     """Return the stretches of runs whose moves are clear, and the places where a move is not."""
-    if ask is None:
+    if query is None:
         return list(runs), np.zeros(0)
     pieces, met = [], [np.zeros(0)]
     for position, one in runs:
-        clear = ask(one.tip[1:], one.axis[1:], start_tip=one.tip[:-1], start_axis=one.axis[:-1])
+        clear = query(one.tip[1:], one.axis[1:], start_tip=one.tip[:-1], start_axis=one.axis[:-1])
         pieces += [(position[s], one.of(s)) for s in _stretches(clear)]
         met.append(0.5 * (position[:-1] + position[1:])[~clear])
     return pieces, np.concatenate(met)

@@ -13,7 +13,7 @@ from trunnion.settings import setting, settings
 from trunnion.toolpath.contact_passes import choices
 from trunnion.toolpath.contact_passes.choices import TOO_STEEP
 from trunnion.toolpath.contact_passes.flow_lines import FlowParameters, flow_lines
-from trunnion.toolpath.contact_passes.upright.fixed_axis import stood
+from trunnion.toolpath.contact_passes.upright.fixed_axis import upright_passes
 from trunnion.toolpath.contact_passes.upright.upright_path import upright_path
 from trunnion.toolpath.contract import Planned, strategy
 from trunnion.toolpath.motion.choices import safety
@@ -72,7 +72,7 @@ def streamline(
     )
     contact_lines = flow_lines(drive, tool, flow, progress.part(0.0, 0.4))
     to_and_fro = settings.pattern == "zigzag"
-    done = stood(
+    done = upright_passes(
         contact_lines,
         drive,
         tool,

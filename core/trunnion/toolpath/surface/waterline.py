@@ -173,7 +173,7 @@ def waterline(
         )
         return Planned(findings=(*found, nothing))
     step = float(np.abs(np.diff(levels)).max(initial=tool.radius))
-    manner = LinkParameters(
+    parameters = LinkParameters(
         stepover=max(step, tool.radius),
         safety=settings.safety,
         lead_radius=settings.lead_radius,
@@ -182,7 +182,7 @@ def waterline(
         overlap=settings.overlap,
     )
     return Planned(
-        path=linked(passes, drive, tool, data, stock, setup, manner, progress.part(0.8, 1.0)),
+        path=linked(passes, drive, tool, data, stock, setup, parameters, progress.part(0.8, 1.0)),
         findings=found,
     )
 

@@ -92,16 +92,16 @@ class PartContact:
         )
         fixed = Penetration.none(len(moves), 0)
         for k, (engine, some) in enumerate(engines):
-            touch = engine.along(
+            penetration = engine.along(
                 moves,
                 some,
                 progress.part(cost[k] / max(cost[-1], 1.0), cost[k + 1] / max(cost[-1], 1.0)),
                 threads,
             )
             if engine is self._fixtures:
-                fixed = touch
+                fixed = penetration
             else:
-                found.take(touch, some)
+                found.take(penetration, some)
         kind = np.argmax(fixed.depth, axis=1)
         return Contact(
             depth=np.maximum(found.depth, 0.0),

@@ -172,7 +172,7 @@ class FacetContact:
         tree, bodies, k, f = self._ready(progress), moves.bodies, len(rows), len(self.facets.tag)
         bound = np.where(moves.turning[rows], tolerance.TURNING_BOUND, tolerance.CONTACT_BOUND)
         enough = np.full(k, settle) if np.isfinite(settle) else bound
-        touch = Penetration(
+        penetration = Penetration(
             depth=np.full((k, 2), -np.inf),
             face=np.full((k, 2), -1),
             position=np.full((k, 2, 3), np.nan),
@@ -210,14 +210,14 @@ class FacetContact:
                 bound,
                 enough,
                 settle,
-                touch.depth,
-                touch.face,
-                touch.position,
+                penetration.depth,
+                penetration.face,
+                penetration.position,
                 face_depth,
                 face_move,
             )
             with merging:
-                deepen(touch.face_depth, touch.face_move, face_depth, face_move)
+                deepen(penetration.face_depth, penetration.face_move, face_depth, face_move)
 
         in_parallel(
             work,
@@ -227,7 +227,7 @@ class FacetContact:
             "Measuring gouges and collisions of leaning tools",
             threads,
         )
-        return touch
+        return penetration
 
 
 def _starts(cost: Floats) -> Ints:

@@ -81,16 +81,16 @@ class StripContact:
     ) -> Penetration:
         """Return how deep the moves of some rows (k,) enter the faces; they must stand upright."""
         found = self._measure(moves, rows, progress, threads)
-        return progress.aside(lambda _: self._touch(moves, rows, found))
+        return progress.aside(lambda _: self._penetration(moves, rows, found))
 
     def stopped(self, moves: Moves, rows: Ints, allowed: float) -> Floats:
         """Return a position (k, 3) of the faces about where the tool enters them deeper than allowed, for the moves of some rows (k,),
         which must stand upright; NaN where it doesn't."""
-        return self._touch(moves, rows, self._measure(moves, rows, QUIET, 1, allowed)).deeper_than(
-            allowed
-        )
+        return self._penetration(
+            moves, rows, self._measure(moves, rows, QUIET, 1, allowed)
+        ).deeper_than(allowed)
 
-    def _touch(self, moves: Moves, rows: Ints, found: _Measured) -> Penetration:
+    def _penetration(self, moves: Moves, rows: Ints, found: _Measured) -> Penetration:
         s, face, position = (
             self.surfaces,
             np.full((len(rows), 2), -1),

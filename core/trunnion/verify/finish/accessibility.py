@@ -110,7 +110,7 @@ class Accessibility:
             rows = np.flatnonzero(~found)
             if not len(rows):
                 break
-            tips, axes, possible = _poses_asked(poses, tool, rows, share)
+            tips, axes, possible = _query_poses(poses, tool, rows, share)
             known = obstacles.of(rows)
             found[rows] = self._contact.any_clear(
                 tool, tips, axes, possible, self._allowed, known, share, text, self._threads
@@ -119,7 +119,7 @@ class Accessibility:
         return found
 
 
-def _poses_asked(
+def _query_poses(
     poses: Callable[[Tool, Ints], tuple[Floats, Floats, Bools]],
     tool: Tool,
     rows: Ints,
@@ -177,7 +177,7 @@ def leaning_poses(
 
 
 def _shared(
-    ask: Callable[[Samples, Ints, Progress], Bools],
+    query: Callable[[Samples, Ints, Progress], Bools],
     samples: Samples,
     rows: Ints,
     most: int,
@@ -185,14 +185,14 @@ def _shared(
 ) -> Bools:
     """Return what is answered for rows, of very many only for evenly chosen ones: the others share the nearest answer on their face."""
     tried = _tried(samples.face[rows], most)
-    answer = ask(samples, rows[tried], progress)
+    result = query(samples, rows[tried], progress)
     if len(tried) == len(rows):
-        return answer
+        return result
     # Faces are distinguished by a fourth coordinate longer than any part.
     position = np.column_stack(
         [samples.point[rows], samples.face[rows] * 4.0 * np.ptp(samples.point)]
     )
-    return np.asarray(answer[progress.aside(lambda _: cKDTree(position[tried]).query(position)[1])])
+    return np.asarray(result[progress.aside(lambda _: cKDTree(position[tried]).query(position)[1])])
 
 
 def reaching_furthest(tools: Sequence[Tool]) -> list[Tool]:

@@ -264,10 +264,12 @@ class _Patch:
             )
             mine, at = mine.some(near), _some(at, near)
             within = _within(face, mine, signs)
-            touches = np.asarray(within.any(axis=1))
-            parts.append(mine.some(touches))
-            points.append(_some(at, touches))
-            holds.append((within[:, 0] & self._in_box(at.point, np.zeros((len(mine), 3))))[touches])
+            overlaps = np.asarray(within.any(axis=1))
+            parts.append(mine.some(overlaps))
+            points.append(_some(at, overlaps))
+            holds.append(
+                (within[:, 0] & self._in_box(at.point, np.zeros((len(mine), 3))))[overlaps]
+            )
         joined = ExactPoints(
             **{name: np.concatenate([getattr(p, name) for p in points]) for name in ARRAYS}
         )

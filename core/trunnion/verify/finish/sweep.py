@@ -349,10 +349,10 @@ def tree_of(moves: Moves, rows: Ints, flutes: Flutes) -> SpanTree:
     order = np.lexsort((_along_curve(pose[:, :3]), tool[of]))
     of, low, high, pose, reach = of[order], low[order], high[order], pose[order], reach[order]
     used, start = np.unique(tool[of], return_index=True)
-    room = 4 * (len(of) // kernel.BUCKET + len(used))
+    capacity = 4 * (len(of) // kernel.BUCKET + len(used))
     nodes, links, root = (
-        np.zeros((room, 8)),
-        np.zeros((room, 5), np.int64),
+        np.zeros((capacity, 8)),
+        np.zeros((capacity, 5), np.int64),
         np.zeros(len(used), np.int64),
     )
     n = kernel.build_pose_bvh(pose, reach, np.append(start, len(of)), used, nodes, links, root)

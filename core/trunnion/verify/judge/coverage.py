@@ -189,9 +189,9 @@ def _findings(
     missed = [f for f in faces if not f.planned and not f.blank_surface]
     if missed:
         unfinished = [f for f in missed if f.area - f.finished > tolerance.AREA]
-        say = warning if unfinished else info
+        make_finding = warning if unfinished else info
         found.append(
-            say(
+            make_finding(
                 "verify.unplanned",
                 f"no operation planned {len(missed)} faces, {len(unfinished)} of them are not finished",
                 *face_tags(f.face for f in missed),

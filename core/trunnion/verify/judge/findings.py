@@ -88,9 +88,9 @@ def _fixtures(
     proof: SetupProof, section: ProgramSection, rows: Ints, settings: ProofSettings
 ) -> list[Finding]:
     found = []
-    depth, touched = proof.contact.fixture_depth[rows], proof.contact.fixture[rows]
-    for fixture in _worst(touched, depth, settings.tolerance):
-        row = rows[np.argmax(np.where(touched == fixture, depth, -1.0))]
+    depth, fixture_row = proof.contact.fixture_depth[rows], proof.contact.fixture[rows]
+    for fixture in _worst(fixture_row, depth, settings.tolerance):
+        row = rows[np.argmax(np.where(fixture_row == fixture, depth, -1.0))]
         name = proof.program.setup.fixtures[fixture].name
         found.append(
             error(

@@ -48,17 +48,17 @@ def load_findings(
     for k, section in enumerate(proof.program.sections):
         rows = np.flatnonzero((proof.moves.section == k) & ~proof.moves.rapid)
         if len(rows):
-            for said, offered in (
+            for noted, offered in (
                 _power(proof, section, rows, machine, material, settings),
                 _excess(proof, section, rows, material, settings),
                 _air(proof, section, rows, settings),
             ):
-                found += said
+                found += noted
                 offers += offered
     return found, offers
 
 
-def chosen_load(section: ProgramSection, material: Material | None) -> AllowedLoad:
+def allowed_load(section: ProgramSection, material: Material | None) -> AllowedLoad:
     """Return the load that a section's cutting data were chosen for, or the material's tables allow its cutter when that is more."""
     tool = section.cutter
     feed = section.feed or float(section.path.feed.max(initial=0.0))
@@ -81,7 +81,7 @@ def _thickest(material: Material, diameter: float) -> float:
     return feed_at([(d, most) for d, _, most in material.feeds], diameter)
 
 
-Said = tuple[list[Finding], list[Offer]]
+LoadFindings = tuple[list[Finding], list[Offer]]
 
 
 def _power(
@@ -91,7 +91,7 @@ def _power(
     machine: Machine,
     material: Material | None,
     settings: ProofSettings,
-) -> Said:
+) -> LoadFindings:
     if material is None or section.spindle_stands:
         return [], []
     limit = machine.power_at(section.spindle) * settings.power
@@ -127,10 +127,10 @@ def _excess(
     rows: Ints,
     material: Material | None,
     settings: ProofSettings,
-) -> Said:
-    chosen, load = chosen_load(section, material), proof.load
+) -> LoadFindings:
+    allowed, load = allowed_load(section, material), proof.load
     times = np.maximum(
-        load.rate / (settings.removal * chosen.rate), load.chip / (settings.chip * chosen.chip)
+        load.rate / (settings.removal * allowed.rate), load.chip / (settings.chip * allowed.chip)
     )
     over = times[rows] > 1.0 + tolerance.PARAMETRIC
     if not over.any():
@@ -142,7 +142,7 @@ def _excess(
             "verify.load",
             f"{section.operation} removes {load.rate[worst]:.0f} cm3/min in chips of {load.chip[worst]:.2f} mm with "
             f"{math.degrees(proof.stock.engagement[worst]):.0f} degrees of {section.tool.name} engaged; its data are for "
-            f"{chosen.rate:.0f} cm3/min and {chosen.chip:.2f} mm",
+            f"{allowed.rate:.0f} cm3/min and {allowed.chip:.2f} mm",
             section.operation,
             block_of(proof, section, worst),
             remedy=_feed_remedy(proof, section, offers),
@@ -200,7 +200,9 @@ def _feed_remedy(proof: SetupProof, section: ProgramSection, offers: list[Offer]
     )
 
 
-def _air(proof: SetupProof, section: ProgramSection, rows: Ints, settings: ProofSettings) -> Said:
+def _air(
+    proof: SetupProof, section: ProgramSection, rows: Ints, settings: ProofSettings
+) -> LoadFindings:
     air = proof.stock.removed[rows] <= 0.0
     length, seconds = proof.moves.length[rows], proof.times.seconds[rows]
     run, wasted = float(length.sum()), float(seconds[air].sum())

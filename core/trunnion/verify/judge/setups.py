@@ -40,7 +40,7 @@ class SetupProof:
     moves: Moves
     contact: Contact
     stock: StockRun
-    stands: AxisPositions
+    axis_positions: AxisPositions
     times: MachineTimes
     load: Load
     residual: Floats
@@ -69,11 +69,11 @@ def prove_setup(
     frame = program.setup.frame
     moves = progress.aside(lambda _: moves_of(program.sections), "Reading the moves")
     sweep = progress.aside(lambda _: Sweep.of(moves, NEAR), "Making the moves ready for questions")
-    touched = contact.along(moves, progress.part(0.02, 0.4), settings.threads)
+    penetration = contact.along(moves, progress.part(0.02, 0.4), settings.threads)
     run = run_stock(stock, moves, frame, sweep, progress.part(0.4, 0.7), settings.threads)
     deep = progress.aside(lambda _: stock.blank.depth(points, frame))
     residual, nearest = sweep.residual(points, deep, progress.part(0.7, 0.98), settings.threads)
-    stands, times = progress.aside(
+    positions, times = progress.aside(
         lambda _: _timed(moves, machine, foot_of(stock.blank, frame)), "Timing the moves"
     )
     load = progress.aside(
@@ -84,9 +84,9 @@ def prove_setup(
         program=program,
         machine=machine,
         moves=moves,
-        contact=touched,
+        contact=penetration,
         stock=run,
-        stands=stands,
+        axis_positions=positions,
         times=times,
         load=load,
         residual=residual,
@@ -95,8 +95,8 @@ def prove_setup(
 
 
 def _timed(moves: Moves, machine: Machine, foot: Floats) -> tuple[AxisPositions, MachineTimes]:
-    stands = axis_positions(moves, machine, foot)
-    return stands, times_of(moves, stands, machine)
+    positions = axis_positions(moves, machine, foot)
+    return positions, times_of(moves, positions, machine)
 
 
 def foot_of(blank: Blank, frame: Frame) -> Floats:

@@ -37,9 +37,9 @@ def nearest_congruent(value: float, before: float, low: float, high: float) -> f
 
 @njit(cache=True, nogil=True)
 def choose_angles_greedy(
-    angles: Floats, free: Bools, low: Floats, high: Floats, first: int, slack: float, chosen: Floats
+    angles: Floats, free: Bools, low: Floats, high: Floats, first: int, slack: float, result: Floats
 ) -> tuple[float, int]:
-    """Fill chosen (m, a) with the rotary angles of m poses and return the total angle turned (rad,
+    """Fill result (m, a) with the rotary angles of m poses and return the total angle turned (rad,
     summed over axes) and the number of poses outside the limits.
 
     angles (m, 2, a) rad: both solutions of each pose; free (m, 2, a): that axis is arbitrary (the
@@ -58,7 +58,7 @@ def choose_angles_greedy(
                 continue
             cost, out = 0.0, 0
             for a in range(axes):
-                before = chosen[k - 1, a] if k else 0.0
+                before = result[k - 1, a] if k else 0.0
                 angle = (
                     before
                     if free[k, solution, a]
@@ -69,8 +69,8 @@ def choose_angles_greedy(
             if out < best_out or (out == best_out and cost < best):
                 best, best_out, best_solution = cost, out, solution
         for a in range(axes):
-            before = chosen[k - 1, a] if k else 0.0
-            chosen[k, a] = (
+            before = result[k - 1, a] if k else 0.0
+            result[k, a] = (
                 before
                 if free[k, best_solution, a]
                 else nearest_congruent(angles[k, best_solution, a], before, low[a], high[a])

@@ -46,24 +46,24 @@ def confirm_grazed(
     for row in np.unique(moves):
         progress.check()
         own = positions[moves == row]
-        standing = _standing(stock, own[:, :3], frame, sweep, int(row))
-        if standing.any():
-            k = int(np.argmax(np.where(standing, own[:, 3], -np.inf)))
+        in_material = _in_material(stock, own[:, :3], frame, sweep, int(row))
+        if in_material.any():
+            k = int(np.argmax(np.where(in_material, own[:, 3], -np.inf)))
             if own[k, 3] > found.depth[row]:
                 found.depth[row], found.position[row] = own[k, 3], own[k, :3]
 
 
-def _standing(stock: Stock, positions: Floats, frame: Frame, sweep: Sweep, row: int) -> Bools:
+def _in_material(stock: Stock, positions: Floats, frame: Frame, sweep: Sweep, row: int) -> Bools:
     """Return which positions (k, 3) in the blank's frame neither a setup before nor a move before `row` has cut."""
     world = stock.frame.to_world(positions)
-    standing = stock.was_solid(positions)
-    standing &= ~sweep.cut_before(frame.to_local(world), row)
+    in_material = stock.was_solid(positions)
+    in_material &= ~sweep.cut_before(frame.to_local(world), row)
     for before, own in stock.cut_by:
-        standing &= ~before.cut_before(own.to_local(world), len(before.moves))
-    return standing
+        in_material &= ~before.cut_before(own.to_local(world), len(before.moves))
+    return in_material
 
 
-def look_closer(
+def recheck(
     stock: Stock,
     field: Field,
     moves: Moves,
@@ -101,9 +101,9 @@ def look_closer(
     if not inside.any():
         return
     positions, rho = positions[inside], rho[inside]
-    standing = _standing(stock, positions, frame, sweep, row)
-    if standing.any():
-        k = int(np.flatnonzero(standing)[np.argmin(rho[standing])])
+    in_material = _in_material(stock, positions, frame, sweep, row)
+    if in_material.any():
+        k = int(np.flatnonzero(in_material)[np.argmin(rho[in_material])])
         depth[row] = max(depth[row], float(moves.tools[moves.tool[row]].radius - rho[k]))
         position[row] = positions[k]
 
@@ -153,8 +153,8 @@ def _cut_around(
     ]:
         # What a setup calls plan must be the blank's.
         if own.z @ stock.frame.z > 1.0 - tolerance.PARAMETRIC:
-            ask = np.flatnonzero(~gone)
-            gone[ask] = before.cut_around(
-                own.to_local(stock.frame.to_world(positions[ask])), margin, last
+            doubtful = np.flatnonzero(~gone)
+            gone[doubtful] = before.cut_around(
+                own.to_local(stock.frame.to_world(positions[doubtful])), margin, last
             )
     return gone

@@ -53,7 +53,7 @@ class Passed:
 
 
 @dataclass(frozen=True, slots=True, eq=False)
-class Going:
+class BundleStart:
     """A bundle and the first move that goes through it; `looked` when the probes of that move have been looked at."""
 
     bundle: Bundle
@@ -79,7 +79,7 @@ class _Batch:
 
 def run_rays(
     stock: Stock,
-    going: Sequence[Going],
+    starts: Sequence[BundleStart],
     moves: Moves,
     probes: Probes,
     found: Passed,
@@ -97,8 +97,8 @@ def run_rays(
     whole = whole_arcs(moves, [AXES.index(name) for name in stock.bundles])
     each = spans_each(moves, whole)
     ends = np.cumsum(each)
-    row = min((g.first for g in going), default=n)
-    bundles = [g.bundle for g in going]
+    row = min((g.first for g in starts), default=n)
+    bundles = [g.bundle for g in starts]
     while row < n:
         begun = ends[row] - each[row]
         rows = np.arange(row, max(row + 1, int(np.searchsorted(ends, begun + SPANS, side="right"))))
@@ -143,7 +143,7 @@ def run_rays(
                     last,
                     g.looked and g.first >= row + first,
                 )
-                for g in going
+                for g in starts
                 if g.first < row + last
                 for tile in g.bundle.tiles()
             ]
@@ -183,7 +183,7 @@ class _Job:
 
     def __init__(
         self,
-        going: Going,
+        start: BundleStart,
         tile: tuple[int, int],
         batch: _Batch,
         first: int,
@@ -192,7 +192,7 @@ class _Job:
     ) -> None:
         n = last - first
         self.bundle, self.tile, self.batch, self.first, self.last, self.done = (
-            going.bundle,
+            start.bundle,
             tile,
             batch,
             first,

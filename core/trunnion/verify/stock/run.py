@@ -15,7 +15,7 @@ from trunnion.verify.motion import Moves, seen_from
 from trunnion.verify.stock.engagement import engagement_of, probes_of
 from trunnion.verify.stock.graze_check import confirm_grazed, rays_in_cell
 from trunnion.verify.stock.heights import run_heights
-from trunnion.verify.stock.rays import Going, Passed, run_rays
+from trunnion.verify.stock.rays import BundleStart, Passed, run_rays
 from trunnion.verify.stock.stock import Stock
 
 
@@ -61,10 +61,13 @@ def run_stock(
     row, looked = run_heights(stock, local, frame, sweep, probes, found, heights)
     if row < len(moves):
         stock.open_field()
-    going = [Going(b) if name != "z" else Going(b, row, looked) for name, b in stock.rays.items()]
-    if going:
+    starts = [
+        BundleStart(b) if name != "z" else BundleStart(b, row, looked)
+        for name, b in stock.rays.items()
+    ]
+    if starts:
         fine = rays_in_cell(stock.pitch) if sweep is not None else 0
-        run_rays(stock, going, local, probes, found, fine, progress.part(0.3, 1.0), threads)
+        run_rays(stock, starts, local, probes, found, fine, progress.part(0.3, 1.0), threads)
     if sweep is not None:
         confirm_grazed(stock, found, frame, sweep, progress.part(1.0, 1.0))
         stock.cut_by.append((sweep, frame))

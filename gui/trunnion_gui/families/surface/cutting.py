@@ -49,7 +49,7 @@ class CutBar(QWidget):
         row = QHBoxLayout(self)
         row.setContentsMargins(14, 2, 14, 6)
         row.setSpacing(8)
-        for widget in (self.manner, self.value):
+        for widget in (self.method, self.value):
             row.addWidget(widget)
         row.addWidget(self.words, 1)
         for button in (self.back, self.apply, self.close_button):
@@ -68,7 +68,7 @@ class CutBar(QWidget):
         """Begin a cut of a face (0: of the one that is clicked next)."""
         self.positions = []
         self.face = 0
-        self._take_manner(AXES[0] if by_plane else DRAWN)
+        self._take_method(AXES[0] if by_plane else DRAWN)
         self.show()
         self._choose(face)
 
@@ -137,11 +137,11 @@ class CutBar(QWidget):
     # inside
 
     def _make_widgets(self) -> None:
-        self.manner = QComboBox()
-        self.manner.setSizeAdjustPolicy(
+        self.method = QComboBox()
+        self.method.setSizeAdjustPolicy(
             QComboBox.SizeAdjustPolicy.AdjustToMinimumContentsLengthWithIcon
         )
-        self.manner.setMinimumContentsLength(12)
+        self.method.setMinimumContentsLength(12)
         for words, kind in (
             (tr("plane across x"), "x"),
             (tr("plane across y"), "y"),
@@ -149,8 +149,8 @@ class CutBar(QWidget):
             (tr("plane through three places"), THREE),
             (tr("along a drawn line"), DRAWN),
         ):
-            self.manner.addItem(words, kind)
-        self.manner.currentIndexChanged.connect(self._change)
+            self.method.addItem(words, kind)
+        self.method.currentIndexChanged.connect(self._change)
         self.value = NumberField()
         self.value.setDecimals(4)
         self.value.setSuffix(" mm")
@@ -175,13 +175,13 @@ class CutBar(QWidget):
         made.clicked.connect(lambda _=False: slot())
         return made
 
-    def _take_manner(self, kind: str) -> None:
-        self.manner.blockSignals(True)
-        self.manner.setCurrentIndex(self.manner.findData(kind))
-        self.manner.blockSignals(False)
+    def _take_method(self, kind: str) -> None:
+        self.method.blockSignals(True)
+        self.method.setCurrentIndex(self.method.findData(kind))
+        self.method.blockSignals(False)
 
     def _kind(self) -> str:
-        return str(self.manner.currentData())
+        return str(self.method.currentData())
 
     def _change(self) -> None:
         self.positions = []
@@ -195,7 +195,7 @@ class CutBar(QWidget):
             self._document.selection.select_face_alone(face)
             if self._kind() in AXES:
                 longest = int(np.argmax(np.subtract(*reversed(box_of(mesh, face)))))
-                self._take_manner(AXES[longest])
+                self._take_method(AXES[longest])
         self._reach()
         self.refresh()
 

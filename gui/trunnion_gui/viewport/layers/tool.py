@@ -129,9 +129,12 @@ def cutter_outline(tool: Tool) -> Outline:
         big, high = tool.barrel_radius, tool.widest_height
         centre = r - big
         # The tip's arc and the flank's touch on the line through both centres.
-        touch = math.degrees(math.atan2(c - high, -centre))
+        tangent_angle = math.degrees(math.atan2(c - high, -centre))
         last = math.degrees(math.asin(min((top - high) / big, 1.0)))
-        return [*_arc(0.0, c, c, -90.0, touch), *_arc(centre, high, big, touch, last)]
+        return [
+            *_arc(0.0, c, c, -90.0, tangent_angle),
+            *_arc(centre, high, big, tangent_angle, last),
+        ]
     return [(0.0, 0.0), *_arc(r - c, c, c, -90.0, 0.0), (r, top)]
 
 

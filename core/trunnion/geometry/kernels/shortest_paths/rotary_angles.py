@@ -27,29 +27,29 @@ def choose_angles(
     high: Floats,
     slack: float,
     start: Floats,
-    chosen: Floats,
+    result: Floats,
 ) -> tuple[int, float]:
-    """Fill chosen (m, a) with rotary angles in rad; return how many poses could be followed and how
+    """Fill result (m, a) with rotary angles in rad; return how many poses could be followed and how
     far (rad) the axes turned in all.
 
     angles (m, 2, a): both solutions of each pose, rad; free (m, 2, a): that axis may stand
     anywhere; through (m,): the pole lies on the path to that pose. low, high (a,) are the limits,
     passed by at most `slack`; the first pose is reached from `start` (a,) by any turn, each other
-    by half a turn at most. Where a pose can be followed by neither solution it ends, and `chosen`
+    by half a turn at most. Where a pose can be followed by neither solution it ends, and `result`
     is left as it was.
     """
     m, _, axes = angles.shape
-    stand: list[list[list[float] | None]] = []
+    unwound: list[list[list[float] | None]] = []
     cost: list[list[float]] = []
     origin: list[list[int]] = []
     for k in range(m):
-        stand.append([None, None])
+        unwound.append([None, None])
         cost.append([math.inf, math.inf])
         origin.append([0, 0])
         # cost[k][way]: least turning to reach pose k by a solution, over both of the pose before.
         for solution in range(2):
             for other in range(2) if k else (solution,):
-                before = stand[k - 1][other] if k else [float(s) for s in start]
+                before = unwound[k - 1][other] if k else [float(s) for s in start]
                 if before is None or (k and solution != other and not through[k]):
                     continue
                 there = [
@@ -65,8 +65,12 @@ def choose_angles(
                     continue
                 spent = (cost[k - 1][other] if k else 0.0) + sum(turns)
                 if spent < cost[k][solution]:
-                    stand[k][solution], cost[k][solution], origin[k][solution] = there, spent, other
-        if stand[k] == [None, None]:
+                    unwound[k][solution], cost[k][solution], origin[k][solution] = (
+                        there,
+                        spent,
+                        other,
+                    )
+        if unwound[k] == [None, None]:
             return k, math.inf
     if not m:
         return 0, 0.0
@@ -74,7 +78,7 @@ def choose_angles(
     solution = int(np.argmin(cost[-1]))
     spent = cost[-1][solution]
     for k in reversed(range(m)):
-        chosen[k] = stand[k][solution]
+        result[k] = unwound[k][solution]
         solution = origin[k][solution]
     return m, spent
 

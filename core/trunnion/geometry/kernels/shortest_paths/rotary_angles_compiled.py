@@ -32,12 +32,12 @@ def choose_angles(
     high: Floats,
     slack: float,
     start: Floats,
-    chosen: Floats,
+    result: Floats,
 ) -> tuple[int, float]:
-    """Fill chosen (m, a) with rotary angles (rad); return how many poses could be followed and how far
+    """Fill result (m, a) with rotary angles (rad); return how many poses could be followed and how far
     (rad) the axes turned; see `kernels.shortest_paths.rotary_angles.choose_angles`."""
     m, solutions, axes = angles.shape
-    stand = np.zeros((m, solutions, axes))
+    unwound = np.zeros((m, solutions, axes))
     cost = np.full((m, solutions), math.inf)
     origin = np.zeros((m, solutions), np.int8)
     there = np.zeros(axes)
@@ -53,7 +53,7 @@ def choose_angles(
                     continue
                 spent = cost[k - 1, other] if k else 0.0
                 for a in range(axes):
-                    before = stand[k - 1, other, a] if k else start[a]
+                    before = unwound[k - 1, other, a] if k else start[a]
                     there[a] = (
                         before
                         if free[k, solution, a]
@@ -67,7 +67,7 @@ def choose_angles(
                     spent += math.inf if k > 0 and turn > math.pi + slack else turn
                 if spent < cost[k, solution]:
                     cost[k, solution], origin[k, solution] = spent, other
-                    stand[k, solution] = there
+                    unwound[k, solution] = there
         if min(cost[k, 0], cost[k, 1]) == math.inf:
             return k, math.inf
     if m == 0:
@@ -76,6 +76,6 @@ def choose_angles(
     last = 0 if cost[m - 1, 0] <= cost[m - 1, 1] else 1
     spent = cost[m - 1, last]
     for k in range(m - 1, -1, -1):
-        chosen[k] = stand[k, last]
+        result[k] = unwound[k, last]
         last = origin[k, last]
     return m, spent

@@ -53,7 +53,7 @@ def cutter_for(
     samples: AreaSamples,
     tools: Sequence[Tool],
     share: float,
-    room: float,
+    clearance: float,
     wanted: Tool | None,
     progress: Progress,
 ) -> AreaCutters:
@@ -70,7 +70,7 @@ def cutter_for(
                 space,
                 samples,
                 tool,
-                room,
+                clearance,
                 0.0,
                 progress.part(n / (len(ranked) + 1), (n + 1) / (len(ranked) + 1)),
             )

@@ -131,9 +131,9 @@ def on_outline(
         if any(graph.convexity[e] != CONVEX for e in edges):
             continue
         own = samples.of(samples.face == tag)
-        beside = own.point[:, :2] + (END_MILL + tolerance.SEW) * own.normal[:, :2]
+        shifted = own.point[:, :2] + (END_MILL + tolerance.SEW) * own.normal[:, :2]
         over = space.skin.drop.drop(
-            beside, level_disc(END_MILL), float(space.low[2]) - 1.0, progress.part(0.0, 0.0)
+            shifted, level_disc(END_MILL), float(space.low[2]) - 1.0, progress.part(0.0, 0.0)
         )
         if (over < own.point[:, 2].min() + tolerance.SEW).all():
             found.append(tag)

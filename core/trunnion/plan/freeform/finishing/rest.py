@@ -24,10 +24,10 @@ AROUND = 0.3
 """mm at least that an area goes on past what was left, so that no seam stays; as far as passes are apart where that is more."""
 MET, MOST = 1.5, 20_000
 """mm: the longest edge of triangles that are asked whether shank or holder meet something; and how many such squares there are at most."""
-ASKED, DOUBT = 1.0, 1.5
+QUERY_SPACING, DOUBT = 1.0, 1.5
 """mm: one place of each cube of this width, and of each side that faces turn there, is asked first; and by how much wider and lower shank
 and holder are taken then, for its neighbours' sake."""
-BESIDE = 0.2
+HOLDER_CLEARANCE = 0.2
 """mm that shank and holder keep from walls beside them."""
 
 
@@ -46,7 +46,7 @@ def remaining_of(
     def over(position: Floats, normal: Floats) -> Floats:
         lift = np.full(len(position), np.inf)
         up = normal[:, 2] > 0.0
-        tip, top = _stood(skin, position[up], normal[up], earlier, lowest, progress)
+        tip, top = _drop(skin, position[up], normal[up], earlier, lowest, progress)
         lift[up] = top - tip[:, 2] - limit
         return lift
 
@@ -79,16 +79,16 @@ def without_met(
     def over(position: Floats, normal: Floats, more: float = 0.0) -> Floats:
         met = np.full(len(position), -np.inf)
         up = normal[:, 2] > -math.sin(tolerance.ANGLE)
-        tip, top = _stood(skin, position[up], normal[up], tool, lowest, progress)
-        stands = np.maximum(top, tip[:, 2])
+        tip, top = _drop(skin, position[up], normal[up], tool, lowest, progress)
+        material_top = np.maximum(top, tip[:, 2])
         deepest = np.full(len(tip), -np.inf)
         for z, radius in wider:
-            low = np.flatnonzero(stands + z - more < highest)
+            low = np.flatnonzero(material_top + z - more < highest)
             if len(low):
-                beside = skin.drop.drop(
-                    tip[low, :2], level_disc(radius + BESIDE + more), lowest, progress
+                wall_top = skin.drop.drop(
+                    tip[low, :2], level_disc(radius + HOLDER_CLEARANCE + more), lowest, progress
                 )
-                deepest[low] = np.maximum(deepest[low], beside - stands[low] - z + more)
+                deepest[low] = np.maximum(deepest[low], wall_top - material_top[low] - z + more)
         met[up] = deepest
         return met
 
@@ -96,7 +96,9 @@ def without_met(
     middle, normal = skin.points[rows].mean(axis=1), skin.normals[rows].mean(axis=1)
     normal = normal / np.linalg.norm(normal, axis=1, keepdims=True)
     some = np.unique(
-        np.column_stack([np.floor(middle / ASKED), np.round(normal)]), axis=0, return_index=True
+        np.column_stack([np.floor(middle / QUERY_SPACING), np.round(normal)]),
+        axis=0,
+        return_index=True,
     )[1]
     if not (over(middle[some], normal[some], DOUBT) > 0.0).any():
         return skin, tags
@@ -115,7 +117,7 @@ def without_met(
     return (met_skin, tuple(t for t in tags if met_skin.of((t,)).any())) if met else (skin, tags)
 
 
-def _stood(
+def _drop(
     skin: Skin, position: Floats, normal: Floats, tool: Tool, lowest: float, progress: Progress
 ) -> tuple[Floats, Floats]:
     """Return the tips (p, 3) of an upright cutter that touches at places (p, 3) with normals (p, 3), and the heights (p,) that the part

@@ -45,7 +45,7 @@ def sides_for(
     around: ClearanceScene,
     hidden: AreaSamples,
     tools: Sequence[Tool],
-    room: float,
+    clearance: float,
     progress: Progress,
 ) -> list[RoughingDirection]:
     """Return the directions that see hidden places best, each the one that sees most of what those before it don't."""
@@ -62,14 +62,14 @@ def sides_for(
         progress.at(n / len(directions), "looking from the sides")
         there = space.seen_from(setup, direction)
         # Roughing stays off the faces: what the cutter only grazes along its side is seen as well.
-        beside = hidden.point + OFF * hidden.normal
+        shifted = hidden.point + OFF * hidden.normal
         local = AreaSamples(
-            point=there.frame.to_local(space.frame.to_world(beside)),
+            point=there.frame.to_local(space.frame.to_world(shifted)),
             face=hidden.face,
             area=hidden.area,
             normal=there.frame.local_direction(space.frame.world_direction(hidden.normal)),
         )
-        seen.append(reached(there, local, probe, room))
+        seen.append(reached(there, local, probe, clearance))
         spaces.append(there)
         heights.append(local.point[:, 2])
         facing.append(local.normal[:, 2] > FACING)

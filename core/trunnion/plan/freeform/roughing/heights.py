@@ -65,7 +65,7 @@ def cell_over(low: Floats, high: Floats, cell: float) -> float:
     return max(cell, math.sqrt(float(size[0] * size[1]) / MOST_SAMPLES))
 
 
-def gap_beside_walls(cell: float, chord: float) -> float:
+def wall_gap(cell: float, chord: float) -> float:
     """Return by how much, in mm and in the mean, the rims of `HeightMap.below` stay farther from upright walls than the map's allowance.
 
     A place is low from a cell's diagonal off the wall on. The rim crosses the edge to a place that isn't, on either side of that

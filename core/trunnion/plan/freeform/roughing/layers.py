@@ -18,8 +18,8 @@ from trunnion.plan.freeform.lands import LAND, REST_LAND, land_drive
 from trunnion.plan.freeform.roughing.heights import (
     HeightMap,
     cell_over,
-    gap_beside_walls,
     region_below,
+    wall_gap,
 )
 from trunnion.plan.freeform.space import SurfaceSpace
 from trunnion.plan.prismatic.drive import DriveLevel, PlaneDrive, WallGuide
@@ -68,9 +68,7 @@ def remaining_on_walls(space: SurfaceSpace, allowance: float, cell: float) -> fl
 
     Nowhere is it twice as thick.
     """
-    return allowance + gap_beside_walls(
-        cell_over(*_mapped_box(space, cell), cell), _chord(allowance)
-    )
+    return allowance + wall_gap(cell_over(*_mapped_box(space, cell), cell), _chord(allowance))
 
 
 def _chord(allowance: float) -> float:
@@ -110,7 +108,7 @@ def _layers(
         # Along walls the field keeps a strip of cells high that the cutter has been at: too narrow to be stock.
         wanted = (
             free.intersect(blank)
-            .intersect(_standing(stock, z, above))
+            .intersect(_stock_over(stock, z, above))
             .opened(0.5 * RIM * stock.cell)
         )
         levels.append(
@@ -164,7 +162,7 @@ def level_faces(space: SurfaceSpace) -> list[float]:
     return found
 
 
-def _standing(stock: StockHeights, z: float, above: float) -> Region:
+def _stock_over(stock: StockHeights, z: float, above: float) -> Region:
     """Return where the stock stands over a layer by more than is worth nothing; rims beside walls, which are never certain, left out."""
     most = float(stock.heights.max())
     higher = stock.heights > z + WORTH * (above - z)
@@ -183,14 +181,14 @@ def _outline(operation: Operation, space: SurfaceSpace) -> PlaneDrive:
     """Return the outline that the part's sections make from a bottom up, as walls from there to the highest of the operation's faces."""
     rows = np.isin(space.skin.face, operation.faces)
     z = space.skin.points[space.skin.triangles[rows], 2]
-    bottom, top, beside = float(z.min()), float(z.max()), tolerance.BESIDE_PLANE
+    bottom, top, margin = float(z.min()), float(z.max()), tolerance.OFF_PLANE
     highest = float(space.skin.points[:, 2].max())
     heights = [
-        bottom + beside,
+        bottom + margin,
         0.5 * (bottom + top),
-        top - beside,
+        top - margin,
         *np.linspace(top, highest, 4)[1:-1],
-        highest - beside,
+        highest - margin,
     ]
     sections = [
         space.part.section(space.frame, h).holes_filled() for h in heights if bottom < h < highest

@@ -50,7 +50,7 @@ class ControlLanguage:
         self.cycles = {code: CycleKind(kind) for kind, code in words.cycles.items()}
         levels = dict(zip(words.return_levels, ("initial level", "retract plane"), strict=True))
         self.refused = by_code(words.refused)
-        said = self._checked(tuple(known))
+        meanings = self._checked(tuple(known))
         self.meanings = {
             **dict.fromkeys(self.motions, "motion"),
             **dict.fromkeys(self.units, "units"),
@@ -58,7 +58,7 @@ class ControlLanguage:
             **dict.fromkeys(words.work_offsets, "work offset"),
             **dict.fromkeys(self.cycles, "cycle"),
             **{code: meaning for code, meaning in levels.items() if code},
-            **said,
+            **meanings,
         }
         self.dwell, self.length, self.tool_change = (
             self._first(m) for m in ("dwell", "length", "tool change")
@@ -69,9 +69,9 @@ class ControlLanguage:
         self.turning_plane, self.milling_plane = (
             self._first(m) for m in ("turning plane", "milling plane")
         )
-        self.ends = tuple(code for code, meaning in said.items() if meaning == "end")
+        self.ends = tuple(code for code, meaning in meanings.items() if meaning == "end")
         self.groups = (
-            (*self.motions, *self.cycles, *(c for c, m in said.items() if m == "no motion")),
+            (*self.motions, *self.cycles, *(c for c, m in meanings.items() if m == "no motion")),
             tuple(self.units),
             words.work_offsets,
             *(tuple(group.split()) for group in words.groups),
@@ -80,8 +80,8 @@ class ControlLanguage:
 
     def _checked(self, known: tuple[str, ...]) -> dict[str, str]:
         """Return the meanings of codes as the words give them; raise `BadInput` for an unknown one, or a letter that is missing."""
-        said = by_code(self.words.codes)
-        for code, meaning in said.items():
+        meanings = by_code(self.words.codes)
+        for code, meaning in meanings.items():
             if meaning not in known:
                 raise BadInput(
                     f"dialect {self.words.title}: {code}: {meaning!r} is no meaning of a code; known: {', '.join(known)}"
@@ -90,7 +90,7 @@ class ControlLanguage:
                 raise BadInput(
                     f"dialect {self.words.title}: letters needs an entry {_NEEDED[meaning]} for {code}"
                 )
-        return said
+        return meanings
 
     def _find_letters(self, role: dict[str, str], work_position: WorkPosition | None) -> None:
         """Find out which letters a text may have, what numbers follow them, and which codes take those that need one."""

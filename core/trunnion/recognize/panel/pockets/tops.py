@@ -19,12 +19,12 @@ FOOT_SHARE = 1.0 / 3.0
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Tops:
     """The faces that look up, as rows: `highest` at the part's top, `ribs`, `floors` at the foot of walls (also curved ones),
-    `standing` with nothing above their border, `undercut` with material all over them."""
+    `islands` with nothing above their border, `undercut` with material all over them."""
 
     highest: tuple[int, ...]
     ribs: tuple[int, ...]
     floors: tuple[int, ...]
-    standing: tuple[int, ...]
+    islands: tuple[int, ...]
     undercut: tuple[int, ...]
 
 

@@ -95,11 +95,11 @@ def tip_spacing(slopes: FacetSlopes, tool: Tool, height: float, across: Floats) 
     )
     stepover = np.where(bends, math.sqrt(AIM), 1.0) / passes
     # Tips are nearer to each other than contacts in a hollow, and wider apart on a hill.
-    going = (move @ across) / share
+    advance = (move @ across) / share
     # What is rounder than the cutter by more than the height is left to a smaller one, wherever passes lie.
-    fits = going * tool.corner_radius > -height
+    fits = advance * tool.corner_radius > -height
     return np.asarray(
-        share * np.where(fits, np.maximum(stepover * going, CLOSEST * height), stepover)
+        share * np.where(fits, np.maximum(stepover * advance, CLOSEST * height), stepover)
     )
 
 

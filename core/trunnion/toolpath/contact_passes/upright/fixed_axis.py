@@ -69,7 +69,7 @@ class UprightPasses:
         return tuple(found)
 
 
-def stood(
+def upright_passes(
     contact_lines: Sequence[Contacts],
     drive: SurfaceDrive,
     tool: Tool,
@@ -110,11 +110,11 @@ def stood(
     facet = drive.skin.drop.contacts(plan, pieces, lowest, progress.part(0.7, 0.95))[1]
     on_area = (facet >= 0) & drive.skin.of(drive.faces)[np.maximum(facet, 0)]
     passes, owner, begin = [], [], 0
-    for contacts, tip, k, asked in zip(runs, followed, source, tips, strict=True):
-        touches, begin = on_area[begin : begin + len(tip)], begin + len(tip)
+    for contacts, tip, k, target in zip(runs, followed, source, tips, strict=True):
+        on_faces, begin = on_area[begin : begin + len(tip)], begin + len(tip)
         tip = tip + drive.allowance * UPRIGHT
-        normal = contacts.normal[cKDTree(asked[:, :2]).query(tip[:, :2])[1]]
-        for piece in _runs(touches, contacts.closed):
+        normal = contacts.normal[cKDTree(target[:, :2]).query(tip[:, :2])[1]]
+        for piece in _runs(on_faces, contacts.closed):
             if len(piece) > 1 and _length(tip[piece]) >= SHORTEST:
                 passes.append(
                     Pass(

@@ -53,7 +53,7 @@ def follow(
         middles = 0.5 * (tips[rows, :2] + tips[rows + 1, :2])
         share = progress.part(1.0 - 0.7 * 0.5**k, 1.0 - 0.7 * 0.5 ** (k + 1))
         found = np.column_stack([middles, drop.drop(middles, pieces, lowest, share)])
-        is_open[rows] = beside(found, tips[rows], tips[rows + 1]) > SEEN * chord
+        is_open[rows] = chord_distance(found, tips[rows], tips[rows + 1]) > SEEN * chord
         tips, line = np.insert(tips, rows + 1, found, axis=0), np.insert(line, rows + 1, line[rows])
         is_open = np.insert(is_open, rows + 1, is_open[rows])
         is_open |= _bent(tips, line, chord)
@@ -77,7 +77,7 @@ def thinned(points: Floats, line: Ints, chord: float) -> Bools:
     while len(rows):
         ends = np.flatnonzero(kept)
         after = np.searchsorted(ends, rows)
-        off = beside(points[rows], points[ends[after - 1]], points[ends[after]])
+        off = chord_distance(points[rows], points[ends[after - 1]], points[ends[after]])
         first = np.flatnonzero(np.diff(after, prepend=-1))
         most = np.maximum.reduceat(off, first)
         owner = np.repeat(np.arange(len(first)), np.diff(np.append(first, len(rows))))
@@ -89,7 +89,7 @@ def thinned(points: Floats, line: Ints, chord: float) -> Bools:
     return kept
 
 
-def beside(points: Floats, start: Floats, end: Floats) -> Floats:
+def chord_distance(points: Floats, start: Floats, end: Floats) -> Floats:
     """Return how far points (n, 3) are from the straight ways (n, 3) from a start to an end."""
     direction, to = end - start, points - start
     square = (direction * direction).sum(axis=1)

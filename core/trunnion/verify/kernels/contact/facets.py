@@ -688,13 +688,13 @@ def triangle_contact_loop(
         np.zeros((n_faces, 2, 3)),
         np.full(n_faces, -1),
     )
-    touched = np.zeros(n_faces, np.int64)
+    reached = np.zeros(n_faces, np.int64)
     for k in range(first, last):
         n = rows[k]
         fill_tool_motion(start[n], end[n], axis[n], end_axis[n], centre[n], sweep[n], motion)
         # What was filled for the move before is not this one's, though its shares be the same.
         near[S_FROM] = near[S_TO] = -1.0
-        n_touched, done = 0, False
+        n_reached, done = 0, False
         for p in range(piece_start[tool[n]], piece_start[tool[n] + 1]):
             a, b = int(pieces[p, CLOSED_FIRST]), int(pieces[p, CLOSED_LAST])
             column = 0 if pieces[p, KIND] == 0.0 else 1
@@ -714,8 +714,8 @@ def triangle_contact_loop(
                         f = face[m]
                         if stamp[f] != k:
                             stamp[f], best[f, 0], best[f, 1] = k, -np.inf, -np.inf
-                            touched[n_touched] = f
-                            n_touched += 1
+                            reached[n_reached] = f
+                            n_reached += 1
                         # The face's depth so far is the one to beat: triangles of a face share it.
                         found[0] = before = best[f, column]
                         if before >= DEEP:
@@ -749,8 +749,8 @@ def triangle_contact_loop(
                                 break
                     node += 1
         # Of equal depths the lower face row: the result doesn't depend on the order of the tree.
-        for i in range(n_touched):
-            f = touched[i]
+        for i in range(n_reached):
+            f = reached[i]
             for column in range(2):
                 d = best[f, column]
                 if d <= enough[k]:

@@ -86,10 +86,10 @@ def _edge_crossing(
     for side in range(2):
         across, slope, sides = u if side == 0 else v, 0.0, 0
         for sense in range(-1, 2, 2):
-            beside = cell[across] + sense
-            if not 0 <= beside < cells[across]:
+            neighbour = cell[across] + sense
+            if not 0 <= neighbour < cells[across]:
                 continue
-            ray = cell[v] * cells[u] + beside if side == 0 else beside * cells[u] + cell[u]
+            ray = cell[v] * cells[u] + neighbour if side == 0 else neighbour * cells[u] + cell[u]
             other = _nearest_crossing(count, ends, ray, end, REACH * pitch)
             if np.isnan(other):
                 continue

@@ -518,17 +518,17 @@ def _tridexel_cut_arc(
     # In the plane across the axis, the ray's place nearest to the centre, and how far beside it the ray passes.
     x, y = span[CENTRE] - u, span[CENTRE + 1] - v
     along = span[FRAME0 + 6] * x + span[FRAME0 + 7] * y
-    beside, middle = math.sqrt(max(x * x + y * y - along * along, 0.0)), span[CENTRE + 2]
+    lateral, middle = math.sqrt(max(x * x + y * y - along * along, 0.0)), span[CENTRE + 2]
     # The ray passes outside of the outer circle, or has no material within it.
-    if beside >= radius + r:
+    if lateral >= radius + r:
         return 0.0, True
-    half = math.sqrt((radius + r) ** 2 - beside * beside)
+    half = math.sqrt((radius + r) ** 2 - lateral * lateral)
     if _ray_misses(count, low, high, cell, max(bottom, middle - half), min(top, middle + half)):
         return 0.0, True
     n = 0
     for circle in (radius + r, radius - r):
-        if circle > beside:
-            half = math.sqrt(circle * circle - beside * beside)
+        if circle > lateral:
+            half = math.sqrt(circle * circle - lateral * lateral)
             n = _insert_sorted(ray, _insert_sorted(ray, n, middle - half), middle + half)
     for end in range(2):
         x, y, w = (
@@ -984,14 +984,14 @@ def tridexel_cut_tile(
         rapids += rapid[n]
     for n in range(resume[0], last):
         rapids += rapid[n]
-        going_on = n == resume[0]
+        resumes = n == resume[0]
         p0, p1 = piece_start[tool[n]], piece_start[tool[n] + 1]
         # Feed move: engagement first, as the stock stood before; then every piece that cuts takes
         # its sweep away, span by span.
         if not rapid[n]:
             if (
                 probe_start[n + 1] > probe_start[n]
-                and not (going_on and resume[5] != 0)
+                and not (resumes and resume[5] != 0)
                 and _spans_meet(
                     span, span_start[n], span_start[n + 1], v_low - pitch, v_high + pitch
                 )
@@ -1021,9 +1021,9 @@ def tridexel_cut_tile(
                     seen,
                 )
             for s in range(
-                max(resume[1], span_start[n]) if going_on else span_start[n], span_start[n + 1]
+                max(resume[1], span_start[n]) if resumes else span_start[n], span_start[n + 1]
             ):
-                going_on = going_on and s == resume[1]
+                resumes = resumes and s == resume[1]
                 if (
                     span[s, CUT_BOX + 1] > v_high
                     or span[s, CUT_BOX + 4] < v_low
@@ -1032,8 +1032,8 @@ def tridexel_cut_tile(
                 ):
                     continue
                 ray[TWIST] = _ray_turn(span[s])
-                for p in range(max(resume[2], p0) if going_on else p0, p1):
-                    going_on = going_on and p == resume[2]
+                for p in range(max(resume[2], p0) if resumes else p0, p1):
+                    resumes = resumes and p == resume[2]
                     if piece[p, KIND] != 0.0:
                         break
                     _swept_box(box, span[s], piece[p], ray[TWIST] > 0.0)
@@ -1043,10 +1043,10 @@ def tridexel_cut_tile(
                     limit = _flute_limit(piece, p, p1)
                     i0, i1 = _cell_range(box[0], box[3], origin[0], pitch, 0, columns)
                     j0, j1 = _cell_range(box[1], box[4], origin[1], pitch, row, end_row)
-                    for j in range(max(j0, resume[3]) if going_on else j0, j1):
+                    for j in range(max(j0, resume[3]) if resumes else j0, j1):
                         v = origin[1] + (j + 0.5) * pitch
                         for i in range(
-                            max(i0, resume[4]) if going_on and j == resume[3] else i0, i1
+                            max(i0, resume[4]) if resumes and j == resume[3] else i0, i1
                         ):
                             cell = j * columns + i
                             if _ray_misses(count, low, high, cell, box[2], box[5]):
