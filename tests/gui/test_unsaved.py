@@ -12,7 +12,7 @@ from PySide6.QtTest import QTest
 from PySide6.QtWidgets import QApplication, QMessageBox, QPushButton
 
 from trunnion_gui.storage import preferences, recovery
-from trunnion_gui.storage.autosave import notes_of, autosave_owner
+from trunnion_gui.storage.autosave import autosave_owner, notes_of
 from trunnion_gui.storage.unsaved import CANCEL, DISCARD, SAVE
 
 LEFT = Qt.MouseButton.LeftButton

@@ -9,7 +9,7 @@ from pytest import approx
 
 from milling import SETUP, box_blank
 from trunnion.model.motion.toolpath import Mark, Motion, Toolpath
-from trunnion.toolpath.motion.reorient import STEP, joined, moved_over, clearance_sphere, turn
+from trunnion.toolpath.motion.reorient import STEP, clearance_sphere, joined, moved_over, turn
 
 UP = np.array([0.0, 0.0, 1.0])
 SWING = clearance_sphere(box_blank((-30, -20, -40), (30, 20, 0)), SETUP)

@@ -26,7 +26,7 @@ from trunnion.post.dialects.linuxcnc import LinuxCncDialect
 from trunnion.post.header import Header
 from trunnion.post.readers.linuxcnc import read_linuxcnc
 from trunnion.post.settings import PostSettings
-from trunnion.toolpath.motion.reorient import joined, clearance_sphere
+from trunnion.toolpath.motion.reorient import clearance_sphere, joined
 from verify_tools import (
     BLANK,
     FLOOR,
