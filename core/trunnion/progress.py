@@ -157,5 +157,5 @@ class Progress:
         return ": ".join(word for word in (self._name, text) if word)
 
 
-QUIET = Progress()
+NO_PROGRESS = Progress()
 """Progress that nobody looks at."""

@@ -223,12 +223,12 @@ class ViewportPane(QWidget):
             lambda: self._draw_paths(session),
         )
         self.legend.show_rows(self._legend(session))
-        self._place()
+        self._arrange()
         self.welcome.setVisible(not self._document.has_part and not self._document.is_busy)
 
     def resizeEvent(self, event: QResizeEvent) -> None:
         super().resizeEvent(event)
-        self._place()
+        self._arrange()
 
     def _once(self, name: str, inputs: tuple, draw: Callable[[], None]) -> None:
         """Draw a layer only when what it is drawn from is another thing than last time."""
@@ -242,7 +242,7 @@ class ViewportPane(QWidget):
         self._drawn[name] = inputs
         draw()
 
-    def _place(self) -> None:
+    def _arrange(self) -> None:
         self.legend.move(_EDGE, _EDGE)
         self.scale.move(_EDGE, _EDGE)
         card = next((c for c in (self.scale, self.legend) if c.isVisible()), None)

@@ -22,7 +22,7 @@ from trunnion.model.tool import Tool
 from trunnion.pipeline import Engine
 from trunnion.pipeline.toolpaths import make_paths
 from trunnion.plan.freeform.reach import samples_on
-from trunnion.progress import QUIET
+from trunnion.progress import NO_PROGRESS
 from trunnion.settings import choose
 from trunnion.toolpath.contract import ToolAxis
 from trunnion.verify.finish.sweep import Sweep
@@ -50,7 +50,7 @@ class Case:
     operation: Operation
     is_own: bool
 
-    def path(self, operation=None, progress=QUIET, alone=False) -> OperationPath:
+    def path(self, operation=None, progress=NO_PROGRESS, alone=False) -> OperationPath:
         """Return the toolpath of the operation, or of a changed one in its place."""
         last = operation or self.operation
         before = () if alone else self.session.process.operations[:-1]

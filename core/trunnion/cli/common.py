@@ -142,7 +142,7 @@ def open_session(options: argparse.Namespace, until: str | None) -> tuple[Engine
     return engine, session
 
 
-def add_by_hand(made: argparse.ArgumentParser) -> None:
+def add_manual_edits(made: argparse.ArgumentParser) -> None:
     """Add the options that change groups of patches by hand."""
     made.add_argument(
         "--local",
@@ -161,8 +161,8 @@ def add_by_hand(made: argparse.ArgumentParser) -> None:
     )
 
 
-def with_by_hand(options: argparse.Namespace, engine: Engine, session: Session) -> Session:
-    """Return the session with the changes that the options of `add_by_hand` say."""
+def with_manual_edits(options: argparse.Namespace, engine: Engine, session: Session) -> Session:
+    """Return the session with the changes that the options of `add_manual_edits` say."""
     from trunnion.pipeline.planning.patches import with_local, with_moved
 
     for word in options.moves:

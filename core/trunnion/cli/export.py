@@ -7,7 +7,7 @@ from pathlib import Path
 from typing import Any
 
 from trunnion.cli.common import (
-    add_by_hand,
+    add_manual_edits,
     check_output,
     exit_code,
     listed,
@@ -15,7 +15,7 @@ from trunnion.cli.common import (
     part_command,
     show_findings,
     show_json,
-    with_by_hand,
+    with_manual_edits,
 )
 from trunnion.findings import BadInput
 
@@ -40,7 +40,7 @@ def add(commands: Any) -> None:
         metavar="FILE",
         help="file to write (.igs, .iges, .step, .stp)",
     )
-    add_by_hand(made)
+    add_manual_edits(made)
     made.set_defaults(run=run)
 
 
@@ -52,7 +52,7 @@ def run(options: argparse.Namespace) -> int:
         raise BadInput(f"{options.out}: there is no folder {options.out.parent}")
     check_output(options.out.parent)
     engine, session = open_session(options, "recognize")
-    session = with_by_hand(options, engine, session)
+    session = with_manual_edits(options, engine, session)
     what = listed(options.groups)
     tags = tags_of(session, what)
     export(engine, session, what, options.out)

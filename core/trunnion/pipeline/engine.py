@@ -20,7 +20,7 @@ from trunnion.model.playback import Moment, Timeline
 from trunnion.model.session import Session, StepRecord
 from trunnion.pipeline.context import Context, Contexts
 from trunnion.pipeline.steps import STEP_TABLE, STEPS, Step, step_named
-from trunnion.progress import QUIET, Progress
+from trunnion.progress import NO_PROGRESS, Progress
 from trunnion.settings import Value, checked, choose, declared
 from trunnion.shop import load_shop
 from trunnion.verify.settings import ProofSettings
@@ -47,7 +47,7 @@ class Engine:
         self._playback: Playback | None = None
 
     def open(
-        self, path: str | Path, *, solid: int | None = None, progress: Progress = QUIET
+        self, path: str | Path, *, solid: int | None = None, progress: Progress = NO_PROGRESS
     ) -> Session:
         """Return a new session of a part file (STEP, IGES, gzipped STEP) or the saved session of a project file."""
         path, progress = Path(path), progress.afresh()
@@ -96,7 +96,11 @@ class Engine:
         return self._file
 
     def attach(
-        self, session: Session, data: bytes = b"", suffix: str = "", progress: Progress = QUIET
+        self,
+        session: Session,
+        data: bytes = b"",
+        suffix: str = "",
+        progress: Progress = NO_PROGRESS,
     ) -> None:
         """Take over a session after a restart: from the part file's bytes when given, else from where the part was read."""
         if session.part is None:
@@ -115,13 +119,13 @@ class Engine:
             raise BadCall("no part is open: open a STEP or IGES file first")
         return self._contexts.after(())
 
-    def context_of(self, session: Session, progress: Progress = QUIET) -> Context:
+    def context_of(self, session: Session, progress: Progress = NO_PROGRESS) -> Context:
         """Return the part after the session's cuts, and the shop; raises `BadCall` while no part is open."""
         if self._contexts is None:
             return self.context
         return self._contexts.after(session.cuts, progress)
 
-    def mesh(self, session: Session, progress: Progress = QUIET) -> Mesh:
+    def mesh(self, session: Session, progress: Progress = NO_PROGRESS) -> Mesh:
         """Return the triangles of the part, with the tag of each one's face."""
         progress = progress.afresh()
         part = self.context_of(session, progress).part
@@ -159,7 +163,7 @@ class Engine:
         return replace(session, choices={**session.choices, **values})
 
     def with_cuts(
-        self, session: Session, cuts: tuple[Cut, ...], progress: Progress = QUIET
+        self, session: Session, cuts: tuple[Cut, ...], progress: Progress = NO_PROGRESS
     ) -> Session:
         """Return the session with its part's faces divided by cuts, in their order; raise `BadInput` when one of them can't be made."""
         after = replace(session, cuts=cuts)
@@ -169,7 +173,7 @@ class Engine:
         )
 
     def with_fixtures(
-        self, session: Session, words: Sequence[str], progress: Progress = QUIET
+        self, session: Session, words: Sequence[str], progress: Progress = NO_PROGRESS
     ) -> Session:
         """Return the session with the fixtures of some files (`FILE`, or `SETUP=FILE` for one setup) in place of those it had.
 
@@ -193,7 +197,7 @@ class Engine:
             found[step.name] = state if upstream or state == "empty" else "stale"
         return found
 
-    def _state(self, session: Session, step: Step, _progress: Progress = QUIET) -> str:
+    def _state(self, session: Session, step: Step, _progress: Progress = NO_PROGRESS) -> str:
         record = session.records.get(step.name)
         if record is None or not step.done(session):
             return "empty"
@@ -201,7 +205,9 @@ class Engine:
             return "stale"
         return "problem" if has_errors(record.findings) else "done"
 
-    def run(self, session: Session, until: str = STEPS[-1], progress: Progress = QUIET) -> Session:
+    def run(
+        self, session: Session, until: str = STEPS[-1], progress: Progress = NO_PROGRESS
+    ) -> Session:
         """Return the session with every stale step up to `until` computed again; the one given stays as it was."""
         last, progress = STEPS.index(step_named(until).name), progress.afresh()
         for n, step in enumerate(progress.each(STEP_TABLE[: last + 1])):
@@ -234,7 +240,9 @@ class Engine:
             },
         )
 
-    def playback(self, session: Session, cell: float = 0.0, progress: Progress = QUIET) -> Timeline:
+    def playback(
+        self, session: Session, cell: float = 0.0, progress: Progress = NO_PROGRESS
+    ) -> Timeline:
         """Take up a plan for playback and return its blocks over time; `moment` then shows its stock."""
         from trunnion.pipeline.proof.playback import Playback
 
@@ -244,7 +252,11 @@ class Engine:
         return self._playback.timeline
 
     def moment(
-        self, key: str, position: float, seconds: float = float("inf"), progress: Progress = QUIET
+        self,
+        key: str,
+        position: float,
+        seconds: float = float("inf"),
+        progress: Progress = NO_PROGRESS,
     ) -> Moment:
         """Return the stock of the plan that is played (by its timeline's key) at a position, or on the way there after some seconds."""
         if self._playback is None or self._playback.timeline.key != key:
@@ -253,7 +265,7 @@ class Engine:
         with compiling(progress):
             return self._playback.towards(position, seconds, progress)
 
-    def deviation_map(self, session: Session, progress: Progress = QUIET) -> DeviationMap:
+    def deviation_map(self, session: Session, progress: Progress = NO_PROGRESS) -> DeviationMap:
         """Return the deviation of the finished part as triangles to be drawn; raise `BadCall` before a proof."""
         from trunnion.report.deviation import deviation_map
 
@@ -270,7 +282,7 @@ class Engine:
             progress.part(0.2, 1.0),
         )
 
-    def save(self, session: Session, path: str | Path, progress: Progress = QUIET) -> None:
+    def save(self, session: Session, path: str | Path, progress: Progress = NO_PROGRESS) -> None:
         """Write the project file, whole or not at all."""
         from trunnion.store.project import save_project
 
@@ -284,7 +296,7 @@ class Engine:
         *,
         name: str = "",
         date: str = "",
-        progress: Progress = QUIET,
+        progress: Progress = NO_PROGRESS,
     ) -> tuple[str, ...]:
         """Write everything of a proven session into a folder (NC, CL, XML, tool list, report, project); return the file names."""
         from trunnion.pipeline.writing import name_of, write_documents

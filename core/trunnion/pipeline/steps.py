@@ -18,7 +18,7 @@ from trunnion.model.session import Session
 from trunnion.pipeline.context import Context
 from trunnion.pipeline.planning.blank import blank_of, source_of, too_small
 from trunnion.pipeline.planning.family import RecognizeSettings, recognised
-from trunnion.pipeline.planning.manual_edits import with_features_by_hand, with_operations_by_hand
+from trunnion.pipeline.planning.manual_edits import with_manual_features, with_manual_operations
 from trunnion.pipeline.planning.scene import SessionContext
 from trunnion.pipeline.proof.posted_programs import prove_session
 from trunnion.pipeline.toolpaths import findings_of, make_paths, strategy_settings
@@ -120,7 +120,7 @@ def _route_settings() -> tuple[type, ...]:
 
 def _recognize(session: Session, context: Context, progress: Progress) -> Result:
     found = replace(recognised(session, context, progress), face_area=context.part.graph().area)
-    kept = with_features_by_hand(session.recognition, found)
+    kept = with_manual_features(session.recognition, found)
     after = replace(session, recognition=kept)
     return Result(
         session=after if kept is found else measured_anew(after, context), findings=kept.findings
@@ -194,7 +194,7 @@ def _route(session: Session, context: Context, progress: Progress) -> Result:
             progress=progress,
         )
     )
-    process = with_operations_by_hand(session.process, process)
+    process = with_manual_operations(session.process, process)
     return Result(
         session=replace(session, setups=setups, process=process), findings=process.findings
     )

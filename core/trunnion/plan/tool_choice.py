@@ -8,7 +8,7 @@ from dataclasses import dataclass
 from trunnion import tolerance
 from trunnion.geometry.plane.region import Region
 from trunnion.model.tool import Tool
-from trunnion.progress import QUIET, Progress
+from trunnion.progress import NO_PROGRESS, Progress
 from trunnion.units import trimmed
 
 CUSP_SPREAD = 1.1
@@ -55,7 +55,7 @@ def candidates(
     requirement: ToolRequirement,
     tools: Sequence[Tool],
     clearance: float,
-    progress: Progress = QUIET,
+    progress: Progress = NO_PROGRESS,
 ) -> Candidates:
     """Return the cutters that fit a requirement; each test that leaves none says what would be needed."""
     if not tools:

@@ -13,7 +13,7 @@ import numpy as np
 from trunnion.geometry.arrays import Bools, Floats, Ints
 from trunnion.geometry.mesh import Mesh
 from trunnion.model.verdict import Deviation
-from trunnion.progress import QUIET, Progress
+from trunnion.progress import NO_PROGRESS, Progress
 
 RANGE = 2.5
 """Where the colours end, in tolerances."""
@@ -57,7 +57,7 @@ def deviation_map(
     deviation: Deviation,
     tolerance: float,
     allowance: float = 0.0,
-    progress: Progress = QUIET,
+    progress: Progress = NO_PROGRESS,
 ) -> DeviationMap:
     """Return the map of a part's mesh; faces without a sample count as finished."""
     low, high, limit = -tolerance, tolerance + allowance, RANGE * tolerance + allowance
@@ -110,7 +110,7 @@ def _spacing(deviation: Deviation) -> float:
 
 
 def divided(
-    mesh: Mesh, uneven: Bools, apart: float, progress: Progress = QUIET
+    mesh: Mesh, uneven: Bools, apart: float, progress: Progress = NO_PROGRESS
 ) -> tuple[Floats, Ints, Ints]:
     """Return points, triangles and faces of a mesh whose chosen faces (by tag) have no edge longer than `apart` mm."""
     points, triangles, face = (

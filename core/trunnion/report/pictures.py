@@ -22,7 +22,7 @@ from trunnion.model.feature import Recognition
 from trunnion.model.motion.toolpath import Toolpath
 from trunnion.model.session import Session
 from trunnion.model.setup import Setup
-from trunnion.progress import QUIET, Progress
+from trunnion.progress import NO_PROGRESS, Progress
 from trunnion.report.deviation import DeviationMap, deviation_map
 from trunnion.report.lines import (
     AXIS,
@@ -62,7 +62,7 @@ def write_pictures(
     folder: Path,
     name: str,
     palette: Palette,
-    progress: Progress = QUIET,
+    progress: Progress = NO_PROGRESS,
 ) -> tuple[Picture, ...]:
     """Write the pictures of a session as PNG files `NAME.*.png` into a folder and return them in the order of the work."""
     made = []

@@ -16,7 +16,7 @@ from trunnion.plan.freeform.cutters.cutter import lower_side
 from trunnion.plan.freeform.estimate.scallop import stepover_on_plane
 from trunnion.plan.freeform.finishing.partition import PART
 from trunnion.plan.freeform.finishing.rest import HOLDER_CLEARANCE, remaining_of, without_met
-from trunnion.progress import QUIET
+from trunnion.progress import NO_PROGRESS
 from trunnion.settings import choose
 from trunnion.shop import load_shop
 from trunnion.toolpath.contact_passes.overrun import OverrunStrip
@@ -98,7 +98,7 @@ HOLLOW = Bend(-2.0, 0.0, 2.0, math.pi - 1.1, math.pi, 6.0, 2)
 
 def cut(strategy, settings, skin, faces, **chosen):
     drive, setup, stock = driven(skin, faces=faces, height=HEIGHT)
-    return strategy(drive, BALL, DATA, stock, setup, choose(settings, chosen), QUIET).path
+    return strategy(drive, BALL, DATA, stock, setup, choose(settings, chosen), NO_PROGRESS).path
 
 
 def measured(paths, faces, low, high):

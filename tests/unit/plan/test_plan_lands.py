@@ -23,7 +23,7 @@ from trunnion.plan.freeform.lands import SKIM, LandClearances, PartAbove, covere
 from trunnion.plan.freeform.reach import samples_on
 from trunnion.plan.freeform.roughing.layers import plane_drive_of
 from trunnion.plan.freeform.space import SurfaceSpace
-from trunnion.progress import QUIET
+from trunnion.progress import NO_PROGRESS
 from trunnion.toolpath.stock.heightfield import PlanningStock
 
 SETUP = Setup(name="S1", frame=WORLD, work_offset="G54", clearance=40.0, machine="Mill 1200")
@@ -76,7 +76,9 @@ def lands(space):
 
 
 def chosen(space, mills=MILLS, ball=1.0, kept=()):
-    return end_mills_for(PartAbove(space), lands(space), mills, ball, 0.97, KEEPING, kept, QUIET)
+    return end_mills_for(
+        PartAbove(space), lands(space), mills, ball, 0.97, KEEPING, kept, NO_PROGRESS
+    )
 
 
 def at(found, z):
@@ -274,7 +276,7 @@ def test_thick_stock_comes_off_a_land_in_steps() -> None:
     space = SurfaceSpace.of(
         read(grooved().val().wrapped), spaced(grooved()).skin, session.blank, session.setups[0]
     )
-    floors = plane_drive_of(land, space, stock, QUIET).floors
+    floors = plane_drive_of(land, space, stock, NO_PROGRESS).floors
     assert [
         round(f.z - min(g.z for g in floors if g.face == f.face), 6)
         for f in floors

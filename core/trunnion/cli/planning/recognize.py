@@ -7,14 +7,14 @@ from collections.abc import Iterable
 from typing import TYPE_CHECKING, Any
 
 from trunnion.cli.common import (
-    add_by_hand,
+    add_manual_edits,
     exit_code,
     open_session,
     part_command,
     show_findings,
     show_json,
     table,
-    with_by_hand,
+    with_manual_edits,
 )
 
 if TYPE_CHECKING:
@@ -33,14 +33,14 @@ def add(commands: Any) -> None:
         metavar="FILE",
         help="write a project with the features, those changed by hand among them, as well",
     )
-    add_by_hand(made)
+    add_manual_edits(made)
     made.set_defaults(run=run)
 
 
 def run(options: argparse.Namespace) -> int:
     """Print the features and what nothing explains."""
     engine, session = open_session(options, "recognize")
-    session = with_by_hand(options, engine, session)
+    session = with_manual_edits(options, engine, session)
     part, found = session.part, session.recognition
     assert part is not None and found is not None
     if options.xml:

@@ -18,7 +18,7 @@ from scipy.sparse.linalg import factorized
 from trunnion.geometry.arrays import Floats, Ints
 from trunnion.geometry.kernels.shortest_paths import fast_marching_compiled as kernel
 from trunnion.geometry.sheet.sheet import Sheet
-from trunnion.progress import QUIET, Progress
+from trunnion.progress import NO_PROGRESS, Progress
 
 POWERS = (2.0, 3.0, 4.0, 4.0, 6.0, 6.0, 6.0)
 """Powers of the slope, one after the other: each begins where the one before ended."""
@@ -99,7 +99,7 @@ def beyond(sheet: Sheet) -> Ints:
     return np.where(key[order][at] == other, order[at], -1).reshape(-1, 3)
 
 
-def blend(metric: Metric, zero: Ints, one: Ints, progress: Progress = QUIET) -> Floats:
+def blend(metric: Metric, zero: Ints, one: Ints, progress: Progress = NO_PROGRESS) -> Floats:
     """Return the field (v,) that goes from 0 at some points to 1 at others in steps as even as the sheet allows."""
     n = len(metric.sheet.points)
     field, fixed = np.zeros(n), np.zeros(n, bool)

@@ -20,7 +20,7 @@ from trunnion import tolerance
 from trunnion.findings import Refused
 from trunnion.geometry.arrays import Bools, Floats, Ints
 from trunnion.geometry.sheet.skin import Skin
-from trunnion.progress import QUIET, Progress
+from trunnion.progress import NO_PROGRESS, Progress
 
 SMOOTH = np.cos(tolerance.SMOOTH_JOIN)
 MOST_TRIANGLES = 2_000_000
@@ -224,7 +224,7 @@ def between(
 
 
 def split_finely(
-    sheet: Sheet, measure: Measure, longest: float, progress: Progress = QUIET
+    sheet: Sheet, measure: Measure, longest: float, progress: Progress = NO_PROGRESS
 ) -> Sheet:
     """Return the sheet with triangles split until hardly an edge measures more than `longest`.
 

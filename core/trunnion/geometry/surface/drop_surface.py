@@ -18,7 +18,7 @@ from trunnion.geometry.kernels.cutter_contact.drop_bvh import (
 from trunnion.geometry.kernels.cutter_contact.drop_cutter import ROUND, A, C
 from trunnion.geometry.kernels.cutter_contact.push_cutter_compiled import push_cutter_loop
 from trunnion.geometry.lattice import Lattice, lattice_of
-from trunnion.progress import QUIET, Progress
+from trunnion.progress import NO_PROGRESS, Progress
 
 CHUNK = 2000
 """Points between two looks at cancel."""
@@ -75,7 +75,11 @@ class DropSurface:
         return DropSurface(facets=facets, row=row, start=start, boxes=boxes, planes=(planes, own))
 
     def drop(
-        self, points: Floats, pieces: Floats, lowest: float | Floats, progress: Progress = QUIET
+        self,
+        points: Floats,
+        pieces: Floats,
+        lowest: float | Floats,
+        progress: Progress = NO_PROGRESS,
     ) -> Floats:
         """Return the height (n,) of a cutter's tip over plan points (n, 2) when it comes down and touches, at least `lowest`, a height for
         all or for each (n,).
@@ -86,7 +90,11 @@ class DropSurface:
         return self.contacts(points, pieces, lowest, progress)[0]
 
     def contacts(
-        self, points: Floats, pieces: Floats, lowest: float | Floats, progress: Progress = QUIET
+        self,
+        points: Floats,
+        pieces: Floats,
+        lowest: float | Floats,
+        progress: Progress = NO_PROGRESS,
     ) -> tuple[Floats, Ints, Floats]:
         """Return what `drop` does, the triangle (n,) that is touched at each point, and where (n, 3).
 
@@ -116,7 +124,7 @@ class DropSurface:
         return out, np.where(facet >= 0, self.row[facet], -1), contact
 
     def push(
-        self, lines: Floats, pieces: Floats, progress: Progress = QUIET
+        self, lines: Floats, pieces: Floats, progress: Progress = NO_PROGRESS
     ) -> tuple[Ints, Floats]:
         """Return where the tip is blocked along lines (n, 2), each along x at a y and a z: start (n + 1,) into spans (k, 2) from x to x.
 

@@ -17,7 +17,7 @@ import numpy as np
 from trunnion import tolerance
 from trunnion.findings import BadInput, OutOfMemory
 from trunnion.geometry.arrays import Bools, Floats, Ints
-from trunnion.progress import QUIET, Progress
+from trunnion.progress import NO_PROGRESS, Progress
 
 if TYPE_CHECKING:
     from trunnion.part.part import Part
@@ -60,7 +60,9 @@ class RefinedMesh:
     bound: Floats
 
 
-def opened(part: Part, chords: Mapping[int, float], progress: Progress = QUIET) -> RefinedMesh:
+def opened(
+    part: Part, chords: Mapping[int, float], progress: Progress = NO_PROGRESS
+) -> RefinedMesh:
     """Return the faces of the tags in `chords` as triangles, each within its chord error (mm), as measured.
 
     Raises `BadInput` for a face that the mesher can't do and `OutOfMemory` beyond `MOST_TRIANGLES`.
@@ -153,7 +155,7 @@ class _Net:
     lines: list[Any]
     fixed: Bools
     bound: Floats
-    progress: Progress = QUIET
+    progress: Progress = NO_PROGRESS
 
     def join_poles(self) -> None:
         """Make one point of all that lie in the same pole, and leave out the triangles between them, which have no area."""

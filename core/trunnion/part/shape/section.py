@@ -38,7 +38,7 @@ from trunnion.part.topology.extent import edge_extremes, face_box
 from trunnion.part.topology.faces import TrimmedFace
 from trunnion.part.topology.graph import coedges
 from trunnion.part.topology.identity import Shape
-from trunnion.progress import QUIET, Progress
+from trunnion.progress import NO_PROGRESS, Progress
 
 _SAMPLES = 33
 _TRIES = 50
@@ -119,7 +119,9 @@ class SectionPiece:
 class SolidSlicer:
     """Answers sections of one solid; what doesn't depend on the plane is prepared once."""
 
-    def __init__(self, shape: Shape, faces: Iterable[Shape], progress: Progress = QUIET) -> None:
+    def __init__(
+        self, shape: Shape, faces: Iterable[Shape], progress: Progress = NO_PROGRESS
+    ) -> None:
         index = TopTools_IndexedMapOfShape()
         TopExp.MapShapes_s(shape, TopAbs_EDGE, index)
         shapes = [TopoDS.Edge_s(index.FindKey(n)) for n in range(1, index.Extent() + 1)]
@@ -141,7 +143,7 @@ class SolidSlicer:
         )
         self._others = [n for n, e in self.edges.items() if e.kind != GeomAbs_Line]
 
-    def section(self, frame: Frame, z: float, progress: Progress = QUIET) -> Region:
+    def section(self, frame: Frame, z: float, progress: Progress = NO_PROGRESS) -> Region:
         """Return the material cut by the plane at a height of a frame, in the frame's x and y."""
         progress.check()
         plane = self._clear_of_corners(frame, z)

@@ -28,7 +28,7 @@ from trunnion import tolerance
 from trunnion.geometry.arrays import Floats, Ints, floats, ints
 from trunnion.geometry.frame import Frame
 from trunnion.part.topology.canonical import xyz
-from trunnion.progress import QUIET, Progress
+from trunnion.progress import NO_PROGRESS, Progress
 
 if TYPE_CHECKING:
     from trunnion.part.part import Part
@@ -233,7 +233,11 @@ def circle_edges(sc: float, uc: float, radius: float, start: float, end: float) 
 
 
 def strips_of(
-    guide: Guide, profile: Profile, edges: list[TrimEdge], side: float, progress: Progress = QUIET
+    guide: Guide,
+    profile: Profile,
+    edges: list[TrimEdge],
+    side: float,
+    progress: Progress = NO_PROGRESS,
 ) -> Floats | None:
     """Return the strips (m, 37) of a face trimmed by edges in (s, u), or None when the edges don't close."""
     ends = [u for e in edges for u in (e.u0, e.u1)]
@@ -340,7 +344,7 @@ class ContactFace:
 
 
 def level_face(
-    tag: int, z: float, edges: list[TrimEdge], side: float = 1.0, progress: Progress = QUIET
+    tag: int, z: float, edges: list[TrimEdge], side: float = 1.0, progress: Progress = NO_PROGRESS
 ) -> ContactFace:
     """Return a level face from its outline's edges in plan (s is x, u is y); side +1 looks up, -1 down."""
     boundary, outline = [], []
@@ -425,7 +429,7 @@ def _outline_box(outline: Floats) -> list[float]:
     return [*every.min(axis=0).tolist(), *every.max(axis=0).tolist()]
 
 
-def surfaces_of(part: Part, frame: Frame, progress: Progress = QUIET) -> Surfaces:
+def surfaces_of(part: Part, frame: Frame, progress: Progress = NO_PROGRESS) -> Surfaces:
     """Return the trimmed faces of a part in a frame, its z the tool's axis."""
     shapes = [(tag, part.face_shape(tag)) for tag in part.tags]
     return surfaces_from(

@@ -14,14 +14,18 @@ from OCP.TopLoc import TopLoc_Location
 from trunnion.geometry.mesh import Mesh
 from trunnion.part.topology.faces import TrimmedFace
 from trunnion.part.topology.identity import Shape
-from trunnion.progress import QUIET, Progress
+from trunnion.progress import NO_PROGRESS, Progress
 
 MANY = 2000
 """Points or triangles taken from the kernel between two looks at cancel: some milliseconds."""
 
 
 def tessellated(
-    shape: Shape, faces: Mapping[int, Shape], chord: float, angle: float, progress: Progress = QUIET
+    shape: Shape,
+    faces: Mapping[int, Shape],
+    chord: float,
+    angle: float,
+    progress: Progress = NO_PROGRESS,
 ) -> Mesh:
     """Return the triangles of a solid's faces (by tag), anticlockwise seen from outside.
 
@@ -43,7 +47,7 @@ def tessellated(
     return Mesh(np.concatenate(points), np.concatenate(triangles), np.concatenate(owners))
 
 
-def face_triangles(face: Shape, progress: Progress = QUIET) -> tuple[np.ndarray, np.ndarray]:
+def face_triangles(face: Shape, progress: Progress = NO_PROGRESS) -> tuple[np.ndarray, np.ndarray]:
     """Return the points (v, 3) and triangles (t, 3) that the mesher has left on a face, anticlockwise seen from outside."""
     location = TopLoc_Location()
     found = BRep_Tool.Triangulation_s(face, location)

@@ -18,7 +18,7 @@ from trunnion.part.shape.evaluate import evaluator_of
 from trunnion.part.topology.canonical import CanonicalSurface
 from trunnion.part.topology.faces import TrimmedFace
 from trunnion.part.topology.trim import Trim
-from trunnion.progress import QUIET, Progress
+from trunnion.progress import NO_PROGRESS, Progress
 
 _GRID, _ZOOM, _ZOOMS, _STEPS = 13, 5, 4, 65
 Box = tuple[Floats, Floats]
@@ -48,7 +48,7 @@ def edge_extremes(adaptor: Any, points: Floats) -> Floats:
 
 
 def face_box(
-    view: TrimmedFace, surface: CanonicalSurface, boundary: Floats, progress: Progress = QUIET
+    view: TrimmedFace, surface: CanonicalSurface, boundary: Floats, progress: Progress = NO_PROGRESS
 ) -> Box:
     """Return the lowest and highest corner around a face; `boundary` (k, 3) holds its edges' extremes.
 

@@ -35,7 +35,7 @@ from trunnion.part.topology.extent import edge_extremes, face_box
 from trunnion.part.topology.faces import TrimmedFace
 from trunnion.part.topology.identity import Shape
 from trunnion.part.topology.measure import ACCURACY
-from trunnion.progress import QUIET, Progress
+from trunnion.progress import NO_PROGRESS, Progress
 
 _GRIDS, _PLANE_GRIDS = (5, 13, 31), (4, 13, 31)
 _MIN_SAMPLES, _MIN_PLANE_SAMPLES = 9, 4
@@ -74,7 +74,7 @@ class TopologyEdge:
 
 
 def face_graph(
-    shape: Shape, faces: Mapping[int, Shape], n_faces: int, progress: Progress = QUIET
+    shape: Shape, faces: Mapping[int, Shape], n_faces: int, progress: Progress = NO_PROGRESS
 ) -> FaceGraph:
     """Return the graph of a solid's faces (by tag); rows of tags that aren't there have area 0, no samples and no edges.
 

@@ -17,7 +17,7 @@ from trunnion.geometry.arrays import Bools, Floats
 from trunnion.geometry.kernels.outline import IN, NEAR
 from trunnion.geometry.outlines import Outlines
 from trunnion.part.topology.faces import TrimmedFace
-from trunnion.progress import QUIET, Progress
+from trunnion.progress import NO_PROGRESS, Progress
 
 SAG = 1e-4
 """Of the face's size in its parameters: how far a piece may be from the outline."""
@@ -31,7 +31,7 @@ TRIED = 8
 class Trim:
     """The trimmed area of a face; `progress` is looked at while the kernel is queried."""
 
-    def __init__(self, view: TrimmedFace, progress: Progress = QUIET) -> None:
+    def __init__(self, view: TrimmedFace, progress: Progress = NO_PROGRESS) -> None:
         self._view, self._progress = view, progress
         u0, u1, v0, v1 = view.bounds()
         self._turns = np.array([view.adaptor.IsUPeriodic(), view.adaptor.IsVPeriodic()])

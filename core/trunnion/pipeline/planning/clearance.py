@@ -21,7 +21,7 @@ from trunnion.model.fixture import Fixture
 from trunnion.model.material import Machine
 from trunnion.model.tool import Tool
 from trunnion.part.shape.facets import Facets
-from trunnion.progress import QUIET, Progress
+from trunnion.progress import NO_PROGRESS, Progress
 from trunnion.toolpath.contact_passes.axis_search import thickened
 
 if TYPE_CHECKING:
@@ -50,7 +50,7 @@ class PartClearance:
         setup: Frame,
         machine: Machine,
         fixtures: Sequence[Fixture] = (),
-        progress: Progress = QUIET,
+        progress: Progress = NO_PROGRESS,
     ) -> None:
         self._part, self._skin, self._cutting, self._setup = part, skin, cutting, setup
         self._machine, self._fixtures, self.progress = machine, tuple(fixtures), progress
@@ -86,7 +86,7 @@ class PartClearance:
                 moves.some(slice(first, last)), tolerance.FINISH_GOUGE
             )
 
-        in_parallel(work, len(moves), CHUNK, QUIET, "Looking for room for a leaning tool")
+        in_parallel(work, len(moves), CHUNK, NO_PROGRESS, "Looking for room for a leaning tool")
         return clear
 
     @cached_property

@@ -11,7 +11,7 @@ from trunnion.model.process import ProcessTree
 from trunnion.recognize.contract import exclusive_kinds
 
 
-def with_features_by_hand(before: Recognition | None, found: Recognition) -> Recognition:
+def with_manual_features(before: Recognition | None, found: Recognition) -> Recognition:
     """Return what was found with the features that a person made or changed in place of those that claim most of their faces, and
     without those that claim most of the faces of a deleted one. Faces that lose their feature become unexplained.
 
@@ -110,7 +110,7 @@ def free_id(kind: str, taken: set[str]) -> str:
     return f"{kind}-{number:02}"
 
 
-def with_operations_by_hand(before: ProcessTree | None, made: ProcessTree) -> ProcessTree:
+def with_manual_operations(before: ProcessTree | None, made: ProcessTree) -> ProcessTree:
     """Return the plan that was made with the operations that a person changed as they were, and without those that were deleted."""
     if before is None:
         return made

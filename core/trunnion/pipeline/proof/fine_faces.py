@@ -15,7 +15,7 @@ from trunnion.model.motion.program import Program, ProgramSection
 from trunnion.model.session import Session
 from trunnion.pipeline.engine import Engine
 from trunnion.pipeline.proof.posted_programs import read_back
-from trunnion.progress import QUIET, Progress
+from trunnion.progress import NO_PROGRESS, Progress
 
 
 @dataclass(frozen=True, slots=True, eq=False, kw_only=True)
@@ -50,7 +50,7 @@ def measure_fine(
     session: Session,
     faces: Sequence[int],
     spacing: float,
-    progress: Progress = QUIET,
+    progress: Progress = NO_PROGRESS,
 ) -> FineResult:
     """Return what the posted programs of a session leave on faces; `spacing` mm is how far apart it begins to look."""
     from trunnion.part.shape.exact import ExactFace

@@ -19,7 +19,7 @@ from trunnion.pipeline.work_position import work_positions_of
 from trunnion.post.header import Header
 from trunnion.post.readers import read_program
 from trunnion.post.settings import OF_MACHINE, PostSettings
-from trunnion.progress import QUIET, Progress
+from trunnion.progress import NO_PROGRESS, Progress
 from trunnion.settings import checked, choose
 from trunnion.shop.kinematics import WorkPositions
 from trunnion.verify.settings import ProofSettings
@@ -52,7 +52,10 @@ def programs_of(session: Session) -> tuple[Program, ...]:
 
 
 def post_texts(
-    session: Session, header: Header, machines: Mapping[str, Machine], progress: Progress = QUIET
+    session: Session,
+    header: Header,
+    machines: Mapping[str, Machine],
+    progress: Progress = NO_PROGRESS,
 ) -> tuple[PostedFile, ...]:
     """Return the texts of every program: one for each setup in the dialect of its machine's control, and the CL of all setups."""
     settings, cl = checked(choose(PostSettings, session.choices)), registry.get("dialects", "apt")()
@@ -111,7 +114,7 @@ def read_back(
     session: Session,
     posted: tuple[PostedFile, ...],
     machines: Mapping[str, Machine],
-    progress: Progress = QUIET,
+    progress: Progress = NO_PROGRESS,
 ) -> tuple[Program, ...]:
     """Return the motions that the posted texts of the control's dialect say, setup by setup."""
     if session.process is None:

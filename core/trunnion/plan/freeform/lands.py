@@ -24,7 +24,7 @@ from trunnion.plan.freeform.keys import number
 from trunnion.plan.freeform.roughing.heights import region_of
 from trunnion.plan.freeform.space import SurfaceSpace
 from trunnion.plan.prismatic.drive import DriveLevel, Floor, PlaneDrive
-from trunnion.progress import QUIET, Progress
+from trunnion.progress import NO_PROGRESS, Progress
 
 SKIM = 2e-4
 """mm: how far above a land what stands in the way is looked for. An end mill enters a fillet that begins on the land by no more than this,
@@ -81,7 +81,7 @@ class PartAbove:
     """What a part has above heights, in plan; each is found once, with looks at progress."""
 
     space: SurfaceSpace
-    progress: Progress = QUIET
+    progress: Progress = NO_PROGRESS
     _found: dict[float, Region] = field(init=False, repr=False, default_factory=dict)
 
     def over(self, z: float) -> Region:
@@ -166,7 +166,7 @@ def covered(land: Land, free: Region, tool: Tool) -> Region:
 
 
 def is_free_of_part(
-    part_above: PartAbove, land: Land, tool: Tool, progress: Progress = QUIET
+    part_above: PartAbove, land: Land, tool: Tool, progress: Progress = NO_PROGRESS
 ) -> bool:
     """Say whether the part, as triangles, is nowhere in the way of an end mill that comes right up to what stands beside a land: a section
     that misses something would let it in."""
@@ -199,7 +199,7 @@ def land_drive(
     space: SurfaceSpace,
     before: Sequence[Operation],
     stock_top: float,
-    progress: Progress = QUIET,
+    progress: Progress = NO_PROGRESS,
 ) -> PlaneDrive:
     """Return the drive of an end mill on lands, from the highest down: of each what the operations `before` it left.
 

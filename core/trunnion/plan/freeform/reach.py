@@ -14,7 +14,7 @@ from trunnion.model.tool import Tool
 from trunnion.plan.freeform.cutters.cutter import level_disc, lower_side, tip_at
 from trunnion.plan.freeform.finishing.rest import HOLDER_CLEARANCE, LIFTED
 from trunnion.plan.freeform.space import SurfaceSpace
-from trunnion.progress import QUIET, Progress
+from trunnion.progress import NO_PROGRESS, Progress
 
 SAMPLES = 1500
 """Places that an area is judged by; one of them stands for less than a thousandth of it."""
@@ -80,7 +80,7 @@ def reached(
     tool: Tool,
     clearance: float,
     allowance: float = 0.0,
-    progress: Progress = QUIET,
+    progress: Progress = NO_PROGRESS,
 ) -> Bools:
     """Say which samples (k,) an upright cutter touches without being lifted off by other faces, with its shank and holder at least
     `clearance` mm above the part, and without going lower than the blank.

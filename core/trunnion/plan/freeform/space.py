@@ -21,7 +21,7 @@ from trunnion.plan.freeform.drive import SurfaceDrive
 from trunnion.plan.freeform.finishing.rest import remaining_of, without_met
 from trunnion.plan.freeform.frames import UPRIGHT, Direction, cutting_setup
 from trunnion.plan.freeform.keys import ALLOWANCE, SCALLOP, number
-from trunnion.progress import QUIET, Progress
+from trunnion.progress import NO_PROGRESS, Progress
 from trunnion.settings import digest
 
 AROUND = 45.0
@@ -92,7 +92,7 @@ class SurfaceSpace:
         needs: DriveNeeds,
         earlier: Tool | None = None,
         query_for: Callable[[Tool], ClearanceQuery] | None = None,
-        progress: Progress = QUIET,
+        progress: Progress = NO_PROGRESS,
     ) -> SurfaceDrive:
         """Return what an operation on curved faces is driven by; `earlier` is the cutter that finished them before, `query_for` makes
         askers.

@@ -14,7 +14,7 @@ from trunnion.plan.freeform.cutters.choice import NEGLIGIBLE, AreaCutters
 from trunnion.plan.freeform.cutters.cutter import tip_at
 from trunnion.plan.freeform.reach import AreaSamples
 from trunnion.plan.tool_choice import depth_reached
-from trunnion.progress import QUIET, Progress
+from trunnion.progress import NO_PROGRESS, Progress
 
 LEANS = np.radians([25.0, 50.0, 70.0])
 """Leans from the normal that are tried, the least one first; point milling finds what lies between."""
@@ -25,7 +25,7 @@ SAMPLES = 200
 
 
 def reached_leaning(
-    samples: AreaSamples, tool: Tool, query: ClearanceQuery, progress: Progress = QUIET
+    samples: AreaSamples, tool: Tool, query: ClearanceQuery, progress: Progress = NO_PROGRESS
 ) -> Bools:
     """Say which samples (k,) a cutter touches with some lean, nothing of the tool in the part, and an axis that the machine can hold."""
     found = np.zeros(len(samples), dtype=bool)
@@ -46,7 +46,7 @@ def leaning_cutter(
     query_for: Callable[[Tool], ClearanceQuery],
     share: float,
     wanted: Tool | None = None,
-    progress: Progress = QUIET,
+    progress: Progress = NO_PROGRESS,
 ) -> AreaCutters:
     """Return the largest cutter that, leaning, reaches at least a share of what any one reaches of places, the shortest of its size; or
     the one that is `wanted`. What it misses goes to the largest smaller one that reaches nearly all any does of that."""

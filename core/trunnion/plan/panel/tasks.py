@@ -25,7 +25,7 @@ from trunnion.plan.prismatic.regions import (
 )
 from trunnion.plan.settings import RouteSettings
 from trunnion.plan.tool_choice import ToolRequirement, candidates, depth_reached, fits_through
-from trunnion.progress import QUIET, Progress
+from trunnion.progress import NO_PROGRESS, Progress
 from trunnion.shop import Shop, Stage
 from trunnion.units import trimmed
 
@@ -80,7 +80,7 @@ class PanelPlanState:
     bands: dict[str, tuple[Band, ...]] = field(default_factory=dict)
     findings: list[Finding] = field(default_factory=list)
     tools: dict[str, Tool] = field(default_factory=dict)
-    progress: Progress = QUIET
+    progress: Progress = NO_PROGRESS
 
 
 def floor_distance(settings: RouteSettings) -> float:

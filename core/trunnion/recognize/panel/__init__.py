@@ -10,7 +10,7 @@ from trunnion.findings import BadInput, Finding
 from trunnion.geometry.facegraph import FaceGraph
 from trunnion.geometry.frame import Frame
 from trunnion.model.feature import Feature, Recognition
-from trunnion.progress import QUIET, Progress
+from trunnion.progress import NO_PROGRESS, Progress
 from trunnion.recognize.contract import Slicer, Smallest, Suitability
 from trunnion.recognize.extent import box
 from trunnion.recognize.panel.classes import STEEP_CLASSES, FaceClass, classify
@@ -82,7 +82,11 @@ class PanelFamily:
         )
 
     def recognize(
-        self, graph: FaceGraph, slicer: Slicer, settings: PanelSettings, progress: Progress = QUIET
+        self,
+        graph: FaceGraph,
+        slicer: Slicer,
+        settings: PanelSettings,
+        progress: Progress = NO_PROGRESS,
     ) -> Recognition:
         """Return the features of a panel. Raises `BadInput` when the part has no plane face, `Cancelled` when asked to stop."""
         progress.at(0.0, "choosing the frame")

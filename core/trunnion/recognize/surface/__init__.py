@@ -10,7 +10,7 @@ from trunnion.findings import BadInput, Finding, face_tags, info
 from trunnion.geometry.arrays import Bools, Floats, Ints
 from trunnion.geometry.facegraph import FaceGraph
 from trunnion.model.feature import FaceRole, Feature, Recognition
-from trunnion.progress import QUIET, Progress
+from trunnion.progress import NO_PROGRESS, Progress
 from trunnion.recognize.contract import Bounded, Suitability
 from trunnion.recognize.surface.frame import frame_of
 from trunnion.recognize.surface.groups import aligned_groups, invariant_groups
@@ -42,7 +42,7 @@ class SurfaceFamily:
         graph: FaceGraph,
         bounded: Bounded,
         settings: SurfaceSettings,
-        progress: Progress = QUIET,
+        progress: Progress = NO_PROGRESS,
     ) -> Recognition:
         """Return one feature a group of equal patches, largest first; local ones are marked.
 

@@ -24,7 +24,7 @@ from trunnion.model.tool import Holder, Tool
 from trunnion.plan.clearance import ClearanceQuery
 from trunnion.plan.freeform.cutters.cutter import tip_at
 from trunnion.plan.freeform.drive import SurfaceDrive
-from trunnion.progress import QUIET, Progress
+from trunnion.progress import NO_PROGRESS, Progress
 from trunnion.toolpath.contact_passes.axis_fields import AxisField, eased, leaning
 from trunnion.toolpath.contact_passes.contacts import Contacts, axis_between, between, slerp
 from trunnion.toolpath.contact_passes.passes import Pass
@@ -110,7 +110,7 @@ def free_axes(
     query: ClearanceQuery | None,
     limits: LeanLimits,
     allowance: float = 0.0,
-    progress: Progress = QUIET,
+    progress: Progress = NO_PROGRESS,
 ) -> list[FreeAxes]:
     """Return the free axes of contact passes, as near as can be to what a field wants.
 
@@ -126,7 +126,7 @@ def leaned(
     query: ClearanceQuery | None,
     limits: LeanLimits,
     chord: float,
-    progress: Progress = QUIET,
+    progress: Progress = NO_PROGRESS,
 ) -> list[Pass]:
     """Return passes of a ball (or a taper with a ball) with the axis leant to a field: the ball's centre stays on its way.
 
@@ -172,7 +172,7 @@ def leaned_by(
     lead: float,
     tilt: float,
     chord: float,
-    progress: Progress = QUIET,
+    progress: Progress = NO_PROGRESS,
 ) -> tuple[list[Pass], tuple[Finding, ...]]:
     """Return passes of a ball leant by a lead and a tilt (rad), further where that keeps clear, and what had to be left; as they are when
     both are 0. Raises `Refused` for a cutter that is no ball and where no tool may lean."""
@@ -320,7 +320,7 @@ class AxisSearch:
             return np.ones(len(point), bool)
         return self.query(self.samples.point.mean(axis=0) + AWAY * point, point)
 
-    def found_axes(self, progress: Progress = QUIET) -> list[FreeAxes]:
+    def found_axes(self, progress: Progress = NO_PROGRESS) -> list[FreeAxes]:
         """Return the courses of all passes."""
         for n in range(ROUNDS):
             progress.at(n / ROUNDS, "Leaning the tool clear")

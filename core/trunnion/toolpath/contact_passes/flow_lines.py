@@ -19,7 +19,7 @@ from trunnion.geometry.sheet.sheet import Sheet, sheet_of, split_finely
 from trunnion.model.tool import Tool
 from trunnion.plan.freeform.drive import SurfaceDrive
 from trunnion.plan.freeform.estimate.scallop import stepover_on_plane
-from trunnion.progress import QUIET, Progress
+from trunnion.progress import NO_PROGRESS, Progress
 from trunnion.toolpath.contact_passes.contacts import Contacts
 from trunnion.toolpath.contact_passes.guides import (
     Guides,
@@ -60,7 +60,7 @@ def flow_lines(
     drive: SurfaceDrive,
     tool: Tool,
     flow: FlowParameters = FlowParameters(),
-    progress: Progress = QUIET,
+    progress: Progress = NO_PROGRESS,
 ) -> tuple[Contacts, ...]:
     """Return the passes of contacts over the drive's faces from the first guide to the second, in the cutting frame.
 

@@ -23,7 +23,7 @@ from trunnion.model.setup import Setup
 from trunnion.model.tool import Tool
 from trunnion.plan.freeform.cutters.cutter import lower_side
 from trunnion.plan.freeform.drive import SurfaceDrive
-from trunnion.progress import QUIET, Progress
+from trunnion.progress import NO_PROGRESS, Progress
 from trunnion.toolpath.contact_passes.passes import UPRIGHT, Pass
 from trunnion.toolpath.contact_passes.upright.tracing import follow, thinned
 from trunnion.toolpath.motion.builder import PathBuilder
@@ -69,7 +69,7 @@ def linked(
     stock: PlanningStock,
     setup: Setup,
     parameters: LinkParameters,
-    progress: Progress = QUIET,
+    progress: Progress = NO_PROGRESS,
 ) -> Toolpath:
     """Return the toolpath that cuts all passes, in the cutting frame; it begins and ends at the setup's clearance height."""
     passes = [p for p in passes if len(p) > 1]
@@ -376,14 +376,14 @@ def _leads(
 ) -> tuple[Floats, Floats, Bools]:
     """Return the links (m, k, 3) onto all passes, up to the first tip, and off them, after the last: quarter circles, lifted where they
     would gouge. And say of each pass but the last whether the way off it and onto the next one needs no lifting (m - 1,)."""
-    coming = _arcs(
+    lead_in = _arcs(
         np.array([p.tip[0] for p in passes]),
         np.array([_off(p.tip, p.axis[0]) for p in passes]),
         np.array([p.normal[0] for p in passes]),
         np.array([p.axis[0] for p in passes]),
         parameters.lead_radius,
     )[:, ::-1]
-    leaving = _arcs(
+    lead_out = _arcs(
         np.array([p.tip[-1] for p in passes]),
         np.array([_off(p.tip[::-1], p.axis[-1]) for p in passes]),
         np.array([p.normal[-1] for p in passes]),
@@ -392,8 +392,8 @@ def _leads(
     )
     upright = np.array([[_is_upright(p.axis[row]) for p in passes] for row in (0, -1)])
     share = np.linspace(0.0, 1.0, BETWEEN)[:, None]
-    between = leaving[:-1, -1:] + share * (coming[1:, :1] - leaving[:-1, -1:])
-    links = (coming, leaving, between)
+    between = lead_out[:-1, -1:] + share * (lead_in[1:, :1] - lead_out[:-1, -1:])
+    links = (lead_in, lead_out, between)
     flat = np.concatenate([w.reshape(-1, 3) for w in links])
     floor = drive.skin.drop.drop(
         flat[:, :2],
@@ -409,7 +409,7 @@ def _leads(
         )
     ]
     for arcs, up, is_upright, nearest, row in zip(
-        (coming, leaving), lifts, upright, (-1, 0), (0, -1), strict=False
+        (lead_in, lead_out), lifts, upright, (-1, 0), (0, -1), strict=False
     ):
         arcs[:, :, 2] += np.where(is_upright[:, None], up, 0.0)
         # Lifted unevenly an arc runs along something steep, which its chords would enter: the tool then comes and goes along its axis.
@@ -425,8 +425,8 @@ def _leads(
         lifts[1][:-1].max(axis=1, initial=0.0) <= parameters.chord
     )
     return (
-        coming,
-        leaving,
+        lead_in,
+        lead_out,
         np.asarray(
             has_links
             & (lifts[2].max(axis=1, initial=0.0) <= parameters.chord)

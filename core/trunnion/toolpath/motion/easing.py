@@ -15,7 +15,7 @@ from trunnion.geometry.arrays import Floats, Ints
 from trunnion.model.motion.toolpath import Mark, Motion, Toolpath
 from trunnion.model.operation import CuttingData
 from trunnion.model.tool import Tool
-from trunnion.progress import QUIET, Progress
+from trunnion.progress import NO_PROGRESS, Progress
 from trunnion.toolpath.stock.heightfield import PlanningStock, positions_on
 
 PIECE = 0.5
@@ -34,7 +34,7 @@ def eased(
     data: CuttingData,
     stock: PlanningStock,
     slot: float,
-    progress: Progress = QUIET,
+    progress: Progress = NO_PROGRESS,
 ) -> Toolpath:
     """Return a path with slower feeds where it removes more than a full slot of the operation's depth would at `slot` times its feed.
 
@@ -44,7 +44,11 @@ def eased(
 
 
 def eased_finish(
-    path: Toolpath, tool: Tool, data: CuttingData, stock: PlanningStock, progress: Progress = QUIET
+    path: Toolpath,
+    tool: Tool,
+    data: CuttingData,
+    stock: PlanningStock,
+    progress: Progress = NO_PROGRESS,
 ) -> Toolpath:
     """Return a finishing path as `eased`, where leftovers weigh as much as a slot that the cutter bears."""
     return _eased(path, tool, data.feed, stock, slot_of_finish(tool, data), progress)

@@ -84,7 +84,7 @@ class ClearingLayer:
         ) + tolerance.ON_REGION
 
 
-def clear(
+def clear_area(
     builder: PathBuilder, layer: ClearingLayer, parameters: ClearingParameters, progress: Progress
 ) -> None:
     """Cut all passes of a layer."""

@@ -22,7 +22,7 @@ from trunnion.toolpath.motion.choices import safety
 from trunnion.toolpath.motion.easing import eased_finish
 from trunnion.toolpath.motion.engagement import floor_leftovers
 from trunnion.toolpath.offsetting import choices
-from trunnion.toolpath.offsetting.area_clearing import ClearingLayer, ClearingParameters, clear
+from trunnion.toolpath.offsetting.area_clearing import ClearingLayer, ClearingParameters, clear_area
 from trunnion.toolpath.offsetting.passes import passes_over
 from trunnion.toolpath.offsetting.rings import safe_step
 from trunnion.toolpath.stock.heightfield import PlanningStock
@@ -98,7 +98,7 @@ def floor(
                 )
             )
             continue
-        clear(
+        clear_area(
             builder,
             ClearingLayer(
                 z=each.z, rings=passes.rings, axis_region=passes.axis_region, clip=passes.clip

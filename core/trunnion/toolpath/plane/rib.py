@@ -19,7 +19,7 @@ from trunnion.toolpath.motion.builder import PathBuilder
 from trunnion.toolpath.motion.choices import safety
 from trunnion.toolpath.motion.engagement import top_width
 from trunnion.toolpath.offsetting import choices
-from trunnion.toolpath.offsetting.area_clearing import ClearingLayer, ClearingParameters, clear
+from trunnion.toolpath.offsetting.area_clearing import ClearingLayer, ClearingParameters, clear_area
 from trunnion.toolpath.offsetting.levels import steps_down
 from trunnion.toolpath.offsetting.rings import ring_tree, safe_step
 from trunnion.toolpath.stock.heightfield import PlanningStock
@@ -97,7 +97,7 @@ def rib_top(
                 f"{drive.feature}: layer at {z:.3f}",
             )
             if not stock.is_clear(z + tolerance.COINCIDENT, level.wanted):
-                clear(
+                clear_area(
                     builder,
                     ClearingLayer(z=z, rings=rings, axis_region=axis_region, top=None),
                     parameters,

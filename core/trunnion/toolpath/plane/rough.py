@@ -19,7 +19,7 @@ from trunnion.toolpath.motion.choices import safety
 from trunnion.toolpath.motion.easing import eased
 from trunnion.toolpath.motion.engagement import full_width
 from trunnion.toolpath.offsetting import choices
-from trunnion.toolpath.offsetting.area_clearing import ClearingLayer, ClearingParameters, clear
+from trunnion.toolpath.offsetting.area_clearing import ClearingLayer, ClearingParameters, clear_area
 from trunnion.toolpath.offsetting.levels import layers
 from trunnion.toolpath.offsetting.passes import ClearingPasses, passes_over
 from trunnion.toolpath.offsetting.rings import safe_step
@@ -92,7 +92,7 @@ def rough(
             passes = made[distance]
             if passes.rings and not _is_cleared(builder, level.wanted, z):
                 known = None if first or passes.clip is not None else above
-                clear(
+                clear_area(
                     builder,
                     ClearingLayer(
                         z=z,

@@ -24,7 +24,7 @@ from trunnion.toolpath.motion.choices import safety
 from trunnion.toolpath.motion.easing import eased_finish
 from trunnion.toolpath.motion.engagement import eased_leftovers
 from trunnion.toolpath.offsetting import choices
-from trunnion.toolpath.offsetting.area_clearing import ClearingLayer, ClearingParameters, clear
+from trunnion.toolpath.offsetting.area_clearing import ClearingLayer, ClearingParameters, clear_area
 from trunnion.toolpath.offsetting.contour import (
     ContourApproach,
     contour_parts,
@@ -183,7 +183,9 @@ def _cut_floor_rest(
         axis_region=axis_region,
         clip=clip,
     )
-    clear(builder, layer, ClearingParameters(step=step, ramp=approach.ramp, slot=1.0), progress)
+    clear_area(
+        builder, layer, ClearingParameters(step=step, ramp=approach.ramp, slot=1.0), progress
+    )
 
 
 def _clusters(positions: Floats, apart: float) -> list[tuple[Floats, Floats]]:

@@ -20,7 +20,7 @@ from trunnion.model.blank import Blank
 from trunnion.model.motion.toolpath import Motion, Toolpath
 from trunnion.model.setup import Setup
 from trunnion.model.tool import Tool
-from trunnion.progress import QUIET, Progress
+from trunnion.progress import NO_PROGRESS, Progress
 from trunnion.settings import digest
 
 CELL = 0.5
@@ -68,7 +68,7 @@ class PlanningStock:
             key = digest(key, heights)
         return PlanningStock(heights=_fixed(heights), corner=corner, cell=cell, digest=key)
 
-    def after(self, path: Toolpath, tool: Tool, progress: Progress = QUIET) -> PlanningStock:
+    def after(self, path: Toolpath, tool: Tool, progress: Progress = NO_PROGRESS) -> PlanningStock:
         """Return the stock after the feed moves of a path."""
         if (path.motion == Motion.RAPID).all():
             return self
@@ -83,7 +83,7 @@ class PlanningStock:
         """Return a copy that `zmap_cut` may change; its digest stays that of the stock it was taken from."""
         return replace(self, heights=self.heights.copy())
 
-    def lower(self, path: Toolpath, tool: Tool, progress: Progress = QUIET) -> Floats:
+    def lower(self, path: Toolpath, tool: Tool, progress: Progress = NO_PROGRESS) -> Floats:
         """Take the feed moves of a path off this very field, which must be a `working` copy; return the volume (n,) in mm3 that each
         block takes off."""
         starts, ends, rows, error = chords(path)

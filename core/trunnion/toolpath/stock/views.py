@@ -18,7 +18,7 @@ from trunnion.model.blank import Blank
 from trunnion.model.motion.toolpath import Motion, Toolpath
 from trunnion.model.setup import Setup
 from trunnion.model.tool import Tool
-from trunnion.progress import QUIET, Progress
+from trunnion.progress import NO_PROGRESS, Progress
 from trunnion.settings import digest
 from trunnion.toolpath.stock.heightfield import PlanningStock
 
@@ -52,7 +52,9 @@ class StockViews:
                 )
         return self._stocks[name]
 
-    def cut(self, setup: Setup, path: Toolpath, tool: Tool, progress: Progress = QUIET) -> None:
+    def cut(
+        self, setup: Setup, path: Toolpath, tool: Tool, progress: Progress = NO_PROGRESS
+    ) -> None:
         """Take a path in the frame of a setup off its stock. A leaning tool takes nothing off: the stock is then higher than it is."""
         if len(path) and bool(
             (path.axis[path.motion != Motion.RAPID, 2] > 1.0 - tolerance.PARAMETRIC).all()

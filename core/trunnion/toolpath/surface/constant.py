@@ -8,7 +8,7 @@ from trunnion.model.operation import CuttingData
 from trunnion.model.setup import Setup
 from trunnion.model.tool import Tool
 from trunnion.plan.freeform.drive import SurfaceDrive
-from trunnion.progress import QUIET, Progress
+from trunnion.progress import NO_PROGRESS, Progress
 from trunnion.settings import setting, settings
 from trunnion.toolpath.contact_passes import choices
 from trunnion.toolpath.contact_passes.choices import TOO_SHALLOW, TOO_STEEP
@@ -57,7 +57,7 @@ def constant(
     stock: PlanningStock,
     setup: Setup,
     settings: ConstantSettings,
-    progress: Progress = QUIET,
+    progress: Progress = NO_PROGRESS,
 ) -> Planned:
     """Return the motions of passes at a constant scallop height over the drive's faces, and what they leave."""
     contact_lines = scallop_passes(drive, tool, settings.chord, progress.part(0.0, 0.4))

@@ -22,7 +22,7 @@ from trunnion.model.tool import Tool
 from trunnion.plan.freeform.cutters.cutter import lower_side
 from trunnion.plan.freeform.drive import SurfaceDrive
 from trunnion.plan.freeform.estimate.scallop import stepover_on_plane
-from trunnion.progress import QUIET, Progress
+from trunnion.progress import NO_PROGRESS, Progress
 from trunnion.settings import setting, settings
 from trunnion.toolpath.contact_passes.linking import LinkParameters, linked
 from trunnion.toolpath.contact_passes.passes import UPRIGHT, Pass
@@ -269,7 +269,9 @@ def _sides(
     far = 0.0
     for aside in (-0.05 * tool.radius, 0.05 * tool.radius):
         positions = valley + aside * left
-        (_, _, theirs), (_, _, ours) = (g.contacts(positions, QUIET) for g in (larger, ground))
+        (_, _, theirs), (_, _, ours) = (
+            g.contacts(positions, NO_PROGRESS) for g in (larger, ground)
+        )
         beyond = np.abs(((theirs - ours)[:, :2] * left).sum(axis=1))
         far = max(far, float(np.nanmax(beyond, initial=0.0)))
     return min(math.ceil(far / stepover) + 1, MOST_SIDES)

@@ -27,7 +27,7 @@ from trunnion.plan.clearance import ClearanceQuery
 from trunnion.plan.freeform.cutters.cutter import lower_side, tip_at, touching
 from trunnion.plan.freeform.drive import SurfaceDrive
 from trunnion.plan.freeform.estimate.scallop import stepover_on_plane
-from trunnion.progress import QUIET, Progress
+from trunnion.progress import NO_PROGRESS, Progress
 from trunnion.settings import setting, settings
 from trunnion.toolpath.contact_passes.axis_fields import (
     AxisField,
@@ -193,7 +193,7 @@ def point(
     stock: PlanningStock,
     setup: Setup,
     settings: PointSettings,
-    progress: Progress = QUIET,
+    progress: Progress = NO_PROGRESS,
 ) -> Planned:
     """Return the path of a leaning tool over the drive's faces, or over what an earlier cutter left of them, and what it must leave."""
     if drive.query_for is None:
@@ -312,7 +312,7 @@ def milled(
     limits: LeanLimits,
     chord: float,
     allowance: float = 0.0,
-    progress: Progress = QUIET,
+    progress: Progress = NO_PROGRESS,
 ) -> PointMilledPasses:
     """Return the passes of a cutter over contact passes, its axis as near to a field as `query` and the limits let it.
 
@@ -368,7 +368,7 @@ def rest_of(
     query: ClearanceQuery,
     limits: LeanLimits,
     allowance: float = 0.0,
-    progress: Progress = QUIET,
+    progress: Progress = NO_PROGRESS,
 ) -> tuple[Contacts, ...]:
     """Return the stretches of contact passes where an earlier cutter had no free axis, and a little more all round."""
     axes_of_lines = free_axes(contact_lines, field, earlier, query, limits, allowance, progress)

@@ -8,7 +8,7 @@ from trunnion.model.operation import CuttingData
 from trunnion.model.setup import Setup
 from trunnion.model.tool import Tool
 from trunnion.plan.freeform.drive import SurfaceDrive
-from trunnion.progress import QUIET, Progress
+from trunnion.progress import NO_PROGRESS, Progress
 from trunnion.settings import setting, settings
 from trunnion.toolpath.contact_passes import choices
 from trunnion.toolpath.contact_passes.choices import TOO_STEEP
@@ -61,7 +61,7 @@ def streamline(
     stock: PlanningStock,
     setup: Setup,
     settings: StreamlineSettings,
-    progress: Progress = QUIET,
+    progress: Progress = NO_PROGRESS,
 ) -> Planned:
     """Return the motions of an upright tool along flow lines over the drive's faces, and what it leaves."""
     flow = FlowParameters(

@@ -361,23 +361,23 @@ def _loops(
     ends = np.take_along_axis(ends, np.argsort(-heights[ends], axis=1, kind="stable"), axis=1)
     high, low = grid.points[ends[:, 0], :2], grid.points[ends[:, 1], :2]
     side = np.hypot(*(low - high).T)
-    way = (low - high) / side[:, None]
-    run, has_rim = blocked.rim(high, way, over, side)
-    plan = np.where(has_rim[:, None], high + run[:, None] * way, low)
+    direction = (low - high) / side[:, None]
+    run, has_rim = blocked.rim(high, direction, over, side)
+    plan = np.where(has_rim[:, None], high + run[:, None] * direction, low)
     split = np.split(plan, np.cumsum([len(rows) for _, rows, _ in found])[:-1])
     lines = []
-    for way, (line, _, closed) in zip(split, found, strict=True):
+    for loop, (line, _, closed) in zip(split, found, strict=True):
         z = float(levels[line.level])
         for rows, whole in _pieces(
-            way, _apart(near, way, z) <= NEARBY * cell, closed, settings.overlap, radius
+            loop, _apart(near, loop, z) <= NEARBY * cell, closed, settings.overlap, radius
         ):
-            rows = rows[np.append(True, np.hypot(*np.diff(way[rows], axis=0).T) > CLOSE)]
+            rows = rows[np.append(True, np.hypot(*np.diff(loop[rows], axis=0).T) > CLOSE)]
             if len(rows) > 1:
-                lines.append(_Loop(plan=way[rows], z=z, level=line.level, closed=whole))
-    ways = _refined(lines, blocked, settings.chord)
+                lines.append(_Loop(plan=loop[rows], z=z, level=line.level, closed=whole))
+    refined = _refined(lines, blocked, settings.chord)
     return [
-        replace(line, plan=way, z=line.z + drive.allowance)
-        for line, way in zip(lines, ways, strict=True)
+        replace(line, plan=loop, z=line.z + drive.allowance)
+        for line, loop in zip(lines, refined, strict=True)
     ]
 
 
@@ -389,7 +389,7 @@ def _apart(tips: cKDTree, plan: Floats, z: float) -> Floats:
 def _pieces(
     plan: Floats, near: Bools, closed: bool, overlap: float, radius: float
 ) -> list[tuple[Ints, bool]]:
-    """Return the rows of the pieces of a direction (k, 2) that are near the area, roll round an edge of it, or are no farther along the way
+    """Return the rows of the pieces of a path (k, 2) that are near the area, roll round an edge of it, or are no farther along the way
     than an overlap from such, and whether each is closed."""
     rows = np.arange(len(plan))
     if not near.any():
@@ -429,7 +429,7 @@ def _rolls(plan: Floats, near: Bools, radius: float) -> Bools:
 
 
 def _refined(loops: list[_Loop], blocked: _Blocked, chord: float) -> list[Floats]:
-    """Return the ways with places put in until no chord leaves the rim of what is blocked by more than a chord error."""
+    """Return the paths with positions put in until no chord leaves the rim of what is blocked by more than a chord error."""
     if not loops:
         return []
     plan, z = (
@@ -466,10 +466,10 @@ def _refined(loops: list[_Loop], blocked: _Blocked, chord: float) -> list[Floats
 def _bulges(plan: Floats, line: Ints) -> Floats:
     """Return how far to the left (n,) of the middle of the chord from each place (n, 2) of lines to the next a smooth way would be, as the
     lines turn at both ends."""
-    way = np.diff(plan, axis=0)
-    length = np.hypot(way[:, 0], way[:, 1])
-    turn = way[:-1, 0] * way[1:, 1] - way[:-1, 1] * way[1:, 0]
-    size = length[:-1] * length[1:] * np.hypot(*(way[:-1] + way[1:]).T)
+    chord = np.diff(plan, axis=0)
+    length = np.hypot(chord[:, 0], chord[:, 1])
+    turn = chord[:-1, 0] * chord[1:, 1] - chord[:-1, 1] * chord[1:, 0]
+    size = length[:-1] * length[1:] * np.hypot(*(chord[:-1] + chord[1:]).T)
     bend = np.divide(
         2.0 * turn, size, out=np.zeros(len(turn)), where=(size > 0.0) & (line[2:] == line[:-2])
     )
@@ -481,10 +481,10 @@ def _middles(
     start: Floats, end: Floats, off: Floats, z: Floats, blocked: _Blocked, chord: float
 ) -> tuple[Floats, Floats, Bools]:
     """Return the directions (n, 2) to the left of chords, which have what is blocked on their right, how far the rim is from their middles
-    that direction (n,), expected `off` (n,), and whether one is found."""
-    way, middle = end - start, 0.5 * (start + end)
-    length = np.maximum(np.hypot(way[:, 0], way[:, 1]), CLOSE)
-    left = np.column_stack([-way[:, 1], way[:, 0]]) / length[:, None]
+    that way (n,), expected `off` (n,), and whether one is found."""
+    along, middle = end - start, 0.5 * (start + end)
+    length = np.maximum(np.hypot(along[:, 0], along[:, 1]), CLOSE)
+    left = np.column_stack([-along[:, 1], along[:, 0]]) / length[:, None]
     off, found, rows = (
         np.clip(off, -0.5 * length, 0.5 * length),
         np.zeros(len(z)),
@@ -529,11 +529,11 @@ def _in_order(loops: list[_Loop], tool: Tool, *, both: bool) -> list[Pass]:
 
 
 def _pass(loop: _Loop, *, turned: bool) -> Pass:
-    way = np.diff(loop.plan, axis=0)
-    way /= np.maximum(np.hypot(way[:, 0], way[:, 1]), CLOSE)[:, None]
+    direction = np.diff(loop.plan, axis=0)
+    direction /= np.maximum(np.hypot(direction[:, 0], direction[:, 1]), CLOSE)[:, None]
     before, after = (
-        np.vstack([way[-1:] if loop.closed else way[:1], way]),
-        np.vstack([way, way[:1] if loop.closed else way[-1:]]),
+        np.vstack([direction[-1:] if loop.closed else direction[:1], direction]),
+        np.vstack([direction, direction[:1] if loop.closed else direction[-1:]]),
     )
     ahead = before + after
     ahead[np.hypot(ahead[:, 0], ahead[:, 1]) < CLOSE] = after[

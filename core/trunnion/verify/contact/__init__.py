@@ -16,7 +16,7 @@ from trunnion.geometry.arrays import Bools, Floats, Ints
 from trunnion.model.tool import Tool
 from trunnion.part.shape.facets import Facets
 from trunnion.part.shape.surfaces import Surfaces
-from trunnion.progress import QUIET, Progress
+from trunnion.progress import NO_PROGRESS, Progress
 from trunnion.verify.contact.facets import FacetContact
 from trunnion.verify.contact.grid import Grid as Grid
 from trunnion.verify.contact.grid import grid_of as grid_of
@@ -77,7 +77,7 @@ class PartContact:
         )
         self._fixtures = FacetContact(_joined(fixtures)) if fixtures else None
 
-    def along(self, moves: Moves, progress: Progress = QUIET, threads: int = 0) -> Contact:
+    def along(self, moves: Moves, progress: Progress = NO_PROGRESS, threads: int = 0) -> Contact:
         """Return how deep every move of a program enters part and fixtures, measured on `threads` threads (0: one a core)."""
         found, rows = Penetration.none(len(moves), len(self.surfaces.tag)), np.arange(len(moves))
         engines = [*self._engines(moves), *([(self._fixtures, rows)] if self._fixtures else [])]
@@ -138,7 +138,7 @@ class PartContact:
         wanted: Bools,
         allowed: float,
         obstacles: Obstacles,
-        progress: Progress = QUIET,
+        progress: Progress = NO_PROGRESS,
         text: str = "",
         threads: int = 0,
     ) -> Bools:

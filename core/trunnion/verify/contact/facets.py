@@ -18,7 +18,7 @@ from trunnion import tolerance
 from trunnion.geometry.arrays import Bools, Floats, Ints
 from trunnion.model.tool import Tool
 from trunnion.part.shape.facets import Facets
-from trunnion.progress import QUIET, Progress
+from trunnion.progress import NO_PROGRESS, Progress
 from trunnion.verify.contact.obstacles import Obstacles
 from trunnion.verify.contact.penetration import Penetration, deepen
 from trunnion.verify.cutter import bodies_of_one
@@ -112,7 +112,7 @@ class FacetContact:
         return self.tree
 
     def along(
-        self, moves: Moves, rows: Ints, progress: Progress = QUIET, threads: int = 0
+        self, moves: Moves, rows: Ints, progress: Progress = NO_PROGRESS, threads: int = 0
     ) -> Penetration:
         """Return how deep the moves of some rows (k,) enter the faces, whichever way the tool stands."""
         return self._measure(moves, rows, progress, threads)
@@ -120,7 +120,7 @@ class FacetContact:
     def stopped(self, moves: Moves, rows: Ints, allowed: float) -> Floats:
         """Return a position (k, 3) of the faces that the tool enters deeper than allowed, for the moves of some rows (k,); NaN where
         none."""
-        return self._measure(moves, rows, QUIET, 1, allowed).deeper_than(allowed)
+        return self._measure(moves, rows, NO_PROGRESS, 1, allowed).deeper_than(allowed)
 
     def any_clear(
         self,
@@ -130,7 +130,7 @@ class FacetContact:
         wanted: Bools,
         allowed: float,
         obstacles: Obstacles,
-        progress: Progress = QUIET,
+        progress: Progress = NO_PROGRESS,
         text: str = "",
         threads: int = 0,
     ) -> Bools:

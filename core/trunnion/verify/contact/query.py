@@ -15,7 +15,7 @@ import numpy as np
 from trunnion import tolerance
 from trunnion.geometry.arrays import Bools, Floats, Ints
 from trunnion.model.tool import Tool
-from trunnion.progress import QUIET, Progress
+from trunnion.progress import NO_PROGRESS, Progress
 from trunnion.verify.contact import PartContact
 from trunnion.verify.cutter import bodies_of
 from trunnion.verify.kernels.contact import strips as columns
@@ -59,7 +59,7 @@ def pose_clearance(
     most_plunge: float = 100.0,
     longest: float | None = None,
     allowed: float = tolerance.GOUGE,
-    progress: Progress = QUIET,
+    progress: Progress = NO_PROGRESS,
 ) -> PoseClearance:
     """Return what poses of one tool may do: tips (k, 3), unit axes (k, 3), queried all together.
 

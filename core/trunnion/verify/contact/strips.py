@@ -34,7 +34,7 @@ from trunnion.part.shape.surfaces import (
     U1,
     Surfaces,
 )
-from trunnion.progress import QUIET, Progress
+from trunnion.progress import NO_PROGRESS, Progress
 from trunnion.verify.contact.grid import Grid, grid_of
 from trunnion.verify.contact.penetration import Penetration, deepen
 from trunnion.verify.kernels.contact import strips as kernel
@@ -77,7 +77,7 @@ class StripContact:
         self._cell_z = _heights(self._grid, surfaces.strip[:, [BZ0, BZ1]])
 
     def along(
-        self, moves: Moves, rows: Ints, progress: Progress = QUIET, threads: int = 0
+        self, moves: Moves, rows: Ints, progress: Progress = NO_PROGRESS, threads: int = 0
     ) -> Penetration:
         """Return how deep the moves of some rows (k,) enter the faces; they must stand upright."""
         found = self._measure(moves, rows, progress, threads)
@@ -87,7 +87,7 @@ class StripContact:
         """Return a position (k, 3) of the faces about where the tool enters them deeper than allowed, for the moves of some rows (k,),
         which must stand upright; NaN where it doesn't."""
         return self._penetration(
-            moves, rows, self._measure(moves, rows, QUIET, 1, allowed)
+            moves, rows, self._measure(moves, rows, NO_PROGRESS, 1, allowed)
         ).deeper_than(allowed)
 
     def _penetration(self, moves: Moves, rows: Ints, found: _Measured) -> Penetration:

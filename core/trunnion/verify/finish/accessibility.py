@@ -16,7 +16,7 @@ from trunnion import tolerance
 from trunnion.geometry.arrays import Bools, Floats, Ints
 from trunnion.model.material import Machine
 from trunnion.model.tool import PLAIN_FORMS, Tool
-from trunnion.progress import QUIET, Progress
+from trunnion.progress import NO_PROGRESS, Progress
 from trunnion.verify.contact import Obstacles, PartContact
 from trunnion.verify.finish.coverage import Samples
 from trunnion.verify.finish.tilted_poses import leaning_axes, touching_tips
@@ -54,7 +54,7 @@ class Accessibility:
         plain = [t for t in tools if t.form in PLAIN_FORMS]
         self._tools = sorted(reaching_furthest(plain), key=lambda t: (t.radius, -t.reach, t.number))
 
-    def reached(self, samples: Samples, rows: Ints, progress: Progress = QUIET) -> Bools:
+    def reached(self, samples: Samples, rows: Ints, progress: Progress = NO_PROGRESS) -> Bools:
         """Return for each of the samples' rows whether some cutter reaches it.
 
         Of very many rows, evenly chosen ones of every face are tried, and the others share the result of the nearest on their face.

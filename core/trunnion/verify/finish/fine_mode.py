@@ -19,7 +19,7 @@ from scipy.spatial import cKDTree
 from trunnion.findings import BadInput, OutOfMemory
 from trunnion.geometry.arrays import Bools, Floats, Ints
 from trunnion.part.shape.exact import ExactPoints
-from trunnion.progress import QUIET, Progress
+from trunnion.progress import NO_PROGRESS, Progress
 from trunnion.verify.finish.sweep import flutes_of, tree_of
 from trunnion.verify.kernels import residual as residual_kernel
 from trunnion.verify.kernels import residual_bounds as kernel
@@ -125,7 +125,7 @@ def fine_measure(
     high: Floats | None = None,
     window: float = 1.0,
     bound: float = FINE_BOUND,
-    progress: Progress = QUIET,
+    progress: Progress = NO_PROGRESS,
     threads: int = 0,
 ) -> FineMap:
     """Return scallop, gouge and steps on faces (within the box from `low` to `high` (3,) when given), all in the frame of the moves.

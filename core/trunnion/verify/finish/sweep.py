@@ -13,7 +13,7 @@ import numpy as np
 from trunnion import tolerance
 from trunnion.geometry.arrays import Bools, Floats, Ints
 from trunnion.model.tool import PLAIN_FORMS
-from trunnion.progress import QUIET, Progress
+from trunnion.progress import NO_PROGRESS, Progress
 from trunnion.verify.contact import Grid, grid_of
 from trunnion.verify.cutter import Bodies
 from trunnion.verify.kernels import body
@@ -87,7 +87,7 @@ class Sweep:
         )
 
     def residual(
-        self, points: Floats, most: Floats, progress: Progress = QUIET, threads: int = 0
+        self, points: Floats, most: Floats, progress: Progress = NO_PROGRESS, threads: int = 0
     ) -> tuple[Floats, Ints]:
         """Return the smallest signed distance (s,) of points (s, 3) to what cuts over all feed moves, and the move (-1: none).
 
@@ -185,7 +185,7 @@ class Sweep:
                 out,
             )
 
-        in_parallel(some, len(points), CHUNK, QUIET, "", threads)
+        in_parallel(some, len(points), CHUNK, NO_PROGRESS, "", threads)
         return out
 
     def cut_around(self, points: Floats, margin: float, move: int) -> Bools:

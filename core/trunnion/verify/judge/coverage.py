@@ -15,7 +15,7 @@ from trunnion.model.blank import Blank
 from trunnion.model.material import Machine
 from trunnion.model.tool import Tool
 from trunnion.model.verdict import Deviation, FaceProof
-from trunnion.progress import QUIET, Progress
+from trunnion.progress import NO_PROGRESS, Progress
 from trunnion.verify.finish.accessibility import Accessibility
 from trunnion.verify.finish.coverage import Samples, on_blank
 from trunnion.verify.judge.setups import SetupProof
@@ -46,7 +46,7 @@ def covered(
     tools: Sequence[Tool],
     settings: ProofSettings,
     planned: Collection[int],
-    progress: Progress = QUIET,
+    progress: Progress = NO_PROGRESS,
     machines: Sequence[Machine] = (),
 ) -> CoverageResult:
     """Return what all setups together finish of the part.

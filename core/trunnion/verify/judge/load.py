@@ -16,7 +16,7 @@ import numpy as np
 
 from trunnion.geometry.arrays import Floats
 from trunnion.model.material import Material
-from trunnion.model.motion.program import STANDING, ProgramSection
+from trunnion.model.motion.program import STOPPED, ProgramSection
 from trunnion.units import MM_PER_METRE, SECONDS_PER_MINUTE, WATTS_PER_KILOWATT
 from trunnion.verify.motion import Moves
 from trunnion.verify.stock import StockRun
@@ -79,19 +79,19 @@ def load_of(
     angle = np.maximum(seen, least_angle(area, radius, flute))
     feed = np.where(cuts, speed * SECONDS_PER_MINUTE, 0.0)
     rate = np.where(cuts, area, 0.0) * feed / MM_PER_METRE
-    per_tooth = np.divide(feed, teeth * spindle, out=np.zeros(len(moves)), where=spindle > STANDING)
+    per_tooth = np.divide(feed, teeth * spindle, out=np.zeros(len(moves)), where=spindle > STOPPED)
     chip = per_tooth * np.sin(np.minimum(angle, math.pi / 2.0))
     mean = per_tooth * mean_share(angle)
     power = np.zeros(len(moves))
     if material is not None:
         power = np.where(
-            spindle > STANDING,
+            spindle > STOPPED,
             rate * specific_force(material, mean) / (SECONDS_PER_MINUTE * WATTS_PER_KILOWATT),
             0.0,
         )
     held = np.divide(area, width, out=np.zeros(len(moves)), where=cuts & (width > 0.0))
     torque = NEWTON_METRES * np.divide(
-        power, spindle, out=np.zeros(len(moves)), where=spindle > STANDING
+        power, spindle, out=np.zeros(len(moves)), where=spindle > STOPPED
     )
     return Load(
         depth=np.minimum(held, run.depth_of_cut),

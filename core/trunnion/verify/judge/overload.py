@@ -63,7 +63,7 @@ def allowed_load(section: ProgramSection, material: Material | None) -> AllowedL
     tool = section.cutter
     feed = section.feed or float(section.path.feed.max(initial=0.0))
     area, angle = section.width * section.depth, _angle(section.width, tool.diameter)
-    per_tooth = 0.0 if section.spindle_stands else feed / (tool.teeth * section.spindle)
+    per_tooth = 0.0 if section.spindle_stopped else feed / (tool.teeth * section.spindle)
     chip = per_tooth * math.sin(min(angle, math.pi / 2.0))
     if material is not None:
         area = max(area, material.depth_factor * material.width_factor * tool.diameter**2)
@@ -92,7 +92,7 @@ def _power(
     material: Material | None,
     settings: ProofSettings,
 ) -> LoadFindings:
-    if material is None or section.spindle_stands:
+    if material is None or section.spindle_stopped:
         return [], []
     limit = machine.power_at(section.spindle) * settings.power
     power = proof.load.power[rows]

@@ -15,7 +15,7 @@ from trunnion.model.blank import Blank
 from trunnion.model.material import Machine, Material
 from trunnion.model.motion.program import Program
 from trunnion.model.tool import Tool
-from trunnion.progress import QUIET, Progress
+from trunnion.progress import NO_PROGRESS, Progress
 from trunnion.verify.contact import Contact, PartContact
 from trunnion.verify.finish.sweep import Sweep
 from trunnion.verify.judge.load import Load, load_of
@@ -63,7 +63,7 @@ def prove_setup(
     material: Material | None,
     settings: ProofSettings,
     points: Floats,
-    progress: Progress = QUIET,
+    progress: Progress = NO_PROGRESS,
 ) -> SetupProof:
     """Return what is measured of one setup's program; `stock` is cut by it, `points` (s, 3) are the samples in its frame."""
     frame = program.setup.frame

@@ -22,7 +22,7 @@ from trunnion.model.verdict import Offer, Outcome, Verdict
 from trunnion.part.part import Part
 from trunnion.part.shape.facets import Facets, facets_of
 from trunnion.part.shape.surfaces import Surfaces, surfaces_of
-from trunnion.progress import QUIET, Progress
+from trunnion.progress import NO_PROGRESS, Progress
 from trunnion.verify.finish.coverage import Samples, samples_of
 from trunnion.verify.judge.coverage import covered
 from trunnion.verify.judge.findings import setup_findings
@@ -43,7 +43,7 @@ def prove(
     tools: Sequence[Tool],
     machines: Sequence[Machine],
     settings: ProofSettings,
-    progress: Progress = QUIET,
+    progress: Progress = NO_PROGRESS,
     planned_faces: Collection[int] = (),
     material: Material | None = None,
 ) -> Verdict:
@@ -100,7 +100,7 @@ def prove_surfaces(
     tools: Sequence[Tool],
     machines: Sequence[Machine],
     settings: ProofSettings,
-    progress: Progress = QUIET,
+    progress: Progress = NO_PROGRESS,
     planned_faces: Collection[int] = (),
     material: Material | None = None,
     facets: Sequence[Facets] = (),

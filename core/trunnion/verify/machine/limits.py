@@ -37,7 +37,7 @@ def limit_findings(
                     remedy="lower the feed",
                 )
             )
-        if s.spindle_stands:
+        if s.spindle_stopped:
             found += _spindle_findings(s)
         elif (
             not machine.spindle_low

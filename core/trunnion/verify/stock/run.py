@@ -9,7 +9,7 @@ import numpy as np
 from trunnion import tolerance
 from trunnion.geometry.arrays import Floats
 from trunnion.geometry.frame import Frame
-from trunnion.progress import QUIET, Progress
+from trunnion.progress import NO_PROGRESS, Progress
 from trunnion.verify.finish.sweep import Sweep
 from trunnion.verify.motion import Moves, seen_from
 from trunnion.verify.stock.engagement import engagement_of, probes_of
@@ -44,7 +44,7 @@ def run_stock(
     moves: Moves,
     frame: Frame,
     sweep: Sweep | None = None,
-    progress: Progress = QUIET,
+    progress: Progress = NO_PROGRESS,
     threads: int = 0,
 ) -> StockRun:
     """Cut moves given in a setup frame out of the stock (changed in place) and return what each did.

@@ -15,7 +15,7 @@ from trunnion.findings import Refused
 from trunnion.geometry.sphere import angle_between
 from trunnion.pipeline.planning.clearance import ToolClearanceQuery
 from trunnion.plan.freeform.cutters.cutter import tip_at
-from trunnion.progress import QUIET
+from trunnion.progress import NO_PROGRESS
 from trunnion.settings import choose
 from trunnion.toolpath.contact_passes.axis_fields import fixed, leaning
 from trunnion.toolpath.contact_passes.axis_search import (
@@ -214,7 +214,7 @@ def over_a_floor(ask=None, tool=BALL, **chosen):
         stock,
         setup,
         choose(ParallelSettings, chosen),
-        QUIET,
+        NO_PROGRESS,
     )
 
 

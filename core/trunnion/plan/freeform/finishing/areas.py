@@ -15,7 +15,7 @@ from trunnion.part.part import Part
 from trunnion.plan.freeform.cutters.cutter import level_disc
 from trunnion.plan.freeform.reach import AreaSamples
 from trunnion.plan.freeform.space import SurfaceSpace
-from trunnion.progress import QUIET, Progress
+from trunnion.progress import NO_PROGRESS, Progress
 from trunnion.recognize.contract import exclusive_kinds
 
 TIGHT = 8.0
@@ -119,7 +119,10 @@ def walls_of(samples: AreaSamples, tags: Collection[int]) -> tuple[int, ...]:
 
 
 def on_outline(
-    space: SurfaceSpace, samples: AreaSamples, tags: Collection[int], progress: Progress = QUIET
+    space: SurfaceSpace,
+    samples: AreaSamples,
+    tags: Collection[int],
+    progress: Progress = NO_PROGRESS,
 ) -> tuple[int, ...]:
     """Return the upright faces that nothing of the part stands in front of at their height: an end mill beside them is out in the free.
 

@@ -12,7 +12,7 @@ from scipy.spatial import cKDTree
 from trunnion.geometry.arrays import Bools, Floats, Ints
 from trunnion.geometry.sheet.sheet import Sheet, edges_of, sheet_of, split_finely
 from trunnion.geometry.sheet.skin import Skin
-from trunnion.progress import QUIET, Progress
+from trunnion.progress import NO_PROGRESS, Progress
 
 FILLED = 1.0
 """Of the width around places: what is narrower than twice this between two parts of the area belongs to it, and no bay of its rim is
@@ -33,7 +33,7 @@ def parted_near(
     over: Callable[[Floats, Floats], Floats],
     around: float,
     longest: float = 0.0,
-    progress: Progress = QUIET,
+    progress: Progress = NO_PROGRESS,
 ) -> tuple[Skin, tuple[int, ...]]:
     """Return the skin with what of faces lies within `around` mm of certain places given tags of its own, and those tags.
 

@@ -14,7 +14,7 @@ from trunnion.model.tool import Tool
 from trunnion.plan.freeform.cutters.cutter import level_disc, lower_side, tip_at
 from trunnion.plan.freeform.estimate.scallop import stepover_on_plane
 from trunnion.plan.freeform.finishing.partition import parted_near
-from trunnion.progress import QUIET, Progress
+from trunnion.progress import NO_PROGRESS, Progress
 
 LIFTED = 0.5 * tolerance.GOUGE
 """mm: a cutter that other faces lift by no more than this still reaches a place."""
@@ -37,7 +37,7 @@ def remaining_of(
     earlier: Tool,
     lowest: float,
     height: float,
-    progress: Progress = QUIET,
+    progress: Progress = NO_PROGRESS,
 ) -> tuple[Skin, tuple[int, ...]]:
     """Return the skin with what an upright cutter leaves of faces given tags of their own, and those tags; `height` is the scallop height
     in mm that is wanted."""
@@ -65,7 +65,7 @@ def without_met(
     tool: Tool,
     lowest: float,
     height: float,
-    progress: Progress = QUIET,
+    progress: Progress = NO_PROGRESS,
 ) -> tuple[Skin, tuple[int, ...]]:
     """Return the skin and the tags of what of faces an upright tool finishes without its shank or holder meeting the part: all of them
     where these meet nothing, else not what lies around such places, twice as far as passes are apart at a scallop height in mm."""

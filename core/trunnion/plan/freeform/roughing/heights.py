@@ -18,7 +18,7 @@ from trunnion.geometry.arrays import Bools, Floats
 from trunnion.geometry.plane.curve import Curve
 from trunnion.geometry.plane.region import EMPTY_REGION, Region
 from trunnion.geometry.surface.drop_surface import DropSurface
-from trunnion.progress import QUIET, Progress
+from trunnion.progress import NO_PROGRESS, Progress
 
 MOST_SAMPLES = 60_000
 """Places of a map: about a second of dropping; beyond, cells grow."""
@@ -41,7 +41,7 @@ class HeightMap:
         high: Floats,
         cell: float,
         allowance: float,
-        progress: Progress = QUIET,
+        progress: Progress = NO_PROGRESS,
     ) -> HeightMap:
         """Return the map of a surface over a box with corners (3,), which should hold it with room to spare; nothing is below `low`."""
         size = high[:2] - low[:2]

@@ -14,7 +14,7 @@ from scipy.ndimage import minimum_filter
 from trunnion.geometry.arrays import Bools, Floats
 from trunnion.plan.freeform.cutters.cutter import level_disc
 from trunnion.plan.freeform.space import SurfaceSpace
-from trunnion.progress import QUIET, Progress
+from trunnion.progress import NO_PROGRESS, Progress
 
 CELLS = 8.0
 """Cells of the grid over the disc's radius."""
@@ -23,7 +23,7 @@ MOST_SAMPLES = 20_000
 
 
 def hollow_depths(
-    space: SurfaceSpace, points: Floats, radius: float, progress: Progress = QUIET
+    space: SurfaceSpace, points: Floats, radius: float, progress: Progress = NO_PROGRESS
 ) -> Floats:
     """Return how deep (k,) mm the part lies below a level disc of a radius (mm) that comes as low as it can over points (k, 3).
 

@@ -23,7 +23,7 @@ from trunnion.geometry.sheet.sheet import Measure, Sheet, sheet_of, split_finely
 from trunnion.model.tool import Tool
 from trunnion.plan.freeform.drive import SurfaceDrive
 from trunnion.plan.freeform.estimate.scallop import stepover_on_plane
-from trunnion.progress import QUIET, Progress
+from trunnion.progress import NO_PROGRESS, Progress
 from trunnion.toolpath.contact_passes.contacts import Contacts
 from trunnion.toolpath.contact_passes.stepover.metric import metric_of, spread, stepover_measure
 
@@ -50,7 +50,7 @@ SMOOTHINGS = 3
 
 
 def scallop_passes(
-    drive: SurfaceDrive, tool: Tool, chord: float, progress: Progress = QUIET
+    drive: SurfaceDrive, tool: Tool, chord: float, progress: Progress = NO_PROGRESS
 ) -> list[Contacts]:
     """Return the passes of contacts from the rim of the drive's faces inwards, what is inside on their left, each connected part and each
     branch of it by itself; then those along ridges. Raises `Refused` for a flat end and for too large an area."""

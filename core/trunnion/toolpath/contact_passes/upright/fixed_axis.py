@@ -18,7 +18,7 @@ from trunnion.geometry.arrays import Bools, Floats, Ints
 from trunnion.model.tool import Tool
 from trunnion.plan.freeform.cutters.cutter import lower_side, tip_at
 from trunnion.plan.freeform.drive import SurfaceDrive
-from trunnion.progress import QUIET, Progress
+from trunnion.progress import NO_PROGRESS, Progress
 from trunnion.toolpath.contact_passes.choices import TOO_STEEP
 from trunnion.toolpath.contact_passes.contacts import Contacts
 from trunnion.toolpath.contact_passes.passes import UPRIGHT, Pass
@@ -75,7 +75,7 @@ def upright_passes(
     tool: Tool,
     chord: float,
     steepest: float,
-    progress: Progress = QUIET,
+    progress: Progress = NO_PROGRESS,
 ) -> UprightPasses:
     """Return the passes of an upright tool over contacts of the drive's faces, in the cutting frame.
 

@@ -15,7 +15,7 @@ from trunnion import tolerance
 from trunnion.geometry.arrays import Bools, Floats, Ints
 from trunnion.geometry.kernels.cutter_contact.drop_cutter import RHO1, height_at
 from trunnion.geometry.surface.drop_surface import DropSurface
-from trunnion.progress import QUIET, Progress
+from trunnion.progress import NO_PROGRESS, Progress
 
 UNSEEN = 0.5
 """Of the chord error: what stands up between two places of a way, too narrow to be seen from either, is at most so high."""
@@ -32,7 +32,7 @@ def follow(
     curves: Sequence[Floats],
     chord: float,
     lowest: float,
-    progress: Progress = QUIET,
+    progress: Progress = NO_PROGRESS,
 ) -> list[Floats]:
     """Return the tips (n, 3) of a cutter that follows each plan polyline (k, 2), as high as `DropSurface.drop` puts them.
 
