@@ -84,7 +84,7 @@ class AptDialect:
         work_positions: WorkPositions = NO_WORK_POSITIONS,
     ) -> tuple[Program, ...]:
         """Return the programs of the setups that the text names."""
-        from trunnion.post.readers.apt import read_apt
+        from trunnion.post.readers.apt.interpreter import read_apt
 
         return read_apt(text, tools, setups)
 
