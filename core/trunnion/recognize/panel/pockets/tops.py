@@ -31,7 +31,7 @@ class Tops:
 def sort_tops(view: PanelSide) -> Tops:
     """Return what the faces that look up are."""
     found: dict[str, list[int]] = {
-        n: [] for n in ("highest", "ribs", "floors", "standing", "undercut")
+        n: [] for n in ("highest", "ribs", "floors", "islands", "undercut")
     }
     for face in view.classes.rows(FaceClass.UP):
         found[_sort(view, face)].append(face)
@@ -64,7 +64,7 @@ def _sort(view: PanelSide, face: int) -> str:
         return "highest"
     share = foot_share(view, face)
     if share == 0.0:
-        return "standing"
+        return "islands"
     if view.undercut(face):
         return "undercut"
     return (
